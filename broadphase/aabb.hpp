@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Axis-aligned bounding boxes and the one predicate that decides every pair.
+//
+// Units   metres, or whatever the caller's world is measured in.
+// Closed  Boxes contain their faces: boxes that touch overlap, as in Bullet.
+// NaN     A box with a NaN coordinate overlaps nothing.
+
+#include <Eigen/Geometry>
+
+namespace hashphase {
+
+template <class Scalar>
+using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
+
+/// The box from min() to max(), both inclusive. May be infinite; may be inverted (min > max), in
+/// which case the predicates below still mean exactly what they say.
+template <class Scalar>
+using Aabb = Eigen::AlignedBox<Scalar, 3>;
+
+/// True when the closed boxes a and b share a point: a.min <= b.max and b.min <= a.max on every
+/// axis. False when any of the twelve numbers is NaN. Written without branches: its outcome is
+/// unpredictable where it matters.
+template <class Scalar>
+[[nodiscard]] inline bool overlaps(const Aabb<Scalar>& a, const Aabb<Scalar>& b) noexcept {
+    const Scalar* aMin = a.min().data();
+    const Scalar* aMax = a.max().data();
+    const Scalar* bMin = b.min().data();
+    const Scalar* bMax = b.max().data();
+    return ((aMin[0] <= bMax[0]) & (bMin[0] <= aMax[0]) & (aMin[1] <= bMax[1]) &
+            (bMin[1] <= aMax[1]) & (aMin[2] <= bMax[2]) & (bMin[2] <= aMax[2])) != 0;
+}
+
+/// True when any of the six coordinates is NaN.
+template <class Scalar>
+[[nodiscard]] inline bool hasNan(const Aabb<Scalar>& box) noexcept {
+    return box.min().hasNaN() || box.max().hasNaN();
+}
+
+}  // namespace hashphase

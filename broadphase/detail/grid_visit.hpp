@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Grid's query templates; included by grid.hpp.
+
+#include <broadphase/grid.hpp>
+
+#include <cmath>
+
+namespace hashphase {
+
+/// Turns what the walk finds into what the collector takes.
+template <class Scalar>
+template <class Region, class Collector>
+struct Grid<Scalar>::VisitReader {
+    const Grid& grid;
+    const detail::Table<Scalar>& table;
+    const Region& region;
+    Collector& collector;
+    QueryCost& cost;
+
+    [[nodiscard]] auto limit() const { return collector.limit(); }
+
+    template <class IsOwn>
+    bool read(const detail::EntryRange& range, const IsOwn& isOwn) {
+        for (std::uint32_t entry = range.first; entry < range.last; ++entry) {
+            const Scalar key = region.key(table.box(entry));
+            if (!(key >= 0 && key <= limit()) || !isOwn(entry)) {
+                continue;
+            }
+            const std::uint32_t slot = table.slot(entry);
+            if (grid.isFiled(slot) && !offer(slot, key)) {
+                return false;
+            }
+        }
+        return true;
+    }
+
+    bool offer(std::uint32_t slot, Scalar key) {
+        ++cost.hits;
+        collector.add(grid.idOf(slot), key);
+        return limit() >= 0;
+    }
+};
+
+template <class Scalar>
+template <class Region, class Collector>
+QueryCost Grid<Scalar>::visit(const Region& region, Collector& collector) const {
+    fileIfMany();
+    QueryCost cost;
+    using Reader = VisitReader<Region, Collector>;
+    Reader mobile{*this, mobile_, region, collector, cost};
+    Reader resting{*this, resting_, region, collector, cost};
+    if (!detail::walkTable(mobile_, region, cost, mobile) ||
+        !detail::walkTable(resting_, region, cost, resting)) {
+        return cost;
+    }
+    // What changed since it was filed.
+    for (const std::uint32_t slot : waiting_) {
+        if (!isAlive(slot)) {
+            continue;
+        }
+        ++cost.boxesTested;
+        const Scalar key = region.key(boxes_[slot]);
+        if (key >= 0 && key <= collector.limit() && !mobile.offer(slot, key)) {
+            break;
+        }
+    }
+    return cost;
+}
+
+/// The boxes that touch one cell, by the same rounding as cellAt().
+template <class Scalar>
+struct Grid<Scalar>::CellRegion {
+    const Grid& grid;
+    std::array<std::int64_t, 3> cell;
+
+    [[nodiscard]] Scalar key(const Box& box) const {
+        if (!box.min().allFinite() || !box.max().allFinite()) {
+            return -1;
+        }
+        const auto low = grid.cellAt(box.min());
+        const auto high = grid.cellAt(box.max());
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (low[axis] > cell[axis] || high[axis] < cell[axis]) {
+                return -1;
+            }
+        }
+        return 0;
+    }
+
+    template <class VisitRow>
+    bool forRows(const detail::Level<Scalar>& level, VisitRow&& visitRow) const {
+        // A little more than the cell: its borders are rounded.
+        const Scalar size = grid.cellSize();
+        Box bounds;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const Scalar low = static_cast<Scalar>(cell[axis]) * size;
+            const Scalar margin =
+                8 * std::numeric_limits<Scalar>::epsilon() * (std::abs(low) + size);
+            bounds.min()[static_cast<int>(axis)] = low - margin;
+            bounds.max()[static_cast<int>(axis)] = low + size + margin;
+        }
+        return detail::forRowsOfBox(level, bounds, visitRow);
+    }
+};
+
+template <class Scalar>
+template <class Collector>
+QueryCost Grid<Scalar>::visitCell(const std::array<std::int64_t, 3>& cell,
+                                  Collector& collector) const {
+    return visit(CellRegion{*this, cell}, collector);
+}
+
+template <class Scalar>
+template <class Visit>
+void Grid<Scalar>::forEach(Visit&& visit) const {
+    for (std::uint32_t slot = 0; slot < records_.size(); ++slot) {
+        if (isAlive(slot)) {
+            visit(idOf(slot), boxes_[slot]);
+        }
+    }
+}
+
+}  // namespace hashphase

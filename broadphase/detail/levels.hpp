@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Which cell sizes a table uses. Small proxies want small cells, large ones large cells, and every
+// further size costs each smaller proxy a look at a few more rows. The choice is the cheapest one
+// under a model of the walk's cost, found exactly by dynamic programming over size classes.
+
+#include <broadphase/aabb.hpp>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace hashphase::detail {
+
+inline constexpr int kMaxLevels = 16;
+
+/// Cell edges [m], finest first. What fits no level is filed without cells and is looked at by
+/// every walk.
+struct LevelSizes {
+    std::array<double, kMaxLevels> cellSize{};
+    int count = 0;
+};
+
+/// Sizes and spread of a population: all that the choice of levels depends on.
+class SizeCensus {
+public:
+    /// Counts one box. Boxes with an infinite, NaN or negative edge count as fitting no level.
+    /// Min corners are sampled to learn how far the population spreads.
+    template <class Scalar>
+    void add(const Aabb<Scalar>& box);
+
+    void clear();
+
+    /// The level sizes with the least modelled cost for one walk per proxy. Deterministic: depends
+    /// on the boxes counted and their order only. Cost: O(q^2) for q occupied quarter octaves.
+    [[nodiscard]] LevelSizes cheapestLevels() const;
+
+    /// Modelled cost [ns] of finding all pairs with these levels.
+    [[nodiscard]] double modelledCost(const LevelSizes& levels) const;
+
+    /// The middle of the population: the median min corner on each axis; finite.
+    [[nodiscard]] std::array<double, 3> middle() const;
+
+private:
+    struct SizeClass {
+        double upperEdge;  // [m]
+        double count;
+    };
+
+    [[nodiscard]] std::vector<SizeClass> occupiedClasses() const;
+    [[nodiscard]] std::array<double, 3> spread() const;
+    [[nodiscard]] double quantile(std::size_t axis, double share) const;
+
+    static constexpr int kQuarterOctaves = 4 * 256;
+    static constexpr std::size_t kMaxSamples = 2048;
+
+    std::array<std::uint32_t, kQuarterOctaves> histogram_{};
+    std::uint64_t total_ = 0;
+    std::uint64_t unfit_ = 0;
+    std::uint64_t sampleStep_ = 1;
+    std::vector<std::array<double, 3>> samples_;
+};
+
+/// Levels of a fixed finest cell size: that size, and coarser ones by `ratio` for what is larger.
+[[nodiscard]] LevelSizes fixedLevels(double cellSize, double ratio);
+
+}  // namespace hashphase::detail

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// The one walk that answers every query: a region names the rows of cells to read on each level,
+// the walk reads their buckets.
+
+#include <broadphase/detail/table.hpp>
+
+#include <algorithm>
+#include <cstdint>
+
+namespace hashphase {
+
+/// What a query cost, returned with its answer.
+struct QueryCost {
+    std::uint64_t rowsVisited = 0;
+    std::uint64_t boxesTested = 0;
+    std::uint64_t hits = 0;
+};
+
+namespace detail {
+
+// Looking up a run of buckets costs about as much as testing this many boxes one after another.
+inline constexpr std::uint64_t kBoxesPerRun = 4;
+
+/// Calls visitRow(CellRun) for the rows of `level` in which anything overlapping `bounds` may be
+/// filed: from one cell before the box to its last cell. Returns false, without a call, when
+/// reading the whole level is cheaper (and always correct), or the box is inverted.
+template <class Scalar, class VisitRow>
+bool forRowsOfBox(const Level<Scalar>& level, const Aabb<Scalar>& bounds, VisitRow&& visitRow) {
+    if (hasNan(bounds)) {
+        return true;
+    }
+    if (!(bounds.min().array() <= bounds.max().array()).all()) {
+        return false;
+    }
+    Cell low;
+    Cell high;
+    std::uint64_t rows = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto i = static_cast<Eigen::Index>(axis);
+        low[axis] = std::max(level.cell(bounds.min()[i], axis) - 1, level.low[axis]);
+        high[axis] = std::min(level.cell(bounds.max()[i], axis), level.high[axis]);
+        if (low[axis] > high[axis]) {
+            return true;
+        }
+        if (axis > 0) {
+            rows *= static_cast<std::uint64_t>(high[axis] - low[axis]) + 1;
+        }
+    }
+    if (rows * kBoxesPerRun > level.count()) {
+        return false;
+    }
+    for (std::int32_t z = low[2]; z <= high[2]; ++z) {
+        for (std::int32_t y = low[1]; y <= high[1]; ++y) {
+            if (!visitRow(CellRun{y, z, low[0], high[0]})) {
+                return true;
+            }
+        }
+    }
+    return true;
+}
+
+/// Reads the entries of one level that may lie in `region`. For each range of entries calls
+/// reader.read(range, isOwn) -> bool, false to stop; isOwn(entry) must be asked about every hit, and
+/// tells whether this range is the one that reports it. Runs beyond reader.limit() are passed over.
+/// Returns false when stopped.
+template <class Scalar, class Region, class Reader>
+bool walkLevel(const Table<Scalar>& table, const Level<Scalar>& level, const Region& region,
+               QueryCost& cost, Reader&& reader) {
+    if (level.count() == 0) {
+        return true;
+    }
+    const auto readWhole = [&] {
+        const EntryRange all{level.firstEntry, level.lastEntry};
+        cost.boxesTested += level.count();
+        return reader.read(all, [](std::uint32_t) { return true; });
+    };
+    if (!level.hasCells) {
+        return readWhole();
+    }
+    bool goOn = true;
+    const bool byRows = region.forRows(level, [&](const CellRun& run) {
+        if (run.nearestKey > reader.limit()) {
+            return true;
+        }
+        ++cost.rowsVisited;
+        table.forRun(level, run, [&](const EntryRange& range) {
+            cost.boxesTested += range.last - range.first;
+            goOn = goOn && reader.read(range, [&](std::uint32_t entry) {
+                       return table.isInRow(level, entry, run.y, run.z);
+                   });
+        });
+        return goOn;
+    });
+    return byRows ? goOn : readWhole();
+}
+
+/// walkLevel() over all levels of a table. Returns false when stopped.
+template <class Scalar, class Region, class Reader>
+bool walkTable(const Table<Scalar>& table, const Region& region, QueryCost& cost,
+               Reader&& reader) {
+    for (const Level<Scalar>& level : table.levels()) {
+        if (!walkLevel(table, level, region, cost, reader)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace detail
+}  // namespace hashphase

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// The grid: knows every proxy's box, files it in a spatial hash, and answers where things are.
+//
+// A frame    move() whatever moved (or everything: an unchanged box costs a comparison), then
+//            update() once, or Pairs::update(), which does it for you.
+// Reads      Every change is visible to queries at once, with no call in between. A few changes are
+//            kept in a list that queries read beside the tables; the first query after many
+//            changes files them.
+// Threads    Queries are const and may run on any number of threads at the same time, and from
+//            within a collector. Everything else needs the grid for itself.
+// Units      metres, or any other unit of length used throughout.
+// Bad data   A box with a NaN is kept, found by nothing, counted by nanCount(), and reported once
+//            through the message handler. Infinite, huge and inverted boxes are answered exactly as
+//            overlaps() says.
+// Misuse     An id that is null, stale or of another grid is asserted.
+
+#include <broadphase/aabb.hpp>
+#include <broadphase/collectors.hpp>
+#include <broadphase/detail/table.hpp>
+#include <broadphase/diagnostics.hpp>
+#include <broadphase/grid_config.hpp>
+#include <broadphase/proxy_id.hpp>
+#include <broadphase/regions.hpp>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hashphase {
+
+template <class Scalar>
+class Pairs;
+
+/// Cells lowest to highest, inclusive, in units of Grid::cellSize().
+struct CellRange {
+    std::array<std::int64_t, 3> lowest{};
+    std::array<std::int64_t, 3> highest{};
+
+    friend bool operator==(const CellRange&, const CellRange&) = default;
+};
+
+/// What update() did: how many proxies it touched, and how many it left alone.
+struct UpdateCost {
+    std::uint32_t changed = 0;  ///< added, moved or removed since the last update
+    std::uint32_t filed = 0;    ///< written into a table
+    std::uint32_t resting = 0;  ///< in the table that was left alone
+};
+
+template <class Scalar>
+class Grid {
+public:
+    using Box = Aabb<Scalar>;
+    using Point = Vector3<Scalar>;
+
+    /// Throws std::invalid_argument with configError(config) when the configuration is bad.
+    explicit Grid(const GridConfig& config = {});
+
+    Grid(const Grid&) = delete;
+    Grid& operator=(const Grid&) = delete;
+
+    // --- Proxies ---------------------------------------------------------------------------------
+
+    /// Adds a proxy. The hint saves work for what will not move. Cost: O(1) amortised.
+    [[nodiscard]] ProxyId add(const Box& box, Mobility mobility = Mobility::mobile);
+
+    /// Sets the proxy's box. Bit-equal to the present one: a comparison, and nothing is marked.
+    /// Cost: O(1) amortised.
+    void move(ProxyId id, const Box& box);
+
+    /// Removes the proxy; its id is never valid again. Cost: O(1).
+    void remove(ProxyId id);
+
+    [[nodiscard]] bool contains(ProxyId id) const noexcept;
+
+    /// The box last set, exactly.
+    [[nodiscard]] const Box& box(ProxyId id) const;
+
+    /// Number of proxies alive, those with a NaN box included.
+    [[nodiscard]] std::size_t size() const noexcept { return size_; }
+
+    /// Number of proxies whose box has a NaN now.
+    [[nodiscard]] std::size_t nanCount() const noexcept { return nanCount_; }
+
+    /// Calls visit(ProxyId, const Box&) for every proxy alive, in the order of their indices.
+    template <class Visit>
+    void forEach(Visit&& visit) const;
+
+    // --- Queries ---------------------------------------------------------------------------------
+
+    /// The one query: offers to `collector` every proxy whose box has a key in `region`, each once.
+    /// See regions.hpp and collectors.hpp. Cost: the cells that the region touches, at most one
+    /// test per proxy; returned as data.
+    template <class Region, class Collector>
+    QueryCost visit(const Region& region, Collector& collector) const;
+
+    /// The edge of the cells of cellAt(), cellsOf() and visitCell() [m]: the fixed cell size, or the
+    /// finest of the automatic ones at the last update; 1 while the grid is empty.
+    [[nodiscard]] Scalar cellSize() const noexcept { return cellSize_; }
+
+    /// Cell query: who is in the cell? Offers every proxy p with `cell` in cellsOf(p) to the
+    /// collector. Cost: O(1) buckets.
+    template <class Collector>
+    QueryCost visitCell(const std::array<std::int64_t, 3>& cell, Collector& collector) const;
+
+    /// The cell of a point: floor(point / cellSize()). The point must be finite.
+    [[nodiscard]] std::array<std::int64_t, 3> cellAt(const Point& point) const;
+
+    /// Object query: which cells does the proxy's box touch? Its box must be finite. Cost: O(1).
+    [[nodiscard]] CellRange cellsOf(ProxyId id) const;
+
+    // --- Frame -----------------------------------------------------------------------------------
+
+    /// Ends a frame: files what changed, and puts to rest what has not changed for a while.
+    /// Cost: a rebuild of the mobile proxies when one of them changed, nothing otherwise.
+    UpdateCost update();
+
+    /// Bytes held, capacity included.
+    [[nodiscard]] std::size_t memoryBytes() const noexcept;
+
+    /// Says which invariant is broken, in a sentence; empty when all hold:
+    /// - Every proxy alive is filed in exactly one table, or waits in the list of changes, or is NaN.
+    /// - A filed proxy's entry has the proxy's box.
+    /// - The tables' own invariants (detail/table.hpp).
+    [[nodiscard]] std::string validate() const;
+
+private:
+    friend class Pairs<Scalar>;
+
+    /// Where a proxy is. `fresh`: alive, in no table yet. `removed`: its slot waits to be free,
+    /// until whoever still knows the old proxy has been told.
+    enum class Place : std::uint8_t { free, removed, fresh, nan, mobile, resting };
+
+    struct Record {
+        std::uint32_t generation = 0;
+        std::uint32_t changedAt = 0;  // number of the update that will see, or saw, the last change
+        std::uint32_t position = 0;   // in mobileSlots_, or entry in resting_
+        Place place = Place::free;
+        bool isWaiting = false;   // changed since filed: listed in waiting_
+        bool restsAtOnce = false; // Mobility::resting, and has not moved since it was added
+    };
+
+    struct Change {
+        std::uint32_t slot;
+        std::uint32_t previousChange;  // the record's changedAt before this one
+    };
+
+    template <class Region, class Collector>
+    struct VisitReader;
+    struct CellRegion;
+
+    [[nodiscard]] ProxyId idOf(std::uint32_t slot) const noexcept {
+        return {slot, records_[slot].generation};
+    }
+    [[nodiscard]] bool isAlive(std::uint32_t slot) const noexcept {
+        return records_[slot].place > Place::removed;
+    }
+    [[nodiscard]] bool isFiled(std::uint32_t slot) const noexcept {
+        const Record& record = records_[slot];
+        return record.place >= Place::mobile && !record.isWaiting;
+    }
+    [[nodiscard]] bool changedNow(std::uint32_t slot) const noexcept {
+        return records_[slot].changedAt == updateNumber_;
+    }
+
+    void noteChange(std::uint32_t slot);
+    void noteNan(std::uint32_t slot, const Box& previous);
+    void fileWaiting();
+    void fileOne(std::uint32_t slot);
+    void leaveTable(std::uint32_t slot);
+    void putQuietToRest();
+    void rebuildMobile();
+    void fileForUpdate();
+    void endUpdate();
+    void fileIfMany() const;
+
+    GridConfig config_;
+    detail::LevelSizes fixedSizes_;
+
+    std::vector<Box> boxes_;
+    std::vector<Record> records_;
+    std::vector<std::uint32_t> freeSlots_;
+    std::vector<std::uint32_t> removedSlots_;
+    std::size_t size_ = 0;
+    std::size_t nanCount_ = 0;
+    bool nanReported_ = false;
+    bool hasPairs_ = false;
+
+    std::uint32_t updateNumber_ = 1;  // of the update that ends the present frame
+    std::vector<Change> changes_;     // since the last update, each slot once; kept for Pairs
+    std::vector<std::uint32_t> waiting_;
+
+    std::vector<std::uint32_t> mobileSlots_;
+    bool mobileIsStale_ = false;
+    detail::Table<Scalar> mobile_;
+    detail::Table<Scalar> resting_;
+    std::uint32_t restingErased_ = 0;
+    std::vector<std::uint32_t> scratch_;
+    UpdateCost cost_;  // of the present frame
+    Scalar cellSize_ = 1;
+
+    std::atomic<bool> manyWait_{false};
+    std::mutex filing_;
+};
+
+extern template class Grid<float>;
+extern template class Grid<double>;
+
+}  // namespace hashphase
+
+#include <broadphase/detail/grid_visit.hpp>

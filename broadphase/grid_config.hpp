@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace hashphase {
+
+/// Settings of a grid. The defaults work for any scene; change one only to reproduce a measurement
+/// or because one of yours says so.
+struct GridConfig {
+    /// Edge of the finest cells [m]. 0 chooses the cell sizes from the sizes of the proxies and
+    /// chooses anew when the population changes. Valid: 0, or 1e-30 to 1e30.
+    double cellSize = 0;
+
+    /// With a fixed cell size, each coarser level's cells are this many times larger. Valid: 2 to 64.
+    double levelRatio = 4;
+
+    /// After this many updates without a change a proxy counts as resting, and later updates no
+    /// longer touch it. Valid: 1 to 1,000,000.
+    std::uint32_t updatesBeforeRest = 8;
+};
+
+/// Says what is wrong with `config` in a sentence that names the field and its valid range; empty
+/// when all is well. The constructors that take a configuration throw std::invalid_argument with
+/// this sentence; ask here first where exceptions are not wanted.
+[[nodiscard]] std::string configError(const GridConfig& config);
+
+}  // namespace hashphase

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Names for what is in a grid: a proxy stands for an object of the caller's by its box.
+
+#include <compare>
+#include <cstdint>
+
+namespace hashphase {
+
+/// A value that names one proxy of one grid. Zero is null. `index` is small and dense (below the
+/// largest number of proxies that were ever alive at once), so callers keep their own data in an
+/// array by it; `generation` tells a proxy from earlier ones with the same index.
+struct ProxyId {
+    std::uint32_t index = 0;
+    std::uint32_t generation = 0;
+
+    [[nodiscard]] constexpr bool isNull() const noexcept { return generation == 0; }
+    friend constexpr auto operator<=>(const ProxyId&, const ProxyId&) = default;
+};
+
+/// Two overlapping proxies, first.index < second.index.
+struct ProxyPair {
+    ProxyId first;
+    ProxyId second;
+
+    friend constexpr auto operator<=>(const ProxyPair&, const ProxyPair&) = default;
+};
+
+/// How a proxy is expected to behave. A hint that saves work and never changes a result: a resting
+/// proxy may move, a mobile one that stays unchanged comes to rest by itself.
+enum class Mobility : std::uint8_t { mobile, resting };
+
+}  // namespace hashphase

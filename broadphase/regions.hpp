@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Regions say where a query looks. A region has two members:
+//
+//   key(box)                the box's distance in the region's own measure (0 or more), or a
+//                           negative number when the box is not in the region
+//   forRows(level, visit)   visits the rows of cells in which anything with a key may be filed
+//
+// key() decides what is found; forRows() only saves work and may name too many rows, never too few.
+//
+// Units    metres; a ray's key is the fraction of its length, 0 at `from`, 1 at `to`
+// NaN      a NaN in a region makes it empty
+// Threads  values; use them from any thread
+
+#include <broadphase/aabb.hpp>
+#include <broadphase/detail/ray_rows.hpp>
+#include <broadphase/detail/walk.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace hashphase {
+
+/// Everything that overlaps a box (closed). Key: 0. An inverted box means what overlaps() says.
+template <class Scalar>
+struct BoxRegion {
+    Aabb<Scalar> box;
+
+    [[nodiscard]] Scalar key(const Aabb<Scalar>& other) const noexcept {
+        return overlaps(box, other) ? Scalar(0) : Scalar(-1);
+    }
+
+    template <class VisitRow>
+    bool forRows(const detail::Level<Scalar>& level, VisitRow&& visitRow) const {
+        return detail::forRowsOfBox(level, box, visitRow);
+    }
+};
+
+/// Everything within `radius` [m] of `center` (closed ball). Key: squared distance [m^2] from the
+/// centre to the box, 0 inside. A negative radius makes the region empty.
+template <class Scalar>
+class SphereRegion {
+public:
+    SphereRegion(const Vector3<Scalar>& center, Scalar radius)
+        : center_(center), radius_(radius), scale_(scaleFor(radius)) {}
+
+    [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept {
+        Scalar squared = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const Scalar before = box.min()[axis] - center_[axis];
+            const Scalar behind = center_[axis] - box.max()[axis];
+            // Phrased so that NaN, on either side, leaves the sphere.
+            if (!(before == before && behind == behind)) {
+                return -1;
+            }
+            const Scalar outside = std::max({before, behind, Scalar(0)}) * scale_;
+            squared += outside * outside;
+        }
+        const Scalar reach = radius_ * scale_;
+        return reach >= 0 && squared <= reach * reach ? squared / scale_ / scale_ : Scalar(-1);
+    }
+
+    template <class VisitRow>
+    bool forRows(const detail::Level<Scalar>& level, VisitRow&& visitRow) const {
+        if (center_.hasNaN() || !(radius_ >= 0)) {
+            return true;
+        }
+        // Rounded outward: key() rounds, and must not find what the rows leave out.
+        constexpr Scalar epsilon = std::numeric_limits<Scalar>::epsilon();
+        const Scalar reach = center_.cwiseAbs().maxCoeff() + radius_;
+        const Scalar padded = radius_ + 4 * epsilon * reach + std::numeric_limits<Scalar>::min();
+        const Vector3<Scalar> half = Vector3<Scalar>::Constant(padded);
+        if (!center_.allFinite()) {
+            return false;
+        }
+        return detail::forRowsOfBox(level, Aabb<Scalar>(center_ - half, center_ + half), visitRow);
+    }
+
+private:
+    // Squares are taken near 1, where they neither overflow nor vanish. A power of two rounds
+    // nothing.
+    static Scalar scaleFor(Scalar radius) noexcept {
+        constexpr int most = std::numeric_limits<Scalar>::max_exponent - 2;
+        const bool isOrdinary = std::isfinite(radius) && radius > 0;
+        const int exponent = isOrdinary ? std::ilogb(radius) : (radius > 0 ? most : -most);
+        return std::ldexp(Scalar(1), std::clamp(-exponent, -most, most));
+    }
+
+    Vector3<Scalar> center_;
+    Scalar radius_;
+    Scalar scale_;
+};
+
+/// Everything that a segment meets, or that a box meets while it moves along the segment (a "fat"
+/// ray). Key: the fraction of the way at which the box is entered, 0 when it begins inside. Closed:
+/// grazing a face, an edge or a corner counts, and rounding errs to the side of a hit. A segment of
+/// no length is a point, or a box that stands still; one with an infinite end is empty.
+template <class Scalar>
+class RayRegion {
+public:
+    /// The segment from `from` to `to` [m]. `fatness` is the moving box relative to the moving
+    /// point, for example (-halfExtents, halfExtents); by default the point itself.
+    RayRegion(const Vector3<Scalar>& from, const Vector3<Scalar>& to,
+              const Aabb<Scalar>& fatness = {Vector3<Scalar>::Zero(), Vector3<Scalar>::Zero()})
+        : from_(from), direction_(to - from), fatness_(fatness) {
+        if (!from_.allFinite() || !direction_.allFinite()) {
+            direction_.setConstant(std::numeric_limits<Scalar>::quiet_NaN());
+        }
+        inverse_ = direction_.cwiseInverse();
+        for (int axis = 0; axis < 3; ++axis) {
+            if (std::isinf(inverse_[axis])) {
+                direction_[axis] = 0;  // or so little that it comes to the same
+            }
+        }
+    }
+
+    [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept {
+        // Slabs; each distance is off by at most gamma(3), see Pharr, Jakob, Humphreys,
+        // "Physically Based Rendering", 4th edition, section 6.8.3.
+        constexpr Scalar widened = 1 + 6 * std::numeric_limits<Scalar>::epsilon();
+        Scalar enter = 0;
+        Scalar leave = 1;
+        for (int axis = 0; axis < 3; ++axis) {
+            // Relative to the ray first: far from the origin, the small numbers stay exact.
+            const Scalar low = (box.min()[axis] - from_[axis]) - fatness_.max()[axis];
+            const Scalar high = (box.max()[axis] - from_[axis]) - fatness_.min()[axis];
+            if (direction_[axis] == 0) {
+                if (!(low <= 0 && high >= 0)) {
+                    return -1;
+                }
+                continue;
+            }
+            Scalar near = low * inverse_[axis];
+            Scalar far = high * inverse_[axis];
+            if (direction_[axis] < 0) {
+                std::swap(near, far);
+            }
+            if (!(near <= far)) {
+                return -1;
+            }
+            far *= far > 0 ? widened : Scalar(1);
+            enter = std::max(enter, near);
+            leave = std::min(leave, far);
+        }
+        return enter <= leave ? enter : Scalar(-1);
+    }
+
+    template <class VisitRow>
+    bool forRows(const detail::Level<Scalar>& level, VisitRow&& visitRow) const {
+        return direction_.hasNaN() ||
+               detail::forRowsOfRay(level, from_, direction_, fatness_, visitRow);
+    }
+
+private:
+    Vector3<Scalar> from_;
+    Vector3<Scalar> direction_;
+    Vector3<Scalar> inverse_;
+    Aabb<Scalar> fatness_;
+};
+
+}  // namespace hashphase

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/compare/compare.hpp>
+
+#include <demos/compare/comparison.hpp>
+#include <demos/compare/open_trial.hpp>
+#include <demos/compare/report.hpp>
+#include <demos/console/nearest_name.hpp>
+#include <demos/scenes/box_scene.hpp>
+#include <demos/scenes/input_error.hpp>
+#include <demos/scenes/world_scenes.hpp>
+
+#include <algorithm>
+#include <fstream>
+#include <ostream>
+#include <utility>
+
+namespace hashphase::demos {
+namespace {
+
+constexpr int kDefaultFrames = 120;
+
+// A file for results, opened before anything runs, so that a wrong path costs no waiting.
+class ResultFile {
+public:
+    explicit ResultFile(const std::string& path) : path_(path) {
+        if (!path_.empty()) {
+            file_.open(path_);
+            refuseIfBad();
+        }
+    }
+
+    template <class Write>
+    void write(const Report& report, const Write& writeReport) {
+        if (!path_.empty()) {
+            writeReport(report, file_);
+            file_.close();
+            refuseIfBad();
+        }
+    }
+
+private:
+    void refuseIfBad() const {
+        if (!file_) {
+            throw InputError(path_ + " cannot be written.");
+        }
+    }
+
+    std::string path_;
+    std::ofstream file_;
+};
+
+void printLists(std::span<const BroadphaseKind> kinds, std::ostream& out) {
+    const auto line = [&out](std::string_view name, std::string_view description) {
+        out << "  " << name << std::string(16 - name.size(), ' ') << description << '\n';
+    };
+    out << "Scenes:\n";
+    for (const BoxSceneKind& kind : boxSceneKinds()) {
+        line(kind.name, kind.description);
+    }
+    for (const WorldSceneKind& kind : worldSceneKinds()) {
+        line(kind.name, kind.description);
+    }
+    out << "Broadphases:\n";
+    for (const BroadphaseKind& kind : kinds) {
+        line(kind.name, kind.description);
+    }
+}
+
+// Throws for unknown names. Nothing named: nothing chosen yet.
+std::vector<const BroadphaseKind*> chosenKinds(const std::vector<std::string>& names,
+                                               std::span<const BroadphaseKind> kinds) {
+    std::vector<std::string> known;
+    for (const BroadphaseKind& kind : kinds) {
+        known.emplace_back(kind.name);
+    }
+    std::vector<const BroadphaseKind*> chosen;
+    for (const std::string& name : names) {
+        const auto found = std::find(known.begin(), known.end(), name);
+        if (found == known.end()) {
+            throw InputError(unknownNameSentence("broadphase", name, known));
+        }
+        const BroadphaseKind* kind = &kinds[static_cast<std::size_t>(found - known.begin())];
+        if (std::find(chosen.begin(), chosen.end(), kind) == chosen.end()) {
+            chosen.push_back(kind);
+        }
+    }
+    return chosen;
+}
+
+std::vector<const BroadphaseKind*> defaultKinds(std::span<const BroadphaseKind> kinds,
+                                                std::size_t objects) {
+    std::vector<const BroadphaseKind*> chosen;
+    for (const BroadphaseKind& kind : kinds) {
+        if (objects <= kind.defaultUpTo) {
+            chosen.push_back(&kind);
+        }
+    }
+    return chosen;
+}
+
+int framesToRun(const CompareOptions& options, const OpenedTrial& opened) {
+    const std::optional<int> limit = opened.trial->frameLimit();
+    if (limit && options.frames && *options.frames > *limit) {
+        throw InputError(opened.name + " holds " + std::to_string(*limit) + " frames, but " +
+                         std::to_string(*options.frames) + " were asked for.");
+    }
+    const int frames = options.frames.value_or(kDefaultFrames);
+    return limit ? std::min(frames, *limit) : frames;
+}
+
+ProgressStyle progressStyle(const CompareOptions& options, const Console& console) {
+    if (options.quiet) {
+        return ProgressStyle::kSilent;
+    }
+    return console.errIsTerminal ? ProgressStyle::kBar : ProgressStyle::kLines;
+}
+
+}  // namespace
+
+int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> kinds,
+               Console& console) {
+    if (options.list) {
+        printLists(kinds, console.out);
+        return kExitOk;
+    }
+    std::vector<const BroadphaseKind*> chosen = chosenKinds(options.broadphases, kinds);
+    OpenedTrial opened = openTrial(options);
+    if (chosen.empty()) {
+        chosen = defaultKinds(kinds, opened.trial->objectCount());
+    }
+
+    Report report;
+    report.options = options;
+    report.scene = opened.name;
+    report.description = opened.description;
+    report.noun = opened.noun;
+    report.objects = opened.trial->objectCount();
+    report.framesAsked = framesToRun(options, opened);
+    report.provenance = gatherProvenance(console.commandLine);
+    ResultFile json(options.jsonFile);
+    ResultFile csv(options.csvFile);
+
+    report.comparison = runComparison(
+        *opened.trial, chosen,
+        {report.framesAsked, options.timeLimit, progressStyle(options, console)}, console.err);
+
+    printReport(report, console.out);
+    json.write(report, writeJson);
+    csv.write(report, writeCsv);
+    return oursWereExact(report) == false && report.comparison.framesDone > 0 ? kExitCheckFailed
+                                                                              : kExitOk;
+}
+
+}  // namespace hashphase::demos

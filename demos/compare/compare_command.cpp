@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/compare/compare_command.hpp>
+
+#include <demos/compare/compare.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <map>
+#include <memory>
+
+namespace hashphase::demos {
+namespace {
+
+// CLI11's own check lets NaN through.
+std::string positiveSecondsFault(const std::string& text) {
+    double seconds = 0;
+    if (!CLI::detail::lexical_cast(text, seconds) || !(seconds > 0)) {
+        return "'" + text + "' is no number of seconds above 0";
+    }
+    return {};
+}
+
+void declare(CLI::App& app, CompareOptions& options) {
+    CLI::Option* scene = app.add_option("--scene", options.scene, "built-in scene (see --list)")
+                             ->capture_default_str();
+    app.add_option(
+           "--file", options.file,
+           "instead of a scene: a .bullet world, a .aabbs recording, or a text file of boxes")
+        ->excludes(scene);
+    app.add_option("--objects", options.objects, "number of objects (default: the scene's)")
+        ->check(CLI::Range(std::int64_t{1}, std::int64_t{10'000'000}));
+    app.add_option("--frames", options.frames, "number of frames, warm-up included (default: 120)")
+        ->check(CLI::Range(1, 1'000'000));
+    app.add_option("--broadphases", options.broadphases,
+                   "which to compare, separated by commas (see --list)")
+        ->delimiter(',');
+    app.add_option("--seed", options.seed, "seed of the scene")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    app.add_option("--reference", options.reference,
+                   "how the exact pairs are found: sweep (along one axis) or brute (all pairs)")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, ReferenceMethod>{
+            {"sweep", ReferenceMethod::kSweep}, {"brute", ReferenceMethod::kBrute}}))
+        ->type_name("sweep|brute");
+    app.add_option("--json", options.jsonFile, "write everything measured to this file");
+    app.add_option("--csv", options.csvFile, "write the rows of all frames to this file");
+    app.add_option("--time-limit", options.timeLimit, "stop after so many seconds")
+        ->check(positiveSecondsFault);
+    app.add_flag("--quiet", options.quiet, "no progress on stderr");
+    app.add_flag("--list", options.list, "say which scenes and broadphases there are");
+}
+
+}  // namespace
+
+Subcommand compareCommand(std::span<const BroadphaseKind> kinds) {
+    auto options = std::make_shared<CompareOptions>();
+    Subcommand command;
+    command.name = "compare";
+    command.description =
+        "Run a scene with our broadphase and Bullet's; verify the pairs; compare the times";
+    command.declareOptions = [options](CLI::App& app) { declare(app, *options); };
+    command.run = [options, kinds](Console& console) {
+        return runCompare(*options, kinds, console);
+    };
+    return command;
+}
+
+}  // namespace hashphase::demos

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// A Bullet world that times its broadphase phases and lets someone look in between.
+
+#include <demos/compare/heap_meter.hpp>
+
+#include <btBulletDynamicsCommon.h>
+
+#include <cstddef>
+#include <functional>
+
+namespace hashphase::demos {
+
+class ObservedWorld : public btDiscreteDynamicsWorld {
+public:
+    using btDiscreteDynamicsWorld::btDiscreteDynamicsWorld;
+
+    struct StepTimes {
+        double updateAabbsMs = 0;
+        double calculateMs = 0;
+        double wholeMs = 0;  // without the observer's time
+    };
+
+    /// Called in each step when the pairs are complete, before anything uses them.
+    void setPairObserver(std::function<void()> observer) { observer_ = std::move(observer); }
+
+    /// Simulates exactly one step of that length [s].
+    StepTimes stepOnce(btScalar seconds);
+
+    /// Takes the memory for so many objects beforehand, so that it does not count as the
+    /// broadphase's.
+    void reserve(std::size_t objects);
+
+    /// What the broadphase took from the heap in the calls of this world.
+    [[nodiscard]] HeapMeter& heap() noexcept { return heap_; }
+    [[nodiscard]] const HeapMeter& heap() const noexcept { return heap_; }
+
+    void addCollisionObject(btCollisionObject* object, int group, int mask) override;
+    void updateAabbs() override;
+    void computeOverlappingPairs() override;
+
+private:
+    std::function<void()> observer_;
+    HeapMeter heap_;
+    StepTimes times_;
+    double observerMs_ = 0;
+};
+
+}  // namespace hashphase::demos

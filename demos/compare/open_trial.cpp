@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/compare/open_trial.hpp>
+
+#include <demos/compare/box_trial.hpp>
+#include <demos/compare/world_trial.hpp>
+#include <demos/console/format.hpp>
+#include <demos/console/nearest_name.hpp>
+#include <demos/scenes/bullet_world_file.hpp>
+#include <demos/scenes/input_error.hpp>
+#include <demos/scenes/recording_scene.hpp>
+#include <demos/scenes/text_boxes.hpp>
+#include <demos/scenes/world_scenes.hpp>
+
+#include <filesystem>
+#include <utility>
+
+namespace hashphase::demos {
+namespace {
+
+OpenedTrial openScene(const CompareOptions& options) {
+    std::vector<std::string> names;
+    for (const BoxSceneKind& kind : boxSceneKinds()) {
+        if (kind.name == options.scene) {
+            auto scene = kind.make(options.objects.value_or(kind.defaultObjects), options.seed);
+            return {std::string(kind.name), std::string(kind.description), std::string(kind.noun),
+                    std::make_unique<BoxTrial>(std::move(scene), options.reference)};
+        }
+        names.emplace_back(kind.name);
+    }
+    for (const WorldSceneKind& kind : worldSceneKinds()) {
+        if (kind.name == options.scene) {
+            const std::size_t objects = options.objects.value_or(kind.defaultObjects);
+            auto fill = [fillScene = kind.fill, objects, seed = options.seed](
+                            WorldContents& contents) { fillScene(contents, objects, seed); };
+            return {std::string(kind.name), std::string(kind.description), "bodies",
+                    std::make_unique<WorldTrial>(std::move(fill), options.reference)};
+        }
+        names.emplace_back(kind.name);
+    }
+    throw InputError(unknownNameSentence("scene", options.scene, names));
+}
+
+OpenedTrial openTextBoxes(const CompareOptions& options) {
+    std::vector<Aabb<float>> boxes = readTextBoxes(options.file);
+    const std::size_t objects = options.objects.value_or(boxes.size());
+    if (objects > boxes.size()) {
+        throw InputError(options.file + " holds " + withThousands(boxes.size()) + " boxes, but " +
+                         withThousands(objects) + " were asked for.");
+    }
+    boxes.resize(objects);
+    auto scene = std::make_unique<BrownianScene>(driftingBoxes(boxes), options.seed);
+    return {options.file, "boxes from a text file, drifting", "boxes",
+            std::make_unique<BoxTrial>(std::move(scene), options.reference)};
+}
+
+OpenedTrial openFile(const CompareOptions& options) {
+    const std::string extension = std::filesystem::path(options.file).extension().string();
+    if (extension == ".bullet") {
+        if (options.objects) {
+            throw InputError(
+                "--objects cannot be chosen for a .bullet file, which is one whole "
+                "world; leave it out.");
+        }
+        auto file = std::make_shared<const BulletWorldFile>(options.file);
+        return {options.file, "a world serialised by Bullet", "bodies",
+                std::make_unique<WorldTrial>(
+                    [file](WorldContents& contents) { file->fill(contents); }, options.reference)};
+    }
+    if (extension == ".aabbs") {
+        auto scene = std::make_unique<RecordingScene>(options.file, options.objects.value_or(0));
+        return {options.file, "a Broadmark recording", "boxes",
+                std::make_unique<BoxTrial>(std::move(scene), options.reference)};
+    }
+    return openTextBoxes(options);
+}
+
+}  // namespace
+
+OpenedTrial openTrial(const CompareOptions& options) {
+    return options.file.empty() ? openScene(options) : openFile(options);
+}
+
+}  // namespace hashphase::demos

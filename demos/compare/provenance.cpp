@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/compare/provenance.hpp>
+
+#include <demos/console/program.hpp>
+
+#include <LinearMath/btScalar.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <thread>
+
+namespace hashphase::demos {
+namespace {
+
+std::string cpuName() {
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string line; std::getline(file, line);) {
+        if (line.rfind("model name", 0) == 0 && line.find(": ") != std::string::npos) {
+            return line.substr(line.find(": ") + 2);
+        }
+    }
+    return "unknown";
+}
+
+std::string compilerName() {
+#if defined(__clang__)
+    return "clang " __clang_version__;
+#elif defined(__GNUC__)
+    return "gcc " __VERSION__;
+#else
+    return "unknown";
+#endif
+}
+
+}  // namespace
+
+Provenance gatherProvenance(const std::string& commandLine) {
+    Provenance provenance;
+    provenance.hashphaseVersion = programVersion();
+    provenance.bulletVersion =
+        std::to_string(btGetVersion() / 100) + "." + std::to_string(btGetVersion() % 100);
+    provenance.precision = btIsDoublePrecision() ? "double" : "single";
+    provenance.compiler = compilerName();
+#ifdef HASHPHASE_COMPILER_FLAGS
+    provenance.compilerFlags = HASHPHASE_COMPILER_FLAGS;
+#endif
+#ifdef __OPTIMIZE__
+    provenance.optimised = true;
+#endif
+    provenance.cpu = cpuName();
+    provenance.cores = std::thread::hardware_concurrency();
+    std::array<double, 3> load{};
+    if (getloadavg(load.data(), static_cast<int>(load.size())) == static_cast<int>(load.size())) {
+        provenance.loadAverage = load;
+    }
+    provenance.commandLine = commandLine;
+    return provenance;
+}
+
+}  // namespace hashphase::demos

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What must be known to trust a measurement, or to repeat it.
+
+#include <array>
+#include <optional>
+#include <string>
+
+namespace hashphase::demos {
+
+struct Provenance {
+    std::string hashphaseVersion;
+    std::string bulletVersion;
+    std::string precision;  // "single" or "double"
+    std::string compiler;
+    std::string compilerFlags;  // empty when the build did not tell
+    bool optimised = false;
+    std::string cpu;
+    unsigned cores = 0;
+    std::optional<std::array<double, 3>> loadAverage;  // over 1, 5, 15 minutes
+    std::string commandLine;
+};
+
+[[nodiscard]] Provenance gatherProvenance(const std::string& commandLine);
+
+}  // namespace hashphase::demos

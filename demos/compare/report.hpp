@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// A finished comparison as text for people, JSON for programs, CSV for spreadsheets.
+
+#include <demos/compare/compare.hpp>
+#include <demos/compare/comparison.hpp>
+#include <demos/compare/provenance.hpp>
+
+#include <iosfwd>
+#include <string>
+
+namespace hashphase::demos {
+
+/// All that the reports say.
+struct Report {
+    CompareOptions options;
+    std::string scene;  // name or path
+    std::string description;
+    std::string noun;
+    std::size_t objects = 0;
+    int framesAsked = 0;
+    Comparison comparison;
+    Provenance provenance;
+};
+
+/// How many times faster than `dbvt` this broadphase was, by the medians of setAabb + calculate;
+/// nothing without a measurement of both.
+[[nodiscard]] std::optional<double> speedAgainstDbvt(const Report& report, const Result& result);
+
+/// True when no broadphase of ours missed or invented a pair; nothing when none of ours took part.
+[[nodiscard]] std::optional<bool> oursWereExact(const Report& report);
+
+/// One sentence: objects, frames, times, ratio, and whether the pair sets were exact.
+[[nodiscard]] std::string verdictLine(const Report& report);
+
+/// What was run on what, the table, and the verdict.
+void printReport(const Report& report, std::ostream& out);
+
+/// Schema "hashphase-compare"; what was not measured is null, never NaN.
+void writeJson(const Report& report, std::ostream& out);
+
+/// A header line, then a line for each frame of each broadphase.
+void writeCsv(const Report& report, std::ostream& out);
+
+}  // namespace hashphase::demos

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// A scene with several broadphases at work on it. What runs the trial knows nothing of the scene.
+//
+// Order   add() for each broadphase; then for each frame beginFrame(), and runFrame() once for each
+//         broadphase, in any order.
+
+#include <demos/compare/broadphase_kind.hpp>
+#include <demos/compare/reference_pairs.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace hashphase::demos {
+
+/// What one broadphase did in one frame. The spans hold until the next call of the trial.
+struct Observation {
+    double setAabbMs = 0;          // setAabb for all objects
+    double calculateMs = 0;        // calculateOverlappingPairs
+    std::optional<double> stepMs;  // the whole simulation step, where there is one
+    std::span<const PairKey> reported;
+    std::span<const PairKey> exact;
+    std::span<const Aabb<float>> boxes;  // as the broadphase knows them
+};
+
+class Trial {
+public:
+    Trial() = default;
+    Trial(const Trial&) = delete;
+    Trial& operator=(const Trial&) = delete;
+    virtual ~Trial() = default;
+
+    /// Makes the broadphase and fills it with the scene's objects.
+    virtual void add(const BroadphaseKind& kind) = 0;
+
+    /// Moves on to the next frame; the first call shows the initial state.
+    virtual void beginFrame() = 0;
+
+    /// Lets the broadphase that was added as number `contestant` do its frame.
+    virtual Observation runFrame(std::size_t contestant) = 0;
+
+    /// Heap that the broadphase took so far [bytes], where that can be told.
+    [[nodiscard]] virtual std::optional<std::int64_t> memoryBytes(std::size_t contestant) const = 0;
+
+    [[nodiscard]] virtual std::size_t objectCount() const = 0;
+
+    /// How many frames there are, where that is limited.
+    [[nodiscard]] virtual std::optional<int> frameLimit() const { return std::nullopt; }
+};
+
+/// Replaces `pairs` by what the cache lists, sorted; `objectOf` tells a proxy's object number.
+template <class ObjectOf>
+void listPairs(btOverlappingPairCache& cache, const ObjectOf& objectOf,
+               std::vector<PairKey>& pairs) {
+    pairs.clear();
+    const int count = cache.getNumOverlappingPairs();
+    const btBroadphasePair* listed = count > 0 ? cache.getOverlappingPairArrayPtr() : nullptr;
+    for (int i = 0; i < count; ++i) {
+        pairs.push_back(pairKey(objectOf(*listed[i].m_pProxy0), objectOf(*listed[i].m_pProxy1)));
+    }
+    std::sort(pairs.begin(), pairs.end());
+}
+
+}  // namespace hashphase::demos

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/console/program.hpp>
+
+#include <demos/console/nearest_name.hpp>
+#include <demos/scenes/input_error.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <exception>
+#include <ostream>
+
+namespace hashphase::demos {
+namespace {
+
+int refuse(Console& console, const std::string& sentence) {
+    console.err << "hashphase: " << sentence << '\n';
+    return kExitUsage;
+}
+
+std::vector<std::string> optionNames(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options()) {
+        for (const std::string& name : option->get_lnames()) {
+            names.push_back("--" + name);
+        }
+    }
+    return names;
+}
+
+std::string unknownWordSentence(const CLI::App& subcommand, const std::string& word) {
+    if (word.front() != '-') {
+        return "'" + subcommand.get_name() + "' takes no argument '" + word + "'; see hashphase " +
+               subcommand.get_name() + " --help.";
+    }
+    const std::string name = word.substr(0, word.find('='));
+    return unknownNameSentence("option", name, optionNames(subcommand));
+}
+
+void warnOfSlowBuild(Console& console) {
+#ifndef __OPTIMIZE__
+    console.err << "hashphase: warning: built without optimisation; the times mean nothing.\n";
+#else
+    static_cast<void>(console);
+#endif
+}
+
+}  // namespace
+
+int runProgram(const std::vector<std::string>& arguments, std::span<const Subcommand> subcommands,
+               Console console) {
+    CLI::App app("hashphase: a spatial-hash broadphase for Bullet, shown at work", "hashphase");
+    app.set_version_flag("--version", std::string("hashphase ") + programVersion());
+    // Unknown words are collected rather than refused, so that the right one can be suggested.
+    app.allow_extras();
+    std::vector<std::string> names;
+    for (const Subcommand& subcommand : subcommands) {
+        CLI::App* parsed = app.add_subcommand(subcommand.name, subcommand.description);
+        parsed->allow_extras();
+        subcommand.declareOptions(*parsed);
+        names.push_back(subcommand.name);
+    }
+
+    try {
+        // CLI11 takes the arguments from the back.
+        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    } catch (const CLI::CallForHelp&) {
+        console.out << app.help();
+        return kExitOk;
+    } catch (const CLI::CallForVersion& version) {
+        console.out << version.what() << '\n';
+        return kExitOk;
+    } catch (const CLI::ParseError& error) {
+        return refuse(console, error.what());
+    }
+
+    const std::vector<CLI::App*> chosen = app.get_subcommands();
+    if (const std::vector<std::string> extras = app.remaining(); !extras.empty()) {
+        return refuse(console, extras.front().front() == '-'
+                                   ? unknownNameSentence("option", extras.front(), optionNames(app))
+                                   : unknownNameSentence("subcommand", extras.front(), names));
+    }
+    if (chosen.size() != 1) {
+        console.err << app.help();
+        return kExitUsage;
+    }
+    if (const std::vector<std::string> extras = chosen.front()->remaining(); !extras.empty()) {
+        return refuse(console, unknownWordSentence(*chosen.front(), extras.front()));
+    }
+    warnOfSlowBuild(console);
+    const auto subcommand = std::find_if(
+        subcommands.begin(), subcommands.end(),
+        [&chosen](const Subcommand& known) { return known.name == chosen.front()->get_name(); });
+    try {
+        return subcommand->run(console);
+    } catch (const InputError& error) {
+        return refuse(console, error.what());
+    } catch (const std::bad_alloc&) {
+        return refuse(console, "there is not enough memory for so large a scene.");
+    }
+}
+
+const char* programVersion() noexcept {
+#ifdef HASHPHASE_VERSION
+    return HASHPHASE_VERSION;
+#else
+    return "(version unknown)";
+#endif
+}
+
+}  // namespace hashphase::demos

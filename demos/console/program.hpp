@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// The command line of a program made of subcommands.
+//
+// Exit codes  0 all well, 1 a check failed, 2 wrong usage or bad input.
+// Output      results go to `out`; progress, warnings and errors to `err`.
+
+#include <functional>
+#include <iosfwd>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace hashphase::demos {
+
+inline constexpr int kExitOk = 0;
+inline constexpr int kExitCheckFailed = 1;
+inline constexpr int kExitUsage = 2;
+
+/// Where a subcommand writes.
+struct Console {
+    std::ostream& out;
+    std::ostream& err;
+    bool errIsTerminal = false;
+    std::string commandLine;  // as typed, for the record
+};
+
+struct Subcommand {
+    std::string name;
+    std::string description;
+
+    /// Declares the options, bound to storage that the subcommand owns.
+    std::function<void(CLI::App&)> declareOptions;
+
+    /// Runs with the options as parsed; returns the exit code. May throw InputError.
+    std::function<int(Console&)> run;
+};
+
+/// Parses the arguments (without the program's name), runs the subcommand and returns its exit
+/// code. Unknown words are told together with what was probably meant.
+int runProgram(const std::vector<std::string>& arguments, std::span<const Subcommand> subcommands,
+               Console console);
+
+/// The version of hashphase that this program was built from.
+[[nodiscard]] const char* programVersion() noexcept;
+
+}  // namespace hashphase::demos

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// How far a long task is, and how long it will still take.
+
+#include <chrono>
+#include <cstddef>
+#include <iosfwd>
+#include <string>
+
+namespace hashphase::demos {
+
+enum class ProgressStyle {
+    kSilent,
+    kBar,    // a bar that redraws itself, for terminals
+    kLines,  // a line every few seconds, for logs
+};
+
+class Progress {
+public:
+    /// Tells `out` about `total` steps of the task.
+    Progress(std::ostream& out, ProgressStyle style, std::string task, std::size_t total);
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+
+    /// Wipes the bar.
+    ~Progress();
+
+    /// Says that `done` steps are done; draws at most a few times a second.
+    void update(std::size_t done);
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    [[nodiscard]] std::string text(std::size_t done, Clock::time_point now) const;
+
+    std::ostream& out_;
+    ProgressStyle style_;
+    std::string task_;
+    std::size_t total_;
+    Clock::time_point start_ = Clock::now();
+    Clock::time_point lastDrawn_ = start_;
+    std::size_t drawnWidth_ = 0;
+};
+
+}  // namespace hashphase::demos

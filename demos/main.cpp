@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Zlib
+
+// hashphase: what the spatial hash does, shown and measured. Each subcommand is a folder here.
+
+#include <demos/compare/compare_command.hpp>
+#include <demos/console/program.hpp>
+
+#include <array>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include <unistd.h>
+
+int main(int argc, char** argv) {
+    using namespace hashphase::demos;
+    const std::vector<std::string> arguments(argv + 1, argv + argc);
+    Console console{std::cout, std::cerr, isatty(STDERR_FILENO) != 0, "hashphase"};
+    for (const std::string& argument : arguments) {
+        console.commandLine += " " + argument;
+    }
+    const std::array subcommands{compareCommand()};
+    return runProgram(arguments, subcommands, console);
+}

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/scenes/world_contents.hpp>
+
+#include <utility>
+
+namespace hashphase::demos {
+
+WorldContents::~WorldContents() {
+    owners_.clear();
+    for (const auto& constraint : constraints_) {
+        world_.removeConstraint(constraint.get());
+    }
+    // Last in, first out: a world finds its last body at once.
+    for (; !bodies_.empty(); bodies_.pop_back()) {
+        world_.removeRigidBody(bodies_.back().get());
+    }
+}
+
+btRigidBody& WorldContents::addBody(btCollisionShape& shape, btScalar mass,
+                                    const btVector3& position) {
+    btVector3 inertia(0, 0, 0);
+    if (mass > 0) {
+        shape.calculateLocalInertia(mass, inertia);
+    }
+    btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, &shape, inertia);
+    info.m_startWorldTransform.setOrigin(position);
+    bodies_.push_back(std::make_unique<btRigidBody>(info));
+    world_.addRigidBody(bodies_.back().get());
+    return *bodies_.back();
+}
+
+void WorldContents::addConstraint(std::unique_ptr<btTypedConstraint> constraint) {
+    world_.addConstraint(constraint.get(), true);
+    constraints_.push_back(std::move(constraint));
+}
+
+}  // namespace hashphase::demos

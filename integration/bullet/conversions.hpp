@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Between Bullet's vectors and the grid's. No rounding: both sides use btScalar.
+
+#include <broadphase/aabb.hpp>
+#include <integration/bullet/precision.hpp>
+
+#include <LinearMath/btVector3.h>
+
+namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+
+[[nodiscard]] inline Vector3<btScalar> toEigen(const btVector3& v) {
+    return {v.x(), v.y(), v.z()};
+}
+
+[[nodiscard]] inline btVector3 toBullet(const Vector3<btScalar>& v) {
+    return {v.x(), v.y(), v.z()};
+}
+
+[[nodiscard]] inline Aabb<btScalar> toAabb(const btVector3& min, const btVector3& max) {
+    return {toEigen(min), toEigen(max)};
+}
+
+}  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

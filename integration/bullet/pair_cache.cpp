@@ -1,0 +1,424 @@
+// SPDX-License-Identifier: Zlib
+#include <integration/bullet/pair_cache.hpp>
+
+#include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
+#include <BulletCollision/BroadphaseCollision/btDispatcher.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+namespace {
+
+constexpr std::uint32_t kNone = detail::FlatSet::kNone;
+constexpr std::uint64_t kLowerHalf = 0xffffffffU;
+
+// Two signed numbers as one unsigned that sorts like (high, low).
+std::uint64_t ascending(int high, int low) noexcept {
+    constexpr std::uint32_t kSignBit = 0x80000000U;
+    return (std::uint64_t{static_cast<std::uint32_t>(high) ^ kSignBit} << 32) |
+           (static_cast<std::uint32_t>(low) ^ kSignBit);
+}
+
+std::uint64_t idOf(const btBroadphaseProxy& proxy) noexcept {
+    return static_cast<std::uint32_t>(proxy.m_uniqueId);
+}
+
+std::uint64_t idsOf(const btBroadphaseProxy& a, const btBroadphaseProxy& b) noexcept {
+    const std::uint64_t idA = idOf(a);
+    const std::uint64_t idB = idOf(b);
+    return idA < idB ? (idA << 32) | idB : (idB << 32) | idA;
+}
+
+}  // namespace
+
+// --- One pair ------------------------------------------------------------------------------------
+
+btBroadphasePair* PairCache::addOverlappingPair(btBroadphaseProxy* proxy0,
+                                                btBroadphaseProxy* proxy1) {
+    return needsBroadphaseCollision(proxy0, proxy1) ? addAcceptedPair(proxy0, proxy1) : nullptr;
+}
+
+btBroadphasePair* PairCache::addAcceptedPair(btBroadphaseProxy* proxy0,
+                                             btBroadphaseProxy* proxy1) {
+    HASHPHASE_ASSERT(proxy0->m_uniqueId != proxy1->m_uniqueId,
+                     "A pair is made of two proxies with different unique ids.");
+    HASHPHASE_ASSERT(proxy0->m_uniqueId >= 0 && proxy1->m_uniqueId >= 0,
+                     "The unique id of a proxy is not negative.");
+    const auto index = static_cast<int>(ids_.findOrInsert(idsOf(*proxy0, *proxy1)));
+    if (index < pairs_.size()) {
+        return &pairs_[index];
+    }
+
+    // Not by the constructor for two proxies: that one orients by unique id.
+    btBroadphasePair pair;
+    const bool isSwapped = isLower(*proxy1, *proxy0);
+    pair.m_pProxy0 = isSwapped ? proxy1 : proxy0;
+    pair.m_pProxy1 = isSwapped ? proxy0 : proxy1;
+    pairs_.push_back(pair);
+    isSorted_ = false;
+
+    if (ghosts_ == nullptr) {
+        return &pairs_[index];
+    }
+    ghosts_->addOverlappingPair(pair.m_pProxy0, pair.m_pProxy1);
+    return findPair(pair.m_pProxy0, pair.m_pProxy1);
+}
+
+void* PairCache::removeOverlappingPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1,
+                                       btDispatcher* dispatcher) {
+    // A callback of processAllOverlappingPairs() is called in canonical order itself.
+    const bool inTurn = order_ == PairOrder::canonical && processDepth_ == 0;
+    return remove(idsOf(*proxy0, *proxy1), dispatcher, inTurn ? Freeing::inTurn : Freeing::now);
+}
+
+// Callbacks come when everything is in order again, and get a copy, so that they may change the
+// cache.
+void* PairCache::remove(std::uint64_t ids, btDispatcher* dispatcher, Freeing freeing) {
+    const std::uint32_t index = ids_.erase(ids);
+    if (index == kNone) {
+        return nullptr;
+    }
+    btBroadphasePair removed = pairs_[static_cast<int>(index)];
+    takeOut(index, ids);
+    if (freeing == Freeing::now) {
+        cleanOverlappingPair(removed, dispatcher);
+    } else if (removed.m_algorithm != nullptr && dispatcher != nullptr) {
+        retired_.push_back({{keysOf(removed, ids), ids, kNone}, removed, dispatcher});
+    }
+    if (ghosts_ != nullptr) {
+        ghosts_->removeOverlappingPair(removed.m_pProxy0, removed.m_pProxy1, dispatcher);
+    }
+    return removed.m_internalInfo1;
+}
+
+// The last pair takes the place of the removed one, in ids_ it has done so already. If it was not
+// chained before, it is to be now, for its new place is among the chained.
+void PairCache::takeOut(std::uint32_t index, std::uint64_t ids) {
+    const auto last = static_cast<std::uint32_t>(pairs_.size()) - 1;
+    const bool wasChained = isChained(index);
+    if (wasChained) {
+        unchain(2 * index, ids >> 32);
+        unchain(2 * index + 1, ids & kLowerHalf);
+    }
+    if (index != last) {
+        pairs_[static_cast<int>(index)] = pairs_[static_cast<int>(last)];
+        isSorted_ = false;
+        if (isChained(last)) {
+            rename(2 * last, 2 * index);
+            rename(2 * last + 1, 2 * index + 1);
+        } else if (wasChained) {
+            chain(2 * index);
+            chain(2 * index + 1);
+        }
+    }
+    if (isChained(last)) {
+        links_.resize(links_.size() - 2);
+    }
+    pairs_.pop_back();
+}
+
+btBroadphasePair* PairCache::findPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1) {
+    const std::uint32_t index = ids_.find(idsOf(*proxy0, *proxy1));
+    return index == kNone ? nullptr : &pairs_[static_cast<int>(index)];
+}
+
+void PairCache::cleanOverlappingPair(btBroadphasePair& pair, btDispatcher* dispatcher) {
+    if (pair.m_algorithm == nullptr || dispatcher == nullptr) {
+        return;
+    }
+    btCollisionAlgorithm* algorithm = std::exchange(pair.m_algorithm, nullptr);
+    algorithm->~btCollisionAlgorithm();
+    dispatcher->freeCollisionAlgorithm(algorithm);
+}
+
+bool PairCache::needsBroadphaseCollision(btBroadphaseProxy* proxy0,
+                                         btBroadphaseProxy* proxy1) const {
+    if (filter_ != nullptr) {
+        return filter_->needBroadphaseCollision(proxy0, proxy1);
+    }
+    return (proxy0->m_collisionFilterGroup & proxy1->m_collisionFilterMask) != 0 &&
+           (proxy1->m_collisionFilterGroup & proxy0->m_collisionFilterMask) != 0;
+}
+
+// --- The pairs of one proxy ----------------------------------------------------------------------
+
+std::uint64_t PairCache::idOfEnd(std::uint32_t edge) const {
+    const std::uint64_t ids = ids_.keys()[edge / 2];
+    return edge % 2 == 0 ? ids >> 32 : ids & kLowerHalf;
+}
+
+void PairCache::chain(std::uint32_t edge) {
+    const std::uint32_t next = firstEdge_.exchange(idOfEnd(edge), edge);
+    if (next != kNone) {
+        links_[next].previous = edge;
+    }
+    links_[edge] = {next, kNone};
+}
+
+void PairCache::unchain(std::uint32_t edge, std::uint64_t uniqueId) {
+    const Link link = links_[edge];
+    if (link.next != kNone) {
+        links_[link.next].previous = link.previous;
+    }
+    if (link.previous != kNone) {
+        links_[link.previous].next = link.next;
+    } else {
+        firstEdge_.exchange(uniqueId, link.next);
+    }
+}
+
+// The pair has moved, in pairs_, from one edge's to the other's.
+void PairCache::rename(std::uint32_t from, std::uint32_t to) {
+    const Link link = links_[from];
+    links_[to] = link;
+    if (link.next != kNone) {
+        links_[link.next].previous = to;
+    }
+    if (link.previous != kNone) {
+        links_[link.previous].next = to;
+    } else {
+        firstEdge_.exchange(idOfEnd(to), to);
+    }
+}
+
+// Noted down, for callbacks may change the cache. In canonical order, or in that of the array.
+std::vector<PairCache::Note> PairCache::notesOf(const btBroadphaseProxy& proxy) {
+    freeRetired();
+    // Most pairs die before anyone asks for those of a proxy, so chaining waits until then.
+    const auto firstUnchained = static_cast<std::uint32_t>(links_.size());
+    links_.resize(2 * ids_.size());
+    for (std::uint32_t edge = firstUnchained; edge < links_.size(); ++edge) {
+        chain(edge);
+    }
+
+    std::vector<Note> notes = std::move(scratch_);
+    notes.clear();
+    std::uint32_t edge = firstEdge_.find(idOf(proxy));
+    for (; edge != kNone; edge = links_[edge].next) {
+        notes.push_back(noteOf(edge / 2));
+    }
+    pairsVisited_ += notes.size();
+    const bool byKey = order_ == PairOrder::canonical;
+    std::sort(notes.begin(), notes.end(), [=](const Note& a, const Note& b) {
+        return byKey ? a < b : a.index < b.index;
+    });
+    return notes;
+}
+
+void PairCache::removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy,
+                                                      btDispatcher* dispatcher) {
+    std::vector<Note> notes = notesOf(*proxy);
+    std::size_t first = 0;
+    std::size_t last = notes.size();
+    std::uint32_t count = static_cast<std::uint32_t>(pairs_.size());
+    while (first < last) {
+        remove(notes[first++].uniqueIds, dispatcher, Freeing::now);
+        --count;
+        // As in a scan of the whole array, which is Bullet's way: the pair at the end has moved to
+        // where the scan is, and if it is one of the proxy's it is the next to go.
+        while (order_ == PairOrder::arrival && first < last && notes[last - 1].index == count) {
+            remove(notes[--last].uniqueIds, dispatcher, Freeing::now);
+            --count;
+        }
+    }
+    scratch_ = std::move(notes);
+}
+
+void PairCache::cleanProxyFromPairs(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
+    std::vector<Note> notes = notesOf(*proxy);
+    for (const Note& note : notes) {
+        const std::uint32_t index = indexOf(note);
+        if (index != kNone) {
+            cleanOverlappingPair(pairs_[static_cast<int>(index)], dispatcher);
+        }
+    }
+    scratch_ = std::move(notes);
+}
+
+// --- All pairs -----------------------------------------------------------------------------------
+
+void PairCache::processAllOverlappingPairs(btOverlapCallback* callback,
+                                           btDispatcher* dispatcher) {
+    prepareWholeArray();
+    ++processDepth_;
+    for (int i = 0; i < pairs_.size();) {
+        btBroadphaseProxy* const proxy0 = pairs_[i].m_pProxy0;
+        btBroadphaseProxy* const proxy1 = pairs_[i].m_pProxy1;
+        const int countBefore = pairs_.size();
+        if (callback->processOverlap(pairs_[i])) {
+            removeOverlappingPair(proxy0, proxy1, dispatcher);
+            continue;
+        }
+        // Where the callback has removed the pair itself, another one has taken its place. Only a
+        // smaller count tells that from a callback that puts the pair back, over and over.
+        const bool isReplaced = pairs_.size() < countBefore &&
+                                (i >= pairs_.size() || pairs_[i].m_pProxy0 != proxy0 ||
+                                 pairs_[i].m_pProxy1 != proxy1);
+        i += isReplaced ? 0 : 1;
+    }
+    --processDepth_;
+}
+
+void PairCache::processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher* dispatcher,
+                                           const btDispatcherInfo& dispatchInfo) {
+    if (dispatchInfo.m_deterministicOverlappingPairs) {
+        processByUniqueId(*callback, dispatcher);
+    } else {
+        processAllOverlappingPairs(callback, dispatcher);
+    }
+}
+
+void PairCache::processByUniqueId(btOverlapCallback& callback, btDispatcher* dispatcher) {
+    std::vector<Note> notes = std::move(scratch_);
+    noteAll(notes);
+    std::sort(notes.begin(), notes.end(),
+              [](const Note& a, const Note& b) { return a.uniqueIds > b.uniqueIds; });
+    for (const Note& note : notes) {
+        const std::uint32_t index = indexOf(note);
+        if (index != kNone && callback.processOverlap(pairs_[static_cast<int>(index)])) {
+            remove(note.uniqueIds, dispatcher, Freeing::now);
+        }
+    }
+    scratch_ = std::move(notes);
+}
+
+btBroadphasePair* PairCache::getOverlappingPairArrayPtr() {
+    prepareWholeArray();
+    return pairs_.size() == 0 ? nullptr : &pairs_[0];
+}
+
+const btBroadphasePair* PairCache::getOverlappingPairArrayPtr() const {
+    return pairs_.size() == 0 ? nullptr : &pairs_[0];
+}
+
+btBroadphasePairArray& PairCache::getOverlappingPairArray() {
+    prepareWholeArray();
+    return pairs_;
+}
+
+void PairCache::sortOverlappingPairs(btDispatcher* /*dispatcher*/) {
+    if (!isSorted_ && processDepth_ == 0) {
+        sort();
+    }
+}
+
+void PairCache::prepareWholeArray() {
+    if (order_ == PairOrder::canonical) {
+        freeRetired();
+        sortOverlappingPairs(nullptr);
+    }
+}
+
+// The order in which algorithms are freed decides how the dispatcher's manifolds are numbered, and
+// through the order of contacts in the solver every bit of what follows.
+void PairCache::freeRetired() {
+    std::vector<Retired> retired = std::move(retired_);
+    std::sort(retired.begin(), retired.end(),
+              [](const Retired& a, const Retired& b) { return a.note < b.note; });
+    for (Retired& each : retired) {
+        cleanOverlappingPair(each.pair, each.dispatcher);
+    }
+    retired.clear();
+    retired_ = std::move(retired);
+}
+
+// Pairs take their algorithms along. Their chains are made anew when they are needed.
+void PairCache::sort() {
+    noteAll(scratch_);
+    std::sort(scratch_.begin(), scratch_.end());
+    newIndex_.resize(scratch_.size());
+    for (std::uint32_t i = 0; i < scratch_.size(); ++i) {
+        newIndex_[scratch_[i].index] = i;
+    }
+    ids_.renumber(newIndex_, [this](std::uint32_t i, std::uint32_t j) {
+        pairs_.swap(static_cast<int>(i), static_cast<int>(j));
+    });
+    links_.clear();
+    firstEdge_.clear();
+    isSorted_ = true;
+}
+
+// --- Order, notes, checks ------------------------------------------------------------------------
+
+bool PairCache::isLower(const btBroadphaseProxy& a, const btBroadphaseProxy& b) const {
+    if (key_ == &uniqueId) {
+        return a.m_uniqueId < b.m_uniqueId;
+    }
+    const int keyA = key_(a);
+    const int keyB = key_(b);
+    return keyA != keyB ? keyA < keyB : a.m_uniqueId < b.m_uniqueId;
+}
+
+std::uint64_t PairCache::keysOf(const btBroadphasePair& pair, std::uint64_t ids) const {
+    return key_ == &uniqueId ? ids : ascending(key_(*pair.m_pProxy0), key_(*pair.m_pProxy1));
+}
+
+PairCache::Note PairCache::noteOf(std::uint32_t index) const {
+    const std::uint64_t ids = ids_.keys()[index];
+    return {keysOf(pairs_[static_cast<int>(index)], ids), ids, index};
+}
+
+void PairCache::noteAll(std::vector<Note>& notes) const {
+    notes.clear();
+    for (std::uint32_t i = 0; i < ids_.size(); ++i) {
+        notes.push_back(noteOf(i));
+    }
+}
+
+// Where the pair is now, or kNone when it is gone.
+std::uint32_t PairCache::indexOf(const Note& note) const {
+    const bool isWhereItWas =
+        note.index < ids_.size() && ids_.keys()[note.index] == note.uniqueIds;
+    return isWhereItWas ? note.index : ids_.find(note.uniqueIds);
+}
+
+std::size_t PairCache::memoryBytes() const noexcept {
+    return static_cast<std::size_t>(pairs_.capacity()) * sizeof(btBroadphasePair) +
+           ids_.memoryBytes() + links_.capacity() * sizeof(Link) + firstEdge_.memoryBytes() +
+           scratch_.capacity() * sizeof(Note) +
+           newIndex_.capacity() * sizeof(std::uint32_t);
+}
+
+std::string PairCache::validate() const {
+    for (std::string error : {ids_.validate(), firstEdge_.validate()}) {
+        if (!error.empty()) {
+            return error;
+        }
+    }
+    if (ids_.size() != static_cast<std::size_t>(pairs_.size())) {
+        return "Every pair is found by the unique ids of its proxies: broken.";
+    }
+    for (std::uint32_t i = 0; i < ids_.size(); ++i) {
+        const btBroadphasePair& pair = pairs_[static_cast<int>(i)];
+        if (ids_.find(idsOf(*pair.m_pProxy0, *pair.m_pProxy1)) != i) {
+            return "Every pair is found by the unique ids of its proxies: broken.";
+        }
+        if (!isLower(*pair.m_pProxy0, *pair.m_pProxy1)) {
+            return "Every pair has the proxy with the lower key first: broken.";
+        }
+        if (isSorted_ && i > 0 && !(noteOf(i - 1) < noteOf(i))) {
+            return "An array that counts as sorted is in canonical order: broken.";
+        }
+    }
+    if (!areChainsSound()) {
+        return "Every pair that is chained is so once to each of its proxies: broken.";
+    }
+    return {};
+}
+
+bool PairCache::areChainsSound() const {
+    std::size_t edgeCount = 0;
+    bool isSound = links_.size() <= 2 * ids_.size();
+    firstEdge_.forEach([&](std::uint64_t uniqueId, std::uint32_t first) {
+        std::uint32_t previous = kNone;
+        for (std::uint32_t edge = first; isSound && edge != kNone; edge = links_[edge].next) {
+            isSound = edge < links_.size() && links_[edge].previous == previous &&
+                      idOfEnd(edge) == uniqueId && ++edgeCount <= links_.size();
+            previous = edge;
+        }
+    });
+    return isSound && edgeCount == links_.size();
+}
+
+}  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

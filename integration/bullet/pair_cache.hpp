@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// A pair cache for Bullet that finds the pairs of one proxy without looking at all the others.
+// Works under any broadphase and in any world:
+//
+//     hashphase::PairCache pairCache;
+//     btDbvtBroadphase broadphase(&pairCache);
+//
+// Bullet's own cache scans every pair, twice, to remove one body. Here a proxy's pairs are chained,
+// and removing it costs as much as it has pairs. The array of pairs may be kept in an order that
+// depends on nothing but the set of pairs.
+//
+// Threads   needsBroadphaseCollision() and the const members may run anywhere. Everything else
+//           needs the cache for itself, as in Bullet.
+// Pointers  A pair stays where it is until a pair is added or removed; in canonical order also until
+//           the next look at the whole array. The array must not be resized or reordered by others.
+// Callbacks See the cache as it is after the change that they are told of, and may change it.
+// NULL      A NULL dispatcher frees no algorithms, as in Bullet; NULL clients are fine.
+// Misuse    Pairs of a proxy with itself, and proxies alive with the same or with negative unique
+//           ids; asserted.
+
+#include <broadphase/detail/flat_map.hpp>
+#include <integration/bullet/precision.hpp>
+
+#include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+
+/// In which order the array lists the pairs.
+enum class PairOrder {
+    /// As pairs came and went: the same calls give the same order, that of Bullet's cache. Costs
+    /// nothing.
+    arrival,
+    /// Ascending by the key of the first proxy, then of the second, whenever the whole array is
+    /// looked at: the same set of pairs gives the same order, whatever the broadphase and the
+    /// history. Algorithms are freed in that order, too, so that the dispatcher's manifolds and with
+    /// them whole trajectories are the same under all exact broadphases. Costs a sort when the set
+    /// has changed.
+    canonical,
+};
+
+/// What orders proxies; ties go by m_uniqueId. Must not change while the proxy has pairs.
+using ProxyKey = int (*)(const btBroadphaseProxy&);
+
+class PairCache : public btOverlappingPairCache {
+public:
+    /// The key orients pairs in either order: m_pProxy0 has the lower one. The default orients as
+    /// Bullet does; another one is for broadphases that re-use unique ids.
+    explicit PairCache(PairOrder order = PairOrder::arrival, ProxyKey key = &uniqueId) noexcept
+        : order_(order), key_(key) {}
+
+    PairCache(const PairCache&) = delete;
+    PairCache& operator=(const PairCache&) = delete;
+
+    static int uniqueId(const btBroadphaseProxy& proxy) { return proxy.m_uniqueId; }
+
+    // --- One pair --------------------------------------------------------------------------------
+
+    /// Returns the pair, which is made when it is not there yet; NULL when the filter refuses it.
+    /// The ghost callback is told of a new pair. Cost: O(1).
+    btBroadphasePair* addOverlappingPair(btBroadphaseProxy* proxy0,
+                                         btBroadphaseProxy* proxy1) override;
+
+    /// The same without asking the filter, for callers who have.
+    btBroadphasePair* addAcceptedPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1);
+
+    /// Frees the pair's algorithm, tells the ghost callback and returns the pair's m_internalInfo1;
+    /// NULL when there is no such pair. In canonical order the algorithm is freed when next the
+    /// whole array is looked at or the pairs of a proxy are removed or cleaned. Cost: O(1).
+    void* removeOverlappingPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1,
+                                btDispatcher* dispatcher) override;
+
+    /// NULL when there is no such pair; does not ask the filter. Cost: O(1).
+    btBroadphasePair* findPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1) override;
+
+    /// Frees the pair's algorithm and keeps the pair.
+    void cleanOverlappingPair(btBroadphasePair& pair, btDispatcher* dispatcher) override;
+
+    // --- The pairs of one proxy ------------------------------------------------------------------
+
+    /// Removes them one by one as removeOverlappingPair() does, in canonical order or in that of
+    /// Bullet's cache. Cost: the number of the proxy's pairs, and O(1) for every pair added or
+    /// sorted since the last such call.
+    void removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy,
+                                               btDispatcher* dispatcher) override;
+
+    /// Frees their algorithms and keeps the pairs, in the same order at the same cost.
+    void cleanProxyFromPairs(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
+
+    // --- All pairs -------------------------------------------------------------------------------
+
+    /// Calls callback->processOverlap() for every pair, and removes those for which it returns true.
+    /// The callback may add pairs, which it will be shown too.
+    void processAllOverlappingPairs(btOverlapCallback* callback,
+                                    btDispatcher* dispatcher) override;
+
+    /// The same, but with dispatchInfo.m_deterministicOverlappingPairs in the order of unique ids,
+    /// the highest first, as Bullet's cache; pairs added meanwhile wait for the next time.
+    void processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher* dispatcher,
+                                    const btDispatcherInfo& dispatchInfo) override;
+
+    [[nodiscard]] int getNumOverlappingPairs() const override { return pairs_.size(); }
+
+    /// The array, in canonical order if that was asked for, but not during
+    /// processAllOverlappingPairs(): changes made by its callback are sorted in afterwards.
+    btBroadphasePair* getOverlappingPairArrayPtr() override;
+    btBroadphasePairArray& getOverlappingPairArray() override;
+
+    /// The array as it stands: what has changed since it was last looked at by the others is not
+    /// sorted in.
+    [[nodiscard]] const btBroadphasePair* getOverlappingPairArrayPtr() const override;
+
+    /// Brings the array into canonical order, once, whatever the order asked for. Bullet's caches
+    /// remove and add all pairs to that end, which destroys every algorithm; here algorithms stay
+    /// and ghosts are told nothing.
+    void sortOverlappingPairs(btDispatcher* dispatcher) override;
+
+    /// False: removal is immediate.
+    bool hasDeferredRemoval() override { return false; }
+
+    // --- Callbacks -------------------------------------------------------------------------------
+
+    /// Asks the filter callback; without one, group and mask decide, both ways.
+    [[nodiscard]] bool needsBroadphaseCollision(btBroadphaseProxy* proxy0,
+                                                btBroadphaseProxy* proxy1) const override;
+    btOverlapFilterCallback* getOverlapFilterCallback() override { return filter_; }
+    void setOverlapFilterCallback(btOverlapFilterCallback* callback) override {
+        filter_ = callback;
+    }
+
+    /// Told of each pair added and of each pair removed, once; NULL for none.
+    void setInternalGhostPairCallback(btOverlappingPairCallback* callback) override {
+        ghosts_ = callback;
+    }
+
+    // --- Beyond Bullet ---------------------------------------------------------------------------
+
+    /// How many pairs were looked at so far to serve single proxies: the work of
+    /// removeOverlappingPairsContainingProxy() and cleanProxyFromPairs().
+    [[nodiscard]] std::uint64_t pairsVisited() const noexcept { return pairsVisited_; }
+
+    [[nodiscard]] std::size_t memoryBytes() const noexcept;
+
+    /// Says which invariant is broken, in a sentence; empty when all hold:
+    /// - Every pair is found by the unique ids of its proxies.
+    /// - Every pair has the proxy with the lower key first.
+    /// - Every pair that is chained is so once to each of its proxies.
+    /// - An array that counts as sorted is in canonical order.
+    [[nodiscard]] std::string validate() const;
+
+private:
+    // A pair has two edges: 2 * its index for the proxy with the lower unique id, and that + 1. The
+    // edges of a proxy are chained, those of the first so many pairs, that is.
+    struct Link {
+        std::uint32_t next;
+        std::uint32_t previous;
+    };
+
+    // A pair as it was noted down, with what it is to be sorted by.
+    struct Note {
+        std::uint64_t keys;  // of first and second proxy, ascending as unsigned
+        std::uint64_t uniqueIds;
+        std::uint32_t index;
+
+        friend bool operator<(const Note& a, const Note& b) noexcept {
+            return a.keys != b.keys ? a.keys < b.keys : a.uniqueIds < b.uniqueIds;
+        }
+    };
+
+    enum class Freeing { now, inTurn };
+
+    // A removed pair whose algorithm waits to be freed in its turn.
+    struct Retired {
+        Note note;
+        btBroadphasePair pair;
+        btDispatcher* dispatcher;
+    };
+
+    [[nodiscard]] bool isLower(const btBroadphaseProxy& a, const btBroadphaseProxy& b) const;
+    [[nodiscard]] std::uint64_t keysOf(const btBroadphasePair& pair, std::uint64_t ids) const;
+    [[nodiscard]] Note noteOf(std::uint32_t index) const;
+    void noteAll(std::vector<Note>& notes) const;
+    [[nodiscard]] std::uint32_t indexOf(const Note& note) const;
+    void* remove(std::uint64_t ids, btDispatcher* dispatcher, Freeing freeing);
+    void takeOut(std::uint32_t index, std::uint64_t ids);
+    [[nodiscard]] bool isChained(std::uint32_t index) const noexcept {
+        return 2 * std::size_t{index} < links_.size();
+    }
+    [[nodiscard]] std::uint64_t idOfEnd(std::uint32_t edge) const;
+    void chain(std::uint32_t edge);
+    void unchain(std::uint32_t edge, std::uint64_t uniqueId);
+    void rename(std::uint32_t from, std::uint32_t to);
+    [[nodiscard]] std::vector<Note> notesOf(const btBroadphaseProxy& proxy);
+    void processByUniqueId(btOverlapCallback& callback, btDispatcher* dispatcher);
+    void prepareWholeArray();
+    void sort();
+    void freeRetired();
+    [[nodiscard]] bool areChainsSound() const;
+
+    PairOrder order_;
+    ProxyKey key_;
+    btOverlapFilterCallback* filter_ = nullptr;
+    btOverlappingPairCallback* ghosts_ = nullptr;
+
+    btBroadphasePairArray pairs_;
+    detail::FlatSet ids_;          // of each pair, by its index: both unique ids, lower one on top
+    std::vector<Link> links_;      // by edge; the pairs behind its end are not chained yet
+    detail::RunMap firstEdge_;     // unique id -> first edge of the proxy's chain
+    std::uint64_t pairsVisited_ = 0;
+    bool isSorted_ = true;
+    int processDepth_ = 0;  // processAllOverlappingPairs() calls under way
+
+    std::vector<Retired> retired_;
+
+    std::vector<Note> scratch_;
+    std::vector<std::uint32_t> newIndex_;  // scratch of sort()
+};
+
+}  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

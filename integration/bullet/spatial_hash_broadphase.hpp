@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// The spatial hash as Bullet's broadphase. In place of
+//
+//     btDbvtBroadphase broadphase;
+//
+// write
+//
+//     hashphase::SpatialHashBroadphase broadphase;
+//
+// What changes: pairs are exact (no fat boxes, no stale pairs) and are made and removed in
+// calculateOverlappingPairs() only, but for the groups that want theirs at once.
+//
+// Threads   rayTest() and aabbTest() are const in all but name: any number may run at the same time
+//           and inside each other. Everything else needs the broadphase for itself, as in Bullet.
+// Units     the world's; nothing depends on their size.
+// Bad data  A box with NaN pairs with nothing and is reported once (diagnostics.hpp). Infinite, huge
+//           and inverted boxes are treated exactly as comparing their coordinates says. NULL
+//           clients and NULL dispatchers are fine.
+// Misuse    Proxies that are not alive are asserted.
+
+#include <broadphase/grid.hpp>
+#include <broadphase/pairs.hpp>
+#include <integration/bullet/precision.hpp>
+
+#include <BulletCollision/BroadphaseCollision/btBroadphaseInterface.h>
+#include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
+
+#include <cstddef>
+#include <deque>
+#include <string>
+#include <vector>
+
+class btOverlappingPairCache;
+
+namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+
+class PairCache;
+
+/// Settings of the broadphase; the defaults work for any world.
+struct SpatialHashConfig {
+    GridConfig grid;
+
+    /// Proxies of these groups get their pairs at once, in createProxy() and setAabb(), as Bullet's
+    /// character controller and ghost objects expect.
+    int eagerGroups = btBroadphaseProxy::CharacterFilter | btBroadphaseProxy::SensorTrigger;
+
+    /// Ends a query when process() of its callback returns false. Off by default: Bullet's own
+    /// broadphases ignore the result, and programs return false for other reasons.
+    bool stopWhenProcessReturnsFalse = false;
+};
+
+class SpatialHashBroadphase : public btBroadphaseInterface {
+public:
+    /// Uses `pairCache`, which must outlive the broadphase and have no pairs yet; with nullptr a
+    /// PairCache is made and owned. Throws std::invalid_argument with configError(config.grid).
+    explicit SpatialHashBroadphase(btOverlappingPairCache* pairCache = nullptr,
+                                   const SpatialHashConfig& config = {});
+    explicit SpatialHashBroadphase(const SpatialHashConfig& config);
+    ~SpatialHashBroadphase() override;
+
+    SpatialHashBroadphase(const SpatialHashBroadphase&) = delete;
+    SpatialHashBroadphase& operator=(const SpatialHashBroadphase&) = delete;
+
+    // --- btBroadphaseInterface -------------------------------------------------------------------
+
+    /// The proxy's address is fixed for its life, m_uniqueId counts 1, 2, 3 ... and is never used
+    /// again. `shapeType` is ignored. Cost: O(1).
+    btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
+                                   int shapeType, void* userPtr, int collisionFilterGroup,
+                                   int collisionFilterMask, btDispatcher* dispatcher) override;
+
+    /// Removes the proxy's pairs through the pair cache, then the proxy. Cost: that of the cache;
+    /// with PairCache the number of the proxy's pairs.
+    void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
+
+    /// Cost: O(1); a comparison when the box is the same.
+    void setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin, const btVector3& aabbMax,
+                 btDispatcher* dispatcher) override;
+
+    void getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin, btVector3& aabbMax) const override;
+
+    /// Calls rayCallback.process() once for every proxy whose box, grown by the cast box
+    /// (aabbMin, aabbMax), passes btRayAabb2() with the callback's own fields. Sees every box as it
+    /// was last set. Order unspecified.
+    void rayTest(const btVector3& rayFrom, const btVector3& rayTo,
+                 btBroadphaseRayCallback& rayCallback,
+                 const btVector3& aabbMin = btVector3(0, 0, 0),
+                 const btVector3& aabbMax = btVector3(0, 0, 0)) override;
+
+    /// Calls callback.process() once for every proxy whose box overlaps the given one (closed).
+    void aabbTest(const btVector3& aabbMin, const btVector3& aabbMax,
+                  btBroadphaseAabbCallback& callback) override;
+
+    /// Makes the cache's pairs exact: afterwards it holds precisely the overlapping proxies that
+    /// its filter accepts. Pairs that overlap at both ends of a step are not touched.
+    void calculateOverlappingPairs(btDispatcher* dispatcher) override;
+
+    btOverlappingPairCache* getOverlappingPairCache() override { return pairCache_; }
+    const btOverlappingPairCache* getOverlappingPairCache() const override { return pairCache_; }
+
+    /// The box around all boxes; zero when there is none. Cost: O(proxies).
+    void getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax) const override;
+
+    /// Counts m_uniqueId from 1 again when no proxy is alive; else does nothing.
+    void resetPool(btDispatcher* dispatcher) override;
+
+    /// Does nothing, as in Bullet; ask lastCost() and memoryBytes().
+    void printStats() override {}
+
+    // --- Beyond Bullet ---------------------------------------------------------------------------
+
+    /// Asks the filter again about everything that the proxy overlaps, and adds and removes its
+    /// pairs accordingly, at once. For use after a change of its group, mask, or of the filter.
+    void refilter(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
+
+    /// The grid, for queries that Bullet has none for. proxyOf() leads back to Bullet.
+    [[nodiscard]] const Grid<btScalar>& grid() const noexcept { return grid_; }
+    [[nodiscard]] btBroadphaseProxy* proxyOf(ProxyId id) const;
+    [[nodiscard]] static ProxyId idOf(const btBroadphaseProxy* proxy);
+
+    /// What the last calculateOverlappingPairs() cost.
+    [[nodiscard]] const PairCost& lastCost() const noexcept { return pairs_.lastCost(); }
+
+    /// Bytes held, the pair cache excluded unless it is our own.
+    [[nodiscard]] std::size_t memoryBytes() const noexcept;
+
+    /// Grid::validate(), Pairs::validate() and PairCache::validate(), and:
+    /// - The cache holds as many pairs as the set of pairs (for a cache of our own).
+    [[nodiscard]] std::string validate() const;
+
+private:
+    struct Proxy : btBroadphaseProxy {
+        ProxyId id;
+    };
+    template <class Callback>
+    struct ProcessCollector;
+
+    [[nodiscard]] bool accepts(ProxyId a, ProxyId b) const;
+    void apply(const PairChanges& changes, btDispatcher* dispatcher);
+    void announceIfEager(const Proxy& proxy, btDispatcher* dispatcher);
+    void removeDeferred(const btBroadphaseProxy* refiltered, btDispatcher* dispatcher);
+    [[nodiscard]] Proxy* checkedProxy(btBroadphaseProxy* proxy) const;
+
+    SpatialHashConfig config_;
+    Grid<btScalar> grid_;
+    Pairs<btScalar> pairs_{grid_};
+
+    std::deque<Proxy> proxies_;  // addresses are fixed
+    std::vector<Proxy*> freeProxies_;
+    std::vector<Proxy*> bySlot_;  // ProxyId::index to proxy
+    int lastUniqueId_ = 0;
+
+    PairCache* ownCache_ = nullptr;
+    btOverlappingPairCache* pairCache_ = nullptr;
+};
+
+}  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

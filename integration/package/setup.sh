@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Zlib
+# shellcheck shell=bash
+#
+# Sourced by demos/run and tests/run: from a fresh machine to an up-to-date build.
+# Everything is said on stderr, so that the output of the program that is run stays clean.
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+
+# Tools by the command that must be there, libraries by their Debian package.
+tools=(cmake:cmake ninja:ninja-build c++:g++ pkg-config:pkg-config)
+libraries=(libbullet-dev libbullet-extras-dev libeigen3-dev libcli11-dev nlohmann-json3-dev
+    libgtest-dev)
+
+say() {
+    printf '%s: %s\n' "${script:-setup}" "$*" >&2
+}
+
+# Prints the packages that are missing, one a line.
+missing_packages() {
+    local tool library status
+    for tool in "${tools[@]}"; do
+        command -v "${tool%%:*}" >/dev/null || echo "${tool#*:}"
+    done
+    for library in "${libraries[@]}"; do
+        status=$(dpkg-query --show --showformat='${db:Status-Status}' "$library" 2>/dev/null) || true
+        [[ $status == installed ]] || echo "$library"
+    done
+}
+
+# Installs what is missing, where that is allowed without a question; otherwise says which one
+# command is needed and ends with status 2.
+install_missing_packages() {
+    if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
+        say "this is no Debian or Ubuntu: please see to CMake 3.22, Ninja, a C++20 compiler," \
+            "pkg-config, Bullet 3.05 (with its world importer), Eigen 3, CLI11, nlohmann-json and" \
+            "GoogleTest; CMake tells what it cannot find"
+        return
+    fi
+    local missing=() apt=(apt-get)
+    mapfile -t missing < <(missing_packages)
+    ((${#missing[@]})) || return 0
+    if [[ $EUID != 0 ]]; then
+        if ! sudo -n true 2>/dev/null; then
+            say "some packages are missing; install them and try again:"
+            say "    sudo apt-get install ${missing[*]}"
+            exit 2
+        fi
+        apt=(sudo -n env DEBIAN_FRONTEND=noninteractive apt-get)
+    fi
+    export DEBIAN_FRONTEND=noninteractive
+    say "installing ${missing[*]}"
+    # Lists that cannot be renewed may still be good enough; the installation tells.
+    "${apt[@]}" -o DPkg::Lock::Timeout=300 -q update >&2 </dev/null ||
+        say "the package lists could not be renewed"
+    "${apt[@]}" -o DPkg::Lock::Timeout=300 -q install -y --no-install-recommends \
+        "${missing[@]}" >&2 </dev/null || {
+        say "installing failed; make this work and try again:"
+        say "    apt-get install ${missing[*]}"
+        exit 2
+    }
+}
+
+# build_preset <preset> [<target>...]: configures when need be, and builds.
+build_preset() (
+    preset=$1
+    shift
+    build=$root/build/$preset
+    cd "$root" || exit
+    # Ninja notices changes of CMakeLists.txt by itself, but not those of the presets.
+    if [[ ! -f $build/build.ninja || CMakePresets.json -nt $build/build.ninja ]]; then
+        say "configuring build/$preset"
+        cmake --preset "$preset" >&2
+    fi
+    say "building build/$preset"
+    cmake --build "$build" ${1:+--target "$@"} >&2
+)

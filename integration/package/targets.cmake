@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Zlib
+#
+# What every library and program of hashphase has in common.
+
+include_guard(GLOBAL)
+include(GNUInstallDirs)
+
+# Warnings, reproducible floating point and plain C++20 for a target of our own. The headers of
+# Bullet, Eigen and GoogleTest come from imported targets and count as system headers.
+function(hashphase_own_target target)
+    target_compile_features(${target} PUBLIC cxx_std_20)
+    set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+    if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+        # Contracted multiply-adds would make results depend on the machine that the library is
+        # built for, and a box would no longer be filed where it is looked for.
+        target_compile_options(
+            ${target}
+            PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -ffp-contract=off
+                    $<$<BOOL:${HASHPHASE_WARNINGS_AS_ERRORS}>:-Werror>)
+    endif()
+endfunction()
+
+# hashphase_add_library(<component> SOURCES <file>... LINKS <target>...)
+#
+# Adds hashphase::<component>, with the repository root as its include folder, and installs it in an
+# export set of its own, so that an installed component asks only for what it needs itself.
+function(hashphase_add_library component)
+    cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LINKS")
+    string(REPLACE "-" "_" target hashphase_${component})
+    add_library(${target} ${arg_SOURCES})
+    add_library(hashphase::${component} ALIAS ${target})
+    hashphase_own_target(${target})
+    target_include_directories(
+        ${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                         $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/hashphase>)
+    target_link_libraries(${target} PUBLIC ${arg_LINKS})
+    set_target_properties(
+        ${target}
+        PROPERTIES EXPORT_NAME ${component}
+                   VERSION ${PROJECT_VERSION}
+                   SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+                   WINDOWS_EXPORT_ALL_SYMBOLS ON)
+    install(TARGETS ${target} EXPORT hashphase-${component}-targets)
+    set_property(GLOBAL APPEND PROPERTY HASHPHASE_COMPONENTS ${component})
+endfunction()
+
+# Installs the headers of the current folder under include/hashphase, at the same relative path.
+function(hashphase_install_headers)
+    file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+    install(
+        DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hashphase/${folder}
+        FILES_MATCHING
+        PATTERN "*.hpp")
+endfunction()
+
+# Applies HASHPHASE_SANITIZE to everything in the calling directory and below.
+function(hashphase_enable_sanitizers)
+    if(HASHPHASE_SANITIZE STREQUAL "address")
+        set(flags -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all)
+    elseif(HASHPHASE_SANITIZE STREQUAL "thread")
+        set(flags -fsanitize=thread)
+    elseif(HASHPHASE_SANITIZE)
+        message(FATAL_ERROR "HASHPHASE_SANITIZE is \"${HASHPHASE_SANITIZE}\", but must be empty, "
+                            "address or thread.")
+    else()
+        return()
+    endif()
+    add_compile_options(${flags} -fno-omit-frame-pointer)
+    add_link_options(${flags})
+endfunction()

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Zlib
+
+// What a query costs, counted rather than timed.
+
+#include <tests/support/box_scenes.hpp>
+#include <tests/support/query_checks.hpp>
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace hashphase::test {
+namespace {
+
+template <class Scalar>
+struct Crowd {
+    Grid<Scalar> grid;
+    std::vector<Placed<Scalar>> proxies;
+    Random random;
+
+    Crowd(std::uint32_t count, double side, std::uint64_t seed) : random(seed) {
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const Vector3<double> at = random.pointIn({0, 0, 0}, {side, 2, side});
+            const Aabb<Scalar> box = boxAround<Scalar>(at, {1, 1, 1});
+            proxies.push_back({grid.add(box), box});
+        }
+    }
+
+    void move(std::size_t i) {
+        proxies[i].box = shifted(random, proxies[i].box, 0.5);
+        grid.move(proxies[i].id, proxies[i].box);
+    }
+
+    RayRegion<Scalar> shortRay() {
+        const Vector3<double> from = random.pointIn({0, 0, 0}, {400, 2, 400});
+        return {from.cast<Scalar>(), (from + random.pointIn(-30, 30)).template cast<Scalar>()};
+    }
+};
+
+TEST(GridCost, OfWritesAndQueriesInTurnIsNotThatOfARebuildEach) {
+    Crowd<float> crowd(30000, 400, 0x5eed0701);
+    crowd.grid.update();
+    std::uint64_t tested = 0;
+    for (int i = 0; i < 1000; ++i) {
+        crowd.move(static_cast<std::size_t>(i) * 29);
+        const RayRegion<float> ray = crowd.shortRay();
+        if (i % 100 == 99) {
+            expectLikeBruteForce<float>(crowd.grid, crowd.proxies, ray);
+        }
+        CollectCount count;
+        tested += crowd.grid.visit(ray, count).boxesTested;
+    }
+    EXPECT_LT(tested / 1000, 1000U);
+    // Filed a few times, not a thousand.
+    EXPECT_LT(crowd.grid.update().filed, 20 * 30000U);
+}
+
+TEST(GridCost, OfASmallRegionDoesNotFollowThePopulation) {
+    for (const bool resting : {false, true}) {
+        Crowd<double> crowd(30000, 400, 0x5eed0702);
+        for (int i = 0; i < (resting ? 30 : 1); ++i) {
+            crowd.move(0);
+            crowd.grid.update();
+        }
+        for (int i = 0; i < 200; ++i) {
+            const Vector3<double> at = crowd.random.pointIn({0, 0, 0}, {400, 2, 400});
+            CollectCount inBox;
+            const Aabb<double> box = boxAround<double>(at, {1, 1, 1});
+            EXPECT_LT(crowd.grid.visit(BoxRegion<double>{box}, inBox).boxesTested, 300U);
+            CollectCount inSphere;
+            EXPECT_LT(crowd.grid.visit(SphereRegion<double>{at, 2}, inSphere).boxesTested, 400U);
+            CollectCount onRay;
+            EXPECT_LT(crowd.grid.visit(crowd.shortRay(), onRay).boxesTested, 2000U);
+        }
+    }
+}
+
+TEST(GridCost, OfTheClosestOnALongRayIsThatOfTheWayToIt) {
+    Crowd<float> crowd(30000, 400, 0x5eed0703);
+    crowd.grid.update();
+    std::uint64_t closestTested = 0;
+    std::uint64_t allTested = 0;
+    for (int i = 0; i < 100; ++i) {
+        // Through the whole crowd: the first is met soon.
+        const auto z = static_cast<float>(crowd.random.between(10, 390));
+        const RayRegion<float> ray({-10, 1, z}, {410, 1, z + 100});
+        CollectClosest<float> closest;
+        closestTested += crowd.grid.visit(ray, closest).boxesTested;
+        CollectCount all;
+        allTested += crowd.grid.visit(ray, all).boxesTested;
+        EXPECT_FALSE(closest.found().isNull());
+    }
+    EXPECT_LT(5 * closestTested, allTested);
+}
+
+TEST(GridCost, OfAFewEnormousBoxesIsOneTestEach) {
+    Crowd<float> crowd(10000, 400, 0x5eed0704);
+    crowd.grid.update();
+    std::uint64_t without = 0;
+    std::uint64_t with = 0;
+    for (int i = 0; i < 100; ++i) {
+        const RayRegion<float> ray = crowd.shortRay();
+        CollectCount count;
+        without += crowd.grid.visit(ray, count).boxesTested;
+    }
+    for (int i = 0; i < 5; ++i) {
+        static_cast<void>(crowd.grid.add(makeBox<float>(-1e18, -1e18, -1e18, 1e18, -i, 1e18)));
+    }
+    crowd.grid.update();
+    for (int i = 0; i < 100; ++i) {
+        CollectCount count;
+        with += crowd.grid.visit(crowd.shortRay(), count).boxesTested;
+    }
+    EXPECT_LT(with, 2 * without + 500);
+}
+
+}  // namespace
+}  // namespace hashphase::test

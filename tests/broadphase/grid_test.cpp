@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Zlib
+
+// Life in the grid: proxies come, move, rest and go. What queries find is in grid_query_test.cpp.
+
+#include <broadphase/grid.hpp>
+#include <tests/support/box_scenes.hpp>
+#include <tests/support/handlers.hpp>
+#include <tests/support/oracles.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <limits>
+#include <set>
+#include <vector>
+
+namespace hashphase::test {
+namespace {
+
+using Box = Aabb<float>;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+Box cubeAt(double x) {
+    return makeBox<float>(x, 0, 0, x + 1, 1, 1);
+}
+
+Box nanCube() {
+    Box box = cubeAt(0);
+    box.min()[2] = kNan;
+    return box;
+}
+
+std::size_t countIn(const Grid<float>& grid, const Box& box) {
+    CollectCount count;
+    grid.visit(BoxRegion<float>{box}, count);
+    return count.count();
+}
+
+TEST(Grid, GivesEveryProxyAnIdOfItsOwnAndKeepsItsBox) {
+    Grid<float> grid;
+    std::set<ProxyId> ids;
+    for (int i = 0; i < 100; ++i) {
+        const ProxyId id = grid.add(cubeAt(i));
+        EXPECT_FALSE(id.isNull());
+        EXPECT_TRUE(ids.insert(id).second);
+        EXPECT_TRUE(grid.contains(id));
+        EXPECT_EQ(grid.box(id).min(), cubeAt(i).min());
+        EXPECT_LT(id.index, 100U);
+    }
+    EXPECT_EQ(grid.size(), 100U);
+    EXPECT_EQ(grid.validate(), "");
+}
+
+TEST(Grid, ForgetsARemovedProxyForEver) {
+    Grid<float> grid;
+    const ProxyId old = grid.add(cubeAt(0));
+    grid.remove(old);
+    EXPECT_FALSE(grid.contains(old));
+    EXPECT_EQ(grid.size(), 0U);
+    EXPECT_EQ(countIn(grid, cubeAt(0)), 0U);
+    for (int i = 0; i < 10; ++i) {
+        grid.update();
+        const ProxyId id = grid.add(cubeAt(0));
+        EXPECT_NE(id, old);
+        EXPECT_FALSE(grid.contains(old));
+        EXPECT_EQ(countIn(grid, cubeAt(0)), 1U);
+        grid.remove(id);
+        EXPECT_EQ(grid.validate(), "");
+    }
+}
+
+TEST(Grid, UsesSlotsAgainSoThatIndicesStayBelowTheMostEverAlive) {
+    Grid<float> grid;
+    std::vector<ProxyId> ids;
+    for (int i = 0; i < 50; ++i) {
+        ids.push_back(grid.add(cubeAt(i)));
+    }
+    for (int frame = 0; frame < 40; ++frame) {
+        for (int i = 0; i < 10; ++i) {
+            grid.remove(ids.back());
+            ids.pop_back();
+        }
+        grid.update();
+        for (int i = 0; i < 10; ++i) {
+            ids.push_back(grid.add(cubeAt(i)));
+            EXPECT_LT(ids.back().index, 50U);
+        }
+    }
+    EXPECT_EQ(grid.validate(), "");
+}
+
+TEST(Grid, ContainsNeitherNullNorStrangeIds) {
+    Grid<float> grid;
+    EXPECT_FALSE(grid.contains({}));
+    const ProxyId id = grid.add(cubeAt(0));
+    EXPECT_FALSE(grid.contains({id.index, id.generation + 1}));
+    EXPECT_FALSE(grid.contains({id.index + 1, id.generation}));
+    EXPECT_FALSE(grid.contains({id.index, 0}));
+    EXPECT_FALSE(grid.contains({0xffffffffU, 0xffffffffU}));
+}
+
+TEST(Grid, VisitsEveryProxyInTheOrderOfIndices) {
+    const CaughtMessages messages;
+    Grid<float> grid;
+    std::vector<ProxyId> ids;
+    for (int i = 0; i < 20; ++i) {
+        ids.push_back(grid.add(i == 7 ? nanCube() : cubeAt(i)));
+    }
+    grid.remove(ids[3]);
+    ids.erase(ids.begin() + 3);
+    std::vector<ProxyId> visited;
+    grid.forEach([&](ProxyId id, const Box&) { visited.push_back(id); });
+    EXPECT_EQ(visited, ids);
+}
+
+// --- What an update costs ------------------------------------------------------------------------
+
+TEST(GridUpdate, AnUnchangedMoveMarksNothing) {
+    Grid<float> grid;
+    std::vector<ProxyId> ids;
+    for (int i = 0; i < 300; ++i) {
+        ids.push_back(grid.add(cubeAt(i), i % 2 == 0 ? Mobility::mobile : Mobility::resting));
+    }
+    EXPECT_EQ(grid.update().changed, 300U);
+    for (int frame = 0; frame < 30; ++frame) {
+        for (int i = 0; i < 300; ++i) {
+            grid.move(ids[static_cast<std::size_t>(i)], cubeAt(i));
+        }
+        const UpdateCost cost = grid.update();
+        EXPECT_EQ(cost.changed, 0U);
+        EXPECT_EQ(cost.filed, 0U);
+    }
+}
+
+TEST(GridUpdate, CountsEachChangedProxyOnce) {
+    Grid<float> grid;
+    const ProxyId a = grid.add(cubeAt(0));
+    const ProxyId b = grid.add(cubeAt(1));
+    grid.update();
+    grid.move(a, cubeAt(2));
+    grid.move(a, cubeAt(3));
+    EXPECT_EQ(grid.update().changed, 1U);
+    grid.move(a, cubeAt(4));
+    grid.remove(b);
+    EXPECT_EQ(grid.update().changed, 2U);
+}
+
+TEST(GridUpdate, LeavesRestingProxiesAlone) {
+    Grid<float> grid;
+    std::vector<ProxyId> ids;
+    for (int i = 0; i < 1000; ++i) {
+        ids.push_back(grid.add(cubeAt(2 * i)));
+    }
+    for (int frame = 0; frame < 30; ++frame) {
+        for (std::size_t i = 0; i < 10; ++i) {
+            grid.move(ids[i], cubeAt(-5 - frame - 3 * static_cast<double>(i)));
+        }
+        const UpdateCost cost = grid.update();
+        EXPECT_EQ(cost.changed, frame == 0 ? 1000U : 10U);
+        if (frame > 10) {
+            EXPECT_EQ(cost.filed, 10U);
+            EXPECT_EQ(cost.resting, 990U);
+        }
+        ASSERT_EQ(grid.validate(), "");
+    }
+    // One of them wakes: it is filed among the ten, the others stay where they are.
+    grid.move(ids[500], cubeAt(-900));
+    EXPECT_EQ(grid.update().filed, 11U);
+    EXPECT_EQ(countIn(grid, cubeAt(1000)), 0U);
+    EXPECT_EQ(countIn(grid, cubeAt(-900)), 1U);
+    EXPECT_EQ(grid.validate(), "");
+}
+
+TEST(GridUpdate, ManyRestingProxiesMayLeaveAtOnce) {
+    Grid<float> grid;
+    std::vector<ProxyId> ids;
+    for (int i = 0; i < 1000; ++i) {
+        ids.push_back(grid.add(cubeAt(2 * i), Mobility::resting));
+    }
+    for (int frame = 0; frame < 5; ++frame) {
+        grid.move(ids[0], cubeAt(-9 - frame));
+        grid.update();
+    }
+    for (std::size_t i = 0; i < 1000; i += 2) {
+        grid.remove(ids[i]);
+    }
+    EXPECT_EQ(grid.validate(), "");
+    for (int frame = 0; frame < 5; ++frame) {
+        grid.move(ids[1], cubeAt(-9 - frame));
+        grid.update();
+        ASSERT_EQ(grid.validate(), "");
+        EXPECT_EQ(countIn(grid, makeBox<float>(-50, 0, 0, 3000, 1, 1)), 500U);
+    }
+}
+
+// --- Bad data ------------------------------------------------------------------------------------
+
+TEST(GridNan, IsReportedOnceAndCounted) {
+    const CaughtMessages messages;
+    Grid<float> grid;
+    const ProxyId a = grid.add(cubeAt(0));
+    EXPECT_TRUE(messages.all().empty());
+    grid.move(a, nanCube());
+    const ProxyId b = grid.add(nanCube());
+    ASSERT_EQ(messages.all().size(), 1U);
+    EXPECT_NE(messages.all()[0].find("NaN"), std::string::npos);
+    EXPECT_EQ(grid.nanCount(), 2U);
+    EXPECT_EQ(grid.size(), 2U);
+    grid.move(a, cubeAt(0));
+    EXPECT_EQ(grid.nanCount(), 1U);
+    grid.remove(b);
+    EXPECT_EQ(grid.nanCount(), 0U);
+    grid.move(a, nanCube());
+    EXPECT_EQ(messages.all().size(), 1U);
+}
+
+TEST(GridNan, InAnyFieldHidesTheBoxAndHarmsNoOther) {
+    const CaughtMessages messages;
+    for (int field = 0; field < 6; ++field) {
+        Grid<float> grid;
+        const ProxyId good = grid.add(cubeAt(0.5));
+        const ProxyId bad = grid.add(cubeAt(0));
+        for (int phase = 0; phase < 3; ++phase) {
+            Box box = cubeAt(0);
+            (field < 3 ? box.min() : box.max())[field % 3] = kNan;
+            grid.move(bad, box);
+            EXPECT_EQ(countIn(grid, makeBox<float>(-9, -9, -9, 9, 9, 9)), 1U);
+            if (phase > 0) {
+                grid.update();
+            }
+            EXPECT_EQ(countIn(grid, makeBox<float>(-9, -9, -9, 9, 9, 9)), 1U);
+            EXPECT_TRUE(hasNan(grid.box(bad)));
+            EXPECT_EQ(grid.validate(), "");
+            grid.move(bad, cubeAt(0));
+            EXPECT_EQ(countIn(grid, makeBox<float>(-9, -9, -9, 9, 9, 9)), 2U);
+        }
+        EXPECT_TRUE(grid.contains(good));
+    }
+}
+
+TEST(GridNan, AllProxiesMayHaveIt) {
+    const CaughtMessages messages;
+    Grid<float> grid;
+    for (int i = 0; i < 200; ++i) {
+        static_cast<void>(grid.add(nanCube(), i % 2 == 0 ? Mobility::mobile : Mobility::resting));
+    }
+    for (int i = 0; i < 12; ++i) {
+        grid.update();
+        EXPECT_EQ(countIn(grid, makeBox<float>(-9, -9, -9, 9, 9, 9)), 0U);
+        EXPECT_EQ(grid.validate(), "");
+    }
+    EXPECT_EQ(grid.nanCount(), 200U);
+}
+
+// --- Accounts and misuse -------------------------------------------------------------------------
+
+TEST(Grid, MemoryIsGivenAndGrowsWithTheProxies) {
+    Grid<float> grid;
+    EXPECT_GE(grid.memoryBytes(), sizeof(grid));
+    for (int i = 0; i < 10000; ++i) {
+        static_cast<void>(grid.add(cubeAt(i)));
+    }
+    grid.update();
+    EXPECT_GE(grid.memoryBytes(), 10000 * 2 * sizeof(Box));
+    EXPECT_LT(grid.memoryBytes(), 10000U * 500U);
+}
+
+#if HASHPHASE_ENABLE_ASSERTS
+TEST(Grid, MisuseOfIdsIsAsserted) {
+    const ThrowingAsserts throwing;
+    Grid<float> grid;
+    EXPECT_THROW(grid.move({}, cubeAt(0)), BrokenAssert);
+    EXPECT_THROW(grid.remove({}), BrokenAssert);
+    EXPECT_THROW(static_cast<void>(grid.box({})), BrokenAssert);
+    const ProxyId id = grid.add(cubeAt(0));
+    grid.remove(id);
+    EXPECT_THROW(grid.remove(id), BrokenAssert);
+    EXPECT_THROW(grid.move(id, cubeAt(1)), BrokenAssert);
+    EXPECT_THROW(static_cast<void>(grid.box(id)), BrokenAssert);
+    EXPECT_THROW(static_cast<void>(grid.cellsOf(id)), BrokenAssert);
+    EXPECT_THROW(grid.move({77, 1}, cubeAt(1)), BrokenAssert);
+    grid.update();
+    static_cast<void>(grid.add(cubeAt(0)));
+    EXPECT_THROW(grid.remove(id), BrokenAssert);
+    EXPECT_EQ(grid.size(), 1U);
+    EXPECT_EQ(grid.validate(), "");
+}
+
+TEST(Grid, CellsOfWhatIsNotFiniteAreAsserted) {
+    const CaughtMessages messages;
+    const ThrowingAsserts throwing;
+    Grid<float> grid;
+    const ProxyId nan = grid.add(nanCube());
+    EXPECT_THROW(static_cast<void>(grid.cellsOf(nan)), BrokenAssert);
+    EXPECT_THROW(static_cast<void>(grid.cellAt({kNan, 0, 0})), BrokenAssert);
+    EXPECT_THROW(static_cast<void>(grid.cellAt({0, std::numeric_limits<float>::infinity(), 0})),
+                 BrokenAssert);
+}
+#endif
+
+}  // namespace
+}  // namespace hashphase::test

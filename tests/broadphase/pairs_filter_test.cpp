@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Zlib
+
+#include <tests/support/box_scenes.hpp>
+#include <tests/support/pair_world.hpp>
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace hashphase::test {
+namespace {
+
+using Box = Aabb<double>;
+
+Box cubeAt(double x) {
+    return makeBox<double>(x, 0, 0, x + 1, 1, 1);
+}
+
+/// Two boxes that overlap, and a filter that is a switch.
+struct Couple {
+    bool accept;
+    PairWorld<double> world;
+    ProxyId a;
+    ProxyId b;
+    ProxyPair pair;
+
+    explicit Couple(bool acceptAtFirst)
+        : accept(acceptAtFirst),
+          world({}, [this](ProxyId, ProxyId) { return accept; }),
+          a(world.add(cubeAt(0))),
+          b(world.add(cubeAt(0.5))),
+          pair(makePair(a, b)) {
+        world.update();
+    }
+
+    void rest(int updates = 40) {
+        for (int i = 0; i < updates; ++i) {
+            world.update();
+            EXPECT_EQ(world.pairs.validate(), "");
+        }
+    }
+
+    [[nodiscard]] bool isPair() const { return world.set().contains(pair); }
+};
+
+TEST(PairFilter, IsAskedOnceWhileTheBoxesOverlap) {
+    Couple couple(true);
+    EXPECT_EQ(couple.world.asked(), std::vector{couple.pair});
+    for (int i = 0; i < 30; ++i) {
+        couple.world.move(couple.b, cubeAt(0.5 + 0.01 * (i % 2)));
+        couple.world.update();
+        EXPECT_TRUE(couple.world.asked().empty());
+    }
+}
+
+TEST(PairFilter, IsAskedInAscendingOrderWhateverTheOrderOfChanges) {
+    PairWorld<double> world;
+    std::vector<ProxyId> ids;
+    for (int i = 0; i < 100; ++i) {
+        ids.push_back(world.add(cubeAt(10 * i)));
+    }
+    world.update();
+    for (int i = 99; i >= 0; --i) {
+        world.move(ids[static_cast<std::size_t>(i)], cubeAt(0.3 * (i * 37 % 100)));
+    }
+    world.update();  // checks the order
+    EXPECT_GT(world.asked().size(), 100U);
+}
+
+TEST(PairFilter, IsAskedAgainAboutARefusedCoupleOnlyWhenOneOfThemChanged) {
+    Couple couple(false);
+    EXPECT_FALSE(couple.isPair());
+    EXPECT_EQ(couple.world.pairs.refusedCount(), 1U);
+    for (int i = 0; i < 30; ++i) {
+        couple.world.update();
+        EXPECT_TRUE(couple.world.asked().empty());
+        if (i % 13 == 12) {
+            couple.world.move(couple.b, cubeAt(0.5 + 0.01 * i));
+            couple.world.update();
+            EXPECT_EQ(couple.world.asked(), std::vector{couple.pair});
+        }
+    }
+    couple.accept = true;
+    couple.world.move(couple.a, cubeAt(0.1));
+    couple.world.update();
+    EXPECT_TRUE(couple.isPair());
+    EXPECT_EQ(couple.world.pairs.refusedCount(), 0U);
+}
+
+TEST(PairFilter, RefusedCouplesThatPartMakeNoDeath) {
+    for (const int updatesBetween : {0, 40}) {
+        Couple couple(false);
+        couple.rest(updatesBetween);
+        couple.world.move(couple.b, cubeAt(5));
+        EXPECT_TRUE(couple.world.update().died.empty());
+        EXPECT_EQ(couple.world.pairs.refusedCount(), 0U);
+    }
+}
+
+TEST(PairFilter, RefusedCouplesOfWhichOneIsRemovedMakeNoDeath) {
+    for (const int updatesBetween : {0, 40}) {
+        Couple couple(false);
+        couple.rest(updatesBetween);
+        couple.world.remove(couple.a);
+        EXPECT_TRUE(couple.world.update().died.empty());
+        EXPECT_EQ(couple.world.pairs.refusedCount(), 0U);
+        EXPECT_EQ(couple.world.pairs.validate(), "");
+    }
+}
+
+TEST(PairFilter, IsNotAskedAgainBecauseARestingProxyWakes) {
+    Couple couple(true);
+    couple.rest();
+    couple.world.move(couple.b, cubeAt(0.6));
+    couple.world.update();
+    EXPECT_TRUE(couple.world.asked().empty());
+    EXPECT_TRUE(couple.isPair());
+}
+
+// --- Filtering again -----------------------------------------------------------------------------
+
+TEST(Refilter, EndsAndBeginsPairsAtOnceAlsoOfProxiesAtRest) {
+    for (const int updatesBetween : {0, 1, 40}) {
+        SCOPED_TRACE(testing::Message() << updatesBetween << " updates in between");
+        Couple couple(true);
+        couple.rest(updatesBetween);
+        couple.accept = false;
+        couple.world.refilter(couple.a);
+        EXPECT_FALSE(couple.isPair());
+        EXPECT_EQ(couple.world.pairs.count(), 0U);
+        couple.rest(updatesBetween);
+        couple.accept = true;
+        couple.world.refilter(couple.b);
+        EXPECT_TRUE(couple.isPair());
+        EXPECT_EQ(couple.world.pairs.count(), 1U);
+        couple.rest(updatesBetween);
+        EXPECT_TRUE(couple.isPair());
+    }
+}
+
+TEST(Refilter, ThereAndBackWithinAFrameChangesNothing) {
+    Couple couple(true);
+    couple.rest();
+    couple.accept = false;
+    couple.world.refilter(couple.a);
+    couple.accept = true;
+    couple.world.refilter(couple.a);
+    couple.rest(1);
+    EXPECT_TRUE(couple.isPair());
+}
+
+TEST(Refilter, WithTheSameFilterReportsNothing) {
+    for (const bool accept : {true, false}) {
+        Couple couple(accept);
+        couple.rest();
+        const PairChanges changes =
+            couple.world.pairs.refilter(couple.a, [accept](ProxyId, ProxyId) { return accept; });
+        EXPECT_TRUE(changes.born.empty());
+        EXPECT_TRUE(changes.died.empty());
+    }
+}
+
+TEST(Refilter, OfANewProxyTellsItsPairsOnce) {
+    Couple couple(true);
+    const ProxyId c = couple.world.add(cubeAt(0.25));
+    couple.world.refilter(c);
+    EXPECT_EQ(couple.world.pairs.count(), 3U);
+    couple.accept = false;
+    couple.world.refilter(c);
+    EXPECT_EQ(couple.world.pairs.count(), 1U);
+    couple.world.update();
+    EXPECT_EQ(couple.world.set().size(), 1U);
+}
+
+TEST(Refilter, DecidesAlsoForAPairThatIsApartForTheMoment) {
+    // Known from the last update, apart when filtered again, and together at the next update.
+    Couple couple(true);
+    couple.world.move(couple.a, cubeAt(9));
+    couple.accept = false;
+    couple.world.refilter(couple.a);
+    couple.world.move(couple.a, cubeAt(0));
+    couple.world.update();
+    EXPECT_FALSE(couple.isPair());
+}
+
+TEST(Refilter, OfAProxyThatMovedAwayLeavesTheDeathToTheUpdate) {
+    Couple couple(true);
+    couple.world.move(couple.a, cubeAt(9));
+    couple.world.refilter(couple.a);
+    couple.world.update();
+    EXPECT_FALSE(couple.isPair());
+    EXPECT_EQ(couple.world.pairs.count(), 0U);
+}
+
+TEST(Refilter, OfAProxyWhosePartnerWasRemovedLeavesTheDeathToTheUpdate) {
+    for (const int updatesBetween : {0, 40}) {
+        Couple couple(true);
+        couple.rest(updatesBetween);
+        couple.world.remove(couple.b);
+        couple.accept = false;
+        couple.world.refilter(couple.a);
+        couple.world.update();
+        EXPECT_FALSE(couple.isPair());
+        EXPECT_EQ(couple.world.pairs.count() + couple.world.pairs.refusedCount(), 0U);
+    }
+}
+
+}  // namespace
+}  // namespace hashphase::test

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Zlib
+
+#include <broadphase/detail/join.hpp>
+#include <tests/support/box_scenes.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace hashphase::detail {
+namespace {
+
+using test::boxAround;
+using test::BoxScene;
+using test::Random;
+
+using Couples = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+template <class Scalar>
+class TableTest : public testing::Test {
+protected:
+    using Box = Aabb<Scalar>;
+
+    void build(std::vector<Box> boxes, const LevelSizes& fixed = {}) {
+        boxes_ = std::move(boxes);
+        slots_.resize(boxes_.size());
+        std::iota(slots_.begin(), slots_.end(), 0U);
+        table_.build(slots_, boxes_.data(), fixed);
+        ASSERT_EQ(table_.validate(), "");
+        ASSERT_EQ(table_.size(), boxes_.size());
+    }
+
+    /// Every couple in the order of its numbers, found by the join.
+    [[nodiscard]] Couples joined() const {
+        Couples couples;
+        QueryCost cost;
+        forOverlapsWithinTable(table_, cost, [&](std::uint32_t a, std::uint32_t b) {
+            couples.push_back(std::minmax(a, b));
+        });
+        std::sort(couples.begin(), couples.end());
+        return couples;
+    }
+
+    [[nodiscard]] Couples expected() const {
+        Couples couples;
+        for (std::uint32_t a = 0; a < boxes_.size(); ++a) {
+            for (std::uint32_t b = a + 1; b < boxes_.size(); ++b) {
+                if (overlaps(boxes_[a], boxes_[b])) {
+                    couples.emplace_back(a, b);
+                }
+            }
+        }
+        return couples;
+    }
+
+    /// How many entries share a bucket with an entry of another row.
+    [[nodiscard]] std::size_t sharedBuckets() const {
+        std::size_t shared = 0;
+        for (const Level<Scalar>& level : table_.levels()) {
+            std::map<std::uint32_t, std::pair<std::int32_t, std::int32_t>> rowOfBucket;
+            for (std::uint32_t i = level.firstEntry; level.hasCells && i < level.lastEntry; ++i) {
+                const Box box = table_.box(i);
+                const std::int32_t y = level.cell(box.min()[1], 1);
+                const std::int32_t z = level.cell(box.min()[2], 2);
+                const auto x = static_cast<std::uint32_t>(level.cell(box.min()[0], 0));
+                const std::uint32_t bucket = (level.rowBase(y, z) + x) & level.bucketMask;
+                shared += rowOfBucket.try_emplace(bucket, y, z).first->second != std::pair(y, z);
+            }
+        }
+        return shared;
+    }
+
+    std::vector<Box> boxes_;
+    std::vector<std::uint32_t> slots_;
+    Table<Scalar> table_;
+};
+
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(TableTest, Scalars);
+
+TYPED_TEST(TableTest, JoinFindsEveryCoupleOnceInEveryScene) {
+    Random random(0x5eed0401);
+    for (const BoxScene<TypeParam>& scene : test::allBoxScenes<TypeParam>()) {
+        for (const double cellSize : {0.0, 0.01, 1.0, 30.0}) {
+            SCOPED_TRACE(testing::Message() << scene.name << ", cell size " << cellSize);
+            std::vector<Aabb<TypeParam>> boxes;
+            while (boxes.size() < scene.count) {
+                const Aabb<TypeParam> box = scene.draw(random);
+                if (!hasNan(box)) {
+                    boxes.push_back(box);
+                }
+            }
+            this->build(std::move(boxes), cellSize > 0 ? fixedLevels(cellSize, 4) : LevelSizes{});
+            ASSERT_EQ(this->joined(), this->expected());
+        }
+    }
+}
+
+// Lattices whose strides are powers of two, so that rows fall onto each other wherever their numbers
+// were used without mixing; and so sparse that rows have to be hashed.
+TYPED_TEST(TableTest, JoinFindsEveryCoupleOnceThoughRowsShareBuckets) {
+    std::size_t shared = 0;
+    for (const int stride : {64, 256, 1024, 65536, 1 << 20}) {
+        SCOPED_TRACE(testing::Message() << "stride " << stride);
+        std::vector<Aabb<TypeParam>> boxes;
+        for (int i = 0; i < 343; ++i) {
+            const Vector3<double> corner(i % 7, i / 7 % 7, i / 49);
+            // Two that touch at each place.
+            const Vector3<double> at = corner * stride;
+            boxes.push_back(boxAround<TypeParam>(at, {0.5, 0.5, 0.5}));
+            boxes.push_back(boxAround<TypeParam>(at + Vector3<double>(1, i % 2, -(i % 3 % 2)),
+                                                 {0.5, 0.5, 0.5}));
+        }
+        this->build(std::move(boxes), fixedLevels(1, 4));
+        const Level<TypeParam>& level = this->table_.levels()[0];
+        EXPECT_TRUE(level.hasCells);
+        EXPECT_FALSE(level.isDense);
+        shared += this->sharedBuckets();
+        ASSERT_EQ(this->joined(), this->expected());
+        ASSERT_GE(this->joined().size(), 343U);
+    }
+    EXPECT_GT(shared, 100U) << "the lattices do not do what they are for";
+}
+
+TYPED_TEST(TableTest, JoinFindsEveryCoupleOnceThoughARowIsLongerThanTheTable) {
+    std::vector<Aabb<TypeParam>> boxes;
+    for (int i = 0; i < 200; ++i) {
+        const auto at = [](double x) { return Vector3<double>(x, 0.5, 0.5); };
+        // Far apart along x by multiples of every table size that could be chosen.
+        boxes.push_back(boxAround<TypeParam>(at(1024.0 * i), {0.6, 0.5, 0.5}));
+        boxes.push_back(boxAround<TypeParam>(at(1024.0 * i + 1), {0.6, 0.5, 0.5}));
+    }
+    // One on a coarser level whose neighbourhood on the finer one spans them all.
+    boxes.push_back(boxAround<TypeParam>({1e5, 0, 0}, {1e5, 1, 1}));
+    this->build(std::move(boxes), fixedLevels(1, 4));
+    ASSERT_EQ(this->joined(), this->expected());
+}
+
+TYPED_TEST(TableTest, BoxesOnBordersOfCellsAreFoundFromBothSides) {
+    // Corners at k * cell as rounded: half of such numbers fall into another cell than k.
+    for (const double cellSize : {0.1, 0.3, 0.7, 1.1, 3.3, 10.1}) {
+        SCOPED_TRACE(testing::Message() << "cell size " << cellSize);
+        using Limits = std::numeric_limits<TypeParam>;
+        std::vector<Aabb<TypeParam>> boxes;
+        for (int k = -200; k < 200; ++k) {
+            const auto low = static_cast<TypeParam>(k) * static_cast<TypeParam>(cellSize);
+            const auto high = static_cast<TypeParam>(k + 1) * static_cast<TypeParam>(cellSize);
+            const auto below = std::nextafter(low, -Limits::infinity());
+            const Vector3<TypeParam> bottom(low, 0, 0);
+            const Vector3<TypeParam> top(high, 1, 1);
+            boxes.emplace_back(bottom, top);
+            boxes.emplace_back(bottom, Vector3<TypeParam>(low, 1, 1));
+            boxes.emplace_back(Vector3<TypeParam>(below, 0, 0), Vector3<TypeParam>(below, 1, 1));
+        }
+        this->build(std::move(boxes), fixedLevels(cellSize, 4));
+        ASSERT_EQ(this->joined(), this->expected());
+        Couples found;
+        for (std::uint32_t i = 0; i < this->boxes_.size(); ++i) {
+            QueryCost cost;
+            forOverlapsInTable(this->table_, this->boxes_[i], cost, [&](std::uint32_t other) {
+                if (i < other) {
+                    found.emplace_back(i, other);
+                }
+            });
+        }
+        std::sort(found.begin(), found.end());
+        ASSERT_EQ(found, this->expected());
+    }
+}
+
+TYPED_TEST(TableTest, ErasedEntriesAreFoundByNothing) {
+    Random random(0x5eed0402);
+    const BoxScene<TypeParam> scene = test::spreadScene<TypeParam>("", 1, 0);
+    std::vector<Aabb<TypeParam>> boxes;
+    for (int i = 0; i < 300; ++i) {
+        boxes.push_back(scene.draw(random));
+    }
+    this->build(std::move(boxes));
+    const TypeParam nan = std::numeric_limits<TypeParam>::quiet_NaN();
+    for (std::uint32_t entry = 0; entry < this->table_.size(); entry += 3) {
+        this->boxes_[this->table_.slot(entry)].min().setConstant(nan);
+        this->table_.erase(entry);
+    }
+    EXPECT_EQ(this->table_.validate(), "");
+    EXPECT_EQ(this->joined(), this->expected());
+}
+
+TYPED_TEST(TableTest, DependsOnlyOnTheBoxesNotOnWhatItHeldBefore) {
+    Random random(0x5eed0403);
+    const auto fill = [&random](double scale, int count) {
+        std::vector<Aabb<TypeParam>> boxes;
+        const BoxScene<TypeParam> scene = test::spreadScene<TypeParam>("", scale, 5 * scale);
+        for (int i = 0; i < count; ++i) {
+            boxes.push_back(scene.draw(random));
+        }
+        return boxes;
+    };
+    for (const int count : {500, 0, 1, 400, 31, 2000, 33}) {
+        this->build(fill(count > 100 ? 1.0 : 250.0, count));
+        ASSERT_EQ(this->joined(), this->expected());
+    }
+}
+
+TYPED_TEST(TableTest, KeepsToTheCostOfAFewTestsABoxWhereBoxesAreOfOneSize) {
+    Random random(0x5eed0404);
+    std::vector<Aabb<TypeParam>> boxes;
+    constexpr std::uint32_t kCount = 3000;
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+        boxes.push_back(boxAround<TypeParam>(random.pointIn(0, 40), {0.5, 0.5, 0.5}));
+    }
+    this->build(std::move(boxes));
+    QueryCost cost;
+    forOverlapsWithinTable(this->table_, cost, [](std::uint32_t, std::uint32_t) {});
+    EXPECT_LT(cost.boxesTested, 12U * kCount);
+    EXPECT_LT(cost.rowsVisited, 10U * kCount);
+}
+
+// A population with sizes over six orders of magnitude, as many small as large.
+TYPED_TEST(TableTest, KeepsToTheCostOfAFewTestsABoxWhereSizesDiffer) {
+    Random random(0x5eed0405);
+    std::vector<Aabb<TypeParam>> boxes;
+    constexpr std::uint32_t kCount = 3000;
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+        const double half = random.logBetween(0.5e-3, 0.5e3);
+        // Spread such that boxes of every size have few neighbours of their own size.
+        boxes.push_back(boxAround<TypeParam>(random.pointIn(0, 20000), {half, half, half}));
+    }
+    this->build(std::move(boxes));
+    QueryCost cost;
+    forOverlapsWithinTable(this->table_, cost, [](std::uint32_t, std::uint32_t) {});
+    EXPECT_LT(cost.boxesTested, 60U * kCount);
+}
+
+}  // namespace
+}  // namespace hashphase::detail

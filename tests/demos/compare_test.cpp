@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/compare/compare_command.hpp>
+#include <tests/demos/bullet_file.hpp>
+#include <tests/demos/temporary_folder.hpp>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <sstream>
+
+namespace hashphase::demos {
+namespace {
+
+struct Outcome {
+    int exitCode = 0;
+    std::string out;
+    std::string err;
+};
+
+Outcome run(const std::vector<std::string>& arguments,
+            std::span<const BroadphaseKind> kinds = broadphaseKinds()) {
+    std::ostringstream out;
+    std::ostringstream err;
+    const std::array subcommands{compareCommand(kinds)};
+    Outcome outcome;
+    outcome.exitCode = runProgram(arguments, subcommands, {out, err, false, "hashphase test"});
+    outcome.out = out.str();
+    outcome.err = err.str();
+    return outcome;
+}
+
+// Bullet's brute force, but for what it does to one pair from frame 3 on.
+class Broken : public btSimpleBroadphase {
+public:
+    using btSimpleBroadphase::btSimpleBroadphase;
+
+    btBroadphaseProxy* createProxy(const btVector3& low, const btVector3& high, int shapeType,
+                                   void* client, int group, int mask,
+                                   btDispatcher* dispatcher) override {
+        proxies_.push_back(
+            btSimpleBroadphase::createProxy(low, high, shapeType, client, group, mask, dispatcher));
+        return proxies_.back();
+    }
+
+    void calculateOverlappingPairs(btDispatcher* dispatcher) override {
+        btSimpleBroadphase::calculateOverlappingPairs(dispatcher);
+        if (frame_++ >= 3) {
+            spoil(dispatcher);
+        }
+    }
+
+protected:
+    virtual void spoil(btDispatcher* dispatcher) = 0;
+
+    std::vector<btBroadphaseProxy*> proxies_;
+
+private:
+    int frame_ = 0;
+};
+
+class Forgetful : public Broken {
+    using Broken::Broken;
+    void spoil(btDispatcher* dispatcher) override {
+        getOverlappingPairCache()->removeOverlappingPair(proxies_[0], proxies_[1], dispatcher);
+    }
+};
+
+class Inventive : public Broken {
+    using Broken::Broken;
+    void spoil(btDispatcher* /*dispatcher*/) override {
+        getOverlappingPairCache()->addOverlappingPair(proxies_[0], proxies_[2]);
+    }
+};
+
+template <class Kind>
+BroadphaseKind kindOf(bool ours) {
+    return {"broken",
+            "a broken one",
+            "for tests",
+            ours,
+            1'000'000,
+            true,
+            [](const BroadphaseNeeds& needs) -> std::unique_ptr<btBroadphaseInterface> {
+                return std::make_unique<Kind>(static_cast<int>(needs.objects) + 1);
+            }};
+}
+
+// Boxes 0 and 1 overlap deeply in every frame, box 2 is far from both.
+const std::string kThreeBoxes = "0 0 0 1 1 1\n0 0 0 1 1 1.1\n50 50 50 51 51 51\n";
+
+TEST(Compare, EndsWithAVerdictThatTheSetsAreExact) {
+    const Outcome outcome = run({"compare", "--objects", "300", "--frames", "12"});
+    EXPECT_EQ(outcome.exitCode, kExitOk) << outcome.out << outcome.err;
+    const std::size_t lastLine = outcome.out.rfind('\n', outcome.out.size() - 2) + 1;
+    const std::string verdict = outcome.out.substr(lastLine);
+    EXPECT_EQ(verdict.rfind("300 spheres, 12 frames: hashphase ", 0), 0U) << verdict;
+    EXPECT_NE(verdict.find("; pair sets exact in every frame: yes\n"), std::string::npos);
+    for (const char* name :
+         {"\nhash ", "\ndbvt ", "\ndbvt-deferred ", "\naxis-sweep ", "\nsimple "}) {
+        EXPECT_NE(outcome.out.find(name), std::string::npos) << name;
+    }
+}
+
+class CompareScene : public testing::TestWithParam<const char*> {};
+
+TEST_P(CompareScene, IsExactByEitherReference) {
+    for (const char* reference : {"sweep", "brute"}) {
+        const Outcome outcome = run({"compare", "--scene", GetParam(), "--objects", "150",
+                                     "--frames", "30", "--reference", reference});
+        EXPECT_EQ(outcome.exitCode, kExitOk) << outcome.out << outcome.err;
+        EXPECT_NE(outcome.out.find("every frame: yes"), std::string::npos) << outcome.out;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, CompareScene,
+                         testing::Values("paper", "uniform", "piles", "logsizes", "resting", "pile",
+                                         "stack", "chains", "static-city"),
+                         [](const auto& scene) {
+                             std::string name(scene.param);
+                             std::erase(name, '-');
+                             return name;
+                         });
+
+TEST(Compare, FailsAndNamesTheFirstMissedPair) {
+    const TemporaryFolder folder;
+    const std::array kinds{kindOf<Forgetful>(true)};
+    const Outcome outcome =
+        run({"compare", "--file", folder.write("b.txt", kThreeBoxes), "--frames", "6"}, kinds);
+    EXPECT_EQ(outcome.exitCode, kExitCheckFailed);
+    EXPECT_NE(outcome.out.find("pair sets exact in every frame: NO: 'broken' first missed the pair "
+                               "0, 1 in frame 3; box 0 is ["),
+              std::string::npos)
+        << outcome.out;
+}
+
+TEST(Compare, FailsAndNamesTheFirstInventedPair) {
+    const TemporaryFolder folder;
+    const std::array kinds{kindOf<Inventive>(true)};
+    const std::string json = folder.file("r.json");
+    const Outcome outcome = run(
+        {"compare", "--file", folder.write("b.txt", kThreeBoxes), "--frames", "6", "--json", json},
+        kinds);
+    EXPECT_EQ(outcome.exitCode, kExitCheckFailed);
+    EXPECT_NE(outcome.out.find("'broken' first reported in excess the pair 0, 2 in frame 3"),
+              std::string::npos)
+        << outcome.out;
+    const auto report = nlohmann::json::parse(std::ifstream(json));
+    EXPECT_EQ(report["verdict"]["exact"], false);
+    EXPECT_EQ(report["broadphases"][0]["extra"]["total"], 3);
+    EXPECT_EQ(report["broadphases"][0]["firstFault"]["kind"], "extra");
+    EXPECT_EQ(report["broadphases"][0]["firstFault"]["objects"], nlohmann::json::array({0, 2}));
+}
+
+TEST(Compare, DoesNotFailForWhatOthersGetWrong) {
+    const TemporaryFolder folder;
+    const std::array kinds{kindOf<Forgetful>(false)};
+    const Outcome outcome =
+        run({"compare", "--file", folder.write("b.txt", kThreeBoxes), "--frames", "6"}, kinds);
+    EXPECT_EQ(outcome.exitCode, kExitOk);
+    EXPECT_NE(outcome.out.find("none of ours took part"), std::string::npos);
+}
+
+TEST(Compare, ShowsTheStalePairsOfTheTree) {
+    const TemporaryFolder folder;
+    const std::string json = folder.file("r.json");
+    run({"compare", "--scene", "uniform", "--objects", "1000", "--frames", "30", "--broadphases",
+         "dbvt", "--json", json});
+    const auto report = nlohmann::json::parse(std::ifstream(json));
+    EXPECT_EQ(report["broadphases"][0]["missing"]["total"], 0);
+    EXPECT_GT(report["broadphases"][0]["stale"]["total"], 0);
+    EXPECT_TRUE(report["verdict"]["exact"].is_null());
+}
+
+TEST(Compare, WritesJsonWithARowForEveryFrame) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("r.json");
+    ASSERT_EQ(run({"compare", "--scene", "uniform", "--objects", "100", "--frames", "8",
+                   "--broadphases", "hash,dbvt", "--seed", "9", "--json", path})
+                  .exitCode,
+              kExitOk);
+    const auto report = nlohmann::json::parse(std::ifstream(path));
+    EXPECT_EQ(report["schema"], "hashphase-compare");
+    EXPECT_EQ(report["schemaVersion"], 1);
+    EXPECT_EQ(report["settings"]["seed"], 9);
+    EXPECT_EQ(report["settings"]["objects"], 100);
+    EXPECT_EQ(report["settings"]["warmUpFrames"], 2);
+    EXPECT_EQ(report["provenance"]["precision"], "single");
+    EXPECT_EQ(report["provenance"]["commandLine"], "hashphase test");
+    ASSERT_EQ(report["broadphases"].size(), 2U);
+    EXPECT_EQ(report["broadphases"][1]["name"], "dbvt");
+    EXPECT_EQ(report["broadphases"][1]["speedAgainstDbvt"], 1.0);
+    ASSERT_EQ(report["broadphases"][0]["frames"].size(), 8U);
+    EXPECT_EQ(report["broadphases"][0]["frames"][7]["frame"], 7);
+    EXPECT_TRUE(report["broadphases"][0]["frames"][7]["stepMs"].is_null());
+}
+
+TEST(Compare, WritesCsvWithALineForEveryFrameOfEveryBroadphase) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("r.csv");
+    run({"compare", "--scene", "stack", "--objects", "20", "--frames", "5", "--broadphases",
+         "hash,simple", "--csv", path});
+    std::ifstream file(path);
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(file, line);) {
+        EXPECT_EQ(std::count(line.begin(), line.end(), ','), 10) << line;
+        lines.push_back(line);
+    }
+    ASSERT_EQ(lines.size(), 11U);
+    EXPECT_EQ(lines[0].rfind("broadphase,frame,", 0), 0U);
+    EXPECT_EQ(lines[6].rfind("simple,0,", 0), 0U);
+    EXPECT_NE(lines[6].back(), ',') << "a dynamics scene has step times";
+}
+
+TEST(Compare, RefusesResultFilesThatCannotBeWritten) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("none/r.json");
+    const Outcome outcome = run({"compare", "--objects", "10", "--frames", "1", "--json", path});
+    EXPECT_EQ(outcome.exitCode, kExitUsage);
+    EXPECT_EQ(outcome.err, "hashphase: " + path + " cannot be written.\n");
+}
+
+TEST(Compare, ReadsARecordingToItsEndAndNoFurther) {
+    const TemporaryFolder folder;
+    std::string bytes(304 + 3 * 32, '\0');
+    bytes[256] = 1;  // object
+    bytes[260] = 2;  // frames
+    const std::string path = folder.write("r.aabbs", bytes);
+    const Outcome outcome = run({"compare", "--file", path});
+    EXPECT_EQ(outcome.exitCode, kExitOk) << outcome.err;
+    EXPECT_NE(outcome.out.find("1 boxes, 3 frames"), std::string::npos) << outcome.out;
+    EXPECT_EQ(run({"compare", "--file", path, "--frames", "4"}).err,
+              "hashphase: " + path + " holds 3 frames, but 4 were asked for.\n");
+}
+
+#if HASHPHASE_HAS_BULLET_IMPORTER
+TEST(Compare, RunsAWorldFromAFileInEveryBroadphase) {
+    const TemporaryFolder folder;
+    const std::string path = folder.write("w.bullet", serialisedWorld(6));
+    const Outcome outcome = run({"compare", "--file", path, "--frames", "20"});
+    EXPECT_EQ(outcome.exitCode, kExitOk) << outcome.err;
+    EXPECT_NE(outcome.out.find("6 bodies, 20 frames: "), std::string::npos) << outcome.out;
+    EXPECT_EQ(run({"compare", "--file", path, "--objects", "3"}).exitCode, kExitUsage);
+}
+#endif
+
+TEST(Compare, StopsAtTheTimeLimitAndSaysSo) {
+    const Outcome outcome = run({"compare", "--objects", "100", "--frames", "1000000",
+                                 "--time-limit", "0.2", "--broadphases", "hash"});
+    EXPECT_EQ(outcome.exitCode, kExitOk);
+    EXPECT_NE(outcome.out.find("The time limit of 0.2 s was reached after "), std::string::npos)
+        << outcome.out;
+}
+
+TEST(Compare, ReportsNothingMeasuredWhenTheTimeLimitLeavesNoFrame) {
+    const TemporaryFolder folder;
+    const std::string json = folder.file("r.json");
+    const Outcome outcome = run({"compare", "--objects", "2000", "--time-limit", "0.000001",
+                                 "--broadphases", "hash,dbvt", "--json", json});
+    EXPECT_EQ(outcome.exitCode, kExitOk);
+    EXPECT_NE(outcome.out.find("not verified: no frame was run"), std::string::npos) << outcome.out;
+    const auto report = nlohmann::json::parse(std::ifstream(json));
+    EXPECT_TRUE(report["broadphases"][0]["bothMs"].is_null());
+}
+
+TEST(CommandLine, ListsScenesAndBroadphases) {
+    const Outcome outcome = run({"compare", "--list"});
+    EXPECT_EQ(outcome.exitCode, kExitOk);
+    for (const char* name : {"paper ", "static-city ", "axis-sweep ", "hash "}) {
+        EXPECT_NE(outcome.out.find(std::string("\n  ") + name), std::string::npos) << name;
+    }
+}
+
+TEST(CommandLine, ShowsHelpAndVersion) {
+    EXPECT_EQ(run({"--help"}).exitCode, kExitOk);
+    EXPECT_NE(run({"--help"}).out.find("compare"), std::string::npos);
+    EXPECT_NE(run({"compare", "--help"}).out.find("--time-limit"), std::string::npos);
+    EXPECT_EQ(run({"--version"}).out.rfind("hashphase ", 0), 0U);
+    EXPECT_EQ(run({}).exitCode, kExitUsage);
+}
+
+TEST(CommandLine, SuggestsTheNearNameForEveryKindOfWord) {
+    const auto errorOf = [](const std::vector<std::string>& arguments) {
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.exitCode, kExitUsage) << outcome.out;
+        return outcome.err;
+    };
+    EXPECT_EQ(errorOf({"comprae"}),
+              "hashphase: There is no subcommand 'comprae'; did you mean 'compare'?\n");
+    EXPECT_EQ(errorOf({"compare", "--sceen", "paper"}),
+              "hashphase: There is no option '--sceen'; did you mean '--scene'?\n");
+    EXPECT_EQ(errorOf({"compare", "--scene", "papre"}),
+              "hashphase: There is no scene 'papre'; did you mean 'paper'?\n");
+    EXPECT_EQ(errorOf({"compare", "--broadphases", "hash,dbtv"}),
+              "hashphase: There is no broadphase 'dbtv'; did you mean 'dbvt'?\n");
+}
+
+TEST(CommandLine, RefusesValuesOutOfRangeAndOptionsThatExcludeEachOther) {
+    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+             {"compare", "--list", "--objects", "0"},
+             {"compare", "--list", "--objects", "-3"},
+             {"compare", "--list", "--objects", "many"},
+             {"compare", "--list", "--frames", "0"},
+             {"compare", "--list", "--time-limit", "-1"},
+             {"compare", "--list", "--time-limit", "nan"},
+             {"compare", "--list", "--reference", "guess"},
+             {"compare", "--list", "--scene"},
+             {"compare", "--list", "--scene", "paper", "--file", "x.txt"},
+             {"compare", "--list", "--seed", "-1"},
+             {"compare", "--list", "stray"},
+             {"compare", "--broadphases", ""},
+             {"compare", "--file", "/nonexistent/x.txt"},
+             {"compare", "--file", "/nonexistent/x.bullet"},
+             {"compare", "--file", "/nonexistent/x.aabbs"}}) {
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.exitCode, kExitUsage) << testing::PrintToString(arguments) << outcome.out;
+        EXPECT_EQ(outcome.err.rfind("hashphase: ", 0), 0U) << outcome.err;
+    }
+}
+
+}  // namespace
+}  // namespace hashphase::demos

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/compare/reference_pairs.hpp>
+#include <demos/scenes/box_scene.hpp>
+#include <demos/scenes/paper_scene.hpp>
+#include <demos/scenes/world_scenes.hpp>
+#include <tests/demos/bullet_file.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace hashphase::demos {
+namespace {
+
+constexpr std::uint64_t kSeed = 3;
+
+std::unique_ptr<BoxScene> makeScene(std::string_view name, std::size_t objects,
+                                    std::uint64_t seed = kSeed) {
+    for (const BoxSceneKind& kind : boxSceneKinds()) {
+        if (kind.name == name) {
+            return kind.make(objects, seed);
+        }
+    }
+    ADD_FAILURE() << "no scene " << name;
+    return nullptr;
+}
+
+double overlapsPerBox(const BoxScene& scene) {
+    std::vector<PairKey> pairs;
+    findExactPairs(ReferenceMethod::kSweep, scene.boxes(), {}, pairs);
+    return 2.0 * static_cast<double>(pairs.size()) / static_cast<double>(scene.boxes().size());
+}
+
+bool sameBoxes(const BoxScene& a, const BoxScene& b) {
+    return std::equal(a.boxes().begin(), a.boxes().end(), b.boxes().begin(), b.boxes().end(),
+                      [](const Aabb<float>& left, const Aabb<float>& right) {
+                          return left.min() == right.min() && left.max() == right.max();
+                      });
+}
+
+class EveryBoxScene : public testing::TestWithParam<BoxSceneKind> {};
+
+TEST_P(EveryBoxScene, DependsOnTheSeedAlone) {
+    const auto first = GetParam().make(500, 1);
+    const auto again = GetParam().make(500, 1);
+    const auto other = GetParam().make(500, 2);
+    for (int frame = 0; frame < 20; ++frame) {
+        EXPECT_TRUE(sameBoxes(*first, *again)) << frame;
+        EXPECT_FALSE(sameBoxes(*first, *other)) << frame;
+        first->advance();
+        again->advance();
+        other->advance();
+    }
+}
+
+TEST_P(EveryBoxScene, StaysInItsBoundsAndMoves) {
+    const auto scene = GetParam().make(500, kSeed);
+    const auto start = GetParam().make(500, kSeed);
+    ASSERT_EQ(scene->boxes().size(), 500U);
+    ASSERT_TRUE(scene->filters().empty() || scene->filters().size() == 500U);
+    for (int frame = 0; frame < 300; ++frame) {
+        for (const Aabb<float>& box : scene->boxes()) {
+            ASSERT_TRUE(scene->bounds().contains(box)) << frame;
+        }
+        scene->advance();
+    }
+    EXPECT_FALSE(sameBoxes(*scene, *start));
+}
+
+TEST_P(EveryBoxScene, MakesDoWithOneObject) {
+    const auto scene = GetParam().make(1, kSeed);
+    scene->advance();
+    ASSERT_EQ(scene->boxes().size(), 1U);
+    EXPECT_FALSE(hasNan(scene->boxes()[0]));
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, EveryBoxScene,
+                         testing::ValuesIn(boxSceneKinds().begin(), boxSceneKinds().end()),
+                         [](const auto& kind) { return std::string(kind.param.name); });
+
+TEST(PaperScene, HasSpheresOfRadiusOneThatTouchTheGround) {
+    const PaperScene scene(200, kSeed);
+    const Terrain terrain(kSeed);
+    for (const Aabb<float>& box : scene.boxes()) {
+        EXPECT_TRUE(box.sizes().isApproxToConstant(2, 1e-4F));
+        const Vector3<float> centre = box.center();
+        EXPECT_NEAR(box.min().y(), terrain.height(centre.x(), centre.z()), 1e-3F);
+    }
+    EXPECT_EQ(scene.bounds().sizes().x(), 400);
+    EXPECT_EQ(scene.bounds().sizes().z(), 400);
+}
+
+TEST(PaperScene, WalksAtFiveToFifteenMetresASecond) {
+    PaperScene scene(200, kSeed);
+    const std::vector<Aabb<float>> before = scene.boxes();
+    scene.advance();
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        const Vector3<float> move = scene.boxes()[i].center() - before[i].center();
+        const float speed = 60 * std::hypot(move.x(), move.z());
+        EXPECT_LE(speed, 15.01F);
+        // A bounce cuts a step short.
+        const bool atBorder =
+            scene.boxes()[i].min().x() < 0.01F || scene.boxes()[i].min().z() < 0.01F ||
+            scene.boxes()[i].max().x() > 399.99F || scene.boxes()[i].max().z() > 399.99F;
+        EXPECT_TRUE(atBorder || speed >= 4.99F) << speed;
+    }
+}
+
+TEST(Terrain, IsContinuousAndWithinItsHeights) {
+    const Terrain terrain(kSeed);
+    float lowest = Terrain::kHighest;
+    float highest = 0;
+    for (float x = -50; x < 50; x += 0.25F) {
+        const float here = terrain.height(x, 2 * x);
+        EXPECT_NEAR(terrain.height(x + 0.01F, 2 * x), here, 0.02F);
+        lowest = std::min(lowest, here);
+        highest = std::max(highest, here);
+    }
+    EXPECT_GE(lowest, 0);
+    EXPECT_LE(highest, Terrain::kHighest);
+    EXPECT_GT(highest - lowest, 2) << "flat land";
+}
+
+TEST(UniformScene, OverlapsAboutTwoOthersABox) {
+    EXPECT_NEAR(overlapsPerBox(*makeScene("uniform", 20'000)), 2, 0.2);
+}
+
+TEST(PilesScene, IsDenseWithinPilesAndEmptyBetween) {
+    const auto scene = makeScene("piles", 5'000);
+    EXPECT_NEAR(overlapsPerBox(*scene), 4, 1.5);
+    EXPECT_GT(scene->bounds().sizes().x(), 5'000);
+}
+
+TEST(LogSizesScene, HasSizesOfAllOrdersAndAboutFourOverlapsABox) {
+    const auto scene = makeScene("logsizes", 20'000);
+    EXPECT_NEAR(overlapsPerBox(*scene), 4, 0.8);
+    std::size_t small = 0;
+    for (const Aabb<float>& box : scene->boxes()) {
+        EXPECT_GT(box.sizes().minCoeff(), 0.099F);
+        EXPECT_LT(box.sizes().maxCoeff(), 30.01F);
+        small += box.sizes().x() < std::sqrt(0.1F * 30) ? 1 : 0;
+    }
+    EXPECT_NEAR(static_cast<double>(small), 10'000, 500) << "half are below the middle order";
+}
+
+TEST(RestingScene, MovesTheSameTwoPercentAlways) {
+    const auto scene = makeScene("resting", 1'000);
+    const std::vector<Aabb<float>> start = scene->boxes();
+    for (int frame = 0; frame < 10; ++frame) {
+        scene->advance();
+        std::size_t moved = 0;
+        for (std::size_t i = 0; i < start.size(); ++i) {
+            const bool same = scene->boxes()[i].min() == start[i].min();
+            moved += same ? 0 : 1;
+            EXPECT_TRUE(same || scene->filters()[i].group == CollisionFilter{}.group)
+                << "a static box moved";
+        }
+        EXPECT_EQ(moved, 20U);
+    }
+}
+
+class EveryWorldScene : public testing::TestWithParam<WorldSceneKind> {};
+
+TEST_P(EveryWorldScene, FillsTwoWorldsAlikeAndSteps) {
+    SmallWorld first;
+    SmallWorld second;
+    WorldContents firstContents(first.world);
+    WorldContents secondContents(second.world);
+    GetParam().fill(firstContents, 120, kSeed);
+    GetParam().fill(secondContents, 120, kSeed);
+    const int objects = first.world.getNumCollisionObjects();
+    ASSERT_EQ(second.world.getNumCollisionObjects(), objects);
+    EXPECT_GE(objects, 121);
+    for (int frame = 0; frame < 10; ++frame) {
+        first.world.stepSimulation(btScalar(1) / 60, 0);
+        second.world.stepSimulation(btScalar(1) / 60, 0);
+    }
+    int moved = 0;
+    for (int i = 0; i < objects; ++i) {
+        const btCollisionObject& a = *first.world.getCollisionObjectArray()[i];
+        const btCollisionObject& b = *second.world.getCollisionObjectArray()[i];
+        EXPECT_TRUE(a.getWorldTransform() == b.getWorldTransform()) << i;
+        EXPECT_LT(a.getWorldTransform().getOrigin().length(), 1000);
+        moved += a.getInterpolationLinearVelocity().length() > 0.01F ? 1 : 0;
+    }
+    EXPECT_GT(moved, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, EveryWorldScene,
+                         testing::ValuesIn(worldSceneKinds().begin(), worldSceneKinds().end()),
+                         [](const auto& kind) {
+                             std::string name(kind.param.name);
+                             std::erase(name, '-');
+                             return name;
+                         });
+
+}  // namespace
+}  // namespace hashphase::demos

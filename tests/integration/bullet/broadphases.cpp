@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Zlib
+#include <tests/integration/bullet/broadphases.hpp>
+
+#include <utility>
+
+namespace hashphase::test {
+
+Player hashPlayer(int objectCount, std::unique_ptr<btOverlappingPairCache> cache,
+                  const SpatialHashConfig& config) {
+    auto broadphase = std::make_unique<SpatialHashBroadphase>(cache.get(), config);
+    return Player(objectCount, std::move(broadphase), std::move(cache));
+}
+
+SpatialHashBroadphase& hashOf(const Player& player) {
+    return dynamic_cast<SpatialHashBroadphase&>(player.broadphase());
+}
+
+void askFilterAgain(btBroadphaseInterface& broadphase, btBroadphaseProxy* proxy) {
+    if (auto* hash = dynamic_cast<SpatialHashBroadphase*>(&broadphase)) {
+        hash->refilter(proxy, nullptr);
+        return;
+    }
+    broadphase.getOverlappingPairCache()->cleanProxyFromPairs(proxy, nullptr);
+    broadphase.getOverlappingPairCache()->removeOverlappingPairsContainingProxy(proxy, nullptr);
+    if (auto* dbvt = dynamic_cast<btDbvtBroadphase*>(&broadphase)) {
+        // The tree is asked only about boxes that change.
+        dbvt->setAabbForceUpdate(proxy, proxy->m_aabbMin, proxy->m_aabbMax, nullptr);
+    }
+}
+
+}  // namespace hashphase::test

@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: Zlib
+//
+// What ghost objects, sensors and characters see: every pair told once when it begins and once when
+// it ends, in time, and never a body that has long left.
+
+#include <tests/integration/bullet/broadphases.hpp>
+#include <tests/integration/bullet/pair_journal.hpp>
+
+#include <integration/bullet/pair_cache.hpp>
+
+#include <BulletCollision/CollisionDispatch/btGhostObject.h>
+#include <BulletDynamics/Character/btKinematicCharacterController.h>
+#include <btBulletDynamicsCommon.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace hashphase::test {
+namespace {
+
+using Proxy = btBroadphaseProxy;
+
+constexpr int kObjects = 200;
+constexpr std::uint64_t kSeed = 99;
+
+/// Without changes of filters, after which a pair may rightly be removed and made again at once.
+Script scriptWithoutFilters(const Scene& scene) {
+    Script script = makeScript(scene, kObjects, 60, kSeed);
+    for (Frame& frame : script.frames) {
+        std::erase_if(frame, [](const Command& command) {
+            return command.action == Action::regroup || command.action == Action::changeFilter;
+        });
+    }
+    return script;
+}
+
+std::vector<PairJournal::Uids> intersection(const std::set<PairJournal::Uids>& a,
+                                            const std::set<PairJournal::Uids>& b) {
+    std::vector<PairJournal::Uids> both;
+    std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
+    return both;
+}
+
+class GhostCallbacks : public testing::TestWithParam<Scene> {
+protected:
+    /// Plays a life over the cache and checks the journal after every frame.
+    static void expectBalance(std::unique_ptr<btOverlappingPairCache> cache, const Script& script,
+                              const SpatialHashConfig& config = {}) {
+        PairJournal journal;
+        cache->setInternalGhostPairCallback(&journal);
+        {
+            Player player = hashPlayer(kObjects, std::move(cache), config);
+            for (std::size_t frame = 0; frame < script.frames.size(); ++frame) {
+                SCOPED_TRACE("frame " + std::to_string(frame));
+                player.play(script.frames[frame]);
+                player.calculate();
+                ASSERT_EQ(journal.errors(), std::vector<std::string>{});
+                ASSERT_EQ(journal.alive(), uidPairs(player.cache()));
+            }
+            EXPECT_FALSE(journal.alive().empty());
+        }
+        EXPECT_EQ(journal.errors(), std::vector<std::string>{});
+        EXPECT_TRUE(journal.alive().empty()) << "Destroying all proxies ends all pairs.";
+    }
+};
+
+TEST_P(GhostCallbacks, BalanceInOurPairCache) {
+    expectBalance(std::make_unique<PairCache>(), makeScript(GetParam(), kObjects, 60, kSeed));
+}
+
+TEST_P(GhostCallbacks, BalanceInBulletsPairCache) {
+    expectBalance(std::make_unique<btHashedOverlappingPairCache>(),
+                  makeScript(GetParam(), kObjects, 60, kSeed));
+}
+
+TEST_P(GhostCallbacks, BalanceWhenEverybodyIsEager) {
+    SpatialHashConfig config;
+    config.eagerGroups = Proxy::AllFilter;
+    expectBalance(std::make_unique<PairCache>(), makeScript(GetParam(), kObjects, 60, kSeed),
+                  config);
+}
+
+// A pair that is removed and made again loses its contacts, however briefly it was gone.
+TEST_P(GhostCallbacks, SayNothingOfAPairThatIsThereAtBothEndsOfAStep) {
+    const Script script = scriptWithoutFilters(GetParam());
+    PairJournal journal;
+    Player player = hashPlayer(kObjects);
+    player.cache().setInternalGhostPairCallback(&journal);
+    std::size_t keptCount = 0;
+    for (std::size_t frame = 0; frame < script.frames.size(); ++frame) {
+        const std::set<PairJournal::Uids> before = journal.alive();
+        player.play(script.frames[frame]);
+        player.calculate();
+        const std::vector<PairJournal::Uids> kept = intersection(before, journal.alive());
+        const std::set<PairJournal::Uids> keptSet(kept.begin(), kept.end());
+        ASSERT_EQ(intersection(keptSet, journal.takeTouched()),
+                  std::vector<PairJournal::Uids>{})
+            << "frame " << frame;
+        keptCount += kept.size();
+    }
+    EXPECT_GT(keptCount, 1000U);
+    EXPECT_EQ(journal.errors(), std::vector<std::string>{});
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, GhostCallbacks, testing::ValuesIn(allScenes()),
+                         [](const auto& scene) { return scene.param.name; });
+
+// --- Eager groups ----------------------------------------------------------------------------------
+
+const Box kHere = boxAround({0, 0, 0}, {1, 1, 1});
+const Box kBeside = boxAround({1, 0, 0}, {1, 1, 1});
+const Box kThere = boxAround({9, 0, 0}, {1, 1, 1});
+
+class EagerGroups : public testing::TestWithParam<int> {
+protected:
+    void create(int object, const Box& box, int group) {
+        player.play({Action::create, object, box, group, Proxy::AllFilter});
+    }
+    void set(int object, const Box& box) { player.play({Action::set, object, box, 0, 0}); }
+
+    Player player = hashPlayer(8);
+    const ObjectPairs none;
+};
+
+TEST_P(EagerGroups, HaveTheirPairsDirectlyAfterCreateProxy) {
+    create(0, kHere, Proxy::DefaultFilter);
+    create(1, kBeside, Proxy::DefaultFilter);
+    EXPECT_EQ(player.pairs(), none) << "Others have theirs after calculateOverlappingPairs.";
+    create(2, kHere, GetParam());
+    EXPECT_EQ(player.pairs(), (ObjectPairs{{0, 2}, {1, 2}}));
+    player.calculate();
+    EXPECT_EQ(player.pairs(), (ObjectPairs{{0, 1}, {0, 2}, {1, 2}}));
+}
+
+TEST_P(EagerGroups, HaveTheirPairsDirectlyAfterSetAabb) {
+    create(0, kHere, Proxy::DefaultFilter);
+    create(1, kThere, Proxy::DefaultFilter);
+    create(2, kThere, Proxy::DefaultFilter);
+    create(3, kHere, GetParam());
+    player.calculate();
+    ASSERT_EQ(player.pairs(), (ObjectPairs{{0, 3}, {1, 2}}));
+    set(3, kThere);
+    EXPECT_EQ(player.pairs(), (ObjectPairs{{0, 3}, {1, 2}, {1, 3}, {2, 3}}))
+        << "New pairs at once; old ones stay until calculateOverlappingPairs.";
+    set(2, kHere);
+    EXPECT_EQ(player.pairs(), (ObjectPairs{{0, 3}, {1, 2}, {1, 3}, {2, 3}}))
+        << "What is not eager neither gains nor loses pairs before calculateOverlappingPairs.";
+    player.calculate();
+    EXPECT_EQ(player.pairs(), (ObjectPairs{{0, 2}, {1, 3}}));
+}
+
+TEST_P(EagerGroups, KeepThePairsOfAPlaceTheyPassedUntilTheStepEnds) {
+    create(0, kHere, Proxy::DefaultFilter);
+    create(1, kThere, GetParam());
+    player.calculate();
+    set(1, kHere);
+    set(1, kThere);
+    EXPECT_EQ(player.pairs(), (ObjectPairs{{0, 1}}));
+    player.calculate();
+    EXPECT_EQ(player.pairs(), none);
+    set(1, kHere);
+    set(1, kBeside);
+    EXPECT_EQ(player.pairs(), (ObjectPairs{{0, 1}}));
+    player.calculate();
+    EXPECT_EQ(player.pairs(), (ObjectPairs{{0, 1}}));
+}
+
+TEST_P(EagerGroups, MayBeDestroyedBeforeTheStepEnds) {
+    create(0, kHere, Proxy::DefaultFilter);
+    create(1, kHere, GetParam());
+    player.play({Action::destroy, 1, {}, 0, 0});
+    EXPECT_EQ(player.pairs(), none);
+    create(1, kHere, GetParam());
+    player.play({Action::destroy, 0, {}, 0, 0});
+    EXPECT_EQ(player.pairs(), none);
+    player.calculate();
+    EXPECT_EQ(player.pairs(), none);
+}
+
+INSTANTIATE_TEST_SUITE_P(Groups, EagerGroups,
+                         testing::Values(Proxy::CharacterFilter, Proxy::SensorTrigger,
+                                         Proxy::CharacterFilter | Proxy::DebrisFilter));
+
+// --- Bullet's own ghosts ---------------------------------------------------------------------------
+
+/// A world without gravity, with a btGhostObject and a btPairCachingGhostObject at the origin, a box
+/// that comes and goes, and others that rest elsewhere, so that btDbvtBroadphase would clean up only
+/// a part of its pairs a step.
+struct GhostWorld {
+    explicit GhostWorld(const SpatialHashConfig& config = {}) : broadphase(config) {
+        world.setGravity({0, 0, 0});
+        world.getPairCache()->setInternalGhostPairCallback(&ghostCallback);
+        for (btGhostObject* const object : {&ghost, static_cast<btGhostObject*>(&cachingGhost)}) {
+            object->setCollisionShape(&large);
+            object->setCollisionFlags(btCollisionObject::CF_NO_CONTACT_RESPONSE);
+            world.addCollisionObject(object, Proxy::SensorTrigger, Proxy::AllFilter);
+        }
+        for (int i = 0; i < 30; ++i) {
+            bodies.push_back(std::make_unique<btRigidBody>(1, nullptr, &small));
+            bodies.back()->setActivationState(DISABLE_DEACTIVATION);
+            bodies.back()->setWorldTransform(at({100 + btScalar(i) * btScalar(1.01), 0, 0}));
+            world.addRigidBody(bodies.back().get());
+        }
+    }
+    ~GhostWorld() {
+        for (const auto& body : bodies) {
+            world.removeRigidBody(body.get());
+        }
+        world.removeCollisionObject(&ghost);
+        world.removeCollisionObject(&cachingGhost);
+    }
+
+    static btTransform at(const btVector3& place) {
+        return btTransform(btQuaternion(0, 0, 0, 1), place);
+    }
+
+    static bool touches(const btCollisionObject& a, const btCollisionObject& b) {
+        const Proxy& p = *a.getBroadphaseHandle();
+        const Proxy& q = *b.getBroadphaseHandle();
+        return overlap({p.m_aabbMin, p.m_aabbMax}, {q.m_aabbMin, q.m_aabbMax});
+    }
+
+    /// Numbers of the bodies that a ghost lists; the other ghost is not counted.
+    std::vector<int> listedBy(btGhostObject& object) const {
+        std::vector<int> listed;
+        for (int i = 0; i < static_cast<int>(bodies.size()); ++i) {
+            btAlignedObjectArray<btCollisionObject*>& all = object.getOverlappingPairs();
+            if (all.findLinearSearch(bodies[static_cast<std::size_t>(i)].get()) < all.size()) {
+                listed.push_back(i);
+            }
+        }
+        return listed;
+    }
+
+    std::vector<int> touching(const btCollisionObject& object) const {
+        std::vector<int> touched;
+        for (int i = 0; i < static_cast<int>(bodies.size()); ++i) {
+            if (touches(object, *bodies[static_cast<std::size_t>(i)])) {
+                touched.push_back(i);
+            }
+        }
+        return touched;
+    }
+
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher{&configuration};
+    SpatialHashBroadphase broadphase;
+    btSequentialImpulseConstraintSolver solver;
+    btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
+    btGhostPairCallback ghostCallback;
+    btBoxShape large{btVector3(2, 2, 2)};
+    btBoxShape small{btVector3(btScalar(0.5), btScalar(0.5), btScalar(0.5))};
+    btGhostObject ghost;
+    btPairCachingGhostObject cachingGhost;
+    std::vector<std::unique_ptr<btRigidBody>> bodies;
+};
+
+TEST(GhostObject, NeverListsWhatHasLeft) {
+    GhostWorld scene;
+    std::size_t listedCount = 0;
+    for (int step = 0; step < 1000; ++step) {
+        // In for a few steps, then away for a few hundred.
+        btRigidBody& guest = *scene.bodies[static_cast<std::size_t>(step / 250 * 7)];
+        guest.setWorldTransform(GhostWorld::at({0, step % 250 < 5 ? btScalar(0) : 50, 0}));
+        scene.world.stepSimulation(btScalar(1) / 60, 0);
+        ASSERT_EQ(scene.listedBy(scene.ghost), scene.touching(scene.ghost)) << "step " << step;
+        ASSERT_EQ(scene.listedBy(scene.cachingGhost), scene.touching(scene.cachingGhost));
+        ASSERT_EQ(scene.cachingGhost.getOverlappingPairCache()->getNumOverlappingPairs(),
+                  scene.cachingGhost.getNumOverlappingObjects());
+        listedCount += scene.listedBy(scene.ghost).size();
+    }
+    EXPECT_EQ(listedCount, 20U);
+}
+
+TEST(GhostObject, ForgetsABodyThatIsRemoved) {
+    GhostWorld scene;
+    btRigidBody& guest = *scene.bodies.front();
+    guest.setWorldTransform(GhostWorld::at({0, 0, 0}));
+    scene.world.stepSimulation(btScalar(1) / 60, 0);
+    ASSERT_EQ(scene.listedBy(scene.ghost), std::vector<int>{0});
+    scene.world.removeRigidBody(&guest);
+    EXPECT_TRUE(scene.listedBy(scene.ghost).empty());
+    EXPECT_TRUE(scene.listedBy(scene.cachingGhost).empty());
+    scene.world.addRigidBody(&guest);
+    scene.world.stepSimulation(btScalar(1) / 60, 0);
+    EXPECT_EQ(scene.listedBy(scene.ghost), std::vector<int>{0});
+}
+
+/// Walks a character between pillars; returns how many bodies the box that the character set last
+/// touches without its ghost knowing, summed over the steps.
+std::size_t unknownNeighboursOnAWalk(const SpatialHashConfig& config, std::size_t* knownCount) {
+    GhostWorld scene(config);
+    btPairCachingGhostObject body;
+    btCapsuleShape capsule(btScalar(0.4), 1);
+    body.setCollisionShape(&capsule);
+    body.setCollisionFlags(btCollisionObject::CF_CHARACTER_OBJECT);
+    body.setWorldTransform(GhostWorld::at({94, 0, btScalar(0.9)}));
+    btKinematicCharacterController character(&body, &capsule, btScalar(0.3));
+    character.setGravity({0, 0, 0});
+    character.setWalkDirection({btScalar(0.23), 0, btScalar(-0.013)});
+    scene.world.addCollisionObject(&body, Proxy::CharacterFilter, Proxy::AllFilter);
+    scene.world.addAction(&character);
+
+    std::size_t unknownCount = 0;
+    for (int step = 0; step < 200; ++step) {
+        scene.world.stepSimulation(btScalar(1) / 60, 0);
+        for (const int neighbour : scene.touching(body)) {
+            btRigidBody& other = *scene.bodies[static_cast<std::size_t>(neighbour)];
+            const bool isKnown = body.getOverlappingPairCache()->findPair(
+                                     body.getBroadphaseHandle(), other.getBroadphaseHandle()) !=
+                                 nullptr;
+            ++(isKnown ? *knownCount : unknownCount);
+        }
+    }
+    scene.world.removeAction(&character);
+    scene.world.removeCollisionObject(&body);
+    return unknownCount;
+}
+
+TEST(KinematicCharacter, KnowsItsNeighboursWithinTheStep) {
+    std::size_t knownCount = 0;
+    EXPECT_EQ(unknownNeighboursOnAWalk({}, &knownCount), 0U);
+    EXPECT_GT(knownCount, 100U);
+}
+
+// The test above can fail.
+TEST(KinematicCharacter, DoesNotKnowThemInTimeWhenNoGroupIsEager) {
+    SpatialHashConfig config;
+    config.eagerGroups = 0;
+    std::size_t knownCount = 0;
+    EXPECT_GT(unknownNeighboursOnAWalk(config, &knownCount), 0U);
+}
+
+}  // namespace
+}  // namespace hashphase::test

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: Zlib
+#
+# cmake -DROOT=<repository> -P check_layering.cmake
+#
+# Who may include whom, checked on every #include below broadphase/ and integration/:
+#   broadphase/             itself, Eigen, the standard library
+#   broadphase/detail/      the compiler's SIMD intrinsics as well, and it alone
+#   integration/<client>/   itself, broadphase/, Eigen, the standard library
+#   integration/bullet/     Bullet as well, and it alone
+#   integration/effects/    the other clients as well
+# demos/ and tests/ may include everything, and nobody else includes them. Names every breach by
+# file, line and rule.
+
+cmake_minimum_required(VERSION 3.22)
+
+set(standard "[a-z_0-9]+")
+set(simd "([a-z]+intrin|arm_neon)\\.h")
+set(eigen "Eigen/[A-Za-z]+")
+set(bullet "(bt[A-Z][A-Za-z0-9]*\\.h|(LinearMath|Bullet[A-Z][A-Za-z]*)/.+)")
+
+# Sets `allowed`, a regular expression for what stands between < and >, and `rule`, a sentence.
+macro(get_rule file)
+    if("${file}" MATCHES "^broadphase/detail/")
+        set(allowed "(broadphase/.+|${simd}|${eigen}|${standard})")
+        set(rule "broadphase/detail/ includes only broadphase/, SIMD intrinsics, Eigen and the \
+standard library")
+    elseif("${file}" MATCHES "^broadphase/")
+        set(allowed "(broadphase/.+|${eigen}|${standard})")
+        set(rule "broadphase/ includes only itself, Eigen and the standard library")
+    elseif("${file}" MATCHES "^integration/bullet/")
+        set(allowed "((broadphase|integration/bullet)/.+|${bullet}|${eigen}|${standard})")
+        set(rule "integration/bullet/ includes only itself, broadphase/, Bullet, Eigen and the \
+standard library")
+    elseif("${file}" MATCHES "^integration/effects/")
+        set(allowed "((broadphase|integration)/.+|${eigen}|${standard})")
+        set(rule "integration/effects/ includes only the clients, broadphase/, Eigen and the \
+standard library")
+    elseif("${file}" MATCHES "^integration/([^/]+)/")
+        set(allowed "((broadphase|integration/${CMAKE_MATCH_1})/.+|${eigen}|${standard})")
+        set(rule "integration/${CMAKE_MATCH_1}/ includes only itself, broadphase/, Eigen and the \
+standard library")
+    else()
+        set(allowed "")
+        set(rule "integration/ holds no sources, only a folder for each client")
+    endif()
+endmacro()
+
+function(get_line_number text offset result)
+    string(SUBSTRING "${text}" 0 ${offset} before)
+    string(REGEX MATCHALL "\n" breaks "${before}")
+    list(LENGTH breaks count)
+    math(EXPR line "${count} + 1")
+    set(${result} ${line} PARENT_SCOPE)
+endfunction()
+
+file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/broadphase/*.[hci]* ${ROOT}/integration/*.[hci]*)
+list(FILTER files INCLUDE REGEX "\\.(h|hpp|hh|inl|ipp|c|cc|cpp|cxx)$")
+set(breachCount 0)
+set(includeCount 0)
+foreach(file IN LISTS files)
+    get_rule("${file}")
+    file(READ ${ROOT}/${file} text)
+    string(PREPEND text "\n")
+    string(REGEX MATCHALL "\n[ \t]*#[ \t]*include[ \t]*(<[^>\n]*>|[^ \t\n]+)" includes "${text}")
+    foreach(include IN LISTS includes)
+        math(EXPR includeCount "${includeCount} + 1")
+        string(REGEX MATCH "include[ \t]*(.+)" name "${include}")
+        set(name "${CMAKE_MATCH_1}")
+        if(name MATCHES "^\"")
+            set(broken "our own headers are included from the repository root, in angle brackets")
+        elseif(NOT name MATCHES "^<${allowed}>$" OR name MATCHES "\\.\\./")
+            set(broken "${rule}")
+        else()
+            continue()
+        endif()
+        string(FIND "${text}" "${include}" offset)
+        get_line_number("${text}" ${offset} line)
+        message(NOTICE "${file}:${line}: #include ${name}: ${broken}.")
+        math(EXPR breachCount "${breachCount} + 1")
+    endforeach()
+endforeach()
+
+list(LENGTH files fileCount)
+if(includeCount EQUAL 0)
+    message(FATAL_ERROR "No #include was found below ${ROOT}: nothing was checked.")
+elseif(breachCount GREATER 0)
+    message(FATAL_ERROR "${breachCount} of ${includeCount} includes break the layering.")
+endif()
+message(STATUS "${includeCount} includes in ${fileCount} files keep to the layering.")

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Zlib
+#
+# cmake -DSCRATCH=<folder> -P self_check.cmake
+#
+# Holds check_layering.cmake against small trees made in SCRATCH: one that keeps every rule, and one
+# breach of each rule, which must be named by file, line and rule.
+
+cmake_minimum_required(VERSION 3.22)
+
+function(run_check)
+    execute_process(
+        COMMAND ${CMAKE_COMMAND} -DROOT=${SCRATCH} -P ${CMAKE_CURRENT_LIST_DIR}/check_layering.cmake
+        RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
+    set(status ${status} PARENT_SCOPE)
+    set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+function(make_good_tree)
+    file(REMOVE_RECURSE ${SCRATCH})
+    file(WRITE ${SCRATCH}/broadphase/grid.hpp
+         "#include <Eigen/Geometry>\n#include <vector>\n"
+         "  # include <broadphase/detail/table.hpp>// x\n")
+    file(WRITE ${SCRATCH}/broadphase/detail/kernel.hpp "#include <emmintrin.h>\n")
+    file(WRITE ${SCRATCH}/integration/bullet/broadphase.hpp
+         "#include <BulletCollision/BroadphaseCollision/btBroadphaseInterface.h>\n"
+         "#include <LinearMath/btVector3.h>\n#include <btBulletCollisionCommon.h>\n"
+         "#include <broadphase/grid.hpp>\n#include <integration/bullet/pair_cache.hpp>\n")
+    file(WRITE ${SCRATCH}/integration/picking/pick.cpp
+         "#include <integration/picking/pick.hpp>\n#include <broadphase/grid.hpp>\n")
+    file(WRITE ${SCRATCH}/integration/effects/plan.cpp
+         "#include <integration/picking/pick.hpp>\n#include <cstdint>\n")
+    file(WRITE ${SCRATCH}/demos/main.cpp "#include \"scene.hpp\"\n#include <CLI/CLI.hpp>\n")
+    file(WRITE ${SCRATCH}/tests/grid.cpp "#include <gtest/gtest.h>\n#include <demos/scene.hpp>\n")
+endfunction()
+
+# One breach: `text` in `file` must be refused at `line` with a rule that matches `rule`.
+function(expect_breach file line rule text)
+    make_good_tree()
+    file(APPEND ${SCRATCH}/${file} "${text}")
+    run_check()
+    if(status EQUAL 0)
+        message(FATAL_ERROR "Not noticed in ${file}: ${text}")
+    elseif(NOT output MATCHES "${file}:${line}: #include [^\n]*: [^\n]*${rule}")
+        message(FATAL_ERROR "${file}:${line} and \"${rule}\" are not named for ${text}:\n${output}")
+    endif()
+endfunction()
+
+make_good_tree()
+run_check()
+if(NOT status EQUAL 0)
+    message(FATAL_ERROR "A tree that keeps every rule was refused:\n${output}")
+endif()
+
+set(core "broadphase/ includes only itself")
+expect_breach(broadphase/grid.hpp 4 "${core}" "#include <integration/picking/pick.hpp>\n")
+expect_breach(broadphase/grid.hpp 4 "${core}" "#include <btBulletCollisionCommon.h>\n")
+expect_breach(broadphase/grid.hpp 5 "${core}" "\n#include <LinearMath/btVector3.h>\n")
+expect_breach(broadphase/grid.hpp 4 "${core}" "#include <emmintrin.h>\n")
+expect_breach(broadphase/detail/deep.cpp 2 "broadphase/detail/ includes only broadphase/"
+              "// one\n#include <demos/scene.hpp>\n")
+expect_breach(broadphase/grid.hpp 4 "${core}" "#include <broadphase/../demos/scene.hpp>\n")
+expect_breach(broadphase/grid.hpp 4 "in angle brackets" "#include \"detail/table.hpp\"\n")
+set(client "integration/picking/ includes only itself")
+expect_breach(integration/picking/pick.cpp 3 "${client}" "#include <integration/bullet/b.hpp>\n")
+expect_breach(integration/picking/pick.cpp 3 "${client}" "#include <btBulletCollisionCommon.h>\n")
+expect_breach(integration/picking/pick.cpp 3 "${client}" "#include <tests/support/oracle.hpp>\n")
+expect_breach(integration/bullet/broadphase.hpp 6 "integration/bullet/ includes only itself"
+              "#include <integration/picking/pick.hpp>\n")
+expect_breach(integration/effects/plan.cpp 3 "integration/effects/ includes only the clients"
+              "#include <LinearMath/btVector3.h>\n")
+expect_breach(integration/stray.hpp 1 "only a folder for each client" "#include <vector>\n")
+
+file(REMOVE_RECURSE ${SCRATCH})
+file(MAKE_DIRECTORY ${SCRATCH}/broadphase)
+run_check()
+if(status EQUAL 0)
+    message(FATAL_ERROR "A tree without sources must not pass as checked.")
+endif()

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// A grid and its pairs, watched: whatever the changes report is applied to a set of pairs, and every
+// promise about the changes is checked on the way.
+
+#include <broadphase/pairs.hpp>
+#include <tests/support/oracles.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <functional>
+#include <iterator>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace hashphase::test {
+
+/// Grid and Pairs, and the set of pairs as a client would keep it. A World for scripts.
+template <class Scalar>
+class PairWorld {
+public:
+    using Filter = std::function<bool(ProxyId, ProxyId)>;
+
+    explicit PairWorld(const GridConfig& config = {},
+                       Filter filter = [](ProxyId, ProxyId) { return true; })
+        : grid(config), pairs(grid), filter_(std::move(filter)) {}
+
+    ProxyId add(const Aabb<Scalar>& box, Mobility mobility = Mobility::mobile) {
+        const ProxyId id = grid.add(box, mobility);
+        changed_.insert(id);
+        return id;
+    }
+    void move(ProxyId id, const Aabb<Scalar>& box) {
+        const Aabb<Scalar> present = grid.box(id);
+        if (std::memcmp(&present, &box, sizeof(box)) != 0) {
+            changed_.insert(id);
+        }
+        grid.move(id, box);
+    }
+    void remove(ProxyId id) { grid.remove(id); }
+
+    void refilter(ProxyId id) {
+        asked_.clear();
+        changed_.insert(id);
+        apply(pairs.refilter(id, recordingFilter()));
+        noteDecided();
+        EXPECT_TRUE(isAscending(asked_)) << "refilter asks in ascending order, each couple once";
+    }
+
+    void announce(ProxyId id) {
+        asked_.clear();
+        const PairChanges changes = pairs.announce(id, recordingFilter());
+        EXPECT_TRUE(changes.died.empty());
+        apply(changes);
+        noteDecided();
+        EXPECT_TRUE(isAscending(asked_)) << "announce asks in ascending order, each couple once";
+    }
+
+    /// Ends the frame. What the filter was asked is in asked() afterwards.
+    PairChanges update() {
+        asked_.clear();
+        const PairChanges changes = pairs.update(recordingFilter());
+        apply(changes);
+        EXPECT_TRUE(isAscending(asked_)) << "update asks in ascending order, each couple once";
+        return changes;
+    }
+
+    /// To be called after update(): the pairs are those of brute force, and all accounts agree.
+    void check(std::span<const Placed<Scalar>> proxies) {
+        const std::vector<ProxyPair> expected = pairsByBruteForce(proxies);
+        const std::vector<ProxyPair> actual(set_.begin(), set_.end());
+        ASSERT_EQ(differences(actual, expected), "");
+        ASSERT_EQ(pairs.count(), expected.size());
+        std::vector<ProxyPair> collected;
+        pairs.collect(collected);
+        ASSERT_EQ(differences(collected, expected), "");
+    }
+
+    /// Invariants, and that the filter was asked what it had to be and nothing else.
+    void checkThoroughly(std::span<const Placed<Scalar>> proxies) {
+        ASSERT_NO_FATAL_FAILURE(check(proxies));
+        ASSERT_EQ(grid.validate(), "");
+        ASSERT_EQ(pairs.validate(), "");
+        checkAsked(proxies);
+    }
+
+    [[nodiscard]] const std::set<ProxyPair>& set() const noexcept { return set_; }
+    [[nodiscard]] const std::vector<ProxyPair>& asked() const noexcept { return asked_; }
+
+    Grid<Scalar> grid;
+    Pairs<Scalar> pairs;
+
+private:
+    auto recordingFilter() {
+        return [this](ProxyId a, ProxyId b) {
+            asked_.push_back({a, b});
+            return filter_(a, b);
+        };
+    }
+
+    static bool isAscending(std::span<const ProxyPair> list) {
+        return std::adjacent_find(list.begin(), list.end(), std::greater_equal<>()) == list.end();
+    }
+
+    // What was asked before the update needs not be asked by it.
+    void noteDecided() {
+        for (const ProxyPair& pair : asked_) {
+            decided_.insert(pair);
+            if (filter_(pair.first, pair.second)) {
+                refused_.erase(pair);
+            } else {
+                refused_.insert(pair);
+            }
+        }
+    }
+
+    void apply(const PairChanges& changes) {
+        ASSERT_TRUE(isAscending(changes.born)) << "births are sorted, each once";
+        ASSERT_TRUE(isAscending(changes.died)) << "deaths are sorted, each once";
+        for (const ProxyPair& pair : changes.died) {
+            ASSERT_EQ(set_.erase(pair), 1U)
+                << testing::PrintToString(pair) << " dies but was no pair";
+            ASSERT_FALSE(std::binary_search(changes.born.begin(), changes.born.end(), pair))
+                << testing::PrintToString(pair) << " is born and dies at once";
+        }
+        for (const ProxyPair& pair : changes.born) {
+            ASSERT_TRUE(set_.insert(pair).second)
+                << testing::PrintToString(pair) << " is born but was a pair";
+            ASSERT_LT(pair.first.index, pair.second.index);
+        }
+    }
+
+    // Asked must be: couples that overlap now and did not before, unless decided already, and refused ones
+    // that still overlap and of which one has changed.
+    void checkAsked(std::span<const Placed<Scalar>> proxies) {
+        std::set<ProxyPair> overlapping;
+        std::vector<ProxyPair> expected;
+        for (std::size_t i = 0; i < proxies.size(); ++i) {
+            for (std::size_t j = i + 1; j < proxies.size(); ++j) {
+                if (!overlaps(proxies[i].box, proxies[j].box)) {
+                    continue;
+                }
+                const ProxyPair pair = makePair(proxies[i].id, proxies[j].id);
+                overlapping.insert(pair);
+                const bool isNew = !overlapped_.contains(pair) && !decided_.contains(pair);
+                const bool isRefused = refused_.contains(pair) && hasChanged(pair);
+                if (isNew || isRefused) {
+                    expected.push_back(pair);
+                }
+            }
+        }
+        std::sort(expected.begin(), expected.end());
+        ASSERT_EQ(differences(asked_, expected), "") << "asked";
+        refused_.clear();
+        std::set_difference(overlapping.begin(), overlapping.end(), set_.begin(), set_.end(),
+                            std::inserter(refused_, refused_.end()));
+        ASSERT_EQ(pairs.refusedCount(), refused_.size());
+        overlapped_.swap(overlapping);
+        decided_.clear();
+        changed_.clear();
+    }
+
+    bool hasChanged(const ProxyPair& pair) const {
+        return changed_.contains(pair.first) || changed_.contains(pair.second);
+    }
+
+    Filter filter_;
+    std::set<ProxyPair> set_;
+    std::vector<ProxyPair> asked_;
+
+    // As of the last update, or since.
+    std::set<ProxyPair> overlapped_;
+    std::set<ProxyPair> refused_;
+    std::set<ProxyPair> decided_;
+    std::set<ProxyId> changed_;
+};
+
+}  // namespace hashphase::test
