@@ -64,9 +64,8 @@ ProxyId Grid<Scalar>::add(const Box& box, Mobility mobility) {
     const std::uint32_t slot = freeSlots_.back();
     freeSlots_.pop_back();
     Record& record = records_[slot];
-    record.generation = record.generation + 1 == 0 ? 1 : record.generation + 1;
+    ++record.generation;
     record.changedAt = 0;
-    record.place = Place::fresh;
     record.restsAtOnce = mobility == Mobility::resting;
     boxes_[slot] = box;
     ++size_;
@@ -97,14 +96,14 @@ void Grid<Scalar>::remove(ProxyId id) {
     leaveTable(slot);
     nanCount_ -= hasNan(boxes_[slot]) ? 1 : 0;
     boxes_[slot].min().setConstant(std::numeric_limits<Scalar>::quiet_NaN());
-    records_[slot].place = Place::removed;
+    ++records_[slot].generation;
     removedSlots_.push_back(slot);
     --size_;
 }
 
 template <class Scalar>
 bool Grid<Scalar>::contains(ProxyId id) const noexcept {
-    return !id.isNull() && id.index < records_.size() && isAlive(id.index) &&
+    return !id.isNull() && id.index < records_.size() &&
            records_[id.index].generation == id.generation;
 }
 
@@ -163,14 +162,14 @@ void Grid<Scalar>::leaveTable(std::uint32_t slot) {
         resting_.erase(record.position);
         ++restingErased_;
     }
-    record.place = Place::fresh;
+    record.place = Place::nowhere;
 }
 
 template <class Scalar>
 void Grid<Scalar>::fileOne(std::uint32_t slot) {
     Record& record = records_[slot];
     record.isWaiting = false;
-    if (record.place == Place::removed) {
+    if (!isAlive(slot)) {
         return;
     }
     mobileIsStale_ = true;
@@ -192,12 +191,15 @@ void Grid<Scalar>::fileWaiting() {
     }
     waiting_.clear();
     if (!hasPairs_) {
-        freeSlots_.insert(freeSlots_.end(), removedSlots_.begin(), removedSlots_.end());
-        for (const std::uint32_t slot : removedSlots_) {
-            records_[slot].place = Place::free;
-        }
-        removedSlots_.clear();
+        freeRemovedSlots();
     }
+}
+
+// Not before nobody has to tell the old proxy from the next one in its slot.
+template <class Scalar>
+void Grid<Scalar>::freeRemovedSlots() {
+    freeSlots_.insert(freeSlots_.end(), removedSlots_.begin(), removedSlots_.end());
+    removedSlots_.clear();
 }
 
 template <class Scalar>
@@ -261,11 +263,7 @@ void Grid<Scalar>::fileForUpdate() {
 template <class Scalar>
 void Grid<Scalar>::endUpdate() {
     changes_.clear();
-    for (const std::uint32_t slot : removedSlots_) {
-        records_[slot].place = Place::free;
-    }
-    freeSlots_.insert(freeSlots_.end(), removedSlots_.begin(), removedSlots_.end());
-    removedSlots_.clear();
+    freeRemovedSlots();
     cost_ = {};
     ++updateNumber_;
     if (config_.cellSize == 0) {

@@ -133,15 +133,14 @@ public:
 private:
     friend class Pairs<Scalar>;
 
-    /// Where a proxy is. `fresh`: alive, in no table yet. `removed`: its slot waits to be free,
-    /// until whoever still knows the old proxy has been told.
-    enum class Place : std::uint8_t { free, removed, fresh, nan, mobile, resting };
+    /// Where a proxy is filed; `nowhere` also for those that have not been filed yet.
+    enum class Place : std::uint8_t { nowhere, nan, mobile, resting };
 
     struct Record {
-        std::uint32_t generation = 0;
+        std::uint32_t generation = 0;  // odd while the slot has a proxy
         std::uint32_t changedAt = 0;  // number of the update that will see, or saw, the last change
         std::uint32_t position = 0;   // in mobileSlots_, or entry in resting_
-        Place place = Place::free;
+        Place place = Place::nowhere;
         bool isWaiting = false;   // changed since filed: listed in waiting_
         bool restsAtOnce = false; // Mobility::resting, and has not moved since it was added
     };
@@ -155,11 +154,12 @@ private:
     struct VisitReader;
     struct CellRegion;
 
+    /// The proxy in the slot, or the last one that was.
     [[nodiscard]] ProxyId idOf(std::uint32_t slot) const noexcept {
-        return {slot, records_[slot].generation};
+        return {slot, (records_[slot].generation - 1) | 1};
     }
     [[nodiscard]] bool isAlive(std::uint32_t slot) const noexcept {
-        return records_[slot].place > Place::removed;
+        return (records_[slot].generation & 1) != 0;
     }
     [[nodiscard]] bool isFiled(std::uint32_t slot) const noexcept {
         const Record& record = records_[slot];
@@ -172,6 +172,7 @@ private:
     void noteChange(std::uint32_t slot);
     void noteNan(std::uint32_t slot, const Box& previous);
     void fileWaiting();
+    void freeRemovedSlots();
     void fileOne(std::uint32_t slot);
     void leaveTable(std::uint32_t slot);
     void putQuietToRest();

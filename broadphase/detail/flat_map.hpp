@@ -123,7 +123,8 @@ public:
         return slots_.capacity() * sizeof(Slot) + keys_.capacity() * sizeof(std::uint64_t);
     }
 
-    /// How many slots the dearest find() of a present key looks at; 0 when empty. Cost: O(capacity).
+    /// How many slots the dearest find() of a present key looks at; 0 when empty.
+    /// Cost: O(capacity).
     [[nodiscard]] std::size_t longestProbe() const noexcept {
         std::size_t longest = 0;
         for (std::size_t i = 0; i < slots_.size(); ++i) {

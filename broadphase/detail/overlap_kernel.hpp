@@ -10,7 +10,8 @@
 #include <array>
 #include <cstdint>
 
-#if defined(__SSE2__)
+#if defined(__SSE2__) && !HASHPHASE_USE_SCALAR
+#define HASHPHASE_HAS_SSE2 1
 #include <emmintrin.h>
 #endif
 
@@ -39,7 +40,7 @@ template <class Scalar>
     return mask;
 }
 
-#if defined(__SSE2__)
+#if HASHPHASE_HAS_SSE2
 
 /// The box to test against, one coordinate a register.
 template <class Scalar>

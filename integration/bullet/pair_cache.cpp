@@ -39,14 +39,15 @@ btBroadphasePair* PairCache::addOverlappingPair(btBroadphaseProxy* proxy0,
     return needsBroadphaseCollision(proxy0, proxy1) ? addAcceptedPair(proxy0, proxy1) : nullptr;
 }
 
-btBroadphasePair* PairCache::addAcceptedPair(btBroadphaseProxy* proxy0,
-                                             btBroadphaseProxy* proxy1) {
+btBroadphasePair* PairCache::addAcceptedPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1) {
     HASHPHASE_ASSERT(proxy0->m_uniqueId != proxy1->m_uniqueId,
                      "A pair is made of two proxies with different unique ids.");
     HASHPHASE_ASSERT(proxy0->m_uniqueId >= 0 && proxy1->m_uniqueId >= 0,
                      "The unique id of a proxy is not negative.");
     const auto index = static_cast<int>(ids_.findOrInsert(idsOf(*proxy0, *proxy1)));
     if (index < pairs_.size()) {
+        HASHPHASE_ASSERT(pairs_[index].m_pProxy0 == proxy0 || pairs_[index].m_pProxy0 == proxy1,
+                         "Proxies that are alive have different unique ids.");
         return &pairs_[index];
     }
 
@@ -200,9 +201,8 @@ std::vector<PairCache::Note> PairCache::notesOf(const btBroadphaseProxy& proxy) 
     }
     pairsVisited_ += notes.size();
     const bool byKey = order_ == PairOrder::canonical;
-    std::sort(notes.begin(), notes.end(), [=](const Note& a, const Note& b) {
-        return byKey ? a < b : a.index < b.index;
-    });
+    std::sort(notes.begin(), notes.end(),
+              [=](const Note& a, const Note& b) { return byKey ? a < b : a.index < b.index; });
     return notes;
 }
 
@@ -238,8 +238,7 @@ void PairCache::cleanProxyFromPairs(btBroadphaseProxy* proxy, btDispatcher* disp
 
 // --- All pairs -----------------------------------------------------------------------------------
 
-void PairCache::processAllOverlappingPairs(btOverlapCallback* callback,
-                                           btDispatcher* dispatcher) {
+void PairCache::processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher* dispatcher) {
     prepareWholeArray();
     ++processDepth_;
     for (int i = 0; i < pairs_.size();) {
@@ -252,9 +251,9 @@ void PairCache::processAllOverlappingPairs(btOverlapCallback* callback,
         }
         // Where the callback has removed the pair itself, another one has taken its place. Only a
         // smaller count tells that from a callback that puts the pair back, over and over.
-        const bool isReplaced = pairs_.size() < countBefore &&
-                                (i >= pairs_.size() || pairs_[i].m_pProxy0 != proxy0 ||
-                                 pairs_[i].m_pProxy1 != proxy1);
+        const bool isReplaced =
+            pairs_.size() < countBefore &&
+            (i >= pairs_.size() || pairs_[i].m_pProxy0 != proxy0 || pairs_[i].m_pProxy1 != proxy1);
         i += isReplaced ? 0 : 1;
     }
     --processDepth_;
@@ -270,6 +269,8 @@ void PairCache::processAllOverlappingPairs(btOverlapCallback* callback, btDispat
 }
 
 void PairCache::processByUniqueId(btOverlapCallback& callback, btDispatcher* dispatcher) {
+    prepareWholeArray();
+    ++processDepth_;
     std::vector<Note> notes = std::move(scratch_);
     noteAll(notes);
     std::sort(notes.begin(), notes.end(),
@@ -281,6 +282,7 @@ void PairCache::processByUniqueId(btOverlapCallback& callback, btDispatcher* dis
         }
     }
     scratch_ = std::move(notes);
+    --processDepth_;
 }
 
 btBroadphasePair* PairCache::getOverlappingPairArrayPtr() {
@@ -304,7 +306,7 @@ void PairCache::sortOverlappingPairs(btDispatcher* /*dispatcher*/) {
 }
 
 void PairCache::prepareWholeArray() {
-    if (order_ == PairOrder::canonical) {
+    if (order_ == PairOrder::canonical && processDepth_ == 0) {
         freeRetired();
         sortOverlappingPairs(nullptr);
     }
@@ -368,16 +370,14 @@ void PairCache::noteAll(std::vector<Note>& notes) const {
 
 // Where the pair is now, or kNone when it is gone.
 std::uint32_t PairCache::indexOf(const Note& note) const {
-    const bool isWhereItWas =
-        note.index < ids_.size() && ids_.keys()[note.index] == note.uniqueIds;
+    const bool isWhereItWas = note.index < ids_.size() && ids_.keys()[note.index] == note.uniqueIds;
     return isWhereItWas ? note.index : ids_.find(note.uniqueIds);
 }
 
 std::size_t PairCache::memoryBytes() const noexcept {
     return static_cast<std::size_t>(pairs_.capacity()) * sizeof(btBroadphasePair) +
            ids_.memoryBytes() + links_.capacity() * sizeof(Link) + firstEdge_.memoryBytes() +
-           scratch_.capacity() * sizeof(Note) +
-           newIndex_.capacity() * sizeof(std::uint32_t);
+           scratch_.capacity() * sizeof(Note) + newIndex_.capacity() * sizeof(std::uint32_t);
 }
 
 std::string PairCache::validate() const {

@@ -13,8 +13,8 @@
 //
 // Threads   needsBroadphaseCollision() and the const members may run anywhere. Everything else
 //           needs the cache for itself, as in Bullet.
-// Pointers  A pair stays where it is until a pair is added or removed; in canonical order also until
-//           the next look at the whole array. The array must not be resized or reordered by others.
+// Pointers  A pair stays where it is until a pair is added or removed, in canonical order also
+//           until the next look at the whole array. Others must not resize or reorder the array.
 // Callbacks See the cache as it is after the change that they are told of, and may change it.
 // NULL      A NULL dispatcher frees no algorithms, as in Bullet; NULL clients are fine.
 // Misuse    Pairs of a proxy with itself, and proxies alive with the same or with negative unique
@@ -39,9 +39,9 @@ enum class PairOrder {
     arrival,
     /// Ascending by the key of the first proxy, then of the second, whenever the whole array is
     /// looked at: the same set of pairs gives the same order, whatever the broadphase and the
-    /// history. Algorithms are freed in that order, too, so that the dispatcher's manifolds and with
-    /// them whole trajectories are the same under all exact broadphases. Costs a sort when the set
-    /// has changed.
+    /// history. Algorithms are freed in that order, too, so that the dispatcher's manifolds, and
+    /// with them whole trajectories, are the same under all exact broadphases. Costs a sort when
+    /// the set has changed.
     canonical,
 };
 
@@ -95,10 +95,10 @@ public:
 
     // --- All pairs -------------------------------------------------------------------------------
 
-    /// Calls callback->processOverlap() for every pair, and removes those for which it returns true.
-    /// The callback may add pairs, which it will be shown too.
-    void processAllOverlappingPairs(btOverlapCallback* callback,
-                                    btDispatcher* dispatcher) override;
+    /// Calls callback->processOverlap() for every pair, and removes those for which it returns
+    /// true. The callback may add pairs, which it will be shown too, and remove any; where it
+    /// removes others than the one it is shown, some may not be shown this time.
+    void processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher* dispatcher) override;
 
     /// The same, but with dispatchInfo.m_deterministicOverlappingPairs in the order of unique ids,
     /// the highest first, as Bullet's cache; pairs added meanwhile wait for the next time.
@@ -209,9 +209,9 @@ private:
     btOverlappingPairCallback* ghosts_ = nullptr;
 
     btBroadphasePairArray pairs_;
-    detail::FlatSet ids_;          // of each pair, by its index: both unique ids, lower one on top
-    std::vector<Link> links_;      // by edge; the pairs behind its end are not chained yet
-    detail::RunMap firstEdge_;     // unique id -> first edge of the proxy's chain
+    detail::FlatSet ids_;       // of each pair, by its index: both unique ids, lower one on top
+    std::vector<Link> links_;   // by edge; the pairs behind its end are not chained yet
+    detail::RunMap firstEdge_;  // unique id -> first edge of the proxy's chain
     std::uint64_t pairsVisited_ = 0;
     bool isSorted_ = true;
     int processDepth_ = 0;  // processAllOverlappingPairs() calls under way

@@ -5,8 +5,8 @@
 //
 //     namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE { ... }
 //
-// so that its symbols say which precision it was compiled for. A program compiled for one and linked
-// with the library of the other does not link, where Bullet itself would link and go wrong.
+// so that its symbols say which precision it was compiled for. A program compiled for one precision
+// does not link with the library of the other, where Bullet itself would link and go wrong.
 // BT_USE_DOUBLE_PRECISION decides, as it does for Bullet; it has to be set for the whole program.
 
 #ifdef BT_USE_DOUBLE_PRECISION

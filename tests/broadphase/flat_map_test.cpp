@@ -45,9 +45,8 @@ TEST(FlatSet, RenumbersItsKeys) {
         follower.push_back(7 * i);
         newNumbers.push_back((i * 37 + 5) % kCount);
     }
-    set.renumber(newNumbers, [&](std::uint32_t i, std::uint32_t j) {
-        std::swap(follower[i], follower[j]);
-    });
+    set.renumber(newNumbers,
+                 [&](std::uint32_t i, std::uint32_t j) { std::swap(follower[i], follower[j]); });
     for (std::uint32_t i = 0; i < kCount; ++i) {
         EXPECT_EQ(set.find(7 * i), (i * 37 + 5) % kCount);
         EXPECT_EQ(set.keys()[i], follower[i]);
@@ -68,7 +67,8 @@ TEST(FlatSet, DoesNotClusterRegularKeys) {
         return set.longestProbe();
     };
     for (unsigned shift = 0; shift <= 47; ++shift) {
-        EXPECT_LE(longestProbe([=](std::uint64_t i) { return i << shift; }), kLongestProbe) << shift;
+        EXPECT_LE(longestProbe([=](std::uint64_t i) { return i << shift; }), kLongestProbe)
+            << shift;
     }
     for (std::uint64_t m : {1, 2, 3, 7, 31, 100, 255, 256, 257, 1000, 65535, 65536, 65537}) {
         EXPECT_LE(longestProbe([=](std::uint64_t i) { return i * m; }), kLongestProbe) << m;

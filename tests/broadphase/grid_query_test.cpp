@@ -53,8 +53,8 @@ TYPED_TEST(GridQuery, FindsWhatBruteForceFindsInEveryScene) {
                 this->expectLikeBruteForceAround(world.grid, script.proxies(), script.random(), 3);
                 if (frame % 3 != 1) {
                     world.grid.update();
-                    this->expectLikeBruteForceAround(world.grid, script.proxies(),
-                                                     script.random(), 3);
+                    this->expectLikeBruteForceAround(world.grid, script.proxies(), script.random(),
+                                                     3);
                 }
                 ASSERT_EQ(world.grid.validate(), "");
                 ASSERT_FALSE(this->HasFailure());
@@ -113,9 +113,9 @@ TYPED_TEST(GridQuery, ASphereIsAClosedBall) {
         const Vector3<TypeParam> center(static_cast<TypeParam>(x), TypeParam(0.5), TypeParam(0.5));
         return find(grid, SphereRegion<TypeParam>{center, radius}).size();
     };
-    EXPECT_EQ(countWithin(0.5, 0), 1U);   // a point inside
-    EXPECT_EQ(countWithin(1, 0), 2U);     // a point on a face
-    EXPECT_EQ(countWithin(-1, 1), 1U);    // touches
+    EXPECT_EQ(countWithin(0.5, 0), 1U);  // a point inside
+    EXPECT_EQ(countWithin(1, 0), 2U);    // a point on a face
+    EXPECT_EQ(countWithin(-1, 1), 1U);   // touches
     EXPECT_EQ(countWithin(-1, std::nextafter(TypeParam(1), TypeParam(0))), 0U);
     EXPECT_EQ(countWithin(0.5, -1), 0U);
     EXPECT_EQ(countWithin(0.5, -TypeParam(0)), 1U);
@@ -301,8 +301,8 @@ TYPED_TEST(GridQuery, OfCellsGoesByTheFinestCellsInUse) {
     Random random(0x5eed0506);
     for (int i = 0; i < 2000; ++i) {
         const auto half = Vector3<double>::Constant(0.05);
-        static_cast<void>(grid.add(boxAround<TypeParam>(random.pointIn(0, 20), half),
-                                   Mobility::resting));
+        static_cast<void>(
+            grid.add(boxAround<TypeParam>(random.pointIn(0, 20), half), Mobility::resting));
     }
     ProxyId large;
     for (int i = 0; i < 200; ++i) {

@@ -166,10 +166,36 @@ TEST(GridUpdate, LeavesRestingProxiesAlone) {
     }
     // One of them wakes: it is filed among the ten, the others stay where they are.
     grid.move(ids[500], cubeAt(-900));
-    EXPECT_EQ(grid.update().filed, 11U);
+    const UpdateCost cost = grid.update();
+    EXPECT_EQ(cost.filed, 11U);
+    EXPECT_EQ(cost.resting, 989U);
     EXPECT_EQ(countIn(grid, cubeAt(1000)), 0U);
     EXPECT_EQ(countIn(grid, cubeAt(-900)), 1U);
     EXPECT_EQ(grid.validate(), "");
+}
+
+TEST(GridUpdate, PutsToRestAtOnceWhatIsSaidToRestUnlessItMoved) {
+    Grid<float> grid;
+    std::vector<ProxyId> ids;
+    for (int i = 0; i < 100; ++i) {
+        ids.push_back(grid.add(cubeAt(2 * i), Mobility::resting));
+    }
+    const ProxyId mover = grid.add(cubeAt(-2));
+    EXPECT_EQ(grid.update().resting, 0U);
+    grid.move(mover, cubeAt(-3));
+    EXPECT_EQ(grid.update().resting, 100U);
+    for (int i = 0; i < 50; ++i) {
+        grid.move(ids[static_cast<std::size_t>(i)], cubeAt(2 * i + 0.5));
+    }
+    EXPECT_EQ(grid.update().resting, 50U);
+    grid.move(mover, cubeAt(-4));
+    EXPECT_EQ(grid.update().resting, 50U);
+    for (int frame = 0; frame < 10; ++frame) {
+        grid.move(mover, cubeAt(-5 - frame));
+        grid.update();
+    }
+    grid.move(mover, cubeAt(-20));
+    EXPECT_EQ(grid.update().resting, 100U);
 }
 
 TEST(GridUpdate, ManyRestingProxiesMayLeaveAtOnce) {

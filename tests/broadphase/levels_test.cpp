@@ -92,8 +92,8 @@ TEST(AutomaticLevels, AreNotSpoiledByASingleFarOutlier) {
     for (const double distance : {1e6, 1e12, 1e30}) {
         Random random(0x5eed0305);
         SizeCensus census;
-        census.add(boxAround<double>(Vector3<double>::Constant(distance),
-                                     Vector3<double>::Constant(0.5)));
+        census.add(
+            boxAround<double>(Vector3<double>::Constant(distance), Vector3<double>::Constant(0.5)));
         addCubes(census, random, 10000, 0, 100);
         ASSERT_EQ(census.cheapestLevels().count, 1);
         EXPECT_LE(census.cheapestLevels().cellSize[0], 20);

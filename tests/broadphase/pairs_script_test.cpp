@@ -36,8 +36,8 @@ constexpr std::array<double, 4> kCellSizes{0, 1.5, 1e-3, 1e4};
 template <class Scalar, class EachFrame>
 void play(const BoxScene<Scalar>& scene, const GridConfig& config, std::uint64_t seed,
           const ScriptRates& rates, int frames, EachFrame&& eachFrame) {
-    SCOPED_TRACE(testing::Message() << scene.name << ", cell size " << config.cellSize << ", seed "
-                                    << seed);
+    SCOPED_TRACE(testing::Message()
+                 << scene.name << ", cell size " << config.cellSize << ", seed " << seed);
     Script<Scalar> script(scene, seed, rates);
     PairWorld<Scalar> world(config,
                             [&script](ProxyId a, ProxyId b) { return script.accepts(a, b); });

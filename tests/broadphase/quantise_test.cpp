@@ -66,7 +66,8 @@ TYPED_TEST(Quantise, NeverDecreasesWhateverTheNumbers) {
 TYPED_TEST(Quantise, IsTheFloorWhereNothingIsRounded) {
     for (int eighths = -4000; eighths <= 4000; ++eighths) {
         const auto x = static_cast<TypeParam>(eighths) / 8;
-        EXPECT_EQ(quantise(x, TypeParam(0), TypeParam(1)), static_cast<std::int32_t>(std::floor(x)));
+        EXPECT_EQ(quantise(x, TypeParam(0), TypeParam(1)),
+                  static_cast<std::int32_t>(std::floor(x)));
         EXPECT_EQ(quantise(x, TypeParam(16), TypeParam(0.25)),
                   static_cast<std::int32_t>(std::floor((x - 16) / 4)));
     }
@@ -74,7 +75,8 @@ TYPED_TEST(Quantise, IsTheFloorWhereNothingIsRounded) {
 
 TYPED_TEST(Quantise, ClampsWhatIsFarOutsideBeforeTheConversion) {
     using Limits = std::numeric_limits<TypeParam>;
-    for (const TypeParam far : {TypeParam(3e9), TypeParam(1e18), Limits::max(), Limits::infinity()}) {
+    for (const TypeParam far :
+         {TypeParam(3e9), TypeParam(1e18), Limits::max(), Limits::infinity()}) {
         EXPECT_EQ(quantise(far, TypeParam(0), TypeParam(1)), kCellLimit);
         EXPECT_EQ(quantise(-far, TypeParam(0), TypeParam(1)), -kCellLimit);
     }

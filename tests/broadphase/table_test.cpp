@@ -101,8 +101,8 @@ TYPED_TEST(TableTest, JoinFindsEveryCoupleOnceInEveryScene) {
     }
 }
 
-// Lattices whose strides are powers of two, so that rows fall onto each other wherever their numbers
-// were used without mixing; and so sparse that rows have to be hashed.
+// Lattices whose strides are powers of two, so that rows fall onto each other wherever their
+// numbers were used without mixing; and so sparse that rows have to be hashed.
 TYPED_TEST(TableTest, JoinFindsEveryCoupleOnceThoughRowsShareBuckets) {
     std::size_t shared = 0;
     for (const int stride : {64, 256, 1024, 65536, 1 << 20}) {

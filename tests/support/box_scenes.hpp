@@ -18,10 +18,10 @@ namespace hashphase::test {
 template <class Scalar>
 struct BoxScene {
     std::string name;
-    std::uint32_t count = 0;   // proxies that make it a scene in which some pairs overlap
-    double mobileShare = 1;    // of proxies that ever move
-    std::function<Aabb<Scalar>(Random&)> draw;                         // a box anywhere
-    std::function<Aabb<Scalar>(Random&, const Aabb<Scalar>&)> nudge;   // moved a little
+    std::uint32_t count = 0;  // proxies that make it a scene in which some pairs overlap
+    double mobileShare = 1;   // of proxies that ever move
+    std::function<Aabb<Scalar>(Random&)> draw;                        // a box anywhere
+    std::function<Aabb<Scalar>(Random&, const Aabb<Scalar>&)> nudge;  // moved a little
 };
 
 template <class Scalar>
@@ -66,8 +66,7 @@ BoxScene<Scalar> paperScene() {
     scene.name = "the paper's spheres on flat ground";
     scene.count = 600;
     scene.draw = [](Random& random) {
-        return boxAround<Scalar>({random.between(0, 400), random.between(0, 400), 1},
-                                 {1, 1, 1});
+        return boxAround<Scalar>({random.between(0, 400), random.between(0, 400), 1}, {1, 1, 1});
     };
     scene.nudge = [](Random& random, const Aabb<Scalar>& box) {
         const Vector3<Scalar> by(static_cast<Scalar>(random.between(-1, 1)),
@@ -121,9 +120,7 @@ BoxScene<Scalar> pileScene() {
         const Vector3<double> middle(pile * 3000 - 5000, pile * 1000, 7000 - pile * 4000);
         return boxAround<Scalar>(middle + random.pointIn(-2, 2), random.pointIn(0.3, 0.6));
     };
-    scene.nudge = [](Random& random, const Aabb<Scalar>& box) {
-        return shifted(random, box, 0.2);
-    };
+    scene.nudge = [](Random& random, const Aabb<Scalar>& box) { return shifted(random, box, 0.2); };
     return scene;
 }
 
@@ -192,10 +189,22 @@ BoxScene<Scalar> pointScene() {
 template <class Scalar>
 [[nodiscard]] Scalar hostileNumber(Random& random) {
     using Limits = std::numeric_limits<Scalar>;
-    const std::array<Scalar, 16> numbers{
-        0, Limits::denorm_min(), 37 * Limits::denorm_min(), Limits::min(), Scalar(1e-30),
-        Scalar(0.1), 1, 268435456, Scalar(3e9), Scalar(1e18), Scalar(1e30), Limits::max() / 2,
-        Limits::max(), Limits::infinity(), Limits::quiet_NaN(), 16777216};
+    const std::array<Scalar, 16> numbers{0,
+                                         Limits::denorm_min(),
+                                         37 * Limits::denorm_min(),
+                                         Limits::min(),
+                                         Scalar(1e-30),
+                                         Scalar(0.1),
+                                         1,
+                                         268435456,
+                                         Scalar(3e9),
+                                         Scalar(1e18),
+                                         Scalar(1e30),
+                                         Limits::max() / 2,
+                                         Limits::max(),
+                                         Limits::infinity(),
+                                         Limits::quiet_NaN(),
+                                         16777216};
     const Scalar number = numbers[random.below(numbers.size())];
     return random.chance(0.5) ? number : -number;
 }

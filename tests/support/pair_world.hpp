@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A grid and its pairs, watched: whatever the changes report is applied to a set of pairs, and every
+// A grid and its pairs, watched: what the changes report is applied to a set of pairs, and every
 // promise about the changes is checked on the way.
 
 #include <broadphase/pairs.hpp>
@@ -27,8 +27,8 @@ class PairWorld {
 public:
     using Filter = std::function<bool(ProxyId, ProxyId)>;
 
-    explicit PairWorld(const GridConfig& config = {},
-                       Filter filter = [](ProxyId, ProxyId) { return true; })
+    explicit PairWorld(
+        const GridConfig& config = {}, Filter filter = [](ProxyId, ProxyId) { return true; })
         : grid(config), pairs(grid), filter_(std::move(filter)) {}
 
     ProxyId add(const Aabb<Scalar>& box, Mobility mobility = Mobility::mobile) {
@@ -136,8 +136,8 @@ private:
         }
     }
 
-    // Asked must be: couples that overlap now and did not before, unless decided already, and refused ones
-    // that still overlap and of which one has changed.
+    // Asked must be: couples that overlap now and did not before, unless decided already, and
+    // refused ones that still overlap and of which one has changed.
     void checkAsked(std::span<const Placed<Scalar>> proxies) {
         std::set<ProxyPair> overlapping;
         std::vector<ProxyPair> expected;

@@ -83,8 +83,10 @@ public:
         for (int axis = 0; axis < 3; ++axis) {
             point[axis] = (random_.chance(0.5) ? box.min() : box.max())[axis];
         }
-        return random_.chance(0.3) ? point : Vector3<Scalar>(point + sizes().cwiseProduct(
-                                                 random_.pointIn(-2, 2).cast<Scalar>()));
+        return random_.chance(0.3)
+                   ? point
+                   : Vector3<Scalar>(point +
+                                     sizes().cwiseProduct(random_.pointIn(-2, 2).cast<Scalar>()));
     }
 
     BoxRegion<Scalar> box() {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A random life for the boxes of a scene: they are created, drift, jump, rest for long, wake, go bad,
-// heal, change colour and are destroyed.
+// A random life for the boxes of a scene: they are created, drift, jump, rest for long, wake, go
+// bad, heal, change colour and are destroyed.
 
 #include <tests/support/box_scenes.hpp>
 #include <tests/support/oracles.hpp>
@@ -13,7 +13,7 @@
 
 namespace hashphase::test {
 
-/// How often things happen, each a share of the proxies that are awake in a frame, but for the last.
+/// How often things happen in a frame: shares of the proxies that are awake, but for the last.
 struct ScriptRates {
     double nudge = 0.5;
     double jump = 0.03;

@@ -159,6 +159,15 @@ TEST(NanBoxes, ChangeNothingForTheOthers) {
     }
 }
 
+TEST(NanBoxes, DoNotSpoilTheBoxAroundEverything) {
+    const Messages messages;
+    Player player = hashPlayer(2);
+    player.play({createCommand(0, kUnit), createCommand(1, withNan(kUnit, 1))});
+    Box all;
+    player.broadphase().getBroadphaseAabb(all.min, all.max);
+    EXPECT_TRUE(isSame(all, kUnit));
+}
+
 /// A few dozen boxes of every odd kind; `turn` deals them to the objects in another order.
 Box oddBox(int object, int turn) {
     const btScalar most = std::numeric_limits<btScalar>::max();

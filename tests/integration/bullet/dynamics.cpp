@@ -21,6 +21,9 @@ void OrderedDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* pairCa
                                                   const btDispatcherInfo& dispatchInfo,
                                                   btDispatcher* dispatcher) {
     btCollisionDispatcher::dispatchAllCollisionPairs(pairCache, dispatchInfo, dispatcher);
+    if (m_manifoldsPtr.size() == 0) {
+        return;
+    }
     const auto isOlder = [](const btPersistentManifold* a, const btPersistentManifold* b) {
         return a->m_companionIdA < b->m_companionIdA;
     };
@@ -245,13 +248,13 @@ void PrintTo(const DynamicsScene& scene, std::ostream* out) {
 
 const std::vector<DynamicsScene>& dynamicsScenes() {
     static const std::vector<DynamicsScene> scenes{
-        {"pile", buildPile, leaveAlone},
-        {"stack", buildStack, leaveAlone},
-        {"compounds", buildCompounds, leaveAlone},
-        {"chains", buildHangingChains, leaveAlone},
-        {"pileWithChurn", buildPile, churn},
-        {"compoundsWithChurn", buildCompounds, churn},
-        {"chainsOnAPlane", buildChainsOnAPlane, leaveAlone},
+        {"pile", buildPile, leaveAlone, true},
+        {"stack", buildStack, leaveAlone, true},
+        {"compounds", buildCompounds, leaveAlone, true},
+        {"chains", buildHangingChains, leaveAlone, false},
+        {"pileWithChurn", buildPile, churn, true},
+        {"compoundsWithChurn", buildCompounds, churn, true},
+        {"chainsOnAPlane", buildChainsOnAPlane, leaveAlone, true},
     };
     return scenes;
 }

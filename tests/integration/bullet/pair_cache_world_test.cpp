@@ -192,5 +192,23 @@ TEST(PairCacheInAWorld, GivesTheSameTrajectoriesUnderAllExactBroadphasesInCanoni
     }
 }
 
+TEST(PairCacheInAWorld, AllocatesNothingForPairsItHasHadRoomForBefore) {
+    for (const PairOrder order : {PairOrder::arrival, PairOrder::canonical}) {
+        PairCache cache(order);
+        std::vector<std::size_t> bytes;
+        for (int life = 0; life < 3; ++life) {
+            {
+                FallingBoxes boxes(std::make_unique<btDbvtBroadphase>(&cache), cache);
+                for (int frame = 0; frame < 60; ++frame) {
+                    boxes.step(frame);
+                }
+            }
+            bytes.push_back(cache.memoryBytes());
+        }
+        EXPECT_EQ(bytes[1], bytes[0]);
+        EXPECT_EQ(bytes[2], bytes[0]);
+    }
+}
+
 }  // namespace
 }  // namespace hashphase

@@ -54,12 +54,14 @@ std::unique_ptr<DynamicsWorld> worldOverDbvt() {
 struct Divergence {
     int step = -1;  // -1: none
     int body = -1;
+    int sleepers = 0;  // summed over the steps
 };
 
 /// Steps both worlds together; says where they first differ.
 Divergence stepTogether(const DynamicsScene& scene, DynamicsWorld& a, DynamicsWorld& b) {
     scene.build(a);
     scene.build(b);
+    int sleepers = 0;
     for (int step = 0; step < kSteps; ++step) {
         scene.disturb(a, step);
         scene.disturb(b, step);
@@ -67,10 +69,11 @@ Divergence stepTogether(const DynamicsScene& scene, DynamicsWorld& a, DynamicsWo
         b.step();
         const int body = firstDifferentBody(a, b);
         if (body >= 0) {
-            return {step, body};
+            return {step, body, sleepers};
         }
+        sleepers += a.sleepingCount();
     }
-    return {};
+    return {-1, -1, sleepers};
 }
 
 class Trajectories : public testing::TestWithParam<DynamicsScene> {};
@@ -80,6 +83,7 @@ TEST_P(Trajectories, EqualThoseOverBtSimpleBroadphaseToTheLastBit) {
     const auto simple = worldOverSimple();
     const Divergence divergence = stepTogether(GetParam(), *hash, *simple);
     EXPECT_EQ(divergence.step, -1) << "Body " << divergence.body << " is the first to differ.";
+    EXPECT_EQ(divergence.sleepers > 0, GetParam().sleeps);
 }
 
 // The references move alike among themselves, so it is the pair set that decides.
