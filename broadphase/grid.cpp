@@ -274,6 +274,7 @@ void Grid<Scalar>::endUpdate() {
 
 template <class Scalar>
 UpdateCost Grid<Scalar>::update() {
+    HASHPHASE_ASSERT(!hasPairs_, "Where there are Pairs, Pairs::update() ends the frame.");
     fileForUpdate();
     const UpdateCost cost = cost_;
     endUpdate();

@@ -118,7 +118,8 @@ public:
     // --- Frame -----------------------------------------------------------------------------------
 
     /// Ends a frame: files what changed, and puts to rest what has not changed for a while.
-    /// Cost: a rebuild of the mobile proxies when one of them changed, nothing otherwise.
+    /// Cost: a rebuild of the mobile proxies when one of them changed, nothing otherwise. Not for
+    /// a grid with Pairs: their update() does it (asserted).
     UpdateCost update();
 
     /// Bytes held, capacity included.

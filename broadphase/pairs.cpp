@@ -31,6 +31,10 @@ struct CollectInto {
     static constexpr double limit() { return std::numeric_limits<double>::infinity(); }
 };
 
+bool contains(const detail::FlatSet& couples, std::uint64_t couple) {
+    return couples.find(couple) != detail::FlatSet::kNone;
+}
+
 }  // namespace
 
 template <class Scalar>
@@ -84,7 +88,7 @@ void Pairs<Scalar>::captureWoken() {
     }
     const auto capture = [this](std::uint32_t a, std::uint32_t b) {
         const Couple c = couple(a, b, false);
-        captured_.push_back(refusedAtRest_.erase(c) ? c | 1 : c);
+        captured_.push_back(refusedAtRest_.erase(c) != detail::FlatSet::kNone ? c | 1 : c);
     };
     QueryCost cost;
     for (const std::uint32_t slot : woken_) {
@@ -164,7 +168,7 @@ void Pairs<Scalar>::mergeWatched(PairFilter filter) {
 
     merged_.clear();
     const auto watch = [&](Couple c) {
-        if (announced_.find(c) == nullptr) {
+        if (!contains(announced_, c)) {
             merged_.push_back(c | decide(c, filter));
         }
     };
@@ -211,7 +215,7 @@ void Pairs<Scalar>::keepOrDrop(Couple c, PairFilter filter) {
     if (changedLately(c, grid_.updateNumber_)) {
         merged_.push_back(c);
     } else if (isRefused(c)) {
-        refusedAtRest_.insert(c & ~Couple{1}, 0);
+        refusedAtRest_.findOrInsert(c & ~Couple{1});
     }
 }
 
@@ -249,7 +253,7 @@ PairChanges Pairs<Scalar>::announce(ProxyId id, PairFilter filter) {
     beginCall();
     findUndecided(id.index);
     for (const Couple c : fresh_) {
-        announced_.insert(c, 0);
+        announced_.findOrInsert(c);
         captured_.push_back(c | decide(c, filter));
     }
     return {born_, died_};
@@ -273,7 +277,7 @@ PairChanges Pairs<Scalar>::refilter(ProxyId id, PairFilter filter) {
     }
     findUndecided(id.index);
     for (Couple& c : fresh_) {
-        announced_.insert(c, 0);
+        announced_.findOrInsert(c);
         asked.emplace_back(c, nullptr);
     }
     fresh_.clear();
@@ -296,7 +300,7 @@ void Pairs<Scalar>::findUndecided(std::uint32_t slot) {
     const auto add = [&](ProxyId other) {
         if (other.index != slot && !overlaps(before_[slot], before_[other.index])) {
             const Couple c = couple(slot, other.index, false);
-            if (announced_.find(c) == nullptr) {
+            if (!contains(announced_, c)) {
                 fresh_.push_back(c);
             }
         }
@@ -343,7 +347,7 @@ void Pairs<Scalar>::collect(std::vector<ProxyPair>& pairs) const {
     forEachOverlap([&](std::uint32_t a, std::uint32_t b) {
         const Couple refused = couple(a, b, true);
         if (!std::binary_search(watched_.begin(), watched_.end(), refused) &&
-            refusedAtRest_.find(refused & ~Couple{1}) == nullptr) {
+            !contains(refusedAtRest_, refused & ~Couple{1})) {
             pairs.push_back(pairOf(refused));
         }
     });

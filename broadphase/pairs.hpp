@@ -12,7 +12,7 @@
 // Threads   every member needs the grid and this object for itself.
 // Misuse    one Pairs per grid, created before the grid's first proxy; asserted.
 
-#include <broadphase/detail/flat_map.hpp>
+#include <broadphase/detail/flat_set.hpp>
 #include <broadphase/function_ref.hpp>
 #include <broadphase/grid.hpp>
 
@@ -64,8 +64,8 @@ public:
     /// Cost: that of a box query, and a look at all watched couples.
     PairChanges refilter(ProxyId id, PairFilter filter);
 
-    /// The whole set as of the last update or announcement, sorted, appended to `pairs`. The grid
-    /// must not have changed since (asserted). Cost: that of finding all pairs from scratch.
+    /// The whole set as of the last update, sorted, appended to `pairs`. The grid must not have
+    /// changed since (asserted). Cost: that of finding all pairs from scratch.
     void collect(std::vector<ProxyPair>& pairs) const;
 
     /// Number of pairs in the set.
@@ -126,8 +126,8 @@ private:
     std::vector<Couple> watched_;   // overlapping couples of which one changed lately, sorted
     std::vector<Couple> captured_;  // to be merged into watched_ at the next update
     std::size_t capturedChanges_ = 0;  // of the grid's changes, how many captureWoken() has seen
-    detail::FlatMap announced_;  // which of captured_ were decided since the last update
-    detail::FlatMap refusedAtRest_;  // couples refused and no longer watched
+    detail::FlatSet announced_;  // which of captured_ were decided since the last update
+    detail::FlatSet refusedAtRest_;  // couples refused and no longer watched
 
     std::vector<Couple> fresh_;
     std::vector<Couple> merged_;

@@ -35,7 +35,9 @@ BoxTrial::~BoxTrial() {
         }
         emptyBulletsCache(*contestant.broadphase);
         for (btBroadphaseProxy* proxy : contestant.proxies) {
-            contestant.broadphase->destroyProxy(proxy, nullptr);
+            if (proxy != nullptr) {
+                contestant.broadphase->destroyProxy(proxy, nullptr);
+            }
         }
     }
 }
@@ -90,6 +92,17 @@ Observation BoxTrial::runFrame(std::size_t contestant) {
     seen.exact = exact_;
     seen.boxes = scene_->boxes();
     return seen;
+}
+
+std::optional<double> BoxTrial::removeObjects(std::size_t contestant, std::size_t count) {
+    Contestant& current = contestants_[contestant];
+    const Stopwatch watch;
+    for (std::size_t i = 0; i < count; ++i) {
+        btBroadphaseProxy*& proxy = current.proxies[i * current.proxies.size() / count];
+        current.broadphase->destroyProxy(proxy, nullptr);
+        proxy = nullptr;
+    }
+    return watch.milliseconds();
 }
 
 std::optional<std::int64_t> BoxTrial::memoryBytes(std::size_t contestant) const {

@@ -20,6 +20,7 @@ public:
     void add(const BroadphaseKind& kind) override;
     void beginFrame() override;
     Observation runFrame(std::size_t contestant) override;
+    std::optional<double> removeObjects(std::size_t contestant, std::size_t count) override;
     [[nodiscard]] std::optional<std::int64_t> memoryBytes(std::size_t contestant) const override;
     [[nodiscard]] std::size_t objectCount() const override { return corners_.size(); }
     [[nodiscard]] std::optional<int> frameLimit() const override { return scene_->frameLimit(); }

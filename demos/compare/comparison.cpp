@@ -10,6 +10,8 @@ namespace {
 // The caches and the adaptive parts settle in so many frames at most.
 constexpr int kMostWarmUpFrames = 10;
 
+constexpr std::size_t kObjectsToRemove = 1000;
+
 Fault faultOf(int frame, const FrameVerdict& verdict, std::span<const Aabb<float>> boxes) {
     Fault fault;
     fault.frame = frame;
@@ -75,8 +77,10 @@ Comparison runComparison(Trial& trial, const std::vector<const BroadphaseKind*>&
         comparison.framesDone = frame + 1;
         progress.update(static_cast<std::size_t>(comparison.framesDone));
     }
+    comparison.objectsRemoved = std::min(kObjectsToRemove, (trial.objectCount() + 1) / 2);
     for (std::size_t i = 0; i < kinds.size(); ++i) {
         comparison.results[i].memoryBytes = trial.memoryBytes(i);
+        comparison.results[i].removeMs = trial.removeObjects(i, comparison.objectsRemoved);
     }
     return comparison;
 }

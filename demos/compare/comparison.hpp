@@ -35,7 +35,8 @@ struct Fault {
 /// One broadphase's record.
 struct Result {
     const BroadphaseKind* kind = nullptr;
-    double fillMs = 0;  // creating it and all its proxies
+    double fillMs = 0;               // creating it and all its proxies
+    std::optional<double> removeMs;  // destroying Comparison::objectsRemoved of them at the end
     std::vector<FrameRow> rows;
     std::optional<std::int64_t> memoryBytes;
     std::optional<Fault> firstFault;
@@ -45,6 +46,7 @@ struct Comparison {
     std::vector<Result> results;
     int warmUpFrames = 0;
     int framesDone = 0;
+    std::size_t objectsRemoved = 0;
     bool timeLimitHit = false;
 };
 

@@ -158,18 +158,30 @@ std::string verdictLine(const Report& report) {
 void printReport(const Report& report, std::ostream& out) {
     printSetting(report, out);
     const bool steps = hasSteps(report);
+    const std::vector<Result>& results = report.comparison.results;
+    const bool removes = std::any_of(results.begin(), results.end(), [](const Result& result) {
+        return result.removeMs.has_value();
+    });
     out << "\nTimes in ms a frame: median (5th-95th percentile). Speed: against dbvt, by setAabb + "
            "calculate.\nPairs: mean of all frames. Missing, extra and stale pairs: sum of all "
-           "frames (most in one).\n\n";
+           "frames (most in one).\nFill: ms to create all objects.";
+    if (removes) {
+        out << " Remove: ms to destroy " << withThousands(report.comparison.objectsRemoved)
+            << " of them at the end.";
+    }
+    out << "\n\n";
     std::vector<std::string> header{"broadphase", "setAabb for all", "calculate", "both", "speed"};
     if (steps) {
         header.emplace_back("whole step");
     }
-    for (const char* column : {"pairs", "missing", "extra", "stale", "memory"}) {
+    for (const char* column : {"pairs", "missing", "extra", "stale", "memory", "fill"}) {
         header.emplace_back(column);
     }
+    if (removes) {
+        header.emplace_back("remove");
+    }
     Table table(header);
-    for (const Result& result : report.comparison.results) {
+    for (const Result& result : results) {
         const std::optional<Timing> timing = timingOf(result);
         const auto text = [&timing](Spread Timing::*part) {
             return spreadText(timing ? std::optional((*timing).*part) : std::nullopt);
@@ -185,6 +197,10 @@ void printReport(const Report& report, std::ostream& out) {
         cells.push_back(tallyText(result, &FrameVerdict::extra));
         cells.push_back(tallyText(result, &FrameVerdict::stale));
         cells.push_back(result.memoryBytes ? byteSize(*result.memoryBytes) : "n/a");
+        cells.push_back(milliseconds(result.fillMs));
+        if (removes) {
+            cells.push_back(result.removeMs ? milliseconds(*result.removeMs) : "-");
+        }
         table.addRow(std::move(cells));
     }
     table.print(out);

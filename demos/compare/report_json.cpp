@@ -81,6 +81,7 @@ Json resultJson(const Report& report, const Result& result) {
             {"title", result.kind->title},
             {"ours", result.kind->ours},
             {"fillMs", result.fillMs},
+            {"removeMs", orNull(result.removeMs)},
             {"setAabbMs", part(&Timing::setAabb)},
             {"calculateMs", part(&Timing::calculate)},
             {"bothMs", part(&Timing::both)},
@@ -132,6 +133,7 @@ void writeJson(const Report& report, std::ostream& out) {
                {{"text", verdictLine(report)},
                 {"exact", orNull(oursWereExact(report))},
                 {"framesDone", report.comparison.framesDone},
+                {"objectsRemoved", report.comparison.objectsRemoved},
                 {"timeLimitHit", report.comparison.timeLimitHit}}},
               {"broadphases", Json::array()}};
     for (const Result& result : report.comparison.results) {

@@ -42,6 +42,10 @@ public:
     /// Lets the broadphase that was added as number `contestant` do its frame.
     virtual Observation runFrame(std::size_t contestant) = 0;
 
+    /// Destroys `count` objects of this broadphase, spread over all, and returns the time [ms];
+    /// nothing where the trial cannot tell. For after the last frame.
+    virtual std::optional<double> removeObjects(std::size_t contestant, std::size_t count) = 0;
+
     /// Heap that the broadphase took so far [bytes], where that can be told.
     [[nodiscard]] virtual std::optional<std::int64_t> memoryBytes(std::size_t contestant) const = 0;
 

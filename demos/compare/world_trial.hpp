@@ -26,6 +26,11 @@ public:
     void add(const BroadphaseKind& kind) override;
     void beginFrame() override {}
     Observation runFrame(std::size_t contestant) override;
+    /// Nothing: in a world the time is that of more than the broadphase.
+    std::optional<double> removeObjects(std::size_t /*contestant*/,
+                                        std::size_t /*count*/) override {
+        return std::nullopt;
+    }
     [[nodiscard]] std::optional<std::int64_t> memoryBytes(std::size_t contestant) const override;
     [[nodiscard]] std::size_t objectCount() const override { return needs_.objects; }
 

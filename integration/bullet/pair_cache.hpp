@@ -20,7 +20,8 @@
 // Misuse    Pairs of a proxy with itself, and proxies alive with the same or with negative unique
 //           ids; asserted.
 
-#include <broadphase/detail/flat_map.hpp>
+#include <broadphase/detail/flat_set.hpp>
+#include <broadphase/detail/run_map.hpp>
 #include <integration/bullet/precision.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>

@@ -10,7 +10,12 @@
 
 #include <gtest/gtest.h>
 
+#include <iterator>
 #include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace hashphase::test {
 namespace {
@@ -28,7 +33,8 @@ Command createCommand(int object, const Box& box) {
 /// Catches the messages of its time.
 class Messages {
 public:
-    Messages() : previous_(setMessageHandler([](const char* text) { texts().emplace_back(text); })) {
+    Messages()
+        : previous_(setMessageHandler([](const char* text) { texts().emplace_back(text); })) {
         texts().clear();
     }
     ~Messages() { setMessageHandler(previous_); }
@@ -171,8 +177,9 @@ TEST(NanBoxes, DoNotSpoilTheBoxAroundEverything) {
 /// A few dozen boxes of every odd kind; `turn` deals them to the objects in another order.
 Box oddBox(int object, int turn) {
     const btScalar most = std::numeric_limits<btScalar>::max();
-    const btScalar ends[] = {-kInfinity, -most, -BT_LARGE_FLOAT, btScalar(-1e9), -1, btScalar(-0.0),
-                             0, 1, btScalar(1e9), BT_LARGE_FLOAT, most, kInfinity};
+    const btScalar ends[] = {
+        -kInfinity, -most, -BT_LARGE_FLOAT, btScalar(-1e9), -1,   btScalar(-0.0),
+        0,          1,     btScalar(1e9),   BT_LARGE_FLOAT, most, kInfinity};
     constexpr int kEnds = static_cast<int>(std::size(ends));
     Random random(static_cast<std::uint64_t>((object * 7 + turn * 13) % 997) + 1);
     Box box;

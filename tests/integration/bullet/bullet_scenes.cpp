@@ -88,7 +88,8 @@ Box sphereOnTerrain(btScalar x, btScalar z, btScalar radius) {
 Box placePaper(Random& random, int object) {
     if (object < kTerrainTiles) {
         const auto tile = btScalar(kTerrainHalfWidth / 2);
-        const btVector3 corner(tile * btScalar(object % 4 - 2), -6, tile * btScalar(object / 4 - 2));
+        const btVector3 corner(tile * btScalar(object % 4 - 2), -6,
+                               tile * btScalar(object / 4 - 2));
         return {corner, corner + btVector3(tile, 12, tile)};
     }
     const btScalar x = random.uniform(-kTerrainHalfWidth, kTerrainHalfWidth);
@@ -127,8 +128,7 @@ Box stepFlat(Random& random, const Box& box) {
 
 Box placePiles(Random& random, int /*object*/) {
     const btVector3 pile(btScalar(40 * random.below(3)), 0, btScalar(-25 * random.below(2)));
-    return boxAround(pile + random.direction() * random.uniform(0, 1.5),
-                     random.vector(0.1, 0.35));
+    return boxAround(pile + random.direction() * random.uniform(0, 1.5), random.vector(0.1, 0.35));
 }
 
 Box stepPiles(Random& random, const Box& box) {
@@ -153,11 +153,16 @@ Box placePlanes(Random& random, int object) {
     const btScalar large = BT_LARGE_FLOAT;
     const btScalar height = btScalar(random.below(5) - 2);
     switch (object % 20 == 0 ? object / 20 % 4 : -1) {
-        case 0: return {{-large, -large, -large}, {large, large, large}};
-        case 1: return {{-large, -large, -large}, {large, height, large}};
-        case 2: return {{-large, height, -large}, {large, height, large}};
-        case 3: return {{height, -large, 0}, {height + 1, large, 1}};
-        default: return placeUniform(random, object);
+        case 0:
+            return {{-large, -large, -large}, {large, large, large}};
+        case 1:
+            return {{-large, -large, -large}, {large, height, large}};
+        case 2:
+            return {{-large, height, -large}, {large, height, large}};
+        case 3:
+            return {{height, -large, 0}, {height + 1, large, 1}};
+        default:
+            return placeUniform(random, object);
     }
 }
 
@@ -170,7 +175,8 @@ Box stepPlanes(Random& random, const Box& box) {
 }
 
 // So far out that coordinates are multiples of 1/16 in either precision.
-constexpr btScalar kFar = std::is_same_v<btScalar, float> ? btScalar(1 << 19) : btScalar(1ULL << 48);
+constexpr btScalar kFar =
+    std::is_same_v<btScalar, float> ? btScalar(1 << 19) : btScalar(1ULL << 48);
 
 Box placeFar(Random& random, int object) {
     return moved(placeUniform(random, object), {kFar, -kFar, kFar});
@@ -238,10 +244,14 @@ private:
     std::pair<int, int> someGroup() {
         using Proxy = btBroadphaseProxy;
         switch (random_.below(8)) {
-            case 0: return {Proxy::StaticFilter, Proxy::AllFilter ^ Proxy::StaticFilter};
-            case 1: return {Proxy::SensorTrigger, Proxy::DefaultFilter};
-            case 2: return {Proxy::CharacterFilter, Proxy::AllFilter};
-            default: return {Proxy::DefaultFilter, Proxy::AllFilter};
+            case 0:
+                return {Proxy::StaticFilter, Proxy::AllFilter ^ Proxy::StaticFilter};
+            case 1:
+                return {Proxy::SensorTrigger, Proxy::DefaultFilter};
+            case 2:
+                return {Proxy::CharacterFilter, Proxy::AllFilter};
+            default:
+                return {Proxy::DefaultFilter, Proxy::AllFilter};
         }
     }
 

@@ -76,8 +76,8 @@ void DynamicsWorld::takeOut(int number) {
 }
 
 void DynamicsWorld::link(int a, int b, const btVector3& pointInA, const btVector3& pointInB) {
-    links_.push_back(std::make_unique<btPoint2PointConstraint>(body(a), body(b), pointInA,
-                                                               pointInB));
+    links_.push_back(
+        std::make_unique<btPoint2PointConstraint>(body(a), body(b), pointInA, pointInB));
     world_.addConstraint(links_.back().get(), true);
 }
 
@@ -183,10 +183,10 @@ void buildCompounds(DynamicsWorld& world) {
     }
 }
 
-/// Chains of ten links; the first link of every chain hangs in the air, or is as free as the others.
+/// Chains of ten links; the first of each is fixed in the air, or as free as the others.
 void buildChains(DynamicsWorld& world, bool hang) {
-    btCollisionShape* const shape = world.keep(std::make_unique<btCapsuleShapeX>(
-        btScalar(0.12), btScalar(0.3)));
+    btCollisionShape* const shape =
+        world.keep(std::make_unique<btCapsuleShapeX>(btScalar(0.12), btScalar(0.3)));
     const btVector3 end(btScalar(0.3), 0, 0);
     for (int chain = 0; chain < 16; ++chain) {
         const btVector3 start(btScalar(chain % 4) * btScalar(0.7),

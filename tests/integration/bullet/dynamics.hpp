@@ -91,7 +91,7 @@ struct DynamicsScene {
     const char* name;
     void (*build)(DynamicsWorld&);
     void (*disturb)(DynamicsWorld&, int step);  ///< called before each step
-    bool sleeps;  ///< whether bodies fall asleep within 900 steps
+    bool sleeps;                                ///< whether bodies fall asleep within 900 steps
 };
 
 void PrintTo(const DynamicsScene& scene, std::ostream* out);

@@ -14,6 +14,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iterator>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
 
 namespace hashphase::test {
 namespace {
@@ -93,8 +98,7 @@ TEST_P(GhostCallbacks, SayNothingOfAPairThatIsThereAtBothEndsOfAStep) {
         player.calculate();
         const std::vector<PairJournal::Uids> kept = intersection(before, journal.alive());
         const std::set<PairJournal::Uids> keptSet(kept.begin(), kept.end());
-        ASSERT_EQ(intersection(keptSet, journal.takeTouched()),
-                  std::vector<PairJournal::Uids>{})
+        ASSERT_EQ(intersection(keptSet, journal.takeTouched()), std::vector<PairJournal::Uids>{})
             << "frame " << frame;
         keptCount += kept.size();
     }
@@ -105,7 +109,7 @@ TEST_P(GhostCallbacks, SayNothingOfAPairThatIsThereAtBothEndsOfAStep) {
 INSTANTIATE_TEST_SUITE_P(Scenes, GhostCallbacks, testing::ValuesIn(allScenes()),
                          [](const auto& scene) { return scene.param.name; });
 
-// --- Eager groups ----------------------------------------------------------------------------------
+// --- Eager groups --------------------------------------------------------------------------------
 
 const Box kHere = boxAround({0, 0, 0}, {1, 1, 1});
 const Box kBeside = boxAround({1, 0, 0}, {1, 1, 1});
@@ -181,11 +185,11 @@ INSTANTIATE_TEST_SUITE_P(Groups, EagerGroups,
                          testing::Values(Proxy::CharacterFilter, Proxy::SensorTrigger,
                                          Proxy::CharacterFilter | Proxy::DebrisFilter));
 
-// --- Bullet's own ghosts ---------------------------------------------------------------------------
+// --- Bullet's own ghosts -------------------------------------------------------------------------
 
-/// A world without gravity, with a btGhostObject and a btPairCachingGhostObject at the origin, a box
-/// that comes and goes, and others that rest elsewhere, so that btDbvtBroadphase would clean up only
-/// a part of its pairs a step.
+/// A world without gravity, with a btGhostObject and a btPairCachingGhostObject at the origin and
+/// boxes in a row elsewhere, of which some come and go. The others touch, so that btDbvtBroadphase,
+/// which checks a part of its pairs in a step, would not check the ghosts' for long.
 struct GhostWorld {
     explicit GhostWorld(const SpatialHashConfig& config = {}) : broadphase(config) {
         world.setGravity({0, 0, 0});
@@ -306,9 +310,9 @@ std::size_t unknownNeighboursOnAWalk(const SpatialHashConfig& config, std::size_
         scene.world.stepSimulation(btScalar(1) / 60, 0);
         for (const int neighbour : scene.touching(body)) {
             btRigidBody& other = *scene.bodies[static_cast<std::size_t>(neighbour)];
-            const bool isKnown = body.getOverlappingPairCache()->findPair(
-                                     body.getBroadphaseHandle(), other.getBroadphaseHandle()) !=
-                                 nullptr;
+            const bool isKnown =
+                body.getOverlappingPairCache()->findPair(body.getBroadphaseHandle(),
+                                                         other.getBroadphaseHandle()) != nullptr;
             ++(isKnown ? *knownCount : unknownCount);
         }
     }

@@ -210,5 +210,32 @@ TEST(PairCacheInAWorld, AllocatesNothingForPairsItHasHadRoomForBefore) {
     }
 }
 
+TEST(PairCacheInAWorld, ForgetsAProxyInCanonicalOrder) {
+    struct Listener : btOverlappingPairCallback {
+        btBroadphasePair* addOverlappingPair(btBroadphaseProxy*, btBroadphaseProxy*) override {
+            return nullptr;
+        }
+        void* removeOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b,
+                                    btDispatcher*) override {
+            removed.emplace_back(a->m_uniqueId, b->m_uniqueId);
+            return nullptr;
+        }
+        void removeOverlappingPairsContainingProxy(btBroadphaseProxy*, btDispatcher*) override {}
+        std::vector<std::pair<int, int>> removed;
+    } listener;
+    std::vector<btBroadphaseProxy> proxies(10);
+    for (std::size_t i = 0; i < proxies.size(); ++i) {
+        proxies[i].m_uniqueId = static_cast<int>(i);
+    }
+    PairCache cache(PairOrder::canonical);
+    cache.setInternalGhostPairCallback(&listener);
+    for (const std::size_t i : {7, 2, 9, 1, 8, 4}) {
+        cache.addAcceptedPair(&proxies[5], &proxies[i]);
+    }
+    cache.removeOverlappingPairsContainingProxy(&proxies[5], nullptr);
+    EXPECT_EQ(listener.removed,
+              (std::vector<std::pair<int, int>>{{1, 5}, {2, 5}, {4, 5}, {5, 7}, {5, 8}, {5, 9}}));
+}
+
 }  // namespace
 }  // namespace hashphase

@@ -10,6 +10,9 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <memory>
+#include <string>
+#include <vector>
 
 namespace hashphase::test {
 namespace {
@@ -62,9 +65,8 @@ TEST_P(PairSets, EqualBruteForceInEveryFrame) {
 TEST_P(PairSets, EqualBtSimpleBroadphaseInEveryFrame) {
     Player hash = hashPlayer(kObjects);
     Player simple(kObjects, std::make_unique<btSimpleBroadphase>());
-    playTogether(GetParam(), {&hash, &simple}, [&](const Truth&) {
-        EXPECT_EQ(difference(hash.pairs(), simple.pairs()), "");
-    });
+    playTogether(GetParam(), {&hash, &simple},
+                 [&](const Truth&) { EXPECT_EQ(difference(hash.pairs(), simple.pairs()), ""); });
 }
 
 TEST_P(PairSets, AreThoseOfBtDbvtBroadphaseThatOverlap) {
@@ -82,9 +84,8 @@ TEST_P(PairSets, AreThoseOfBtDbvtBroadphaseThatOverlap) {
 TEST_P(PairSets, EqualBtDbvtBroadphaseThatIsForcedToBeExact) {
     Player hash = hashPlayer(kObjects);
     Player dbvt(kObjects, std::make_unique<ExactDbvt>());
-    playTogether(GetParam(), {&hash, &dbvt}, [&](const Truth&) {
-        EXPECT_EQ(difference(hash.pairs(), dbvt.pairs()), "");
-    });
+    playTogether(GetParam(), {&hash, &dbvt},
+                 [&](const Truth&) { EXPECT_EQ(difference(hash.pairs(), dbvt.pairs()), ""); });
 }
 
 TEST_P(PairSets, AreTheSameInEveryPairCache) {

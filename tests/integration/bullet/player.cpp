@@ -54,13 +54,19 @@ void Truth::play(const Frame& frame) {
             case Action::create:
                 object = {command.box, command.group, command.mask, true};
                 break;
-            case Action::destroy: object.isAlive = false; break;
-            case Action::set: object.box = command.box; break;
+            case Action::destroy:
+                object.isAlive = false;
+                break;
+            case Action::set:
+                object.box = command.box;
+                break;
             case Action::regroup:
                 object.group = command.group;
                 object.mask = command.mask;
                 break;
-            case Action::changeFilter: divisor_ = command.mask; break;
+            case Action::changeFilter:
+                divisor_ = command.mask;
+                break;
         }
     }
 }
@@ -107,8 +113,12 @@ void Player::play(const Frame& frame) {
 
 void Player::play(const Command& command) {
     switch (command.action) {
-        case Action::create: create(command); break;
-        case Action::destroy: destroy(command.object); break;
+        case Action::create:
+            create(command);
+            break;
+        case Action::destroy:
+            destroy(command.object);
+            break;
         case Action::set:
             broadphase_->setAabb(proxy(command.object), command.box.min, command.box.max, nullptr);
             break;
@@ -117,7 +127,9 @@ void Player::play(const Command& command) {
             proxy(command.object)->m_collisionFilterMask = command.mask;
             askFilterAgain(*broadphase_, proxy(command.object));
             break;
-        case Action::changeFilter: changeFilter(command.mask); break;
+        case Action::changeFilter:
+            changeFilter(command.mask);
+            break;
     }
 }
 

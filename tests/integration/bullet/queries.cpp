@@ -54,8 +54,8 @@ std::vector<int> bruteForceRay(const Truth& truth, int objectCount, const Ray& r
 std::vector<int> bruteForceBox(const Truth& truth, int objectCount, const Box& box) {
     std::vector<int> found;
     for (int object = 0; object < objectCount; ++object) {
-        if (truth.isAlive(object) && TestAabbAgainstAabb2(box.min, box.max, truth.box(object).min,
-                                                          truth.box(object).max)) {
+        if (truth.isAlive(object) &&
+            TestAabbAgainstAabb2(box.min, box.max, truth.box(object).min, truth.box(object).max)) {
             found.push_back(object);
         }
     }

@@ -23,7 +23,7 @@ struct Ray {
 
 /// Lists the objects it is shown, and answers as it is told.
 struct CollectRay : btBroadphaseRayCallback {
-    /// Sets the fields as btCollisionWorld does, in single precision of the same operations.
+    /// Sets the fields as btCollisionWorld does.
     explicit CollectRay(const Ray& ray);
     bool process(const btBroadphaseProxy* proxy) override {
         found.push_back(objectOf(proxy));

@@ -8,8 +8,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <thread>
+#include <utility>
+#include <vector>
 
 namespace hashphase::test {
 namespace {
@@ -199,8 +202,7 @@ TEST_P(Queries, RunOnManyThreadsAtOnce) {
                 CollectBox inBox;
                 world.player.broadphase().aabbTest(box.min, box.max, inBox);
                 wrong[thread] += sorted(ray.found) != expected[k];
-                wrong[thread] +=
-                    sorted(inBox.found) != bruteForceBox(world.truth, kObjects, box);
+                wrong[thread] += sorted(inBox.found) != bruteForceBox(world.truth, kObjects, box);
             }
         });
     }

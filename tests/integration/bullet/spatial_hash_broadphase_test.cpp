@@ -42,7 +42,7 @@ bool isSameBits(const btVector3& a, const btVector3& b) {
     return std::memcmp(a.m_floats, b.m_floats, 3 * sizeof(btScalar)) == 0;
 }
 
-// --- Proxies ---------------------------------------------------------------------------------------
+// --- Proxies -------------------------------------------------------------------------------------
 
 TEST(SpatialHashBroadphase, CountsUniqueIdsFromOneAndUsesNoneAgain) {
     SpatialHashBroadphase broadphase;
@@ -104,8 +104,7 @@ TEST(SpatialHashBroadphase, KeepsABoxToTheLastBit) {
     const btScalar odd = btScalar(1) / 3;
     const btScalar large = BT_LARGE_FLOAT;
     for (const Box& box : {Box{{-tiny, btScalar(-0.0), odd}, {tiny, 0, odd}},
-                           Box{{-large, -odd, 1}, {large, odd, 1}},
-                           Box{{1, 2, 3}, {-1, -2, -3}}}) {
+                           Box{{-large, -odd, 1}, {large, odd, 1}}, Box{{1, 2, 3}, {-1, -2, -3}}}) {
         set(broadphase, proxy, box);
         btVector3 min;
         btVector3 max;
@@ -121,7 +120,8 @@ TEST(SpatialHashBroadphase, PairsProxiesWithoutClients) {
     btBroadphaseProxy* const b = create(broadphase, kHere, nullptr);
     broadphase.calculateOverlappingPairs(nullptr);
     ASSERT_EQ(pairCount(broadphase), 1);
-    const btBroadphasePair& pair = *broadphase.getOverlappingPairCache()->getOverlappingPairArrayPtr();
+    const btBroadphasePair& pair =
+        *broadphase.getOverlappingPairCache()->getOverlappingPairArrayPtr();
     EXPECT_EQ(pair.m_pProxy0, a) << "The lower unique id comes first.";
     EXPECT_EQ(pair.m_pProxy1, b);
 }
@@ -156,7 +156,7 @@ TEST(SpatialHashBroadphase, LeadsFromAProxyToItsIdAndBack) {
     EXPECT_EQ(broadphase.grid().size(), 1U);
 }
 
-// --- The whole -------------------------------------------------------------------------------------
+// --- The whole -----------------------------------------------------------------------------------
 
 TEST(SpatialHashBroadphase, KnowsTheBoxAroundEverything) {
     SpatialHashBroadphase broadphase;
@@ -239,11 +239,9 @@ TEST(SpatialHashBroadphase, RefusesABadConfigurationByName) {
     EXPECT_THROW(SpatialHashBroadphase(nullptr, config), std::invalid_argument);
 }
 
-// --- Misuse ----------------------------------------------------------------------------------------
+// --- Misuse --------------------------------------------------------------------------------------
 
 #if HASHPHASE_ENABLE_ASSERTS
-using SpatialHashBroadphaseDeathTest = testing::Test;
-
 TEST(SpatialHashBroadphaseDeathTest, AssertsThatAProxyToDestroyIsAlive) {
     SpatialHashBroadphase broadphase;
     btBroadphaseProxy* const proxy = create(broadphase);

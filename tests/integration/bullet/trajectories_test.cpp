@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 //
 // The strongest test of "identical pair sets": worlds over our broadphase and over
-// btSimpleBroadphase move alike to the last bit for fifteen seconds. One pair wrong, missing or made
-// again in any step would show. Both worlds list their pairs in an order that depends on nothing but
-// the set, by the numbers of the bodies; for Bullet's results depend on that order too.
+// btSimpleBroadphase move alike to the last bit for fifteen seconds. One pair wrong, missing or
+// made again in any step would show. Bullet's results depend on the order of things as well, so
+// both worlds list pairs by the numbers of the bodies, and contact manifolds by age (dynamics.hpp).
 
 #include <tests/integration/bullet/broadphases.hpp>
 #include <tests/integration/bullet/dynamics.hpp>
@@ -12,6 +12,9 @@
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
 #include <gtest/gtest.h>
+
+#include <memory>
+#include <utility>
 
 namespace hashphase::test {
 namespace {
@@ -94,8 +97,8 @@ TEST_P(Trajectories, OfBulletsExactBroadphasesAgree) {
     EXPECT_EQ(divergence.step, -1) << "Body " << divergence.body << " is the first to differ.";
 }
 
-/// btSimpleBroadphase, but once, as soon as bodies touch in step 40 or later, it forgets one pair of
-/// such bodies. It finds the pair again in the next step.
+/// btSimpleBroadphase, but once, as soon as bodies touch in step 40 or later, it forgets one pair
+/// of such bodies. It finds the pair again in the next step.
 struct ForgetfulSimple : btSimpleBroadphase {
     explicit ForgetfulSimple(btOverlappingPairCache* cache) : btSimpleBroadphase(1000, cache) {}
 
@@ -112,8 +115,10 @@ struct ForgetfulSimple : btSimpleBroadphase {
             const btPersistentManifold& manifold = *dispatcher->getManifoldByIndexInternal(i);
             if (manifold.getNumContacts() > 0) {
                 // A manifold knows its bodies, and so their proxies, as const only.
-                auto* a = const_cast<btBroadphaseProxy*>(manifold.getBody0()->getBroadphaseHandle());
-                auto* b = const_cast<btBroadphaseProxy*>(manifold.getBody1()->getBroadphaseHandle());
+                auto* a =
+                    const_cast<btBroadphaseProxy*>(manifold.getBody0()->getBroadphaseHandle());
+                auto* b =
+                    const_cast<btBroadphaseProxy*>(manifold.getBody1()->getBroadphaseHandle());
                 getOverlappingPairCache()->removeOverlappingPair(a, b, dispatcher);
                 forgottenAt = step;
                 return;
@@ -128,9 +133,8 @@ struct ForgetfulSimple : btSimpleBroadphase {
 // The tests above can fail: one pair, forgotten for one step out of nine hundred, is seen.
 TEST_P(Trajectories, DifferWhenOnePairIsForgottenForOneStep) {
     const auto hash = worldOverHash();
-    const auto forgetful = worldOver([](btOverlappingPairCache* cache) {
-        return std::make_unique<ForgetfulSimple>(cache);
-    });
+    const auto forgetful = worldOver(
+        [](btOverlappingPairCache* cache) { return std::make_unique<ForgetfulSimple>(cache); });
     const Divergence divergence = stepTogether(GetParam(), *hash, *forgetful);
     const int forgottenAt = dynamic_cast<ForgetfulSimple&>(forgetful->broadphase()).forgottenAt;
     ASSERT_GE(forgottenAt, 0);

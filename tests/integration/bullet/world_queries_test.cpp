@@ -11,7 +11,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <tuple>
+#include <memory>
+#include <utility>
+#include <vector>
 
 namespace hashphase::test {
 namespace {
@@ -129,8 +131,8 @@ TEST_F(WorldQueries, ByContactFindTheSamePenetrationsAsOverBtDbvtBroadphase) {
         btCollisionObject probe;
         probe.setCollisionShape(&box);
         probe.setUserIndex(999);
-        probe.setWorldTransform(btTransform(btQuaternion(random.direction(), 1),
-                                            random.vector(-4, 4)));
+        probe.setWorldTransform(
+            btTransform(btQuaternion(random.direction(), 1), random.vector(-4, 4)));
         Contacts found[2];
         dbvt.world().contactTest(&probe, found[0]);
         hash.world().contactTest(&probe, found[1]);

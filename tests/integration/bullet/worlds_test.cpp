@@ -12,6 +12,9 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
 
 namespace hashphase::test {
 namespace {
@@ -30,8 +33,8 @@ struct Parts {
     std::unique_ptr<btCollisionDispatcher> dispatcher =
         std::make_unique<btCollisionDispatcher>(configuration.get());
     std::unique_ptr<btBroadphaseInterface> broadphase = std::make_unique<SpatialHashBroadphase>();
-    std::unique_ptr<btCollisionWorld> world = std::make_unique<btCollisionWorld>(
-        dispatcher.get(), broadphase.get(), configuration.get());
+    std::unique_ptr<btCollisionWorld> world =
+        std::make_unique<btCollisionWorld>(dispatcher.get(), broadphase.get(), configuration.get());
 
     void fill() {
         world->getPairCache()->setInternalGhostPairCallback(&ghostCallback);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
-#include <broadphase/detail/flat_map.hpp>
+#include <broadphase/detail/flat_set.hpp>
 
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <random>
-#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -70,7 +70,8 @@ TEST(FlatSet, DoesNotClusterRegularKeys) {
         EXPECT_LE(longestProbe([=](std::uint64_t i) { return i << shift; }), kLongestProbe)
             << shift;
     }
-    for (std::uint64_t m : {1, 2, 3, 7, 31, 100, 255, 256, 257, 1000, 65535, 65536, 65537}) {
+    // 1802 and 2263 are bad for plain multiplication by the constants of the hash.
+    for (std::uint64_t m : {1, 2, 3, 7, 31, 100, 256, 257, 1802, 2263, 65535, 65536, 65537}) {
         EXPECT_LE(longestProbe([=](std::uint64_t i) { return i * m; }), kLongestProbe) << m;
         EXPECT_LE(longestProbe([=](std::uint64_t i) { return i * m << 32 | (i + 1) * m; }),
                   kLongestProbe)
@@ -81,105 +82,56 @@ TEST(FlatSet, DoesNotClusterRegularKeys) {
     }
 }
 
-TEST(FlatMap, AgreesWithUnorderedMapOverRandomOperations) {
-    FlatMap map;
-    std::unordered_map<std::uint64_t, std::uint32_t> expected;
+TEST(FlatSet, AgreesWithUnorderedSetOverRandomOperations) {
+    FlatSet set;
+    std::unordered_set<std::uint64_t> expected;
     std::mt19937_64 random(20);
     for (std::uint32_t i = 0; i < 100000; ++i) {
         const std::uint64_t key = randomKey(random);
-        const auto known = expected.find(key);
-        switch (random() % 4) {
-            case 0:
-                if (known == expected.end()) {
-                    map.insert(key, i);
-                    expected.emplace(key, i);
-                }
-                break;
-            case 1:
-                ASSERT_EQ(map.findOrInsert(key, i), expected.try_emplace(key, i).first->second);
-                break;
-            default: {
-                const auto erased = map.erase(key);
-                ASSERT_EQ(erased.has_value(), known != expected.end());
-                if (erased) {
-                    ASSERT_EQ(*erased, known->second);
-                    expected.erase(known);
-                }
-            }
+        ASSERT_EQ(set.find(key) != FlatSet::kNone, expected.count(key) == 1);
+        if (random() % 2 == 0) {
+            set.findOrInsert(key);
+            expected.insert(key);
+        } else {
+            ASSERT_EQ(set.erase(key) != FlatSet::kNone, expected.erase(key) == 1);
         }
         if (i % 1000 == 0) {
-            ASSERT_EQ(map.validate(), "");
-            ASSERT_EQ(map.size(), expected.size());
-            map.forEach([&](std::uint64_t k, std::uint32_t value) {
-                ASSERT_EQ(expected.at(k), value);
-                ASSERT_EQ(*map.find(k), value);
-            });
+            ASSERT_EQ(set.validate(), "");
+            ASSERT_EQ(set.size(), expected.size());
         }
     }
     EXPECT_GT(expected.size(), 100U);
 }
 
-TEST(FlatMap, IsEmptyAfterClear) {
-    FlatMap map;
-    EXPECT_EQ(map.find(3), nullptr);
-    EXPECT_FALSE(map.erase(3));
+TEST(FlatSet, IsEmptyAfterClear) {
+    FlatSet set;
+    EXPECT_EQ(set.find(3), FlatSet::kNone);
+    EXPECT_EQ(set.erase(3), FlatSet::kNone);
     for (std::uint64_t key = 0; key < 100; ++key) {
-        map.insert(key, 1);
+        set.findOrInsert(key);
     }
-    map.clear();
-    EXPECT_EQ(map.size(), 0U);
-    EXPECT_EQ(map.find(3), nullptr);
-    map.insert(3, 4);
-    EXPECT_EQ(*map.find(3), 4U);
-    EXPECT_EQ(map.validate(), "");
+    set.clear();
+    EXPECT_EQ(set.size(), 0U);
+    EXPECT_EQ(set.find(3), FlatSet::kNone);
+    EXPECT_EQ(set.findOrInsert(3), 0U);
+    EXPECT_EQ(set.validate(), "");
 }
 
-TEST(FlatMap, AllocatesNothingOnceItsCapacityIsThere) {
-    FlatMap map;
-    map.reserve(5000);
-    const std::size_t reserved = map.memoryBytes();
+TEST(FlatSet, AllocatesNothingOnceItsCapacityIsThere) {
+    FlatSet set;
+    set.reserve(5000);
+    const std::size_t reserved = set.memoryBytes();
     for (std::uint64_t round = 0; round < 50; ++round) {
         for (std::uint64_t key = 0; key < 5000; ++key) {
-            map.insert(round * 5000 + key, 0);
+            set.findOrInsert(round * 5000 + key);
         }
         for (std::uint64_t key = 0; key < 5000; ++key) {
-            map.erase(round * 5000 + key);
+            set.erase(round * 5000 + key);
         }
     }
-    EXPECT_EQ(map.memoryBytes(), reserved);
-    map.reserve(5001 * 5);
-    EXPECT_GT(map.memoryBytes(), reserved);
-}
-
-TEST(RunMap, AgreesWithUnorderedMapOverRandomOperations) {
-    RunMap map;
-    std::unordered_map<std::uint64_t, std::uint32_t> expected;
-    std::mt19937_64 random(21);
-    for (std::uint32_t i = 0; i < 100000; ++i) {
-        const std::uint64_t key = randomKey(random);
-        const auto known = expected.find(key);
-        const std::uint32_t value = random() % 2 == 0 ? i : RunMap::kNone;
-        ASSERT_EQ(map.exchange(key, value),
-                  known == expected.end() ? RunMap::kNone : known->second);
-        if (value == RunMap::kNone) {
-            expected.erase(key);
-        } else {
-            expected[key] = value;
-        }
-        if (i % 1000 == 0) {
-            ASSERT_EQ(map.validate(), "");
-            std::size_t count = 0;
-            map.forEach([&](std::uint64_t k, std::uint32_t v) {
-                ASSERT_EQ(expected.at(k), v);
-                ASSERT_EQ(map.find(k), v);
-                ++count;
-            });
-            ASSERT_EQ(count, expected.size());
-        }
-    }
-    EXPECT_GT(expected.size(), 100U);
-    map.clear();
-    EXPECT_EQ(map.find(expected.begin()->first), RunMap::kNone);
+    EXPECT_EQ(set.memoryBytes(), reserved);
+    set.reserve(5001 * 5);
+    EXPECT_GT(set.memoryBytes(), reserved);
 }
 
 }  // namespace

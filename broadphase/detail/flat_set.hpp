@@ -1,27 +1,23 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Hash tables of 64-bit keys in flat arrays.
-//
-// FlatSet numbers its keys 0, 1, 2 ... without gaps, so that callers keep what belongs to a key in
-// arrays of their own; FlatMap does so with one 32-bit value a key, RunMap with the values of 16
-// neighbouring keys. The slots of the table hold a number and a part of the hash, eight bytes, and
-// are probed linearly, at most 5/8 of them in use. An erased slot leaves no tombstone, those behind
-// it move up: the table is as good after a million frames as after the first.
+// A hash table of 64-bit keys in flat arrays. It numbers its keys 0, 1, 2 ... without gaps, so that
+// callers keep what belongs to a key in arrays of their own. The slots of the table hold a number
+// and a part of the hash, eight bytes, and are probed linearly, at most 5/8 of them in use. An
+// erased slot leaves no tombstone, those behind it move up: the table is as good after a million
+// frames as after the first.
 //
 // Memory    Grows by doubling and never shrinks: a steady population allocates nothing.
 // Order     A function of the calls so far, and nothing that means anything.
 // Threads   Everything const may run anywhere, the rest needs the container for itself.
-// Misuse    Inserting a key that is there; asserted. Every key is valid.
+// Keys      Every key is valid.
 
 #include <broadphase/diagnostics.hpp>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -221,160 +217,6 @@ private:
     std::vector<std::uint64_t> keys_;
     std::size_t sizeLimit_ = 0;
     unsigned shift_ = 32;  // the home of a hash is its upper bits
-};
-
-class FlatMap {
-public:
-    /// The key's value, or nullptr; valid until the next insertion or erasure. Cost: O(1).
-    [[nodiscard]] std::uint32_t* find(std::uint64_t key) noexcept {
-        const std::uint32_t number = keys_.find(key);
-        return number == FlatSet::kNone ? nullptr : &values_[number];
-    }
-    [[nodiscard]] const std::uint32_t* find(std::uint64_t key) const noexcept {
-        const std::uint32_t number = keys_.find(key);
-        return number == FlatSet::kNone ? nullptr : &values_[number];
-    }
-
-    /// Adds a key that is not there yet. Cost: O(1), amortised.
-    void insert(std::uint64_t key, std::uint32_t value) {
-        [[maybe_unused]] const std::size_t sizeBefore = size();
-        findOrInsert(key, value);
-        HASHPHASE_ASSERT(size() > sizeBefore, "A key is inserted only when it is not there yet.");
-    }
-
-    /// The key's value, which becomes `valueIfNew` when the key was not there; valid until the next
-    /// insertion or erasure. Cost: O(1), amortised.
-    std::uint32_t& findOrInsert(std::uint64_t key, std::uint32_t valueIfNew) {
-        const std::uint32_t number = keys_.findOrInsert(key);
-        if (number == values_.size()) {
-            values_.push_back(valueIfNew);
-        }
-        return values_[number];
-    }
-
-    /// Removes the key and returns its value; nothing when it was not there. Cost: O(1).
-    std::optional<std::uint32_t> erase(std::uint64_t key) noexcept {
-        const std::uint32_t number = keys_.erase(key);
-        if (number == FlatSet::kNone) {
-            return std::nullopt;
-        }
-        const std::uint32_t value = std::exchange(values_[number], values_.back());
-        values_.pop_back();
-        return value;
-    }
-
-    [[nodiscard]] std::size_t size() const noexcept { return values_.size(); }
-
-    /// Removes all keys and keeps the memory. Cost: O(capacity), nothing when there are none.
-    void clear() noexcept {
-        keys_.clear();
-        values_.clear();
-    }
-
-    /// Makes room for `count` keys, so that no insertion allocates until there are more.
-    void reserve(std::size_t count) {
-        keys_.reserve(count);
-        values_.reserve(count);
-    }
-
-    /// Calls visit(key, value) for every key. Cost: O(size).
-    template <class Visit>
-    void forEach(Visit&& visit) const {
-        for (std::size_t i = 0; i < values_.size(); ++i) {
-            visit(keys_.keys()[i], values_[i]);
-        }
-    }
-
-    [[nodiscard]] std::size_t memoryBytes() const noexcept {
-        return keys_.memoryBytes() + values_.capacity() * sizeof(std::uint32_t);
-    }
-
-    /// As FlatSet::validate(), and:
-    /// - There is a value for every key.
-    [[nodiscard]] std::string validate() const {
-        return values_.size() == keys_.size() ? keys_.validate()
-                                              : "There is a value for every key: broken.";
-    }
-
-private:
-    FlatSet keys_;
-    std::vector<std::uint32_t> values_;  // by the key's number
-};
-
-/// A map for keys that come in runs: the values of neighbours share a cache line. Sparse keys cost
-/// memory, 64 bytes each, but are as valid.
-class RunMap {
-public:
-    /// Is every key's value at first, and not to be told from no value.
-    static constexpr std::uint32_t kNone = FlatSet::kNone;
-
-    [[nodiscard]] std::uint32_t find(std::uint64_t key) const noexcept {
-        const std::uint32_t number = blocks_.find(key / kBlockSize);
-        return number == kNone ? kNone : values_[number].of[key % kBlockSize];
-    }
-
-    /// Gives the key a value and returns the last one. Cost: O(1), amortised.
-    std::uint32_t exchange(std::uint64_t key, std::uint32_t value) {
-        const std::uint32_t number = blocks_.findOrInsert(key / kBlockSize);
-        if (number == values_.size()) {
-            values_.emplace_back().of.fill(kNone);
-        }
-        Block& block = values_[number];
-        const std::uint32_t before = std::exchange(block.of[key % kBlockSize], value);
-        if (value == kNone && isEmpty(block)) {
-            blocks_.erase(key / kBlockSize);
-            block = values_.back();
-            values_.pop_back();
-        }
-        return before;
-    }
-
-    /// Removes all values and keeps the memory. Cost: O(capacity), nothing when there are none.
-    void clear() noexcept {
-        blocks_.clear();
-        values_.clear();
-    }
-
-    /// Calls visit(key, value) for every key that has a value.
-    template <class Visit>
-    void forEach(Visit&& visit) const {
-        for (std::size_t i = 0; i < values_.size(); ++i) {
-            for (std::size_t j = 0; j < kBlockSize; ++j) {
-                if (values_[i].of[j] != kNone) {
-                    visit(blocks_.keys()[i] * kBlockSize + j, values_[i].of[j]);
-                }
-            }
-        }
-    }
-
-    [[nodiscard]] std::size_t memoryBytes() const noexcept {
-        return blocks_.memoryBytes() + values_.capacity() * sizeof(Block);
-    }
-
-    /// As FlatSet::validate(), and:
-    /// - There is a block of values for every run, and a value in it.
-    [[nodiscard]] std::string validate() const {
-        if (values_.size() != blocks_.size() ||
-            std::any_of(values_.begin(), values_.end(), isEmpty)) {
-            return "There is a block of values for every run, and a value in it: broken.";
-        }
-        return blocks_.validate();
-    }
-
-private:
-    static constexpr std::size_t kBlockSize = 16;
-
-    struct alignas(64) Block {
-        std::array<std::uint32_t, kBlockSize> of;
-    };
-
-    static bool isEmpty(const Block& block) noexcept {
-        return std::all_of(block.of.begin(), block.of.end(),
-                           [](std::uint32_t value) { return value == kNone; });
-    }
-
-    FlatSet blocks_;  // by key / kBlockSize
-    std::vector<Block> values_;
 };
 
 }  // namespace hashphase::detail
