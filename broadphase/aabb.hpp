@@ -9,6 +9,10 @@
 
 #include <Eigen/Geometry>
 
+#include <bit>
+#include <cstdint>
+#include <type_traits>
+
 namespace hashphase {
 
 template <class Scalar>
@@ -32,10 +36,25 @@ template <class Scalar>
             (bMin[1] <= aMax[1]) & (aMin[2] <= bMax[2]) & (bMin[2] <= aMax[2])) != 0;
 }
 
+/// True when the boxes are equal to the bit: -0 differs from 0, and a NaN equals itself.
+template <class Scalar>
+[[nodiscard]] inline bool isSameBits(const Aabb<Scalar>& a, const Aabb<Scalar>& b) noexcept {
+    using Word = std::conditional_t<sizeof(Scalar) == 4, std::uint32_t, std::uint64_t>;
+    Word difference = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        difference |= std::bit_cast<Word>(a.min()[axis]) ^ std::bit_cast<Word>(b.min()[axis]);
+        difference |= std::bit_cast<Word>(a.max()[axis]) ^ std::bit_cast<Word>(b.max()[axis]);
+    }
+    return difference == 0;
+}
+
 /// True when any of the six coordinates is NaN.
 template <class Scalar>
 [[nodiscard]] inline bool hasNan(const Aabb<Scalar>& box) noexcept {
-    return box.min().hasNaN() || box.max().hasNaN();
+    const Scalar* low = box.min().data();
+    const Scalar* high = box.max().data();
+    return ((low[0] != low[0]) | (low[1] != low[1]) | (low[2] != low[2]) | (high[0] != high[0]) |
+            (high[1] != high[1]) | (high[2] != high[2])) != 0;
 }
 
 }  // namespace hashphase

@@ -39,9 +39,10 @@ void reportBrokenAssert(const char* condition, const char* sentence, const char*
 #endif
 
 #if HASHPHASE_ENABLE_ASSERTS
-#define HASHPHASE_ASSERT(condition, sentence)                                                 \
-    ((condition) ? static_cast<void>(0)                                                       \
-                 : ::hashphase::detail::reportBrokenAssert(#condition, sentence, __FILE__, __LINE__))
+#define HASHPHASE_ASSERT(condition, sentence)                                                      \
+    ((condition)                                                                                   \
+         ? static_cast<void>(0)                                                                    \
+         : ::hashphase::detail::reportBrokenAssert(#condition, sentence, __FILE__, __LINE__))
 #else
 #define HASHPHASE_ASSERT(condition, sentence) static_cast<void>(0)
 #endif

@@ -18,7 +18,8 @@ public:
     template <class Callable>
         requires(!std::is_same_v<std::remove_cvref_t<Callable>, FunctionRef> &&
                  std::is_invocable_r_v<Result, Callable&, Arguments...>)
-    FunctionRef(Callable&& callable) noexcept {  // NOLINT: conversion is its purpose
+    FunctionRef(Callable&& callable)
+    noexcept {  // NOLINT: conversion is its purpose
         using Target = std::remove_reference_t<Callable>;
         if constexpr (std::is_function_v<Target>) {
             object_ = reinterpret_cast<void*>(&callable);

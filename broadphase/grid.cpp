@@ -2,10 +2,8 @@
 #include <broadphase/grid.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <stdexcept>
-#include <type_traits>
 
 namespace hashphase {
 namespace {
@@ -20,17 +18,6 @@ std::size_t manyWaiting(std::size_t mobileCount) {
 // and seldom enough to be cheap for each of them.
 std::size_t worthRefiling(std::size_t restingCount) {
     return std::max<std::size_t>(32, restingCount / 8);
-}
-
-template <class Scalar>
-bool isSameBits(const Aabb<Scalar>& a, const Aabb<Scalar>& b) noexcept {
-    using Word = std::conditional_t<sizeof(Scalar) == 4, std::uint32_t, std::uint64_t>;
-    Word difference = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        difference |= std::bit_cast<Word>(a.min()[axis]) ^ std::bit_cast<Word>(b.min()[axis]);
-        difference |= std::bit_cast<Word>(a.max()[axis]) ^ std::bit_cast<Word>(b.max()[axis]);
-    }
-    return difference == 0;
 }
 
 const GridConfig& checked(const GridConfig& config) {
@@ -90,7 +77,8 @@ void Grid<Scalar>::move(ProxyId id, const Box& box) {
 
 template <class Scalar>
 void Grid<Scalar>::remove(ProxyId id) {
-    HASHPHASE_ASSERT(contains(id), "Only a proxy of this grid that was not removed can be removed.");
+    HASHPHASE_ASSERT(contains(id),
+                     "Only a proxy of this grid that was not removed can be removed.");
     const std::uint32_t slot = id.index;
     noteChange(slot);
     leaveTable(slot);
@@ -134,7 +122,7 @@ void Grid<Scalar>::noteChange(std::uint32_t slot) {
 
 template <class Scalar>
 void Grid<Scalar>::noteNan(std::uint32_t slot, const Box& previous) {
-    nanCount_ -= hasNan(previous) ? 1 : 0;
+    nanCount_ -= nanCount_ > 0 && hasNan(previous) ? 1 : 0;
     if (!hasNan(boxes_[slot])) {
         return;
     }
@@ -217,11 +205,10 @@ void Grid<Scalar>::putQuietToRest() {
     const auto isQuiet = [this](std::uint32_t slot) {
         const Record& record = records_[slot];
         return record.changedAt != updateNumber_ &&
-               (record.restsAtOnce ||
-                updateNumber_ - record.changedAt > config_.updatesBeforeRest);
+               (record.restsAtOnce || updateNumber_ - record.changedAt > config_.updatesBeforeRest);
     };
-    const auto quietCount = static_cast<std::size_t>(
-        std::count_if(mobileSlots_.begin(), mobileSlots_.end(), isQuiet));
+    const auto quietCount =
+        static_cast<std::size_t>(std::count_if(mobileSlots_.begin(), mobileSlots_.end(), isQuiet));
     const std::size_t filedCount = resting_.size() - restingErased_;
     if (std::max<std::size_t>(quietCount, restingErased_) < worthRefiling(filedCount)) {
         return;

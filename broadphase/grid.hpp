@@ -142,8 +142,8 @@ private:
         std::uint32_t changedAt = 0;  // number of the update that will see, or saw, the last change
         std::uint32_t position = 0;   // in mobileSlots_, or entry in resting_
         Place place = Place::nowhere;
-        bool isWaiting = false;   // changed since filed: listed in waiting_
-        bool restsAtOnce = false; // Mobility::resting, and has not moved since it was added
+        bool isWaiting = false;    // changed since filed: listed in waiting_
+        bool restsAtOnce = false;  // Mobility::resting, and has not moved since it was added
     };
 
     struct Change {

@@ -25,8 +25,7 @@ std::string configError(const GridConfig& config) {
         return rangeError("levelRatio", config.levelRatio, "between 2 and 64");
     }
     if (config.updatesBeforeRest < 1 || config.updatesBeforeRest > 1'000'000) {
-        return rangeError("updatesBeforeRest", config.updatesBeforeRest,
-                          "between 1 and 1000000");
+        return rangeError("updatesBeforeRest", config.updatesBeforeRest, "between 1 and 1000000");
     }
     return {};
 }

@@ -15,8 +15,7 @@ constexpr std::uint32_t kUpdatesWatched = 8;
 
 template <class Scalar>
 Aabb<Scalar> nanBox() {
-    const Vector3<Scalar> nan =
-        Vector3<Scalar>::Constant(std::numeric_limits<Scalar>::quiet_NaN());
+    const Vector3<Scalar> nan = Vector3<Scalar>::Constant(std::numeric_limits<Scalar>::quiet_NaN());
     return {nan, nan};
 }
 
@@ -103,7 +102,9 @@ void Pairs<Scalar>::captureWoken() {
     }
     if (woken_.size() > 1) {
         wokenTable_.build(woken_, before_.data(), grid_.fixedSizes_);
-        detail::forOverlapsWithinTable(wokenTable_, cost, capture);
+        detail::forOverlapsWithinTable(wokenTable_, cost, [&](std::uint32_t a, std::uint32_t b) {
+            capture(wokenTable_.slot(a), wokenTable_.slot(b));
+        });
     }
     cost_.boxesTested += cost.boxesTested;
 }
@@ -129,7 +130,7 @@ void Pairs<Scalar>::findNew() {
     // The join reads each neighbourhood once and half of it; it pays unless few have changed.
     const bool byJoin = 4 * grid_.changes_.size() >= grid_.mobileSlots_.size();
     if (byJoin && !grid_.changes_.empty()) {
-        detail::forOverlapsWithinTable(grid_.mobile_, cost, found);
+        joinMobile(cost);
     }
     for (const auto& change : grid_.changes_) {
         const std::uint32_t slot = change.slot;
@@ -150,6 +151,22 @@ void Pairs<Scalar>::findNew() {
     }
     cost_.boxesTested += cost.boxesTested;
     std::sort(fresh_.begin(), fresh_.end());
+}
+
+// The boxes before are put in the table's order first: what is near each other in space is then near
+// in memory, which the slots are not.
+template <class Scalar>
+void Pairs<Scalar>::joinMobile(QueryCost& cost) {
+    const detail::Table<Scalar>& table = grid_.mobile_;
+    beforeByEntry_.resize(table.size());
+    for (std::uint32_t entry = 0; entry < table.size(); ++entry) {
+        beforeByEntry_[entry] = before_[table.slot(entry)];
+    }
+    detail::forOverlapsWithinTable(table, cost, [&](std::uint32_t a, std::uint32_t b) {
+        if (!overlaps(beforeByEntry_[a], beforeByEntry_[b])) {
+            fresh_.push_back(couple(table.slot(a), table.slot(b), false));
+        }
+    });
 }
 
 // One pass over the watched couples and the new ones, both sorted: what is born, what died, and
@@ -328,11 +345,13 @@ void Pairs<Scalar>::askAgain(Couple& c, PairFilter filter) {
 // --- The whole set -------------------------------------------------------------------------------
 
 template <class Scalar>
-void Pairs<Scalar>::forEachOverlap(
-    FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const {
+void Pairs<Scalar>::forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const {
     QueryCost cost;
-    detail::forOverlapsWithinTable(grid_.mobile_, cost, visit);
-    detail::forOverlapsWithinTable(grid_.resting_, cost, visit);
+    for (const detail::Table<Scalar>* table : {&grid_.mobile_, &grid_.resting_}) {
+        detail::forOverlapsWithinTable(*table, cost, [&](std::uint32_t a, std::uint32_t b) {
+            visit(table->slot(a), table->slot(b));
+        });
+    }
     for (const std::uint32_t slot : grid_.mobileSlots_) {
         const auto found = [&](std::uint32_t other) { visit(slot, other); };
         detail::forOverlapsInTable(grid_.resting_, grid_.boxes_[slot], cost, found);
@@ -356,7 +375,7 @@ void Pairs<Scalar>::collect(std::vector<ProxyPair>& pairs) const {
 
 template <class Scalar>
 std::size_t Pairs<Scalar>::memoryBytes() const noexcept {
-    return sizeof(*this) + before_.capacity() * sizeof(Aabb<Scalar>) +
+    return sizeof(*this) + (before_.capacity() + beforeByEntry_.capacity()) * sizeof(Aabb<Scalar>) +
            (watched_.capacity() + captured_.capacity() + fresh_.capacity() + merged_.capacity()) *
                sizeof(Couple) +
            (born_.capacity() + died_.capacity()) * sizeof(ProxyPair) +

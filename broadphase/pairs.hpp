@@ -109,6 +109,7 @@ private:
 
     void captureWoken();
     void findNew();
+    void joinMobile(QueryCost& cost);
     void mergeWatched(PairFilter filter);
     [[nodiscard]] std::uint32_t decide(Couple c, PairFilter filter);
     void keepOrDrop(Couple c, PairFilter filter);
@@ -123,12 +124,13 @@ private:
     Grid<Scalar>& grid_;
     std::vector<Aabb<Scalar>> before_;  // each slot's box at the last update; NaN when it had none
 
-    std::vector<Couple> watched_;   // overlapping couples of which one changed lately, sorted
-    std::vector<Couple> captured_;  // to be merged into watched_ at the next update
+    std::vector<Couple> watched_;      // overlapping couples of which one changed lately, sorted
+    std::vector<Couple> captured_;     // to be merged into watched_ at the next update
     std::size_t capturedChanges_ = 0;  // of the grid's changes, how many captureWoken() has seen
-    detail::FlatSet announced_;  // which of captured_ were decided since the last update
-    detail::FlatSet refusedAtRest_;  // couples refused and no longer watched
+    detail::FlatSet announced_;        // which of captured_ were decided since the last update
+    detail::FlatSet refusedAtRest_;    // couples refused and no longer watched
 
+    std::vector<Aabb<Scalar>> beforeByEntry_;  // before_ in the order of the grid's mobile table
     std::vector<Couple> fresh_;
     std::vector<Couple> merged_;
     std::vector<std::uint32_t> woken_;

@@ -24,36 +24,60 @@ constexpr int kFractionShift = 50;
 constexpr std::int64_t kLowestExponent = -128;
 constexpr std::int64_t kFirstClassBits = (kLowestExponent + 1023) << 2;
 
-double upperEdgeOfClass(int index) {
-    return std::bit_cast<double>(
-        static_cast<std::uint64_t>(kFirstClassBits + index + 1) << kFractionShift);
+// Cells are a little larger than the largest box of their class, so that rounding does not make it
+// span a third one.
+constexpr double kMargin = 1.01;
+
+bool has(AxisSet axes, std::size_t axis) {
+    return ((axes >> axis) & 1) != 0;
 }
 
-// Walks look at three cells an axis; no axis has more cells than the population spreads over.
-double cellsAcross(double spread, double cellSize, double cells) {
-    return std::min(cells, spread / cellSize + 1);
+// Rows that a walk looks up, of the three cells an axis that are near; no axis has more cells than
+// the population spreads over.
+double rowsNearby(const std::array<double, 3>& spread, double cellSize, AxisSet flat) {
+    double rows = 1;
+    for (const std::size_t axis : {std::size_t{1}, std::size_t{2}}) {
+        rows *= has(flat, axis) ? 1 : std::min(3.0, spread[axis] / cellSize + 1);
+    }
+    return rows;
 }
 
-double shareInNeighbourhood(const std::array<double, 3>& spread, double cellSize) {
+// Share of the population in the 27 cells around a box.
+double shareNearby(const std::array<double, 3>& spread, double cellSize, AxisSet flat) {
     double share = 1;
-    for (const double axis : spread) {
-        share *= std::min(1.0, 3 * cellSize / std::max(axis, cellSize));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        share *=
+            has(flat, axis) ? 1 : std::min(1.0, 3 * cellSize / std::max(spread[axis], cellSize));
     }
     return share;
 }
 
-double costOfLevel(const std::array<double, 3>& spread, double cellSize, double own,
-                   double smaller) {
-    const double rows =
-        cellsAcross(spread[1], cellSize, 3) * cellsAcross(spread[2], cellSize, 3);
-    const double share = shareInNeighbourhood(spread, cellSize);
-    const double amongItself = own * (0.5 * (rows + 1) * kRunCost + 0.5 * own * share * kBoxCost);
-    const double fromSmaller = smaller * (rows * kRunCost + own * share * kBoxCost);
-    return amongItself + fromSmaller;
+struct LevelCost {
+    double cost = std::numeric_limits<double>::infinity();
+    AxisSet flat = 0;
+};
+
+// Cost [ns] of the walks of `own` boxes on this level among themselves, and of those of `smaller`
+// ones, with the axes flat that make it least.
+LevelCost costOfLevel(const std::array<double, 3>& spread, double cellSize, double own,
+                      double smaller) {
+    LevelCost least;
+    for (const AxisSet flat : {AxisSet{0b000}, AxisSet{0b010}, AxisSet{0b100}, AxisSet{0b110}}) {
+        const double rows = rowsNearby(spread, cellSize, flat);
+        const double boxes = own * shareNearby(spread, cellSize, flat);
+        const double amongItself = own * 0.5 * ((rows + 1) * kRunCost + boxes * kBoxCost);
+        const double fromSmaller = smaller * (rows * kRunCost + boxes * kBoxCost);
+        if (amongItself + fromSmaller < least.cost) {
+            least = {amongItself + fromSmaller, flat};
+        }
+    }
+    return least;
 }
 
 // Cells much smaller than the distance between proxies are nearly all empty: they find nothing
 // sooner and only scatter memory.
+constexpr double kCellsPerBox = 16;
+
 double smallestUsefulCell(const std::array<double, 3>& spread, double count) {
     const double largest = *std::max_element(spread.begin(), spread.end());
     if (!(largest > 0)) {
@@ -67,7 +91,7 @@ double smallestUsefulCell(const std::array<double, 3>& spread, double count) {
         }
         return product;
     };
-    while (cells(cellSize / 1.125) <= 3 * count && cellSize > largest * 1e-7) {
+    while (cells(cellSize / 1.125) <= kCellsPerBox * count && cellSize > largest * 1e-7) {
         cellSize /= 1.125;
     }
     return cellSize;
@@ -83,9 +107,13 @@ void SizeCensus::add(const Aabb<Scalar>& box) {
         ++unfit_;
         return;
     }
-    const auto bits = static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(extent) >> kFractionShift);
-    const std::int64_t index = std::clamp<std::int64_t>(bits - kFirstClassBits, 0, kQuarterOctaves - 1);
-    ++histogram_[static_cast<std::size_t>(index)];
+    const auto bits =
+        static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(extent) >> kFractionShift);
+    const std::int64_t index =
+        std::clamp<std::int64_t>(bits - kFirstClassBits, 0, kQuarterOctaves - 1);
+    Bin& bin = histogram_[static_cast<std::size_t>(index)];
+    ++bin.count;
+    bin.largest = std::max(bin.largest, extent);
     if (total_ % sampleStep_ != 0 || !box.min().allFinite()) {
         return;
     }
@@ -105,7 +133,7 @@ template void SizeCensus::add<float>(const Aabb<float>&);
 template void SizeCensus::add<double>(const Aabb<double>&);
 
 void SizeCensus::clear() {
-    histogram_.fill(0);
+    histogram_.fill({});
     total_ = 0;
     unfit_ = 0;
     sampleStep_ = 1;
@@ -139,16 +167,15 @@ std::array<double, 3> SizeCensus::middle() const {
 }
 
 std::vector<SizeCensus::SizeClass> SizeCensus::occupiedClasses() const {
-    const double floor =
-        std::clamp(smallestUsefulCell(spread(), static_cast<double>(total_)), kSmallestCell,
-                   kLargestCell);
+    const double floor = std::clamp(smallestUsefulCell(spread(), static_cast<double>(total_)),
+                                    kSmallestCell, kLargestCell);
     std::vector<SizeClass> classes;
-    for (int i = 0; i < kQuarterOctaves; ++i) {
-        const auto count = static_cast<double>(histogram_[static_cast<std::size_t>(i)]);
-        if (count == 0) {
+    for (const Bin& bin : histogram_) {
+        const auto count = static_cast<double>(bin.count);
+        if (bin.count == 0) {
             continue;
         }
-        const double edge = std::max(upperEdgeOfClass(i), floor);
+        const double edge = std::max(bin.largest * kMargin, floor);
         if (!classes.empty() && classes.back().upperEdge == edge) {
             classes.back().count += count;
         } else {
@@ -173,7 +200,8 @@ LevelSizes SizeCensus::cheapestLevels() const {
         countUpTo[q] = countUpTo[q - 1] + classes[q - 1].count;
         for (std::size_t p = 0; p < q; ++p) {
             const double cost = best[p] + costOfLevel(extent, classes[q - 1].upperEdge,
-                                                      countUpTo[q] - countUpTo[p], countUpTo[p]);
+                                                      countUpTo[q] - countUpTo[p], countUpTo[p])
+                                              .cost;
             if (cost < best[q]) {
                 best[q] = cost;
                 from[q] = p;
@@ -199,26 +227,43 @@ LevelSizes SizeCensus::cheapestLevels() const {
         levels.cellSize[static_cast<std::size_t>(levels.count++)] = classes[q - 1].upperEdge;
     }
     std::reverse(levels.cellSize.begin(), levels.cellSize.begin() + levels.count);
+    flatten(levels);
     return levels;
+}
+
+// Calls visit(level number, boxes on it, boxes on finer ones) for each level, and returns how many
+// boxes all of them have.
+template <class Visit>
+double SizeCensus::forLevels(const LevelSizes& levels, Visit&& visit) const {
+    const std::vector<SizeClass> classes = occupiedClasses();
+    double smaller = 0;
+    auto next = classes.begin();
+    for (std::size_t i = 0; i < static_cast<std::size_t>(levels.count); ++i) {
+        double own = 0;
+        for (; next != classes.end() && next->upperEdge <= levels.cellSize[i]; ++next) {
+            own += next->count;
+        }
+        visit(i, own, smaller);
+        smaller += own;
+    }
+    return smaller;
+}
+
+void SizeCensus::flatten(LevelSizes& levels) const {
+    const std::array<double, 3> extent = spread();
+    forLevels(levels, [&](std::size_t i, double own, double smaller) {
+        levels.flatAxes[i] = costOfLevel(extent, levels.cellSize[i], own, smaller).flat;
+    });
 }
 
 double SizeCensus::modelledCost(const LevelSizes& levels) const {
     const std::array<double, 3> extent = spread();
-    const std::vector<SizeClass> classes = occupiedClasses();
     double cost = 0;
-    double smaller = 0;
-    auto next = classes.begin();
-    for (int i = 0; i < levels.count; ++i) {
-        const double cellSize = levels.cellSize[static_cast<std::size_t>(i)];
-        double own = 0;
-        for (; next != classes.end() && next->upperEdge <= cellSize; ++next) {
-            own += next->count;
-        }
-        cost += costOfLevel(extent, cellSize, own, smaller);
-        smaller += own;
-    }
+    const double filed = forLevels(levels, [&](std::size_t i, double own, double smaller) {
+        cost += costOfLevel(extent, levels.cellSize[i], own, smaller).cost;
+    });
     const auto total = static_cast<double>(total_);
-    return cost + total * (total - smaller) * kListedBoxCost;
+    return cost + total * (total - filed) * kListedBoxCost;
 }
 
 LevelSizes fixedLevels(double cellSize, double ratio) {

@@ -16,10 +16,15 @@ namespace hashphase::detail {
 
 inline constexpr int kMaxLevels = 16;
 
+/// A set of axes: bit i for axis i.
+using AxisSet = std::uint8_t;
+
 /// Cell edges [m], finest first. What fits no level is filed without cells and is looked at by
-/// every walk.
+/// every walk. Along its flat axes a level has one cell for everything: on a terrain, looking up
+/// the layers above and below costs more than they keep away.
 struct LevelSizes {
     std::array<double, kMaxLevels> cellSize{};
+    std::array<AxisSet, kMaxLevels> flatAxes{};
     int count = 0;
 };
 
@@ -37,7 +42,10 @@ public:
     /// on the boxes counted and their order only. Cost: O(q^2) for q occupied quarter octaves.
     [[nodiscard]] LevelSizes cheapestLevels() const;
 
-    /// Modelled cost [ns] of finding all pairs with these levels.
+    /// Flattens each level along the axes where that is cheaper for the population.
+    void flatten(LevelSizes& levels) const;
+
+    /// Modelled cost [ns] of finding all pairs with levels of these cell sizes.
     [[nodiscard]] double modelledCost(const LevelSizes& levels) const;
 
     /// The middle of the population: the median min corner on each axis; finite.
@@ -48,15 +56,21 @@ private:
         double upperEdge;  // [m]
         double count;
     };
+    struct Bin {
+        std::uint32_t count = 0;
+        double largest = 0;  // [m]
+    };
 
     [[nodiscard]] std::vector<SizeClass> occupiedClasses() const;
     [[nodiscard]] std::array<double, 3> spread() const;
     [[nodiscard]] double quantile(std::size_t axis, double share) const;
+    template <class Visit>
+    double forLevels(const LevelSizes& levels, Visit&& visit) const;
 
     static constexpr int kQuarterOctaves = 4 * 256;
     static constexpr std::size_t kMaxSamples = 2048;
 
-    std::array<std::uint32_t, kQuarterOctaves> histogram_{};
+    std::array<Bin, kQuarterOctaves> histogram_{};
     std::uint64_t total_ = 0;
     std::uint64_t unfit_ = 0;
     std::uint64_t sampleStep_ = 1;

@@ -71,8 +71,8 @@ CellRay toCells(const Level<Scalar>& level, const Vector3<Scalar>& from,
                 const Vector3<Scalar>& direction, const Aabb<Scalar>& fatness) {
     constexpr double epsilon = std::numeric_limits<Scalar>::epsilon();
     CellRay ray;
-    const auto scale = static_cast<double>(level.inverseCellSize);
     for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto scale = static_cast<double>(level.inverseCellSize[axis]);
         const auto i = static_cast<Eigen::Index>(axis);
         const auto origin = static_cast<double>(level.origin[axis]);
         const auto start = static_cast<double>(from[i]);
@@ -112,9 +112,8 @@ bool forRowsOfRay(const Level<Scalar>& level, const Vector3<Scalar>& from,
     const auto across = ray.cells(whole, 1, level.low[1], level.high[1]);
     const auto perLayer =
         static_cast<std::uint64_t>(std::min(ray.below[1] + ray.above[1], 1e9)) + 1;
-    const std::uint64_t rows =
-        (static_cast<std::uint64_t>(layers[1] - layers[0]) + 1) * perLayer +
-        3 * (static_cast<std::uint64_t>(across[1] - across[0]) + 1);
+    const std::uint64_t rows = (static_cast<std::uint64_t>(layers[1] - layers[0]) + 1) * perLayer +
+                               3 * (static_cast<std::uint64_t>(across[1] - across[0]) + 1);
     if (rows * kBoxesPerRun > level.count()) {
         return false;
     }

@@ -33,8 +33,7 @@ template <class Scalar>
 void Table<Scalar>::chooseLevels(std::span<const std::uint32_t> slots, const Aabb<Scalar>* boxes,
                                  const LevelSizes& fixed) {
     const std::uint64_t count = slots.size();
-    const bool sameCount =
-        4 * count <= 5 * countWhenChosen_ && 5 * count >= 4 * countWhenChosen_;
+    const bool sameCount = 4 * count <= 5 * countWhenChosen_ && 5 * count >= 4 * countWhenChosen_;
     if (sameCount && ++buildsSinceChosen_ < kBuildsBetweenCensuses) {
         return;
     }
@@ -49,6 +48,7 @@ void Table<Scalar>::chooseLevels(std::span<const std::uint32_t> slots, const Aab
     if (sizes_.count == 0 || census_.modelledCost(fresh) < 0.9 * census_.modelledCost(sizes_)) {
         sizes_ = fresh;
     }
+    census_.flatten(sizes_);
     const std::array<double, 3> middle = census_.middle();
     for (std::size_t axis = 0; axis < 3; ++axis) {
         origin_[axis] = static_cast<Scalar>(middle[axis]);
@@ -69,8 +69,8 @@ typename Table<Scalar>::Filed Table<Scalar>::file(const Aabb<Scalar>& box) const
         const auto spansAtMostTwo = [&low, &high](std::size_t axis) {
             return static_cast<std::uint32_t>(high[axis] - low[axis]) <= 1;
         };
-        if (spansAtMostTwo(0) && spansAtMostTwo(1) && spansAtMostTwo(2) &&
-            isInside(low) && isInside(high)) {
+        if (spansAtMostTwo(0) && spansAtMostTwo(1) && spansAtMostTwo(2) && isInside(low) &&
+            isInside(high)) {
             return {low, i};
         }
     }
@@ -130,7 +130,11 @@ void Table<Scalar>::build(std::span<const std::uint32_t> slots, const Aabb<Scala
     levels_.assign(listed + 1, {});
     for (std::uint32_t i = 0; i < listed; ++i) {
         levels_[i].origin = origin_;
-        levels_[i].inverseCellSize = static_cast<Scalar>(1 / sizes_.cellSize[i]);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const bool isFlat = ((sizes_.flatAxes[i] >> axis) & 1) != 0;
+            levels_[i].inverseCellSize[axis] =
+                isFlat ? Scalar(0) : static_cast<Scalar>(1 / sizes_.cellSize[i]);
+        }
         levels_[i].low.fill(kCellLimit);
         levels_[i].high.fill(-kCellLimit);
     }

@@ -30,7 +30,7 @@ namespace hashphase::detail {
 template <class Scalar>
 struct Level {
     std::array<Scalar, 3> origin{};
-    Scalar inverseCellSize = 0;
+    std::array<Scalar, 3> inverseCellSize{};  // 0 along a flat axis, which has one cell: 0
     std::uint32_t firstEntry = 0;
     std::uint32_t lastEntry = 0;  // one past
     std::uint32_t firstBucket = 0;
@@ -48,13 +48,13 @@ struct Level {
     [[nodiscard]] std::uint32_t count() const noexcept { return lastEntry - firstEntry; }
 
     [[nodiscard]] std::int32_t cell(Scalar x, std::size_t axis) const noexcept {
-        return quantise(x, origin[axis], inverseCellSize);
+        return quantise(x, origin[axis], inverseCellSize[axis]);
     }
 
     /// Bucket of cell x = 0 of row (y, z), before the modulo.
     [[nodiscard]] std::uint32_t rowBase(std::int32_t y, std::int32_t z) const noexcept {
-        const auto row = static_cast<std::uint32_t>(y) * strideY +
-                         static_cast<std::uint32_t>(z) * strideZ;
+        const auto row =
+            static_cast<std::uint32_t>(y) * strideY + static_cast<std::uint32_t>(z) * strideZ;
         if (isDense) {
             return row;
         }

@@ -88,8 +88,8 @@ bool walkLevel(const Table<Scalar>& table, const Level<Scalar>& level, const Reg
         table.forRun(level, run, [&](const EntryRange& range) {
             cost.boxesTested += range.last - range.first;
             goOn = goOn && reader.read(range, [&](std::uint32_t entry) {
-                       return table.isInRow(level, entry, run.y, run.z);
-                   });
+                return table.isInRow(level, entry, run.y, run.z);
+            });
         });
         return goOn;
     });
@@ -98,8 +98,7 @@ bool walkLevel(const Table<Scalar>& table, const Level<Scalar>& level, const Reg
 
 /// walkLevel() over all levels of a table. Returns false when stopped.
 template <class Scalar, class Region, class Reader>
-bool walkTable(const Table<Scalar>& table, const Region& region, QueryCost& cost,
-               Reader&& reader) {
+bool walkTable(const Table<Scalar>& table, const Region& region, QueryCost& cost, Reader&& reader) {
     for (const Level<Scalar>& level : table.levels()) {
         if (!walkLevel(table, level, region, cost, reader)) {
             return false;

@@ -4,12 +4,10 @@
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/pair_cache.hpp>
 
-#include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <LinearMath/btAabbUtil2.h>
 #include <LinearMath/btGeometryUtil.h>
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
@@ -45,10 +43,6 @@ struct CallbackRayRegion {
         return segment.forRows(level, visitRow);
     }
 };
-
-bool isSameBits(const btVector3& a, const btVector3& b) {
-    return std::memcmp(a.m_floats, b.m_floats, 3 * sizeof(btScalar)) == 0;
-}
 
 }  // namespace
 
@@ -94,13 +88,12 @@ btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
     }
     Proxy& proxy = *freeProxies_.back();
     freeProxies_.pop_back();
-    static_cast<btBroadphaseProxy&>(proxy) = btBroadphaseProxy(
-        aabbMin, aabbMax, userPtr, collisionFilterGroup, collisionFilterMask);
+    static_cast<btBroadphaseProxy&>(proxy) =
+        btBroadphaseProxy(aabbMin, aabbMax, userPtr, collisionFilterGroup, collisionFilterMask);
     proxy.m_uniqueId = ++lastUniqueId_;
 
     const bool isStatic = (collisionFilterGroup & btBroadphaseProxy::StaticFilter) != 0;
-    proxy.id = grid_.add(toAabb(aabbMin, aabbMax),
-                         isStatic ? Mobility::resting : Mobility::mobile);
+    proxy.id = grid_.add(toAabb(aabbMin, aabbMax), isStatic ? Mobility::resting : Mobility::mobile);
     if (proxy.id.index >= bySlot_.size()) {
         bySlot_.resize(proxy.id.index + 1, nullptr);
     }
@@ -122,12 +115,13 @@ void SpatialHashBroadphase::destroyProxy(btBroadphaseProxy* proxy, btDispatcher*
 void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin,
                                     const btVector3& aabbMax, btDispatcher* dispatcher) {
     Proxy* own = checkedProxy(proxy);
-    if (isSameBits(own->m_aabbMin, aabbMin) && isSameBits(own->m_aabbMax, aabbMax)) {
+    const Aabb<btScalar> box = toAabb(aabbMin, aabbMax);
+    if (isSameBits(toAabb(own->m_aabbMin, own->m_aabbMax), box)) {
         return;
     }
     own->m_aabbMin = aabbMin;
     own->m_aabbMax = aabbMax;
-    grid_.move(own->id, toAabb(aabbMin, aabbMax));
+    grid_.move(own->id, box);
     announceIfEager(*own, dispatcher);
 }
 
@@ -254,9 +248,9 @@ ProxyId SpatialHashBroadphase::idOf(const btBroadphaseProxy* proxy) {
 }
 
 SpatialHashBroadphase::Proxy* SpatialHashBroadphase::checkedProxy(btBroadphaseProxy* proxy) const {
-    HASHPHASE_ASSERT(proxy != nullptr && grid_.contains(idOf(proxy)) &&
-                         bySlot_[idOf(proxy).index] == proxy,
-                     "Only a proxy that this broadphase created and did not destroy can be used.");
+    HASHPHASE_ASSERT(
+        proxy != nullptr && grid_.contains(idOf(proxy)) && bySlot_[idOf(proxy).index] == proxy,
+        "Only a proxy that this broadphase created and did not destroy can be used.");
     return static_cast<Proxy*>(proxy);
 }
 

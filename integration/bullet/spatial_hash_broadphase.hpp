@@ -26,13 +26,12 @@
 
 #include <BulletCollision/BroadphaseCollision/btBroadphaseInterface.h>
 #include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
+#include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 
 #include <cstddef>
 #include <deque>
 #include <string>
 #include <vector>
-
-class btOverlappingPairCache;
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 

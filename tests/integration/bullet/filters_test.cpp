@@ -44,7 +44,7 @@ protected:
     ObjectPairs pairs() const { return player.pairs(); }
 
     Player player;
-    const ObjectPairs none;
+    const ObjectPairs none{};
     const ObjectPairs both{{0, 1}};
 };
 

@@ -123,7 +123,7 @@ protected:
     void set(int object, const Box& box) { player.play({Action::set, object, box, 0, 0}); }
 
     Player player = hashPlayer(8);
-    const ObjectPairs none;
+    const ObjectPairs none{};
 };
 
 TEST_P(EagerGroups, HaveTheirPairsDirectlyAfterCreateProxy) {
