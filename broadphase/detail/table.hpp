@@ -48,7 +48,8 @@ struct Level {
     [[nodiscard]] std::uint32_t count() const noexcept { return lastEntry - firstEntry; }
 
     [[nodiscard]] std::int32_t cell(Scalar x, std::size_t axis) const noexcept {
-        return quantise(x, origin[axis], inverseCellSize[axis]);
+        // Not 0 * infinity, along a flat axis.
+        return inverseCellSize[axis] == 0 ? 0 : quantise(x, origin[axis], inverseCellSize[axis]);
     }
 
     /// Bucket of cell x = 0 of row (y, z), before the modulo.

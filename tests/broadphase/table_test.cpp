@@ -40,7 +40,7 @@ protected:
         Couples couples;
         QueryCost cost;
         forOverlapsWithinTable(table_, cost, [&](std::uint32_t a, std::uint32_t b) {
-            couples.push_back(std::minmax(a, b));
+            couples.push_back(std::minmax(table_.slot(a), table_.slot(b)));
         });
         std::sort(couples.begin(), couples.end());
         return couples;
