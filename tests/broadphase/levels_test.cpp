@@ -52,6 +52,26 @@ TEST(AutomaticLevels, OfOneSizeAreOneLevelALittleAboveIt) {
     }
 }
 
+TEST(AutomaticLevels, AreFlatAcrossATerrainAndNotInAFilledSpace) {
+    for (int thinAxis = 0; thinAxis < 3; ++thinAxis) {
+        Random random(0x5eed0310);
+        SizeCensus terrain;
+        for (int i = 0; i < 10000; ++i) {
+            Vector3<double> center = random.pointIn(-200, 200);
+            center[thinAxis] /= 40;
+            terrain.add(boxAround<double>(center, {1, 1, 1}));
+        }
+        const LevelSizes levels = terrain.cheapestLevels();
+        ASSERT_EQ(levels.count, 1);
+        // Rows run along x, where cells cost no look-ups.
+        EXPECT_EQ(levels.flatAxes[0], thinAxis == 0 ? 0 : 1 << thinAxis);
+    }
+    Random random(0x5eed0311);
+    SizeCensus space;
+    addCubes(space, random, 10000, 1, 30);
+    EXPECT_EQ(space.cheapestLevels().flatAxes[0], 0);
+}
+
 TEST(AutomaticLevels, ListAFewHugeBoxesAmongManySmallOnes) {
     Random random(0x5eed0302);
     SizeCensus census;
