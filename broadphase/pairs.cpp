@@ -119,38 +119,43 @@ template <class Scalar>
 void Pairs<Scalar>::findNew() {
     fresh_.clear();
     QueryCost cost;
-    const auto found = [this](std::uint32_t a, std::uint32_t b) {
-        if (!overlaps(before_[a], before_[b])) {
-            fresh_.push_back(couple(a, b, false));
-        }
-    };
-    const auto isSearched = [this](std::uint32_t slot) {
-        return grid_.records_[slot].place == Grid<Scalar>::Place::mobile;
-    };
     // The join reads each neighbourhood once and half of it; it pays unless few have changed.
     const bool byJoin = 4 * grid_.changes_.size() >= grid_.mobileSlots_.size();
     if (byJoin && !grid_.changes_.empty()) {
         joinMobile(cost);
     }
-    for (const auto& change : grid_.changes_) {
-        const std::uint32_t slot = change.slot;
-        if (!isSearched(slot)) {
-            continue;
-        }
-        const auto foundAround = [&](std::uint32_t other) { found(slot, other); };
-        const auto foundMobile = [&](std::uint32_t other) {
-            // Of two that changed, the one with the smaller slot reports.
-            if (other != slot && !(other < slot && grid_.changedNow(other))) {
-                found(slot, other);
-            }
-        };
-        if (!byJoin) {
-            detail::forOverlapsInTable(grid_.mobile_, grid_.boxes_[slot], cost, foundMobile);
-        }
-        detail::forOverlapsInTable(grid_.resting_, grid_.boxes_[slot], cost, foundAround);
+    if (!byJoin || grid_.resting_.size() > 0) {
+        walkAroundChanged(!byJoin, cost);
     }
     cost_.boxesTested += cost.boxesTested;
     std::sort(fresh_.begin(), fresh_.end());
+}
+
+// What changed against the resting proxies, and against the mobile ones where asked for.
+template <class Scalar>
+void Pairs<Scalar>::walkAroundChanged(bool amongMobile, QueryCost& cost) {
+    const auto found = [this](std::uint32_t a, std::uint32_t b) {
+        if (!overlaps(before_[a], before_[b])) {
+            fresh_.push_back(couple(a, b, false));
+        }
+    };
+    for (const auto& change : grid_.changes_) {
+        const std::uint32_t slot = change.slot;
+        if (grid_.records_[slot].place != Grid<Scalar>::Place::mobile) {
+            continue;  // removed, or NaN
+        }
+        if (amongMobile) {
+            const auto foundMobile = [&](std::uint32_t other) {
+                // Of two that changed, the one with the smaller slot reports.
+                if (other != slot && !(other < slot && grid_.changedNow(other))) {
+                    found(slot, other);
+                }
+            };
+            detail::forOverlapsInTable(grid_.mobile_, grid_.boxes_[slot], cost, foundMobile);
+        }
+        const auto foundResting = [&](std::uint32_t other) { found(slot, other); };
+        detail::forOverlapsInTable(grid_.resting_, grid_.boxes_[slot], cost, foundResting);
+    }
 }
 
 // The boxes before are put in the table's order first: what is near each other in space is then near

@@ -110,6 +110,7 @@ private:
     void captureWoken();
     void findNew();
     void joinMobile(QueryCost& cost);
+    void walkAroundChanged(bool amongMobile, QueryCost& cost);
     void mergeWatched(PairFilter filter);
     [[nodiscard]] std::uint32_t decide(Couple c, PairFilter filter);
     void keepOrDrop(Couple c, PairFilter filter);
