@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/detail/run_map.hpp>
+#include <tests/support/random_keys.hpp>
 
 #include <gtest/gtest.h>
 
@@ -10,13 +11,7 @@
 namespace hashphase::detail {
 namespace {
 
-constexpr std::uint64_t kLargest = ~std::uint64_t{0};
-
-// Few different keys, so that they meet again; some at both ends of the range.
-std::uint64_t randomKey(std::mt19937_64& random) {
-    const std::uint64_t small = random() % 700;
-    return random() % 2 == 0 ? small << 32 | (small + 1) : kLargest - small;
-}
+using test::randomKey;
 
 TEST(RunMap, AgreesWithUnorderedMapOverRandomOperations) {
     RunMap map;
