@@ -78,6 +78,8 @@ struct CellRun {
 struct EntryRange {
     std::uint32_t first = 0;
     std::uint32_t last = 0;  // one past
+
+    [[nodiscard]] std::uint32_t count() const noexcept { return last - first; }
 };
 
 template <class Scalar>
@@ -116,27 +118,34 @@ public:
                 bounds_[3].data(), bounds_[4].data(), bounds_[5].data()};
     }
 
-    /// True when the entry's min corner lies in row (y, z) of the level. Rows may share buckets;
-    /// this tells them apart, and it is asked about hits only.
+    /// True when the entry, found in a bucket of row (y, z) of the level, is of that row: hashed rows
+    /// may share buckets. Asked about hits only.
     [[nodiscard]] bool isInRow(const Level<Scalar>& level, std::uint32_t entry, std::int32_t y,
                                std::int32_t z) const noexcept {
-        return level.cell(bounds_[1][entry], 1) == y && level.cell(bounds_[2][entry], 2) == z;
+        return level.isDense ||
+               (level.cell(bounds_[1][entry], 1) == y && level.cell(bounds_[2][entry], 2) == z);
     }
 
     /// Calls visit(EntryRange) for the buckets of the run: once, or twice where it wraps around.
     /// Entries of other rows may be among them. Cost: O(1) + visits.
     template <class Visit>
     void forRun(const Level<Scalar>& level, const CellRun& run, Visit&& visit) const {
+        forRun(level, level.rowBase(run.y, run.z), run.firstX, run.lastX, visit);
+    }
+
+    /// The same for a row given by its Level::rowBase().
+    template <class Visit>
+    void forRun(const Level<Scalar>& level, std::uint32_t rowBase, std::int32_t firstX,
+                std::int32_t lastX, Visit&& visit) const {
         const std::uint32_t* starts = bucketStart_.data() + level.firstBucket;
-        const auto length = static_cast<std::uint32_t>(run.lastX - run.firstX) + 1;
+        const auto length = static_cast<std::uint32_t>(lastX - firstX) + 1;
         const std::uint32_t bucketCount = level.bucketMask + 1;
         if (length >= bucketCount) {
             visit(EntryRange{starts[0], starts[bucketCount]});
             return;
         }
         const std::uint32_t first =
-            (level.rowBase(run.y, run.z) + static_cast<std::uint32_t>(run.firstX)) &
-            level.bucketMask;
+            (rowBase + static_cast<std::uint32_t>(firstX)) & level.bucketMask;
         const std::uint32_t last = first + length;
         if (last <= bucketCount) {
             visit(EntryRange{starts[first], starts[last]});
