@@ -189,9 +189,11 @@ void Pairs<Scalar>::mergeWatched(PairFilter filter) {
     cost_.couplesWatched = watched_.size();
 
     merged_.clear();
-    const auto watch = [&](Couple c) {
+    merged_.reserve(watched_.size() + fresh_.size());  // undecided_ points into it
+    undecided_.clear();
+    const auto watch = [this](Couple c) {
         if (!contains(announced_, c)) {
-            merged_.push_back(c | decide(c, filter));
+            addUndecided(merged_.emplace_back(c));
         }
     };
     auto next = fresh_.begin();
@@ -199,45 +201,55 @@ void Pairs<Scalar>::mergeWatched(PairFilter filter) {
         for (; next != fresh_.end() && *next < c; ++next) {
             watch(*next);
         }
-        keepOrDrop(c, filter);
+        keepOrDrop(c);
     }
     std::for_each(next, fresh_.end(), watch);
     watched_.swap(merged_);
     announced_.clear();
-}
-
-// Asks the filter about a new couple: 0 when a pair is born, 1 when it is refused.
-template <class Scalar>
-std::uint32_t Pairs<Scalar>::decide(Couple c, PairFilter filter) {
-    const ProxyPair pair = pairOf(c);
-    if (filter(pair.first, pair.second)) {
-        bear(c);
-        return 0;
-    }
-    ++refusedCount_;
-    return 1;
+    decide(filter);
 }
 
 template <class Scalar>
-void Pairs<Scalar>::keepOrDrop(Couple c, PairFilter filter) {
+void Pairs<Scalar>::keepOrDrop(Couple c) {
     const std::uint32_t a = first(c);
     const std::uint32_t b = second(c);
     if (!overlaps(grid_.boxes_[a], grid_.boxes_[b])) {
         isRefused(c) ? void(--refusedCount_) : bury(c);
         return;
     }
-    if (isRefused(c) && (grid_.changedNow(a) || grid_.changedNow(b))) {
-        const ProxyPair pair = pairOf(c);
-        if (filter(pair.first, pair.second)) {
-            --refusedCount_;
-            c &= ~Couple{1};
-            bear(c);
-        }
-    }
     if (changedLately(c, grid_.updateNumber_)) {
         merged_.push_back(c);
+        if (isRefused(c) && (grid_.changedNow(a) || grid_.changedNow(b))) {
+            undecided_.push_back(&merged_.back());
+        }
     } else if (isRefused(c)) {
         refusedAtRest_.findOrInsert(c & ~Couple{1});
+    }
+}
+
+// A new couple counts as refused until it is decided.
+template <class Scalar>
+void Pairs<Scalar>::addUndecided(Couple& c) {
+    c |= 1;
+    ++refusedCount_;
+    undecided_.push_back(&c);
+}
+
+// Asks the filter about the undecided couples.
+template <class Scalar>
+void Pairs<Scalar>::decide(PairFilter filter) {
+    asked_.clear();
+    for (const Couple* c : undecided_) {
+        asked_.push_back(pairOf(*c));
+    }
+    accepted_.assign(asked_.size(), 0);
+    filter(asked_, accepted_);
+    for (std::size_t i = 0; i < undecided_.size(); ++i) {
+        Couple& c = *undecided_[i];
+        if (isRefused(c) == (accepted_[i] != 0)) {
+            c ^= 1;
+            isRefused(c) ? (++refusedCount_, bury(c)) : (--refusedCount_, bear(c));
+        }
     }
 }
 
@@ -273,11 +285,11 @@ template <class Scalar>
 PairChanges Pairs<Scalar>::announce(ProxyId id, PairFilter filter) {
     HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid can announce its pairs.");
     beginCall();
-    findUndecided(id.index);
-    for (const Couple c : fresh_) {
-        announced_.findOrInsert(c);
-        captured_.push_back(c | decide(c, filter));
-    }
+    findUnknown(id.index);
+    undecided_.clear();
+    announceFresh();
+    decide(filter);
+    captured_.insert(captured_.end(), fresh_.begin(), fresh_.end());
     return {born_, died_};
 }
 
@@ -289,35 +301,44 @@ PairChanges Pairs<Scalar>::refilter(ProxyId id, PairFilter filter) {
     // those announced since captured as well.
     grid_.noteChange(id.index);
     captureWoken();
-    std::vector<std::pair<Couple, Couple*>> asked;
+    findUnknown(id.index);
+    undecided_.clear();
     for (std::vector<Couple>* known : {&watched_, &captured_}) {
         for (Couple& c : *known) {
-            if (first(c) == id.index || second(c) == id.index) {
-                asked.emplace_back(c, &c);
+            if ((first(c) == id.index || second(c) == id.index) && isToAskAgain(c)) {
+                undecided_.push_back(&c);
             }
         }
     }
-    findUndecided(id.index);
-    for (Couple& c : fresh_) {
-        announced_.findOrInsert(c);
-        asked.emplace_back(c, nullptr);
-    }
-    fresh_.clear();
-    std::sort(asked.begin(), asked.end());
-    for (const auto& [c, known] : asked) {
-        if (known != nullptr) {
-            askAgain(*known, filter);
-        } else {
-            fresh_.push_back(c | decide(c, filter));
-        }
-    }
+    announceFresh();
+    std::sort(undecided_.begin(), undecided_.end(),
+              [](const Couple* a, const Couple* b) { return *a < *b; });
+    decide(filter);
     captured_.insert(captured_.end(), fresh_.begin(), fresh_.end());
     return {born_, died_};
 }
 
+template <class Scalar>
+void Pairs<Scalar>::announceFresh() {
+    for (Couple& c : fresh_) {
+        announced_.findOrInsert(c);
+        addUndecided(c);
+    }
+}
+
+// Couples that are apart for the moment and no pair are asked about by update(), should they meet
+// again until then.
+template <class Scalar>
+bool Pairs<Scalar>::isToAskAgain(Couple c) const {
+    const std::uint32_t a = first(c);
+    const std::uint32_t b = second(c);
+    return overlaps(grid_.boxes_[a], grid_.boxes_[b]) ||
+           (!isRefused(c) && grid_.isAlive(a) && grid_.isAlive(b));
+}
+
 // The proxy's couples that overlap now, did not at the last update, and were not announced since.
 template <class Scalar>
-void Pairs<Scalar>::findUndecided(std::uint32_t slot) {
+void Pairs<Scalar>::findUnknown(std::uint32_t slot) {
     fresh_.clear();
     const auto add = [&](ProxyId other) {
         if (other.index != slot && !overlaps(before_[slot], before_[other.index])) {
@@ -330,21 +351,6 @@ void Pairs<Scalar>::findUndecided(std::uint32_t slot) {
     CollectInto collector{add};
     grid_.visit(BoxRegion<Scalar>{grid_.boxes_[slot]}, collector);
     std::sort(fresh_.begin(), fresh_.end());
-}
-
-template <class Scalar>
-void Pairs<Scalar>::askAgain(Couple& c, PairFilter filter) {
-    if (!overlaps(grid_.boxes_[first(c)], grid_.boxes_[second(c)])) {
-        const bool bothAlive = grid_.isAlive(first(c)) && grid_.isAlive(second(c));
-        if (isRefused(c) || !bothAlive) {
-            return;  // asked by update(), should they meet again until then
-        }
-    }
-    const ProxyPair pair = pairOf(c);
-    if (filter(pair.first, pair.second) == isRefused(c)) {
-        c ^= 1;
-        isRefused(c) ? (++refusedCount_, bury(c)) : (--refusedCount_, bear(c));
-    }
 }
 
 // --- The whole set -------------------------------------------------------------------------------
@@ -383,7 +389,8 @@ std::size_t Pairs<Scalar>::memoryBytes() const noexcept {
     return sizeof(*this) + (before_.capacity() + beforeByEntry_.capacity()) * sizeof(Aabb<Scalar>) +
            (watched_.capacity() + captured_.capacity() + fresh_.capacity() + merged_.capacity()) *
                sizeof(Couple) +
-           (born_.capacity() + died_.capacity()) * sizeof(ProxyPair) +
+           (born_.capacity() + died_.capacity() + asked_.capacity()) * sizeof(ProxyPair) +
+           undecided_.capacity() * sizeof(Couple*) + accepted_.capacity() +
            woken_.capacity() * sizeof(std::uint32_t) + wokenTable_.memoryBytes() +
            announced_.memoryBytes() + refusedAtRest_.memoryBytes();
 }

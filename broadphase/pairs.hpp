@@ -16,18 +16,46 @@
 #include <broadphase/function_ref.hpp>
 #include <broadphase/grid.hpp>
 
+#include <concepts>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace hashphase {
 
-/// Says whether two overlapping proxies make a pair. Asked once when two proxies begin to overlap,
-/// in ascending order of ids; again, for couples that it refused, whenever one of them has changed
-/// or refilter() is called. Must not change the grid.
-using PairFilter = FunctionRef<bool(ProxyId, ProxyId)>;
+/// Says which overlapping proxies make a pair: a function that is asked about two of them, or one
+/// that is asked about many at once and sets accepted[i], given as 0, to 1 where asked[i] make a
+/// pair. Asked once when two proxies begin to overlap, in ascending order of ids; again, for couples
+/// that it refused, whenever one of them has changed or refilter() is called. Must not change the
+/// grid. For parameters only, as FunctionRef.
+class PairFilter {
+public:
+    using OfOne = FunctionRef<bool(ProxyId, ProxyId)>;
+    using OfMany = FunctionRef<void(std::span<const ProxyPair> asked, std::span<char> accepted)>;
+
+    template <std::convertible_to<OfOne> Ask>
+    PairFilter(Ask&& ask) noexcept : ask_(OfOne(ask)) {}  // NOLINT: conversion is its purpose
+
+    template <std::convertible_to<OfMany> Ask>
+    PairFilter(Ask&& ask) noexcept : ask_(OfMany(ask)) {}  // NOLINT: conversion is its purpose
+
+    void operator()(std::span<const ProxyPair> asked, std::span<char> accepted) const {
+        if (const OfMany* ofMany = std::get_if<OfMany>(&ask_)) {
+            (*ofMany)(asked, accepted);
+            return;
+        }
+        const OfOne& ofOne = std::get<OfOne>(ask_);
+        for (std::size_t i = 0; i < asked.size(); ++i) {
+            accepted[i] = ofOne(asked[i].first, asked[i].second) ? 1 : 0;
+        }
+    }
+
+private:
+    std::variant<OfOne, OfMany> ask_;
+};
 
 /// Sorted; valid until the next call. A pair that died may name a proxy that was removed.
 struct PairChanges {
@@ -112,14 +140,16 @@ private:
     void joinMobile(QueryCost& cost);
     void walkAroundChanged(bool amongMobile, QueryCost& cost);
     void mergeWatched(PairFilter filter);
-    [[nodiscard]] std::uint32_t decide(Couple c, PairFilter filter);
-    void keepOrDrop(Couple c, PairFilter filter);
+    void keepOrDrop(Couple c);
+    void addUndecided(Couple& c);
+    void announceFresh();
+    void decide(PairFilter filter);
     void publish();
     void beginCall();
     void bear(Couple c);
     void bury(Couple c);
-    void askAgain(Couple& c, PairFilter filter);
-    void findUndecided(std::uint32_t slot);
+    [[nodiscard]] bool isToAskAgain(Couple c) const;
+    void findUnknown(std::uint32_t slot);
     void forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const;
 
     Grid<Scalar>& grid_;
@@ -134,6 +164,9 @@ private:
     std::vector<Aabb<Scalar>> beforeByEntry_;  // before_ in the order of the grid's mobile table
     std::vector<Couple> fresh_;
     std::vector<Couple> merged_;
+    std::vector<Couple*> undecided_;  // ascending: what the filter is to be asked about
+    std::vector<ProxyPair> asked_;
+    std::vector<char> accepted_;
     std::vector<std::uint32_t> woken_;
     detail::Table<Scalar> wokenTable_;
     std::vector<ProxyPair> born_;

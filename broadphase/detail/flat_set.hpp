@@ -12,6 +12,7 @@
 // Threads   Everything const may run anywhere, the rest needs the container for itself.
 // Keys      Every key is valid.
 
+#include <broadphase/detail/prefetch.hpp>
 #include <broadphase/diagnostics.hpp>
 
 #include <algorithm>
@@ -33,6 +34,13 @@ public:
     /// The key's number, or kNone. Cost: O(1).
     [[nodiscard]] std::uint32_t find(std::uint64_t key) const noexcept {
         return keys_.empty() ? kNone : slots_[slotOf(key, hash(key))].number;
+    }
+
+    /// Fetches into the processor's cache where a search for the key begins.
+    void prefetch(std::uint64_t key) const noexcept {
+        if (!keys_.empty()) {
+            detail::prefetch(&slots_[home(hash(key))]);
+        }
     }
 
     /// The key's number. A key that was not there gets the next one, size() before the call.

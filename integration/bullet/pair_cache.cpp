@@ -39,6 +39,10 @@ btBroadphasePair* PairCache::addOverlappingPair(btBroadphaseProxy* proxy0,
     return needsBroadphaseCollision(proxy0, proxy1) ? addAcceptedPair(proxy0, proxy1) : nullptr;
 }
 
+void PairCache::prefetch(const btBroadphaseProxy& proxy0, const btBroadphaseProxy& proxy1) const {
+    ids_.prefetch(idsOf(proxy0, proxy1));
+}
+
 btBroadphasePair* PairCache::addAcceptedPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1) {
     HASHPHASE_ASSERT(proxy0->m_uniqueId != proxy1->m_uniqueId,
                      "A pair is made of two proxies with different unique ids.");

@@ -68,6 +68,9 @@ public:
     btBroadphasePair* addOverlappingPair(btBroadphaseProxy* proxy0,
                                          btBroadphaseProxy* proxy1) override;
 
+    /// Fetches into the processor's cache what the next members will read of this pair.
+    void prefetch(const btBroadphaseProxy& proxy0, const btBroadphaseProxy& proxy1) const;
+
     /// The same without asking the filter, for callers who have.
     btBroadphasePair* addAcceptedPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1);
 

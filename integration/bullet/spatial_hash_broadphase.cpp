@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
+#include <broadphase/detail/prefetch.hpp>
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/pair_cache.hpp>
 
@@ -147,27 +148,59 @@ void SpatialHashBroadphase::aabbTest(const btVector3& aabbMin, const btVector3& 
     grid_.visit(BoxRegion<btScalar>{toAabb(aabbMin, aabbMax)}, collector);
 }
 
-bool SpatialHashBroadphase::accepts(ProxyId a, ProxyId b) const {
-    return pairCache_->needsBroadphaseCollision(bySlot_[a.index], bySlot_[b.index]);
+// Pairs name proxies all over the memory. What a later one will read is fetched while earlier ones
+// are dealt with: its proxies first, then, by their unique ids, its place in the cache.
+void SpatialHashBroadphase::prefetchProxies(std::span<const ProxyPair> pairs, std::size_t i) const {
+    constexpr std::size_t kAhead = 16;
+    if (i + kAhead < pairs.size()) {
+        detail::prefetch(bySlot_[pairs[i + kAhead].first.index]);
+        detail::prefetch(bySlot_[pairs[i + kAhead].second.index]);
+    }
+}
+
+void SpatialHashBroadphase::prefetchPairs(std::span<const ProxyPair> pairs, std::size_t i) const {
+    prefetchProxies(pairs, i);
+    constexpr std::size_t kAhead = 8;
+    if (ownCache_ == nullptr || i + kAhead >= pairs.size()) {
+        return;
+    }
+    const Proxy* first = bySlot_[pairs[i + kAhead].first.index];
+    const Proxy* second = bySlot_[pairs[i + kAhead].second.index];
+    if (first != nullptr && second != nullptr) {
+        ownCache_->prefetch(*first, *second);
+    }
+}
+
+void SpatialHashBroadphase::askFilter(std::span<const ProxyPair> asked,
+                                      std::span<char> accepted) const {
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+        prefetchProxies(asked, i);
+        accepted[i] = pairCache_->needsBroadphaseCollision(bySlot_[asked[i].first.index],
+                                                           bySlot_[asked[i].second.index])
+                          ? 1
+                          : 0;
+    }
 }
 
 void SpatialHashBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
-    apply(pairs_.update([this](ProxyId a, ProxyId b) { return accepts(a, b); }), dispatcher);
+    apply(pairs_.update(cacheFilter()), dispatcher);
     removeDeferred(nullptr, dispatcher);
 }
 
 void SpatialHashBroadphase::apply(const PairChanges& changes, btDispatcher* dispatcher) {
-    for (const ProxyPair& pair : changes.died) {
-        Proxy* first = bySlot_[pair.first.index];
-        Proxy* second = bySlot_[pair.second.index];
+    for (std::size_t i = 0; i < changes.died.size(); ++i) {
+        prefetchPairs(changes.died, i);
+        Proxy* first = bySlot_[changes.died[i].first.index];
+        Proxy* second = bySlot_[changes.died[i].second.index];
         // A destroyed proxy has taken its pairs with it.
         if (first != nullptr && second != nullptr) {
             pairCache_->removeOverlappingPair(first, second, dispatcher);
         }
     }
-    for (const ProxyPair& pair : changes.born) {
-        Proxy* first = bySlot_[pair.first.index];
-        Proxy* second = bySlot_[pair.second.index];
+    for (std::size_t i = 0; i < changes.born.size(); ++i) {
+        prefetchPairs(changes.born, i);
+        Proxy* first = bySlot_[changes.born[i].first.index];
+        Proxy* second = bySlot_[changes.born[i].second.index];
         if (ownCache_ != nullptr) {
             ownCache_->addAcceptedPair(first, second);
         } else {
@@ -178,21 +211,19 @@ void SpatialHashBroadphase::apply(const PairChanges& changes, btDispatcher* disp
 
 void SpatialHashBroadphase::announceIfEager(const Proxy& proxy, btDispatcher* dispatcher) {
     if ((proxy.m_collisionFilterGroup & config_.eagerGroups) != 0) {
-        apply(pairs_.announce(proxy.id, [this](ProxyId a, ProxyId b) { return accepts(a, b); }),
-              dispatcher);
+        apply(pairs_.announce(proxy.id, cacheFilter()), dispatcher);
     }
 }
 
 void SpatialHashBroadphase::refilter(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
     const Proxy* own = checkedProxy(proxy);
-    apply(pairs_.refilter(own->id, [this](ProxyId a, ProxyId b) { return accepts(a, b); }),
-          dispatcher);
+    apply(pairs_.refilter(own->id, cacheFilter()), dispatcher);
     removeDeferred(own, dispatcher);
 }
 
 // Caches with deferred removal ignore removeOverlappingPair() and keep duplicates; their user is to
 // sort the array, free what is doubled or no pair any more, and cut it off: at the end of a step what
-// is apart, after refilter() what the filter refuses of that proxy.
+// is apart, after recacheFilter() what the filter refuses of that proxy.
 void SpatialHashBroadphase::removeDeferred(const btBroadphaseProxy* refiltered,
                                            btDispatcher* dispatcher) {
     if (!pairCache_->hasDeferredRemoval()) {

@@ -30,6 +30,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -136,7 +137,14 @@ private:
     template <class Callback>
     struct ProcessCollector;
 
-    [[nodiscard]] bool accepts(ProxyId a, ProxyId b) const;
+    void askFilter(std::span<const ProxyPair> asked, std::span<char> accepted) const;
+    [[nodiscard]] auto cacheFilter() const {
+        return [this](std::span<const ProxyPair> asked, std::span<char> accepted) {
+            askFilter(asked, accepted);
+        };
+    }
+    void prefetchProxies(std::span<const ProxyPair> pairs, std::size_t i) const;
+    void prefetchPairs(std::span<const ProxyPair> pairs, std::size_t i) const;
     void apply(const PairChanges& changes, btDispatcher* dispatcher);
     void announceIfEager(const Proxy& proxy, btDispatcher* dispatcher);
     void removeDeferred(const btBroadphaseProxy* refiltered, btDispatcher* dispatcher);

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <span>
 #include <vector>
 
 namespace hashphase::test {
@@ -115,6 +117,43 @@ TEST(PairFilter, IsNotAskedAgainBecauseARestingProxyWakes) {
     couple.world.update();
     EXPECT_TRUE(couple.world.asked().empty());
     EXPECT_TRUE(couple.isPair());
+}
+
+TEST(PairFilter, OfManyAtOnceDecidesAsOneByOneDoes) {
+    const auto isAccepted = [](ProxyId a, ProxyId b) { return (a.index ^ b.index) % 3 != 0; };
+    PairWorld<double> oneByOne({}, isAccepted);
+    Grid<double> grid;
+    Pairs<double> pairs(grid);
+    std::size_t calls = 0;
+    const auto ask = [&](std::span<const ProxyPair> asked, std::span<char> accepted) {
+        ++calls;
+        ASSERT_EQ(asked.size(), accepted.size());
+        for (std::size_t i = 0; i < asked.size(); ++i) {
+            EXPECT_EQ(accepted[i], 0);
+            accepted[i] = isAccepted(asked[i].first, asked[i].second) ? 1 : 0;
+        }
+    };
+    std::vector<ProxyId> ids;
+    for (int i = 0; i < 60; ++i) {
+        ids.push_back(grid.add(cubeAt(0.4 * i)));
+        ASSERT_EQ(oneByOne.add(cubeAt(0.4 * i)), ids.back());
+    }
+    for (std::size_t frame = 0; frame < 20; ++frame) {
+        for (std::size_t i = frame % 2; i < ids.size(); i += 2) {
+            const Box box = cubeAt(0.4 * static_cast<double>((i * 7 + frame) % ids.size()));
+            grid.move(ids[i], box);
+            oneByOne.move(ids[i], box);
+        }
+        calls = 0;
+        const PairChanges changes = pairs.update(ask);
+        const PairChanges expected = oneByOne.update();
+        ASSERT_TRUE(std::ranges::equal(changes.born, expected.born));
+        ASSERT_TRUE(std::ranges::equal(changes.died, expected.died));
+        EXPECT_EQ(calls, 1U);
+        EXPECT_GT(pairs.count(), 0U);
+        EXPECT_EQ(pairs.refusedCount(), oneByOne.pairs.refusedCount());
+        ASSERT_EQ(pairs.validate(), "");
+    }
 }
 
 // --- Filtering again -----------------------------------------------------------------------------
