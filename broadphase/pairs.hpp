@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -39,8 +40,11 @@ public:
     template <std::convertible_to<OfOne> Ask>
     PairFilter(Ask&& ask) noexcept : ask_(OfOne(ask)) {}  // NOLINT: conversion is its purpose
 
-    template <std::convertible_to<OfMany> Ask>
-    PairFilter(Ask&& ask) noexcept : ask_(OfMany(ask)) {}  // NOLINT: conversion is its purpose
+    template <class Ask>
+        requires(!std::is_same_v<std::remove_cvref_t<Ask>, PairFilter> &&
+                 !std::convertible_to<Ask, OfOne> && std::convertible_to<Ask, OfMany>)
+    PairFilter(Ask&& ask)  // NOLINT: conversion is its purpose
+        : ask_(OfMany(ask)) {}
 
     void operator()(std::span<const ProxyPair> asked, std::span<char> accepted) const {
         if (const OfMany* ofMany = std::get_if<OfMany>(&ask_)) {

@@ -5,7 +5,8 @@
 //
 //   key(box)                the box's distance in the region's own measure (0 or more), or a
 //                           negative number when the box is not in the region
-//   forRows(level, visit)   visits the rows of cells in which anything with a key may be filed
+//   forRows(level, visit)   visits the rows of cells in which anything with a key may be filed,
+//                           within level.low to level.high
 //
 // key() decides what is found; forRows() only saves work and may name too many rows, never too few.
 //

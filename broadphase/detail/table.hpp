@@ -25,6 +25,16 @@
 
 namespace hashphase::detail {
 
+/// Part of a row of cells, from firstX to lastX inclusive. Nothing in it has a smaller key than
+/// `nearestKey` in the region that named it.
+struct CellRun {
+    std::int32_t y = 0;
+    std::int32_t z = 0;
+    std::int32_t firstX = 0;
+    std::int32_t lastX = 0;
+    double nearestKey = 0;
+};
+
 /// One level of a table: which entries it has, how coordinates become its cells, and how its rows
 /// of cells become buckets.
 template <class Scalar>
@@ -47,6 +57,12 @@ struct Level {
 
     [[nodiscard]] std::uint32_t count() const noexcept { return lastEntry - firstEntry; }
 
+    /// True when the run lies in low to high.
+    [[nodiscard]] bool isWithin(const CellRun& run) const noexcept {
+        return low[0] <= run.firstX && run.lastX <= high[0] && low[1] <= run.y &&
+               run.y <= high[1] && low[2] <= run.z && run.z <= high[2];
+    }
+
     [[nodiscard]] std::int32_t cell(Scalar x, std::size_t axis) const noexcept {
         // Not 0 * infinity, along a flat axis.
         return inverseCellSize[axis] == 0 ? 0 : quantise(x, origin[axis], inverseCellSize[axis]);
@@ -63,16 +79,6 @@ struct Level {
         hash *= 0x7feb352dU;
         return hash ^ (hash >> 15);
     }
-};
-
-/// Part of a row of cells, from firstX to lastX inclusive. Nothing in it has a smaller key than
-/// `nearestKey` in the region that named it.
-struct CellRun {
-    std::int32_t y = 0;
-    std::int32_t z = 0;
-    std::int32_t firstX = 0;
-    std::int32_t lastX = 0;
-    double nearestKey = 0;
 };
 
 struct EntryRange {
@@ -118,8 +124,8 @@ public:
                 bounds_[3].data(), bounds_[4].data(), bounds_[5].data()};
     }
 
-    /// True when the entry, found in a bucket of row (y, z) of the level, is of that row: hashed rows
-    /// may share buckets. Asked about hits only.
+    /// True when the entry, found by forRun(), lies in that row (y, z): hashed rows may share
+    /// buckets. Asked about hits only.
     [[nodiscard]] bool isInRow(const Level<Scalar>& level, std::uint32_t entry, std::int32_t y,
                                std::int32_t z) const noexcept {
         return level.isDense ||
@@ -127,7 +133,8 @@ public:
     }
 
     /// Calls visit(EntryRange) for the buckets of the run: once, or twice where it wraps around.
-    /// Entries of other rows may be among them. Cost: O(1) + visits.
+    /// The run may begin one cell before the level's lowest and end one after its highest.
+    /// Entries of other rows may be among them where rows are hashed. Cost: O(1) + visits.
     template <class Visit>
     void forRun(const Level<Scalar>& level, const CellRun& run, Visit&& visit) const {
         forRun(level, level.rowBase(run.y, run.z), run.firstX, run.lastX, visit);

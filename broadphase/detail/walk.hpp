@@ -5,6 +5,7 @@
 // the walk reads their buckets.
 
 #include <broadphase/detail/table.hpp>
+#include <broadphase/diagnostics.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -81,6 +82,7 @@ bool walkLevel(const Table<Scalar>& table, const Level<Scalar>& level, const Reg
     }
     bool goOn = true;
     const bool byRows = region.forRows(level, [&](const CellRun& run) {
+        HASHPHASE_ASSERT(level.isWithin(run), "A region names rows of the level's cells.");
         if (run.nearestKey > reader.limit()) {
             return true;
         }

@@ -156,6 +156,16 @@ TEST(PairFilter, OfManyAtOnceDecidesAsOneByOneDoes) {
     }
 }
 
+TEST(PairFilter, MayTakeItsArgumentsAsAuto) {
+    Grid<double> grid;
+    Pairs<double> pairs(grid);
+    const ProxyPair pair = makePair(grid.add(cubeAt(0)), grid.add(cubeAt(0.5)));
+    const auto accept = [](auto a, auto b) { return a != b; };
+    PairFilter filter = accept;
+    PairFilter copy = filter;
+    EXPECT_TRUE(std::ranges::equal(pairs.update(copy).born, std::vector{pair}));
+}
+
 // --- Filtering again -----------------------------------------------------------------------------
 
 TEST(Refilter, EndsAndBeginsPairsAtOnceAlsoOfProxiesAtRest) {
@@ -238,6 +248,7 @@ TEST(Refilter, OfAProxyWhosePartnerWasRemovedLeavesTheDeathToTheUpdate) {
         couple.world.remove(couple.b);
         couple.accept = false;
         couple.world.refilter(couple.a);
+        EXPECT_TRUE(couple.isPair());
         couple.world.update();
         EXPECT_FALSE(couple.isPair());
         EXPECT_EQ(couple.world.pairs.count() + couple.world.pairs.refusedCount(), 0U);

@@ -99,6 +99,8 @@ public:
 private:
     auto recordingFilter() {
         return [this](ProxyId a, ProxyId b) {
+            EXPECT_TRUE(grid.contains(a) && grid.contains(b))
+                << "the filter is asked about the dead";
             asked_.push_back({a, b});
             return filter_(a, b);
         };
