@@ -189,7 +189,10 @@ void Pairs<Scalar>::mergeWatched(PairFilter filter) {
     cost_.couplesWatched = watched_.size();
 
     merged_.clear();
-    merged_.reserve(watched_.size() + fresh_.size());  // undecided_ points into it
+    const std::size_t most = watched_.size() + fresh_.size();
+    if (merged_.capacity() < most) {
+        merged_.reserve(most + most / 2);  // undecided_ points into it
+    }
     undecided_.clear();
     const auto watch = [this](Couple c) {
         if (!contains(announced_, c)) {
