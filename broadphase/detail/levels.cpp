@@ -101,10 +101,10 @@ double smallestUsefulCell(const std::array<double, 3>& spread, double count) {
 
 template <class Scalar>
 void SizeCensus::add(const Aabb<Scalar>& box) {
+    isConcluded_ = false;
     ++total_;
     const auto extent = static_cast<double>(box.sizes().maxCoeff());
     if (!(box.sizes().minCoeff() >= 0 && extent < kLargestCell / 2)) {
-        ++unfit_;
         return;
     }
     const auto bits =
@@ -133,98 +133,92 @@ template void SizeCensus::add<float>(const Aabb<float>&);
 template void SizeCensus::add<double>(const Aabb<double>&);
 
 void SizeCensus::clear() {
+    isConcluded_ = false;
     histogram_.fill({});
     total_ = 0;
-    unfit_ = 0;
     sampleStep_ = 1;
     samples_.clear();
 }
 
-double SizeCensus::quantile(std::size_t axis, double share) const {
-    if (samples_.empty()) {
-        return 0;
+void SizeCensus::conclude() {
+    if (!isConcluded_) {
+        measureSpread();
+        findClasses();
+        isConcluded_ = true;
     }
-    std::vector<double> values(samples_.size());
-    std::transform(samples_.begin(), samples_.end(), values.begin(),
-                   [axis](const auto& sample) { return sample[axis]; });
-    const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), values.begin() + rank, values.end());
-    return values[static_cast<std::size_t>(rank)];
 }
 
-std::array<double, 3> SizeCensus::spread() const {
-    std::array<double, 3> spread{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
+void SizeCensus::measureSpread() {
+    spread_ = {};
+    middle_ = {};
+    for (std::size_t axis = 0; axis < 3 && !samples_.empty(); ++axis) {
+        column_.clear();
+        for (const auto& sample : samples_) {
+            column_.push_back(sample[axis]);
+        }
+        const auto quantile = [this](double share) {
+            const double rank = share * static_cast<double>(column_.size() - 1);
+            const auto nth = column_.begin() + static_cast<std::ptrdiff_t>(rank);
+            std::nth_element(column_.begin(), nth, column_.end());
+            return *nth;
+        };
+        middle_[axis] = quantile(0.5);
         // The middle nine tenths, so that a few strays do not stretch the picture.
-        const double middle = quantile(axis, 0.95) / 0.9 - quantile(axis, 0.05) / 0.9;
-        spread[axis] = std::min(middle, std::numeric_limits<double>::max());
+        const double extent = quantile(0.95) / 0.9 - quantile(0.05) / 0.9;
+        spread_[axis] = std::min(extent, std::numeric_limits<double>::max());
     }
-    return spread;
 }
 
-std::array<double, 3> SizeCensus::middle() const {
-    return {quantile(0, 0.5), quantile(1, 0.5), quantile(2, 0.5)};
-}
-
-std::vector<SizeCensus::SizeClass> SizeCensus::occupiedClasses() const {
-    const double floor = std::clamp(smallestUsefulCell(spread(), static_cast<double>(total_)),
+void SizeCensus::findClasses() {
+    const double floor = std::clamp(smallestUsefulCell(spread_, static_cast<double>(total_)),
                                     kSmallestCell, kLargestCell);
-    std::vector<SizeClass> classes;
+    classes_.assign(1, {});
     for (const Bin& bin : histogram_) {
-        const auto count = static_cast<double>(bin.count);
         if (bin.count == 0) {
             continue;
         }
         const double edge = std::max(bin.largest * kMargin, floor);
-        if (!classes.empty() && classes.back().upperEdge == edge) {
-            classes.back().count += count;
-        } else {
-            classes.push_back({edge, count});
+        if (classes_.back().upperEdge != edge) {
+            classes_.push_back({edge, classes_.back().countUpTo});
         }
+        classes_.back().countUpTo += bin.count;
     }
-    return classes;
 }
 
-LevelSizes SizeCensus::cheapestLevels() const {
-    const std::vector<SizeClass> classes = occupiedClasses();
-    const std::array<double, 3> extent = spread();
-    const std::size_t n = classes.size();
-
-    // best[q]: the least cost of filing the first q classes on levels, the last of which ends at
-    // class q; from[q]: where that last level begins.
-    std::vector<double> best(n + 1, std::numeric_limits<double>::infinity());
-    std::vector<double> countUpTo(n + 1, 0);
-    std::vector<std::size_t> from(n + 1, 0);
-    best[0] = 0;
-    for (std::size_t q = 1; q <= n; ++q) {
-        countUpTo[q] = countUpTo[q - 1] + classes[q - 1].count;
+LevelSizes SizeCensus::cheapestLevels() {
+    conclude();
+    for (std::size_t q = 1; q < classes_.size(); ++q) {
+        SizeClass& last = classes_[q];
+        last.leastCost = std::numeric_limits<double>::infinity();
         for (std::size_t p = 0; p < q; ++p) {
-            const double cost = best[p] + costOfLevel(extent, classes[q - 1].upperEdge,
-                                                      countUpTo[q] - countUpTo[p], countUpTo[p])
-                                              .cost;
-            if (cost < best[q]) {
-                best[q] = cost;
-                from[q] = p;
+            const SizeClass& below = classes_[p];
+            const double cost =
+                below.leastCost + costOfLevel(spread_, last.upperEdge,
+                                              last.countUpTo - below.countUpTo, below.countUpTo)
+                                      .cost;
+            if (cost < last.leastCost) {
+                last.leastCost = cost;
+                last.from = p;
             }
         }
     }
 
     // What lies above the last level is listed without cells.
     const auto total = static_cast<double>(total_);
-    std::size_t last = 0;
+    std::size_t end = 0;
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t q = 0; q <= n; ++q) {
-        const double listed = total - countUpTo[q];
-        const double cost = best[q] + total * listed * kListedBoxCost;
+    for (std::size_t q = 0; q < classes_.size(); ++q) {
+        const double listed = total - classes_[q].countUpTo;
+        const double cost = classes_[q].leastCost + total * listed * kListedBoxCost;
         if (cost < least) {
             least = cost;
-            last = q;
+            end = q;
         }
     }
 
     LevelSizes levels;
-    for (std::size_t q = last; q > 0 && levels.count < kMaxLevels; q = from[q]) {
-        levels.cellSize[static_cast<std::size_t>(levels.count++)] = classes[q - 1].upperEdge;
+    for (std::size_t q = end; q > 0 && levels.count < kMaxLevels; q = classes_[q].from) {
+        levels.cellSize[static_cast<std::size_t>(levels.count++)] = classes_[q].upperEdge;
     }
     std::reverse(levels.cellSize.begin(), levels.cellSize.begin() + levels.count);
     flatten(levels);
@@ -234,36 +228,38 @@ LevelSizes SizeCensus::cheapestLevels() const {
 // Calls visit(level number, boxes on it, boxes on finer ones) for each level, and returns how many
 // boxes all of them have.
 template <class Visit>
-double SizeCensus::forLevels(const LevelSizes& levels, Visit&& visit) const {
-    const std::vector<SizeClass> classes = occupiedClasses();
+double SizeCensus::forLevels(const LevelSizes& levels, Visit&& visit) {
+    conclude();
     double smaller = 0;
-    auto next = classes.begin();
+    std::size_t q = 0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(levels.count); ++i) {
-        double own = 0;
-        for (; next != classes.end() && next->upperEdge <= levels.cellSize[i]; ++next) {
-            own += next->count;
+        while (q + 1 < classes_.size() && classes_[q + 1].upperEdge <= levels.cellSize[i]) {
+            ++q;
         }
-        visit(i, own, smaller);
-        smaller += own;
+        visit(i, classes_[q].countUpTo - smaller, smaller);
+        smaller = classes_[q].countUpTo;
     }
     return smaller;
 }
 
-void SizeCensus::flatten(LevelSizes& levels) const {
-    const std::array<double, 3> extent = spread();
+void SizeCensus::flatten(LevelSizes& levels) {
     forLevels(levels, [&](std::size_t i, double own, double smaller) {
-        levels.flatAxes[i] = costOfLevel(extent, levels.cellSize[i], own, smaller).flat;
+        levels.flatAxes[i] = costOfLevel(spread_, levels.cellSize[i], own, smaller).flat;
     });
 }
 
-double SizeCensus::modelledCost(const LevelSizes& levels) const {
-    const std::array<double, 3> extent = spread();
+double SizeCensus::modelledCost(const LevelSizes& levels) {
     double cost = 0;
     const double filed = forLevels(levels, [&](std::size_t i, double own, double smaller) {
-        cost += costOfLevel(extent, levels.cellSize[i], own, smaller).cost;
+        cost += costOfLevel(spread_, levels.cellSize[i], own, smaller).cost;
     });
     const auto total = static_cast<double>(total_);
     return cost + total * (total - filed) * kListedBoxCost;
+}
+
+std::array<double, 3> SizeCensus::middle() {
+    conclude();
+    return middle_;
 }
 
 LevelSizes fixedLevels(double cellSize, double ratio) {

@@ -8,6 +8,7 @@
 #include <broadphase/aabb.hpp>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -28,7 +29,8 @@ struct LevelSizes {
     int count = 0;
 };
 
-/// Sizes and spread of a population: all that the choice of levels depends on.
+/// Sizes and spread of a population: all that the choice of levels depends on. Allocates only while
+/// it meets more samples or size classes than ever before.
 class SizeCensus {
 public:
     /// Counts one box. Boxes with an infinite, NaN or negative edge count as fitting no level.
@@ -40,41 +42,50 @@ public:
 
     /// The level sizes with the least modelled cost for one walk per proxy. Deterministic: depends
     /// on the boxes counted and their order only. Cost: O(q^2) for q occupied quarter octaves.
-    [[nodiscard]] LevelSizes cheapestLevels() const;
+    [[nodiscard]] LevelSizes cheapestLevels();
 
     /// Flattens each level along the axes where that is cheaper for the population.
-    void flatten(LevelSizes& levels) const;
+    void flatten(LevelSizes& levels);
 
     /// Modelled cost [ns] of finding all pairs with levels of these cell sizes.
-    [[nodiscard]] double modelledCost(const LevelSizes& levels) const;
+    [[nodiscard]] double modelledCost(const LevelSizes& levels);
 
     /// The middle of the population: the median min corner on each axis; finite.
-    [[nodiscard]] std::array<double, 3> middle() const;
+    [[nodiscard]] std::array<double, 3> middle();
 
 private:
-    struct SizeClass {
-        double upperEdge;  // [m]
-        double count;
-    };
     struct Bin {
         std::uint32_t count = 0;
         double largest = 0;  // [m]
     };
+    // Sizes that share a level at any rate, and what cheapestLevels() finds out about them.
+    struct SizeClass {
+        double upperEdge = 0;  // [m]
+        double countUpTo = 0;  // boxes of this class and smaller ones
+        double leastCost = 0;  // of filing those, the last level ending here
+        std::size_t from = 0;  // how many classes lie below that last level
+    };
 
-    [[nodiscard]] std::vector<SizeClass> occupiedClasses() const;
-    [[nodiscard]] std::array<double, 3> spread() const;
-    [[nodiscard]] double quantile(std::size_t axis, double share) const;
+    void conclude();
+    void measureSpread();
+    void findClasses();
     template <class Visit>
-    double forLevels(const LevelSizes& levels, Visit&& visit) const;
+    double forLevels(const LevelSizes& levels, Visit&& visit);
 
     static constexpr int kQuarterOctaves = 4 * 256;
     static constexpr std::size_t kMaxSamples = 2048;
 
     std::array<Bin, kQuarterOctaves> histogram_{};
     std::uint64_t total_ = 0;
-    std::uint64_t unfit_ = 0;
     std::uint64_t sampleStep_ = 1;
     std::vector<std::array<double, 3>> samples_;
+
+    // Drawn from the above by conclude().
+    bool isConcluded_ = false;
+    std::array<double, 3> spread_{};
+    std::array<double, 3> middle_{};
+    std::vector<SizeClass> classes_;  // occupied ones in ascending order, behind an empty one
+    std::vector<double> column_;      // scratch
 };
 
 /// Levels of a fixed finest cell size: that size, and coarser ones by `ratio` for what is larger.

@@ -190,7 +190,7 @@ TEST(AutomaticLevels, OfAPopulationAcrossTheWholeRangeOfNumbersAreFinite) {
 }
 
 TEST(AutomaticLevels, OfNothingAreNone) {
-    const SizeCensus census;
+    SizeCensus census;
     EXPECT_EQ(census.cheapestLevels().count, 0);
     EXPECT_EQ(census.middle(), (std::array<double, 3>{0, 0, 0}));
 }
