@@ -80,7 +80,8 @@ constexpr double kCellsPerBox = 16;
 
 double smallestUsefulCell(const std::array<double, 3>& spread, double count) {
     const double largest = *std::max_element(spread.begin(), spread.end());
-    if (!(largest > 0)) {
+    // Below, divisions would come to a halt at the smallest number.
+    if (!(largest > kSmallestCell)) {
         return 0;
     }
     double cellSize = largest;

@@ -189,6 +189,17 @@ TEST(AutomaticLevels, OfAPopulationAcrossTheWholeRangeOfNumbersAreFinite) {
     }
 }
 
+TEST(AutomaticLevels, OfAPopulationSpreadOverDenormalNumbersAreFoundInTheEnd) {
+    for (double spread = 1; spread > 0; spread /= 2) {
+        SizeCensus census;
+        for (int i = 0; i < 40; ++i) {
+            const Vector3<double> corner = Vector3<double>::Constant(i % 2 == 0 ? 0 : spread);
+            census.add(Aabb<double>(corner, corner));
+        }
+        EXPECT_GT(census.cheapestLevels().cellSize[0], 0) << spread;
+    }
+}
+
 TEST(AutomaticLevels, OfNothingAreNone) {
     SizeCensus census;
     EXPECT_EQ(census.cheapestLevels().count, 0);
