@@ -22,6 +22,18 @@ bool (*const bulletOfTheSamePrecision)(const btAlignedObjectArray<btVector3>&, c
 
 namespace {
 
+/// How far off the ray [m], on each axis, btRayAabb2() may see a hit. Bullet's inverse of a direction
+/// of 0 is a large number and not infinity: a ray of 1e18 m hits what is a metre beside it.
+btVector3 slackOf(const btBroadphaseRayCallback& callback, const btVector3& way) {
+    btVector3 slack(0, 0, 0);
+    for (int axis = 0; axis < 3; ++axis) {
+        const btScalar reach = btFabs(callback.m_lambda_max / callback.m_rayDirectionInverse[axis]);
+        const btScalar excess = reach - btFabs(way[axis]);
+        slack[axis] = excess > 0 ? excess : btScalar(0);  // also for NaN, of a ray of no length
+    }
+    return slack;
+}
+
 /// A ray as Bullet's callbacks describe it: the segment says where to look, btRayAabb2() with the
 /// callback's fields what is hit.
 struct CallbackRayRegion {
@@ -135,9 +147,10 @@ void SpatialHashBroadphase::getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin
 void SpatialHashBroadphase::rayTest(const btVector3& rayFrom, const btVector3& rayTo,
                                     btBroadphaseRayCallback& rayCallback, const btVector3& aabbMin,
                                     const btVector3& aabbMax) {
-    const CallbackRayRegion region{
-        RayRegion<btScalar>(toEigen(rayFrom), toEigen(rayTo), toAabb(aabbMin, aabbMax)), rayFrom,
-        aabbMin, aabbMax, rayCallback};
+    const btVector3 slack = slackOf(rayCallback, rayTo - rayFrom);
+    const RayRegion<btScalar> segment(toEigen(rayFrom), toEigen(rayTo),
+                                      toAabb(aabbMin - slack, aabbMax + slack));
+    const CallbackRayRegion region{segment, rayFrom, aabbMin, aabbMax, rayCallback};
     ProcessCollector<btBroadphaseRayCallback> collector{*this, rayCallback};
     grid_.visit(region, collector);
 }

@@ -140,6 +140,21 @@ TEST_P(Queries, ByRayOfAMillionKilometresFindWhatBruteForceFinds) {
     EXPECT_GT(hitCount, 0U);
 }
 
+// So long that BT_LARGE_FLOAT is a slow inverse of 0: btRayAabb2() hits what is a metre beside it.
+TEST_P(Queries, ByRayAsLongAsBulletsLargestNumberFindWhatBruteForceFinds) {
+    const Playground world(GetParam());
+    Random random(kSeed);
+    std::size_t hitCount = 0;
+    for (int i = 0; i < 100 && !HasFailure(); ++i) {
+        const btVector3 middle = world.somewhere(random);
+        Ray ray{middle, middle};
+        ray.from[i % 3] = -BT_LARGE_FLOAT;
+        ray.to[i % 3] = BT_LARGE_FLOAT;
+        expectRayAsBruteForce(world, ray, &hitCount);
+    }
+    EXPECT_GT(hitCount, 0U);
+}
+
 TEST_P(Queries, ByBoxFindWhatBruteForceFinds) {
     const Playground world(GetParam());
     Random random(kSeed);
