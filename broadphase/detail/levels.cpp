@@ -263,6 +263,11 @@ std::array<double, 3> SizeCensus::middle() {
     return middle_;
 }
 
+std::size_t SizeCensus::memoryBytes() const noexcept {
+    return samples_.capacity() * sizeof(samples_[0]) + classes_.capacity() * sizeof(SizeClass) +
+           column_.capacity() * sizeof(double);
+}
+
 LevelSizes fixedLevels(double cellSize, double ratio) {
     LevelSizes levels;
     for (; levels.count < kMaxLevels && cellSize <= 1e30; cellSize *= ratio) {

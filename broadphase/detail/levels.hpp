@@ -53,6 +53,9 @@ public:
     /// The middle of the population: the median min corner on each axis; finite.
     [[nodiscard]] std::array<double, 3> middle();
 
+    /// Bytes held beside the object itself, capacity included.
+    [[nodiscard]] std::size_t memoryBytes() const noexcept;
+
 private:
     struct Bin {
         std::uint32_t count = 0;

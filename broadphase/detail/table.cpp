@@ -213,7 +213,8 @@ std::size_t Table<Scalar>::memoryBytes() const noexcept {
     return levels_.capacity() * sizeof(Level<Scalar>) +
            (bucketStart_.capacity() + slots_.capacity() + buckets_.capacity()) *
                sizeof(std::uint32_t) +
-           6 * bounds_[0].capacity() * sizeof(Scalar) + filed_.capacity() * sizeof(Filed);
+           6 * bounds_[0].capacity() * sizeof(Scalar) + filed_.capacity() * sizeof(Filed) +
+           census_.memoryBytes();
 }
 
 template <class Scalar>
