@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/grid.hpp>
 
+#include <broadphase/detail/prefetch.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -46,33 +48,29 @@ ProxyId Grid<Scalar>::add(const Box& box, Mobility mobility) {
         HASHPHASE_ASSERT(records_.size() < (1U << 31), "A grid holds at most 2^31 proxies.");
         freeSlots_.push_back(static_cast<std::uint32_t>(records_.size()));
         records_.emplace_back();
-        boxes_.emplace_back();
     }
     const std::uint32_t slot = freeSlots_.back();
     freeSlots_.pop_back();
     Record& record = records_[slot];
     ++record.generation;
+    record.place = Place::mobile;
     record.changedAt = 0;
-    record.restsAtOnce = mobility == Mobility::resting;
-    boxes_[slot] = box;
+    mobileSlots_.push_back(slot);
     ++size_;
-    noteNan(slot, Box(Point::Zero(), Point::Zero()));
     noteChange(slot);
+    setBox(record, box);
+    record.restsAtOnce = mobility == Mobility::resting;
     return idOf(slot);
 }
 
 template <class Scalar>
 void Grid<Scalar>::move(ProxyId id, const Box& box) {
     HASHPHASE_ASSERT(contains(id), "Only a proxy of this grid that was not removed can be moved.");
-    const std::uint32_t slot = id.index;
-    if (isSameBits(boxes_[slot], box)) {
-        return;
+    Record& record = records_[id.index];
+    if (!isSameBits(record.box, box)) {
+        noteChange(id.index);
+        setBox(record, box);
     }
-    const Box previous = boxes_[slot];
-    boxes_[slot] = box;
-    records_[slot].restsAtOnce = false;
-    noteNan(slot, previous);
-    noteChange(slot);
 }
 
 template <class Scalar>
@@ -81,10 +79,12 @@ void Grid<Scalar>::remove(ProxyId id) {
                      "Only a proxy of this grid that was not removed can be removed.");
     const std::uint32_t slot = id.index;
     noteChange(slot);
-    leaveTable(slot);
-    nanCount_ -= hasNan(boxes_[slot]) ? 1 : 0;
-    boxes_[slot].min().setConstant(std::numeric_limits<Scalar>::quiet_NaN());
-    ++records_[slot].generation;
+    Record& record = records_[slot];
+    nanCount_ -= record.isNan ? 1 : 0;
+    record.isNan = false;
+    record.box = nanBox();
+    record.place = Place::nowhere;
+    ++record.generation;
     removedSlots_.push_back(slot);
     --size_;
 }
@@ -98,20 +98,22 @@ bool Grid<Scalar>::contains(ProxyId id) const noexcept {
 template <class Scalar>
 const Aabb<Scalar>& Grid<Scalar>::box(ProxyId id) const {
     HASHPHASE_ASSERT(contains(id), "Only a proxy of this grid that was not removed has a box.");
-    return boxes_[id.index];
+    return records_[id.index].box;
 }
 
+// To be called before every change of a slot's box.
 template <class Scalar>
 void Grid<Scalar>::noteChange(std::uint32_t slot) {
     Record& record = records_[slot];
     if (record.changedAt != updateNumber_) {
-        if (hasPairs_) {
-            changes_.push_back({slot, record.changedAt});
-        }
+        record.before = record.box;
         record.changedAt = updateNumber_;
         ++cost_.changed;
     }
-    if (!record.isWaiting) {
+    if (record.place == Place::resting) {
+        leaveRest(slot);
+    }
+    if (!record.isWaiting && !manyWait_.load(std::memory_order_relaxed)) {
         record.isWaiting = true;
         waiting_.push_back(slot);
         if (waiting_.size() > manyWaiting(mobileSlots_.size())) {
@@ -121,13 +123,24 @@ void Grid<Scalar>::noteChange(std::uint32_t slot) {
 }
 
 template <class Scalar>
-void Grid<Scalar>::noteNan(std::uint32_t slot, const Box& previous) {
-    nanCount_ -= nanCount_ > 0 && hasNan(previous) ? 1 : 0;
-    if (!hasNan(boxes_[slot])) {
-        return;
-    }
-    ++nanCount_;
-    if (!nanReported_) {
+void Grid<Scalar>::leaveRest(std::uint32_t slot) {
+    Record& record = records_[slot];
+    resting_.erase(record.restingEntry);
+    ++restingErased_;
+    record.place = Place::mobile;
+    mobileSlots_.push_back(slot);
+    woken_.push_back(slot);
+}
+
+template <class Scalar>
+void Grid<Scalar>::setBox(Record& record, const Box& box) {
+    record.box = box;
+    record.restsAtOnce = false;
+    const bool isNan = hasNan(box);
+    nanCount_ += isNan && !record.isNan ? 1 : 0;
+    nanCount_ -= record.isNan && !isNan ? 1 : 0;
+    record.isNan = isNan;
+    if (isNan && !nanReported_) {
         nanReported_ = true;
         detail::reportMessage(
             "A box with a NaN coordinate was set. It will pair with nothing and be found by "
@@ -137,120 +150,94 @@ void Grid<Scalar>::noteNan(std::uint32_t slot, const Box& previous) {
 
 // --- Filing --------------------------------------------------------------------------------------
 
+// Copies the mobile boxes side by side. Slots that are near each other in space are near each other
+// in mobileSlots_, but anywhere in records_.
 template <class Scalar>
-void Grid<Scalar>::leaveTable(std::uint32_t slot) {
-    Record& record = records_[slot];
-    if (record.place == Place::mobile) {
-        const std::uint32_t last = mobileSlots_.back();
-        mobileSlots_[record.position] = last;
-        records_[last].position = record.position;
-        mobileSlots_.pop_back();
-        mobileIsStale_ = true;
-    } else if (record.place == Place::resting) {
-        resting_.erase(record.position);
-        ++restingErased_;
-    }
-    record.place = Place::nowhere;
-}
-
-template <class Scalar>
-void Grid<Scalar>::fileOne(std::uint32_t slot) {
-    Record& record = records_[slot];
-    record.isWaiting = false;
-    if (!isAlive(slot)) {
-        return;
-    }
-    mobileIsStale_ = true;
-    if (hasNan(boxes_[slot])) {
-        leaveTable(slot);
-        record.place = Place::nan;
-    } else if (record.place != Place::mobile) {
-        leaveTable(slot);
-        record.place = Place::mobile;
-        record.position = static_cast<std::uint32_t>(mobileSlots_.size());
-        mobileSlots_.push_back(slot);
+void Grid<Scalar>::stage() {
+    constexpr std::size_t kAhead = 12;
+    const std::size_t count = mobileSlots_.size();
+    staged_.resize(count);
+    stagedBefore_.resize(hasPairs_ ? count : 0);
+    quietCount_ = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i + kAhead < count) {
+            detail::prefetch(&records_[mobileSlots_[i + kAhead]]);
+        }
+        const Record& record = records_[mobileSlots_[i]];
+        staged_[i] = detail::padded(record.box);
+        if (hasPairs_) {
+            stagedBefore_[i] =
+                detail::padded(record.changedAt == updateNumber_ ? record.before : record.box);
+        }
+        quietCount_ += isQuiet(record) ? 1 : 0;
     }
 }
 
+// Quiet proxies leave the mobile ones when enough have gathered, or enough others have left rest, to
+// be worth filing the resting ones anew. Returns whether any did.
 template <class Scalar>
-void Grid<Scalar>::fileWaiting() {
+bool Grid<Scalar>::putQuietToRest() {
+    const std::size_t filedCount = resting_.size() - restingErased_;
+    if (std::max(quietCount_, restingErased_) < worthRefiling(filedCount)) {
+        return false;
+    }
+    // Those that stay at rest come first, in the order of the table, then those that join.
+    restSlots_.clear();
+    restBoxes_.clear();
+    for (const std::uint32_t slot : resting_.slots()) {
+        if (records_[slot].place == Place::resting) {
+            restSlots_.push_back(slot);
+            restBoxes_.push_back(detail::padded(records_[slot].box));
+        }
+    }
+    for (std::size_t i = 0; quietCount_ > 0 && i < mobileSlots_.size(); ++i) {
+        Record& record = records_[mobileSlots_[i]];
+        if (record.place == Place::mobile && isQuiet(record)) {
+            record.place = Place::resting;
+            restSlots_.push_back(mobileSlots_[i]);
+            restBoxes_.push_back(staged_[i]);
+            staged_[i] = detail::padded(nanBox());
+        }
+    }
+    resting_.build(restSlots_, restBoxes_, fixedSizes_);
+    for (std::uint32_t entry = 0; entry < resting_.size(); ++entry) {
+        records_[resting_.slot(entry)].restingEntry = entry;
+    }
+    restingErased_ = 0;
+    cost_.filed += resting_.size();
+    return quietCount_ > 0;
+}
+
+template <class Scalar>
+void Grid<Scalar>::fileMobile() {
+    mobile_.build(mobileSlots_, staged_, fixedSizes_);
+    cost_.filed += mobile_.size();
     for (const std::uint32_t slot : waiting_) {
-        fileOne(slot);
+        records_[slot].isWaiting = false;
     }
     waiting_.clear();
-    if (!hasPairs_) {
-        freeRemovedSlots();
-    }
+    manyWait_.store(false, std::memory_order_release);
 }
 
-// Not before nobody has to tell the old proxy from the next one in its slot.
+// Lists the mobile proxies in the order of their table, for the next time, and forgets those that
+// have left. Only now may a slot be given away again: nobody has to tell its old proxy from the
+// next one any more.
 template <class Scalar>
-void Grid<Scalar>::freeRemovedSlots() {
+void Grid<Scalar>::settle() {
+    nanSlots_.clear();
+    if (mobile_.size() != mobileSlots_.size() && nanCount_ > 0) {
+        std::copy_if(mobileSlots_.begin(), mobileSlots_.end(), std::back_inserter(nanSlots_),
+                     [this](std::uint32_t slot) { return records_[slot].isNan; });
+    }
+    mobileSlots_.assign(mobile_.slots().begin(), mobile_.slots().end());
+    mobileSlots_.insert(mobileSlots_.end(), nanSlots_.begin(), nanSlots_.end());
     freeSlots_.insert(freeSlots_.end(), removedSlots_.begin(), removedSlots_.end());
     removedSlots_.clear();
 }
 
 template <class Scalar>
-void Grid<Scalar>::rebuildMobile() {
-    if (mobileIsStale_) {
-        mobile_.build(mobileSlots_, boxes_.data(), fixedSizes_);
-        cost_.filed += mobile_.size();
-        mobileIsStale_ = false;
-    }
-    manyWait_.store(false, std::memory_order_release);
-}
-
-template <class Scalar>
-void Grid<Scalar>::putQuietToRest() {
-    const auto isQuiet = [this](std::uint32_t slot) {
-        const Record& record = records_[slot];
-        return record.changedAt != updateNumber_ &&
-               (record.restsAtOnce || updateNumber_ - record.changedAt > config_.updatesBeforeRest);
-    };
-    const auto quietCount =
-        static_cast<std::size_t>(std::count_if(mobileSlots_.begin(), mobileSlots_.end(), isQuiet));
-    const std::size_t filedCount = resting_.size() - restingErased_;
-    if (std::max<std::size_t>(quietCount, restingErased_) < worthRefiling(filedCount)) {
-        return;
-    }
-
-    // Those that stay at rest come first, in the order of the table, then those that join.
-    std::vector<std::uint32_t>& rest = scratch_;
-    rest.clear();
-    for (const std::uint32_t slot : resting_.slots()) {
-        if (records_[slot].place == Place::resting) {
-            rest.push_back(slot);
-        }
-    }
-    std::copy_if(mobileSlots_.begin(), mobileSlots_.end(), std::back_inserter(rest), isQuiet);
-    std::erase_if(mobileSlots_, isQuiet);
-    for (std::uint32_t i = 0; i < mobileSlots_.size(); ++i) {
-        records_[mobileSlots_[i]].position = i;
-    }
-    resting_.build(rest, boxes_.data(), fixedSizes_);
-    for (std::uint32_t entry = 0; entry < resting_.size(); ++entry) {
-        records_[resting_.slot(entry)].place = Place::resting;
-        records_[resting_.slot(entry)].position = entry;
-    }
-    restingErased_ = 0;
-    cost_.filed += resting_.size();
-    mobileIsStale_ = true;
-}
-
-template <class Scalar>
-void Grid<Scalar>::fileForUpdate() {
-    fileWaiting();
-    if (mobileIsStale_) {
-        putQuietToRest();
-    }
-    rebuildMobile();
-    cost_.resting = resting_.size() - restingErased_;
-}
-
-template <class Scalar>
 void Grid<Scalar>::endUpdate() {
-    changes_.clear();
-    freeRemovedSlots();
+    woken_.clear();
     cost_ = {};
     ++updateNumber_;
     if (config_.cellSize == 0) {
@@ -262,7 +249,13 @@ void Grid<Scalar>::endUpdate() {
 template <class Scalar>
 UpdateCost Grid<Scalar>::update() {
     HASHPHASE_ASSERT(!hasPairs_, "Where there are Pairs, Pairs::update() ends the frame.");
-    fileForUpdate();
+    if (cost_.changed > 0) {
+        stage();
+        static_cast<void>(putQuietToRest());
+        fileMobile();
+        settle();
+    }
+    cost_.resting = resting_.size() - restingErased_;
     const UpdateCost cost = cost_;
     endUpdate();
     return cost;
@@ -279,8 +272,11 @@ void Grid<Scalar>::fileIfMany() const {
     auto& self = const_cast<Grid&>(*this);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
     const std::lock_guard lock(self.filing_);
     if (manyWait_.load(std::memory_order_relaxed)) {
-        self.fileWaiting();
-        self.rebuildMobile();
+        self.stage();
+        self.fileMobile();
+        if (!hasPairs_) {
+            self.settle();
+        }
     }
 }
 
@@ -307,16 +303,19 @@ CellRange Grid<Scalar>::cellsOf(ProxyId id) const {
 
 template <class Scalar>
 std::size_t Grid<Scalar>::memoryBytes() const noexcept {
-    return sizeof(*this) + boxes_.capacity() * sizeof(Box) + records_.capacity() * sizeof(Record) +
-           changes_.capacity() * sizeof(Change) +
+    return sizeof(*this) + records_.capacity() * sizeof(Record) +
            (freeSlots_.capacity() + removedSlots_.capacity() + waiting_.capacity() +
-            mobileSlots_.capacity() + scratch_.capacity()) *
+            mobileSlots_.capacity() + woken_.capacity() + restSlots_.capacity() +
+            nanSlots_.capacity()) *
                sizeof(std::uint32_t) +
+           (staged_.capacity() + stagedBefore_.capacity() + restBoxes_.capacity()) *
+               sizeof(detail::PaddedBox<Scalar>) +
            mobile_.memoryBytes() + resting_.memoryBytes();
 }
 
 template <class Scalar>
 std::string Grid<Scalar>::validate() const {
+    fileIfMany();
     // How often each proxy stands where a query would look for it.
     std::vector<std::uint32_t> timesFound(records_.size(), 0);
     for (const detail::Table<Scalar>* table : {&mobile_, &resting_}) {
@@ -329,7 +328,7 @@ std::string Grid<Scalar>::validate() const {
                 continue;
             }
             ++timesFound[slot];
-            if (!isSameBits(table->box(entry), boxes_[slot])) {
+            if (!isSameBits(table->box(entry), records_[slot].box)) {
                 return "A filed proxy's entry has the proxy's box: broken.";
             }
         }
@@ -340,7 +339,7 @@ std::string Grid<Scalar>::validate() const {
     std::size_t alive = 0;
     for (std::uint32_t slot = 0; slot < records_.size(); ++slot) {
         alive += isAlive(slot) ? 1 : 0;
-        const bool isNan = records_[slot].place == Place::nan && !records_[slot].isWaiting;
+        const bool isNan = records_[slot].isNan && !records_[slot].isWaiting;
         if (timesFound[slot] != (isAlive(slot) && !isNan ? 1U : 0U)) {
             return "Every proxy alive is filed in exactly one table, or waits in the list of "
                    "changes, or is NaN: broken.";

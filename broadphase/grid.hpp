@@ -134,21 +134,23 @@ public:
 private:
     friend class Pairs<Scalar>;
 
-    /// Where a proxy is filed; `nowhere` also for those that have not been filed yet.
-    enum class Place : std::uint8_t { nowhere, nan, mobile, resting };
+    enum class Place : std::uint8_t {
+        nowhere,  // no proxy
+        mobile,   // listed in mobileSlots_, and filed in mobile_ unless it waits or is NaN
+        resting,  // filed in resting_
+    };
 
-    struct Record {
+    /// All about a slot, in one cache line for single precision and two for double.
+    struct alignas(16 * sizeof(Scalar)) Record {
+        Box box = nanBox();            // NaN while the slot has no proxy
+        Box before = nanBox();         // at the last update, when it has changed since
         std::uint32_t generation = 0;  // odd while the slot has a proxy
         std::uint32_t changedAt = 0;  // number of the update that will see, or saw, the last change
-        std::uint32_t position = 0;   // in mobileSlots_, or entry in resting_
+        std::uint32_t restingEntry = 0;
         Place place = Place::nowhere;
         bool isWaiting = false;    // changed since filed: listed in waiting_
         bool restsAtOnce = false;  // Mobility::resting, and has not moved since it was added
-    };
-
-    struct Change {
-        std::uint32_t slot;
-        std::uint32_t previousChange;  // the record's changedAt before this one
+        bool isNan = false;        // has a NaN; of a proxy alive
     };
 
     template <class Region, class Collector>
@@ -162,30 +164,43 @@ private:
     [[nodiscard]] bool isAlive(std::uint32_t slot) const noexcept {
         return (records_[slot].generation & 1) != 0;
     }
+    [[nodiscard]] static Box nanBox() {
+        const Point nan = Point::Constant(std::numeric_limits<Scalar>::quiet_NaN());
+        return {nan, nan};
+    }
     [[nodiscard]] bool isFiled(std::uint32_t slot) const noexcept {
         const Record& record = records_[slot];
-        return record.place >= Place::mobile && !record.isWaiting;
+        return record.place != Place::nowhere && !record.isWaiting;
     }
     [[nodiscard]] bool changedNow(std::uint32_t slot) const noexcept {
         return records_[slot].changedAt == updateNumber_;
     }
 
+    /// The slot's box at the last update; NaN when it had no proxy.
+    [[nodiscard]] const Box& before(std::uint32_t slot) const noexcept {
+        return changedNow(slot) ? records_[slot].before : records_[slot].box;
+    }
+    [[nodiscard]] bool isQuiet(const Record& record) const noexcept {
+        return record.changedAt != updateNumber_ && !record.isNan &&
+               (record.restsAtOnce || updateNumber_ - record.changedAt > config_.updatesBeforeRest);
+    }
+
     void noteChange(std::uint32_t slot);
-    void noteNan(std::uint32_t slot, const Box& previous);
-    void fileWaiting();
-    void freeRemovedSlots();
-    void fileOne(std::uint32_t slot);
-    void leaveTable(std::uint32_t slot);
-    void putQuietToRest();
-    void rebuildMobile();
-    void fileForUpdate();
+    void leaveRest(std::uint32_t slot);
+    void setBox(Record& record, const Box& box);
+
+    // The passes of an update. Between them, Pairs finds what was born and what died.
+    void stage();
+    [[nodiscard]] bool putQuietToRest();
+    void fileMobile();
+    void settle();
     void endUpdate();
+
     void fileIfMany() const;
 
     GridConfig config_;
     detail::LevelSizes fixedSizes_;
 
-    std::vector<Box> boxes_;
     std::vector<Record> records_;
     std::vector<std::uint32_t> freeSlots_;
     std::vector<std::uint32_t> removedSlots_;
@@ -195,20 +210,32 @@ private:
     bool hasPairs_ = false;
 
     std::uint32_t updateNumber_ = 1;  // of the update that ends the present frame
-    std::vector<Change> changes_;     // since the last update, each slot once; kept for Pairs
+    UpdateCost cost_;                 // of the present frame
+
+    // What changed since it was filed, until there are too many to list.
     std::vector<std::uint32_t> waiting_;
-
-    std::vector<std::uint32_t> mobileSlots_;
-    bool mobileIsStale_ = false;
-    detail::Table<Scalar> mobile_;
-    detail::Table<Scalar> resting_;
-    std::uint32_t restingErased_ = 0;
-    std::vector<std::uint32_t> scratch_;
-    UpdateCost cost_;  // of the present frame
-    Scalar cellSize_ = 1;
-
     std::atomic<bool> manyWait_{false};
     std::mutex filing_;
+
+    // In the table's order as of the last update, then what has joined since. What has left since
+    // is still listed, with a NaN box.
+    std::vector<std::uint32_t> mobileSlots_;
+    detail::Table<Scalar> mobile_;
+
+    std::vector<std::uint32_t> woken_;  // slots that have left resting_ since the last update
+    std::uint32_t restingErased_ = 0;
+    detail::Table<Scalar> resting_;
+
+    // Boxes by their place in mobileSlots_: as they are now, and as of the last update.
+    std::vector<detail::PaddedBox<Scalar>> staged_;
+    std::vector<detail::PaddedBox<Scalar>> stagedBefore_;
+    std::uint32_t quietCount_ = 0;
+
+    std::vector<std::uint32_t> restSlots_;  // scratch of putQuietToRest()
+    std::vector<detail::PaddedBox<Scalar>> restBoxes_;
+    std::vector<std::uint32_t> nanSlots_;  // scratch of settle()
+
+    Scalar cellSize_ = 1;
 };
 
 extern template class Grid<float>;

@@ -2,22 +2,13 @@
 #include <broadphase/pairs.hpp>
 
 #include <broadphase/detail/join.hpp>
+#include <broadphase/detail/radix_sort.hpp>
 
 #include <algorithm>
 #include <limits>
 
 namespace hashphase {
 namespace {
-
-// Couples are watched until neither box has changed for this many updates. A proxy that moves again
-// after a longer rest has its couples looked up once.
-constexpr std::uint32_t kUpdatesWatched = 8;
-
-template <class Scalar>
-Aabb<Scalar> nanBox() {
-    const Vector3<Scalar> nan = Vector3<Scalar>::Constant(std::numeric_limits<Scalar>::quiet_NaN());
-    return {nan, nan};
-}
 
 template <class Add>
 struct CollectInto {
@@ -31,7 +22,7 @@ struct CollectInto {
 };
 
 bool contains(const detail::FlatSet& couples, std::uint64_t couple) {
-    return couples.find(couple) != detail::FlatSet::kNone;
+    return couples.size() > 0 && couples.find(couple) != detail::FlatSet::kNone;
 }
 
 }  // namespace
@@ -53,233 +44,290 @@ Pairs<Scalar>::~Pairs() {
 template <class Scalar>
 PairChanges Pairs<Scalar>::update(PairFilter filter) {
     beginCall();
-    grid_.fileForUpdate();
-    captureWoken();
-    findNew();
-    mergeWatched(filter);
-    publish();
+    cost_ = {};
+    if (grid_.cost_.changed > 0) {
+        grid_.stage();
+        findDeaths();
+        const bool someCameToRest = grid_.putQuietToRest();
+        grid_.fileMobile();
+        findBirths(someCameToRest);
+        grid_.settle();
+        watchedMobileCount_ = grid_.mobileSlots_.size();
+        askRefusedAgain();
+    }
+    announced_.clear();
+    decide(filter);
+    grid_.cost_.resting = grid_.resting_.size() - grid_.restingErased_;
     cost_.grid = grid_.cost_;
     grid_.endUpdate();
+    endCall();
     return {born_, died_};
 }
 
 template <class Scalar>
 void Pairs<Scalar>::beginCall() {
-    born_.clear();
-    died_.clear();
-    cost_ = {};
-    if (before_.size() < grid_.boxes_.size()) {
-        before_.resize(grid_.boxes_.size(), nanBox<Scalar>());
-    }
+    asked_.clear();
+    standing_.clear();
+    bornCouples_.clear();
+    diedCouples_.clear();
 }
 
-// What has rested is not watched. When it changes, its couples are those of its box before: found
-// in the tables where the other one has not changed, and among the woken themselves otherwise.
 template <class Scalar>
-void Pairs<Scalar>::captureWoken() {
-    const std::uint32_t lastUpdate = grid_.updateNumber_ - 1;
-    woken_.clear();
-    for (; capturedChanges_ < grid_.changes_.size(); ++capturedChanges_) {
-        const auto [slot, previousChange] = grid_.changes_[capturedChanges_];
-        if (!isWatched(previousChange, lastUpdate) && !hasNan(before_[slot])) {
-            woken_.push_back(slot);
+void Pairs<Scalar>::endCall() {
+    const auto list = [this](const std::vector<Couple>& couples, std::vector<ProxyPair>& pairs) {
+        pairs.clear();
+        for (const Couple c : couples) {
+            pairs.push_back(pairOf(c));
         }
+    };
+    sortCouples(diedCouples_);
+    list(bornCouples_, born_);  // as sorted as what was asked
+    list(diedCouples_, died_);
+}
+
+template <class Scalar>
+void Pairs<Scalar>::sortCouples(std::vector<Couple>& couples) {
+    detail::radixSort(couples, static_cast<std::uint32_t>(grid_.records_.size()), sorted_);
+}
+
+// A couple dies when its boxes overlapped at the last update, or were announced since, and do not
+// now. All those that are not watched are found here before their boxes are lost.
+template <class Scalar>
+void Pairs<Scalar>::findDeaths() {
+    const auto watched = amongMobile_.pairs();
+    cost_.couplesWatched = watched.size() + toResting_.size();
+    detail::IndexPair* apart = selected_.resize(watched.size());
+    const std::size_t count = detail::kernels<Scalar>().selectApart(
+        watched.data(), watched.size(), nullptr, grid_.staged_.data(), apart);
+    for (std::size_t i = 0; i < count; ++i) {
+        lose(couple(grid_.mobileSlots_[apart[i].a], grid_.mobileSlots_[apart[i].b]));
     }
-    const auto capture = [this](std::uint32_t a, std::uint32_t b) {
-        const Couple c = couple(a, b, false);
-        captured_.push_back(refusedAtRest_.erase(c) != detail::FlatSet::kNone ? c | 1 : c);
+    for (const auto [place, slot] : toResting_.pairs()) {
+        loseIfApart(couple(grid_.mobileSlots_[place], slot));
+    }
+    for (const Couple c : announced_.keys()) {
+        loseIfApart(c);
+    }
+    findDeathsOfWoken();
+}
+
+// Couples of two that rest are not watched. When one wakes, its couples are those of its box before:
+// found in the resting table where the other one has not changed, and among the woken otherwise.
+template <class Scalar>
+void Pairs<Scalar>::findDeathsOfWoken() {
+    const auto wake = [this](std::uint32_t a, std::uint32_t b) {
+        const Couple c = couple(a, b);
+        if (refusedAtRest_.erase(c) != detail::FlatSet::kNone) {
+            refused_.findOrInsert(c);
+        }
+        loseIfApart(c);
     };
     QueryCost cost;
-    for (const std::uint32_t slot : woken_) {
-        const auto captureUnwatched = [&](std::uint32_t other) {
-            if (!grid_.changedNow(other) &&
-                !isWatched(grid_.records_[other].changedAt, lastUpdate)) {
-                capture(slot, other);
-            }
-        };
-        detail::forOverlapsInTable(grid_.mobile_, before_[slot], cost, captureUnwatched);
-        detail::forOverlapsInTable(grid_.resting_, before_[slot], cost, captureUnwatched);
-    }
-    if (woken_.size() > 1) {
-        wokenTable_.build(woken_, before_.data(), grid_.fixedSizes_);
-        detail::forOverlapsWithinTable(wokenTable_, cost, [&](std::uint32_t a, std::uint32_t b) {
-            capture(wokenTable_.slot(a), wokenTable_.slot(b));
-        });
+    wokenBoxes_.clear();
+    for (const std::uint32_t slot : grid_.woken_) {
+        const Box& before = grid_.before(slot);
+        wokenBoxes_.push_back(detail::padded(before));
+        detail::forOverlapsInTable(grid_.resting_, before, cost,
+                                   [&](std::uint32_t other) { wake(slot, other); });
     }
     cost_.boxesTested += cost.boxesTested;
+    if (grid_.woken_.size() > 1) {
+        detail::KernelCost joinCost;
+        wokenTable_.build(grid_.woken_, wokenBoxes_, grid_.fixedSizes_);
+        selected_.clear();
+        detail::joinTable(wokenTable_, selected_, joinCost);
+        for (const auto [a, b] : selected_.pairs()) {
+            wake(wokenTable_.slot(a), wokenTable_.slot(b));
+        }
+        cost_.boxesTested += joinCost.boxesTested;
+    }
 }
 
 template <class Scalar>
-bool Pairs<Scalar>::isWatched(std::uint32_t changedAt, std::uint32_t update) const noexcept {
-    return changedAt != 0 && update - changedAt < kUpdatesWatched;
-}
-
-// A couple is new when its boxes overlap now and did not before; one of them has changed.
-template <class Scalar>
-void Pairs<Scalar>::findNew() {
-    fresh_.clear();
-    QueryCost cost;
-    // The join reads each neighbourhood once and half of it; it pays unless few have changed.
-    const bool byJoin = 4 * grid_.changes_.size() >= grid_.mobileSlots_.size();
-    if (byJoin && !grid_.changes_.empty()) {
-        joinMobile(cost);
-    }
-    if (!byJoin || grid_.resting_.size() > 0) {
-        walkAroundChanged(!byJoin, cost);
-    }
-    cost_.boxesTested += cost.boxesTested;
-    std::sort(fresh_.begin(), fresh_.end());
-}
-
-// What changed against the resting proxies, and against the mobile ones where asked for.
-template <class Scalar>
-void Pairs<Scalar>::walkAroundChanged(bool amongMobile, QueryCost& cost) {
-    const auto found = [this](std::uint32_t a, std::uint32_t b) {
-        if (!overlaps(before_[a], before_[b])) {
-            fresh_.push_back(couple(a, b, false));
-        }
-    };
-    for (const auto& change : grid_.changes_) {
-        const std::uint32_t slot = change.slot;
-        if (grid_.records_[slot].place != Grid<Scalar>::Place::mobile) {
-            continue;  // removed, or NaN
-        }
-        if (amongMobile) {
-            const auto foundMobile = [&](std::uint32_t other) {
-                // Of two that changed, the one with the smaller slot reports.
-                if (other != slot && !(other < slot && grid_.changedNow(other))) {
-                    found(slot, other);
-                }
-            };
-            detail::forOverlapsInTable(grid_.mobile_, grid_.boxes_[slot], cost, foundMobile);
-        }
-        const auto foundResting = [&](std::uint32_t other) { found(slot, other); };
-        detail::forOverlapsInTable(grid_.resting_, grid_.boxes_[slot], cost, foundResting);
+void Pairs<Scalar>::loseIfApart(Couple c) {
+    if (!overlapNow(c)) {
+        lose(c);
     }
 }
 
-// The boxes before are put in the table's order first: what is near each other in space is then near
-// in memory, which the slots are not.
 template <class Scalar>
-void Pairs<Scalar>::joinMobile(QueryCost& cost) {
-    const detail::Table<Scalar>& table = grid_.mobile_;
-    beforeByEntry_.resize(table.size());
-    for (std::uint32_t entry = 0; entry < table.size(); ++entry) {
-        beforeByEntry_[entry] = before_[table.slot(entry)];
+void Pairs<Scalar>::lose(Couple c) {
+    if (!forgetRefused(c)) {
+        diedCouples_.push_back(c);
+        --count_;
     }
-    detail::forOverlapsWithinTable(table, cost, [&](std::uint32_t a, std::uint32_t b) {
-        if (!overlaps(beforeByEntry_[a], beforeByEntry_[b])) {
-            fresh_.push_back(couple(table.slot(a), table.slot(b), false));
-        }
-    });
 }
 
-// One pass over the watched couples and the new ones, both sorted: what is born, what died, and
-// what is to be watched from now on.
+// A couple is born when its boxes overlap now and did not at the last update.
 template <class Scalar>
-void Pairs<Scalar>::mergeWatched(PairFilter filter) {
-    if (!captured_.empty()) {
-        std::sort(captured_.begin(), captured_.end());
-        merged_.clear();
-        std::merge(watched_.begin(), watched_.end(), captured_.begin(), captured_.end(),
-                   std::back_inserter(merged_));
-        watched_.swap(merged_);
-        captured_.clear();
+void Pairs<Scalar>::findBirths(bool someCameToRest) {
+    const auto order = grid_.mobile_.order();
+    entryOf_.resize(grid_.mobileSlots_.size());
+    for (std::uint32_t entry = 0; entry < order.size(); ++entry) {
+        entryOf_[order[entry]] = entry;
     }
-    cost_.couplesWatched = watched_.size();
-
-    merged_.clear();
-    const std::size_t most = watched_.size() + fresh_.size();
-    if (merged_.capacity() < most) {
-        merged_.reserve(most + most / 2);  // undecided_ points into it
+    carryToRest(someCameToRest);
+    joinMobile();
+    walkResting();
+    if (announced_.size() > 0) {
+        std::erase_if(asked_, [this](Couple c) { return contains(announced_, c); });
     }
-    undecided_.clear();
-    const auto watch = [this](Couple c) {
-        if (!contains(announced_, c)) {
-            addUndecided(merged_.emplace_back(c));
-        }
-    };
-    auto next = fresh_.begin();
-    for (const Couple c : watched_) {
-        for (; next != fresh_.end() && *next < c; ++next) {
-            watch(*next);
-        }
-        keepOrDrop(c);
-    }
-    std::for_each(next, fresh_.end(), watch);
-    watched_.swap(merged_);
-    announced_.clear();
-    decide(filter);
 }
 
+// Couples of a mobile one that has not changed and a resting one are not looked for again.
 template <class Scalar>
-void Pairs<Scalar>::keepOrDrop(Couple c) {
-    const std::uint32_t a = first(c);
-    const std::uint32_t b = second(c);
-    if (!overlaps(grid_.boxes_[a], grid_.boxes_[b])) {
-        isRefused(c) ? void(--refusedCount_) : bury(c);
+void Pairs<Scalar>::carryToRest(bool someCameToRest) {
+    carried_.clear();
+    if (grid_.resting_.size() == 0) {
         return;
     }
-    if (changedLately(c, grid_.updateNumber_)) {
-        merged_.push_back(c);
-        if (isRefused(c) && (grid_.changedNow(a) || grid_.changedNow(b))) {
-            undecided_.push_back(&merged_.back());
+    const auto isKept = [this](std::uint32_t mobile, std::uint32_t resting) {
+        return grid_.records_[resting].place == Grid<Scalar>::Place::resting &&
+               grid_.records_[mobile].place == Grid<Scalar>::Place::mobile &&
+               !grid_.changedNow(mobile);
+    };
+    for (const auto [place, slot] : toResting_.pairs()) {
+        if (isKept(grid_.mobileSlots_[place], slot)) {
+            carried_.push({entryOf_[place], slot});
         }
-    } else if (isRefused(c)) {
-        refusedAtRest_.findOrInsert(c & ~Couple{1});
+    }
+    if (!someCameToRest) {
+        return;
+    }
+    for (const auto [a, b] : amongMobile_.pairs()) {
+        const std::uint32_t slotA = grid_.mobileSlots_[a];
+        const std::uint32_t slotB = grid_.mobileSlots_[b];
+        if (isKept(slotA, slotB)) {
+            carried_.push({entryOf_[a], slotB});
+        } else if (isKept(slotB, slotA)) {
+            carried_.push({entryOf_[b], slotA});
+        }
     }
 }
 
-// A new couple counts as refused until it is decided.
 template <class Scalar>
-void Pairs<Scalar>::addUndecided(Couple& c) {
-    c |= 1;
-    ++refusedCount_;
-    undecided_.push_back(&c);
+void Pairs<Scalar>::joinMobile() {
+    const detail::Table<Scalar>& table = grid_.mobile_;
+    detail::KernelCost cost;
+    amongMobile_.clear();
+    detail::joinTable(table, amongMobile_, cost);
+    cost_.boxesTested += cost.boxesTested;
+
+    const auto found = amongMobile_.pairs();
+    detail::IndexPair* fresh = selected_.resize(found.size());
+    const std::size_t count = detail::kernels<Scalar>().selectApart(
+        found.data(), found.size(), table.order().data(), grid_.stagedBefore_.data(), fresh);
+    for (std::size_t i = 0; i < count; ++i) {
+        asked_.push_back(couple(table.slot(fresh[i].a), table.slot(fresh[i].b)));
+    }
 }
 
-// Asks the filter about the undecided couples.
+// What changed against the resting proxies.
+template <class Scalar>
+void Pairs<Scalar>::walkResting() {
+    toResting_.swap(carried_);
+    if (grid_.resting_.size() == 0) {
+        return;
+    }
+    const detail::Table<Scalar>& table = grid_.mobile_;
+    const detail::Columns<Scalar> columns = table.columns();
+    walkers_.clear();
+    for (auto& column : walkerBounds_) {
+        column.clear();
+    }
+    for (std::uint32_t entry = 0; entry < table.size(); ++entry) {
+        if (grid_.changedNow(table.slot(entry))) {
+            walkers_.push_back(entry);
+            for (std::size_t i = 0; i < 6; ++i) {
+                walkerBounds_[i].push_back(columns[i][entry]);
+            }
+        }
+    }
+    detail::KernelCost cost;
+    selected_.clear();
+    const detail::Columns<Scalar> walkerColumns{walkerBounds_[0].data(), walkerBounds_[1].data(),
+                                                walkerBounds_[2].data(), walkerBounds_[3].data(),
+                                                walkerBounds_[4].data(), walkerBounds_[5].data()};
+    detail::walkTable(grid_.resting_, walkerColumns, static_cast<std::uint32_t>(walkers_.size()),
+                      selected_, cost);
+    cost_.boxesTested += cost.boxesTested;
+    for (const auto [walker, restingEntry] : selected_.pairs()) {
+        const std::uint32_t entry = walkers_[walker];
+        const std::uint32_t slot = grid_.resting_.slot(restingEntry);
+        toResting_.push({entry, slot});
+        if (!overlaps(grid_.before(table.slot(entry)), grid_.records_[slot].box)) {
+            asked_.push_back(couple(table.slot(entry), slot));
+        }
+    }
+}
+
+// What the filter refused is asked about again when one of the two has changed, and put aside when
+// both have come to rest.
+template <class Scalar>
+void Pairs<Scalar>::askRefusedAgain() {
+    restedCouples_.clear();
+    for (const Couple c : refused_.keys()) {
+        if (isAtRest(c)) {
+            restedCouples_.push_back(c);
+        } else if (grid_.changedNow(first(c)) || grid_.changedNow(second(c))) {
+            asked_.push_back(c);
+        }
+    }
+    for (const Couple c : restedCouples_) {
+        refused_.erase(c);
+        refusedAtRest_.findOrInsert(c);
+    }
+}
+
+// Asks the filter about what is to be asked, of which the standing ones are pairs already.
 template <class Scalar>
 void Pairs<Scalar>::decide(PairFilter filter) {
-    asked_.clear();
-    for (const Couple* c : undecided_) {
-        asked_.push_back(pairOf(*c));
+    sortCouples(asked_);
+    std::sort(standing_.begin(), standing_.end());
+    askedPairs_.clear();
+    for (const Couple c : asked_) {
+        askedPairs_.push_back(pairOf(c));
     }
     accepted_.assign(asked_.size(), 0);
-    filter(asked_, accepted_);
-    for (std::size_t i = 0; i < undecided_.size(); ++i) {
-        Couple& c = *undecided_[i];
-        if (isRefused(c) == (accepted_[i] != 0)) {
-            c ^= 1;
-            isRefused(c) ? (++refusedCount_, bury(c)) : (--refusedCount_, bear(c));
+    filter(askedPairs_, accepted_);
+    for (std::size_t i = 0; i < asked_.size(); ++i) {
+        const Couple c = asked_[i];
+        const bool wasPair =
+            !standing_.empty() && std::binary_search(standing_.begin(), standing_.end(), c);
+        if (accepted_[i] == 0) {
+            if (wasPair) {
+                lose(c);
+            }
+            (isAtRest(c) ? refusedAtRest_ : refused_).findOrInsert(c);
+        } else if (!wasPair) {
+            forgetRefused(c);
+            bornCouples_.push_back(c);
+            ++count_;
         }
     }
 }
 
+// Returns whether the couple was refused.
 template <class Scalar>
-bool Pairs<Scalar>::changedLately(Couple c, std::uint32_t update) const noexcept {
-    return isWatched(grid_.records_[first(c)].changedAt, update) ||
-           isWatched(grid_.records_[second(c)].changedAt, update);
+bool Pairs<Scalar>::forgetRefused(Couple c) {
+    return refused_.erase(c) != detail::FlatSet::kNone ||
+           refusedAtRest_.erase(c) != detail::FlatSet::kNone;
 }
 
 template <class Scalar>
-void Pairs<Scalar>::bear(Couple c) {
-    born_.push_back(pairOf(c));
-    ++count_;
+bool Pairs<Scalar>::isRefused(Couple c) const noexcept {
+    return contains(refused_, c) || contains(refusedAtRest_, c);
 }
 
 template <class Scalar>
-void Pairs<Scalar>::bury(Couple c) {
-    died_.push_back(pairOf(c));
-    --count_;
+bool Pairs<Scalar>::overlapNow(Couple c) const noexcept {
+    return overlaps(grid_.records_[first(c)].box, grid_.records_[second(c)].box);
 }
 
 template <class Scalar>
-void Pairs<Scalar>::publish() {
-    for (const auto& change : grid_.changes_) {
-        before_[change.slot] = grid_.boxes_[change.slot];
-    }
-    capturedChanges_ = 0;
+bool Pairs<Scalar>::isAtRest(Couple c) const noexcept {
+    return grid_.records_[first(c)].place == Grid<Scalar>::Place::resting &&
+           grid_.records_[second(c)].place == Grid<Scalar>::Place::resting;
 }
 
 // --- Between updates -----------------------------------------------------------------------------
@@ -289,10 +337,11 @@ PairChanges Pairs<Scalar>::announce(ProxyId id, PairFilter filter) {
     HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid can announce its pairs.");
     beginCall();
     findUnknown(id.index);
-    undecided_.clear();
-    announceFresh();
+    for (const Couple c : asked_) {
+        announced_.findOrInsert(c);
+    }
     decide(filter);
-    captured_.insert(captured_.end(), fresh_.begin(), fresh_.end());
+    endCall();
     return {born_, died_};
 }
 
@@ -300,88 +349,107 @@ template <class Scalar>
 PairChanges Pairs<Scalar>::refilter(ProxyId id, PairFilter filter) {
     HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid can be filtered again.");
     beginCall();
-    // Noted as changed, the proxy has all its couples of the last update watched or captured, and
-    // those announced since captured as well.
-    grid_.noteChange(id.index);
-    captureWoken();
+    announcedBefore_.assign(announced_.keys().begin(), announced_.keys().end());
     findUnknown(id.index);
-    undecided_.clear();
-    for (std::vector<Couple>* known : {&watched_, &captured_}) {
-        for (Couple& c : *known) {
-            if ((first(c) == id.index || second(c) == id.index) && isToAskAgain(c)) {
-                undecided_.push_back(&c);
-            }
-        }
+    for (const Couple c : asked_) {
+        announced_.findOrInsert(c);
     }
-    announceFresh();
-    std::sort(undecided_.begin(), undecided_.end(),
-              [](const Couple* a, const Couple* b) { return *a < *b; });
+    forKnownCouples(id.index, [this](Couple c) {
+        if (!isRefused(c) && grid_.isAlive(first(c)) && grid_.isAlive(second(c))) {
+            standing_.push_back(c);
+            asked_.push_back(c);
+        } else if (isRefused(c) && overlapNow(c)) {
+            // Those apart for the moment are asked about by update(), should they meet again.
+            asked_.push_back(c);
+        }
+    });
     decide(filter);
-    captured_.insert(captured_.end(), fresh_.begin(), fresh_.end());
+    endCall();
     return {born_, died_};
 }
 
+// Calls visit for each of the proxy's couples that overlapped at the last update or were announced
+// since.
 template <class Scalar>
-void Pairs<Scalar>::announceFresh() {
-    for (Couple& c : fresh_) {
-        announced_.findOrInsert(c);
-        addUndecided(c);
+template <class Visit>
+void Pairs<Scalar>::forKnownCouples(std::uint32_t slot, const Visit& visit) const {
+    const auto visitIfIts = [&](std::uint32_t a, std::uint32_t b) {
+        if (a == slot || b == slot) {
+            visit(couple(a, b));
+        }
+    };
+    const auto& places = grid_.mobileSlots_;
+    for (const auto [a, b] : amongMobile_.pairs()) {
+        visitIfIts(places[a], places[b]);
     }
-}
-
-// Couples that are apart for the moment and no pair are asked about by update(), should they meet
-// again until then.
-template <class Scalar>
-bool Pairs<Scalar>::isToAskAgain(Couple c) const {
-    const std::uint32_t a = first(c);
-    const std::uint32_t b = second(c);
-    return overlaps(grid_.boxes_[a], grid_.boxes_[b]) ||
-           (!isRefused(c) && grid_.isAlive(a) && grid_.isAlive(b));
+    for (const auto [place, resting] : toResting_.pairs()) {
+        visitIfIts(places[place], resting);
+    }
+    for (const Couple c : announcedBefore_) {
+        visitIfIts(first(c), second(c));
+    }
+    const auto watchedEnd = places.begin() + static_cast<std::ptrdiff_t>(watchedMobileCount_);
+    if (std::find(places.begin(), watchedEnd, slot) != watchedEnd) {
+        return;
+    }
+    // It rested at the last update: couples with others that did are not watched.
+    QueryCost cost;
+    const Box& before = grid_.before(slot);
+    detail::forOverlapsInTable(grid_.resting_, before, cost, [&](std::uint32_t other) {
+        if (other != slot) {
+            visit(couple(slot, other));
+        }
+    });
+    for (const std::uint32_t other : grid_.woken_) {
+        if (other != slot && overlaps(before, grid_.before(other))) {
+            visit(couple(slot, other));
+        }
+    }
 }
 
 // The proxy's couples that overlap now, did not at the last update, and were not announced since.
 template <class Scalar>
 void Pairs<Scalar>::findUnknown(std::uint32_t slot) {
-    fresh_.clear();
     const auto add = [&](ProxyId other) {
-        if (other.index != slot && !overlaps(before_[slot], before_[other.index])) {
-            const Couple c = couple(slot, other.index, false);
+        if (other.index != slot && !overlaps(grid_.before(slot), grid_.before(other.index))) {
+            const Couple c = couple(slot, other.index);
             if (!contains(announced_, c)) {
-                fresh_.push_back(c);
+                asked_.push_back(c);
             }
         }
     };
     CollectInto collector{add};
-    grid_.visit(BoxRegion<Scalar>{grid_.boxes_[slot]}, collector);
-    std::sort(fresh_.begin(), fresh_.end());
+    grid_.visit(BoxRegion<Scalar>{grid_.records_[slot].box}, collector);
 }
 
 // --- The whole set -------------------------------------------------------------------------------
 
 template <class Scalar>
 void Pairs<Scalar>::forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const {
-    QueryCost cost;
+    detail::PairList found;
+    detail::KernelCost cost;
     for (const detail::Table<Scalar>* table : {&grid_.mobile_, &grid_.resting_}) {
-        detail::forOverlapsWithinTable(*table, cost, [&](std::uint32_t a, std::uint32_t b) {
+        found.clear();
+        detail::joinTable(*table, found, cost);
+        for (const auto [a, b] : found.pairs()) {
             visit(table->slot(a), table->slot(b));
-        });
+        }
     }
-    for (const std::uint32_t slot : grid_.mobileSlots_) {
-        const auto found = [&](std::uint32_t other) { visit(slot, other); };
-        detail::forOverlapsInTable(grid_.resting_, grid_.boxes_[slot], cost, found);
+    found.clear();
+    detail::walkTable(grid_.resting_, grid_.mobile_.columns(), grid_.mobile_.size(), found, cost);
+    for (const auto [a, b] : found.pairs()) {
+        visit(grid_.mobile_.slot(a), grid_.resting_.slot(b));
     }
 }
 
 template <class Scalar>
 void Pairs<Scalar>::collect(std::vector<ProxyPair>& pairs) const {
-    HASHPHASE_ASSERT(grid_.changes_.empty(),
+    HASHPHASE_ASSERT(grid_.cost_.changed == 0,
                      "The set of pairs is asked for directly after an update.");
     const auto begin = static_cast<std::ptrdiff_t>(pairs.size());
     forEachOverlap([&](std::uint32_t a, std::uint32_t b) {
-        const Couple refused = couple(a, b, true);
-        if (!std::binary_search(watched_.begin(), watched_.end(), refused) &&
-            !contains(refusedAtRest_, refused & ~Couple{1})) {
-            pairs.push_back(pairOf(refused));
+        if (!isRefused(couple(a, b))) {
+            pairs.push_back(pairOf(couple(a, b)));
         }
     });
     std::sort(pairs.begin() + begin, pairs.end());
@@ -389,37 +457,47 @@ void Pairs<Scalar>::collect(std::vector<ProxyPair>& pairs) const {
 
 template <class Scalar>
 std::size_t Pairs<Scalar>::memoryBytes() const noexcept {
-    return sizeof(*this) + (before_.capacity() + beforeByEntry_.capacity()) * sizeof(Aabb<Scalar>) +
-           (watched_.capacity() + captured_.capacity() + fresh_.capacity() + merged_.capacity()) *
+    std::size_t bounds = 0;
+    for (const auto& column : walkerBounds_) {
+        bounds += column.capacity() * sizeof(Scalar);
+    }
+    return sizeof(*this) + amongMobile_.memoryBytes() + toResting_.memoryBytes() +
+           selected_.memoryBytes() + carried_.memoryBytes() + bounds +
+           (asked_.capacity() + standing_.capacity() + bornCouples_.capacity() +
+            diedCouples_.capacity() + sorted_.capacity() + restedCouples_.capacity() +
+            announcedBefore_.capacity()) *
                sizeof(Couple) +
-           (born_.capacity() + died_.capacity() + asked_.capacity()) * sizeof(ProxyPair) +
-           undecided_.capacity() * sizeof(Couple*) + accepted_.capacity() +
-           woken_.capacity() * sizeof(std::uint32_t) + wokenTable_.memoryBytes() +
-           announced_.memoryBytes() + refusedAtRest_.memoryBytes();
+           (born_.capacity() + died_.capacity() + askedPairs_.capacity()) * sizeof(ProxyPair) +
+           accepted_.capacity() +
+           (entryOf_.capacity() + walkers_.capacity()) * sizeof(std::uint32_t) +
+           wokenBoxes_.capacity() * sizeof(detail::PaddedBox<Scalar>) + wokenTable_.memoryBytes() +
+           announced_.memoryBytes() + refused_.memoryBytes() + refusedAtRest_.memoryBytes();
 }
 
 template <class Scalar>
 std::string Pairs<Scalar>::validate() const {
-    const auto isSameCouple = [](Couple a, Couple b) { return (a | 1) == (b | 1); };
-    if (!std::is_sorted(watched_.begin(), watched_.end()) ||
-        std::adjacent_find(watched_.begin(), watched_.end(), isSameCouple) != watched_.end()) {
-        return "The watched couples are sorted, each once: broken.";
+    std::vector<Couple> watched;
+    for (const auto [a, b] : amongMobile_.pairs()) {
+        watched.push_back(couple(grid_.mobileSlots_[a], grid_.mobileSlots_[b]));
     }
+    for (const auto [place, slot] : toResting_.pairs()) {
+        watched.push_back(couple(grid_.mobileSlots_[place], slot));
+    }
+    std::sort(watched.begin(), watched.end());
     std::size_t overlapping = 0;
     std::vector<Couple> expected;
     forEachOverlap([&](std::uint32_t a, std::uint32_t b) {
         ++overlapping;
-        if (changedLately(couple(a, b, false), grid_.updateNumber_ - 1)) {
-            expected.push_back(couple(a, b, false));
+        if (!isAtRest(couple(a, b))) {
+            expected.push_back(couple(a, b));
         }
     });
     std::sort(expected.begin(), expected.end());
-    if (!std::equal(watched_.begin(), watched_.end(), expected.begin(), expected.end(),
-                    isSameCouple)) {
-        return "The watched couples are exactly the overlapping ones of which one changed lately: "
+    if (watched != expected) {
+        return "The watched couples are the overlapping ones of which one is mobile, each once: "
                "broken.";
     }
-    if (count_ + refusedCount_ != overlapping) {
+    if (count_ + refusedCount() != overlapping) {
         return "count() is the number of overlapping couples less the refused ones: broken.";
     }
     return {};

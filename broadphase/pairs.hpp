@@ -13,6 +13,7 @@
 // Misuse    one Pairs per grid, created before the grid's first proxy; asserted.
 
 #include <broadphase/detail/flat_set.hpp>
+#include <broadphase/detail/kernels.hpp>
 #include <broadphase/function_ref.hpp>
 #include <broadphase/grid.hpp>
 
@@ -70,7 +71,8 @@ struct PairChanges {
 /// What an update cost.
 struct PairCost {
     std::uint64_t boxesTested = 0;
-    std::uint64_t couplesWatched = 0;  ///< of which one box changed lately
+    std::uint64_t couplesWatched =
+        0;  ///< tested whether they still overlap: one of the two is mobile
     UpdateCost grid;
 };
 
@@ -104,80 +106,96 @@ public:
     [[nodiscard]] std::size_t count() const noexcept { return count_; }
 
     /// Number of overlapping couples that the filter refused.
-    [[nodiscard]] std::size_t refusedCount() const noexcept { return refusedCount_; }
+    [[nodiscard]] std::size_t refusedCount() const noexcept {
+        return refused_.size() + refusedAtRest_.size();
+    }
 
     [[nodiscard]] const PairCost& lastCost() const noexcept { return cost_; }
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
     /// Says which invariant is broken, in a sentence; empty when all hold (ask after update()):
-    /// - The watched couples are sorted, each once.
-    /// - The watched couples are exactly the overlapping ones of which one changed lately.
+    /// - The watched couples are the overlapping ones of which one is mobile, each once.
     /// - count() is the number of overlapping couples less the refused ones.
     [[nodiscard]] std::string validate() const;
 
 private:
-    /// Two slots and whether the filter refused them: first << 33 | second << 1 | refused, so that
-    /// couples sort by slots.
+    using Box = Aabb<Scalar>;
+
+    /// Two slots, the smaller one on top, so that couples sort by slots.
     using Couple = std::uint64_t;
 
-    static constexpr Couple couple(std::uint32_t a, std::uint32_t b, bool refused) noexcept {
-        const Couple low = a < b ? a : b;
-        const Couple high = a < b ? b : a;
-        return low << 33 | high << 1 | (refused ? 1U : 0U);
+    static constexpr Couple couple(std::uint32_t a, std::uint32_t b) noexcept {
+        return a < b ? Couple{a} << 32 | b : Couple{b} << 32 | a;
     }
     static constexpr std::uint32_t first(Couple c) noexcept {
-        return static_cast<std::uint32_t>(c >> 33);
+        return static_cast<std::uint32_t>(c >> 32);
     }
     static constexpr std::uint32_t second(Couple c) noexcept {
-        return static_cast<std::uint32_t>(c >> 1) & 0x7fffffffU;
+        return static_cast<std::uint32_t>(c);
     }
-    static constexpr bool isRefused(Couple c) noexcept { return (c & 1) != 0; }
 
     [[nodiscard]] ProxyPair pairOf(Couple c) const noexcept {
         return {grid_.idOf(first(c)), grid_.idOf(second(c))};
     }
-    [[nodiscard]] bool isWatched(std::uint32_t changedAt, std::uint32_t update) const noexcept;
-    [[nodiscard]] bool changedLately(Couple c, std::uint32_t update) const noexcept;
+    [[nodiscard]] bool overlapNow(Couple c) const noexcept;
+    [[nodiscard]] bool isAtRest(Couple c) const noexcept;
+    [[nodiscard]] bool isRefused(Couple c) const noexcept;
 
-    void captureWoken();
-    void findNew();
-    void joinMobile(QueryCost& cost);
-    void walkAroundChanged(bool amongMobile, QueryCost& cost);
-    void mergeWatched(PairFilter filter);
-    void keepOrDrop(Couple c);
-    void addUndecided(Couple& c);
-    void announceFresh();
-    void decide(PairFilter filter);
-    void publish();
     void beginCall();
-    void bear(Couple c);
-    void bury(Couple c);
-    [[nodiscard]] bool isToAskAgain(Couple c) const;
+    void findDeaths();
+    void findDeathsOfWoken();
+    void loseIfApart(Couple c);
+    void findBirths(bool someCameToRest);
+    void carryToRest(bool someCameToRest);
+    void joinMobile();
+    void walkResting();
+    void lose(Couple c);
+    void askRefusedAgain();
+    void decide(PairFilter filter);
+    bool forgetRefused(Couple c);
+    void sortCouples(std::vector<Couple>& couples);
+    void endCall();
+
+    template <class Visit>
+    void forKnownCouples(std::uint32_t slot, const Visit& visit) const;
     void findUnknown(std::uint32_t slot);
     void forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const;
 
     Grid<Scalar>& grid_;
-    std::vector<Aabb<Scalar>> before_;  // each slot's box at the last update; NaN when it had none
 
-    std::vector<Couple> watched_;      // overlapping couples of which one changed lately, sorted
-    std::vector<Couple> captured_;     // to be merged into watched_ at the next update
-    std::size_t capturedChanges_ = 0;  // of the grid's changes, how many captureWoken() has seen
-    detail::FlatSet announced_;        // which of captured_ were decided since the last update
-    detail::FlatSet refusedAtRest_;    // couples refused and no longer watched
+    // The watched couples: all that overlapped at the last update and of which one is mobile, the
+    // refused ones included. `a`, and among the mobile ones `b`, is a place in the grid's
+    // mobileSlots_, which are in spatial order, so that boxes of a couple are near in memory.
+    detail::PairList amongMobile_;
+    detail::PairList toResting_;          // b is a slot
+    std::size_t watchedMobileCount_ = 0;  // how many mobileSlots_ there were at the last update
 
-    std::vector<Aabb<Scalar>> beforeByEntry_;  // before_ in the order of the grid's mobile table
-    std::vector<Couple> fresh_;
-    std::vector<Couple> merged_;
-    std::vector<Couple*> undecided_;  // ascending: what the filter is to be asked about
-    std::vector<ProxyPair> asked_;
+    detail::FlatSet refused_;        // couples that the filter refused, unless they are ...
+    detail::FlatSet refusedAtRest_;  // ... both at rest
+    detail::FlatSet announced_;      // couples decided since the last update
+
+    std::vector<Couple> asked_;     // what the filter is to be asked about
+    std::vector<Couple> standing_;  // those of them that are pairs
+    std::vector<ProxyPair> askedPairs_;
     std::vector<char> accepted_;
-    std::vector<std::uint32_t> woken_;
-    detail::Table<Scalar> wokenTable_;
+    std::vector<Couple> bornCouples_;
+    std::vector<Couple> diedCouples_;
     std::vector<ProxyPair> born_;
     std::vector<ProxyPair> died_;
     std::size_t count_ = 0;
-    std::size_t refusedCount_ = 0;
     PairCost cost_;
+
+    // Scratch.
+    std::vector<Couple> sorted_;
+    std::vector<Couple> restedCouples_;
+    std::vector<Couple> announcedBefore_;
+    detail::PairList selected_;
+    detail::PairList carried_;
+    std::vector<std::uint32_t> entryOf_;  // of places in mobileSlots_, in the mobile table
+    std::vector<std::uint32_t> walkers_;  // entries that changed
+    std::array<std::vector<Scalar>, 6> walkerBounds_;
+    detail::Table<Scalar> wokenTable_;
+    std::vector<detail::PaddedBox<Scalar>> wokenBoxes_;
 };
 
 extern template class Pairs<float>;

@@ -61,7 +61,7 @@ QueryCost Grid<Scalar>::visit(const Region& region, Collector& collector) const 
             continue;
         }
         ++cost.boxesTested;
-        const Scalar key = region.key(boxes_[slot]);
+        const Scalar key = region.key(records_[slot].box);
         if (key >= 0 && key <= collector.limit() && !mobile.offer(slot, key)) {
             break;
         }
@@ -117,7 +117,7 @@ template <class Visit>
 void Grid<Scalar>::forEach(Visit&& visit) const {
     for (std::uint32_t slot = 0; slot < records_.size(); ++slot) {
         if (isAlive(slot)) {
-            visit(idOf(slot), boxes_[slot]);
+            visit(idOf(slot), records_[slot].box);
         }
     }
 }

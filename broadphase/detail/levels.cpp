@@ -11,9 +11,9 @@ namespace {
 
 // Modelled costs [ns], measured on a plain x86-64 build: looking up a run of buckets, testing a
 // box found in one, and testing a box of the contiguous list of those that fit no level.
-constexpr double kRunCost = 6.0;
-constexpr double kBoxCost = 1.2;
-constexpr double kListedBoxCost = 0.8;
+constexpr double kRunCost = 4.0;
+constexpr double kBoxCost = 0.45;
+constexpr double kListedBoxCost = 0.4;
 
 // Cells beyond these sizes have no inverse in single precision.
 constexpr double kSmallestCell = 1e-30;

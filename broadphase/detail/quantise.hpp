@@ -20,8 +20,8 @@ using Cell = std::array<std::int32_t, 3>;
 /// multiplication and the floor are each monotone after rounding. An origin near the population
 /// keeps the cells of a far-away world apart.
 template <class Scalar>
-[[nodiscard]] inline std::int32_t quantise(Scalar x, Scalar origin,
-                                           Scalar inverseCellSize) noexcept {
+[[nodiscard, gnu::always_inline]] inline std::int32_t quantise(Scalar x, Scalar origin,
+                                                               Scalar inverseCellSize) noexcept {
     constexpr Scalar limit = static_cast<Scalar>(kCellLimit);
     Scalar scaled = (x - origin) * inverseCellSize;
     scaled = scaled < limit ? scaled : limit;

@@ -5,9 +5,15 @@
 
 #include <broadphase/detail/table.hpp>
 
+#include <broadphase/detail/kernels.hpp>
+#include <broadphase/diagnostics.hpp>
+
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 namespace hashphase::detail {
 namespace {
@@ -22,26 +28,27 @@ constexpr std::uint32_t kBuildsBetweenCensuses = 64;
 constexpr std::uint32_t kHashStrideY = 0x9e3779b1U;
 constexpr std::uint32_t kHashStrideZ = 0x85ebca77U;
 
-bool isInside(const Cell& cell) noexcept {
-    return std::all_of(cell.begin(), cell.end(),
-                       [](std::int32_t c) { return c > -kCellLimit && c < kCellLimit; });
+// A layout reaches a little beyond the population, so that it holds for some builds.
+std::int32_t marginOf(std::int32_t low, std::int32_t high) {
+    return high - low < 8 ? 0 : 1 + (high - low) / 128;
 }
 
 }  // namespace
 
+// Returns whether the levels are to be laid out anew.
 template <class Scalar>
-void Table<Scalar>::chooseLevels(std::span<const std::uint32_t> slots, const Aabb<Scalar>* boxes,
+bool Table<Scalar>::chooseLevels(std::span<const PaddedBox<Scalar>> boxes,
                                  const LevelSizes& fixed) {
-    const std::uint64_t count = slots.size();
+    const std::uint64_t count = boxes.size();
     const bool sameCount = 4 * count <= 5 * countWhenChosen_ && 5 * count >= 4 * countWhenChosen_;
     if (sameCount && ++buildsSinceChosen_ < kBuildsBetweenCensuses) {
-        return;
+        return false;
     }
     countWhenChosen_ = count;
     buildsSinceChosen_ = 0;
     census_.clear();
-    for (const std::uint32_t slot : slots) {
-        census_.add(boxes[slot]);
+    for (const PaddedBox<Scalar>& box : boxes) {
+        census_.add(unpadded(box));
     }
     const LevelSizes fresh = fixed.count > 0 ? fixed : census_.cheapestLevels();
     // Only a clear gain changes the sizes, so that they do not oscillate.
@@ -53,152 +60,237 @@ void Table<Scalar>::chooseLevels(std::span<const std::uint32_t> slots, const Aab
     for (std::size_t axis = 0; axis < 3; ++axis) {
         origin_[axis] = static_cast<Scalar>(middle[axis]);
     }
+    return true;
 }
 
 template <class Scalar>
-typename Table<Scalar>::Filed Table<Scalar>::file(const Aabb<Scalar>& box) const noexcept {
-    const auto listed = static_cast<std::uint32_t>(levels_.size() - 1);
-    for (std::uint32_t i = 0; i < listed; ++i) {
-        const Level<Scalar>& level = levels_[i];
-        Cell low;
-        Cell high;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            low[axis] = level.cell(box.min()[static_cast<int>(axis)], axis);
-            high[axis] = level.cell(box.max()[static_cast<int>(axis)], axis);
-        }
-        const auto spansAtMostTwo = [&low, &high](std::size_t axis) {
-            return static_cast<std::uint32_t>(high[axis] - low[axis]) <= 1;
-        };
-        if (spansAtMostTwo(0) && spansAtMostTwo(1) && spansAtMostTwo(2) && isInside(low) &&
-            isInside(high)) {
-            return {low, i};
-        }
-    }
-    return {Cell{}, listed};
-}
-
-template <class Scalar>
-void Table<Scalar>::layOutLevel(Level<Scalar>& level, std::uint32_t count,
-                                std::uint32_t& firstBucket) {
-    level.firstBucket = firstBucket;
-    std::uint64_t cells = 1;
-    if (level.hasCells) {
-        // One empty column behind each row, so that a run may step over either end of it.
-        const auto extent = [&level](std::size_t axis) {
-            return static_cast<std::uint64_t>(level.high[axis] - level.low[axis]) + 1;
-        };
-        const std::uint64_t pitch = extent(0) + 1;
-        const bool fits = extent(1) * extent(2) <= 8ULL * count &&
-                          pitch * extent(1) * extent(2) <= 4ULL * count + 1024;
-        level.isDense = fits;
-        cells = fits ? pitch * extent(1) * extent(2) : 2ULL * count;
-        level.strideY = fits ? static_cast<std::uint32_t>(pitch) : kHashStrideY;
-        level.strideZ = fits ? static_cast<std::uint32_t>(pitch * extent(1)) : kHashStrideZ;
-    }
-    const std::uint64_t buckets = std::bit_ceil(std::max<std::uint64_t>(cells, 1));
-    level.bucketMask = static_cast<std::uint32_t>(buckets - 1);
-    firstBucket += static_cast<std::uint32_t>(buckets);
-}
-
-template <class Scalar>
-void Table<Scalar>::layOutBuckets(std::span<const std::uint32_t> counts) {
-    std::uint32_t firstBucket = 0;
-    for (std::size_t i = 0; i < levels_.size(); ++i) {
-        layOutLevel(levels_[i], counts[i], firstBucket);
-    }
-    bucketStart_.assign(firstBucket + 1, 0);
-}
-
-template <class Scalar>
-std::uint32_t Table<Scalar>::bucketOf(const Filed& filed) const noexcept {
-    const Level<Scalar>& level = levels_[filed.level];
-    if (!level.hasCells) {
-        return level.firstBucket;
-    }
-    const std::uint32_t base = level.rowBase(filed.cell[1], filed.cell[2]);
-    return level.firstBucket +
-           ((base + static_cast<std::uint32_t>(filed.cell[0])) & level.bucketMask);
-}
-
-template <class Scalar>
-void Table<Scalar>::build(std::span<const std::uint32_t> slots, const Aabb<Scalar>* boxes,
-                          const LevelSizes& fixed) {
-    chooseLevels(slots, boxes, fixed);
-    const auto count = static_cast<std::uint32_t>(slots.size());
-
+void Table<Scalar>::makeLevels() {
     const auto listed = static_cast<std::uint32_t>(sizes_.count);
     levels_.assign(listed + 1, {});
     for (std::uint32_t i = 0; i < listed; ++i) {
-        levels_[i].origin = origin_;
+        Level<Scalar>& level = levels_[i];
+        level.hasCells = true;
+        level.origin = origin_;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const bool isFlat = ((sizes_.flatAxes[i] >> axis) & 1) != 0;
-            levels_[i].inverseCellSize[axis] =
+            level.inverseCellSize[axis] =
                 isFlat ? Scalar(0) : static_cast<Scalar>(1 / sizes_.cellSize[i]);
         }
-        levels_[i].low.fill(kCellLimit);
-        levels_[i].high.fill(-kCellLimit);
+        level.largestEdge = static_cast<Scalar>(sizes_.cellSize[i]);
     }
+}
 
-    // File every box: its level, and the cell of its min corner.
-    filed_.resize(count);
+// The cell of a box that is filed on this level, or nothing where it is not to be.
+template <class Scalar>
+std::optional<Cell> Table<Scalar>::cellOn(const Level<Scalar>& level,
+                                          const Aabb<Scalar>& box) const noexcept {
+    Cell low{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto at = static_cast<Eigen::Index>(axis);
+        const Scalar edge = box.max()[at] - box.min()[at];
+        low[axis] = level.cell(box.min()[at], axis);
+        const std::int32_t high = level.cell(box.max()[at], axis);
+        const bool isClamped = low[axis] <= -kCellLimit || high >= kCellLimit;
+        const bool spansAtMostTwo = high == low[axis] || high == low[axis] + 1;
+        if (!(edge <= level.largestEdge) || isClamped || !spansAtMostTwo) {
+            return std::nullopt;
+        }
+    }
+    return low;
+}
+
+// Which levels have cells, and how far they reach: as the boxes are now, and a little further.
+template <class Scalar>
+void Table<Scalar>::layOut(std::span<const PaddedBox<Scalar>> boxes) {
+    makeLevels();
+    const auto listed = static_cast<std::uint32_t>(levels_.size() - 1);
     std::array<std::uint32_t, kMaxLevels + 1> counts{};
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const Filed filed = file(boxes[slots[i]]);
-        filed_[i] = filed;
-        ++counts[filed.level];
-        Level<Scalar>& level = levels_[filed.level];
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            level.low[axis] = std::min(level.low[axis], filed.cell[axis]);
-            level.high[axis] = std::max(level.high[axis], filed.cell[axis]);
+    const auto measure = [&] {
+        counts.fill(0);
+        for (Level<Scalar>& level : levels_) {
+            level.low.fill(kCellLimit);
+            level.high.fill(-kCellLimit);
+        }
+        for (const PaddedBox<Scalar>& box : boxes) {
+            if (isNan(box)) {
+                continue;
+            }
+            std::optional<Cell> cell;
+            std::uint32_t i = 0;
+            while (i < listed && !(cell = cellOn(levels_[i], unpadded(box)))) {
+                ++i;
+            }
+            ++counts[i];
+            for (std::size_t axis = 0; cell && axis < 3; ++axis) {
+                levels_[i].low[axis] = std::min(levels_[i].low[axis], (*cell)[axis]);
+                levels_[i].high[axis] = std::max(levels_[i].high[axis], (*cell)[axis]);
+            }
+        }
+    };
+    measure();
+    // What is on a thin level goes to the next one that is not, or to the list.
+    bool isThinned = false;
+    for (std::uint32_t i = 0; i < listed; ++i) {
+        if (counts[i] < kThinLevel) {
+            levels_[i].hasCells = false;
+            levels_[i].largestEdge = std::numeric_limits<Scalar>::quiet_NaN();
+            isThinned = isThinned || counts[i] > 0;
         }
     }
-
-    // Thin levels join the list.
-    std::array<std::uint32_t, kMaxLevels + 1> joins{};
+    if (isThinned) {
+        measure();
+    }
+    std::uint32_t firstBucket = 0;
     for (std::uint32_t i = 0; i <= listed; ++i) {
-        levels_[i].hasCells = i < listed && counts[i] >= kThinLevel;
-        joins[i] = levels_[i].hasCells ? i : listed;
-        if (i < listed && !levels_[i].hasCells) {
-            counts[listed] += counts[i];
-            counts[i] = 0;
-        }
+        levels_[i].firstBucket = firstBucket;
+        layOutLevel(levels_[i], counts[i]);
+        firstBucket += levels_[i].bucketCount;
     }
-    layOutBuckets(counts);
+    listedWhenLaidOut_ = counts[listed];
+    bucketStart_.resize(firstBucket + 1);
+}
 
-    // Count the entries of each bucket, then turn counts into the buckets' first entries.
-    buckets_.resize(count);
-    for (std::uint32_t i = 0; i < count; ++i) {
-        filed_[i].level = joins[filed_[i].level];
-        buckets_[i] = bucketOf(filed_[i]);
-        ++bucketStart_[buckets_[i]];
+template <class Scalar>
+void Table<Scalar>::layOutLevel(Level<Scalar>& level, std::uint32_t count) {
+    level.bucketCount = 1;
+    if (!level.hasCells) {
+        level.low.fill(0);
+        level.high.fill(0);
+        return;
     }
+    std::array<std::uint64_t, 3> extent{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::int32_t margin = marginOf(level.low[axis], level.high[axis]);
+        level.low[axis] -= margin;
+        level.high[axis] += margin;
+        extent[axis] = static_cast<std::uint64_t>(level.high[axis] - level.low[axis]) + 1;
+    }
+    // An empty cell behind each row, which is the one before the next; an empty row behind each
+    // layer likewise; and an empty layer behind the last, where there are several.
+    const std::uint64_t pitch = extent[0] + 1;
+    const std::uint64_t rows = extent[1] + 1;
+    const std::uint64_t layers = extent[2] == 1 ? 1 : extent[2] + 1;
+    level.isDense = extent[1] * extent[2] <= 8ULL * count && rows * layers <= 16ULL * count + 64 &&
+                    pitch * rows * layers <= 6ULL * count + 1024;
+    if (level.isDense) {
+        level.strideY = static_cast<std::uint32_t>(pitch);
+        level.strideZ = static_cast<std::uint32_t>(pitch * rows);
+        level.denseBase = 1 - static_cast<std::uint32_t>(level.low[0]) -
+                          static_cast<std::uint32_t>(level.low[1]) * level.strideY -
+                          static_cast<std::uint32_t>(level.low[2]) * level.strideZ;
+        level.bucketCount = static_cast<std::uint32_t>(pitch * (rows * layers + 1) + 2);
+    } else {
+        level.strideY = kHashStrideY;
+        level.strideZ = kHashStrideZ;
+        level.bucketCount = std::bit_ceil(std::max(2 * count, 64U));
+    }
+}
+
+// Finds every box's bucket and counts how many each has; returns false when the layout does not fit
+// the boxes any more.
+template <class Scalar>
+bool Table<Scalar>::countBuckets(std::span<const PaddedBox<Scalar>> boxes) {
+    std::fill(bucketStart_.begin(), bucketStart_.end(), 0);
+    buckets_.resize(boxes.size());
+    views_.clear();
+    for (const Level<Scalar>& level : levels_) {
+        views_.push_back(view(level));
+    }
+    if (!kernels<Scalar>().fileBoxes(views_.data(), views_.size(), boxes.data(), boxes.size(),
+                                     buckets_.data(), bucketStart_.data())) {
+        return false;
+    }
+    const std::uint32_t listedCount = bucketStart_[levels_.back().firstBucket];
+    return listedCount <= 2 * listedWhenLaidOut_ + kThinLevel;
+}
+
+// A counting sort. Boxes that come in the order of the last time are read and written nearly in
+// sequence.
+template <class Scalar>
+void Table<Scalar>::sortEntries(std::span<const std::uint32_t> slots,
+                                std::span<const PaddedBox<Scalar>> boxes) {
     std::uint32_t sum = 0;
     for (std::uint32_t& start : bucketStart_) {
-        sum += start;
-        start = sum;
+        sum += std::exchange(start, sum);
     }
-
-    // Scatter backwards, which leaves each start at its bucket's first entry and keeps order.
+    const std::uint32_t count = sum;
     slots_.resize(count);
-    for (std::uint32_t i = count; i-- > 0;) {
-        slots_[--bucketStart_[buckets_[i]]] = slots[i];
-    }
-    for (std::uint32_t i = 0; i <= listed; ++i) {
-        levels_[i].firstEntry = bucketStart_[levels_[i].firstBucket];
-        levels_[i].lastEntry = levels_[i].firstEntry + counts[i];
-    }
-
-    // Gather the boxes into columns, in the order in which walks will read them.
+    order_.resize(count);
+    bucketOfEntry_.resize(count);
     for (auto& column : bounds_) {
-        column.resize(count + kLanes);
+        column.resize(count + kColumnPadding);
     }
-    for (std::uint32_t entry = 0; entry < count; ++entry) {
-        const Aabb<Scalar>& box = boxes[slots_[entry]];
+    for (Level<Scalar>& level : levels_) {
+        level.firstEntry = bucketStart_[level.firstBucket];
+        level.lastEntry = bucketStart_[level.firstBucket + level.bucketCount];
+    }
+    // Each start moves to its bucket's end, which is where the next one starts.
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const std::uint32_t bucket = buckets_[i];
+        if (bucket == kNoBucket) {
+            continue;
+        }
+        const std::uint32_t entry = bucketStart_[bucket]++;
+        order_[entry] = static_cast<std::uint32_t>(i);
+        slots_[entry] = slots[i];
+        bucketOfEntry_[entry] = bucket;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            bounds_[axis][entry] = box.min()[static_cast<int>(axis)];
-            bounds_[axis + 3][entry] = box.max()[static_cast<int>(axis)];
+            bounds_[axis][entry] = boxes[i].low[axis];
+            bounds_[axis + 3][entry] = boxes[i].high[axis];
         }
     }
+    std::copy_backward(bucketStart_.begin(), bucketStart_.end() - 1, bucketStart_.end());
+    bucketStart_[0] = 0;
+
+    const auto isHashed = [](const Level<Scalar>& level) {
+        return level.hasCells && !level.isDense;
+    };
+    rowOfEntry_.resize(std::any_of(levels_.begin(), levels_.end(), isHashed) ? count : 0);
+    for (const Level<Scalar>& level : levels_) {
+        for (std::uint32_t i = level.firstEntry; isHashed(level) && i < level.lastEntry; ++i) {
+            rowOfEntry_[i] = {level.cell(bounds_[1][i], 1), level.cell(bounds_[2][i], 2)};
+        }
+    }
+}
+
+template <class Scalar>
+void Table<Scalar>::build(std::span<const std::uint32_t> slots,
+                          std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed) {
+    HASHPHASE_ASSERT(slots.size() == boxes.size(), "Every box has a slot.");
+    if (chooseLevels(boxes, fixed) || levels_.empty() || !countBuckets(boxes)) {
+        layOut(boxes);
+        [[maybe_unused]] const bool fits = countBuckets(boxes);
+        HASHPHASE_ASSERT(fits, "A layout fits the boxes for which it was made.");
+    }
+    sortEntries(slots, boxes);
+}
+
+template <class Scalar>
+LevelView<Scalar> Table<Scalar>::view(const Level<Scalar>& level) const noexcept {
+    LevelView<Scalar> view{};
+    for (std::size_t i = 0; i < 6; ++i) {
+        view.columns[i] = bounds_[i].data();
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        view.origin[axis] = level.origin[axis];
+        view.inverseCellSize[axis] = level.inverseCellSize[axis];
+        view.low[axis] = level.low[axis];
+        view.high[axis] = level.high[axis];
+    }
+    view.largestEdge = level.largestEdge;
+    view.bucketStart = bucketStart_.data() + level.firstBucket;
+    view.bucketOfEntry = bucketOfEntry_.data();
+    view.rowOfEntry = rowOfEntry_.data();
+    view.firstBucket = level.firstBucket;
+    view.firstEntry = level.firstEntry;
+    view.lastEntry = level.lastEntry;
+    view.bucketCount = level.bucketCount;
+    view.strideY = level.strideY;
+    view.strideZ = level.strideZ;
+    view.denseBase = level.denseBase;
+    view.isDense = level.isDense;
+    view.hasCells = level.hasCells;
+    return view;
 }
 
 template <class Scalar>
@@ -211,10 +303,11 @@ void Table<Scalar>::erase(std::uint32_t entry) noexcept {
 template <class Scalar>
 std::size_t Table<Scalar>::memoryBytes() const noexcept {
     return levels_.capacity() * sizeof(Level<Scalar>) +
-           (bucketStart_.capacity() + slots_.capacity() + buckets_.capacity()) *
+           (bucketStart_.capacity() + slots_.capacity() + order_.capacity() +
+            bucketOfEntry_.capacity() + buckets_.capacity()) *
                sizeof(std::uint32_t) +
-           6 * bounds_[0].capacity() * sizeof(Scalar) + filed_.capacity() * sizeof(Filed) +
-           census_.memoryBytes();
+           6 * bounds_[0].capacity() * sizeof(Scalar) + rowOfEntry_.capacity() * sizeof(Row) +
+           views_.capacity() * sizeof(LevelView<Scalar>) + census_.memoryBytes();
 }
 
 template <class Scalar>
@@ -222,21 +315,30 @@ std::string Table<Scalar>::validate() const {
     std::uint32_t entry = 0;
     for (std::uint32_t i = 0; i < levels_.size(); ++i) {
         const Level<Scalar>& level = levels_[i];
-        for (std::uint32_t b = level.firstBucket; b <= level.firstBucket + level.bucketMask; ++b) {
+        if (level.firstEntry != entry) {
+            return "Buckets partition the entries in order: broken.";
+        }
+        const std::uint32_t end = level.firstBucket + level.bucketCount;
+        for (std::uint32_t b = level.firstBucket; b < end; ++b) {
             if (bucketStart_[b] != entry || bucketStart_[b] > bucketStart_[b + 1]) {
                 return "Buckets partition the entries in order: broken.";
             }
             for (; entry < bucketStart_[b + 1]; ++entry) {
                 const Aabb<Scalar> box = this->box(entry);
-                if (hasNan(box) || !level.hasCells) {
+                if (std::isnan(box.min()[0]) || !level.hasCells) {
                     continue;
                 }
-                const Filed filed = file(box);
-                if (filed.level != i) {
-                    return "Every entry is on the finest level where its box spans at most two "
-                           "cells an axis, or is listed without cells: broken.";
+                Cell low{};
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    const auto at = static_cast<Eigen::Index>(axis);
+                    low[axis] = level.cell(box.min()[at], axis);
+                    const std::int32_t high = level.cell(box.max()[at], axis);
+                    if (high < low[axis] || high > low[axis] + 1) {
+                        return "Every entry spans at most two cells of its level an axis, or is "
+                               "listed without cells: broken.";
+                    }
                 }
-                if (bucketOf(filed) != b) {
+                if (level.firstBucket + level.bucket(low) != b || bucketOfEntry_[entry] != b) {
                     return "Every entry lies in the bucket of the cell of its min corner: broken.";
                 }
             }

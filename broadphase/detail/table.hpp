@@ -3,22 +3,25 @@
 
 // The hash table: boxes sorted by cell, each filed once.
 //
-// A box is filed under the cell of its min corner, on the finest level where it spans at most two
-// cells an axis. Whatever overlaps a region then lies in the region's cells or one step before.
-// Cells become buckets by rows: bucket = rowBase(y, z) + x, modulo the number of buckets, so that
-// the cells of a run along x are neighbours in memory, and entries are sorted by bucket. After the
-// spatial hashing of Hastings, Mesit and Guha, with rows in the place of single cells.
+// A box is filed under the cell of its min corner, on a level where it spans at most two cells an
+// axis. Whatever overlaps a region then lies in the region's cells or one step before.
+// Cells become buckets by rows: bucket = rowBase(y, z) + x, so that the cells of a run along x are
+// neighbours in memory, and entries are sorted by bucket. After the spatial hashing of Hastings,
+// Mesit and Guha, with rows in the place of single cells.
 //
 // Threads   Building and erasing need the table for themselves; everything const may run anywhere.
 
 #include <broadphase/aabb.hpp>
+#include <broadphase/detail/kernel_types.hpp>
 #include <broadphase/detail/levels.hpp>
 #include <broadphase/detail/overlap_kernel.hpp>
+#include <broadphase/detail/padded_box.hpp>
 #include <broadphase/detail/quantise.hpp>
 
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,19 +44,24 @@ template <class Scalar>
 struct Level {
     std::array<Scalar, 3> origin{};
     std::array<Scalar, 3> inverseCellSize{};  // 0 along a flat axis, which has one cell: 0
+    // Of boxes that are filed here; NaN, which nothing is below, where there are no cells.
+    Scalar largestEdge = std::numeric_limits<Scalar>::quiet_NaN();
     std::uint32_t firstEntry = 0;
     std::uint32_t lastEntry = 0;  // one past
     std::uint32_t firstBucket = 0;
-    std::uint32_t bucketMask = 0;
-    // Lowest and highest cell that has an entry. A level without cells is a plain list: it has
-    // one bucket, and every walk reads it whole.
+    std::uint32_t bucketCount = 1;
+    // Every entry's cell lies from low to high. A level without cells is a plain list: it has one
+    // bucket, and every walk reads it whole.
     Cell low{};
     Cell high{};
     bool hasCells = false;
-    // A well-filled range of cells is numbered through (the paper's formula); else rows are hashed.
+    // A well-filled range of cells is numbered through (the paper's formula), with an empty cell
+    // before and behind each row and an empty row before and behind each layer; else rows are
+    // hashed into a number of buckets that is a power of two.
     bool isDense = false;
     std::uint32_t strideY = 0;
     std::uint32_t strideZ = 0;
+    std::uint32_t denseBase = 0;
 
     [[nodiscard]] std::uint32_t count() const noexcept { return lastEntry - firstEntry; }
 
@@ -68,16 +76,17 @@ struct Level {
         return inverseCellSize[axis] == 0 ? 0 : quantise(x, origin[axis], inverseCellSize[axis]);
     }
 
-    /// Bucket of cell x = 0 of row (y, z), before the modulo.
+    /// Bucket of cell x = 0 of row (y, z), among the level's own; hashed ones before the modulo.
     [[nodiscard]] std::uint32_t rowBase(std::int32_t y, std::int32_t z) const noexcept {
         const auto row =
             static_cast<std::uint32_t>(y) * strideY + static_cast<std::uint32_t>(z) * strideZ;
-        if (isDense) {
-            return row;
-        }
-        std::uint32_t hash = row ^ (row >> 16);
-        hash *= 0x7feb352dU;
-        return hash ^ (hash >> 15);
+        return isDense ? row + denseBase : mixRow(row);
+    }
+
+    /// Bucket of a cell from low to high, among the level's own.
+    [[nodiscard]] std::uint32_t bucket(const Cell& cell) const noexcept {
+        const std::uint32_t sum = rowBase(cell[1], cell[2]) + static_cast<std::uint32_t>(cell[0]);
+        return isDense ? sum : sum & (bucketCount - 1);
     }
 };
 
@@ -91,9 +100,10 @@ struct EntryRange {
 template <class Scalar>
 class Table {
 public:
-    /// Files boxes[slot] for every slot, anew. Cell sizes follow the population, or are fixed when
-    /// `fixed.count` > 0. None of the boxes may be NaN. Cost: a few passes over the boxes.
-    void build(std::span<const std::uint32_t> slots, const Aabb<Scalar>* boxes,
+    /// Files boxes[i], of slots[i], for every i, anew; boxes with a NaN are left out. Cell sizes
+    /// follow the population, or are fixed when `fixed.count` > 0. Cost: a few passes over the
+    /// boxes; least when they come in about the order of the last time, see order().
+    void build(std::span<const std::uint32_t> slots, std::span<const PaddedBox<Scalar>> boxes,
                const LevelSizes& fixed);
 
     /// Takes the entry out of every later answer. Cost: O(1); its place is reclaimed by build().
@@ -105,6 +115,8 @@ public:
     [[nodiscard]] std::span<const Level<Scalar>> levels() const noexcept { return levels_; }
     [[nodiscard]] std::span<const std::uint32_t> slots() const noexcept { return slots_; }
     [[nodiscard]] std::uint32_t slot(std::uint32_t entry) const noexcept { return slots_[entry]; }
+    /// For every entry the number under which build() was given it.
+    [[nodiscard]] std::span<const std::uint32_t> order() const noexcept { return order_; }
     /// Edge of the finest cells [m]; infinity when nothing is filed by cells.
     [[nodiscard]] double finestCellSize() const noexcept {
         return sizes_.count > 0 && !slots_.empty() ? sizes_.cellSize[0]
@@ -124,77 +136,72 @@ public:
                 bounds_[3].data(), bounds_[4].data(), bounds_[5].data()};
     }
 
+    /// What kernels read of the level.
+    [[nodiscard]] LevelView<Scalar> view(const Level<Scalar>& level) const noexcept;
+
     /// True when the entry, found by forRun(), lies in that row (y, z): hashed rows may share
     /// buckets. Asked about hits only.
     [[nodiscard]] bool isInRow(const Level<Scalar>& level, std::uint32_t entry, std::int32_t y,
                                std::int32_t z) const noexcept {
-        return level.isDense ||
-               (level.cell(bounds_[1][entry], 1) == y && level.cell(bounds_[2][entry], 2) == z);
+        return level.isDense || (rowOfEntry_[entry].y == y && rowOfEntry_[entry].z == z);
     }
 
-    /// Calls visit(EntryRange) for the buckets of the run: once, or twice where it wraps around.
-    /// The run may begin one cell before the level's lowest and end one after its highest.
-    /// Entries of other rows may be among them where rows are hashed. Cost: O(1) + visits.
+    /// Calls visit(EntryRange) for the buckets of the run, which must lie in the level's low to
+    /// high: once, or twice where hashed buckets wrap around. Entries of other rows may be among
+    /// them where rows are hashed. Cost: O(1) + visits.
     template <class Visit>
     void forRun(const Level<Scalar>& level, const CellRun& run, Visit&& visit) const {
-        forRun(level, level.rowBase(run.y, run.z), run.firstX, run.lastX, visit);
-    }
-
-    /// The same for a row given by its Level::rowBase().
-    template <class Visit>
-    void forRun(const Level<Scalar>& level, std::uint32_t rowBase, std::int32_t firstX,
-                std::int32_t lastX, Visit&& visit) const {
         const std::uint32_t* starts = bucketStart_.data() + level.firstBucket;
-        const auto length = static_cast<std::uint32_t>(lastX - firstX) + 1;
-        const std::uint32_t bucketCount = level.bucketMask + 1;
-        if (length >= bucketCount) {
-            visit(EntryRange{starts[0], starts[bucketCount]});
+        const auto length = static_cast<std::uint32_t>(run.lastX - run.firstX) + 1;
+        if (length >= level.bucketCount) {
+            visit(EntryRange{starts[0], starts[level.bucketCount]});
             return;
         }
-        const std::uint32_t first =
-            (rowBase + static_cast<std::uint32_t>(firstX)) & level.bucketMask;
+        const std::uint32_t first = level.bucket({run.firstX, run.y, run.z});
         const std::uint32_t last = first + length;
-        if (last <= bucketCount) {
+        if (last <= level.bucketCount) {
             visit(EntryRange{starts[first], starts[last]});
         } else {
-            visit(EntryRange{starts[first], starts[bucketCount]});
-            visit(EntryRange{starts[0], starts[last - bucketCount]});
+            visit(EntryRange{starts[first], starts[level.bucketCount]});
+            visit(EntryRange{starts[0], starts[last - level.bucketCount]});
         }
     }
 
     /// Says which invariant is broken, in a sentence; empty when all hold:
     /// - Every entry lies in the bucket of the cell of its min corner.
-    /// - Every entry is on the finest level where its box spans at most two cells an axis, or is
-    ///   listed without cells.
+    /// - Every entry spans at most two cells of its level an axis, or is listed without cells.
     /// - Buckets partition the entries in order.
     [[nodiscard]] std::string validate() const;
 
 private:
-    struct Filed {
-        Cell cell{};
-        std::uint32_t level = 0;
-    };
-
-    void chooseLevels(std::span<const std::uint32_t> slots, const Aabb<Scalar>* boxes,
-                      const LevelSizes& fixed);
-    [[nodiscard]] Filed file(const Aabb<Scalar>& box) const noexcept;
-    void layOutBuckets(std::span<const std::uint32_t> counts);
-    void layOutLevel(Level<Scalar>& level, std::uint32_t count, std::uint32_t& firstBucket);
-    [[nodiscard]] std::uint32_t bucketOf(const Filed& filed) const noexcept;
+    [[nodiscard]] bool chooseLevels(std::span<const PaddedBox<Scalar>> boxes,
+                                    const LevelSizes& fixed);
+    void makeLevels();
+    [[nodiscard]] std::optional<Cell> cellOn(const Level<Scalar>& level,
+                                             const Aabb<Scalar>& box) const noexcept;
+    void layOut(std::span<const PaddedBox<Scalar>> boxes);
+    void layOutLevel(Level<Scalar>& level, std::uint32_t count);
+    [[nodiscard]] bool countBuckets(std::span<const PaddedBox<Scalar>> boxes);
+    void sortEntries(std::span<const std::uint32_t> slots,
+                     std::span<const PaddedBox<Scalar>> boxes);
 
     LevelSizes sizes_;
     std::array<Scalar, 3> origin_{};
     std::uint64_t countWhenChosen_ = 0;
     std::uint32_t buildsSinceChosen_ = 0;
+    std::uint32_t listedWhenLaidOut_ = 0;
     SizeCensus census_;
 
     std::vector<Level<Scalar>> levels_;  // finest first; the last one is the list without cells
     std::vector<std::uint32_t> bucketStart_;
     std::vector<std::uint32_t> slots_;
-    std::array<std::vector<Scalar>, 6> bounds_;  // kLanes longer than the entries
+    std::vector<std::uint32_t> order_;
+    std::vector<std::uint32_t> bucketOfEntry_;
+    std::vector<Row> rowOfEntry_;                // where a level is hashed
+    std::array<std::vector<Scalar>, 6> bounds_;  // kColumnPadding longer than the entries
 
-    std::vector<Filed> filed_;            // scratch of build()
-    std::vector<std::uint32_t> buckets_;  // scratch of build()
+    std::vector<std::uint32_t> buckets_;    // scratch of build()
+    std::vector<LevelView<Scalar>> views_;  // the same
 };
 
 extern template class Table<float>;

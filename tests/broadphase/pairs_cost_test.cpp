@@ -103,9 +103,12 @@ TEST(PairCost, CountsTheSearchOnBehalfOfProxiesThatWake) {
     for (int i = 0; i < 500; ++i) {
         static_cast<void>(grid.add(makeBox<float>(0.5, 0, 0, 1, 1, 1)));
     }
+    const ProxyId mover = grid.add(makeBox<float>(-100, 0, 0, -99, 1, 1));
     for (int i = 0; i < 30; ++i) {
+        grid.move(mover, makeBox<float>(-100 - i, 0, 0, -99, 1, 1));
         pairs.update(acceptAll);
     }
+    EXPECT_EQ(pairs.lastCost().couplesWatched, 0U);
     grid.move(sleeper, makeBox<float>(900, 0, 0, 901, 1, 1));  // to where nothing is
     EXPECT_EQ(pairs.update(acceptAll).died.size(), 500U);
     EXPECT_GE(pairs.lastCost().boxesTested, 500U);

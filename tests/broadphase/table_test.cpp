@@ -30,7 +30,11 @@ protected:
         boxes_ = std::move(boxes);
         slots_.resize(boxes_.size());
         std::iota(slots_.begin(), slots_.end(), 0U);
-        table_.build(slots_, boxes_.data(), fixed);
+        std::vector<PaddedBox<Scalar>> paddedBoxes;
+        for (const Box& box : boxes_) {
+            paddedBoxes.push_back(padded(box));
+        }
+        table_.build(slots_, paddedBoxes, fixed);
         ASSERT_EQ(table_.validate(), "");
         ASSERT_EQ(table_.size(), boxes_.size());
     }
@@ -38,10 +42,12 @@ protected:
     /// Every couple in the order of its numbers, found by the join.
     [[nodiscard]] Couples joined() const {
         Couples couples;
-        QueryCost cost;
-        forOverlapsWithinTable(table_, cost, [&](std::uint32_t a, std::uint32_t b) {
+        PairList found;
+        KernelCost cost;
+        joinTable(table_, found, cost);
+        for (const auto [a, b] : found.pairs()) {
             couples.push_back(std::minmax(table_.slot(a), table_.slot(b)));
-        });
+        }
         std::sort(couples.begin(), couples.end());
         return couples;
     }
@@ -65,10 +71,10 @@ protected:
             std::map<std::uint32_t, std::pair<std::int32_t, std::int32_t>> rowOfBucket;
             for (std::uint32_t i = level.firstEntry; level.hasCells && i < level.lastEntry; ++i) {
                 const Box box = table_.box(i);
+                const std::int32_t x = level.cell(box.min()[0], 0);
                 const std::int32_t y = level.cell(box.min()[1], 1);
                 const std::int32_t z = level.cell(box.min()[2], 2);
-                const auto x = static_cast<std::uint32_t>(level.cell(box.min()[0], 0));
-                const std::uint32_t bucket = (level.rowBase(y, z) + x) & level.bucketMask;
+                const std::uint32_t bucket = level.bucket({x, y, z});
                 shared += rowOfBucket.try_emplace(bucket, y, z).first->second != std::pair(y, z);
             }
         }
@@ -214,8 +220,9 @@ TYPED_TEST(TableTest, KeepsToTheCostOfAFewTestsABoxWhereBoxesAreOfOneSize) {
         boxes.push_back(boxAround<TypeParam>(random.pointIn(0, 40), {0.5, 0.5, 0.5}));
     }
     this->build(std::move(boxes));
-    QueryCost cost;
-    forOverlapsWithinTable(this->table_, cost, [](std::uint32_t, std::uint32_t) {});
+    PairList found;
+    KernelCost cost;
+    joinTable(this->table_, found, cost);
     EXPECT_LT(cost.boxesTested, 12U * kCount);
     EXPECT_LT(cost.rowsVisited, 10U * kCount);
 }
@@ -231,8 +238,9 @@ TYPED_TEST(TableTest, KeepsToTheCostOfAFewTestsABoxWhereSizesDiffer) {
         boxes.push_back(boxAround<TypeParam>(random.pointIn(0, 20000), {half, half, half}));
     }
     this->build(std::move(boxes));
-    QueryCost cost;
-    forOverlapsWithinTable(this->table_, cost, [](std::uint32_t, std::uint32_t) {});
+    PairList found;
+    KernelCost cost;
+    joinTable(this->table_, found, cost);
     EXPECT_LT(cost.boxesTested, 60U * kCount);
 }
 

@@ -47,7 +47,6 @@ public:
 
     void refilter(ProxyId id) {
         asked_.clear();
-        changed_.insert(id);
         apply(pairs.refilter(id, recordingFilter()));
         noteDecided();
         EXPECT_TRUE(isAscending(asked_)) << "refilter asks in ascending order, each couple once";

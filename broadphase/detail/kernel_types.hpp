@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What kernels read and write: plain arrays and nothing that has code. Kernels are compiled for
+// several instruction sets, and an inline function of the standard library that such a file emits
+// could be the copy that the linker keeps for the whole program.
+
+#include <cstddef>
+#include <cstdint>
+
+namespace hashphase::detail {
+
+/// Columns are readable this many entries past the last one.
+inline constexpr std::uint32_t kColumnPadding = 16;
+
+/// A box of which each corner fills a vector register; the fourth numbers are 0.
+template <class Scalar>
+struct alignas(4 * sizeof(Scalar)) PaddedBox {
+    Scalar low[4];
+    Scalar high[4];
+};
+
+/// Two entries whose boxes overlap, or two numbers of whatever else was asked about.
+struct IndexPair {
+    std::uint32_t a;
+    std::uint32_t b;
+
+    friend bool operator==(const IndexPair&, const IndexPair&) = default;
+};
+
+/// Where a kernel writes couples: grow(sink, count) makes room for at least `count` behind `next`.
+struct PairSink {
+    IndexPair* next;
+    IndexPair* end;
+    void (*grow)(PairSink& sink, std::size_t count);
+    void* owner;
+};
+
+/// A row of cells, along x.
+struct Row {
+    std::int32_t y;
+    std::int32_t z;
+};
+
+/// A level of a table (see table.hpp) as plain arrays.
+template <class Scalar>
+struct LevelView {
+    const Scalar* columns[6];            // min x, y, z, max x, y, z of the whole table
+    const std::uint32_t* bucketStart;    // first entry of each of the level's buckets, and the end
+    const std::uint32_t* bucketOfEntry;  // of the whole table, counted over all levels
+    std::uint32_t firstBucket;           // of the level
+    const Row* rowOfEntry;               // of the whole table, where a level is hashed
+    Scalar origin[4];
+    Scalar inverseCellSize[4];  // 0 along a flat axis
+    Scalar largestEdge;         // of boxes that are filed here
+    std::int32_t low[4];
+    std::int32_t high[4];
+    std::uint32_t firstEntry;
+    std::uint32_t lastEntry;
+    std::uint32_t bucketCount;
+    std::uint32_t strideY;
+    std::uint32_t strideZ;
+    std::uint32_t denseBase;
+    bool isDense;
+    bool hasCells;
+};
+
+/// A hash of a row's number whose lower bits are well mixed.
+[[nodiscard, gnu::always_inline]] inline std::uint32_t mixRow(std::uint32_t row) noexcept {
+    std::uint32_t hash = row ^ (row >> 16);
+    hash *= 0x7feb352dU;
+    return hash ^ (hash >> 15);
+}
+
+/// What a kernel did.
+struct KernelCost {
+    std::uint64_t rowsVisited = 0;
+    std::uint64_t boxesTested = 0;
+};
+
+/// In the place of the bucket of a box that is not filed, because it has a NaN.
+inline constexpr std::uint32_t kNoBucket = ~std::uint32_t{0};
+
+template <class Scalar>
+struct Kernels {
+    /// Finds the bucket of each of `count` boxes among those of `levelCount` levels, the last of
+    /// which is the list without cells, and adds to the counts of the buckets. Returns false when a
+    /// box lies in none of its level's cells from low to high; the output is worthless then.
+    bool (*fileBoxes)(const LevelView<Scalar>* levels, std::size_t levelCount,
+                      const PaddedBox<Scalar>* boxes, std::size_t count, std::uint32_t* buckets,
+                      std::uint32_t* bucketCounts);
+
+    /// Finds every two entries of a level with cells that overlap, the first one from firstEntry
+    /// to lastEntry; over the whole level each couple once.
+    void (*joinLevel)(const LevelView<Scalar>& level, std::uint32_t firstEntry,
+                      std::uint32_t lastEntry, PairSink& found, KernelCost& cost);
+
+    /// Finds (i, entry) for every box i from first to last of `queries`, which has columns like the
+    /// level's, and every entry of the level that overlaps it.
+    void (*walkLevel)(const LevelView<Scalar>& level, const Scalar* const* queries,
+                      std::uint32_t first, std::uint32_t last, PairSink& found, KernelCost& cost);
+
+    /// Finds every two of the entries first to last of a table, wherever they are filed.
+    void (*joinList)(const Scalar* const* columns, std::uint32_t first, std::uint32_t last,
+                     PairSink& found, KernelCost& cost);
+
+    /// Writes those of `count` couples whose boxes do not overlap, the boxes order[a] and order[b],
+    /// or a and b where order is null, to `apart`, which has room for all. Returns their number.
+    std::size_t (*selectApart)(const IndexPair* couples, std::size_t count,
+                               const std::uint32_t* order, const PaddedBox<Scalar>* boxes,
+                               IndexPair* apart);
+};
+
+}  // namespace hashphase::detail

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// The loops that find overlaps, compiled for several instruction sets and chosen at run time.
+//
+// All give the same couples in the same order; the scalar one is the definition.
+//
+// Threads   The instruction set is chosen once, or by a test while nothing else runs. The kernels
+//           may run anywhere, each with a list of couples of its own.
+
+#include <broadphase/detail/kernel_types.hpp>
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <utility>
+
+namespace hashphase::detail {
+
+enum class InstructionSet { scalar, sse2, avx2, avx512 };
+
+[[nodiscard]] const char* nameOf(InstructionSet set) noexcept;
+
+/// True when the library was built with it and this processor has it.
+[[nodiscard]] bool isAvailable(InstructionSet set) noexcept;
+
+/// The one in use: the best one available, or what was chosen by useInstructionSet().
+[[nodiscard]] InstructionSet instructionSet() noexcept;
+
+/// For tests and measurements. It must be available.
+void useInstructionSet(InstructionSet set) noexcept;
+
+/// Those of the instruction set in use.
+template <class Scalar>
+[[nodiscard]] const Kernels<Scalar>& kernels() noexcept;
+
+/// A growing array of couples for kernels to write to. Does not initialise what it grows by, and
+/// keeps its memory.
+class PairList {
+public:
+    [[nodiscard]] std::span<const IndexPair> pairs() const noexcept { return {data_.get(), size_}; }
+    [[nodiscard]] std::size_t size() const noexcept { return size_; }
+    void clear() noexcept { size_ = 0; }
+
+    /// Calls kernel(PairSink&), which appends.
+    template <class Kernel>
+    void append(const Kernel& kernel) {
+        PairSink sink{data_.get() + size_, data_.get() + capacity_, &grow, this};
+        kernel(sink);
+        size_ = static_cast<std::size_t>(sink.next - data_.get());
+    }
+
+    /// Appends one couple.
+    void push(IndexPair pair) {
+        append([&](PairSink& sink) {
+            if (sink.next == sink.end) {
+                grow(sink, 1);
+            }
+            *sink.next++ = pair;
+        });
+    }
+
+    /// Room for `count` couples in all, whose values are the caller's to write.
+    [[nodiscard]] IndexPair* resize(std::size_t count);
+
+    [[nodiscard]] std::size_t memoryBytes() const noexcept { return capacity_ * sizeof(IndexPair); }
+
+    void swap(PairList& other) noexcept {
+        data_.swap(other.data_);
+        std::swap(size_, other.size_);
+        std::swap(capacity_, other.capacity_);
+    }
+
+private:
+    static void grow(PairSink& sink, std::size_t count);
+
+    std::unique_ptr<IndexPair[]> data_;
+    std::size_t size_ = 0;
+    std::size_t capacity_ = 0;
+};
+
+}  // namespace hashphase::detail
