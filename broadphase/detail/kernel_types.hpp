@@ -83,12 +83,11 @@ inline constexpr std::uint32_t kNoBucket = ~std::uint32_t{0};
 
 template <class Scalar>
 struct Kernels {
-    /// Finds the bucket of each of `count` boxes among those of `levelCount` levels, the last of
-    /// which is the list without cells, and adds to the counts of the buckets. Returns false when a
-    /// box lies in none of its level's cells from low to high; the output is worthless then.
-    bool (*fileBoxes)(const LevelView<Scalar>* levels, std::size_t levelCount,
-                      const PaddedBox<Scalar>* boxes, std::size_t count, std::uint32_t* buckets,
-                      std::uint32_t* bucketCounts);
+    /// Finds the bucket of each of `count` boxes, over all levels: two for each cell size, finest
+    /// first, a dense one for the cells from its low to its high and one for all others, and last
+    /// the list without cells.
+    void (*fileBoxes)(const LevelView<Scalar>* levels, std::size_t levelCount,
+                      const PaddedBox<Scalar>* boxes, std::size_t count, std::uint32_t* buckets);
 
     /// Finds every two entries of a level with cells that overlap, the first one from firstEntry
     /// to lastEntry; over the whole level each couple once.

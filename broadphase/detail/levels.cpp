@@ -152,22 +152,33 @@ void SizeCensus::conclude() {
 void SizeCensus::measureSpread() {
     spread_ = {};
     middle_ = {};
+    const auto [middle, same] = range(0.5);
+    middle_ = middle;
+    // The middle nine tenths, so that a few strays do not stretch the picture.
+    const auto [low, high] = range(0.05);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double extent = high[axis] / 0.9 - low[axis] / 0.9;
+        spread_[axis] = std::min(extent, std::numeric_limits<double>::max());
+    }
+}
+
+SizeCensus::Range SizeCensus::range(double share) {
+    Range result;
     for (std::size_t axis = 0; axis < 3 && !samples_.empty(); ++axis) {
         column_.clear();
         for (const auto& sample : samples_) {
             column_.push_back(sample[axis]);
         }
-        const auto quantile = [this](double share) {
-            const double rank = share * static_cast<double>(column_.size() - 1);
+        const auto quantile = [this](double ofAll) {
+            const double rank = ofAll * static_cast<double>(column_.size() - 1);
             const auto nth = column_.begin() + static_cast<std::ptrdiff_t>(rank);
             std::nth_element(column_.begin(), nth, column_.end());
             return *nth;
         };
-        middle_[axis] = quantile(0.5);
-        // The middle nine tenths, so that a few strays do not stretch the picture.
-        const double extent = quantile(0.95) / 0.9 - quantile(0.05) / 0.9;
-        spread_[axis] = std::min(extent, std::numeric_limits<double>::max());
+        result.low[axis] = quantile(share);
+        result.high[axis] = quantile(1 - share);
     }
+    return result;
 }
 
 void SizeCensus::findClasses() {

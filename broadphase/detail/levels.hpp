@@ -53,6 +53,14 @@ public:
     /// The middle of the population: the median min corner on each axis; finite.
     [[nodiscard]] std::array<double, 3> middle();
 
+    /// Between which coordinates [m] the min corners lie, but for `share` of them at either end of
+    /// each axis; finite.
+    struct Range {
+        std::array<double, 3> low{};
+        std::array<double, 3> high{};
+    };
+    [[nodiscard]] Range range(double share);
+
     /// Bytes held beside the object itself, capacity included.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 

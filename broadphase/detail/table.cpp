@@ -12,6 +12,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -27,6 +28,9 @@ constexpr std::uint32_t kBuildsBetweenCensuses = 64;
 // Multipliers of hashed rows: odd, with well-mixed low bits.
 constexpr std::uint32_t kHashStrideY = 0x9e3779b1U;
 constexpr std::uint32_t kHashStrideZ = 0x85ebca77U;
+
+// Up to one in so many may lie beyond the cells that are numbered through.
+constexpr std::uint32_t kStrays = 32;
 
 // A layout reaches a little beyond the population, so that it holds for some builds.
 std::int32_t marginOf(std::int32_t low, std::int32_t high) {
@@ -65,18 +69,18 @@ bool Table<Scalar>::chooseLevels(std::span<const PaddedBox<Scalar>> boxes,
 
 template <class Scalar>
 void Table<Scalar>::makeLevels() {
-    const auto listed = static_cast<std::uint32_t>(sizes_.count);
-    levels_.assign(listed + 1, {});
-    for (std::uint32_t i = 0; i < listed; ++i) {
+    levels_.assign(2 * static_cast<std::size_t>(sizes_.count) + 1, {});
+    for (std::size_t i = 0; i + 1 < levels_.size(); ++i) {
         Level<Scalar>& level = levels_[i];
         level.hasCells = true;
+        level.isDense = i % 2 == 0;
+        level.largestEdge = static_cast<Scalar>(sizes_.cellSize[i / 2]);
         level.origin = origin_;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const bool isFlat = ((sizes_.flatAxes[i] >> axis) & 1) != 0;
+            const bool isFlat = ((sizes_.flatAxes[i / 2] >> axis) & 1) != 0;
             level.inverseCellSize[axis] =
-                isFlat ? Scalar(0) : static_cast<Scalar>(1 / sizes_.cellSize[i]);
+                isFlat ? Scalar(0) : static_cast<Scalar>(1 / sizes_.cellSize[i / 2]);
         }
-        level.largestEdge = static_cast<Scalar>(sizes_.cellSize[i]);
     }
 }
 
@@ -99,65 +103,91 @@ std::optional<Cell> Table<Scalar>::cellOn(const Level<Scalar>& level,
     return low;
 }
 
-// Which levels have cells, and how far they reach: as the boxes are now, and a little further.
+// How many boxes each cell size has, and the cells between which they are.
+template <class Scalar>
+std::vector<typename Table<Scalar>::Reach> Table<Scalar>::measure(
+    std::span<const PaddedBox<Scalar>> boxes) const {
+    std::vector<Reach> reaches(levels_.size() / 2);
+    for (const PaddedBox<Scalar>& padded : boxes) {
+        const Aabb<Scalar> box = unpadded(padded);
+        for (std::size_t i = 0; i < reaches.size(); ++i) {
+            const std::optional<Cell> cell = cellOn(levels_[2 * i], box);
+            if (!cell) {
+                continue;
+            }
+            Reach& reach = reaches[i];
+            ++reach.count;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                reach.low[axis] = std::min(reach.low[axis], (*cell)[axis]);
+                reach.high[axis] = std::max(reach.high[axis], (*cell)[axis]);
+            }
+            break;
+        }
+    }
+    return reaches;
+}
+
+// Decides which cells are numbered through: as the boxes are now, and a little further.
 template <class Scalar>
 void Table<Scalar>::layOut(std::span<const PaddedBox<Scalar>> boxes) {
     makeLevels();
-    const auto listed = static_cast<std::uint32_t>(levels_.size() - 1);
-    std::array<std::uint32_t, kMaxLevels + 1> counts{};
-    const auto measure = [&] {
-        counts.fill(0);
-        for (Level<Scalar>& level : levels_) {
-            level.low.fill(kCellLimit);
-            level.high.fill(-kCellLimit);
-        }
-        for (const PaddedBox<Scalar>& box : boxes) {
-            if (isNan(box)) {
-                continue;
-            }
-            std::optional<Cell> cell;
-            std::uint32_t i = 0;
-            while (i < listed && !(cell = cellOn(levels_[i], unpadded(box)))) {
-                ++i;
-            }
-            ++counts[i];
-            for (std::size_t axis = 0; cell && axis < 3; ++axis) {
-                levels_[i].low[axis] = std::min(levels_[i].low[axis], (*cell)[axis]);
-                levels_[i].high[axis] = std::max(levels_[i].high[axis], (*cell)[axis]);
-            }
-        }
-    };
-    measure();
-    // What is on a thin level goes to the next one that is not, or to the list.
+    std::vector<Reach> reaches = measure(boxes);
+    // What is of a size that few have goes to the next larger cells, or to the list.
     bool isThinned = false;
-    for (std::uint32_t i = 0; i < listed; ++i) {
-        if (counts[i] < kThinLevel) {
-            levels_[i].hasCells = false;
-            levels_[i].largestEdge = std::numeric_limits<Scalar>::quiet_NaN();
-            isThinned = isThinned || counts[i] > 0;
+    for (std::size_t i = 0; i < reaches.size(); ++i) {
+        if (reaches[i].count < kThinLevel) {
+            isThinned = isThinned || reaches[i].count > 0;
+            for (Level<Scalar>* level : {&levels_[2 * i], &levels_[2 * i + 1]}) {
+                level->hasCells = false;
+                level->largestEdge = std::numeric_limits<Scalar>::quiet_NaN();
+            }
         }
     }
     if (isThinned) {
-        measure();
+        reaches = measure(boxes);
     }
     std::uint32_t firstBucket = 0;
-    for (std::uint32_t i = 0; i <= listed; ++i) {
-        levels_[i].firstBucket = firstBucket;
-        layOutLevel(levels_[i], counts[i]);
-        firstBucket += levels_[i].bucketCount;
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+        Level<Scalar>& level = levels_[i];
+        level.firstBucket = firstBucket;
+        if (!level.hasCells) {
+            level.isDense = false;
+            level.bucketCount = 1;
+        } else if (level.isDense) {
+            layOutDense(level, reaches[i / 2]);
+        } else {
+            const bool takesAll = levels_[i - 1].low[0] > levels_[i - 1].high[0];
+            layOutHashed(level, takesAll ? reaches[i / 2].count : reaches[i / 2].count / kStrays);
+        }
+        firstBucket += level.bucketCount;
     }
-    listedWhenLaidOut_ = counts[listed];
     bucketStart_.resize(firstBucket + 1);
 }
 
+// A few strays must not keep all the others from being numbered through: where the whole population
+// is too sparse, its middle may be dense enough.
 template <class Scalar>
-void Table<Scalar>::layOutLevel(Level<Scalar>& level, std::uint32_t count) {
-    level.bucketCount = 1;
-    if (!level.hasCells) {
-        level.low.fill(0);
-        level.high.fill(0);
+void Table<Scalar>::layOutDense(Level<Scalar>& level, const Reach& reach) {
+    level.low = reach.low;
+    level.high = reach.high;
+    if (numberThrough(level, reach.count)) {
         return;
     }
+    const auto [low, high] = census_.range(0.5 / kStrays);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        level.low[axis] = level.cell(static_cast<Scalar>(low[axis]), axis);
+        level.high[axis] = level.cell(static_cast<Scalar>(high[axis]), axis);
+    }
+    if (!numberThrough(level, reach.count)) {
+        level.low.fill(1);
+        level.high.fill(0);
+        level.bucketCount = 1;
+    }
+}
+
+// Returns false when there are too many cells for so few boxes.
+template <class Scalar>
+bool Table<Scalar>::numberThrough(Level<Scalar>& level, std::uint32_t count) const {
     std::array<std::uint64_t, 3> extent{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::int32_t margin = marginOf(level.low[axis], level.high[axis]);
@@ -170,38 +200,56 @@ void Table<Scalar>::layOutLevel(Level<Scalar>& level, std::uint32_t count) {
     const std::uint64_t pitch = extent[0] + 1;
     const std::uint64_t rows = extent[1] + 1;
     const std::uint64_t layers = extent[2] == 1 ? 1 : extent[2] + 1;
-    level.isDense = extent[1] * extent[2] <= 8ULL * count && rows * layers <= 16ULL * count + 64 &&
-                    pitch * rows * layers <= 6ULL * count + 1024;
-    if (level.isDense) {
-        level.strideY = static_cast<std::uint32_t>(pitch);
-        level.strideZ = static_cast<std::uint32_t>(pitch * rows);
-        level.denseBase = 1 - static_cast<std::uint32_t>(level.low[0]) -
-                          static_cast<std::uint32_t>(level.low[1]) * level.strideY -
-                          static_cast<std::uint32_t>(level.low[2]) * level.strideZ;
-        level.bucketCount = static_cast<std::uint32_t>(pitch * (rows * layers + 1) + 2);
-    } else {
-        level.strideY = kHashStrideY;
-        level.strideZ = kHashStrideZ;
-        level.bucketCount = std::bit_ceil(std::max(2 * count, 64U));
+    if (extent[1] * extent[2] > 8ULL * count || rows * layers > 16ULL * count + 64 ||
+        pitch * rows * layers > 6ULL * count + 1024) {
+        return false;
     }
+    level.strideY = static_cast<std::uint32_t>(pitch);
+    level.strideZ = static_cast<std::uint32_t>(pitch * rows);
+    level.denseBase = 1 - static_cast<std::uint32_t>(level.low[0]) -
+                      static_cast<std::uint32_t>(level.low[1]) * level.strideY -
+                      static_cast<std::uint32_t>(level.low[2]) * level.strideZ;
+    level.bucketCount = static_cast<std::uint32_t>(pitch * (rows * layers + 1) + 2);
+    return true;
 }
 
-// Finds every box's bucket and counts how many each has; returns false when the layout does not fit
-// the boxes any more.
 template <class Scalar>
-bool Table<Scalar>::countBuckets(std::span<const PaddedBox<Scalar>> boxes) {
-    std::fill(bucketStart_.begin(), bucketStart_.end(), 0);
+void Table<Scalar>::layOutHashed(Level<Scalar>& level, std::uint32_t count) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::int32_t most = level.inverseCellSize[axis] == 0 ? 0 : kCellLimit;
+        level.low[axis] = -most;
+        level.high[axis] = most;
+    }
+    level.strideY = kHashStrideY;
+    level.strideZ = kHashStrideZ;
+    level.bucketCount = std::bit_ceil(std::max(2 * count, 64U));
+}
+
+// Finds every box's bucket and counts how many each has. Returns how many boxes lie where it takes
+// longer to find them: listed without cells, or beyond the cells that are numbered through.
+template <class Scalar>
+std::size_t Table<Scalar>::countBuckets(std::span<const PaddedBox<Scalar>> boxes) {
     buckets_.resize(boxes.size());
     views_.clear();
     for (const Level<Scalar>& level : levels_) {
         views_.push_back(view(level));
     }
-    if (!kernels<Scalar>().fileBoxes(views_.data(), views_.size(), boxes.data(), boxes.size(),
-                                     buckets_.data(), bucketStart_.data())) {
-        return false;
+    kernels<Scalar>().fileBoxes(views_.data(), views_.size(), boxes.data(), boxes.size(),
+                                buckets_.data());
+    std::fill(bucketStart_.begin(), bucketStart_.end(), 0);
+    for (const std::uint32_t bucket : buckets_) {
+        if (bucket != kNoBucket) {
+            ++bucketStart_[bucket];
+        }
     }
-    const std::uint32_t listedCount = bucketStart_[levels_.back().firstBucket];
-    return listedCount <= 2 * listedWhenLaidOut_ + kThinLevel;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+        const bool isStray = i % 2 == 1 || i + 1 == levels_.size();
+        const auto first = bucketStart_.begin() + levels_[i].firstBucket;
+        count +=
+            isStray ? std::accumulate(first, first + levels_[i].bucketCount, std::size_t{0}) : 0;
+    }
+    return count;
 }
 
 // A counting sort. Boxes that come in the order of the last time are read and written nearly in
@@ -257,10 +305,13 @@ template <class Scalar>
 void Table<Scalar>::build(std::span<const std::uint32_t> slots,
                           std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed) {
     HASHPHASE_ASSERT(slots.size() == boxes.size(), "Every box has a slot.");
-    if (chooseLevels(boxes, fixed) || levels_.empty() || !countBuckets(boxes)) {
+    bool isLaidOut = !chooseLevels(boxes, fixed) && !levels_.empty();
+    if (isLaidOut) {
+        isLaidOut = countBuckets(boxes) <= 2 * strayCount_ + kThinLevel + boxes.size() / kStrays;
+    }
+    if (!isLaidOut) {
         layOut(boxes);
-        [[maybe_unused]] const bool fits = countBuckets(boxes);
-        HASHPHASE_ASSERT(fits, "A layout fits the boxes for which it was made.");
+        strayCount_ = countBuckets(boxes);
     }
     sortEntries(slots, boxes);
 }

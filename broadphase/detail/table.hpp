@@ -50,7 +50,8 @@ struct Level {
     std::uint32_t lastEntry = 0;  // one past
     std::uint32_t firstBucket = 0;
     std::uint32_t bucketCount = 1;
-    // Every entry's cell lies from low to high. A level without cells is a plain list: it has one
+    // Every entry's cell lies from low to high. Of two levels of one cell size, a box is filed on
+    // the dense one where its cell lies within. A level without cells is a plain list: it has one
     // bucket, and every walk reads it whole.
     Cell low{};
     Cell high{};
@@ -174,14 +175,24 @@ public:
     [[nodiscard]] std::string validate() const;
 
 private:
+    /// How many boxes are filed by cells of one size, and between which cells.
+    struct Reach {
+        std::uint32_t count = 0;
+        Cell low{kCellLimit, kCellLimit, kCellLimit};
+        Cell high{-kCellLimit, -kCellLimit, -kCellLimit};
+    };
+
     [[nodiscard]] bool chooseLevels(std::span<const PaddedBox<Scalar>> boxes,
                                     const LevelSizes& fixed);
     void makeLevels();
     [[nodiscard]] std::optional<Cell> cellOn(const Level<Scalar>& level,
                                              const Aabb<Scalar>& box) const noexcept;
+    [[nodiscard]] std::vector<Reach> measure(std::span<const PaddedBox<Scalar>> boxes) const;
     void layOut(std::span<const PaddedBox<Scalar>> boxes);
-    void layOutLevel(Level<Scalar>& level, std::uint32_t count);
-    [[nodiscard]] bool countBuckets(std::span<const PaddedBox<Scalar>> boxes);
+    void layOutDense(Level<Scalar>& level, const Reach& reach);
+    [[nodiscard]] bool numberThrough(Level<Scalar>& level, std::uint32_t count) const;
+    void layOutHashed(Level<Scalar>& level, std::uint32_t count) const;
+    [[nodiscard]] std::size_t countBuckets(std::span<const PaddedBox<Scalar>> boxes);
     void sortEntries(std::span<const std::uint32_t> slots,
                      std::span<const PaddedBox<Scalar>> boxes);
 
@@ -189,10 +200,12 @@ private:
     std::array<Scalar, 3> origin_{};
     std::uint64_t countWhenChosen_ = 0;
     std::uint32_t buildsSinceChosen_ = 0;
-    std::uint32_t listedWhenLaidOut_ = 0;
+    std::size_t strayCount_ = 0;  // when the levels were laid out
     SizeCensus census_;
 
-    std::vector<Level<Scalar>> levels_;  // finest first; the last one is the list without cells
+    // Two for each cell size, finest first: one numbered through, for most, and a hashed one for
+    // what lies beyond it. The last one is the list without cells.
+    std::vector<Level<Scalar>> levels_;
     std::vector<std::uint32_t> bucketStart_;
     std::vector<std::uint32_t> slots_;
     std::vector<std::uint32_t> order_;

@@ -123,9 +123,9 @@ TYPED_TEST(TableTest, JoinFindsEveryCoupleOnceThoughRowsShareBuckets) {
                                                  {0.5, 0.5, 0.5}));
         }
         this->build(std::move(boxes), fixedLevels(1, 4));
-        const Level<TypeParam>& level = this->table_.levels()[0];
-        EXPECT_TRUE(level.hasCells);
+        const Level<TypeParam>& level = this->table_.levels()[1];
         EXPECT_FALSE(level.isDense);
+        EXPECT_EQ(level.count(), this->table_.size()) << "all are hashed";
         shared += this->sharedBuckets();
         ASSERT_EQ(this->joined(), this->expected());
         ASSERT_GE(this->joined().size(), 343U);
@@ -177,6 +177,25 @@ TYPED_TEST(TableTest, BoxesOnBordersOfCellsAreFoundFromBothSides) {
         std::sort(found.begin(), found.end());
         ASSERT_EQ(found, this->expected());
     }
+}
+
+// A body that falls for ever, or some that were thrown out of the world.
+TYPED_TEST(TableTest, AFewStraysDoNotMakeTheOthersSparse) {
+    Random random(0x5eed0406);
+    std::vector<Aabb<TypeParam>> boxes;
+    for (int i = 0; i < 3000; ++i) {
+        boxes.push_back(boxAround<TypeParam>(random.pointIn(0, 30), {0.5, 0.5, 0.5}));
+    }
+    for (int i = 0; i < 20; ++i) {
+        // Half of them in couples that overlap.
+        const Vector3<double> away = random.pointIn(-1e6, 1e6);
+        boxes.push_back(boxAround<TypeParam>(away, {0.5, 0.5, 0.5}));
+        boxes.push_back(boxAround<TypeParam>(away * (1 + i % 2), {0.5, 0.5, 0.5}));
+    }
+    this->build(std::move(boxes));
+    EXPECT_GE(this->table_.levels()[0].count(), 2900U) << "most are numbered through";
+    EXPECT_GE(this->table_.levels()[1].count(), 40U) << "the strays are hashed";
+    ASSERT_EQ(this->joined(), this->expected());
 }
 
 TYPED_TEST(TableTest, ErasedEntriesAreFoundByNothing) {
