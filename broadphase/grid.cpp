@@ -62,6 +62,22 @@ ProxyId Grid<Scalar>::add(const Box& box, Mobility mobility) {
 }
 
 template <class Scalar>
+void Grid<Scalar>::reserve(std::size_t count) {
+    // At least doubled, or a program that asks for a few more each time would move all each time.
+    const auto makeRoom = [count](auto& array) {
+        if (array.capacity() < count) {
+            array.reserve(std::max(count, 2 * array.capacity()));
+        }
+    };
+    makeRoom(boxes_);
+    makeRoom(records_);
+    makeRoom(waiting_);
+    if (hasPairs_) {
+        makeRoom(changes_);
+    }
+}
+
+template <class Scalar>
 void Grid<Scalar>::move(ProxyId id, const Box& box) {
     HASHPHASE_ASSERT(contains(id), "Only a proxy of this grid that was not removed can be moved.");
     const std::uint32_t slot = id.index;

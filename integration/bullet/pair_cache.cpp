@@ -5,6 +5,8 @@
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 
 #include <algorithm>
+#include <array>
+#include <cstring>
 #include <utility>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
@@ -191,22 +193,37 @@ void PairCache::dropChains() {
     pairsScanned_ = 0;
 }
 
+// A block at a time, most of which have no pair of the proxy's.
+void PairCache::noteUnchained(std::uint32_t id, std::vector<Note>& notes) const {
+    constexpr std::size_t kBlock = 16;
+    const std::span<const std::uint64_t> keys = ids_.keys();
+    for (std::size_t first = links_.size() / 2; first < keys.size(); first += kBlock) {
+        const std::size_t end = std::min(first + kBlock, keys.size());
+        bool isOfNone = false;
+        if (end - first == kBlock) {
+            std::array<std::uint32_t, 2 * kBlock> halves;
+            std::memcpy(halves.data(), &keys[first], sizeof(halves));
+            isOfNone = std::count(halves.begin(), halves.end(), id) == 0;
+        }
+        for (std::size_t i = first; !isOfNone && i < end; ++i) {
+            if (keys[i] >> 32 == id || (keys[i] & kLowerHalf) == id) {
+                notes.push_back(noteOf(static_cast<std::uint32_t>(i)));
+            }
+        }
+    }
+}
+
 // Noted down, for callbacks may change the cache. In canonical order, or in that of the array.
 std::vector<PairCache::Note> PairCache::notesOf(const btBroadphaseProxy& proxy) {
     freeRetired();
     chainIfWorth();
     std::vector<Note> notes = std::move(scratch_);
     notes.clear();
-    const std::uint64_t id = idOf(proxy);
-    for (std::uint32_t edge = firstEdge_.find(id); edge != kNone; edge = links_[edge].next) {
+    for (std::uint32_t edge = firstEdge_.find(idOf(proxy)); edge != kNone;
+         edge = links_[edge].next) {
         notes.push_back(noteOf(edge / 2));
     }
-    for (std::size_t i = links_.size() / 2; i < ids_.size(); ++i) {
-        const std::uint64_t ids = ids_.keys()[i];
-        if (ids >> 32 == id || (ids & kLowerHalf) == id) {
-            notes.push_back(noteOf(static_cast<std::uint32_t>(i)));
-        }
-    }
+    noteUnchained(static_cast<std::uint32_t>(proxy.m_uniqueId), notes);
     pairsVisited_ += notes.size();
     const bool byKey = order_ == PairOrder::canonical;
     std::sort(notes.begin(), notes.end(),

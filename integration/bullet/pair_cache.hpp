@@ -25,6 +25,7 @@
 #include <broadphase/detail/flat_set.hpp>
 #include <broadphase/detail/run_map.hpp>
 #include <integration/bullet/precision.hpp>
+#include <integration/bullet/proxy_ranks.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 
@@ -134,10 +135,11 @@ public:
     void removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy,
                                                btDispatcher* dispatcher) override;
 
-    /// The same for each of the proxies in turn. The array's order of arrival is its own again, and
-    /// algorithms are freed when all pairs are gone, those of the first proxy first. With a ghost
+    /// The same for each of the proxies in turn. The array's order of arrival is its own again;
+    /// algorithms are freed when all pairs are gone, in canonical order as by single calls, else in
+    /// the order of the array. With a ghost
     /// callback, or called by one of processAllOverlappingPairs(), the same as single calls in every
-    /// respect. Cost: a pass over all pairs where that is less than single calls would cost.
+    /// respect. Cost: the number of their pairs, and at most one pass over all pairs.
     void removeOverlappingPairsContainingProxies(std::span<btBroadphaseProxy* const> proxies,
                                                  btDispatcher* dispatcher);
 
@@ -272,6 +274,7 @@ private:
     }
     [[nodiscard]] std::uint64_t idOfEnd(std::uint32_t edge) const;
     void chainIfWorth();
+    void dropChainsIfMany(std::size_t changeCount);
     void dropChains();
     // Of a place that is not among the chained, nothing.
     void chainPair(std::uint32_t index) {
@@ -289,6 +292,7 @@ private:
     void chain(std::uint32_t edge);
     void unchain(std::uint32_t edge, std::uint64_t uniqueId);
     void rename(std::uint32_t from, std::uint32_t to);
+    void noteUnchained(std::uint32_t id, std::vector<Note>& notes) const;
     [[nodiscard]] std::vector<Note> notesOf(const btBroadphaseProxy& proxy);
     void processByUniqueId(btOverlapCallback& callback, btDispatcher* dispatcher);
     void prepareWholeArray();
@@ -314,7 +318,7 @@ private:
     std::vector<Retired> retired_;
 
     std::vector<std::uint32_t> vacant_;  // scratch of update(): places whose pairs have died
-    detail::FlatSet ranks_;  // scratch of removals: unique ids of the proxies, in their order
+    ProxyRanks ranks_;                   // scratch of removals
     std::vector<Note> scratch_;
     std::vector<std::uint32_t> newIndex_;  // scratch of sort()
 };

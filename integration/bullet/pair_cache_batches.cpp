@@ -26,16 +26,21 @@ void PairCache::update(std::span<const ProxyCouple> died, std::span<const ProxyC
         updateOneByOne(died, born, dispatcher);
         return;
     }
-    // Where many pairs die, making the chains anew, if ever they are needed, costs less.
-    constexpr std::size_t kManyInAll = 16;
-    if (!links_.empty() && kManyInAll * died.size() > links_.size() / 2) {
-        dropChains();
-    }
+    dropChainsIfMany(died.size());
     vacant_.clear();
     vacateAll(died, dispatcher);
     closeVacant(settle(born));
     if (order_ == PairOrder::arrival) {
         freeRetiredAsListed();
+    }
+}
+
+// Where many pairs change, making the chains anew, if ever they are needed, costs less than keeping
+// them.
+void PairCache::dropChainsIfMany(std::size_t changeCount) {
+    constexpr std::size_t kManyInAll = 16;
+    if (!links_.empty() && kManyInAll * changeCount > links_.size() / 2) {
+        dropChains();
     }
 }
 
@@ -125,47 +130,59 @@ void PairCache::closeVacant(std::size_t firstVacant) {
 
 void PairCache::removeOverlappingPairsContainingProxies(std::span<btBroadphaseProxy* const> proxies,
                                                         btDispatcher* dispatcher) {
-    // A proxy by itself costs as much as a pass does for so many pairs, chaining included.
-    constexpr std::size_t kPairsOfPass = 128;
-    if (isTold() || proxies.size() * kPairsOfPass < ids_.size()) {
+    constexpr std::size_t kFew = 4;  // so many single scans cost what one for many does
+    if (isTold() || proxies.size() < kFew) {
         for (btBroadphaseProxy* proxy : proxies) {
             removeOverlappingPairsContainingProxy(proxy, dispatcher);
         }
         return;
     }
     freeRetired();
-    dropChains();
+    dropChainsIfMany(proxies.size());
+    chainIfWorth();
     std::vector<Note> notes = notesOfAll(proxies);
     vacant_.clear();
-    for (const Note& note : notes) {
-        vacate(note.uniqueIds, dispatcher);
+    for (std::size_t i = 0; i < notes.size(); ++i) {
+        if (i + kFar < notes.size()) {
+            ids_.prefetch(notes[i + kFar].uniqueIds);
+        }
+        vacate(notes[i].uniqueIds, dispatcher);
     }
     closeVacant(0);
     scratch_ = std::move(notes);
     freeRetiredAsListed();
 }
 
-// Grouped by the first proxy that they are of; within, in canonical order or in that of the array.
+// In the order in which their algorithms are to be freed; some may be listed twice. Of the chained
+// pairs each proxy's are followed, the others are all looked at.
 std::vector<PairCache::Note> PairCache::notesOfAll(std::span<btBroadphaseProxy* const> proxies) {
-    ranks_.clear();
-    for (const btBroadphaseProxy* proxy : proxies) {
-        ranks_.findOrInsert(static_cast<std::uint32_t>(proxy->m_uniqueId));
-    }
     std::vector<Note> notes = std::move(scratch_);
     notes.clear();
-    for (std::uint32_t i = 0; i < ids_.size(); ++i) {
+    const auto add = [&](std::uint32_t index, std::uint32_t rank) {
+        notes.push_back(noteOf(index));
+        notes.back().rank = rank;
+    };
+    for (std::uint32_t rank = 0; rank < proxies.size() && !links_.empty(); ++rank) {
+        std::uint32_t edge = firstEdge_.find(static_cast<std::uint32_t>(proxies[rank]->m_uniqueId));
+        for (; edge != kNone; edge = links_[edge].next) {
+            add(edge / 2, rank);
+        }
+    }
+    ranks_.assign(proxies);
+    for (auto i = static_cast<std::uint32_t>(links_.size() / 2); i < ids_.size(); ++i) {
         const std::uint64_t ids = ids_.keys()[i];
-        const std::uint32_t rank = std::min(ranks_.find(ids >> 32), ranks_.find(ids & kLowerHalf));
-        if (rank != kNone) {
-            notes.push_back(noteOf(i));
-            notes.back().rank = rank;
+        const std::uint32_t rank = ranks_.lowestRank(static_cast<std::uint32_t>(ids >> 32),
+                                                     static_cast<std::uint32_t>(ids));
+        if (rank != ProxyRanks::kNone) {
+            add(i, rank);
         }
     }
     pairsVisited_ += notes.size();
-    const bool byKey = order_ == PairOrder::canonical;
-    std::sort(notes.begin(), notes.end(), [=](const Note& a, const Note& b) {
-        return a.rank != b.rank ? a.rank < b.rank : byKey ? a < b : a.index < b.index;
-    });
+    if (order_ == PairOrder::canonical) {
+        std::sort(notes.begin(), notes.end(), [](const Note& a, const Note& b) {
+            return a.rank != b.rank ? a.rank < b.rank : a < b;
+        });
+    }
     return notes;
 }
 

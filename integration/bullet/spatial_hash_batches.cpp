@@ -5,17 +5,30 @@
 #include <broadphase/detail/prefetch.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
-#include <algorithm>
-
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+namespace {
+
+void prefetchAhead(std::span<btBroadphaseProxy* const> proxies, std::size_t i) noexcept {
+    constexpr std::size_t kAhead = 8;
+    if (i + kAhead < proxies.size()) {
+        detail::prefetch(proxies[i + kAhead]);
+    }
+}
+
+}  // namespace
 
 void SpatialHashBroadphase::createProxies(std::span<const ProxyDefinition> definitions,
                                           std::span<btBroadphaseProxy*> proxies,
                                           btDispatcher* dispatcher) {
     HASHPHASE_ASSERT(definitions.size() == proxies.size(),
                      "There is room for exactly one proxy a definition.");
-    std::transform(definitions.begin(), definitions.end(), proxies.begin(),
-                   [&](const ProxyDefinition& each) { return create(each, dispatcher); });
+    grid_.reserve(grid_.size() + definitions.size());
+    proxies_.reserve(grid_.size() + definitions.size());
+    for (std::size_t i = 0; i < definitions.size(); ++i) {
+        const ProxyDefinition& each = definitions[i];
+        proxies[i] = createProxy(each.aabbMin, each.aabbMax, INVALID_SHAPE_PROXYTYPE, each.userPtr,
+                                 each.collisionFilterGroup, each.collisionFilterMask, dispatcher);
+    }
 }
 
 void SpatialHashBroadphase::setAabbs(std::span<btBroadphaseProxy* const> proxies,
@@ -24,11 +37,8 @@ void SpatialHashBroadphase::setAabbs(std::span<btBroadphaseProxy* const> proxies
                                      btDispatcher* dispatcher) {
     HASHPHASE_ASSERT(proxies.size() == aabbMins.size() && proxies.size() == aabbMaxs.size(),
                      "There is exactly one box a proxy.");
-    constexpr std::size_t kAhead = 8;
     for (std::size_t i = 0; i < proxies.size(); ++i) {
-        if (i + kAhead < proxies.size()) {
-            detail::prefetch(proxies[i + kAhead]);
-        }
+        prefetchAhead(proxies, i);
         setAabb(proxies[i], aabbMins[i], aabbMaxs[i], dispatcher);
     }
 }
@@ -46,8 +56,9 @@ void SpatialHashBroadphase::destroyProxies(std::span<btBroadphaseProxy* const> p
         }
     }
     // The second time that a proxy is named it is not alive any more, which is asserted.
-    for (btBroadphaseProxy* proxy : proxies) {
-        removeFromGrid(checkedProxy(proxy));
+    for (std::size_t i = 0; i < proxies.size(); ++i) {
+        prefetchAhead(proxies, i);
+        removeFromGrid(checkedProxy(proxies[i]));
     }
 }
 

@@ -103,23 +103,16 @@ btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
                                                       void* userPtr, int collisionFilterGroup,
                                                       int collisionFilterMask,
                                                       btDispatcher* dispatcher) {
-    return create({aabbMin, aabbMax, userPtr, collisionFilterGroup, collisionFilterMask},
-                  dispatcher);
-}
-
-SpatialHashBroadphase::Proxy* SpatialHashBroadphase::create(const ProxyDefinition& definition,
-                                                            btDispatcher* dispatcher) {
-    const bool isStatic = (definition.collisionFilterGroup & btBroadphaseProxy::StaticFilter) != 0;
-    const ProxyId id = grid_.add(toAabb(definition.aabbMin, definition.aabbMax),
-                                 isStatic ? Mobility::resting : Mobility::mobile);
+    const bool isStatic = (collisionFilterGroup & btBroadphaseProxy::StaticFilter) != 0;
+    const ProxyId id =
+        grid_.add(toAabb(aabbMin, aabbMax), isStatic ? Mobility::resting : Mobility::mobile);
     if (id.index >= uniqueIds_.size()) {
         uniqueIds_.resize(id.index + 1, 0);
         proxies_.reserve(uniqueIds_.size());
     }
     Proxy& proxy = *proxyAt(id.index);
     static_cast<btBroadphaseProxy&>(proxy) =
-        btBroadphaseProxy(definition.aabbMin, definition.aabbMax, definition.userPtr,
-                          definition.collisionFilterGroup, definition.collisionFilterMask);
+        btBroadphaseProxy(aabbMin, aabbMax, userPtr, collisionFilterGroup, collisionFilterMask);
     proxy.m_uniqueId = ++lastUniqueId_;
     proxy.id = id;
     uniqueIds_[id.index] = proxy.m_uniqueId;

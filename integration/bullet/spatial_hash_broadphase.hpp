@@ -179,7 +179,6 @@ private:
             askFilter(asked, accepted);
         };
     }
-    Proxy* create(const ProxyDefinition& definition, btDispatcher* dispatcher);
     void removeFromGrid(Proxy* proxy);
     void findCouples(std::span<const ProxyPair> pairs, std::vector<ProxyCouple>& couples) const;
     void apply(const PairChanges& changes, btDispatcher* dispatcher);
