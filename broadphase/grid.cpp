@@ -64,6 +64,18 @@ ProxyId Grid<Scalar>::add(const Box& box, Mobility mobility) {
 }
 
 template <class Scalar>
+void Grid<Scalar>::reserve(std::size_t count) {
+    // At least doubled, or a program that asks for a few more each time would move all each time.
+    const auto makeRoom = [count](auto& array) {
+        if (array.capacity() < count) {
+            array.reserve(std::max(count, 2 * array.capacity()));
+        }
+    };
+    makeRoom(records_);
+    makeRoom(mobileSlots_);
+}
+
+template <class Scalar>
 void Grid<Scalar>::move(ProxyId id, const Box& box) {
     HASHPHASE_ASSERT(contains(id), "Only a proxy of this grid that was not removed can be moved.");
     Record& record = records_[id.index];

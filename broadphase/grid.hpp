@@ -70,6 +70,9 @@ public:
     /// Adds a proxy. The hint saves work for what will not move. Cost: O(1) amortised.
     [[nodiscard]] ProxyId add(const Box& box, Mobility mobility = Mobility::mobile);
 
+    /// Makes room for `count` proxies altogether, so that adding many moves nothing on the way.
+    void reserve(std::size_t count);
+
     /// Sets the proxy's box. Bit-equal to the present one: a comparison, and nothing is marked.
     /// Cost: O(1) amortised.
     void move(ProxyId id, const Box& box);

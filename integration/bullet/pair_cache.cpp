@@ -5,13 +5,12 @@
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 
 #include <algorithm>
+#include <array>
+#include <cstring>
 #include <utility>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 namespace {
-
-constexpr std::uint32_t kNone = detail::FlatSet::kNone;
-constexpr std::uint64_t kLowerHalf = 0xffffffffU;
 
 // Two signed numbers as one unsigned that sorts like (high, low).
 std::uint64_t ascending(int high, int low) noexcept {
@@ -39,27 +38,20 @@ btBroadphasePair* PairCache::addOverlappingPair(btBroadphaseProxy* proxy0,
     return needsBroadphaseCollision(proxy0, proxy1) ? addAcceptedPair(proxy0, proxy1) : nullptr;
 }
 
-void PairCache::prefetch(const btBroadphaseProxy& proxy0, const btBroadphaseProxy& proxy1) const {
-    ids_.prefetch(idsOf(proxy0, proxy1));
+btBroadphasePair* PairCache::addAcceptedPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1) {
+    return add({*proxy0, *proxy1});
 }
 
-btBroadphasePair* PairCache::addAcceptedPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1) {
-    HASHPHASE_ASSERT(proxy0->m_uniqueId != proxy1->m_uniqueId,
-                     "A pair is made of two proxies with different unique ids.");
-    HASHPHASE_ASSERT(proxy0->m_uniqueId >= 0 && proxy1->m_uniqueId >= 0,
-                     "The unique id of a proxy is not negative.");
-    const auto index = static_cast<int>(ids_.findOrInsert(idsOf(*proxy0, *proxy1)));
+btBroadphasePair* PairCache::add(const ProxyCouple& couple) {
+    const auto index = static_cast<int>(ids_.findOrInsert(couple.ids()));
     if (index < pairs_.size()) {
-        HASHPHASE_ASSERT(pairs_[index].m_pProxy0 == proxy0 || pairs_[index].m_pProxy0 == proxy1,
-                         "Proxies that are alive have different unique ids.");
+        HASHPHASE_ASSERT(
+            pairs_[index].m_pProxy0 == couple.lower() || pairs_[index].m_pProxy0 == couple.upper(),
+            "Proxies that are alive have different unique ids.");
         return &pairs_[index];
     }
-
-    // Not by the constructor for two proxies: that one orients by unique id.
     btBroadphasePair pair;
-    const bool isSwapped = isLower(*proxy1, *proxy0);
-    pair.m_pProxy0 = isSwapped ? proxy1 : proxy0;
-    pair.m_pProxy1 = isSwapped ? proxy0 : proxy1;
+    name(couple, pair);
     pairs_.push_back(pair);
     isSorted_ = false;
 
@@ -72,24 +64,29 @@ btBroadphasePair* PairCache::addAcceptedPair(btBroadphaseProxy* proxy0, btBroadp
 
 void* PairCache::removeOverlappingPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1,
                                        btDispatcher* dispatcher) {
-    // A callback of processAllOverlappingPairs() is called in canonical order itself.
+    return remove(idsOf(*proxy0, *proxy1), dispatcher, freeingNow());
+}
+
+// A callback of processAllOverlappingPairs() is called in canonical order itself.
+PairCache::Freeing PairCache::freeingNow() const noexcept {
     const bool inTurn = order_ == PairOrder::canonical && processDepth_ == 0;
-    return remove(idsOf(*proxy0, *proxy1), dispatcher, inTurn ? Freeing::inTurn : Freeing::now);
+    return inTurn ? Freeing::inTurn : Freeing::now;
 }
 
 // Callbacks come when everything is in order again, and get a copy, so that they may change the
 // cache.
 void* PairCache::remove(std::uint64_t ids, btDispatcher* dispatcher, Freeing freeing) {
-    const std::uint32_t index = ids_.erase(ids);
+    const std::uint32_t index = ids_.vacate(ids);
     if (index == kNone) {
         return nullptr;
     }
     btBroadphasePair removed = pairs_[static_cast<int>(index)];
-    takeOut(index, ids);
+    unchainPair(index, ids);
+    fill(index);
     if (freeing == Freeing::now) {
         cleanOverlappingPair(removed, dispatcher);
-    } else if (removed.m_algorithm != nullptr && dispatcher != nullptr) {
-        retired_.push_back({{keysOf(removed, ids), ids, kNone}, removed, dispatcher});
+    } else {
+        retire(removed, ids, dispatcher);
     }
     if (ghosts_ != nullptr) {
         ghosts_->removeOverlappingPair(removed.m_pProxy0, removed.m_pProxy1, dispatcher);
@@ -97,24 +94,19 @@ void* PairCache::remove(std::uint64_t ids, btDispatcher* dispatcher, Freeing fre
     return removed.m_internalInfo1;
 }
 
-// The last pair takes the place of the removed one, in ids_ it has done so already. If it was not
-// chained before, it is to be now, for its new place is among the chained.
-void PairCache::takeOut(std::uint32_t index, std::uint64_t ids) {
+// The last pair takes a place that is vacant, unless that is the last itself. If it was not chained
+// before, it is to be now where its new place is among the chained.
+void PairCache::fill(std::uint32_t index) {
     const auto last = static_cast<std::uint32_t>(pairs_.size()) - 1;
-    const bool wasChained = isChained(index);
-    if (wasChained) {
-        unchain(2 * index, ids >> 32);
-        unchain(2 * index + 1, ids & kLowerHalf);
-    }
+    ids_.fill(index);
     if (index != last) {
         pairs_[static_cast<int>(index)] = pairs_[static_cast<int>(last)];
         isSorted_ = false;
         if (isChained(last)) {
             rename(2 * last, 2 * index);
             rename(2 * last + 1, 2 * index + 1);
-        } else if (wasChained) {
-            chain(2 * index);
-            chain(2 * index + 1);
+        } else {
+            chainPair(index);
         }
     }
     if (isChained(last)) {
@@ -135,15 +127,6 @@ void PairCache::cleanOverlappingPair(btBroadphasePair& pair, btDispatcher* dispa
     btCollisionAlgorithm* algorithm = std::exchange(pair.m_algorithm, nullptr);
     algorithm->~btCollisionAlgorithm();
     dispatcher->freeCollisionAlgorithm(algorithm);
-}
-
-bool PairCache::needsBroadphaseCollision(btBroadphaseProxy* proxy0,
-                                         btBroadphaseProxy* proxy1) const {
-    if (filter_ != nullptr) {
-        return filter_->needBroadphaseCollision(proxy0, proxy1);
-    }
-    return (proxy0->m_collisionFilterGroup & proxy1->m_collisionFilterMask) != 0 &&
-           (proxy1->m_collisionFilterGroup & proxy0->m_collisionFilterMask) != 0;
 }
 
 // --- The pairs of one proxy ----------------------------------------------------------------------
@@ -187,22 +170,60 @@ void PairCache::rename(std::uint32_t from, std::uint32_t to) {
     }
 }
 
+// Most pairs die before anyone asks for those of a proxy, so chaining waits until scanning the ones
+// that are not chained has cost as much.
+void PairCache::chainIfWorth() {
+    constexpr std::size_t kScansPerChaining = 16;
+    const std::size_t chained = links_.size() / 2;
+    const std::size_t unchained = ids_.size() - chained;
+    pairsScanned_ += unchained;
+    if (pairsScanned_ <= kScansPerChaining * unchained) {
+        return;
+    }
+    pairsScanned_ = 0;
+    links_.resize(2 * ids_.size());
+    for (std::size_t i = chained; i < ids_.size(); ++i) {
+        chainPair(static_cast<std::uint32_t>(i));
+    }
+}
+
+void PairCache::dropChains() {
+    links_.clear();
+    firstEdge_.clear();
+    pairsScanned_ = 0;
+}
+
+// A block at a time, most of which have no pair of the proxy's.
+void PairCache::noteUnchained(std::uint32_t id, std::vector<Note>& notes) const {
+    constexpr std::size_t kBlock = 16;
+    const std::span<const std::uint64_t> keys = ids_.keys();
+    for (std::size_t first = links_.size() / 2; first < keys.size(); first += kBlock) {
+        const std::size_t end = std::min(first + kBlock, keys.size());
+        bool isOfNone = false;
+        if (end - first == kBlock) {
+            std::array<std::uint32_t, 2 * kBlock> halves;
+            std::memcpy(halves.data(), &keys[first], sizeof(halves));
+            isOfNone = std::count(halves.begin(), halves.end(), id) == 0;
+        }
+        for (std::size_t i = first; !isOfNone && i < end; ++i) {
+            if (keys[i] >> 32 == id || (keys[i] & kLowerHalf) == id) {
+                notes.push_back(noteOf(static_cast<std::uint32_t>(i)));
+            }
+        }
+    }
+}
+
 // Noted down, for callbacks may change the cache. In canonical order, or in that of the array.
 std::vector<PairCache::Note> PairCache::notesOf(const btBroadphaseProxy& proxy) {
     freeRetired();
-    // Most pairs die before anyone asks for those of a proxy, so chaining waits until then.
-    const auto firstUnchained = static_cast<std::uint32_t>(links_.size());
-    links_.resize(2 * ids_.size());
-    for (std::uint32_t edge = firstUnchained; edge < links_.size(); ++edge) {
-        chain(edge);
-    }
-
+    chainIfWorth();
     std::vector<Note> notes = std::move(scratch_);
     notes.clear();
-    std::uint32_t edge = firstEdge_.find(idOf(proxy));
-    for (; edge != kNone; edge = links_[edge].next) {
+    for (std::uint32_t edge = firstEdge_.find(idOf(proxy)); edge != kNone;
+         edge = links_[edge].next) {
         notes.push_back(noteOf(edge / 2));
     }
+    noteUnchained(static_cast<std::uint32_t>(proxy.m_uniqueId), notes);
     pairsVisited_ += notes.size();
     const bool byKey = order_ == PairOrder::canonical;
     std::sort(notes.begin(), notes.end(),
@@ -319,14 +340,22 @@ void PairCache::prepareWholeArray() {
 // The order in which algorithms are freed decides how the dispatcher's manifolds are numbered, and
 // through the order of contacts in the solver every bit of what follows.
 void PairCache::freeRetired() {
-    std::vector<Retired> retired = std::move(retired_);
-    std::sort(retired.begin(), retired.end(),
+    std::sort(retired_.begin(), retired_.end(),
               [](const Retired& a, const Retired& b) { return a.note < b.note; });
+    freeRetiredAsListed();
+}
+
+void PairCache::freeRetiredAsListed() {
+    std::vector<Retired> retired = std::move(retired_);
+    retired_.clear();
     for (Retired& each : retired) {
         cleanOverlappingPair(each.pair, each.dispatcher);
     }
-    retired.clear();
-    retired_ = std::move(retired);
+    // What freeing an algorithm has removed in its turn waits for the next time.
+    if (retired_.empty()) {
+        retired.clear();
+        retired_ = std::move(retired);
+    }
 }
 
 // Pairs take their algorithms along. Their chains are made anew when they are needed.
@@ -340,8 +369,7 @@ void PairCache::sort() {
     ids_.renumber(newIndex_, [this](std::uint32_t i, std::uint32_t j) {
         pairs_.swap(static_cast<int>(i), static_cast<int>(j));
     });
-    links_.clear();
-    firstEdge_.clear();
+    dropChains();
     isSorted_ = true;
 }
 
@@ -381,7 +409,9 @@ std::uint32_t PairCache::indexOf(const Note& note) const {
 std::size_t PairCache::memoryBytes() const noexcept {
     return static_cast<std::size_t>(pairs_.capacity()) * sizeof(btBroadphasePair) +
            ids_.memoryBytes() + links_.capacity() * sizeof(Link) + firstEdge_.memoryBytes() +
-           scratch_.capacity() * sizeof(Note) + newIndex_.capacity() * sizeof(std::uint32_t);
+           retired_.capacity() * sizeof(Retired) + vacant_.capacity() * sizeof(std::uint32_t) +
+           ranks_.memoryBytes() + scratch_.capacity() * sizeof(Note) +
+           newIndex_.capacity() * sizeof(std::uint32_t);
 }
 
 std::string PairCache::validate() const {

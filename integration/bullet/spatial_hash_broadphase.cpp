@@ -67,7 +67,7 @@ struct SpatialHashBroadphase::ProcessCollector {
     bool isStopped = false;
 
     void add(ProxyId id, btScalar /*key*/) {
-        const bool goOn = callback.process(broadphase.bySlot_[id.index]);
+        const bool goOn = callback.process(broadphase.proxyAt(id.index));
         isStopped = !goOn && broadphase.config_.stopWhenProcessReturnsFalse;
     }
     [[nodiscard]] double limit() const {
@@ -75,20 +75,27 @@ struct SpatialHashBroadphase::ProcessCollector {
     }
 };
 
+// --- Proxies -------------------------------------------------------------------------------------
+
+SpatialHashBroadphase::SpatialHashBroadphase(const SpatialHashConfig& config)
+    : SpatialHashBroadphase(static_cast<btOverlappingPairCache*>(nullptr), config) {}
+
+SpatialHashBroadphase::SpatialHashBroadphase(std::nullptr_t, const SpatialHashConfig& config)
+    : SpatialHashBroadphase(config) {}
+
+SpatialHashBroadphase::SpatialHashBroadphase(PairCache* pairCache, const SpatialHashConfig& config)
+    : SpatialHashBroadphase(static_cast<btOverlappingPairCache*>(pairCache), config) {
+    batchCache_ = pairCache != nullptr ? pairCache : ownCache_.get();
+}
+
 SpatialHashBroadphase::SpatialHashBroadphase(btOverlappingPairCache* pairCache,
                                              const SpatialHashConfig& config)
     : config_(config), grid_(config.grid), pairCache_(pairCache) {
     if (pairCache_ == nullptr) {
-        ownCache_ = new PairCache;
-        pairCache_ = ownCache_;
+        ownCache_ = std::make_unique<PairCache>();
+        batchCache_ = ownCache_.get();
+        pairCache_ = ownCache_.get();
     }
-}
-
-SpatialHashBroadphase::SpatialHashBroadphase(const SpatialHashConfig& config)
-    : SpatialHashBroadphase(nullptr, config) {}
-
-SpatialHashBroadphase::~SpatialHashBroadphase() {
-    delete ownCache_;
 }
 
 btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
@@ -96,33 +103,33 @@ btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
                                                       void* userPtr, int collisionFilterGroup,
                                                       int collisionFilterMask,
                                                       btDispatcher* dispatcher) {
-    if (freeProxies_.empty()) {
-        freeProxies_.push_back(&proxies_.emplace_back());
+    const bool isStatic = (collisionFilterGroup & btBroadphaseProxy::StaticFilter) != 0;
+    const ProxyId id =
+        grid_.add(toAabb(aabbMin, aabbMax), isStatic ? Mobility::resting : Mobility::mobile);
+    if (id.index >= uniqueIds_.size()) {
+        uniqueIds_.resize(id.index + 1, 0);
+        proxies_.reserve(uniqueIds_.size());
     }
-    Proxy& proxy = *freeProxies_.back();
-    freeProxies_.pop_back();
+    Proxy& proxy = *proxyAt(id.index);
     static_cast<btBroadphaseProxy&>(proxy) =
         btBroadphaseProxy(aabbMin, aabbMax, userPtr, collisionFilterGroup, collisionFilterMask);
     proxy.m_uniqueId = ++lastUniqueId_;
-
-    const bool isStatic = (collisionFilterGroup & btBroadphaseProxy::StaticFilter) != 0;
-    proxy.id = grid_.add(toAabb(aabbMin, aabbMax), isStatic ? Mobility::resting : Mobility::mobile);
-    if (proxy.id.index >= bySlot_.size()) {
-        bySlot_.resize(proxy.id.index + 1, nullptr);
-    }
-    bySlot_[proxy.id.index] = &proxy;
+    proxy.id = id;
+    uniqueIds_[id.index] = proxy.m_uniqueId;
     announceIfEager(proxy, dispatcher);
     return &proxy;
 }
 
 void SpatialHashBroadphase::destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
-    Proxy* own = checkedProxy(proxy);
-    pairCache_->removeOverlappingPairsContainingProxy(own, dispatcher);
-    grid_.remove(own->id);
-    bySlot_[own->id.index] = nullptr;
-    own->id = {};
-    own->m_clientObject = nullptr;
-    freeProxies_.push_back(own);
+    pairCache_->removeOverlappingPairsContainingProxy(checkedProxy(proxy), dispatcher);
+    removeFromGrid(checkedProxy(proxy));
+}
+
+void SpatialHashBroadphase::removeFromGrid(Proxy* proxy) {
+    grid_.remove(proxy->id);
+    uniqueIds_[proxy->id.index] = 0;
+    proxy->id = {};
+    proxy->m_clientObject = nullptr;
 }
 
 void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin,
@@ -161,37 +168,24 @@ void SpatialHashBroadphase::aabbTest(const btVector3& aabbMin, const btVector3& 
     grid_.visit(BoxRegion<btScalar>{toAabb(aabbMin, aabbMax)}, collector);
 }
 
-// Pairs name proxies all over the memory. What a later one will read is fetched while earlier ones
-// are dealt with: its proxies first, then, by their unique ids, its place in the cache.
-void SpatialHashBroadphase::prefetchProxies(std::span<const ProxyPair> pairs, std::size_t i) const {
-    constexpr std::size_t kAhead = 16;
-    if (i + kAhead < pairs.size()) {
-        detail::prefetch(bySlot_[pairs[i + kAhead].first.index]);
-        detail::prefetch(bySlot_[pairs[i + kAhead].second.index]);
-    }
-}
+// --- Pairs ---------------------------------------------------------------------------------------
 
-void SpatialHashBroadphase::prefetchPairs(std::span<const ProxyPair> pairs, std::size_t i) const {
-    prefetchProxies(pairs, i);
-    constexpr std::size_t kAhead = 8;
-    if (ownCache_ == nullptr || i + kAhead >= pairs.size()) {
-        return;
-    }
-    const Proxy* first = bySlot_[pairs[i + kAhead].first.index];
-    const Proxy* second = bySlot_[pairs[i + kAhead].second.index];
-    if (first != nullptr && second != nullptr) {
-        ownCache_->prefetch(*first, *second);
-    }
-}
-
+// Pairs name proxies all over the memory. Those of a later one are fetched while earlier ones are
+// asked about.
 void SpatialHashBroadphase::askFilter(std::span<const ProxyPair> asked,
                                       std::span<char> accepted) const {
+    constexpr std::size_t kAhead = 16;
     for (std::size_t i = 0; i < asked.size(); ++i) {
-        prefetchProxies(asked, i);
-        accepted[i] = pairCache_->needsBroadphaseCollision(bySlot_[asked[i].first.index],
-                                                           bySlot_[asked[i].second.index])
-                          ? 1
-                          : 0;
+        if (i + kAhead < asked.size()) {
+            detail::prefetch(proxyAt(asked[i + kAhead].first.index));
+            detail::prefetch(proxyAt(asked[i + kAhead].second.index));
+        }
+        Proxy* const first = proxyAt(asked[i].first.index);
+        Proxy* const second = proxyAt(asked[i].second.index);
+        const bool isPair = batchCache_ != nullptr
+                                ? batchCache_->needsBroadphaseCollision(first, second)
+                                : pairCache_->needsBroadphaseCollision(first, second);
+        accepted[i] = isPair ? 1 : 0;
     }
 }
 
@@ -200,25 +194,31 @@ void SpatialHashBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) 
     removeDeferred(nullptr, dispatcher);
 }
 
-void SpatialHashBroadphase::apply(const PairChanges& changes, btDispatcher* dispatcher) {
-    for (std::size_t i = 0; i < changes.died.size(); ++i) {
-        prefetchPairs(changes.died, i);
-        Proxy* first = bySlot_[changes.died[i].first.index];
-        Proxy* second = bySlot_[changes.died[i].second.index];
-        // A destroyed proxy has taken its pairs with it.
-        if (first != nullptr && second != nullptr) {
-            pairCache_->removeOverlappingPair(first, second, dispatcher);
+// A destroyed proxy has taken its pairs with it.
+void SpatialHashBroadphase::findCouples(std::span<const ProxyPair> pairs,
+                                        std::vector<ProxyCouple>& couples) const {
+    couples.clear();
+    for (const auto& [first, second] : pairs) {
+        const int firstId = uniqueIds_[first.index];
+        const int secondId = uniqueIds_[second.index];
+        if (firstId != 0 && secondId != 0) {
+            couples.emplace_back(*proxyAt(first.index), firstId, *proxyAt(second.index), secondId);
         }
     }
-    for (std::size_t i = 0; i < changes.born.size(); ++i) {
-        prefetchPairs(changes.born, i);
-        Proxy* first = bySlot_[changes.born[i].first.index];
-        Proxy* second = bySlot_[changes.born[i].second.index];
-        if (ownCache_ != nullptr) {
-            ownCache_->addAcceptedPair(first, second);
-        } else {
-            pairCache_->addOverlappingPair(first, second);
-        }
+}
+
+void SpatialHashBroadphase::apply(const PairChanges& changes, btDispatcher* dispatcher) {
+    findCouples(changes.died, died_);
+    findCouples(changes.born, born_);
+    if (batchCache_ != nullptr) {
+        batchCache_->update(died_, born_, dispatcher);
+        return;
+    }
+    for (const ProxyCouple& couple : died_) {
+        pairCache_->removeOverlappingPair(couple.lower(), couple.upper(), dispatcher);
+    }
+    for (const ProxyCouple& couple : born_) {
+        pairCache_->addOverlappingPair(couple.lower(), couple.upper());
     }
 }
 
@@ -284,7 +284,7 @@ void SpatialHashBroadphase::resetPool(btDispatcher* /*dispatcher*/) {
 
 btBroadphaseProxy* SpatialHashBroadphase::proxyOf(ProxyId id) const {
     HASHPHASE_ASSERT(grid_.contains(id), "Only an id of a proxy alive leads to a proxy.");
-    return bySlot_[id.index];
+    return proxyAt(id.index);
 }
 
 ProxyId SpatialHashBroadphase::idOf(const btBroadphaseProxy* proxy) {
@@ -293,14 +293,15 @@ ProxyId SpatialHashBroadphase::idOf(const btBroadphaseProxy* proxy) {
 
 SpatialHashBroadphase::Proxy* SpatialHashBroadphase::checkedProxy(btBroadphaseProxy* proxy) const {
     HASHPHASE_ASSERT(
-        proxy != nullptr && grid_.contains(idOf(proxy)) && bySlot_[idOf(proxy).index] == proxy,
+        proxy != nullptr && grid_.contains(idOf(proxy)) && proxyAt(idOf(proxy).index) == proxy,
         "Only a proxy that this broadphase created and did not destroy can be used.");
     return static_cast<Proxy*>(proxy);
 }
 
 std::size_t SpatialHashBroadphase::memoryBytes() const noexcept {
-    return grid_.memoryBytes() + pairs_.memoryBytes() + proxies_.size() * sizeof(Proxy) +
-           (freeProxies_.capacity() + bySlot_.capacity()) * sizeof(Proxy*) +
+    return grid_.memoryBytes() + pairs_.memoryBytes() + proxies_.memoryBytes() +
+           uniqueIds_.capacity() * sizeof(int) +
+           (died_.capacity() + born_.capacity()) * sizeof(ProxyCouple) +
            (ownCache_ != nullptr ? ownCache_->memoryBytes() : 0);
 }
 

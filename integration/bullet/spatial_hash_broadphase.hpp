@@ -12,16 +12,21 @@
 // What changes: pairs are exact (no fat boxes, no stale pairs) and are made and removed in
 // calculateOverlappingPairs() only, but for the groups that want theirs at once.
 //
+// Batches   createProxies(), setAabbs() and destroyProxies() do what as many single calls do, at less
+//           cost.
 // Threads   rayTest() and aabbTest() are const in all but name: any number may run at the same time
 //           and inside each other. Everything else needs the broadphase for itself, as in Bullet.
 // Units     the world's; nothing depends on their size.
 // Bad data  A box with NaN pairs with nothing and is reported once (diagnostics.hpp). Infinite, huge
 //           and inverted boxes are treated exactly as comparing their coordinates says. NULL
 //           clients and NULL dispatchers are fine.
-// Misuse    Proxies that are not alive are asserted.
+// Misuse    Proxies that are not alive, proxies of other broadphases, and spans of different lengths
+//           in a batch are asserted.
 
+#include <broadphase/detail/stable_array.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/pairs.hpp>
+#include <integration/bullet/pair_cache.hpp>
 #include <integration/bullet/precision.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btBroadphaseInterface.h>
@@ -29,14 +34,13 @@
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 
 #include <cstddef>
-#include <deque>
+#include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
-
-class PairCache;
 
 /// Settings of the broadphase; the defaults work for any world.
 struct SpatialHashConfig {
@@ -51,14 +55,26 @@ struct SpatialHashConfig {
     bool stopWhenProcessReturnsFalse = false;
 };
 
+/// What createProxies() makes a proxy of: the arguments of createProxy().
+struct ProxyDefinition {
+    btVector3 aabbMin{0, 0, 0};
+    btVector3 aabbMax{0, 0, 0};
+    void* userPtr = nullptr;
+    int collisionFilterGroup = btBroadphaseProxy::DefaultFilter;
+    int collisionFilterMask = btBroadphaseProxy::AllFilter;
+};
+
 class SpatialHashBroadphase : public btBroadphaseInterface {
 public:
-    /// Uses `pairCache`, which must outlive the broadphase and have no pairs yet; with nullptr a
-    /// PairCache is made and owned. Throws std::invalid_argument with configError(config.grid).
-    explicit SpatialHashBroadphase(btOverlappingPairCache* pairCache = nullptr,
+    /// Makes and owns a PairCache. Throws std::invalid_argument with configError(config.grid).
+    explicit SpatialHashBroadphase(const SpatialHashConfig& config = {});
+
+    /// Uses `pairCache`, which must outlive the broadphase and have no pairs yet; with nullptr, as
+    /// above. A cache that is given as a PairCache is changed in batches, any other pair by pair.
+    explicit SpatialHashBroadphase(PairCache* pairCache, const SpatialHashConfig& config = {});
+    explicit SpatialHashBroadphase(btOverlappingPairCache* pairCache,
                                    const SpatialHashConfig& config = {});
-    explicit SpatialHashBroadphase(const SpatialHashConfig& config);
-    ~SpatialHashBroadphase() override;
+    explicit SpatialHashBroadphase(std::nullptr_t, const SpatialHashConfig& config = {});
 
     SpatialHashBroadphase(const SpatialHashBroadphase&) = delete;
     SpatialHashBroadphase& operator=(const SpatialHashBroadphase&) = delete;
@@ -109,6 +125,24 @@ public:
     /// Does nothing, as in Bullet; ask lastCost() and memoryBytes().
     void printStats() override {}
 
+    // --- Many at once ----------------------------------------------------------------------------
+
+    /// Creates a proxy for each definition, in their order, and writes them to `proxies`, which is
+    /// as long. Cost: O(1) a proxy.
+    void createProxies(std::span<const ProxyDefinition> definitions,
+                       std::span<btBroadphaseProxy*> proxies, btDispatcher* dispatcher);
+
+    /// Sets the box of each proxy, in their order; all three are of the same length.
+    /// Cost: O(1) a proxy; a comparison where the box is the same.
+    void setAabbs(std::span<btBroadphaseProxy* const> proxies, std::span<const btVector3> aabbMins,
+                  std::span<const btVector3> aabbMaxs, btDispatcher* dispatcher);
+
+    /// Removes the pairs of all the proxies through the pair cache, then the proxies, of which each
+    /// is named once. Pairs and their algorithms are removed in the order of proxies, but for what
+    /// PairCache::removeOverlappingPairsContainingProxies() says. Cost: that of the cache; with
+    /// PairCache, given as one, at most a pass over all pairs.
+    void destroyProxies(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher);
+
     // --- Beyond Bullet ---------------------------------------------------------------------------
 
     /// Asks the filter again about everything that the proxy overlaps, and adds and removes its
@@ -123,7 +157,7 @@ public:
     /// What the last calculateOverlappingPairs() cost.
     [[nodiscard]] const PairCost& lastCost() const noexcept { return pairs_.lastCost(); }
 
-    /// Bytes held, the pair cache excluded unless it is our own.
+    /// Bytes held, Bullet's own proxies included, the pair cache excluded unless it is our own.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
     /// Grid::validate(), Pairs::validate() and PairCache::validate(), and:
@@ -137,14 +171,16 @@ private:
     template <class Callback>
     struct ProcessCollector;
 
+    // A proxy may be given to Bullet, which takes no const ones, by const members.
+    [[nodiscard]] Proxy* proxyAt(std::uint32_t slot) const { return proxies_.at(slot); }
     void askFilter(std::span<const ProxyPair> asked, std::span<char> accepted) const;
     [[nodiscard]] auto cacheFilter() const {
         return [this](std::span<const ProxyPair> asked, std::span<char> accepted) {
             askFilter(asked, accepted);
         };
     }
-    void prefetchProxies(std::span<const ProxyPair> pairs, std::size_t i) const;
-    void prefetchPairs(std::span<const ProxyPair> pairs, std::size_t i) const;
+    void removeFromGrid(Proxy* proxy);
+    void findCouples(std::span<const ProxyPair> pairs, std::vector<ProxyCouple>& couples) const;
     void apply(const PairChanges& changes, btDispatcher* dispatcher);
     void announceIfEager(const Proxy& proxy, btDispatcher* dispatcher);
     void removeDeferred(const btBroadphaseProxy* refiltered, btDispatcher* dispatcher);
@@ -154,13 +190,15 @@ private:
     Grid<btScalar> grid_;
     Pairs<btScalar> pairs_{grid_};
 
-    std::deque<Proxy> proxies_;  // addresses are fixed
-    std::vector<Proxy*> freeProxies_;
-    std::vector<Proxy*> bySlot_;  // ProxyId::index to proxy
+    detail::StableArray<Proxy> proxies_;  // by ProxyId::index
+    std::vector<int> uniqueIds_;          // by ProxyId::index; 0 where no proxy is alive
     int lastUniqueId_ = 0;
 
-    PairCache* ownCache_ = nullptr;
+    std::unique_ptr<PairCache> ownCache_;  // if none was given
+    PairCache* batchCache_ = nullptr;      // the cache, if it is known to be a PairCache
     btOverlappingPairCache* pairCache_ = nullptr;
+    std::vector<ProxyCouple> died_;  // scratch of apply()
+    std::vector<ProxyCouple> born_;
 };
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

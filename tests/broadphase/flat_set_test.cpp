@@ -30,6 +30,60 @@ TEST(FlatSet, NumbersItsKeysWithoutGaps) {
     EXPECT_EQ(set.validate(), "");
 }
 
+TEST(FlatSet, LetsNewKeysTakeTheNumbersOfErasedOnes) {
+    FlatSet set;
+    for (std::uint64_t key = 0; key < 10; ++key) {
+        set.findOrInsert(key);
+    }
+    EXPECT_EQ(set.vacate(3), 3U);
+    EXPECT_EQ(set.vacate(5), 5U);
+    EXPECT_EQ(set.vacate(8), 8U);
+    EXPECT_EQ(set.vacate(5), FlatSet::kNone);
+    EXPECT_EQ(set.find(5), FlatSet::kNone);
+    EXPECT_EQ(set.insert(70, 5), 5U);
+    EXPECT_EQ(set.insert(70, 8), 5U) << "it has a number";
+    EXPECT_EQ(set.insert(0, 8), 0U);
+    EXPECT_EQ(set.insert(90, 10), 10U);
+    EXPECT_EQ(set.find(9), 9U) << "nobody else's number changes";
+    set.fill(3);
+    EXPECT_EQ(set.find(90), 3U) << "the last key takes the vacant number";
+    EXPECT_EQ(set.find(9), 9U);
+    set.fill(8);
+    EXPECT_EQ(set.find(9), 8U);
+    EXPECT_EQ(set.size(), 9U);
+    EXPECT_EQ(set.validate(), "");
+}
+
+TEST(FlatSet, HasVacantNumbersTakenInAnyOrder) {
+    FlatSet set;
+    std::unordered_set<std::uint64_t> expected;
+    std::mt19937_64 random(22);
+    for (int round = 0; round < 300; ++round) {
+        std::vector<std::uint32_t> vacant;
+        for (std::uint64_t i = 0; i < random() % 40; ++i) {
+            const std::uint64_t key = randomKey(random);
+            const std::uint32_t number = set.vacate(key);
+            ASSERT_EQ(number != FlatSet::kNone, expected.erase(key) == 1);
+            if (number != FlatSet::kNone) {
+                vacant.push_back(number);
+            }
+        }
+        while (!vacant.empty()) {
+            const std::uint64_t key = randomKey(random);
+            const bool isNew = expected.insert(key).second;
+            ASSERT_EQ(set.insert(key, vacant.back()) == vacant.back(), isNew);
+            vacant.resize(vacant.size() - (isNew ? 1 : 0));
+        }
+        for (std::uint64_t i = 0; i < random() % 40; ++i) {
+            const std::uint64_t key = randomKey(random);
+            set.findOrInsert(key);
+            expected.insert(key);
+        }
+        ASSERT_EQ(set.size(), expected.size());
+        ASSERT_EQ(set.validate(), "") << round;
+    }
+}
+
 TEST(FlatSet, RenumbersItsKeys) {
     FlatSet set;
     std::vector<std::uint64_t> follower;
@@ -50,9 +104,9 @@ TEST(FlatSet, RenumbersItsKeys) {
 }
 
 TEST(FlatSet, DoesNotClusterRegularKeys) {
-    // A random function gives some 60 to 130 in tables as full as these.
-    constexpr std::size_t kLongestProbe = 200;
-    constexpr std::uint64_t kCount = 80000;
+    // A random function gives some 7 to 17 in a table as full as these can be.
+    constexpr std::size_t kLongestProbe = 30;
+    constexpr std::uint64_t kCount = 73000;
     const auto longestProbe = [&](auto&& keyOf) {
         FlatSet set;
         for (std::uint64_t i = 0; i < kCount; ++i) {

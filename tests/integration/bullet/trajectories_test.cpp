@@ -33,14 +33,13 @@ std::unique_ptr<PairCache> canonicalCache() {
 template <class Make>
 std::unique_ptr<DynamicsWorld> worldOver(const Make& make) {
     std::unique_ptr<PairCache> cache = canonicalCache();
-    btOverlappingPairCache* const given = cache.get();
+    PairCache* const given = cache.get();
     return std::make_unique<DynamicsWorld>(make(given), std::move(cache));
 }
 
 std::unique_ptr<DynamicsWorld> worldOverHash() {
-    return worldOver([](btOverlappingPairCache* cache) {
-        return std::make_unique<SpatialHashBroadphase>(cache);
-    });
+    return worldOver(
+        [](PairCache* cache) { return std::make_unique<SpatialHashBroadphase>(cache); });
 }
 
 std::unique_ptr<DynamicsWorld> worldOverSimple() {

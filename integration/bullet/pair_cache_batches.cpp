@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Zlib
+//
+// Many pairs at once. Single calls spend their time waiting: for the pair's place in the table, for
+// the pair, for the last pair, which takes its place, and for that one's place in the table. Here
+// what later pairs need is fetched while earlier ones are dealt with, and next to no pair is moved.
+
+#include <integration/bullet/pair_cache.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+namespace {
+
+// How many pairs ahead the table is fetched, and then what it leads to.
+constexpr std::size_t kFar = 16;
+constexpr std::size_t kNear = 8;
+
+}  // namespace
+
+// --- Births and deaths ---------------------------------------------------------------------------
+
+void PairCache::update(std::span<const ProxyCouple> died, std::span<const ProxyCouple> born,
+                       btDispatcher* dispatcher) {
+    if (isTold()) {
+        updateOneByOne(died, born, dispatcher);
+        return;
+    }
+    dropChainsIfMany(died.size());
+    vacant_.clear();
+    vacateAll(died, dispatcher);
+    closeVacant(settle(born));
+    if (order_ == PairOrder::arrival) {
+        freeRetiredAsListed();
+    }
+}
+
+// Where many pairs change, making the chains anew, if ever they are needed, costs less than keeping
+// them.
+void PairCache::dropChainsIfMany(std::size_t changeCount) {
+    constexpr std::size_t kManyInAll = 16;
+    if (!links_.empty() && kManyInAll * changeCount > links_.size() / 2) {
+        dropChains();
+    }
+}
+
+void PairCache::updateOneByOne(std::span<const ProxyCouple> died, std::span<const ProxyCouple> born,
+                               btDispatcher* dispatcher) {
+    for (std::size_t i = 0; i < died.size(); ++i) {
+        if (i + kFar < died.size()) {
+            ids_.prefetch(died[i + kFar].ids());
+        }
+        remove(died[i].ids(), dispatcher, freeingNow());
+    }
+    for (std::size_t i = 0; i < born.size(); ++i) {
+        if (i + kFar < born.size()) {
+            ids_.prefetch(born[i + kFar].ids());
+        }
+        add(born[i]);
+    }
+}
+
+void PairCache::vacateAll(std::span<const ProxyCouple> died, btDispatcher* dispatcher) {
+    if (pairs_.size() == 0) {
+        return;
+    }
+    const btBroadphasePair* firstPair = &pairs_[0];
+    for (std::size_t i = 0; i < died.size(); ++i) {
+        if (i + kFar < died.size()) {
+            ids_.prefetch(died[i + kFar].ids());
+        }
+        if (i + kNear < died.size()) {
+            detail::prefetch(firstPair + ids_.prefetchKey(died[i + kNear].ids()));
+        }
+        vacate(died[i].ids(), dispatcher);
+    }
+}
+
+// Removes the pair, if it is there, and leaves its place vacant.
+void PairCache::vacate(std::uint64_t ids, btDispatcher* dispatcher) {
+    const std::uint32_t index = ids_.vacate(ids);
+    if (index == kNone) {
+        return;
+    }
+    btBroadphasePair& pair = pairs_[static_cast<int>(index)];
+    unchainPair(index, ids);
+    retire(pair, ids, dispatcher);
+    pair.m_pProxy0 = nullptr;
+    vacant_.push_back(index);
+    isSorted_ = false;
+}
+
+// Adds the pairs in vacant places, as long as there are some, and returns how many it took.
+std::size_t PairCache::settle(std::span<const ProxyCouple> born) {
+    std::size_t taken = 0;
+    for (std::size_t i = 0; i < born.size(); ++i) {
+        if (i + kFar < born.size()) {
+            ids_.prefetch(born[i + kFar].ids());
+        }
+        const auto end = static_cast<std::uint32_t>(pairs_.size());
+        const std::uint32_t index = taken < vacant_.size() ? vacant_[taken] : end;
+        if (ids_.insert(born[i].ids(), index) != index) {
+            continue;
+        }
+        if (index == end) {
+            pairs_.push_back({});
+        } else {
+            chainPair(index);
+            ++taken;
+        }
+        name(born[i], pairs_[static_cast<int>(index)]);
+        isSorted_ = false;
+    }
+    return taken;
+}
+
+// Pairs from the end take the places that are still vacant.
+void PairCache::closeVacant(std::size_t firstVacant) {
+    for (std::size_t i = firstVacant; i < vacant_.size(); ++i) {
+        while (pairs_.size() > 0 && pairs_[pairs_.size() - 1].m_pProxy0 == nullptr) {
+            fill(static_cast<std::uint32_t>(pairs_.size()) - 1);
+        }
+        if (vacant_[i] < static_cast<std::uint32_t>(pairs_.size())) {
+            fill(vacant_[i]);
+        }
+    }
+}
+
+// --- The pairs of many proxies -------------------------------------------------------------------
+
+void PairCache::removeOverlappingPairsContainingProxies(std::span<btBroadphaseProxy* const> proxies,
+                                                        btDispatcher* dispatcher) {
+    constexpr std::size_t kFew = 4;  // so many single scans cost what one for many does
+    if (isTold() || proxies.size() < kFew) {
+        for (btBroadphaseProxy* proxy : proxies) {
+            removeOverlappingPairsContainingProxy(proxy, dispatcher);
+        }
+        return;
+    }
+    freeRetired();
+    dropChainsIfMany(proxies.size());
+    chainIfWorth();
+    std::vector<Note> notes = notesOfAll(proxies);
+    vacant_.clear();
+    for (std::size_t i = 0; i < notes.size(); ++i) {
+        if (i + kFar < notes.size()) {
+            ids_.prefetch(notes[i + kFar].uniqueIds);
+        }
+        vacate(notes[i].uniqueIds, dispatcher);
+    }
+    closeVacant(0);
+    scratch_ = std::move(notes);
+    freeRetiredAsListed();
+}
+
+// In the order in which their algorithms are to be freed; some may be listed twice. Of the chained
+// pairs each proxy's are followed, the others are all looked at.
+std::vector<PairCache::Note> PairCache::notesOfAll(std::span<btBroadphaseProxy* const> proxies) {
+    std::vector<Note> notes = std::move(scratch_);
+    notes.clear();
+    const auto add = [&](std::uint32_t index, std::uint32_t rank) {
+        notes.push_back(noteOf(index));
+        notes.back().rank = rank;
+    };
+    for (std::uint32_t rank = 0; rank < proxies.size() && !links_.empty(); ++rank) {
+        std::uint32_t edge = firstEdge_.find(static_cast<std::uint32_t>(proxies[rank]->m_uniqueId));
+        for (; edge != kNone; edge = links_[edge].next) {
+            add(edge / 2, rank);
+        }
+    }
+    ranks_.assign(proxies);
+    for (auto i = static_cast<std::uint32_t>(links_.size() / 2); i < ids_.size(); ++i) {
+        const std::uint64_t ids = ids_.keys()[i];
+        const std::uint32_t rank = ranks_.lowestRank(static_cast<std::uint32_t>(ids >> 32),
+                                                     static_cast<std::uint32_t>(ids));
+        if (rank != ProxyRanks::kNone) {
+            add(i, rank);
+        }
+    }
+    pairsVisited_ += notes.size();
+    if (order_ == PairOrder::canonical) {
+        std::sort(notes.begin(), notes.end(), [](const Note& a, const Note& b) {
+            return a.rank != b.rank ? a.rank < b.rank : a < b;
+        });
+    }
+    return notes;
+}
+
+}  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

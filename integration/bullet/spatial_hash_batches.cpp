@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Zlib
+//
+// Many proxies at once, with the result of as many single calls.
+
+#include <broadphase/detail/prefetch.hpp>
+#include <integration/bullet/spatial_hash_broadphase.hpp>
+
+namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+namespace {
+
+void prefetchAhead(std::span<btBroadphaseProxy* const> proxies, std::size_t i) noexcept {
+    constexpr std::size_t kAhead = 8;
+    if (i + kAhead < proxies.size()) {
+        detail::prefetch(proxies[i + kAhead]);
+    }
+}
+
+}  // namespace
+
+void SpatialHashBroadphase::createProxies(std::span<const ProxyDefinition> definitions,
+                                          std::span<btBroadphaseProxy*> proxies,
+                                          btDispatcher* dispatcher) {
+    HASHPHASE_ASSERT(definitions.size() == proxies.size(),
+                     "There is room for exactly one proxy a definition.");
+    grid_.reserve(grid_.size() + definitions.size());
+    proxies_.reserve(grid_.size() + definitions.size());
+    for (std::size_t i = 0; i < definitions.size(); ++i) {
+        const ProxyDefinition& each = definitions[i];
+        proxies[i] = createProxy(each.aabbMin, each.aabbMax, INVALID_SHAPE_PROXYTYPE, each.userPtr,
+                                 each.collisionFilterGroup, each.collisionFilterMask, dispatcher);
+    }
+}
+
+void SpatialHashBroadphase::setAabbs(std::span<btBroadphaseProxy* const> proxies,
+                                     std::span<const btVector3> aabbMins,
+                                     std::span<const btVector3> aabbMaxs,
+                                     btDispatcher* dispatcher) {
+    HASHPHASE_ASSERT(proxies.size() == aabbMins.size() && proxies.size() == aabbMaxs.size(),
+                     "There is exactly one box a proxy.");
+    for (std::size_t i = 0; i < proxies.size(); ++i) {
+        prefetchAhead(proxies, i);
+        setAabb(proxies[i], aabbMins[i], aabbMaxs[i], dispatcher);
+    }
+}
+
+void SpatialHashBroadphase::destroyProxies(std::span<btBroadphaseProxy* const> proxies,
+                                           btDispatcher* dispatcher) {
+    for (btBroadphaseProxy* proxy : proxies) {
+        static_cast<void>(checkedProxy(proxy));
+    }
+    if (batchCache_ != nullptr) {
+        batchCache_->removeOverlappingPairsContainingProxies(proxies, dispatcher);
+    } else {
+        for (btBroadphaseProxy* proxy : proxies) {
+            pairCache_->removeOverlappingPairsContainingProxy(proxy, dispatcher);
+        }
+    }
+    // The second time that a proxy is named it is not alive any more, which is asserted.
+    for (std::size_t i = 0; i < proxies.size(); ++i) {
+        prefetchAhead(proxies, i);
+        removeFromGrid(checkedProxy(proxies[i]));
+    }
+}
+
+}  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE
