@@ -165,32 +165,37 @@ void Grid<Scalar>::setBox(Record& record, const Box& box) {
 // Copies the mobile boxes side by side. Slots that are near each other in space are near each other
 // in mobileSlots_, but anywhere in records_.
 template <class Scalar>
-void Grid<Scalar>::stage() {
+void Grid<Scalar>::stage(ParallelFor parallelFor) {
+    constexpr std::size_t kGrain = 4096;
     constexpr std::size_t kAhead = 12;
     const std::size_t count = mobileSlots_.size();
     staged_.resize(count);
     stagedBefore_.resize(hasPairs_ ? count : 0);
     quietCount_ = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        if (i + kAhead < count) {
-            detail::prefetch(&records_[mobileSlots_[i + kAhead]]);
+    parallelFor(count, kGrain, [&](std::size_t begin, std::size_t end) {
+        std::uint32_t quietCount = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+            if (i + kAhead < count) {
+                detail::prefetch(&records_[mobileSlots_[i + kAhead]]);
+            }
+            const Record& record = records_[mobileSlots_[i]];
+            staged_[i] = detail::padded(record.box);
+            if (hasPairs_) {
+                stagedBefore_[i] = detail::padded(
+                    record.changedAt == updateNumber_ ? record.before : record.box);
+            }
+            quietCount += isQuiet(record) ? 1 : 0;
         }
-        const Record& record = records_[mobileSlots_[i]];
-        staged_[i] = detail::padded(record.box);
-        if (hasPairs_) {
-            stagedBefore_[i] =
-                detail::padded(record.changedAt == updateNumber_ ? record.before : record.box);
-        }
-        quietCount_ += isQuiet(record) ? 1 : 0;
-    }
+        quietCount_ += quietCount;
+    });
 }
 
 // Quiet proxies leave the mobile ones when enough have gathered, or enough others have left rest, to
 // be worth filing the resting ones anew. Returns whether any did.
 template <class Scalar>
-bool Grid<Scalar>::putQuietToRest() {
+bool Grid<Scalar>::putQuietToRest(ParallelFor parallelFor) {
     const std::size_t filedCount = resting_.size() - restingErased_;
-    if (std::max(quietCount_, restingErased_) < worthRefiling(filedCount)) {
+    if (std::max<std::uint32_t>(quietCount_, restingErased_) < worthRefiling(filedCount)) {
         return false;
     }
     // Those that stay at rest come first, in the order of the table, then those that join.
@@ -211,7 +216,7 @@ bool Grid<Scalar>::putQuietToRest() {
             staged_[i] = detail::padded(nanBox());
         }
     }
-    resting_.build(restSlots_, restBoxes_, fixedSizes_);
+    resting_.build(restSlots_, restBoxes_, fixedSizes_, parallelFor);
     for (std::uint32_t entry = 0; entry < resting_.size(); ++entry) {
         records_[resting_.slot(entry)].restingEntry = entry;
     }
@@ -221,8 +226,8 @@ bool Grid<Scalar>::putQuietToRest() {
 }
 
 template <class Scalar>
-void Grid<Scalar>::fileMobile() {
-    mobile_.build(mobileSlots_, staged_, fixedSizes_);
+void Grid<Scalar>::fileMobile(ParallelFor parallelFor) {
+    mobile_.build(mobileSlots_, staged_, fixedSizes_, parallelFor);
     cost_.filed += mobile_.size();
     for (const std::uint32_t slot : waiting_) {
         records_[slot].isWaiting = false;
@@ -259,12 +264,12 @@ void Grid<Scalar>::endUpdate() {
 }
 
 template <class Scalar>
-UpdateCost Grid<Scalar>::update() {
+UpdateCost Grid<Scalar>::update(ParallelFor parallelFor) {
     HASHPHASE_ASSERT(!hasPairs_, "Where there are Pairs, Pairs::update() ends the frame.");
     if (cost_.changed > 0) {
-        stage();
-        static_cast<void>(putQuietToRest());
-        fileMobile();
+        stage(parallelFor);
+        static_cast<void>(putQuietToRest(parallelFor));
+        fileMobile(parallelFor);
         settle();
     }
     cost_.resting = resting_.size() - restingErased_;
@@ -284,8 +289,8 @@ void Grid<Scalar>::fileIfMany() const {
     auto& self = const_cast<Grid&>(*this);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
     const std::lock_guard lock(self.filing_);
     if (manyWait_.load(std::memory_order_relaxed)) {
-        self.stage();
-        self.fileMobile();
+        self.stage(serialFor);
+        self.fileMobile(serialFor);
         if (!hasPairs_) {
             self.settle();
         }

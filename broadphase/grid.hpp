@@ -21,6 +21,7 @@
 #include <broadphase/detail/table.hpp>
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/grid_config.hpp>
+#include <broadphase/parallel_for.hpp>
 #include <broadphase/proxy_id.hpp>
 #include <broadphase/regions.hpp>
 
@@ -122,8 +123,9 @@ public:
 
     /// Ends a frame: files what changed, and puts to rest what has not changed for a while.
     /// Cost: a rebuild of the mobile proxies when one of them changed, nothing otherwise. Not for
-    /// a grid with Pairs: their update() does it (asserted).
-    UpdateCost update();
+    /// a grid with Pairs: their update() does it (asserted). The result does not depend on
+    /// `parallelFor`.
+    UpdateCost update(ParallelFor parallelFor = serialFor);
 
     /// Bytes held, capacity included.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
@@ -193,9 +195,9 @@ private:
     void setBox(Record& record, const Box& box);
 
     // The passes of an update. Between them, Pairs finds what was born and what died.
-    void stage();
-    [[nodiscard]] bool putQuietToRest();
-    void fileMobile();
+    void stage(ParallelFor parallelFor);
+    [[nodiscard]] bool putQuietToRest(ParallelFor parallelFor);
+    void fileMobile(ParallelFor parallelFor);
     void settle();
     void endUpdate();
 
@@ -232,7 +234,7 @@ private:
     // Boxes by their place in mobileSlots_: as they are now, and as of the last update.
     std::vector<detail::PaddedBox<Scalar>> staged_;
     std::vector<detail::PaddedBox<Scalar>> stagedBefore_;
-    std::uint32_t quietCount_ = 0;
+    std::atomic<std::uint32_t> quietCount_{0};
 
     std::vector<std::uint32_t> restSlots_;  // scratch of putQuietToRest()
     std::vector<detail::PaddedBox<Scalar>> restBoxes_;

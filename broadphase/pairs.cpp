@@ -42,15 +42,15 @@ Pairs<Scalar>::~Pairs() {
 // --- An update -----------------------------------------------------------------------------------
 
 template <class Scalar>
-PairChanges Pairs<Scalar>::update(PairFilter filter) {
+PairChanges Pairs<Scalar>::update(PairFilter filter, ParallelFor parallelFor) {
     beginCall();
     cost_ = {};
     if (grid_.cost_.changed > 0) {
-        grid_.stage();
-        findDeaths();
-        const bool someCameToRest = grid_.putQuietToRest();
-        grid_.fileMobile();
-        findBirths(someCameToRest);
+        grid_.stage(parallelFor);
+        findDeaths(parallelFor);
+        const bool someCameToRest = grid_.putQuietToRest(parallelFor);
+        grid_.fileMobile(parallelFor);
+        findBirths(someCameToRest, parallelFor);
         grid_.settle();
         watchedMobileCount_ = grid_.mobileSlots_.size();
         askRefusedAgain();
@@ -93,14 +93,11 @@ void Pairs<Scalar>::sortCouples(std::vector<Couple>& couples) {
 // A couple dies when its boxes overlapped at the last update, or were announced since, and do not
 // now. All those that are not watched are found here before their boxes are lost.
 template <class Scalar>
-void Pairs<Scalar>::findDeaths() {
+void Pairs<Scalar>::findDeaths(ParallelFor parallelFor) {
     const auto watched = amongMobile_.pairs();
     cost_.couplesWatched = watched.size() + toResting_.size();
-    detail::IndexPair* apart = selected_.resize(watched.size());
-    const std::size_t count = detail::kernels<Scalar>().selectApart(
-        watched.data(), watched.size(), nullptr, grid_.staged_.data(), apart);
-    for (std::size_t i = 0; i < count; ++i) {
-        lose(couple(grid_.mobileSlots_[apart[i].a], grid_.mobileSlots_[apart[i].b]));
+    for (const auto [a, b] : selectApart(watched, nullptr, grid_.staged_.data(), parallelFor)) {
+        lose(couple(grid_.mobileSlots_[a], grid_.mobileSlots_[b]));
     }
     for (const auto [place, slot] : toResting_.pairs()) {
         loseIfApart(couple(grid_.mobileSlots_[place], slot));
@@ -135,7 +132,7 @@ void Pairs<Scalar>::findDeathsOfWoken() {
         detail::KernelCost joinCost;
         wokenTable_.build(grid_.woken_, wokenBoxes_, grid_.fixedSizes_);
         selected_.clear();
-        detail::joinTable(wokenTable_, selected_, joinCost);
+        detail::joinTable(wokenTable_, serialFor, parts_, selected_, joinCost);
         for (const auto [a, b] : selected_.pairs()) {
             wake(wokenTable_.slot(a), wokenTable_.slot(b));
         }
@@ -160,15 +157,15 @@ void Pairs<Scalar>::lose(Couple c) {
 
 // A couple is born when its boxes overlap now and did not at the last update.
 template <class Scalar>
-void Pairs<Scalar>::findBirths(bool someCameToRest) {
+void Pairs<Scalar>::findBirths(bool someCameToRest, ParallelFor parallelFor) {
     const auto order = grid_.mobile_.order();
     entryOf_.resize(grid_.mobileSlots_.size());
     for (std::uint32_t entry = 0; entry < order.size(); ++entry) {
         entryOf_[order[entry]] = entry;
     }
     carryToRest(someCameToRest);
-    joinMobile();
-    walkResting();
+    joinMobile(parallelFor);
+    walkResting(parallelFor);
     if (announced_.size() > 0) {
         std::erase_if(asked_, [this](Couple c) { return contains(announced_, c); });
     }
@@ -206,25 +203,41 @@ void Pairs<Scalar>::carryToRest(bool someCameToRest) {
 }
 
 template <class Scalar>
-void Pairs<Scalar>::joinMobile() {
+void Pairs<Scalar>::joinMobile(ParallelFor parallelFor) {
     const detail::Table<Scalar>& table = grid_.mobile_;
     detail::KernelCost cost;
     amongMobile_.clear();
-    detail::joinTable(table, amongMobile_, cost);
+    detail::joinTable(table, parallelFor, parts_, amongMobile_, cost);
     cost_.boxesTested += cost.boxesTested;
-
-    const auto found = amongMobile_.pairs();
-    detail::IndexPair* fresh = selected_.resize(found.size());
-    const std::size_t count = detail::kernels<Scalar>().selectApart(
-        found.data(), found.size(), table.order().data(), grid_.stagedBefore_.data(), fresh);
-    for (std::size_t i = 0; i < count; ++i) {
-        asked_.push_back(couple(table.slot(fresh[i].a), table.slot(fresh[i].b)));
+    const auto fresh = selectApart(amongMobile_.pairs(), table.order().data(),
+                                   grid_.stagedBefore_.data(), parallelFor);
+    for (const auto [a, b] : fresh) {
+        asked_.push_back(couple(table.slot(a), table.slot(b)));
     }
+}
+
+// Those couples of which the boxes, numbered order[a] and order[b], do not overlap; valid until the
+// next call.
+template <class Scalar>
+std::span<const detail::IndexPair> Pairs<Scalar>::selectApart(
+    std::span<const detail::IndexPair> couples, const std::uint32_t* order,
+    const detail::PaddedBox<Scalar>* boxes, ParallelFor parallelFor) {
+    constexpr std::size_t kGrain = 8192;
+    selected_.clear();
+    detail::KernelCost none;
+    const auto select = [&](std::size_t first, std::size_t last, detail::PairSink& sink,
+                            detail::KernelCost&) {
+        detail::makeRoom(sink, last - first);
+        sink.next += detail::kernels<Scalar>().selectApart(couples.data() + first, last - first,
+                                                           order, boxes, sink.next);
+    };
+    parts_.collect(parallelFor, couples.size(), kGrain, selected_, none, select);
+    return selected_.pairs();
 }
 
 // What changed against the resting proxies.
 template <class Scalar>
-void Pairs<Scalar>::walkResting() {
+void Pairs<Scalar>::walkResting(ParallelFor parallelFor) {
     toResting_.swap(carried_);
     if (grid_.resting_.size() == 0) {
         return;
@@ -249,7 +262,7 @@ void Pairs<Scalar>::walkResting() {
                                                 walkerBounds_[2].data(), walkerBounds_[3].data(),
                                                 walkerBounds_[4].data(), walkerBounds_[5].data()};
     detail::walkTable(grid_.resting_, walkerColumns, static_cast<std::uint32_t>(walkers_.size()),
-                      selected_, cost);
+                      parallelFor, parts_, selected_, cost);
     cost_.boxesTested += cost.boxesTested;
     for (const auto [walker, restingEntry] : selected_.pairs()) {
         const std::uint32_t entry = walkers_[walker];
@@ -426,17 +439,19 @@ void Pairs<Scalar>::findUnknown(std::uint32_t slot) {
 
 template <class Scalar>
 void Pairs<Scalar>::forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const {
+    detail::PairParts parts;
     detail::PairList found;
     detail::KernelCost cost;
     for (const detail::Table<Scalar>* table : {&grid_.mobile_, &grid_.resting_}) {
         found.clear();
-        detail::joinTable(*table, found, cost);
+        detail::joinTable(*table, serialFor, parts, found, cost);
         for (const auto [a, b] : found.pairs()) {
             visit(table->slot(a), table->slot(b));
         }
     }
     found.clear();
-    detail::walkTable(grid_.resting_, grid_.mobile_.columns(), grid_.mobile_.size(), found, cost);
+    detail::walkTable(grid_.resting_, grid_.mobile_.columns(), grid_.mobile_.size(), serialFor,
+                      parts, found, cost);
     for (const auto [a, b] : found.pairs()) {
         visit(grid_.mobile_.slot(a), grid_.resting_.slot(b));
     }
@@ -462,7 +477,7 @@ std::size_t Pairs<Scalar>::memoryBytes() const noexcept {
         bounds += column.capacity() * sizeof(Scalar);
     }
     return sizeof(*this) + amongMobile_.memoryBytes() + toResting_.memoryBytes() +
-           selected_.memoryBytes() + carried_.memoryBytes() + bounds +
+           selected_.memoryBytes() + parts_.memoryBytes() + carried_.memoryBytes() + bounds +
            (asked_.capacity() + standing_.capacity() + bornCouples_.capacity() +
             diedCouples_.capacity() + sorted_.capacity() + restedCouples_.capacity() +
             announcedBefore_.capacity()) *

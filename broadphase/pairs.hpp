@@ -14,6 +14,7 @@
 
 #include <broadphase/detail/flat_set.hpp>
 #include <broadphase/detail/kernels.hpp>
+#include <broadphase/detail/pair_parts.hpp>
 #include <broadphase/function_ref.hpp>
 #include <broadphase/grid.hpp>
 
@@ -87,8 +88,9 @@ public:
     Pairs& operator=(const Pairs&) = delete;
 
     /// Ends the frame: updates the grid and returns all pairs born and died since the last call.
+    /// The result does not depend on `parallelFor`; the filter is asked on the caller's thread.
     /// Cost: follows what changed, and the pairs of what changed lately.
-    PairChanges update(PairFilter filter);
+    PairChanges update(PairFilter filter, ParallelFor parallelFor = serialFor);
 
     /// Pairs of one proxy that have come to overlap since the last update, at once; update() will
     /// not report them again. Returns births only. Cost: that of a box query.
@@ -142,13 +144,16 @@ private:
     [[nodiscard]] bool isRefused(Couple c) const noexcept;
 
     void beginCall();
-    void findDeaths();
+    void findDeaths(ParallelFor parallelFor);
     void findDeathsOfWoken();
     void loseIfApart(Couple c);
-    void findBirths(bool someCameToRest);
+    void findBirths(bool someCameToRest, ParallelFor parallelFor);
     void carryToRest(bool someCameToRest);
-    void joinMobile();
-    void walkResting();
+    void joinMobile(ParallelFor parallelFor);
+    void walkResting(ParallelFor parallelFor);
+    [[nodiscard]] std::span<const detail::IndexPair> selectApart(
+        std::span<const detail::IndexPair> couples, const std::uint32_t* order,
+        const detail::PaddedBox<Scalar>* boxes, ParallelFor parallelFor);
     void lose(Couple c);
     void askRefusedAgain();
     void decide(PairFilter filter);
@@ -190,6 +195,7 @@ private:
     std::vector<Couple> restedCouples_;
     std::vector<Couple> announcedBefore_;
     detail::PairList selected_;
+    detail::PairParts parts_;
     detail::PairList carried_;
     std::vector<std::uint32_t> entryOf_;  // of places in mobileSlots_, in the mobile table
     std::vector<std::uint32_t> walkers_;  // entries that changed

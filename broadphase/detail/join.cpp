@@ -2,7 +2,7 @@
 #include <broadphase/detail/join.hpp>
 
 #include <algorithm>
-#include <tuple>
+#include <array>
 
 namespace hashphase::detail {
 
@@ -28,64 +28,102 @@ double rowsLookedUp(const Level<Scalar>& own, const Level<Scalar>& level) {
     return own.hasCells ? std::min(rows, byCells) : rows;
 }
 
+// A search of the entries of one level: among themselves, or for those of another one.
+template <class Scalar>
+struct Search {
+    const Level<Scalar>* from = nullptr;
+    const Level<Scalar>* among = nullptr;
+};
+
 // The boxes of either level may be looked up among those of the other one. Mostly the small ones
 // look for the large ones, of which there are few in each row; but a few large ones, or a few that
 // are filed far away, had better look for the small ones themselves.
 template <class Scalar>
-void joinLevels(const Table<Scalar>& table, const Level<Scalar>& a, const Level<Scalar>& b,
-                PairSink& sink, KernelCost& cost) {
-    const double fromA = a.count() * rowsLookedUp(a, b);
-    const double fromB = b.count() * rowsLookedUp(b, a);
-    const auto& [from, to] = fromA <= fromB ? std::tie(a, b) : std::tie(b, a);
-    kernels<Scalar>().walkLevel(table.view(to), table.columns().data(), from.firstEntry,
-                                from.lastEntry, sink, cost);
+Search<Scalar> searchOf(const Level<Scalar>& a, const Level<Scalar>& b) {
+    const bool isFromA = a.count() * rowsLookedUp(a, b) <= b.count() * rowsLookedUp(b, a);
+    return isFromA ? Search<Scalar>{&a, &b} : Search<Scalar>{&b, &a};
 }
+
+template <class Scalar>
+void run(const Table<Scalar>& table, const Search<Scalar>& search, std::uint32_t first,
+         std::uint32_t last, PairSink& sink, KernelCost& cost) {
+    const Kernels<Scalar>& kernel = kernels<Scalar>();
+    const Level<Scalar>& from = *search.from;
+    const Columns<Scalar> columns = table.columns();
+    if (search.from != search.among) {
+        kernel.walkLevel(table.view(*search.among), columns.data(), first, last, sink, cost);
+    } else if (from.hasCells) {
+        kernel.joinLevel(table.view(from), first, last, sink, cost);
+    } else {
+        kernel.joinList(columns.data(), first, last, from.lastEntry, sink, cost);
+    }
+}
+
+// Entries or boxes that one thread deals with at a time.
+constexpr std::size_t kGrain = 2048;
 
 }  // namespace
 
 template <class Scalar>
-void joinTable(const Table<Scalar>& table, PairList& found, KernelCost& cost) {
-    const Kernels<Scalar>& kernel = kernels<Scalar>();
+void joinTable(const Table<Scalar>& table, ParallelFor parallelFor, PairParts& parts,
+               PairList& found, KernelCost& cost) {
+    constexpr std::size_t kMost = 2 * kMaxLevels + 1;
+    std::array<Search<Scalar>, kMost*(kMost + 1) / 2> searches;
+    std::size_t searchCount = 0;
+    std::size_t total = 0;
     const auto levels = table.levels();
-    found.append([&](PairSink& sink) {
-        for (std::size_t i = 0; i < levels.size(); ++i) {
-            const Level<Scalar>& level = levels[i];
-            if (level.count() == 0) {
-                continue;
-            }
-            if (level.hasCells) {
-                kernel.joinLevel(table.view(level), level.firstEntry, level.lastEntry, sink, cost);
-            } else {
-                kernel.joinList(table.columns().data(), level.firstEntry, level.lastEntry, sink,
-                                cost);
-            }
-            for (const Level<Scalar>& other : levels.subspan(i + 1)) {
-                if (other.count() > 0) {
-                    joinLevels(table, level, other, sink, cost);
-                }
+    const auto add = [&](const Search<Scalar>& search) {
+        searches[searchCount++] = search;
+        total += search.from->count();
+    };
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        for (std::size_t j = i; j < levels.size() && levels[i].count() > 0; ++j) {
+            if (levels[j].count() > 0) {
+                add(i == j ? Search<Scalar>{&levels[i], &levels[i]}
+                           : searchOf(levels[i], levels[j]));
             }
         }
-    });
+    }
+    // The entries of all searches, one after the other, are one loop.
+    parts.collect(parallelFor, total, kGrain, found, cost,
+                  [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost& own) {
+                      for (std::size_t i = 0; i < searchCount && last > 0; ++i) {
+                          const std::size_t count = searches[i].from->count();
+                          if (first < count) {
+                              const std::uint32_t base = searches[i].from->firstEntry;
+                              run(table, searches[i], base + static_cast<std::uint32_t>(first),
+                                  base + static_cast<std::uint32_t>(std::min(last, count)), sink,
+                                  own);
+                          }
+                          first -= std::min(first, count);
+                          last -= std::min(last, count);
+                      }
+                  });
 }
 
 template <class Scalar>
 void walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t count,
-               PairList& found, KernelCost& cost) {
-    const Kernels<Scalar>& kernel = kernels<Scalar>();
-    found.append([&](PairSink& sink) {
-        for (const Level<Scalar>& level : table.levels()) {
-            if (level.count() > 0) {
-                kernel.walkLevel(table.view(level), queries.data(), 0, count, sink, cost);
-            }
-        }
-    });
+               ParallelFor parallelFor, PairParts& parts, PairList& found, KernelCost& cost) {
+    parts.collect(parallelFor, count, kGrain, found, cost,
+                  [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost& own) {
+                      for (const Level<Scalar>& level : table.levels()) {
+                          if (level.count() > 0) {
+                              kernels<Scalar>().walkLevel(
+                                  table.view(level), queries.data(),
+                                  static_cast<std::uint32_t>(first),
+                                  static_cast<std::uint32_t>(last), sink, own);
+                          }
+                      }
+                  });
 }
 
-template void joinTable<float>(const Table<float>&, PairList&, KernelCost&);
-template void joinTable<double>(const Table<double>&, PairList&, KernelCost&);
-template void walkTable<float>(const Table<float>&, const Columns<float>&, std::uint32_t, PairList&,
+template void joinTable<float>(const Table<float>&, ParallelFor, PairParts&, PairList&,
                                KernelCost&);
+template void joinTable<double>(const Table<double>&, ParallelFor, PairParts&, PairList&,
+                                KernelCost&);
+template void walkTable<float>(const Table<float>&, const Columns<float>&, std::uint32_t,
+                               ParallelFor, PairParts&, PairList&, KernelCost&);
 template void walkTable<double>(const Table<double>&, const Columns<double>&, std::uint32_t,
-                                PairList&, KernelCost&);
+                                ParallelFor, PairParts&, PairList&, KernelCost&);
 
 }  // namespace hashphase::detail

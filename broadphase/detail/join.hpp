@@ -5,6 +5,7 @@
 // neighbourhood that lies after it, on its own level, and levels against each other.
 
 #include <broadphase/detail/kernels.hpp>
+#include <broadphase/detail/pair_parts.hpp>
 #include <broadphase/detail/walk.hpp>
 #include <broadphase/regions.hpp>
 
@@ -54,12 +55,13 @@ void forOverlapsInTable(const Table<Scalar>& table, const Aabb<Scalar>& box, Que
 
 /// Appends every two entries of the table whose boxes overlap, each couple once.
 template <class Scalar>
-void joinTable(const Table<Scalar>& table, PairList& found, KernelCost& cost);
+void joinTable(const Table<Scalar>& table, ParallelFor parallelFor, PairParts& parts,
+               PairList& found, KernelCost& cost);
 
 /// Appends (i, entry) for every box of `queries` and every entry of the table that overlaps it.
 /// `queries` has the columns min x, y, z, max x, y, z.
 template <class Scalar>
 void walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t count,
-               PairList& found, KernelCost& cost);
+               ParallelFor parallelFor, PairParts& parts, PairList& found, KernelCost& cost);
 
 }  // namespace hashphase::detail

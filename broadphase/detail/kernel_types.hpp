@@ -76,6 +76,12 @@ struct LevelView {
 struct KernelCost {
     std::uint64_t rowsVisited = 0;
     std::uint64_t boxesTested = 0;
+
+    KernelCost& operator+=(const KernelCost& other) noexcept {
+        rowsVisited += other.rowsVisited;
+        boxesTested += other.boxesTested;
+        return *this;
+    }
 };
 
 /// In the place of the bucket of a box that is not filed, because it has a NaN.
@@ -99,9 +105,9 @@ struct Kernels {
     void (*walkLevel)(const LevelView<Scalar>& level, const Scalar* const* queries,
                       std::uint32_t first, std::uint32_t last, PairSink& found, KernelCost& cost);
 
-    /// Finds every two of the entries first to last of a table, wherever they are filed.
+    /// Finds each of the entries first to last that overlaps another one behind it, up to `end`.
     void (*joinList)(const Scalar* const* columns, std::uint32_t first, std::uint32_t last,
-                     PairSink& found, KernelCost& cost);
+                     std::uint32_t end, PairSink& found, KernelCost& cost);
 
     /// Writes those of `count` couples whose boxes do not overlap, the boxes order[a] and order[b],
     /// or a and b where order is null, to `apart`, which has room for all. Returns their number.

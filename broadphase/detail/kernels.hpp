@@ -10,6 +10,8 @@
 
 #include <broadphase/detail/kernel_types.hpp>
 
+#include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -34,6 +36,13 @@ void useInstructionSet(InstructionSet set) noexcept;
 template <class Scalar>
 [[nodiscard]] const Kernels<Scalar>& kernels() noexcept;
 
+/// Room for `count` more couples.
+inline void makeRoom(PairSink& sink, std::size_t count) {
+    if (static_cast<std::size_t>(sink.end - sink.next) < count) {
+        sink.grow(sink, count);
+    }
+}
+
 /// A growing array of couples for kernels to write to. Does not initialise what it grows by, and
 /// keeps its memory.
 class PairList {
@@ -43,19 +52,24 @@ public:
     void clear() noexcept { size_ = 0; }
 
     /// Calls kernel(PairSink&), which appends.
-    template <class Kernel>
+    template <std::invocable<PairSink&> Kernel>
     void append(const Kernel& kernel) {
         PairSink sink{data_.get() + size_, data_.get() + capacity_, &grow, this};
         kernel(sink);
         size_ = static_cast<std::size_t>(sink.next - data_.get());
     }
 
+    void append(std::span<const IndexPair> pairs) {
+        append([pairs](PairSink& sink) {
+            makeRoom(sink, pairs.size());
+            sink.next = std::copy(pairs.begin(), pairs.end(), sink.next);
+        });
+    }
+
     /// Appends one couple.
     void push(IndexPair pair) {
         append([&](PairSink& sink) {
-            if (sink.next == sink.end) {
-                grow(sink, 1);
-            }
+            makeRoom(sink, 1);
             *sink.next++ = pair;
         });
     }

@@ -304,14 +304,14 @@ void joinLevel(const LevelView<Scalar>& level, std::uint32_t firstEntry, std::ui
 
 template <class Scalar>
 void joinList(const Scalar* const* columns, std::uint32_t first, std::uint32_t last,
-              PairSink& found, KernelCost& cost) {
+              std::uint32_t end, PairSink& found, KernelCost& cost) {
     LevelView<Scalar> list{};
     for (int column = 0; column < 6; ++column) {
         list.columns[column] = columns[column];
     }
     for (std::uint32_t entry = first; entry < last; ++entry) {
-        cost.boxesTested += last - entry - 1;
-        scan<true>(list, Lanes<Scalar>(columns, entry), entry, Run{entry + 1, last}, Row{}, found);
+        cost.boxesTested += end - entry - 1;
+        scan<true>(list, Lanes<Scalar>(columns, entry), entry, Run{entry + 1, end}, Row{}, found);
     }
 }
 

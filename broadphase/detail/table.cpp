@@ -29,6 +29,9 @@ constexpr std::uint32_t kBuildsBetweenCensuses = 64;
 constexpr std::uint32_t kHashStrideY = 0x9e3779b1U;
 constexpr std::uint32_t kHashStrideZ = 0x85ebca77U;
 
+// Boxes that one thread deals with at a time.
+constexpr std::size_t kGrain = 4096;
+
 // Up to one in so many may lie beyond the cells that are numbered through.
 constexpr std::uint32_t kStrays = 32;
 
@@ -228,14 +231,17 @@ void Table<Scalar>::layOutHashed(Level<Scalar>& level, std::uint32_t count) cons
 // Finds every box's bucket and counts how many each has. Returns how many boxes lie where it takes
 // longer to find them: listed without cells, or beyond the cells that are numbered through.
 template <class Scalar>
-std::size_t Table<Scalar>::countBuckets(std::span<const PaddedBox<Scalar>> boxes) {
+std::size_t Table<Scalar>::countBuckets(std::span<const PaddedBox<Scalar>> boxes,
+                                        ParallelFor parallelFor) {
     buckets_.resize(boxes.size());
     views_.clear();
     for (const Level<Scalar>& level : levels_) {
         views_.push_back(view(level));
     }
-    kernels<Scalar>().fileBoxes(views_.data(), views_.size(), boxes.data(), boxes.size(),
-                                buckets_.data());
+    parallelFor(boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        kernels<Scalar>().fileBoxes(views_.data(), views_.size(), boxes.data() + begin, end - begin,
+                                    buckets_.data() + begin);
+    });
     std::fill(bucketStart_.begin(), bucketStart_.end(), 0);
     for (const std::uint32_t bucket : buckets_) {
         if (bucket != kNoBucket) {
@@ -256,7 +262,8 @@ std::size_t Table<Scalar>::countBuckets(std::span<const PaddedBox<Scalar>> boxes
 // sequence.
 template <class Scalar>
 void Table<Scalar>::sortEntries(std::span<const std::uint32_t> slots,
-                                std::span<const PaddedBox<Scalar>> boxes) {
+                                std::span<const PaddedBox<Scalar>> boxes,
+                                ParallelFor parallelFor) {
     std::uint32_t sum = 0;
     for (std::uint32_t& start : bucketStart_) {
         sum += std::exchange(start, sum);
@@ -274,26 +281,35 @@ void Table<Scalar>::sortEntries(std::span<const std::uint32_t> slots,
     }
     // Each start moves to its bucket's end, which is where the next one starts.
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-        const std::uint32_t bucket = buckets_[i];
-        if (bucket == kNoBucket) {
-            continue;
-        }
-        const std::uint32_t entry = bucketStart_[bucket]++;
-        order_[entry] = static_cast<std::uint32_t>(i);
-        slots_[entry] = slots[i];
-        bucketOfEntry_[entry] = bucket;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            bounds_[axis][entry] = boxes[i].low[axis];
-            bounds_[axis + 3][entry] = boxes[i].high[axis];
+        if (buckets_[i] != kNoBucket) {
+            order_[bucketStart_[buckets_[i]]++] = static_cast<std::uint32_t>(i);
         }
     }
     std::copy_backward(bucketStart_.begin(), bucketStart_.end() - 1, bucketStart_.end());
     bucketStart_[0] = 0;
 
+    parallelFor(count, kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t entry = begin; entry < end; ++entry) {
+            const std::uint32_t i = order_[entry];
+            slots_[entry] = slots[i];
+            bucketOfEntry_[entry] = buckets_[i];
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                bounds_[axis][entry] = boxes[i].low[axis];
+                bounds_[axis + 3][entry] = boxes[i].high[axis];
+            }
+        }
+    });
+    noteRows();
+}
+
+// Hashed rows are told apart by their coordinates.
+template <class Scalar>
+void Table<Scalar>::noteRows() {
     const auto isHashed = [](const Level<Scalar>& level) {
-        return level.hasCells && !level.isDense;
+        return level.hasCells && !level.isDense && level.count() > 0;
     };
-    rowOfEntry_.resize(std::any_of(levels_.begin(), levels_.end(), isHashed) ? count : 0);
+    const bool isNeeded = std::any_of(levels_.begin(), levels_.end(), isHashed);
+    rowOfEntry_.resize(isNeeded ? slots_.size() : 0);
     for (const Level<Scalar>& level : levels_) {
         for (std::uint32_t i = level.firstEntry; isHashed(level) && i < level.lastEntry; ++i) {
             rowOfEntry_[i] = {level.cell(bounds_[1][i], 1), level.cell(bounds_[2][i], 2)};
@@ -303,17 +319,18 @@ void Table<Scalar>::sortEntries(std::span<const std::uint32_t> slots,
 
 template <class Scalar>
 void Table<Scalar>::build(std::span<const std::uint32_t> slots,
-                          std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed) {
+                          std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed,
+                          ParallelFor parallelFor) {
     HASHPHASE_ASSERT(slots.size() == boxes.size(), "Every box has a slot.");
     bool isLaidOut = !chooseLevels(boxes, fixed) && !levels_.empty();
     if (isLaidOut) {
-        isLaidOut = countBuckets(boxes) <= 2 * strayCount_ + kThinLevel + boxes.size() / kStrays;
+        isLaidOut = countBuckets(boxes, parallelFor) <= 2 * strayCount_ + kThinLevel + boxes.size() / kStrays;
     }
     if (!isLaidOut) {
         layOut(boxes);
-        strayCount_ = countBuckets(boxes);
+        strayCount_ = countBuckets(boxes, parallelFor);
     }
-    sortEntries(slots, boxes);
+    sortEntries(slots, boxes, parallelFor);
 }
 
 template <class Scalar>

@@ -17,6 +17,7 @@
 #include <broadphase/detail/overlap_kernel.hpp>
 #include <broadphase/detail/padded_box.hpp>
 #include <broadphase/detail/quantise.hpp>
+#include <broadphase/parallel_for.hpp>
 
 #include <array>
 #include <cstdint>
@@ -105,7 +106,7 @@ public:
     /// follow the population, or are fixed when `fixed.count` > 0. Cost: a few passes over the
     /// boxes; least when they come in about the order of the last time, see order().
     void build(std::span<const std::uint32_t> slots, std::span<const PaddedBox<Scalar>> boxes,
-               const LevelSizes& fixed);
+               const LevelSizes& fixed, ParallelFor parallelFor = serialFor);
 
     /// Takes the entry out of every later answer. Cost: O(1); its place is reclaimed by build().
     void erase(std::uint32_t entry) noexcept;
@@ -192,9 +193,11 @@ private:
     void layOutDense(Level<Scalar>& level, const Reach& reach);
     [[nodiscard]] bool numberThrough(Level<Scalar>& level, std::uint32_t count) const;
     void layOutHashed(Level<Scalar>& level, std::uint32_t count) const;
-    [[nodiscard]] std::size_t countBuckets(std::span<const PaddedBox<Scalar>> boxes);
+    [[nodiscard]] std::size_t countBuckets(std::span<const PaddedBox<Scalar>> boxes,
+                                           ParallelFor parallelFor);
     void sortEntries(std::span<const std::uint32_t> slots,
-                     std::span<const PaddedBox<Scalar>> boxes);
+                     std::span<const PaddedBox<Scalar>> boxes, ParallelFor parallelFor);
+    void noteRows();
 
     LevelSizes sizes_;
     std::array<Scalar, 3> origin_{};

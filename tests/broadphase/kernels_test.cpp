@@ -55,9 +55,10 @@ protected:
         const Table<Scalar> movedTable = tableOf(moved, sizes);
         KernelCost cost;
         PairList joined;
-        joinTable(table, joined, cost);
+        PairParts parts;
+        joinTable(table, serialFor, parts, joined, cost);
         PairList walked;
-        walkTable(table, movedTable.columns(), movedTable.size(), walked, cost);
+        walkTable(table, movedTable.columns(), movedTable.size(), serialFor, parts, walked, cost);
         std::vector<IndexPair> apart(joined.size());
         apart.resize(kernels<Scalar>().selectApart(joined.pairs().data(), joined.size(),
                                                    table.order().data(), moved.data(),

@@ -44,7 +44,8 @@ protected:
         Couples couples;
         PairList found;
         KernelCost cost;
-        joinTable(table_, found, cost);
+        PairParts parts;
+        joinTable(table_, serialFor, parts, found, cost);
         for (const auto [a, b] : found.pairs()) {
             couples.push_back(std::minmax(table_.slot(a), table_.slot(b)));
         }
@@ -241,7 +242,8 @@ TYPED_TEST(TableTest, KeepsToTheCostOfAFewTestsABoxWhereBoxesAreOfOneSize) {
     this->build(std::move(boxes));
     PairList found;
     KernelCost cost;
-    joinTable(this->table_, found, cost);
+    PairParts parts;
+    joinTable(this->table_, serialFor, parts, found, cost);
     EXPECT_LT(cost.boxesTested, 12U * kCount);
     EXPECT_LT(cost.rowsVisited, 10U * kCount);
 }
@@ -259,7 +261,8 @@ TYPED_TEST(TableTest, KeepsToTheCostOfAFewTestsABoxWhereSizesDiffer) {
     this->build(std::move(boxes));
     PairList found;
     KernelCost cost;
-    joinTable(this->table_, found, cost);
+    PairParts parts;
+    joinTable(this->table_, serialFor, parts, found, cost);
     EXPECT_LT(cost.boxesTested, 60U * kCount);
 }
 
