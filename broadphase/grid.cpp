@@ -181,8 +181,8 @@ void Grid<Scalar>::stage(ParallelFor parallelFor) {
             const Record& record = records_[mobileSlots_[i]];
             staged_[i] = detail::padded(record.box);
             if (hasPairs_) {
-                stagedBefore_[i] = detail::padded(
-                    record.changedAt == updateNumber_ ? record.before : record.box);
+                stagedBefore_[i] =
+                    detail::padded(record.changedAt == updateNumber_ ? record.before : record.box);
             }
             quietCount += isQuiet(record) ? 1 : 0;
         }

@@ -108,10 +108,10 @@ void walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::
                   [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost& own) {
                       for (const Level<Scalar>& level : table.levels()) {
                           if (level.count() > 0) {
-                              kernels<Scalar>().walkLevel(
-                                  table.view(level), queries.data(),
-                                  static_cast<std::uint32_t>(first),
-                                  static_cast<std::uint32_t>(last), sink, own);
+                              kernels<Scalar>().walkLevel(table.view(level), queries.data(),
+                                                          static_cast<std::uint32_t>(first),
+                                                          static_cast<std::uint32_t>(last), sink,
+                                                          own);
                           }
                       }
                   });

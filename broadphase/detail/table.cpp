@@ -262,8 +262,7 @@ std::size_t Table<Scalar>::countBuckets(std::span<const PaddedBox<Scalar>> boxes
 // sequence.
 template <class Scalar>
 void Table<Scalar>::sortEntries(std::span<const std::uint32_t> slots,
-                                std::span<const PaddedBox<Scalar>> boxes,
-                                ParallelFor parallelFor) {
+                                std::span<const PaddedBox<Scalar>> boxes, ParallelFor parallelFor) {
     std::uint32_t sum = 0;
     for (std::uint32_t& start : bucketStart_) {
         sum += std::exchange(start, sum);
@@ -324,7 +323,8 @@ void Table<Scalar>::build(std::span<const std::uint32_t> slots,
     HASHPHASE_ASSERT(slots.size() == boxes.size(), "Every box has a slot.");
     bool isLaidOut = !chooseLevels(boxes, fixed) && !levels_.empty();
     if (isLaidOut) {
-        isLaidOut = countBuckets(boxes, parallelFor) <= 2 * strayCount_ + kThinLevel + boxes.size() / kStrays;
+        isLaidOut = countBuckets(boxes, parallelFor) <=
+                    2 * strayCount_ + kThinLevel + boxes.size() / kStrays;
     }
     if (!isLaidOut) {
         layOut(boxes);

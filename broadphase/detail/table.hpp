@@ -195,8 +195,8 @@ private:
     void layOutHashed(Level<Scalar>& level, std::uint32_t count) const;
     [[nodiscard]] std::size_t countBuckets(std::span<const PaddedBox<Scalar>> boxes,
                                            ParallelFor parallelFor);
-    void sortEntries(std::span<const std::uint32_t> slots,
-                     std::span<const PaddedBox<Scalar>> boxes, ParallelFor parallelFor);
+    void sortEntries(std::span<const std::uint32_t> slots, std::span<const PaddedBox<Scalar>> boxes,
+                     ParallelFor parallelFor);
     void noteRows();
 
     LevelSizes sizes_;

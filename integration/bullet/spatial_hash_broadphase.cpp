@@ -190,7 +190,9 @@ void SpatialHashBroadphase::askFilter(std::span<const ProxyPair> asked,
 }
 
 void SpatialHashBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
-    apply(pairs_.update(cacheFilter()), dispatcher);
+    apply(config_.parallelFor ? pairs_.update(cacheFilter(), config_.parallelFor)
+                              : pairs_.update(cacheFilter()),
+          dispatcher);
     removeDeferred(nullptr, dispatcher);
 }
 

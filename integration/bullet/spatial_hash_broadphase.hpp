@@ -35,6 +35,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -49,6 +50,11 @@ struct SpatialHashConfig {
     /// Proxies of these groups get their pairs at once, in createProxy() and setAabb(), as Bullet's
     /// character controller and ghost objects expect.
     int eagerGroups = btBroadphaseProxy::CharacterFilter | btBroadphaseProxy::SensorTrigger;
+
+    /// On what threads calculateOverlappingPairs() runs its loops; empty for the caller's. The
+    /// result is the same on any number. See bullet_parallel_for.hpp and
+    /// integration/tbb/tbb_parallel_for.hpp. Called with count, grain and body, see ParallelFor.
+    std::function<void(std::size_t count, std::size_t grain, LoopBody body)> parallelFor;
 
     /// Ends a query when process() of its callback returns false. Off by default: Bullet's own
     /// broadphases ignore the result, and programs return false for other reasons.

@@ -7,6 +7,7 @@
 #   broadphase/detail/      the compiler's SIMD intrinsics as well, and it alone
 #   integration/<client>/   itself, broadphase/, Eigen, the standard library
 #   integration/bullet/     Bullet as well, and it alone
+#   integration/tbb/        oneTBB as well, and it alone
 #   integration/effects/    the other clients as well
 # demos/ and tests/ may include everything, and nobody else includes them. Names every breach by
 # file, line and rule.
@@ -31,6 +32,9 @@ standard library")
         set(allowed "((broadphase|integration/bullet)/.+|${bullet}|${eigen}|${standard})")
         set(rule "integration/bullet/ includes only itself, broadphase/, Bullet, Eigen and the \
 standard library")
+    elseif("${file}" MATCHES "^integration/tbb/")
+        set(allowed "((broadphase|integration/tbb|tbb)/.+|${standard})")
+        set(rule "integration/tbb/ includes only itself, broadphase/, oneTBB and the standard library")
     elseif("${file}" MATCHES "^integration/effects/")
         set(allowed "((broadphase|integration)/.+|${eigen}|${standard})")
         set(rule "integration/effects/ includes only the clients, broadphase/, Eigen and the \

@@ -27,6 +27,8 @@ function(make_good_tree)
          "#include <broadphase/grid.hpp>\n#include <integration/bullet/pair_cache.hpp>\n")
     file(WRITE ${SCRATCH}/integration/picking/pick.cpp
          "#include <integration/picking/pick.hpp>\n#include <broadphase/grid.hpp>\n")
+    file(WRITE ${SCRATCH}/integration/tbb/loops.hpp
+         "#include <tbb/parallel_for.h>\n#include <broadphase/parallel_for.hpp>\n")
     file(WRITE ${SCRATCH}/integration/effects/plan.cpp
          "#include <integration/picking/pick.hpp>\n#include <cstdint>\n")
     file(WRITE ${SCRATCH}/demos/main.cpp "#include \"scene.hpp\"\n#include <CLI/CLI.hpp>\n")

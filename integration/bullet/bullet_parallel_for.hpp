@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Loops of the broadphase on the threads of Bullet's task scheduler, see btSetTaskScheduler(). A
+// Bullet that was built without threads, as Debian's is, runs them on the caller's thread.
+
+#include <broadphase/parallel_for.hpp>
+
+#include <LinearMath/btThreads.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
+namespace hashphase {
+
+/// A ParallelFor: config.parallelFor = hashphase::bulletFor.
+inline void bulletFor(std::size_t count, std::size_t grain, LoopBody body) {
+    struct Body : btIParallelForBody {
+        const LoopBody& loop;
+
+        explicit Body(const LoopBody& itsLoop) : loop(itsLoop) {}
+        void forLoop(int begin, int end) const override {
+            loop(static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
+        }
+    };
+    constexpr std::size_t kMost = std::numeric_limits<int>::max();
+    if (count > kMost) {
+        body(0, count);  // more than Bullet can count
+    } else if (count > 0) {
+        btParallelFor(0, static_cast<int>(count), static_cast<int>(std::min(grain, kMost)),
+                      Body(body));
+    }
+}
+
+}  // namespace hashphase

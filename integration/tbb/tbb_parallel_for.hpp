@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Loops of the grid on the threads of oneTBB (2021 or newer). Link with TBB::tbb.
+
+#include <broadphase/parallel_for.hpp>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <cstddef>
+
+namespace hashphase {
+
+/// A ParallelFor: pairs.update(filter, hashphase::tbbFor). Threads that have nothing to do sleep.
+inline void tbbFor(std::size_t count, std::size_t grain, LoopBody body) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
+                      [&body](const tbb::blocked_range<std::size_t>& range) {
+                          body(range.begin(), range.end());
+                      });
+}
+
+}  // namespace hashphase
