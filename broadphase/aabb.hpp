@@ -9,9 +9,8 @@
 
 #include <Eigen/Geometry>
 
-#include <bit>
-#include <cstdint>
-#include <type_traits>
+#include <cstddef>
+#include <cstring>
 
 namespace hashphase {
 
@@ -39,13 +38,9 @@ template <class Scalar>
 /// True when the boxes are equal to the bit: -0 differs from 0, and a NaN equals itself.
 template <class Scalar>
 [[nodiscard]] inline bool isSameBits(const Aabb<Scalar>& a, const Aabb<Scalar>& b) noexcept {
-    using Word = std::conditional_t<sizeof(Scalar) == 4, std::uint32_t, std::uint64_t>;
-    Word difference = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        difference |= std::bit_cast<Word>(a.min()[axis]) ^ std::bit_cast<Word>(b.min()[axis]);
-        difference |= std::bit_cast<Word>(a.max()[axis]) ^ std::bit_cast<Word>(b.max()[axis]);
-    }
-    return difference == 0;
+    constexpr std::size_t kBytes = 3 * sizeof(Scalar);
+    return std::memcmp(a.min().data(), b.min().data(), kBytes) == 0 &&
+           std::memcmp(a.max().data(), b.max().data(), kBytes) == 0;
 }
 
 /// True when any of the six coordinates is NaN.

@@ -8,6 +8,8 @@
 
 #include <LinearMath/btVector3.h>
 
+#include <cstring>
+
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 [[nodiscard]] inline Vector3<btScalar> toEigen(const btVector3& v) {
@@ -16,6 +18,11 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 [[nodiscard]] inline btVector3 toBullet(const Vector3<btScalar>& v) {
     return {v.x(), v.y(), v.z()};
+}
+
+/// True when the three coordinates are equal to the bit.
+[[nodiscard]] inline bool isSameBits(const btVector3& a, const btVector3& b) {
+    return std::memcmp(a.m_floats, b.m_floats, 3 * sizeof(btScalar)) == 0;
 }
 
 [[nodiscard]] inline Aabb<btScalar> toAabb(const btVector3& min, const btVector3& max) {

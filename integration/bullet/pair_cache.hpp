@@ -39,8 +39,8 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 /// In which order the array lists the pairs.
 enum class PairOrder {
-    /// As pairs came and went: the same calls give the same order, that of Bullet's cache. Costs
-    /// nothing.
+    /// As pairs came and went: the same calls give the same order, that of Bullet's cache unless
+    /// they are batches. Costs nothing.
     arrival,
     /// Ascending by the key of the first proxy, then of the second, whenever the whole array is
     /// looked at: the same set of pairs gives the same order, whatever the broadphase and the
@@ -135,16 +135,18 @@ public:
     void removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy,
                                                btDispatcher* dispatcher) override;
 
-    /// The same for each of the proxies in turn. The array's order of arrival is its own again;
-    /// algorithms are freed when all pairs are gone, in canonical order as by single calls, else in
-    /// the order of the array. With a ghost
-    /// callback, or called by one of processAllOverlappingPairs(), the same as single calls in every
-    /// respect. Cost: the number of their pairs, and at most one pass over all pairs.
-    void removeOverlappingPairsContainingProxies(std::span<btBroadphaseProxy* const> proxies,
-                                                 btDispatcher* dispatcher);
-
     /// Frees their algorithms and keeps the pairs, in the same order at the same cost.
     void cleanProxyFromPairs(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
+
+    // --- The pairs of many proxies ---------------------------------------------------------------
+
+    /// Removes the pairs of each proxy in turn. The array's order of arrival is its own again;
+    /// algorithms are freed when all pairs are gone, in canonical order as by single calls, else in
+    /// no order that means anything. With a ghost callback, or called by one of
+    /// processAllOverlappingPairs(), the same as single calls in every respect. Cost: the number of
+    /// their pairs, and at most one pass over all pairs.
+    void removeOverlappingPairsContainingProxies(std::span<btBroadphaseProxy* const> proxies,
+                                                 btDispatcher* dispatcher);
 
     // --- All pairs -------------------------------------------------------------------------------
 
@@ -249,6 +251,9 @@ private:
     [[nodiscard]] Note noteOf(std::uint32_t index) const;
     void noteAll(std::vector<Note>& notes) const;
     [[nodiscard]] std::uint32_t indexOf(const Note& note) const;
+    static bool isNamedBy(const ProxyCouple& couple, const btBroadphasePair& pair) noexcept {
+        return pair.m_pProxy0 == couple.lower() || pair.m_pProxy0 == couple.upper();
+    }
     void name(const ProxyCouple& couple, btBroadphasePair& pair) const;
     btBroadphasePair* add(const ProxyCouple& couple);
     void* remove(std::uint64_t ids, btDispatcher* dispatcher, Freeing freeing);
@@ -262,6 +267,7 @@ private:
     [[nodiscard]] bool isTold() const noexcept { return ghosts_ != nullptr || processDepth_ > 0; }
     void updateOneByOne(std::span<const ProxyCouple> died, std::span<const ProxyCouple> born,
                         btDispatcher* dispatcher);
+    void prefetchAhead(std::span<const ProxyCouple> couples, std::size_t i) const;
     void vacate(std::uint64_t ids, btDispatcher* dispatcher);
     void vacateAll(std::span<const ProxyCouple> died, btDispatcher* dispatcher);
     std::size_t settle(std::span<const ProxyCouple> born);

@@ -35,43 +35,34 @@ void PairCache::update(std::span<const ProxyCouple> died, std::span<const ProxyC
     }
 }
 
-// Where many pairs change, making the chains anew, if ever they are needed, costs less than keeping
-// them.
-void PairCache::dropChainsIfMany(std::size_t changeCount) {
-    constexpr std::size_t kManyInAll = 16;
-    if (!links_.empty() && kManyInAll * changeCount > links_.size() / 2) {
-        dropChains();
-    }
-}
-
 void PairCache::updateOneByOne(std::span<const ProxyCouple> died, std::span<const ProxyCouple> born,
                                btDispatcher* dispatcher) {
     for (std::size_t i = 0; i < died.size(); ++i) {
-        if (i + kFar < died.size()) {
-            ids_.prefetch(died[i + kFar].ids());
+        prefetchAhead(died, i);
+        if (kNear < ids_.size()) {
+            ids_.prefetch(ids_.keys()[ids_.size() - 1 - kNear]);  // is soon to take a place
         }
         remove(died[i].ids(), dispatcher, freeingNow());
     }
     for (std::size_t i = 0; i < born.size(); ++i) {
-        if (i + kFar < born.size()) {
-            ids_.prefetch(born[i + kFar].ids());
-        }
+        prefetchAhead(born, i);
         add(born[i]);
     }
 }
 
-void PairCache::vacateAll(std::span<const ProxyCouple> died, btDispatcher* dispatcher) {
-    if (pairs_.size() == 0) {
-        return;
+// What it takes to find the pair of a couple further on, and the pair.
+void PairCache::prefetchAhead(std::span<const ProxyCouple> couples, std::size_t i) const {
+    if (i + kFar < couples.size()) {
+        ids_.prefetch(couples[i + kFar].ids());
     }
-    const btBroadphasePair* firstPair = &pairs_[0];
+    if (i + kNear < couples.size() && pairs_.size() > 0) {
+        detail::prefetch(&pairs_[0] + ids_.prefetchKey(couples[i + kNear].ids()));
+    }
+}
+
+void PairCache::vacateAll(std::span<const ProxyCouple> died, btDispatcher* dispatcher) {
     for (std::size_t i = 0; i < died.size(); ++i) {
-        if (i + kFar < died.size()) {
-            ids_.prefetch(died[i + kFar].ids());
-        }
-        if (i + kNear < died.size()) {
-            detail::prefetch(firstPair + ids_.prefetchKey(died[i + kNear].ids()));
-        }
+        prefetchAhead(died, i);
         vacate(died[i].ids(), dispatcher);
     }
 }
@@ -99,7 +90,9 @@ std::size_t PairCache::settle(std::span<const ProxyCouple> born) {
         }
         const auto end = static_cast<std::uint32_t>(pairs_.size());
         const std::uint32_t index = taken < vacant_.size() ? vacant_[taken] : end;
-        if (ids_.insert(born[i].ids(), index) != index) {
+        if (const std::uint32_t known = ids_.insert(born[i].ids(), index); known != index) {
+            HASHPHASE_ASSERT(isNamedBy(born[i], pairs_[static_cast<int>(known)]),
+                             "Proxies that are alive have different unique ids.");
             continue;
         }
         if (index == end) {

@@ -116,7 +116,9 @@ btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
     proxy.m_uniqueId = ++lastUniqueId_;
     proxy.id = id;
     uniqueIds_[id.index] = proxy.m_uniqueId;
-    announceIfEager(proxy, dispatcher);
+    if (isEager(proxy)) {
+        announce(proxy, dispatcher);
+    }
     return &proxy;
 }
 
@@ -135,14 +137,15 @@ void SpatialHashBroadphase::removeFromGrid(Proxy* proxy) {
 void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin,
                                     const btVector3& aabbMax, btDispatcher* dispatcher) {
     Proxy* own = checkedProxy(proxy);
-    const Aabb<btScalar> box = toAabb(aabbMin, aabbMax);
-    if (isSameBits(toAabb(own->m_aabbMin, own->m_aabbMax), box)) {
+    if (isSameBits(own->m_aabbMin, aabbMin) && isSameBits(own->m_aabbMax, aabbMax)) {
         return;
     }
     own->m_aabbMin = aabbMin;
     own->m_aabbMax = aabbMax;
-    grid_.move(own->id, box);
-    announceIfEager(*own, dispatcher);
+    grid_.move(own->id, toAabb(aabbMin, aabbMax));
+    if (isEager(*own)) {
+        announce(*own, dispatcher);
+    }
 }
 
 void SpatialHashBroadphase::getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin,
@@ -210,8 +213,21 @@ void SpatialHashBroadphase::findCouples(std::span<const ProxyPair> pairs,
 }
 
 void SpatialHashBroadphase::apply(const PairChanges& changes, btDispatcher* dispatcher) {
+    // The first births, as many as there are deaths at least, go with these, to take their places.
+    constexpr std::size_t kBirthsAtOnce = 4096;
     findCouples(changes.died, died_);
-    findCouples(changes.born, born_);
+    std::span<const ProxyPair> born = changes.born;
+    std::size_t count = std::min(born.size(), std::max(died_.size(), kBirthsAtOnce));
+    do {
+        findCouples(born.first(count), born_);
+        applyToCache(dispatcher);
+        died_.clear();
+        born = born.subspan(count);
+        count = std::min(born.size(), kBirthsAtOnce);
+    } while (count > 0);
+}
+
+void SpatialHashBroadphase::applyToCache(btDispatcher* dispatcher) {
     if (batchCache_ != nullptr) {
         batchCache_->update(died_, born_, dispatcher);
         return;
@@ -224,10 +240,8 @@ void SpatialHashBroadphase::apply(const PairChanges& changes, btDispatcher* disp
     }
 }
 
-void SpatialHashBroadphase::announceIfEager(const Proxy& proxy, btDispatcher* dispatcher) {
-    if ((proxy.m_collisionFilterGroup & config_.eagerGroups) != 0) {
-        apply(pairs_.announce(proxy.id, cacheFilter()), dispatcher);
-    }
+void SpatialHashBroadphase::announce(const Proxy& proxy, btDispatcher* dispatcher) {
+    apply(pairs_.announce(proxy.id, cacheFilter()), dispatcher);
 }
 
 void SpatialHashBroadphase::refilter(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
@@ -291,13 +305,6 @@ btBroadphaseProxy* SpatialHashBroadphase::proxyOf(ProxyId id) const {
 
 ProxyId SpatialHashBroadphase::idOf(const btBroadphaseProxy* proxy) {
     return static_cast<const Proxy*>(proxy)->id;
-}
-
-SpatialHashBroadphase::Proxy* SpatialHashBroadphase::checkedProxy(btBroadphaseProxy* proxy) const {
-    HASHPHASE_ASSERT(
-        proxy != nullptr && grid_.contains(idOf(proxy)) && proxyAt(idOf(proxy).index) == proxy,
-        "Only a proxy that this broadphase created and did not destroy can be used.");
-    return static_cast<Proxy*>(proxy);
 }
 
 std::size_t SpatialHashBroadphase::memoryBytes() const noexcept {

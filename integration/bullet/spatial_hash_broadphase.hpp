@@ -188,9 +188,18 @@ private:
     void removeFromGrid(Proxy* proxy);
     void findCouples(std::span<const ProxyPair> pairs, std::vector<ProxyCouple>& couples) const;
     void apply(const PairChanges& changes, btDispatcher* dispatcher);
-    void announceIfEager(const Proxy& proxy, btDispatcher* dispatcher);
+    void applyToCache(btDispatcher* dispatcher);
+    [[nodiscard]] bool isEager(const Proxy& proxy) const noexcept {
+        return (proxy.m_collisionFilterGroup & config_.eagerGroups) != 0;
+    }
+    void announce(const Proxy& proxy, btDispatcher* dispatcher);
     void removeDeferred(const btBroadphaseProxy* refiltered, btDispatcher* dispatcher);
-    [[nodiscard]] Proxy* checkedProxy(btBroadphaseProxy* proxy) const;
+    [[nodiscard]] Proxy* checkedProxy(btBroadphaseProxy* proxy) const {
+        HASHPHASE_ASSERT(
+            proxy != nullptr && grid_.contains(idOf(proxy)) && proxyAt(idOf(proxy).index) == proxy,
+            "Only a proxy that this broadphase created and did not destroy can be used.");
+        return static_cast<Proxy*>(proxy);
+    }
 
     SpatialHashConfig config_;
     Grid<btScalar> grid_;

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Zlib
+//
+// The pairs of one proxy. Those that have been there for a while are chained to each of their
+// proxies; the others, behind the last that is chained, are looked through.
+
+#include <integration/bullet/pair_cache.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <utility>
+
+namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+
+// --- Chains --------------------------------------------------------------------------------------
+
+std::uint64_t PairCache::idOfEnd(std::uint32_t edge) const {
+    const std::uint64_t ids = ids_.keys()[edge / 2];
+    return edge % 2 == 0 ? ids >> 32 : ids & kLowerHalf;
+}
+
+void PairCache::chain(std::uint32_t edge) {
+    const std::uint32_t next = firstEdge_.exchange(idOfEnd(edge), edge);
+    if (next != kNone) {
+        links_[next].previous = edge;
+    }
+    links_[edge] = {next, kNone};
+}
+
+void PairCache::unchain(std::uint32_t edge, std::uint64_t uniqueId) {
+    const Link link = links_[edge];
+    if (link.next != kNone) {
+        links_[link.next].previous = link.previous;
+    }
+    if (link.previous != kNone) {
+        links_[link.previous].next = link.next;
+    } else {
+        firstEdge_.exchange(uniqueId, link.next);
+    }
+}
+
+// The pair has moved, in pairs_, from one edge's to the other's.
+void PairCache::rename(std::uint32_t from, std::uint32_t to) {
+    const Link link = links_[from];
+    links_[to] = link;
+    if (link.next != kNone) {
+        links_[link.next].previous = to;
+    }
+    if (link.previous != kNone) {
+        links_[link.previous].next = to;
+    } else {
+        firstEdge_.exchange(idOfEnd(to), to);
+    }
+}
+
+// Most pairs die before anyone asks for those of a proxy, so chaining waits until scanning the ones
+// that are not chained has cost as much.
+void PairCache::chainIfWorth() {
+    constexpr std::size_t kScansPerChaining = 16;
+    const std::size_t chained = links_.size() / 2;
+    const std::size_t unchained = ids_.size() - chained;
+    pairsScanned_ += unchained;
+    if (pairsScanned_ <= kScansPerChaining * unchained) {
+        return;
+    }
+    pairsScanned_ = 0;
+    links_.resize(2 * ids_.size());
+    for (std::size_t i = chained; i < ids_.size(); ++i) {
+        chainPair(static_cast<std::uint32_t>(i));
+    }
+}
+
+// Where many pairs change, making the chains anew, if ever they are needed, costs less than keeping
+// them.
+void PairCache::dropChainsIfMany(std::size_t changeCount) {
+    constexpr std::size_t kManyInAll = 16;
+    if (!links_.empty() && kManyInAll * changeCount > links_.size() / 2) {
+        dropChains();
+    }
+}
+
+void PairCache::dropChains() {
+    links_.clear();
+    firstEdge_.clear();
+    pairsScanned_ = 0;
+}
+
+// --- One proxy -----------------------------------------------------------------------------------
+
+// A block at a time, most of which have no pair of the proxy's.
+void PairCache::noteUnchained(std::uint32_t id, std::vector<Note>& notes) const {
+    constexpr std::size_t kBlock = 16;
+    const std::span<const std::uint64_t> keys = ids_.keys();
+    for (std::size_t first = links_.size() / 2; first < keys.size(); first += kBlock) {
+        const std::size_t end = std::min(first + kBlock, keys.size());
+        bool isOfNone = false;
+        if (end - first == kBlock) {
+            std::array<std::uint32_t, 2 * kBlock> halves;
+            std::memcpy(halves.data(), &keys[first], sizeof(halves));
+            isOfNone = std::count(halves.begin(), halves.end(), id) == 0;
+        }
+        for (std::size_t i = first; !isOfNone && i < end; ++i) {
+            if (keys[i] >> 32 == id || (keys[i] & kLowerHalf) == id) {
+                notes.push_back(noteOf(static_cast<std::uint32_t>(i)));
+            }
+        }
+    }
+}
+
+// Noted down, for callbacks may change the cache. In canonical order, or in that of the array.
+std::vector<PairCache::Note> PairCache::notesOf(const btBroadphaseProxy& proxy) {
+    freeRetired();
+    chainIfWorth();
+    std::vector<Note> notes = std::move(scratch_);
+    notes.clear();
+    for (std::uint32_t edge = firstEdge_.find(static_cast<std::uint32_t>(proxy.m_uniqueId));
+         edge != kNone; edge = links_[edge].next) {
+        notes.push_back(noteOf(edge / 2));
+    }
+    noteUnchained(static_cast<std::uint32_t>(proxy.m_uniqueId), notes);
+    pairsVisited_ += notes.size();
+    const bool byKey = order_ == PairOrder::canonical;
+    std::sort(notes.begin(), notes.end(),
+              [=](const Note& a, const Note& b) { return byKey ? a < b : a.index < b.index; });
+    return notes;
+}
+
+void PairCache::removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy,
+                                                      btDispatcher* dispatcher) {
+    std::vector<Note> notes = notesOf(*proxy);
+    std::size_t first = 0;
+    std::size_t last = notes.size();
+    std::uint32_t count = static_cast<std::uint32_t>(pairs_.size());
+    while (first < last) {
+        remove(notes[first++].uniqueIds, dispatcher, Freeing::now);
+        --count;
+        // As in a scan of the whole array, which is Bullet's way: the pair at the end has moved to
+        // where the scan is, and if it is one of the proxy's it is the next to go.
+        while (order_ == PairOrder::arrival && first < last && notes[last - 1].index == count) {
+            remove(notes[--last].uniqueIds, dispatcher, Freeing::now);
+            --count;
+        }
+    }
+    scratch_ = std::move(notes);
+}
+
+void PairCache::cleanProxyFromPairs(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
+    std::vector<Note> notes = notesOf(*proxy);
+    for (const Note& note : notes) {
+        const std::uint32_t index = indexOf(note);
+        if (index != kNone) {
+            cleanOverlappingPair(pairs_[static_cast<int>(index)], dispatcher);
+        }
+    }
+    scratch_ = std::move(notes);
+}
+
+bool PairCache::areChainsSound() const {
+    std::size_t edgeCount = 0;
+    bool isSound = links_.size() <= 2 * ids_.size();
+    firstEdge_.forEach([&](std::uint64_t uniqueId, std::uint32_t first) {
+        std::uint32_t previous = kNone;
+        for (std::uint32_t edge = first; isSound && edge != kNone; edge = links_[edge].next) {
+            isSound = edge < links_.size() && links_[edge].previous == previous &&
+                      idOfEnd(edge) == uniqueId && ++edgeCount <= links_.size();
+            previous = edge;
+        }
+    });
+    return isSound && edgeCount == links_.size();
+}
+
+}  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE
