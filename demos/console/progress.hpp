@@ -3,10 +3,13 @@
 
 // How far a long task is, and how long it will still take.
 
+#include <demos/console/program.hpp>
+
 #include <chrono>
 #include <cstddef>
 #include <iosfwd>
 #include <string>
+#include <string_view>
 
 namespace hashphase::demos {
 
@@ -15,6 +18,9 @@ enum class ProgressStyle {
     kBar,    // a bar that redraws itself, for terminals
     kLines,  // a line every few seconds, for logs
 };
+
+/// A bar where errors go to a terminal, lines elsewhere.
+[[nodiscard]] ProgressStyle progressStyle(const Console& console, bool quiet);
 
 class Progress {
 public:
@@ -26,13 +32,15 @@ public:
     /// Wipes the bar.
     ~Progress();
 
-    /// Says that `done` steps are done; draws at most a few times a second.
-    void update(std::size_t done);
+    /// Says that `done` steps are done; draws at most a few times a second. Where steps mean nothing
+    /// to a reader, `what` says in their place what is being done.
+    void update(std::size_t done, std::string_view what = {});
 
 private:
     using Clock = std::chrono::steady_clock;
 
-    [[nodiscard]] std::string text(std::size_t done, Clock::time_point now) const;
+    [[nodiscard]] std::string text(std::size_t done, std::string_view what,
+                                   Clock::time_point now) const;
 
     std::ostream& out_;
     ProgressStyle style_;
