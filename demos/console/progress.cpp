@@ -26,9 +26,10 @@ ProgressStyle progressStyle(const Console& console, bool quiet) {
 Progress::Progress(std::ostream& out, ProgressStyle style, std::string task, std::size_t total)
     : out_(out), style_(style), task_(std::move(task)), total_(std::max<std::size_t>(total, 1)) {}
 
-Progress::~Progress() {
+void Progress::clear() {
     if (drawnWidth_ > 0) {
         out_ << '\r' << std::string(drawnWidth_, ' ') << '\r' << std::flush;
+        drawnWidth_ = 0;
     }
 }
 

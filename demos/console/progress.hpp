@@ -30,7 +30,10 @@ public:
     Progress& operator=(const Progress&) = delete;
 
     /// Wipes the bar.
-    ~Progress();
+    ~Progress() { clear(); }
+
+    /// Wipes the bar until the next update, so that something else can be written.
+    void clear();
 
     /// Says that `done` steps are done; draws at most a few times a second. Where steps mean nothing
     /// to a reader, `what` says in their place what is being done.
