@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Zlib
 # shellcheck shell=bash
 #
-# Sourced by demos/run and tests/run: from a fresh machine to an up-to-date build.
+# Sourced by demos/run, tests/run and tests/benchmarks/run: from a fresh machine to an up-to-date build.
 # Everything is said on stderr, so that the output of the program that is run stays clean.
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)

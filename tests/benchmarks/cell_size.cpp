@@ -8,15 +8,17 @@ std::optional<CellSizeRegret> cellSizeRegret(const CaseResult& result) {
     if (result.group != kCellSizeGroup || automatic == nullptr) {
         return std::nullopt;
     }
-    std::optional<CellSizeRegret> worst;
+    const ContestantResult* best = nullptr;
     for (const ContestantResult& fixed : result.contestants) {
-        const std::optional<double> speed =
-            &fixed == automatic ? std::nullopt : speedAgainst(automatic, fixed);
-        if (speed && (!worst || *speed - 1 > worst->regret)) {
-            worst = {*speed - 1, fixed.kind.name};
+        if (&fixed != automatic && fixed.spread() &&
+            (best == nullptr || fixed.spread()->median < best->spread()->median)) {
+            best = &fixed;
         }
     }
-    return worst;
+    if (best == nullptr || !automatic->spread()) {
+        return std::nullopt;
+    }
+    return CellSizeRegret{*speedAgainst(automatic, *best) - 1, best->kind.name};
 }
 
 }  // namespace hashphase::benchmarks

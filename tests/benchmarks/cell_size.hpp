@@ -18,8 +18,8 @@ struct CellSizeRegret {
     std::string bestFixed;  // the contestant
 };
 
-/// By the median over frames of the ratio to each fixed size. Nothing for other cases, and where
-/// either side was not measured.
+/// The best fixed one has the lowest median; the regret is the median over the frames of the ratio
+/// to it. Nothing for other cases, and where either side was not measured.
 [[nodiscard]] std::optional<CellSizeRegret> cellSizeRegret(const CaseResult& result);
 
 }  // namespace hashphase::benchmarks

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <tests/benchmarks/pair_workload.hpp>
 
-#include <demos/compare/stopwatch.hpp>
+#include <tests/benchmarks/frame_clock.hpp>
 
 namespace hashphase::benchmarks {
 
@@ -28,7 +28,7 @@ void PairWorkload::beginFrame() {
 double PairWorkload::runFrame(std::size_t contestant) {
     Contestant& current = *entries_[contestant].contestant;
     const FrameBoxes frame = scene_.frame();
-    const demos::Stopwatch watch;
+    const FrameClock watch;
     if (setting_ == Setting::everything) {
         current.setAll(frame);
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <tests/benchmarks/population_workload.hpp>
 
-#include <demos/compare/stopwatch.hpp>
+#include <tests/benchmarks/frame_clock.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -39,7 +39,7 @@ void RemovalWorkload::beginFrame() {
 double RemovalWorkload::runFrame(std::size_t contestant) {
     Contestant& current = *contestants_[contestant];
     Population& population = *current.population();
-    const demos::Stopwatch watch;
+    const FrameClock watch;
     for (std::size_t i = 0; i < removals_; ++i) {
         population.remove(order_[i]);
     }
@@ -88,7 +88,7 @@ void CreationWorkload::beginFrame() {
 
 double CreationWorkload::runFrame(std::size_t contestant) {
     Contestant& current = *entries_[contestant].contestant;
-    const demos::Stopwatch watch;
+    const FrameClock watch;
     current.fill(scene_.frame());
     current.findPairs();
     return watch.milliseconds();
