@@ -4,7 +4,7 @@
 // Whoever keeps the pairs of a scene's boxes: ours, Bullet's broadphases, and those of other
 // libraries, behind one interface.
 //
-// A frame  setAll(), then findPairs(); both are timed. Afterwards the complete set of pairs is there.
+// A frame  setAll(), then findPairs(); both are timed; then the complete set of pairs is there.
 // Objects  are numbered by their place in the scene.
 
 #include <demos/compare/filled_broadphase.hpp>

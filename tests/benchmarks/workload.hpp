@@ -23,7 +23,9 @@ using Answer = std::uint64_t;
 
 /// What a contestant holds, as far as anyone can tell.
 struct Memory {
-    std::optional<std::int64_t> heapBytes;  // taken from the heap while filling and warming up
+    /// Taken from the heap while filling and warming up, with the tables by which the measurement
+    /// finds an object's proxy (up to 12 bytes an object).
+    std::optional<std::int64_t> heapBytes;
     std::optional<OwnBytes> own;
 };
 

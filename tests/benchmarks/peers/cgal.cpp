@@ -25,6 +25,11 @@ struct CgalBox {
     std::uint32_t object;
 };
 
+// Below as many boxes CGAL scans instead of dividing further; its manual leaves the number to the
+// user. Of 10 (the default) to 3,000 this was the fastest on 10,000 to 100,000 uniform boxes, three
+// times as fast as 10. Pointers to boxes, which the manual advises, were slower than such small boxes.
+constexpr std::ptrdiff_t kCutoff = 1000;
+
 class CgalContestant : public Contestant {
 public:
     void fill(const FrameBoxes& frame) override { setAll(frame); }
@@ -35,21 +40,18 @@ public:
         for (std::size_t i = 0; i < boxes_.size(); ++i) {
             boxes_[i] = {frame.boxes[i], static_cast<std::uint32_t>(i)};
         }
-        // Sorting pointers is what CGAL's manual advises.
-        pointers_.clear();
-        for (const CgalBox& box : boxes_) {
-            pointers_.push_back(&box);
-        }
     }
 
     void findPairs() override {
         pairs_.clear();
         CGAL::box_self_intersection_d(
-            pointers_.begin(), pointers_.end(), [this](const CgalBox* a, const CgalBox* b) {
-                if (frame_.mayPair(a->object, b->object)) {
-                    pairs_.push_back(demos::pairKey(a->object, b->object));
+            boxes_.begin(), boxes_.end(),
+            [this](const CgalBox& a, const CgalBox& b) {
+                if (frame_.mayPair(a.object, b.object)) {
+                    pairs_.push_back(demos::pairKey(a.object, b.object));
                 }
-            });
+            },
+            kCutoff);
     }
 
     void listPairs(std::vector<PairKey>& pairs) override { pairs = pairs_; }
@@ -57,7 +59,6 @@ public:
 private:
     FrameBoxes frame_;
     std::vector<CgalBox> boxes_;
-    std::vector<const CgalBox*> pointers_;
     std::vector<PairKey> pairs_;
 };
 
