@@ -4,7 +4,7 @@
 // Broadphases alone on a scene of moving boxes: in every frame each gets setAabb for all boxes, then
 // calculateOverlappingPairs.
 
-#include <demos/compare/heap_meter.hpp>
+#include <demos/compare/filled_broadphase.hpp>
 #include <demos/compare/trial.hpp>
 
 #include <memory>
@@ -15,36 +15,21 @@ namespace hashphase::demos {
 class BoxTrial : public Trial {
 public:
     BoxTrial(std::unique_ptr<BoxScene> scene, ReferenceMethod reference);
-    ~BoxTrial() override;
 
     void add(const BroadphaseKind& kind) override;
     void beginFrame() override;
     Observation runFrame(std::size_t contestant) override;
     std::optional<double> removeObjects(std::size_t contestant, std::size_t count) override;
     [[nodiscard]] std::optional<std::int64_t> memoryBytes(std::size_t contestant) const override;
-    [[nodiscard]] std::size_t objectCount() const override { return corners_.size(); }
+    [[nodiscard]] std::size_t objectCount() const override { return boxes_.size(); }
     [[nodiscard]] std::optional<int> frameLimit() const override { return scene_->frameLimit(); }
 
 private:
-    struct Corners {
-        btVector3 min;
-        btVector3 max;
-    };
-    struct Contestant {
-        std::unique_ptr<btBroadphaseInterface> broadphase;
-        std::vector<btBroadphaseProxy*> proxies;
-        bool freesProxies;
-        HeapMeter heap;
-    };
-
-    void readCorners();
-
     std::unique_ptr<BoxScene> scene_;
     ReferenceMethod reference_;
     bool begun_ = false;
-    std::vector<Corners> corners_;
-    std::vector<std::uint32_t> objects_;  // what the proxies' clients point at
-    std::vector<Contestant> contestants_;
+    std::vector<BulletBox> boxes_;
+    std::vector<std::unique_ptr<FilledBroadphase>> contestants_;
     std::vector<PairKey> exact_;
     std::vector<PairKey> reported_;
 };

@@ -5,12 +5,12 @@
 #include <demos/compare/open_trial.hpp>
 #include <demos/compare/report.hpp>
 #include <demos/console/nearest_name.hpp>
+#include <demos/console/result_file.hpp>
 #include <demos/scenes/box_scene.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <demos/scenes/world_scenes.hpp>
 
 #include <algorithm>
-#include <fstream>
 #include <ostream>
 #include <utility>
 
@@ -18,36 +18,6 @@ namespace hashphase::demos {
 namespace {
 
 constexpr int kDefaultFrames = 120;
-
-// A file for results, opened before anything runs, so that a wrong path costs no waiting.
-class ResultFile {
-public:
-    explicit ResultFile(const std::string& path) : path_(path) {
-        if (!path_.empty()) {
-            file_.open(path_);
-            refuseIfBad();
-        }
-    }
-
-    template <class Write>
-    void write(const Report& report, const Write& writeReport) {
-        if (!path_.empty()) {
-            writeReport(report, file_);
-            file_.close();
-            refuseIfBad();
-        }
-    }
-
-private:
-    void refuseIfBad() const {
-        if (!file_) {
-            throw InputError(path_ + " cannot be written.");
-        }
-    }
-
-    std::string path_;
-    std::ofstream file_;
-};
 
 void printLists(std::span<const BroadphaseKind> kinds, std::ostream& out) {
     const auto line = [&out](std::string_view name, std::string_view description) {
@@ -108,13 +78,6 @@ int framesToRun(const CompareOptions& options, const OpenedTrial& opened) {
     return limit ? std::min(frames, *limit) : frames;
 }
 
-ProgressStyle progressStyle(const CompareOptions& options, const Console& console) {
-    if (options.quiet) {
-        return ProgressStyle::kSilent;
-    }
-    return console.errIsTerminal ? ProgressStyle::kBar : ProgressStyle::kLines;
-}
-
 }  // namespace
 
 int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> kinds,
@@ -142,11 +105,12 @@ int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> ki
 
     report.comparison = runComparison(
         *opened.trial, chosen,
-        {report.framesAsked, options.timeLimit, progressStyle(options, console)}, console.err);
+        {report.framesAsked, options.timeLimit, progressStyle(console, options.quiet)},
+        console.err);
 
     printReport(report, console.out);
-    json.write(report, writeJson);
-    csv.write(report, writeCsv);
+    json.write([&report](std::ostream& file) { writeJson(report, file); });
+    csv.write([&report](std::ostream& file) { writeCsv(report, file); });
     return oursWereExact(report) == false && report.comparison.framesDone > 0 ? kExitCheckFailed
                                                                               : kExitOk;
 }

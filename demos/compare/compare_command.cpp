@@ -2,6 +2,7 @@
 #include <demos/compare/compare_command.hpp>
 
 #include <demos/compare/compare.hpp>
+#include <demos/console/option_checks.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -10,15 +11,6 @@
 
 namespace hashphase::demos {
 namespace {
-
-// CLI11's own check lets NaN through.
-std::string positiveSecondsFault(const std::string& text) {
-    double seconds = 0;
-    if (!CLI::detail::lexical_cast(text, seconds) || !(seconds > 0)) {
-        return "'" + text + "' is no number of seconds above 0";
-    }
-    return {};
-}
 
 void declare(CLI::App& app, CompareOptions& options) {
     CLI::Option* scene = app.add_option("--scene", options.scene, "built-in scene (see --list)")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/compare/report.hpp>
 
+#include <demos/compare/report_text.hpp>
 #include <demos/console/format.hpp>
 #include <demos/console/table.hpp>
 
@@ -20,14 +21,6 @@ const Result* findResult(const Report& report, std::string_view name) {
     return found == results.end() ? nullptr : &*found;
 }
 
-std::string spreadText(const std::optional<Spread>& spread) {
-    if (!spread) {
-        return "-";
-    }
-    return milliseconds(spread->median) + " (" + milliseconds(spread->low) + "-" +
-           milliseconds(spread->high) + ")";
-}
-
 std::string tallyText(const Result& result, std::size_t FrameVerdict::*count) {
     const Tally tally = tallyOf(result, count);
     std::string text = withThousands(tally.total);
@@ -44,10 +37,6 @@ std::string meanPairsText(const Result& result) {
     const auto total = static_cast<double>(tallyOf(result, &FrameVerdict::pairs).total);
     return withThousands(
         static_cast<std::uint64_t>(std::llround(total / static_cast<double>(result.rows.size()))));
-}
-
-std::string ratioText(const std::optional<double>& ratio) {
-    return ratio ? fixed(*ratio, *ratio < 10 ? 2 : 1) + "x" : "-";
 }
 
 std::string boxText(const Aabb<float>& box) {
@@ -92,19 +81,11 @@ bool hasSteps(const Report& report) {
 }
 
 void printSetting(const Report& report, std::ostream& out) {
-    const Provenance& provenance = report.provenance;
     out << report.scene << ": " << report.description << '\n'
         << withThousands(report.objects) << ' ' << report.noun << ", "
         << report.comparison.framesDone << " frames (the first " << report.comparison.warmUpFrames
-        << " verified, not timed), seed " << report.options.seed << '\n'
-        << "hashphase " << provenance.hashphaseVersion << ", Bullet " << provenance.bulletVersion
-        << " (" << provenance.precision << " precision), " << provenance.compiler << ", "
-        << provenance.cpu << ", " << provenance.cores << " cores, one thread\n";
-    if (provenance.loadAverage && (*provenance.loadAverage)[0] > provenance.cores) {
-        out << "Other programs kept the processor busy (load "
-            << fixed((*provenance.loadAverage)[0], 1) << " on " << provenance.cores
-            << " cores), so the times are too long.\n";
-    }
+        << " verified, not timed), seed " << report.options.seed << '\n';
+    printProvenance(report.provenance, out);
     if (report.comparison.timeLimitHit) {
         out << "The time limit of " << *report.options.timeLimit << " s was reached after "
             << report.comparison.framesDone << " of " << report.framesAsked << " frames.\n";

@@ -1,31 +1,13 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/compare/report.hpp>
 
-#include <nlohmann/json.hpp>
+#include <demos/compare/json_values.hpp>
 
 #include <cmath>
 #include <ostream>
 
 namespace hashphase::demos {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-template <class Value>
-Json orNull(const std::optional<Value>& value) {
-    return value ? Json(*value) : Json(nullptr);
-}
-
-Json orNull(const std::string& text) {
-    return text.empty() ? Json(nullptr) : Json(text);
-}
-
-Json spreadJson(const std::optional<Spread>& spread) {
-    if (!spread) {
-        return nullptr;
-    }
-    return {{"median", spread->median}, {"p5", spread->low}, {"p95", spread->high}};
-}
 
 Json tallyJson(const Result& result, std::size_t FrameVerdict::*count) {
     const Tally tally = tallyOf(result, count);
@@ -94,19 +76,6 @@ Json resultJson(const Report& report, const Result& result) {
             {"stale", tallyJson(result, &FrameVerdict::stale)},
             {"firstFault", faultJson(result.firstFault)},
             {"frames", framesJson(result)}};
-}
-
-Json provenanceJson(const Provenance& provenance) {
-    return {{"hashphase", provenance.hashphaseVersion},
-            {"bullet", provenance.bulletVersion},
-            {"precision", provenance.precision},
-            {"compiler", provenance.compiler},
-            {"compilerFlags", orNull(provenance.compilerFlags)},
-            {"optimised", provenance.optimised},
-            {"cpu", provenance.cpu},
-            {"cores", provenance.cores},
-            {"loadAverage", orNull(provenance.loadAverage)},
-            {"commandLine", provenance.commandLine}};
 }
 
 Json settingsJson(const Report& report) {

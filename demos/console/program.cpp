@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <optional>
 #include <ostream>
 
 namespace hashphase::demos {
@@ -28,13 +29,15 @@ std::vector<std::string> optionNames(const CLI::App& app) {
     return names;
 }
 
-std::string unknownWordSentence(const CLI::App& subcommand, const std::string& word) {
+// `call` is what the user types to run the command.
+std::string unknownWordSentence(const CLI::App& command, const std::string& call,
+                                const std::string& word) {
     if (word.front() != '-') {
-        return "'" + subcommand.get_name() + "' takes no argument '" + word + "'; see hashphase " +
-               subcommand.get_name() + " --help.";
+        return "'" + command.get_name() + "' takes no argument '" + word + "'; see " + call +
+               " --help.";
     }
     const std::string name = word.substr(0, word.find('='));
-    return unknownNameSentence("option", name, optionNames(subcommand));
+    return unknownNameSentence("option", name, optionNames(command));
 }
 
 void warnOfSlowBuild(Console& console) {
@@ -45,22 +48,9 @@ void warnOfSlowBuild(Console& console) {
 #endif
 }
 
-}  // namespace
-
-int runProgram(const std::vector<std::string>& arguments, std::span<const Subcommand> subcommands,
-               Console console) {
-    CLI::App app("hashphase: a spatial-hash broadphase for Bullet, shown at work", "hashphase");
-    app.set_version_flag("--version", std::string("hashphase ") + programVersion());
-    // Unknown words are collected rather than refused, so that the right one can be suggested.
-    app.allow_extras();
-    std::vector<std::string> names;
-    for (const Subcommand& subcommand : subcommands) {
-        CLI::App* parsed = app.add_subcommand(subcommand.name, subcommand.description);
-        parsed->allow_extras();
-        subcommand.declareOptions(*parsed);
-        names.push_back(subcommand.name);
-    }
-
+// The exit code where parsing ends the program.
+std::optional<int> parse(CLI::App& app, const std::vector<std::string>& arguments,
+                         Console& console) {
     try {
         // CLI11 takes the arguments from the back.
         app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
@@ -73,7 +63,43 @@ int runProgram(const std::vector<std::string>& arguments, std::span<const Subcom
     } catch (const CLI::ParseError& error) {
         return refuse(console, error.what());
     }
+    return std::nullopt;
+}
 
+int runGuarded(const Subcommand& command, Console& console) {
+    warnOfSlowBuild(console);
+    try {
+        return command.run(console);
+    } catch (const InputError& error) {
+        return refuse(console, error.what());
+    } catch (const std::bad_alloc&) {
+        return refuse(console, "there is not enough memory for so large a scene.");
+    }
+}
+
+std::string versionText() {
+    return std::string("hashphase ") + programVersion();
+}
+
+}  // namespace
+
+int runProgram(const std::vector<std::string>& arguments, std::span<const Subcommand> subcommands,
+               Console console) {
+    CLI::App app("hashphase: a spatial-hash broadphase for Bullet, shown at work", "hashphase");
+    app.set_version_flag("--version", versionText());
+    // Unknown words are collected rather than refused, so that the right one can be suggested.
+    app.allow_extras();
+    std::vector<std::string> names;
+    for (const Subcommand& subcommand : subcommands) {
+        CLI::App* parsed = app.add_subcommand(subcommand.name, subcommand.description);
+        parsed->allow_extras();
+        subcommand.declareOptions(*parsed);
+        names.push_back(subcommand.name);
+    }
+
+    if (const std::optional<int> ended = parse(app, arguments, console)) {
+        return *ended;
+    }
     const std::vector<CLI::App*> chosen = app.get_subcommands();
     if (const std::vector<std::string> extras = app.remaining(); !extras.empty()) {
         return refuse(console, extras.front().front() == '-'
@@ -85,19 +111,29 @@ int runProgram(const std::vector<std::string>& arguments, std::span<const Subcom
         return kExitUsage;
     }
     if (const std::vector<std::string> extras = chosen.front()->remaining(); !extras.empty()) {
-        return refuse(console, unknownWordSentence(*chosen.front(), extras.front()));
+        return refuse(
+            console, unknownWordSentence(*chosen.front(), "hashphase " + chosen.front()->get_name(),
+                                         extras.front()));
     }
-    warnOfSlowBuild(console);
     const auto subcommand = std::find_if(
         subcommands.begin(), subcommands.end(),
         [&chosen](const Subcommand& known) { return known.name == chosen.front()->get_name(); });
-    try {
-        return subcommand->run(console);
-    } catch (const InputError& error) {
-        return refuse(console, error.what());
-    } catch (const std::bad_alloc&) {
-        return refuse(console, "there is not enough memory for so large a scene.");
+    return runGuarded(*subcommand, console);
+}
+
+int runSingleCommand(const std::vector<std::string>& arguments, const Subcommand& command,
+                     Console console) {
+    CLI::App app(command.description, command.name);
+    app.set_version_flag("--version", versionText());
+    app.allow_extras();
+    command.declareOptions(app);
+    if (const std::optional<int> ended = parse(app, arguments, console)) {
+        return *ended;
     }
+    if (const std::vector<std::string> extras = app.remaining(); !extras.empty()) {
+        return refuse(console, unknownWordSentence(app, command.name, extras.front()));
+    }
+    return runGuarded(command, console);
 }
 
 const char* programVersion() noexcept {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The command line of a program made of subcommands.
+// The command line of a program made of subcommands, or of a single command.
 //
 // Exit codes  0 all well, 1 a check failed, 2 wrong usage or bad input.
 // Output      results go to `out`; progress, warnings and errors to `err`.
@@ -45,6 +45,10 @@ struct Subcommand {
 /// code. Unknown words are told together with what was probably meant.
 int runProgram(const std::vector<std::string>& arguments, std::span<const Subcommand> subcommands,
                Console console);
+
+/// The same for a program without subcommands: `command.name` is what the user types to run it.
+int runSingleCommand(const std::vector<std::string>& arguments, const Subcommand& command,
+                     Console console);
 
 /// The version of hashphase that this program was built from.
 [[nodiscard]] const char* programVersion() noexcept;

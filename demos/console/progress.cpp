@@ -16,23 +16,31 @@ constexpr std::size_t kBarWidth = 30;
 
 }  // namespace
 
+ProgressStyle progressStyle(const Console& console, bool quiet) {
+    if (quiet) {
+        return ProgressStyle::kSilent;
+    }
+    return console.errIsTerminal ? ProgressStyle::kBar : ProgressStyle::kLines;
+}
+
 Progress::Progress(std::ostream& out, ProgressStyle style, std::string task, std::size_t total)
     : out_(out), style_(style), task_(std::move(task)), total_(std::max<std::size_t>(total, 1)) {}
 
-Progress::~Progress() {
+void Progress::clear() {
     if (drawnWidth_ > 0) {
         out_ << '\r' << std::string(drawnWidth_, ' ') << '\r' << std::flush;
+        drawnWidth_ = 0;
     }
 }
 
-void Progress::update(std::size_t done) {
+void Progress::update(std::size_t done, std::string_view what) {
     const Clock::time_point now = Clock::now();
     const auto interval = style_ == ProgressStyle::kBar ? kBarInterval : kLineInterval;
     if (style_ == ProgressStyle::kSilent || now - lastDrawn_ < interval) {
         return;
     }
     lastDrawn_ = now;
-    const std::string line = text(done, now);
+    const std::string line = text(done, what, now);
     if (style_ == ProgressStyle::kLines) {
         if (done < total_) {
             out_ << line << std::endl;
@@ -48,8 +56,9 @@ void Progress::update(std::size_t done) {
     drawnWidth_ = bar.size();
 }
 
-std::string Progress::text(std::size_t done, Clock::time_point now) const {
-    std::string line = task_ + ": " + withThousands(done) + " of " + withThousands(total_);
+std::string Progress::text(std::size_t done, std::string_view what, Clock::time_point now) const {
+    std::string line = task_ + ": ";
+    line += what.empty() ? withThousands(done) + " of " + withThousands(total_) : std::string(what);
     if (done > 0) {
         const double elapsed = std::chrono::duration<double>(now - start_).count();
         const double left = elapsed * static_cast<double>(total_ - std::min(done, total_)) /

@@ -3,10 +3,13 @@
 
 // How far a long task is, and how long it will still take.
 
+#include <demos/console/program.hpp>
+
 #include <chrono>
 #include <cstddef>
 #include <iosfwd>
 #include <string>
+#include <string_view>
 
 namespace hashphase::demos {
 
@@ -16,6 +19,9 @@ enum class ProgressStyle {
     kLines,  // a line every few seconds, for logs
 };
 
+/// A bar where errors go to a terminal, lines elsewhere.
+[[nodiscard]] ProgressStyle progressStyle(const Console& console, bool quiet);
+
 class Progress {
 public:
     /// Tells `out` about `total` steps of the task.
@@ -24,15 +30,20 @@ public:
     Progress& operator=(const Progress&) = delete;
 
     /// Wipes the bar.
-    ~Progress();
+    ~Progress() { clear(); }
 
-    /// Says that `done` steps are done; draws at most a few times a second.
-    void update(std::size_t done);
+    /// Wipes the bar until the next update, so that something else can be written.
+    void clear();
+
+    /// Says that `done` steps are done; draws at most a few times a second. Where steps mean nothing
+    /// to a reader, `what` says in their place what is being done.
+    void update(std::size_t done, std::string_view what = {});
 
 private:
     using Clock = std::chrono::steady_clock;
 
-    [[nodiscard]] std::string text(std::size_t done, Clock::time_point now) const;
+    [[nodiscard]] std::string text(std::size_t done, std::string_view what,
+                                   Clock::time_point now) const;
 
     std::ostream& out_;
     ProgressStyle style_;

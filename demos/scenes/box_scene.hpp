@@ -60,6 +60,11 @@ protected:
     std::vector<CollisionFilter> filters_;
 };
 
+/// The filter of one box of the scene.
+[[nodiscard]] inline CollisionFilter filterOf(const BoxScene& scene, std::size_t object) {
+    return scene.filters().empty() ? CollisionFilter{} : scene.filters()[object];
+}
+
 /// A scene that can be asked for by name.
 struct BoxSceneKind {
     std::string_view name;

@@ -110,6 +110,42 @@ BrownianBoxes logSizeBoxes(std::size_t objects, std::uint64_t seed) {
     return boxes;
 }
 
+BrownianBoxes someMovingBoxes(std::size_t objects, std::uint64_t seed, std::size_t period) {
+    BrownianBoxes boxes = uniformBoxes(objects, seed);
+    for (std::size_t i = 0; i < objects; ++i) {
+        if (i % period != 0) {
+            boxes.bodies[i].step = 0;
+        }
+    }
+    return boxes;
+}
+
+BrownianBoxes mostlyStaticBoxes(std::size_t objects, std::uint64_t seed) {
+    BrownianBoxes boxes = someMovingBoxes(objects, seed, 10);
+    boxes.filters.resize(objects);
+    for (std::size_t i = 0; i < objects; ++i) {
+        if (boxes.bodies[i].step == 0) {
+            boxes.filters[i] = kStaticFilter;
+        }
+    }
+    return boxes;
+}
+
+BrownianBoxes broadmarkBoxes(std::size_t objects, std::uint64_t seed) {
+    constexpr float kFilledShare = 0.1F;
+    // On an axis, so that no move is longer than 2 m.
+    const float step = 2 / std::sqrt(3.0F);
+    Random random(seed);
+    const float side = std::cbrt(static_cast<float>(objects) / kFilledShare);
+    const Aabb<float> room(Vector3<float>::Zero(), Vector3<float>::Constant(side));
+    BrownianBoxes boxes;
+    boxes.bodies.reserve(objects);
+    for (std::size_t i = 0; i < objects; ++i) {
+        boxes.bodies.push_back({pointIn(random, room), Vector3<float>::Constant(0.5F), step, room});
+    }
+    return boxes;
+}
+
 BrownianBoxes restingBoxes(std::size_t objects, std::uint64_t seed) {
     BrownianBoxes boxes = uniformBoxes(objects, seed);
     boxes.filters.resize(objects);

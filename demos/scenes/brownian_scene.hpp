@@ -43,6 +43,18 @@ private:
 /// Cubes with log-uniform edges of 0.1-30 m, each overlapping about four others.
 [[nodiscard]] BrownianBoxes logSizeBoxes(std::size_t objects, std::uint64_t seed);
 
+/// Scattered like uniformBoxes; each `period`-th moves, the others stand still.
+[[nodiscard]] BrownianBoxes someMovingBoxes(std::size_t objects, std::uint64_t seed,
+                                            std::size_t period);
+
+/// Scattered like uniformBoxes; every tenth moves, the others are static and pair with those only.
+[[nodiscard]] BrownianBoxes mostlyStaticBoxes(std::size_t objects, std::uint64_t seed);
+
+/// The Brownian scene of Serpa and Rodrigues, "Broadmark: A Testing Framework for Broad-Phase
+/// Collision Detection Algorithms" (2020): unit cubes that fill a tenth of their room and move by up
+/// to 2 m a frame.
+[[nodiscard]] BrownianBoxes broadmarkBoxes(std::size_t objects, std::uint64_t seed);
+
 /// Scattered like uniformBoxes; every 50th moves, the others rest and half of those are static.
 [[nodiscard]] BrownianBoxes restingBoxes(std::size_t objects, std::uint64_t seed);
 

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Zlib
 # shellcheck shell=bash
 #
-# Sourced by demos/run and tests/run: from a fresh machine to an up-to-date build.
+# Sourced by demos/run, tests/run and tests/benchmarks/run: from a fresh machine to an up-to-date
+# build.
 # Everything is said on stderr, so that the output of the program that is run stays clean.
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -60,14 +61,16 @@ install_missing_packages() {
     }
 }
 
-# build_preset <preset> [<target>...]: configures when need be, and builds.
+# build_preset <preset> [<target>...]: configures when need be, or when `reconfigure` is set, and
+# builds.
 build_preset() (
     preset=$1
     shift
     build=$root/build/$preset
     cd "$root" || exit
     # Ninja notices changes of CMakeLists.txt by itself, but not those of the presets.
-    if [[ ! -f $build/build.ninja || CMakePresets.json -nt $build/build.ninja ]]; then
+    if [[ ${reconfigure-} || ! -f $build/build.ninja ||
+        CMakePresets.json -nt $build/build.ninja ]]; then
         say "configuring build/$preset"
         cmake --preset "$preset" >&2
     fi

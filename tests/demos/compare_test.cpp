@@ -114,8 +114,9 @@ TEST_P(CompareScene, IsExactByEitherReference) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, CompareScene,
-                         testing::Values("paper", "uniform", "piles", "logsizes", "resting", "pile",
-                                         "stack", "chains", "static-city"),
+                         testing::Values("paper", "uniform", "piles", "logsizes", "resting",
+                                         "moving-5", "moving-2", "static-90", "terdiman",
+                                         "brownian", "pile", "stack", "chains", "static-city"),
                          [](const auto& scene) {
                              std::string name(scene.param);
                              std::erase(name, '-');

@@ -2,6 +2,7 @@
 #include <demos/compare/reference_pairs.hpp>
 #include <demos/scenes/box_scene.hpp>
 #include <demos/scenes/paper_scene.hpp>
+#include <demos/scenes/terdiman_scene.hpp>
 #include <demos/scenes/world_scenes.hpp>
 #include <tests/demos/bullet_file.hpp>
 
@@ -78,7 +79,11 @@ TEST_P(EveryBoxScene, MakesDoWithOneObject) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, EveryBoxScene,
                          testing::ValuesIn(boxSceneKinds().begin(), boxSceneKinds().end()),
-                         [](const auto& kind) { return std::string(kind.param.name); });
+                         [](const auto& kind) {
+                             std::string name(kind.param.name);
+                             std::erase(name, '-');
+                             return name;
+                         });
 
 TEST(PaperScene, HasSpheresOfRadiusOneThatTouchTheGround) {
     const PaperScene scene(200, kSeed);
@@ -106,6 +111,44 @@ TEST(PaperScene, WalksAtFiveToFifteenMetresASecond) {
             scene.boxes()[i].max().x() > 399.99F || scene.boxes()[i].max().z() > 399.99F;
         EXPECT_TRUE(atBorder || speed >= 4.99F) << speed;
     }
+}
+
+TEST(TerdimanScene, BeginsWithThePublishedNumberOfPairs) {
+    const auto pairsOf = [](std::size_t objects) {
+        std::vector<PairKey> pairs;
+        findExactPairs(ReferenceMethod::kSweep, TerdimanScene(objects, 1).boxes(), {}, pairs);
+        return pairs.size();
+    };
+    EXPECT_EQ(pairsOf(10'000), 11'811U);
+    EXPECT_EQ(pairsOf(100'000), 1'144'045U);
+}
+
+TEST(MovingScenes, MoveTheSharesThatTheirNamesTell) {
+    for (const auto& [name, share] : {std::pair("moving-5", 0.05), std::pair("moving-2", 0.02),
+                                      std::pair("static-90", 0.1), std::pair("resting", 0.02)}) {
+        const auto scene = makeScene(name, 1000);
+        const std::vector<Aabb<float>> before = scene->boxes();
+        scene->advance();
+        double moved = 0;
+        for (std::size_t i = 0; i < before.size(); ++i) {
+            moved += isSameBits(before[i], scene->boxes()[i]) ? 0 : 1;
+        }
+        EXPECT_EQ(moved / 1000, share) << name;
+    }
+}
+
+TEST(BroadmarkBoxes, FillATenthOfTheirRoomAndMoveByUpToTwoMetres) {
+    const auto scene = makeScene("brownian", 8000);
+    const float side = scene->bounds().sizes().x() - 1;
+    EXPECT_NEAR(8000 / (side * side * side), 0.1, 1e-3);
+    const std::vector<Aabb<float>> before = scene->boxes();
+    scene->advance();
+    float farthest = 0;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        farthest = std::max(farthest, (scene->boxes()[i].center() - before[i].center()).norm());
+    }
+    EXPECT_LE(farthest, 2.001F);
+    EXPECT_GE(farthest, 1.5F);
 }
 
 TEST(Terrain, IsContinuousAndWithinItsHeights) {

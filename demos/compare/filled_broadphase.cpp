@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/compare/filled_broadphase.hpp>
+
+#include <demos/compare/trial.hpp>
+
+#include <numeric>
+
+namespace hashphase::demos {
+namespace {
+
+// Bullet's cache searches all its pairs for those of a proxy that is destroyed; emptied beforehand,
+// it has none to search.
+void emptyBulletsCache(btBroadphaseInterface& broadphase) {
+    auto* cache = dynamic_cast<btHashedOverlappingPairCache*>(broadphase.getOverlappingPairCache());
+    while (cache != nullptr && cache->getNumOverlappingPairs() > 0) {
+        const btBroadphasePair& last =
+            cache->getOverlappingPairArray()[cache->getNumOverlappingPairs() - 1];
+        cache->removeOverlappingPair(last.m_pProxy0, last.m_pProxy1, nullptr);
+    }
+}
+
+}  // namespace
+
+void toBulletBoxes(std::span<const Aabb<float>> boxes, std::vector<BulletBox>& converted) {
+    converted.clear();
+    for (const Aabb<float>& box : boxes) {
+        converted.push_back({btVector3(box.min().x(), box.min().y(), box.min().z()),
+                             btVector3(box.max().x(), box.max().y(), box.max().z())});
+    }
+}
+
+FilledBroadphase::FilledBroadphase(const BroadphaseKind& kind, const BroadphaseNeeds& needs)
+    : freesProxies_(kind.freesProxies), objects_(needs.objects), proxies_(needs.objects) {
+    std::iota(objects_.begin(), objects_.end(), 0U);
+    const HeapScope scope(heap_);
+    broadphase_ = kind.make(needs);
+}
+
+FilledBroadphase::~FilledBroadphase() {
+    if (freesProxies_) {
+        return;
+    }
+    emptyBulletsCache(*broadphase_);
+    for (btBroadphaseProxy* proxy : proxies_) {
+        if (proxy != nullptr) {
+            broadphase_->destroyProxy(proxy, nullptr);
+        }
+    }
+}
+
+void FilledBroadphase::create(std::uint32_t object, const BulletBox& box, CollisionFilter filter) {
+    proxies_[object] =
+        broadphase_->createProxy(box.min, box.max, BOX_SHAPE_PROXYTYPE, &objects_[object],
+                                 filter.group, filter.mask, nullptr);
+}
+
+void FilledBroadphase::destroy(std::uint32_t object) {
+    broadphase_->destroyProxy(proxies_[object], nullptr);
+    proxies_[object] = nullptr;
+}
+
+void FilledBroadphase::setAll(std::span<const BulletBox> boxes) {
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        broadphase_->setAabb(proxies_[i], boxes[i].min, boxes[i].max, nullptr);
+    }
+}
+
+void FilledBroadphase::listPairs(std::vector<PairKey>& pairs) const {
+    demos::listPairs(*broadphase_->getOverlappingPairCache(), objectOf, pairs);
+}
+
+}  // namespace hashphase::demos

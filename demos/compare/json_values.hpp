@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What all JSON reports have in common. What was not measured is null, never NaN.
+
+#include <demos/compare/provenance.hpp>
+#include <demos/compare/statistics.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <optional>
+#include <string>
+
+namespace hashphase::demos {
+
+using Json = nlohmann::ordered_json;
+
+template <class Value>
+[[nodiscard]] Json orNull(const std::optional<Value>& value) {
+    return value ? Json(*value) : Json(nullptr);
+}
+[[nodiscard]] Json orNull(const std::string& text);
+
+[[nodiscard]] Json spreadJson(const std::optional<Spread>& spread);
+[[nodiscard]] Json provenanceJson(const Provenance& provenance);
+
+}  // namespace hashphase::demos

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/compare/report_text.hpp>
+
+#include <demos/console/format.hpp>
+
+#include <ostream>
+
+namespace hashphase::demos {
+
+std::string spreadText(const std::optional<Spread>& spread) {
+    if (!spread) {
+        return "-";
+    }
+    return milliseconds(spread->median) + " (" + milliseconds(spread->low) + "-" +
+           milliseconds(spread->high) + ")";
+}
+
+std::string ratioText(const std::optional<double>& ratio) {
+    return ratio ? fixed(*ratio, *ratio < 10 ? 2 : 1) + "x" : "-";
+}
+
+void printProvenance(const Provenance& provenance, std::ostream& out) {
+    out << "hashphase " << provenance.hashphaseVersion << ", Bullet " << provenance.bulletVersion
+        << " (" << provenance.precision << " precision), " << provenance.compiler << ", "
+        << provenance.cpu << ", " << provenance.cores << " cores, one thread\n";
+    if (provenance.loadAverage && (*provenance.loadAverage)[0] > provenance.cores) {
+        out << "Other programs kept the processor busy (load "
+            << fixed((*provenance.loadAverage)[0], 1) << " on " << provenance.cores
+            << " cores), so the times are too long.\n";
+    }
+}
+
+}  // namespace hashphase::demos

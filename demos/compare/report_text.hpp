@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What all reports for people have in common.
+
+#include <demos/compare/provenance.hpp>
+#include <demos/compare/statistics.hpp>
+
+#include <iosfwd>
+#include <optional>
+#include <string>
+
+namespace hashphase::demos {
+
+/// "4.36 (4.28-4.62)": median and percentiles of milliseconds; "-" for none.
+[[nodiscard]] std::string spreadText(const std::optional<Spread>& spread);
+
+/// "3.14x", "16.4x"; "-" for none.
+[[nodiscard]] std::string ratioText(const std::optional<double>& ratio);
+
+/// A line with versions, compiler and processor, and a warning when the processor was busy.
+void printProvenance(const Provenance& provenance, std::ostream& out);
+
+}  // namespace hashphase::demos

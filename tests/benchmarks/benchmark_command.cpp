@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Zlib
+#include <tests/benchmarks/benchmark_command.hpp>
+
+#include <demos/compare/stopwatch.hpp>
+#include <demos/console/option_checks.hpp>
+#include <demos/console/progress.hpp>
+#include <demos/console/result_file.hpp>
+#include <tests/benchmarks/report.hpp>
+
+#include <memory>
+#include <ostream>
+#include <utility>
+
+namespace hashphase::benchmarks {
+namespace {
+
+constexpr const char* kDescription =
+    "Measures hashphase beside Bullet's broadphases and those of other libraries: every "
+    "contestant\n"
+    "gets the same frames, one after another in each frame, and every answer is checked. Prints a\n"
+    "table for each case and one for all; takes about an hour. Above 100,000 objects (--sizes)\n"
+    "btDbvtBroadphase takes seconds a frame.";
+
+constexpr int kQuickFrames = 5;
+constexpr int kQuickWarmUpFrames = 3;
+
+void declare(CLI::App& app, BenchmarkOptions& options) {
+    app.add_option("--only", options.only,
+                   "cases whose name contains a match of one of these regular expressions, "
+                   "separated by commas; 'cellsize' is run on request only")
+        ->delimiter(',')
+        ->type_name("REGEX");
+    app.add_option("--sizes", options.sizes,
+                   "numbers of objects, separated by commas, for all that come in any size")
+        ->delimiter(',')
+        ->check(CLI::Range(std::int64_t{1}, std::int64_t{10'000'000}));
+    app.add_option("--contestants", options.contestants,
+                   "who takes part, separated by commas (see --list); without dbvt no ratios")
+        ->delimiter(',');
+    app.add_option("--frames", options.frames, "measured frames a case (default: 60)")
+        ->check(CLI::Range(1, 1'000'000));
+    app.add_option("--seed", options.seed, "seed of all scenes")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    app.add_option("--time-limit", options.timeLimit, "stop after so many seconds")
+        ->check(demos::positiveSecondsFault);
+    app.add_option("--json", options.jsonFile, "write everything measured to this file");
+    app.add_flag("--quick", options.quick,
+                 "at most 300 objects and 5 frames: checks the answers, measures nothing");
+    app.add_flag("--quiet", options.quiet, "no progress on stderr");
+    app.add_flag("--list", options.list, "say which cases and contestants there are");
+}
+
+void printLists(const std::vector<Benchmark>& benchmarks, const std::vector<ContestantKind>& kinds,
+                std::ostream& out) {
+    const auto line = [&out](const std::string& name, const std::string& description) {
+        constexpr std::size_t kWidth = 26;
+        out << "  " << name << std::string(kWidth - std::min(name.size(), kWidth - 1), ' ')
+            << description << '\n';
+    };
+    out << "Cases (name/objects):\n";
+    for (const Benchmark& benchmark : benchmarks) {
+        line(benchmark.name, benchmark.description + (benchmark.onRequest ? " (on request)" : ""));
+    }
+    out << "Contestants:\n";
+    for (const ContestantKind& kind : kinds) {
+        line(kind.name, kind.description);
+    }
+}
+
+// What a frame of the case roughly costs, for foretelling how long all will take.
+std::size_t weightOf(const Case& toRun) {
+    return toRun.objects * toRun.contestants.size() + 1;
+}
+
+void runCases(const std::vector<Case>& cases, BenchmarkReport& report, demos::Console& console) {
+    const demos::Stopwatch watch;
+    const auto isTimeUp = [&watch, limit = report.options.timeLimit] {
+        return limit && watch.milliseconds() > *limit * 1000;
+    };
+    const auto frames =
+        static_cast<std::size_t>(report.settings.frames + report.settings.warmUpFrames);
+    std::size_t total = 0;
+    for (const Case& toRun : cases) {
+        total += weightOf(toRun) * frames;
+    }
+    demos::Progress progress(console.err, demos::progressStyle(console, report.options.quiet),
+                             "benchmarks", total);
+    std::size_t done = 0;
+    for (std::size_t i = 0; i < cases.size() && !isTimeUp(); ++i) {
+        MeasurementSettings settings = report.settings;
+        settings.isTimeUp = isTimeUp;
+        settings.tellProgress = [&](int framesDone) {
+            progress.update(done + weightOf(cases[i]) * static_cast<std::size_t>(framesDone),
+                            cases[i].name() + " (" + std::to_string(i + 1) + " of " +
+                                std::to_string(cases.size()) + "), frame " +
+                                std::to_string(framesDone) + " of " + std::to_string(frames));
+        };
+        report.cases.push_back(measure(cases[i], settings));
+        done += weightOf(cases[i]) * frames;
+        progress.clear();
+        printCase(report.cases.back(), console.out);
+    }
+}
+
+int runBenchmarks(const BenchmarkOptions& options, const std::vector<ContestantKind>& kinds,
+                  demos::Console& console) {
+    const std::vector<Benchmark> benchmarks = catalog(options.seed);
+    if (options.list) {
+        printLists(benchmarks, kinds, console.out);
+        return demos::kExitOk;
+    }
+    const std::vector<Case> cases = selectCases(benchmarks, kinds, options);
+    BenchmarkReport report;
+    report.options = options;
+    if (options.quick) {
+        report.settings.frames = kQuickFrames;
+        report.settings.warmUpFrames = kQuickWarmUpFrames;
+    }
+    report.settings.frames = options.frames.value_or(report.settings.frames);
+    report.settings.seed = options.seed;
+    report.provenance = demos::gatherProvenance(console.commandLine);
+    report.casesAsked = cases.size();
+    demos::ResultFile json(options.jsonFile);
+
+    printSetting(report, kinds, console.out);
+    runCases(cases, report, console);
+    printSummary(report, console.out);
+    json.write([&report](std::ostream& file) { writeJson(report, file); });
+    return oursWereExact(report) ? demos::kExitOk : demos::kExitCheckFailed;
+}
+
+}  // namespace
+
+demos::Subcommand benchmarkCommand(std::vector<ContestantKind> kinds) {
+    auto options = std::make_shared<BenchmarkOptions>();
+    demos::Subcommand command;
+    command.name = "tests/benchmarks/run";
+    command.description = kDescription;
+    command.declareOptions = [options](CLI::App& app) { declare(app, *options); };
+    command.run = [options, kinds = std::move(kinds)](demos::Console& console) {
+        return runBenchmarks(*options, kinds, console);
+    };
+    return command;
+}
+
+}  // namespace hashphase::benchmarks

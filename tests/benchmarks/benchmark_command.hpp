@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+#include <demos/console/program.hpp>
+#include <tests/benchmarks/catalog.hpp>
+
+namespace hashphase::benchmarks {
+
+/// The program over the given contestants. Exit code: kExitCheckFailed when an answer of ours was
+/// wrong.
+[[nodiscard]] demos::Subcommand benchmarkCommand(
+    std::vector<ContestantKind> kinds = contestantKinds());
+
+}  // namespace hashphase::benchmarks

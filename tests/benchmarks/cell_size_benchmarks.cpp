@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Zlib
+
+// What the automatic cell sizes cost against the best fixed one: the same frames for a grid that
+// chooses for itself and for grids with cells of 0.25 to 64 times the mean edge.
+
+#include <demos/console/format.hpp>
+#include <tests/benchmarks/catalog.hpp>
+#include <tests/benchmarks/cell_size.hpp>
+#include <tests/benchmarks/grid_contestant.hpp>
+#include <tests/benchmarks/pair_workload.hpp>
+#include <tests/benchmarks/scatter.hpp>
+
+#include <array>
+#include <string>
+#include <utility>
+
+namespace hashphase::benchmarks {
+namespace {
+
+struct Distribution {
+    const char* name;
+    SizeLaw sizes;
+    float sizeRatio;
+    Placement placement;
+};
+
+constexpr std::array kDistributions{
+    Distribution{"uniform", SizeLaw::near, 1, Placement::cube},
+    Distribution{"clustered", SizeLaw::near, 1, Placement::clusters},
+    Distribution{"sizes-1000", SizeLaw::logUniform, 1000, Placement::cube},
+};
+constexpr std::array kOverlapsPerBox{0.2F, 2.0F, 10.0F};
+constexpr std::array kCellFactors{0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0};
+
+// A size that takes so much longer cannot be the best.
+constexpr double kHopeless = 5;
+
+std::string factorText(double factor) {
+    return demos::fixed(factor, factor < 0.5 ? 2 : factor < 1 ? 1 : 0);
+}
+
+double meanEdge(const demos::BrownianBoxes& boxes) {
+    double sum = 0;
+    for (const demos::BrownianBoxes::Body& body : boxes.bodies) {
+        sum += 2 * static_cast<double>(body.halfEdges.mean());
+    }
+    return sum / static_cast<double>(boxes.bodies.size());
+}
+
+std::vector<ContestantKind> gridsFor(const demos::BrownianBoxes& boxes) {
+    std::vector<ContestantKind> kinds{gridKind(std::string(kAutomaticCells), {})};
+    for (const double factor : kCellFactors) {
+        GridConfig config;
+        config.cellSize = factor * meanEdge(boxes);
+        kinds.push_back(gridKind("cells-" + factorText(factor), config));
+    }
+    return kinds;
+}
+
+Benchmark cellSizeBenchmark(const Distribution& distribution, float overlapsPerBox) {
+    ScatterPlan plan;
+    plan.sizes = distribution.sizes;
+    plan.sizeRatio = distribution.sizeRatio;
+    plan.placement = distribution.placement;
+    plan.overlapsPerBox = overlapsPerBox;
+    const auto density = static_cast<double>(overlapsPerBox);
+    Benchmark benchmark;
+    benchmark.name = "cellsize-" + std::string(distribution.name) + "-" +
+                     demos::fixed(density, density < 1 ? 1 : 0);
+    benchmark.group = std::string(kCellSizeGroup);
+    benchmark.description = describe(plan);
+    benchmark.sizes = {1'000, 10'000, 100'000};
+    benchmark.onRequest = true;
+    benchmark.dropFactor = kHopeless;
+    benchmark.admits = [](const ContestantKind&, std::size_t) { return true; };
+    benchmark.contestants = [plan](std::size_t objects, std::uint64_t seed) {
+        return gridsFor(scatter(plan, objects, seed));
+    };
+    benchmark.make = [plan](std::size_t objects, std::uint64_t seed) {
+        return std::make_unique<PairWorkload>(
+            std::make_unique<demos::BrownianScene>(scatter(plan, objects, seed), seed));
+    };
+    return benchmark;
+}
+
+}  // namespace
+
+std::vector<Benchmark> cellSizeBenchmarks() {
+    std::vector<Benchmark> all;
+    for (const Distribution& distribution : kDistributions) {
+        for (const float overlapsPerBox : kOverlapsPerBox) {
+            all.push_back(cellSizeBenchmark(distribution, overlapsPerBox));
+        }
+    }
+    return all;
+}
+
+}  // namespace hashphase::benchmarks

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Whoever keeps the pairs of a scene's boxes: ours, Bullet's broadphases, and those of other
+// libraries, behind one interface.
+//
+// A frame  setAll(), then findPairs(); both are timed; then the complete set of pairs is there.
+// Objects  are numbered by their place in the scene.
+
+#include <demos/compare/filled_broadphase.hpp>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hashphase::benchmarks {
+
+/// The boxes of a frame, in the two forms in which broadphases take them.
+struct FrameBoxes {
+    std::span<const Aabb<float>> boxes;
+    std::span<const demos::BulletBox> bulletBoxes;    // the same
+    std::span<const demos::CollisionFilter> filters;  // empty: all may pair
+
+    [[nodiscard]] demos::CollisionFilter filterOf(std::size_t object) const {
+        return filters.empty() ? demos::CollisionFilter{} : filters[object];
+    }
+    [[nodiscard]] bool mayPair(std::uint32_t a, std::uint32_t b) const {
+        return filters.empty() || demos::mayPair(filters[a], filters[b]);
+    }
+};
+
+/// What a broadphase of ours says that it holds [bytes].
+struct OwnBytes {
+    std::size_t forObjects = 0;
+    std::size_t forPairs = 0;
+};
+
+/// Adds and removes single objects; not every library does.
+class Population {
+public:
+    Population() = default;
+    Population(const Population&) = delete;
+    Population& operator=(const Population&) = delete;
+    virtual ~Population() = default;
+
+    virtual void add(std::uint32_t object, const FrameBoxes& frame) = 0;
+    virtual void remove(std::uint32_t object) = 0;
+};
+
+class Contestant {
+public:
+    Contestant() = default;
+    Contestant(const Contestant&) = delete;
+    Contestant& operator=(const Contestant&) = delete;
+    virtual ~Contestant() = default;
+
+    /// Takes in all objects, once, into the empty structure.
+    virtual void fill(const FrameBoxes& frame) = 0;
+
+    virtual void setAll(const FrameBoxes& frame) = 0;
+    virtual void findPairs() = 0;
+
+    /// Called after every frame, outside of the timing.
+    virtual void afterFrame() {}
+
+    /// Replaces `pairs` by what was found, in any order; what was reported twice is listed twice.
+    virtual void listPairs(std::vector<demos::PairKey>& pairs) = 0;
+
+    /// Null where objects cannot be added and removed one by one.
+    virtual Population* population() { return nullptr; }
+
+    [[nodiscard]] virtual std::optional<OwnBytes> ownBytes() const { return std::nullopt; }
+};
+
+struct ContestantKind {
+    std::string name;
+    std::string title;  // the class, for readers
+    std::string description;
+    std::string package;   // where it comes from, with its version
+    bool ours = false;     // a wrong answer of it fails the run
+    bool changes = false;  // takes in and removes single objects: population() is not null
+    std::size_t upTo = std::numeric_limits<std::size_t>::max();       // objects; else too slow
+    std::size_t fillsUpTo = std::numeric_limits<std::size_t>::max();  // objects; else too slow
+    std::function<std::unique_ptr<Contestant>(const demos::BroadphaseNeeds&)> make;
+    const demos::BroadphaseKind* bullet = nullptr;  // where it is one of Bullet's kind
+};
+
+/// Everything that this build can measure: ours, Bullet's, then the libraries found.
+[[nodiscard]] const std::vector<ContestantKind>& contestantKinds();
+
+/// By name, which must be one of contestantKinds().
+[[nodiscard]] const ContestantKind& contestantKind(std::string_view name);
+
+/// The contestant against which all ratios are taken.
+inline constexpr std::string_view kBaseline = "dbvt";
+
+}  // namespace hashphase::benchmarks

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+#include <demos/compare/stopwatch.hpp>
+
+#include <algorithm>
+
+#include <time.h>
+
+namespace hashphase::benchmarks {
+
+/// The time since its creation that went into this thread's work, for contestants that work on one
+/// thread. Two clocks, of which the smaller counts: the processor time leaves out what other
+/// programs took meanwhile, the wall time is not lengthened by reading the other clock.
+class FrameClock {
+public:
+    [[nodiscard]] double milliseconds() const {
+        const double wall = wall_.milliseconds();
+        return std::min(wall, processorMilliseconds() - processorStart_);
+    }
+
+private:
+    static double processorMilliseconds() {
+        timespec now{};
+        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+        return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
+    }
+
+    double processorStart_ = processorMilliseconds();
+    demos::Stopwatch wall_;  // read inside of the other
+};
+
+}  // namespace hashphase::benchmarks

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Zlib
+#include <tests/benchmarks/grid_contestant.hpp>
+
+#include <broadphase/pairs.hpp>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace hashphase::benchmarks {
+namespace {
+
+using demos::PairKey;
+
+class GridContestant : public Contestant, private Population {
+public:
+    GridContestant(const GridConfig& config, std::size_t objects) : grid_(config), ids_(objects) {}
+
+    void fill(const FrameBoxes& frame) override {
+        for (std::size_t i = 0; i < frame.boxes.size(); ++i) {
+            add(static_cast<std::uint32_t>(i), frame);
+        }
+    }
+
+    void setAll(const FrameBoxes& frame) override {
+        for (std::size_t i = 0; i < frame.boxes.size(); ++i) {
+            grid_.move(ids_[i], frame.boxes[i]);
+        }
+    }
+
+    void findPairs() override {
+        changes_ = pairs_.update([this](ProxyId a, ProxyId b) {
+            return filters_.empty() ||
+                   demos::mayPair(filters_[objects_[a.index]], filters_[objects_[b.index]]);
+        });
+    }
+
+    void afterFrame() override { applyChanges(); }
+
+    void listPairs(std::vector<PairKey>& pairs) override {
+        applyChanges();
+        pairs = known_;
+    }
+
+    Population* population() override { return this; }
+
+    [[nodiscard]] std::optional<OwnBytes> ownBytes() const override {
+        return OwnBytes{grid_.memoryBytes(), pairs_.memoryBytes()};
+    }
+
+private:
+    void add(std::uint32_t object, const FrameBoxes& frame) override {
+        filters_ = frame.filters;
+        ids_[object] = grid_.add(frame.boxes[object]);
+        const std::uint32_t slot = ids_[object].index;
+        objects_.resize(std::max<std::size_t>(objects_.size(), slot + std::size_t{1}));
+        objects_[slot] = object;
+    }
+    void remove(std::uint32_t object) override { grid_.remove(ids_[object]); }
+
+    void applyChanges() {
+        const std::vector<PairKey> died = keysOf(changes_.died);
+        const std::vector<PairKey> born = keysOf(changes_.born);
+        changes_ = {};
+        kept_.clear();
+        std::set_difference(known_.begin(), known_.end(), died.begin(), died.end(),
+                            std::back_inserter(kept_));
+        known_.clear();
+        std::merge(kept_.begin(), kept_.end(), born.begin(), born.end(),
+                   std::back_inserter(known_));
+    }
+
+    // A slot may have changed hands by the time its pairs die, but then with the whole pair.
+    std::vector<PairKey> keysOf(std::span<const ProxyPair> pairs) const {
+        std::vector<PairKey> keys;
+        keys.reserve(pairs.size());
+        for (const ProxyPair& pair : pairs) {
+            keys.push_back(demos::pairKey(objects_[pair.first.index], objects_[pair.second.index]));
+        }
+        std::sort(keys.begin(), keys.end());
+        return keys;
+    }
+
+    Grid<float> grid_;
+    Pairs<float> pairs_{grid_};
+    std::vector<ProxyId> ids_;            // by object
+    std::vector<std::uint32_t> objects_;  // by slot
+    std::span<const demos::CollisionFilter> filters_;
+    PairChanges changes_;
+    std::vector<PairKey> known_;
+    std::vector<PairKey> kept_;
+};
+
+}  // namespace
+
+ContestantKind gridKind(std::string name, const GridConfig& config) {
+    ContestantKind kind;
+    kind.name = std::move(name);
+    kind.title = "hashphase::Pairs";
+    kind.description = "the grid without Bullet: births and deaths of pairs, no pair cache";
+    kind.package = "this build";
+    kind.ours = true;
+    kind.changes = true;
+    kind.make = [config](const demos::BroadphaseNeeds& needs) {
+        return std::make_unique<GridContestant>(config, needs.objects);
+    };
+    return kind;
+}
+
+}  // namespace hashphase::benchmarks

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Broadphases of other libraries, one library a file. A library that was not found when this was
+// built has no contestants.
+//
+// Same for all   Each is handed exactly the boxes of the scene, told only of those that changed where
+//                it can make use of that, and writes its pairs to a list: that is its complete set.
+
+#include <tests/benchmarks/contestant.hpp>
+
+namespace hashphase::benchmarks {
+
+[[nodiscard]] std::vector<ContestantKind> cgalKinds();
+[[nodiscard]] std::vector<ContestantKind> fclKinds();
+[[nodiscard]] std::vector<ContestantKind> odeKinds();
+
+}  // namespace hashphase::benchmarks

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Zlib
+#include <tests/benchmarks/query_workload.hpp>
+
+#include <integration/bullet/conversions.hpp>
+#include <integration/bullet/spatial_hash_broadphase.hpp>
+#include <tests/benchmarks/frame_clock.hpp>
+
+#include <algorithm>
+
+namespace hashphase::benchmarks {
+namespace {
+
+// Takes what the grid finds around one agent.
+struct NeighbourCollector {
+    const SpatialHashBroadphase& broadphase;
+    std::size_t agent;
+    std::vector<Answer>& answers;
+
+    void add(ProxyId id, float /*key*/) {
+        answers.push_back(
+            answerOf(agent, demos::FilledBroadphase::objectOf(*broadphase.proxyOf(id))));
+    }
+    [[nodiscard]] static constexpr float limit() { return std::numeric_limits<float>::infinity(); }
+};
+
+// Takes what a box query finds, if it is near enough: Bullet has no query for a sphere.
+struct NeighbourCallback : btBroadphaseAabbCallback {
+    NeighbourCallback(const SphereRegion<float>& region, std::size_t agent,
+                      std::vector<Answer>& answers)
+        : region_(region), agent_(agent), answers_(answers) {}
+
+    bool process(const btBroadphaseProxy* proxy) override {
+        if (region_.key(toAabb(proxy->m_aabbMin, proxy->m_aabbMax)) >= 0) {
+            answers_.push_back(answerOf(agent_, demos::FilledBroadphase::objectOf(*proxy)));
+        }
+        return true;
+    }
+
+private:
+    const SphereRegion<float>& region_;
+    std::size_t agent_;
+    std::vector<Answer>& answers_;
+};
+
+}  // namespace
+
+void QueryWorkload::add(const ContestantKind& kind) {
+    Entry entry{std::make_unique<demos::FilledBroadphase>(*kind.bullet, scene_.needs()), {}};
+    const FrameBoxes frame = scene_.frame();
+    for (std::size_t i = 0; i < scene_.size(); ++i) {
+        entry.filled->create(static_cast<std::uint32_t>(i), frame.bulletBoxes[i],
+                             frame.filterOf(i));
+    }
+    entry.filled->findPairs();
+    entries_.push_back(std::move(entry));
+}
+
+double QueryWorkload::runFrame(std::size_t contestant) {
+    Entry& entry = entries_[contestant];
+    entry.answers.clear();
+    const FrameClock watch;
+    ask(*entry.filled, entry.answers);
+    return watch.milliseconds();
+}
+
+void QueryWorkload::listAnswers(std::size_t contestant, std::vector<Answer>& answers) {
+    answers = entries_[contestant].answers;
+}
+
+void QueryWorkload::advanceScene() {
+    scene_.advance();
+    for (Entry& entry : entries_) {
+        entry.filled->setAll(scene_.frame().bulletBoxes);
+        entry.filled->findPairs();
+    }
+}
+
+void NeighbourWorkload::ask(demos::FilledBroadphase& filled, std::vector<Answer>& answers) {
+    auto* own = dynamic_cast<SpatialHashBroadphase*>(&filled.broadphase());
+    for (std::size_t agent = 0; agent < scene().size(); ++agent) {
+        const Vector3<float> centre = scene().boxes()[agent].center();
+        const SphereRegion<float> region(centre, radius_);
+        if (own != nullptr) {
+            NeighbourCollector collector{*own, agent, answers};
+            own->grid().visit(region, collector);
+        } else {
+            NeighbourCallback callback(region, agent, answers);
+            const btVector3 reach(radius_, radius_, radius_);
+            filled.broadphase().aabbTest(toBullet(centre) - reach, toBullet(centre) + reach,
+                                         callback);
+        }
+    }
+}
+
+void NeighbourWorkload::listExactAnswers(std::vector<Answer>& answers) {
+    // Whoever is near enough is so as well by boxes that are grown by the radius, and a little more
+    // for rounding.
+    std::vector<Aabb<float>> grown = scene().boxes();
+    for (Aabb<float>& box : grown) {
+        box.min().array() -= 0.6F * radius_;
+        box.max().array() += 0.6F * radius_;
+    }
+    std::vector<demos::PairKey> candidates;
+    demos::findExactPairs(demos::ReferenceMethod::kSweep, grown, {}, candidates);
+    answers.clear();
+    const auto askOne = [this, &answers](std::uint32_t agent, std::uint32_t other) {
+        const SphereRegion<float> region(scene().boxes()[agent].center(), radius_);
+        if (region.key(scene().boxes()[other]) >= 0) {
+            answers.push_back(answerOf(agent, other));
+        }
+    };
+    for (std::uint32_t agent = 0; agent < scene().size(); ++agent) {
+        askOne(agent, agent);
+    }
+    for (const demos::PairKey pair : candidates) {
+        askOne(demos::firstOf(pair), demos::secondOf(pair));
+        askOne(demos::secondOf(pair), demos::firstOf(pair));
+    }
+    std::sort(answers.begin(), answers.end());
+}
+
+}  // namespace hashphase::benchmarks
