@@ -196,6 +196,7 @@ void Grid<Scalar>::rebuildMobile() {
         mobile_.build(mobileSlots_, boxes_.data(), fixedSizes_);
         cost_.filed += mobile_.size();
         mobileIsStale_ = false;
+        mobileTree_.isStale.store(true, std::memory_order_relaxed);
     }
     manyWait_.store(false, std::memory_order_release);
 }
@@ -233,6 +234,7 @@ void Grid<Scalar>::putQuietToRest() {
         records_[resting_.slot(entry)].position = entry;
     }
     restingErased_ = 0;
+    restingTree_.isStale.store(true, std::memory_order_relaxed);
     cost_.filed += resting_.size();
     mobileIsStale_ = true;
 }
@@ -284,6 +286,25 @@ void Grid<Scalar>::fileIfMany() const {
     }
 }
 
+// As fileIfMany(): a write on behalf of readers, none of whom passes before it is done.
+template <class Scalar>
+void Grid<Scalar>::growTrees() const {
+    if (!mobileTree_.isStale.load(std::memory_order_acquire) &&
+        !restingTree_.isStale.load(std::memory_order_acquire)) {
+        return;
+    }
+    auto& self = const_cast<Grid&>(*this);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+    const std::lock_guard lock(self.filing_);
+    const auto grow = [](TableTree& tree, const detail::Table<Scalar>& table) {
+        if (tree.isStale.load(std::memory_order_relaxed)) {
+            tree.tree.build(table);
+            tree.isStale.store(false, std::memory_order_release);
+        }
+    };
+    grow(self.mobileTree_, mobile_);
+    grow(self.restingTree_, resting_);
+}
+
 // --- Cells ---------------------------------------------------------------------------------------
 
 template <class Scalar>
@@ -312,7 +333,8 @@ std::size_t Grid<Scalar>::memoryBytes() const noexcept {
            (freeSlots_.capacity() + removedSlots_.capacity() + waiting_.capacity() +
             mobileSlots_.capacity() + scratch_.capacity()) *
                sizeof(std::uint32_t) +
-           mobile_.memoryBytes() + resting_.memoryBytes();
+           mobile_.memoryBytes() + resting_.memoryBytes() + mobileTree_.tree.memoryBytes() +
+           restingTree_.tree.memoryBytes();
 }
 
 template <class Scalar>

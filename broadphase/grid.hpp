@@ -18,6 +18,7 @@
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/collectors.hpp>
+#include <broadphase/detail/box_tree.hpp>
 #include <broadphase/detail/table.hpp>
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/grid_config.hpp>
@@ -153,6 +154,8 @@ private:
 
     template <class Region, class Collector>
     struct VisitReader;
+    template <class Region, class Collector>
+    struct RayReader;
     struct CellRegion;
 
     /// The proxy in the slot, or the last one that was.
@@ -181,6 +184,9 @@ private:
     void fileForUpdate();
     void endUpdate();
     void fileIfMany() const;
+    void growTrees() const;
+    template <class Region, class Collector>
+    bool visitTables(const Region& region, Collector& collector, QueryCost& cost) const;
 
     GridConfig config_;
     detail::LevelSizes fixedSizes_;
@@ -206,6 +212,14 @@ private:
     std::vector<std::uint32_t> scratch_;
     UpdateCost cost_;  // of the present frame
     Scalar cellSize_ = 1;
+
+    /// What rays read of a table; made by the first ray after the table was built.
+    struct TableTree {
+        detail::BoxTree tree;
+        std::atomic<bool> isStale{false};
+    };
+    TableTree mobileTree_;
+    TableTree restingTree_;
 
     std::atomic<bool> manyWait_{false};
     std::mutex filing_;

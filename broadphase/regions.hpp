@@ -15,7 +15,6 @@
 // Threads  values; use them from any thread
 
 #include <broadphase/aabb.hpp>
-#include <broadphase/detail/ray_rows.hpp>
 #include <broadphase/detail/walk.hpp>
 
 #include <algorithm>
@@ -149,11 +148,13 @@ public:
         return enter <= leave ? enter : Scalar(-1);
     }
 
-    template <class VisitRow>
-    bool forRows(const detail::Level<Scalar>& level, VisitRow&& visitRow) const {
-        return direction_.hasNaN() ||
-               detail::forRowsOfRay(level, from_, direction_, fatness_, visitRow);
-    }
+    [[nodiscard]] const Vector3<Scalar>& from() const noexcept { return from_; }
+    /// All NaN when the region is empty.
+    [[nodiscard]] const Vector3<Scalar>& direction() const noexcept { return direction_; }
+    [[nodiscard]] const Aabb<Scalar>& fatness() const noexcept { return fatness_; }
+
+    /// Grids read this line, thick as the region is, and no cells.
+    [[nodiscard]] const RayRegion& segment() const noexcept { return *this; }
 
 private:
     Vector3<Scalar> from_;

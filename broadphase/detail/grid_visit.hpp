@@ -3,6 +3,7 @@
 
 // Grid's query templates; included by grid.hpp.
 
+#include <broadphase/detail/ray_walk.hpp>
 #include <broadphase/grid.hpp>
 
 #include <cmath>
@@ -43,16 +44,65 @@ struct Grid<Scalar>::VisitReader {
     }
 };
 
+/// The same for what a ray finds in a tree.
+template <class Scalar>
+template <class Region, class Collector>
+struct Grid<Scalar>::RayReader {
+    const Grid& grid;
+    const Region& region;
+    Collector& collector;
+    QueryCost& cost;
+    Place place;
+
+    [[nodiscard]] auto limit() const { return collector.limit(); }
+
+    bool read(std::uint32_t slot) {
+        const Record& record = grid.records_[slot];
+        // The tree is as old as its table: who stands there may have left.
+        if (record.place != place || record.isWaiting) {
+            return true;
+        }
+        const Scalar key = region.key(grid.boxes_[slot]);
+        if (!(key >= 0 && key <= limit())) {
+            return true;
+        }
+        ++cost.hits;
+        collector.add(grid.idOf(slot), key);
+        return limit() >= 0;
+    }
+};
+
+template <class Scalar>
+template <class Region, class Collector>
+bool Grid<Scalar>::visitTables(const Region& region, Collector& collector, QueryCost& cost) const {
+    if constexpr (requires { region.segment(); }) {
+        const RayRegion<Scalar>& ray = region.segment();
+        if (ray.direction().hasNaN()) {
+            return true;
+        }
+        growTrees();
+        using Reader = RayReader<Region, Collector>;
+        Reader mobile{*this, region, collector, cost, Place::mobile};
+        Reader resting{*this, region, collector, cost, Place::resting};
+        return detail::walkTree(mobileTree_.tree, ray.from(), ray.direction(), ray.fatness(), cost,
+                                mobile) &&
+               detail::walkTree(restingTree_.tree, ray.from(), ray.direction(), ray.fatness(), cost,
+                                resting);
+    } else {
+        using Reader = VisitReader<Region, Collector>;
+        Reader mobile{*this, mobile_, region, collector, cost};
+        Reader resting{*this, resting_, region, collector, cost};
+        return detail::walkTable(mobile_, region, cost, mobile) &&
+               detail::walkTable(resting_, region, cost, resting);
+    }
+}
+
 template <class Scalar>
 template <class Region, class Collector>
 QueryCost Grid<Scalar>::visit(const Region& region, Collector& collector) const {
     fileIfMany();
     QueryCost cost;
-    using Reader = VisitReader<Region, Collector>;
-    Reader mobile{*this, mobile_, region, collector, cost};
-    Reader resting{*this, resting_, region, collector, cost};
-    if (!detail::walkTable(mobile_, region, cost, mobile) ||
-        !detail::walkTable(resting_, region, cost, resting)) {
+    if (!visitTables(region, collector, cost)) {
         return cost;
     }
     // What changed since it was filed.
@@ -62,7 +112,12 @@ QueryCost Grid<Scalar>::visit(const Region& region, Collector& collector) const 
         }
         ++cost.boxesTested;
         const Scalar key = region.key(boxes_[slot]);
-        if (key >= 0 && key <= collector.limit() && !mobile.offer(slot, key)) {
+        if (!(key >= 0 && key <= collector.limit())) {
+            continue;
+        }
+        ++cost.hits;
+        collector.add(idOf(slot), key);
+        if (!(collector.limit() >= 0)) {
             break;
         }
     }

@@ -37,7 +37,7 @@ btVector3 slackOf(const btBroadphaseRayCallback& callback, const btVector3& way)
 /// A ray as Bullet's callbacks describe it: the segment says where to look, btRayAabb2() with the
 /// callback's fields what is hit.
 struct CallbackRayRegion {
-    RayRegion<btScalar> segment;
+    RayRegion<btScalar> line;
     btVector3 from;
     btVector3 castMin;
     btVector3 castMax;
@@ -51,10 +51,7 @@ struct CallbackRayRegion {
         return isHit && !hasNan(box) ? btScalar(0) : btScalar(-1);
     }
 
-    template <class VisitRow>
-    bool forRows(const detail::Level<btScalar>& level, VisitRow&& visitRow) const {
-        return segment.forRows(level, visitRow);
-    }
+    [[nodiscard]] const RayRegion<btScalar>& segment() const { return line; }
 };
 
 }  // namespace

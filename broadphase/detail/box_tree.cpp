@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Zlib
+
+// Sorting along a space-filling curve and taking neighbours together from the bottom up follows
+// Lauterbach et al., "Fast BVH construction on GPUs", 2009, with four children a node.
+
+#include <broadphase/detail/box_tree.hpp>
+#include <broadphase/detail/hilbert.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace hashphase::detail {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+// Rounds x [m] downward into single precision, by a few units of the last place too many.
+float roundedDown(double x) {
+    constexpr double most = std::numeric_limits<float>::max();
+    const auto rounded = static_cast<float>(std::clamp(x, -most, most));
+    return rounded - (std::abs(rounded) * 2 * std::numeric_limits<float>::epsilon() +
+                      std::numeric_limits<float>::min());
+}
+
+BoxBlock emptyBlock() {
+    BoxBlock block;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        block.bounds[axis].fill(kInfinity);
+        block.bounds[axis + 3].fill(-kInfinity);
+    }
+    block.below.fill(0);
+    return block;
+}
+
+}  // namespace
+
+template <class Scalar>
+void BoxTree::build(const Table<Scalar>& table) {
+    levels_.clear();
+    blocks_.clear();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        origin_[axis] =
+            table.levels().empty() ? 0 : static_cast<double>(table.levels().front().origin[axis]);
+    }
+    for (const Level<Scalar>& level : table.levels()) {
+        readBoxes(table, level);
+        if (!boxes_.empty()) {
+            sortPlaces(placeOnCurve());
+            buildLevel();
+        }
+    }
+}
+
+template void BoxTree::build(const Table<float>&);
+template void BoxTree::build(const Table<double>&);
+
+template <class Scalar>
+void BoxTree::readBoxes(const Table<Scalar>& table, const Level<Scalar>& level) {
+    boxes_.clear();
+    boxes_.reserve(level.count());
+    const Columns<Scalar> columns = table.columns();
+    for (std::uint32_t entry = level.firstEntry; entry < level.lastEntry; ++entry) {
+        Box box{};
+        bool isNan = false;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double a = static_cast<double>(columns[axis][entry]) - origin_[axis];
+            const double b = static_cast<double>(columns[axis + 3][entry]) - origin_[axis];
+            isNan |= a != a || b != b;
+            // Bullet's slab test hits inverted boxes, too, within the box the right way round.
+            box.low[axis] = roundedDown(std::min(a, b));
+            box.high[axis] = -roundedDown(-std::max(a, b));
+        }
+        if (!isNan) {
+            box.slot = table.slot(entry);
+            boxes_.push_back(box);
+        }
+    }
+}
+
+// Half the edge of a usual box [m]: steps of the curve in which several boxes seldom begin.
+float BoxTree::curveStep() {
+    constexpr std::size_t most = 64;
+    std::array<float, most> sizes{};
+    const std::size_t stride = (boxes_.size() + most - 1) / most;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < boxes_.size(); i += stride) {
+        const Box& box = boxes_[i];
+        sizes[count++] = std::max(
+            {0.0F, box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]});
+    }
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(count / 2);
+    std::nth_element(sizes.begin(), middle, sizes.begin() + static_cast<std::ptrdiff_t>(count));
+    return *middle / 2;
+}
+
+// Lays the boxes' lowest corners on the curve. Returns how many bits their places have.
+int BoxTree::placeOnCurve() {
+    constexpr float limit = std::numeric_limits<float>::max() / 4;
+    std::array<float, 3> lowest{limit, limit, limit};
+    float extent = std::numeric_limits<float>::min();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        float highest = -limit;
+        for (const Box& box : boxes_) {
+            lowest[axis] = std::min(lowest[axis], box.low[axis]);
+            highest = std::max(highest, box.low[axis]);
+        }
+        // What is farther away shares the first or the last step.
+        lowest[axis] = std::max(lowest[axis], -limit);
+        extent = std::max(extent, std::min(highest, limit) - lowest[axis]);
+    }
+    constexpr auto most = static_cast<float>((1 << kHilbertBits) - 1);
+    const float steps = std::clamp(extent / curveStep(), 1.0F, most);
+    const float perMetre = std::min(steps / extent, 1 / std::numeric_limits<float>::min());
+    const int bits = std::bit_width(static_cast<std::uint32_t>(steps));
+    places_.resize(boxes_.size());
+    for (std::uint32_t i = 0; i < boxes_.size(); ++i) {
+        std::array<std::uint32_t, 3> point{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const float step = (boxes_[i].low[axis] - lowest[axis]) * perMetre;
+            point[axis] = static_cast<std::uint32_t>(std::clamp(step, 0.0F, steps));
+        }
+        places_[i] = {placeOnHilbertCurve(point, bits), i};
+    }
+    return 3 * bits;
+}
+
+// A radix sort of the lowest bits: stable, so that equal places keep the table's order.
+void BoxTree::sortPlaces(int bits) {
+    constexpr int kMostDigitBits = 11;
+    const int passes = (bits + kMostDigitBits - 1) / kMostDigitBits;
+    const int digitBits = (bits + passes - 1) / passes;
+    std::array<std::uint32_t, (1U << kMostDigitBits) + 1> starts;
+    places2_.resize(places_.size());
+    for (int pass = 0; pass < passes; ++pass) {
+        const int shift = pass * digitBits;
+        const std::uint64_t digits = (1U << digitBits) - 1;
+        starts.fill(0);
+        for (const Place& place : places_) {
+            ++starts[((place.onCurve >> shift) & digits) + 1];
+        }
+        for (std::size_t digit = 0; digit < digits; ++digit) {
+            starts[digit + 1] += starts[digit];
+        }
+        for (const Place& place : places_) {
+            places2_[starts[(place.onCurve >> shift) & digits]++] = place;
+        }
+        places_.swap(places2_);
+    }
+}
+
+void BoxTree::buildLevel() {
+    BoxTreeLevel level;
+    level.firstBlock = static_cast<std::uint32_t>(blocks_.size());
+    level.count = static_cast<std::uint32_t>(boxes_.size());
+    float radius = 0;
+    for (std::size_t first = 0; first < places_.size(); first += kLanes) {
+        BoxBlock& block = blocks_.emplace_back(emptyBlock());
+        const std::size_t count = std::min<std::size_t>(kLanes, places_.size() - first);
+        for (std::size_t k = 0; k < count; ++k) {
+            const Box& box = boxes_[places_[first + k].box];
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                block.bounds[axis][k] = box.low[axis];
+                block.bounds[axis + 3][k] = box.high[axis];
+                radius = std::max({radius, -box.low[axis], box.high[axis]});
+            }
+            block.below[k] = box.slot;
+        }
+    }
+    level.radius = static_cast<double>(radius);
+    level.firstInner = static_cast<std::uint32_t>(blocks_.size());
+    std::uint32_t first = level.firstBlock;
+    std::uint32_t last = level.firstInner;
+    while (last - first > 1) {
+        addBlocksAbove(first, last);
+        first = last;
+        last = static_cast<std::uint32_t>(blocks_.size());
+    }
+    level.root = first;
+    levels_.push_back(level);
+}
+
+void BoxTree::addBlocksAbove(std::uint32_t first, std::uint32_t last) {
+    for (; first < last; first += kLanes) {
+        BoxBlock above = emptyBlock();
+        const std::uint32_t count = std::min(kLanes, last - first);
+        for (std::uint32_t k = 0; k < count; ++k) {
+            const BoxBlock& block = blocks_[first + k];
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const auto& low = block.bounds[axis];
+                const auto& high = block.bounds[axis + 3];
+                above.bounds[axis][k] = std::min({low[0], low[1], low[2], low[3]});
+                above.bounds[axis + 3][k] = std::max({high[0], high[1], high[2], high[3]});
+            }
+            above.below[k] = first + k;
+        }
+        blocks_.push_back(above);
+    }
+}
+
+std::size_t BoxTree::memoryBytes() const noexcept {
+    return levels_.capacity() * sizeof(BoxTreeLevel) + blocks_.capacity() * sizeof(BoxBlock) +
+           boxes_.capacity() * sizeof(Box) +
+           (places_.capacity() + places2_.capacity()) * sizeof(Place);
+}
+
+}  // namespace hashphase::detail
