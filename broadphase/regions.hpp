@@ -151,6 +151,8 @@ public:
     [[nodiscard]] const Vector3<Scalar>& from() const noexcept { return from_; }
     /// All NaN when the region is empty.
     [[nodiscard]] const Vector3<Scalar>& direction() const noexcept { return direction_; }
+    /// One by direction(); infinite where that is 0.
+    [[nodiscard]] const Vector3<Scalar>& inverse() const noexcept { return inverse_; }
     [[nodiscard]] const Aabb<Scalar>& fatness() const noexcept { return fatness_; }
 
     /// Grids read this line, thick as the region is, and no cells.

@@ -31,6 +31,7 @@ BoxBlock emptyBlock() {
         block.bounds[axis + 3].fill(-kInfinity);
     }
     block.below.fill(0);
+    block.count = 0;
     return block;
 }
 
@@ -47,7 +48,7 @@ void BoxTree::build(const Table<Scalar>& table) {
     for (const Level<Scalar>& level : table.levels()) {
         readBoxes(table, level);
         if (!boxes_.empty()) {
-            sortPlaces(placeOnCurve());
+            sortAlongCurve();
             buildLevel();
         }
     }
@@ -73,7 +74,7 @@ void BoxTree::readBoxes(const Table<Scalar>& table, const Level<Scalar>& level) 
             box.high[axis] = -roundedDown(-std::max(a, b));
         }
         if (!isNan) {
-            box.slot = table.slot(entry);
+            box.below = table.slot(entry);
             boxes_.push_back(box);
         }
     }
@@ -86,17 +87,15 @@ float BoxTree::curveStep() {
     const std::size_t stride = (boxes_.size() + most - 1) / most;
     std::size_t count = 0;
     for (std::size_t i = 0; i < boxes_.size(); i += stride) {
-        const Box& box = boxes_[i];
-        sizes[count++] = std::max(
-            {0.0F, box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]});
+        sizes[count++] = boxes_[i].longestEdge();
     }
     const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(count / 2);
     std::nth_element(sizes.begin(), middle, sizes.begin() + static_cast<std::ptrdiff_t>(count));
     return *middle / 2;
 }
 
-// Lays the boxes' lowest corners on the curve. Returns how many bits their places have.
-int BoxTree::placeOnCurve() {
+// In the order of their lowest corners.
+void BoxTree::sortAlongCurve() {
     constexpr float limit = std::numeric_limits<float>::max() / 4;
     std::array<float, 3> lowest{limit, limit, limit};
     float extent = std::numeric_limits<float>::min();
@@ -123,7 +122,12 @@ int BoxTree::placeOnCurve() {
         }
         places_[i] = {placeOnHilbertCurve(point, bits), i};
     }
-    return 3 * bits;
+    sortPlaces(3 * bits);
+    unsorted_.swap(boxes_);
+    boxes_.resize(places_.size());
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+        boxes_[i] = unsorted_[places_[i].box];
+    }
 }
 
 // A radix sort of the lowest bits: stable, so that equal places keep the table's order.
@@ -153,55 +157,80 @@ void BoxTree::sortPlaces(int bits) {
 void BoxTree::buildLevel() {
     BoxTreeLevel level;
     level.firstBlock = static_cast<std::uint32_t>(blocks_.size());
-    level.count = static_cast<std::uint32_t>(boxes_.size());
-    float radius = 0;
-    for (std::size_t first = 0; first < places_.size(); first += kLanes) {
-        BoxBlock& block = blocks_.emplace_back(emptyBlock());
-        const std::size_t count = std::min<std::size_t>(kLanes, places_.size() - first);
-        for (std::size_t k = 0; k < count; ++k) {
-            const Box& box = boxes_[places_[first + k].box];
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                block.bounds[axis][k] = box.low[axis];
-                block.bounds[axis + 3][k] = box.high[axis];
-                radius = std::max({radius, -box.low[axis], box.high[axis]});
-            }
-            block.below[k] = box.slot;
+    for (const Box& box : boxes_) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const float most = std::max(-box.low[axis], box.high[axis]);
+            level.radius = std::max(level.radius, static_cast<double>(most));
         }
     }
-    level.radius = static_cast<double>(radius);
+    addStorey();
     level.firstInner = static_cast<std::uint32_t>(blocks_.size());
-    std::uint32_t first = level.firstBlock;
-    std::uint32_t last = level.firstInner;
-    while (last - first > 1) {
-        addBlocksAbove(first, last);
-        first = last;
-        last = static_cast<std::uint32_t>(blocks_.size());
+    while (boxes_.size() > 1) {
+        addStorey();
     }
-    level.root = first;
+    level.root = boxes_.front().below;
     levels_.push_back(level);
 }
 
-void BoxTree::addBlocksAbove(std::uint32_t first, std::uint32_t last) {
-    for (; first < last; first += kLanes) {
-        BoxBlock above = emptyBlock();
-        const std::uint32_t count = std::min(kLanes, last - first);
-        for (std::uint32_t k = 0; k < count; ++k) {
-            const BoxBlock& block = blocks_[first + k];
+// Puts boxes that follow one another into blocks, and the blocks' bounds in the boxes' place.
+void BoxTree::addStorey() {
+    constexpr float kFarApart = 16;
+    const auto count = static_cast<std::uint32_t>(boxes_.size());
+    std::uint32_t blockCount = 0;
+    float edges = 0;
+    for (std::uint32_t first = 0; first < count;) {
+        const float usual = blockCount == 0 ? kInfinity : edges / static_cast<float>(blockCount);
+        const std::uint32_t last = neighbours(first, kFarApart * usual);
+        BoxBlock block = emptyBlock();
+        Box bounds = boxes_[first];
+        for (std::uint32_t k = 0; first + k < last; ++k) {
+            const Box& box = boxes_[first + k];
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                const auto& low = block.bounds[axis];
-                const auto& high = block.bounds[axis + 3];
-                above.bounds[axis][k] = std::min({low[0], low[1], low[2], low[3]});
-                above.bounds[axis + 3][k] = std::max({high[0], high[1], high[2], high[3]});
+                block.bounds[axis][k] = box.low[axis];
+                block.bounds[axis + 3][k] = box.high[axis];
             }
-            above.below[k] = first + k;
+            block.below[k] = box.below;
+            bounds.extend(box);
         }
-        blocks_.push_back(above);
+        block.count = last - first;
+        bounds.below = static_cast<std::uint32_t>(blocks_.size());
+        blocks_.push_back(block);
+        boxes_[blockCount++] = bounds;
+        edges += bounds.longestEdge();
+        first = last;
+    }
+    boxes_.resize(blockCount);
+}
+
+// One past the last box that shares a block with the first: as many as fit, but no more than two
+// where the next one is far apart. At least two, so that each storey halves the one below.
+std::uint32_t BoxTree::neighbours(std::uint32_t first, float farApart) const {
+    const auto count = static_cast<std::uint32_t>(boxes_.size());
+    const std::uint32_t most = std::min(first + kBlockWidth, count);
+    Box bounds = boxes_[first];
+    for (std::uint32_t last = first + 1; last < most; ++last) {
+        bounds.extend(boxes_[last]);
+        if (last >= first + 2 && bounds.longestEdge() > farApart) {
+            return last;
+        }
+    }
+    return most;
+}
+
+float BoxTree::Box::longestEdge() const noexcept {
+    return std::max({0.0F, high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+}
+
+void BoxTree::Box::extend(const Box& other) noexcept {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        low[axis] = std::min(low[axis], other.low[axis]);
+        high[axis] = std::max(high[axis], other.high[axis]);
     }
 }
 
 std::size_t BoxTree::memoryBytes() const noexcept {
     return levels_.capacity() * sizeof(BoxTreeLevel) + blocks_.capacity() * sizeof(BoxBlock) +
-           boxes_.capacity() * sizeof(Box) +
+           (boxes_.capacity() + unsorted_.capacity()) * sizeof(Box) +
            (places_.capacity() + places2_.capacity()) * sizeof(Place);
 }
 

@@ -49,7 +49,10 @@ private:
     struct Box {
         std::array<float, 3> low;
         std::array<float, 3> high;
-        std::uint32_t slot;
+        std::uint32_t below;  // slot, or block
+
+        [[nodiscard]] float longestEdge() const noexcept;
+        void extend(const Box& other) noexcept;
     };
     struct Place {
         std::uint64_t onCurve;
@@ -59,16 +62,18 @@ private:
     template <class Scalar>
     void readBoxes(const Table<Scalar>& table, const Level<Scalar>& level);
     [[nodiscard]] float curveStep();
-    [[nodiscard]] int placeOnCurve();
+    void sortAlongCurve();
     void sortPlaces(int bits);
     void buildLevel();
-    void addBlocksAbove(std::uint32_t first, std::uint32_t last);
+    void addStorey();
+    [[nodiscard]] std::uint32_t neighbours(std::uint32_t first, float farApart) const;
 
     std::array<double, 3> origin_{};
     std::vector<BoxTreeLevel> levels_;
     std::vector<BoxBlock> blocks_;
 
-    std::vector<Box> boxes_;      // scratch of build(): one level's
+    std::vector<Box> boxes_;      // scratch of build(): one level's, then those of a storey
+    std::vector<Box> unsorted_;   // the same
     std::vector<Place> places_;   // the same
     std::vector<Place> places2_;  // the same
 };

@@ -84,10 +84,8 @@ bool Grid<Scalar>::visitTables(const Region& region, Collector& collector, Query
         using Reader = RayReader<Region, Collector>;
         Reader mobile{*this, region, collector, cost, Place::mobile};
         Reader resting{*this, region, collector, cost, Place::resting};
-        return detail::walkTree(mobileTree_.tree, ray.from(), ray.direction(), ray.fatness(), cost,
-                                mobile) &&
-               detail::walkTree(restingTree_.tree, ray.from(), ray.direction(), ray.fatness(), cost,
-                                resting);
+        return detail::walkTree(mobileTree_.tree, ray, cost, mobile) &&
+               detail::walkTree(restingTree_.tree, ray, cost, resting);
     } else {
         using Reader = VisitReader<Region, Collector>;
         Reader mobile{*this, mobile_, region, collector, cost};

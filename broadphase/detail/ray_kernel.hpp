@@ -14,12 +14,16 @@
 
 namespace hashphase::detail {
 
-/// Four boxes by column: min x, y, z, max x, y, z, in single precision and rounded outward. A lane
+/// Boxes of a block.
+inline constexpr std::uint32_t kBlockWidth = 8;
+
+/// Eight boxes by column: min x, y, z, max x, y, z, in single precision and rounded outward. A lane
 /// without a box is inverted infinitely, which nothing meets.
 struct alignas(16) BoxBlock {
-    std::array<std::array<float, kLanes>, 6> bounds;
+    std::array<std::array<float, kBlockWidth>, 6> bounds;
     /// Per lane, what stands behind the box: a block, or a slot in the lowest blocks.
-    std::array<std::uint32_t, kLanes> below;
+    std::array<std::uint32_t, kBlockWidth> below;
+    std::uint32_t count;  // of lanes with a box, the first ones
 };
 
 /// A ray, or a box moved along it, prepared for many boxes: position t in [0, 1] is inside the slab
@@ -38,7 +42,7 @@ struct RayLanes {
 [[nodiscard]] inline std::uint32_t mayMeetMaskScalar(const BoxBlock& block, const RayLanes& ray,
                                                      float last, float* enter) noexcept {
     std::uint32_t mask = 0;
-    for (std::uint32_t k = 0; k < kLanes; ++k) {
+    for (std::uint32_t k = 0; k < kBlockWidth; ++k) {
         float first = 0;
         float leave = last;
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -60,20 +64,28 @@ struct RayLanes {
 
 [[nodiscard]] inline std::uint32_t mayMeetMask(const BoxBlock& block, const RayLanes& ray,
                                                float last, float* enter) noexcept {
-    __m128 first = _mm_setzero_ps();
-    __m128 leave = _mm_set1_ps(last);
+    __m128 first[2] = {_mm_setzero_ps(), _mm_setzero_ps()};
+    __m128 leave[2] = {_mm_set1_ps(last), _mm_set1_ps(last)};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const __m128 nearBound = _mm_load_ps(block.bounds[ray.nearColumn[axis]].data());
-        const __m128 farBound = _mm_load_ps(block.bounds[ray.farColumn[axis]].data());
-        const __m128 near = _mm_mul_ps(_mm_sub_ps(nearBound, _mm_set1_ps(ray.nearOffset[axis])),
-                                       _mm_set1_ps(ray.inverse[axis]));
-        const __m128 far = _mm_mul_ps(_mm_sub_ps(farBound, _mm_set1_ps(ray.farOffset[axis])),
-                                      _mm_set1_ps(ray.farInverse[axis]));
-        first = _mm_max_ps(near, first);
-        leave = _mm_min_ps(far, leave);
+        const __m128 nearOffset = _mm_set1_ps(ray.nearOffset[axis]);
+        const __m128 farOffset = _mm_set1_ps(ray.farOffset[axis]);
+        const __m128 inverse = _mm_set1_ps(ray.inverse[axis]);
+        const __m128 farInverse = _mm_set1_ps(ray.farInverse[axis]);
+        const float* nearBounds = block.bounds[ray.nearColumn[axis]].data();
+        const float* farBounds = block.bounds[ray.farColumn[axis]].data();
+        for (std::size_t half = 0; half < 2; ++half) {
+            const __m128 near =
+                _mm_mul_ps(_mm_sub_ps(_mm_load_ps(nearBounds + 4 * half), nearOffset), inverse);
+            const __m128 far =
+                _mm_mul_ps(_mm_sub_ps(_mm_load_ps(farBounds + 4 * half), farOffset), farInverse);
+            first[half] = _mm_max_ps(near, first[half]);
+            leave[half] = _mm_min_ps(far, leave[half]);
+        }
     }
-    _mm_storeu_ps(enter, first);
-    return static_cast<std::uint32_t>(_mm_movemask_ps(_mm_cmple_ps(first, leave)));
+    _mm_storeu_ps(enter, first[0]);
+    _mm_storeu_ps(enter + 4, first[1]);
+    return static_cast<std::uint32_t>(_mm_movemask_ps(_mm_cmple_ps(first[0], leave[0]))) |
+           static_cast<std::uint32_t>(_mm_movemask_ps(_mm_cmple_ps(first[1], leave[1]))) << 4;
 }
 
 #else

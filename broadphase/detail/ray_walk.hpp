@@ -5,6 +5,7 @@
 
 #include <broadphase/detail/box_tree.hpp>
 #include <broadphase/detail/walk.hpp>
+#include <broadphase/regions.hpp>
 
 #include <algorithm>
 #include <array>
@@ -20,15 +21,15 @@ namespace hashphase::detail {
 template <class Scalar>
 class TreeRay {
 public:
-    TreeRay(const Vector3<Scalar>& from, const Vector3<Scalar>& direction,
-            const Aabb<Scalar>& fatness, const std::array<double, 3>& origin) {
+    TreeRay(const RayRegion<Scalar>& ray, const std::array<double, 3>& origin) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const auto i = static_cast<Eigen::Index>(axis);
-            const auto a = static_cast<double>(fatness.min()[i]);
-            const auto b = static_cast<double>(fatness.max()[i]);
-            const auto at = static_cast<double>(from[i]);
+            const auto a = static_cast<double>(ray.fatness().min()[i]);
+            const auto b = static_cast<double>(ray.fatness().max()[i]);
+            const auto at = static_cast<double>(ray.from()[i]);
             start_[axis] = at - origin[axis];
-            direction_[axis] = static_cast<double>(direction[i]);
+            direction_[axis] = static_cast<double>(ray.direction()[i]);
+            inverse_[axis] = static_cast<double>(ray.inverse()[i]);
             low_[axis] = std::min(a, b);
             high_[axis] = std::max(a, b);
             // Of the exact test: relative to the largest number in play.
@@ -112,7 +113,7 @@ private:
             lanes_.farColumn[axis] = isForwards ? i + 3 : i;
             lanes_.nearOffset[axis] = isForwards ? above : below;
             lanes_.farOffset[axis] = isForwards ? below : above;
-            lanes_.inverse[axis] = static_cast<float>(isParallel ? kHuge : 1 / way);
+            lanes_.inverse[axis] = static_cast<float>(isParallel ? kHuge : inverse_[axis] / span_);
             lanes_.farInverse[axis] = lanes_.inverse[axis] * kWidened;
             sum += std::abs(start) + padding + std::abs(way);
         }
@@ -121,6 +122,7 @@ private:
 
     std::array<double, 3> start_{};
     std::array<double, 3> direction_{};
+    std::array<double, 3> inverse_{};
     std::array<double, 3> low_{};
     std::array<double, 3> high_{};
     std::array<double, 3> padding_{};
@@ -137,11 +139,11 @@ template <class Scalar, class Reader>
 bool walkTreeLevel(const BoxTree& tree, const BoxTreeLevel& level, const TreeRay<Scalar>& ray,
                    QueryCost& cost, Reader&& reader) {
     struct Pending {
-        float enter = 0;
-        std::uint32_t block = 0;
+        float enter;
+        std::uint32_t block;
     };
-    // Each of at most sixteen storeys leaves three behind.
-    std::array<Pending, 64> pending;
+    // Each of at most 32 storeys leaves seven behind.
+    std::array<Pending, 256> pending;
     std::uint32_t count = 1;
     pending[0] = {0, level.root};
     const RayLanes lanes = ray.lanes();
@@ -152,11 +154,11 @@ bool walkTreeLevel(const BoxTree& tree, const BoxTreeLevel& level, const TreeRay
             continue;
         }
         const BoxBlock& block = tree.blocks()[index];
-        std::array<float, kLanes> enters;
+        std::array<float, kBlockWidth> enters;
         std::uint32_t mask = mayMeetMask(block, lanes, last, enters.data());
         ++cost.rowsVisited;
         if (index < level.firstInner) {
-            cost.boxesTested += std::min(kLanes, level.count - kLanes * (index - level.firstBlock));
+            cost.boxesTested += block.count;
             if (mask == 0) {
                 continue;
             }
@@ -182,23 +184,37 @@ bool walkTreeLevel(const BoxTree& tree, const BoxTreeLevel& level, const TreeRay
     return true;
 }
 
+/// The same for every box of the level.
+template <class Reader>
+bool readWholeLevel(const BoxTree& tree, const BoxTreeLevel& level, QueryCost& cost,
+                    Reader&& reader) {
+    for (std::uint32_t index = level.firstBlock; index < level.firstInner; ++index) {
+        const BoxBlock& block = tree.blocks()[index];
+        cost.boxesTested += block.count;
+        for (std::uint32_t k = 0; k < block.count; ++k) {
+            if (!reader.read(block.below[k])) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
 /// walkTreeLevel() over all levels.
 template <class Scalar, class Reader>
-bool walkTree(const BoxTree& tree, const Vector3<Scalar>& from, const Vector3<Scalar>& direction,
-              const Aabb<Scalar>& fatness, QueryCost& cost, Reader&& reader) {
-    TreeRay<Scalar> ray(from, direction, fatness, tree.origin());
+bool walkTree(const BoxTree& tree, const RayRegion<Scalar>& region, QueryCost& cost,
+              Reader&& reader) {
+    if (tree.levels().empty()) {
+        return true;
+    }
+    TreeRay<Scalar> ray(region, tree.origin());
     for (const BoxTreeLevel& level : tree.levels()) {
         if (!ray.clipTo(level.radius)) {
             continue;
         }
         if (!ray.isExpressible()) {
-            // Every box.
-            for (std::uint32_t i = 0; i < level.count; ++i) {
-                const BoxBlock& block = tree.blocks()[level.firstBlock + i / kLanes];
-                ++cost.boxesTested;
-                if (!reader.read(block.below[i % kLanes])) {
-                    return false;
-                }
+            if (!readWholeLevel(tree, level, cost, reader)) {
+                return false;
             }
             continue;
         }
