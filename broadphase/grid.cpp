@@ -289,10 +289,6 @@ void Grid<Scalar>::fileIfMany() const {
 // As fileIfMany(): a write on behalf of readers, none of whom passes before it is done.
 template <class Scalar>
 void Grid<Scalar>::growTrees() const {
-    if (!mobileTree_.isStale.load(std::memory_order_acquire) &&
-        !restingTree_.isStale.load(std::memory_order_acquire)) {
-        return;
-    }
     auto& self = const_cast<Grid&>(*this);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
     const std::lock_guard lock(self.filing_);
     const auto grow = [](TableTree& tree, const detail::Table<Scalar>& table) {

@@ -185,6 +185,10 @@ private:
     void endUpdate();
     void fileIfMany() const;
     void growTrees() const;
+    [[nodiscard]] bool treesAreStale() const noexcept {
+        return mobileTree_.isStale.load(std::memory_order_acquire) ||
+               restingTree_.isStale.load(std::memory_order_acquire);
+    }
     template <class Region, class Collector>
     bool visitTables(const Region& region, Collector& collector, QueryCost& cost) const;
 

@@ -80,7 +80,9 @@ bool Grid<Scalar>::visitTables(const Region& region, Collector& collector, Query
         if (ray.direction().hasNaN()) {
             return true;
         }
-        growTrees();
+        if (treesAreStale()) {
+            growTrees();
+        }
         using Reader = RayReader<Region, Collector>;
         Reader mobile{*this, region, collector, cost, Place::mobile};
         Reader resting{*this, region, collector, cost, Place::resting};

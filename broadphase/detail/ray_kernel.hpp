@@ -26,15 +26,15 @@ struct alignas(16) BoxBlock {
     std::uint32_t count;  // of lanes with a box, the first ones
 };
 
-/// A ray, or a box moved along it, prepared for many boxes: position t in [0, 1] is inside the slab
-/// of an axis from (near bound - nearOffset) * inverse to (far bound - farOffset) * farInverse.
+/// A ray, or a box moved along it, prepared for many boxes: position t in [0, 1] is in the slab of
+/// an axis from (bound - offset) * inverse of the near column to (bound - offset) * farInverse of
+/// the far one.
 struct RayLanes {
-    std::array<std::uint32_t, 3> nearColumn{};
-    std::array<std::uint32_t, 3> farColumn{};
-    std::array<float, 3> nearOffset{};
-    std::array<float, 3> farOffset{};
-    std::array<float, 3> inverse{};
-    std::array<float, 3> farInverse{};  // the least bit longer than `inverse`
+    std::array<std::uint32_t, 3> nearColumn;
+    std::array<std::uint32_t, 3> farColumn;
+    std::array<float, 6> offset;  // by column
+    std::array<float, 3> inverse;
+    std::array<float, 3> farInverse;  // the least bit longer than `inverse`
 };
 
 /// Bit k of the result tells whether the ray may meet box k at some t in [0, last]; enter[k] is then
@@ -47,9 +47,11 @@ struct RayLanes {
         float leave = last;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const float near =
-                (block.bounds[ray.nearColumn[axis]][k] - ray.nearOffset[axis]) * ray.inverse[axis];
+                (block.bounds[ray.nearColumn[axis]][k] - ray.offset[ray.nearColumn[axis]]) *
+                ray.inverse[axis];
             const float far =
-                (block.bounds[ray.farColumn[axis]][k] - ray.farOffset[axis]) * ray.farInverse[axis];
+                (block.bounds[ray.farColumn[axis]][k] - ray.offset[ray.farColumn[axis]]) *
+                ray.farInverse[axis];
             // As the vector instructions do it: a NaN changes nothing.
             first = near > first ? near : first;
             leave = far < leave ? far : leave;
@@ -67,8 +69,8 @@ struct RayLanes {
     __m128 first[2] = {_mm_setzero_ps(), _mm_setzero_ps()};
     __m128 leave[2] = {_mm_set1_ps(last), _mm_set1_ps(last)};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const __m128 nearOffset = _mm_set1_ps(ray.nearOffset[axis]);
-        const __m128 farOffset = _mm_set1_ps(ray.farOffset[axis]);
+        const __m128 nearOffset = _mm_set1_ps(ray.offset[ray.nearColumn[axis]]);
+        const __m128 farOffset = _mm_set1_ps(ray.offset[ray.farColumn[axis]]);
         const __m128 inverse = _mm_set1_ps(ray.inverse[axis]);
         const __m128 farInverse = _mm_set1_ps(ray.farInverse[axis]);
         const float* nearBounds = block.bounds[ray.nearColumn[axis]].data();

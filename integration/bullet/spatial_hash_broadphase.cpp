@@ -37,7 +37,7 @@ btVector3 slackOf(const btBroadphaseRayCallback& callback, const btVector3& way)
 /// A ray as Bullet's callbacks describe it: the segment says where to look, btRayAabb2() with the
 /// callback's fields what is hit.
 struct CallbackRayRegion {
-    RayRegion<btScalar> line;
+    const RayRegion<btScalar>& line;
     btVector3 from;
     btVector3 castMin;
     btVector3 castMax;
