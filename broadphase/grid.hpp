@@ -22,6 +22,7 @@
 #include <broadphase/detail/table.hpp>
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/grid_config.hpp>
+#include <broadphase/parallel_for.hpp>
 #include <broadphase/proxy_id.hpp>
 #include <broadphase/regions.hpp>
 
@@ -100,6 +101,12 @@ public:
     /// test per proxy; returned as data.
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
+
+    /// visit() for many: collectors[i] takes what regions[i] finds, as if asked alone. The collectors
+    /// must not share anything when `parallelFor` is parallel. Returns the sum of the costs.
+    template <class Region, class Collector>
+    QueryCost visitEach(std::span<const Region> regions, std::span<Collector> collectors,
+                        ParallelFor parallelFor = serialFor) const;
 
     /// The edge of the cells of cellAt(), cellsOf() and visitCell() [m]: the fixed cell size, or the
     /// finest of the automatic ones at the last update; 1 while the grid is empty.

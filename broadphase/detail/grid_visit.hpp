@@ -124,6 +124,27 @@ QueryCost Grid<Scalar>::visit(const Region& region, Collector& collector) const 
     return cost;
 }
 
+template <class Scalar>
+template <class Region, class Collector>
+QueryCost Grid<Scalar>::visitEach(std::span<const Region> regions, std::span<Collector> collectors,
+                                  ParallelFor parallelFor) const {
+    HASHPHASE_ASSERT(regions.size() == collectors.size(), "Each region has a collector.");
+    constexpr std::size_t grain = 64;
+    std::atomic<std::uint64_t> rowsVisited{0};
+    std::atomic<std::uint64_t> boxesTested{0};
+    std::atomic<std::uint64_t> hits{0};
+    parallelFor(regions.size(), grain, [&](std::size_t begin, std::size_t end) {
+        QueryCost cost;
+        for (std::size_t i = begin; i < end; ++i) {
+            cost += visit(regions[i], collectors[i]);
+        }
+        rowsVisited += cost.rowsVisited;
+        boxesTested += cost.boxesTested;
+        hits += cost.hits;
+    });
+    return {rowsVisited, boxesTested, hits};
+}
+
 /// The boxes that touch one cell, by the same rounding as cellAt().
 template <class Scalar>
 struct Grid<Scalar>::CellRegion {
