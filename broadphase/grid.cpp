@@ -352,6 +352,11 @@ std::string Grid<Scalar>::validate() const {
             }
         }
     }
+    for (const TableTree* table : {&mobileTree_, &restingTree_}) {
+        if (std::string error = table->tree.validate(); !error.empty()) {
+            return error;
+        }
+    }
     for (const std::uint32_t slot : waiting_) {
         timesFound[slot] += isAlive(slot) ? 1 : 0;
     }

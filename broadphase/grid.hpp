@@ -136,7 +136,7 @@ public:
     /// Says which invariant is broken, in a sentence; empty when all hold:
     /// - Every proxy alive is filed in exactly one table, or waits in the list of changes, or is NaN.
     /// - A filed proxy's entry has the proxy's box.
-    /// - The tables' own invariants (detail/table.hpp).
+    /// - The tables' own invariants (detail/table.hpp), and those of their trees (detail/box_tree.hpp).
     [[nodiscard]] std::string validate() const;
 
 private:

@@ -148,8 +148,10 @@ public:
         return enter <= leave ? enter : Scalar(-1);
     }
 
+    /// True when an end is NaN or infinite: nothing has a key.
+    [[nodiscard]] bool isEmpty() const noexcept { return direction_.hasNaN(); }
     [[nodiscard]] const Vector3<Scalar>& from() const noexcept { return from_; }
-    /// All NaN when the region is empty.
+    /// `to` - `from`, but 0 where its inverse would be infinite.
     [[nodiscard]] const Vector3<Scalar>& direction() const noexcept { return direction_; }
     /// One by direction(); infinite where that is 0.
     [[nodiscard]] const Vector3<Scalar>& inverse() const noexcept { return inverse_; }

@@ -217,6 +217,16 @@ std::uint32_t BoxTree::neighbours(std::uint32_t first, float farApart) const {
     return most;
 }
 
+BoxTree::Box BoxTree::boxOf(const BoxBlock& block, std::uint32_t lane) {
+    Box box{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        box.low[axis] = block.bounds[axis][lane];
+        box.high[axis] = block.bounds[axis + 3][lane];
+    }
+    box.below = block.below[lane];
+    return box;
+}
+
 float BoxTree::Box::longestEdge() const noexcept {
     return std::max({0.0F, high[0] - low[0], high[1] - low[1], high[2] - low[2]});
 }
@@ -232,6 +242,49 @@ std::size_t BoxTree::memoryBytes() const noexcept {
     return levels_.capacity() * sizeof(BoxTreeLevel) + blocks_.capacity() * sizeof(BoxBlock) +
            (boxes_.capacity() + unsorted_.capacity()) * sizeof(Box) +
            (places_.capacity() + places2_.capacity()) * sizeof(Place);
+}
+
+std::string BoxTree::validate() const {
+    std::vector<std::uint32_t> timesBelow(blocks_.size(), 0);
+    for (const BoxTreeLevel& level : levels_) {
+        ++timesBelow[level.root];
+        for (std::uint32_t index = level.firstBlock; index <= level.root; ++index) {
+            const BoxBlock& block = blocks_[index];
+            if (block.count < 1 || block.count > kBlockWidth) {
+                return "A block has one to eight boxes: broken.";
+            }
+            for (std::uint32_t k = 0; k < kBlockWidth; ++k) {
+                const Box box = boxOf(block, k);
+                if (k >= block.count) {
+                    if (box.low[0] != kInfinity || box.high[0] != -kInfinity) {
+                        return "Lanes without a box are met by nothing: broken.";
+                    }
+                    continue;
+                }
+                Box grown = box;
+                if (index >= level.firstInner) {
+                    ++timesBelow[block.below[k]];
+                    for (std::uint32_t i = 0; i < blocks_[block.below[k]].count; ++i) {
+                        grown.extend(boxOf(blocks_[block.below[k]], i));
+                    }
+                }
+                if (grown.low != box.low || grown.high != box.high) {
+                    return "Every block but the roots stands below one lane of one block, in the "
+                           "lane's box: broken.";
+                }
+                const float most = std::max(
+                    {-box.low[0], -box.low[1], -box.low[2], box.high[0], box.high[1], box.high[2]});
+                if (static_cast<double>(most) > level.radius) {
+                    return "A level's radius covers its boxes: broken.";
+                }
+            }
+        }
+    }
+    const bool allOnce = std::all_of(timesBelow.begin(), timesBelow.end(),
+                                     [](std::uint32_t times) { return times == 1; });
+    return allOnce ? std::string()
+                   : "Every block but the roots stands below one lane of one block, in the lane's "
+                     "box: broken.";
 }
 
 }  // namespace hashphase::detail

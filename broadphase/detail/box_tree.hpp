@@ -19,6 +19,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace hashphase::detail {
@@ -45,6 +46,12 @@ public:
     [[nodiscard]] const BoxBlock* blocks() const noexcept { return blocks_.data(); }
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
+    /// Says which invariant is broken, in a sentence; empty when all hold:
+    /// - Every block but the roots stands below one lane of one block, in the lane's box.
+    /// - A block has one to eight boxes; lanes without a box are met by nothing.
+    /// - A level's radius covers its boxes.
+    [[nodiscard]] std::string validate() const;
+
 private:
     struct Box {
         std::array<float, 3> low;
@@ -59,6 +66,7 @@ private:
         std::uint32_t box;
     };
 
+    [[nodiscard]] static Box boxOf(const BoxBlock& block, std::uint32_t lane);
     template <class Scalar>
     void readBoxes(const Table<Scalar>& table, const Level<Scalar>& level);
     [[nodiscard]] float curveStep();

@@ -77,9 +77,6 @@ template <class Region, class Collector>
 bool Grid<Scalar>::visitTables(const Region& region, Collector& collector, QueryCost& cost) const {
     if constexpr (requires { region.segment(); }) {
         const RayRegion<Scalar>& ray = region.segment();
-        if (ray.direction().hasNaN()) {
-            return true;
-        }
         if (treesAreStale()) {
             growTrees();
         }

@@ -88,7 +88,7 @@ bool readWholeLevel(const BoxTree& tree, const BoxTreeLevel& level, QueryCost& c
 template <class Scalar, class Reader>
 bool walkTree(const BoxTree& tree, const RayRegion<Scalar>& region, QueryCost& cost,
               Reader&& reader) {
-    if (tree.levels().empty()) {
+    if (tree.levels().empty() || region.isEmpty()) {
         return true;
     }
     TreeRay<Scalar> ray(region, tree.origin());

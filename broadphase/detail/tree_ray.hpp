@@ -18,9 +18,9 @@ namespace hashphase::detail {
 template <class Scalar>
 class TreeRay {
 public:
-    /// `origin` [m] is what the tree's bounds are relative to.
+    /// The region must not be empty. `origin` [m] is what the tree's bounds are relative to.
     TreeRay(const RayRegion<Scalar>& ray, const std::array<double, 3>& origin) {
-        Scalar most = 0;
+        Scalar sum = 0;  // NaN when a number is
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const auto i = static_cast<Eigen::Index>(axis);
             const Scalar from = ray.from()[i];
@@ -36,10 +36,10 @@ public:
             const Scalar reach = std::abs(from) + std::abs(zero) + 2 * std::abs(way_[axis]) +
                                  std::abs(a) + std::abs(b);
             padding_[axis] = 16 * kEpsilon * reach + static_cast<Scalar>(kTiniest);
-            most = std::max(most, reach);
+            sum += reach;
             aim<Scalar>(axis, start_[axis], inverse_[axis]);
         }
-        reach_ = static_cast<double>(most);
+        reach_ = static_cast<double>(sum);
     }
 
     /// Makes lanes() fit bounds that are at most `radius` [m] from the origin. Of a much longer ray
@@ -65,7 +65,7 @@ public:
     /// The ray between 0 and 1, for mayMeetMask().
     [[nodiscard]] const RayLanes& lanes() const noexcept { return lanes_; }
 
-    /// False when the numbers are too large for single precision; lanes() mean nothing then.
+    /// False when a number is too large for single precision, or NaN; lanes() mean nothing then.
     [[nodiscard]] bool isExpressible() const noexcept { return isExpressible_; }
 
     /// What the region meets at `key` or sooner, the lanes meet at this or sooner.

@@ -85,11 +85,11 @@ struct RayFields final : btBroadphaseRayCallback {
 /// How much sooner than at an object's box its shape may be hit, as a fraction of the ray: Bullet's
 /// convex casts end a centimetre before the surface, and round in the world's coordinates.
 btScalar castTolerance(const btVector3& from, const btVector3& to) {
-    constexpr btScalar centimetres = btScalar(0.02);
+    constexpr auto surface = btScalar(0.02);  // [m]
     const btScalar reach = from.absolute().length() + to.absolute().length();
     const btScalar rounding = 64 * std::numeric_limits<btScalar>::epsilon() * reach;
     const btScalar length = (to - from).length();
-    return length > 0 ? (centimetres + rounding) / length : btScalar(0);
+    return length > 0 ? (surface + rounding) / length : btScalar(0);
 }
 
 /// Casts the ray at the shape of each object that it is offered, as long as a nearer hit is possible.
