@@ -9,6 +9,8 @@
 //                           within level.low to level.high
 //
 // key() decides what is found; forRows() only saves work and may name too many rows, never too few.
+// A region along a line has segment() in the place of forRows(): a RayRegion that meets whatever has
+// a key, no later on its way than that key.
 //
 // Units    metres; a ray's key is the fraction of its length, 0 at `from`, 1 at `to`
 // NaN      a NaN in a region makes it empty
