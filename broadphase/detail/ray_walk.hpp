@@ -14,6 +14,16 @@
 
 namespace hashphase::detail {
 
+/// The lane of `mask`, which has one, with the smallest number.
+inline std::uint32_t nearestLane(const std::array<float, kBlockWidth>& enters, std::uint32_t mask) {
+    auto nearest = static_cast<std::uint32_t>(std::countr_zero(mask));
+    for (mask &= mask - 1; mask != 0; mask &= mask - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(mask));
+        nearest = enters[lane] < enters[nearest] ? lane : nearest;
+    }
+    return nearest;
+}
+
 /// Offers to reader.read(slot) -> bool, false to stop, each box of the level that the ray may meet
 /// up to the key reader.limit(), roughly from near to far. Returns false when stopped.
 template <class Scalar, class Reader>
@@ -43,13 +53,14 @@ bool walkTreeLevel(const BoxTree& tree, const BoxTreeLevel& level, const TreeRay
         ++blocksRead;
         if (index < level.firstInner) {
             boxesTested += block.count;
-            if (mask == 0) {
-                continue;
+            while (mask != 0 && goOn) {
+                const std::uint32_t k = nearestLane(enters, mask);
+                mask ^= 1U << k;
+                if (enters[k] <= last) {
+                    goOn = reader.read(block.below[k]);
+                    last = ray.lastFor(static_cast<double>(reader.limit()));
+                }
             }
-            for (; mask != 0 && goOn; mask &= mask - 1) {
-                goOn = reader.read(block.below[static_cast<std::size_t>(std::countr_zero(mask))]);
-            }
-            last = ray.lastFor(static_cast<double>(reader.limit()));
             continue;
         }
         // The nearest on top.
