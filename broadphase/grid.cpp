@@ -221,6 +221,7 @@ bool Grid<Scalar>::putQuietToRest(ParallelFor parallelFor) {
         records_[resting_.slot(entry)].restingEntry = entry;
     }
     restingErased_ = 0;
+    restingTree_.isStale.store(true, std::memory_order_relaxed);
     cost_.filed += resting_.size();
     return quietCount_ > 0;
 }
@@ -228,6 +229,7 @@ bool Grid<Scalar>::putQuietToRest(ParallelFor parallelFor) {
 template <class Scalar>
 void Grid<Scalar>::fileMobile(ParallelFor parallelFor) {
     mobile_.build(mobileSlots_, staged_, fixedSizes_, parallelFor);
+    mobileTree_.isStale.store(true, std::memory_order_relaxed);
     cost_.filed += mobile_.size();
     for (const std::uint32_t slot : waiting_) {
         records_[slot].isWaiting = false;
@@ -297,6 +299,21 @@ void Grid<Scalar>::fileIfMany() const {
     }
 }
 
+// As fileIfMany(): a write on behalf of readers, none of whom passes before it is done.
+template <class Scalar>
+void Grid<Scalar>::growTrees() const {
+    auto& self = const_cast<Grid&>(*this);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+    const std::lock_guard lock(self.filing_);
+    const auto grow = [](TableTree& tree, const detail::Table<Scalar>& table) {
+        if (tree.isStale.load(std::memory_order_relaxed)) {
+            tree.tree.build(table);
+            tree.isStale.store(false, std::memory_order_release);
+        }
+    };
+    grow(self.mobileTree_, mobile_);
+    grow(self.restingTree_, resting_);
+}
+
 // --- Cells ---------------------------------------------------------------------------------------
 
 template <class Scalar>
@@ -327,7 +344,8 @@ std::size_t Grid<Scalar>::memoryBytes() const noexcept {
                sizeof(std::uint32_t) +
            (staged_.capacity() + stagedBefore_.capacity() + restBoxes_.capacity()) *
                sizeof(detail::PaddedBox<Scalar>) +
-           mobile_.memoryBytes() + resting_.memoryBytes();
+           mobile_.memoryBytes() + resting_.memoryBytes() + mobileTree_.tree.memoryBytes() +
+           restingTree_.tree.memoryBytes();
 }
 
 template <class Scalar>
@@ -348,6 +366,11 @@ std::string Grid<Scalar>::validate() const {
             if (!isSameBits(table->box(entry), records_[slot].box)) {
                 return "A filed proxy's entry has the proxy's box: broken.";
             }
+        }
+    }
+    for (const TableTree* table : {&mobileTree_, &restingTree_}) {
+        if (std::string error = table->tree.validate(); !error.empty()) {
+            return error;
         }
     }
     for (const std::uint32_t slot : waiting_) {

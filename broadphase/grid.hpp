@@ -18,6 +18,7 @@
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/collectors.hpp>
+#include <broadphase/detail/box_tree.hpp>
 #include <broadphase/detail/table.hpp>
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/grid_config.hpp>
@@ -104,6 +105,12 @@ public:
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
 
+    /// visit() for many: collectors[i] takes what regions[i] finds, as if asked alone. The collectors
+    /// must not share anything when `parallelFor` is parallel. Returns the sum of the costs.
+    template <class Region, class Collector>
+    QueryCost visitEach(std::span<const Region> regions, std::span<Collector> collectors,
+                        ParallelFor parallelFor = serialFor) const;
+
     /// The edge of the cells of cellAt(), cellsOf() and visitCell() [m]: the fixed cell size, or the
     /// finest of the automatic ones at the last update; 1 while the grid is empty.
     [[nodiscard]] Scalar cellSize() const noexcept { return cellSize_; }
@@ -133,7 +140,7 @@ public:
     /// Says which invariant is broken, in a sentence; empty when all hold:
     /// - Every proxy alive is filed in exactly one table, or waits in the list of changes, or is NaN.
     /// - A filed proxy's entry has the proxy's box.
-    /// - The tables' own invariants (detail/table.hpp).
+    /// - The tables' own invariants (detail/table.hpp), and those of their trees (detail/box_tree.hpp).
     [[nodiscard]] std::string validate() const;
 
 private:
@@ -160,6 +167,8 @@ private:
 
     template <class Region, class Collector>
     struct VisitReader;
+    template <class Region, class Collector>
+    struct RayReader;
     struct CellRegion;
 
     /// The proxy in the slot, or the last one that was.
@@ -202,6 +211,13 @@ private:
     void endUpdate();
 
     void fileIfMany() const;
+    void growTrees() const;
+    [[nodiscard]] bool treesAreStale() const noexcept {
+        return mobileTree_.isStale.load(std::memory_order_acquire) ||
+               restingTree_.isStale.load(std::memory_order_acquire);
+    }
+    template <class Region, class Collector>
+    bool visitTables(const Region& region, Collector& collector, QueryCost& cost) const;
 
     GridConfig config_;
     detail::LevelSizes fixedSizes_;
@@ -230,6 +246,14 @@ private:
     std::vector<std::uint32_t> woken_;  // slots that have left resting_ since the last update
     std::uint32_t restingErased_ = 0;
     detail::Table<Scalar> resting_;
+
+    /// What rays read of a table; made by the first ray after the table was built.
+    struct TableTree {
+        detail::BoxTree tree;
+        std::atomic<bool> isStale{false};
+    };
+    TableTree mobileTree_;
+    TableTree restingTree_;
 
     // Boxes by their place in mobileSlots_: as they are now, and as of the last update.
     std::vector<detail::PaddedBox<Scalar>> staged_;

@@ -9,13 +9,14 @@
 //                           within level.low to level.high
 //
 // key() decides what is found; forRows() only saves work and may name too many rows, never too few.
+// A region along a line has segment() in the place of forRows(): a RayRegion that meets whatever has
+// a key, no later on its way than that key.
 //
 // Units    metres; a ray's key is the fraction of its length, 0 at `from`, 1 at `to`
 // NaN      a NaN in a region makes it empty
 // Threads  values; use them from any thread
 
 #include <broadphase/aabb.hpp>
-#include <broadphase/detail/ray_rows.hpp>
 #include <broadphase/detail/walk.hpp>
 
 #include <algorithm>
@@ -149,11 +150,17 @@ public:
         return enter <= leave ? enter : Scalar(-1);
     }
 
-    template <class VisitRow>
-    bool forRows(const detail::Level<Scalar>& level, VisitRow&& visitRow) const {
-        return direction_.hasNaN() ||
-               detail::forRowsOfRay(level, from_, direction_, fatness_, visitRow);
-    }
+    /// True when an end is NaN or infinite: nothing has a key.
+    [[nodiscard]] bool isEmpty() const noexcept { return direction_.hasNaN(); }
+    [[nodiscard]] const Vector3<Scalar>& from() const noexcept { return from_; }
+    /// `to` - `from`, but 0 where its inverse would be infinite.
+    [[nodiscard]] const Vector3<Scalar>& direction() const noexcept { return direction_; }
+    /// One by direction(); infinite where that is 0.
+    [[nodiscard]] const Vector3<Scalar>& inverse() const noexcept { return inverse_; }
+    [[nodiscard]] const Aabb<Scalar>& fatness() const noexcept { return fatness_; }
+
+    /// Grids read this line, thick as the region is, and no cells.
+    [[nodiscard]] const RayRegion& segment() const noexcept { return *this; }
 
 private:
     Vector3<Scalar> from_;

@@ -3,6 +3,7 @@
 
 // Grid's query templates; included by grid.hpp.
 
+#include <broadphase/detail/ray_walk.hpp>
 #include <broadphase/grid.hpp>
 
 #include <cmath>
@@ -43,16 +44,62 @@ struct Grid<Scalar>::VisitReader {
     }
 };
 
+/// The same for what a ray finds in a tree.
+template <class Scalar>
+template <class Region, class Collector>
+struct Grid<Scalar>::RayReader {
+    const Grid& grid;
+    const Region& region;
+    Collector& collector;
+    QueryCost& cost;
+    Place place;
+
+    [[nodiscard]] auto limit() const { return collector.limit(); }
+
+    bool read(std::uint32_t slot) {
+        const Record& record = grid.records_[slot];
+        // The tree is as old as its table: who stands there may have left.
+        if (record.place != place || record.isWaiting) {
+            return true;
+        }
+        const Scalar key = region.key(grid.records_[slot].box);
+        if (!(key >= 0 && key <= limit())) {
+            return true;
+        }
+        ++cost.hits;
+        collector.add(grid.idOf(slot), key);
+        return limit() >= 0;
+    }
+};
+
+template <class Scalar>
+template <class Region, class Collector>
+bool Grid<Scalar>::visitTables(const Region& region, Collector& collector, QueryCost& cost) const {
+    if constexpr (requires { region.segment(); }) {
+        const RayRegion<Scalar>& ray = region.segment();
+        if (treesAreStale()) {
+            growTrees();
+        }
+        using Reader = RayReader<Region, Collector>;
+        Reader mobile{*this, region, collector, cost, Place::mobile};
+        Reader resting{*this, region, collector, cost, Place::resting};
+        return detail::walkTree(mobileTree_.tree, ray, cost, mobile) &&
+               detail::walkTree(restingTree_.tree, ray, cost, resting);
+    } else {
+        using Reader = VisitReader<Region, Collector>;
+        Reader mobile{*this, mobile_, region, collector, cost};
+        Reader resting{*this, resting_, region, collector, cost};
+        return detail::walkTable(mobile_, region, cost, mobile) &&
+               detail::walkTable(resting_, region, cost, resting);
+    }
+}
+
 template <class Scalar>
 template <class Region, class Collector>
 QueryCost Grid<Scalar>::visit(const Region& region, Collector& collector) const {
     fileIfMany();
     QueryCost cost;
-    using Reader = VisitReader<Region, Collector>;
-    Reader mobile{*this, mobile_, region, collector, cost};
-    Reader resting{*this, resting_, region, collector, cost};
-    if (!detail::walkTable(mobile_, region, cost, mobile) ||
-        !detail::walkTable(resting_, region, cost, resting)) {
+    if (!visitTables(region, collector, cost)) {
         return cost;
     }
     // What changed since it was filed.
@@ -62,11 +109,37 @@ QueryCost Grid<Scalar>::visit(const Region& region, Collector& collector) const 
         }
         ++cost.boxesTested;
         const Scalar key = region.key(records_[slot].box);
-        if (key >= 0 && key <= collector.limit() && !mobile.offer(slot, key)) {
+        if (!(key >= 0 && key <= collector.limit())) {
+            continue;
+        }
+        ++cost.hits;
+        collector.add(idOf(slot), key);
+        if (!(collector.limit() >= 0)) {
             break;
         }
     }
     return cost;
+}
+
+template <class Scalar>
+template <class Region, class Collector>
+QueryCost Grid<Scalar>::visitEach(std::span<const Region> regions, std::span<Collector> collectors,
+                                  ParallelFor parallelFor) const {
+    HASHPHASE_ASSERT(regions.size() == collectors.size(), "Each region has a collector.");
+    constexpr std::size_t grain = 64;
+    std::atomic<std::uint64_t> rowsVisited{0};
+    std::atomic<std::uint64_t> boxesTested{0};
+    std::atomic<std::uint64_t> hits{0};
+    parallelFor(regions.size(), grain, [&](std::size_t begin, std::size_t end) {
+        QueryCost cost;
+        for (std::size_t i = begin; i < end; ++i) {
+            cost += visit(regions[i], collectors[i]);
+        }
+        rowsVisited += cost.rowsVisited;
+        boxesTested += cost.boxesTested;
+        hits += cost.hits;
+    });
+    return {rowsVisited, boxesTested, hits};
 }
 
 /// The boxes that touch one cell, by the same rounding as cellAt().

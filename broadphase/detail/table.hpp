@@ -29,14 +29,12 @@
 
 namespace hashphase::detail {
 
-/// Part of a row of cells, from firstX to lastX inclusive. Nothing in it has a smaller key than
-/// `nearestKey` in the region that named it.
+/// Part of a row of cells, from firstX to lastX inclusive.
 struct CellRun {
     std::int32_t y = 0;
     std::int32_t z = 0;
     std::int32_t firstX = 0;
     std::int32_t lastX = 0;
-    double nearestKey = 0;
 };
 
 /// One level of a table: which entries it has, how coordinates become its cells, and how its rows

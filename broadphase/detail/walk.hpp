@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The one walk that answers every query: a region names the rows of cells to read on each level,
-// the walk reads their buckets.
+// The one walk that answers every query but rays: a region names the rows of cells to read on each
+// level, the walk reads their buckets.
 
 #include <broadphase/detail/table.hpp>
 #include <broadphase/diagnostics.hpp>
@@ -14,9 +14,16 @@ namespace hashphase {
 
 /// What a query cost, returned with its answer.
 struct QueryCost {
-    std::uint64_t rowsVisited = 0;
+    std::uint64_t rowsVisited = 0;  ///< rows of cells, or a ray's blocks of up to eight boxes
     std::uint64_t boxesTested = 0;
     std::uint64_t hits = 0;
+
+    QueryCost& operator+=(const QueryCost& other) noexcept {
+        rowsVisited += other.rowsVisited;
+        boxesTested += other.boxesTested;
+        hits += other.hits;
+        return *this;
+    }
 };
 
 namespace detail {
@@ -64,8 +71,7 @@ bool forRowsOfBox(const Level<Scalar>& level, const Aabb<Scalar>& bounds, VisitR
 
 /// Reads the entries of one level that may lie in `region`. For each range of entries calls
 /// reader.read(range, isOwn) -> bool, false to stop; isOwn(entry) must be asked about every hit, and
-/// tells whether this range is the one that reports it. Runs beyond reader.limit() are passed over.
-/// Returns false when stopped.
+/// tells whether this range is the one that reports it. Returns false when stopped.
 template <class Scalar, class Region, class Reader>
 bool walkLevel(const Table<Scalar>& table, const Level<Scalar>& level, const Region& region,
                QueryCost& cost, Reader&& reader) {
@@ -83,9 +89,6 @@ bool walkLevel(const Table<Scalar>& table, const Level<Scalar>& level, const Reg
     bool goOn = true;
     const bool byRows = region.forRows(level, [&](const CellRun& run) {
         HASHPHASE_ASSERT(level.isWithin(run), "A region names rows of the level's cells.");
-        if (run.nearestKey > reader.limit()) {
-            return true;
-        }
         ++cost.rowsVisited;
         table.forRun(level, run, [&](const EntryRange& range) {
             cost.boxesTested += range.last - range.first;

@@ -5,11 +5,7 @@
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/pair_cache.hpp>
 
-#include <LinearMath/btAabbUtil2.h>
 #include <LinearMath/btGeometryUtil.h>
-
-#include <algorithm>
-#include <limits>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
@@ -19,61 +15,6 @@ extern bool (*const bulletOfTheSamePrecision)(const btAlignedObjectArray<btVecto
                                               const btVector3&, btScalar);
 bool (*const bulletOfTheSamePrecision)(const btAlignedObjectArray<btVector3>&, const btVector3&,
                                        btScalar) = &btGeometryUtil::isPointInsidePlanes;
-
-namespace {
-
-/// How far off the ray [m], on each axis, btRayAabb2() may see a hit. Bullet's inverse of a direction
-/// of 0 is a large number and not infinity: a ray of 1e18 m hits what is a metre beside it.
-btVector3 slackOf(const btBroadphaseRayCallback& callback, const btVector3& way) {
-    btVector3 slack(0, 0, 0);
-    for (int axis = 0; axis < 3; ++axis) {
-        const btScalar reach = btFabs(callback.m_lambda_max / callback.m_rayDirectionInverse[axis]);
-        const btScalar excess = reach - btFabs(way[axis]);
-        slack[axis] = excess > 0 ? excess : btScalar(0);  // also for NaN, of a ray of no length
-    }
-    return slack;
-}
-
-/// A ray as Bullet's callbacks describe it: the segment says where to look, btRayAabb2() with the
-/// callback's fields what is hit.
-struct CallbackRayRegion {
-    RayRegion<btScalar> segment;
-    btVector3 from;
-    btVector3 castMin;
-    btVector3 castMax;
-    const btBroadphaseRayCallback& callback;
-
-    [[nodiscard]] btScalar key(const Aabb<btScalar>& box) const {
-        const btVector3 bounds[2] = {toBullet(box.min()) - castMax, toBullet(box.max()) - castMin};
-        btScalar enter = 0;
-        const bool isHit = btRayAabb2(from, callback.m_rayDirectionInverse, callback.m_signs,
-                                      bounds, enter, btScalar(0), callback.m_lambda_max);
-        return isHit && !hasNan(box) ? btScalar(0) : btScalar(-1);
-    }
-
-    template <class VisitRow>
-    bool forRows(const detail::Level<btScalar>& level, VisitRow&& visitRow) const {
-        return segment.forRows(level, visitRow);
-    }
-};
-
-}  // namespace
-
-/// Hands what a query finds to Bullet's callback.
-template <class Callback>
-struct SpatialHashBroadphase::ProcessCollector {
-    const SpatialHashBroadphase& broadphase;
-    Callback& callback;
-    bool isStopped = false;
-
-    void add(ProxyId id, btScalar /*key*/) {
-        const bool goOn = callback.process(broadphase.proxyAt(id.index));
-        isStopped = !goOn && broadphase.config_.stopWhenProcessReturnsFalse;
-    }
-    [[nodiscard]] double limit() const {
-        return isStopped ? -1 : std::numeric_limits<double>::infinity();
-    }
-};
 
 // --- Proxies -------------------------------------------------------------------------------------
 
@@ -152,23 +93,6 @@ void SpatialHashBroadphase::getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin
                                     btVector3& aabbMax) const {
     aabbMin = proxy->m_aabbMin;
     aabbMax = proxy->m_aabbMax;
-}
-
-void SpatialHashBroadphase::rayTest(const btVector3& rayFrom, const btVector3& rayTo,
-                                    btBroadphaseRayCallback& rayCallback, const btVector3& aabbMin,
-                                    const btVector3& aabbMax) {
-    const btVector3 slack = slackOf(rayCallback, rayTo - rayFrom);
-    const RayRegion<btScalar> segment(toEigen(rayFrom), toEigen(rayTo),
-                                      toAabb(aabbMin - slack, aabbMax + slack));
-    const CallbackRayRegion region{segment, rayFrom, aabbMin, aabbMax, rayCallback};
-    ProcessCollector<btBroadphaseRayCallback> collector{*this, rayCallback};
-    grid_.visit(region, collector);
-}
-
-void SpatialHashBroadphase::aabbTest(const btVector3& aabbMin, const btVector3& aabbMax,
-                                     btBroadphaseAabbCallback& callback) {
-    ProcessCollector<btBroadphaseAabbCallback> collector{*this, callback};
-    grid_.visit(BoxRegion<btScalar>{toAabb(aabbMin, aabbMax)}, collector);
 }
 
 // --- Pairs ---------------------------------------------------------------------------------------

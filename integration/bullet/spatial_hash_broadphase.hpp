@@ -14,7 +14,7 @@
 //
 // Batches   createProxies(), setAabbs() and destroyProxies() do what as many single calls do, at less
 //           cost.
-// Threads   rayTest() and aabbTest() are const in all but name: any number may run at the same time
+// Threads   Rays and aabbTest() are const in all but name: any number may run at the same time
 //           and inside each other. Everything else needs the broadphase for itself, as in Bullet.
 // Units     the world's; nothing depends on their size.
 // Bad data  A box with NaN pairs with nothing and is reported once (diagnostics.hpp). Infinite, huge
@@ -32,6 +32,7 @@
 #include <BulletCollision/BroadphaseCollision/btBroadphaseInterface.h>
 #include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
+#include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -70,6 +71,22 @@ struct ProxyDefinition {
     int collisionFilterMask = btBroadphaseProxy::AllFilter;
 };
 
+/// A ray of SpatialHashBroadphase::rayTests(), with the arguments of rayTest().
+struct BroadphaseRay {
+    btVector3 from;
+    btVector3 to;
+    btBroadphaseRayCallback* callback = nullptr;
+    btVector3 castMin{0, 0, 0};
+    btVector3 castMax{0, 0, 0};
+};
+
+/// A ray of SpatialHashBroadphase::closestRays(), with the arguments of closestRay().
+struct ClosestRay {
+    btVector3 from;
+    btVector3 to;
+    btCollisionWorld::RayResultCallback* callback = nullptr;
+};
+
 class SpatialHashBroadphase : public btBroadphaseInterface {
 public:
     /// Makes and owns a PairCache. Throws std::invalid_argument with configError(config.grid).
@@ -105,7 +122,7 @@ public:
 
     /// Calls rayCallback.process() once for every proxy whose box, grown by the cast box
     /// (aabbMin, aabbMax), passes btRayAabb2() with the callback's own fields. Sees every box as it
-    /// was last set. Order unspecified.
+    /// was last set. Order roughly from near to far, but not to be relied on.
     void rayTest(const btVector3& rayFrom, const btVector3& rayTo,
                  btBroadphaseRayCallback& rayCallback,
                  const btVector3& aabbMin = btVector3(0, 0, 0),
@@ -150,6 +167,20 @@ public:
     void destroyProxies(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher);
 
     // --- Beyond Bullet ---------------------------------------------------------------------------
+
+    /// btCollisionWorld::rayTest(), but from near to far, and no farther than a nearer hit is
+    /// possible: reports to `callback` what it would report, less what lies more than 2 cm behind
+    /// callback.m_closestHitFraction. That makes no difference for a ClosestRayResultCallback, but
+    /// for which of several hits at the same fraction is kept. For worlds whose clients are
+    /// btCollisionObjects; soft bodies need their world's own rayTest(). Any number of threads.
+    QueryCost closestRay(const btVector3& from, const btVector3& to,
+                         btCollisionWorld::RayResultCallback& callback) const;
+
+    /// rayTest() and closestRay() for many rays: each callback hears what it would hear from a ray
+    /// alone, in the same order; callbacks are called at the same time where `parallelFor` is
+    /// parallel. A callback serves one ray of the batch.
+    void rayTests(std::span<const BroadphaseRay> rays, ParallelFor parallelFor = serialFor);
+    void closestRays(std::span<const ClosestRay> rays, ParallelFor parallelFor = serialFor) const;
 
     /// Asks the filter again about everything that the proxy overlaps, and adds and removes its
     /// pairs accordingly, at once. For use after a change of its group, mask, or of the filter.

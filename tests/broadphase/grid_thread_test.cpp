@@ -91,6 +91,28 @@ TEST(GridThreads, QueriesRightAfterManyChangesAllSeeThem) {
     }
 }
 
+TEST(GridThreads, RaysRightAfterAnUpdateAllFindTheTreesMade) {
+    Crowd crowd;
+    for (int round = 0; round < 20; ++round) {
+        crowd.moveMany();
+        crowd.grid.update();  // nothing waits: only the trees are to be made
+        std::atomic<int> wrong{0};
+        runOnThreads([&](int t) {
+            Random random(0x5eed0803U + static_cast<std::uint64_t>(t));
+            RegionMaker<float> make(random, crowd.proxies);
+            for (int i = 0; i < 5; ++i) {
+                const RayRegion<float> ray = make.ray();
+                CollectKeys<float> found;
+                CollectKeys<float> expected;
+                crowd.grid.visit(ray, found);
+                visitByBruteForce<float>(crowd.proxies, ray, expected);
+                wrong += found.sorted() == expected.sorted() ? 0 : 1;
+            }
+        });
+        ASSERT_EQ(wrong.load(), 0);
+    }
+}
+
 TEST(GridThreads, WhateverIsConstMayBeAskedBesideTheQueryThatFiles) {
     for (int round = 0; round < 10; ++round) {
         Crowd crowd;

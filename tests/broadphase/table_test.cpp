@@ -2,13 +2,13 @@
 
 #include <broadphase/detail/join.hpp>
 #include <tests/support/box_scenes.hpp>
+#include <tests/support/fill_table.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <map>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -28,13 +28,7 @@ protected:
 
     void build(std::vector<Box> boxes, const LevelSizes& fixed = {}) {
         boxes_ = std::move(boxes);
-        slots_.resize(boxes_.size());
-        std::iota(slots_.begin(), slots_.end(), 0U);
-        std::vector<PaddedBox<Scalar>> paddedBoxes;
-        for (const Box& box : boxes_) {
-            paddedBoxes.push_back(padded(box));
-        }
-        table_.build(slots_, paddedBoxes, fixed);
+        test::fill(table_, boxes_, fixed);
         ASSERT_EQ(table_.validate(), "");
         ASSERT_EQ(table_.size(), boxes_.size());
     }
@@ -83,7 +77,6 @@ protected:
     }
 
     std::vector<Box> boxes_;
-    std::vector<std::uint32_t> slots_;
     Table<Scalar> table_;
 };
 

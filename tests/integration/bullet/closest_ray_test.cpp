@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Zlib
+//
+// closestRay() against btCollisionWorld::rayTest() over the same broadphase, and batches of rays
+// against rays alone.
+
+#include <tests/integration/bullet/bullet_scenes.hpp>
+#include <tests/integration/bullet/queries.hpp>
+
+#include <integration/bullet/spatial_hash_broadphase.hpp>
+
+#include <BulletCollision/NarrowPhaseCollision/btRaycastCallback.h>
+#include <btBulletCollisionCommon.h>
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <memory>
+#include <thread>
+#include <vector>
+
+namespace hashphase::test {
+namespace {
+
+constexpr std::uint64_t kSeed = 12;
+
+/// Objects of all kinds of shapes on a plane and a mesh, some of which the filter hides.
+class ShapeWorld {
+public:
+    explicit ShapeWorld(int count, btScalar side) : side_(side) {
+        for (int i = 0; i < 2; ++i) {
+            compound_.addChildShape(btTransform(btQuaternion::getIdentity(), random.vector(-1, 1)),
+                                    i == 0 ? static_cast<btCollisionShape*>(&sphere_) : &box_);
+        }
+        for (int i = 0; i < 8; ++i) {
+            hull_.addPoint(random.vector(-1, 1));
+        }
+        addGround();
+        btCollisionShape* const shapes[] = {&sphere_, &box_,     &compound_,
+                                            &hull_,   &capsule_, &small_};
+        for (int i = 0; i < count; ++i) {
+            const btTransform place(btQuaternion(random.direction(), random.uniform(0, 3)),
+                                    random.vector(0, side));
+            add(shapes[i % 6], place,
+                i % 5 == 0 ? btBroadphaseProxy::DebrisFilter : btBroadphaseProxy::DefaultFilter);
+        }
+        world.updateAabbs();
+        broadphase.calculateOverlappingPairs(&dispatcher_);
+    }
+
+    void jump(int i) {
+        objects_[static_cast<std::size_t>(i)].getWorldTransform().setOrigin(
+            random.vector(0, side_));
+        world.updateSingleAabb(&objects_[static_cast<std::size_t>(i)]);
+    }
+
+    Random random{kSeed};
+    SpatialHashBroadphase broadphase;
+
+private:
+    void addGround() {
+        constexpr int kSide = 8;
+        for (int i = 0; i < kSide * kSide; ++i) {
+            const auto at = [&](int x, int y) {
+                const btScalar height = btScalar((x * 7 + y * 5) % 3);
+                return btVector3(btScalar(x) * side_ / kSide, height, btScalar(y) * side_ / kSide);
+            };
+            const int x = i % kSide;
+            const int y = i / kSide;
+            triangles_.addTriangle(at(x, y), at(x + 1, y), at(x, y + 1));
+            triangles_.addTriangle(at(x + 1, y), at(x + 1, y + 1), at(x, y + 1));
+        }
+        mesh_ = std::make_unique<btBvhTriangleMeshShape>(&triangles_, true);
+        add(mesh_.get(), btTransform::getIdentity(), btBroadphaseProxy::StaticFilter);
+        add(&plane_, btTransform::getIdentity(), btBroadphaseProxy::StaticFilter);
+    }
+
+    void add(btCollisionShape* shape, const btTransform& place, int group) {
+        btCollisionObject& object = objects_.emplace_back();
+        object.setCollisionShape(shape);
+        object.setWorldTransform(place);
+        world.addCollisionObject(&object, group, btBroadphaseProxy::AllFilter);
+    }
+
+    btScalar side_;
+    btSphereShape sphere_{btScalar(0.7)};
+    btBoxShape box_{{btScalar(0.5), btScalar(0.9), btScalar(0.3)}};
+    btCompoundShape compound_;
+    btConvexHullShape hull_;
+    btCapsuleShape capsule_{btScalar(0.3), 1};
+    btSphereShape small_{btScalar(0.05)};
+    btStaticPlaneShape plane_{{0, 1, 0}, -3};
+    btTriangleMesh triangles_;
+    std::unique_ptr<btBvhTriangleMeshShape> mesh_;
+    btDefaultCollisionConfiguration configuration_;
+    btCollisionDispatcher dispatcher_{&configuration_};
+    std::deque<btCollisionObject> objects_;
+
+public:
+    btCollisionWorld world{&dispatcher_, &broadphase, &configuration_};
+};
+
+/// Counts what it is asked about.
+struct Closest : btCollisionWorld::ClosestRayResultCallback {
+    using ClosestRayResultCallback::ClosestRayResultCallback;
+    bool needsCollision(btBroadphaseProxy* proxy) const override {
+        ++asked;
+        return ClosestRayResultCallback::needsCollision(proxy);
+    }
+    mutable int asked = 0;
+};
+
+void expectSame(const Closest& actual, const Closest& expected) {
+    ASSERT_EQ(actual.hasHit(), expected.hasHit());
+    ASSERT_EQ(actual.m_closestHitFraction, expected.m_closestHitFraction);
+    if (actual.hasHit()) {
+        EXPECT_EQ(actual.m_collisionObject, expected.m_collisionObject);
+        EXPECT_EQ((actual.m_hitNormalWorld - expected.m_hitNormalWorld).length2(), 0);
+    }
+}
+
+TEST(ClosestRay, FindsWhatTheWorldsRayTestFindsAndAsksAboutLess) {
+    constexpr btScalar kSide = 24;
+    ShapeWorld scene(1500, kSide);
+    int hits = 0;
+    int asked = 0;
+    int askedByWorld = 0;
+    for (int i = 0; i < 1500 && !testing::Test::HasFailure(); ++i) {
+        SCOPED_TRACE(i);
+        if (i % 10 == 0) {
+            scene.jump(2 + scene.random.below(1500));  // waits in the list
+        }
+        if (i % 500 == 499) {
+            scene.broadphase.calculateOverlappingPairs(nullptr);
+        }
+        const btScalar length = i % 4 == 0 ? 1 : i % 4 == 1 ? 10 : 100;
+        const btVector3 from = scene.random.vector(-1, kSide + 1);
+        btVector3 to = from + scene.random.direction() * length;
+        if (i % 7 == 0) {
+            to[i % 3] = from[i % 3];
+        }
+        Closest expected(from, to);
+        Closest actual(from, to);
+        for (Closest* callback : {&expected, &actual}) {
+            callback->m_collisionFilterMask =
+                i % 3 == 0 ? ~btBroadphaseProxy::DebrisFilter : btBroadphaseProxy::AllFilter;
+            if (i % 5 == 0) {
+                callback->m_flags = btTriangleRaycastCallback::kF_FilterBackfaces;
+            }
+        }
+        scene.world.rayTest(from, to, expected);
+        const QueryCost cost = scene.broadphase.closestRay(from, to, actual);
+        expectSame(actual, expected);
+        EXPECT_GE(cost.hits, static_cast<std::uint64_t>(actual.asked));
+        hits += actual.hasHit() ? 1 : 0;
+        asked += actual.asked;
+        askedByWorld += expected.asked;
+    }
+    EXPECT_GT(hits, 500);
+    EXPECT_LT(5 * asked, 4 * askedByWorld);
+}
+
+TEST(ClosestRay, OfNoLengthOrWithNothingLeftToFindAsksAboutNothing) {
+    ShapeWorld scene(100, 4);
+    const btVector3 from(2, 2, 2);
+    Closest atOnce(from, from);
+    scene.broadphase.closestRay(from, from, atOnce);
+    EXPECT_FALSE(atOnce.hasHit());
+    Closest done(from, {9, 9, 9});
+    done.m_closestHitFraction = 0;
+    EXPECT_EQ(scene.broadphase.closestRay(from, {9, 9, 9}, done).boxesTested, 0U);
+    EXPECT_EQ(done.asked, 0);
+}
+
+TEST(ClosestRay, PassesOverProxiesWithoutAnObject) {
+    SpatialHashBroadphase broadphase;
+    broadphase.createProxy({-1, -1, -1}, {1, 1, 1}, 0, nullptr, 1, -1, nullptr);
+    Closest closest({-5, 0, 0}, {5, 0, 0});
+    EXPECT_EQ(broadphase.closestRay({-5, 0, 0}, {5, 0, 0}, closest).hits, 1U);
+    EXPECT_FALSE(closest.hasHit());
+}
+
+TEST(ClosestRay, ReportsAllHitsToACallbackThatWantsAll) {
+    ShapeWorld scene(800, 16);
+    for (int i = 0; i < 200; ++i) {
+        const btVector3 from = scene.random.vector(0, 16);
+        const btVector3 to = scene.random.vector(0, 16);
+        btCollisionWorld::AllHitsRayResultCallback expected(from, to);
+        btCollisionWorld::AllHitsRayResultCallback actual(from, to);
+        scene.world.rayTest(from, to, expected);
+        scene.broadphase.closestRay(from, to, actual);
+        ASSERT_EQ(actual.m_hitFractions.size(), expected.m_hitFractions.size());
+    }
+}
+
+// --- Batches -------------------------------------------------------------------------------------
+
+void forOnTwoThreads(std::size_t count, std::size_t grain, LoopBody body) {
+    const std::size_t half = count / 2 / grain * grain;
+    std::thread second([&] { body(half, count); });
+    if (half > 0) {
+        body(0, half);
+    }
+    second.join();
+}
+
+TEST(RayBatches, CallEachCallbackAsARayAloneDoes) {
+    ShapeWorld scene(1500, 24);
+    for (const ParallelFor parallelFor : {ParallelFor(serialFor), ParallelFor(forOnTwoThreads)}) {
+        for (int i = 0; i < 500; ++i) {
+            scene.jump(2 + i);  // so many that the batch files them
+        }
+        std::vector<Ray> rays;
+        std::deque<CollectRay> collectors;
+        std::vector<BroadphaseRay> batch;
+        std::deque<Closest> closest;
+        std::vector<ClosestRay> closestBatch;
+        for (int i = 0; i < 300; ++i) {
+            Ray ray{scene.random.vector(0, 24), scene.random.vector(0, 24)};
+            if (i % 3 == 0) {
+                ray.castMin = -scene.random.vector(0, 1);
+                ray.castMax = scene.random.vector(0, 1);
+            }
+            rays.push_back(ray);
+            batch.push_back(
+                {ray.from, ray.to, &collectors.emplace_back(ray), ray.castMin, ray.castMax});
+            closestBatch.push_back({ray.from, ray.to, &closest.emplace_back(ray.from, ray.to)});
+        }
+        scene.broadphase.rayTests(batch, parallelFor);
+        scene.broadphase.closestRays(closestBatch, parallelFor);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const Ray& ray = rays[i];
+            CollectRay alone(ray);
+            scene.broadphase.rayTest(ray.from, ray.to, alone, ray.castMin, ray.castMax);
+            ASSERT_EQ(collectors[i].found, alone.found);
+            Closest closestAlone(ray.from, ray.to);
+            scene.broadphase.closestRay(ray.from, ray.to, closestAlone);
+            expectSame(closest[i], closestAlone);
+        }
+    }
+    scene.broadphase.rayTests({});
+    scene.broadphase.closestRays({});
+}
+
+}  // namespace
+}  // namespace hashphase::test
