@@ -3,8 +3,10 @@
 
 #include <demos/compare/stopwatch.hpp>
 #include <demos/compare/verifier.hpp>
+#include <tests/benchmarks/frame_clock.hpp>
 
 #include <algorithm>
+#include <limits>
 
 namespace hashphase::benchmarks {
 namespace {
@@ -13,7 +15,7 @@ namespace {
 constexpr std::size_t kCheckedInEveryFrame = 100'000;
 constexpr int kCheckedFrames = 10;  // beyond, every tenth
 
-// Who is hopeless shows after as many warm-up frames.
+// Who is hopeless shows after as many warm-up frames; one alone may have been disturbed.
 constexpr int kFramesBeforeDropping = 2;
 
 bool isChecked(std::size_t objects, int frame) {
@@ -33,7 +35,7 @@ public:
         result_.objects = workload_->objects();
         result_.operations = workload_->operations();
         result_.warmUpFrames = settings.warmUpFrames;
-        warmUpMs_.resize(toRun.contestants.size());
+        warmUpMs_.assign(toRun.contestants.size(), std::numeric_limits<double>::infinity());
     }
 
     CaseResult run() {
@@ -89,9 +91,9 @@ private:
             contestant.frameMs.push_back(workload_->runFrame(i));
             return;
         }
-        const demos::Stopwatch watch;
+        const FrameClock watch;
         workload_->runWatchedFrame(i);
-        warmUpMs_[i] = watch.milliseconds();
+        warmUpMs_[i] = std::min(warmUpMs_[i], watch.milliseconds());
         contestant.memory = workload_->memory(i);
     }
 
@@ -124,7 +126,7 @@ private:
     const MeasurementSettings& settings_;
     std::unique_ptr<Workload> workload_;
     CaseResult result_;
-    std::vector<double> warmUpMs_;  // of the last warm-up frame, by contestant
+    std::vector<double> warmUpMs_;  // of the quickest warm-up frame, by contestant
     std::vector<Answer> answers_;
     std::vector<Answer> exact_;
 };
