@@ -108,12 +108,12 @@ std::optional<Cell> Table<Scalar>::cellOn(const Level<Scalar>& level,
 
 // How many boxes each cell size has, and the cells between which they are.
 template <class Scalar>
-std::vector<typename Table<Scalar>::Reach> Table<Scalar>::measure(
+typename Table<Scalar>::Reaches Table<Scalar>::measure(
     std::span<const PaddedBox<Scalar>> boxes) const {
-    std::vector<Reach> reaches(levels_.size() / 2);
+    Reaches reaches;
     for (const PaddedBox<Scalar>& padded : boxes) {
         const Aabb<Scalar> box = unpadded(padded);
-        for (std::size_t i = 0; i < reaches.size(); ++i) {
+        for (std::size_t i = 0; i < levels_.size() / 2; ++i) {
             const std::optional<Cell> cell = cellOn(levels_[2 * i], box);
             if (!cell) {
                 continue;
@@ -134,10 +134,10 @@ std::vector<typename Table<Scalar>::Reach> Table<Scalar>::measure(
 template <class Scalar>
 void Table<Scalar>::layOut(std::span<const PaddedBox<Scalar>> boxes) {
     makeLevels();
-    std::vector<Reach> reaches = measure(boxes);
+    Reaches reaches = measure(boxes);
     // What is of a size that few have goes to the next larger cells, or to the list.
     bool isThinned = false;
-    for (std::size_t i = 0; i < reaches.size(); ++i) {
+    for (std::size_t i = 0; i < levels_.size() / 2; ++i) {
         if (reaches[i].count < kThinLevel) {
             isThinned = isThinned || reaches[i].count > 0;
             for (Level<Scalar>* level : {&levels_[2 * i], &levels_[2 * i + 1]}) {

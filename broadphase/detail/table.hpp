@@ -186,7 +186,9 @@ private:
     void makeLevels();
     [[nodiscard]] std::optional<Cell> cellOn(const Level<Scalar>& level,
                                              const Aabb<Scalar>& box) const noexcept;
-    [[nodiscard]] std::vector<Reach> measure(std::span<const PaddedBox<Scalar>> boxes) const;
+    using Reaches = std::array<Reach, kMaxLevels>;  // by cell size
+
+    [[nodiscard]] Reaches measure(std::span<const PaddedBox<Scalar>> boxes) const;
     void layOut(std::span<const PaddedBox<Scalar>> boxes);
     void layOutDense(Level<Scalar>& level, const Reach& reach);
     [[nodiscard]] bool numberThrough(Level<Scalar>& level, std::uint32_t count) const;
