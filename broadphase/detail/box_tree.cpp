@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 
 // Sorting along a space-filling curve and taking neighbours together from the bottom up follows
-// Lauterbach et al., "Fast BVH construction on GPUs", 2009, with four children a node.
+// Lauterbach et al., "Fast BVH construction on GPUs", 2009, with eight children a node.
 
 #include <broadphase/detail/box_tree.hpp>
 #include <broadphase/detail/hilbert.hpp>

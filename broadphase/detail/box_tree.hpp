@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// What rays read: a tree over the boxes of a table, four children a node. The table's cells serve
+// What rays read: a tree over the boxes of a table, eight children a node. The table's cells serve
 // searches that look at one place; a ray looks at a line through all of them, most of it empty, and
-// boxes around four, sixteen, sixty-four neighbours tell it sooner than cells where nothing is.
+// boxes around eight, 64, 512 neighbours tell it sooner than cells where nothing is.
 //
-// Neighbours are found by sorting along a Morton curve (G. M. Morton, "A computer oriented geodetic
-// data base", 1966), one tree for each level of the table, so that large boxes do not fatten the
-// nodes around small ones. Bounds are in single precision, rounded outward, in either precision of
-// the table.
+// Neighbours are found by sorting along a Hilbert curve, one tree for each level of the table, so
+// that large boxes do not fatten the nodes around small ones. Bounds are in single precision, rounded
+// outward, in either precision of the table.
 //
 // Threads   build() needs the tree for itself; everything const may run anywhere.
 

@@ -138,7 +138,7 @@ TYPED_TEST(RayBatch, CostsAGridThatIsAskedForNoRaysNothing) {
 TYPED_TEST(RayBatch, ClosestReadsLittleOfALongWay) {
     std::uint64_t closest = 0;
     std::uint64_t all = 0;
-    for (int i = 0; i < 100; ++i) {
+    for (int i = 0; i < 1000; ++i) {
         Vector3<double> from = this->random_.pointIn(-12, 12);
         from[0] = -20;
         const RayRegion<TypeParam> ray(
@@ -149,7 +149,7 @@ TYPED_TEST(RayBatch, ClosestReadsLittleOfALongWay) {
         CollectCount count;
         all += this->grid_.visit(ray, count).boxesTested;
     }
-    EXPECT_LT(2 * closest, all);
+    EXPECT_LT(3 * closest, all);
 }
 
 }  // namespace
