@@ -5,27 +5,8 @@
 #include <broadphase/detail/radix_sort.hpp>
 
 #include <algorithm>
-#include <limits>
 
 namespace hashphase {
-namespace {
-
-template <class Add>
-struct CollectInto {
-    Add& add_;
-
-    template <class Scalar>
-    void add(ProxyId id, Scalar /*key*/) {
-        add_(id);
-    }
-    static constexpr double limit() { return std::numeric_limits<double>::infinity(); }
-};
-
-bool contains(const detail::FlatSet& couples, std::uint64_t couple) {
-    return couples.size() > 0 && couples.find(couple) != detail::FlatSet::kNone;
-}
-
-}  // namespace
 
 template <class Scalar>
 Pairs<Scalar>::Pairs(Grid<Scalar>& grid) : grid_(grid) {
@@ -105,13 +86,13 @@ void Pairs<Scalar>::findDeaths(ParallelFor parallelFor) {
     for (const Couple c : announced_.keys()) {
         loseIfApart(c);
     }
-    findDeathsOfWoken();
+    findDeathsOfWoken(parallelFor);
 }
 
 // Couples of two that rest are not watched. When one wakes, its couples are those of its box before:
 // found in the resting table where the other one has not changed, and among the woken otherwise.
 template <class Scalar>
-void Pairs<Scalar>::findDeathsOfWoken() {
+void Pairs<Scalar>::findDeathsOfWoken(ParallelFor parallelFor) {
     const auto wake = [this](std::uint32_t a, std::uint32_t b) {
         const Couple c = couple(a, b);
         if (refusedAtRest_.erase(c) != detail::FlatSet::kNone) {
@@ -119,25 +100,28 @@ void Pairs<Scalar>::findDeathsOfWoken() {
         }
         loseIfApart(c);
     };
-    QueryCost cost;
     wokenBoxes_.clear();
+    wokenBounds_.clear();
     for (const std::uint32_t slot : grid_.woken_) {
-        const Box& before = grid_.before(slot);
-        wokenBoxes_.push_back(detail::padded(before));
-        detail::forOverlapsInTable(grid_.resting_, before, cost,
-                                   [&](std::uint32_t other) { wake(slot, other); });
+        wokenBoxes_.push_back(detail::padded(grid_.before(slot)));
+        wokenBounds_.push(grid_.before(slot));
     }
-    cost_.boxesTested += cost.boxesTested;
+    detail::KernelCost cost;
+    selected_.clear();
+    detail::walkTable(grid_.resting_, wokenBounds_.columns(), wokenBounds_.size(), parallelFor,
+                      parts_, selected_, cost);
+    for (const auto [woken, entry] : selected_.pairs()) {
+        wake(grid_.woken_[woken], grid_.resting_.slot(entry));
+    }
     if (grid_.woken_.size() > 1) {
-        detail::KernelCost joinCost;
-        wokenTable_.build(grid_.woken_, wokenBoxes_, grid_.fixedSizes_);
+        wokenTable_.build(grid_.woken_, wokenBoxes_, grid_.fixedSizes_, parallelFor);
         selected_.clear();
-        detail::joinTable(wokenTable_, serialFor, parts_, selected_, joinCost);
+        detail::joinTable(wokenTable_, parallelFor, parts_, selected_, cost);
         for (const auto [a, b] : selected_.pairs()) {
             wake(wokenTable_.slot(a), wokenTable_.slot(b));
         }
-        cost_.boxesTested += joinCost.boxesTested;
     }
+    cost_.boxesTested += cost.boxesTested;
 }
 
 template <class Scalar>
@@ -167,7 +151,7 @@ void Pairs<Scalar>::findBirths(bool someCameToRest, ParallelFor parallelFor) {
     joinMobile(parallelFor);
     walkResting(parallelFor);
     if (announced_.size() > 0) {
-        std::erase_if(asked_, [this](Couple c) { return contains(announced_, c); });
+        std::erase_if(asked_, [this](Couple c) { return announced_.contains(c); });
     }
 }
 
@@ -243,26 +227,18 @@ void Pairs<Scalar>::walkResting(ParallelFor parallelFor) {
         return;
     }
     const detail::Table<Scalar>& table = grid_.mobile_;
-    const detail::Columns<Scalar> columns = table.columns();
     walkers_.clear();
-    for (auto& column : walkerBounds_) {
-        column.clear();
-    }
+    walkerBounds_.clear();
     for (std::uint32_t entry = 0; entry < table.size(); ++entry) {
         if (grid_.changedNow(table.slot(entry))) {
             walkers_.push_back(entry);
-            for (std::size_t i = 0; i < 6; ++i) {
-                walkerBounds_[i].push_back(columns[i][entry]);
-            }
+            walkerBounds_.push(table.box(entry));
         }
     }
     detail::KernelCost cost;
     selected_.clear();
-    const detail::Columns<Scalar> walkerColumns{walkerBounds_[0].data(), walkerBounds_[1].data(),
-                                                walkerBounds_[2].data(), walkerBounds_[3].data(),
-                                                walkerBounds_[4].data(), walkerBounds_[5].data()};
-    detail::walkTable(grid_.resting_, walkerColumns, static_cast<std::uint32_t>(walkers_.size()),
-                      parallelFor, parts_, selected_, cost);
+    detail::walkTable(grid_.resting_, walkerBounds_.columns(), walkerBounds_.size(), parallelFor,
+                      parts_, selected_, cost);
     cost_.boxesTested += cost.boxesTested;
     for (const auto [walker, restingEntry] : selected_.pairs()) {
         const std::uint32_t entry = walkers_[walker];
@@ -329,7 +305,7 @@ bool Pairs<Scalar>::forgetRefused(Couple c) {
 
 template <class Scalar>
 bool Pairs<Scalar>::isRefused(Couple c) const noexcept {
-    return contains(refused_, c) || contains(refusedAtRest_, c);
+    return refused_.contains(c) || refusedAtRest_.contains(c);
 }
 
 template <class Scalar>
@@ -341,98 +317,6 @@ template <class Scalar>
 bool Pairs<Scalar>::isAtRest(Couple c) const noexcept {
     return grid_.records_[first(c)].place == Grid<Scalar>::Place::resting &&
            grid_.records_[second(c)].place == Grid<Scalar>::Place::resting;
-}
-
-// --- Between updates -----------------------------------------------------------------------------
-
-template <class Scalar>
-PairChanges Pairs<Scalar>::announce(ProxyId id, PairFilter filter) {
-    HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid can announce its pairs.");
-    beginCall();
-    findUnknown(id.index);
-    for (const Couple c : asked_) {
-        announced_.findOrInsert(c);
-    }
-    decide(filter);
-    endCall();
-    return {born_, died_};
-}
-
-template <class Scalar>
-PairChanges Pairs<Scalar>::refilter(ProxyId id, PairFilter filter) {
-    HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid can be filtered again.");
-    beginCall();
-    announcedBefore_.assign(announced_.keys().begin(), announced_.keys().end());
-    findUnknown(id.index);
-    for (const Couple c : asked_) {
-        announced_.findOrInsert(c);
-    }
-    forKnownCouples(id.index, [this](Couple c) {
-        if (!isRefused(c) && grid_.isAlive(first(c)) && grid_.isAlive(second(c))) {
-            standing_.push_back(c);
-            asked_.push_back(c);
-        } else if (isRefused(c) && overlapNow(c)) {
-            // Those apart for the moment are asked about by update(), should they meet again.
-            asked_.push_back(c);
-        }
-    });
-    decide(filter);
-    endCall();
-    return {born_, died_};
-}
-
-// Calls visit for each of the proxy's couples that overlapped at the last update or were announced
-// since.
-template <class Scalar>
-template <class Visit>
-void Pairs<Scalar>::forKnownCouples(std::uint32_t slot, const Visit& visit) const {
-    const auto visitIfIts = [&](std::uint32_t a, std::uint32_t b) {
-        if (a == slot || b == slot) {
-            visit(couple(a, b));
-        }
-    };
-    const auto& places = grid_.mobileSlots_;
-    for (const auto [a, b] : amongMobile_.pairs()) {
-        visitIfIts(places[a], places[b]);
-    }
-    for (const auto [place, resting] : toResting_.pairs()) {
-        visitIfIts(places[place], resting);
-    }
-    for (const Couple c : announcedBefore_) {
-        visitIfIts(first(c), second(c));
-    }
-    const auto watchedEnd = places.begin() + static_cast<std::ptrdiff_t>(watchedMobileCount_);
-    if (std::find(places.begin(), watchedEnd, slot) != watchedEnd) {
-        return;
-    }
-    // It rested at the last update: couples with others that did are not watched.
-    QueryCost cost;
-    const Box& before = grid_.before(slot);
-    detail::forOverlapsInTable(grid_.resting_, before, cost, [&](std::uint32_t other) {
-        if (other != slot) {
-            visit(couple(slot, other));
-        }
-    });
-    for (const std::uint32_t other : grid_.woken_) {
-        if (other != slot && overlaps(before, grid_.before(other))) {
-            visit(couple(slot, other));
-        }
-    }
-}
-
-// The proxy's couples that overlap now, did not at the last update, and were not announced since.
-template <class Scalar>
-void Pairs<Scalar>::findUnknown(std::uint32_t slot) {
-    const auto add = [&](ProxyId other) {
-        if (other.index != slot && !overlaps(grid_.before(slot), grid_.before(other.index))) {
-            const Couple c = couple(slot, other.index);
-            if (!contains(announced_, c)) {
-                asked_.push_back(c);
-            }
-        }
-    };
-    CollectInto collector{add};
-    grid_.visit(BoxRegion<Scalar>{grid_.records_[slot].box}, collector);
 }
 
 // --- The whole set -------------------------------------------------------------------------------
@@ -472,12 +356,9 @@ void Pairs<Scalar>::collect(std::vector<ProxyPair>& pairs) const {
 
 template <class Scalar>
 std::size_t Pairs<Scalar>::memoryBytes() const noexcept {
-    std::size_t bounds = 0;
-    for (const auto& column : walkerBounds_) {
-        bounds += column.capacity() * sizeof(Scalar);
-    }
     return sizeof(*this) + amongMobile_.memoryBytes() + toResting_.memoryBytes() +
-           selected_.memoryBytes() + parts_.memoryBytes() + carried_.memoryBytes() + bounds +
+           selected_.memoryBytes() + parts_.memoryBytes() + carried_.memoryBytes() +
+           walkerBounds_.memoryBytes() + wokenBounds_.memoryBytes() +
            (asked_.capacity() + standing_.capacity() + bornCouples_.capacity() +
             diedCouples_.capacity() + sorted_.capacity() + restedCouples_.capacity() +
             announcedBefore_.capacity()) *

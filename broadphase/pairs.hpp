@@ -12,6 +12,7 @@
 // Threads   every member needs the grid and this object for itself.
 // Misuse    one Pairs per grid, created before the grid's first proxy; asserted.
 
+#include <broadphase/detail/box_columns.hpp>
 #include <broadphase/detail/flat_set.hpp>
 #include <broadphase/detail/kernels.hpp>
 #include <broadphase/detail/pair_parts.hpp>
@@ -145,7 +146,7 @@ private:
 
     void beginCall();
     void findDeaths(ParallelFor parallelFor);
-    void findDeathsOfWoken();
+    void findDeathsOfWoken(ParallelFor parallelFor);
     void loseIfApart(Couple c);
     void findBirths(bool someCameToRest, ParallelFor parallelFor);
     void carryToRest(bool someCameToRest);
@@ -199,9 +200,10 @@ private:
     detail::PairList carried_;
     std::vector<std::uint32_t> entryOf_;  // of places in mobileSlots_, in the mobile table
     std::vector<std::uint32_t> walkers_;  // entries that changed
-    std::array<std::vector<Scalar>, 6> walkerBounds_;
+    detail::BoxColumns<Scalar> walkerBounds_;
     detail::Table<Scalar> wokenTable_;
     std::vector<detail::PaddedBox<Scalar>> wokenBoxes_;
+    detail::BoxColumns<Scalar> wokenBounds_;
 };
 
 extern template class Pairs<float>;

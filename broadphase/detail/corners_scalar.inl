@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-// quantiseCorners() of kernels.inl without vector instructions.
+// The corners of boxes without vector instructions. See kernels.inl.
 
 // False for levels without cells, and for boxes with infinite edges or NaN.
 template <class Scalar>

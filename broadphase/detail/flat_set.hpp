@@ -42,6 +42,11 @@ public:
         return place.isNone() ? kNone : groups_[place.group].numbers[place.lane];
     }
 
+    /// Cost: O(1); next to nothing while the set is empty.
+    [[nodiscard]] bool contains(std::uint64_t key) const noexcept {
+        return !keys_.empty() && find(key) != kNone;
+    }
+
     /// Fetches into the processor's cache where a search for the key begins.
     void prefetch(std::uint64_t key) const noexcept {
         if (!groups_.empty()) {

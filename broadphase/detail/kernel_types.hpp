@@ -20,6 +20,16 @@ struct alignas(4 * sizeof(Scalar)) PaddedBox {
     Scalar high[4];
 };
 
+/// True when any of the six coordinates is NaN.
+template <class Scalar>
+[[nodiscard, gnu::always_inline]] inline bool isNan(const PaddedBox<Scalar>& box) noexcept {
+    bool result = false;
+    for (int axis = 0; axis < 3; ++axis) {
+        result |= (box.low[axis] != box.low[axis]) | (box.high[axis] != box.high[axis]);
+    }
+    return result;
+}
+
 /// Two entries whose boxes overlap, or two numbers of whatever else was asked about.
 struct IndexPair {
     std::uint32_t a;
@@ -36,11 +46,21 @@ struct PairSink {
     void* owner;
 };
 
+/// Room for `count` more couples.
+[[gnu::always_inline]] inline void makeRoom(PairSink& sink, std::size_t count) {
+    if (static_cast<std::size_t>(sink.end - sink.next) < count) {
+        sink.grow(sink, count);
+    }
+}
+
 /// A row of cells, along x.
 struct Row {
     std::int32_t y;
     std::int32_t z;
 };
+
+/// A bucket with more entries than this is crowded, and may be sorted along an axis.
+inline constexpr std::uint32_t kCrowd = 256;
 
 /// A level of a table (see table.hpp) as plain arrays.
 template <class Scalar>
@@ -63,6 +83,8 @@ struct LevelView {
     std::uint32_t denseBase;
     bool isDense;
     bool hasCells;
+    int sweepAxis;      // along which the entries of crowded buckets are sorted; negative: none
+    Scalar sweepReach;  // none of these is longer along it
 };
 
 /// A hash of a row's number whose lower bits are well mixed.

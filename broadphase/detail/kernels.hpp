@@ -36,13 +36,6 @@ void useInstructionSet(InstructionSet set) noexcept;
 template <class Scalar>
 [[nodiscard]] const Kernels<Scalar>& kernels() noexcept;
 
-/// Room for `count` more couples.
-inline void makeRoom(PairSink& sink, std::size_t count) {
-    if (static_cast<std::size_t>(sink.end - sink.next) < count) {
-        sink.grow(sink, count);
-    }
-}
-
 /// A growing array of couples for kernels to write to. Does not initialise what it grows by, and
 /// keeps its memory.
 class PairList {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 
-// The kernels for processors with AVX-512 (F, VL, BW, DQ); compiled with these. A comparison under
-// the mask of the comparisons before it is all that a box costs.
+// The kernels for processors with AVX-512 (F, VL, BW, DQ); compiled with these. For single
+// precision, registers of eight numbers serve the short runs as well as AVX2 does, and those of
+// sixteen the long ones.
 
 #include <broadphase/detail/kernel_types.hpp>
 #include <broadphase/detail/quantise.hpp>
@@ -11,101 +12,33 @@
 namespace hashphase::detail {
 namespace {
 
+#include <broadphase/detail/kernels_avx.inl>
+
+template <>
+struct Pack<double> {
+    static constexpr std::uint32_t kWidth = 8;
+    using Numbers = __m512d;
+    static Numbers load(const double* from) { return _mm512_loadu_pd(from); }
+    static Numbers all(double x) { return _mm512_set1_pd(x); }
+    static __mmask8 notAbove(Numbers a, Numbers b) { return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ); }
+    static __mmask8 both(__mmask8 a, __mmask8 b) { return a & b; }
+    static std::uint32_t bits(__mmask8 hits) { return hits; }
+};
+
 template <class Scalar>
-class Lanes;
+struct WidePack : Pack<Scalar> {};
 
 template <>
-class Lanes<float> {
-public:
-    Lanes(const float* const* columns, std::uint32_t number) {
-        for (int axis = 0; axis < 3; ++axis) {
-            low_[axis] = _mm256_broadcast_ss(columns[axis] + number);
-            high_[axis] = _mm256_broadcast_ss(columns[axis + 3] + number);
-        }
-    }
-
-    [[nodiscard]] std::uint32_t overlapMask(const float* const* columns,
-                                            std::uint32_t first) const {
-        __m256 hit = notAbove(_mm256_loadu_ps(columns[0] + first), high_[0]);
-        hit = _mm256_and_ps(hit, notAbove(low_[0], _mm256_loadu_ps(columns[3] + first)));
-        hit = _mm256_and_ps(hit, notAbove(_mm256_loadu_ps(columns[1] + first), high_[1]));
-        hit = _mm256_and_ps(hit, notAbove(low_[1], _mm256_loadu_ps(columns[4] + first)));
-        hit = _mm256_and_ps(hit, notAbove(_mm256_loadu_ps(columns[2] + first), high_[2]));
-        hit = _mm256_and_ps(hit, notAbove(low_[2], _mm256_loadu_ps(columns[5] + first)));
-        return static_cast<std::uint32_t>(_mm256_movemask_ps(hit));
-    }
-
-    static constexpr std::uint32_t kLongWidth = 16;
-
-    [[nodiscard]] std::uint32_t longOverlapMask(const float* const* columns,
-                                                std::uint32_t first) const {
-        __mmask16 hit = 0xffff;
-        for (int axis = 0; axis < 3; ++axis) {
-            const __m512 low = _mm512_set1_ps(_mm256_cvtss_f32(low_[axis]));
-            const __m512 high = _mm512_set1_ps(_mm256_cvtss_f32(high_[axis]));
-            hit = _mm512_mask_cmp_ps_mask(hit, _mm512_loadu_ps(columns[axis] + first), high,
-                                          _CMP_LE_OQ);
-            hit = _mm512_mask_cmp_ps_mask(hit, low, _mm512_loadu_ps(columns[axis + 3] + first),
-                                          _CMP_LE_OQ);
-        }
-        return hit;
-    }
-
-    static bool isApart(const PaddedBox<float>& a, const PaddedBox<float>& b) {
-        const __mmask8 one = _mm_cmp_ps_mask(_mm_load_ps(a.low), _mm_load_ps(b.high), _CMP_LE_OQ);
-        return _mm_mask_cmp_ps_mask(one, _mm_load_ps(b.low), _mm_load_ps(a.high), _CMP_LE_OQ) !=
-               0xf;
-    }
-
-private:
-    static __m256 notAbove(__m256 a, __m256 b) { return _mm256_cmp_ps(a, b, _CMP_LE_OQ); }
-
-    __m256 low_[3];
-    __m256 high_[3];
+struct WidePack<float> {
+    static constexpr std::uint32_t kWidth = 16;
+    using Numbers = __m512;
+    static Numbers load(const float* from) { return _mm512_loadu_ps(from); }
+    static Numbers all(float x) { return _mm512_set1_ps(x); }
+    static __mmask16 notAbove(Numbers a, Numbers b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
+    static __mmask16 both(__mmask16 a, __mmask16 b) { return a & b; }
+    static std::uint32_t bits(__mmask16 hits) { return hits; }
 };
 
-template <>
-class Lanes<double> {
-public:
-    Lanes(const double* const* columns, std::uint32_t number) {
-        for (int axis = 0; axis < 3; ++axis) {
-            low_[axis] = _mm512_set1_pd(columns[axis][number]);
-            high_[axis] = _mm512_set1_pd(columns[axis + 3][number]);
-        }
-    }
-
-    [[nodiscard]] std::uint32_t overlapMask(const double* const* columns,
-                                            std::uint32_t first) const {
-        __mmask8 hit = 0xff;
-        for (int axis = 0; axis < 3; ++axis) {
-            hit = _mm512_mask_cmp_pd_mask(hit, _mm512_loadu_pd(columns[axis] + first), high_[axis],
-                                          _CMP_LE_OQ);
-            hit = _mm512_mask_cmp_pd_mask(hit, low_[axis],
-                                          _mm512_loadu_pd(columns[axis + 3] + first), _CMP_LE_OQ);
-        }
-        return hit;
-    }
-
-    static constexpr std::uint32_t kLongWidth = 8;
-
-    [[nodiscard]] std::uint32_t longOverlapMask(const double* const* columns,
-                                                std::uint32_t first) const {
-        return overlapMask(columns, first);
-    }
-
-    static bool isApart(const PaddedBox<double>& a, const PaddedBox<double>& b) {
-        const __mmask8 one =
-            _mm256_cmp_pd_mask(_mm256_load_pd(a.low), _mm256_load_pd(b.high), _CMP_LE_OQ);
-        return _mm256_mask_cmp_pd_mask(one, _mm256_load_pd(b.low), _mm256_load_pd(a.high),
-                                       _CMP_LE_OQ) != 0xf;
-    }
-
-private:
-    __m512d low_[3];
-    __m512d high_[3];
-};
-
-#include <broadphase/detail/corners_avx.inl>
 #include <broadphase/detail/kernels.inl>
 
 }  // namespace

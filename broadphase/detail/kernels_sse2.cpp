@@ -11,96 +11,50 @@ namespace hashphase::detail {
 namespace {
 
 template <class Scalar>
-class Lanes;
+struct Pack;
 
 template <>
-class Lanes<float> {
-public:
-    Lanes(const float* const* columns, std::uint32_t number) {
-        for (int axis = 0; axis < 3; ++axis) {
-            low_[axis] = _mm_set1_ps(columns[axis][number]);
-            high_[axis] = _mm_set1_ps(columns[axis + 3][number]);
-        }
+struct Pack<float> {
+    static constexpr std::uint32_t kWidth = 4;
+    using Numbers = __m128;
+    static Numbers load(const float* from) { return _mm_loadu_ps(from); }
+    static Numbers all(float x) { return _mm_set1_ps(x); }
+    static __m128 notAbove(Numbers a, Numbers b) { return _mm_cmple_ps(a, b); }
+    static __m128 both(__m128 a, __m128 b) { return _mm_and_ps(a, b); }
+    static std::uint32_t bits(__m128 hits) {
+        return static_cast<std::uint32_t>(_mm_movemask_ps(hits));
     }
-
-    [[nodiscard]] std::uint32_t overlapMask(const float* const* columns,
-                                            std::uint32_t first) const {
-        return four(columns, first) | four(columns, first + 4) << 4;
-    }
-
-    static constexpr std::uint32_t kLongWidth = 8;
-
-    [[nodiscard]] std::uint32_t longOverlapMask(const float* const* columns,
-                                                std::uint32_t first) const {
-        return overlapMask(columns, first);
-    }
-
-    static bool isApart(const PaddedBox<float>& a, const PaddedBox<float>& b) {
-        const __m128 one = _mm_cmple_ps(_mm_load_ps(a.low), _mm_load_ps(b.high));
-        const __m128 other = _mm_cmple_ps(_mm_load_ps(b.low), _mm_load_ps(a.high));
-        return _mm_movemask_ps(_mm_and_ps(one, other)) != 0xf;
-    }
-
-private:
-    [[nodiscard]] std::uint32_t four(const float* const* columns, std::uint32_t first) const {
-        __m128 hit = _mm_cmple_ps(_mm_loadu_ps(columns[0] + first), high_[0]);
-        hit = _mm_and_ps(hit, _mm_cmple_ps(low_[0], _mm_loadu_ps(columns[3] + first)));
-        hit = _mm_and_ps(hit, _mm_cmple_ps(_mm_loadu_ps(columns[1] + first), high_[1]));
-        hit = _mm_and_ps(hit, _mm_cmple_ps(low_[1], _mm_loadu_ps(columns[4] + first)));
-        hit = _mm_and_ps(hit, _mm_cmple_ps(_mm_loadu_ps(columns[2] + first), high_[2]));
-        hit = _mm_and_ps(hit, _mm_cmple_ps(low_[2], _mm_loadu_ps(columns[5] + first)));
-        return static_cast<std::uint32_t>(_mm_movemask_ps(hit));
-    }
-
-    __m128 low_[3];
-    __m128 high_[3];
 };
 
 template <>
-class Lanes<double> {
-public:
-    Lanes(const double* const* columns, std::uint32_t number) {
-        for (int axis = 0; axis < 3; ++axis) {
-            low_[axis] = _mm_set1_pd(columns[axis][number]);
-            high_[axis] = _mm_set1_pd(columns[axis + 3][number]);
-        }
+struct Pack<double> {
+    static constexpr std::uint32_t kWidth = 2;
+    using Numbers = __m128d;
+    static Numbers load(const double* from) { return _mm_loadu_pd(from); }
+    static Numbers all(double x) { return _mm_set1_pd(x); }
+    static __m128d notAbove(Numbers a, Numbers b) { return _mm_cmple_pd(a, b); }
+    static __m128d both(__m128d a, __m128d b) { return _mm_and_pd(a, b); }
+    static std::uint32_t bits(__m128d hits) {
+        return static_cast<std::uint32_t>(_mm_movemask_pd(hits));
     }
-
-    [[nodiscard]] std::uint32_t overlapMask(const double* const* columns,
-                                            std::uint32_t first) const {
-        return two(columns, first) | two(columns, first + 2) << 2 | two(columns, first + 4) << 4 |
-               two(columns, first + 6) << 6;
-    }
-
-    static constexpr std::uint32_t kLongWidth = 8;
-
-    [[nodiscard]] std::uint32_t longOverlapMask(const double* const* columns,
-                                                std::uint32_t first) const {
-        return overlapMask(columns, first);
-    }
-
-    static bool isApart(const PaddedBox<double>& a, const PaddedBox<double>& b) {
-        __m128d all = _mm_cmple_pd(_mm_load_pd(a.low), _mm_load_pd(b.high));
-        all = _mm_and_pd(all, _mm_cmple_pd(_mm_load_pd(b.low), _mm_load_pd(a.high)));
-        all = _mm_and_pd(all, _mm_cmple_pd(_mm_load_pd(a.low + 2), _mm_load_pd(b.high + 2)));
-        all = _mm_and_pd(all, _mm_cmple_pd(_mm_load_pd(b.low + 2), _mm_load_pd(a.high + 2)));
-        return _mm_movemask_pd(all) != 0x3;
-    }
-
-private:
-    [[nodiscard]] std::uint32_t two(const double* const* columns, std::uint32_t first) const {
-        __m128d hit = _mm_cmple_pd(_mm_loadu_pd(columns[0] + first), high_[0]);
-        hit = _mm_and_pd(hit, _mm_cmple_pd(low_[0], _mm_loadu_pd(columns[3] + first)));
-        hit = _mm_and_pd(hit, _mm_cmple_pd(_mm_loadu_pd(columns[1] + first), high_[1]));
-        hit = _mm_and_pd(hit, _mm_cmple_pd(low_[1], _mm_loadu_pd(columns[4] + first)));
-        hit = _mm_and_pd(hit, _mm_cmple_pd(_mm_loadu_pd(columns[2] + first), high_[2]));
-        hit = _mm_and_pd(hit, _mm_cmple_pd(low_[2], _mm_loadu_pd(columns[5] + first)));
-        return static_cast<std::uint32_t>(_mm_movemask_pd(hit));
-    }
-
-    __m128d low_[3];
-    __m128d high_[3];
 };
+
+template <class Scalar>
+using WidePack = Pack<Scalar>;
+
+inline bool isApart(const PaddedBox<float>& a, const PaddedBox<float>& b) {
+    const __m128 one = _mm_cmple_ps(_mm_load_ps(a.low), _mm_load_ps(b.high));
+    const __m128 other = _mm_cmple_ps(_mm_load_ps(b.low), _mm_load_ps(a.high));
+    return _mm_movemask_ps(_mm_and_ps(one, other)) != 0xf;
+}
+
+inline bool isApart(const PaddedBox<double>& a, const PaddedBox<double>& b) {
+    __m128d all = _mm_cmple_pd(_mm_load_pd(a.low), _mm_load_pd(b.high));
+    all = _mm_and_pd(all, _mm_cmple_pd(_mm_load_pd(b.low), _mm_load_pd(a.high)));
+    all = _mm_and_pd(all, _mm_cmple_pd(_mm_load_pd(a.low + 2), _mm_load_pd(b.high + 2)));
+    all = _mm_and_pd(all, _mm_cmple_pd(_mm_load_pd(b.low + 2), _mm_load_pd(a.high + 2)));
+    return _mm_movemask_pd(all) != 0x3;
+}
 
 #include <broadphase/detail/corners_scalar.inl>
 #include <broadphase/detail/kernels.inl>

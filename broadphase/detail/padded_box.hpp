@@ -22,14 +22,4 @@ template <class Scalar>
             Vector3<Scalar>(box.high[0], box.high[1], box.high[2])};
 }
 
-/// True when any of the six coordinates is NaN.
-template <class Scalar>
-[[nodiscard]] inline bool isNan(const PaddedBox<Scalar>& box) noexcept {
-    bool result = false;
-    for (int axis = 0; axis < 3; ++axis) {
-        result |= (box.low[axis] != box.low[axis]) | (box.high[axis] != box.high[axis]);
-    }
-    return result;
-}
-
 }  // namespace hashphase::detail

@@ -6,11 +6,13 @@
 // widened as in Ize, "Robust BVH ray traversal". The scalar version is the definition; the vector
 // version gives the same bits.
 
-#include <broadphase/aabb.hpp>
-#include <broadphase/detail/overlap_kernel.hpp>
-
 #include <array>
 #include <cstdint>
+
+#if defined(__SSE2__) && !HASHPHASE_USE_SCALAR
+#define HASHPHASE_HAS_SSE2 1
+#include <emmintrin.h>
+#endif
 
 namespace hashphase::detail {
 

@@ -5,6 +5,7 @@
 
 #include <broadphase/detail/table.hpp>
 
+#include <broadphase/detail/crowd_census.hpp>
 #include <broadphase/detail/kernels.hpp>
 #include <broadphase/diagnostics.hpp>
 
@@ -264,7 +265,9 @@ template <class Scalar>
 void Table<Scalar>::sortEntries(std::span<const std::uint32_t> slots,
                                 std::span<const PaddedBox<Scalar>> boxes, ParallelFor parallelFor) {
     std::uint32_t sum = 0;
+    largestBucket_ = 0;
     for (std::uint32_t& start : bucketStart_) {
+        largestBucket_ = std::max(largestBucket_, start);
         sum += std::exchange(start, sum);
     }
     const std::uint32_t count = sum;
@@ -286,6 +289,7 @@ void Table<Scalar>::sortEntries(std::span<const std::uint32_t> slots,
     }
     std::copy_backward(bucketStart_.begin(), bucketStart_.end() - 1, bucketStart_.end());
     bucketStart_[0] = 0;
+    sortCrowds(boxes);
 
     parallelFor(count, kGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t entry = begin; entry < end; ++entry) {
@@ -299,6 +303,46 @@ void Table<Scalar>::sortEntries(std::span<const std::uint32_t> slots,
         }
     });
     noteRows();
+}
+
+// Calls visit(span of entries in order_) for the crowded buckets of the level.
+template <class Scalar>
+template <class Visit>
+void Table<Scalar>::forCrowds(const Level<Scalar>& level, const Visit& visit) {
+    const std::uint32_t* starts = bucketStart_.data() + level.firstBucket;
+    for (std::uint32_t bucket = 0; bucket < level.bucketCount; ++bucket) {
+        const std::uint32_t count = starts[bucket + 1] - starts[bucket];
+        if (count > kCrowd) {
+            visit(std::span(order_).subspan(starts[bucket], count));
+        }
+    }
+}
+
+// Where many boxes share a cell, because it is much larger than they are, a search would have to
+// read them all; when they are sorted, only what is near along the axis.
+template <class Scalar>
+void Table<Scalar>::sortCrowds(std::span<const PaddedBox<Scalar>> boxes) {
+    for (Level<Scalar>& level : levels_) {
+        level.sweepAxis = -1;
+        if (largestBucket_ <= kCrowd || !level.hasCells || level.count() <= kCrowd) {
+            continue;
+        }
+        CrowdCensus<Scalar> census;
+        forCrowds(level, [&](std::span<std::uint32_t> crowd) { census.add(crowd, boxes); });
+        level.sweepAxis = census.sweepAxis();
+        if (level.sweepAxis < 0) {
+            continue;
+        }
+        const auto axis = static_cast<std::size_t>(level.sweepAxis);
+        level.sweepReach = census.reach(axis);
+        forCrowds(level, [&](std::span<std::uint32_t> crowd) {
+            std::sort(crowd.begin(), crowd.end(), [&](std::uint32_t a, std::uint32_t b) {
+                const Scalar lowA = boxes[a].low[axis];
+                const Scalar lowB = boxes[b].low[axis];
+                return lowA != lowB ? lowA < lowB : a < b;
+            });
+        });
+    }
 }
 
 // Hashed rows are told apart by their coordinates.
@@ -358,6 +402,8 @@ LevelView<Scalar> Table<Scalar>::view(const Level<Scalar>& level) const noexcept
     view.denseBase = level.denseBase;
     view.isDense = level.isDense;
     view.hasCells = level.hasCells;
+    view.sweepAxis = level.sweepAxis;
+    view.sweepReach = level.sweepReach;
     return view;
 }
 
@@ -379,6 +425,17 @@ std::size_t Table<Scalar>::memoryBytes() const noexcept {
 }
 
 template <class Scalar>
+bool Table<Scalar>::isSortedIfCrowded(const Level<Scalar>& level, std::uint32_t bucket) const {
+    const std::uint32_t first = bucketStart_[bucket];
+    const std::uint32_t last = bucketStart_[bucket + 1];
+    if (level.sweepAxis < 0 || last - first <= kCrowd) {
+        return true;
+    }
+    const Scalar* column = bounds_[static_cast<std::size_t>(level.sweepAxis)].data();
+    return std::is_sorted(column + first, column + last);
+}
+
+template <class Scalar>
 std::string Table<Scalar>::validate() const {
     std::uint32_t entry = 0;
     for (std::uint32_t i = 0; i < levels_.size(); ++i) {
@@ -391,9 +448,13 @@ std::string Table<Scalar>::validate() const {
             if (bucketStart_[b] != entry || bucketStart_[b] > bucketStart_[b + 1]) {
                 return "Buckets partition the entries in order: broken.";
             }
+            if (!isSortedIfCrowded(level, b)) {
+                return "Crowded buckets are sorted along their level's sweep axis, where it has "
+                       "one: broken.";
+            }
             for (; entry < bucketStart_[b + 1]; ++entry) {
                 const Aabb<Scalar> box = this->box(entry);
-                if (std::isnan(box.min()[0]) || !level.hasCells) {
+                if (hasNan(box) || !level.hasCells) {
                     continue;
                 }
                 Cell low{};

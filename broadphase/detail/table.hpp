@@ -14,7 +14,6 @@
 #include <broadphase/aabb.hpp>
 #include <broadphase/detail/kernel_types.hpp>
 #include <broadphase/detail/levels.hpp>
-#include <broadphase/detail/overlap_kernel.hpp>
 #include <broadphase/detail/padded_box.hpp>
 #include <broadphase/detail/quantise.hpp>
 #include <broadphase/parallel_for.hpp>
@@ -28,6 +27,10 @@
 #include <vector>
 
 namespace hashphase::detail {
+
+/// Columns min x, y, z, max x, y, z of boxes, readable kColumnPadding past any box.
+template <class Scalar>
+using Columns = std::array<const Scalar*, 6>;
 
 /// Part of a row of cells, from firstX to lastX inclusive.
 struct CellRun {
@@ -62,6 +65,10 @@ struct Level {
     std::uint32_t strideY = 0;
     std::uint32_t strideZ = 0;
     std::uint32_t denseBase = 0;
+    // The axis along which the entries of crowded buckets are sorted, by their min corners, so that
+    // a search need not read them all; negative: none. No box in them is longer there than the reach.
+    int sweepAxis = -1;
+    Scalar sweepReach = 0;
 
     [[nodiscard]] std::uint32_t count() const noexcept { return lastEntry - firstEntry; }
 
@@ -171,6 +178,7 @@ public:
     /// - Every entry lies in the bucket of the cell of its min corner.
     /// - Every entry spans at most two cells of its level an axis, or is listed without cells.
     /// - Buckets partition the entries in order.
+    /// - Crowded buckets are sorted along their level's sweep axis, where it has one.
     [[nodiscard]] std::string validate() const;
 
 private:
@@ -197,12 +205,17 @@ private:
                                            ParallelFor parallelFor);
     void sortEntries(std::span<const std::uint32_t> slots, std::span<const PaddedBox<Scalar>> boxes,
                      ParallelFor parallelFor);
+    template <class Visit>
+    void forCrowds(const Level<Scalar>& level, const Visit& visit);
+    void sortCrowds(std::span<const PaddedBox<Scalar>> boxes);
+    [[nodiscard]] bool isSortedIfCrowded(const Level<Scalar>& level, std::uint32_t bucket) const;
     void noteRows();
 
     LevelSizes sizes_;
     std::array<Scalar, 3> origin_{};
     std::uint64_t countWhenChosen_ = 0;
     std::uint32_t buildsSinceChosen_ = 0;
+    std::uint32_t largestBucket_ = 0;
     std::size_t strayCount_ = 0;  // when the levels were laid out
     SizeCensus census_;
 

@@ -34,14 +34,34 @@ protected:
     }
 
     /// Every couple in the order of its numbers, found by the join.
-    [[nodiscard]] Couples joined() const {
+    [[nodiscard]] Couples joined() {
         Couples couples;
         PairList found;
-        KernelCost cost;
+        cost_ = {};
         PairParts parts;
-        joinTable(table_, serialFor, parts, found, cost);
+        joinTable(table_, serialFor, parts, found, cost_);
         for (const auto [a, b] : found.pairs()) {
             couples.push_back(std::minmax(table_.slot(a), table_.slot(b)));
+        }
+        std::sort(couples.begin(), couples.end());
+        return couples;
+    }
+
+    /// The same, found by looking for every box in the table.
+    [[nodiscard]] Couples walked() {
+        Couples couples;
+        BoxColumns<Scalar> queries;
+        for (const Box& box : boxes_) {
+            queries.push(box);
+        }
+        PairList found;
+        PairParts parts;
+        cost_ = {};
+        walkTable(table_, queries.columns(), queries.size(), serialFor, parts, found, cost_);
+        for (const auto [query, entry] : found.pairs()) {
+            if (query < table_.slot(entry)) {
+                couples.emplace_back(query, table_.slot(entry));
+            }
         }
         std::sort(couples.begin(), couples.end());
         return couples;
@@ -78,6 +98,7 @@ protected:
 
     std::vector<Box> boxes_;
     Table<Scalar> table_;
+    KernelCost cost_;  // of the last search
 };
 
 using Scalars = testing::Types<float, double>;
@@ -159,17 +180,7 @@ TYPED_TEST(TableTest, BoxesOnBordersOfCellsAreFoundFromBothSides) {
         }
         this->build(std::move(boxes), fixedLevels(cellSize, 4));
         ASSERT_EQ(this->joined(), this->expected());
-        Couples found;
-        for (std::uint32_t i = 0; i < this->boxes_.size(); ++i) {
-            QueryCost cost;
-            forOverlapsInTable(this->table_, this->boxes_[i], cost, [&](std::uint32_t other) {
-                if (i < other) {
-                    found.emplace_back(i, other);
-                }
-            });
-        }
-        std::sort(found.begin(), found.end());
-        ASSERT_EQ(found, this->expected());
+        ASSERT_EQ(this->walked(), this->expected());
     }
 }
 
@@ -207,6 +218,94 @@ TYPED_TEST(TableTest, ErasedEntriesAreFoundByNothing) {
     }
     EXPECT_EQ(this->table_.validate(), "");
     EXPECT_EQ(this->joined(), this->expected());
+}
+
+/// Short boxes that share one cell, or a few, spread along some axes only.
+template <class Scalar>
+std::vector<Aabb<Scalar>> crowd(Random& random, std::size_t count, const Vector3<double>& middle,
+                                const Vector3<double>& spread) {
+    std::vector<Aabb<Scalar>> boxes;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vector3<double> at = random.pointIn(-0.5, 0.5).cwiseProduct(spread) + middle;
+        const Vector3<double> half =
+            random.pointIn(0, 1).cwiseProduct(Vector3<double>(0.3, 0.5, 0.2));
+        boxes.push_back(boxAround<Scalar>(at, half));
+    }
+    return boxes;
+}
+
+TYPED_TEST(TableTest, CrowdsInACellAreSortedAndSearchedWhereTheyAreNear) {
+    Random random(0x5eed0407);
+    std::size_t found = 0;
+    const Vector3<double> spreads[] = {
+        {40, 40, 40}, {90, 1, 1}, {1, 90, 1}, {1, 1, 90}, {200, 200, 1}};
+    for (const Vector3<double>& spread : spreads) {
+        for (const double away : {0.0, 50.0, 1e5}) {
+            SCOPED_TRACE(testing::Message() << spread.transpose() << ", away " << away);
+            this->build(crowd<TypeParam>(random, 1500, Vector3<double>::Constant(away), spread),
+                        fixedLevels(100, 4));
+            const Couples expected = this->expected();
+            found += expected.size();
+            ASSERT_EQ(this->joined(), expected);
+            EXPECT_LT(this->cost_.boxesTested, 1500U * 1500U / 8);
+            ASSERT_EQ(this->walked(), expected);
+            EXPECT_LT(this->cost_.boxesTested, 1500U * 1500U / 4);
+        }
+    }
+    EXPECT_GT(found, 10000U);
+}
+
+// Strays keep the cells from being numbered through: buckets are shared by what is hashed there.
+TYPED_TEST(TableTest, CrowdsInHashedCellsAreFoundWhole) {
+    Random random(0x5eed0408);
+    auto boxes = crowd<TypeParam>(random, 1500, {3, 4, 5}, {30, 30, 30});
+    for (int i = 0; i < 300; ++i) {
+        const auto few = crowd<TypeParam>(random, 2, random.pointIn(-1e6, 1e6), {1, 1, 1});
+        boxes.insert(boxes.end(), few.begin(), few.end());
+    }
+    this->build(std::move(boxes), fixedLevels(100, 4));
+    EXPECT_GT(this->table_.levels()[1].count(), 500U) << "hashed";
+    const Couples expected = this->expected();
+    EXPECT_EQ(this->joined(), expected);
+    EXPECT_EQ(this->walked(), expected);
+}
+
+TYPED_TEST(TableTest, CrowdsAreFoundWholeAfterSomeOfThemWereErased) {
+    Random random(0x5eed0409);
+    this->build(crowd<TypeParam>(random, 1200, {0, 0, 0}, {12, 12, 12}), fixedLevels(100, 4));
+    const TypeParam nan = std::numeric_limits<TypeParam>::quiet_NaN();
+    for (std::uint32_t entry = 0; entry < this->table_.size(); entry += 2) {
+        this->boxes_[this->table_.slot(entry)].min().setConstant(nan);
+        this->table_.erase(entry);
+    }
+    EXPECT_EQ(this->table_.validate(), "");
+    const Couples expected = this->expected();
+    EXPECT_GT(expected.size(), 10U);
+    EXPECT_EQ(this->joined(), expected);
+    EXPECT_EQ(this->walked(), expected);
+}
+
+// Boxes that end where others begin, to the last bit, and one that is longer than the others.
+TYPED_TEST(TableTest, CrowdsTouchToTheLastBit) {
+    Random random(0x5eed040a);
+    for (const double away : {0.0, 1e3, 1e6}) {
+        std::vector<Aabb<TypeParam>> boxes;
+        const auto edge = static_cast<TypeParam>(away == 1e6 ? 0.125 : 0.1);
+        TypeParam x = static_cast<TypeParam>(away);
+        for (int i = 0; i < 900; ++i) {
+            const TypeParam next = x + edge;
+            const TypeParam y = static_cast<TypeParam>(random.pointIn(0, 1)[0]);
+            boxes.push_back({Vector3<TypeParam>(x, y, 0), Vector3<TypeParam>(next, y, 0)});
+            x = i % 3 == 0 ? std::nextafter(next, std::numeric_limits<TypeParam>::infinity())
+                           : next;
+        }
+        const auto first = static_cast<TypeParam>(away);
+        boxes.push_back({Vector3<TypeParam>(first, -1, 0), Vector3<TypeParam>(first + 5, 2, 0)});
+        this->build(std::move(boxes), fixedLevels(1000, 4));
+        const Couples expected = this->expected();
+        EXPECT_EQ(this->joined(), expected);
+        EXPECT_EQ(this->walked(), expected);
+    }
 }
 
 TYPED_TEST(TableTest, DependsOnlyOnTheBoxesNotOnWhatItHeldBefore) {

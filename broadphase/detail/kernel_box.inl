@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Zlib
+
+// Kernel part: one box against many. See kernels.inl.
+
+/// Boxes that every search tests at once, whether or not its run has as many.
+constexpr std::uint32_t kWidth = 8;
+
+/// A box to test against others, its numbers spread over the registers of a Pack.
+template <class Pack, class Scalar>
+class Lanes {
+public:
+    Lanes(const Scalar* const* columns, std::uint32_t number) {
+        for (int axis = 0; axis < 3; ++axis) {
+            low_[axis] = Pack::all(columns[axis][number]);
+            high_[axis] = Pack::all(columns[axis + 3][number]);
+        }
+    }
+
+    /// Bit k tells whether box first + k overlaps it, for kCount boxes.
+    template <std::uint32_t kCount>
+    [[nodiscard]] std::uint32_t overlapMask(const Scalar* const* columns,
+                                            std::uint32_t first) const {
+        std::uint32_t mask = 0;
+        for (std::uint32_t k = 0; k < kCount; k += Pack::kWidth) {
+            mask |= maskOfPack(columns, first + k) << k;
+        }
+        return mask;
+    }
+
+private:
+    [[nodiscard]] std::uint32_t maskOfPack(const Scalar* const* columns,
+                                           std::uint32_t first) const {
+        auto hits = Pack::notAbove(Pack::load(columns[0] + first), high_[0]);
+        hits = Pack::both(hits, Pack::notAbove(low_[0], Pack::load(columns[3] + first)));
+        for (int axis = 1; axis < 3; ++axis) {
+            hits = Pack::both(hits, Pack::notAbove(Pack::load(columns[axis] + first), high_[axis]));
+            hits =
+                Pack::both(hits, Pack::notAbove(low_[axis], Pack::load(columns[axis + 3] + first)));
+        }
+        return Pack::bits(hits);
+    }
+
+    typename Pack::Numbers low_[3];
+    typename Pack::Numbers high_[3];
+};
+
+/// Entries to be read, from first to last, one past.
+struct Run {
+    std::uint32_t first;
+    std::uint32_t last;
+};
+
+/// A box that is looked for: box `number` of six columns.
+template <class Scalar>
+struct Query {
+    const Scalar* const* columns;
+    std::uint32_t number;
+};
+
+inline std::uint32_t lowest(std::uint32_t a, std::uint32_t b) {
+    return a < b ? a : b;
+}
+
+/// The lowest `count` of `width` bits.
+inline std::uint32_t laneMask(std::uint32_t count, std::uint32_t width) {
+    return (1U << lowest(count, width)) - 1;
+}
+
+// Hashed rows may share buckets: of the entries of a run, those in the row are hits.
+template <bool kIsDense, class Scalar>
+bool isInRow(const LevelView<Scalar>& level, std::uint32_t entry, Row row) {
+    if constexpr (kIsDense) {
+        return true;
+    } else {
+        const Row own = level.rowOfEntry[entry];
+        return own.y == row.y && own.z == row.z;
+    }
+}
+
+// Tests all entries of a run.
+template <bool kIsDense, class Scalar>
+void scanAll(const LevelView<Scalar>& level, const Query<Scalar>& query, Run run, Row row,
+             PairSink& found) {
+    using Pack = WidePack<Scalar>;
+    constexpr std::uint32_t width = Pack::kWidth < kWidth ? kWidth : Pack::kWidth;
+    const Lanes<Pack, Scalar> box(query.columns, query.number);
+    makeRoom(found, run.last - run.first);
+    for (std::uint32_t first = run.first; first < run.last; first += width) {
+        std::uint32_t mask = box.template overlapMask<width>(level.columns, first) &
+                             laneMask(run.last - first, width);
+        for (; mask != 0; mask &= mask - 1) {
+            const std::uint32_t hit = first + static_cast<std::uint32_t>(__builtin_ctz(mask));
+            *found.next = {query.number, hit};
+            found.next += isInRow<kIsDense>(level, hit, row) ? 1 : 0;
+        }
+    }
+}
+
+// Binary searches in a run that is sorted by the column, but for erased entries, which are NaN: at
+// these, as at a bound that is NaN, both err to the side of a longer run.
+
+/// The first entry that is not below `bound`, or one before it.
+template <class Scalar>
+std::uint32_t lowerBound(const Scalar* column, Run run, Scalar bound) {
+    while (run.first < run.last) {
+        const std::uint32_t middle = run.first + (run.last - run.first) / 2;
+        if (column[middle] < bound) {
+            run.first = middle + 1;
+        } else {
+            run.last = middle;
+        }
+    }
+    return run.first;
+}
+
+/// One past the last entry that is not above `bound`, or one behind it.
+template <class Scalar>
+std::uint32_t upperBound(const Scalar* column, Run run, Scalar bound) {
+    while (run.first < run.last) {
+        const std::uint32_t middle = run.first + (run.last - run.first) / 2;
+        if (bound < column[middle]) {
+            run.last = middle;
+        } else {
+            run.first = middle + 1;
+        }
+    }
+    return run.first;
+}
+
+// Tests the entries of a run on a level whose crowded buckets are sorted along an axis: of these,
+// those that begin before the box ends, and no farther before it than the longest of them reaches.
+// Returns how many it tested.
+template <bool kIsDense, class Scalar>
+[[gnu::noinline]] std::uint32_t sweep(const LevelView<Scalar>& level, const Query<Scalar>& query,
+                                      Run run, Row row, PairSink& found) {
+    const int axis = level.sweepAxis;
+    const Scalar* const column = level.columns[axis];
+    const Scalar low = query.columns[axis][query.number];
+    const Scalar high = query.columns[axis + 3][query.number];
+    std::uint32_t tested = 0;
+    while (run.first < run.last) {
+        const std::uint32_t bucket = level.bucketOfEntry[run.first] - level.firstBucket;
+        const std::uint32_t begin = level.bucketStart[bucket];
+        const std::uint32_t end = level.bucketStart[bucket + 1];
+        Run part = {run.first, lowest(end, run.last)};
+        run.first = part.last;
+        if (end - begin > kCrowd) {
+            // Rounded, the difference is still no more than the min corner of any box that reaches
+            // `low`: that is a number, and rounding is monotone.
+            part.first = lowerBound(column, part, low - level.sweepReach);
+            part.last = upperBound(column, part, high);
+        }
+        tested += part.last - part.first;
+        scanAll<kIsDense>(level, query, part, row, found);
+    }
+    return tested;
+}
+
+// Finds all entries of a run that overlap the box. Returns how many it tested.
+template <bool kIsDense, class Scalar>
+std::uint32_t scan(const LevelView<Scalar>& level, const Query<Scalar>& query, Run run, Row row,
+                   PairSink& found) {
+    if (level.sweepAxis >= 0) {
+        return sweep<kIsDense>(level, query, run, row, found);
+    }
+    scanAll<kIsDense>(level, query, run, row, found);
+    return run.last - run.first;
+}
