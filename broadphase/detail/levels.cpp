@@ -9,11 +9,26 @@
 namespace hashphase::detail {
 namespace {
 
-// Modelled costs [ns], measured on a plain x86-64 build: looking up a run of buckets, testing a
-// box found in one, and testing a box of the contiguous list of those that fit no level.
-constexpr double kRunCost = 4.0;
-constexpr double kBoxCost = 0.45;
+// Modelled costs [ns], measured on a plain x86-64 build: looking up a run of buckets that are
+// numbered through, or hashed; one box more in a run; the mispredicted branches of a long run; a box
+// of the contiguous list of those that fit no level; keeping a cell that is numbered through.
+constexpr double kRunCost = 3.7;
+constexpr double kHashedRunCost = 8.5;
+constexpr double kBoxCost = 0.15;
+constexpr double kLongRunCost = 8.5;
 constexpr double kListedBoxCost = 0.4;
+constexpr double kCellCost = 0.85;
+
+// The first eight boxes of a run are tested at once, whether or not there are as many: of runs of
+// this mean length about half are long.
+constexpr double kLongRun = 10;
+
+// What it takes to read so many boxes in so many runs.
+double costOfReading(double runs, double boxes) {
+    const double length = boxes / runs;
+    const double shareOfLong = length * length / (length * length + kLongRun * kLongRun);
+    return boxes * kBoxCost + runs * shareOfLong * kLongRunCost;
+}
 
 // Cells beyond these sizes have no inverse in single precision.
 constexpr double kSmallestCell = 1e-30;
@@ -32,71 +47,9 @@ bool has(AxisSet axes, std::size_t axis) {
     return ((axes >> axis) & 1) != 0;
 }
 
-// Rows that a walk looks up, of the three cells an axis that are near; no axis has more cells than
-// the population spreads over.
-double rowsNearby(const std::array<double, 3>& spread, double cellSize, AxisSet flat) {
-    double rows = 1;
-    for (const std::size_t axis : {std::size_t{1}, std::size_t{2}}) {
-        rows *= has(flat, axis) ? 1 : std::min(3.0, spread[axis] / cellSize + 1);
-    }
-    return rows;
-}
-
-// Share of the population in the 27 cells around a box.
-double shareNearby(const std::array<double, 3>& spread, double cellSize, AxisSet flat) {
-    double share = 1;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        share *=
-            has(flat, axis) ? 1 : std::min(1.0, 3 * cellSize / std::max(spread[axis], cellSize));
-    }
-    return share;
-}
-
-struct LevelCost {
-    double cost = std::numeric_limits<double>::infinity();
-    AxisSet flat = 0;
-};
-
-// Cost [ns] of the walks of `own` boxes on this level among themselves, and of those of `smaller`
-// ones, with the axes flat that make it least.
-LevelCost costOfLevel(const std::array<double, 3>& spread, double cellSize, double own,
-                      double smaller) {
-    LevelCost least;
-    for (const AxisSet flat : {AxisSet{0b000}, AxisSet{0b010}, AxisSet{0b100}, AxisSet{0b110}}) {
-        const double rows = rowsNearby(spread, cellSize, flat);
-        const double boxes = own * shareNearby(spread, cellSize, flat);
-        const double amongItself = own * 0.5 * ((rows + 1) * kRunCost + boxes * kBoxCost);
-        const double fromSmaller = smaller * (rows * kRunCost + boxes * kBoxCost);
-        if (amongItself + fromSmaller < least.cost) {
-            least = {amongItself + fromSmaller, flat};
-        }
-    }
-    return least;
-}
-
 // Cells much smaller than the distance between proxies are nearly all empty: they find nothing
-// sooner and only scatter memory.
-constexpr double kCellsPerBox = 16;
-
-double smallestUsefulCell(const std::array<double, 3>& spread, double count) {
-    const double largest = *std::max_element(spread.begin(), spread.end());
-    // Below, divisions would come to a halt at the smallest number.
-    if (!(largest > kSmallestCell)) {
-        return 0;
-    }
-    double cellSize = largest;
-    const auto cells = [&spread](double size) {
-        double product = 1;
-        for (const double axis : spread) {
-            product *= std::max(1.0, axis / size);
-        }
-        return product;
-    };
-    while (cells(cellSize / 1.125) <= kCellsPerBox * count && cellSize > largest * 1e-7) {
-        cellSize /= 1.125;
-    }
-    return cellSize;
-}
+// sooner and only scatter memory. So many a box can be numbered through.
+constexpr double kCellsPerBox = 4;
 
 }  // namespace
 
@@ -149,6 +102,61 @@ void SizeCensus::conclude() {
     }
 }
 
+// Rows that a walk looks up, of the three cells an axis that are near; no axis has more cells than
+// the population spreads over.
+double SizeCensus::rowsNearby(double cellSize, AxisSet flat) const {
+    double rows = 1;
+    for (const std::size_t axis : {std::size_t{1}, std::size_t{2}}) {
+        rows *= has(flat, axis) ? 1 : std::min(3.0, spread_[axis] / cellSize + 1);
+    }
+    return rows;
+}
+
+// Cells between the ends of the population.
+double SizeCensus::cellsAround(double cellSize, AxisSet flat) const {
+    double cells = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        cells *= has(flat, axis) ? 1 : spread_[axis] / cellSize + 1;
+    }
+    return cells;
+}
+
+// Cost [ns] of a level for `own` boxes, of their walks among themselves, and of those of `smaller`
+// ones, with the axes flat that make it least.
+SizeCensus::LevelCost SizeCensus::costOfLevel(double cellSize, double own, double smaller) const {
+    LevelCost least{std::numeric_limits<double>::infinity(), 0};
+    for (const AxisSet flat : {AxisSet{0b000}, AxisSet{0b010}, AxisSet{0b100}, AxisSet{0b110}}) {
+        const double rows = rowsNearby(cellSize, flat);
+        const double boxes = own * crowding_.shareInCell(3 * cellSize, flat);
+        // Cells that are too many to be numbered through are hashed.
+        const double cells = cellsAround(cellSize, flat);
+        const bool isDense = cells < kMostCellsPerBox * own + kFewCells;
+        const double runCost = isDense ? kRunCost : kHashedRunCost;
+        const double runs = 0.5 * (rows + 1);
+        const double cost = (isDense ? cells * kCellCost : 0) +
+                            own * (runs * runCost + costOfReading(runs, 0.5 * boxes)) +
+                            smaller * (rows * runCost + costOfReading(rows, boxes));
+        if (cost < least.cost) {
+            least = {cost, flat};
+        }
+    }
+    return least;
+}
+
+double SizeCensus::smallestUsefulCell() const {
+    const double largest = *std::max_element(spread_.begin(), spread_.end());
+    // Below, divisions would come to a halt at the smallest number.
+    if (!(largest > kSmallestCell)) {
+        return 0;
+    }
+    const double fewest = 1 / (kCellsPerBox * static_cast<double>(total_));
+    double cellSize = largest;
+    while (crowding_.shareInCell(cellSize / 1.125, 0) >= fewest && cellSize > largest * 1e-7) {
+        cellSize /= 1.125;
+    }
+    return cellSize;
+}
+
 void SizeCensus::measureSpread() {
     spread_ = {};
     middle_ = {};
@@ -156,6 +164,7 @@ void SizeCensus::measureSpread() {
     middle_ = middle;
     // The middle nine tenths, so that a few strays do not stretch the picture.
     const auto [low, high] = range(0.05);
+    crowding_.measure(samples_, low, high);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double extent = high[axis] / 0.9 - low[axis] / 0.9;
         spread_[axis] = std::min(extent, std::numeric_limits<double>::max());
@@ -182,8 +191,7 @@ SizeCensus::Range SizeCensus::range(double share) {
 }
 
 void SizeCensus::findClasses() {
-    const double floor = std::clamp(smallestUsefulCell(spread_, static_cast<double>(total_)),
-                                    kSmallestCell, kLargestCell);
+    const double floor = std::clamp(smallestUsefulCell(), kSmallestCell, kLargestCell);
     classes_.assign(1, {});
     for (const Bin& bin : histogram_) {
         if (bin.count == 0) {
@@ -205,9 +213,8 @@ LevelSizes SizeCensus::cheapestLevels() {
         for (std::size_t p = 0; p < q; ++p) {
             const SizeClass& below = classes_[p];
             const double cost =
-                below.leastCost + costOfLevel(spread_, last.upperEdge,
-                                              last.countUpTo - below.countUpTo, below.countUpTo)
-                                      .cost;
+                below.leastCost +
+                costOfLevel(last.upperEdge, last.countUpTo - below.countUpTo, below.countUpTo).cost;
             if (cost < last.leastCost) {
                 last.leastCost = cost;
                 last.from = p;
@@ -256,14 +263,14 @@ double SizeCensus::forLevels(const LevelSizes& levels, Visit&& visit) {
 
 void SizeCensus::flatten(LevelSizes& levels) {
     forLevels(levels, [&](std::size_t i, double own, double smaller) {
-        levels.flatAxes[i] = costOfLevel(spread_, levels.cellSize[i], own, smaller).flat;
+        levels.flatAxes[i] = costOfLevel(levels.cellSize[i], own, smaller).flat;
     });
 }
 
 double SizeCensus::modelledCost(const LevelSizes& levels) {
     double cost = 0;
     const double filed = forLevels(levels, [&](std::size_t i, double own, double smaller) {
-        cost += costOfLevel(spread_, levels.cellSize[i], own, smaller).cost;
+        cost += costOfLevel(levels.cellSize[i], own, smaller).cost;
     });
     const auto total = static_cast<double>(total_);
     return cost + total * (total - filed) * kListedBoxCost;
@@ -276,7 +283,7 @@ std::array<double, 3> SizeCensus::middle() {
 
 std::size_t SizeCensus::memoryBytes() const noexcept {
     return samples_.capacity() * sizeof(samples_[0]) + classes_.capacity() * sizeof(SizeClass) +
-           column_.capacity() * sizeof(double);
+           column_.capacity() * sizeof(double) + crowding_.memoryBytes();
 }
 
 LevelSizes fixedLevels(double cellSize, double ratio) {

@@ -6,6 +6,7 @@
 // under a model of the walk's cost, found exactly by dynamic programming over size classes.
 
 #include <broadphase/aabb.hpp>
+#include <broadphase/detail/crowding.hpp>
 
 #include <array>
 #include <cstddef>
@@ -17,8 +18,9 @@ namespace hashphase::detail {
 
 inline constexpr int kMaxLevels = 16;
 
-/// A set of axes: bit i for axis i.
-using AxisSet = std::uint8_t;
+/// Up to so many cells for each box of a level are numbered through, and a few more at any rate.
+inline constexpr std::uint32_t kMostCellsPerBox = 6;
+inline constexpr std::uint32_t kFewCells = 1024;
 
 /// Cell edges [m], finest first. What fits no level is filed without cells and is looked at by
 /// every walk. Along its flat axes a level has one cell for everything: on a terrain, looking up
@@ -29,12 +31,12 @@ struct LevelSizes {
     int count = 0;
 };
 
-/// Sizes and spread of a population: all that the choice of levels depends on. Allocates only while
+/// Sizes, spread and crowding of a population: all that the choice of levels depends on. Allocates only while
 /// it meets more samples or size classes than ever before.
 class SizeCensus {
 public:
     /// Counts one box. Boxes with an infinite, NaN or negative edge count as fitting no level.
-    /// Min corners are sampled to learn how far the population spreads.
+    /// Min corners are sampled to learn how far the population spreads, and how unevenly.
     template <class Scalar>
     void add(const Aabb<Scalar>& box);
 
@@ -80,6 +82,14 @@ private:
     void conclude();
     void measureSpread();
     void findClasses();
+    [[nodiscard]] double smallestUsefulCell() const;
+    [[nodiscard]] double rowsNearby(double cellSize, AxisSet flat) const;
+    [[nodiscard]] double cellsAround(double cellSize, AxisSet flat) const;
+    struct LevelCost {
+        double cost = 0;
+        AxisSet flat = 0;
+    };
+    [[nodiscard]] LevelCost costOfLevel(double cellSize, double own, double smaller) const;
     template <class Visit>
     double forLevels(const LevelSizes& levels, Visit&& visit);
 
@@ -95,6 +105,7 @@ private:
     bool isConcluded_ = false;
     std::array<double, 3> spread_{};
     std::array<double, 3> middle_{};
+    Crowding crowding_;
     std::vector<SizeClass> classes_;  // occupied ones in ascending order, behind an empty one
     std::vector<double> column_;      // scratch
 };

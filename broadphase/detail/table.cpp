@@ -119,12 +119,7 @@ typename Table<Scalar>::Reaches Table<Scalar>::measure(
             if (!cell) {
                 continue;
             }
-            Reach& reach = reaches[i];
-            ++reach.count;
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                reach.low[axis] = std::min(reach.low[axis], (*cell)[axis]);
-                reach.high[axis] = std::max(reach.high[axis], (*cell)[axis]);
-            }
+            reaches[i].add(*cell);
             break;
         }
     }
@@ -199,13 +194,13 @@ bool Table<Scalar>::numberThrough(Level<Scalar>& level, std::uint32_t count) con
         level.high[axis] += margin;
         extent[axis] = static_cast<std::uint64_t>(level.high[axis] - level.low[axis]) + 1;
     }
-    // An empty cell behind each row, which is the one before the next; an empty row behind each
-    // layer likewise; and an empty layer behind the last, where there are several.
+    // An empty cell behind each row, which is the one before the next; where a layer has several
+    // rows, an empty one behind them likewise; and an empty layer behind the last.
     const std::uint64_t pitch = extent[0] + 1;
-    const std::uint64_t rows = extent[1] + 1;
+    const std::uint64_t rows = extent[1] == 1 ? 1 : extent[1] + 1;
     const std::uint64_t layers = extent[2] == 1 ? 1 : extent[2] + 1;
     if (extent[1] * extent[2] > 8ULL * count || rows * layers > 16ULL * count + 64 ||
-        pitch * rows * layers > 6ULL * count + 1024) {
+        pitch * rows * layers > std::uint64_t{kMostCellsPerBox} * count + kFewCells) {
         return false;
     }
     level.strideY = static_cast<std::uint32_t>(pitch);
@@ -219,11 +214,6 @@ bool Table<Scalar>::numberThrough(Level<Scalar>& level, std::uint32_t count) con
 
 template <class Scalar>
 void Table<Scalar>::layOutHashed(Level<Scalar>& level, std::uint32_t count) const {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const std::int32_t most = level.inverseCellSize[axis] == 0 ? 0 : kCellLimit;
-        level.low[axis] = -most;
-        level.high[axis] = most;
-    }
     level.strideY = kHashStrideY;
     level.strideZ = kHashStrideZ;
     level.bucketCount = std::bit_ceil(std::max(2 * count, 64U));
@@ -345,7 +335,7 @@ void Table<Scalar>::sortCrowds(std::span<const PaddedBox<Scalar>> boxes) {
     }
 }
 
-// Hashed rows are told apart by their coordinates.
+// Hashed rows are told apart by their coordinates, and no search need look beyond them.
 template <class Scalar>
 void Table<Scalar>::noteRows() {
     const auto isHashed = [](const Level<Scalar>& level) {
@@ -353,10 +343,19 @@ void Table<Scalar>::noteRows() {
     };
     const bool isNeeded = std::any_of(levels_.begin(), levels_.end(), isHashed);
     rowOfEntry_.resize(isNeeded ? slots_.size() : 0);
-    for (const Level<Scalar>& level : levels_) {
-        for (std::uint32_t i = level.firstEntry; isHashed(level) && i < level.lastEntry; ++i) {
-            rowOfEntry_[i] = {level.cell(bounds_[1][i], 1), level.cell(bounds_[2][i], 2)};
+    for (Level<Scalar>& level : levels_) {
+        if (!isHashed(level)) {
+            continue;
         }
+        Reach reach;
+        for (std::uint32_t i = level.firstEntry; i < level.lastEntry; ++i) {
+            const Cell cell{level.cell(bounds_[0][i], 0), level.cell(bounds_[1][i], 1),
+                            level.cell(bounds_[2][i], 2)};
+            reach.add(cell);
+            rowOfEntry_[i] = {cell[1], cell[2]};
+        }
+        level.low = reach.low;
+        level.high = reach.high;
     }
 }
 

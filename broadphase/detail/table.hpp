@@ -18,6 +18,7 @@
 #include <broadphase/detail/quantise.hpp>
 #include <broadphase/parallel_for.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -187,6 +188,14 @@ private:
         std::uint32_t count = 0;
         Cell low{kCellLimit, kCellLimit, kCellLimit};
         Cell high{-kCellLimit, -kCellLimit, -kCellLimit};
+
+        void add(const Cell& cell) noexcept {
+            ++count;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                low[axis] = std::min(low[axis], cell[axis]);
+                high[axis] = std::max(high[axis], cell[axis]);
+            }
+        }
     };
 
     [[nodiscard]] bool chooseLevels(std::span<const PaddedBox<Scalar>> boxes,

@@ -192,7 +192,7 @@ TEST(AutomaticLevels, OfAPopulationAcrossTheWholeRangeOfNumbersAreFinite) {
 TEST(AutomaticLevels, OfAPopulationSpreadOverDenormalNumbersAreFoundInTheEnd) {
     for (double spread = 1; spread > 0; spread /= 2) {
         SizeCensus census;
-        for (int i = 0; i < 40; ++i) {
+        for (int i = 0; i < 400; ++i) {
             const Vector3<double> corner = Vector3<double>::Constant(i % 2 == 0 ? 0 : spread);
             census.add(Aabb<double>(corner, corner));
         }

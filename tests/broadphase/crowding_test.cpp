@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Zlib
+
+#include <broadphase/detail/crowding.hpp>
+#include <tests/support/random.hpp>
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace hashphase::detail {
+namespace {
+
+using test::Random;
+using Point = std::array<double, 3>;
+using Points = std::vector<Point>;
+
+constexpr AxisSet kNone = 0b000;
+constexpr AxisSet kFlatY = 0b010;
+constexpr AxisSet kFlatYZ = 0b110;
+
+void scatter(Points& points, Random& random, int count, const Point& corner, const Point& extent) {
+    for (int i = 0; i < count; ++i) {
+        const Vector3<double> at = random.pointIn(0, 1);
+        points.push_back({corner[0] + at[0] * extent[0], corner[1] + at[1] * extent[1],
+                          corner[2] + at[2] * extent[2]});
+    }
+}
+
+/// The definition: of all couples, those whose cells are the same; cells begin anywhere.
+double shareByCouples(const Points& points, double size, AxisSet flat) {
+    double same = 0;
+    double all = 0;
+    for (const double begin : {0.0, 0.21, 0.43, 0.77}) {
+        for (std::size_t a = 0; a < points.size(); ++a) {
+            for (std::size_t b = a + 1; b < points.size(); ++b) {
+                bool isSame = true;
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    const bool isFlat = ((flat >> axis) & 1) != 0;
+                    isSame = isSame && (isFlat || std::floor(points[a][axis] / size + begin) ==
+                                                      std::floor(points[b][axis] / size + begin));
+                }
+                same += isSame ? 1 : 0;
+                all += 1;
+            }
+        }
+    }
+    return same / all;
+}
+
+TEST(Crowding, IsTheShareOfCouplesInOneCell) {
+    Random random(0x5eed0c01);
+    Points points;
+    scatter(points, random, 700, {-20, 3, 100}, {40, 10, 20});
+    scatter(points, random, 300, {5, 5, 105}, {4, 4, 4});
+    Crowding crowding;
+    crowding.measure(points, {-20, 3, 100}, {20, 13, 120});
+    for (const AxisSet flat : {kNone, kFlatY, AxisSet{0b100}, kFlatYZ}) {
+        for (const double size : {1.5, 3.0, 6.0, 12.0}) {
+            const double expected = shareByCouples(points, size, flat);
+            const double share = crowding.shareInCell(size, flat);
+            EXPECT_GT(share, 0.6 * expected) << size << ", flat " << int{flat};
+            EXPECT_LT(share, 1.6 * expected) << size << ", flat " << int{flat};
+        }
+    }
+    EXPECT_EQ(crowding.shareInCell(1e6, kNone), 1);
+}
+
+TEST(Crowding, OfPilesFarApartIsThatOfOnePile) {
+    Random random(0x5eed0c02);
+    Points points;
+    for (int pile = 0; pile < 20; ++pile) {
+        scatter(points, random, 100, {500.0 * pile, 0, -300.0 * pile}, {10, 10, 10});
+    }
+    Crowding crowding;
+    crowding.measure(points, {0, 0, -6000}, {10000, 10, 10});
+    // A cell of 5 m has an eighth of a pile, which is a twentieth of all.
+    EXPECT_NEAR(std::log2(crowding.shareInCell(5, kNone)), std::log2(1.0 / 160), 1);
+}
+
+// Where too few of the sample share a cell to be counted.
+TEST(Crowding, FallsWithTheVolumeOfSmallCells) {
+    Random random(0x5eed0c03);
+    Points points;
+    scatter(points, random, 2000, {0, 0, 0}, {100, 100, 100});
+    Crowding crowding;
+    crowding.measure(points, {0, 0, 0}, {100, 100, 100});
+    for (const double size : {10.0, 3.0, 1.0}) {
+        const double share = crowding.shareInCell(size, kNone);
+        EXPECT_NEAR(std::log2(share), 3 * std::log2(size / 100), 2.5) << size;
+        EXPECT_NEAR(std::log2(crowding.shareInCell(size / 2, kNone) / share), -3, 0.8) << size;
+    }
+}
+
+TEST(Crowding, OfPointsAtOnePlaceIsWhole) {
+    const Points points(100, Point{1, 2, 3});
+    Crowding crowding;
+    crowding.measure(points, {0, 0, 0}, {10, 10, 10});
+    EXPECT_NEAR(crowding.shareInCell(1e-9, kNone), 1, 1e-9);
+    crowding.measure(points, {1, 2, 3}, {1, 2, 3});
+    EXPECT_EQ(crowding.shareInCell(1e-9, kNone), 1);
+}
+
+TEST(Crowding, DoesNotCountWhatIsFarOutside) {
+    Random random(0x5eed0c04);
+    Points points;
+    scatter(points, random, 900, {0, 0, 0}, {10, 10, 10});
+    Crowding alone;
+    alone.measure(points, {0, 0, 0}, {10, 10, 10});
+    for (int i = 0; i < 100; ++i) {
+        points.push_back({1e30, -1e30, 1e300});
+    }
+    Crowding crowding;
+    crowding.measure(points, {0, 0, 0}, {10, 10, 10});
+    EXPECT_NEAR(crowding.shareInCell(2, kNone) / alone.shareInCell(2, kNone), 0.81, 0.02);
+}
+
+TEST(Crowding, OfNothingOrOfNumbersAtTheirEndsIsAShare) {
+    Crowding crowding;
+    crowding.measure({}, {0, 0, 0}, {0, 0, 0});
+    EXPECT_EQ(crowding.shareInCell(1, kNone), 1);
+    constexpr double most = std::numeric_limits<double>::max();
+    Points points{{most, most, most}, {-most, -most, -most}, {0, 0, 0}};
+    crowding.measure(points, {-most, -most, -most}, {most, most, most});
+    for (const double size : {1e-300, 1.0, 1e300}) {
+        const double share = crowding.shareInCell(size, kNone);
+        EXPECT_TRUE(share >= 0 && share <= 1) << share;
+    }
+}
+
+}  // namespace
+}  // namespace hashphase::detail
