@@ -105,8 +105,9 @@ public:
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
 
-    /// visit() for many: collectors[i] takes what regions[i] finds, as if asked alone. The collectors
-    /// must not share anything when `parallelFor` is parallel. Returns the sum of the costs.
+    /// visit() for many: collectors[i] takes what regions[i] finds, in any order. The collectors
+    /// must not share anything when `parallelFor` is parallel. Returns the sum of the costs. Faster
+    /// than one by one where regions have bounds(), unless the collectors stop early.
     template <class Region, class Collector>
     QueryCost visitEach(std::span<const Region> regions, std::span<Collector> collectors,
                         ParallelFor parallelFor = serialFor) const;
@@ -216,6 +217,10 @@ private:
         return mobileTree_.isStale.load(std::memory_order_acquire) ||
                restingTree_.isStale.load(std::memory_order_acquire);
     }
+    template <class Region, class Collector>
+    void visitWaiting(const Region& region, Collector& collector, QueryCost& cost) const;
+    template <class Region, class Collector>
+    QueryCost visitTogether(std::span<const Region> regions, std::span<Collector> collectors) const;
     template <class Region, class Collector>
     bool visitTables(const Region& region, Collector& collector, QueryCost& cost) const;
 

@@ -5,12 +5,11 @@
 //
 //   key(box)                the box's distance in the region's own measure (0 or more), or a
 //                           negative number when the box is not in the region
-//   forRows(level, visit)   visits the rows of cells in which anything with a key may be filed,
-//                           within level.low to level.high
+//   bounds()                a box that overlaps whatever has a key
 //
-// key() decides what is found; forRows() only saves work and may name too many rows, never too few.
-// A region along a line has segment() in the place of forRows(): a RayRegion that meets whatever has
-// a key, no later on its way than that key.
+// key() decides what is found; bounds() only saves work and may be too large, never too small. A
+// region along a line has segment() in the place of bounds(): a RayRegion that meets whatever has a
+// key, no later on its way than that key.
 //
 // Units    metres; a ray's key is the fraction of its length, 0 at `from`, 1 at `to`
 // NaN      a NaN in a region makes it empty
@@ -35,10 +34,7 @@ struct BoxRegion {
         return overlaps(box, other) ? Scalar(0) : Scalar(-1);
     }
 
-    template <class VisitRow>
-    bool forRows(const detail::Level<Scalar>& level, VisitRow&& visitRow) const {
-        return detail::forRowsOfBox(level, box, visitRow);
-    }
+    [[nodiscard]] const Aabb<Scalar>& bounds() const noexcept { return box; }
 };
 
 /// Everything within `radius` [m] of `center` (closed ball). Key: squared distance [m^2] from the
@@ -65,20 +61,19 @@ public:
         return reach >= 0 && squared <= reach * reach ? squared / scale_ / scale_ : Scalar(-1);
     }
 
-    template <class VisitRow>
-    bool forRows(const detail::Level<Scalar>& level, VisitRow&& visitRow) const {
-        if (center_.hasNaN() || !(radius_ >= 0)) {
-            return true;
+    [[nodiscard]] Aabb<Scalar> bounds() const noexcept {
+        using Limits = std::numeric_limits<Scalar>;
+        const bool isEmpty = center_.hasNaN() || !(radius_ >= 0);
+        if (isEmpty || !center_.allFinite()) {
+            const auto all =
+                Vector3<Scalar>::Constant(isEmpty ? Limits::quiet_NaN() : Limits::infinity());
+            return {-all, all};
         }
-        // Rounded outward: key() rounds, and must not find what the rows leave out.
-        constexpr Scalar epsilon = std::numeric_limits<Scalar>::epsilon();
+        // Rounded outward: key() rounds, and must not find what the bounds leave out.
         const Scalar reach = center_.cwiseAbs().maxCoeff() + radius_;
-        const Scalar padded = radius_ + 4 * epsilon * reach + std::numeric_limits<Scalar>::min();
+        const Scalar padded = radius_ + 4 * Limits::epsilon() * reach + Limits::min();
         const Vector3<Scalar> half = Vector3<Scalar>::Constant(padded);
-        if (!center_.allFinite()) {
-            return false;
-        }
-        return detail::forRowsOfBox(level, Aabb<Scalar>(center_ - half, center_ + half), visitRow);
+        return {center_ - half, center_ + half};
     }
 
 private:

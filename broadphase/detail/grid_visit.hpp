@@ -3,6 +3,7 @@
 
 // Grid's query templates; included by grid.hpp.
 
+#include <broadphase/detail/join.hpp>
 #include <broadphase/detail/ray_walk.hpp>
 #include <broadphase/grid.hpp>
 
@@ -94,15 +95,10 @@ bool Grid<Scalar>::visitTables(const Region& region, Collector& collector, Query
     }
 }
 
+// Offers what changed since it was filed.
 template <class Scalar>
 template <class Region, class Collector>
-QueryCost Grid<Scalar>::visit(const Region& region, Collector& collector) const {
-    fileIfMany();
-    QueryCost cost;
-    if (!visitTables(region, collector, cost)) {
-        return cost;
-    }
-    // What changed since it was filed.
+void Grid<Scalar>::visitWaiting(const Region& region, Collector& collector, QueryCost& cost) const {
     for (const std::uint32_t slot : waiting_) {
         if (!isAlive(slot)) {
             continue;
@@ -118,6 +114,52 @@ QueryCost Grid<Scalar>::visit(const Region& region, Collector& collector) const 
             break;
         }
     }
+}
+
+template <class Scalar>
+template <class Region, class Collector>
+QueryCost Grid<Scalar>::visit(const Region& region, Collector& collector) const {
+    fileIfMany();
+    QueryCost cost;
+    if (visitTables(region, collector, cost)) {
+        visitWaiting(region, collector, cost);
+    }
+    return cost;
+}
+
+// Many boxes are looked for at once, in one table after the other; what they find is then offered to
+// the regions.
+template <class Scalar>
+template <class Region, class Collector>
+QueryCost Grid<Scalar>::visitTogether(std::span<const Region> regions,
+                                      std::span<Collector> collectors) const {
+    detail::BoxColumns<Scalar> bounds;
+    for (const Region& region : regions) {
+        bounds.push(region.bounds());
+    }
+    QueryCost cost;
+    detail::PairList found;
+    for (const detail::Table<Scalar>* table : {&mobile_, &resting_}) {
+        detail::KernelCost walk;
+        found.clear();
+        found.append([&](detail::PairSink& sink) {
+            detail::walkLevels(*table, bounds.columns(), 0, bounds.size(), sink, walk);
+        });
+        cost.rowsVisited += walk.rowsVisited;
+        cost.boxesTested += walk.boxesTested;
+        for (const auto [i, entry] : found.pairs()) {
+            const Scalar key = regions[i].key(table->box(entry));
+            if (key >= 0 && key <= collectors[i].limit() && isFiled(table->slot(entry))) {
+                ++cost.hits;
+                collectors[i].add(idOf(table->slot(entry)), key);
+            }
+        }
+    }
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+        if (collectors[i].limit() >= 0) {
+            visitWaiting(regions[i], collectors[i], cost);
+        }
+    }
     return cost;
 }
 
@@ -126,14 +168,23 @@ template <class Region, class Collector>
 QueryCost Grid<Scalar>::visitEach(std::span<const Region> regions, std::span<Collector> collectors,
                                   ParallelFor parallelFor) const {
     HASHPHASE_ASSERT(regions.size() == collectors.size(), "Each region has a collector.");
-    constexpr std::size_t grain = 64;
+    constexpr std::size_t grain = 256;
+    fileIfMany();
     std::atomic<std::uint64_t> rowsVisited{0};
     std::atomic<std::uint64_t> boxesTested{0};
     std::atomic<std::uint64_t> hits{0};
     parallelFor(regions.size(), grain, [&](std::size_t begin, std::size_t end) {
         QueryCost cost;
-        for (std::size_t i = begin; i < end; ++i) {
-            cost += visit(regions[i], collectors[i]);
+        if constexpr (requires { regions[0].bounds(); }) {
+            for (; begin < end; begin += grain) {
+                const std::size_t count = std::min(grain, end - begin);
+                cost +=
+                    visitTogether(regions.subspan(begin, count), collectors.subspan(begin, count));
+            }
+        } else {
+            for (std::size_t i = begin; i < end; ++i) {
+                cost += visit(regions[i], collectors[i]);
+            }
         }
         rowsVisited += cost.rowsVisited;
         boxesTested += cost.boxesTested;
@@ -162,8 +213,7 @@ struct Grid<Scalar>::CellRegion {
         return 0;
     }
 
-    template <class VisitRow>
-    bool forRows(const detail::Level<Scalar>& level, VisitRow&& visitRow) const {
+    [[nodiscard]] Box bounds() const {
         // A little more than the cell: its borders are rounded.
         const Scalar size = grid.cellSize();
         Box bounds;
@@ -174,7 +224,7 @@ struct Grid<Scalar>::CellRegion {
             bounds.min()[static_cast<int>(axis)] = low - margin;
             bounds.max()[static_cast<int>(axis)] = low + size + margin;
         }
-        return detail::forRowsOfBox(level, bounds, visitRow);
+        return bounds;
     }
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The one walk that answers every query but rays: a region names the rows of cells to read on each
-// level, the walk reads their buckets.
+// The one walk that answers every query but rays: reads the rows of cells around the region's bounds,
+// level by level.
 
 #include <broadphase/detail/table.hpp>
 #include <broadphase/diagnostics.hpp>
@@ -87,8 +87,7 @@ bool walkLevel(const Table<Scalar>& table, const Level<Scalar>& level, const Reg
         return readWhole();
     }
     bool goOn = true;
-    const bool byRows = region.forRows(level, [&](const CellRun& run) {
-        HASHPHASE_ASSERT(level.isWithin(run), "A region names rows of the level's cells.");
+    const bool byRows = forRowsOfBox(level, region.bounds(), [&](const CellRun& run) {
         ++cost.rowsVisited;
         table.forRun(level, run, [&](const EntryRange& range) {
             cost.boxesTested += range.last - range.first;

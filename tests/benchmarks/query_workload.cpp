@@ -12,13 +12,13 @@ namespace {
 
 // Takes what the grid finds around one agent.
 struct NeighbourCollector {
-    const SpatialHashBroadphase& broadphase;
+    const SpatialHashBroadphase* broadphase;
     std::size_t agent;
-    std::vector<Answer>& answers;
+    std::vector<Answer>* answers;
 
     void add(ProxyId id, float /*key*/) {
-        answers.push_back(
-            answerOf(agent, demos::FilledBroadphase::objectOf(*broadphase.proxyOf(id))));
+        answers->push_back(
+            answerOf(agent, demos::FilledBroadphase::objectOf(*broadphase->proxyOf(id))));
     }
     [[nodiscard]] static constexpr float limit() { return std::numeric_limits<float>::infinity(); }
 };
@@ -76,19 +76,24 @@ void QueryWorkload::advanceScene() {
 }
 
 void NeighbourWorkload::ask(demos::FilledBroadphase& filled, std::vector<Answer>& answers) {
-    auto* own = dynamic_cast<SpatialHashBroadphase*>(&filled.broadphase());
-    for (std::size_t agent = 0; agent < scene().size(); ++agent) {
-        const Vector3<float> centre = scene().boxes()[agent].center();
-        const SphereRegion<float> region(centre, radius_);
-        if (own != nullptr) {
-            NeighbourCollector collector{*own, agent, answers};
-            own->grid().visit(region, collector);
-        } else {
-            NeighbourCallback callback(region, agent, answers);
-            const btVector3 reach(radius_, radius_, radius_);
-            filled.broadphase().aabbTest(toBullet(centre) - reach, toBullet(centre) + reach,
-                                         callback);
+    const std::vector<Aabb<float>>& boxes = scene().boxes();
+    if (const auto* own = dynamic_cast<SpatialHashBroadphase*>(&filled.broadphase())) {
+        std::vector<SphereRegion<float>> regions;
+        std::vector<NeighbourCollector> collectors;
+        for (std::size_t agent = 0; agent < boxes.size(); ++agent) {
+            regions.emplace_back(boxes[agent].center(), radius_);
+            collectors.push_back({own, agent, &answers});
         }
+        own->grid().visitEach(std::span<const SphereRegion<float>>(regions),
+                              std::span<NeighbourCollector>(collectors));
+        return;
+    }
+    for (std::size_t agent = 0; agent < boxes.size(); ++agent) {
+        const Vector3<float> centre = boxes[agent].center();
+        const SphereRegion<float> region(centre, radius_);
+        NeighbourCallback callback(region, agent, answers);
+        const btVector3 reach(radius_, radius_, radius_);
+        filled.broadphase().aabbTest(toBullet(centre) - reach, toBullet(centre) + reach, callback);
     }
 }
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Zlib
 
-// Rays between changes, many rays at once, and what rays cost a grid that is asked for none.
+// Rays between changes, many regions at once, and what rays cost a grid that is asked for none.
 
 #include <tests/support/box_scenes.hpp>
 #include <tests/support/query_checks.hpp>
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
 #include <thread>
 #include <vector>
 
@@ -82,6 +84,66 @@ TYPED_TEST(RayBatch, FindsForEachRayWhatItFindsAloneInTheSameOrder) {
     std::vector<CollectCount> none;
     EXPECT_EQ(this->grid_.visitEach(std::span<const Ray>(), std::span<CollectCount>(none)).hits,
               0U);
+}
+
+// Boxes and spheres in any order, those that are looked for in vain and everywhere among them.
+TYPED_TEST(RayBatch, FindsForEachBoxAndSphereWhatItFindsAlone) {
+    using Scalar = TypeParam;
+    using Limits = std::numeric_limits<Scalar>;
+    RegionMaker<Scalar> make(this->random_, this->proxies_);
+    const auto expectLikeAlone = [this]<class Region>(const std::vector<Region>& regions,
+                                                      ParallelFor parallelFor) {
+        std::vector<std::vector<ProxyId>> found(regions.size());
+        std::vector<CollectAll> collectors(found.begin(), found.end());
+        const QueryCost cost = this->grid_.visitEach(
+            std::span<const Region>(regions), std::span<CollectAll>(collectors), parallelFor);
+        std::size_t hits = 0;
+        for (std::size_t i = 0; i < regions.size(); ++i) {
+            std::vector<ProxyId> alone;
+            CollectAll collector(alone);
+            this->grid_.visit(regions[i], collector);
+            std::sort(alone.begin(), alone.end());
+            std::sort(found[i].begin(), found[i].end());
+            ASSERT_EQ(found[i], alone) << i;
+            hits += alone.size();
+        }
+        EXPECT_EQ(cost.hits, hits);
+        EXPECT_GT(hits, 1000U);
+    };
+    for (const ParallelFor parallelFor : {ParallelFor(serialFor), ParallelFor(forOnTwoThreads)}) {
+        for (std::size_t i = 0; i < 40; ++i) {
+            this->move(i * 70);
+        }
+        std::vector<BoxRegion<Scalar>> boxes;
+        std::vector<SphereRegion<Scalar>> spheres;
+        for (int i = 0; i < 700; ++i) {
+            boxes.push_back(make.box());
+            spheres.push_back(make.sphere());
+        }
+        const Vector3<Scalar> zero = Vector3<Scalar>::Zero();
+        const Vector3<Scalar> far = Vector3<Scalar>::Constant(Limits::infinity());
+        const Vector3<Scalar> nan = Vector3<Scalar>::Constant(Limits::quiet_NaN());
+        boxes.push_back({Aabb<Scalar>(-far, far)});
+        boxes.push_back({Aabb<Scalar>(zero, nan)});
+        spheres.emplace_back(zero, Limits::infinity());
+        spheres.emplace_back(far, Scalar(1));
+        spheres.emplace_back(nan, Scalar(1));
+        spheres.emplace_back(zero, Scalar(-1));
+        expectLikeAlone(boxes, parallelFor);
+        expectLikeAlone(spheres, parallelFor);
+    }
+}
+
+// A collector that has enough is offered no more.
+TYPED_TEST(RayBatch, OffersNothingToACollectorThatHasEnough) {
+    const BoxRegion<TypeParam> all{
+        Aabb<TypeParam>(Vector3<TypeParam>::Constant(-100), Vector3<TypeParam>::Constant(100))};
+    const std::vector<BoxRegion<TypeParam>> regions(3, all);
+    std::vector<CollectAny> any(3);
+    const QueryCost cost =
+        this->grid_.visitEach(std::span<const BoxRegion<TypeParam>>(regions), std::span(any));
+    EXPECT_EQ(cost.hits, 3U);
+    EXPECT_FALSE(any[2].found().isNull());
 }
 
 TYPED_TEST(RayBatch, IsRightAfterEveryKindOfChange) {
