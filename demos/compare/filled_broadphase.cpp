@@ -59,6 +59,31 @@ void FilledBroadphase::destroy(std::uint32_t object) {
     proxies_[object] = nullptr;
 }
 
+void FilledBroadphase::createInBatch(std::span<const std::uint32_t> objects,
+                                     std::span<const BulletBox> boxes,
+                                     std::span<const CollisionFilter> filters) {
+    definitions_.clear();
+    for (const std::uint32_t object : objects) {
+        const CollisionFilter filter = filters.empty() ? CollisionFilter{} : filters[object];
+        definitions_.push_back(
+            {boxes[object].min, boxes[object].max, &objects_[object], filter.group, filter.mask});
+    }
+    batch_.resize(objects.size());
+    dynamic_cast<SpatialHashBroadphase&>(*broadphase_).createProxies(definitions_, batch_, nullptr);
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        proxies_[objects[i]] = batch_[i];
+    }
+}
+
+void FilledBroadphase::destroyInBatch(std::span<const std::uint32_t> objects) {
+    batch_.clear();
+    for (const std::uint32_t object : objects) {
+        batch_.push_back(proxies_[object]);
+        proxies_[object] = nullptr;
+    }
+    dynamic_cast<SpatialHashBroadphase&>(*broadphase_).destroyProxies(batch_, nullptr);
+}
+
 void FilledBroadphase::setAll(std::span<const BulletBox> boxes) {
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         broadphase_->setAabb(proxies_[i], boxes[i].min, boxes[i].max, nullptr);

@@ -6,6 +6,7 @@
 #include <demos/compare/broadphase_kind.hpp>
 #include <demos/compare/heap_meter.hpp>
 #include <demos/compare/reference_pairs.hpp>
+#include <integration/bullet/spatial_hash_broadphase.hpp>
 
 #include <memory>
 #include <span>
@@ -33,6 +34,12 @@ public:
     void create(std::uint32_t object, const BulletBox& box, CollisionFilter filter);
     void destroy(std::uint32_t object);
 
+    /// The same for many at once, of a SpatialHashBroadphase. `boxes` and `filters` are those of all
+    /// objects; without filters all may pair.
+    void createInBatch(std::span<const std::uint32_t> objects, std::span<const BulletBox> boxes,
+                       std::span<const CollisionFilter> filters);
+    void destroyInBatch(std::span<const std::uint32_t> objects);
+
     /// setAabb for all objects, which must all be there.
     void setAll(std::span<const BulletBox> boxes);
     void set(std::uint32_t object, const BulletBox& box) {
@@ -57,6 +64,8 @@ private:
     bool freesProxies_;
     std::vector<std::uint32_t> objects_;  // what the proxies' clients point at
     std::vector<btBroadphaseProxy*> proxies_;
+    std::vector<ProxyDefinition> definitions_;  // scratch
+    std::vector<btBroadphaseProxy*> batch_;     // the same
     HeapMeter heap_;
     std::unique_ptr<btBroadphaseInterface> broadphase_;
 };

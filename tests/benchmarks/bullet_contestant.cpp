@@ -5,6 +5,7 @@
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
 #include <algorithm>
+#include <numeric>
 
 namespace hashphase::benchmarks {
 namespace {
@@ -18,9 +19,9 @@ public:
         : filled_(kind, needs) {}
 
     void fill(const FrameBoxes& frame) override {
-        for (std::size_t i = 0; i < frame.boxes.size(); ++i) {
-            add(static_cast<std::uint32_t>(i), frame);
-        }
+        std::vector<std::uint32_t> all(frame.boxes.size());
+        std::iota(all.begin(), all.end(), 0U);
+        add(all, frame);
     }
     void setAll(const FrameBoxes& frame) override { filled_.setAll(frame.bulletBoxes); }
     void findPairs() override { filled_.findPairs(); }
@@ -37,36 +38,69 @@ public:
         return OwnBytes{own->memoryBytes() - cache.memoryBytes(), cache.memoryBytes()};
     }
 
-private:
-    void add(std::uint32_t object, const FrameBoxes& frame) override {
-        filled_.create(object, frame.bulletBoxes[object], frame.filterOf(object));
+protected:
+    void add(std::span<const std::uint32_t> objects, const FrameBoxes& frame) override {
+        for (const std::uint32_t object : objects) {
+            filled_.create(object, frame.bulletBoxes[object], frame.filterOf(object));
+        }
     }
-    void remove(std::uint32_t object) override { filled_.destroy(object); }
+    void remove(std::span<const std::uint32_t> objects) override {
+        for (const std::uint32_t object : objects) {
+            filled_.destroy(object);
+        }
+    }
 
     demos::FilledBroadphase filled_;
 };
 
+class BatchContestant : public BulletContestant {
+public:
+    using BulletContestant::BulletContestant;
+
+private:
+    void add(std::span<const std::uint32_t> objects, const FrameBoxes& frame) override {
+        filled_.createInBatch(objects, frame.bulletBoxes, frame.filters);
+    }
+    void remove(std::span<const std::uint32_t> objects) override {
+        filled_.destroyInBatch(objects);
+    }
+};
+
 }  // namespace
+
+ContestantKind bulletKind(const demos::BroadphaseKind& bullet) {
+    ContestantKind kind;
+    kind.name = bullet.name;
+    kind.title = bullet.title;
+    kind.description = bullet.description;
+    kind.package = bullet.ours ? "this build" : HASHPHASE_BENCHMARKS_BULLET_PACKAGE;
+    kind.ours = bullet.ours;
+    kind.changes = true;
+    kind.upTo = bullet.defaultUpTo;
+    if (kind.name == "axis-sweep") {
+        kind.fillsUpTo = kAxisSweepFillsUpTo;
+    }
+    kind.make = [&bullet](const demos::BroadphaseNeeds& needs) {
+        return std::make_unique<BulletContestant>(bullet, needs);
+    };
+    kind.bullet = &bullet;
+    return kind;
+}
 
 std::vector<ContestantKind> bulletKinds() {
     std::vector<ContestantKind> kinds;
     for (const demos::BroadphaseKind& bullet : demos::broadphaseKinds()) {
-        ContestantKind kind;
-        kind.name = bullet.name;
-        kind.title = bullet.title;
-        kind.description = bullet.description;
-        kind.package = bullet.ours ? "this build" : HASHPHASE_BENCHMARKS_BULLET_PACKAGE;
-        kind.ours = bullet.ours;
-        kind.changes = true;
-        kind.upTo = bullet.defaultUpTo;
-        if (kind.name == "axis-sweep") {
-            kind.fillsUpTo = kAxisSweepFillsUpTo;
+        kinds.push_back(bulletKind(bullet));
+        if (bullet.ours) {
+            ContestantKind batches = kinds.back();
+            batches.name += "-batches";
+            batches.description = "the same, told of many objects in one call";
+            batches.inBatches = true;
+            batches.make = [&bullet](const demos::BroadphaseNeeds& needs) {
+                return std::make_unique<BatchContestant>(bullet, needs);
+            };
+            kinds.push_back(std::move(batches));
         }
-        kind.make = [&bullet](const demos::BroadphaseNeeds& needs) {
-            return std::make_unique<BulletContestant>(bullet, needs);
-        };
-        kind.bullet = &bullet;
-        kinds.push_back(std::move(kind));
     }
     return kinds;
 }

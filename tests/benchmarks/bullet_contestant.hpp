@@ -8,7 +8,10 @@
 
 namespace hashphase::benchmarks {
 
-/// Ours first.
+/// `bullet` must outlive what this returns.
+[[nodiscard]] ContestantKind bulletKind(const demos::BroadphaseKind& bullet);
+
+/// Ours first, one by one and in batches.
 [[nodiscard]] std::vector<ContestantKind> bulletKinds();
 
 }  // namespace hashphase::benchmarks

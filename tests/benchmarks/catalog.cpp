@@ -29,7 +29,7 @@ Benchmark pairsOf(std::string name, std::string_view scene, std::vector<std::siz
     benchmark.group = "pairs";
     benchmark.description = kind.description;
     benchmark.sizes = std::move(sizes);
-    benchmark.admits = isFastEnough;
+    benchmark.admits = takesPartInFrames;
     benchmark.make = [&kind](std::size_t objects, std::uint64_t seed) {
         return std::make_unique<PairWorkload>(kind.make(objects, seed));
     };
@@ -43,7 +43,7 @@ Benchmark stillBenchmark(std::string name, std::string description, Setting sett
     benchmark.group = "pairs";
     benchmark.description = std::move(description);
     benchmark.sizes = {100'000};
-    benchmark.admits = isFastEnough;
+    benchmark.admits = takesPartInFrames;
     benchmark.make = [setting](std::size_t objects, std::uint64_t seed) {
         ScatterPlan plan;
         plan.movingShare = 0;
@@ -68,7 +68,8 @@ Benchmark removalBenchmark(std::string name, std::string description, RemovalTim
     benchmark.admits = [timing](const ContestantKind& kind, std::size_t objects) {
         // The grid alone notes a removal and deals with it when it is asked for pairs.
         const bool complete = kind.bullet != nullptr || timing == RemovalTiming::removalsAndPairs;
-        return isFastEnough(kind, objects) && objects <= kind.fillsUpTo && complete && kind.changes;
+        return isFastEnough(kind, objects) && objects <= kind.fillsUpTo && complete &&
+               kind.changes && !kind.onThreads;
     };
     benchmark.make = [timing](std::size_t objects, std::uint64_t seed) {
         return std::make_unique<RemovalWorkload>(sceneKind("uniform").make(objects, seed),
@@ -81,6 +82,10 @@ Benchmark removalBenchmark(std::string name, std::string description, RemovalTim
 
 bool isFastEnough(const ContestantKind& kind, std::size_t objects) {
     return objects <= kind.upTo;
+}
+
+bool takesPartInFrames(const ContestantKind& kind, std::size_t objects) {
+    return isFastEnough(kind, objects) && !kind.inBatches && !kind.onThreads;
 }
 
 std::vector<Benchmark> pairBenchmarks() {
@@ -105,6 +110,13 @@ std::vector<Benchmark> pairBenchmarks() {
                                  Setting::everything));
     all.push_back(stillBenchmark("sleeping", "uniform boxes, half static, half asleep: none is set",
                                  Setting::nothing));
+    Benchmark threads = pairsOf("threads", "uniform", {30'000, 100'000});
+    threads.description = "S2-uniform, with hashphase on one thread and on all";
+    threads.admits = [](const ContestantKind& kind, std::size_t /*objects*/) {
+        return kind.name == kBaseline || kind.name == "hash" || kind.onThreads;
+    };
+    threads.onRequest = true;
+    all.push_back(std::move(threads));
     return all;
 }
 
@@ -118,7 +130,7 @@ std::vector<Benchmark> randomBenchmarks(std::uint64_t seed) {
         benchmark.description = describe(drawn.plan);
         benchmark.sizes = {drawn.objects};
         benchmark.takesOtherSizes = false;
-        benchmark.admits = isFastEnough;
+        benchmark.admits = takesPartInFrames;
         benchmark.make = [plan = drawn.plan](std::size_t objects, std::uint64_t sceneSeed) {
             return std::make_unique<PairWorkload>(std::make_unique<demos::BrownianScene>(
                 scatter(plan, objects, sceneSeed), sceneSeed));
@@ -137,10 +149,10 @@ std::vector<Benchmark> populationBenchmarks() {
     Benchmark creation;
     creation.name = "creation";
     creation.group = "population";
-    creation.description = "uniform boxes are created one by one, until the pairs are complete";
+    creation.description = "uniform boxes are created, until the pairs are complete";
     creation.sizes = {10'000};
     creation.admits = [](const ContestantKind& kind, std::size_t objects) {
-        return isFastEnough(kind, objects) && objects <= kind.fillsUpTo;
+        return isFastEnough(kind, objects) && objects <= kind.fillsUpTo && !kind.onThreads;
     };
     creation.make = [](std::size_t objects, std::uint64_t seed) {
         return std::make_unique<CreationWorkload>(sceneKind("uniform").make(objects, seed));

@@ -51,4 +51,7 @@ struct Benchmark {
 /// True for contestants that are not too slow for so many objects.
 [[nodiscard]] bool isFastEnough(const ContestantKind& kind, std::size_t objects);
 
+/// True for those of them whose frames differ from those of others.
+[[nodiscard]] bool takesPartInFrames(const ContestantKind& kind, std::size_t objects);
+
 }  // namespace hashphase::benchmarks

@@ -38,7 +38,7 @@ struct OwnBytes {
     std::size_t forPairs = 0;
 };
 
-/// Adds and removes single objects; not every library does.
+/// Adds and removes objects; not every library does.
 class Population {
 public:
     Population() = default;
@@ -46,8 +46,8 @@ public:
     Population& operator=(const Population&) = delete;
     virtual ~Population() = default;
 
-    virtual void add(std::uint32_t object, const FrameBoxes& frame) = 0;
-    virtual void remove(std::uint32_t object) = 0;
+    virtual void add(std::span<const std::uint32_t> objects, const FrameBoxes& frame) = 0;
+    virtual void remove(std::span<const std::uint32_t> objects) = 0;
 };
 
 class Contestant {
@@ -79,9 +79,11 @@ struct ContestantKind {
     std::string name;
     std::string title;  // the class, for readers
     std::string description;
-    std::string package;   // where it comes from, with its version
-    bool ours = false;     // a wrong answer of it fails the run
-    bool changes = false;  // takes in and removes single objects: population() is not null
+    std::string package;     // where it comes from, with its version
+    bool ours = false;       // a wrong answer of it fails the run
+    bool changes = false;    // takes in and removes objects at any time: population() is not null
+    bool inBatches = false;  // ours, when they come and go in batches: measured where they do
+    bool onThreads = false;  // works on several threads: measured on the wall clock, on request
     std::size_t upTo = std::numeric_limits<std::size_t>::max();       // objects; else too slow
     std::size_t fillsUpTo = std::numeric_limits<std::size_t>::max();  // objects; else too slow
     std::function<std::unique_ptr<Contestant>(const demos::BroadphaseNeeds&)> make;

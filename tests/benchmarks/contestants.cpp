@@ -11,8 +11,8 @@ namespace {
 
 std::vector<ContestantKind> allKinds() {
     std::vector<ContestantKind> kinds = bulletKinds();
-    kinds.insert(kinds.begin() + 1, gridKind("grid", {}));
-    for (const auto& peersOf : {cgalKinds, fclKinds, odeKinds}) {
+    kinds.insert(kinds.begin() + 2, gridKind("grid", {}));
+    for (const auto& peersOf : {threadedKinds, cgalKinds, fclKinds, odeKinds}) {
         for (ContestantKind& kind : peersOf()) {
             kinds.push_back(std::move(kind));
         }

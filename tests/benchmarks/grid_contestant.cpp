@@ -18,7 +18,7 @@ public:
 
     void fill(const FrameBoxes& frame) override {
         for (std::size_t i = 0; i < frame.boxes.size(); ++i) {
-            add(static_cast<std::uint32_t>(i), frame);
+            addOne(static_cast<std::uint32_t>(i), frame);
         }
     }
 
@@ -49,14 +49,24 @@ public:
     }
 
 private:
-    void add(std::uint32_t object, const FrameBoxes& frame) override {
+    void add(std::span<const std::uint32_t> objects, const FrameBoxes& frame) override {
+        for (const std::uint32_t object : objects) {
+            addOne(object, frame);
+        }
+    }
+    void remove(std::span<const std::uint32_t> objects) override {
+        for (const std::uint32_t object : objects) {
+            grid_.remove(ids_[object]);
+        }
+    }
+
+    void addOne(std::uint32_t object, const FrameBoxes& frame) {
         filters_ = frame.filters;
         ids_[object] = grid_.add(frame.boxes[object]);
         const std::uint32_t slot = ids_[object].index;
         objects_.resize(std::max<std::size_t>(objects_.size(), slot + std::size_t{1}));
         objects_[slot] = object;
     }
-    void remove(std::uint32_t object) override { grid_.remove(ids_[object]); }
 
     void applyChanges() {
         const std::vector<PairKey> died = keysOf(changes_.died);

@@ -10,6 +10,7 @@ PairWorkload::PairWorkload(std::unique_ptr<demos::BoxScene> scene, Setting setti
 
 void PairWorkload::add(const ContestantKind& kind) {
     Entry entry;
+    entry.onThreads = kind.onThreads;
     {
         const demos::HeapScope scope(entry.heap);
         entry.contestant = kind.make(scene_.needs());
@@ -28,7 +29,7 @@ void PairWorkload::beginFrame() {
 double PairWorkload::runFrame(std::size_t contestant) {
     Contestant& current = *entries_[contestant].contestant;
     const FrameBoxes frame = scene_.frame();
-    const FrameClock watch;
+    const FrameClock watch(entries_[contestant].onThreads);
     if (setting_ == Setting::everything) {
         current.setAll(frame);
     }

@@ -34,6 +34,7 @@ private:
     struct Entry {
         std::unique_ptr<Contestant> contestant;
         demos::HeapMeter heap;
+        bool onThreads = false;
     };
 
     SceneBoxes scene_;

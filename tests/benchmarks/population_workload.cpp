@@ -40,9 +40,7 @@ double RemovalWorkload::runFrame(std::size_t contestant) {
     Contestant& current = *contestants_[contestant];
     Population& population = *current.population();
     const FrameClock watch;
-    for (std::size_t i = 0; i < removals_; ++i) {
-        population.remove(order_[i]);
-    }
+    population.remove(removed());
     if (timing_ == RemovalTiming::removalsAndPairs) {
         current.findPairs();
     }
@@ -65,9 +63,7 @@ void RemovalWorkload::listExactAnswers(std::vector<Answer>& answers) {
 void RemovalWorkload::endFrame(std::size_t contestant) {
     Contestant& current = *contestants_[contestant];
     current.afterFrame();
-    for (std::size_t i = 0; i < removals_; ++i) {
-        current.population()->add(order_[i], scene_.frame());
-    }
+    current.population()->add(removed(), scene_.frame());
     current.findPairs();
     current.afterFrame();
 }

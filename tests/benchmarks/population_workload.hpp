@@ -31,6 +31,10 @@ public:
     [[nodiscard]] std::size_t operations() const override { return removals_; }
 
 private:
+    [[nodiscard]] std::span<const std::uint32_t> removed() const {
+        return std::span(order_).first(removals_);
+    }
+
     SceneBoxes scene_;
     std::size_t removals_;
     RemovalTiming timing_;

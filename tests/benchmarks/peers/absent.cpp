@@ -24,4 +24,10 @@ std::vector<ContestantKind> odeKinds() {
 }
 #endif
 
+#ifndef HASHPHASE_BENCHMARKS_TBB_PACKAGE
+std::vector<ContestantKind> threadedKinds() {
+    return {};
+}
+#endif
+
 }  // namespace hashphase::benchmarks

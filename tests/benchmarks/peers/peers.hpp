@@ -15,4 +15,7 @@ namespace hashphase::benchmarks {
 [[nodiscard]] std::vector<ContestantKind> fclKinds();
 [[nodiscard]] std::vector<ContestantKind> odeKinds();
 
+/// Ours, on the threads of oneTBB.
+[[nodiscard]] std::vector<ContestantKind> threadedKinds();
+
 }  // namespace hashphase::benchmarks
