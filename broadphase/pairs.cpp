@@ -2,6 +2,8 @@
 #include <broadphase/pairs.hpp>
 
 #include <broadphase/detail/join.hpp>
+#include <broadphase/detail/padded_box.hpp>
+#include <broadphase/detail/prefetch.hpp>
 #include <broadphase/detail/radix_sort.hpp>
 
 #include <algorithm>
@@ -80,8 +82,16 @@ void Pairs<Scalar>::findDeaths(ParallelFor parallelFor) {
     for (const auto [a, b] : selectApart(watched, nullptr, grid_.staged_.data(), parallelFor)) {
         lose(couple(grid_.mobileSlots_[a], grid_.mobileSlots_[b]));
     }
-    for (const auto [place, slot] : toResting_.pairs()) {
-        loseIfApart(couple(grid_.mobileSlots_[place], slot));
+    constexpr std::size_t kAhead = 12;
+    const auto toResting = toResting_.pairs();
+    for (std::size_t i = 0; i < toResting.size(); ++i) {
+        if (i + kAhead < toResting.size()) {
+            detail::prefetch(&grid_.records_[toResting[i + kAhead].b]);
+        }
+        const auto [place, slot] = toResting[i];
+        if (!overlaps(detail::unpadded(grid_.staged_[place]), grid_.records_[slot].box)) {
+            lose(couple(grid_.mobileSlots_[place], slot));
+        }
     }
     for (const Couple c : announced_.keys()) {
         loseIfApart(c);
@@ -244,7 +254,9 @@ void Pairs<Scalar>::walkResting(ParallelFor parallelFor) {
         const std::uint32_t entry = walkers_[walker];
         const std::uint32_t slot = grid_.resting_.slot(restingEntry);
         toResting_.push({entry, slot});
-        if (!overlaps(grid_.before(table.slot(entry)), grid_.records_[slot].box)) {
+        // Not by their slots: these boxes are at hand.
+        const detail::PaddedBox<Scalar>& before = grid_.stagedBefore_[table.order()[entry]];
+        if (!overlaps(detail::unpadded(before), grid_.resting_.box(restingEntry))) {
             asked_.push_back(couple(table.slot(entry), slot));
         }
     }
