@@ -39,6 +39,8 @@ namespace hashphase {
 
 template <class Scalar>
 class Pairs;
+template <class Scalar>
+class Neighbours;
 
 /// Cells lowest to highest, inclusive, in units of Grid::cellSize().
 struct CellRange {
@@ -146,6 +148,7 @@ public:
 
 private:
     friend class Pairs<Scalar>;
+    friend class Neighbours<Scalar>;
 
     enum class Place : std::uint8_t {
         nowhere,  // no proxy
@@ -212,6 +215,8 @@ private:
     void endUpdate();
 
     void fileIfMany() const;
+    template <class Visit>
+    void forEachFiled(Visit&& visit) const;
     void growTrees() const;
     [[nodiscard]] bool treesAreStale() const noexcept {
         return mobileTree_.isStale.load(std::memory_order_acquire) ||

@@ -16,6 +16,7 @@
 // Threads  values; use them from any thread
 
 #include <broadphase/aabb.hpp>
+#include <broadphase/detail/unit_scale.hpp>
 #include <broadphase/detail/walk.hpp>
 
 #include <algorithm>
@@ -43,7 +44,7 @@ template <class Scalar>
 class SphereRegion {
 public:
     SphereRegion(const Vector3<Scalar>& center, Scalar radius)
-        : center_(center), radius_(radius), scale_(scaleFor(radius)) {}
+        : center_(center), radius_(radius), scale_(detail::unitScale(radius)) {}
 
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept {
         Scalar squared = 0;
@@ -77,15 +78,6 @@ public:
     }
 
 private:
-    // Squares are taken near 1, where they neither overflow nor vanish. A power of two rounds
-    // nothing.
-    static Scalar scaleFor(Scalar radius) noexcept {
-        constexpr int most = std::numeric_limits<Scalar>::max_exponent - 2;
-        const bool isOrdinary = std::isfinite(radius) && radius > 0;
-        const int exponent = isOrdinary ? std::ilogb(radius) : (radius > 0 ? most : -most);
-        return std::ldexp(Scalar(1), std::clamp(-exponent, -most, most));
-    }
-
     Vector3<Scalar> center_;
     Scalar radius_;
     Scalar scale_;

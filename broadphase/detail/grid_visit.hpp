@@ -235,6 +235,26 @@ QueryCost Grid<Scalar>::visitCell(const std::array<std::int64_t, 3>& cell,
     return visit(CellRegion{*this, cell}, collector);
 }
 
+// Calls visit(ProxyId, box) for every proxy alive whose box has no NaN, in about the order of space.
+template <class Scalar>
+template <class Visit>
+void Grid<Scalar>::forEachFiled(Visit&& visit) const {
+    fileIfMany();
+    for (const detail::Table<Scalar>* table : {&mobile_, &resting_}) {
+        for (std::uint32_t entry = 0; entry < table->size(); ++entry) {
+            const Box box = table->box(entry);
+            if (isFiled(table->slot(entry)) && !hasNan(box)) {
+                visit(idOf(table->slot(entry)), box);
+            }
+        }
+    }
+    for (const std::uint32_t slot : waiting_) {
+        if (isAlive(slot) && !records_[slot].isNan) {
+            visit(idOf(slot), records_[slot].box);
+        }
+    }
+}
+
 template <class Scalar>
 template <class Visit>
 void Grid<Scalar>::forEach(Visit&& visit) const {

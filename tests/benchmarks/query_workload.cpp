@@ -10,19 +10,6 @@
 namespace hashphase::benchmarks {
 namespace {
 
-// Takes what the grid finds around one agent.
-struct NeighbourCollector {
-    const SpatialHashBroadphase* broadphase;
-    std::size_t agent;
-    std::vector<Answer>* answers;
-
-    void add(ProxyId id, float /*key*/) {
-        answers->push_back(
-            answerOf(agent, demos::FilledBroadphase::objectOf(*broadphase->proxyOf(id))));
-    }
-    [[nodiscard]] static constexpr float limit() { return std::numeric_limits<float>::infinity(); }
-};
-
 // Takes what a box query finds, if it is near enough: Bullet has no query for a sphere.
 struct NeighbourCallback : btBroadphaseAabbCallback {
     NeighbourCallback(const SphereRegion<float>& region, std::size_t agent,
@@ -76,24 +63,42 @@ void QueryWorkload::advanceScene() {
 }
 
 void NeighbourWorkload::ask(demos::FilledBroadphase& filled, std::vector<Answer>& answers) {
-    const std::vector<Aabb<float>>& boxes = scene().boxes();
+    regions_.clear();
+    for (const Aabb<float>& box : scene().boxes()) {
+        regions_.emplace_back(box.center(), radius_);
+    }
     if (const auto* own = dynamic_cast<SpatialHashBroadphase*>(&filled.broadphase())) {
-        std::vector<SphereRegion<float>> regions;
-        std::vector<NeighbourCollector> collectors;
-        for (std::size_t agent = 0; agent < boxes.size(); ++agent) {
-            regions.emplace_back(boxes[agent].center(), radius_);
-            collectors.push_back({own, agent, &answers});
-        }
-        own->grid().visitEach(std::span<const SphereRegion<float>>(regions),
-                              std::span<NeighbourCollector>(collectors));
+        askForAll(*own, answers);
         return;
     }
-    for (std::size_t agent = 0; agent < boxes.size(); ++agent) {
-        const Vector3<float> centre = boxes[agent].center();
-        const SphereRegion<float> region(centre, radius_);
-        NeighbourCallback callback(region, agent, answers);
-        const btVector3 reach(radius_, radius_, radius_);
-        filled.broadphase().aabbTest(toBullet(centre) - reach, toBullet(centre) + reach, callback);
+    const btVector3 reach(radius_, radius_, radius_);
+    for (std::size_t agent = 0; agent < regions_.size(); ++agent) {
+        const btVector3 centre = toBullet(scene().boxes()[agent].center());
+        NeighbourCallback callback(regions_[agent], agent, answers);
+        filled.broadphase().aabbTest(centre - reach, centre + reach, callback);
+    }
+}
+
+// Whoever is near an agent's centre is near its box.
+void NeighbourWorkload::askForAll(const SpatialHashBroadphase& broadphase,
+                                  std::vector<Answer>& answers) {
+    const std::vector<Aabb<float>>& boxes = scene().boxes();
+    const auto askOne = [&](std::uint32_t agent, std::uint32_t other) {
+        if (regions_[agent].key(boxes[other]) >= 0) {
+            answers.push_back(answerOf(agent, other));
+        }
+    };
+    const auto objectOf = [&broadphase](ProxyId id) {
+        return demos::FilledBroadphase::objectOf(*broadphase.proxyOf(id));
+    };
+    for (const auto& [first, second] : neighbours_.find(broadphase.grid(), radius_)) {
+        const std::uint32_t a = objectOf(first);
+        const std::uint32_t b = objectOf(second);
+        askOne(a, b);
+        askOne(b, a);
+    }
+    for (std::uint32_t agent = 0; agent < boxes.size(); ++agent) {
+        askOne(agent, agent);
     }
 }
 

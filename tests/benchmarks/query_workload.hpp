@@ -4,6 +4,7 @@
 // Questions to a filled broadphase: what do these rays, or boxes, or agents meet? Each frame asks
 // others. The exact answers come from testing every object.
 
+#include <broadphase/neighbours.hpp>
 #include <demos/scenes/random.hpp>
 #include <tests/benchmarks/scene_boxes.hpp>
 #include <tests/benchmarks/workload.hpp>
@@ -60,8 +61,11 @@ public:
 
 private:
     void ask(demos::FilledBroadphase& filled, std::vector<Answer>& answers) override;
+    void askForAll(const SpatialHashBroadphase& broadphase, std::vector<Answer>& answers);
 
     float radius_;
+    std::vector<SphereRegion<float>> regions_;  // of the agents
+    Neighbours<float> neighbours_;
 };
 
 }  // namespace hashphase::benchmarks

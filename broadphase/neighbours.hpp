@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Who is near whom: all neighbours of all proxies at once, as agents ask in every frame. A query for
+// each of them looks at every couple twice, and at its surroundings anew; here boxes are grown by
+// half the distance and joined, as pairs are found.
+//
+// Threads   find() reads the grid, as queries do, and needs this object for itself.
+
+#include <broadphase/detail/join.hpp>
+#include <broadphase/grid.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace hashphase {
+
+/// Finds neighbours. Keeps its memory: a frame like the last one allocates nothing.
+template <class Scalar>
+class Neighbours {
+public:
+    /// Every two proxies of the grid whose boxes are at most `distance` [m] apart (closed, by the
+    /// straight line between the nearest points; 0 apart where they overlap), each couple once, in
+    /// any order. Valid until the next call. None for a negative or NaN distance. The result does
+    /// not depend on `parallelFor`. Cost: that of an update of the grid, and of the couples.
+    std::span<const ProxyPair> find(const Grid<Scalar>& grid, Scalar distance,
+                                    ParallelFor parallelFor = serialFor);
+
+    /// What the last find() cost; hits are couples.
+    [[nodiscard]] const QueryCost& lastCost() const noexcept { return cost_; }
+    [[nodiscard]] std::size_t memoryBytes() const noexcept;
+
+private:
+    std::vector<ProxyId> ids_;
+    std::vector<detail::PaddedBox<Scalar>> boxes_;
+    std::vector<detail::PaddedBox<Scalar>> grown_;
+    std::vector<std::uint32_t> slots_;  // 0, 1, 2 ...
+    detail::Table<Scalar> table_;
+    detail::PairParts parts_;
+    detail::PairList candidates_;
+    std::vector<ProxyPair> found_;  // never shrinks
+    QueryCost cost_;
+};
+
+extern template class Neighbours<float>;
+extern template class Neighbours<double>;
+
+}  // namespace hashphase
