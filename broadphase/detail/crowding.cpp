@@ -62,13 +62,17 @@ Crowding::Shares Crowding::count(std::size_t pointCount) {
     // ending here, has so many in it.
     std::array<std::uint64_t, kScales> couples{};
     std::array<std::uint64_t, kScales> run{};
+    std::size_t sharedBefore = 0;
     for (std::size_t i = 1; i < keys_.size(); ++i) {
         const auto differing = static_cast<std::size_t>(std::bit_width(keys_[i] ^ keys_[i - 1]));
         const std::size_t shared = kScales - (differing + 2) / 3;
-        for (std::size_t scale = 0; scale < kScales; ++scale) {
-            run[scale] = scale < shared ? run[scale] + 1 : 0;
-            couples[scale] += run[scale];
+        for (std::size_t scale = 0; scale < shared; ++scale) {
+            couples[scale] += ++run[scale];
         }
+        for (std::size_t scale = shared; scale < sharedBefore; ++scale) {
+            run[scale] = 0;
+        }
+        sharedBefore = shared;
     }
     Shares shares;
     const auto points = static_cast<double>(pointCount);

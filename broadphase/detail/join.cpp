@@ -31,8 +31,8 @@ double rowsLookedUp(const Level<Scalar>& own, const Level<Scalar>& level) {
 // A search of the entries of one level: among themselves, or for those of another one.
 template <class Scalar>
 struct Search {
-    const Level<Scalar>* from = nullptr;
-    const Level<Scalar>* among = nullptr;
+    const Level<Scalar>* from;
+    const Level<Scalar>* among;
 };
 
 // The boxes of either level may be looked up among those of the other one. Mostly the small ones
@@ -68,7 +68,7 @@ template <class Scalar>
 void joinTable(const Table<Scalar>& table, ParallelFor parallelFor, PairParts& parts,
                PairList& found, KernelCost& cost) {
     constexpr std::size_t kMost = 2 * kMaxLevels + 1;
-    std::array<Search<Scalar>, kMost*(kMost + 1) / 2> searches;
+    std::array<Search<Scalar>, kMost*(kMost + 1) / 2> searches;  // the first searchCount
     std::size_t searchCount = 0;
     std::size_t total = 0;
     const auto levels = table.levels();

@@ -24,7 +24,7 @@ namespace {
 constexpr std::uint32_t kThinLevel = 32;
 
 // How often the cell sizes are looked at again while the number of proxies stays about the same.
-constexpr std::uint32_t kBuildsBetweenCensuses = 64;
+constexpr std::uint32_t kBuildsBetweenCensuses = 128;
 
 // Multipliers of hashed rows: odd, with well-mixed low bits.
 constexpr std::uint32_t kHashStrideY = 0x9e3779b1U;
@@ -49,7 +49,9 @@ bool Table<Scalar>::chooseLevels(std::span<const PaddedBox<Scalar>> boxes,
                                  const LevelSizes& fixed) {
     const std::uint64_t count = boxes.size();
     const bool sameCount = 4 * count <= 5 * countWhenChosen_ && 5 * count >= 4 * countWhenChosen_;
-    if (sameCount && ++buildsSinceChosen_ < kBuildsBetweenCensuses) {
+    // So few are listed without cells, of whatever size these are.
+    const bool isListed = count < kThinLevel;
+    if (sameCount && (isListed || ++buildsSinceChosen_ < kBuildsBetweenCensuses)) {
         return false;
     }
     countWhenChosen_ = count;
