@@ -18,7 +18,7 @@ constexpr const char* kDescription =
     "Measures hashphase beside Bullet's broadphases and those of other libraries: every "
     "contestant\n"
     "gets the same frames, one after another in each frame, and every answer is checked. Prints a\n"
-    "table for each case and one for all; takes about an hour. Above 100,000 objects (--sizes)\n"
+    "table for each case and one for all; takes half an hour. Above 100,000 objects (--sizes)\n"
     "btDbvtBroadphase takes seconds a frame.";
 
 constexpr int kQuickFrames = 5;
