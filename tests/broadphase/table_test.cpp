@@ -203,6 +203,31 @@ TYPED_TEST(TableTest, AFewStraysDoNotMakeTheOthersSparse) {
     ASSERT_EQ(this->joined(), this->expected());
 }
 
+// Layers, walls and lines have fewer neighbours than cells in space, numbered through or hashed.
+TYPED_TEST(TableTest, FindsEveryCoupleOnceInPlanesAndLines) {
+    Random random(0x5eed040b);
+    const Vector3<double> extents[] = {{1, 1, 0}, {1, 0, 1}, {0, 1, 1},
+                                       {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (const Vector3<double>& extent : extents) {
+        for (const double side : {20.0, 3000.0}) {
+            SCOPED_TRACE(testing::Message() << extent.transpose() << " of " << side);
+            std::vector<Aabb<TypeParam>> boxes;
+            while (boxes.size() < 700) {
+                const Vector3<double> at = random.pointIn(0, side).cwiseProduct(extent);
+                for (int i = 0; i < 2; ++i) {
+                    const Vector3<double> beside = random.pointIn(-1, 1).cwiseProduct(extent);
+                    boxes.push_back(boxAround<TypeParam>(at + beside, {0.5, 0.5, 0.5}));
+                }
+            }
+            this->build(std::move(boxes), fixedLevels(1.5, 4));
+            const Couples expected = this->expected();
+            EXPECT_GT(expected.size(), 50U);
+            ASSERT_EQ(this->joined(), expected);
+            ASSERT_EQ(this->walked(), expected);
+        }
+    }
+}
+
 TYPED_TEST(TableTest, ErasedEntriesAreFoundByNothing) {
     Random random(0x5eed0402);
     const BoxScene<TypeParam> scene = test::spreadScene<TypeParam>("", 1, 0);
