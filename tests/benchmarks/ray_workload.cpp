@@ -40,9 +40,12 @@ struct RayCallback : btBroadphaseRayCallback {
     }
 };
 
-struct AllHits : RayCallback {
-    AllHits(const Ray& ray, std::size_t number, std::vector<Answer>& answers)
-        : RayCallback(ray), number_(number), answers_(answers) {}
+// Lists what a query finds: a ray, given as arguments of RayCallback, or a box.
+template <class Callback>
+struct Finds : Callback {
+    template <class... Args>
+    Finds(std::size_t number, std::vector<Answer>& answers, const Args&... args)
+        : Callback(args...), number_(number), answers_(answers) {}
 
     bool process(const btBroadphaseProxy* proxy) override {
         answers_.push_back(answerOf(number_, demos::FilledBroadphase::objectOf(*proxy)));
@@ -69,20 +72,6 @@ struct ClosestHit : RayCallback {
 private:
     RayRegion<float> region_;
     float closest_ = std::numeric_limits<float>::infinity();
-};
-
-struct BoxFinds : btBroadphaseAabbCallback {
-    BoxFinds(std::size_t number, std::vector<Answer>& answers)
-        : number_(number), answers_(answers) {}
-
-    bool process(const btBroadphaseProxy* proxy) override {
-        answers_.push_back(answerOf(number_, demos::FilledBroadphase::objectOf(*proxy)));
-        return true;
-    }
-
-private:
-    std::size_t number_;
-    std::vector<Answer>& answers_;
 };
 
 Answer closestAnswer(std::size_t ray, float distance) {
@@ -122,7 +111,7 @@ void RayWorkload::ask(demos::FilledBroadphase& filled, std::vector<Answer>& answ
 
 void RayWorkload::askForAll(btBroadphaseInterface& broadphase, std::vector<Answer>& answers) const {
     for (std::size_t i = 0; i < rays_.size(); ++i) {
-        AllHits hits(rays_[i], i, answers);
+        Finds<RayCallback> hits(i, answers, rays_[i]);
         broadphase.rayTest(rays_[i].from, rays_[i].to, hits, -plan_.castHalfExtents,
                            plan_.castHalfExtents);
     }
@@ -148,7 +137,7 @@ void RayWorkload::askForClosest(btBroadphaseInterface& broadphase,
 void RayWorkload::listExactAnswers(std::vector<Answer>& answers) {
     answers.clear();
     for (std::size_t i = 0; i < rays_.size(); ++i) {
-        const AllHits test(rays_[i], i, answers);
+        const Finds<RayCallback> test(i, answers, rays_[i]);
         const RayRegion<float> region(toEigen(rays_[i].from), toEigen(rays_[i].to));
         float closest = std::numeric_limits<float>::infinity();
         for (std::uint32_t object = 0; object < scene().size(); ++object) {
@@ -195,10 +184,10 @@ void InterleavedWorkload::ask(demos::FilledBroadphase& filled, std::vector<Answe
         const Step& step = steps_[i];
         filled.set(step.object, step.box);
         if (probe_ == Probe::ray) {
-            AllHits hits(step.ray, i, answers);
+            Finds<RayCallback> hits(i, answers, step.ray);
             filled.broadphase().rayTest(step.ray.from, step.ray.to, hits);
         } else {
-            BoxFinds finds(i, answers);
+            Finds<btBroadphaseAabbCallback> finds(i, answers);
             const Aabb<float> box = probeBox(step.ray);
             filled.broadphase().aabbTest(toBullet(box.min()), toBullet(box.max()), finds);
         }
@@ -211,7 +200,7 @@ void InterleavedWorkload::listExactAnswers(std::vector<Answer>& answers) {
     for (std::size_t i = 0; i < steps_.size(); ++i) {
         const Step& step = steps_[i];
         boxes[step.object] = toAabb(step.box.min, step.box.max);
-        const AllHits test(step.ray, i, answers);
+        const Finds<RayCallback> test(i, answers, step.ray);
         for (std::uint32_t object = 0; object < boxes.size(); ++object) {
             const bool found = probe_ == Probe::ray
                                    ? test.meets(step.ray, boxes[object], btVector3(0, 0, 0))
