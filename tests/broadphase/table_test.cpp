@@ -365,6 +365,49 @@ TYPED_TEST(TableTest, KeepsToTheCostOfAFewTestsABoxWhereBoxesAreOfOneSize) {
     EXPECT_LT(cost.rowsVisited, 10U * kCount);
 }
 
+// Far apart, clusters spread as far as if there were nothing but empty space between them.
+TYPED_TEST(TableTest, KeepsToTheCostOfAFewTestsABoxInClusters) {
+    Random random(0x5eed040c);
+    std::vector<Aabb<TypeParam>> boxes;
+    constexpr std::uint32_t kCount = 3000;
+    for (int cluster = 0; cluster < 10; ++cluster) {
+        const Vector3<double> middle = random.pointIn(-3000, 3000);
+        for (std::uint32_t i = 0; i < kCount / 10; ++i) {
+            boxes.push_back(
+                boxAround<TypeParam>(middle + random.pointIn(-10, 10), {0.5, 0.5, 0.5}));
+        }
+    }
+    this->build(std::move(boxes));
+    ASSERT_EQ(this->joined(), this->expected());
+    EXPECT_LT(this->cost_.boxesTested, 60U * kCount);
+}
+
+// Sizes follow a population that shrinks or grows, soon after, and stay while it moves about.
+TYPED_TEST(TableTest, ChoosesCellSizesAnewOnlyWhereThePopulationHasChanged) {
+    Random random(0x5eed040d);
+    const auto draw = [&random](double half) {
+        std::vector<Aabb<TypeParam>> boxes;
+        for (int i = 0; i < 1000; ++i) {
+            boxes.push_back(boxAround<TypeParam>(random.pointIn(0, 24 * half),
+                                                 Vector3<double>::Constant(half)));
+        }
+        return boxes;
+    };
+    std::vector<double> sizes;
+    for (const double half : {0.5, 5.0, 0.5}) {
+        for (int frame = 0; frame < 300; ++frame) {
+            this->build(draw(half));
+            const double size = this->table_.finestCellSize();
+            if (sizes.empty() || sizes.back() != size) {
+                sizes.push_back(size);
+            }
+        }
+        EXPECT_GE(sizes.back(), 2 * half);
+        EXPECT_LE(sizes.back(), 6 * half);
+    }
+    EXPECT_EQ(sizes.size(), 3U) << "one for each population";
+}
+
 // A population with sizes over six orders of magnitude, as many small as large.
 TYPED_TEST(TableTest, KeepsToTheCostOfAFewTestsABoxWhereSizesDiffer) {
     Random random(0x5eed0405);
