@@ -18,7 +18,9 @@
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/collectors.hpp>
+#include <broadphase/detail/box_columns.hpp>
 #include <broadphase/detail/box_tree.hpp>
+#include <broadphase/detail/kernels.hpp>
 #include <broadphase/detail/table.hpp>
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/grid_config.hpp>
@@ -225,7 +227,8 @@ private:
     template <class Region, class Collector>
     void visitWaiting(const Region& region, Collector& collector, QueryCost& cost) const;
     template <class Region, class Collector>
-    QueryCost visitTogether(std::span<const Region> regions, std::span<Collector> collectors) const;
+    QueryCost visitTogether(std::span<const Region> regions, std::span<Collector> collectors,
+                            detail::BoxColumns<Scalar>& bounds, detail::PairList& found) const;
     template <class Region, class Collector>
     bool visitTables(const Region& region, Collector& collector, QueryCost& cost) const;
 

@@ -24,8 +24,9 @@ detail::PaddedBox<Scalar> grown(const detail::PaddedBox<Scalar>& box, Scalar by)
         const Scalar lowBy = by + epsilon * (std::abs(low) + by);
         const Scalar highBy = by + epsilon * (std::abs(high) + by);
         // Not infinity less infinity.
-        result.low[axis] = std::isinf(low) ? low : low - lowBy;
-        result.high[axis] = std::isinf(high) ? high : high + highBy;
+        const bool isEverywhere = std::isinf(by);
+        result.low[axis] = isEverywhere ? -by : std::isinf(low) ? low : low - lowBy;
+        result.high[axis] = isEverywhere ? by : std::isinf(high) ? high : high + highBy;
     }
     return result;
 }

@@ -7,7 +7,10 @@
 #include <broadphase/detail/ray_walk.hpp>
 #include <broadphase/grid.hpp>
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <limits>
 
 namespace hashphase {
 
@@ -90,8 +93,9 @@ bool Grid<Scalar>::visitTables(const Region& region, Collector& collector, Query
         using Reader = VisitReader<Region, Collector>;
         Reader mobile{*this, mobile_, region, collector, cost};
         Reader resting{*this, resting_, region, collector, cost};
-        return detail::walkTable(mobile_, region, cost, mobile) &&
-               detail::walkTable(resting_, region, cost, resting);
+        const Box bounds = region.bounds();
+        return detail::walkTable(mobile_, bounds, cost, mobile) &&
+               detail::walkTable(resting_, bounds, cost, resting);
     }
 }
 
@@ -127,18 +131,19 @@ QueryCost Grid<Scalar>::visit(const Region& region, Collector& collector) const 
     return cost;
 }
 
-// Many boxes are looked for at once, in one table after the other; what they find is then offered to
+// Some boxes are looked for at once, in one table after the other; what they find is then offered to
 // the regions.
 template <class Scalar>
 template <class Region, class Collector>
 QueryCost Grid<Scalar>::visitTogether(std::span<const Region> regions,
-                                      std::span<Collector> collectors) const {
-    detail::BoxColumns<Scalar> bounds;
+                                      std::span<Collector> collectors,
+                                      detail::BoxColumns<Scalar>& bounds,
+                                      detail::PairList& found) const {
+    bounds.clear();
     for (const Region& region : regions) {
         bounds.push(region.bounds());
     }
     QueryCost cost;
-    detail::PairList found;
     for (const detail::Table<Scalar>* table : {&mobile_, &resting_}) {
         detail::KernelCost walk;
         found.clear();
@@ -176,10 +181,14 @@ QueryCost Grid<Scalar>::visitEach(std::span<const Region> regions, std::span<Col
     parallelFor(regions.size(), grain, [&](std::size_t begin, std::size_t end) {
         QueryCost cost;
         if constexpr (requires { regions[0].bounds(); }) {
-            for (; begin < end; begin += grain) {
-                const std::size_t count = std::min(grain, end - begin);
-                cost +=
-                    visitTogether(regions.subspan(begin, count), collectors.subspan(begin, count));
+            // So few that what they find has room, though each of them finds everything.
+            constexpr std::size_t atOnce = 16;
+            detail::BoxColumns<Scalar> bounds;
+            detail::PairList found;
+            for (; begin < end; begin += atOnce) {
+                const std::size_t count = std::min(atOnce, end - begin);
+                cost += visitTogether(regions.subspan(begin, count),
+                                      collectors.subspan(begin, count), bounds, found);
             }
         } else {
             for (std::size_t i = begin; i < end; ++i) {

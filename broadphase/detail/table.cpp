@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -43,18 +42,17 @@ std::int32_t marginOf(std::int32_t low, std::int32_t high) {
 
 }  // namespace
 
-// Returns whether the levels are to be laid out anew.
+// Cell sizes are chosen again when the number of proxies has changed, and now and then.
 template <class Scalar>
-bool Table<Scalar>::chooseLevels(std::span<const PaddedBox<Scalar>> boxes,
-                                 const LevelSizes& fixed) {
-    const std::uint64_t count = boxes.size();
+bool Table<Scalar>::isTimeToChoose(std::size_t count) {
     const bool sameCount = 4 * count <= 5 * countWhenChosen_ && 5 * count >= 4 * countWhenChosen_;
-    // So few are listed without cells, of whatever size these are.
-    const bool isListed = count < kThinLevel;
-    if (sameCount && (isListed || ++buildsSinceChosen_ < kBuildsBetweenCensuses)) {
-        return false;
-    }
-    countWhenChosen_ = count;
+    return !sameCount || ++buildsSinceChosen_ >= kBuildsBetweenCensuses;
+}
+
+template <class Scalar>
+void Table<Scalar>::chooseLevels(std::span<const PaddedBox<Scalar>> boxes,
+                                 const LevelSizes& fixed) {
+    countWhenChosen_ = boxes.size();
     buildsSinceChosen_ = 0;
     census_.clear();
     for (const PaddedBox<Scalar>& box : boxes) {
@@ -70,7 +68,6 @@ bool Table<Scalar>::chooseLevels(std::span<const PaddedBox<Scalar>> boxes,
     for (std::size_t axis = 0; axis < 3; ++axis) {
         origin_[axis] = static_cast<Scalar>(middle[axis]);
     }
-    return true;
 }
 
 template <class Scalar>
@@ -258,10 +255,13 @@ void Table<Scalar>::sortEntries(std::span<const std::uint32_t> slots,
                                 std::span<const PaddedBox<Scalar>> boxes, ParallelFor parallelFor) {
     std::uint32_t sum = 0;
     largestBucket_ = 0;
-    for (std::uint32_t& start : bucketStart_) {
-        largestBucket_ = std::max(largestBucket_, start);
-        sum += std::exchange(start, sum);
+    const std::size_t listBucket = bucketStart_.size() - 2;  // and behind it the end
+    for (std::size_t bucket = 0; bucket < listBucket; ++bucket) {
+        largestBucket_ = std::max(largestBucket_, bucketStart_[bucket]);
+        sum += std::exchange(bucketStart_[bucket], sum);
     }
+    sum += std::exchange(bucketStart_[listBucket], sum);
+    bucketStart_.back() = sum;
     const std::uint32_t count = sum;
     slots_.resize(count);
     order_.resize(count);
@@ -366,14 +366,24 @@ void Table<Scalar>::build(std::span<const std::uint32_t> slots,
                           std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed,
                           ParallelFor parallelFor) {
     HASHPHASE_ASSERT(slots.size() == boxes.size(), "Every box has a slot.");
-    bool isLaidOut = !chooseLevels(boxes, fixed) && !levels_.empty();
-    if (isLaidOut) {
-        isLaidOut = countBuckets(boxes, parallelFor) <=
-                    2 * strayCount_ + kThinLevel + boxes.size() / kStrays;
-    }
-    if (!isLaidOut) {
+    const auto areMany = [&](std::size_t strays, std::size_t usual) {
+        return strays > 2 * usual + kThinLevel + boxes.size() / kStrays;
+    };
+    const auto choose = [&] {
+        chooseLevels(boxes, fixed);
         layOut(boxes);
         strayCount_ = countBuckets(boxes, parallelFor);
+        straysWhenChosen_ = strayCount_;
+    };
+    if (isTimeToChoose(boxes.size()) || levels_.empty()) {
+        choose();
+    } else if (areMany(countBuckets(boxes, parallelFor), strayCount_)) {
+        layOut(boxes);
+        strayCount_ = countBuckets(boxes, parallelFor);
+        // Boxes that have outgrown their cells are strays wherever these lie.
+        if (areMany(strayCount_, straysWhenChosen_)) {
+            choose();
+        }
     }
     sortEntries(slots, boxes, parallelFor);
 }

@@ -29,7 +29,7 @@
 
 namespace hashphase::detail {
 
-/// Columns min x, y, z, max x, y, z of boxes, readable kColumnPadding past any box.
+/// Columns min x, y, z, max x, y, z of boxes.
 template <class Scalar>
 using Columns = std::array<const Scalar*, 6>;
 
@@ -59,25 +59,18 @@ struct Level {
     Cell low{};
     Cell high{};
     bool hasCells = false;
-    // A well-filled range of cells is numbered through (the paper's formula), with an empty cell
-    // before and behind each row and an empty row before and behind each layer; else rows are
-    // hashed into a number of buckets that is a power of two.
+    // A well-filled range of cells is numbered through (the paper's formula), with empty ones between
+    // rows and between layers; else rows are hashed into a number of buckets that is a power of two.
     bool isDense = false;
     std::uint32_t strideY = 0;
     std::uint32_t strideZ = 0;
     std::uint32_t denseBase = 0;
     // The axis along which the entries of crowded buckets are sorted, by their min corners, so that
-    // a search need not read them all; negative: none. No box in them is longer there than the reach.
+    // kernels need not read them all; negative: none. No box in them is longer there than the reach.
     int sweepAxis = -1;
     Scalar sweepReach = 0;
 
     [[nodiscard]] std::uint32_t count() const noexcept { return lastEntry - firstEntry; }
-
-    /// True when the run lies in low to high.
-    [[nodiscard]] bool isWithin(const CellRun& run) const noexcept {
-        return low[0] <= run.firstX && run.lastX <= high[0] && low[1] <= run.y &&
-               run.y <= high[1] && low[2] <= run.z && run.z <= high[2];
-    }
 
     [[nodiscard]] std::int32_t cell(Scalar x, std::size_t axis) const noexcept {
         // Not 0 * infinity, along a flat axis.
@@ -138,7 +131,7 @@ public:
                 Vector3<Scalar>(bounds_[3][entry], bounds_[4][entry], bounds_[5][entry])};
     }
 
-    /// Coordinates of all entries, by column.
+    /// Coordinates of all entries, by column; readable kColumnPadding past any entry.
     [[nodiscard]] Columns<Scalar> columns() const noexcept {
         return {bounds_[0].data(), bounds_[1].data(), bounds_[2].data(),
                 bounds_[3].data(), bounds_[4].data(), bounds_[5].data()};
@@ -198,8 +191,8 @@ private:
         }
     };
 
-    [[nodiscard]] bool chooseLevels(std::span<const PaddedBox<Scalar>> boxes,
-                                    const LevelSizes& fixed);
+    [[nodiscard]] bool isTimeToChoose(std::size_t count);
+    void chooseLevels(std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed);
     void makeLevels();
     [[nodiscard]] std::optional<Cell> cellOn(const Level<Scalar>& level,
                                              const Aabb<Scalar>& box) const noexcept;
@@ -224,8 +217,9 @@ private:
     std::array<Scalar, 3> origin_{};
     std::uint64_t countWhenChosen_ = 0;
     std::uint32_t buildsSinceChosen_ = 0;
-    std::uint32_t largestBucket_ = 0;
-    std::size_t strayCount_ = 0;  // when the levels were laid out
+    std::uint32_t largestBucket_ = 0;   // of those that are cells
+    std::size_t strayCount_ = 0;        // when the levels were laid out
+    std::size_t straysWhenChosen_ = 0;  // when the cell sizes were chosen
     SizeCensus census_;
 
     // Two for each cell size, finest first: one numbered through, for most, and a hashed one for

@@ -5,7 +5,6 @@
 // level by level.
 
 #include <broadphase/detail/table.hpp>
-#include <broadphase/diagnostics.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -69,11 +68,11 @@ bool forRowsOfBox(const Level<Scalar>& level, const Aabb<Scalar>& bounds, VisitR
     return true;
 }
 
-/// Reads the entries of one level that may lie in `region`. For each range of entries calls
+/// Reads the entries of one level that may overlap `bounds`. For each range of entries calls
 /// reader.read(range, isOwn) -> bool, false to stop; isOwn(entry) must be asked about every hit, and
 /// tells whether this range is the one that reports it. Returns false when stopped.
-template <class Scalar, class Region, class Reader>
-bool walkLevel(const Table<Scalar>& table, const Level<Scalar>& level, const Region& region,
+template <class Scalar, class Reader>
+bool walkLevel(const Table<Scalar>& table, const Level<Scalar>& level, const Aabb<Scalar>& bounds,
                QueryCost& cost, Reader&& reader) {
     if (level.count() == 0) {
         return true;
@@ -87,7 +86,7 @@ bool walkLevel(const Table<Scalar>& table, const Level<Scalar>& level, const Reg
         return readWhole();
     }
     bool goOn = true;
-    const bool byRows = forRowsOfBox(level, region.bounds(), [&](const CellRun& run) {
+    const bool byRows = forRowsOfBox(level, bounds, [&](const CellRun& run) {
         ++cost.rowsVisited;
         table.forRun(level, run, [&](const EntryRange& range) {
             cost.boxesTested += range.last - range.first;
@@ -101,10 +100,11 @@ bool walkLevel(const Table<Scalar>& table, const Level<Scalar>& level, const Reg
 }
 
 /// walkLevel() over all levels of a table. Returns false when stopped.
-template <class Scalar, class Region, class Reader>
-bool walkTable(const Table<Scalar>& table, const Region& region, QueryCost& cost, Reader&& reader) {
+template <class Scalar, class Reader>
+bool walkTable(const Table<Scalar>& table, const Aabb<Scalar>& bounds, QueryCost& cost,
+               Reader&& reader) {
     for (const Level<Scalar>& level : table.levels()) {
-        if (!walkLevel(table, level, region, cost, reader)) {
+        if (!walkLevel(table, level, bounds, cost, reader)) {
             return false;
         }
     }

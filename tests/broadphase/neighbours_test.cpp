@@ -158,6 +158,33 @@ TYPED_TEST(NeighboursTest, WithinNegativeOrNaNDistanceAreNone) {
     EXPECT_EQ(all[0], (ProxyPair{one, other}));
 }
 
+TYPED_TEST(NeighboursTest, WithinInfinityAreAllEvenThoseAtInfinity) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Grid<TypeParam> grid;
+    for (const double x : {-infinity, 0.0, infinity}) {
+        static_cast<void>(grid.add(makeBox<TypeParam>(x, 0, 0, x, 1, 1)));
+    }
+    const auto all = std::numeric_limits<TypeParam>::infinity();
+    EXPECT_EQ(this->neighbours_.find(grid, all).size(), 3U);
+    EXPECT_EQ(this->neighbours_.find(grid, 100).size(), 0U);
+}
+
+// Cells that fit one distance are far too small for another.
+TYPED_TEST(NeighboursTest, CostNoMoreAfterAnotherDistance) {
+    Random random(0x5eed0d04);
+    Grid<TypeParam> grid;
+    constexpr std::uint32_t kCount = 3000;
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+        const auto half = Vector3<double>::Constant(0.25);
+        static_cast<void>(grid.add(boxAround<TypeParam>(random.pointIn(0, 60), half)));
+    }
+    grid.update();
+    for (const double distance : {0.1, 2.0, 0.1, 4.0, 0.5}) {
+        static_cast<void>(this->neighbours_.find(grid, static_cast<TypeParam>(distance)));
+        EXPECT_LT(this->neighbours_.lastCost().boxesTested, 200U * kCount) << distance;
+    }
+}
+
 TYPED_TEST(NeighboursTest, AreClosedAndMeasuredStraight) {
     Grid<TypeParam> grid;
     const ProxyId corner = grid.add(makeBox<TypeParam>(0, 0, 0, 1, 1, 1));

@@ -408,6 +408,22 @@ TYPED_TEST(TableTest, ChoosesCellSizesAnewOnlyWhereThePopulationHasChanged) {
     EXPECT_EQ(sizes.size(), 3U) << "one for each population";
 }
 
+// All of them are strays from one build to the next.
+TYPED_TEST(TableTest, ChoosesCellSizesAnewAtOnceWhereBoxesHaveOutgrownThem) {
+    Random random(0x5eed040e);
+    for (const double half : {0.5, 5.0, 80.0}) {
+        std::vector<Aabb<TypeParam>> boxes;
+        constexpr std::uint32_t kCount = 3000;
+        for (std::uint32_t i = 0; i < kCount; ++i) {
+            boxes.push_back(boxAround<TypeParam>(random.pointIn(0, 30 * half),
+                                                 Vector3<double>::Constant(half)));
+        }
+        this->build(std::move(boxes));
+        ASSERT_EQ(this->joined(), this->expected());
+        EXPECT_LT(this->cost_.boxesTested, 30U * kCount) << half;
+    }
+}
+
 // A population with sizes over six orders of magnitude, as many small as large.
 TYPED_TEST(TableTest, KeepsToTheCostOfAFewTestsABoxWhereSizesDiffer) {
     Random random(0x5eed0405);
