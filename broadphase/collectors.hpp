@@ -10,8 +10,11 @@
 
 #include <broadphase/proxy_id.hpp>
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -85,6 +88,78 @@ public:
 private:
     ProxyId found_;
     Scalar key_ = std::numeric_limits<Scalar>::infinity();
+};
+
+/// A proxy and its key in the region where it was found.
+template <class Scalar>
+struct KeyedProxy {
+    Scalar key = 0;
+    ProxyId id;
+
+    friend constexpr auto operator<=>(const KeyedProxy&, const KeyedProxy&) = default;
+};
+
+/// Keeps the `count` proxies with the smallest keys (of equal ones those with the smallest ids), in a
+/// vector of the caller's, which is emptied first, and shrinks the search to what may still displace
+/// one of them. Cost: O(log count) for each that is kept.
+template <class Scalar>
+class CollectNearest {
+public:
+    CollectNearest(std::size_t count, std::vector<KeyedProxy<Scalar>>& nearest)
+        : count_(count), nearest_(&nearest) {
+        nearest_->clear();
+    }
+
+    void add(ProxyId id, Scalar key) {
+        const KeyedProxy<Scalar> found{key, id};
+        if (nearest_->size() == count_) {
+            if (count_ == 0 || !(found < nearest_->front())) {
+                return;
+            }
+            std::pop_heap(nearest_->begin(), nearest_->end());
+            nearest_->pop_back();
+        }
+        nearest_->push_back(found);
+        std::push_heap(nearest_->begin(), nearest_->end());
+    }
+    [[nodiscard]] Scalar limit() const noexcept {
+        if (nearest_->size() < count_) {
+            return std::numeric_limits<Scalar>::infinity();
+        }
+        return count_ == 0 ? Scalar(-1) : nearest_->front().key;
+    }
+
+    /// Ends the search: sorts the vector, nearest first.
+    std::span<const KeyedProxy<Scalar>> sort() {
+        std::sort_heap(nearest_->begin(), nearest_->end());
+        return *nearest_;
+    }
+
+private:
+    std::size_t count_;
+    std::vector<KeyedProxy<Scalar>>* nearest_;  // a heap, the farthest on top
+};
+
+/// Sets a bit for every proxy found, by ProxyId::index: bit i % 64 of word i / 64 of a vector of the
+/// caller's, which grows where that is needed and is not cleared. The cheapest list of many.
+class CollectBits {
+public:
+    explicit CollectBits(std::vector<std::uint64_t>& bits) noexcept : bits_(&bits) {}
+
+    template <class Scalar>
+    void add(ProxyId id, Scalar /*key*/) {
+        const std::size_t word = id.index / 64;
+        if (word >= bits_->size()) {
+            bits_->resize(word + 1);
+        }
+        (*bits_)[word] |= std::uint64_t{1} << (id.index % 64);
+    }
+    [[nodiscard]] static constexpr double limit() noexcept {
+        return std::numeric_limits<double>::infinity();
+    }
+
+private:
+    std::vector<std::uint64_t>* bits_;
 };
 
 }  // namespace hashphase
