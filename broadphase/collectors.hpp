@@ -144,15 +144,18 @@ private:
 /// caller's, which grows where that is needed and is not cleared. The cheapest list of many.
 class CollectBits {
 public:
-    explicit CollectBits(std::vector<std::uint64_t>& bits) noexcept : bits_(&bits) {}
+    explicit CollectBits(std::vector<std::uint64_t>& bits) noexcept
+        : bits_(&bits), words_(bits.data()), wordCount_(bits.size()) {}
 
     template <class Scalar>
     void add(ProxyId id, Scalar /*key*/) {
         const std::size_t word = id.index / 64;
-        if (word >= bits_->size()) {
+        if (word >= wordCount_) {
             bits_->resize(word + 1);
+            words_ = bits_->data();
+            wordCount_ = bits_->size();
         }
-        (*bits_)[word] |= std::uint64_t{1} << (id.index % 64);
+        words_[word] |= std::uint64_t{1} << (id.index % 64);
     }
     [[nodiscard]] static constexpr double limit() noexcept {
         return std::numeric_limits<double>::infinity();
@@ -160,6 +163,8 @@ public:
 
 private:
     std::vector<std::uint64_t>* bits_;
+    std::uint64_t* words_;
+    std::size_t wordCount_;
 };
 
 }  // namespace hashphase

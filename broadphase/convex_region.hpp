@@ -2,54 +2,50 @@
 #pragma once
 
 #include <broadphase/aabb.hpp>
+#include <broadphase/detail/kernel_types.hpp>
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 
 namespace hashphase {
 
-/// How much of a box has to lie in a volume.
+/// How much of a box has to be in a volume.
 enum class Containment : std::uint8_t { touching, inside };
 
+/// Which boxes touch a volume. Exactly those that share a point with it; or those of which no plane of
+/// the volume has all outside, which is less work and finds a few more near the volume's edges.
+enum class Touch : std::uint8_t { exact, byPlanes };
+
 /// Everything that touches a convex volume, or lies wholly inside: the points p with
-/// plane.signedDistance(p) >= 0 for each of its planes. Key: 0.
+/// plane.signedDistance(p) >= 0 for each of its planes. Key: 0. Cells that are wholly inside are taken
+/// without a test of their boxes.
 ///
-/// A box touches unless one of the planes has all of it outside. That never leaves out what touches
-/// the volume, but finds a few boxes more, near its edges and corners; HexahedronRegion knows
-/// better. Closed, and rounding errs to the side of a hit. No planes at all are all of space.
-/// Normals may have any length. A NaN in a plane makes the region empty.
+/// Closed, and rounding errs to the side of a hit: by about 1e-6 of the coordinates' size in single
+/// precision, 1e-9 in double. Volumes may be unbounded; no planes at all are all of space. A volume
+/// without a point, or with a plane that is NaN or has an infinite normal, is empty.
 template <class Scalar>
 class ConvexRegion {
 public:
     using Plane = Eigen::Hyperplane<Scalar, 3>;
-    static constexpr std::size_t kMostPlanes = 16;
+    static constexpr std::size_t kMostPlanes = detail::kMostOwnPlanes;
 
-    /// At most kMostPlanes planes (asserted).
+    /// At most kMostPlanes planes (asserted), their normals of any length. Cost: some microseconds
+    /// for a frustum; grows with the fourth power of the number of planes.
     explicit ConvexRegion(std::span<const Plane> planes,
-                          Containment containment = Containment::touching);
+                          Containment containment = Containment::touching,
+                          Touch touch = Touch::exact);
 
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept;
 
-    /// Everything; or nothing, where the region is empty.
-    [[nodiscard]] Aabb<Scalar> bounds() const noexcept {
-        using Limits = std::numeric_limits<Scalar>;
-        const auto all =
-            Vector3<Scalar>::Constant(isEmpty_ ? Limits::quiet_NaN() : Limits::infinity());
-        return {-all, all};
-    }
+    /// True when nothing has a key.
+    [[nodiscard]] bool isEmpty() const noexcept { return isEmpty_; }
 
-    [[nodiscard]] std::span<const Plane> planes() const noexcept {
-        return std::span(planes_).first(planeCount_);
-    }
-    [[nodiscard]] Containment containment() const noexcept { return containment_; }
+    /// The planes given and those that were found to bound the volume as boxes see it, for grids.
+    [[nodiscard]] const detail::Volume<Scalar>& volume() const noexcept { return volume_; }
 
 private:
-    std::array<Plane, kMostPlanes> planes_;
-    Containment containment_;
-    std::size_t planeCount_;
+    detail::Volume<Scalar> volume_;
     bool isEmpty_ = false;
 };
 

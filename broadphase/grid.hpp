@@ -175,6 +175,8 @@ private:
     struct VisitReader;
     template <class Region, class Collector>
     struct RayReader;
+    template <class Region, class Collector>
+    struct VolumeReader;
     struct CellRegion;
 
     /// The proxy in the slot, or the last one that was.

@@ -9,7 +9,7 @@
 //
 // key() decides what is found; bounds() only saves work and may be too large, never too small. A
 // region along a line has segment() in the place of bounds(): a RayRegion that meets whatever has a
-// key, no later on its way than that key.
+// key, no later on its way than that key. One bounded by planes has volume(): see convex_region.hpp.
 //
 // Units    metres; a ray's key is the fraction of its length, 0 at `from`, 1 at `to`
 // NaN      a NaN in a region makes it empty

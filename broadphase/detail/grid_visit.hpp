@@ -8,6 +8,7 @@
 #include <broadphase/grid.hpp>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -76,6 +77,68 @@ struct Grid<Scalar>::RayReader {
     }
 };
 
+/// The same for what a kernel finds in a convex volume.
+template <class Scalar>
+template <class Region, class Collector>
+struct Grid<Scalar>::VolumeReader {
+    static constexpr std::size_t kMost = 512;
+
+    VisitReader<Region, Collector> reader;
+    bool mayHaveLeft = false;  // some that are filed in the table
+    detail::KernelCost walk{};
+    std::array<std::uint32_t, kMost> entries;
+
+    /// Returns false when the collector wants no more.
+    bool read() {
+        for (const detail::Level<Scalar>& level : reader.table.levels()) {
+            if (level.count() > 0 && !(level.hasCells ? readCells(level) : readList(level))) {
+                return false;
+            }
+        }
+        return true;
+    }
+
+private:
+    bool readList(const detail::Level<Scalar>& level) {
+        walk.boxesTested += level.count();
+        return reader.read({level.firstEntry, level.lastEntry}, [](std::uint32_t) { return true; });
+    }
+
+    bool readCells(const detail::Level<Scalar>& level) {
+        const auto flush = [](detail::EntrySink& sink) {
+            return static_cast<VolumeReader*>(sink.owner)->take(sink);
+        };
+        detail::EntrySink sink{entries.data(), entries.data() + kMost, flush, this};
+        return detail::kernels<Scalar>().walkVolume(reader.table.view(level),
+                                                    reader.region.volume(), sink, walk) &&
+               take(sink);
+    }
+
+    bool take(detail::EntrySink& sink) {
+        const std::span<const std::uint32_t> taken(entries.data(), sink.next);
+        sink.next = entries.data();
+        return mayHaveLeft ? offer<true>(taken) : offer<false>(taken);
+    }
+
+    template <bool kMayHaveLeft>
+    bool offer(std::span<const std::uint32_t> taken) {
+        const std::uint32_t* slots = reader.table.slots().data();
+        std::uint64_t hits = 0;  // no collector writes here
+        bool goesOn = true;
+        for (std::size_t i = 0; i < taken.size() && goesOn; ++i) {
+            const std::uint32_t slot = slots[taken[i]];
+            // What was taken without a test may have been erased.
+            if (!kMayHaveLeft || (!reader.table.isErased(taken[i]) && reader.grid.isFiled(slot))) {
+                ++hits;
+                reader.collector.add(reader.grid.idOf(slot), Scalar(0));
+                goesOn = reader.limit() >= 0;
+            }
+        }
+        reader.cost.hits += hits;
+        return goesOn;
+    }
+};
+
 template <class Scalar>
 template <class Region, class Collector>
 bool Grid<Scalar>::visitTables(const Region& region, Collector& collector, QueryCost& cost) const {
@@ -89,6 +152,20 @@ bool Grid<Scalar>::visitTables(const Region& region, Collector& collector, Query
         Reader resting{*this, region, collector, cost, Place::resting};
         return detail::walkTree(mobileTree_.tree, ray, cost, mobile) &&
                detail::walkTree(restingTree_.tree, ray, cost, resting);
+    } else if constexpr (requires { region.volume(); }) {
+        for (const detail::Table<Scalar>* table : {&mobile_, &resting_}) {
+            const bool mayHaveLeft =
+                !waiting_.empty() || (table == &resting_ && restingErased_ > 0);
+            VolumeReader<Region, Collector> reader{{*this, *table, region, collector, cost},
+                                                   mayHaveLeft};
+            const bool goesOn = region.isEmpty() || reader.read();
+            cost.rowsVisited += reader.walk.rowsVisited;
+            cost.boxesTested += reader.walk.boxesTested;
+            if (!goesOn) {
+                return false;
+            }
+        }
+        return true;
     } else {
         using Reader = VisitReader<Region, Collector>;
         Reader mobile{*this, mobile_, region, collector, cost};

@@ -53,6 +53,33 @@ struct PairSink {
     }
 }
 
+/// Where a kernel writes entries: flush(sink) takes those up to `next` away and makes room for at
+/// least 16; false ends the search.
+struct EntrySink {
+    std::uint32_t* next;
+    std::uint32_t* end;
+    bool (*flush)(EntrySink& sink);
+    void* owner;
+};
+
+inline constexpr std::uint32_t kMostOwnPlanes = 16;
+inline constexpr std::uint32_t kMostVolumePlanes = 64;
+
+/// A convex volume: the points p with slope . p + offset >= 0 for each plane. Its own planes come
+/// first; those behind them cut off nothing of it. A box touches the volume unless one of the tested
+/// planes, the first so many, has all of it outside, or is inside unless one has a corner of it
+/// outside; less than `rounding` of the size of the sum's terms outside is not outside.
+template <class Scalar>
+struct Volume {
+    Scalar slope[3][kMostVolumePlanes];
+    Scalar offset[kMostVolumePlanes];
+    Scalar rounding;
+    std::uint32_t planeCount;
+    std::uint32_t ownPlaneCount;
+    std::uint32_t testedPlaneCount;
+    bool isInside;
+};
+
 /// A row of cells, along x.
 struct Row {
     std::int32_t y;
@@ -73,6 +100,8 @@ struct LevelView {
     Scalar origin[4];
     Scalar inverseCellSize[4];  // 0 along a flat axis
     Scalar largestEdge;         // of boxes that are filed here
+    Scalar lowest[4];           // coordinates of boxes, known along flat axes
+    Scalar highest[4];
     std::int32_t low[4];
     std::int32_t high[4];
     std::uint32_t firstEntry;
@@ -127,9 +156,18 @@ struct Kernels {
     void (*walkLevel)(const LevelView<Scalar>& level, const Scalar* const* queries,
                       std::uint32_t first, std::uint32_t last, PairSink& found, KernelCost& cost);
 
+    /// Finds every entry of a level with cells that is in the volume, and perhaps some that were
+    /// erased. Returns false when the sink has ended the search.
+    bool (*walkVolume)(const LevelView<Scalar>& level, const Volume<Scalar>& volume,
+                       EntrySink& found, KernelCost& cost);
+
     /// Finds each of the entries first to last that overlaps another one behind it, up to `end`.
     void (*joinList)(const Scalar* const* columns, std::uint32_t first, std::uint32_t last,
                      std::uint32_t end, PairSink& found, KernelCost& cost);
+
+    /// The least and the greatest number of a column, from entry first to last.
+    void (*findRange)(const Scalar* column, std::uint32_t first, std::uint32_t last, Scalar* least,
+                      Scalar* greatest);
 
     /// Writes those of `count` couples whose boxes do not overlap, the boxes order[a] and order[b],
     /// or a and b where order is null, to `apart`, which has room for all. Returns their number.

@@ -11,6 +11,9 @@
 //     notAbove(a, b)   where a <= b, which NaN is not; of a type that ...
 //     both(hits, hits) ... and
 //     bits(hits)       ... take: bit k tells about number k
+//     plus(a, b), times(a, b), magnitude(a)
+//     compress(mask, first, to)  where it is there, writes first + k to `to` for every bit k of the
+//                      mask, which has kWidth, and may write so many numbers
 //   WidePack<Scalar>   the same for long runs, perhaps wider
 //   isApart(a, b)      whether two padded boxes do not overlap
 //   fitsEdge(level, box)  whether no edge of the padded box is longer than the level's largest
@@ -36,7 +39,36 @@ std::uint32_t rowBase(const LevelView<Scalar>& level, Row row) {
 
 #include <broadphase/detail/kernel_file.inl>
 #include <broadphase/detail/kernel_join.inl>
+#include <broadphase/detail/kernel_volume.inl>
 #include <broadphase/detail/kernel_walk.inl>
+
+template <class Scalar>
+void findRange(const Scalar* column, std::uint32_t first, std::uint32_t last, Scalar* least,
+               Scalar* greatest) {
+    constexpr std::uint32_t width = 8;
+    Scalar low[width];
+    Scalar high[width];
+    for (std::uint32_t k = 0; k < width; ++k) {
+        low[k] = column[first];
+        high[k] = column[first];
+    }
+    for (; first + width <= last; first += width) {
+        for (std::uint32_t k = 0; k < width; ++k) {
+            low[k] = column[first + k] < low[k] ? column[first + k] : low[k];
+            high[k] = column[first + k] > high[k] ? column[first + k] : high[k];
+        }
+    }
+    for (; first < last; ++first) {
+        low[0] = column[first] < low[0] ? column[first] : low[0];
+        high[0] = column[first] > high[0] ? column[first] : high[0];
+    }
+    *least = low[0];
+    *greatest = high[0];
+    for (std::uint32_t k = 1; k < width; ++k) {
+        *least = low[k] < *least ? low[k] : *least;
+        *greatest = high[k] > *greatest ? high[k] : *greatest;
+    }
+}
 
 template <class Scalar>
 std::size_t selectApart(const IndexPair* couples, std::size_t count, const std::uint32_t* order,
@@ -53,5 +85,6 @@ std::size_t selectApart(const IndexPair* couples, std::size_t count, const std::
 }
 
 template <class Scalar>
-constexpr Kernels<Scalar> kKernels{&fileBoxes<Scalar>, &joinLevel<Scalar>, &walkLevel<Scalar>,
-                                   &joinList<Scalar>, &selectApart<Scalar>};
+constexpr Kernels<Scalar> kKernels{&fileBoxes<Scalar>,  &joinLevel<Scalar>, &walkLevel<Scalar>,
+                                   &walkVolume<Scalar>, &joinList<Scalar>,  &findRange<Scalar>,
+                                   &selectApart<Scalar>};

@@ -11,6 +11,9 @@ struct Pack<float> {
     using Numbers = __m256;
     static Numbers load(const float* from) { return _mm256_loadu_ps(from); }
     static Numbers all(float x) { return _mm256_set1_ps(x); }
+    static Numbers plus(Numbers a, Numbers b) { return _mm256_add_ps(a, b); }
+    static Numbers times(Numbers a, Numbers b) { return _mm256_mul_ps(a, b); }
+    static Numbers magnitude(Numbers a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0F), a); }
     static __m256 notAbove(Numbers a, Numbers b) { return _mm256_cmp_ps(a, b, _CMP_LE_OQ); }
     static __m256 both(__m256 a, __m256 b) { return _mm256_and_ps(a, b); }
     static std::uint32_t bits(__m256 hits) {

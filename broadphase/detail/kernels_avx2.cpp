@@ -18,6 +18,9 @@ struct Pack<double> {
     using Numbers = __m256d;
     static Numbers load(const double* from) { return _mm256_loadu_pd(from); }
     static Numbers all(double x) { return _mm256_set1_pd(x); }
+    static Numbers plus(Numbers a, Numbers b) { return _mm256_add_pd(a, b); }
+    static Numbers times(Numbers a, Numbers b) { return _mm256_mul_pd(a, b); }
+    static Numbers magnitude(Numbers a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a); }
     static __m256d notAbove(Numbers a, Numbers b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
     static __m256d both(__m256d a, __m256d b) { return _mm256_and_pd(a, b); }
     static std::uint32_t bits(__m256d hits) {

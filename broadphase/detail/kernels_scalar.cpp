@@ -14,6 +14,9 @@ struct Pack {
     using Numbers = Scalar;
     static Numbers load(const Scalar* from) { return *from; }
     static Numbers all(Scalar x) { return x; }
+    static Numbers plus(Numbers a, Numbers b) { return a + b; }
+    static Numbers times(Numbers a, Numbers b) { return a * b; }
+    static Numbers magnitude(Numbers a) { return a < 0 ? -a : a; }
     static bool notAbove(Numbers a, Numbers b) { return a <= b; }
     static bool both(bool a, bool b) { return a & b; }
     static std::uint32_t bits(bool hit) { return hit ? 1 : 0; }

@@ -295,6 +295,7 @@ void Table<Scalar>::sortEntries(std::span<const std::uint32_t> slots,
         }
     });
     noteRows();
+    noteHeights();
 }
 
 // Calls visit(span of entries in order_) for the crowded buckets of the level.
@@ -361,6 +362,23 @@ void Table<Scalar>::noteRows() {
     }
 }
 
+// Along a flat axis, cells do not tell where the boxes are.
+template <class Scalar>
+void Table<Scalar>::noteHeights() {
+    for (Level<Scalar>& level : levels_) {
+        for (std::size_t axis = 0; level.hasCells && axis < 3; ++axis) {
+            if (level.inverseCellSize[axis] == 0 && level.count() > 0) {
+                const auto find = kernels<Scalar>().findRange;
+                Scalar unused{};
+                find(bounds_[axis].data(), level.firstEntry, level.lastEntry, &level.lowest[axis],
+                     &unused);
+                find(bounds_[axis + 3].data(), level.firstEntry, level.lastEntry, &unused,
+                     &level.highest[axis]);
+            }
+        }
+    }
+}
+
 template <class Scalar>
 void Table<Scalar>::build(std::span<const std::uint32_t> slots,
                           std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed,
@@ -397,6 +415,8 @@ LevelView<Scalar> Table<Scalar>::view(const Level<Scalar>& level) const noexcept
     for (std::size_t axis = 0; axis < 3; ++axis) {
         view.origin[axis] = level.origin[axis];
         view.inverseCellSize[axis] = level.inverseCellSize[axis];
+        view.lowest[axis] = level.lowest[axis];
+        view.highest[axis] = level.highest[axis];
         view.low[axis] = level.low[axis];
         view.high[axis] = level.high[axis];
     }

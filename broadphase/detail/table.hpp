@@ -49,6 +49,9 @@ struct Level {
     std::array<Scalar, 3> inverseCellSize{};  // 0 along a flat axis, which has one cell: 0
     // Of boxes that are filed here; NaN, which nothing is below, where there are no cells.
     Scalar largestEdge = std::numeric_limits<Scalar>::quiet_NaN();
+    // Between which coordinates the boxes lie, along flat axes.
+    std::array<Scalar, 3> lowest{};
+    std::array<Scalar, 3> highest{};
     std::uint32_t firstEntry = 0;
     std::uint32_t lastEntry = 0;  // one past
     std::uint32_t firstBucket = 0;
@@ -129,6 +132,10 @@ public:
     [[nodiscard]] Aabb<Scalar> box(std::uint32_t entry) const noexcept {
         return {Vector3<Scalar>(bounds_[0][entry], bounds_[1][entry], bounds_[2][entry]),
                 Vector3<Scalar>(bounds_[3][entry], bounds_[4][entry], bounds_[5][entry])};
+    }
+
+    [[nodiscard]] bool isErased(std::uint32_t entry) const noexcept {
+        return bounds_[0][entry] != bounds_[0][entry];
     }
 
     /// Coordinates of all entries, by column; readable kColumnPadding past any entry.
@@ -212,6 +219,7 @@ private:
     void sortCrowds(std::span<const PaddedBox<Scalar>> boxes);
     [[nodiscard]] bool isSortedIfCrowded(const Level<Scalar>& level, std::uint32_t bucket) const;
     void noteRows();
+    void noteHeights();
 
     LevelSizes sizes_;
     std::array<Scalar, 3> origin_{};

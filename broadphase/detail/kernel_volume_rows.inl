@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Zlib
+
+// Kernel part: clips rows of cells by a convex volume. See kernel_volume.inl.
+
+// Rows that are clipped at a time; the loops over them are made for vector instructions.
+constexpr int kRowsAtOnce = 16;
+
+/// Rows of cells, and of each of them the cells that the volume's own planes leave.
+template <class Scalar>
+class RowBatch {
+public:
+    int count = 0;
+    Row rows[kRowsAtOnce];
+
+    // Of each row the cells in which boxes may touch the volume, and those of them whose boxes surely
+    // do; none where the first lies behind the last.
+    std::int32_t first[kRowsAtOnce];
+    std::int32_t last[kRowsAtOnce];
+    std::int32_t coveredFirst[kRowsAtOnce];
+    std::int32_t coveredLast[kRowsAtOnce];
+    std::uint32_t crossing[kRowsAtOnce];  // bit i: plane i may part the boxes in these cells
+
+    explicit RowBatch(const VolumeView<Scalar>& view) : view_(view) {
+        for (int k = 0; k < kRowsAtOnce; ++k) {
+            lowY_[k] = highY_[k] = lowZ_[k] = highZ_[k] = 0;
+        }
+    }
+
+    /// Adds a row; true when the batch is full.
+    bool add(Row row) {
+        Hull<Scalar> hull = view_.all;
+        view_.setCells(1, row.y, row.y, hull);
+        view_.setCells(2, row.z, row.z, hull);
+        rows[count] = row;
+        lowY_[count] = hull.low[1];
+        highY_[count] = hull.high[1];
+        lowZ_[count] = hull.low[2];
+        highZ_[count] = hull.high[2];
+        return ++count == kRowsAtOnce;
+    }
+
+    /// Finds the cells of the rows.
+    void clip() {
+        Scalar least[kMostOwnPlanes][kRowsAtOnce];  // of each plane's sum, but for x
+        clipRows(least);
+        findCrossings(least);
+    }
+
+private:
+    void clipRows(Scalar (*least)[kRowsAtOnce]) {
+        Scalar touchedLow[kRowsAtOnce];
+        Scalar touchedHigh[kRowsAtOnce];
+        Scalar coveredLow[kRowsAtOnce];
+        Scalar coveredHigh[kRowsAtOnce];
+        for (int k = 0; k < kRowsAtOnce; ++k) {
+            touchedLow[k] = coveredLow[k] = view_.all.low[0];
+            touchedHigh[k] = coveredHigh[k] = view_.all.high[0];
+        }
+        for (std::uint32_t i = 0; i < view_.volume.ownPlaneCount; ++i) {
+            const BoxPlane<Scalar> plane = view_.planes[i];
+            Scalar most[kRowsAtOnce];
+            for (int k = 0; k < kRowsAtOnce; ++k) {
+                const Scalar atLowY = plane.slope[1] * lowY_[k];
+                const Scalar atHighY = plane.slope[1] * highY_[k];
+                const Scalar atLowZ = plane.slope[2] * lowZ_[k];
+                const Scalar atHighZ = plane.slope[2] * highZ_[k];
+                most[k] = (plane.offset + plane.slack) + larger(atLowY, atHighY) +
+                          larger(atLowZ, atHighZ);
+                least[i][k] = (plane.offset - plane.slack) + smaller(atLowY, atHighY) +
+                              smaller(atLowZ, atHighZ);
+            }
+            const Scalar slope = plane.slope[0];
+            const Scalar minusInverse = slope == 0 ? Scalar(0) : -1 / slope;
+            if (slope > 0) {
+                for (int k = 0; k < kRowsAtOnce; ++k) {
+                    touchedLow[k] = larger(touchedLow[k], most[k] * minusInverse);
+                    coveredLow[k] = larger(coveredLow[k], least[i][k] * minusInverse);
+                }
+            } else if (slope < 0) {
+                for (int k = 0; k < kRowsAtOnce; ++k) {
+                    touchedHigh[k] = smaller(touchedHigh[k], most[k] * minusInverse);
+                    coveredHigh[k] = smaller(coveredHigh[k], least[i][k] * minusInverse);
+                }
+            } else {
+                for (int k = 0; k < kRowsAtOnce; ++k) {
+                    touchedHigh[k] = most[k] < 0 ? touchedLow[k] - 1 : touchedHigh[k];
+                    coveredHigh[k] = least[i][k] < 0 ? coveredLow[k] - 1 : coveredHigh[k];
+                }
+            }
+        }
+        if (view_.isFlat[0]) {
+            for (int k = 0; k < kRowsAtOnce; ++k) {
+                const bool isCovered =
+                    coveredLow[k] <= view_.all.low[0] && coveredHigh[k] >= view_.all.high[0];
+                first[k] = coveredFirst[k] = 0;
+                last[k] = touchedLow[k] <= touchedHigh[k] ? 0 : -1;
+                coveredLast[k] = isCovered ? 0 : -1;
+            }
+        } else {
+            findCells(touchedLow, touchedHigh, coveredLow, coveredHigh);
+        }
+    }
+
+    void findCells(const Scalar* touchedLow, const Scalar* touchedHigh, const Scalar* coveredLow,
+                   const Scalar* coveredHigh) {
+        quantiseAll(touchedLow, first);
+        quantiseAll(touchedHigh, last);
+        quantiseAll(coveredLow, coveredFirst);
+        quantiseAll(coveredHigh, coveredLast);
+        // Not read anew in each turn, as members would be that what is written might be a part of.
+        const std::int32_t lowest = view_.level.low[0];
+        const std::int32_t highest = view_.level.high[0];
+        const Scalar begin = view_.all.low[0];
+        const Scalar end = view_.all.high[0];
+        for (int k = 0; k < kRowsAtOnce; ++k) {
+            const std::int32_t low = larger(first[k] - 1, lowest);
+            const std::int32_t high = smaller(last[k], highest);
+            // What begins in a later cell than a number begins behind it; what begins two cells
+            // before ends before it.
+            const std::int32_t innerLow = larger(coveredFirst[k] + 1, low);
+            const std::int32_t innerHigh = smaller(coveredLast[k] - 2, high);
+            first[k] = low;
+            last[k] = touchedLow[k] <= touchedHigh[k] ? high : low - 1;
+            coveredFirst[k] = coveredLow[k] <= begin ? low : innerLow;
+            coveredLast[k] = coveredHigh[k] >= end ? high : innerHigh;
+        }
+    }
+
+    void quantiseAll(const Scalar* x, std::int32_t* cells) const {
+        const Scalar origin = view_.level.origin[0];
+        const Scalar inverse = view_.level.inverseCellSize[0];
+        for (int k = 0; k < kRowsAtOnce; ++k) {
+            cells[k] = quantise(x[k], origin, inverse);
+        }
+    }
+
+    void findCrossings(const Scalar (*least)[kRowsAtOnce]) {
+        Scalar low[kRowsAtOnce];
+        Scalar high[kRowsAtOnce];
+        for (int k = 0; k < kRowsAtOnce; ++k) {
+            low[k] = view_.isFlat[0] ? view_.all.low[0] : view_.beginOf(first[k], 0);
+            high[k] = view_.isFlat[0] ? view_.all.high[0] : view_.endOf(last[k], 0);
+            crossing[k] = 0;
+        }
+        for (std::uint32_t i = 0; i < view_.volume.ownPlaneCount; ++i) {
+            const Scalar slope = view_.planes[i].slope[0];
+            const Scalar* const end = slope > 0 ? low : high;
+            for (int k = 0; k < kRowsAtOnce; ++k) {
+                const Scalar sum = least[i][k] + slope * end[k];
+                crossing[k] |= (sum >= 0 ? 0U : 1U) << i;
+            }
+        }
+    }
+
+    const VolumeView<Scalar>& view_;
+    Scalar lowY_[kRowsAtOnce];
+    Scalar highY_[kRowsAtOnce];
+    Scalar lowZ_[kRowsAtOnce];
+    Scalar highZ_[kRowsAtOnce];
+};
