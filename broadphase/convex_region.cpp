@@ -49,7 +49,11 @@ ConvexRegion<Scalar>::ConvexRegion(std::span<const Plane> planes, Containment co
     volume_.isInside = containment == Containment::inside;
     // Of the planes' numbers, of their products with coordinates, and of the sums.
     volume_.rounding = 4 * std::numeric_limits<Scalar>::epsilon();
-    for (const PlaneOfDoubles& plane : all) {
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        const PlaneOfDoubles& plane = all[k];
+        if (k >= ownCount && !plane.coeffs().template cast<Scalar>().allFinite()) {
+            continue;  // beyond the range of numbers, and not needed
+        }
         const std::uint32_t i = volume_.planeCount++;
         for (int axis = 0; axis < 3; ++axis) {
             volume_.slope[axis][i] = static_cast<Scalar>(plane.normal()[axis]);

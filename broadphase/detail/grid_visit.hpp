@@ -81,12 +81,9 @@ struct Grid<Scalar>::RayReader {
 template <class Scalar>
 template <class Region, class Collector>
 struct Grid<Scalar>::VolumeReader {
-    static constexpr std::size_t kMost = 512;
-
     VisitReader<Region, Collector> reader;
     bool mayHaveLeft = false;  // some that are filed in the table
     detail::KernelCost walk{};
-    std::array<std::uint32_t, kMost> entries;
 
     /// Returns false when the collector wants no more.
     bool read() {
@@ -108,15 +105,17 @@ private:
         const auto flush = [](detail::EntrySink& sink) {
             return static_cast<VolumeReader*>(sink.owner)->take(sink);
         };
-        detail::EntrySink sink{entries.data(), entries.data() + kMost, flush, this};
+        std::array<std::uint32_t, 512> entries;
+        detail::EntrySink sink{entries.data(), entries.data(), entries.data() + entries.size(),
+                               flush, this};
         return detail::kernels<Scalar>().walkVolume(reader.table.view(level),
                                                     reader.region.volume(), sink, walk) &&
                take(sink);
     }
 
     bool take(detail::EntrySink& sink) {
-        const std::span<const std::uint32_t> taken(entries.data(), sink.next);
-        sink.next = entries.data();
+        const std::span<const std::uint32_t> taken(sink.begin, sink.next);
+        sink.next = sink.begin;
         return mayHaveLeft ? offer<true>(taken) : offer<false>(taken);
     }
 

@@ -56,6 +56,7 @@ struct PairSink {
 /// Where a kernel writes entries: flush(sink) takes those up to `next` away and makes room for at
 /// least 16; false ends the search.
 struct EntrySink {
+    std::uint32_t* begin;
     std::uint32_t* next;
     std::uint32_t* end;
     bool (*flush)(EntrySink& sink);

@@ -26,6 +26,7 @@ protected:
             found_ += expectLikeBruteForce(grid, proxies, make.sphere());
             found_ += expectLikeBruteForce(grid, proxies, make.ray());
             found_ += expectLikeBruteForce(grid, proxies, make.ray(true));
+            found_ += expectLikeBruteForce(grid, proxies, make.convex());
         }
     }
 
@@ -87,6 +88,7 @@ TYPED_TEST(GridQuery, OfAnEmptyGridFindsNothing) {
     EXPECT_TRUE(find(grid, BoxRegion<TypeParam>{{zero, one}}).empty());
     EXPECT_TRUE(find(grid, SphereRegion<TypeParam>{zero, 1}).empty());
     EXPECT_TRUE(find(grid, RayRegion<TypeParam>(zero, one)).empty());
+    EXPECT_TRUE(find(grid, ConvexRegion<TypeParam>({})).empty());
     EXPECT_EQ(grid.cellSize(), 1);
 }
 
