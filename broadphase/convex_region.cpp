@@ -5,6 +5,7 @@
 #include <broadphase/diagnostics.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -32,9 +33,11 @@ ConvexRegion<Scalar>::ConvexRegion(std::span<const Plane> planes, Containment co
     constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
     detail::Polyhedron::Planes all;
     for (const Plane& plane : planes.first(std::min(planes.size(), kMostPlanes))) {
-        isEmpty_ = isEmpty_ || !plane.normal().allFinite() || !(plane.offset() > -infinity);
-        if (plane.offset() < infinity) {
-            all.push(normalised(plane));
+        const PlaneOfDoubles scaled = normalised(plane);
+        const auto offset = static_cast<Scalar>(scaled.offset());
+        isEmpty_ = isEmpty_ || !scaled.normal().allFinite() || !(offset > -infinity);
+        if (offset < infinity) {  // else there is no number beyond it
+            all.push(scaled);
         }
     }
     const std::size_t ownCount = all.size();
@@ -49,6 +52,7 @@ ConvexRegion<Scalar>::ConvexRegion(std::span<const Plane> planes, Containment co
     volume_.isInside = containment == Containment::inside;
     // Of the planes' numbers, of their products with coordinates, and of the sums.
     volume_.rounding = 4 * std::numeric_limits<Scalar>::epsilon();
+    volume_.tiny = std::numeric_limits<Scalar>::min();
     for (std::size_t k = 0; k < all.size(); ++k) {
         const PlaneOfDoubles& plane = all[k];
         if (k >= ownCount && !plane.coeffs().template cast<Scalar>().allFinite()) {
@@ -90,6 +94,59 @@ Scalar ConvexRegion<Scalar>::key(const Aabb<Scalar>& box) const noexcept {
         }
     }
     return 0;
+}
+
+template <class Scalar>
+detail::FixedList<Eigen::Hyperplane<Scalar, 3>, ConvexRegion<Scalar>::kMostPlanes>
+ConvexRegion<Scalar>::ownPlanes() const {
+    detail::FixedList<Plane, kMostPlanes> planes;
+    for (std::uint32_t i = 0; i < volume_.ownPlaneCount; ++i) {
+        const Vector3<Scalar> normal(volume_.slope[0][i], volume_.slope[1][i], volume_.slope[2][i]);
+        planes.push(Plane(normal, volume_.offset[i]));
+    }
+    return planes;
+}
+
+template <class Scalar>
+bool ConvexRegion<Scalar>::contains(const ConvexRegion& other, Scalar margin) const {
+    if (isEmpty_ || other.isEmpty_) {
+        return other.isEmpty_;
+    }
+    detail::Polyhedron::Planes planes;
+    for (const Plane& plane : other.ownPlanes()) {
+        planes.push(normalised(plane));
+    }
+    const detail::Polyhedron polyhedron(planes);
+    const auto own = ownPlanes();
+    return std::all_of(own.begin(), own.end(), [&](const Plane& plane) {
+        const bool isEverywhere = plane.normal().isZero(0);  // for all of space is inside of it
+        return isEverywhere || polyhedron.isInside(normalised(plane), static_cast<double>(margin));
+    });
+}
+
+template <class Scalar>
+ConvexRegion<Scalar> ConvexRegion<Scalar>::movedOut(Scalar distance, Touch touch) const {
+    std::array<Plane, kMostPlanes> planes;
+    const auto own = ownPlanes();
+    for (std::size_t i = 0; i < own.size(); ++i) {
+        planes[i] = own[i];
+        planes[i].offset() += distance * own[i].normal().norm();
+    }
+    ConvexRegion result(std::span<const Plane>(planes).first(own.size()),
+                        volume_.isInside ? Containment::inside : Containment::touching, touch);
+    result.isEmpty_ = result.isEmpty_ || isEmpty_;
+    return result;
+}
+
+template <class Scalar>
+ConvexRegion<Scalar> ConvexRegion<Scalar>::grownBy(Scalar distance) const {
+    const bool isExact = volume_.testedPlaneCount > volume_.ownPlaneCount;
+    return movedOut(distance, isExact ? Touch::exact : Touch::byPlanes);
+}
+
+template <class Scalar>
+ConvexRegion<Scalar> ConvexRegion<Scalar>::exact() const {
+    return movedOut(0, Touch::exact);
 }
 
 template class ConvexRegion<float>;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <broadphase/aabb.hpp>
+#include <broadphase/detail/fixed_list.hpp>
 #include <broadphase/detail/kernel_types.hpp>
 
 #include <cstddef>
@@ -41,10 +42,24 @@ public:
     /// True when nothing has a key.
     [[nodiscard]] bool isEmpty() const noexcept { return isEmpty_; }
 
+    /// True when every point of `other` lies inside of this volume, and at least `margin` [m] away from
+    /// each of its planes. What rounding leaves in doubt is not, nor is a volume without corners.
+    [[nodiscard]] bool contains(const ConvexRegion& other, Scalar margin = 0) const;
+
+    /// The volume with its planes moved outwards by `distance` [m]; it has all that lies within so much
+    /// of this one.
+    [[nodiscard]] ConvexRegion grownBy(Scalar distance) const;
+
+    /// The same volume with Touch::exact.
+    [[nodiscard]] ConvexRegion exact() const;
+
     /// The planes given and those that were found to bound the volume as boxes see it, for grids.
     [[nodiscard]] const detail::Volume<Scalar>& volume() const noexcept { return volume_; }
 
 private:
+    [[nodiscard]] detail::FixedList<Plane, kMostPlanes> ownPlanes() const;
+    [[nodiscard]] ConvexRegion movedOut(Scalar distance, Touch touch) const;
+
     detail::Volume<Scalar> volume_;
     bool isEmpty_ = false;
 };

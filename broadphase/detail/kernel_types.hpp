@@ -75,6 +75,7 @@ struct Volume {
     Scalar slope[3][kMostVolumePlanes];
     Scalar offset[kMostVolumePlanes];
     Scalar rounding;
+    Scalar tiny;  // the least number of which no bit is lost
     std::uint32_t planeCount;
     std::uint32_t ownPlaneCount;
     std::uint32_t testedPlaneCount;

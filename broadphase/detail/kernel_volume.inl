@@ -70,7 +70,8 @@ public:
                 const auto last = static_cast<Scalar>(level.high[axis] + 2);
                 const Scalar reach = larger(absolute(first), absolute(last)) * size;
                 const Scalar margin =
-                    2 * volume.rounding * (absolute(level.origin[axis]) + reach + size);
+                    2 * volume.rounding * (absolute(level.origin[axis]) + reach + size) +
+                    volume.tiny;
                 cellSize_[axis] = size;
                 lowOrigin_[axis] = level.origin[axis] - margin;
                 highOrigin_[axis] = level.origin[axis] + 2 * size + margin;
@@ -88,7 +89,7 @@ public:
                 plane.corner[axis] = level.columns[axis + (takesMax ? 3 : 0)];
                 size += absolute(slope) * larger(absolute(all.low[axis]), absolute(all.high[axis]));
             }
-            plane.slack = 2 * volume.rounding * size;
+            plane.slack = 2 * volume.rounding * size + volume.tiny;
         }
     }
 

@@ -147,6 +147,21 @@ void Polyhedron::appendAlong(int axis, const Corner& corner, const Vector3<doubl
     }
 }
 
+bool Polyhedron::isInside(const Plane& plane, double margin) const {
+    for (const Direction& direction : directions_) {
+        if (plane.normal().dot(direction.way) < 0) {
+            return false;
+        }
+    }
+    for (const Corner& corner : corners_) {
+        const double doubt = corner.error + kEpsilon * corner.point.cwiseAbs().sum();
+        if (!(plane.signedDistance(corner.point) - doubt >= margin)) {
+            return false;
+        }
+    }
+    return !corners_.empty() && !hasTooMany_;
+}
+
 void Polyhedron::appendSilhouettes(bool isExact, Planes& planes) const {
     if (corners_.empty() || hasTooMany_) {
         return;

@@ -24,6 +24,11 @@ public:
     /// True when no point is on the right side of all planes. What rounding leaves in doubt is not.
     [[nodiscard]] bool isEmpty() const noexcept { return spansSpace_ && corners_.empty(); }
 
+    /// True when every point of the volume lies on the right side of the plane, of which the normal has
+    /// length 1 or 0, and at least `margin` away from it; false where that is in doubt, and for volumes
+    /// without a corner.
+    [[nodiscard]] bool isInside(const Plane& plane, double margin) const;
+
     /// Appends planes around the volume, of which none cuts off a point of it: across each axis, and
     /// along the x axis through edges that are seen from there; none where the volume has no corner,
     /// and no more than there is room for. With `isExact`, also along the other axes: as many as it

@@ -362,19 +362,23 @@ void Table<Scalar>::noteRows() {
     }
 }
 
-// Along a flat axis, cells do not tell where the boxes are.
+// Along a flat axis, cells do not tell where the boxes are. Inverted ones end before they begin.
 template <class Scalar>
 void Table<Scalar>::noteHeights() {
+    const auto find = kernels<Scalar>().findRange;
     for (Level<Scalar>& level : levels_) {
         for (std::size_t axis = 0; level.hasCells && axis < 3; ++axis) {
-            if (level.inverseCellSize[axis] == 0 && level.count() > 0) {
-                const auto find = kernels<Scalar>().findRange;
-                Scalar unused{};
-                find(bounds_[axis].data(), level.firstEntry, level.lastEntry, &level.lowest[axis],
-                     &unused);
-                find(bounds_[axis + 3].data(), level.firstEntry, level.lastEntry, &unused,
-                     &level.highest[axis]);
+            if (level.inverseCellSize[axis] != 0 || level.count() == 0) {
+                continue;
             }
+            std::array<Scalar, 2> least{};
+            std::array<Scalar, 2> greatest{};
+            for (std::size_t end = 0; end < 2; ++end) {
+                find(bounds_[axis + 3 * end].data(), level.firstEntry, level.lastEntry, &least[end],
+                     &greatest[end]);
+            }
+            level.lowest[axis] = std::min(least[0], least[1]);
+            level.highest[axis] = std::max(greatest[0], greatest[1]);
         }
     }
 }

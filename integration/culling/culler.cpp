@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Zlib
+#include <integration/culling/culler.hpp>
+
+#include <broadphase/collectors.hpp>
+
+#include <algorithm>
+
+namespace hashphase {
+namespace {
+
+template <class Scalar>
+ConvexRegion<Scalar> nothing() {
+    constexpr Scalar nan = std::numeric_limits<Scalar>::quiet_NaN();
+    const Eigen::Hyperplane<Scalar, 3> plane(Vector3<Scalar>::Constant(nan), nan);
+    return ConvexRegion<Scalar>(std::span(&plane, 1));
+}
+
+/// Counts those that are in a culler's set.
+template <class Scalar>
+class CountVisible {
+public:
+    explicit CountVisible(const Culler<Scalar>& culler) : culler_(culler) {}
+
+    void add(ProxyId id, Scalar /*key*/) noexcept { count_ += culler_.isVisible(id) ? 1 : 0; }
+    [[nodiscard]] static constexpr Scalar limit() noexcept {
+        return std::numeric_limits<Scalar>::infinity();
+    }
+    [[nodiscard]] std::size_t count() const noexcept { return count_; }
+
+private:
+    const Culler<Scalar>& culler_;
+    std::size_t count_ = 0;
+};
+
+}  // namespace
+
+template <class Scalar>
+Culler<Scalar>::Culler(Scalar margin)
+    : margin_(margin > 0 ? margin : Scalar(0)),
+      moved_(std::numeric_limits<Scalar>::infinity()),
+      view_(nothing<Scalar>()),
+      grown_(view_) {}
+
+// Whoever touches the view now touched what was looked through before, if since then nobody has moved
+// farther than the view lies inside of that.
+template <class Scalar>
+bool Culler<Scalar>::keepsSet(Scalar moved) {
+    moved_ += moved >= 0 ? moved : std::numeric_limits<Scalar>::infinity();
+    return moved_ <= margin_ && !view_.volume().isInside && !grown_.volume().isInside &&
+           grown_.contains(view_, moved_);
+}
+
+// Returns whether the set is to be found anew, and empties it if so.
+template <class Scalar>
+bool Culler<Scalar>::begin(const View& view, Scalar moved) {
+    if (!isFrozen_) {
+        view_ = view;
+    }
+    if (keepsSet(moved)) {
+        return false;
+    }
+    grown_ = margin_ > 0 ? view_.grownBy(margin_) : view_;
+    moved_ = 0;
+    std::fill(bits_.begin(), bits_.end(), 0);
+    return true;
+}
+
+template <class Scalar>
+QueryCost Culler<Scalar>::look(const Grid<Scalar>& grid, const View& view, Scalar moved) {
+    if (!begin(view, moved)) {
+        return {};
+    }
+    CollectBits bits(bits_);
+    return grid.visit(grown_, bits);
+}
+
+template <class Scalar>
+QueryCost Culler<Scalar>::look(const Grid<Scalar>& grid, const View& view, ProxyFilter filter,
+                               Scalar moved) {
+    if (!begin(view, moved)) {
+        return {};
+    }
+    CollectBits bits(bits_);
+    CollectIf accepted(bits, filter);
+    return grid.visit(grown_, accepted);
+}
+
+template <class Scalar>
+std::size_t Culler<Scalar>::count() const noexcept {
+    std::size_t count = 0;
+    for (const std::uint64_t word : bits_) {
+        count += static_cast<std::size_t>(std::popcount(word));
+    }
+    return count;
+}
+
+template <class Scalar>
+Overdraw Culler<Scalar>::overdraw(const Grid<Scalar>& grid) const {
+    CountVisible<Scalar> seen(*this);
+    grid.visit(view_.exact(), seen);
+    const std::size_t visible = count();
+    return {visible, visible - std::min(visible, seen.count())};
+}
+
+template class Culler<float>;
+template class Culler<double>;
+
+}  // namespace hashphase

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What a camera sees of a grid's proxies: those whose boxes touch its frustum, or any other convex
+// volume, such as the ground below a camera that looks down.
+//
+//     Culler<float> culler;
+//     culler.look(grid, frustumRegion<float>(viewProjection, DepthRange::zeroToOne, ...));
+//     culler.forEach([&](std::uint32_t index) { draw(objects[index]); });
+//
+// Never culls what is visible: a proxy of which the box touches the volume is in the set. A few more
+// are, whose boxes only come near one of its edges, and those that a margin or an earlier frame has
+// brought in; overdraw() counts them.
+//
+// A frame   look() once, with the camera of the frame.
+// Threads   look() reads the grid, as queries do, and needs this object for itself.
+// Units     metres
+// Bad data  A volume without a point, or with a NaN, has nothing; frustumError() says why.
+// Memory    A bit for each proxy; a frame like the last one allocates nothing.
+
+#include <broadphase/convex_region.hpp>
+#include <broadphase/grid.hpp>
+#include <broadphase/proxy_filter.hpp>
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace hashphase {
+
+/// How many are in the visible set, and how many of these touch nothing that is seen.
+struct Overdraw {
+    std::size_t visible = 0;
+    std::size_t unseen = 0;
+};
+
+template <class Scalar>
+class Culler {
+public:
+    using View = ConvexRegion<Scalar>;
+
+    /// What is within `margin` [m] of the volume is found as well, so that the set may serve for some
+    /// frames: see look(). At least 0, else taken as 0.
+    explicit Culler(Scalar margin = 0);
+
+    // --- Once a frame ----------------------------------------------------------------------------
+
+    /// Finds what touches `view` and passes the filter, unless what was found the last time is known
+    /// to have it all: when `view` lies within that time's volume, grown by the margin, and nothing
+    /// can have come in since. `moved` [m] says how far any corner of a box of the grid may have moved
+    /// since the last call; infinite when anything was added, or nobody knows. A Touch::byPlanes
+    /// region takes less time than an exact one; of one for what lies inside no set is kept. Give
+    /// infinity after a change of the grid object or the filter as well. Returns the query's cost, none
+    /// when the set was kept.
+    QueryCost look(const Grid<Scalar>& grid, const View& view,
+                   Scalar moved = std::numeric_limits<Scalar>::infinity());
+    QueryCost look(const Grid<Scalar>& grid, const View& view, ProxyFilter filter,
+                   Scalar moved = std::numeric_limits<Scalar>::infinity());
+
+    /// Goes on with the volume of the last look() while the camera moves, to look at the set from
+    /// outside, until it is called with false. Boxes that move are still found.
+    void freeze(bool isFrozen) noexcept { isFrozen_ = isFrozen; }
+    [[nodiscard]] bool isFrozen() const noexcept { return isFrozen_; }
+
+    // --- The visible set -------------------------------------------------------------------------
+
+    /// True when the proxy is in the set. A proxy that was removed since stays in until the next one is
+    /// found, and whoever has got its index is taken for it.
+    [[nodiscard]] bool isVisible(ProxyId id) const noexcept {
+        return id.index / 64 < bits_.size() && (bits_[id.index / 64] >> (id.index % 64) & 1) != 0;
+    }
+
+    /// Bit i % 64 of word i / 64 tells about the proxy with index i.
+    [[nodiscard]] std::span<const std::uint64_t> bits() const noexcept { return bits_; }
+
+    [[nodiscard]] std::size_t count() const noexcept;
+
+    /// Calls visit(index) for the ProxyId::index of every proxy in the set, ascending.
+    template <class Visit>
+    void forEach(Visit&& visit) const {
+        for (std::size_t word = 0; word < bits_.size(); ++word) {
+            for (std::uint64_t bits = bits_[word]; bits != 0; bits &= bits - 1) {
+                visit(static_cast<std::uint32_t>(64 * word) +
+                      static_cast<std::uint32_t>(std::countr_zero(bits)));
+            }
+        }
+    }
+
+    /// The volume of the last look(), or the frozen one; not grown.
+    [[nodiscard]] const View& view() const noexcept { return view_; }
+
+    /// Compares the set with the proxies whose boxes now share a point with view(). Cost: that of an
+    /// exact query.
+    [[nodiscard]] Overdraw overdraw(const Grid<Scalar>& grid) const;
+
+    [[nodiscard]] std::size_t memoryBytes() const noexcept {
+        return sizeof(*this) + bits_.capacity() * sizeof(std::uint64_t);
+    }
+
+private:
+    [[nodiscard]] bool begin(const View& view, Scalar moved);
+    [[nodiscard]] bool keepsSet(Scalar moved);
+
+    Scalar margin_;
+    Scalar moved_;  // since the set was found
+    View view_;
+    View grown_;  // in which the set was found
+    bool isFrozen_ = false;
+    std::vector<std::uint64_t> bits_;
+};
+
+extern template class Culler<float>;
+extern template class Culler<double>;
+
+}  // namespace hashphase
