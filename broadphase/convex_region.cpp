@@ -41,12 +41,12 @@ ConvexRegion<Scalar>::ConvexRegion(std::span<const Plane> planes, Containment co
         }
     }
     const std::size_t ownCount = all.size();
-    // What is inside of its own planes is so of all others.
-    const bool testsAll = touch == Touch::exact && containment == Containment::touching;
+    // What lies inside needs no more than the volume's own planes.
+    isExact_ = touch == Touch::exact && containment == Containment::touching;
     if (!isEmpty_) {
         const detail::Polyhedron polyhedron(all);
         isEmpty_ = polyhedron.isEmpty();
-        polyhedron.appendSilhouettes(testsAll, all);
+        polyhedron.appendSilhouettes(isExact_, all);
     }
     volume_ = {};
     volume_.isInside = containment == Containment::inside;
@@ -64,8 +64,7 @@ ConvexRegion<Scalar>::ConvexRegion(std::span<const Plane> planes, Containment co
         }
         volume_.offset[i] = static_cast<Scalar>(plane.offset());
     }
-    volume_.ownPlaneCount = static_cast<std::uint32_t>(ownCount);
-    volume_.testedPlaneCount = testsAll ? volume_.planeCount : volume_.ownPlaneCount;
+    ownPlaneCount_ = static_cast<std::uint32_t>(ownCount);
 }
 
 // The arithmetic of the kernels (detail/kernel_volume.inl), and a rule for infinite boxes.
@@ -74,7 +73,7 @@ Scalar ConvexRegion<Scalar>::key(const Aabb<Scalar>& box) const noexcept {
     if (isEmpty_ || hasNan(box)) {
         return -1;
     }
-    for (std::uint32_t i = 0; i < volume_.testedPlaneCount; ++i) {
+    for (std::uint32_t i = 0; i < volume_.planeCount; ++i) {
         Scalar sum = volume_.offset[i];
         Scalar size = std::abs(sum);
         for (int axis = 0; axis < 3; ++axis) {
@@ -100,7 +99,7 @@ template <class Scalar>
 detail::FixedList<Eigen::Hyperplane<Scalar, 3>, ConvexRegion<Scalar>::kMostPlanes>
 ConvexRegion<Scalar>::ownPlanes() const {
     detail::FixedList<Plane, kMostPlanes> planes;
-    for (std::uint32_t i = 0; i < volume_.ownPlaneCount; ++i) {
+    for (std::uint32_t i = 0; i < ownPlaneCount_; ++i) {
         const Vector3<Scalar> normal(volume_.slope[0][i], volume_.slope[1][i], volume_.slope[2][i]);
         planes.push(Plane(normal, volume_.offset[i]));
     }
@@ -140,8 +139,7 @@ ConvexRegion<Scalar> ConvexRegion<Scalar>::movedOut(Scalar distance, Touch touch
 
 template <class Scalar>
 ConvexRegion<Scalar> ConvexRegion<Scalar>::grownBy(Scalar distance) const {
-    const bool isExact = volume_.testedPlaneCount > volume_.ownPlaneCount;
-    return movedOut(distance, isExact ? Touch::exact : Touch::byPlanes);
+    return movedOut(distance, isExact_ ? Touch::exact : Touch::byPlanes);
 }
 
 template <class Scalar>

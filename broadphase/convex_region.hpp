@@ -15,7 +15,8 @@ namespace hashphase {
 enum class Containment : std::uint8_t { touching, inside };
 
 /// Which boxes touch a volume. Exactly those that share a point with it; or those of which no plane of
-/// the volume has all outside, which is less work and finds a few more near the volume's edges.
+/// the volume has all outside, nor one of its outline along the x axis: that is less work, and finds a
+/// few more near the volume's edges.
 enum class Touch : std::uint8_t { exact, byPlanes };
 
 /// Everything that touches a convex volume, or lies wholly inside: the points p with
@@ -61,6 +62,8 @@ private:
     [[nodiscard]] ConvexRegion movedOut(Scalar distance, Touch touch) const;
 
     detail::Volume<Scalar> volume_;
+    std::uint32_t ownPlaneCount_ = 0;  // the volume's first planes
+    bool isExact_ = false;
     bool isEmpty_ = false;
 };
 

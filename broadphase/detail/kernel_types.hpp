@@ -66,10 +66,10 @@ struct EntrySink {
 inline constexpr std::uint32_t kMostOwnPlanes = 16;
 inline constexpr std::uint32_t kMostVolumePlanes = 64;
 
-/// A convex volume: the points p with slope . p + offset >= 0 for each plane. Its own planes come
-/// first; those behind them cut off nothing of it. A box touches the volume unless one of the tested
-/// planes, the first so many, has all of it outside, or is inside unless one has a corner of it
-/// outside; less than `rounding` of the size of the sum's terms outside is not outside.
+/// A convex volume: the points p with slope . p + offset >= 0 for each plane. A box touches the volume
+/// unless a plane has all of it outside, or is inside unless a plane has a corner of it outside; less
+/// than `rounding` of the size of the sum's terms outside is not outside. Some planes may be there
+/// only to bound it as boxes see it: across the axes, and along one or two of them.
 template <class Scalar>
 struct Volume {
     Scalar slope[3][kMostVolumePlanes];
@@ -77,8 +77,6 @@ struct Volume {
     Scalar rounding;
     Scalar tiny;  // the least number of which no bit is lost
     std::uint32_t planeCount;
-    std::uint32_t ownPlaneCount;
-    std::uint32_t testedPlaneCount;
     bool isInside;
 };
 

@@ -2,9 +2,9 @@
 
 // Kernel part: finds what is in a convex volume. See kernels.inl.
 //
-// Layers of cells are clipped by the planes along x and y, the rows of a layer, some at a time, by
-// those along x, and each row by the volume's own planes. What remains of a row is tested against
-// the planes that cross it, and taken where none does.
+// Layers of cells are clipped by the planes across z, the rows of a layer by the planes along x, and
+// the cells of a row, some rows at a time, by all. What remains of a row is tested against the planes
+// that cross it, and taken where none does.
 
 // Looking up a row of cells costs about as much as testing this many boxes, some at a time.
 constexpr std::uint64_t kBoxesPerVolumeRow = 8;
@@ -197,15 +197,13 @@ std::uint32_t* writeBits(std::uint32_t mask, std::uint32_t first, std::uint32_t*
 template <class Scalar>
 class VolumeReader {
 public:
-    VolumeReader(const VolumeView<Scalar>& view, EntrySink& found, KernelCost& cost)
-        : view_(view), found_(found), cost_(cost) {
-        for (std::uint32_t i = 0; i < view.volume.testedPlaneCount; ++i) {
-            all_.add(i);
-        }
-    }
+    /// `crossing` are the planes that may part the boxes of the level.
+    VolumeReader(const VolumeView<Scalar>& view, const PlaneSet& crossing, EntrySink& found,
+                 KernelCost& cost)
+        : view_(view), crossing_(crossing), found_(found), cost_(cost) {}
 
-    /// Tests a run against all planes. Returns, as all members do, false when the search is to end.
-    bool test(Run run) { return scan<true>(run, all_, Row{}); }
+    /// Tests a run. Returns, as all members do, false when the search is to end.
+    bool test(Run run) { return scan<true>(run, crossing_, Row{}); }
 
     /// Takes a run without a test.
     bool take(Run run) {
@@ -253,14 +251,11 @@ private:
         };
         const Run all = runOf(batch.first[k], batch.last[k]);
         PlaneSet planes;
-        for (std::uint32_t bits = batch.crossing[k]; bits != 0; bits &= bits - 1) {
-            planes.add(static_cast<std::uint32_t>(__builtin_ctz(bits)));
+        for (std::uint64_t bits = batch.crossing[k]; bits != 0; bits &= bits - 1) {
+            planes.add(static_cast<std::uint32_t>(__builtin_ctzll(bits)));
         }
         if (planes.count == 0) {
             return take(all);
-        }
-        for (std::uint32_t i = view_.volume.ownPlaneCount; i < view_.volume.testedPlaneCount; ++i) {
-            planes.add(i);
         }
         constexpr std::uint32_t few = 2 * WidePack<Scalar>::kWidth;
         if (all.last - all.first <= few || batch.coveredFirst[k] > batch.coveredLast[k]) {
@@ -283,8 +278,9 @@ private:
             length >= level.bucketCount ? 0 : bucket & (level.bucketCount - 1);
         const std::uint32_t end = first + lowest(length, level.bucketCount);
         const std::uint32_t wrapped = end > level.bucketCount ? end - level.bucketCount : 0;
-        return scan<false>({starts[first], starts[lowest(end, level.bucketCount)]}, all_, row) &&
-               scan<false>({starts[0], starts[wrapped]}, all_, row);
+        return scan<false>({starts[first], starts[lowest(end, level.bucketCount)]}, crossing_,
+                           row) &&
+               scan<false>({starts[0], starts[wrapped]}, crossing_, row);
     }
 
     template <bool kIsDense>
@@ -343,9 +339,9 @@ private:
     }
 
     const VolumeView<Scalar>& view_;
+    const PlaneSet& crossing_;
     EntrySink& found_;
     KernelCost& cost_;
-    PlaneSet all_;
 };
 
 template <class Scalar>
@@ -372,17 +368,19 @@ template <class Scalar>
 bool walkVolume(const LevelView<Scalar>& level, const Volume<Scalar>& volume, EntrySink& found,
                 KernelCost& cost) {
     const VolumeView<Scalar> view(level, volume);
-    VolumeReader<Scalar> reader(view, found, cost);
-    const Run all = {level.firstEntry, level.lastEntry};
-    bool isCovered = true;
+    PlaneSet crossing;
     for (std::uint32_t i = 0; i < volume.planeCount; ++i) {
         const Interval<Scalar> sum = view.sumOver(view.planes[i], view.all);
         if (sum.high < 0) {
             return true;
         }
-        isCovered = isCovered && sum.low >= 0;
+        if (!(sum.low >= 0)) {
+            crossing.add(i);
+        }
     }
-    if (isCovered) {
+    VolumeReader<Scalar> reader(view, crossing, found, cost);
+    const Run all = {level.firstEntry, level.lastEntry};
+    if (crossing.count == 0) {
         return reader.take(all);
     }
     const CellInterval layers = view.cellsOf(view.clip(view.all, 2), 2);

@@ -18,7 +18,7 @@ public:
     std::int32_t last[kRowsAtOnce];
     std::int32_t coveredFirst[kRowsAtOnce];
     std::int32_t coveredLast[kRowsAtOnce];
-    std::uint32_t crossing[kRowsAtOnce];  // bit i: plane i may part the boxes in these cells
+    std::uint64_t crossing[kRowsAtOnce];  // bit i: plane i may part the boxes in these cells
 
     explicit RowBatch(const VolumeView<Scalar>& view) : view_(view) {
         for (int k = 0; k < kRowsAtOnce; ++k) {
@@ -41,7 +41,7 @@ public:
 
     /// Finds the cells of the rows.
     void clip() {
-        Scalar least[kMostOwnPlanes][kRowsAtOnce];  // of each plane's sum, but for x
+        Scalar least[kMostVolumePlanes][kRowsAtOnce];  // of each plane's sum, but for x
         clipRows(least);
         findCrossings(least);
     }
@@ -56,7 +56,7 @@ private:
             touchedLow[k] = coveredLow[k] = view_.all.low[0];
             touchedHigh[k] = coveredHigh[k] = view_.all.high[0];
         }
-        for (std::uint32_t i = 0; i < view_.volume.ownPlaneCount; ++i) {
+        for (std::uint32_t i = 0; i < view_.volume.planeCount; ++i) {
             const BoxPlane<Scalar> plane = view_.planes[i];
             Scalar most[kRowsAtOnce];
             for (int k = 0; k < kRowsAtOnce; ++k) {
@@ -142,12 +142,12 @@ private:
             high[k] = view_.isFlat[0] ? view_.all.high[0] : view_.endOf(last[k], 0);
             crossing[k] = 0;
         }
-        for (std::uint32_t i = 0; i < view_.volume.ownPlaneCount; ++i) {
+        for (std::uint32_t i = 0; i < view_.volume.planeCount; ++i) {
             const Scalar slope = view_.planes[i].slope[0];
             const Scalar* const end = slope > 0 ? low : high;
             for (int k = 0; k < kRowsAtOnce; ++k) {
                 const Scalar sum = least[i][k] + slope * end[k];
-                crossing[k] |= (sum >= 0 ? 0U : 1U) << i;
+                crossing[k] |= std::uint64_t{sum >= 0 ? 0U : 1U} << i;
             }
         }
     }

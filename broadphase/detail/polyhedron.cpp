@@ -51,7 +51,8 @@ void Polyhedron::findCorners(const Planes& planes) {
                     determinant;
                 const double reach = std::abs(planes[i].offset()) + std::abs(planes[j].offset()) +
                                      std::abs(planes[k].offset());
-                addCorner({point, kEpsilon * reach / (determinant * determinant)}, planes);
+                const double error = kEpsilon * (reach + 3 * point.cwiseAbs().sum());
+                addCorner({point, error / std::abs(determinant)}, planes);
             }
         }
     }
