@@ -252,7 +252,7 @@ private:
         const Run all = runOf(batch.first[k], batch.last[k]);
         PlaneSet planes;
         for (std::uint64_t bits = batch.crossing[k]; bits != 0; bits &= bits - 1) {
-            planes.add(static_cast<std::uint32_t>(__builtin_ctzll(bits)));
+            planes.add(crossing_.numbers[__builtin_ctzll(bits)]);
         }
         if (planes.count == 0) {
             return take(all);
@@ -345,9 +345,9 @@ private:
 };
 
 template <class Scalar>
-bool walkRows(const VolumeView<Scalar>& view, CellInterval layers, CellInterval rowsOfAll,
-              VolumeReader<Scalar>& reader) {
-    RowBatch<Scalar> batch(view);
+bool walkRows(const VolumeView<Scalar>& view, const PlaneSet& crossing, CellInterval layers,
+              CellInterval rowsOfAll, VolumeReader<Scalar>& reader) {
+    RowBatch<Scalar> batch(view, crossing);
     for (std::int32_t z = layers.low; z <= layers.high; ++z) {
         CellInterval rows = rowsOfAll;
         if (rowsOfAll.count() > 1) {
@@ -388,5 +388,5 @@ bool walkVolume(const LevelView<Scalar>& level, const Volume<Scalar>& volume, En
     if (layers.count() * rows.count() * kBoxesPerVolumeRow > all.last - all.first) {
         return reader.test(all);
     }
-    return walkRows(view, layers, rows, reader);
+    return walkRows(view, crossing, layers, rows, reader);
 }

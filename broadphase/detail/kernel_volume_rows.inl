@@ -18,9 +18,11 @@ public:
     std::int32_t last[kRowsAtOnce];
     std::int32_t coveredFirst[kRowsAtOnce];
     std::int32_t coveredLast[kRowsAtOnce];
-    std::uint64_t crossing[kRowsAtOnce];  // bit i: plane i may part the boxes in these cells
+    std::uint64_t crossing[kRowsAtOnce];  // bit i: plane i of these may part the boxes in the cells
 
-    explicit RowBatch(const VolumeView<Scalar>& view) : view_(view) {
+    /// By `planes`, all that may part the boxes of the level.
+    RowBatch(const VolumeView<Scalar>& view, const PlaneSet& planes)
+        : view_(view), planes_(planes) {
         for (int k = 0; k < kRowsAtOnce; ++k) {
             lowY_[k] = highY_[k] = lowZ_[k] = highZ_[k] = 0;
         }
@@ -56,8 +58,8 @@ private:
             touchedLow[k] = coveredLow[k] = view_.all.low[0];
             touchedHigh[k] = coveredHigh[k] = view_.all.high[0];
         }
-        for (std::uint32_t i = 0; i < view_.volume.planeCount; ++i) {
-            const BoxPlane<Scalar> plane = view_.planes[i];
+        for (std::uint32_t i = 0; i < planes_.count; ++i) {
+            const BoxPlane<Scalar> plane = view_.planes[planes_.numbers[i]];
             Scalar most[kRowsAtOnce];
             for (int k = 0; k < kRowsAtOnce; ++k) {
                 const Scalar atLowY = plane.slope[1] * lowY_[k];
@@ -142,8 +144,8 @@ private:
             high[k] = view_.isFlat[0] ? view_.all.high[0] : view_.endOf(last[k], 0);
             crossing[k] = 0;
         }
-        for (std::uint32_t i = 0; i < view_.volume.planeCount; ++i) {
-            const Scalar slope = view_.planes[i].slope[0];
+        for (std::uint32_t i = 0; i < planes_.count; ++i) {
+            const Scalar slope = view_.planes[planes_.numbers[i]].slope[0];
             const Scalar* const end = slope > 0 ? low : high;
             for (int k = 0; k < kRowsAtOnce; ++k) {
                 const Scalar sum = least[i][k] + slope * end[k];
@@ -153,6 +155,7 @@ private:
     }
 
     const VolumeView<Scalar>& view_;
+    const PlaneSet& planes_;
     Scalar lowY_[kRowsAtOnce];
     Scalar highY_[kRowsAtOnce];
     Scalar lowZ_[kRowsAtOnce];

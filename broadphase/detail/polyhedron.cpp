@@ -167,7 +167,7 @@ void Polyhedron::appendSilhouettes(bool isExact, Planes& planes) const {
     if (corners_.empty() || hasTooMany_) {
         return;
     }
-    for (int axis = 0; axis < 3; ++axis) {
+    for (int axis = isExact ? 0 : 1; axis < 3; ++axis) {
         appendAround(Vector3<double>::Unit(axis), planes);
         appendAround(-Vector3<double>::Unit(axis), planes);
     }

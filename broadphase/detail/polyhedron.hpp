@@ -29,11 +29,11 @@ public:
     /// without a corner.
     [[nodiscard]] bool isInside(const Plane& plane, double margin) const;
 
-    /// Appends planes around the volume, of which none cuts off a point of it: across each axis, and
-    /// along the x axis through edges that are seen from there; none where the volume has no corner,
-    /// and no more than there is room for. With `isExact`, also along the other axes: as many as it
-    /// takes that a box touches the volume unless a plane has all of it outside, by the theorem of
-    /// separating axes.
+    /// Appends planes around the volume, of which none cuts off a point of it: across the y and z axes,
+    /// and along the x axis through edges that are seen from there; none where the volume has no
+    /// corner, and no more than there is room for. With `isExact`, those of the other axes as well: as
+    /// many as it takes that a box touches the volume unless a plane has all of it outside, by the
+    /// theorem of separating axes.
     void appendSilhouettes(bool isExact, Planes& planes) const;
 
 private:
