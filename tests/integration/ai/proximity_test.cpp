@@ -163,7 +163,6 @@ TYPED_TEST(Proximity, ByCellsNeverMissesAndErrsByLessThanItsBound) {
             EXPECT_NEAR(precision, expected, 0.08);
             EXPECT_GT(precision, lastPrecision - 0.01) << "grows with the radius";
             lastPrecision = precision;
-            if (getenv("SHOW")) printf("density %g r/c %g: precision %.3f (formula %.3f) n %zu of %zu\n", density, radius, precision, expected, within, reported);
         }
         EXPECT_GT(lastPrecision, 0.38);
     }
