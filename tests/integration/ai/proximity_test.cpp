@@ -136,7 +136,7 @@ TYPED_TEST(Proximity, ByCellsNeverMissesAndErrsByLessThanItsBound) {
             std::size_t within = 0;
             std::size_t reported = 0;
             std::size_t missed = 0;
-            for (int i = 0; i < 200; ++i) {
+            for (int i = 0; i < 200 && reported < 300000; ++i) {
                 const auto point = Vector3<TypeParam>(
                     random.pointIn(radius + 1, side - radius - 1).cast<TypeParam>());
                 const auto reach = static_cast<TypeParam>(radius);
