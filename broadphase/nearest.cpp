@@ -30,10 +30,9 @@ QueryCost findNearest(const Grid<Scalar>& grid, const Vector3<std::type_identity
         CollectNearest<Scalar> collector(count, nearest);
         CollectIf<CollectNearest<Scalar>> accepted(collector, filter);
         cost += grid.visit(PositionRegion<Scalar>(point, radius), accepted);
-        // Who is outside the ball is farther away than any of these. Squares are rounded: those just
-        // at the ball's surface do not count.
-        const bool isEnough =
-            nearest.size() == count && nearest.front().key < Scalar(0.99) * radius * radius;
+        // Who is outside the ball is farther away than any of these; but squares that overflow are
+        // equal, and those are told apart by ids.
+        const bool isEnough = nearest.size() == count && std::isfinite(nearest.front().key);
         if (isLast || isEnough) {
             collector.sort();
             return cost;

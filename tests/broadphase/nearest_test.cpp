@@ -121,6 +121,21 @@ TYPED_TEST(Nearest, OfEqualOnesAreThoseWithTheSmallestIds) {
     }
 }
 
+TYPED_TEST(Nearest, WhoseSquaresOverflowCountAsEquallyFar) {
+    Grid<TypeParam> grid;
+    const TypeParam far = sizeof(TypeParam) == sizeof(float) ? TypeParam(1e30) : TypeParam(1e200);
+    std::vector<Placed<TypeParam>> proxies;
+    for (const int times : {3, 1, 2}) {
+        const auto box =
+            Aabb<TypeParam>(Vector3<TypeParam>(static_cast<TypeParam>(times) * far, 0, 0));
+        proxies.push_back({grid.add(box), box});
+    }
+    for (const std::size_t count : {1, 2, 3}) {
+        this->expectLikeBruteForce(grid, proxies, {0, 0, 0}, count, this->kInfinity);
+        this->expectLikeBruteForce(grid, proxies, {0, 0, 0}, count, far * TypeParam(2.5));
+    }
+}
+
 TYPED_TEST(Nearest, OfBadDataIsNobody) {
     Grid<TypeParam> grid;
     const TypeParam nan = std::numeric_limits<TypeParam>::quiet_NaN();

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -142,6 +143,36 @@ TYPED_TEST(RadarTest, TurnsWithTheHeading) {
     EXPECT_EQ(this->scan(window), (Counts{0, 0, 0, 0, 0, 1, 0, 0, 0})) << "at its right";
     window.heading = kQuarter / 2;
     EXPECT_EQ(this->scan(window), (Counts{0, 0, 0, 0, 0, 0, 1, 0, 0})) << "ahead, on the left";
+}
+
+TYPED_TEST(RadarTest, SeesAllFourCornersWhateverTheHeading) {
+    Random random(0x5eed0d03);
+    for (int i = 0; i < 200; ++i) {
+        RadarWindow<TypeParam> window;
+        window.center = random.pointIn(-100, 100).cast<TypeParam>();
+        window.columns = 1 + random.below(9);
+        window.rows = 1 + random.below(9);
+        const double heading = random.between(-7, 7);
+        window.heading = static_cast<TypeParam>(heading);
+        std::vector<ProxyId> corners;
+        for (const auto& [right, ahead] : {std::pair(-1, -1), {-1, 1}, {1, -1}, {1, 1}}) {
+            const double column = right * 4.999 * window.columns;
+            const double row = ahead * 4.999 * window.rows;
+            const double x = column * std::cos(heading) + row * std::sin(heading);
+            const double z = row * std::cos(heading) - column * std::sin(heading);
+            corners.push_back(this->addPoint(window.center[0] + static_cast<TypeParam>(x), 0,
+                                             window.center[2] + static_cast<TypeParam>(z)));
+        }
+        const Counts counts = this->scan(window);
+        ASSERT_EQ(std::accumulate(counts.begin(), counts.end(), 0U), 4U) << heading;
+        const std::size_t lastRow = counts.size() - window.columns;
+        ASSERT_TRUE(counts.front() > 0 && counts[window.columns - 1] > 0 && counts[lastRow] > 0 &&
+                    counts.back() > 0);
+        for (const ProxyId corner : corners) {
+            this->grid.remove(corner);
+        }
+        this->grid.update();
+    }
 }
 
 TYPED_TEST(RadarTest, CountsByGroupAndLayerAndSkipsOtherGroups) {

@@ -174,6 +174,36 @@ TYPED_TEST(SightTest, OfAConeIsByTheAngleToItsAxis) {
     EXPECT_GT(inside, 4000);
 }
 
+TYPED_TEST(SightTest, OfAConeLooksAsFarAsItsSurfaceReachesAlongEachAxis) {
+    Random random(0x5eed0b07);
+    int seen = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const Vector3<double> axis = random.pointIn(-1, 1).normalized();
+        const double halfAngle = random.between(0, 3.1);
+        Viewer<TypeParam> viewer;
+        viewer.eye = random.pointIn(-100, 100).cast<TypeParam>();
+        viewer.direction = axis.cast<TypeParam>();
+        viewer.halfAngle = static_cast<TypeParam>(halfAngle);
+        viewer.range = static_cast<TypeParam>(random.logBetween(0.1, 1000));
+        const ViewRegion<TypeParam> view(viewer);
+        for (int side = 0; side < 6; ++side) {
+            // The direction of the cone that is nearest to this side of an axis.
+            const Vector3<double> unit =
+                Vector3<double>::Unit(side / 2) * (side % 2 == 0 ? 1.0 : -1.0);
+            const double apart = std::acos(unit.dot(axis));
+            const Vector3<double> across = (unit - unit.dot(axis) * axis).normalized();
+            const double turn = std::min(apart, halfAngle * 0.999);
+            const Vector3<double> nearest = std::cos(turn) * axis + std::sin(turn) * across;
+            const Vector3<TypeParam> point =
+                viewer.eye + nearest.cast<TypeParam>() * (viewer.range * TypeParam(0.999));
+            seen += view.key({point, point}) >= 0 ? 1 : 0;
+            ASSERT_TRUE(view.bounds().contains(point) || view.key({point, point}) < 0)
+                << "half angle " << halfAngle << " about " << axis.transpose();
+        }
+    }
+    EXPECT_GT(seen, 11900);
+}
+
 TYPED_TEST(SightTest, OfANarrowConeReadsFarLessThanItsBall) {
     Random random(0x5eed0b04);
     for (int i = 0; i < 3000; ++i) {
@@ -261,6 +291,11 @@ TYPED_TEST(SightTest, HasADefinedAnswerForDegenerateViewers) {
     EXPECT_EQ(seenBy([&](V& v) {
                   v.direction.setZero();
                   v.halfAngle = 4;
+              }).size(),
+              4U);
+    EXPECT_EQ(seenBy([&](V& v) {
+                  v.direction[1] = nan;
+                  v.halfAngle = this->kPi;
               }).size(),
               4U);
     EXPECT_EQ(seenBy([](V& v) { v.direction *= TypeParam(1e-30); }), (std::vector{ahead, here}));
