@@ -22,9 +22,10 @@ template <class Scalar>
     for (int axis = 0; axis < 3; ++axis) {
         const Scalar low = box.min()[axis];
         const Scalar high = box.max()[axis];
-        isSomewhere &= low <= high && std::isfinite(low) && std::isfinite(high);
+        const Scalar middle = low / 2 + high / 2;
+        isSomewhere &= (low <= high) & (std::abs(middle) <= std::numeric_limits<Scalar>::max());
         // Half of the smallest numbers is rounded, and might leave the box.
-        position[axis] = std::min(std::max(low / 2 + high / 2, low), high);
+        position[axis] = std::min(std::max(middle, low), high);
     }
     if (!isSomewhere) {
         position.setConstant(std::numeric_limits<Scalar>::quiet_NaN());

@@ -130,9 +130,17 @@ TYPED_TEST(Nearest, WhoseSquaresOverflowCountAsEquallyFar) {
             Aabb<TypeParam>(Vector3<TypeParam>(static_cast<TypeParam>(times) * far, 0, 0));
         proxies.push_back({grid.add(box), box});
     }
+    // So many others, still farther away, that the search takes its time.
+    for (int i = 0; i < 5000; ++i) {
+        const auto box = Aabb<TypeParam>(Vector3<TypeParam>(0, TypeParam(5) * far, 0));
+        proxies.push_back({grid.add(box), box});
+    }
+    grid.update();
+    const auto isOneOfThree = [](ProxyId id) { return id.index < 3; };
     for (const std::size_t count : {1, 2, 3}) {
-        this->expectLikeBruteForce(grid, proxies, {0, 0, 0}, count, this->kInfinity);
-        this->expectLikeBruteForce(grid, proxies, {0, 0, 0}, count, far * TypeParam(2.5));
+        for (const TypeParam most : {this->kInfinity, far * TypeParam(2.5)}) {
+            this->expectLikeBruteForce(grid, proxies, {0, 0, 0}, count, most, isOneOfThree);
+        }
     }
 }
 
