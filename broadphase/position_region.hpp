@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Where a proxy is when it counts as a point: agents measure from position to position, where
+// SphereRegion measures to the box.
+
+#include <broadphase/aabb.hpp>
+#include <broadphase/detail/unit_scale.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hashphase {
+
+/// A box's position: its centre, which lies in the closed box and does not overflow. NaN on all
+/// axes for a box that has none: with a NaN, inverted, or infinite on one side of an axis or both.
+template <class Scalar>
+[[nodiscard]] Vector3<Scalar> positionOf(const Aabb<Scalar>& box) noexcept {
+    Vector3<Scalar> position;
+    bool isSomewhere = true;
+    for (int axis = 0; axis < 3; ++axis) {
+        const Scalar low = box.min()[axis];
+        const Scalar high = box.max()[axis];
+        const Scalar middle = low / 2 + high / 2;
+        isSomewhere &= (low <= high) & (std::abs(middle) <= std::numeric_limits<Scalar>::max());
+        // Half of the smallest numbers is rounded, and might leave the box.
+        position[axis] = std::min(std::max(middle, low), high);
+    }
+    if (!isSomewhere) {
+        position.setConstant(std::numeric_limits<Scalar>::quiet_NaN());
+    }
+    return position;
+}
+
+/// Every proxy whose position is within `radius` [m] of `center` (closed ball). Key: squared
+/// distance [m^2] between the two, which may round to 0 or infinity. A proxy without a position is
+/// in no ball; one so far away that the distance overflows is in an infinite one only. A negative
+/// radius, a NaN, or a centre that is not finite makes the region empty.
+template <class Scalar>
+class PositionRegion {
+public:
+    PositionRegion(const Vector3<Scalar>& center, Scalar radius)
+        : center_(center), radius_(radius), scale_(detail::unitScale(radius)) {
+        if (!center.allFinite()) {
+            radius_ = std::numeric_limits<Scalar>::quiet_NaN();
+        }
+    }
+
+    [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept {
+        return keyAt(positionOf(box));
+    }
+
+    /// The key of a box that has this position.
+    [[nodiscard]] Scalar keyAt(const Vector3<Scalar>& position) const noexcept {
+        Scalar squared = 0;
+        Scalar scaledSquared = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const Scalar offset = position[axis] - center_[axis];
+            squared += offset * offset;
+            scaledSquared += (offset * scale_) * (offset * scale_);
+        }
+        // The test is scaled, so that it holds where squares leave the range of numbers; the key is
+        // not, so that it does not depend on the radius.
+        const Scalar reach = radius_ * scale_;
+        return reach >= 0 && scaledSquared <= reach * reach ? squared : Scalar(-1);
+    }
+
+    [[nodiscard]] Aabb<Scalar> bounds() const noexcept {
+        using Limits = std::numeric_limits<Scalar>;
+        if (!(radius_ >= 0)) {
+            const auto nan = Vector3<Scalar>::Constant(Limits::quiet_NaN());
+            return {nan, nan};
+        }
+        // Rounded outward, as keys are rounded. A box overlaps whatever its position lies in.
+        const Scalar reach = center_.cwiseAbs().maxCoeff() + radius_;
+        const Scalar padded = radius_ + 4 * Limits::epsilon() * reach + Limits::min();
+        const auto half = Vector3<Scalar>::Constant(padded);
+        return {center_ - half, center_ + half};
+    }
+
+    [[nodiscard]] const Vector3<Scalar>& center() const noexcept { return center_; }
+    [[nodiscard]] Scalar radius() const noexcept { return radius_; }
+
+private:
+    Vector3<Scalar> center_;
+    Scalar radius_;
+    Scalar scale_;
+};
+
+}  // namespace hashphase

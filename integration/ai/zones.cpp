@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Zlib
+#include <integration/ai/zones.hpp>
+
+#include <broadphase/collectors.hpp>
+#include <broadphase/diagnostics.hpp>
+#include <broadphase/proxy_filter.hpp>
+
+#include <algorithm>
+
+namespace hashphase {
+namespace {
+
+template <class Scalar, class Region>
+bool isIn(const Region& region, const Vector3<Scalar>& point) {
+    return region.key(Aabb<Scalar>(point, point)) >= 0;
+}
+
+template <class Scalar, class Region>
+QueryCost findOccupants(const Grid<Scalar>& grid, const Region& region, Presence presence,
+                        ProxyFilter filter, std::vector<ProxyId>& occupants) {
+    occupants.clear();
+    CollectAll all(occupants);
+    // By their boxes first: one that contains a position of the zone touches the zone.
+    const auto isPresent = [&](ProxyId id) {
+        return (presence == Presence::box || isIn<Scalar>(region, positionOf(grid.box(id)))) &&
+               filter(id);
+    };
+    CollectIf<CollectAll, decltype(isPresent)> present(all, isPresent);
+    const QueryCost cost = grid.visit(region, present);
+    std::sort(occupants.begin(), occupants.end());
+    return cost;
+}
+
+}  // namespace
+
+// --- Zones ---------------------------------------------------------------------------------------
+
+template <class Scalar>
+ZoneId Zones<Scalar>::add(const Zone<Scalar>& zone) {
+    if (freeSlots_.empty()) {
+        freeSlots_.push_back(static_cast<std::uint32_t>(slots_.size()));
+        slots_.push_back({zone, 0, {}, {}, {}});
+    }
+    const std::uint32_t index = freeSlots_.back();
+    freeSlots_.pop_back();
+    Slot& slot = slots_[index];
+    slot.zone = zone;
+    ++slot.generation;
+    return {index, slot.generation};
+}
+
+template <class Scalar>
+void Zones<Scalar>::set(ZoneId id, const Zone<Scalar>& zone) {
+    HASHPHASE_ASSERT(contains(id), "Only a zone that was not removed can be set.");
+    slots_[id.index].zone = zone;
+}
+
+template <class Scalar>
+void Zones<Scalar>::remove(ZoneId id) {
+    HASHPHASE_ASSERT(contains(id), "Only a zone that was not removed can be removed.");
+    Slot& slot = slots_[id.index];
+    for (const ProxyId proxy : slot.occupants) {
+        abandoned_.push_back({id, proxy});
+    }
+    slot.occupants.clear();
+    ++slot.generation;
+    freeSlots_.push_back(id.index);
+}
+
+template <class Scalar>
+bool Zones<Scalar>::contains(ZoneId id) const noexcept {
+    return id.index < slots_.size() && slots_[id.index].generation == id.generation &&
+           isAlive(slots_[id.index]);
+}
+
+template <class Scalar>
+const typename Zones<Scalar>::Slot& Zones<Scalar>::slot(ZoneId id) const {
+    HASHPHASE_ASSERT(contains(id), "Only a zone that was not removed can be asked about.");
+    return slots_[id.index];
+}
+
+template <class Scalar>
+const Zone<Scalar>& Zones<Scalar>::zone(ZoneId id) const {
+    return slot(id).zone;
+}
+
+// --- Frame ---------------------------------------------------------------------------------------
+
+template <class Scalar>
+ZoneEvents Zones<Scalar>::update(const Grid<Scalar>& grid, ZoneFilter filter,
+                                 ParallelFor parallelFor) {
+    // Who is where.
+    constexpr std::size_t grain = 8;
+    parallelFor(slots_.size(), grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Slot& slot = slots_[i];
+            if (!isAlive(slot)) {
+                continue;
+            }
+            const ZoneId id{static_cast<std::uint32_t>(i), slot.generation};
+            const auto counts = [&](ProxyId proxy) { return filter(id, proxy); };
+            slot.before.swap(slot.occupants);
+            slot.cost = std::visit(
+                [&](const auto& region) {
+                    return findOccupants(grid, region, slot.zone.presence, counts, slot.occupants);
+                },
+                slot.zone.shape);
+        }
+    });
+
+    // What has changed, in the order of zones.
+    entered_.clear();
+    stayed_.clear();
+    left_.clear();
+    cost_ = {};
+    for (std::size_t i = 0; i < slots_.size(); ++i) {
+        if (isAlive(slots_[i])) {
+            tellApart({static_cast<std::uint32_t>(i), slots_[i].generation}, slots_[i]);
+            cost_ += slots_[i].cost;
+        }
+    }
+    if (!abandoned_.empty()) {
+        left_.insert(left_.end(), abandoned_.begin(), abandoned_.end());
+        std::sort(left_.begin(), left_.end());
+        abandoned_.clear();
+    }
+    return {entered_, stayed_, left_};
+}
+
+// Merges who was there and who is.
+template <class Scalar>
+void Zones<Scalar>::tellApart(ZoneId id, const Slot& slot) {
+    auto before = slot.before.begin();
+    auto now = slot.occupants.begin();
+    while (before != slot.before.end() || now != slot.occupants.end()) {
+        if (now == slot.occupants.end() || (before != slot.before.end() && *before < *now)) {
+            left_.push_back({id, *before++});
+        } else if (before == slot.before.end() || *now < *before) {
+            entered_.push_back({id, *now++});
+        } else {
+            stayed_.push_back({id, *now++});
+            ++before;
+        }
+    }
+}
+
+// --- Queries -------------------------------------------------------------------------------------
+
+template <class Scalar>
+std::span<const ProxyId> Zones<Scalar>::occupants(ZoneId id) const {
+    return slot(id).occupants;
+}
+
+template <class Scalar>
+void Zones<Scalar>::zonesAt(const Vector3<Scalar>& point, std::vector<ZoneId>& found) const {
+    found.clear();
+    for (std::size_t i = 0; i < slots_.size() && point.allFinite(); ++i) {
+        const Slot& slot = slots_[i];
+        if (isAlive(slot) &&
+            std::visit([&](const auto& region) { return isIn<Scalar>(region, point); },
+                       slot.zone.shape)) {
+            found.push_back({static_cast<std::uint32_t>(i), slot.generation});
+        }
+    }
+}
+
+template class Zones<float>;
+template class Zones<double>;
+
+}  // namespace hashphase

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Zlib
+
+// Who is within a distance, from position to position, and who is in the cells around.
+
+#include <broadphase/cells_region.hpp>
+#include <broadphase/position_region.hpp>
+#include <tests/support/handlers.hpp>
+#include <tests/support/query_checks.hpp>
+#include <tests/support/script.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace hashphase::test {
+namespace {
+
+template <class Scalar>
+class PositionQuery : public testing::Test {
+protected:
+    static constexpr Scalar kNan = std::numeric_limits<Scalar>::quiet_NaN();
+    static constexpr Scalar kInfinity = std::numeric_limits<Scalar>::infinity();
+
+    /// The box from (0, low, 0) to (2, high, 4).
+    static Aabb<Scalar> boxAt(Scalar low, Scalar high) {
+        return {Vector3<Scalar>(0, low, 0), Vector3<Scalar>(2, high, 4)};
+    }
+
+    static Scalar anyRadius(Random& random, RegionMaker<Scalar>& make) {
+        return random.chance(0.05)  ? hostileNumber<Scalar>(random)
+               : random.chance(0.1) ? Scalar(0)
+                                    : (make.point() - make.point()).cwiseAbs().maxCoeff() *
+                                          static_cast<Scalar>(random.logBetween(0.05, 2));
+    }
+
+private:
+    CaughtMessages aboutNan_;
+};
+
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(PositionQuery, Scalars);
+
+TYPED_TEST(PositionQuery, FindsWhatBruteForceFindsInEveryScene) {
+    std::size_t found = 0;
+    for (const BoxScene<TypeParam>& scene : allBoxScenes<TypeParam>()) {
+        for (const double cellSize : {0.0, 1.5, 1e4}) {
+            SCOPED_TRACE(testing::Message() << scene.name << ", cell size " << cellSize);
+            GridConfig config;
+            config.cellSize = cellSize;
+            GridWorld<TypeParam> world(config);
+            Script<TypeParam> script(scene, 0x5eed0901);
+            script.begin(world);
+            for (int frame = 0; frame < 12; ++frame) {
+                RegionMaker<TypeParam> make(script.random(), script.proxies());
+                for (int i = 0; i < 6; ++i) {
+                    const auto center = make.point();
+                    const TypeParam radius = this->anyRadius(script.random(), make);
+                    const PositionRegion<TypeParam> ball(center, radius);
+                    const CellsRegion<TypeParam> cells(center, radius, world.grid.cellSize());
+                    found += expectLikeBruteForce(world.grid, script.proxies(), ball);
+                    expectLikeBruteForce(world.grid, script.proxies(), cells);
+                    for (const auto& [id, key] : find(world.grid, ball)) {
+                        ASSERT_EQ(cells.key(world.grid.box(id)), 0) << "the estimate never misses";
+                    }
+                    ASSERT_FALSE(this->HasFailure()) << center.transpose() << ", " << radius;
+                }
+                if (frame % 3 != 1) {
+                    world.grid.update();
+                }
+                script.playFrame(world);
+            }
+        }
+    }
+    EXPECT_GT(found, 20000U);
+}
+
+TYPED_TEST(PositionQuery, MeasuresFromTheCentreOfTheBox) {
+    // The definition, in higher precision.
+    Random random(0x5eed0902);
+    int within = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const double scale = random.logBetween(1e-6, 1e6);
+        const auto center = Vector3<TypeParam>(random.pointIn(-scale, scale).cast<TypeParam>());
+        const auto radius = static_cast<TypeParam>(scale * random.between(0, 2));
+        const auto box =
+            boxAround<TypeParam>(random.pointIn(-scale, scale), random.pointIn(0, scale));
+        const auto low = box.min().template cast<long double>();
+        const auto high = box.max().template cast<long double>();
+        const long double away = ((low + high) / 2 - center.template cast<long double>()).norm();
+        const TypeParam key = PositionRegion<TypeParam>(center, radius).key(box);
+        const long double slack =
+            16 * scale * static_cast<double>(std::numeric_limits<TypeParam>::epsilon());
+        if (away <= radius - slack) {
+            ASSERT_GE(key, 0);
+            ++within;
+        }
+        if (away > radius + slack) {
+            ASSERT_EQ(key, -1);
+        }
+        if (key >= 0) {
+            ASSERT_NEAR(static_cast<double>(std::sqrt(key)), static_cast<double>(away),
+                        static_cast<double>(slack));
+        }
+    }
+    EXPECT_GT(within, 5000);
+}
+
+TYPED_TEST(PositionQuery, IsAClosedBall) {
+    const auto box = makeBox<TypeParam>(2, 0, 0, 4, 0, 0);
+    const auto keyFor = [&box](double x, TypeParam radius) {
+        return PositionRegion<TypeParam>({static_cast<TypeParam>(x), 0, 0}, radius).key(box);
+    };
+    EXPECT_EQ(keyFor(3, 0), 0);
+    EXPECT_EQ(keyFor(3, -TypeParam(0)), 0);
+    EXPECT_EQ(keyFor(0, 3), 9);
+    EXPECT_EQ(keyFor(0, std::nextafter(TypeParam(3), TypeParam(0))), -1);
+    EXPECT_EQ(keyFor(0, 2), -1) << "the box is near enough, its centre is not";
+    EXPECT_EQ(keyFor(3, -1), -1);
+    EXPECT_EQ(keyFor(0, this->kNan), -1);
+    EXPECT_EQ(keyFor(static_cast<double>(this->kNan), 9), -1);
+    EXPECT_EQ(keyFor(static_cast<double>(this->kInfinity), this->kInfinity), -1);
+    EXPECT_EQ(keyFor(0, TypeParam(1e30)), 9) << "the key does not depend on the radius";
+    EXPECT_EQ(keyFor(0, this->kInfinity), 9);
+}
+
+TYPED_TEST(PositionQuery, OfWhoHasNoPositionFindsNobody) {
+    using Limits = std::numeric_limits<TypeParam>;
+    const TypeParam most = Limits::max();
+    const auto positionIn = [](TypeParam low, TypeParam high) {
+        return positionOf(TestFixture::boxAt(low, high));
+    };
+    EXPECT_EQ(positionIn(-1, 5), Vector3<TypeParam>(1, 2, 2));
+    EXPECT_EQ(positionIn(most / 2, most)[1], most / 4 + most / 2);
+    EXPECT_EQ(positionIn(-most, most)[1], 0);
+    const TypeParam tiny = 3 * Limits::denorm_min();
+    EXPECT_EQ(positionIn(tiny, tiny)[1], tiny);
+    const PositionRegion<TypeParam> everywhere(Vector3<TypeParam>::Zero(), this->kInfinity);
+    EXPECT_GE(everywhere.key(this->boxAt(-most, -most)), 0);
+    for (const auto& [low, high] :
+         {std::pair(TypeParam(5), TypeParam(4)), std::pair(-this->kInfinity, TypeParam(0)),
+          std::pair(-this->kInfinity, this->kInfinity), std::pair(this->kInfinity, this->kInfinity),
+          std::pair(this->kNan, TypeParam(1))}) {
+        EXPECT_TRUE(positionIn(low, high).array().isNaN().all()) << low << ", " << high;
+        EXPECT_EQ(everywhere.key(this->boxAt(low, high)), -1) << low << ", " << high;
+    }
+}
+
+TYPED_TEST(PositionQuery, OfCellsTakesTheFirstAndTheLastOneWholly) {
+    // A ball smaller than a cell, and one that begins just before a border.
+    const auto boundsOf = [](double x, double radius, double size) {
+        return CellsRegion<TypeParam>(Vector3<TypeParam>(static_cast<TypeParam>(x), 0, 0),
+                                      static_cast<TypeParam>(radius), static_cast<TypeParam>(size))
+            .bounds();
+    };
+    EXPECT_EQ(boundsOf(30, 10, 25).min()[0], 0);
+    EXPECT_EQ(boundsOf(30, 10, 25).max()[0], 50);
+    EXPECT_EQ(boundsOf(45, 30, 25).min()[0], 0);
+    EXPECT_EQ(boundsOf(45, 30, 25).max()[0], 100);
+    EXPECT_EQ(boundsOf(-3, 1, 25).min()[0], -25);
+    EXPECT_EQ(boundsOf(-3, 1, 25).max()[0], 0);
+    EXPECT_LE(boundsOf(0, 10, 0).min()[0], -10);
+    EXPECT_GE(boundsOf(0, 10, 0).min()[0], -11);
+    EXPECT_EQ(boundsOf(0, 1, 1e30).max()[0], TypeParam(1e30));
+    EXPECT_LE(boundsOf(1e30, 1, 1e-30).min()[0], TypeParam(1e30));
+    EXPECT_TRUE(hasNan(boundsOf(0, -1, 1)));
+    EXPECT_TRUE(hasNan(boundsOf(static_cast<double>(this->kNan), 1, 1)));
+    EXPECT_EQ(boundsOf(0, static_cast<double>(this->kInfinity), 1).max()[0], this->kInfinity);
+}
+
+}  // namespace
+}  // namespace hashphase::test

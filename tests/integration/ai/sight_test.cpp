@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: Zlib
+
+// Who is seen from where.
+
+#include <integration/ai/sight.hpp>
+#include <tests/support/ai_oracles.hpp>
+#include <tests/support/handlers.hpp>
+#include <tests/support/query_checks.hpp>
+#include <tests/support/script.hpp>
+#include <tests/support/threaded_for.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+namespace hashphase::test {
+namespace {
+
+template <class Scalar>
+class SightTest : public testing::Test {
+protected:
+    static constexpr Scalar kNan = std::numeric_limits<Scalar>::quiet_NaN();
+    static constexpr Scalar kInfinity = std::numeric_limits<Scalar>::infinity();
+    static constexpr Scalar kPi = std::numbers::pi_v<Scalar>;
+
+    /// Looks from a proxy or from anywhere, at somebody or anywhere; some see badly.
+    static Viewer<Scalar> anyViewer(Random& random, std::span<const Placed<Scalar>> proxies) {
+        RegionMaker<Scalar> make(random, proxies);
+        const auto count = static_cast<std::uint32_t>(proxies.size());
+        Viewer<Scalar> viewer;
+        const Placed<Scalar>& self = proxies[random.below(count)];
+        if (random.chance(0.6)) {
+            viewer.self = self.id;
+        }
+        viewer.eye = random.chance(0.6) ? positionOf(self.box) : make.point();
+        viewer.direction = random.chance(0.7)
+                               ? Vector3<Scalar>(make.point() - viewer.eye)
+                               : Vector3<Scalar>(random.pointIn(-1, 1).template cast<Scalar>());
+        viewer.range =
+            random.chance(0.3) ? kInfinity : (make.point() - viewer.eye).cwiseAbs().maxCoeff();
+        viewer.halfAngle = static_cast<Scalar>(random.between(0, 4));
+        if (random.chance(0.1)) {
+            viewer.direction[random.below(3)] = hostileNumber<Scalar>(random);
+        }
+        if (random.chance(0.05)) {
+            viewer.halfAngle = hostileNumber<Scalar>(random);
+        }
+        if (random.chance(0.05)) {
+            viewer.range = hostileNumber<Scalar>(random);
+        }
+        return viewer;
+    }
+
+    ProxyId addPoint(Scalar x, Scalar y, Scalar z) {
+        const Vector3<Scalar> point(x, y, z);
+        return grid.add({point, point});
+    }
+    bool sees(const Viewer<Scalar>& viewer, ProxyId target) {
+        std::vector<ProxyId> seen;
+        visibleFrom(grid, viewer, seen);
+        const bool isAmong = std::find(seen.begin(), seen.end(), target) != seen.end();
+        EXPECT_EQ(canSee(grid, viewer, target), isAmong);
+        return isAmong;
+    }
+
+    Grid<Scalar> grid;
+
+private:
+    CaughtMessages aboutNan_;
+};
+
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(SightTest, Scalars);
+
+TYPED_TEST(SightTest, IsThatOfBruteForceInEveryScene) {
+    std::size_t seenCount = 0;
+    std::size_t hiddenCount = 0;
+    Sight<TypeParam> sight;
+    for (const BoxScene<TypeParam>& scene : allBoxScenes<TypeParam>()) {
+        SCOPED_TRACE(scene.name);
+        GridWorld<TypeParam> world;
+        Script<TypeParam> script(scene, 0x5eed0b01);
+        script.begin(world);
+        Random& random = script.random();
+        const auto isTarget = [](ProxyId id) { return id.index % 4 != 0; };
+        const auto isBlocker = [](ProxyId id) { return id.index % 5 == 0; };
+        for (int frame = 0; frame < 10; ++frame) {
+            std::vector<Viewer<TypeParam>> viewers;
+            for (int i = 0; i < 10; ++i) {
+                viewers.push_back(this->anyViewer(random, script.proxies()));
+            }
+            sight.look(world.grid, viewers, isTarget, isBlocker);
+            for (std::size_t i = 0; i < viewers.size(); ++i) {
+                std::vector<ProxyId> expected;
+                visibleFromByBruteForce<TypeParam>(script.proxies(), viewers[i], expected, isTarget,
+                                                   isBlocker);
+                const auto seen = sight.seenBy(i);
+                const std::vector<ProxyId> found(seen.begin(), seen.end());
+                ASSERT_EQ(differences(found, expected), "");
+                seenCount += found.size();
+                for (const Placed<TypeParam>& target : script.proxies().first(20)) {
+                    const bool isSeen = canSee(world.grid, viewers[i], target.id, isBlocker);
+                    if (isTarget(target.id)) {
+                        ASSERT_EQ(isSeen,
+                                  std::binary_search(found.begin(), found.end(), target.id));
+                    }
+                    hiddenCount += isSeen ? 0 : 1;
+                }
+            }
+            if (frame % 3 != 1) {
+                world.grid.update();
+            }
+            script.playFrame(world);
+        }
+    }
+    EXPECT_GT(seenCount, 10000U);
+    EXPECT_GT(hiddenCount, 10000U);
+}
+
+TYPED_TEST(SightTest, OfAConeFindsWhatBruteForceFindsInEveryScene) {
+    std::size_t found = 0;
+    for (const BoxScene<TypeParam>& scene : allBoxScenes<TypeParam>()) {
+        SCOPED_TRACE(scene.name);
+        GridWorld<TypeParam> world;
+        Script<TypeParam> script(scene, 0x5eed0b02);
+        script.begin(world);
+        for (int i = 0; i < 150; ++i) {
+            const Viewer<TypeParam> viewer = this->anyViewer(script.random(), script.proxies());
+            found +=
+                expectLikeBruteForce(world.grid, script.proxies(), ViewRegion<TypeParam>(viewer));
+            ASSERT_FALSE(this->HasFailure());
+            if (i % 5 == 0) {
+                script.playFrame(world);
+            }
+            if (i % 10 == 0) {
+                world.grid.update();
+            }
+        }
+    }
+    EXPECT_GT(found, 20000U);
+}
+
+TYPED_TEST(SightTest, OfAConeIsByTheAngleToItsAxis) {
+    // The definition, in higher precision.
+    Random random(0x5eed0b03);
+    int inside = 0;
+    for (int i = 0; i < 20000; ++i) {
+        Viewer<TypeParam> viewer;
+        viewer.direction = random.pointIn(-1, 1).cast<TypeParam>() *
+                           static_cast<TypeParam>(random.logBetween(1e-12, 1e12));
+        viewer.halfAngle = static_cast<TypeParam>(random.chance(0.3) ? random.logBetween(1e-4, 1)
+                                                                     : random.between(0, 3.1));
+        Vector3<TypeParam> point = random.pointIn(-9, 9).cast<TypeParam>();
+        if (random.chance(0.5)) {
+            const auto aside = static_cast<TypeParam>(random.between(0, 2)) * viewer.halfAngle;
+            point = viewer.direction.normalized() + point.normalized() * aside;
+        }
+        const Vector3<long double> axis = viewer.direction.template cast<long double>();
+        const Vector3<long double> offset = point.template cast<long double>();
+        const long double angle = std::atan2(axis.cross(offset).norm(), axis.dot(offset));
+        const long double slack = 16 * std::numeric_limits<TypeParam>::epsilon();
+        const TypeParam key = ViewRegion<TypeParam>(viewer).key({point, point});
+        if (angle < viewer.halfAngle - slack) {
+            ASSERT_GE(key, 0) << static_cast<double>(angle) << ' ' << viewer.halfAngle;
+            ++inside;
+        }
+        if (angle > viewer.halfAngle + slack) {
+            ASSERT_EQ(key, -1) << static_cast<double>(angle) << ' ' << viewer.halfAngle;
+        }
+    }
+    EXPECT_GT(inside, 4000);
+}
+
+TYPED_TEST(SightTest, OfAConeLooksAsFarAsItsSurfaceReachesAlongEachAxis) {
+    Random random(0x5eed0b07);
+    int seen = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const Vector3<double> axis = random.pointIn(-1, 1).normalized();
+        const double halfAngle = random.between(0, 3.1);
+        Viewer<TypeParam> viewer;
+        viewer.eye = random.pointIn(-100, 100).cast<TypeParam>();
+        viewer.direction = axis.cast<TypeParam>();
+        viewer.halfAngle = static_cast<TypeParam>(halfAngle);
+        viewer.range = static_cast<TypeParam>(random.logBetween(0.1, 1000));
+        const ViewRegion<TypeParam> view(viewer);
+        for (int side = 0; side < 6; ++side) {
+            // The direction of the cone that is nearest to this side of an axis.
+            const Vector3<double> unit =
+                Vector3<double>::Unit(side / 2) * (side % 2 == 0 ? 1.0 : -1.0);
+            const double apart = std::acos(unit.dot(axis));
+            const Vector3<double> across = (unit - unit.dot(axis) * axis).normalized();
+            const double turn = std::min(apart, halfAngle * 0.999);
+            const Vector3<double> nearest = std::cos(turn) * axis + std::sin(turn) * across;
+            const Vector3<TypeParam> point =
+                viewer.eye + nearest.cast<TypeParam>() * (viewer.range * TypeParam(0.999));
+            seen += view.key({point, point}) >= 0 ? 1 : 0;
+            ASSERT_TRUE(view.bounds().contains(point) || view.key({point, point}) < 0)
+                << "half angle " << halfAngle << " about " << axis.transpose();
+        }
+    }
+    EXPECT_GT(seen, 11900);
+}
+
+TYPED_TEST(SightTest, OfANarrowConeReadsFarLessThanItsBall) {
+    Random random(0x5eed0b04);
+    for (int i = 0; i < 3000; ++i) {
+        this->addPoint(static_cast<TypeParam>(random.between(-50, 50)),
+                       static_cast<TypeParam>(random.between(-50, 50)),
+                       static_cast<TypeParam>(random.between(-50, 50)));
+    }
+    Viewer<TypeParam> viewer;
+    viewer.range = 50;
+    CollectCount count;
+    const Aabb<TypeParam> ball = ViewRegion<TypeParam>(viewer).bounds();
+    viewer.halfAngle = TypeParam(0.2);
+    const Aabb<TypeParam> cone = ViewRegion<TypeParam>(viewer).bounds();
+    EXPECT_LT(cone.volume(), ball.volume() / 40);
+    EXPECT_TRUE(ball.contains(cone));
+}
+
+TYPED_TEST(SightTest, StopsAtAWallAndNotAtWhatIsBehindOrBeside) {
+    const ProxyId target = this->addPoint(10, 0, 0);
+    Viewer<TypeParam> viewer;
+    EXPECT_TRUE(this->sees(viewer, target));
+    const ProxyId wall = this->grid.add(makeBox<TypeParam>(5, -1, -1, 6, 1, 1));
+    EXPECT_FALSE(this->sees(viewer, target));
+    const auto notTheWall = [wall](ProxyId id) { return id != wall; };
+    EXPECT_TRUE(canSee(this->grid, viewer, target, notTheWall));
+    this->grid.move(wall, makeBox<TypeParam>(11, -1, -1, 12, 1, 1));
+    EXPECT_TRUE(this->sees(viewer, target)) << "behind, and seen at once";
+    this->grid.move(wall, makeBox<TypeParam>(10, -1, -1, 12, 1, 1));
+    EXPECT_TRUE(this->sees(viewer, target)) << "begins where the line ends";
+    this->grid.move(wall, makeBox<TypeParam>(5, 1, -1, 6, 2, 1));
+    EXPECT_TRUE(this->sees(viewer, target)) << "beside";
+    this->grid.move(wall, makeBox<TypeParam>(5, 0, -1, 6, 2, 1));
+    EXPECT_FALSE(this->sees(viewer, target)) << "grazed";
+    this->grid.move(wall, makeBox<TypeParam>(-1, -1, -1, 1, 1, 1));
+    EXPECT_FALSE(this->sees(viewer, target)) << "around the eye";
+    viewer.self = wall;
+    EXPECT_TRUE(this->sees(viewer, target)) << "the viewer's own body";
+    EXPECT_FALSE(canSee(this->grid, viewer, wall)) << "itself";
+    EXPECT_FALSE(hasLineOfSight(this->grid, {0, 0, 0}, {10, 0, 0}));
+    EXPECT_TRUE(hasLineOfSight(this->grid, {0, 0, 0}, {10, 0, 0}, acceptAll, wall, target));
+    this->grid.remove(target);
+    EXPECT_FALSE(this->sees(viewer, target)) << "no longer there";
+}
+
+TYPED_TEST(SightTest, DoesNotEndAtTheTargetsOwnBox) {
+    const ProxyId target = this->grid.add(makeBox<TypeParam>(9, -1, -1, 11, 1, 1));
+    EXPECT_TRUE(this->sees({}, target));
+    Viewer<TypeParam> within;
+    within.eye = {TypeParam(9.5), 0, 0};
+    EXPECT_TRUE(this->sees(within, target));
+}
+
+TYPED_TEST(SightTest, HasADefinedAnswerForDegenerateViewers) {
+    const ProxyId ahead = this->addPoint(10, 0, 0);
+    const ProxyId behind = this->addPoint(-10, 0, 0);
+    const ProxyId beside = this->addPoint(0, 10, 0);
+    const ProxyId here = this->grid.add(makeBox<TypeParam>(0, 0, 0, 0, 0, 0));
+    const std::vector<ProxyId> none;
+    const auto seenBy = [&](auto change) {
+        Viewer<TypeParam> viewer;
+        viewer.halfAngle = 1;
+        change(viewer);
+        std::vector<ProxyId> seen;
+        const auto no = [](ProxyId) { return false; };
+        visibleFrom(this->grid, viewer, seen, acceptAll, no);
+        return seen;
+    };
+    using V = Viewer<TypeParam>;
+    const TypeParam nan = this->kNan;
+    const TypeParam infinity = this->kInfinity;
+    EXPECT_EQ(seenBy([](V&) {}), (std::vector{ahead, here}));
+    EXPECT_EQ(seenBy([](V& v) { v.halfAngle = 0; }), (std::vector{ahead, here}));
+    EXPECT_EQ(seenBy([](V& v) { v.halfAngle = TypeParam(1.6); }),
+              (std::vector{ahead, beside, here}));
+    EXPECT_EQ(seenBy([](V& v) { v.halfAngle = TypeParam(3.14); }),
+              (std::vector{ahead, beside, here}));
+    EXPECT_EQ(seenBy([&](V& v) { v.halfAngle = this->kPi; }),
+              (std::vector{ahead, behind, beside, here}));
+    EXPECT_EQ(seenBy([&](V& v) { v.halfAngle = infinity; }).size(), 4U);
+    EXPECT_EQ(seenBy([](V& v) { v.halfAngle = -1; }), none);
+    EXPECT_EQ(seenBy([&](V& v) { v.halfAngle = nan; }), none);
+    EXPECT_EQ(seenBy([](V& v) { v.direction.setZero(); }), none);
+    EXPECT_EQ(seenBy([&](V& v) { v.direction[1] = nan; }), none);
+    EXPECT_EQ(seenBy([&](V& v) { v.direction[0] = infinity; }), none);
+    EXPECT_EQ(seenBy([&](V& v) {
+                  v.direction.setZero();
+                  v.halfAngle = 4;
+              }).size(),
+              4U);
+    EXPECT_EQ(seenBy([&](V& v) {
+                  v.direction[1] = nan;
+                  v.halfAngle = this->kPi;
+              }).size(),
+              4U);
+    EXPECT_EQ(seenBy([](V& v) { v.direction *= TypeParam(1e-30); }), (std::vector{ahead, here}));
+    EXPECT_EQ(seenBy([](V& v) { v.direction *= std::numeric_limits<TypeParam>::max(); }),
+              (std::vector{ahead, here}));
+    EXPECT_EQ(seenBy([](V& v) { v.range = 10; }), (std::vector{ahead, here}));
+    EXPECT_EQ(seenBy([](V& v) { v.range = 9; }), std::vector{here});
+    EXPECT_EQ(seenBy([](V& v) { v.range = 0; }), std::vector{here});
+    EXPECT_EQ(seenBy([](V& v) { v.range = -1; }), none);
+    EXPECT_EQ(seenBy([&](V& v) { v.range = nan; }), none);
+    EXPECT_EQ(seenBy([](V& v) { v.range = TypeParam(1e30); }), (std::vector{ahead, here}));
+    EXPECT_EQ(seenBy([&](V& v) { v.eye[0] = nan; }), none);
+    EXPECT_EQ(seenBy([&](V& v) { v.eye[0] = infinity; }), none);
+    EXPECT_EQ(seenBy([](V& v) { v.eye[0] = TypeParam(-1e30); }).size(), 4U);
+    EXPECT_FALSE(hasLineOfSight(this->grid, {nan, 0, 0}, {0, 0, 0}));
+    EXPECT_FALSE(hasLineOfSight(this->grid, {0, 0, 0}, {infinity, 0, 0}));
+    EXPECT_FALSE(canSee(this->grid, V{}, ProxyId{}));
+}
+
+TYPED_TEST(SightTest, OfManyIsTheSameOnAnyNumberOfThreads) {
+    const BoxScene<TypeParam> scene = spreadScene<TypeParam>("evenly spread", 1, 0);
+    GridWorld<TypeParam> world;
+    Script<TypeParam> script(scene, 0x5eed0b05);
+    script.begin(world);
+    std::vector<Viewer<TypeParam>> viewers;
+    for (int i = 0; i < 200; ++i) {
+        viewers.push_back(this->anyViewer(script.random(), script.proxies()));
+    }
+    Sight<TypeParam> alone;
+    Sight<TypeParam> together;
+    const auto isBlocker = [](ProxyId id) { return id.index % 3 == 0; };
+    for (const std::size_t count : {200, 20, 100}) {
+        const auto some = std::span<const Viewer<TypeParam>>(viewers).first(count);
+        const QueryCost cost = alone.look(world.grid, some, acceptAll, isBlocker);
+        ThreadedFor threads(4, 0x5eed0b06);
+        const QueryCost sameCost = together.look(world.grid, some, acceptAll, isBlocker, threads);
+        EXPECT_EQ(cost.boxesTested, sameCost.boxesTested);
+        std::size_t seenCount = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            ASSERT_TRUE(std::ranges::equal(alone.seenBy(i), together.seenBy(i)));
+            seenCount += alone.seenBy(i).size();
+        }
+        EXPECT_GT(seenCount, count);
+        world.grid.update();
+    }
+}
+
+#if HASHPHASE_ENABLE_ASSERTS
+TEST(SightDeathTest, OnlyTheViewersOfTheLastLookHaveSeenAnybody) {
+    const ThrowingAsserts throwing;
+    Sight<float> sight;
+    const Grid<float> grid;
+    EXPECT_THROW(static_cast<void>(sight.seenBy(0)), BrokenAssert);
+    sight.look(grid, std::vector<Viewer<float>>(2));
+    EXPECT_TRUE(sight.seenBy(1).empty());
+    sight.look(grid, std::vector<Viewer<float>>(1));
+    EXPECT_THROW(static_cast<void>(sight.seenBy(1)), BrokenAssert);
+}
+#endif
+
+}  // namespace
+}  // namespace hashphase::test
