@@ -49,6 +49,8 @@ public:
     }
 
 private:
+    static constexpr auto kNowhere = static_cast<Scalar>(-__builtin_inf());
+
     void clipRows(Scalar (*least)[kRowsAtOnce]) {
         Scalar touchedLow[kRowsAtOnce];
         Scalar touchedHigh[kRowsAtOnce];
@@ -85,8 +87,8 @@ private:
                 }
             } else {
                 for (int k = 0; k < kRowsAtOnce; ++k) {
-                    touchedHigh[k] = most[k] < 0 ? touchedLow[k] - 1 : touchedHigh[k];
-                    coveredHigh[k] = least[i][k] < 0 ? coveredLow[k] - 1 : coveredHigh[k];
+                    touchedHigh[k] = most[k] < 0 ? kNowhere : touchedHigh[k];
+                    coveredHigh[k] = least[i][k] < 0 ? kNowhere : coveredHigh[k];
                 }
             }
         }
