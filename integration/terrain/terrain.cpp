@@ -69,6 +69,8 @@ void Terrain<Scalar>::addOne(const Corners& corners, AddedTriangles& added) {
         added.refused.push_back(number);
         return;
     }
+    bounds_.extend(box);
+    tilesPerMetre_ = bounds_.sizes().cwiseInverse() * Scalar(kTilesPerSide);
     triangles_.push_back(groundTriangle(corners));
     const ProxyId id = grid_->add(box, Mobility::resting);
     proxies_.push_back(id);

@@ -126,10 +126,25 @@ private:
 
     struct SurfaceSearch;
     struct RestSearch;
+    class TileOrder;
+
+    static constexpr std::size_t kTilesPerSide = 64;
+    static constexpr std::size_t kTiles = kTilesPerSide * kTilesPerSide;
+
+    /// The tile in which the point lies, of a grid of tiles over all of the ground.
+    [[nodiscard]] std::size_t tileOf(const Point& point) const noexcept {
+        const auto along = [&](Eigen::Index axis) {
+            constexpr auto last = static_cast<Scalar>(kTilesPerSide - 1);
+            const Scalar tile = (point[axis] - bounds_.min()[axis]) * tilesPerMetre_[axis];
+            // Phrased so that NaN becomes 0.
+            return static_cast<std::size_t>(tile > 0 ? (tile < last ? tile : last) : Scalar(0));
+        };
+        return along(alongZ_) * kTilesPerSide + along(alongX_);
+    }
 
     template <class Search, class MakeSearch>
-    QueryCost searchEach(std::span<Found> found, ParallelFor parallelFor,
-                         const MakeSearch& makeSearch) const;
+    QueryCost searchEach(std::span<const Point> points, std::span<Found> found,
+                         ParallelFor parallelFor, const MakeSearch& makeSearch) const;
 
     void addOne(const Corners& corners, AddedTriangles& added);
     [[nodiscard]] detail::GroundTriangle<Scalar> groundTriangle(const Corners& corners) const;
@@ -146,6 +161,8 @@ private:
     Eigen::Index up_;
     Eigen::Index alongX_;  // the other two axes
     Eigen::Index alongZ_;
+    Aabb<Scalar> bounds_;  // of all triangles
+    Point tilesPerMetre_ = Point::Zero();
     std::vector<detail::GroundTriangle<Scalar>> triangles_;
     std::vector<ProxyId> proxies_;  // by triangle; null of refused ones
     std::vector<std::uint32_t>

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
+#include <numeric>
 
 namespace hashphase {
 
@@ -13,24 +14,22 @@ struct Terrain<Scalar>::SurfaceSearch {
     const Terrain* terrain = nullptr;
     detail::Point2 point;
     Scalar from = 0;  // no surface above counts
-    Ground<Scalar> best{kNone, 0};
+    Ground<Scalar> best{kNone, -std::numeric_limits<Scalar>::infinity()};
 
     void add(ProxyId id, Scalar /*key*/) noexcept {
         const std::uint32_t number = terrain->triangleOf(id);
-        if (number == kNone || !terrain->triangles_[number].hasHeights) {
+        if (number == kNone) {
             return;
         }
+        // Without a branch: which of two triangles the point lies in cannot be predicted.
         const detail::GroundTriangle<Scalar>& triangle = terrain->triangles_[number];
         const detail::Weights weights = detail::weightsAt(triangle, point);
-        if (!weights.areInside()) {
-            return;
-        }
         const auto height = static_cast<Scalar>(detail::heightAt(triangle, weights));
-        const bool isHigher = best.triangle == kNone || height > best.height ||
-                              (height == best.height && number < best.triangle);
-        if (height <= from && isHigher) {
-            best = {number, height};
-        }
+        const bool counts = triangle.hasHeights & weights.areInside() & (height <= from);
+        const bool isBetter =
+            (height > best.height) | ((height == best.height) & (number < best.triangle));
+        const std::array<Ground<Scalar>, 2> choice{best, Ground<Scalar>{number, height}};
+        best = choice[static_cast<std::size_t>(counts & isBetter)];
     }
     [[nodiscard]] static constexpr double limit() noexcept {
         return std::numeric_limits<double>::infinity();
@@ -79,12 +78,47 @@ struct Terrain<Scalar>::RestSearch {
     }
 };
 
+/// The order in which points are looked at: tile by tile of the ground, so that what one of them
+/// reads of the memory is still at hand for the next. On the stack.
+template <class Scalar>
+class Terrain<Scalar>::TileOrder {
+public:
+    static constexpr std::size_t kMost = 1 << 16;
+
+    TileOrder(const Terrain& terrain, std::span<const Point> points) noexcept {
+        if (points.size() < kWorthSorting) {
+            std::iota(order_, order_ + points.size(), std::uint16_t{0});
+        } else {
+            sort(terrain, points);
+        }
+    }
+
+    std::size_t operator[](std::size_t i) const noexcept { return order_[i]; }
+
+private:
+    static constexpr std::size_t kWorthSorting = 1024;
+
+    // A counting sort.
+    void sort(const Terrain& terrain, std::span<const Point> points) noexcept {
+        std::array<std::uint32_t, kTiles + 1> starts{};
+        for (const Point& point : points) {
+            ++starts[terrain.tileOf(point) + 1];
+        }
+        std::partial_sum(starts.begin(), starts.end(), starts.begin());
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            order_[starts[terrain.tileOf(points[i])]++] = static_cast<std::uint16_t>(i);
+        }
+    }
+
+    std::uint16_t order_[kMost];
+};
+
 // Asks the grid about a few points at a time, so that all that it takes is on the stack.
 template <class Scalar>
 template <class Search, class MakeSearch>
-QueryCost Terrain<Scalar>::searchEach(std::span<Found> found, ParallelFor parallelFor,
-                                      const MakeSearch& makeSearch) const {
-    constexpr std::size_t kGrain = 512;
+QueryCost Terrain<Scalar>::searchEach(std::span<const Point> points, std::span<Found> found,
+                                      ParallelFor parallelFor, const MakeSearch& makeSearch) const {
+    constexpr std::size_t kGrain = 4096;
     constexpr std::size_t kAtOnce = 16;
     std::atomic<std::uint64_t> rowsVisited{0};
     std::atomic<std::uint64_t> boxesTested{0};
@@ -93,15 +127,19 @@ QueryCost Terrain<Scalar>::searchEach(std::span<Found> found, ParallelFor parall
         std::array<BoxRegion<Scalar>, kAtOnce> columns;
         std::array<Search, kAtOnce> searches;
         QueryCost cost;
-        for (; begin < end; begin += kAtOnce) {
-            const std::size_t count = std::min(kAtOnce, end - begin);
-            for (std::size_t i = 0; i < count; ++i) {
-                makeSearch(begin + i, columns[i].box, searches[i]);
-            }
-            cost += grid_->visitEach(std::span<const BoxRegion<Scalar>>(columns).first(count),
-                                     std::span(searches).first(count));
-            for (std::size_t i = 0; i < count; ++i) {
-                found[begin + i] = searches[i].result();
+        for (std::size_t chunk = begin; chunk < end; chunk += TileOrder::kMost) {
+            const std::size_t chunkSize = std::min(end - chunk, TileOrder::kMost);
+            const TileOrder order(*this, points.subspan(chunk, chunkSize));
+            for (std::size_t first = 0; first < chunkSize; first += kAtOnce) {
+                const std::size_t count = std::min(kAtOnce, chunkSize - first);
+                for (std::size_t i = 0; i < count; ++i) {
+                    makeSearch(chunk + order[first + i], columns[i].box, searches[i]);
+                }
+                cost += grid_->visitEach(std::span<const BoxRegion<Scalar>>(columns).first(count),
+                                         std::span(searches).first(count));
+                for (std::size_t i = 0; i < count; ++i) {
+                    found[chunk + order[first + i]] = searches[i].result();
+                }
             }
         }
         rowsVisited += cost.rowsVisited;
@@ -116,7 +154,8 @@ QueryCost Terrain<Scalar>::surfacesBelow(std::span<const Point> points, std::spa
                                          ParallelFor parallelFor) const {
     HASHPHASE_ASSERT(points.size() == found.size(), "Each point has a place for what is found.");
     return searchEach<SurfaceSearch>(
-        found, parallelFor, [&](std::size_t i, Aabb<Scalar>& column, SurfaceSearch& search) {
+        points, found, parallelFor,
+        [&](std::size_t i, Aabb<Scalar>& column, SurfaceSearch& search) {
             const Point& point = points[i];
             column = {point, point};
             column.min()[up_] = -std::numeric_limits<Scalar>::infinity();
@@ -132,7 +171,7 @@ QueryCost Terrain<Scalar>::restingHeights(std::span<const Point> centers,
                      "Each sphere has a centre, a radius and a place for what is found.");
     using Limits = std::numeric_limits<Scalar>;
     return searchEach<RestSearch>(
-        found, parallelFor, [&](std::size_t i, Aabb<Scalar>& column, RestSearch& search) {
+        centers, found, parallelFor, [&](std::size_t i, Aabb<Scalar>& column, RestSearch& search) {
             const Point& center = centers[i];
             const bool isGood = radii[i] >= 0 && radii[i] <= Limits::max() &&
                                 static_cast<double>(radii[i]) <= kFarthest;

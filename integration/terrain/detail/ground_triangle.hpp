@@ -45,22 +45,29 @@ struct Weights {
     double b;
     double c;
 
-    [[nodiscard]] bool areInside() const noexcept { return a >= 0 && b >= 0 && c >= 0; }
+    [[nodiscard]] bool areInside() const noexcept { return ((a >= 0) & (b >= 0) & (c >= 0)) != 0; }
 };
 
 template <class Scalar>
-[[nodiscard]] Weights weightsAt(const GroundTriangle<Scalar>& triangle,
-                                const Point2& point) noexcept {
+[[nodiscard, gnu::always_inline]] inline Weights weightsAt(const GroundTriangle<Scalar>& triangle,
+                                                           const Point2& point) noexcept {
     const Point2 a = triangle.above(0);
     const Point2 b = triangle.above(1);
     const Point2 c = triangle.above(2);
-    return {orientation(b, c, point), orientation(c, a, point), orientation(a, b, point)};
+    // One branch for all three, which is hardly ever taken.
+    const Area ofA = roundedOrientation(b, c, point);
+    const Area ofB = roundedOrientation(c, a, point);
+    const Area ofC = roundedOrientation(a, b, point);
+    if (!(ofA.isCertain & ofB.isCertain & ofC.isCertain)) [[unlikely]] {
+        return {orientation(b, c, point), orientation(c, a, point), orientation(a, b, point)};
+    }
+    return {ofA.value, ofB.value, ofC.value};
 }
 
-/// Height of the triangle's face at a point with these weights, which are inside.
+/// Height of the triangle's face at a point with these weights; means nothing unless they are inside.
 template <class Scalar>
-[[nodiscard]] double heightAt(const GroundTriangle<Scalar>& triangle,
-                              const Weights& weights) noexcept {
+[[nodiscard, gnu::always_inline]] inline double heightAt(const GroundTriangle<Scalar>& triangle,
+                                                         const Weights& weights) noexcept {
     const double a = triangle.height(0);
     const double b = triangle.height(1);
     const double c = triangle.height(2);

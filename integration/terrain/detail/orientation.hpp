@@ -20,17 +20,28 @@ struct Point2 {
 /// orientation() without a rounding error; slow.
 [[nodiscard]] double exactOrientation(const Point2& a, const Point2& b, const Point2& c) noexcept;
 
-/// Twice the area of a, b, c, positive when they turn from x to z: with a small error, but never the
-/// wrong sign, and 0 only when they are on a line. For coordinates of up to 1e150, and as long as
-/// no product is below 1e-290.
-[[nodiscard]] inline double orientation(const Point2& a, const Point2& b,
-                                        const Point2& c) noexcept {
+/// Twice an area, and whether rounding may have changed its sign.
+struct Area {
+    double value;
+    bool isCertain;
+};
+
+/// Twice the area of a, b, c, positive when they turn from x to z.
+[[nodiscard]] inline Area roundedOrientation(const Point2& a, const Point2& b,
+                                             const Point2& c) noexcept {
     constexpr double kErrorBound = 3.3306690738754716e-16;  // (3 + 16 u) u for u = 2^-53
     const double left = (a.x - c.x) * (b.z - c.z);
     const double right = (a.z - c.z) * (b.x - c.x);
     const double area = left - right;
-    const bool isCertain = std::abs(area) >= kErrorBound * (std::abs(left) + std::abs(right));
-    return isCertain ? area : exactOrientation(a, b, c);
+    return {area, std::abs(area) >= kErrorBound * (std::abs(left) + std::abs(right))};
+}
+
+/// The same, never with the wrong sign, and 0 only when the points are on a line. For coordinates of
+/// up to 1e150, and as long as no product that is not 0 is below 1e-290.
+[[nodiscard]] inline double orientation(const Point2& a, const Point2& b,
+                                        const Point2& c) noexcept {
+    const Area area = roundedOrientation(a, b, c);
+    return area.isCertain ? area.value : exactOrientation(a, b, c);
 }
 
 }  // namespace hashphase::detail
