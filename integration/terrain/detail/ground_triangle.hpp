@@ -142,7 +142,7 @@ template <class Scalar>
             weights = weightsAt(triangle, {center.x - scale * normalX, center.z - scale * normalZ});
             if (weights.areInside()) {
                 const double touch = heightAt(triangle, weights);
-                return {touch + scale * normalY, touch};
+                return {touch + radius * (normalY / length), touch};
             }
         }
     }
