@@ -148,8 +148,8 @@ QueryCost Grid<Scalar>::visitTogether(std::span<const Region> regions,
         }
         detail::KernelCost walk;
         found.assign([&](detail::PairSink& sink) {
-            detail::walkLevels(*table, bounds.columns(), 0,
-                               static_cast<std::uint32_t>(regions.size()), sink, walk);
+            detail::walkTogether(*table, bounds.columns(),
+                                 static_cast<std::uint32_t>(regions.size()), sink, walk);
         });
         cost.rowsVisited += walk.rowsVisited;
         cost.boxesTested += walk.boxesTested;

@@ -127,6 +127,11 @@ struct Kernels {
     void (*walkLevel)(const LevelView<Scalar>& level, const Scalar* const* queries,
                       std::uint32_t first, std::uint32_t last, PairSink& found, KernelCost& cost);
 
+    /// The same, sooner where boxes that follow each other are near each other.
+    void (*walkTogether)(const LevelView<Scalar>& level, const Scalar* const* queries,
+                         std::uint32_t first, std::uint32_t last, PairSink& found,
+                         KernelCost& cost);
+
     /// Finds each of the entries first to last that overlaps another one behind it, up to `end`.
     void (*joinList)(const Scalar* const* columns, std::uint32_t first, std::uint32_t last,
                      std::uint32_t end, PairSink& found, KernelCost& cost);

@@ -38,6 +38,8 @@ std::uint32_t rowBase(const LevelView<Scalar>& level, Row row) {
 #include <broadphase/detail/kernel_join.inl>
 #include <broadphase/detail/kernel_walk.inl>
 
+#include <broadphase/detail/kernel_together.inl>
+
 template <class Scalar>
 std::size_t selectApart(const IndexPair* couples, std::size_t count, const std::uint32_t* order,
                         const PaddedBox<Scalar>* boxes, IndexPair* apart) {
@@ -54,4 +56,4 @@ std::size_t selectApart(const IndexPair* couples, std::size_t count, const std::
 
 template <class Scalar>
 constexpr Kernels<Scalar> kKernels{&fileBoxes<Scalar>, &joinLevel<Scalar>, &walkLevel<Scalar>,
-                                   &joinList<Scalar>, &selectApart<Scalar>};
+                                   &walkTogether<Scalar>, &joinList<Scalar>, &selectApart<Scalar>};

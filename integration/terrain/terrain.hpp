@@ -128,7 +128,7 @@ private:
     struct RestSearch;
     class TileOrder;
 
-    static constexpr std::size_t kTilesPerSide = 64;
+    static constexpr std::size_t kTilesPerSide = 128;
     static constexpr std::size_t kTiles = kTilesPerSide * kTilesPerSide;
 
     /// The tile in which the point lies, of a grid of tiles over all of the ground.

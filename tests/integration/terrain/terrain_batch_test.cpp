@@ -41,19 +41,15 @@ protected:
         for (std::size_t i = 0; i < points_.size(); ++i) {
             ASSERT_EQ(found_[i], world_.terrain.surfaceBelow(points_[i], &sum));
         }
-        expectSame(cost, sum);
+        EXPECT_EQ(cost.hits, sum.hits);
+        EXPECT_LE(cost.rowsVisited, sum.rowsVisited);  // near ones share them
         cost = world_.terrain.restingHeights(points_, radii_, found_, parallelFor);
         sum = {};
         for (std::size_t i = 0; i < points_.size(); ++i) {
             ASSERT_EQ(found_[i], world_.terrain.restingHeight(points_[i], radii_[i], &sum));
         }
-        expectSame(cost, sum);
-    }
-
-    static void expectSame(const QueryCost& a, const QueryCost& b) {
-        EXPECT_EQ(a.rowsVisited, b.rowsVisited);
-        EXPECT_EQ(a.boxesTested, b.boxesTested);
-        EXPECT_EQ(a.hits, b.hits);
+        EXPECT_EQ(cost.hits, sum.hits);
+        EXPECT_LE(cost.rowsVisited, sum.rowsVisited);  // near ones share them
     }
 
     Random random_{0x5eed2301};
