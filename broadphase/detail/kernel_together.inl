@@ -47,8 +47,7 @@ bool gatherPacks(const LevelView<Scalar>& level, const CellBlock& block, Packs& 
             } else {
                 first = length >= level.bucketCount ? 0 : first & (level.bucketCount - 1);
                 const std::uint32_t end = first + lowest(length, level.bucketCount);
-                const std::uint32_t wrapped =
-                    end > level.bucketCount ? end - level.bucketCount : 0;
+                const std::uint32_t wrapped = end > level.bucketCount ? end - level.bucketCount : 0;
                 if (!packs.add({starts[first], starts[lowest(end, level.bucketCount)]}, row) ||
                     !packs.add({starts[0], starts[wrapped]}, row)) {
                     return false;
