@@ -230,7 +230,7 @@ private:
     void visitWaiting(const Region& region, Collector& collector, QueryCost& cost) const;
     template <class Region, class Collector>
     QueryCost visitTogether(std::span<const Region> regions, std::span<Collector> collectors,
-                            detail::BoxColumns<Scalar>& bounds, detail::PairList& found) const;
+                            detail::FewPairs& found) const;
     template <class Region, class Collector>
     bool visitTables(const Region& region, Collector& collector, QueryCost& cost) const;
 

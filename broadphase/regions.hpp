@@ -7,9 +7,10 @@
 //                           negative number when the box is not in the region
 //   bounds()                a box that overlaps whatever has a key
 //
-// key() decides what is found; bounds() only saves work and may be too large, never too small. A
-// region along a line has segment() in the place of bounds(): a RayRegion that meets whatever has a
-// key, no later on its way than that key. One bounded by planes has volume(): see convex_region.hpp.
+// key() decides what is found; bounds() only saves work and may be too large, never too small. Where
+// it has kIsItsBounds, whatever overlaps bounds() is in the region, with the key 0. A region along a
+// line has segment() in the place of bounds(): a RayRegion that meets whatever has a key, no later on
+// its way than that key. One bounded by planes has volume(): see convex_region.hpp.
 //
 // Units    metres; a ray's key is the fraction of its length, 0 at `from`, 1 at `to`
 // NaN      a NaN in a region makes it empty
@@ -29,6 +30,8 @@ namespace hashphase {
 /// Everything that overlaps a box (closed). Key: 0. An inverted box means what overlaps() says.
 template <class Scalar>
 struct BoxRegion {
+    static constexpr bool kIsItsBounds = true;
+
     Aabb<Scalar> box;
 
     [[nodiscard]] Scalar key(const Aabb<Scalar>& other) const noexcept {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace hashphase::detail {
@@ -41,6 +42,33 @@ public:
 
 private:
     std::array<std::vector<Scalar>, 6> columns_;
+};
+
+/// The same for the bounds of a few regions, on the stack.
+template <class Scalar>
+class QueryColumns {
+public:
+    static constexpr std::size_t kMost = 16;
+
+    template <class Region>
+    explicit QueryColumns(std::span<const Region> regions) noexcept {
+        for (std::size_t i = 0; i < regions.size(); ++i) {
+            const Aabb<Scalar>& box = regions[i].bounds();
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const auto at = static_cast<Eigen::Index>(axis);
+                columns_[axis][i] = box.min()[at];
+                columns_[axis + 3][i] = box.max()[at];
+            }
+        }
+    }
+
+    [[nodiscard]] Columns<Scalar> columns() const noexcept {
+        return {columns_[0].data(), columns_[1].data(), columns_[2].data(),
+                columns_[3].data(), columns_[4].data(), columns_[5].data()};
+    }
+
+private:
+    std::array<std::array<Scalar, kMost>, 6> columns_;
 };
 
 }  // namespace hashphase::detail

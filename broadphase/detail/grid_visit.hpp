@@ -213,30 +213,35 @@ template <class Scalar>
 template <class Region, class Collector>
 QueryCost Grid<Scalar>::visitTogether(std::span<const Region> regions,
                                       std::span<Collector> collectors,
-                                      detail::BoxColumns<Scalar>& bounds,
-                                      detail::PairList& found) const {
-    bounds.clear();
-    for (const Region& region : regions) {
-        bounds.push(region.bounds());
-    }
+                                      detail::FewPairs& found) const {
+    const detail::QueryColumns<Scalar> bounds(regions);
+    // Where nothing waits, all that the tables list is filed there.
+    const bool isAllFiled = waiting_.empty();
     QueryCost cost;
     for (const detail::Table<Scalar>* table : {&mobile_, &resting_}) {
+        if (table->size() == 0) {
+            continue;
+        }
         detail::KernelCost walk;
-        found.clear();
-        found.append([&](detail::PairSink& sink) {
-            detail::walkLevels(*table, bounds.columns(), 0, bounds.size(), sink, walk);
+        found.assign([&](detail::PairSink& sink) {
+            detail::walkTogether(*table, bounds.columns(),
+                                 static_cast<std::uint32_t>(regions.size()), sink, walk);
         });
         cost.rowsVisited += walk.rowsVisited;
         cost.boxesTested += walk.boxesTested;
         for (const auto [i, entry] : found.pairs()) {
-            const Scalar key = regions[i].key(table->box(entry));
-            if (key >= 0 && key <= collectors[i].limit() && isFiled(table->slot(entry))) {
+            Scalar key = 0;
+            if constexpr (!requires { Region::kIsItsBounds; }) {
+                key = regions[i].key(table->box(entry));
+            }
+            const std::uint32_t slot = table->slot(entry);
+            if (key >= 0 && key <= collectors[i].limit() && (isAllFiled || isFiled(slot))) {
                 ++cost.hits;
-                collectors[i].add(idOf(table->slot(entry)), key);
+                collectors[i].add(idOf(slot), key);
             }
         }
     }
-    for (std::size_t i = 0; i < regions.size(); ++i) {
+    for (std::size_t i = 0; i < regions.size() && !isAllFiled; ++i) {
         if (collectors[i].limit() >= 0) {
             visitWaiting(regions[i], collectors[i], cost);
         }
@@ -258,13 +263,12 @@ QueryCost Grid<Scalar>::visitEach(std::span<const Region> regions, std::span<Col
         QueryCost cost;
         if constexpr (requires { regions[0].bounds(); }) {
             // So few that what they find has room, though each of them finds everything.
-            constexpr std::size_t atOnce = 16;
-            detail::BoxColumns<Scalar> bounds;
-            detail::PairList found;
+            constexpr std::size_t atOnce = detail::QueryColumns<Scalar>::kMost;
+            detail::FewPairs found;
             for (; begin < end; begin += atOnce) {
                 const std::size_t count = std::min(atOnce, end - begin);
                 cost += visitTogether(regions.subspan(begin, count),
-                                      collectors.subspan(begin, count), bounds, found);
+                                      collectors.subspan(begin, count), found);
             }
         } else {
             for (std::size_t i = begin; i < end; ++i) {

@@ -102,11 +102,11 @@ void joinTable(const Table<Scalar>& table, ParallelFor parallelFor, PairParts& p
 }
 
 template <class Scalar>
-void walkLevels(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t first,
-                std::uint32_t last, PairSink& sink, KernelCost& cost) {
+void walkTogether(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t count,
+                  PairSink& sink, KernelCost& cost) {
     for (const Level<Scalar>& level : table.levels()) {
         if (level.count() > 0) {
-            kernels<Scalar>().walkLevel(table.view(level), queries.data(), first, last, sink, cost);
+            kernels<Scalar>().walkTogether(table.view(level), queries.data(), 0, count, sink, cost);
         }
     }
 }
@@ -116,8 +116,14 @@ void walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::
                ParallelFor parallelFor, PairParts& parts, PairList& found, KernelCost& cost) {
     parts.collect(parallelFor, count, kGrain, found, cost,
                   [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost& own) {
-                      walkLevels(table, queries, static_cast<std::uint32_t>(first),
-                                 static_cast<std::uint32_t>(last), sink, own);
+                      for (const Level<Scalar>& level : table.levels()) {
+                          if (level.count() > 0) {
+                              kernels<Scalar>().walkLevel(table.view(level), queries.data(),
+                                                          static_cast<std::uint32_t>(first),
+                                                          static_cast<std::uint32_t>(last), sink,
+                                                          own);
+                          }
+                      }
                   });
 }
 
@@ -130,9 +136,9 @@ template void walkTable<float>(const Table<float>&, const Columns<float>&, std::
 template void walkTable<double>(const Table<double>&, const Columns<double>&, std::uint32_t,
                                 ParallelFor, PairParts&, PairList&, KernelCost&);
 
-template void walkLevels<float>(const Table<float>&, const Columns<float>&, std::uint32_t,
-                                std::uint32_t, PairSink&, KernelCost&);
-template void walkLevels<double>(const Table<double>&, const Columns<double>&, std::uint32_t,
-                                 std::uint32_t, PairSink&, KernelCost&);
+template void walkTogether<float>(const Table<float>&, const Columns<float>&, std::uint32_t,
+                                  PairSink&, KernelCost&);
+template void walkTogether<double>(const Table<double>&, const Columns<double>&, std::uint32_t,
+                                   PairSink&, KernelCost&);
 
 }  // namespace hashphase::detail

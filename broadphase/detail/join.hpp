@@ -23,9 +23,10 @@ template <class Scalar>
 void walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t count,
                ParallelFor parallelFor, PairParts& parts, PairList& found, KernelCost& cost);
 
-/// The same for the boxes from first to last, one past, on the caller's thread.
+/// The same for a few boxes, on the caller's thread; sooner where those that follow each other are
+/// near each other.
 template <class Scalar>
-void walkLevels(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t first,
-                std::uint32_t last, PairSink& sink, KernelCost& cost);
+void walkTogether(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t count,
+                  PairSink& sink, KernelCost& cost);
 
 }  // namespace hashphase::detail

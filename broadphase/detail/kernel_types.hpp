@@ -156,6 +156,11 @@ struct Kernels {
     void (*walkLevel)(const LevelView<Scalar>& level, const Scalar* const* queries,
                       std::uint32_t first, std::uint32_t last, PairSink& found, KernelCost& cost);
 
+    /// The same, sooner where boxes that follow each other are near each other.
+    void (*walkTogether)(const LevelView<Scalar>& level, const Scalar* const* queries,
+                         std::uint32_t first, std::uint32_t last, PairSink& found,
+                         KernelCost& cost);
+
     /// Finds every entry of a level with cells that is in the volume, and perhaps some that were
     /// erased. Returns false when the sink has ended the search.
     bool (*walkVolume)(const LevelView<Scalar>& level, const Volume<Scalar>& volume,

@@ -129,4 +129,17 @@ IndexPair* PairList::resize(std::size_t count) {
     return data_.get();
 }
 
+void FewPairs::grow(PairSink& sink, std::size_t count) {
+    auto& list = *static_cast<FewPairs*>(sink.owner);
+    const auto size = static_cast<std::size_t>(sink.next - list.data_);
+    const std::size_t capacity = std::max(2 * list.capacity_, size + count);
+    auto many = std::make_unique_for_overwrite<IndexPair[]>(capacity);
+    std::copy_n(list.data_, size, many.get());
+    list.many_ = std::move(many);
+    list.data_ = list.many_.get();
+    list.capacity_ = capacity;
+    sink.next = list.data_ + size;
+    sink.end = list.data_ + capacity;
+}
+
 }  // namespace hashphase::detail

@@ -86,4 +86,33 @@ private:
     std::size_t capacity_ = 0;
 };
 
+/// The same for a search that finds few: they are on the stack, and on the heap when they are more.
+class FewPairs {
+public:
+    FewPairs() = default;
+    FewPairs(const FewPairs&) = delete;
+    FewPairs& operator=(const FewPairs&) = delete;
+
+    [[nodiscard]] std::span<const IndexPair> pairs() const noexcept { return {data_, size_}; }
+
+    /// Calls kernel(PairSink&), whose couples take the place of all earlier ones.
+    template <std::invocable<PairSink&> Kernel>
+    void assign(const Kernel& kernel) {
+        PairSink sink{data_, data_ + capacity_, &grow, this};
+        kernel(sink);
+        size_ = static_cast<std::size_t>(sink.next - data_);
+    }
+
+private:
+    static constexpr std::size_t kFew = 512;
+
+    static void grow(PairSink& sink, std::size_t count);
+
+    IndexPair few_[kFew];
+    std::unique_ptr<IndexPair[]> many_;
+    IndexPair* data_ = few_;
+    std::size_t size_ = 0;
+    std::size_t capacity_ = kFew;
+};
+
 }  // namespace hashphase::detail

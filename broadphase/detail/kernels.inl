@@ -42,6 +42,8 @@ std::uint32_t rowBase(const LevelView<Scalar>& level, Row row) {
 #include <broadphase/detail/kernel_volume.inl>
 #include <broadphase/detail/kernel_walk.inl>
 
+#include <broadphase/detail/kernel_together.inl>
+
 template <class Scalar>
 void findRange(const Scalar* column, std::uint32_t first, std::uint32_t last, Scalar* least,
                Scalar* greatest) {
@@ -85,6 +87,6 @@ std::size_t selectApart(const IndexPair* couples, std::size_t count, const std::
 }
 
 template <class Scalar>
-constexpr Kernels<Scalar> kKernels{&fileBoxes<Scalar>,  &joinLevel<Scalar>, &walkLevel<Scalar>,
-                                   &walkVolume<Scalar>, &joinList<Scalar>,  &findRange<Scalar>,
-                                   &selectApart<Scalar>};
+constexpr Kernels<Scalar> kKernels{&fileBoxes<Scalar>,    &joinLevel<Scalar>,  &walkLevel<Scalar>,
+                                   &walkTogether<Scalar>, &walkVolume<Scalar>, &joinList<Scalar>,
+                                   &findRange<Scalar>,    &selectApart<Scalar>};

@@ -163,9 +163,9 @@ std::vector<Benchmark> populationBenchmarks() {
 
 std::vector<Benchmark> catalog(std::uint64_t seed) {
     std::vector<Benchmark> all;
-    for (std::vector<Benchmark>& part :
-         std::array{pairBenchmarks(), randomBenchmarks(seed), populationBenchmarks(),
-                    queryBenchmarks(), cullingBenchmarks(), cellSizeBenchmarks()}) {
+    for (std::vector<Benchmark>& part : std::array{
+             pairBenchmarks(), randomBenchmarks(seed), populationBenchmarks(), queryBenchmarks(),
+             cullingBenchmarks(), terrainBenchmarks(), cellSizeBenchmarks()}) {
         std::move(part.begin(), part.end(), std::back_inserter(all));
     }
     return all;

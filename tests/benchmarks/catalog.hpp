@@ -47,6 +47,7 @@ struct Benchmark {
 [[nodiscard]] std::vector<Benchmark> populationBenchmarks();
 [[nodiscard]] std::vector<Benchmark> queryBenchmarks();
 [[nodiscard]] std::vector<Benchmark> cullingBenchmarks();
+[[nodiscard]] std::vector<Benchmark> terrainBenchmarks();
 [[nodiscard]] std::vector<Benchmark> cellSizeBenchmarks();
 
 /// True for contestants that are not too slow for so many objects.

@@ -7,7 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace hashphase::detail {
@@ -59,6 +61,10 @@ protected:
         joinTable(table, serialFor, parts, joined, cost);
         PairList walked;
         walkTable(table, movedTable.columns(), movedTable.size(), serialFor, parts, walked, cost);
+        PairList together;
+        together.append([&](PairSink& sink) {
+            walkTogether(table, movedTable.columns(), movedTable.size(), sink, cost);
+        });
         std::vector<IndexPair> apart(joined.size());
         apart.resize(kernels<Scalar>().selectApart(joined.pairs().data(), joined.size(),
                                                    table.order().data(), moved.data(),
@@ -67,7 +73,14 @@ protected:
         for (std::uint32_t i = 0; i < table.size(); ++i) {
             filed.push_back({table.order()[i], table.slot(i)});
         }
-        return {copyOf(joined), copyOf(walked), apart, filed};
+        return {copyOf(joined), copyOf(walked), apart, filed, copyOf(together)};
+    }
+
+    static std::vector<IndexPair> sorted(std::vector<IndexPair> couples) {
+        std::sort(couples.begin(), couples.end(), [](const IndexPair& a, const IndexPair& b) {
+            return std::pair(a.a, a.b) < std::pair(b.a, b.b);
+        });
+        return couples;
     }
 
 private:
@@ -88,6 +101,8 @@ TYPED_TEST(KernelsTest, OfEveryInstructionSetGiveTheSameCouplesInTheSameOrder) {
             const auto moved = this->draw(scene, scene.count, random);
             useInstructionSet(InstructionSet::scalar);
             const auto expected = this->resultsOf(boxes, moved, sizes);
+            // Boxes that are looked for together find what they find one by one.
+            ASSERT_EQ(this->sorted(expected[4]), this->sorted(expected[1]));
             for (const InstructionSet set : kVectorSets) {
                 if (isAvailable(set)) {
                     useInstructionSet(set);

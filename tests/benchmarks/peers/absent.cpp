@@ -28,6 +28,9 @@ std::vector<ContestantKind> odeKinds() {
 std::vector<ContestantKind> threadedKinds() {
     return {};
 }
+Loop* threadedLoop() {
+    return nullptr;
+}
 #endif
 
 }  // namespace hashphase::benchmarks

@@ -30,4 +30,8 @@ std::vector<ContestantKind> threadedKinds() {
     return {kind};
 }
 
+Loop* threadedLoop() {
+    return &tbbFor;
+}
+
 }  // namespace hashphase::benchmarks

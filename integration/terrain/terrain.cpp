@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Zlib
+#include <integration/terrain/terrain.hpp>
+
+#include <limits>
+#include <utility>
+
+namespace hashphase {
+
+template <class Scalar>
+Terrain<Scalar>::Terrain(Grid<Scalar>& grid, Axis up)
+    : grid_(&grid),
+      up_(static_cast<Eigen::Index>(up)),
+      alongX_((up_ + 2) % 3),
+      alongZ_((up_ + 1) % 3) {}
+
+template <class Scalar>
+Terrain<Scalar>::~Terrain() {
+    clear();
+}
+
+template <class Scalar>
+AddedTriangles Terrain<Scalar>::add(std::span<const Point> corners) {
+    HASHPHASE_ASSERT(corners.size() % 3 == 0, "Each triangle has three corners.");
+    AddedTriangles added;
+    added.first = size();
+    grid_->reserve(grid_->size() + corners.size() / 3);
+    for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+        addOne({corners[i], corners[i + 1], corners[i + 2]}, added);
+    }
+    return added;
+}
+
+template <class Scalar>
+AddedTriangles Terrain<Scalar>::add(std::span<const Point> vertices,
+                                    std::span<const std::uint32_t> indices) {
+    HASHPHASE_ASSERT(indices.size() % 3 == 0, "Each triangle has three corners.");
+    AddedTriangles added;
+    added.first = size();
+    grid_->reserve(grid_->size() + indices.size() / 3);
+    const Point none = Point::Constant(std::numeric_limits<Scalar>::quiet_NaN());
+    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+        Corners corners;
+        for (std::size_t k = 0; k < 3; ++k) {
+            corners[k] = indices[i + k] < vertices.size() ? vertices[indices[i + k]] : none;
+        }
+        addOne(corners, added);
+    }
+    return added;
+}
+
+template <class Scalar>
+void Terrain<Scalar>::addOne(const Corners& corners, AddedTriangles& added) {
+    HASHPHASE_ASSERT(size() < kNone, "A terrain holds fewer than 2^32 - 1 triangles.");
+    const std::uint32_t number = size();
+    ++added.count;
+    Aabb<Scalar> box(corners[0]);
+    bool isGood = true;
+    for (const Point& corner : corners) {
+        for (const Scalar x : corner) {
+            isGood = isGood && std::abs(x) <= std::numeric_limits<Scalar>::max() &&
+                     std::abs(static_cast<double>(x)) <= kFarthest;
+        }
+        box.extend(corner);
+    }
+    if (!isGood) {
+        const Point nan = Point::Constant(std::numeric_limits<Scalar>::quiet_NaN());
+        triangles_.push_back(groundTriangle({nan, nan, nan}));
+        proxies_.emplace_back();
+        added.refused.push_back(number);
+        return;
+    }
+    bounds_.extend(box);
+    tilesPerMetre_ = bounds_.sizes().cwiseInverse() * Scalar(kTilesPerSide);
+    triangles_.push_back(groundTriangle(corners));
+    const ProxyId id = grid_->add(box, Mobility::resting);
+    proxies_.push_back(id);
+    if (triangleOfProxy_.size() <= id.index) {
+        triangleOfProxy_.resize(id.index + std::size_t{1}, kNone);
+    }
+    triangleOfProxy_[id.index] = number;
+}
+
+template <class Scalar>
+detail::GroundTriangle<Scalar> Terrain<Scalar>::groundTriangle(const Corners& corners) const {
+    const double area =
+        detail::orientation(above(corners[0]), above(corners[1]), above(corners[2]));
+    detail::GroundTriangle<Scalar> triangle{};
+    triangle.hasHeights = area < 0 || area > 0;
+    triangle.isTurned = area < 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Point& corner = corners[triangle.isTurned ? (3 - i) % 3 : i];
+        triangle.x[i] = corner[alongX_];
+        triangle.z[i] = corner[alongZ_];
+        triangle.y[i] = corner[up_];
+    }
+    return triangle;
+}
+
+template <class Scalar>
+void Terrain<Scalar>::clear() {
+    for (const ProxyId id : proxies_) {
+        if (!id.isNull()) {
+            grid_->remove(id);
+        }
+    }
+    triangles_.clear();
+    proxies_.clear();
+    triangleOfProxy_.clear();
+}
+
+template <class Scalar>
+typename Terrain<Scalar>::Corners Terrain<Scalar>::corners(std::uint32_t triangle) const {
+    HASHPHASE_ASSERT(triangle < size(), "Triangles have numbers below size().");
+    const detail::GroundTriangle<Scalar>& stored = triangles_[triangle];
+    Corners corners;
+    for (std::size_t i = 0; i < 3; ++i) {
+        Point& corner = corners[stored.isTurned ? (3 - i) % 3 : i];
+        corner[alongX_] = stored.x[i];
+        corner[alongZ_] = stored.z[i];
+        corner[up_] = stored.y[i];
+    }
+    return corners;
+}
+
+template <class Scalar>
+Vector3<Scalar> Terrain<Scalar>::normal(std::uint32_t triangle) const {
+    HASHPHASE_ASSERT(triangle < size(), "Triangles have numbers below size().");
+    if (!triangles_[triangle].hasHeights) {
+        return Point::Zero();
+    }
+    const Corners at = corners(triangle);
+    const Vector3<double> a = at[0].template cast<double>();
+    const Vector3<double> ab = at[1].template cast<double>() - a;
+    const Vector3<double> ac = at[2].template cast<double>() - a;
+    // Scaled, so that squares of lengths stay in range.
+    const double largest = std::max(ab.cwiseAbs().maxCoeff(), ac.cwiseAbs().maxCoeff());
+    const Vector3<double> normal = (ab / largest).cross(ac / largest).normalized();
+    return (normal[up_] < 0 ? Vector3<double>(-normal) : normal).template cast<Scalar>();
+}
+
+template <class Scalar>
+ProxyId Terrain<Scalar>::proxy(std::uint32_t triangle) const {
+    HASHPHASE_ASSERT(triangle < size(), "Triangles have numbers below size().");
+    return proxies_[triangle];
+}
+
+template <class Scalar>
+std::size_t Terrain<Scalar>::memoryBytes() const noexcept {
+    return triangles_.capacity() * sizeof(triangles_[0]) + proxies_.capacity() * sizeof(ProxyId) +
+           triangleOfProxy_.capacity() * sizeof(std::uint32_t);
+}
+
+template class Terrain<float>;
+template class Terrain<double>;
+
+}  // namespace hashphase

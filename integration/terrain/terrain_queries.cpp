@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Zlib
+#include <integration/terrain/terrain.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+#include <numeric>
+
+namespace hashphase {
+
+/// A collector: the highest surface among the triangles below a point.
+template <class Scalar>
+struct Terrain<Scalar>::SurfaceSearch {
+    const Terrain* terrain = nullptr;
+    detail::Point2 point;
+    Scalar from = 0;  // no surface above counts
+    Ground<Scalar> best{kNone, -std::numeric_limits<Scalar>::infinity()};
+
+    void add(ProxyId id, Scalar /*key*/) noexcept {
+        const std::uint32_t number = terrain->triangleOf(id);
+        if (number == kNone) {
+            return;
+        }
+        // Without a branch: which of two triangles the point lies in cannot be predicted.
+        const detail::GroundTriangle<Scalar>& triangle = terrain->triangles_[number];
+        const detail::Weights weights = detail::weightsAt(triangle, point);
+        const auto height = static_cast<Scalar>(detail::heightAt(triangle, weights));
+        const bool counts = triangle.hasHeights & weights.areInside() & (height <= from);
+        const bool isBetter =
+            (height > best.height) | ((height == best.height) & (number < best.triangle));
+        const std::array<Ground<Scalar>, 2> choice{best, Ground<Scalar>{number, height}};
+        best = choice[static_cast<std::size_t>(counts & isBetter)];
+    }
+    [[nodiscard]] static constexpr double limit() noexcept {
+        return std::numeric_limits<double>::infinity();
+    }
+
+    [[nodiscard]] Found result() const noexcept {
+        return best.triangle == kNone ? std::nullopt : Found(best);
+    }
+};
+
+/// The same for a sphere that rests on triangles below its centre.
+template <class Scalar>
+struct Terrain<Scalar>::RestSearch {
+    const Terrain* terrain = nullptr;
+    detail::Point2 center;
+    double radius = 0;
+    Scalar from = 0;  // no triangle that is touched above counts
+    std::uint32_t best = kNone;
+    double height = detail::kNoHeight;
+
+    void add(ProxyId id, Scalar /*key*/) noexcept {
+        const std::uint32_t number = terrain->triangleOf(id);
+        if (number == kNone) {
+            return;
+        }
+        const detail::GroundTriangle<Scalar>& triangle = terrain->triangles_[number];
+        const double most =
+            std::max({triangle.height(0), triangle.height(1), triangle.height(2)}) + radius;
+        if (most < height) {
+            return;
+        }
+        const detail::Rest rest = detail::restOn(triangle, center, radius);
+        const bool counts =
+            rest.center > detail::kNoHeight && static_cast<Scalar>(rest.touch) <= from;
+        if (counts && (rest.center > height || (rest.center == height && number < best))) {
+            best = number;
+            height = rest.center;
+        }
+    }
+    [[nodiscard]] static constexpr double limit() noexcept {
+        return std::numeric_limits<double>::infinity();
+    }
+
+    [[nodiscard]] Found result() const noexcept {
+        return best == kNone ? std::nullopt : Found({best, static_cast<Scalar>(height)});
+    }
+};
+
+/// The order in which points are looked at: tile by tile of the ground, so that what one of them
+/// reads of the memory is still at hand for the next. On the stack.
+template <class Scalar>
+class Terrain<Scalar>::TileOrder {
+public:
+    static constexpr std::size_t kMost = 1 << 16;
+
+    TileOrder(const Terrain& terrain, std::span<const Point> points) noexcept {
+        if (points.size() < kWorthSorting) {
+            std::iota(order_, order_ + points.size(), std::uint16_t{0});
+        } else {
+            sort(terrain, points);
+        }
+    }
+
+    std::size_t operator[](std::size_t i) const noexcept { return order_[i]; }
+
+private:
+    static constexpr std::size_t kWorthSorting = 1024;
+
+    // A counting sort.
+    void sort(const Terrain& terrain, std::span<const Point> points) noexcept {
+        std::array<std::uint32_t, kTiles + 1> starts{};
+        for (const Point& point : points) {
+            ++starts[terrain.tileOf(point) + 1];
+        }
+        std::partial_sum(starts.begin(), starts.end(), starts.begin());
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            order_[starts[terrain.tileOf(points[i])]++] = static_cast<std::uint16_t>(i);
+        }
+    }
+
+    std::uint16_t order_[kMost];
+};
+
+// Asks the grid about a few points at a time, so that all that it takes is on the stack.
+template <class Scalar>
+template <class Search, class MakeSearch>
+QueryCost Terrain<Scalar>::searchEach(std::span<const Point> points, std::span<Found> found,
+                                      ParallelFor parallelFor, const MakeSearch& makeSearch) const {
+    constexpr std::size_t kGrain = 4096;
+    constexpr std::size_t kAtOnce = 16;
+    std::atomic<std::uint64_t> rowsVisited{0};
+    std::atomic<std::uint64_t> boxesTested{0};
+    std::atomic<std::uint64_t> hits{0};
+    parallelFor(found.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        std::array<BoxRegion<Scalar>, kAtOnce> columns;
+        std::array<Search, kAtOnce> searches;
+        QueryCost cost;
+        for (std::size_t chunk = begin; chunk < end; chunk += TileOrder::kMost) {
+            const std::size_t chunkSize = std::min(end - chunk, TileOrder::kMost);
+            const TileOrder order(*this, points.subspan(chunk, chunkSize));
+            for (std::size_t first = 0; first < chunkSize; first += kAtOnce) {
+                const std::size_t count = std::min(kAtOnce, chunkSize - first);
+                for (std::size_t i = 0; i < count; ++i) {
+                    makeSearch(chunk + order[first + i], columns[i].box, searches[i]);
+                }
+                cost += grid_->visitEach(std::span<const BoxRegion<Scalar>>(columns).first(count),
+                                         std::span(searches).first(count));
+                for (std::size_t i = 0; i < count; ++i) {
+                    found[chunk + order[first + i]] = searches[i].result();
+                }
+            }
+        }
+        rowsVisited += cost.rowsVisited;
+        boxesTested += cost.boxesTested;
+        hits += cost.hits;
+    });
+    return {rowsVisited, boxesTested, hits};
+}
+
+template <class Scalar>
+QueryCost Terrain<Scalar>::surfacesBelow(std::span<const Point> points, std::span<Found> found,
+                                         ParallelFor parallelFor) const {
+    HASHPHASE_ASSERT(points.size() == found.size(), "Each point has a place for what is found.");
+    return searchEach<SurfaceSearch>(
+        points, found, parallelFor,
+        [&](std::size_t i, Aabb<Scalar>& column, SurfaceSearch& search) {
+            const Point& point = points[i];
+            column = {point, point};
+            column.min()[up_] = -std::numeric_limits<Scalar>::infinity();
+            search = {this, above(point), point[up_]};
+        });
+}
+
+template <class Scalar>
+QueryCost Terrain<Scalar>::restingHeights(std::span<const Point> centers,
+                                          std::span<const Scalar> radii, std::span<Found> found,
+                                          ParallelFor parallelFor) const {
+    HASHPHASE_ASSERT(centers.size() == found.size() && radii.size() == found.size(),
+                     "Each sphere has a centre, a radius and a place for what is found.");
+    using Limits = std::numeric_limits<Scalar>;
+    return searchEach<RestSearch>(
+        centers, found, parallelFor, [&](std::size_t i, Aabb<Scalar>& column, RestSearch& search) {
+            const Point& center = centers[i];
+            const bool isGood = radii[i] >= 0 && radii[i] <= Limits::max() &&
+                                static_cast<double>(radii[i]) <= kFarthest;
+            const Scalar radius = isGood ? radii[i] : Limits::quiet_NaN();
+            for (const Eigen::Index axis : {alongX_, alongZ_}) {
+                // Rounded outward.
+                const Scalar reach =
+                    radius + 2 * Limits::epsilon() * (std::abs(center[axis]) + radius);
+                column.min()[axis] = center[axis] - reach;
+                column.max()[axis] = center[axis] + reach;
+            }
+            column.min()[up_] = -Limits::infinity();
+            column.max()[up_] = center[up_];
+            search = {this, above(center), static_cast<double>(radius), center[up_]};
+        });
+}
+
+template <class Scalar>
+typename Terrain<Scalar>::Found Terrain<Scalar>::surfaceBelow(const Point& point,
+                                                              QueryCost* cost) const {
+    Found found;
+    const QueryCost own = surfacesBelow({&point, 1}, {&found, 1});
+    if (cost != nullptr) {
+        *cost += own;
+    }
+    return found;
+}
+
+template <class Scalar>
+typename Terrain<Scalar>::Found Terrain<Scalar>::restingHeight(const Point& center, Scalar radius,
+                                                               QueryCost* cost) const {
+    Found found;
+    const QueryCost own = restingHeights({&center, 1}, {&radius, 1}, {&found, 1});
+    if (cost != nullptr) {
+        *cost += own;
+    }
+    return found;
+}
+
+template QueryCost Terrain<float>::surfacesBelow(std::span<const Point>, std::span<Found>,
+                                                 ParallelFor) const;
+template QueryCost Terrain<float>::restingHeights(std::span<const Point>, std::span<const float>,
+                                                  std::span<Found>, ParallelFor) const;
+template Terrain<float>::Found Terrain<float>::surfaceBelow(const Point&, QueryCost*) const;
+template Terrain<float>::Found Terrain<float>::restingHeight(const Point&, float, QueryCost*) const;
+template QueryCost Terrain<double>::surfacesBelow(std::span<const Point>, std::span<Found>,
+                                                  ParallelFor) const;
+template QueryCost Terrain<double>::restingHeights(std::span<const Point>, std::span<const double>,
+                                                   std::span<Found>, ParallelFor) const;
+template Terrain<double>::Found Terrain<double>::surfaceBelow(const Point&, QueryCost*) const;
+template Terrain<double>::Found Terrain<double>::restingHeight(const Point&, double,
+                                                               QueryCost*) const;
+
+}  // namespace hashphase
