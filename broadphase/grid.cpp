@@ -229,6 +229,7 @@ bool Grid<Scalar>::putQuietToRest(ParallelFor parallelFor) {
 template <class Scalar>
 void Grid<Scalar>::fileMobile(ParallelFor parallelFor) {
     mobile_.build(mobileSlots_, staged_, fixedSizes_, parallelFor);
+    ++filingCount_;
     mobileTree_.isStale.store(true, std::memory_order_relaxed);
     cost_.filed += mobile_.size();
     for (const std::uint32_t slot : waiting_) {

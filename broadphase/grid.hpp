@@ -139,6 +139,10 @@ public:
     /// `parallelFor`.
     UpdateCost update(ParallelFor parallelFor = serialFor);
 
+    /// How often the mobile proxies have been filed: once by each update that found a change, and
+    /// before it by the first query after many.
+    [[nodiscard]] std::uint64_t filingCount() const noexcept { return filingCount_; }
+
     /// Bytes held, capacity included.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
@@ -247,6 +251,7 @@ private:
 
     std::uint32_t updateNumber_ = 1;  // of the update that ends the present frame
     UpdateCost cost_;                 // of the present frame
+    std::uint64_t filingCount_ = 0;
 
     // What changed since it was filed, until there are too many to list.
     std::vector<std::uint32_t> waiting_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 //
-// A frame like the last one takes no memory. Counts every `new` of this program.
+// A frame like the last one takes no memory.
 
 #include <broadphase/nearest.hpp>
 #include <integration/ai/proximity.hpp>
@@ -8,55 +8,20 @@
 #include <integration/ai/sight.hpp>
 #include <integration/ai/zones.hpp>
 #include <tests/support/box_scenes.hpp>
+#include <tests/support/count_allocations.hpp>
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cmath>
-#include <cstdlib>
-#include <new>
 #include <vector>
-
-// Sanitizers have a `new` of their own, which finds faults that this one would hide.
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-
-namespace {
-std::atomic<std::size_t> allocations{0};
-}  // namespace
-
-// Not inlined: compilers take free() for a mismatch where they see only one half of the pair.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-    ++allocations;
-    if (void* memory = std::malloc(size == 0 ? 1 : size)) {
-        return memory;
-    }
-    throw std::bad_alloc();
-}
-[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
-    ++allocations;
-    const auto step = static_cast<std::size_t>(alignment);
-    if (void* memory = std::aligned_alloc(step, (size + step - 1) / step * step)) {
-        return memory;
-    }
-    throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
-    std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-    std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-    std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
-}
 
 namespace hashphase::test {
 namespace {
 
 TEST(AiFrame, LikeTheLastOneAllocatesNothing) {
+    if (!kCountsAllocations) {
+        GTEST_SKIP() << "allocations are not counted under a sanitizer";
+    }
     Random random(0x5eed0f01);
     Grid<float> grid;
     std::vector<ProxyId> bodies;
@@ -99,17 +64,15 @@ TEST(AiFrame, LikeTheLastOneAllocatesNothing) {
     for (int number = 0; number < 2 * kPeriod; ++number) {
         frame(number);
     }
-    const std::size_t before = allocations;
+    const std::size_t before = allocationCount();
     ASSERT_GT(before, 0U);
     told = 0;
     for (int number = 2 * kPeriod; number < 3 * kPeriod; ++number) {
         frame(number);
     }
-    EXPECT_EQ(allocations, before);
+    EXPECT_EQ(allocationCount(), before);
     EXPECT_GT(told, 500U);
 }
 
 }  // namespace
 }  // namespace hashphase::test
-
-#endif

@@ -147,7 +147,7 @@ TEST(NanBoxes, ChangeNothingForTheOthers) {
         const Script script = makeScript(scene, kObjects, 40, 5);
         Truth truth(kObjects);
         Player player = hashPlayer(kObjects);
-        Random random(11);
+        BulletRandom random(11);
         for (Frame frame : script.frames) {
             for (Command& command : frame) {
                 const bool hasBox =
@@ -181,7 +181,7 @@ Box oddBox(int object, int turn) {
         -kInfinity, -most, -BT_LARGE_FLOAT, btScalar(-1e9), -1,   btScalar(-0.0),
         0,          1,     btScalar(1e9),   BT_LARGE_FLOAT, most, kInfinity};
     constexpr int kEnds = static_cast<int>(std::size(ends));
-    Random random(static_cast<std::uint64_t>((object * 7 + turn * 13) % 997) + 1);
+    BulletRandom random(static_cast<std::uint64_t>((object * 7 + turn * 13) % 997) + 1);
     Box box;
     for (int axis = 0; axis < 3; ++axis) {
         int low = random.below(kEnds);
@@ -232,7 +232,7 @@ TEST(OddBoxes, AreFoundByQueriesAsBruteForceSays) {
         truth.play({command});
         hash.play(command);
     }
-    Random random(3);
+    BulletRandom random(3);
     for (int i = 0; i < 300; ++i) {
         const Box box = oddBox(i, 2);
         CollectBox byBox;

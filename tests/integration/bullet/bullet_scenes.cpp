@@ -12,23 +12,23 @@
 
 namespace hashphase::test {
 
-btScalar Random::uniform(double low, double high) {
+btScalar BulletRandom::uniform(double low, double high) {
     const double unit = static_cast<double>(engine_() >> 11) * 0x1p-53;
     return static_cast<btScalar>(low + (high - low) * unit);
 }
 
-int Random::below(int count) {
+int BulletRandom::below(int count) {
     return static_cast<int>(engine_() % static_cast<std::uint64_t>(count));
 }
 
-btVector3 Random::vector(double low, double high) {
+btVector3 BulletRandom::vector(double low, double high) {
     const btScalar x = uniform(low, high);
     const btScalar y = uniform(low, high);
     const btScalar z = uniform(low, high);
     return {x, y, z};
 }
 
-btVector3 Random::direction() {
+btVector3 BulletRandom::direction() {
     for (;;) {
         const btVector3 inCube = vector(-1, 1);
         if (inCube.length2() > btScalar(0.01) && inCube.length2() <= 1) {
@@ -65,11 +65,11 @@ Box moved(const Box& box, const btVector3& by) {
     return {box.min + by, box.max + by};
 }
 
-Box walk(Random& random, const Box& box) {
+Box walk(BulletRandom& random, const Box& box) {
     return moved(box, random.vector(-0.3, 0.3));
 }
 
-Box placeUniform(Random& random, int /*object*/) {
+Box placeUniform(BulletRandom& random, int /*object*/) {
     return boxAround(random.vector(-6, 6), random.vector(0.25, 0.75));
 }
 
@@ -85,7 +85,7 @@ Box sphereOnTerrain(btScalar x, btScalar z, btScalar radius) {
     return boxAround({x, terrainHeight(x, z) + radius, z}, {radius, radius, radius});
 }
 
-Box placePaper(Random& random, int object) {
+Box placePaper(BulletRandom& random, int object) {
     if (object < kTerrainTiles) {
         const auto tile = btScalar(kTerrainHalfWidth / 2);
         const btVector3 corner(tile * btScalar(object % 4 - 2), -6,
@@ -97,7 +97,7 @@ Box placePaper(Random& random, int object) {
     return sphereOnTerrain(x, z, random.uniform(0.4, 1.5));
 }
 
-Box stepPaper(Random& random, const Box& box) {
+Box stepPaper(BulletRandom& random, const Box& box) {
     const btVector3 center = (box.min + box.max) / 2;
     const btScalar radius = (box.max.y() - box.min.y()) / 2;
     if (radius > 2) {
@@ -107,49 +107,49 @@ Box stepPaper(Random& random, const Box& box) {
                            center.z() + random.uniform(-0.4, 0.4), radius);
 }
 
-Box placeLogSizes(Random& random, int /*object*/) {
+Box placeLogSizes(BulletRandom& random, int /*object*/) {
     const btScalar size = std::pow(btScalar(10), random.uniform(-3, 3));
     const btScalar distance = std::pow(btScalar(10), random.uniform(-3, 3));
     return boxAround(random.direction() * distance, random.vector(0.3, 0.5) * size);
 }
 
-Box stepLogSizes(Random& random, const Box& box) {
+Box stepLogSizes(BulletRandom& random, const Box& box) {
     return moved(box, (box.max - box.min) * random.vector(-0.5, 0.5));
 }
 
-Box placeFlat(Random& random, int /*object*/) {
+Box placeFlat(BulletRandom& random, int /*object*/) {
     const btVector3 center(random.uniform(-9, 9), 2, random.uniform(-9, 9));
     return boxAround(center, {random.uniform(0, 0.8), 0, random.uniform(0, 0.8)});
 }
 
-Box stepFlat(Random& random, const Box& box) {
+Box stepFlat(BulletRandom& random, const Box& box) {
     return moved(box, {random.uniform(-0.3, 0.3), 0, random.uniform(-0.3, 0.3)});
 }
 
-Box placePiles(Random& random, int /*object*/) {
+Box placePiles(BulletRandom& random, int /*object*/) {
     const btVector3 pile(btScalar(40 * random.below(3)), 0, btScalar(-25 * random.below(2)));
     return boxAround(pile + random.direction() * random.uniform(0, 1.5), random.vector(0.1, 0.35));
 }
 
-Box stepPiles(Random& random, const Box& box) {
+Box stepPiles(BulletRandom& random, const Box& box) {
     return moved(box, random.vector(-0.05, 0.05));
 }
 
 // Neighbours touch exactly, with faces, edges and corners on whole numbers.
-Box placeLattice(Random& random, int /*object*/) {
+Box placeLattice(BulletRandom& random, int /*object*/) {
     const btVector3 corner(btScalar(random.below(7)), btScalar(random.below(7)),
                            btScalar(random.below(7) - 3));
     return {corner, corner + btVector3(1, 1, 1)};
 }
 
-Box stepLattice(Random& random, const Box& box) {
+Box stepLattice(BulletRandom& random, const Box& box) {
     btVector3 by(0, 0, 0);
     by[random.below(3)] = random.chance(0.5) ? btScalar(1) : btScalar(-1);
     return moved(box, by);
 }
 
 // What btStaticPlaneShape reports, half spaces, and slabs, among ordinary boxes.
-Box placePlanes(Random& random, int object) {
+Box placePlanes(BulletRandom& random, int object) {
     const btScalar large = BT_LARGE_FLOAT;
     const btScalar height = btScalar(random.below(5) - 2);
     switch (object % 20 == 0 ? object / 20 % 4 : -1) {
@@ -166,7 +166,7 @@ Box placePlanes(Random& random, int object) {
     }
 }
 
-Box stepPlanes(Random& random, const Box& box) {
+Box stepPlanes(BulletRandom& random, const Box& box) {
     if (box.max.y() - box.min.y() > 1000) {
         return box;
     }
@@ -178,7 +178,7 @@ Box stepPlanes(Random& random, const Box& box) {
 constexpr btScalar kFar =
     std::is_same_v<btScalar, float> ? btScalar(1 << 19) : btScalar(1ULL << 48);
 
-Box placeFar(Random& random, int object) {
+Box placeFar(BulletRandom& random, int object) {
     return moved(placeUniform(random, object), {kFar, -kFar, kFar});
 }
 
@@ -290,7 +290,7 @@ private:
     }
 
     const Scene& scene_;
-    Random random_;
+    BulletRandom random_;
     std::vector<Object> objects_;
 };
 

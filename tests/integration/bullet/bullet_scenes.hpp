@@ -18,9 +18,9 @@
 namespace hashphase::test {
 
 /// Uniform numbers that are the same with every standard library.
-class Random {
+class BulletRandom {
 public:
-    explicit Random(std::uint64_t seed) : engine_(seed) {}
+    explicit BulletRandom(std::uint64_t seed) : engine_(seed) {}
 
     /// In [low, high).
     btScalar uniform(double low, double high);
@@ -74,8 +74,8 @@ struct Script {
 /// Where objects are, how large, and how they move.
 struct Scene {
     const char* name;
-    Box (*place)(Random&, int object);
-    Box (*step)(Random&, const Box&);
+    Box (*place)(BulletRandom&, int object);
+    Box (*step)(BulletRandom&, const Box&);
     double movingShare;  ///< of the objects that are awake, how many are set in a frame
 };
 

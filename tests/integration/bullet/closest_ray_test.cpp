@@ -52,7 +52,7 @@ public:
         world.updateSingleAabb(&objects_[static_cast<std::size_t>(i)]);
     }
 
-    Random random{kSeed};
+    BulletRandom random{kSeed};
     SpatialHashBroadphase broadphase;
 
 private:

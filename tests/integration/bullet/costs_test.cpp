@@ -19,7 +19,7 @@ namespace {
 
 /// `count` boxes so thin in space that each has a few neighbours.
 void fill(Player& player, int count, std::uint64_t seed) {
-    Random random(seed);
+    BulletRandom random(seed);
     const double half = std::cbrt(count) * 0.55;
     for (int object = 0; object < count; ++object) {
         player.play({Action::create, object,
@@ -93,7 +93,7 @@ TEST(StepCost, FollowsWhatMovesAmongManyAtRest) {
     constexpr int kMoving = 100;
     Player player = hashPlayer(kObjects);
     fill(player, kObjects, 3);
-    Random random(4);
+    BulletRandom random(4);
     for (int step = 0; step < 40; ++step) {
         for (int object = 0; object < kMoving; ++object) {
             move(player, object, random.vector(-0.2, 0.2));
@@ -114,7 +114,7 @@ TEST(QueryCost, OfSettingABoxAndCastingARayInTurnIsNoRebuildEach) {
     constexpr int kTurns = 1000;
     Player player = hashPlayer(kObjects);
     fill(player, kObjects, 5);
-    Random random(6);
+    BulletRandom random(6);
     std::size_t seen = 0;
     for (int turn = 0; turn < kTurns; ++turn) {
         const int object = random.below(kObjects);

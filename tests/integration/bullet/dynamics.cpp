@@ -112,7 +112,7 @@ btTransform placeAt(const btVector3& place, const btQuaternion& turn = btQuatern
     return btTransform(turn, place);
 }
 
-btTransform somewhereAbove(Random& random, btScalar low, btScalar high) {
+btTransform somewhereAbove(BulletRandom& random, btScalar low, btScalar high) {
     const btVector3 axis = random.direction();
     const btQuaternion turn(axis, random.uniform(0, 3));
     const btScalar x = random.uniform(-3, 3);
@@ -134,7 +134,7 @@ constexpr int kPileBodies = 180;
 
 void buildPile(DynamicsWorld& world) {
     addPlane(world);
-    Random random(1);
+    BulletRandom random(1);
     const auto half = btScalar(0.4);
     const std::array<btCollisionShape*, 4> shapes{
         world.keep(std::make_unique<btSphereShape>(half)),
@@ -166,7 +166,7 @@ constexpr int kCompounds = 90;
 
 void buildCompounds(DynamicsWorld& world) {
     addFloor(world);
-    Random random(2);
+    BulletRandom random(2);
     btCollisionShape* const bar = world.keep(
         std::make_unique<btBoxShape>(btVector3(btScalar(0.7), btScalar(0.15), btScalar(0.15))));
     btCollisionShape* const ball = world.keep(std::make_unique<btSphereShape>(btScalar(0.3)));
@@ -222,7 +222,7 @@ void churn(DynamicsWorld& world, int step) {
     if (step % 11 != 0 || step > 700) {
         return;
     }
-    Random random(static_cast<std::uint64_t>(step) + 1000);
+    BulletRandom random(static_cast<std::uint64_t>(step) + 1000);
     for (int i = 0; i < 3; ++i) {
         const int number = 1 + random.below(world.bodyCount() - 1);
         world.readd(number, somewhereAbove(random, 6, 9));

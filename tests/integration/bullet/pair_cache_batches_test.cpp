@@ -136,7 +136,7 @@ std::vector<IdPair> sorted(std::vector<IdPair> pairs) {
     return pairs;
 }
 
-/// Random couples, some of them there and some not, some twice.
+/// BulletRandom couples, some of them there and some not, some twice.
 std::vector<IdPair> someCouples(std::mt19937& random, std::size_t most) {
     std::vector<IdPair> couples(random() % (most + 1));
     for (IdPair& couple : couples) {

@@ -159,7 +159,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, PairSets, testing::ValuesIn(allScenes()),
 TEST(PairSets, EqualBtDbvtBroadphaseThatIsForcedToBeExactInALargeWorld) {
     constexpr int kMany = 12'000;
     Scene scene = sceneNamed("uniform");
-    scene.place = [](Random& random, int) {
+    scene.place = [](BulletRandom& random, int) {
         return boxAround(random.vector(-25, 25), random.vector(0.2, 0.8));
     };
     const Script script = makeScript(scene, kMany, 24, kSeed);

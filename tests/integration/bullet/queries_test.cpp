@@ -33,7 +33,7 @@ struct Playground {
     }
 
     /// Somewhere at an object, but never at the middle of nowhere.
-    btVector3 somewhere(Random& random) const {
+    btVector3 somewhere(BulletRandom& random) const {
         for (;;) {
             const int object = random.below(kObjects);
             const btVector3 size = truth.box(object).max - truth.box(object).min;
@@ -61,7 +61,7 @@ class Queries : public testing::TestWithParam<Scene> {};
 
 TEST_P(Queries, ByRayFindWhatBruteForceFinds) {
     const Playground world(GetParam());
-    Random random(kSeed);
+    BulletRandom random(kSeed);
     std::size_t hitCount = 0;
     for (int i = 0; i < 400 && !HasFailure(); ++i) {
         expectRayAsBruteForce(world, {world.somewhere(random), world.somewhere(random)}, &hitCount);
@@ -71,7 +71,7 @@ TEST_P(Queries, ByRayFindWhatBruteForceFinds) {
 
 TEST_P(Queries, ByShortRayFindWhatBruteForceFinds) {
     const Playground world(GetParam());
-    Random random(kSeed);
+    BulletRandom random(kSeed);
     std::size_t hitCount = 0;
     for (int i = 0; i < 400 && !HasFailure(); ++i) {
         const btVector3 from = world.somewhere(random);
@@ -83,7 +83,7 @@ TEST_P(Queries, ByShortRayFindWhatBruteForceFinds) {
 
 TEST_P(Queries, ByAxisParallelRayFindWhatBruteForceFinds) {
     const Playground world(GetParam());
-    Random random(kSeed);
+    BulletRandom random(kSeed);
     std::size_t hitCount = 0;
     for (int i = 0; i < 400 && !HasFailure(); ++i) {
         const btVector3 from = world.somewhere(random);
@@ -101,7 +101,7 @@ TEST_P(Queries, ByAxisParallelRayFindWhatBruteForceFinds) {
 
 TEST_P(Queries, ByCastOfABoxFindWhatBruteForceFinds) {
     const Playground world(GetParam());
-    Random random(kSeed);
+    BulletRandom random(kSeed);
     std::size_t hitCount = 0;
     for (int i = 0; i < 300 && !HasFailure(); ++i) {
         Ray ray{world.somewhere(random), world.somewhere(random)};
@@ -117,7 +117,7 @@ TEST_P(Queries, ByCastOfABoxFindWhatBruteForceFinds) {
 
 TEST_P(Queries, ByRayOfNoLengthFindWhatBruteForceFinds) {
     const Playground world(GetParam());
-    Random random(kSeed);
+    BulletRandom random(kSeed);
     std::size_t hitCount = 0;
     for (int i = 0; i < 200 && !HasFailure(); ++i) {
         const btVector3 point = world.somewhere(random);
@@ -127,7 +127,7 @@ TEST_P(Queries, ByRayOfNoLengthFindWhatBruteForceFinds) {
 
 TEST_P(Queries, ByRayOfAMillionKilometresFindWhatBruteForceFinds) {
     const Playground world(GetParam());
-    Random random(kSeed);
+    BulletRandom random(kSeed);
     std::size_t hitCount = 0;
     for (int i = 0; i < 100 && !HasFailure(); ++i) {
         const btVector3 middle = world.somewhere(random);
@@ -143,7 +143,7 @@ TEST_P(Queries, ByRayOfAMillionKilometresFindWhatBruteForceFinds) {
 // So long that BT_LARGE_FLOAT is a slow inverse of 0: btRayAabb2() hits what is a metre beside it.
 TEST_P(Queries, ByRayAsLongAsBulletsLargestNumberFindWhatBruteForceFinds) {
     const Playground world(GetParam());
-    Random random(kSeed);
+    BulletRandom random(kSeed);
     std::size_t hitCount = 0;
     for (int i = 0; i < 100 && !HasFailure(); ++i) {
         const btVector3 middle = world.somewhere(random);
@@ -157,7 +157,7 @@ TEST_P(Queries, ByRayAsLongAsBulletsLargestNumberFindWhatBruteForceFinds) {
 
 TEST_P(Queries, ByBoxFindWhatBruteForceFinds) {
     const Playground world(GetParam());
-    Random random(kSeed);
+    BulletRandom random(kSeed);
     std::size_t hitCount = 0;
     for (int i = 0; i < 400 && !HasFailure(); ++i) {
         const btScalar half = std::pow(btScalar(10), random.uniform(-2, 1.5));
@@ -178,7 +178,7 @@ TEST_P(Queries, ByBoxFindWhatBruteForceFinds) {
 
 TEST_P(Queries, SeeEachBoxAsItWasLastSet) {
     Playground world(GetParam());
-    Random random(kSeed);
+    BulletRandom random(kSeed);
     std::size_t hitCount = 0;
     for (int i = 0; i < 500 && !HasFailure(); ++i) {
         const int object = random.below(kObjects);
@@ -200,7 +200,7 @@ TEST_P(Queries, RunOnManyThreadsAtOnce) {
     const Playground world(GetParam());
     std::vector<Ray> rays;
     std::vector<std::vector<int>> expected;
-    Random random(kSeed);
+    BulletRandom random(kSeed);
     for (int i = 0; i < 200; ++i) {
         rays.push_back({world.somewhere(random), world.somewhere(random)});
         expected.push_back(bruteForceRay(world.truth, kObjects, rays.back()));
@@ -229,7 +229,7 @@ TEST_P(Queries, RunOnManyThreadsAtOnce) {
 
 TEST_P(Queries, RunInsideEachOther) {
     const Playground world(GetParam());
-    Random random(kSeed);
+    BulletRandom random(kSeed);
 
     /// Casts the inner ray and asks for the inner box at every hit of the outer ray.
     struct Outer : CollectRay {
@@ -261,7 +261,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Queries, testing::ValuesIn(allScenes()),
 
 TEST(Queries, GoOnWhenProcessReturnsFalse) {
     const Playground world(sceneNamed("piles"));
-    Random random(kSeed);
+    BulletRandom random(kSeed);
     std::size_t hitCount = 0;
     for (int i = 0; i < 50; ++i) {
         const Ray ray{world.somewhere(random), world.somewhere(random)};
@@ -298,7 +298,7 @@ TEST(Queries, StopWhenProcessReturnsFalseIfToldTo) {
 // Soft-body worlds put 1e30, not BT_LARGE_FLOAT, where the ray does not move.
 TEST(Queries, TrustTheCallbacksFieldsForTheHitAndNotForTheWay) {
     const Playground world(sceneNamed("paper"));
-    Random random(kSeed);
+    BulletRandom random(kSeed);
     for (int i = 0; i < 100 && !HasFailure(); ++i) {
         Ray ray{world.somewhere(random), world.somewhere(random)};
         ray.to[i % 3] = ray.from[i % 3];

@@ -57,7 +57,7 @@ public:
 
     ~Crowd() { destroy(proxies_.size(), 1); }
 
-    void create(const std::vector<Box>& boxes, Random random) {
+    void create(const std::vector<Box>& boxes, BulletRandom random) {
         std::vector<ProxyDefinition> definitions;
         for (const Box& box : boxes) {
             clients_.push_back(std::make_unique<Client>());
@@ -80,7 +80,7 @@ public:
                        });
     }
 
-    void move(const Scene& scene, Random random) {
+    void move(const Scene& scene, BulletRandom random) {
         std::vector<btBroadphaseProxy*> moved;
         std::vector<btVector3> mins;
         std::vector<btVector3> maxs;
@@ -170,7 +170,7 @@ TEST_P(ProxyBatches, DoWhatSingleCallsDo) {
         };
         std::size_t pairCount = 0;
         for (int frame = 0; frame < 44; ++frame) {
-            Random random(1000 + static_cast<std::uint64_t>(frame));
+            BulletRandom random(1000 + static_cast<std::uint64_t>(frame));
             std::vector<Box> boxes;
             for (int i = 0; i < (frame % 8 == 0 ? kObjects / 2 : 3); ++i) {
                 boxes.push_back(scene.place(random, i));

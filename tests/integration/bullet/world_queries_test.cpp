@@ -75,7 +75,7 @@ protected:
 
     DynamicsWorld dbvt{std::make_unique<btDbvtBroadphase>()};
     DynamicsWorld hash{std::make_unique<SpatialHashBroadphase>()};
-    Random random{kSeed};
+    BulletRandom random{kSeed};
 };
 
 TEST_F(WorldQueries, ByRayFindTheSameHitsAsOverBtDbvtBroadphase) {
