@@ -53,7 +53,7 @@ struct Crowd<Scalar>::Tile {
         }
         tile.numbers.resize(capacity + kTilePadding);
         tile.groups.resize(capacity + kTilePadding);
-        tile.hits.resize(8 * words);
+        tile.hits.resize(16 * words);
         tile.members.resize(detail::kMostGroups * words);
         tile.found.resize(capacity + kTilePadding);
         view.numbers = tile.numbers.data();
@@ -183,12 +183,16 @@ void Crowd<Scalar>::sort(ParallelFor parallelFor) {
     });
 }
 
-// Sets what kernels read.
+// Says what kernels read.
 template <class Scalar>
 void Crowd<Scalar>::prepare(Scalar radius) {
     const bool isDistance = radius >= 0;
     view_.scale = isDistance ? scaleFor(radius) : Scalar(1);
     view_.mostSquared = isDistance ? (radius * view_.scale) * (radius * view_.scale) : Scalar(-1);
+    while (numbers_.size() < columns_[0].size()) {
+        numbers_.push_back(static_cast<std::uint32_t>(numbers_.size()));
+    }
+    view_.numbers = numbers_.data();
     view_.cellStart = cellStart_.data();
     std::copy(torus_.extent.begin(), torus_.extent.end(), view_.extent);
     view_.reach = torus_.reach;
@@ -299,7 +303,7 @@ template <class Scalar>
 std::size_t Crowd<Scalar>::memoryBytes() const noexcept {
     std::size_t bytes =
         sizeof(*this) + staged_.capacity() * sizeof(Staged) +
-        (cellOfSlot_.capacity() + cellStart_.capacity() + slots_.capacity()) *
+        (cellOfSlot_.capacity() + cellStart_.capacity() + slots_.capacity() + numbers_.capacity()) *
             sizeof(std::uint32_t) +
         ids_.capacity() * sizeof(ProxyId) +
         3 * (columns_[0].capacity() * sizeof(Scalar) + sample_[0].capacity() * sizeof(double)) +

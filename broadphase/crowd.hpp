@@ -135,6 +135,7 @@ private:
     std::vector<std::uint32_t> slots_;      // of agents, by cell
     std::vector<ProxyId> ids_;
     std::array<std::vector<Scalar>, 3> columns_;  // positions; kColumnPadding longer
+    std::vector<std::uint32_t> numbers_;          // 0, 1, 2 ...; never shrinks
     std::vector<std::uint8_t> groups_;
     detail::CrowdView<Scalar> view_{};
 

@@ -14,7 +14,7 @@ constexpr std::uint32_t kWord = 64;
 constexpr std::uint32_t kCopied = kColumnPadding;
 
 /// Agents that are compared before what they found is read.
-constexpr std::uint32_t kAgentsAtOnce = 8;
+constexpr std::uint32_t kAgentsAtOnce = 16;
 
 /// Cells along an axis, wrapped around.
 struct CellWindow {
@@ -78,11 +78,18 @@ void gatherTile(const CrowdView<Scalar>& crowd, const std::uint32_t* cell, std::
     Run runs[kMostCrowdRuns];
     const std::uint32_t runCount = runsAround(crowd, cell, runs, cost);
     std::uint32_t total = 0;
+    std::uint32_t longest = 0;
     for (std::uint32_t i = 0; i < runCount; ++i) {
-        total += runs[i].last - runs[i].first;
+        const std::uint32_t count = runs[i].last - runs[i].first;
+        total += count;
+        longest = count < longest ? longest : count;
     }
-    if (total > tile.capacity) {
-        tile.grow(tile, total);
+    // As many of every run, and what is too many is overwritten by the next one: branches between
+    // runs of slightly different lengths could not be predicted.
+    const std::uint32_t end = crowd.cellStart[crowd.extent[0] * crowd.extent[1] * crowd.extent[2]];
+    const bool isEven = longest * runCount < 2 * total && runs[runCount - 1].first + longest <= end;
+    if (total + longest > tile.capacity) {
+        tile.grow(tile, total + longest);
     }
     const Scalar* const from[] = {crowd.columns[0], crowd.columns[1], crowd.columns[2]};
     Scalar* const to[] = {tile.columns[0], tile.columns[1], tile.columns[2]};
@@ -94,7 +101,8 @@ void gatherTile(const CrowdView<Scalar>& crowd, const std::uint32_t* cell, std::
         if (agent - runs[i].first < count) {
             tile.own = static_cast<std::uint32_t>(next) + (agent - runs[i].first);
         }
-        for (std::size_t k = 0; k < count; k += kCopied) {
+        const std::size_t copied = isEven ? longest : count;
+        for (std::size_t k = 0; k < copied; k += kCopied) {
             copyNumbers(to[0] + next + k, from[0] + first + k);
             copyNumbers(to[1] + next + k, from[1] + first + k);
             if (hasThird) {
@@ -267,10 +275,7 @@ std::uint64_t listCrowd(const CrowdView<Scalar>& crowd, std::uint32_t first, std
         found += count;
     };
     const auto copy = [&](std::size_t to, std::size_t from) {
-        std::uint32_t* const numbers = tile.numbers + to;
-        for (std::uint32_t k = 0; k < kCopied; ++k) {
-            numbers[k] = static_cast<std::uint32_t>(from) + k;
-        }
+        copyNumbers(tile.numbers + to, crowd.numbers + from);
     };
     searchCrowd(
         crowd, first, last, tile, cost, copy, [] {}, list);

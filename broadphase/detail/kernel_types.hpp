@@ -114,6 +114,7 @@ template <class Scalar>
 struct CrowdView {
     const Scalar* columns[3];  // positions, by axis; of two axes, what is the same along the third
     int axisCount;             // columns that are to be compared: two or three
+    const std::uint32_t* numbers;    // 0, 1, 2 ...
     const std::uint32_t* cellStart;  // the first agent of each cell, and the end
     std::uint32_t extent[3];
     std::uint32_t reach;
