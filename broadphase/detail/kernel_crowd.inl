@@ -2,7 +2,8 @@
 
 // Kernel part: who is within a radius of whom. See kernels.inl.
 //
-// The agents of a cell have the same candidates: all who are in the cells around. These are copied
+// The agents of a cell, or of a few in a row, have the same candidates: all who are in the cells
+// around. These are copied
 // side by side, and each of the agents is compared with all of them, 64 at a time, with no branch in
 // between; what is found is a bit for each candidate. Counting, listing, and counting by group all
 // read these bits.
@@ -16,17 +17,27 @@ constexpr std::uint32_t kCopied = kColumnPadding;
 /// Agents that are compared before what they found is read.
 constexpr std::uint32_t kAgentsAtOnce = 16;
 
+/// Cells along a row, from firstX to lastX inclusive.
+struct CellSegment {
+    std::uint32_t firstX;
+    std::uint32_t lastX;
+    std::uint32_t y;
+    std::uint32_t z;
+};
+
 /// Cells along an axis, wrapped around.
 struct CellWindow {
     std::uint32_t first;
     std::uint32_t count;
 };
 
-inline CellWindow windowAround(std::uint32_t cell, std::uint32_t extent, std::uint32_t reach) {
-    if (extent <= 2 * reach + 1) {
+inline CellWindow windowAround(std::uint32_t first, std::uint32_t last, std::uint32_t extent,
+                               std::uint32_t reach) {
+    const std::uint32_t count = last - first + 2 * reach + 1;
+    if (extent <= count) {
         return {0, extent};
     }
-    return {cell < reach ? cell + extent - reach : cell - reach, 2 * reach + 1};
+    return {first < reach ? first + extent - reach : first - reach, count};
 }
 
 inline std::uint32_t wrapped(std::uint32_t cell, std::uint32_t extent) {
@@ -41,15 +52,15 @@ void copyNumbers(Number* to, const Number* from) {
 /// At most: five rows an axis, and two runs a row.
 constexpr std::uint32_t kMostCrowdRuns = 50;
 
-// Sets `runs` to those of the cells around a cell that are not empty; returns how many.
+// Sets `runs` to those of the cells around a segment that are not empty; returns how many.
 template <class Scalar>
-std::uint32_t runsAround(const CrowdView<Scalar>& crowd, const std::uint32_t* cell, Run* runs,
+std::uint32_t runsAround(const CrowdView<Scalar>& crowd, const CellSegment& segment, Run* runs,
                          KernelCost& cost) {
     const std::uint32_t* extent = crowd.extent;
-    CellWindow windows[3];
-    for (int axis = 0; axis < 3; ++axis) {
-        windows[axis] = windowAround(cell[axis], extent[axis], crowd.reach);
-    }
+    const CellWindow windows[] = {
+        windowAround(segment.firstX, segment.lastX, extent[0], crowd.reach),
+        windowAround(segment.y, segment.y, extent[1], crowd.reach),
+        windowAround(segment.z, segment.z, extent[2], crowd.reach)};
     const std::uint32_t first = windows[0].first;
     const std::uint32_t last = first + windows[0].count;
     std::uint32_t count = 0;
@@ -70,13 +81,13 @@ std::uint32_t runsAround(const CrowdView<Scalar>& crowd, const std::uint32_t* ce
     return count;
 }
 
-// Copies the positions of the candidates of a cell's agents, of which `agent` is the first one, and
+// Copies the positions of the candidates of a segment's agents, of which `agent` is the first one, and
 // calls copy(to, from) for each kCopied of them that stood side by side.
 template <class Scalar, class Copy>
-void gatherTile(const CrowdView<Scalar>& crowd, const std::uint32_t* cell, std::uint32_t agent,
+void gatherTile(const CrowdView<Scalar>& crowd, const CellSegment& segment, std::uint32_t agent,
                 CrowdTile<Scalar>& tile, KernelCost& cost, const Copy& copy) {
     Run runs[kMostCrowdRuns];
-    const std::uint32_t runCount = runsAround(crowd, cell, runs, cost);
+    const std::uint32_t runCount = runsAround(crowd, segment, runs, cost);
     std::uint32_t total = 0;
     std::uint32_t longest = 0;
     for (std::uint32_t i = 0; i < runCount; ++i) {
@@ -175,26 +186,45 @@ std::uint32_t cellOfAgent(const CrowdView<Scalar>& crowd, std::uint32_t agent) {
     return cells.first;
 }
 
-// For each cell calls copy() as gatherTile() does, then begin(), then use(agent, hits) for its agents
-// in order; the agent itself is not among the hits.
+// Where agents are few, those of several cells of a row share their candidates, while these are no
+// more than one word tells of, to go by the row.
+template <class Scalar>
+CellSegment segmentFrom(const CrowdView<Scalar>& crowd, std::uint32_t cell) {
+    const std::uint32_t end = crowd.extent[0];
+    const std::uint32_t row = cell / end;
+    const std::uint32_t first = cell % end;
+    const auto rowsAlong = [&](int axis) {
+        return lowest(2 * crowd.reach + 1, crowd.extent[axis]);
+    };
+    const std::uint32_t most = kWord / (rowsAlong(1) * rowsAlong(2));
+    const std::uint32_t* starts = crowd.cellStart + std::size_t{row} * end;
+    const std::uint32_t begin = starts[first < crowd.reach ? 0 : first - crowd.reach];
+    std::uint32_t last = first;
+    while (last + 1 < end && starts[lowest(last + crowd.reach + 2, end)] - begin <= most) {
+        ++last;
+    }
+    return {first, last, row % crowd.extent[1], row / crowd.extent[1]};
+}
+
+// For each segment calls copy() as gatherTile() does, then begin(), then use(agent, hits) for its
+// agents in order; the agent itself is not among the hits.
 template <class Scalar, class Copy, class Begin, class Use>
 void searchCrowd(const CrowdView<Scalar>& crowd, std::uint32_t first, std::uint32_t last,
                  CrowdTile<Scalar>& tile, KernelCost& cost, const Copy& copy, const Begin& begin,
                  const Use& use) {
     const SearchTile<Scalar> search = searchFor(crowd);
     std::uint32_t agent = first;
-    for (std::uint32_t number = cellOfAgent(crowd, first); agent < last; ++number) {
-        const std::uint32_t end = lowest(crowd.cellStart[number + 1], last);
-        if (end <= agent) {
+    for (std::uint32_t cell = cellOfAgent(crowd, first); agent < last; ++cell) {
+        if (crowd.cellStart[cell + 1] <= agent) {
             continue;
         }
-        const std::uint32_t row = number / crowd.extent[0];
-        const std::uint32_t cell[] = {number % crowd.extent[0], row % crowd.extent[1],
-                                      row / crowd.extent[1]};
-        gatherTile(crowd, cell, agent, tile, cost, copy);
+        const CellSegment segment = segmentFrom(crowd, cell);
+        cell += segment.lastX - segment.firstX;
+        const std::uint32_t end = lowest(crowd.cellStart[cell + 1], last);
+        gatherTile(crowd, segment, agent, tile, cost, copy);
         cost.boxesTested += std::uint64_t{tile.count} * (end - agent);
         begin();
-        for (; agent < end;) {
+        while (agent < end) {
             const std::uint32_t batch = lowest(agent + kAgentsAtOnce, end);
             search(crowd, tile, agent, batch);
             std::uint64_t* hits = tile.hits;
