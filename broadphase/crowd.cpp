@@ -2,6 +2,7 @@
 #include <broadphase/crowd.hpp>
 
 #include <broadphase/detail/kernels.hpp>
+#include <broadphase/detail/prefetch.hpp>
 #include <broadphase/detail/unit_scale.hpp>
 
 #include <algorithm>
@@ -16,6 +17,7 @@ namespace {
 constexpr std::size_t kGrain = 4096;        // proxies that one thread deals with at a time
 constexpr std::size_t kAgentsGrain = 1024;  // the same of agents that look around
 constexpr std::size_t kSampleSize = 512;
+constexpr std::size_t kAhead = 12;  // agents to be read that are fetched meanwhile
 constexpr std::uint32_t kNoCell = ~std::uint32_t{0};
 
 // What kernels write beyond the candidates, and beyond the last neighbour.
@@ -87,27 +89,72 @@ Crowd<Scalar>::~Crowd() = default;
 
 // --- The agents ----------------------------------------------------------------------------------
 
+// Says where the slot's proxy is; returns whether it is an agent. In place: what is copied at once
+// after it was written in parts makes the processor wait.
+template <class Scalar>
+bool Crowd<Scalar>::stageSlot(const Grid<Scalar>& grid, std::uint32_t slot, ProxyFilter filter,
+                              Staged& staged) {
+    const auto& record = grid.records_[slot];
+    const bool isAccepted = grid.isAlive(slot) && filter(grid.idOf(slot));
+    staged.generation = isAccepted ? record.generation : 0;
+    bool isFinite = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto at = static_cast<Eigen::Index>(axis);
+        const Scalar centre = record.box.min()[at] / 2 + record.box.max()[at] / 2;
+        staged.position[axis] = centre;
+        isFinite &= centre - centre == 0;
+    }
+    return isAccepted && isFinite;
+}
+
+// Cells that fit where some of the agents are.
+template <class Scalar>
+void Crowd<Scalar>::chooseCells(const Grid<Scalar>& grid, Scalar radius, ProxyFilter filter) {
+    for (std::vector<double>& column : sample_) {
+        column.clear();
+    }
+    const std::size_t count = grid.records_.size();
+    const std::size_t step = 1 + count / kSampleSize;
+    std::size_t examined = 0;
+    for (std::size_t slot = 0; slot < count; slot += step) {
+        // Where others than agents stand, the next agent.
+        for (; slot < count; ++slot) {
+            ++examined;
+            Staged staged;
+            if (stageSlot(grid, static_cast<std::uint32_t>(slot), filter, staged)) {
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    sample_[axis].push_back(static_cast<double>(staged.position[axis]));
+                }
+                break;
+            }
+        }
+    }
+    const std::size_t agents = sample_[0].size() * count / std::max<std::size_t>(examined, 1);
+    const Scalar reach = radius >= 0 ? radius : Scalar(0);
+    torus_ = detail::torusFor(sample_, static_cast<double>(reach), agents);
+}
+
 // Reads where the proxies are, in the order of their slots, which is that of memory.
 template <class Scalar>
 void Crowd<Scalar>::stage(const Grid<Scalar>& grid, ProxyFilter filter, ParallelFor parallelFor) {
     staged_.resize(grid.records_.size());
+    cellOfSlot_.resize(staged_.size());
     std::atomic<std::uint32_t> agentCount{0};
     std::atomic<std::uint32_t> leftOut{0};
     parallelFor(staged_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        const detail::Torus torus = torus_;
         std::uint32_t agents = 0;
         std::uint32_t others = 0;
-        for (std::size_t i = begin; i < end; ++i) {
-            const auto slot = static_cast<std::uint32_t>(i);
-            const auto& record = grid.records_[slot];
+        for (std::size_t slot = begin; slot < end; ++slot) {
             Staged& staged = staged_[slot];
-            staged.generation = 0;
-            if (!grid.isAlive(slot) || !filter(grid.idOf(slot))) {
-                continue;
+            if (stageSlot(grid, static_cast<std::uint32_t>(slot), filter, staged)) {
+                const auto& [x, y, z] = staged.position;
+                cellOfSlot_[slot] = torus.cellOf(x, y, z);
+                ++agents;
+            } else {
+                cellOfSlot_[slot] = kNoCell;
+                others += staged.generation != 0 ? 1 : 0;
             }
-            const Point centre = record.box.min() / 2 + record.box.max() / 2;
-            const bool isAgent = centre.allFinite();
-            staged = {{centre[0], centre[1], centre[2]}, isAgent ? record.generation : 0};
-            ++(isAgent ? agents : others);
         }
         agentCount += agents;
         leftOut += others;
@@ -116,38 +163,9 @@ void Crowd<Scalar>::stage(const Grid<Scalar>& grid, ProxyFilter filter, Parallel
     leftOut_ = leftOut;
 }
 
-template <class Scalar>
-void Crowd<Scalar>::chooseCells(Scalar radius) {
-    for (std::vector<double>& column : sample_) {
-        column.clear();
-    }
-    const std::size_t step = 1 + staged_.size() / kSampleSize;
-    for (std::size_t next = 0; next < staged_.size(); next += step) {
-        // Where others than agents stand, the next agent.
-        while (next < staged_.size() && staged_[next].generation == 0) {
-            ++next;
-        }
-        for (std::size_t axis = 0; axis < 3 && next < staged_.size(); ++axis) {
-            sample_[axis].push_back(static_cast<double>(staged_[next].position[axis]));
-        }
-    }
-    const Scalar reach = radius >= 0 ? radius : Scalar(0);
-    torus_ = detail::torusFor(sample_, static_cast<double>(reach), agentCount_);
-}
-
 // A counting sort by cell.
 template <class Scalar>
 void Crowd<Scalar>::sort(ParallelFor parallelFor) {
-    cellOfSlot_.resize(staged_.size());
-    parallelFor(staged_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-        const detail::Torus torus = torus_;
-        for (std::size_t slot = begin; slot < end; ++slot) {
-            const auto& [position, generation] = staged_[slot];
-            cellOfSlot_[slot] =
-                generation == 0 ? kNoCell : torus.cellOf(position[0], position[1], position[2]);
-        }
-    });
-
     cellStart_.assign(torus_.cellCount() + 1, 0);
     for (const std::uint32_t cell : cellOfSlot_) {
         if (cell != kNoCell) {
@@ -174,6 +192,9 @@ void Crowd<Scalar>::sort(ParallelFor parallelFor) {
     }
     parallelFor(agentCount_, kGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t agent = begin; agent < end; ++agent) {
+            if (agent + kAhead < end) {
+                detail::prefetch(&staged_[slots_[agent + kAhead]]);
+            }
             const Staged& staged = staged_[slots_[agent]];
             ids_[agent] = {slots_[agent], staged.generation};
             for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -218,8 +239,8 @@ void Crowd<Scalar>::prepare(Scalar radius) {
 template <class Scalar>
 void Crowd<Scalar>::take(const Grid<Scalar>& grid, Scalar radius, ProxyFilter filter,
                          ParallelFor parallelFor) {
+    chooseCells(grid, radius, filter);
     stage(grid, filter, parallelFor);
-    chooseCells(radius);
     sort(parallelFor);
     prepare(radius);
 }

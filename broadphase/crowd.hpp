@@ -110,12 +110,14 @@ private:
     /// Where a slot's proxy is, and whose it is.
     struct Staged {
         std::array<Scalar, 3> position;
-        std::uint32_t generation;  // 0: no agent
+        std::uint32_t generation;  // 0: none that the filter accepts
     };
     struct Tile;
 
+    static bool stageSlot(const Grid<Scalar>& grid, std::uint32_t slot, ProxyFilter filter,
+                          Staged& staged);
     void stage(const Grid<Scalar>& grid, ProxyFilter filter, ParallelFor parallelFor);
-    void chooseCells(Scalar radius);
+    void chooseCells(const Grid<Scalar>& grid, Scalar radius, ProxyFilter filter);
     void sort(ParallelFor parallelFor);
     void prepare(Scalar radius);
     QueryCost list(const detail::CrowdVisitor& visitor, ParallelFor parallelFor);

@@ -30,6 +30,9 @@ struct Torus {
     /// points that are within the radius further apart than `reach`: it is monotone, and less than
     /// what the cells are larger than they need be.
     [[nodiscard]] std::uint32_t cellAlong(std::size_t axis, double x) const noexcept {
+        if (extent[axis] == 1) {
+            return 0;
+        }
         constexpr double kLimit = 1 << 30;
         double scaled = (x - origin[axis]) * inverseCellSize;
         scaled = scaled < kLimit ? scaled : kLimit;
