@@ -12,7 +12,7 @@ constexpr double kSlack = 1 + 0x1p-10;
 
 // Cells of half the radius let fewer points be compared in vain, but more runs of cells be read; they
 // pay where so many points share one.
-constexpr double kPointsInHalfCells = 6;
+constexpr double kPointsInHalfCells = 12;
 
 // One in so many points at either end of an axis may lie beyond the cells without being asked.
 constexpr std::size_t kStrays = 32;
