@@ -81,8 +81,9 @@ protected:
             return agentPosition(
                 proxies[random.below(static_cast<std::uint32_t>(proxies.size()))].box);
         };
-        const Vector3<Scalar> way = any() - any();
-        return std::sqrt((way[0] * way[0] + way[1] * way[1]) + way[2] * way[2]);
+        // In higher precision, which knows the squares of denormal numbers.
+        const auto way = (any() - any()).template cast<long double>();
+        return static_cast<Scalar>(way.norm());
     }
 
     Grid<Scalar> grid_;
