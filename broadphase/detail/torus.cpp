@@ -70,15 +70,15 @@ Torus torusFor(PointSample& sample, double radius, std::size_t count) {
         cellSize /= 2;
         torus.reach = 2;
     }
-    torus.inverseCellSize = 1 / cellSize;
+    torus.inverseHalfCellSize = 1 / (cellSize / 2);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto cells = static_cast<std::uint32_t>(cellsAlong(range, axis, cellSize));
-        // Cells that are all looked at together are one. Others have some margin for points beyond
-        // the sample, and behind them so many empty ones that what is at one end does not meet what
-        // is at the other.
+        // Cells that are all looked at together are one. Others have one behind them and one before
+        // them, which is the last one, for points beyond the sample, and in between so many empty
+        // ones that what is at one end does not meet what is at the other.
         const bool isOne = cells <= torus.reach + 1;
         torus.extent[axis] = isOne ? 1 : cells + 2 + torus.reach;
-        torus.origin[axis] = isOne ? range.low[axis] : range.low[axis] - cellSize;
+        torus.halfOrigin[axis] = range.low[axis] / 2;
     }
     return torus;
 }

@@ -17,8 +17,9 @@ namespace hashphase::detail {
 using PointSample = std::array<std::vector<double>, 3>;
 
 struct Torus {
-    std::array<double, 3> origin{};
-    double inverseCellSize = 0;
+    // Halves, because differences of large numbers would overflow.
+    std::array<double, 3> halfOrigin{};
+    double inverseHalfCellSize = 0;
     std::array<std::uint32_t, 3> extent{1, 1, 1};  // cells
     std::uint32_t reach = 1;  // points within the radius are so many cells apart
 
@@ -34,7 +35,7 @@ struct Torus {
             return 0;
         }
         constexpr double kLimit = 1 << 30;
-        double scaled = (x - origin[axis]) * inverseCellSize;
+        double scaled = (x / 2 - halfOrigin[axis]) * inverseHalfCellSize;
         scaled = scaled < kLimit ? scaled : kLimit;
         scaled = scaled > -kLimit ? scaled : -kLimit;
         const auto truncated = static_cast<std::int32_t>(scaled);

@@ -82,7 +82,7 @@ protected:
                 proxies[random.below(static_cast<std::uint32_t>(proxies.size()))].box);
         };
         // In higher precision, which knows the squares of denormal numbers.
-        const auto way = (any() - any()).template cast<long double>();
+        const Vector3<long double> way = (any() - any()).template cast<long double>();
         return static_cast<Scalar>(way.norm());
     }
 
