@@ -28,6 +28,16 @@ std::vector<ContestantKind> odeKinds() {
 std::vector<ContestantKind> threadedKinds() {
     return {};
 }
+
+std::optional<ParallelFor> threadedLoop() {
+    return std::nullopt;
+}
+#endif
+
+#ifndef HASHPHASE_BENCHMARKS_NANOFLANN_PACKAGE
+std::vector<CrowdKind> nanoflannKinds() {
+    return {};
+}
 #endif
 
 }  // namespace hashphase::benchmarks

@@ -8,6 +8,11 @@
 //                it can make use of that, and writes its pairs to a list: that is its complete set.
 
 #include <tests/benchmarks/contestant.hpp>
+#include <tests/benchmarks/crowd_workload.hpp>
+
+#include <broadphase/parallel_for.hpp>
+
+#include <optional>
 
 namespace hashphase::benchmarks {
 
@@ -17,5 +22,11 @@ namespace hashphase::benchmarks {
 
 /// Ours, on the threads of oneTBB.
 [[nodiscard]] std::vector<ContestantKind> threadedKinds();
+
+/// Loops on them.
+[[nodiscard]] std::optional<ParallelFor> threadedLoop();
+
+/// For crowds.
+[[nodiscard]] std::vector<CrowdKind> nanoflannKinds();
 
 }  // namespace hashphase::benchmarks

@@ -30,4 +30,8 @@ std::vector<ContestantKind> threadedKinds() {
     return {kind};
 }
 
+std::optional<ParallelFor> threadedLoop() {
+    return ParallelFor(tbbFor);
+}
+
 }  // namespace hashphase::benchmarks
