@@ -90,15 +90,17 @@ void gatherTile(const CrowdView<Scalar>& crowd, const CellSegment& segment, std:
     const std::uint32_t runCount = runsAround(crowd, segment, runs, cost);
     std::uint32_t total = 0;
     std::uint32_t longest = 0;
+    std::uint32_t farthest = 0;
     for (std::uint32_t i = 0; i < runCount; ++i) {
         const std::uint32_t count = runs[i].last - runs[i].first;
         total += count;
         longest = count < longest ? longest : count;
+        farthest = runs[i].first < farthest ? farthest : runs[i].first;
     }
     // As many of every run, and what is too many is overwritten by the next one: branches between
     // runs of slightly different lengths could not be predicted.
     const std::uint32_t end = crowd.cellStart[crowd.extent[0] * crowd.extent[1] * crowd.extent[2]];
-    const bool isEven = longest * runCount < 2 * total && runs[runCount - 1].first + longest <= end;
+    const bool isEven = longest * runCount < 2 * total && farthest + longest <= end;
     if (total + longest > tile.capacity) {
         tile.grow(tile, total + longest);
     }

@@ -56,13 +56,14 @@ Torus torusFor(PointSample& sample, double radius, std::size_t count) {
     const auto points = static_cast<double>(count);
     const double mostCells = std::min(4 * points + 64, 0x1p28);
     Range range = rangeOf(sample, 0);
-    const double longest = *std::max_element(range.half.begin(), range.half.end());
-    double cellSize = std::max({radius * kSlack, longest * 0x1p-28, 0x1p-1000});
+    double cellSize = std::max(radius * kSlack, 0x1p-1000);
     // Where there are too many cells for so few points, strays may be what spreads them; else the
     // cells are too small.
     if (cellsIn(range, cellSize) > mostCells) {
         range = rangeOf(sample, sample[0].size() / kStrays);
     }
+    const double longest = *std::max_element(range.half.begin(), range.half.end());
+    cellSize = std::max(cellSize, longest * 0x1p-28);  // which is not far from what fits
     while (cellsIn(range, cellSize) > mostCells) {
         cellSize *= 1.25;
     }
