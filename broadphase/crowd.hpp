@@ -57,8 +57,8 @@ public:
     // --- The agents ------------------------------------------------------------------------------
 
     /// Takes the proxies that the filter accepts, as they are now, for questions about `radius` [m].
-    /// The filter is asked on the loop's threads. Cost: a few passes over the proxies of the grid,
-    /// whether or not they are filed.
+    /// The filter is asked on the loop's threads, about some proxies twice. Cost: a few passes over
+    /// the proxies of the grid, whether or not they are filed.
     void take(const Grid<Scalar>& grid, Scalar radius, ProxyFilter filter = acceptAll,
               ParallelFor parallelFor = serialFor);
 
