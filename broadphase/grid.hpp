@@ -43,6 +43,8 @@ template <class Scalar>
 class Pairs;
 template <class Scalar>
 class Neighbours;
+template <class Scalar>
+class Crowd;
 
 /// Cells lowest to highest, inclusive, in units of Grid::cellSize().
 struct CellRange {
@@ -155,6 +157,7 @@ public:
 private:
     friend class Pairs<Scalar>;
     friend class Neighbours<Scalar>;
+    friend class Crowd<Scalar>;
 
     enum class Place : std::uint8_t {
         nowhere,  // no proxy

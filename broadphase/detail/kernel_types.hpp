@@ -138,6 +138,47 @@ struct KernelCost {
 /// In the place of the bucket of a box that is not filed, because it has a NaN.
 inline constexpr std::uint32_t kNoBucket = ~std::uint32_t{0};
 
+/// Agents sorted by the cells of a torus (see torus.hpp), as plain arrays, and what they look for.
+template <class Scalar>
+struct CrowdView {
+    const Scalar* columns[3];  // positions, by axis; of two axes, what is the same along the third
+    int axisCount;             // columns that are to be compared: two or three
+    const std::uint32_t* numbers;    // 0, 1, 2 ...
+    const std::uint32_t* cellStart;  // the first agent of each cell, and the end
+    std::uint32_t extent[3];
+    std::uint32_t reach;
+    Scalar scale;  // of distances before they are squared; if it is not 1, there are three axes
+    Scalar mostSquared;  // of scaled distances; negative: nobody is near
+};
+
+/// Where a kernel keeps the candidates of a cell's agents, and what it finds: grow(tile, count)
+/// makes room for `count` candidates.
+template <class Scalar>
+struct CrowdTile {
+    Scalar* columns[3];
+    std::uint32_t* numbers;
+    std::uint8_t* groups;
+    std::uint64_t* hits;     // words of candidates, for eight agents
+    std::uint64_t* members;  // the same for kMostGroups groups
+    std::uint32_t* found;    // the neighbours of one agent
+    std::uint32_t capacity;
+    void (*grow)(CrowdTile& tile, std::size_t count);
+    void* owner;
+    std::uint32_t count;  // of candidates
+    std::uint32_t wordCount;
+    std::uint32_t own;  // the agent's place among them
+};
+
+/// Numbers of groups are below this.
+inline constexpr std::uint32_t kMostGroups = 32;
+
+/// Whom a kernel tells each agent's neighbours.
+struct CrowdVisitor {
+    void (*visit)(void* owner, std::uint32_t agent, const std::uint32_t* neighbours,
+                  std::size_t count);
+    void* owner;
+};
+
 template <class Scalar>
 struct Kernels {
     /// Finds the bucket of each of `count` boxes, over all levels: two for each cell size, finest
@@ -179,6 +220,24 @@ struct Kernels {
     std::size_t (*selectApart)(const IndexPair* couples, std::size_t count,
                                const std::uint32_t* order, const PaddedBox<Scalar>* boxes,
                                IndexPair* apart);
+
+    /// Counts the neighbours of the agents first to last. This and the next two return how many
+    /// neighbours there are in all.
+    std::uint64_t (*countCrowd)(const CrowdView<Scalar>& crowd, std::uint32_t first,
+                                std::uint32_t last, CrowdTile<Scalar>& tile, std::uint32_t* counts,
+                                KernelCost& cost);
+
+    /// The same for each group: counts[agent * groupCount + group]. Groups that are not below
+    /// groupCount are left out.
+    std::uint64_t (*countCrowdGroups)(const CrowdView<Scalar>& crowd, std::uint32_t first,
+                                      std::uint32_t last, CrowdTile<Scalar>& tile,
+                                      const std::uint8_t* groups, std::uint32_t groupCount,
+                                      std::uint32_t* counts, KernelCost& cost);
+
+    /// Tells the visitor the neighbours of each of the agents first to last.
+    std::uint64_t (*listCrowd)(const CrowdView<Scalar>& crowd, std::uint32_t first,
+                               std::uint32_t last, CrowdTile<Scalar>& tile,
+                               const CrowdVisitor& visitor, KernelCost& cost);
 };
 
 }  // namespace hashphase::detail

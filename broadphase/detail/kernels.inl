@@ -11,7 +11,7 @@
 //     notAbove(a, b)   where a <= b, which NaN is not; of a type that ...
 //     both(hits, hits) ... and
 //     bits(hits)       ... take: bit k tells about number k
-//     plus(a, b), times(a, b), magnitude(a)
+//     minus, plus, times(a, b), magnitude(a)
 //     compress(mask, first, to)  where it is there, writes first + k to `to` for every bit k of the
 //                      mask, which has kWidth, and may write so many numbers
 //   WidePack<Scalar>   the same for long runs, perhaps wider
@@ -19,6 +19,10 @@
 //   fitsEdge(level, box)  whether no edge of the padded box is longer than the level's largest
 //   quantiseCorners(level, box, low)  sets `low` to the cell of the box's min corner and returns
 //                      whether the box spans one or two cells an axis, none of them clamped
+//   bitCount(word)     how many of 64 bits are set
+//   equalBytes(bytes, value)  bit k tells whether byte k of 64 has the value
+//   writeHits(word, numbers, next)  writes numbers[k] for each bit k of 64 that is set, and perhaps
+//                      up to 16 more; returns the end
 //
 // Nothing in these files may call a function that is not defined in them or always inlined.
 
@@ -37,6 +41,7 @@ std::uint32_t rowBase(const LevelView<Scalar>& level, Row row) {
 
 #include <broadphase/detail/kernel_box.inl>
 
+#include <broadphase/detail/kernel_crowd.inl>
 #include <broadphase/detail/kernel_file.inl>
 #include <broadphase/detail/kernel_join.inl>
 #include <broadphase/detail/kernel_volume.inl>
@@ -87,6 +92,7 @@ std::size_t selectApart(const IndexPair* couples, std::size_t count, const std::
 }
 
 template <class Scalar>
-constexpr Kernels<Scalar> kKernels{&fileBoxes<Scalar>,    &joinLevel<Scalar>,  &walkLevel<Scalar>,
-                                   &walkTogether<Scalar>, &walkVolume<Scalar>, &joinList<Scalar>,
-                                   &findRange<Scalar>,    &selectApart<Scalar>};
+constexpr Kernels<Scalar> kKernels{
+    &fileBoxes<Scalar>,  &joinLevel<Scalar>,        &walkLevel<Scalar>, &walkTogether<Scalar>,
+    &walkVolume<Scalar>, &joinList<Scalar>,         &findRange<Scalar>, &selectApart<Scalar>,
+    &countCrowd<Scalar>, &countCrowdGroups<Scalar>, &listCrowd<Scalar>};

@@ -11,6 +11,7 @@ struct Pack<float> {
     using Numbers = __m256;
     static Numbers load(const float* from) { return _mm256_loadu_ps(from); }
     static Numbers all(float x) { return _mm256_set1_ps(x); }
+    static Numbers minus(Numbers a, Numbers b) { return _mm256_sub_ps(a, b); }
     static Numbers plus(Numbers a, Numbers b) { return _mm256_add_ps(a, b); }
     static Numbers times(Numbers a, Numbers b) { return _mm256_mul_ps(a, b); }
     static Numbers magnitude(Numbers a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0F), a); }
@@ -86,4 +87,18 @@ inline bool quantiseCorners(const LevelView<double>& level, const PaddedBox<doub
     const __m128i high = _mm256_cvttpd_epi32(quantiseCorner(box.high, level));
     _mm_storeu_si128(reinterpret_cast<__m128i*>(cell), low);
     return areFine(low, high);
+}
+
+inline std::uint32_t bitCount(std::uint64_t word) {
+    return static_cast<std::uint32_t>(__builtin_popcountll(word));
+}
+
+inline std::uint64_t equalBytes(const std::uint8_t* bytes, std::uint8_t value) {
+    std::uint64_t mask = 0;
+    for (std::uint32_t k = 0; k < 64; k += 32) {
+        const __m256i some = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes + k));
+        const __m256i equal = _mm256_cmpeq_epi8(some, _mm256_set1_epi8(static_cast<char>(value)));
+        mask |= std::uint64_t{static_cast<std::uint32_t>(_mm256_movemask_epi8(equal))} << k;
+    }
+    return mask;
 }

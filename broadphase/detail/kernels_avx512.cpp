@@ -20,6 +20,7 @@ struct Pack<double> {
     using Numbers = __m512d;
     static Numbers load(const double* from) { return _mm512_loadu_pd(from); }
     static Numbers all(double x) { return _mm512_set1_pd(x); }
+    static Numbers minus(Numbers a, Numbers b) { return _mm512_sub_pd(a, b); }
     static Numbers plus(Numbers a, Numbers b) { return _mm512_add_pd(a, b); }
     static Numbers times(Numbers a, Numbers b) { return _mm512_mul_pd(a, b); }
     static Numbers magnitude(Numbers a) { return _mm512_abs_pd(a); }
@@ -43,6 +44,7 @@ struct WidePack<float> {
     using Numbers = __m512;
     static Numbers load(const float* from) { return _mm512_loadu_ps(from); }
     static Numbers all(float x) { return _mm512_set1_ps(x); }
+    static Numbers minus(Numbers a, Numbers b) { return _mm512_sub_ps(a, b); }
     static Numbers plus(Numbers a, Numbers b) { return _mm512_add_ps(a, b); }
     static Numbers times(Numbers a, Numbers b) { return _mm512_mul_ps(a, b); }
     static Numbers magnitude(Numbers a) { return _mm512_abs_ps(a); }
@@ -57,6 +59,18 @@ struct WidePack<float> {
     static __mmask16 both(__mmask16 a, __mmask16 b) { return a & b; }
     static std::uint32_t bits(__mmask16 hits) { return hits; }
 };
+
+// Compressed in a register and stored whole: compressing into memory is slow on some processors.
+inline std::uint32_t* writeHits(std::uint64_t word, const std::uint32_t* numbers,
+                                std::uint32_t* next) {
+    for (std::uint32_t k = 0; k < 64; k += 16) {
+        const auto mask = static_cast<__mmask16>(word >> k);
+        const __m512i some = _mm512_loadu_si512(numbers + k);
+        _mm512_storeu_si512(next, _mm512_maskz_compress_epi32(mask, some));
+        next += bitCount(mask);
+    }
+    return next;
+}
 
 #include <broadphase/detail/kernels.inl>
 

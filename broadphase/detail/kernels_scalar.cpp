@@ -14,6 +14,7 @@ struct Pack {
     using Numbers = Scalar;
     static Numbers load(const Scalar* from) { return *from; }
     static Numbers all(Scalar x) { return x; }
+    static Numbers minus(Numbers a, Numbers b) { return a - b; }
     static Numbers plus(Numbers a, Numbers b) { return a + b; }
     static Numbers times(Numbers a, Numbers b) { return a * b; }
     static Numbers magnitude(Numbers a) { return a < 0 ? -a : a; }
@@ -31,7 +32,17 @@ bool isApart(const PaddedBox<Scalar>& a, const PaddedBox<Scalar>& b) {
             (b.low[1] <= a.high[1]) & (a.low[2] <= b.high[2]) & (b.low[2] <= a.high[2])) == 0;
 }
 
+inline std::uint64_t equalBytes(const std::uint8_t* bytes, std::uint8_t value) {
+    std::uint64_t mask = 0;
+    for (std::uint32_t k = 0; k < 64; ++k) {
+        mask |= std::uint64_t{bytes[k] == value} << k;
+    }
+    return mask;
+}
+
 #include <broadphase/detail/corners_scalar.inl>
+#include <broadphase/detail/words_scalar.inl>
+
 #include <broadphase/detail/kernels.inl>
 
 }  // namespace

@@ -19,6 +19,7 @@ struct Pack<float> {
     using Numbers = __m128;
     static Numbers load(const float* from) { return _mm_loadu_ps(from); }
     static Numbers all(float x) { return _mm_set1_ps(x); }
+    static Numbers minus(Numbers a, Numbers b) { return _mm_sub_ps(a, b); }
     static Numbers plus(Numbers a, Numbers b) { return _mm_add_ps(a, b); }
     static Numbers times(Numbers a, Numbers b) { return _mm_mul_ps(a, b); }
     static Numbers magnitude(Numbers a) { return _mm_andnot_ps(_mm_set1_ps(-0.0F), a); }
@@ -35,6 +36,7 @@ struct Pack<double> {
     using Numbers = __m128d;
     static Numbers load(const double* from) { return _mm_loadu_pd(from); }
     static Numbers all(double x) { return _mm_set1_pd(x); }
+    static Numbers minus(Numbers a, Numbers b) { return _mm_sub_pd(a, b); }
     static Numbers plus(Numbers a, Numbers b) { return _mm_add_pd(a, b); }
     static Numbers times(Numbers a, Numbers b) { return _mm_mul_pd(a, b); }
     static Numbers magnitude(Numbers a) { return _mm_andnot_pd(_mm_set1_pd(-0.0), a); }
@@ -62,7 +64,19 @@ inline bool isApart(const PaddedBox<double>& a, const PaddedBox<double>& b) {
     return _mm_movemask_pd(all) != 0x3;
 }
 
+inline std::uint64_t equalBytes(const std::uint8_t* bytes, std::uint8_t value) {
+    std::uint64_t mask = 0;
+    for (std::uint32_t k = 0; k < 64; k += 16) {
+        const __m128i some = _mm_loadu_si128(reinterpret_cast<const __m128i*>(bytes + k));
+        const __m128i equal = _mm_cmpeq_epi8(some, _mm_set1_epi8(static_cast<char>(value)));
+        mask |= std::uint64_t{static_cast<std::uint32_t>(_mm_movemask_epi8(equal))} << k;
+    }
+    return mask;
+}
+
 #include <broadphase/detail/corners_scalar.inl>
+#include <broadphase/detail/words_scalar.inl>
+
 #include <broadphase/detail/kernels.inl>
 
 }  // namespace

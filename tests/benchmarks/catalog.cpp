@@ -165,7 +165,7 @@ std::vector<Benchmark> catalog(std::uint64_t seed) {
     std::vector<Benchmark> all;
     for (std::vector<Benchmark>& part : std::array{
              pairBenchmarks(), randomBenchmarks(seed), populationBenchmarks(), queryBenchmarks(),
-             cullingBenchmarks(), terrainBenchmarks(), cellSizeBenchmarks()}) {
+             crowdBenchmarks(), cullingBenchmarks(), terrainBenchmarks(), cellSizeBenchmarks()}) {
         std::move(part.begin(), part.end(), std::back_inserter(all));
     }
     return all;

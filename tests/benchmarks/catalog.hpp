@@ -46,6 +46,7 @@ struct Benchmark {
 [[nodiscard]] std::vector<Benchmark> randomBenchmarks(std::uint64_t seed);
 [[nodiscard]] std::vector<Benchmark> populationBenchmarks();
 [[nodiscard]] std::vector<Benchmark> queryBenchmarks();
+[[nodiscard]] std::vector<Benchmark> crowdBenchmarks();
 [[nodiscard]] std::vector<Benchmark> cullingBenchmarks();
 [[nodiscard]] std::vector<Benchmark> terrainBenchmarks();
 [[nodiscard]] std::vector<Benchmark> cellSizeBenchmarks();

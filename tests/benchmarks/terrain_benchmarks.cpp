@@ -39,7 +39,8 @@ public:
                                 : terrain_.restingHeight(spheres.centers[i], spheres.radii[i]);
             }
         } else {
-            const ParallelFor loop = way_ == Way::threads ? *threadedLoop() : serialFor;
+            const ParallelFor loop =
+                way_ == Way::threads ? *threadedLoop() : ParallelFor(serialFor);
             if (question == GroundQuestion::surface) {
                 terrain_.surfacesBelow(spheres.centers, found_, loop);
             } else {
@@ -213,7 +214,7 @@ std::vector<ContestantKind> groundKinds(GroundQuestion question) {
     };
     add("hash", "Terrain, all at once", true);
     add("hash-single", "Terrain, one by one", true);
-    if (threadedLoop() != nullptr) {
+    if (threadedLoop()) {
         add("hash-threads", "Terrain, all at once, tbbFor", true);
         kinds.back().onThreads = true;
     }

@@ -28,8 +28,15 @@ std::vector<ContestantKind> odeKinds() {
 std::vector<ContestantKind> threadedKinds() {
     return {};
 }
-Loop* threadedLoop() {
-    return nullptr;
+
+std::optional<ParallelFor> threadedLoop() {
+    return std::nullopt;
+}
+#endif
+
+#ifndef HASHPHASE_BENCHMARKS_NANOFLANN_PACKAGE
+std::vector<CrowdKind> nanoflannKinds() {
+    return {};
 }
 #endif
 

@@ -9,6 +9,9 @@
 
 #include <broadphase/parallel_for.hpp>
 #include <tests/benchmarks/contestant.hpp>
+#include <tests/benchmarks/crowd_workload.hpp>
+
+#include <optional>
 
 namespace hashphase::benchmarks {
 
@@ -19,8 +22,10 @@ namespace hashphase::benchmarks {
 /// Ours, on the threads of oneTBB.
 [[nodiscard]] std::vector<ContestantKind> threadedKinds();
 
-/// A ParallelFor on the threads of oneTBB; null where it was not found.
-using Loop = void(std::size_t count, std::size_t grain, LoopBody body);
-[[nodiscard]] Loop* threadedLoop();
+/// Loops on them.
+[[nodiscard]] std::optional<ParallelFor> threadedLoop();
+
+/// For crowds.
+[[nodiscard]] std::vector<CrowdKind> nanoflannKinds();
 
 }  // namespace hashphase::benchmarks

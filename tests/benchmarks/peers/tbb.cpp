@@ -30,8 +30,8 @@ std::vector<ContestantKind> threadedKinds() {
     return {kind};
 }
 
-Loop* threadedLoop() {
-    return &tbbFor;
+std::optional<ParallelFor> threadedLoop() {
+    return ParallelFor(tbbFor);
 }
 
 }  // namespace hashphase::benchmarks

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: Zlib
+#include <broadphase/crowd.hpp>
+
+#include <broadphase/detail/kernels.hpp>
+#include <broadphase/detail/prefetch.hpp>
+#include <broadphase/detail/unit_scale.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace hashphase {
+namespace {
+
+constexpr std::size_t kGrain = 4096;        // proxies that one thread deals with at a time
+constexpr std::size_t kAgentsGrain = 1024;  // the same of agents that look around
+constexpr std::size_t kSampleSize = 512;
+constexpr std::size_t kAhead = 12;  // agents to be read that are fetched meanwhile
+constexpr std::uint32_t kNoCell = ~std::uint32_t{0};
+
+// What kernels write beyond the candidates, and beyond the last neighbour.
+constexpr std::size_t kTilePadding = 64 + detail::kColumnPadding;
+
+/// Of distances within the radius, before they are squared. 1 where no square of them matters that
+/// overflows or vanishes.
+template <class Scalar>
+Scalar scaleFor(Scalar radius) {
+    constexpr int kOrdinary = std::numeric_limits<Scalar>::max_exponent * 15 / 32;
+    const Scalar most = std::ldexp(Scalar(1), kOrdinary);
+    return radius >= 1 / most && radius <= most ? Scalar(1) : detail::unitScale(radius);
+}
+
+}  // namespace
+
+/// The memory of a CrowdTile.
+template <class Scalar>
+struct Crowd<Scalar>::Tile {
+    Tile() {
+        view.grow = &grow;
+        view.owner = this;
+        grow(view, 1);
+    }
+    Tile(const Tile&) = delete;
+    Tile& operator=(const Tile&) = delete;
+
+    static void grow(detail::CrowdTile<Scalar>& view, std::size_t count) {
+        Tile& tile = *static_cast<Tile*>(view.owner);
+        const std::size_t capacity = count + count / 2;
+        const std::size_t words = capacity / 64 + 1;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            tile.columns[axis].resize(capacity + kTilePadding);
+            view.columns[axis] = tile.columns[axis].data();
+        }
+        tile.numbers.resize(capacity + kTilePadding);
+        tile.groups.resize(capacity + kTilePadding);
+        tile.hits.resize(16 * words);
+        tile.members.resize(detail::kMostGroups * words);
+        tile.found.resize(capacity + kTilePadding);
+        view.numbers = tile.numbers.data();
+        view.groups = tile.groups.data();
+        view.hits = tile.hits.data();
+        view.members = tile.members.data();
+        view.found = tile.found.data();
+        view.capacity = static_cast<std::uint32_t>(capacity);
+    }
+
+    [[nodiscard]] std::size_t memoryBytes() const noexcept {
+        return sizeof(*this) + 3 * columns[0].capacity() * sizeof(Scalar) +
+               (numbers.capacity() + found.capacity()) * sizeof(std::uint32_t) + groups.capacity() +
+               (hits.capacity() + members.capacity()) * sizeof(std::uint64_t);
+    }
+
+    detail::CrowdTile<Scalar> view{};
+    std::array<std::vector<Scalar>, 3> columns;
+    std::vector<std::uint32_t> numbers;
+    std::vector<std::uint8_t> groups;
+    std::vector<std::uint64_t> hits;
+    std::vector<std::uint64_t> members;
+    std::vector<std::uint32_t> found;
+};
+
+template <class Scalar>
+Crowd<Scalar>::Crowd() = default;
+
+template <class Scalar>
+Crowd<Scalar>::~Crowd() = default;
+
+// --- The agents ----------------------------------------------------------------------------------
+
+// Says where the slot's proxy is; returns whether it is an agent. In place: what is copied at once
+// after it was written in parts makes the processor wait.
+template <class Scalar>
+bool Crowd<Scalar>::stageSlot(const Grid<Scalar>& grid, std::uint32_t slot, ProxyFilter filter,
+                              Staged& staged) {
+    const auto& record = grid.records_[slot];
+    const bool isAccepted = grid.isAlive(slot) && filter(grid.idOf(slot));
+    staged.generation = isAccepted ? record.generation : 0;
+    bool isFinite = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto at = static_cast<Eigen::Index>(axis);
+        const Scalar centre = record.box.min()[at] / 2 + record.box.max()[at] / 2;
+        staged.position[axis] = centre;
+        isFinite &= centre - centre == 0;
+    }
+    return isAccepted && isFinite;
+}
+
+// Cells that fit where some of the agents are.
+template <class Scalar>
+void Crowd<Scalar>::chooseCells(const Grid<Scalar>& grid, Scalar radius, ProxyFilter filter) {
+    for (std::vector<double>& column : sample_) {
+        column.clear();
+    }
+    const std::size_t count = grid.records_.size();
+    const std::size_t step = 1 + count / kSampleSize;
+    std::size_t examined = 0;
+    for (std::size_t slot = 0; slot < count; slot += step) {
+        // Where others than agents stand, the next agent.
+        for (; slot < count; ++slot) {
+            ++examined;
+            Staged staged;
+            if (stageSlot(grid, static_cast<std::uint32_t>(slot), filter, staged)) {
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    sample_[axis].push_back(static_cast<double>(staged.position[axis]));
+                }
+                break;
+            }
+        }
+    }
+    const std::size_t agents = sample_[0].size() * count / std::max<std::size_t>(examined, 1);
+    const Scalar reach = radius >= 0 ? radius : Scalar(0);
+    torus_ = detail::torusFor(sample_, static_cast<double>(reach), agents);
+}
+
+// Reads where the proxies are, in the order of their slots, which is that of memory.
+template <class Scalar>
+void Crowd<Scalar>::stage(const Grid<Scalar>& grid, ProxyFilter filter, ParallelFor parallelFor) {
+    staged_.resize(grid.records_.size());
+    cellOfSlot_.resize(staged_.size());
+    std::atomic<std::uint32_t> agentCount{0};
+    std::atomic<std::uint32_t> leftOut{0};
+    parallelFor(staged_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        const detail::Torus torus = torus_;
+        std::uint32_t agents = 0;
+        std::uint32_t others = 0;
+        for (std::size_t slot = begin; slot < end; ++slot) {
+            Staged& staged = staged_[slot];
+            if (stageSlot(grid, static_cast<std::uint32_t>(slot), filter, staged)) {
+                const auto& [x, y, z] = staged.position;
+                cellOfSlot_[slot] = torus.cellOf(x, y, z);
+                ++agents;
+            } else {
+                cellOfSlot_[slot] = kNoCell;
+                others += staged.generation != 0 ? 1 : 0;
+            }
+        }
+        agentCount += agents;
+        leftOut += others;
+    });
+    agentCount_ = agentCount;
+    leftOut_ = leftOut;
+}
+
+// A counting sort by cell.
+template <class Scalar>
+void Crowd<Scalar>::sort(ParallelFor parallelFor) {
+    cellStart_.assign(torus_.cellCount() + 1, 0);
+    for (const std::uint32_t cell : cellOfSlot_) {
+        if (cell != kNoCell) {
+            ++cellStart_[cell];
+        }
+    }
+    std::uint32_t sum = 0;
+    for (std::uint32_t& start : cellStart_) {
+        sum += std::exchange(start, sum);
+    }
+    // Each start moves to its cell's end, which is where the next one starts.
+    slots_.resize(agentCount_);
+    for (std::size_t slot = 0; slot < cellOfSlot_.size(); ++slot) {
+        if (cellOfSlot_[slot] != kNoCell) {
+            slots_[cellStart_[cellOfSlot_[slot]]++] = static_cast<std::uint32_t>(slot);
+        }
+    }
+    std::copy_backward(cellStart_.begin(), cellStart_.end() - 1, cellStart_.end());
+    cellStart_[0] = 0;
+
+    ids_.resize(agentCount_);
+    for (std::vector<Scalar>& column : columns_) {
+        column.resize(agentCount_ + detail::kColumnPadding);
+    }
+    parallelFor(agentCount_, kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t agent = begin; agent < end; ++agent) {
+            if (agent + kAhead < end) {
+                detail::prefetch(&staged_[slots_[agent + kAhead]]);
+            }
+            const Staged& staged = staged_[slots_[agent]];
+            ids_[agent] = {slots_[agent], staged.generation};
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                columns_[axis][agent] = staged.position[axis];
+            }
+        }
+    });
+}
+
+// Says what kernels read.
+template <class Scalar>
+void Crowd<Scalar>::prepare(Scalar radius) {
+    const bool isDistance = radius >= 0;
+    view_.scale = isDistance ? scaleFor(radius) : Scalar(1);
+    view_.mostSquared = isDistance ? (radius * view_.scale) * (radius * view_.scale) : Scalar(-1);
+    while (numbers_.size() < columns_[0].size()) {
+        numbers_.push_back(static_cast<std::uint32_t>(numbers_.size()));
+    }
+    view_.numbers = numbers_.data();
+    view_.cellStart = cellStart_.data();
+    std::copy(torus_.extent.begin(), torus_.extent.end(), view_.extent);
+    view_.reach = torus_.reach;
+    // Along one axis all may be the same, as in a world of two dimensions: of no difference there is
+    // no square to be added.
+    std::size_t same = 3;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto begin = columns_[axis].begin();
+        const auto isFirst = [begin](Scalar x) { return x == *begin; };
+        if (view_.scale == 1 && torus_.extent[axis] == 1 &&
+            std::all_of(begin, begin + agentCount_, isFirst)) {
+            same = axis;
+        }
+    }
+    view_.axisCount = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (axis != same) {
+            view_.columns[view_.axisCount++] = columns_[axis].data();
+        }
+    }
+}
+
+template <class Scalar>
+void Crowd<Scalar>::take(const Grid<Scalar>& grid, Scalar radius, ProxyFilter filter,
+                         ParallelFor parallelFor) {
+    chooseCells(grid, radius, filter);
+    stage(grid, filter, parallelFor);
+    sort(parallelFor);
+    prepare(radius);
+}
+
+// --- Questions -----------------------------------------------------------------------------------
+
+template <class Scalar>
+std::unique_ptr<typename Crowd<Scalar>::Tile> Crowd<Scalar>::borrowTile() {
+    {
+        const std::lock_guard lock(tilesMutex_);
+        if (!tiles_.empty()) {
+            std::unique_ptr<Tile> tile = std::move(tiles_.back());
+            tiles_.pop_back();
+            return tile;
+        }
+    }
+    return std::make_unique<Tile>();
+}
+
+template <class Scalar>
+void Crowd<Scalar>::returnTile(std::unique_ptr<Tile> tile) {
+    const std::lock_guard lock(tilesMutex_);
+    tiles_.push_back(std::move(tile));
+}
+
+// Calls kernel(firstAgent, lastAgent, tile, cost) for all agents, in parts; it returns what it found.
+template <class Scalar>
+template <class Kernel>
+QueryCost Crowd<Scalar>::ask(ParallelFor parallelFor, const Kernel& kernel) {
+    std::atomic<std::uint64_t> rowsVisited{0};
+    std::atomic<std::uint64_t> boxesTested{0};
+    std::atomic<std::uint64_t> hits{0};
+    parallelFor(agentCount_, kAgentsGrain, [&](std::size_t begin, std::size_t end) {
+        std::unique_ptr<Tile> tile = borrowTile();
+        detail::KernelCost cost;
+        hits += kernel(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end),
+                       tile->view, cost);
+        rowsVisited += cost.rowsVisited;
+        boxesTested += cost.boxesTested;
+        returnTile(std::move(tile));
+    });
+    return {rowsVisited, boxesTested, hits};
+}
+
+template <class Scalar>
+QueryCost Crowd<Scalar>::list(const detail::CrowdVisitor& visitor, ParallelFor parallelFor) {
+    return ask(parallelFor, [&](std::uint32_t first, std::uint32_t last, auto& tile, auto& cost) {
+        return detail::kernels<Scalar>().listCrowd(view_, first, last, tile, visitor, cost);
+    });
+}
+
+template <class Scalar>
+QueryCost Crowd<Scalar>::count(std::span<std::uint32_t> counts, ParallelFor parallelFor) {
+    HASHPHASE_ASSERT(counts.size() == size(), "There is one count for each agent.");
+    return ask(parallelFor, [&](std::uint32_t first, std::uint32_t last, auto& tile, auto& cost) {
+        return detail::kernels<Scalar>().countCrowd(view_, first, last, tile, counts.data(), cost);
+    });
+}
+
+template <class Scalar>
+QueryCost Crowd<Scalar>::countGroups(FunctionRef<std::uint32_t(ProxyId)> groupOf,
+                                     std::uint32_t groupCount, std::span<std::uint32_t> counts,
+                                     ParallelFor parallelFor) {
+    HASHPHASE_ASSERT(groupCount <= kMostGroups, "There are at most kMostGroups groups.");
+    HASHPHASE_ASSERT(counts.size() == std::size_t{size()} * groupCount,
+                     "There is one count for each agent and group.");
+    groups_.resize(size() + detail::kColumnPadding);
+    parallelFor(size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t agent = begin; agent < end; ++agent) {
+            const std::uint32_t group = groupOf(ids_[agent]);
+            groups_[agent] = static_cast<std::uint8_t>(std::min(group, kMostGroups));
+        }
+    });
+    return ask(parallelFor, [&](std::uint32_t first, std::uint32_t last, auto& tile, auto& cost) {
+        return detail::kernels<Scalar>().countCrowdGroups(view_, first, last, tile, groups_.data(),
+                                                          groupCount, counts.data(), cost);
+    });
+}
+
+template <class Scalar>
+std::size_t Crowd<Scalar>::memoryBytes() const noexcept {
+    std::size_t bytes =
+        sizeof(*this) + staged_.capacity() * sizeof(Staged) +
+        (cellOfSlot_.capacity() + cellStart_.capacity() + slots_.capacity() + numbers_.capacity()) *
+            sizeof(std::uint32_t) +
+        ids_.capacity() * sizeof(ProxyId) +
+        3 * (columns_[0].capacity() * sizeof(Scalar) + sample_[0].capacity() * sizeof(double)) +
+        groups_.capacity() + tiles_.capacity() * sizeof(tiles_[0]);
+    for (const std::unique_ptr<Tile>& tile : tiles_) {
+        bytes += tile->memoryBytes();
+    }
+    return bytes;
+}
+
+template class Crowd<float>;
+template class Crowd<double>;
+
+}  // namespace hashphase

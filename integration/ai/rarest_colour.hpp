@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// The paper's AI routine: every agent counts the colours within a radius and takes the rarest one.
+// After Hastings, Mesit and Guha, "Optimization of Large-Scale, Real-Time Simulations by Spatial
+// Hashing".
+//
+// A frame    update() reads the colours of all, then changes them: nobody sees a new one before the
+//            next frame, so the result does not depend on any order.
+// Threads    update() reads the grid, as queries do, and needs this object for itself.
+// Units      metres, or whatever the grid's are.
+// Bad data   As for a crowd (broadphase/crowd.hpp): who has no finite centre keeps its colour, and
+//            within a negative or NaN radius is nobody. An agent whose colour is not below the number
+//            of colours is counted by nobody, and takes one.
+
+#include <broadphase/crowd.hpp>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace hashphase {
+
+/// Changes colours. Keeps its memory: a frame like the last one allocates nothing.
+template <class Scalar>
+class RarestColour {
+public:
+    /// Of every proxy that the filter accepts, sets colours[ProxyId::index] to that of the colours
+    /// 0 to colourCount - 1 which fewest of the other ones within `radius` [m] of its centre have; of
+    /// equally rare ones the lowest. An agent does not count itself: whoever is alone takes colour 0.
+    /// There are 1 to Crowd::kMostGroups colours, and one place for each agent. Returns the cost of
+    /// counting. Cost: that of Crowd::countGroups().
+    QueryCost update(const Grid<Scalar>& grid, Scalar radius, std::uint32_t colourCount,
+                     std::span<std::uint32_t> colours, ProxyFilter filter = acceptAll,
+                     ParallelFor parallelFor = serialFor);
+
+    /// The agents of the last update().
+    [[nodiscard]] const Crowd<Scalar>& crowd() const noexcept { return crowd_; }
+    [[nodiscard]] std::size_t memoryBytes() const noexcept;
+
+private:
+    Crowd<Scalar> crowd_;
+    std::vector<std::uint32_t> counts_;  // by agent, then by colour
+};
+
+extern template class RarestColour<float>;
+extern template class RarestColour<double>;
+
+}  // namespace hashphase
