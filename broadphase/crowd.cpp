@@ -97,14 +97,9 @@ bool Crowd<Scalar>::stageSlot(const Grid<Scalar>& grid, std::uint32_t slot, Prox
     const auto& record = grid.records_[slot];
     const bool isAccepted = grid.isAlive(slot) && filter(grid.idOf(slot));
     staged.generation = isAccepted ? record.generation : 0;
-    bool isFinite = true;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto at = static_cast<Eigen::Index>(axis);
-        const Scalar centre = record.box.min()[at] / 2 + record.box.max()[at] / 2;
-        staged.position[axis] = centre;
-        isFinite &= centre - centre == 0;
-    }
-    return isAccepted && isFinite;
+    const Vector3<Scalar> position = positionOf(record.box);
+    staged.position = {position.x(), position.y(), position.z()};
+    return isAccepted && position.x() == position.x();
 }
 
 // Cells that fit where some of the agents are.

@@ -7,14 +7,14 @@
 //     crowd.forEach([&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) { ... });
 //
 // A frame    take() copies where all are; then ask as often as you like.
-// Agents     are proxies, numbered from 0 in spatial order by each take(). One's position is the
-//            centre of its box: min / 2 + max / 2, by axis.
+// Agents     are proxies, numbered from 0 in spatial order by each take(), at the centres of their
+//            boxes: see positionOf() in position_region.hpp.
 // Neighbours of an agent are the other agents at most `radius` away: (dx^2 + dy^2) + dz^2 <=
 //            radius^2, each operation rounded to Scalar; beyond 2^60 and below 2^-60 (double: 2^480)
 //            with differences and the radius first multiplied by a power of two that brings the
 //            radius near 1. So of two agents either both or none is the other's neighbour, and the
 //            answer is the same with all instructions and on any number of threads.
-// Bad data   Whose centre is not finite, as that of a box with a NaN or with an infinite face, is no
+// Bad data   Who has no position, because its box has a NaN or an infinite face or is inverted, is no
 //            agent: see leftOut(). Within a negative or NaN radius nobody has a neighbour, within an
 //            infinite one everybody has all.
 // Threads    Everything but the accessors needs this object for itself; take() reads the grid, as
@@ -26,6 +26,7 @@
 #include <broadphase/detail/kernel_types.hpp>
 #include <broadphase/detail/torus.hpp>
 #include <broadphase/grid.hpp>
+#include <broadphase/position_region.hpp>
 #include <broadphase/proxy_filter.hpp>
 
 #include <array>
@@ -67,7 +68,7 @@ public:
         return static_cast<std::uint32_t>(ids_.size());
     }
 
-    /// Number of proxies that are no agents because their centre is not finite.
+    /// Number of proxies that are no agents because they have no position.
     [[nodiscard]] std::uint32_t leftOut() const noexcept { return leftOut_; }
 
     [[nodiscard]] ProxyId id(std::uint32_t agent) const noexcept { return ids_[agent]; }

@@ -5,6 +5,7 @@
 // broadphase/crowd.hpp.
 
 #include <broadphase/detail/unit_scale.hpp>
+#include <broadphase/position_region.hpp>
 #include <tests/support/oracles.hpp>
 
 #include <algorithm>
@@ -21,7 +22,7 @@ using NeighbourLists = std::map<ProxyId, std::vector<ProxyId>>;
 
 template <class Scalar>
 [[nodiscard]] Vector3<Scalar> agentPosition(const Aabb<Scalar>& box) {
-    return box.min() / 2 + box.max() / 2;
+    return positionOf(box);
 }
 
 template <class Scalar>
