@@ -45,10 +45,11 @@ Corners viewCorners(const detail::CameraInverse& inverse, const Aabb<double>& cu
     return corners;
 }
 
-// Leaves what has depthOf(point) >= 0, an affine function; this adds a face. Does nothing where
+// Leaves what has depthOf(point) >= 0, an affine function; this adds a face, onto which snap(point)
+// puts a point that is hardly off it, so that the same face from the other side leaves it there. Does nothing where
 // rounding makes more corners than a polyhedron has: the footprint may be too large, never too small.
-template <class DepthOf>
-void clip(Corners& corners, std::uint32_t newFace, const DepthOf& depthOf) {
+template <class DepthOf, class Snap>
+void clip(Corners& corners, std::uint32_t newFace, const DepthOf& depthOf, const Snap& snap) {
     Corners clipped;
     bool hasRoom = true;
     for (const Corner& inside : corners) {
@@ -62,8 +63,8 @@ void clip(Corners& corners, std::uint32_t newFace, const DepthOf& depthOf) {
             const std::uint32_t edge = inside.faces & outside.faces;
             if (beyond < 0 && std::popcount(edge) == 2) {
                 const double share = depth / (depth - beyond);
-                const Eigen::Vector4d crossing =
-                    inside.point + share * (outside.point - inside.point);
+                Eigen::Vector4d crossing = inside.point + share * (outside.point - inside.point);
+                snap(crossing);
                 hasRoom = clipped.push({crossing, edge | 1U << newFace}) && hasRoom;
             }
         }
@@ -160,7 +161,7 @@ std::array<int, 2> mapAxes(UpAxis up) {
 template <class Scalar>
 ConvexRegion<Scalar> GroundFootprint<Scalar>::region(Containment containment) const {
     if (isEmpty()) {
-        const Plane none(Vector3<Scalar>::Zero(), Scalar(-1));
+        const Plane none(Vector3<Scalar>::Zero(), std::numeric_limits<Scalar>::quiet_NaN());
         return ConvexRegion<Scalar>(std::span(&none, 1), containment);
     }
     return ConvexRegion<Scalar>(std::span(planes_.begin(), planes_.end()), containment);
@@ -210,16 +211,22 @@ GroundFootprint<Scalar>::GroundFootprint(const Eigen::Matrix<Scalar, 4, 4>& view
     }
     // Passes: what is before the farthest distance, above `low`, below `high`.
     const double least = inverse.weightBehind(nearest, farthest);
-    clip(corners, 6, [&](const Eigen::Vector4d& point) { return point.w() - least; });
+    using Point4 = Eigen::Vector4d;
+    clip(
+        corners, 6, [&](const Point4& point) { return point.w() - least; },
+        [&](Point4& point) { point.w() = least; });
     const auto up = static_cast<int>(heights.up);
     const auto low = static_cast<double>(heights.low);
     const auto high = static_cast<double>(heights.high);
     if (std::isfinite(low)) {
-        clip(corners, 7, [&](const Eigen::Vector4d& point) { return point[up] - low * point.w(); });
+        clip(
+            corners, 7, [&](const Point4& point) { return point[up] - low * point.w(); },
+            [&](Point4& point) { point[up] = low * point.w(); });
     }
     if (std::isfinite(high)) {
-        clip(corners, 8,
-             [&](const Eigen::Vector4d& point) { return high * point.w() - point[up]; });
+        clip(
+            corners, 8, [&](const Point4& point) { return high * point.w() - point[up]; },
+            [&](Point4& point) { point[up] = high * point.w(); });
     }
     const std::array<int, 2> axes = mapAxes(heights.up);
     PointList points;
