@@ -25,22 +25,26 @@ RayRegion<Scalar> clipToHeights(const RayRegion<Scalar>& ray, const HeightRange<
     }
     const Vector3<double> from = ray.from().template cast<double>();
     const Vector3<double> way = ray.direction().template cast<double>();
-    // Above `low` and below `high` by its upper and lower side, and by what rounding may take away.
-    constexpr auto rounding = static_cast<double>(4 * std::numeric_limits<Scalar>::epsilon());
-    const auto slack = [&](Scalar height) {
-        const auto size = std::abs(static_cast<double>(height));
-        return std::isinf(size) ? 0 : rounding * (size + std::abs(from[up]) + std::abs(way[up]));
+    // The ends are rounded, and must not end before what they touch.
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
+    constexpr auto rounding = static_cast<double>(std::numeric_limits<Scalar>::epsilon());
+    const auto slack = [&](Scalar end) {
+        return 4 * (rounding * std::abs(static_cast<double>(end)) +
+                    epsilon * (std::abs(from[up]) + std::abs(way[up])));
     };
-    const double low =
-        static_cast<double>(heights.low - ray.fatness().max()[up]) - from[up] - slack(heights.low);
-    const double high = static_cast<double>(heights.high - ray.fatness().min()[up]) - from[up] +
-                        slack(heights.high);
+    const Scalar lowest = heights.low - ray.fatness().max()[up];
+    const Scalar highest = heights.high - ray.fatness().min()[up];
+    const double low = std::isinf(lowest) ? static_cast<double>(lowest)
+                                          : static_cast<double>(lowest) - from[up] - slack(lowest);
+    const double high = std::isinf(highest)
+                            ? static_cast<double>(highest)
+                            : static_cast<double>(highest) - from[up] + slack(highest);
     double enter = 0;
     double leave = 1;
     if (way[up] == 0) {
         leave = low <= 0 && high >= 0 ? 1 : -1;
     } else {
-        const auto [near, far] = std::minmax(low / way[up], high / way[up]);
+        const auto [near, far] = std::minmax({low / way[up], high / way[up]});
         enter = std::max(enter, near);
         leave = std::min(leave, far);
     }
