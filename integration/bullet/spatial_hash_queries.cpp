@@ -3,9 +3,9 @@
 // The queries of SpatialHashBroadphase.
 
 #include <integration/bullet/conversions.hpp>
+#include <integration/bullet/shape_pick.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
-#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <LinearMath/btAabbUtil2.h>
 
 #include <algorithm>
@@ -98,19 +98,12 @@ public:
     ShapeCaster(const SpatialHashBroadphase& broadphase, const btVector3& from, const btVector3& to,
                 btCollisionWorld::RayResultCallback& callback)
         : broadphase_(broadphase),
-          from_(btMatrix3x3::getIdentity(), from),
-          to_(btMatrix3x3::getIdentity(), to),
+          from_(from),
+          to_(to),
           tolerance_(castTolerance(from, to)),
           callback_(callback) {}
 
-    void add(ProxyId id, btScalar /*key*/) {
-        btBroadphaseProxy* proxy = broadphase_.proxyOf(id);
-        auto* object = static_cast<btCollisionObject*>(proxy->m_clientObject);
-        if (object != nullptr && callback_.needsCollision(proxy)) {
-            btCollisionWorld::rayTestSingle(from_, to_, object, object->getCollisionShape(),
-                                            object->getWorldTransform(), callback_);
-        }
-    }
+    void add(ProxyId id, btScalar /*key*/) { castAtShape(broadphase_, id, from_, to_, callback_); }
     [[nodiscard]] btScalar limit() const {
         const btScalar closest = callback_.m_closestHitFraction;
         return closest > 0 ? closest + tolerance_ : btScalar(-1);
@@ -118,8 +111,8 @@ public:
 
 private:
     const SpatialHashBroadphase& broadphase_;
-    btTransform from_;
-    btTransform to_;
+    const btVector3& from_;
+    const btVector3& to_;
     btScalar tolerance_;
     btCollisionWorld::RayResultCallback& callback_;
 };

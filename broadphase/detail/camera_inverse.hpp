@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+#include <Eigen/Core>
+
+namespace hashphase::detail {
+
+/// The way from the screen back into the world, in double precision.
+class CameraInverse {
+public:
+    CameraInverse() = default;
+
+    /// Of a view-projection matrix, 4 x 4.
+    explicit CameraInverse(const Eigen::Matrix4d& viewProjection);
+
+    /// False for a matrix that is singular or not finite.
+    [[nodiscard]] bool isValid() const noexcept { return isValid_; }
+
+    /// The world's homogeneous point with these normalised device coordinates. Its weight, w, is one
+    /// by the w of clip space: positive in front of the eye, the smaller the farther away, 0 at
+    /// infinity. Points of a segment in device coordinates are those between its homogeneous ends.
+    [[nodiscard]] Eigen::Vector4d at(double x, double y, double z) const {
+        return inverse_ * Eigen::Vector4d(x, y, z, 1);
+    }
+
+    /// The weight of points that lie `farther` [m] behind those of weight `near`, as seen from the
+    /// eye; a little less, for rounding. 0 when all have the same weight (orthographic).
+    [[nodiscard]] double weightBehind(double near, double farther) const noexcept {
+        return weightPerMetre_ == 0 ? 0 : (1 - 1e-12) / (1 / near + farther * weightPerMetre_);
+    }
+
+private:
+    Eigen::Matrix4d inverse_ = Eigen::Matrix4d::Zero();
+    double weightPerMetre_ = 0;  // of the w of clip space, along the view
+    bool isValid_ = false;
+};
+
+}  // namespace hashphase::detail

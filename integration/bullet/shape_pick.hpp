@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Picking in a Bullet world by the shapes of its objects. A picking ray is a RayRegion, as a View makes
+// one of a pixel; picking by boxes and drag selection work on SpatialHashBroadphase::grid() as they are.
+//
+// Worlds   whose clients are btCollisionObjects; proxies without a client are not met
+// Boxes    Only objects whose boxes are met are asked: a body that was moved by hand needs its box
+//          set, by btCollisionWorld::updateSingleAabb().
+// Threads  any number at the same time
+
+#include <broadphase/collectors.hpp>
+#include <broadphase/proxy_filter.hpp>
+#include <broadphase/regions.hpp>
+#include <integration/bullet/precision.hpp>
+#include <integration/bullet/spatial_hash_broadphase.hpp>
+
+#include <optional>
+
+namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+
+/// Where a ray meets the shape of a proxy's object: an ExactTest for pickAll() of
+/// integration/picking/pick.hpp. To find the nearest only, closestShape() is exact where pickNearest()
+/// is not: Bullet's casts may end up to 2 cm in front of a shape, and of its box. The broadphase must
+/// outlive the test.
+class ShapeTest {
+public:
+    explicit ShapeTest(const SpatialHashBroadphase& broadphase) noexcept
+        : broadphase_(&broadphase) {}
+
+    /// The fraction of the ray's length, below the limit, that btCollisionWorld::rayTestSingle() has
+    /// for the ray without its fatness.
+    [[nodiscard]] std::optional<btScalar> operator()(ProxyId id, const RayRegion<btScalar>& ray,
+                                                     btScalar limit) const;
+
+private:
+    const SpatialHashBroadphase* broadphase_;
+};
+
+/// The nearest object that the ray meets by its shape, and at what fraction of the ray's length; null
+/// when there is none. What closestRay() finds, which also has a normal to tell.
+[[nodiscard]] KeyedProxy<btScalar> closestShape(const SpatialHashBroadphase& broadphase,
+                                                const RayRegion<btScalar>& ray,
+                                                ProxyFilter filter = acceptAll);
+
+/// Casts a ray at the shape of a proxy's object, when there is one and the callback's
+/// needsCollision() wants it.
+void castAtShape(const SpatialHashBroadphase& broadphase, ProxyId id, const btVector3& from,
+                 const btVector3& to, btCollisionWorld::RayResultCallback& callback);
+
+}  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

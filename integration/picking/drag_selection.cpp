@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Zlib
+#include <integration/picking/drag_selection.hpp>
+
+#include <algorithm>
+
+namespace hashphase {
+
+template <class Scalar>
+std::string selectionError(const View<Scalar>& view, const Pixel& a, const Pixel& b) {
+    if (!view.isValid()) {
+        return viewError(view.viewProjection(), view.viewport());
+    }
+    if (a.hasNaN() || b.hasNaN()) {
+        return "A corner of the rectangle is NaN; both must be places in the window.";
+    }
+    if (view.rectangleBetween(a, b).isEmpty()) {
+        return "The rectangle lies beside the viewport; some of it must lie inside.";
+    }
+    return {};
+}
+
+template <class Scalar>
+ConvexRegion<Scalar> selectionRegion(const View<Scalar>& view, const Pixel& a, const Pixel& b,
+                                     Containment containment) {
+    return frustumRegion(view.viewProjection(), view.depthRange(), view.rectangleBetween(a, b),
+                         containment, Touch::exact);
+}
+
+template <class Scalar>
+std::span<const ProxyId> select(const Grid<Scalar>& grid, const View<Scalar>& view, const Pixel& a,
+                                const Pixel& b, std::vector<ProxyId>& selected,
+                                Containment containment, ProxyFilter filter) {
+    selected.clear();
+    CollectAll all(selected);
+    CollectIf accepted(all, filter);
+    grid.visit(selectionRegion(view, a, b, containment), accepted);
+    std::sort(selected.begin(), selected.end());
+    return selected;
+}
+
+#define HASHPHASE_INSTANTIATE(Scalar)                                                              \
+    template std::string selectionError(const View<Scalar>&, const Pixel&, const Pixel&);          \
+    template ConvexRegion<Scalar> selectionRegion(const View<Scalar>&, const Pixel&, const Pixel&, \
+                                                  Containment);                                    \
+    template std::span<const ProxyId> select(const Grid<Scalar>&, const View<Scalar>&,             \
+                                             const Pixel&, const Pixel&, std::vector<ProxyId>&,    \
+                                             Containment, ProxyFilter)
+
+HASHPHASE_INSTANTIATE(float);
+HASHPHASE_INSTANTIATE(double);
+
+}  // namespace hashphase

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What lies in a rectangle that is dragged on the screen. The rectangle is a frustum of the view, not a
+// piece of the ground, and so may reach over the horizon.
+//
+// Corners  two opposite ones, in any order. Those of the same place, row or column select what lies
+//          under that point or line. What lies beside the viewport is cut off.
+// Bad data A rectangle that lies wholly beside the viewport or is NaN, and a view that is not valid,
+//          select nothing; selectionError() says why.
+// Threads  any number at the same time, like every query of a grid
+
+#include <broadphase/convex_region.hpp>
+#include <broadphase/grid.hpp>
+#include <broadphase/proxy_filter.hpp>
+#include <integration/picking/view.hpp>
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hashphase {
+
+/// Says in a sentence why nothing can be selected; empty when something may be.
+template <class Scalar>
+[[nodiscard]] std::string selectionError(const View<Scalar>& view, const Pixel& a, const Pixel& b);
+
+/// All that is seen between two corners, exactly. Cost: some microseconds.
+template <class Scalar>
+[[nodiscard]] ConvexRegion<Scalar> selectionRegion(const View<Scalar>& view, const Pixel& a,
+                                                   const Pixel& b,
+                                                   Containment containment = Containment::touching);
+
+/// The proxies whose boxes touch what is seen between two corners, or lie wholly inside, by their ids,
+/// in a vector of the caller's, which is emptied first. Returns what is in it.
+template <class Scalar>
+std::span<const ProxyId> select(const Grid<Scalar>& grid, const View<Scalar>& view, const Pixel& a,
+                                const Pixel& b, std::vector<ProxyId>& selected,
+                                Containment containment = Containment::touching,
+                                ProxyFilter filter = acceptAll);
+
+}  // namespace hashphase

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Zlib
+#include <integration/picking/ground.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hashphase {
+namespace {
+
+template <class Scalar>
+RayRegion<Scalar> emptyRay() {
+    const Vector3<Scalar> nowhere =
+        Vector3<Scalar>::Constant(std::numeric_limits<Scalar>::quiet_NaN());
+    return {nowhere, nowhere};
+}
+
+}  // namespace
+
+template <class Scalar>
+RayRegion<Scalar> clipToHeights(const RayRegion<Scalar>& ray, const HeightRange<Scalar>& heights) {
+    const auto up = static_cast<int>(heights.up);
+    if (ray.isEmpty() || !(heights.low <= heights.high)) {
+        return emptyRay<Scalar>();
+    }
+    const Vector3<double> from = ray.from().template cast<double>();
+    const Vector3<double> way = ray.direction().template cast<double>();
+    // The ends are rounded, and must not end before what they touch.
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
+    constexpr auto rounding = static_cast<double>(std::numeric_limits<Scalar>::epsilon());
+    const auto slack = [&](Scalar end) {
+        return 4 * (rounding * std::abs(static_cast<double>(end)) +
+                    epsilon * (std::abs(from[up]) + std::abs(way[up])));
+    };
+    const Scalar lowest = heights.low - ray.fatness().max()[up];
+    const Scalar highest = heights.high - ray.fatness().min()[up];
+    const double low = std::isinf(lowest) ? static_cast<double>(lowest)
+                                          : static_cast<double>(lowest) - from[up] - slack(lowest);
+    const double high = std::isinf(highest)
+                            ? static_cast<double>(highest)
+                            : static_cast<double>(highest) - from[up] + slack(highest);
+    double enter = 0;
+    double leave = 1;
+    if (way[up] == 0) {
+        leave = low <= 0 && high >= 0 ? 1 : -1;
+    } else {
+        const auto [near, far] = std::minmax({low / way[up], high / way[up]});
+        enter = std::max(enter, near);
+        leave = std::min(leave, far);
+    }
+    if (!(enter <= leave)) {
+        return emptyRay<Scalar>();
+    }
+    const Vector3<double> begin = from + enter * way;
+    const Vector3<double> end = from + leave * way;
+    return {begin.cast<Scalar>(), end.cast<Scalar>(), ray.fatness()};
+}
+
+template <class Scalar>
+std::optional<Vector3<Scalar>> groundPoint(const RayRegion<Scalar>& ray,
+                                           std::type_identity_t<Scalar> height, UpAxis upAxis) {
+    const auto up = static_cast<int>(upAxis);
+    const auto way = static_cast<double>(ray.direction()[up]);
+    const double fraction =
+        (static_cast<double>(height) - static_cast<double>(ray.from()[up])) / way;
+    if (ray.isEmpty() || way == 0 || !(fraction >= 0 && fraction <= 1)) {
+        return std::nullopt;
+    }
+    const Vector3<double> point =
+        ray.from().template cast<double>() + fraction * ray.direction().template cast<double>();
+    Vector3<Scalar> result = point.cast<Scalar>();
+    result[up] = height;
+    return result;
+}
+
+template <class Scalar>
+GroundFootprint<Scalar> dragFootprint(const View<Scalar>& view, const Pixel& a, const Pixel& b,
+                                      const HeightRange<Scalar>& heights, double farthest) {
+    return {view.viewProjection(), view.depthRange(), heights, view.rectangleBetween(a, b),
+            farthest};
+}
+
+#define HASHPHASE_INSTANTIATE(Scalar)                                                              \
+    template RayRegion<Scalar> clipToHeights(const RayRegion<Scalar>&,                             \
+                                             const HeightRange<Scalar>&);                          \
+    template std::optional<Vector3<Scalar>> groundPoint(const RayRegion<Scalar>&, Scalar, UpAxis); \
+    template GroundFootprint<Scalar> dragFootprint(                                                \
+        const View<Scalar>&, const Pixel&, const Pixel&, const HeightRange<Scalar>&, double)
+
+HASHPHASE_INSTANTIATE(float);
+HASHPHASE_INSTANTIATE(double);
+
+}  // namespace hashphase

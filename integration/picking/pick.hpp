@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What is under the pointer: by boxes, or by an exact test of the caller's. Users and AI alike pick
+// along a ray: View::rayThrough() makes one of a pixel, clipToHeights() shortens it to where things
+// stand.
+//
+// Order    from near to far; of those equally near, by their ids
+// Threads  any number at the same time, like every query of a grid
+// Bad data An empty ray (RayRegion::isEmpty()) picks nothing. An exact test that answers NaN, a number
+//          below 0, or one above the limit has found nothing.
+
+#include <broadphase/function_ref.hpp>
+#include <broadphase/grid.hpp>
+#include <broadphase/proxy_filter.hpp>
+
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+namespace hashphase {
+
+template <class Scalar>
+struct Picked {
+    ProxyId id;                                       // null: nothing
+    Scalar fraction = 0;                              // of the ray's length, at which it is met
+    Vector3<Scalar> point = Vector3<Scalar>::Zero();  // there [m]
+};
+
+/// Says where the ray meets what the proxy stands for: the fraction of its length, no smaller than
+/// that at which the ray enters the proxy's box, or nothing. What is farther away than `limit` is not
+/// wanted and need not be looked for. Asked about what the filter accepts and whose box is met.
+template <class Scalar>
+using ExactTest =
+    FunctionRef<std::optional<Scalar>(ProxyId id, const RayRegion<Scalar>& ray, Scalar limit)>;
+
+/// The nearest proxy whose box the ray meets.
+template <class Scalar>
+[[nodiscard]] Picked<Scalar> pickNearest(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
+                                         ProxyFilter filter = acceptAll);
+
+/// The nearest by the exact test, which is not asked about boxes behind what was found before.
+template <class Scalar>
+[[nodiscard]] Picked<Scalar> pickNearest(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
+                                         std::type_identity_t<ExactTest<Scalar>> test,
+                                         ProxyFilter filter = acceptAll);
+
+/// All that the ray meets, near to far, in a vector of the caller's, which is emptied first. Returns
+/// what is in it.
+template <class Scalar>
+std::span<const Picked<Scalar>> pickAll(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
+                                        std::vector<Picked<Scalar>>& picked,
+                                        ProxyFilter filter = acceptAll);
+
+template <class Scalar>
+std::span<const Picked<Scalar>> pickAll(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
+                                        std::vector<Picked<Scalar>>& picked,
+                                        std::type_identity_t<ExactTest<Scalar>> test,
+                                        ProxyFilter filter = acceptAll);
+
+}  // namespace hashphase

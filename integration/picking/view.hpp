@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// A camera and the window that it draws to: from pixels to rays and rectangles.
+//
+// Cameras   any that frustum.hpp knows: perspective, orthographic, oblique, with a reversed depth
+//           range or an infinite far plane. Computed in double precision throughout, and rounded once
+//           at the end.
+// Pixels    x to the right and y downwards, as in windows; any numbers, not only whole ones: the
+//           middle of the pixel in column i and row k is (i + 0.5, k + 0.5).
+// Units     metres in the world
+// Bad data  A view that has no inverse or no size sees nothing: its rays and rectangles are empty, and
+//           viewError() says why. So are those of pixels that are NaN.
+// Threads   values; use them from any thread
+
+#include <broadphase/detail/camera_inverse.hpp>
+#include <broadphase/frustum.hpp>
+#include <broadphase/ground_footprint.hpp>
+#include <broadphase/regions.hpp>
+
+#include <cstdint>
+#include <string>
+
+namespace hashphase {
+
+/// A place in the window.
+using Pixel = Eigen::Vector2d;
+
+/// The part of the window that the camera draws to, in pixels; (x, y) is its upper left corner.
+struct Viewport {
+    double x = 0;
+    double y = 0;
+    double width = 0;
+    double height = 0;
+};
+
+/// Which end of the depth range is near. Asked about orthographic cameras only; of all others the
+/// matrix says so itself.
+enum class DepthOrder : std::uint8_t { nearFirst, reversed };
+
+/// Says in a sentence why nothing can be seen or picked through the matrix, 4 x 4, in the viewport;
+/// empty when something may be.
+template <class Scalar>
+[[nodiscard]] std::string viewError(const Eigen::Matrix<Scalar, 4, 4>& viewProjection,
+                                    const Viewport& viewport);
+
+template <class Scalar>
+class View {
+public:
+    using Matrix = Eigen::Matrix<Scalar, 4, 4>;
+
+    /// Cost: inverts the matrix, once.
+    View(const Matrix& viewProjection, DepthRange depthRange, const Viewport& viewport,
+         DepthOrder depthOrder = DepthOrder::nearFirst);
+
+    /// False when viewError() says something.
+    [[nodiscard]] bool isValid() const noexcept { return isValid_; }
+
+    /// All that is seen at a pixel, in the viewport or beside it: from the near plane to the far
+    /// plane, or, where that is farther away or at infinity, to what is `farthest` [m] behind the near
+    /// plane, as measured along the camera's view. Empty where nothing is, or `farthest` is not
+    /// positive.
+    [[nodiscard]] RayRegion<Scalar> rayThrough(const Pixel& pixel,
+                                               double farthest = kFarthest) const;
+
+    /// The rectangle between two corners, in any order, as far as it lies in the viewport; perhaps
+    /// without area. isEmpty() when none of it does.
+    [[nodiscard]] ScreenRectangle<Scalar> rectangleBetween(const Pixel& a, const Pixel& b) const;
+
+    [[nodiscard]] const Matrix& viewProjection() const noexcept { return viewProjection_; }
+    [[nodiscard]] DepthRange depthRange() const noexcept { return depthRange_; }
+    [[nodiscard]] const Viewport& viewport() const noexcept { return viewport_; }
+
+private:
+    [[nodiscard]] Eigen::Vector2d deviceCoordinates(const Pixel& pixel) const;
+
+    Matrix viewProjection_;
+    detail::CameraInverse inverse_;
+    Viewport viewport_;
+    DepthRange depthRange_;
+    DepthOrder depthOrder_;
+    bool isValid_;
+};
+
+extern template class View<float>;
+extern template class View<double>;
+
+}  // namespace hashphase
