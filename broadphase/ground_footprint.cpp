@@ -152,10 +152,6 @@ PointList normalsOf(const PointList& corners) {
     return normals;
 }
 
-std::array<int, 2> mapAxes(UpAxis up) {
-    return {up == UpAxis::x ? 1 : 0, up == UpAxis::z ? 1 : 2};
-}
-
 }  // namespace
 
 template <class Scalar>

@@ -19,6 +19,7 @@
 #include <broadphase/convex_region.hpp>
 #include <broadphase/detail/fixed_list.hpp>
 #include <broadphase/frustum.hpp>
+#include <broadphase/up_axis.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -29,8 +30,6 @@ namespace hashphase {
 
 /// Where views end whose far plane is farther away [m], unless told otherwise.
 inline constexpr double kFarthest = 1e6;
-
-enum class UpAxis : std::uint8_t { x, y, z };
 
 /// From the lowest to the highest of what is on the ground.
 template <class Scalar>

@@ -26,7 +26,8 @@ public:
               window.center.allFinite())) {
             size_ = std::numeric_limits<Scalar>::quiet_NaN();
         }
-        axes_ = {window.upAxis == 0 ? 1 : 0, window.upAxis == 2 ? 1 : 2, window.upAxis};
+        const std::array<int, 2> across = mapAxes(window.up);
+        axes_ = {across[0], across[1], static_cast<int>(window.up)};
         cosine_ = std::cos(heading);
         sine_ = std::sin(heading);
         for (std::size_t i = 0; i < 3; ++i) {
@@ -132,7 +133,6 @@ template <class Scalar>
 std::span<const std::uint32_t> Radar<Scalar>::scan(const Grid<Scalar>& grid,
                                                    const RadarWindow<Scalar>& window,
                                                    std::uint32_t groupCount, RadarGroups groupOf) {
-    HASHPHASE_ASSERT(window.upAxis >= 0 && window.upAxis < 3, "The up axis is 0, 1 or 2.");
     const RadarCells<Scalar> cells(window);
     HASHPHASE_ASSERT(
         double{1} * window.columns * window.rows * std::max(window.layers, 1U) * groupCount <=

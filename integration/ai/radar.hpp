@@ -10,9 +10,10 @@
 // Threads   scan() reads the grid, as queries do, and needs this object for itself.
 // Bad data  A cell size that is 0 or less, NaN or infinite, a centre or heading that is not finite:
 //           all counts are 0.
-// Misuse    More than kMostCounts counts are asserted, and an upAxis that is none.
+// Misuse    More than kMostCounts counts are asserted.
 
 #include <broadphase/grid.hpp>
+#include <broadphase/up_axis.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -32,7 +33,7 @@ struct RadarWindow {
     std::uint32_t columns = 32;
     std::uint32_t rows = 32;
     std::uint32_t layers = 0;  ///< of cells, one above another; 0: one, of all heights
-    int upAxis = 1;
+    UpAxis up = UpAxis::y;
 
     /// Without a heading, cells begin at multiples of their size: the counts of what rests do not
     /// flicker while the agent moves within its cell. The window begins columns / 2 cells (integer

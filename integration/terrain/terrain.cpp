@@ -7,7 +7,7 @@
 namespace hashphase {
 
 template <class Scalar>
-Terrain<Scalar>::Terrain(Grid<Scalar>& grid, Axis up)
+Terrain<Scalar>::Terrain(Grid<Scalar>& grid, UpAxis up)
     : grid_(&grid),
       up_(static_cast<Eigen::Index>(up)),
       alongX_((up_ + 2) % 3),

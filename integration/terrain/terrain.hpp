@@ -17,6 +17,7 @@
 
 #include <broadphase/grid.hpp>
 #include <broadphase/parallel_for.hpp>
+#include <broadphase/up_axis.hpp>
 #include <integration/terrain/detail/ground_triangle.hpp>
 
 #include <array>
@@ -27,8 +28,6 @@
 #include <vector>
 
 namespace hashphase {
-
-enum class Axis : std::uint8_t { x, y, z };
 
 /// Where something stands: on which triangle, by its number, and how high.
 template <class Scalar>
@@ -58,7 +57,7 @@ public:
     static constexpr double kFarthest = 1e70;
 
     /// The grid is not owned and must outlive the terrain, which removes its proxies in the end.
-    explicit Terrain(Grid<Scalar>& grid, Axis up = Axis::y);
+    explicit Terrain(Grid<Scalar>& grid, UpAxis up = UpAxis::y);
     ~Terrain();
     Terrain(const Terrain&) = delete;
     Terrain& operator=(const Terrain&) = delete;

@@ -136,8 +136,9 @@ std::vector<std::uint32_t> scanByBruteForce(std::span<const Placed<Scalar>> prox
                                             const RadarWindow<Scalar>& window,
                                             std::uint32_t groupCount, RadarGroups groupOf) {
     std::vector<std::uint32_t> counts;
-    const int columnAxis = window.upAxis == 0 ? 1 : 0;
-    const int rowAxis = 3 - columnAxis - window.upAxis;
+    const int upAxis = static_cast<int>(window.up);
+    const int columnAxis = upAxis == 0 ? 1 : 0;
+    const int rowAxis = 3 - columnAxis - upAxis;
     const Scalar size = window.cellSize;
     const auto isIn = [&](const Vector3<Scalar>& position, int axis, Scalar along,
                           std::uint32_t count, std::uint32_t number) {
@@ -169,8 +170,7 @@ std::vector<std::uint32_t> scanByBruteForce(std::span<const Placed<Scalar>> prox
                                  column) &&
                             isIn(position, rowAxis, sine * x + cosine * z, window.rows, row) &&
                             (window.layers == 0 ||
-                             isIn(position, window.upAxis, offset[window.upAxis], window.layers,
-                                  layer));
+                             isIn(position, upAxis, offset[upAxis], window.layers, layer));
                         counts.back() += isHere ? 1 : 0;
                     }
                 }

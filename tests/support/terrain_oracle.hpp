@@ -123,7 +123,7 @@ struct Candidate {
 template <class Scalar>
 class TerrainOracle {
 public:
-    explicit TerrainOracle(const Terrain<Scalar>& terrain, Axis up = Axis::y)
+    explicit TerrainOracle(const Terrain<Scalar>& terrain, UpAxis up = UpAxis::y)
         : up_(static_cast<int>(up)) {
         for (std::uint32_t i = 0; i < terrain.size(); ++i) {
             const auto corners = terrain.corners(i);

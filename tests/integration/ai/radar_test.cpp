@@ -67,7 +67,7 @@ TYPED_TEST(RadarTest, CountsWhomBruteForceCountsInEveryScene) {
                 window.columns = random.below(8);
                 window.rows = random.below(8);
                 window.layers = random.chance(0.5) ? 0 : random.below(5);
-                window.upAxis = static_cast<int>(random.below(3));
+                window.up = static_cast<UpAxis>(random.below(3));
                 if (random.chance(0.5)) {
                     window.heading = random.chance(0.1)
                                          ? hostileNumber<TypeParam>(random)
@@ -78,7 +78,7 @@ TYPED_TEST(RadarTest, CountsWhomBruteForceCountsInEveryScene) {
                     scanByBruteForce<TypeParam>(script.proxies(), window, 3, groupOf);
                 ASSERT_TRUE(std::ranges::equal(counts, expected))
                     << window.center.transpose() << " by " << window.cellSize << " turned "
-                    << window.heading.value_or(0) << ", up " << window.upAxis;
+                    << window.heading.value_or(0) << ", up " << static_cast<int>(window.up);
                 counted += std::accumulate(counts.begin(), counts.end(), std::size_t{0});
             }
             if (frame % 3 != 1) {
@@ -247,9 +247,6 @@ TEST(RadarDeathTest, HasAtMostSoManyCountsAndOneOfThreeUpAxes) {
     window.columns = 1U << 31;
     window.rows = 1U << 31;
     window.layers = 4;
-    EXPECT_THROW(radar.scan(grid, window, 1, groupOf), BrokenAssert);
-    window = {};
-    window.upAxis = 3;
     EXPECT_THROW(radar.scan(grid, window, 1, groupOf), BrokenAssert);
 }
 #endif

@@ -146,7 +146,7 @@ void addTo(Terrain<Scalar>& terrain, const Mesh<Scalar>& mesh) {
 
 /// The point in a world in which another axis than y is up.
 template <class Scalar>
-[[nodiscard]] Vector3<Scalar> turned(const Vector3<Scalar>& point, Axis up) {
+[[nodiscard]] Vector3<Scalar> turned(const Vector3<Scalar>& point, UpAxis up) {
     const int y = static_cast<int>(up);
     Vector3<Scalar> result;
     result[y] = point[1];
@@ -158,7 +158,7 @@ template <class Scalar>
 /// A grid and the ground in it, which is turned so that `up` is up.
 template <class Scalar>
 struct GroundWorld {
-    explicit GroundWorld(Mesh<Scalar> mesh, Axis up = Axis::y) : terrain(grid, up) {
+    explicit GroundWorld(Mesh<Scalar> mesh, UpAxis up = UpAxis::y) : terrain(grid, up) {
         for (Vector3<Scalar>& vertex : mesh.vertices) {
             vertex = turned(vertex, up);
         }

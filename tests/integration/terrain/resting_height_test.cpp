@@ -176,7 +176,7 @@ TYPED_TEST(RestingHeight, IsThatOfBruteForceInRandomMeshes) {
     std::size_t found = 0;
     for (int meshNumber = 0; meshNumber < 300; ++meshNumber) {
         SCOPED_TRACE(testing::Message() << "mesh " << meshNumber);
-        const Axis up = static_cast<Axis>(meshNumber % 3);
+        const UpAxis up = static_cast<UpAxis>(meshNumber % 3);
         const Mesh<TypeParam> mesh = random.chance(0.4)
                                          ? roughGround<TypeParam>(random, 5, 1, 2, 0.15)
                                          : splinters<TypeParam>(random, 1 + random.below(25));

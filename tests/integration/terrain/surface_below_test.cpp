@@ -128,7 +128,7 @@ TYPED_TEST(SurfaceBelow, IsThatOfBruteForceInRandomMeshes) {
     std::size_t found = 0;
     for (int meshNumber = 0; meshNumber < 1000; ++meshNumber) {
         SCOPED_TRACE(testing::Message() << "mesh " << meshNumber);
-        const Axis up = static_cast<Axis>(meshNumber % 3);
+        const UpAxis up = static_cast<UpAxis>(meshNumber % 3);
         const Mesh<TypeParam> mesh = random.chance(0.3)
                                          ? roughGround<TypeParam>(random, 6, 1, 3, 0.15)
                                          : splinters<TypeParam>(random, 1 + random.below(60));

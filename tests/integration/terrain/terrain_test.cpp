@@ -42,7 +42,7 @@ TYPED_TEST(TerrainTriangles, AreNumberedAsTheyAreHandedIn) {
 
 TYPED_TEST(TerrainTriangles, KeepTheirCornersInOrderAndTheirNormalsUpward) {
     Grid<TypeParam> grid;
-    for (const Axis up : {Axis::x, Axis::y, Axis::z}) {
+    for (const UpAxis up : {UpAxis::x, UpAxis::y, UpAxis::z}) {
         Terrain<TypeParam> terrain(grid, up);
         Random random(0x5eed2001);
         for (int i = 0; i < 200; ++i) {

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace hashphase {
+
+/// Which axis points upwards.
+enum class UpAxis : std::uint8_t { x, y, z };
+
+/// The axes across it, those of a map, ascending.
+[[nodiscard]] constexpr std::array<int, 2> mapAxes(UpAxis up) noexcept {
+    return {up == UpAxis::x ? 1 : 0, up == UpAxis::z ? 1 : 2};
+}
+
+}  // namespace hashphase
