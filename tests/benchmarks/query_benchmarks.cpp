@@ -5,9 +5,11 @@
 #include <integration/bullet/conversions.hpp>
 #include <tests/benchmarks/catalog.hpp>
 #include <tests/benchmarks/ray_workload.hpp>
+#include <tests/support/camera_matrices.hpp>
 
 #include <demos/scenes/brownian_scene.hpp>
 #include <demos/scenes/paper_scene.hpp>
+#include <integration/picking/view.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -95,6 +97,18 @@ Ray rayOverTerrain(Random& random, const Boxes& boxes) {
     return shortened({from, from + way}, std::min(way.length(), kFarthest));
 }
 
+// What is under a pointer anywhere on the screen: the camera looks at one of the boxes from 40 m away.
+Ray rayThroughPixel(Random& random, const Boxes& boxes) {
+    constexpr Viewport kWindow{0, 0, 1920, 1080};
+    const test::CameraLens lens;
+    const Vector3<double> target = anyBox(random, boxes).center().cast<double>();
+    const Vector3<double> eye = target + Vector3<double>(24, 20, 24);
+    const View<float> view(test::cameraMatrix<float>(lens, eye, target), lens.depthRange, kWindow);
+    const RayRegion<float> ray =
+        view.rayThrough({random.between(0, 1920), random.between(0, 1080)});
+    return {toBullet(ray.from()), toBullet(ray.from() + ray.direction())};
+}
+
 bool answersQueries(const ContestantKind& kind, std::size_t /*objects*/) {
     return kind.name == "hash" || kind.name == kBaseline;
 }
@@ -159,6 +173,12 @@ std::vector<Benchmark> queryBenchmarks() {
     closest.closestOnly = true;
     all.push_back(rays("rays-closest", "rays-dense-long, but only the nearest box is wanted", dense,
                        closest));
+    RayPlan pick = planOf(rayThroughPixel);
+    all.push_back(rays("picking", "all boxes under the pointer, 500 times, among uniform boxes",
+                       dense, pick));
+    pick.closestOnly = true;
+    all.push_back(
+        rays("picking-closest", "picking, but only the nearest box is wanted", dense, pick));
     RayPlan fat = planOf(shortRay);
     fat.castHalfExtents = btVector3(0.5F, 0.5F, 0.5F);
     all.push_back(rays("rays-fat", "a box of 1 m cast 5 m far among uniform boxes", dense, fat));

@@ -75,10 +75,6 @@ FootprintCase<Scalar> randomCase(Random& random) {
     return result;
 }
 
-std::array<int, 2> mapAxes(UpAxis up) {
-    return {up == UpAxis::x ? 1 : 0, up == UpAxis::z ? 1 : 2};
-}
-
 template <class Scalar>
 std::vector<Eigen::Vector2d> cornersOf(const GroundFootprint<Scalar>& footprint) {
     std::vector<Eigen::Vector2d> corners;

@@ -158,6 +158,41 @@ TYPED_TEST(Views, CastRaysFromObliqueNearPlanes) {
     EXPECT_EQ(seen, 2000);
 }
 
+TYPED_TEST(Views, TakeTheOrderOfDepthsFromThePerspective) {
+    Random random(0x5eed0705);
+    for (int i = 0; i < 500; ++i) {
+        CameraLens lens = randomLens(random);
+        const auto matrix =
+            cameraMatrix<TypeParam>(lens, random.pointIn(-9, 9), random.pointIn(-9, 9));
+        const View<TypeParam> forth(matrix, lens.depthRange, kViewport, DepthOrder::nearFirst);
+        const View<TypeParam> back(matrix, lens.depthRange, kViewport, DepthOrder::reversed);
+        const Pixel pixel(random.between(100, 1380), random.between(50, 770));
+        const RayRegion<TypeParam> a = forth.rayThrough(pixel);
+        const RayRegion<TypeParam> b = back.rayThrough(pixel);
+        EXPECT_EQ(a.from() == b.from(), !lens.isOrthographic) << i;
+    }
+}
+
+TEST(ViewsFarAway, AreExactAHundredThousandKilometresFromTheOrigin) {
+    Random random(0x5eed0706);
+    for (int i = 0; i < 1000; ++i) {
+        SCOPED_TRACE(i);
+        CameraLens lens = randomLens(random);
+        lens.fieldOfView = std::max(lens.fieldOfView, 0.3);
+        const Vector3<double> eye = random.pointIn(-1e8, 1e8);
+        const Eigen::Matrix4d matrix = cameraMatrix<double>(lens, eye, eye + random.pointIn(-9, 9));
+        const View<double> view(matrix, lens.depthRange, kViewport);
+        ASSERT_EQ(viewError(matrix, kViewport), "");
+        const Pixel pixel(random.between(100, 1380), random.between(50, 770));
+        const RayRegion<double> ray = view.rayThrough(pixel, 1000);
+        for (const double share : {0.1, 1.0}) {
+            const Vector3<double> point = ray.from() + share * ray.direction();
+            const Eigen::Vector4d clip = clipCoordinates(matrix, point);
+            EXPECT_LT((pixelOf(clip, kViewport) - pixel).norm() * std::min(clip.w(), 1.0), 1e-2);
+        }
+    }
+}
+
 TYPED_TEST(Views, EndRaysAtTheFarthestDistance) {
     CameraLens lens;
     lens.farPlane = kInfinity;
