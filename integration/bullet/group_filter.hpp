@@ -11,16 +11,15 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// A ProxyFilter by Bullet's rule: accepts a proxy when its group is in `mask` and `group` is in its
-/// mask, as for a body with this group and mask, or for a ray callback's m_collisionFilterGroup and
-/// m_collisionFilterMask. Sees changes of a proxy's group and mask at once. The broadphase must
-/// outlive the filter. Any number of threads.
+/// A ProxyFilter by Bullet's rule: accepts proxies whose group is in `mask`, and whose mask has `group`,
+/// that of whoever asks. As for a ray callback's m_collisionFilterMask and m_collisionFilterGroup. Sees
+/// changes of a proxy's group and mask at once. The broadphase must outlive the filter. Any number of
+/// threads.
 class GroupFilter {
 public:
-    explicit GroupFilter(const SpatialHashBroadphase& broadphase,
-                         int group = btBroadphaseProxy::AllFilter,
-                         int mask = btBroadphaseProxy::AllFilter) noexcept
-        : broadphase_(&broadphase), group_(group), mask_(mask) {}
+    explicit GroupFilter(const SpatialHashBroadphase& broadphase, int mask,
+                         int group = btBroadphaseProxy::AllFilter) noexcept
+        : broadphase_(&broadphase), mask_(mask), group_(group) {}
 
     [[nodiscard]] bool operator()(ProxyId id) const {
         const btBroadphaseProxy* proxy = broadphase_->proxyOf(id);
@@ -30,8 +29,8 @@ public:
 
 private:
     const SpatialHashBroadphase* broadphase_;
-    int group_;
     int mask_;
+    int group_;
 };
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

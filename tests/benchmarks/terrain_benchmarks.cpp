@@ -209,6 +209,7 @@ std::vector<ContestantKind> groundKinds(GroundQuestion question) {
         ContestantKind kind;
         kind.name = std::move(name);
         kind.title = std::move(title);
+        kind.package = contestantKind(ours ? "hash" : kBaseline).package;
         kind.ours = ours;
         kinds.push_back(std::move(kind));
     };

@@ -117,6 +117,7 @@ public:
         viewer.range = 40;
         viewer.halfAngle = Scalar(0.5);
         heights.resize(world.bodies.size());
+        neighbourCounts.resize(world.bodies.size());
         colours.resize(world.bodies.size() + 1);
         std::iota(colours.begin(), colours.end(), 0U);
         for (std::uint32_t& colour : colours) {
@@ -149,7 +150,10 @@ public:
         events = zones.update(grid);
         counts = radar.scan(grid, {.center = viewer.eye, .cellSize = 20, .columns = 8, .rows = 8},
                             2, [&](ProxyId id) { return world_.isRed(id) ? 1U : 0U; });
-        rarest.update(grid, kRadius, 8, colours, [&](ProxyId id) { return !isHill(id); });
+        const auto isBody = [&](ProxyId id) { return !isHill(id); };
+        rarest.update(grid, kRadius, 8, colours, isBody);
+        crowd.take(grid, kRadius, isBody);
+        crowd.count(neighbourCounts);
 
         places.clear();
         for (const int body : world_.bodies) {
@@ -176,6 +180,8 @@ public:
     Radar<Scalar> radar;
     std::span<const std::uint32_t> counts;
     RarestColour<Scalar> rarest;
+    Crowd<Scalar> crowd;
+    std::vector<std::uint32_t> neighbourCounts;
     std::vector<std::uint32_t> colours;
     std::vector<Vector3<Scalar>> places;
     std::vector<Terrain<Scalar>::Found> heights;
@@ -242,10 +248,21 @@ private:
         }
     }
 
-    // Of a few agents, that nobody around has a colour less often than they have got.
+    // A few of all the agents.
     void expectNeighbours() const {
-        const Crowd<Scalar>& crowd = found_.rarest.crowd();
-        EXPECT_EQ(crowd.size(), world_.bodies.size());
+        const Crowd<Scalar>& crowd = found_.crowd;
+        ASSERT_EQ(crowd.size(), world_.bodies.size());
+        EXPECT_EQ(found_.rarest.crowd().size(), crowd.size());
+        for (std::uint32_t agent = 0; agent < crowd.size(); agent += 997) {
+            const PositionRegion<Scalar> ball(crowd.position(agent), kRadius);
+            const auto isOther = [&](ProxyId id) { return id != crowd.id(agent) && !isHill(id); };
+            EXPECT_EQ(found_.neighbourCounts[agent], idsIn(ball, isOther).size());
+        }
+    }
+
+    [[nodiscard]] bool isHill(ProxyId id) const {
+        return world_.broadphase->proxyOf(id)->m_collisionFilterGroup ==
+               btBroadphaseProxy::StaticFilter;
     }
 
     void expectOnTheGround() const {

@@ -120,7 +120,7 @@ btScalar castByTriangles(const btVector3& from, const btVector3& to, const btCol
 }
 
 /// Casts rays down (along `up`) around the shape's place, and asks the ground there.
-void expectHeightsOfRays(const btCollisionShape& shape, const btTransform& transform, Axis up,
+void expectHeightsOfRays(const btCollisionShape& shape, const btTransform& transform, UpAxis up,
                          CastRay castRay = castByWorld) {
     Corners corners;
     ASSERT_EQ(appendTriangles(shape, transform, corners), "");
@@ -155,7 +155,7 @@ TEST(StaticTriangles, OfMeshesAreWhereRaysHit) {
     for (const bool isQuantized : {false, true}) {
         const btBvhTriangleMeshShape shape(mesh.array.get(), isQuantized);
         for (const bool isTilted : {false, true}) {
-            expectHeightsOfRays(shape, somewhere(isTilted), Axis::y);
+            expectHeightsOfRays(shape, somewhere(isTilted), UpAxis::y);
         }
     }
 }
@@ -166,7 +166,7 @@ TEST(StaticTriangles, OfScaledMeshesAreWhereRaysHit) {
     for (const btVector3& scaling :
          {btVector3(1, btScalar(2.5), 1), btVector3(btScalar(-1.5), 1, btScalar(0.75))}) {
         const btScaledBvhTriangleMeshShape scaled(&shape, scaling);
-        expectHeightsOfRays(scaled, somewhere(true), Axis::y);
+        expectHeightsOfRays(scaled, somewhere(true), UpAxis::y);
     }
 }
 
@@ -181,7 +181,7 @@ TEST(StaticTriangles, OfHeightfieldsAreWhereRaysHit) {
                 field.shape->setUseZigzagSubdivision(option == 3);
                 field.shape->setLocalScaling(
                     btVector3(btScalar(1.25), btScalar(0.8), btScalar(1.5)));
-                expectHeightsOfRays(*field.shape, somewhere(false), static_cast<Axis>(up),
+                expectHeightsOfRays(*field.shape, somewhere(false), static_cast<UpAxis>(up),
                                     option < 2 ? castByWorld : castByTriangles);
                 Corners corners;
                 ASSERT_EQ(appendTriangles(*field.shape, somewhere(false), corners), "");
@@ -226,7 +226,7 @@ TEST(StaticTriangles, OfCompoundsAreThoseOfTheirChildren) {
     aside.setOrigin(btVector3(2, 3, btScalar(-1.5)));
     outer.addChildShape(aside, field.shape.get());
     outer.addChildShape(somewhere(true), &inner);
-    expectHeightsOfRays(outer, somewhere(false), Axis::y);
+    expectHeightsOfRays(outer, somewhere(false), UpAxis::y);
     Corners corners;
     ASSERT_EQ(appendTriangles(outer, somewhere(false), corners), "");
     EXPECT_EQ(corners.size(), 2 * 3U * 2U * (kSide - 1) * (kSide - 1));

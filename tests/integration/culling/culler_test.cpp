@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 
 #include <broadphase/frustum.hpp>
+#include <broadphase/ground_footprint.hpp>
 #include <integration/culling/culler.hpp>
 #include <tests/support/cameras.hpp>
 #include <tests/support/handlers.hpp>
@@ -192,6 +193,36 @@ TYPED_TEST(CullerTest, CountsWhatIsDrawnAndNotSeen) {
     }
     EXPECT_GT(unseenByPlanes, 0U);
     EXPECT_GT(unseenWithMargin, 10 * unseenByPlanes);
+}
+
+// What stands between the heights and is visible stands on the footprint; what floats above or is sunk
+// below is not asked about.
+TYPED_TEST(CullerTest, SeesFromAboveWhatStandsOnTheFootprintOfTheFourCorners) {
+    Grid<TypeParam> grid;
+    std::vector<Placed<TypeParam>> proxies;
+    for (int i = 0; i < 4000; ++i) {
+        const auto box = boxAround<TypeParam>(this->random_.pointIn({-60, 1, -60}, {60, 7, 60}),
+                                              Vector3<double>::Constant(1));
+        proxies.push_back({grid.add(box), box});
+    }
+    grid.update();
+    std::size_t visible = 0;
+    for (int i = 0; i < 60; ++i) {
+        CameraLens lens;
+        lens.fieldOfView = this->random_.between(0.3, 1.2);
+        const Vector3<double> eye = this->random_.pointIn({-40, 15, -40}, {40, 40, 40});
+        const Vector3<double> target = eye + this->random_.pointIn({-1, -1, -1}, {1, -0.3, 1});
+        const auto camera = cameraMatrix<TypeParam>(lens, eye, target);
+        const GroundFootprint<TypeParam> footprint(camera, lens.depthRange,
+                                                   {TypeParam(0), TypeParam(8)});
+        Culler<TypeParam> culler;
+        culler.look(grid, footprint.region());
+        const auto view = frustumRegion<TypeParam>(camera, lens.depthRange);
+        this->expectNothingCulled(culler, view, proxies);
+        ASSERT_FALSE(this->HasFailure()) << i;
+        visible += culler.count();
+    }
+    EXPECT_GT(visible, 3000U);
 }
 
 TYPED_TEST(CullerTest, ShowsOnlyWhatTheFilterAccepts) {
