@@ -46,23 +46,25 @@ struct Crowd<Scalar>::Tile {
     Tile& operator=(const Tile&) = delete;
 
     static void grow(detail::CrowdTile<Scalar>& view, std::size_t count) {
-        Tile& tile = *static_cast<Tile*>(view.owner);
-        const std::size_t capacity = count + count / 2;
+        static_cast<Tile*>(view.owner)->setCapacity(count + count / 2);
+    }
+
+    void setCapacity(std::size_t capacity) {
         const std::size_t words = capacity / 64 + 1;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            tile.columns[axis].resize(capacity + kTilePadding);
-            view.columns[axis] = tile.columns[axis].data();
+            columns[axis].resize(capacity + kTilePadding);
+            view.columns[axis] = columns[axis].data();
         }
-        tile.numbers.resize(capacity + kTilePadding);
-        tile.groups.resize(capacity + kTilePadding);
-        tile.hits.resize(16 * words);
-        tile.members.resize(detail::kMostGroups * words);
-        tile.found.resize(capacity + kTilePadding);
-        view.numbers = tile.numbers.data();
-        view.groups = tile.groups.data();
-        view.hits = tile.hits.data();
-        view.members = tile.members.data();
-        view.found = tile.found.data();
+        numbers.resize(capacity + kTilePadding);
+        groups.resize(capacity + kTilePadding);
+        hits.resize(16 * words);
+        members.resize(detail::kMostGroups * words);
+        found.resize(capacity + kTilePadding);
+        view.numbers = numbers.data();
+        view.groups = groups.data();
+        view.hits = hits.data();
+        view.members = members.data();
+        view.found = found.data();
         view.capacity = static_cast<std::uint32_t>(capacity);
     }
 
@@ -277,6 +279,16 @@ QueryCost Crowd<Scalar>::ask(ParallelFor parallelFor, const Kernel& kernel) {
         boxesTested += cost.boxesTested;
         returnTile(std::move(tile));
     });
+    // Which thread has the largest part is a matter of chance, and must not make tiles grow later.
+    std::uint32_t largest = 0;
+    for (const std::unique_ptr<Tile>& tile : tiles_) {
+        largest = std::max(largest, tile->view.capacity);
+    }
+    for (const std::unique_ptr<Tile>& tile : tiles_) {
+        if (tile->view.capacity < largest) {
+            tile->setCapacity(largest);
+        }
+    }
     return {rowsVisited, boxesTested, hits};
 }
 

@@ -225,12 +225,19 @@ public:
     /// Reads the rows of a batch, which lie in the volume as far as y and z go, and empties it.
     bool readRows(RowBatch<Scalar>& batch) {
         batch.clip();
+        Run runs[kRowsAtOnce];
+        Run covered[kRowsAtOnce];
+        if (view_.level.isDense) {
+            findRuns(batch, runs, covered);
+        }
         for (int k = 0; k < batch.count; ++k) {
             if (batch.first[k] > batch.last[k]) {
                 continue;
             }
             ++cost_.rowsVisited;
-            const bool goesOn = view_.level.isDense ? readDense(batch, k) : readHashed(batch, k);
+            const bool goesOn = view_.level.isDense
+                                    ? readDense(batch.crossing[k], runs[k], covered[k])
+                                    : readHashed(batch, k);
             if (!goesOn) {
                 return false;
             }
@@ -240,30 +247,45 @@ public:
     }
 
 private:
-    bool readDense(const RowBatch<Scalar>& batch, int k) {
+    // The entries of each row, and those among them that are covered. What is to be tested is fetched
+    // from memory for all rows at once.
+    void findRuns(const RowBatch<Scalar>& batch, Run* runs, Run* covered) const {
         const LevelView<Scalar>& level = view_.level;
-        const Row row = batch.rows[k];
-        const std::uint32_t* starts = level.bucketStart;
-        const std::uint32_t base = rowBase(level, row);
-        const auto runOf = [starts, base](std::int32_t first, std::int32_t last) {
-            return Run{starts[base + static_cast<std::uint32_t>(first)],
-                       starts[base + static_cast<std::uint32_t>(last) + 1]};
-        };
-        const Run all = runOf(batch.first[k], batch.last[k]);
+        for (int k = 0; k < batch.count; ++k) {
+            const std::uint32_t* starts = level.bucketStart;
+            const std::uint32_t base = rowBase(level, batch.rows[k]);
+            const auto startOf = [starts, base](std::int32_t cell) {
+                return starts[base + static_cast<std::uint32_t>(cell)];
+            };
+            const bool hasCells = batch.first[k] <= batch.last[k];
+            const bool hasCovered = hasCells && batch.coveredFirst[k] <= batch.coveredLast[k];
+            runs[k] = hasCells ? Run{startOf(batch.first[k]), startOf(batch.last[k] + 1)} : Run{};
+            covered[k] =
+                hasCovered ? Run{startOf(batch.coveredFirst[k]), startOf(batch.coveredLast[k] + 1)}
+                           : Run{runs[k].last, runs[k].last};
+        }
+        for (int k = 0; k < batch.count; ++k) {
+            for (int column = 0; column < 6 && batch.crossing[k] != 0; ++column) {
+                __builtin_prefetch(level.columns[column] + runs[k].first);
+                __builtin_prefetch(level.columns[column] + covered[k].last);
+            }
+        }
+    }
+
+    bool readDense(std::uint64_t crossing, Run all, Run covered) {
         PlaneSet planes;
-        for (std::uint64_t bits = batch.crossing[k]; bits != 0; bits &= bits - 1) {
-            planes.add(crossing_.numbers[__builtin_ctzll(bits)]);
+        for (; crossing != 0; crossing &= crossing - 1) {
+            planes.add(crossing_.numbers[__builtin_ctzll(crossing)]);
         }
         if (planes.count == 0) {
             return take(all);
         }
         constexpr std::uint32_t few = 2 * WidePack<Scalar>::kWidth;
-        if (all.last - all.first <= few || batch.coveredFirst[k] > batch.coveredLast[k]) {
-            return scan<true>(all, planes, row);
+        if (all.last - all.first <= few || covered.first == covered.last) {
+            return scan<true>(all, planes, Row{});
         }
-        const Run covered = runOf(batch.coveredFirst[k], batch.coveredLast[k]);
-        return scan<true>({all.first, covered.first}, planes, row) && take(covered) &&
-               scan<true>({covered.last, all.last}, planes, row);
+        return scan<true>({all.first, covered.first}, planes, Row{}) && take(covered) &&
+               scan<true>({covered.last, all.last}, planes, Row{});
     }
 
     // Where cells share buckets, nothing is known of what is read.

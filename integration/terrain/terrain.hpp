@@ -123,6 +123,8 @@ public:
 private:
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
+    template <class Search>
+    struct Candidates;
     struct SurfaceSearch;
     struct RestSearch;
     class TileOrder;

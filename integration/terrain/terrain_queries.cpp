@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/terrain/terrain.hpp>
 
+#include <broadphase/detail/fixed_list.hpp>
+#include <broadphase/detail/prefetch.hpp>
+
 #include <algorithm>
 #include <atomic>
 #include <limits>
@@ -8,19 +11,55 @@
 
 namespace hashphase {
 
-/// A collector: the highest surface among the triangles below a point.
+/// A collector that notes the triangles that it is offered, has them fetched from memory, and looks at
+/// them when all searches of a batch have noted theirs.
 template <class Scalar>
-struct Terrain<Scalar>::SurfaceSearch {
+template <class Search>
+struct Terrain<Scalar>::Candidates {
+    void add(ProxyId id, Scalar /*key*/) noexcept {
+        const Search& search = static_cast<const Search&>(*this);
+        const std::uint32_t number = search.terrain->triangleOf(id);
+        if (number == kNone) {
+            return;
+        }
+        const detail::GroundTriangle<Scalar>* triangle = &search.terrain->triangles_[number];
+        detail::prefetch(triangle);
+        detail::prefetch(reinterpret_cast<const char*>(triangle + 1) - 1);
+        if (!numbers.push(number)) {
+            lookAtAll();
+            numbers.push(number);
+        }
+    }
+    [[nodiscard]] static constexpr double limit() noexcept {
+        return std::numeric_limits<double>::infinity();
+    }
+
+    void lookAtAll() noexcept {
+        for (const std::uint32_t number : numbers) {
+            static_cast<Search&>(*this).lookAt(number);
+        }
+        numbers.clear();
+    }
+
+    detail::FixedList<std::uint32_t, 12> numbers;
+};
+
+/// The highest surface among the triangles below a point.
+template <class Scalar>
+struct Terrain<Scalar>::SurfaceSearch : Candidates<SurfaceSearch> {
     const Terrain* terrain = nullptr;
     detail::Point2 point;
     Scalar from = 0;  // no surface above counts
     Ground<Scalar> best{kNone, -std::numeric_limits<Scalar>::infinity()};
 
-    void add(ProxyId id, Scalar /*key*/) noexcept {
-        const std::uint32_t number = terrain->triangleOf(id);
-        if (number == kNone) {
-            return;
-        }
+    void begin(const Terrain& itsTerrain, const detail::Point2& itsPoint, Scalar itsFrom) noexcept {
+        terrain = &itsTerrain;
+        point = itsPoint;
+        from = itsFrom;
+        best = {kNone, -std::numeric_limits<Scalar>::infinity()};
+    }
+
+    void lookAt(std::uint32_t number) noexcept {
         // Without a branch: which of two triangles the point lies in cannot be predicted.
         const detail::GroundTriangle<Scalar>& triangle = terrain->triangles_[number];
         const detail::Weights weights = detail::weightsAt(triangle, point);
@@ -31,18 +70,16 @@ struct Terrain<Scalar>::SurfaceSearch {
         const std::array<Ground<Scalar>, 2> choice{best, Ground<Scalar>{number, height}};
         best = choice[static_cast<std::size_t>(counts & isBetter)];
     }
-    [[nodiscard]] static constexpr double limit() noexcept {
-        return std::numeric_limits<double>::infinity();
-    }
 
-    [[nodiscard]] Found result() const noexcept {
+    [[nodiscard]] Found result() noexcept {
+        this->lookAtAll();
         return best.triangle == kNone ? std::nullopt : Found(best);
     }
 };
 
 /// The same for a sphere that rests on triangles below its centre.
 template <class Scalar>
-struct Terrain<Scalar>::RestSearch {
+struct Terrain<Scalar>::RestSearch : Candidates<RestSearch> {
     const Terrain* terrain = nullptr;
     detail::Point2 center;
     double radius = 0;
@@ -50,11 +87,17 @@ struct Terrain<Scalar>::RestSearch {
     std::uint32_t best = kNone;
     double height = detail::kNoHeight;
 
-    void add(ProxyId id, Scalar /*key*/) noexcept {
-        const std::uint32_t number = terrain->triangleOf(id);
-        if (number == kNone) {
-            return;
-        }
+    void begin(const Terrain& itsTerrain, const detail::Point2& itsCenter, double itsRadius,
+               Scalar itsFrom) noexcept {
+        terrain = &itsTerrain;
+        center = itsCenter;
+        radius = itsRadius;
+        from = itsFrom;
+        best = kNone;
+        height = detail::kNoHeight;
+    }
+
+    void lookAt(std::uint32_t number) noexcept {
         const detail::GroundTriangle<Scalar>& triangle = terrain->triangles_[number];
         const double most =
             std::max({triangle.height(0), triangle.height(1), triangle.height(2)}) + radius;
@@ -69,11 +112,9 @@ struct Terrain<Scalar>::RestSearch {
             height = rest.center;
         }
     }
-    [[nodiscard]] static constexpr double limit() noexcept {
-        return std::numeric_limits<double>::infinity();
-    }
 
-    [[nodiscard]] Found result() const noexcept {
+    [[nodiscard]] Found result() noexcept {
+        this->lookAtAll();
         return best == kNone ? std::nullopt : Found({best, static_cast<Scalar>(height)});
     }
 };
@@ -159,7 +200,7 @@ QueryCost Terrain<Scalar>::surfacesBelow(std::span<const Point> points, std::spa
             const Point& point = points[i];
             column = {point, point};
             column.min()[up_] = -std::numeric_limits<Scalar>::infinity();
-            search = {this, above(point), point[up_]};
+            search.begin(*this, above(point), point[up_]);
         });
 }
 
@@ -185,7 +226,7 @@ QueryCost Terrain<Scalar>::restingHeights(std::span<const Point> centers,
             }
             column.min()[up_] = -Limits::infinity();
             column.max()[up_] = center[up_];
-            search = {this, above(center), static_cast<double>(radius), center[up_]};
+            search.begin(*this, above(center), static_cast<double>(radius), center[up_]);
         });
 }
 
