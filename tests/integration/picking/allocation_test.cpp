@@ -1,59 +1,18 @@
 // SPDX-License-Identifier: Zlib
 //
-// A frame like the last one takes no memory. Counts every `new` of this program.
+// A frame like the last one takes no memory.
 
 #include <integration/picking/drag_selection.hpp>
 #include <integration/picking/ground.hpp>
 #include <integration/picking/pick.hpp>
 #include <tests/support/box_scenes.hpp>
 #include <tests/support/cameras.hpp>
+#include <tests/support/count_allocations.hpp>
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstddef>
-#include <cstdlib>
-#include <new>
 #include <optional>
 #include <vector>
-
-// Sanitizers have a `new` of their own, which finds faults that this one would hide.
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-
-namespace {
-
-std::atomic<std::size_t> allocations{0};
-
-void* allocate(std::size_t size, std::size_t alignment) {
-    ++allocations;
-    const std::size_t rounded = (size + alignment) / alignment * alignment;
-    if (void* memory = std::aligned_alloc(alignment, rounded)) {
-        return memory;
-    }
-    throw std::bad_alloc();
-}
-
-}  // namespace
-
-// Not inlined: compilers take free() for a mismatch where they see only one half of the pair.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-    return allocate(size, alignof(std::max_align_t));
-}
-[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
-    return allocate(size, static_cast<std::size_t>(alignment));
-}
-[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
-    std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-    std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-    std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
-}
 
 namespace hashphase::test {
 namespace {
@@ -104,21 +63,22 @@ private:
 };
 
 TEST(SteadyPickingFrame, AllocatesNothing) {
+    if (!kCountsAllocations) {
+        GTEST_SKIP() << "allocations are not counted under a sanitizer";
+    }
     PickingFrame frame;
     for (int i = 0; i < 100; ++i) {
         frame.play(i);
     }
-    const std::size_t before = allocations;
+    const std::size_t before = allocationCount();
     ASSERT_GT(before, 0U);
     std::size_t found = 0;
     for (int i = 100; i < 120; ++i) {
         found += frame.play(i);
     }
-    EXPECT_EQ(allocations, before);
+    EXPECT_EQ(allocationCount(), before);
     EXPECT_GT(found, 20U * 100U);
 }
 
 }  // namespace
 }  // namespace hashphase::test
-
-#endif
