@@ -60,7 +60,10 @@ ConvexRegion<Scalar>::ConvexRegion(std::span<const Plane> planes, Containment co
         }
         const std::uint32_t i = volume_.planeCount++;
         for (int axis = 0; axis < 3; ++axis) {
-            volume_.slope[axis][i] = static_cast<Scalar>(plane.normal()[axis]);
+            // One that has no inverse is none.
+            const auto slope = static_cast<Scalar>(plane.normal()[axis]);
+            const bool isOrdinary = std::abs(slope) >= std::numeric_limits<Scalar>::min();
+            volume_.slope[axis][i] = isOrdinary ? slope : Scalar(0);
         }
         volume_.offset[i] = static_cast<Scalar>(plane.offset());
     }
@@ -129,7 +132,8 @@ ConvexRegion<Scalar> ConvexRegion<Scalar>::movedOut(Scalar distance, Touch touch
     const auto own = ownPlanes();
     for (std::size_t i = 0; i < own.size(); ++i) {
         planes[i] = own[i];
-        planes[i].offset() += distance * own[i].normal().norm();
+        const Scalar length = own[i].normal().norm();
+        planes[i].offset() += length > 0 ? distance * length : Scalar(0);
     }
     ConvexRegion result(std::span<const Plane>(planes).first(own.size()),
                         volume_.isInside ? Containment::inside : Containment::touching, touch);

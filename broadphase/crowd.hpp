@@ -41,7 +41,8 @@
 
 namespace hashphase {
 
-/// Finds neighbours. Keeps its memory: a frame like the last one allocates nothing.
+/// Finds neighbours. Keeps its memory: a frame like the last one allocates nothing, unless more threads
+/// are at work at the same time than ever before.
 template <class Scalar>
 class Crowd {
 public:

@@ -23,6 +23,8 @@ public:
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
     [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
     [[nodiscard]] const Item& operator[](std::size_t i) const noexcept { return items_[i]; }
+    [[nodiscard]] Item* begin() noexcept { return items_.data(); }
+    [[nodiscard]] Item* end() noexcept { return items_.data() + size_; }
     [[nodiscard]] const Item* data() const noexcept { return items_.data(); }
     [[nodiscard]] const Item* begin() const noexcept { return items_.data(); }
     [[nodiscard]] const Item* end() const noexcept { return items_.data() + size_; }

@@ -87,6 +87,9 @@ struct Grid<Scalar>::VolumeReader {
 
     /// Returns false when the collector wants no more.
     bool read() {
+        if (!(reader.limit() >= 0)) {
+            return false;
+        }
         for (const detail::Level<Scalar>& level : reader.table.levels()) {
             if (level.count() > 0 && !(level.hasCells ? readCells(level) : readList(level))) {
                 return false;

@@ -202,7 +202,10 @@ CellSegment segmentFrom(const CrowdView<Scalar>& crowd, std::uint32_t cell) {
     const std::uint32_t* starts = crowd.cellStart + std::size_t{row} * end;
     const std::uint32_t begin = starts[first < crowd.reach ? 0 : first - crowd.reach];
     std::uint32_t last = first;
-    while (last + 1 < end && starts[lowest(last + crowd.reach + 2, end)] - begin <= most) {
+    // A segment whose window is all of the row would read it from its beginning, others from before
+    // their first cell: the order of what is found must not depend on where parts begin.
+    while (last + 1 < end && last + 2 - first + 2 * crowd.reach + 1 < end &&
+           starts[lowest(last + crowd.reach + 2, end)] - begin <= most) {
         ++last;
     }
     return {first, last, row % crowd.extent[1], row / crowd.extent[1]};

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/Eigenvalues>
+
 namespace hashphase::detail {
 namespace {
 
@@ -23,15 +25,44 @@ constexpr double kShort = 1e-9;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool isSamePlane(const Polyhedron::Plane& a, const Polyhedron::Plane& b) {
-    return (a.normal() - b.normal()).cwiseAbs().maxCoeff() <= kParallel &&
-           std::abs(a.offset() - b.offset()) <= kParallel * std::abs(a.offset());
+    return (a.normal() - b.normal()).cwiseAbs().maxCoeff() <= kShort &&
+           std::abs(a.offset() - b.offset()) <= kShort * std::abs(a.offset());
 }
 
 }  // namespace
 
 Polyhedron::Polyhedron(const Planes& planes) {
     findCorners(planes);
-    findDirections(planes);
+    if (spansSpace_) {
+        findDirections(planes);
+    } else {
+        findSlice(planes);
+    }
+}
+
+// The volume goes on for ever, both ways, along lines that no plane slopes along. What there is to know
+// of it shows in a slice across these.
+void Polyhedron::findSlice(const Planes& planes) {
+    Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
+    for (const Plane& plane : planes) {
+        normals += plane.normal() * plane.normal().transpose();
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(normals);
+    Planes slice = planes;
+    int lines = 0;
+    for (; lines < 3 && !spansSpace_; ++lines) {
+        const Vector3<double> line = axes.eigenvectors().col(lines);
+        slice.push(Plane(line, 0));
+        slice.push(Plane(-line, 0));
+        findCorners(slice);
+    }
+    findDirections(slice);
+    for (int i = 0; i < lines; ++i) {
+        const Vector3<double> line = axes.eigenvectors().col(i);
+        const std::uint32_t all = (1U << planes.size()) - 1;
+        hasTooMany_ = !directions_.push({line, all}) || hasTooMany_;
+        hasTooMany_ = !directions_.push({-line, all}) || hasTooMany_;
+    }
 }
 
 void Polyhedron::findCorners(const Planes& planes) {
@@ -58,7 +89,8 @@ void Polyhedron::findCorners(const Planes& planes) {
     }
 }
 
-// Adds the point if no plane has it outside; one where more than three planes meet comes up again.
+// Adds the point if no plane has it outside; one where more than three planes meet comes up again,
+// rounded in another way.
 void Polyhedron::addCorner(Corner corner, const Planes& planes) {
     const double doubt = corner.error + kEpsilon * corner.point.cwiseAbs().sum();
     for (std::size_t i = 0; i < planes.size(); ++i) {
@@ -69,12 +101,15 @@ void Polyhedron::addCorner(Corner corner, const Planes& planes) {
         }
         corner.planes |= (distance <= about ? 1U : 0U) << i;
     }
-    const auto isSame = [&corner](const Corner& other) {
-        return corner.point == other.point && corner.error <= other.error;
-    };
-    if (std::none_of(corners_.begin(), corners_.end(), isSame)) {
-        hasTooMany_ = !corners_.push(corner) || hasTooMany_;
+    for (Corner& other : corners_) {
+        const double distance = (corner.point - other.point).norm();
+        if (distance <= doubt + other.error) {
+            other.error = std::max(other.error, distance + corner.error);
+            other.planes |= corner.planes;
+            return;
+        }
     }
+    hasTooMany_ = !corners_.push(corner) || hasTooMany_;
 }
 
 void Polyhedron::findDirections(const Planes& planes) {
@@ -150,7 +185,7 @@ void Polyhedron::appendAlong(int axis, const Corner& corner, const Vector3<doubl
 
 bool Polyhedron::isInside(const Plane& plane, double margin) const {
     for (const Direction& direction : directions_) {
-        if (plane.normal().dot(direction.way) < 0) {
+        if (plane.normal().dot(direction.way) < -kParallel) {
             return false;
         }
     }

@@ -17,12 +17,12 @@ public:
     using Plane = Eigen::Hyperplane<double, 3>;
     using Planes = FixedList<Plane, kMostVolumePlanes>;
 
-    /// The planes are finite, their normals of length 1 or 0, and there are at most 32. Cost:
+    /// The planes are finite, their normals of length 1 or 0, and there are at most 16. Cost:
     /// O(planes^4).
     explicit Polyhedron(const Planes& planes);
 
     /// True when no point is on the right side of all planes. What rounding leaves in doubt is not.
-    [[nodiscard]] bool isEmpty() const noexcept { return spansSpace_ && corners_.empty(); }
+    [[nodiscard]] bool isEmpty() const noexcept { return corners_.empty(); }
 
     /// True when every point of the volume lies on the right side of the plane, of which the normal has
     /// length 1 or 0, and at least `margin` away from it; false where that is in doubt, and for volumes
@@ -48,6 +48,7 @@ private:
     };
 
     void findCorners(const Planes& planes);
+    void findSlice(const Planes& planes);
     void addCorner(Corner corner, const Planes& planes);
     void findDirections(const Planes& planes);
     void appendAround(const Vector3<double>& normal, Planes& planes) const;

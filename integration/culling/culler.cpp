@@ -46,8 +46,8 @@ Culler<Scalar>::Culler(Scalar margin)
 template <class Scalar>
 bool Culler<Scalar>::keepsSet(Scalar moved) {
     moved_ += moved >= 0 ? moved : std::numeric_limits<Scalar>::infinity();
-    return moved_ <= margin_ && !view_.volume().isInside && !grown_.volume().isInside &&
-           grown_.contains(view_, moved_);
+    return moved_ <= margin_ && view_.isEmpty() == grown_.isEmpty() && !view_.volume().isInside &&
+           !grown_.volume().isInside && grown_.contains(view_, moved_);
 }
 
 // Returns whether the set is to be found anew, and empties it if so.

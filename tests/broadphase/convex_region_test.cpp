@@ -64,6 +64,45 @@ TYPED_TEST(ConvexQuery, FindsExactlyTheBoxesThatShareAPointWithTheVolume) {
     EXPECT_GT(falseByPlanes, 10);
 }
 
+// Prisms, wedges and slabs that go on for ever, and some that have no point.
+TYPED_TEST(ConvexQuery, FindsExactlyTheBoxesThatShareAPointWithAVolumeWithoutACorner) {
+    using Plane = typename ConvexRegion<TypeParam>::Plane;
+    Random random(0x5eed0605);
+    int touching = 0;
+    int apart = 0;
+    int empty = 0;
+    for (int i = 0; i < 4000; ++i) {
+        SCOPED_TRACE(i);
+        // Across an axis, or across a line that is none but for rounding.
+        const int axis = static_cast<int>(random.below(3));
+        std::vector<Plane> planes;
+        const std::uint32_t count = 1 + random.below(4);
+        for (std::uint32_t k = 0; k < count; ++k) {
+            Vector3<double> normal = random.pointIn(-1, 1);
+            normal[axis] = 0;
+            planes.emplace_back(normal.normalized().template cast<TypeParam>(),
+                                static_cast<TypeParam>(random.between(-1, 4)));
+        }
+        const ConvexRegion<TypeParam> region(planes);
+        const auto box = boxAround<TypeParam>(
+            random.pointIn(-20, 20), Vector3<double>::Constant(random.logBetween(0.01, 10)));
+        const double depth =
+            depthInVolume(oraclePlanes<TypeParam>(planes), box.template cast<double>());
+        constexpr double nearly = sizeof(TypeParam) == sizeof(float) ? 1e-3 : 1e-7;
+        if (depth > -1e-12) {
+            EXPECT_TRUE(this->has(region, box)) << depth;
+            ++touching;
+        } else if (depth < -nearly) {
+            EXPECT_FALSE(this->has(region, box)) << depth;
+            ++apart;
+        }
+        empty += region.isEmpty() ? 1 : 0;
+    }
+    EXPECT_GT(touching, 500);
+    EXPECT_GT(apart, 500);
+    EXPECT_GT(empty, 30);
+}
+
 TYPED_TEST(ConvexQuery, OfWhatLiesInsideAsksForEveryCorner) {
     Random random(0x5eed0602);
     int inside = 0;
@@ -126,6 +165,12 @@ TYPED_TEST(ConvexQuery, HasAnAnswerForEveryPlane) {
                                      Plane(Vector3<TypeParam>(0, 0, 1), TypeParam(0))};
     EXPECT_TRUE(this->volumeOf(nothing).isEmpty());
     EXPECT_FALSE(this->has(this->volumeOf(nothing), unit));
+    const auto left = Plane(Vector3<TypeParam>(-1, 0, 0), TypeParam(0));
+    const auto right = Plane(Vector3<TypeParam>(1, 0, 0), TypeParam(-1));
+    EXPECT_TRUE(this->volumeOf({left, right}).isEmpty());
+    EXPECT_TRUE(this->volumeOf({Plane(zero, TypeParam(-1))}).isEmpty());
+    EXPECT_FALSE(this->volumeOf({}).isEmpty());
+    EXPECT_FALSE(this->volumeOf({left}).isEmpty());
     // The sum of the terms leaves the range of numbers unless normals are made shorter.
     const auto large = static_cast<TypeParam>(std::numeric_limits<TypeParam>::max() / 4);
     EXPECT_TRUE(this->has(this->volumeOf({Plane(up * large, TypeParam(0))}), unit));

@@ -148,6 +148,35 @@ TYPED_TEST(CullerTest, LooksAnewWhenNobodyKnowsWhatMoved) {
     EXPECT_GT(culler.look(grid, inside, 0).hits, 0U);
 }
 
+TYPED_TEST(CullerTest, KeepsItsSetWithAnInfiniteFarPlaneAndGivesItUpForABadCamera) {
+    Grid<TypeParam> grid;
+    this->addBoxes(grid, 500, 10);
+    constexpr auto infinity = std::numeric_limits<TypeParam>::infinity();
+    int kept = 0;
+    for (int i = 0; i < 100; ++i) {
+        CameraLens lens;
+        lens.farPlane = std::numeric_limits<double>::infinity();
+        const auto view = this->viewFrom(lens, this->random_.pointIn(-9, 9), {0, 0, 0});
+        Culler<TypeParam> culler(TypeParam(3));
+        culler.look(grid, view, 0);
+        const std::size_t seen = culler.count();
+        kept += culler.look(grid, view, TypeParam(0.1)).hits == 0 ? 1 : 0;
+        EXPECT_EQ(culler.count(), seen);
+        Culler<TypeParam> sloppy(infinity);
+        sloppy.look(grid, view);
+        EXPECT_EQ(sloppy.count(), grid.size());
+        Eigen::Matrix<TypeParam, 4, 4> bad = Eigen::Matrix<TypeParam, 4, 4>::Identity();
+        bad(0, 0) = std::numeric_limits<TypeParam>::quiet_NaN();
+        culler.look(grid, frustumRegion(bad, DepthRange::zeroToOne), 0);
+        EXPECT_EQ(culler.count(), 0U);
+        culler.look(grid, view, 0);
+        EXPECT_EQ(culler.count(), seen);
+    }
+    // In single precision, rounding may bring the far plane back from infinity, where nothing is known
+    // to a metre.
+    EXPECT_GE(kept, 95);
+}
+
 TYPED_TEST(CullerTest, StaysWithAFrozenViewAndStillSeesWhatMoves) {
     Grid<TypeParam> grid;
     this->addBoxes(grid, 500, 10);
