@@ -32,7 +32,8 @@ QueryCost findWithin(const Grid<Scalar>& grid,
 /// than sqrt(3) * (radius + cell size). No distance is computed. Of agents half as large as the
 /// cells, those found that are really within are 1, 2, 3 and 4 in 10 where the radius is 1, 2, 4 and
 /// 8 cells, at any density; a ball fills about half of its box, so it is never many more. Saves time
-/// where they are only counted, by Grid::visit(CellsRegion, CollectCount).
+/// where they are only counted, by Grid::visit(CellsRegion, CollectCount), and the radius is some
+/// cells: in lists, and within a cell in space, the exact ones take less.
 template <class Scalar>
 QueryCost estimateWithin(const Grid<Scalar>& grid,
                          const Vector3<std::type_identity_t<Scalar>>& position,

@@ -369,6 +369,43 @@ TYPED_TEST(CrowdTest, IsTheSameOnAnyNumberOfThreads) {
 }
 
 // Cells are for where most are, whatever the others do and however small the radius is.
+// Rows of few cells, which a few at a time would read as a whole.
+TYPED_TEST(CrowdTest, ListsNeighboursInOneOrderWhereverPartsBegin) {
+    using Lists = std::vector<std::vector<std::uint32_t>>;
+    for (const double width : {3.5, 4.5, 6.5, 9.5}) {
+        SCOPED_TRACE(width);
+        Random random(0x5eed0e0b);
+        Grid<TypeParam> grid;
+        for (int i = 0; i < 6000; ++i) {
+            // A few strays before the others.
+            const double x = i % 97 == 1 ? -random.between(0, 0.5) : random.between(0, width);
+            const Vector3<TypeParam> at =
+                Vector3<double>(x, random.between(0, 50), random.between(0, 50)).cast<TypeParam>();
+            static_cast<void>(grid.add({at, at}));
+        }
+        Crowd<TypeParam> crowd;
+        crowd.take(grid, 1);
+        const auto list = [&crowd](ParallelFor parallelFor) {
+            Lists lists(crowd.size());
+            crowd.forEach(
+                [&lists](std::uint32_t agent, std::span<const std::uint32_t> neighbours) {
+                    lists[agent].assign(neighbours.begin(), neighbours.end());
+                },
+                parallelFor);
+            return lists;
+        };
+        const Lists expected = list(serialFor);
+        for (const std::size_t step : {700U, 1024U, 1501U, 2222U}) {
+            const auto inParts = [step](std::size_t count, std::size_t /*grain*/, LoopBody body) {
+                for (std::size_t begin = 0; begin < count; begin += step) {
+                    body(begin, std::min(count, begin + step));
+                }
+            };
+            EXPECT_EQ(list(inParts), expected) << step;
+        }
+    }
+}
+
 TYPED_TEST(CrowdTest, CostsNoMoreForStraysAndSmallRadii) {
     Random random(0x5eed0e08);
     constexpr std::uint32_t kCount = 4000;
