@@ -39,7 +39,7 @@ TYPED_TEST(ConvexQuery, FindsExactlyTheBoxesThatShareAPointWithTheVolume) {
     Random random(0x5eed0601);
     int touching = 0;
     int falseByPlanes = 0;
-    for (int i = 0; i < 4000; ++i) {
+    for (int i = 0; i < 10000; ++i) {
         SCOPED_TRACE(i);
         const auto planes = frustumPlanes<TypeParam>(
             randomCamera<TypeParam>(random, Vector3<double>::Zero(), 10), DepthRange::zeroToOne);
@@ -61,7 +61,7 @@ TYPED_TEST(ConvexQuery, FindsExactlyTheBoxesThatShareAPointWithTheVolume) {
         touching += depth > -1e-12 ? 1 : 0;
     }
     EXPECT_GT(touching, 800);
-    EXPECT_GT(falseByPlanes, 10);
+    EXPECT_GT(falseByPlanes, 50);
 }
 
 // Prisms, wedges and slabs that go on for ever, and some that have no point.
@@ -71,7 +71,7 @@ TYPED_TEST(ConvexQuery, FindsExactlyTheBoxesThatShareAPointWithAVolumeWithoutACo
     int touching = 0;
     int apart = 0;
     int empty = 0;
-    for (int i = 0; i < 4000; ++i) {
+    for (int i = 0; i < 10000; ++i) {
         SCOPED_TRACE(i);
         // Across an axis, or across a line that is none but for rounding.
         const int axis = static_cast<int>(random.below(3));
@@ -100,7 +100,7 @@ TYPED_TEST(ConvexQuery, FindsExactlyTheBoxesThatShareAPointWithAVolumeWithoutACo
     }
     EXPECT_GT(touching, 500);
     EXPECT_GT(apart, 500);
-    EXPECT_GT(empty, 30);
+    EXPECT_GT(empty, 100);
 }
 
 TYPED_TEST(ConvexQuery, OfWhatLiesInsideAsksForEveryCorner) {

@@ -174,7 +174,7 @@ TYPED_TEST(CullerTest, KeepsItsSetWithAnInfiniteFarPlaneAndGivesItUpForABadCamer
     }
     // In single precision, rounding may bring the far plane back from infinity, where nothing is known
     // to a metre.
-    EXPECT_GE(kept, 95);
+    EXPECT_GE(kept, sizeof(TypeParam) == sizeof(float) ? 95 : 100);
 }
 
 TYPED_TEST(CullerTest, StaysWithAFrozenViewAndStillSeesWhatMoves) {
