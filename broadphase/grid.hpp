@@ -254,7 +254,7 @@ private:
 
     std::uint32_t updateNumber_ = 1;  // of the update that ends the present frame
     UpdateCost cost_;                 // of the present frame
-    std::uint64_t filingCount_ = 0;
+    std::atomic<std::uint64_t> filingCount_{0};  // a query may file while others ask
 
     // What changed since it was filed, until there are too many to list.
     std::vector<std::uint32_t> waiting_;
