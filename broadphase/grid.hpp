@@ -201,6 +201,10 @@ private:
         const Record& record = records_[slot];
         return record.place != Place::nowhere && !record.isWaiting;
     }
+    /// Whether a slot that is listed in the table of that place is still filed there.
+    [[nodiscard]] bool standsIn(Place place, std::uint32_t slot) const noexcept {
+        return records_[slot].place == place && !records_[slot].isWaiting;
+    }
     [[nodiscard]] bool changedNow(std::uint32_t slot) const noexcept {
         return records_[slot].changedAt == updateNumber_;
     }

@@ -62,9 +62,8 @@ struct Grid<Scalar>::RayReader {
     [[nodiscard]] auto limit() const { return collector.limit(); }
 
     bool read(std::uint32_t slot) {
-        const Record& record = grid.records_[slot];
         // The tree is as old as its table: who stands there may have left.
-        if (record.place != place || record.isWaiting) {
+        if (!grid.standsIn(place, slot)) {
             return true;
         }
         const Scalar key = region.key(grid.records_[slot].box);
@@ -82,6 +81,7 @@ template <class Scalar>
 template <class Region, class Collector>
 struct Grid<Scalar>::VolumeReader {
     VisitReader<Region, Collector> reader;
+    Place place;
     bool mayHaveLeft = false;  // some that are filed in the table
     detail::KernelCost walk{};
 
@@ -105,18 +105,17 @@ private:
     }
 
     bool readCells(const detail::Level<Scalar>& level) {
-        const auto flush = [](detail::EntrySink& sink) {
+        const auto flush = [](detail::SlotSink& sink) {
             return static_cast<VolumeReader*>(sink.owner)->take(sink);
         };
-        std::array<std::uint32_t, 512> entries;
-        detail::EntrySink sink{entries.data(), entries.data(), entries.data() + entries.size(),
-                               flush, this};
+        std::array<std::uint32_t, 512> slots;
+        detail::SlotSink sink{slots.data(), slots.data(), slots.data() + slots.size(), flush, this};
         return detail::kernels<Scalar>().walkVolume(reader.table.view(level),
                                                     reader.region.volume(), sink, walk) &&
                take(sink);
     }
 
-    bool take(detail::EntrySink& sink) {
+    bool take(detail::SlotSink& sink) {
         const std::span<const std::uint32_t> taken(sink.begin, sink.next);
         sink.next = sink.begin;
         return mayHaveLeft ? offer<true>(taken) : offer<false>(taken);
@@ -124,15 +123,13 @@ private:
 
     template <bool kMayHaveLeft>
     bool offer(std::span<const std::uint32_t> taken) {
-        const std::uint32_t* slots = reader.table.slots().data();
         std::uint64_t hits = 0;  // no collector writes here
         bool goesOn = true;
         for (std::size_t i = 0; i < taken.size() && goesOn; ++i) {
-            const std::uint32_t slot = slots[taken[i]];
             // What was taken without a test may have been erased.
-            if (!kMayHaveLeft || (!reader.table.isErased(taken[i]) && reader.grid.isFiled(slot))) {
+            if (!kMayHaveLeft || reader.grid.standsIn(place, taken[i])) {
                 ++hits;
-                reader.collector.add(reader.grid.idOf(slot), Scalar(0));
+                reader.collector.add(reader.grid.idOf(taken[i]), Scalar(0));
                 goesOn = reader.limit() >= 0;
             }
         }
@@ -158,8 +155,10 @@ bool Grid<Scalar>::visitTables(const Region& region, Collector& collector, Query
         for (const detail::Table<Scalar>* table : {&mobile_, &resting_}) {
             const bool mayHaveLeft =
                 !waiting_.empty() || (table == &resting_ && restingErased_ > 0);
-            VolumeReader<Region, Collector> reader{{*this, *table, region, collector, cost},
-                                                   mayHaveLeft};
+            VolumeReader<Region, Collector> reader{
+                {*this, *table, region, collector, cost},
+                table == &mobile_ ? Place::mobile : Place::resting,
+                mayHaveLeft};
             const bool goesOn = region.isEmpty() || reader.read();
             cost.rowsVisited += reader.walk.rowsVisited;
             cost.boxesTested += reader.walk.boxesTested;

@@ -53,13 +53,13 @@ struct PairSink {
     }
 }
 
-/// Where a kernel writes entries: flush(sink) takes those up to `next` away and makes room for at
-/// least 16; false ends the search.
-struct EntrySink {
+/// Where a kernel writes slots: flush(sink) takes those up to `next` away and makes room for at least
+/// 16; false ends the search.
+struct SlotSink {
     std::uint32_t* begin;
     std::uint32_t* next;
     std::uint32_t* end;
-    bool (*flush)(EntrySink& sink);
+    bool (*flush)(SlotSink& sink);
     void* owner;
 };
 
@@ -95,6 +95,7 @@ struct LevelView {
     const Scalar* columns[6];            // min x, y, z, max x, y, z of the whole table
     const std::uint32_t* bucketStart;    // first entry of each of the level's buckets, and the end
     const std::uint32_t* bucketOfEntry;  // of the whole table, counted over all levels
+    const std::uint32_t* slots;          // of the whole table's entries
     std::uint32_t firstBucket;           // of the level
     const Row* rowOfEntry;               // of the whole table, where a level is hashed
     Scalar origin[4];
@@ -202,10 +203,10 @@ struct Kernels {
                          std::uint32_t first, std::uint32_t last, PairSink& found,
                          KernelCost& cost);
 
-    /// Finds every entry of a level with cells that is in the volume, and perhaps some that were
-    /// erased. Returns false when the sink has ended the search.
+    /// Finds the slot of every entry of a level with cells that is in the volume, and perhaps of some
+    /// that were erased. Returns false when the sink has ended the search.
     bool (*walkVolume)(const LevelView<Scalar>& level, const Volume<Scalar>& volume,
-                       EntrySink& found, KernelCost& cost);
+                       SlotSink& found, KernelCost& cost);
 
     /// Finds each of the entries first to last that overlaps another one behind it, up to `end`.
     void (*joinList)(const Scalar* const* columns, std::uint32_t first, std::uint32_t last,

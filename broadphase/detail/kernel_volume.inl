@@ -169,23 +169,23 @@ private:
     Scalar highOrigin_[3];
 };
 
-/// Numbers of planes.
-struct PlaneSet {
-    std::uint8_t numbers[kMostVolumePlanes];
-    std::uint32_t count = 0;
+/// Bit i stands for plane i of a volume.
+using PlaneSet = std::uint64_t;
 
-    void add(std::uint32_t number) { numbers[count++] = static_cast<std::uint8_t>(number); }
-};
+inline std::uint32_t firstPlane(PlaneSet planes) {
+    return static_cast<std::uint32_t>(__builtin_ctzll(planes));
+}
 
-// Writes first + k for every bit k; may write up to the width of a Pack. Returns where the next one goes.
+// Writes numbers[k] for every bit k; may write up to the width of a Pack. Returns where the next one
+// goes.
 template <class Pack>
-std::uint32_t* writeBits(std::uint32_t mask, std::uint32_t first, std::uint32_t* next) {
-    if constexpr (requires { Pack::compress(mask, first, next); }) {
-        Pack::compress(mask, first, next);
+std::uint32_t* writeNumbers(std::uint32_t mask, const std::uint32_t* numbers, std::uint32_t* next) {
+    if constexpr (requires { Pack::compress(mask, numbers, next); }) {
+        Pack::compress(mask, numbers, next);
         return next + __builtin_popcount(mask);
     } else {
         for (; mask != 0; mask &= mask - 1) {
-            *next++ = first + static_cast<std::uint32_t>(__builtin_ctz(mask));
+            *next++ = numbers[__builtin_ctz(mask)];
         }
         return next;
     }
@@ -193,12 +193,12 @@ std::uint32_t* writeBits(std::uint32_t mask, std::uint32_t first, std::uint32_t*
 
 #include <broadphase/detail/kernel_volume_rows.inl>
 
-/// Reads the entries of a level that are in a volume.
+/// Lists the slots of a level's entries that are in a volume.
 template <class Scalar>
 class VolumeReader {
 public:
     /// `crossing` are the planes that may part the boxes of the level.
-    VolumeReader(const VolumeView<Scalar>& view, const PlaneSet& crossing, EntrySink& found,
+    VolumeReader(const VolumeView<Scalar>& view, PlaneSet crossing, SlotSink& found,
                  KernelCost& cost)
         : view_(view), crossing_(crossing), found_(found), cost_(cost) {}
 
@@ -206,13 +206,12 @@ public:
     bool test(Run run) { return scan<true>(run, crossing_, Row{}); }
 
     /// Takes a run without a test.
-    bool take(Run run) {
+    [[gnu::noinline]] bool take(Run run) {
         while (run.first < run.last) {
             const auto room = static_cast<std::uint32_t>(found_.end - found_.next);
             const std::uint32_t count = lowest(run.last - run.first, room);
-            for (std::uint32_t k = 0; k < count; ++k) {
-                found_.next[k] = run.first + k;
-            }
+            __builtin_memcpy(found_.next, view_.level.slots + run.first,
+                             count * sizeof(*found_.next));
             found_.next += count;
             run.first += count;
             if (count == room && !found_.flush(found_)) {
@@ -225,71 +224,110 @@ public:
     /// Reads the rows of a batch, which lie in the volume as far as y and z go, and empties it.
     bool readRows(RowBatch<Scalar>& batch) {
         batch.clip();
-        Run runs[kRowsAtOnce];
-        Run covered[kRowsAtOnce];
-        if (view_.level.isDense) {
-            findRuns(batch, runs, covered);
-        }
-        for (int k = 0; k < batch.count; ++k) {
-            if (batch.first[k] > batch.last[k]) {
-                continue;
-            }
-            ++cost_.rowsVisited;
-            const bool goesOn = view_.level.isDense
-                                    ? readDense(batch.crossing[k], runs[k], covered[k])
-                                    : readHashed(batch, k);
-            if (!goesOn) {
-                return false;
-            }
-        }
+        const int count = batch.count;
         batch.count = 0;
-        return true;
+        return view_.level.isDense ? readDense(batch, count) : readHashed(batch, count);
     }
 
 private:
-    // The entries of each row, and those among them that are covered. What is to be tested is fetched
-    // from memory for all rows at once.
-    void findRuns(const RowBatch<Scalar>& batch, Run* runs, Run* covered) const {
-        const LevelView<Scalar>& level = view_.level;
-        for (int k = 0; k < batch.count; ++k) {
-            const std::uint32_t* starts = level.bucketStart;
-            const std::uint32_t base = rowBase(level, batch.rows[k]);
+    /// The entries of a row, those among them that are covered, and the planes that may part those
+    /// before these, and those behind.
+    struct RowRuns {
+        Run all;
+        Run covered;
+        PlaneSet before;
+        PlaneSet behind;
+    };
+
+    // What is read is fetched from memory for all rows at once.
+    bool readDense(const RowBatch<Scalar>& batch, int count) {
+        RowRuns rows[kRowsAtOnce];
+        const int found = findRuns(batch, count, rows);
+        for (int k = 0; k < found; ++k) {
+            fetchSlots(rows[k].all);
+            fetchColumns({rows[k].all.first, rows[k].covered.first}, rows[k].before);
+            fetchColumns({rows[k].covered.last, rows[k].all.last}, rows[k].behind);
+        }
+        for (int k = 0; k < found; ++k) {
+            if (!readRow(rows[k])) {
+                return false;
+            }
+        }
+        return true;
+    }
+
+    // Lists the rows that have cells; returns how many.
+    int findRuns(const RowBatch<Scalar>& batch, int count, RowRuns* found) {
+        const std::uint32_t* starts = view_.level.bucketStart;
+        int foundCount = 0;
+        for (int k = 0; k < count; ++k) {
+            const std::uint32_t base = rowBase(view_.level, batch.rows[k]);
             const auto startOf = [starts, base](std::int32_t cell) {
                 return starts[base + static_cast<std::uint32_t>(cell)];
             };
             const bool hasCells = batch.first[k] <= batch.last[k];
-            const bool hasCovered = hasCells && batch.coveredFirst[k] <= batch.coveredLast[k];
-            runs[k] = hasCells ? Run{startOf(batch.first[k]), startOf(batch.last[k] + 1)} : Run{};
-            covered[k] =
-                hasCovered ? Run{startOf(batch.coveredFirst[k]), startOf(batch.coveredLast[k] + 1)}
-                           : Run{runs[k].last, runs[k].last};
+            if (hasCells) {
+                const Run all{startOf(batch.first[k]), startOf(batch.last[k] + 1)};
+                const bool hasCovered = batch.coveredFirst[k] <= batch.coveredLast[k];
+                const PlaneSet crossing = batch.crossing[k];
+                // Before what is covered, no plane has anything outside that a later cell has more of;
+                // nor the other way round behind it.
+                found[foundCount++] = hasCovered ? RowRuns{all,
+                                                           {startOf(batch.coveredFirst[k]),
+                                                            startOf(batch.coveredLast[k] + 1)},
+                                                           crossing & batch.rising,
+                                                           crossing & batch.falling}
+                                                 : RowRuns{all, {all.last, all.last}, crossing, 0};
+            }
         }
-        for (int k = 0; k < batch.count; ++k) {
-            for (int column = 0; column < 6 && batch.crossing[k] != 0; ++column) {
-                __builtin_prefetch(level.columns[column] + runs[k].first);
-                __builtin_prefetch(level.columns[column] + covered[k].last);
+        cost_.rowsVisited += static_cast<std::uint64_t>(foundCount);
+        return foundCount;
+    }
+
+    // What is worth fetching at once: longer runs are fetched as they are read.
+    static constexpr std::uint32_t kMostFetched = 128;
+    static constexpr std::uint32_t kLine = 64;
+
+    void fetchSlots(Run run) const {
+        const std::uint32_t last = lowest(run.last, run.first + kMostFetched);
+        for (std::uint32_t at = run.first; at < last; at += kLine / sizeof(*view_.level.slots)) {
+            __builtin_prefetch(view_.level.slots + at);
+        }
+    }
+
+    void fetchColumns(Run run, PlaneSet planes) const {
+        const std::uint32_t last = lowest(run.last, run.first + kMostFetched);
+        for (std::uint32_t at = run.first; at < last; at += kLine / sizeof(Scalar)) {
+            for (PlaneSet left = planes; left != 0; left &= left - 1) {
+                for (const Scalar* corner : view_.planes[firstPlane(left)].corner) {
+                    __builtin_prefetch(corner + at);
+                }
             }
         }
     }
 
-    bool readDense(std::uint64_t crossing, Run all, Run covered) {
-        PlaneSet planes;
-        for (; crossing != 0; crossing &= crossing - 1) {
-            planes.add(crossing_.numbers[__builtin_ctzll(crossing)]);
+    bool readRow(const RowRuns& row) {
+        if (row.all.last - row.all.first <= WidePack<Scalar>::kWidth) {
+            return scan<true>(row.all, row.before | row.behind, Row{});
         }
-        if (planes.count == 0) {
-            return take(all);
-        }
-        constexpr std::uint32_t few = 2 * WidePack<Scalar>::kWidth;
-        if (all.last - all.first <= few || covered.first == covered.last) {
-            return scan<true>(all, planes, Row{});
-        }
-        return scan<true>({all.first, covered.first}, planes, Row{}) && take(covered) &&
-               scan<true>({covered.last, all.last}, planes, Row{});
+        return scan<true>({row.all.first, row.covered.first}, row.before, Row{}) &&
+               take(row.covered) && scan<true>({row.covered.last, row.all.last}, row.behind, Row{});
     }
 
     // Where cells share buckets, nothing is known of what is read.
-    bool readHashed(const RowBatch<Scalar>& batch, int k) {
+    [[gnu::noinline]] bool readHashed(const RowBatch<Scalar>& batch, int count) {
+        for (int k = 0; k < count; ++k) {
+            if (batch.first[k] <= batch.last[k]) {
+                ++cost_.rowsVisited;
+                if (!readHashedRow(batch, k)) {
+                    return false;
+                }
+            }
+        }
+        return true;
+    }
+
+    bool readHashedRow(const RowBatch<Scalar>& batch, int k) {
         const LevelView<Scalar>& level = view_.level;
         const Row row = batch.rows[k];
         const std::uint32_t* starts = level.bucketStart;
@@ -305,8 +343,9 @@ private:
                scan<false>({starts[0], starts[wrapped]}, crossing_, row);
     }
 
+    // Once in memory, for all that call it: the first search of a frame has to fetch the code, too.
     template <bool kIsDense>
-    bool scan(Run run, const PlaneSet& planes, Row row) {
+    [[gnu::noinline]] bool scan(Run run, PlaneSet planes, Row row) {
         using Pack = WidePack<Scalar>;
         constexpr std::uint32_t width = Pack::kWidth;
         cost_.boxesTested += run.last - run.first;
@@ -316,16 +355,17 @@ private:
                 return false;
             }
             std::uint32_t mask = laneMask(run.last - first, width);
-            for (std::uint32_t k = 0; k < planes.count && mask != 0; ++k) {
-                mask &= bitsOf<Pack>(view_.planes[planes.numbers[k]], first);
+            for (PlaneSet left = planes; left != 0 && mask != 0; left &= left - 1) {
+                mask &= bitsOf<Pack>(view_.planes[firstPlane(left)], first);
             }
+            const std::uint32_t* slots = view_.level.slots;
             if constexpr (kIsDense) {
-                found_.next = writeBits<Pack>(mask, first, found_.next);
+                found_.next = writeNumbers<Pack>(mask, slots + first, found_.next);
                 continue;
             }
             for (; mask != 0; mask &= mask - 1) {
                 const std::uint32_t hit = first + static_cast<std::uint32_t>(__builtin_ctz(mask));
-                *found_.next = hit;
+                *found_.next = slots[hit];
                 found_.next += isInRow<kIsDense>(view_.level, hit, row) ? 1 : 0;
             }
         }
@@ -361,13 +401,13 @@ private:
     }
 
     const VolumeView<Scalar>& view_;
-    const PlaneSet& crossing_;
-    EntrySink& found_;
+    PlaneSet crossing_;
+    SlotSink& found_;
     KernelCost& cost_;
 };
 
 template <class Scalar>
-bool walkRows(const VolumeView<Scalar>& view, const PlaneSet& crossing, CellInterval layers,
+bool walkRows(const VolumeView<Scalar>& view, PlaneSet crossing, CellInterval layers,
               CellInterval rowsOfAll, VolumeReader<Scalar>& reader) {
     RowBatch<Scalar> batch(view, crossing);
     for (std::int32_t z = layers.low; z <= layers.high; ++z) {
@@ -387,22 +427,22 @@ bool walkRows(const VolumeView<Scalar>& view, const PlaneSet& crossing, CellInte
 }
 
 template <class Scalar>
-bool walkVolume(const LevelView<Scalar>& level, const Volume<Scalar>& volume, EntrySink& found,
+bool walkVolume(const LevelView<Scalar>& level, const Volume<Scalar>& volume, SlotSink& found,
                 KernelCost& cost) {
     const VolumeView<Scalar> view(level, volume);
-    PlaneSet crossing;
+    PlaneSet crossing = 0;
     for (std::uint32_t i = 0; i < volume.planeCount; ++i) {
         const Interval<Scalar> sum = view.sumOver(view.planes[i], view.all);
         if (sum.high < 0) {
             return true;
         }
         if (!(sum.low >= 0)) {
-            crossing.add(i);
+            crossing |= PlaneSet{1} << i;
         }
     }
     VolumeReader<Scalar> reader(view, crossing, found, cost);
     const Run all = {level.firstEntry, level.lastEntry};
-    if (crossing.count == 0) {
+    if (crossing == 0) {
         return reader.take(all);
     }
     const CellInterval layers = view.cellsOf(view.clip(view.all, 2), 2);

@@ -18,11 +18,18 @@ public:
     std::int32_t last[kRowsAtOnce];
     std::int32_t coveredFirst[kRowsAtOnce];
     std::int32_t coveredLast[kRowsAtOnce];
-    std::uint64_t crossing[kRowsAtOnce];  // bit i: plane i of these may part the boxes in the cells
+    PlaneSet crossing[kRowsAtOnce];  // may part the boxes in the cells
+    PlaneSet rising = 0;             // have more of a later cell inside than of an earlier one
+    PlaneSet falling = 0;            // less
 
     /// By `planes`, all that may part the boxes of the level.
-    RowBatch(const VolumeView<Scalar>& view, const PlaneSet& planes)
-        : view_(view), planes_(planes) {
+    RowBatch(const VolumeView<Scalar>& view, PlaneSet planes) : view_(view), planes_(planes) {
+        for (PlaneSet left = planes; left != 0; left &= left - 1) {
+            const std::uint32_t i = firstPlane(left);
+            const Scalar slope = view.planes[i].slope[0];
+            rising |= PlaneSet{slope > 0} << i;
+            falling |= PlaneSet{slope < 0} << i;
+        }
         for (int k = 0; k < kRowsAtOnce; ++k) {
             lowY_[k] = highY_[k] = lowZ_[k] = highZ_[k] = 0;
         }
@@ -60,8 +67,9 @@ private:
             touchedLow[k] = coveredLow[k] = view_.all.low[0];
             touchedHigh[k] = coveredHigh[k] = view_.all.high[0];
         }
-        for (std::uint32_t i = 0; i < planes_.count; ++i) {
-            const BoxPlane<Scalar> plane = view_.planes[planes_.numbers[i]];
+        for (PlaneSet left = planes_; left != 0; left &= left - 1) {
+            const std::uint32_t i = firstPlane(left);
+            const BoxPlane<Scalar> plane = view_.planes[i];
             Scalar most[kRowsAtOnce];
             for (int k = 0; k < kRowsAtOnce; ++k) {
                 const Scalar atLowY = plane.slope[1] * lowY_[k];
@@ -146,18 +154,19 @@ private:
             high[k] = view_.isFlat[0] ? view_.all.high[0] : view_.endOf(last[k], 0);
             crossing[k] = 0;
         }
-        for (std::uint32_t i = 0; i < planes_.count; ++i) {
-            const Scalar slope = view_.planes[planes_.numbers[i]].slope[0];
+        for (PlaneSet left = planes_; left != 0; left &= left - 1) {
+            const std::uint32_t i = firstPlane(left);
+            const Scalar slope = view_.planes[i].slope[0];
             const Scalar* const end = slope > 0 ? low : high;
             for (int k = 0; k < kRowsAtOnce; ++k) {
                 const Scalar sum = least[i][k] + slope * end[k];
-                crossing[k] |= std::uint64_t{sum >= 0 ? 0U : 1U} << i;
+                crossing[k] |= PlaneSet{sum >= 0 ? 0U : 1U} << i;
             }
         }
     }
 
     const VolumeView<Scalar>& view_;
-    const PlaneSet& planes_;
+    PlaneSet planes_;
     Scalar lowY_[kRowsAtOnce];
     Scalar highY_[kRowsAtOnce];
     Scalar lowZ_[kRowsAtOnce];

@@ -12,8 +12,8 @@
 //     both(hits, hits) ... and
 //     bits(hits)       ... take: bit k tells about number k
 //     minus, plus, times(a, b), magnitude(a)
-//     compress(mask, first, to)  where it is there, writes first + k to `to` for every bit k of the
-//                      mask, which has kWidth, and may write so many numbers
+//     compress(mask, numbers, to)  where it is there, writes numbers[k] to `to` for every bit k of the
+//                      mask, which has kWidth, and may write so many; reads no others
 //   WidePack<Scalar>   the same for long runs, perhaps wider
 //   isApart(a, b)      whether two padded boxes do not overlap
 //   fitsEdge(level, box)  whether no edge of the padded box is longer than the level's largest

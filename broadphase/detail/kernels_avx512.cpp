@@ -24,11 +24,11 @@ struct Pack<double> {
     static Numbers plus(Numbers a, Numbers b) { return _mm512_add_pd(a, b); }
     static Numbers times(Numbers a, Numbers b) { return _mm512_mul_pd(a, b); }
     static Numbers magnitude(Numbers a) { return _mm512_abs_pd(a); }
-    static void compress(std::uint32_t mask, std::uint32_t first, std::uint32_t* to) {
-        const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
-        const __m256i all = _mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(first)), lanes);
-        const __m256i some = _mm256_maskz_compress_epi32(static_cast<__mmask8>(mask), all);
-        _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), some);
+    static void compress(std::uint32_t mask, const std::uint32_t* numbers, std::uint32_t* to) {
+        const auto lanes = static_cast<__mmask8>(mask);
+        const __m256i some = _mm256_maskz_loadu_epi32(lanes, numbers);
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
+                            _mm256_maskz_compress_epi32(lanes, some));
     }
     static __mmask8 notAbove(Numbers a, Numbers b) { return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ); }
     static __mmask8 both(__mmask8 a, __mmask8 b) { return a & b; }
@@ -48,12 +48,10 @@ struct WidePack<float> {
     static Numbers plus(Numbers a, Numbers b) { return _mm512_add_ps(a, b); }
     static Numbers times(Numbers a, Numbers b) { return _mm512_mul_ps(a, b); }
     static Numbers magnitude(Numbers a) { return _mm512_abs_ps(a); }
-    static void compress(std::uint32_t mask, std::uint32_t first, std::uint32_t* to) {
-        const __m512i lanes =
-            _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-        const __m512i all = _mm512_add_epi32(_mm512_set1_epi32(static_cast<int>(first)), lanes);
-        const __m512i some = _mm512_maskz_compress_epi32(static_cast<__mmask16>(mask), all);
-        _mm512_storeu_si512(to, some);
+    static void compress(std::uint32_t mask, const std::uint32_t* numbers, std::uint32_t* to) {
+        const auto lanes = static_cast<__mmask16>(mask);
+        const __m512i some = _mm512_maskz_loadu_epi32(lanes, numbers);
+        _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(lanes, some));
     }
     static __mmask16 notAbove(Numbers a, Numbers b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
     static __mmask16 both(__mmask16 a, __mmask16 b) { return a & b; }

@@ -428,6 +428,7 @@ LevelView<Scalar> Table<Scalar>::view(const Level<Scalar>& level) const noexcept
     view.bucketStart = bucketStart_.data() + level.firstBucket;
     view.bucketOfEntry = bucketOfEntry_.data();
     view.rowOfEntry = rowOfEntry_.data();
+    view.slots = slots_.data();
     view.firstBucket = level.firstBucket;
     view.firstEntry = level.firstEntry;
     view.lastEntry = level.lastEntry;

@@ -134,10 +134,6 @@ public:
                 Vector3<Scalar>(bounds_[3][entry], bounds_[4][entry], bounds_[5][entry])};
     }
 
-    [[nodiscard]] bool isErased(std::uint32_t entry) const noexcept {
-        return bounds_[0][entry] != bounds_[0][entry];
-    }
-
     /// Coordinates of all entries, by column; readable kColumnPadding past any entry.
     [[nodiscard]] Columns<Scalar> columns() const noexcept {
         return {bounds_[0].data(), bounds_[1].data(), bounds_[2].data(),
