@@ -11,7 +11,8 @@
 //            surface is lost between two triangles. Heights are found in double precision.
 // Units      metres. Heights are coordinates along the axis that is up.
 // Threads    Queries are const and may run on any number of threads.
-// Memory     A query allocates nothing, unless a few points meet hundreds of boxes.
+// Memory     A query allocates nothing, unless a few points meet hundreds of boxes; one about many
+//            points takes 0.3 MB of the stack.
 // Bad data   Triangles with a bad corner are refused and named; bad points and radii have no ground.
 // Misuse     Corners that do not come in threes, and batches of unequal lengths, are asserted.
 
@@ -20,6 +21,7 @@
 #include <broadphase/up_axis.hpp>
 #include <integration/terrain/detail/ground_triangle.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -129,18 +131,18 @@ private:
     struct RestSearch;
     class TileOrder;
 
-    static constexpr std::size_t kTilesPerSide = 128;
+    static constexpr std::uint32_t kTilesPerSide = 128;
     static constexpr std::size_t kTiles = kTilesPerSide * kTilesPerSide;
 
     /// The tile in which the point lies, of a grid of tiles over all of the ground.
-    [[nodiscard]] std::size_t tileOf(const Point& point) const noexcept {
+    [[nodiscard]] std::uint16_t tileOf(const Point& point) const noexcept {
         const auto along = [&](Eigen::Index axis) {
             constexpr auto last = static_cast<Scalar>(kTilesPerSide - 1);
             const Scalar tile = (point[axis] - bounds_.min()[axis]) * tilesPerMetre_[axis];
-            // Phrased so that NaN becomes 0.
-            return static_cast<std::size_t>(tile > 0 ? (tile < last ? tile : last) : Scalar(0));
+            // In this order NaN becomes 0.
+            return static_cast<std::uint32_t>(std::min(std::max(Scalar(0), tile), last));
         };
-        return along(alongZ_) * kTilesPerSide + along(alongX_);
+        return static_cast<std::uint16_t>(along(alongZ_) * kTilesPerSide + along(alongX_));
     }
 
     template <class Search, class MakeSearch>

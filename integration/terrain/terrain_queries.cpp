@@ -126,11 +126,11 @@ class Terrain<Scalar>::TileOrder {
 public:
     static constexpr std::size_t kMost = 1 << 16;
 
-    TileOrder(const Terrain& terrain, std::span<const Point> points) noexcept {
+    TileOrder(const Terrain& terrain, std::span<const Point> points, ParallelFor parallelFor) {
         if (points.size() < kWorthSorting) {
             std::iota(order_, order_ + points.size(), std::uint16_t{0});
         } else {
-            sort(terrain, points);
+            sort(terrain, points, parallelFor);
         }
     }
 
@@ -139,40 +139,49 @@ public:
 private:
     static constexpr std::size_t kWorthSorting = 1024;
 
-    // A counting sort.
-    void sort(const Terrain& terrain, std::span<const Point> points) noexcept {
-        std::array<std::uint32_t, kTiles + 1> starts{};
-        for (const Point& point : points) {
-            ++starts[terrain.tileOf(point) + 1];
+    // A counting sort. Of the places in the order, only the end of the last tile may not fit into 16
+    // bits, and nobody is written there.
+    void sort(const Terrain& terrain, std::span<const Point> points, ParallelFor parallelFor) {
+        constexpr std::size_t grain = 8192;
+        std::uint16_t tiles[kMost];
+        parallelFor(points.size(), grain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                tiles[i] = terrain.tileOf(points[i]);
+            }
+        });
+        std::array<std::uint16_t, kTiles + 1> starts{};
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            ++starts[tiles[i] + 1U];
         }
         std::partial_sum(starts.begin(), starts.end(), starts.begin());
         for (std::size_t i = 0; i < points.size(); ++i) {
-            order_[starts[terrain.tileOf(points[i])]++] = static_cast<std::uint16_t>(i);
+            order_[starts[tiles[i]]++] = static_cast<std::uint16_t>(i);
         }
     }
 
     std::uint16_t order_[kMost];
 };
 
-// Asks the grid about a few points at a time, so that all that it takes is on the stack.
+// Sorts the points, and asks the grid about a few of them at a time, so that all that it takes is on
+// the stack.
 template <class Scalar>
 template <class Search, class MakeSearch>
 QueryCost Terrain<Scalar>::searchEach(std::span<const Point> points, std::span<Found> found,
                                       ParallelFor parallelFor, const MakeSearch& makeSearch) const {
-    constexpr std::size_t kGrain = 4096;
+    constexpr std::size_t kGrain = 1024;
     constexpr std::size_t kAtOnce = 16;
     std::atomic<std::uint64_t> rowsVisited{0};
     std::atomic<std::uint64_t> boxesTested{0};
     std::atomic<std::uint64_t> hits{0};
-    parallelFor(found.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-        std::array<BoxRegion<Scalar>, kAtOnce> columns;
-        std::array<Search, kAtOnce> searches;
-        QueryCost cost;
-        for (std::size_t chunk = begin; chunk < end; chunk += TileOrder::kMost) {
-            const std::size_t chunkSize = std::min(end - chunk, TileOrder::kMost);
-            const TileOrder order(*this, points.subspan(chunk, chunkSize));
-            for (std::size_t first = 0; first < chunkSize; first += kAtOnce) {
-                const std::size_t count = std::min(kAtOnce, chunkSize - first);
+    for (std::size_t chunk = 0; chunk < points.size(); chunk += TileOrder::kMost) {
+        const std::size_t chunkSize = std::min(points.size() - chunk, TileOrder::kMost);
+        const TileOrder order(*this, points.subspan(chunk, chunkSize), parallelFor);
+        parallelFor(chunkSize, kGrain, [&](std::size_t begin, std::size_t end) {
+            std::array<BoxRegion<Scalar>, kAtOnce> columns;
+            std::array<Search, kAtOnce> searches;
+            QueryCost cost;
+            for (std::size_t first = begin; first < end; first += kAtOnce) {
+                const std::size_t count = std::min(kAtOnce, end - first);
                 for (std::size_t i = 0; i < count; ++i) {
                     makeSearch(chunk + order[first + i], columns[i].box, searches[i]);
                 }
@@ -182,11 +191,11 @@ QueryCost Terrain<Scalar>::searchEach(std::span<const Point> points, std::span<F
                     found[chunk + order[first + i]] = searches[i].result();
                 }
             }
-        }
-        rowsVisited += cost.rowsVisited;
-        boxesTested += cost.boxesTested;
-        hits += cost.hits;
-    });
+            rowsVisited += cost.rowsVisited;
+            boxesTested += cost.boxesTested;
+            hits += cost.hits;
+        });
+    }
     return {rowsVisited, boxesTested, hits};
 }
 

@@ -70,6 +70,18 @@ TYPED_TEST(TerrainBatch, IsAsOneByOne) {
     }
 }
 
+// More than the places in an order, all in a single tile.
+TYPED_TEST(TerrainBatch, IsAsOneByOneAtASingleSpot) {
+    for (const std::size_t count : {65536U, 65540U}) {
+        SCOPED_TRACE(count);
+        this->draw(count);
+        for (Vector3<TypeParam>& point : this->points_) {
+            point = at<TypeParam>(20.25, point.y(), 20.25);
+        }
+        this->expectAsOneByOne(serialFor);
+    }
+}
+
 TYPED_TEST(TerrainBatch, IsTheSameOnAnyThreads) {
     this->draw(50000);
     for (const std::size_t threads : {2U, 5U}) {
