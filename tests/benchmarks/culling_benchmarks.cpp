@@ -43,11 +43,15 @@ Benchmark culling(std::string name, std::string description, MakeScene makeScene
 
 std::vector<Benchmark> cullingBenchmarks() {
     const CullingPlan tenthOfTerrain{0, 15, 0.9, 0.37};
+    CullingPlan fourTenths = tenthOfTerrain;
+    fourTenths.cameras = 4;
     const CullingPlan tenthOfSpace{0.02, 0, 0.9, 0.7};
     const CullingPlan fromFar{3, 0, 1.2, 10};
     return {
         culling("culling-tenth", "a camera among the paper's spheres that sees a tenth of them",
                 terrain, tenthOfTerrain),
+        culling("culling-four", "four cameras in turn, each of which sees a tenth of them", terrain,
+                fourTenths),
         culling("culling-all", "a camera far away that sees them all", terrain, fromFar),
         culling("culling-space-tenth", "a camera among uniform boxes that sees a tenth", space,
                 tenthOfSpace),

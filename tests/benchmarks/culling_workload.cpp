@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace hashphase::benchmarks {
 namespace {
@@ -235,34 +236,51 @@ void CullingWorkload::beginFrame() {
     }
     const Aabb<float> all = scene_.needs().bounds;
     const auto side = static_cast<double>(all.sizes().maxCoeff());
-    const double heading = 0.37 * frame_++;
-    const Vector3<double> ahead(std::cos(heading), -0.1, std::sin(heading));
-    const Vector3<double> eye = all.center().cast<double>() + Vector3<double>(0, plan_.height, 0) -
-                                ahead * (plan_.backwards * side);
     test::CameraLens lens;
     lens.fieldOfView = plan_.fieldOfView;
     lens.farPlane = plan_.farPlane * side;
-    planes_ =
-        frustumPlanes<float>(test::cameraMatrix<float>(lens, eye, eye + ahead), lens.depthRange);
+    const double turned = 0.37 * frame_++;
+    views_.clear();
+    for (int camera = 0; camera < plan_.cameras; ++camera) {
+        const double heading = turned + 2 * std::numbers::pi * camera / plan_.cameras;
+        const Vector3<double> ahead(std::cos(heading), -0.1, std::sin(heading));
+        const Vector3<double> eye = all.center().cast<double>() +
+                                    Vector3<double>(0, plan_.height, 0) -
+                                    ahead * (plan_.backwards * side);
+        const auto matrix = test::cameraMatrix<float>(lens, eye, eye + ahead);
+        views_.push_back(frustumPlanes<float>(matrix, lens.depthRange));
+    }
 }
 
 double CullingWorkload::runFrame(std::size_t contestant) {
     const FrameClock watch;
-    contestants_[contestant]->look(planes_);
+    for (const FrustumPlanes& view : views_) {
+        contestants_[contestant]->look(view);
+    }
     return watch.milliseconds();
 }
 
+// By camera, which has to look again.
 void CullingWorkload::listAnswers(std::size_t contestant, std::vector<Answer>& answers) {
     answers.clear();
-    contestants_[contestant]->listVisible(answers);
+    for (std::size_t camera = 0; camera < views_.size(); ++camera) {
+        const std::size_t first = answers.size();
+        contestants_[contestant]->look(views_[camera]);
+        contestants_[contestant]->listVisible(answers);
+        for (std::size_t i = first; i < answers.size(); ++i) {
+            answers[i] += camera * scene_.size();
+        }
+    }
 }
 
 void CullingWorkload::listExactAnswers(std::vector<Answer>& answers) {
     answers.clear();
-    const ConvexRegion<float> view(planes_, Containment::touching, Touch::byPlanes);
-    for (std::size_t i = 0; i < scene_.size(); ++i) {
-        if (view.key(scene_.boxes()[i]) >= 0) {
-            answers.push_back(i);
+    for (std::size_t camera = 0; camera < views_.size(); ++camera) {
+        const ConvexRegion<float> view(views_[camera], Containment::touching, Touch::byPlanes);
+        for (std::size_t i = 0; i < scene_.size(); ++i) {
+            if (view.key(scene_.boxes()[i]) >= 0) {
+                answers.push_back(camera * scene_.size() + i);
+            }
         }
     }
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// What does the camera see? All objects move before each frame, and the camera turns. Everybody marks
-// the visible ones by number.
+// What does a camera see, or each of some? All objects move before each frame, and the cameras turn.
+// Everybody marks the visible ones by number.
 
 #include <demos/scenes/random.hpp>
 #include <tests/benchmarks/scene_boxes.hpp>
@@ -13,6 +13,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace hashphase::benchmarks {
 
@@ -40,12 +41,13 @@ public:
 /// Those who take part.
 [[nodiscard]] std::vector<ContestantKind> cullingKinds();
 
-/// Where the camera stands, seen from the middle of the scene, and how far it sees.
+/// Where the cameras stand, seen from the middle of the scene, and how far they see.
 struct CullingPlan {
     double backwards = 0;    // from the middle, against its heading, in sides of the scene
     double height = 0;       // above the middle [m]
     double fieldOfView = 1;  // vertical [rad]
     double farPlane = 1;     // in sides of the scene
+    int cameras = 1;         // a frame, one after another, in as many directions
 };
 
 class CullingWorkload : public Workload {
@@ -59,13 +61,15 @@ public:
     void listAnswers(std::size_t contestant, std::vector<Answer>& answers) override;
     void listExactAnswers(std::vector<Answer>& answers) override;
     [[nodiscard]] std::size_t objects() const override { return scene_.size(); }
-    [[nodiscard]] std::size_t operations() const override { return scene_.size(); }
+    [[nodiscard]] std::size_t operations() const override {
+        return scene_.size() * static_cast<std::size_t>(plan_.cameras);
+    }
 
 private:
     SceneBoxes scene_;
     CullingPlan plan_;
     int frame_ = 0;
-    FrustumPlanes planes_;
+    std::vector<FrustumPlanes> views_;
     std::vector<std::unique_ptr<CullingContestant>> contestants_;
 };
 
