@@ -126,7 +126,7 @@ private:
         std::uint64_t hits = 0;  // no collector writes here
         bool goesOn = true;
         for (std::size_t i = 0; i < taken.size() && goesOn; ++i) {
-            // What was taken without a test may have been erased.
+            // Who is listed may have left: erased, or waiting.
             if (!kMayHaveLeft || reader.grid.standsIn(place, taken[i])) {
                 ++hits;
                 reader.collector.add(reader.grid.idOf(taken[i]), Scalar(0));

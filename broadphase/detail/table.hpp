@@ -13,7 +13,8 @@
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/detail/kernel_types.hpp>
-#include <broadphase/detail/levels.hpp>
+#include <broadphase/detail/level.hpp>
+#include <broadphase/detail/level_layout.hpp>
 #include <broadphase/detail/padded_box.hpp>
 #include <broadphase/detail/quantise.hpp>
 #include <broadphase/parallel_for.hpp>
@@ -22,7 +23,6 @@
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,59 +39,6 @@ struct CellRun {
     std::int32_t z = 0;
     std::int32_t firstX = 0;
     std::int32_t lastX = 0;
-};
-
-/// One level of a table: which entries it has, how coordinates become its cells, and how its rows
-/// of cells become buckets.
-template <class Scalar>
-struct Level {
-    std::array<Scalar, 3> origin{};
-    std::array<Scalar, 3> inverseCellSize{};  // 0 along a flat axis, which has one cell: 0
-    // Of boxes that are filed here; NaN, which nothing is below, where there are no cells.
-    Scalar largestEdge = std::numeric_limits<Scalar>::quiet_NaN();
-    // Between which coordinates the boxes lie, along flat axes.
-    std::array<Scalar, 3> lowest{};
-    std::array<Scalar, 3> highest{};
-    std::uint32_t firstEntry = 0;
-    std::uint32_t lastEntry = 0;  // one past
-    std::uint32_t firstBucket = 0;
-    std::uint32_t bucketCount = 1;
-    // Every entry's cell lies from low to high. Of two levels of one cell size, a box is filed on
-    // the dense one where its cell lies within. A level without cells is a plain list: it has one
-    // bucket, and every walk reads it whole.
-    Cell low{};
-    Cell high{};
-    bool hasCells = false;
-    // A well-filled range of cells is numbered through (the paper's formula), with empty ones between
-    // rows and between layers; else rows are hashed into a number of buckets that is a power of two.
-    bool isDense = false;
-    std::uint32_t strideY = 0;
-    std::uint32_t strideZ = 0;
-    std::uint32_t denseBase = 0;
-    // The axis along which the entries of crowded buckets are sorted, by their min corners, so that
-    // kernels need not read them all; negative: none. No box in them is longer there than the reach.
-    int sweepAxis = -1;
-    Scalar sweepReach = 0;
-
-    [[nodiscard]] std::uint32_t count() const noexcept { return lastEntry - firstEntry; }
-
-    [[nodiscard]] std::int32_t cell(Scalar x, std::size_t axis) const noexcept {
-        // Not 0 * infinity, along a flat axis.
-        return inverseCellSize[axis] == 0 ? 0 : quantise(x, origin[axis], inverseCellSize[axis]);
-    }
-
-    /// Bucket of cell x = 0 of row (y, z), among the level's own; hashed ones before the modulo.
-    [[nodiscard]] std::uint32_t rowBase(std::int32_t y, std::int32_t z) const noexcept {
-        const auto row =
-            static_cast<std::uint32_t>(y) * strideY + static_cast<std::uint32_t>(z) * strideZ;
-        return isDense ? row + denseBase : mixRow(row);
-    }
-
-    /// Bucket of a cell from low to high, among the level's own.
-    [[nodiscard]] std::uint32_t bucket(const Cell& cell) const noexcept {
-        const std::uint32_t sum = rowBase(cell[1], cell[2]) + static_cast<std::uint32_t>(cell[0]);
-        return isDense ? sum : sum & (bucketCount - 1);
-    }
 };
 
 struct EntryRange {
@@ -123,8 +70,9 @@ public:
     [[nodiscard]] std::span<const std::uint32_t> order() const noexcept { return order_; }
     /// Edge of the finest cells [m]; infinity when nothing is filed by cells.
     [[nodiscard]] double finestCellSize() const noexcept {
-        return sizes_.count > 0 && !slots_.empty() ? sizes_.cellSize[0]
-                                                   : std::numeric_limits<double>::infinity();
+        return layout_.sizes().count > 0 && !slots_.empty()
+                   ? layout_.sizes().cellSize[0]
+                   : std::numeric_limits<double>::infinity();
     }
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
@@ -179,33 +127,7 @@ public:
     [[nodiscard]] std::string validate() const;
 
 private:
-    /// How many boxes are filed by cells of one size, and between which cells.
-    struct Reach {
-        std::uint32_t count = 0;
-        Cell low{kCellLimit, kCellLimit, kCellLimit};
-        Cell high{-kCellLimit, -kCellLimit, -kCellLimit};
-
-        void add(const Cell& cell) noexcept {
-            ++count;
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                low[axis] = std::min(low[axis], cell[axis]);
-                high[axis] = std::max(high[axis], cell[axis]);
-            }
-        }
-    };
-
-    [[nodiscard]] bool isTimeToChoose(std::size_t count);
-    void chooseLevels(std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed);
-    void makeLevels();
-    [[nodiscard]] std::optional<Cell> cellOn(const Level<Scalar>& level,
-                                             const Aabb<Scalar>& box) const noexcept;
-    using Reaches = std::array<Reach, kMaxLevels>;  // by cell size
-
-    [[nodiscard]] Reaches measure(std::span<const PaddedBox<Scalar>> boxes) const;
     void layOut(std::span<const PaddedBox<Scalar>> boxes);
-    void layOutDense(Level<Scalar>& level, const Reach& reach);
-    [[nodiscard]] bool numberThrough(Level<Scalar>& level, std::uint32_t count) const;
-    void layOutHashed(Level<Scalar>& level, std::uint32_t count) const;
     [[nodiscard]] std::size_t countBuckets(std::span<const PaddedBox<Scalar>> boxes,
                                            ParallelFor parallelFor);
     void sortEntries(std::span<const std::uint32_t> slots, std::span<const PaddedBox<Scalar>> boxes,
@@ -217,17 +139,10 @@ private:
     void noteRows();
     void noteHeights();
 
-    LevelSizes sizes_;
-    std::array<Scalar, 3> origin_{};
-    std::uint64_t countWhenChosen_ = 0;
-    std::uint32_t buildsSinceChosen_ = 0;
+    LevelLayout<Scalar> layout_;
     std::uint32_t largestBucket_ = 0;   // of those that are cells
     std::size_t strayCount_ = 0;        // when the levels were laid out
     std::size_t straysWhenChosen_ = 0;  // when the cell sizes were chosen
-    SizeCensus census_;
-
-    // Two for each cell size, finest first: one numbered through, for most, and a hashed one for
-    // what lies beyond it. The last one is the list without cells.
     std::vector<Level<Scalar>> levels_;
     std::vector<std::uint32_t> bucketStart_;
     std::vector<std::uint32_t> slots_;

@@ -11,8 +11,8 @@
 //            surface is lost between two triangles. Heights are found in double precision.
 // Units      metres. Heights are coordinates along the axis that is up.
 // Threads    Queries are const and may run on any number of threads.
-// Memory     A query allocates nothing, unless a few points meet hundreds of boxes; one about many
-//            points takes 0.3 MB of the stack.
+// Memory     A query allocates nothing, unless a few points meet hundreds of boxes; one about more
+//            than a thousand points takes 0.3 MB of the stack.
 // Bad data   Triangles with a bad corner are refused and named; bad points and radii have no ground.
 // Misuse     Corners that do not come in threes, and batches of unequal lengths, are asserted.
 
@@ -144,6 +144,14 @@ private:
         };
         return static_cast<std::uint16_t>(along(alongZ_) * kTilesPerSide + along(alongX_));
     }
+
+    template <class Search, class MakeSearch, class NumberOf>
+    QueryCost searchInOrder(std::size_t count, const NumberOf& numberOf, std::span<Found> found,
+                            ParallelFor parallelFor, const MakeSearch& makeSearch) const;
+
+    template <class Search, class MakeSearch>
+    QueryCost searchByTiles(std::span<const Point> points, std::span<Found> found,
+                            ParallelFor parallelFor, const MakeSearch& makeSearch) const;
 
     template <class Search, class MakeSearch>
     QueryCost searchEach(std::span<const Point> points, std::span<Found> found,

@@ -119,29 +119,17 @@ struct Terrain<Scalar>::RestSearch : Candidates<RestSearch> {
     }
 };
 
-/// The order in which points are looked at: tile by tile of the ground, so that what one of them
+/// The order in which many points are looked at: tile by tile of the ground, so that what one of them
 /// reads of the memory is still at hand for the next. On the stack.
 template <class Scalar>
 class Terrain<Scalar>::TileOrder {
 public:
     static constexpr std::size_t kMost = 1 << 16;
 
-    TileOrder(const Terrain& terrain, std::span<const Point> points, ParallelFor parallelFor) {
-        if (points.size() < kWorthSorting) {
-            std::iota(order_, order_ + points.size(), std::uint16_t{0});
-        } else {
-            sort(terrain, points, parallelFor);
-        }
-    }
-
-    std::size_t operator[](std::size_t i) const noexcept { return order_[i]; }
-
-private:
-    static constexpr std::size_t kWorthSorting = 1024;
-
     // A counting sort. Of the places in the order, only the end of the last tile may not fit into 16
     // bits, and nobody is written there.
-    void sort(const Terrain& terrain, std::span<const Point> points, ParallelFor parallelFor) {
+    [[gnu::noinline]] TileOrder(const Terrain& terrain, std::span<const Point> points,
+                                ParallelFor parallelFor) {
         constexpr std::size_t grain = 8192;
         std::uint16_t tiles[kMost];
         parallelFor(points.size(), grain, [&](std::size_t begin, std::size_t end) {
@@ -159,44 +147,72 @@ private:
         }
     }
 
+    std::size_t operator[](std::size_t i) const noexcept { return order_[i]; }
+
+private:
     std::uint16_t order_[kMost];
 };
 
-// Sorts the points, and asks the grid about a few of them at a time, so that all that it takes is on
-// the stack.
+// Asks the grid about a few of `count` points at a time, so that all that it takes is on the stack:
+// the k-th of them is point numberOf(k).
+template <class Scalar>
+template <class Search, class MakeSearch, class NumberOf>
+QueryCost Terrain<Scalar>::searchInOrder(std::size_t count, const NumberOf& numberOf,
+                                         std::span<Found> found, ParallelFor parallelFor,
+                                         const MakeSearch& makeSearch) const {
+    constexpr std::size_t grain = 1024;
+    constexpr std::size_t atOnce = 16;
+    std::atomic<std::uint64_t> rowsVisited{0};
+    std::atomic<std::uint64_t> boxesTested{0};
+    std::atomic<std::uint64_t> hits{0};
+    parallelFor(count, grain, [&](std::size_t begin, std::size_t end) {
+        std::array<BoxRegion<Scalar>, atOnce> columns;
+        std::array<Search, atOnce> searches;
+        QueryCost cost;
+        for (std::size_t first = begin; first < end; first += atOnce) {
+            const std::size_t few = std::min(atOnce, end - first);
+            for (std::size_t i = 0; i < few; ++i) {
+                makeSearch(numberOf(first + i), columns[i].box, searches[i]);
+            }
+            cost += grid_->visitEach(std::span<const BoxRegion<Scalar>>(columns).first(few),
+                                     std::span(searches).first(few));
+            for (std::size_t i = 0; i < few; ++i) {
+                found[numberOf(first + i)] = searches[i].result();
+            }
+        }
+        rowsVisited += cost.rowsVisited;
+        boxesTested += cost.boxesTested;
+        hits += cost.hits;
+    });
+    return {rowsVisited, boxesTested, hits};
+}
+
+template <class Scalar>
+template <class Search, class MakeSearch>
+[[gnu::noinline]] QueryCost Terrain<Scalar>::searchByTiles(std::span<const Point> points,
+                                                           std::span<Found> found,
+                                                           ParallelFor parallelFor,
+                                                           const MakeSearch& makeSearch) const {
+    QueryCost cost;
+    for (std::size_t first = 0; first < points.size(); first += TileOrder::kMost) {
+        const std::size_t count = std::min(points.size() - first, TileOrder::kMost);
+        const TileOrder order(*this, points.subspan(first, count), parallelFor);
+        const auto numberOf = [&](std::size_t k) { return first + order[k]; };
+        cost += searchInOrder<Search>(count, numberOf, found, parallelFor, makeSearch);
+    }
+    return cost;
+}
+
 template <class Scalar>
 template <class Search, class MakeSearch>
 QueryCost Terrain<Scalar>::searchEach(std::span<const Point> points, std::span<Found> found,
                                       ParallelFor parallelFor, const MakeSearch& makeSearch) const {
-    constexpr std::size_t kGrain = 1024;
-    constexpr std::size_t kAtOnce = 16;
-    std::atomic<std::uint64_t> rowsVisited{0};
-    std::atomic<std::uint64_t> boxesTested{0};
-    std::atomic<std::uint64_t> hits{0};
-    for (std::size_t chunk = 0; chunk < points.size(); chunk += TileOrder::kMost) {
-        const std::size_t chunkSize = std::min(points.size() - chunk, TileOrder::kMost);
-        const TileOrder order(*this, points.subspan(chunk, chunkSize), parallelFor);
-        parallelFor(chunkSize, kGrain, [&](std::size_t begin, std::size_t end) {
-            std::array<BoxRegion<Scalar>, kAtOnce> columns;
-            std::array<Search, kAtOnce> searches;
-            QueryCost cost;
-            for (std::size_t first = begin; first < end; first += kAtOnce) {
-                const std::size_t count = std::min(kAtOnce, end - first);
-                for (std::size_t i = 0; i < count; ++i) {
-                    makeSearch(chunk + order[first + i], columns[i].box, searches[i]);
-                }
-                cost += grid_->visitEach(std::span<const BoxRegion<Scalar>>(columns).first(count),
-                                         std::span(searches).first(count));
-                for (std::size_t i = 0; i < count; ++i) {
-                    found[chunk + order[first + i]] = searches[i].result();
-                }
-            }
-            rowsVisited += cost.rowsVisited;
-            boxesTested += cost.boxesTested;
-            hits += cost.hits;
-        });
+    constexpr std::size_t worthSorting = 1024;
+    if (points.size() >= worthSorting) {
+        return searchByTiles<Search>(points, found, parallelFor, makeSearch);
     }
-    return {rowsVisited, boxesTested, hits};
+    const auto numberOf = [](std::size_t k) { return k; };
+    return searchInOrder<Search>(points.size(), numberOf, found, parallelFor, makeSearch);
 }
 
 template <class Scalar>

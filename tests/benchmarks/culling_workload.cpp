@@ -260,12 +260,14 @@ double CullingWorkload::runFrame(std::size_t contestant) {
     return watch.milliseconds();
 }
 
-// By camera, which has to look again.
+// Of the last camera, what the frame left; the others look again.
 void CullingWorkload::listAnswers(std::size_t contestant, std::vector<Answer>& answers) {
     answers.clear();
-    for (std::size_t camera = 0; camera < views_.size(); ++camera) {
+    for (std::size_t camera = views_.size(); camera-- > 0;) {
+        if (camera + 1 < views_.size()) {
+            contestants_[contestant]->look(views_[camera]);
+        }
         const std::size_t first = answers.size();
-        contestants_[contestant]->look(views_[camera]);
         contestants_[contestant]->listVisible(answers);
         for (std::size_t i = first; i < answers.size(); ++i) {
             answers[i] += camera * scene_.size();
