@@ -43,6 +43,8 @@ Benchmark culling(std::string name, std::string description, MakeScene makeScene
 
 std::vector<Benchmark> cullingBenchmarks() {
     const CullingPlan tenthOfTerrain{0, 15, 0.9, 0.37};
+    CullingPlan again = tenthOfTerrain;
+    again.isSecond = true;
     CullingPlan fourTenths = tenthOfTerrain;
     fourTenths.cameras = 4;
     const CullingPlan tenthOfSpace{0.02, 0, 0.9, 0.7};
@@ -50,6 +52,8 @@ std::vector<Benchmark> cullingBenchmarks() {
     return {
         culling("culling-tenth", "a camera among the paper's spheres that sees a tenth of them",
                 terrain, tenthOfTerrain),
+        culling("culling-again", "the same camera once more, with all that it reads in the cache",
+                terrain, again),
         culling("culling-four", "four cameras in turn, each of which sees a tenth of them", terrain,
                 fourTenths),
         culling("culling-all", "a camera far away that sees them all", terrain, fromFar),

@@ -48,6 +48,7 @@ struct CullingPlan {
     double fieldOfView = 1;  // vertical [rad]
     double farPlane = 1;     // in sides of the scene
     int cameras = 1;         // a frame, one after another, in as many directions
+    bool isSecond = false;   // only a second look is timed: all that it reads is in the cache
 };
 
 class CullingWorkload : public Workload {
