@@ -74,20 +74,21 @@ private:
             const auto startOf = [starts, base](std::int32_t cell) {
                 return starts[base + static_cast<std::uint32_t>(cell)];
             };
-            const bool hasCells = batch.first[k] <= batch.last[k];
-            if (hasCells) {
-                const Run all{startOf(batch.first[k]), startOf(batch.last[k] + 1)};
-                const bool hasCovered = batch.coveredFirst[k] <= batch.coveredLast[k];
-                const PlaneSet crossing = batch.crossing[k];
+            if (batch.first[k] > batch.last[k]) {
+                continue;
+            }
+            RowRuns& row = found[foundCount++];
+            row.all = {startOf(batch.first[k]), startOf(batch.last[k] + 1)};
+            row.covered = {row.all.last, row.all.last};
+            row.before = batch.crossing[k];
+            row.behind = 0;
+            if (batch.coveredFirst[k] <= batch.coveredLast[k]) {
                 // A falling plane that has all of the covered cells inside has all before them inside,
                 // too: only rising ones may part those, and only falling ones those behind. Planes
                 // along y and z that part a row leave none of it covered.
-                found[foundCount++] = hasCovered ? RowRuns{all,
-                                                           {startOf(batch.coveredFirst[k]),
-                                                            startOf(batch.coveredLast[k] + 1)},
-                                                           crossing & batch.rising,
-                                                           crossing & batch.falling}
-                                                 : RowRuns{all, {all.last, all.last}, crossing, 0};
+                row.covered = {startOf(batch.coveredFirst[k]), startOf(batch.coveredLast[k] + 1)};
+                row.before = batch.crossing[k] & batch.rising;
+                row.behind = batch.crossing[k] & batch.falling;
             }
         }
         cost_.rowsVisited += static_cast<std::uint64_t>(foundCount);
