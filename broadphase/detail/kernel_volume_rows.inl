@@ -51,74 +51,91 @@ public:
     /// Finds the cells of the rows.
     void clip() {
         Scalar least[kMostVolumePlanes][kRowsAtOnce];  // of each plane's sum, but for x
-        clipRows(least);
+        Spans spans;
+        clipRows(spans, least);
+        if (view_.isFlat[0]) {
+            findCell(spans);
+        } else {
+            findCells(spans);
+        }
         findCrossings(least);
     }
 
 private:
     static constexpr auto kNowhere = static_cast<Scalar>(-__builtin_inf());
 
-    void clipRows(Scalar (*least)[kRowsAtOnce]) {
+    /// Of each row, between which coordinates boxes may touch the volume, and between which they
+    /// surely do.
+    struct Spans {
         Scalar touchedLow[kRowsAtOnce];
         Scalar touchedHigh[kRowsAtOnce];
         Scalar coveredLow[kRowsAtOnce];
         Scalar coveredHigh[kRowsAtOnce];
+    };
+
+    void clipRows(Spans& spans, Scalar (*least)[kRowsAtOnce]) const {
         for (int k = 0; k < kRowsAtOnce; ++k) {
-            touchedLow[k] = coveredLow[k] = view_.all.low[0];
-            touchedHigh[k] = coveredHigh[k] = view_.all.high[0];
+            spans.touchedLow[k] = spans.coveredLow[k] = view_.all.low[0];
+            spans.touchedHigh[k] = spans.coveredHigh[k] = view_.all.high[0];
         }
         for (PlaneSet left = planes_; left != 0; left &= left - 1) {
             const std::uint32_t i = firstPlane(left);
-            const BoxPlane<Scalar> plane = view_.planes[i];
             Scalar most[kRowsAtOnce];
-            for (int k = 0; k < kRowsAtOnce; ++k) {
-                const Scalar atLowY = plane.slope[1] * lowY_[k];
-                const Scalar atHighY = plane.slope[1] * highY_[k];
-                const Scalar atLowZ = plane.slope[2] * lowZ_[k];
-                const Scalar atHighZ = plane.slope[2] * highZ_[k];
-                most[k] = (plane.offset + plane.slack) + larger(atLowY, atHighY) +
-                          larger(atLowZ, atHighZ);
-                least[i][k] = (plane.offset - plane.slack) + smaller(atLowY, atHighY) +
-                              smaller(atLowZ, atHighZ);
-            }
-            const Scalar slope = plane.slope[0];
-            const Scalar minusInverse = slope == 0 ? Scalar(0) : -1 / slope;
-            if (slope > 0) {
-                for (int k = 0; k < kRowsAtOnce; ++k) {
-                    touchedLow[k] = larger(touchedLow[k], most[k] * minusInverse);
-                    coveredLow[k] = larger(coveredLow[k], least[i][k] * minusInverse);
-                }
-            } else if (slope < 0) {
-                for (int k = 0; k < kRowsAtOnce; ++k) {
-                    touchedHigh[k] = smaller(touchedHigh[k], most[k] * minusInverse);
-                    coveredHigh[k] = smaller(coveredHigh[k], least[i][k] * minusInverse);
-                }
-            } else {
-                for (int k = 0; k < kRowsAtOnce; ++k) {
-                    touchedHigh[k] = most[k] < 0 ? kNowhere : touchedHigh[k];
-                    coveredHigh[k] = least[i][k] < 0 ? kNowhere : coveredHigh[k];
-                }
-            }
-        }
-        if (view_.isFlat[0]) {
-            for (int k = 0; k < kRowsAtOnce; ++k) {
-                const bool isCovered =
-                    coveredLow[k] <= view_.all.low[0] && coveredHigh[k] >= view_.all.high[0];
-                first[k] = coveredFirst[k] = 0;
-                last[k] = touchedLow[k] <= touchedHigh[k] ? 0 : -1;
-                coveredLast[k] = isCovered ? 0 : -1;
-            }
-        } else {
-            findCells(touchedLow, touchedHigh, coveredLow, coveredHigh);
+            sumUp(view_.planes[i], least[i], most);
+            narrow(spans, view_.planes[i].slope[0], least[i], most);
         }
     }
 
-    void findCells(const Scalar* touchedLow, const Scalar* touchedHigh, const Scalar* coveredLow,
-                   const Scalar* coveredHigh) {
-        quantiseAll(touchedLow, first);
-        quantiseAll(touchedHigh, last);
-        quantiseAll(coveredLow, coveredFirst);
-        quantiseAll(coveredHigh, coveredLast);
+    // The plane's sum over the boxes of each row, but for x.
+    void sumUp(const BoxPlane<Scalar> plane, Scalar* least, Scalar* most) const {
+        for (int k = 0; k < kRowsAtOnce; ++k) {
+            const Scalar atLowY = plane.slope[1] * lowY_[k];
+            const Scalar atHighY = plane.slope[1] * highY_[k];
+            const Scalar atLowZ = plane.slope[2] * lowZ_[k];
+            const Scalar atHighZ = plane.slope[2] * highZ_[k];
+            most[k] =
+                (plane.offset + plane.slack) + larger(atLowY, atHighY) + larger(atLowZ, atHighZ);
+            least[k] =
+                (plane.offset - plane.slack) + smaller(atLowY, atHighY) + smaller(atLowZ, atHighZ);
+        }
+    }
+
+    static void narrow(Spans& spans, Scalar slope, const Scalar* least, const Scalar* most) {
+        const Scalar minusInverse = slope == 0 ? Scalar(0) : -1 / slope;
+        if (slope > 0) {
+            for (int k = 0; k < kRowsAtOnce; ++k) {
+                spans.touchedLow[k] = larger(spans.touchedLow[k], most[k] * minusInverse);
+                spans.coveredLow[k] = larger(spans.coveredLow[k], least[k] * minusInverse);
+            }
+        } else if (slope < 0) {
+            for (int k = 0; k < kRowsAtOnce; ++k) {
+                spans.touchedHigh[k] = smaller(spans.touchedHigh[k], most[k] * minusInverse);
+                spans.coveredHigh[k] = smaller(spans.coveredHigh[k], least[k] * minusInverse);
+            }
+        } else {
+            for (int k = 0; k < kRowsAtOnce; ++k) {
+                spans.touchedHigh[k] = most[k] < 0 ? kNowhere : spans.touchedHigh[k];
+                spans.coveredHigh[k] = least[k] < 0 ? kNowhere : spans.coveredHigh[k];
+            }
+        }
+    }
+
+    // Where the level is flat along x, a row is one cell.
+    void findCell(const Spans& spans) {
+        for (int k = 0; k < kRowsAtOnce; ++k) {
+            const bool isCovered = spans.coveredLow[k] <= view_.all.low[0] &&
+                                   spans.coveredHigh[k] >= view_.all.high[0];
+            first[k] = coveredFirst[k] = 0;
+            last[k] = spans.touchedLow[k] <= spans.touchedHigh[k] ? 0 : -1;
+            coveredLast[k] = isCovered ? 0 : -1;
+        }
+    }
+
+    void findCells(const Spans& spans) {
+        quantiseAll(spans.touchedLow, first);
+        quantiseAll(spans.touchedHigh, last);
+        quantiseAll(spans.coveredLow, coveredFirst);
+        quantiseAll(spans.coveredHigh, coveredLast);
         // Not read anew in each turn, as members would be that what is written might be a part of.
         const std::int32_t lowest = view_.level.low[0];
         const std::int32_t highest = view_.level.high[0];
@@ -132,9 +149,9 @@ private:
             const std::int32_t innerLow = larger(coveredFirst[k] + 1, low);
             const std::int32_t innerHigh = smaller(coveredLast[k] - 2, high);
             first[k] = low;
-            last[k] = touchedLow[k] <= touchedHigh[k] ? high : low - 1;
-            coveredFirst[k] = coveredLow[k] <= begin ? low : innerLow;
-            coveredLast[k] = coveredHigh[k] >= end ? high : innerHigh;
+            last[k] = spans.touchedLow[k] <= spans.touchedHigh[k] ? high : low - 1;
+            coveredFirst[k] = spans.coveredLow[k] <= begin ? low : innerLow;
+            coveredLast[k] = spans.coveredHigh[k] >= end ? high : innerHigh;
         }
     }
 
