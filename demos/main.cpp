@@ -2,6 +2,7 @@
 
 // hashphase: what the spatial hash does, shown and measured. Each subcommand is a folder here.
 
+#include <demos/accuracy/accuracy_command.hpp>
 #include <demos/compare/compare_command.hpp>
 #include <demos/console/program.hpp>
 
@@ -19,6 +20,6 @@ int main(int argc, char** argv) {
     for (const std::string& argument : arguments) {
         console.commandLine += " " + argument;
     }
-    const std::array subcommands{compareCommand()};
+    const std::array subcommands{compareCommand(), accuracyCommand()};
     return runProgram(arguments, subcommands, console);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/compare/box_trial.hpp>
 
-#include <demos/compare/stopwatch.hpp>
+#include <demos/report/stopwatch.hpp>
 
 #include <utility>
 

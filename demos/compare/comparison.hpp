@@ -3,8 +3,8 @@
 
 // Runs a trial and records what each broadphase did: the measurements, before any report of them.
 
-#include <demos/compare/statistics.hpp>
-#include <demos/compare/stopwatch.hpp>
+#include <demos/report/statistics.hpp>
+#include <demos/report/stopwatch.hpp>
 #include <demos/compare/trial.hpp>
 #include <demos/compare/verifier.hpp>
 #include <demos/console/progress.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/compare/observed_world.hpp>
 
-#include <demos/compare/stopwatch.hpp>
+#include <demos/report/stopwatch.hpp>
 
 namespace hashphase::demos {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/compare/report.hpp>
 
-#include <demos/compare/report_text.hpp>
+#include <demos/report/report_text.hpp>
 #include <demos/console/format.hpp>
 #include <demos/console/table.hpp>
 

@@ -5,7 +5,7 @@
 
 #include <demos/compare/compare.hpp>
 #include <demos/compare/comparison.hpp>
-#include <demos/compare/provenance.hpp>
+#include <demos/report/provenance.hpp>
 
 #include <iosfwd>
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/compare/report.hpp>
 
-#include <demos/compare/json_values.hpp>
+#include <demos/report/json_values.hpp>
 
 #include <cmath>
 #include <ostream>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <tests/benchmarks/benchmark_command.hpp>
 
-#include <demos/compare/stopwatch.hpp>
+#include <demos/report/stopwatch.hpp>
 #include <demos/console/option_checks.hpp>
 #include <demos/console/progress.hpp>
 #include <demos/console/result_file.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-#include <demos/compare/stopwatch.hpp>
+#include <demos/report/stopwatch.hpp>
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <tests/benchmarks/measurement.hpp>
 
-#include <demos/compare/stopwatch.hpp>
+#include <demos/report/stopwatch.hpp>
 #include <demos/compare/verifier.hpp>
 #include <tests/benchmarks/frame_clock.hpp>
 

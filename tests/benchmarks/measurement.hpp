@@ -4,7 +4,7 @@
 // Runs one case: a benchmark at one size, all its contestants interleaved frame by frame, every
 // answer checked.
 
-#include <demos/compare/statistics.hpp>
+#include <demos/report/statistics.hpp>
 #include <tests/benchmarks/catalog.hpp>
 
 #include <functional>

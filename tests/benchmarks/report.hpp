@@ -3,7 +3,7 @@
 
 // What was measured, as text for people and as JSON for programs.
 
-#include <demos/compare/provenance.hpp>
+#include <demos/report/provenance.hpp>
 #include <tests/benchmarks/selection.hpp>
 
 #include <iosfwd>

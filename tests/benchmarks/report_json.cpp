@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <tests/benchmarks/report.hpp>
 
-#include <demos/compare/json_values.hpp>
+#include <demos/report/json_values.hpp>
 #include <tests/benchmarks/cell_size.hpp>
 
 #include <ostream>

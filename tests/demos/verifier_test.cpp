@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/compare/comparison.hpp>
 #include <demos/compare/reference_pairs.hpp>
-#include <demos/compare/statistics.hpp>
+#include <demos/report/statistics.hpp>
 #include <demos/compare/verifier.hpp>
 #include <demos/scenes/random.hpp>
 

@@ -3,8 +3,8 @@
 
 // What all JSON reports have in common. What was not measured is null, never NaN.
 
-#include <demos/compare/provenance.hpp>
-#include <demos/compare/statistics.hpp>
+#include <demos/report/provenance.hpp>
+#include <demos/report/statistics.hpp>
 
 #include <nlohmann/json.hpp>
 

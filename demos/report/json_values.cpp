@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/compare/json_values.hpp>
+#include <demos/report/json_values.hpp>
 
 namespace hashphase::demos {
 

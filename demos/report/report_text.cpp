@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/compare/report_text.hpp>
+#include <demos/report/report_text.hpp>
 
 #include <demos/console/format.hpp>
 

@@ -3,8 +3,8 @@
 
 // What all reports for people have in common.
 
-#include <demos/compare/provenance.hpp>
-#include <demos/compare/statistics.hpp>
+#include <demos/report/provenance.hpp>
+#include <demos/report/statistics.hpp>
 
 #include <iosfwd>
 #include <optional>

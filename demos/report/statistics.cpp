@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/compare/statistics.hpp>
+#include <demos/report/statistics.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/compare/provenance.hpp>
+#include <demos/report/provenance.hpp>
 
 #include <demos/console/program.hpp>
 

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/accuracy/accuracy_command.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <memory>
+
+namespace hashphase::demos {
+namespace {
+
+void declare(CLI::App& app, AccuracyOptions& options) {
+    app.add_option("--only", options.only,
+                   "run these experiments, separated by commas (see --list)")
+        ->delimiter(',');
+    app.add_flag("--quick", options.effort.isQuick,
+                 "measure less: under a minute for all, in place of about 20");
+    app.add_option("--output", options.folder,
+                   "write the report (accuracy.html) and its data (JSON, CSV) to this folder");
+    app.add_option("--seed", options.effort.seed, "seed of all random numbers")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    app.add_flag("--quiet", options.quiet, "no progress on stderr");
+    app.add_flag("--list", options.list, "say which experiments there are");
+}
+
+}  // namespace
+
+Subcommand accuracyCommand(std::span<const Experiment> known) {
+    auto options = std::make_shared<AccuracyOptions>();
+    Subcommand command;
+    command.name = "accuracy";
+    command.description = "Measure what accuracy costs in time: every choice, its error and its ms";
+    command.declareOptions = [options](CLI::App& app) { declare(app, *options); };
+    command.run = [options, known](Console& console) {
+        return runAccuracy(*options, known, console);
+    };
+    return command;
+}
+
+}  // namespace hashphase::demos

@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// The experiments, one file each.
+
+#include <demos/accuracy/experiment.hpp>
+
+namespace hashphase::demos {}  // namespace hashphase::demos

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/accuracy/timing.hpp>
+
+#include <demos/report/stopwatch.hpp>
+
+#if defined(__linux__)
+#include <sched.h>
+#endif
+
+namespace hashphase::demos {
+
+std::vector<Spread> timeInTurn(int frames, int warmUp, const std::function<void(int frame)>& begin,
+                               std::span<const std::function<void()>> methods) {
+    std::vector<std::vector<double>> times(methods.size());
+    for (int frame = 0; frame < warmUp + frames; ++frame) {
+        begin(frame);
+        for (std::size_t turn = 0; turn < methods.size(); ++turn) {
+            const std::size_t i = (turn + static_cast<std::size_t>(frame)) % methods.size();
+            const Stopwatch stopwatch;
+            methods[i]();
+            const double elapsed = stopwatch.milliseconds();
+            if (frame >= warmUp) {
+                times[i].push_back(elapsed);
+            }
+        }
+    }
+    std::vector<Spread> spreads;
+    for (std::vector<double>& each : times) {
+        spreads.push_back(spreadOf(std::move(each)));
+    }
+    return spreads;
+}
+
+void pinToThisCore() {
+#if defined(__linux__)
+    const int core = sched_getcpu();
+    if (core >= 0) {
+        cpu_set_t cores;
+        CPU_ZERO(&cores);
+        CPU_SET(static_cast<unsigned>(core), &cores);
+        // Refused in some containers; the times are then a little less steady.
+        static_cast<void>(sched_setaffinity(0, sizeof(cores), &cores));
+    }
+#endif
+}
+
+}  // namespace hashphase::demos

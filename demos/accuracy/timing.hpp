@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Times methods against each other so that their ratios can be trusted.
+
+#include <demos/report/statistics.hpp>
+
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace hashphase::demos {
+
+/// Fewer different frames than this are no measurement.
+inline constexpr int kFewestFrames = 60;
+
+/// Runs begin(frame) and then all methods, in an order that rotates, for each of `frames` frames
+/// after `warmUp` more that are not timed. Returns the time of each method [ms a frame].
+[[nodiscard]] std::vector<Spread> timeInTurn(int frames, int warmUp,
+                                             const std::function<void(int frame)>& begin,
+                                             std::span<const std::function<void()>> methods);
+
+/// Keeps the calling thread on the core where it is: the scheduler moves threads, and caches do not
+/// move along. Does nothing where the system has no such call.
+void pinToThisCore();
+
+}  // namespace hashphase::demos

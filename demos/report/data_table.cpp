@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/report/data_table.hpp>
+
+#include <demos/console/format.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <ostream>
+#include <stdexcept>
+
+namespace hashphase::demos {
+namespace {
+
+std::string csvField(const Value& value) {
+    if (const double* number = std::get_if<double>(&value)) {
+        if (!std::isfinite(*number)) {
+            return {};
+        }
+        char digits[32];  // enough for any double
+        const auto end = std::to_chars(std::begin(digits), std::end(digits), *number).ptr;
+        return {std::begin(digits), end};
+    }
+    const std::string* text = std::get_if<std::string>(&value);
+    if (text == nullptr || text->find_first_of(",\"\r\n") == std::string::npos) {
+        return text != nullptr ? *text : std::string();
+    }
+    std::string quoted = "\"";
+    for (const char letter : *text) {
+        quoted += letter;
+        if (letter == '"') {
+            quoted += letter;
+        }
+    }
+    return quoted + '"';
+}
+
+}  // namespace
+
+std::size_t DataTable::columnOf(std::string_view name) const {
+    const auto found = std::find_if(columns.begin(), columns.end(),
+                                    [name](const DataColumn& each) { return each.name == name; });
+    if (found == columns.end()) {
+        throw std::logic_error("There is no column '" + std::string(name) + "'.");
+    }
+    return static_cast<std::size_t>(found - columns.begin());
+}
+
+std::string valueText(const Value& value) {
+    if (const std::string* text = std::get_if<std::string>(&value)) {
+        return *text;
+    }
+    const double* number = std::get_if<double>(&value);
+    if (number == nullptr || !std::isfinite(*number)) {
+        return "-";
+    }
+    const double size = std::abs(*number);
+    if (size >= 1000 && size < 1e15) {
+        const std::string digits = withThousands(static_cast<std::uint64_t>(std::llround(size)));
+        return *number < 0 ? "-" + digits : digits;
+    }
+    char digits[32];
+    const auto end =
+        std::to_chars(std::begin(digits), std::end(digits), *number, std::chars_format::general, 4)
+            .ptr;
+    return {std::begin(digits), end};
+}
+
+void writeCsv(const DataTable& table, std::ostream& out) {
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        out << (i > 0 ? "," : "") << csvField(table.columns[i].name);
+    }
+    out << '\n';
+    for (const std::vector<Value>& row : table.rows) {
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            out << (i > 0 ? "," : "") << csvField(row[i]);
+        }
+        out << '\n';
+    }
+}
+
+}  // namespace hashphase::demos

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Measurements as rows under named columns: the one form in which they are kept. Reports show it as a
+// table, charts draw it, CSV and JSON files hold it.
+
+#include <iosfwd>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace hashphase::demos {
+
+/// A number, a text, or nothing where nothing was measured. A number that is not finite counts as
+/// nothing.
+using Value = std::variant<std::monostate, double, std::string>;
+
+struct DataColumn {
+    std::string name;        // as in CSV and JSON: "missed", "frame_ms"
+    std::string title = {};  // as people read it, with the unit: "missed pairs", "frame [ms]"
+};
+
+struct DataTable {
+    std::vector<DataColumn> columns;
+    std::vector<std::vector<Value>> rows;  // each as long as columns
+
+    void add(std::vector<Value> row) { rows.push_back(std::move(row)); }
+
+    /// The index of the column of that name; asserted to exist.
+    [[nodiscard]] std::size_t columnOf(std::string_view name) const;
+};
+
+/// As people read it: four significant digits, thousands separated, "-" for nothing.
+[[nodiscard]] std::string valueText(const Value& value);
+
+/// RFC 4180: a header line of the columns' names, numbers with all digits, nothing as an empty field.
+void writeCsv(const DataTable& table, std::ostream& out);
+
+}  // namespace hashphase::demos
