@@ -45,6 +45,12 @@ template <class Scalar>
 class Neighbours;
 template <class Scalar>
 class Crowd;
+template <class Scalar>
+class Sweeps;
+namespace detail {
+template <class Scalar>
+class ContactSearch;
+}
 
 /// Cells lowest to highest, inclusive, in units of Grid::cellSize().
 struct CellRange {
@@ -158,6 +164,8 @@ private:
     friend class Pairs<Scalar>;
     friend class Neighbours<Scalar>;
     friend class Crowd<Scalar>;
+    friend class Sweeps<Scalar>;
+    friend class detail::ContactSearch<Scalar>;
 
     enum class Place : std::uint8_t {
         nowhere,  // no proxy

@@ -5,13 +5,17 @@
 #include <broadphase/detail/padded_box.hpp>
 #include <broadphase/detail/prefetch.hpp>
 #include <broadphase/detail/radix_sort.hpp>
+#include <broadphase/sweeps.hpp>
 
 #include <algorithm>
+#include <iterator>
 
 namespace hashphase {
 
 template <class Scalar>
-Pairs<Scalar>::Pairs(Grid<Scalar>& grid) : grid_(grid) {
+Pairs<Scalar>::Pairs(Grid<Scalar>& grid, Sweeps<Scalar>* sweeps) : grid_(grid), sweeps_(sweeps) {
+    HASHPHASE_ASSERT(sweeps_ == nullptr || &sweeps_->grid_ == &grid_,
+                     "Sweeps and Pairs are of the same grid.");
     HASHPHASE_ASSERT(!grid_.hasPairs_, "A grid has at most one Pairs.");
     HASHPHASE_ASSERT(grid_.records_.empty(), "Pairs are created before the grid's first proxy.");
     grid_.hasPairs_ = true;
@@ -28,12 +32,21 @@ template <class Scalar>
 PairChanges Pairs<Scalar>::update(PairFilter filter, ParallelFor parallelFor) {
     beginCall();
     cost_ = {};
+    if (sweeps_ != nullptr) {
+        sweeps_->beginUpdate();
+    }
     if (grid_.cost_.changed > 0) {
         grid_.stage(parallelFor);
         findDeaths(parallelFor);
         const bool someCameToRest = grid_.putQuietToRest(parallelFor);
         grid_.fileMobile(parallelFor);
         findBirths(someCameToRest, parallelFor);
+        if (sweeps_ != nullptr) {
+            findSwept(parallelFor);
+        }
+        for (const Couple c : lost_) {
+            lose(c);
+        }
         grid_.settle();
         watchedMobileCount_ = grid_.mobileSlots_.size();
         askRefusedAgain();
@@ -49,6 +62,7 @@ PairChanges Pairs<Scalar>::update(PairFilter filter, ParallelFor parallelFor) {
 
 template <class Scalar>
 void Pairs<Scalar>::beginCall() {
+    lost_.clear();
     asked_.clear();
     standing_.clear();
     bornCouples_.clear();
@@ -80,7 +94,7 @@ void Pairs<Scalar>::findDeaths(ParallelFor parallelFor) {
     const auto watched = amongMobile_.pairs();
     cost_.couplesWatched = watched.size() + toResting_.size();
     for (const auto [a, b] : selectApart(watched, nullptr, grid_.staged_.data(), parallelFor)) {
-        lose(couple(grid_.mobileSlots_[a], grid_.mobileSlots_[b]));
+        lost_.push_back(couple(grid_.mobileSlots_[a], grid_.mobileSlots_[b]));
     }
     constexpr std::size_t kAhead = 12;
     const auto toResting = toResting_.pairs();
@@ -90,7 +104,7 @@ void Pairs<Scalar>::findDeaths(ParallelFor parallelFor) {
         }
         const auto [place, slot] = toResting[i];
         if (!overlaps(detail::unpadded(grid_.staged_[place]), grid_.records_[slot].box)) {
-            lose(couple(grid_.mobileSlots_[place], slot));
+            lost_.push_back(couple(grid_.mobileSlots_[place], slot));
         }
     }
     for (const Couple c : announced_.keys()) {
@@ -137,7 +151,7 @@ void Pairs<Scalar>::findDeathsOfWoken(ParallelFor parallelFor) {
 template <class Scalar>
 void Pairs<Scalar>::loseIfApart(Couple c) {
     if (!overlapNow(c)) {
-        lose(c);
+        lost_.push_back(c);
     }
 }
 
@@ -262,6 +276,32 @@ void Pairs<Scalar>::walkResting(ParallelFor parallelFor) {
     }
 }
 
+// A couple that has touched on its way and overlaps now, or the other way round, is neither lost nor
+// new. What is asked about so far has come to overlap.
+template <class Scalar>
+void Pairs<Scalar>::findSwept(ParallelFor parallelFor) {
+    sweeps_->findContacts(parallelFor);
+    const auto now = sweeps_->contacts();
+    if (now.empty() && swept_.empty()) {
+        return;
+    }
+    std::set_difference(swept_.begin(), swept_.end(), now.begin(), now.end(),
+                        std::back_inserter(lost_));
+    std::set_difference(now.begin(), now.end(), swept_.begin(), swept_.end(),
+                        std::back_inserter(asked_));
+    swept_.assign(now.begin(), now.end());
+    sortCouples(asked_);
+    sortCouples(lost_);
+    gone_.clear();
+    std::set_difference(lost_.begin(), lost_.end(), asked_.begin(), asked_.end(),
+                        std::back_inserter(gone_));
+    fresh_.clear();
+    std::set_difference(asked_.begin(), asked_.end(), lost_.begin(), lost_.end(),
+                        std::back_inserter(fresh_));
+    lost_.swap(gone_);
+    asked_.swap(fresh_);
+}
+
 // What the filter refused is asked about again when one of the two has changed, and put aside when
 // both have come to rest.
 template <class Scalar>
@@ -316,6 +356,11 @@ bool Pairs<Scalar>::forgetRefused(Couple c) {
 }
 
 template <class Scalar>
+bool Pairs<Scalar>::isSwept(Couple c) const noexcept {
+    return std::binary_search(swept_.begin(), swept_.end(), c);
+}
+
+template <class Scalar>
 bool Pairs<Scalar>::isRefused(Couple c) const noexcept {
     return refused_.contains(c) || refusedAtRest_.contains(c);
 }
@@ -363,6 +408,11 @@ void Pairs<Scalar>::collect(std::vector<ProxyPair>& pairs) const {
             pairs.push_back(pairOf(couple(a, b)));
         }
     });
+    for (const Couple c : swept_) {
+        if (!isRefused(c)) {
+            pairs.push_back(pairOf(c));
+        }
+    }
     std::sort(pairs.begin() + begin, pairs.end());
 }
 
@@ -373,7 +423,8 @@ std::size_t Pairs<Scalar>::memoryBytes() const noexcept {
            walkerBounds_.memoryBytes() + wokenBounds_.memoryBytes() +
            (asked_.capacity() + standing_.capacity() + bornCouples_.capacity() +
             diedCouples_.capacity() + sorted_.capacity() + restedCouples_.capacity() +
-            announcedBefore_.capacity()) *
+            announcedBefore_.capacity() + lost_.capacity() + swept_.capacity() + gone_.capacity() +
+            fresh_.capacity()) *
                sizeof(Couple) +
            (born_.capacity() + died_.capacity() + askedPairs_.capacity()) * sizeof(ProxyPair) +
            accepted_.capacity() +
@@ -405,10 +456,13 @@ std::string Pairs<Scalar>::validate() const {
         return "The watched couples are the overlapping ones of which one is mobile, each once: "
                "broken.";
     }
-    if (count_ + refusedCount() != overlapping) {
-        return "count() is the number of overlapping couples less the refused ones: broken.";
+    if (count_ + refusedCount() != overlapping + swept_.size()) {
+        return "count() is the number of overlapping and swept couples less the refused ones: "
+               "broken.";
     }
-    return {};
+    const bool isApart =
+        std::none_of(swept_.begin(), swept_.end(), [this](Couple c) { return overlapNow(c); });
+    return isApart ? std::string() : "What is swept does not overlap: broken.";
 }
 
 template class Pairs<float>;

@@ -3,10 +3,10 @@
 
 // The exact set of overlapping pairs of a grid, as the changes from one update to the next.
 //
-// A pair is two proxies whose closed boxes overlap and which the filter accepts. update() tells
-// which pairs were born and which died since the last one, each once, sorted; what persists is not
-// touched. Nothing is remembered of a pair but what the boxes tell: a pair is new when the boxes
-// overlap now and did not at the last update.
+// A pair is two proxies whose closed boxes overlap and which the filter accepts; with Sweeps, whose
+// boxes overlap now or touch on their ways. update() tells which pairs were born and which died since
+// the last one, each once, sorted; what persists is not touched. Nothing is remembered of a pair but
+// what the boxes tell: a pair is new when the boxes overlap now and did not at the last update.
 //
 // A frame   move proxies in the grid, then update() here (it updates the grid).
 // Threads   every member needs the grid and this object for itself.
@@ -81,8 +81,9 @@ struct PairCost {
 template <class Scalar>
 class Pairs {
 public:
-    /// Keeps a reference to the grid, which must outlive this object.
-    explicit Pairs(Grid<Scalar>& grid);
+    /// Keeps a reference to the grid, and to the sweeps over it if there are any, which must outlive
+    /// this object.
+    explicit Pairs(Grid<Scalar>& grid, Sweeps<Scalar>* sweeps = nullptr);
     ~Pairs();
 
     Pairs(const Pairs&) = delete;
@@ -94,7 +95,8 @@ public:
     PairChanges update(PairFilter filter, ParallelFor parallelFor = serialFor);
 
     /// Pairs of one proxy that have come to overlap since the last update, at once; update() will
-    /// not report them again. Returns births only. Cost: that of a box query.
+    /// not report them again. Returns births only; not what it meets on its way. Cost: that of a box
+    /// query.
     PairChanges announce(ProxyId id, PairFilter filter);
 
     /// Asks the filter again about everything that the proxy overlaps, refused or not, at once.
@@ -118,7 +120,8 @@ public:
 
     /// Says which invariant is broken, in a sentence; empty when all hold (ask after update()):
     /// - The watched couples are the overlapping ones of which one is mobile, each once.
-    /// - count() is the number of overlapping couples less the refused ones.
+    /// - count() is the number of overlapping and swept couples less the refused ones.
+    /// - What is swept does not overlap.
     [[nodiscard]] std::string validate() const;
 
 private:
@@ -143,11 +146,13 @@ private:
     [[nodiscard]] bool overlapNow(Couple c) const noexcept;
     [[nodiscard]] bool isAtRest(Couple c) const noexcept;
     [[nodiscard]] bool isRefused(Couple c) const noexcept;
+    [[nodiscard]] bool isSwept(Couple c) const noexcept;
 
     void beginCall();
     void findDeaths(ParallelFor parallelFor);
     void findDeathsOfWoken(ParallelFor parallelFor);
     void loseIfApart(Couple c);
+    void findSwept(ParallelFor parallelFor);
     void findBirths(bool someCameToRest, ParallelFor parallelFor);
     void carryToRest(bool someCameToRest);
     void joinMobile(ParallelFor parallelFor);
@@ -180,6 +185,10 @@ private:
     detail::FlatSet refusedAtRest_;  // ... both at rest
     detail::FlatSet announced_;      // couples decided since the last update
 
+    Sweeps<Scalar>* sweeps_;
+    std::vector<Couple> swept_;  // couples that touched on their ways at the last update; sorted
+
+    std::vector<Couple> lost_;      // what overlapped and does not any more, refused or not
     std::vector<Couple> asked_;     // what the filter is to be asked about
     std::vector<Couple> standing_;  // those of them that are pairs
     std::vector<ProxyPair> askedPairs_;
@@ -195,6 +204,8 @@ private:
     std::vector<Couple> sorted_;
     std::vector<Couple> restedCouples_;
     std::vector<Couple> announcedBefore_;
+    std::vector<Couple> gone_;
+    std::vector<Couple> fresh_;
     detail::PairList selected_;
     detail::PairParts parts_;
     detail::PairList carried_;

@@ -78,8 +78,10 @@ void Pairs<Scalar>::forKnownCouples(std::uint32_t slot, const Visit& visit) cons
     for (const auto [place, resting] : toResting_.pairs()) {
         visitIfIts(places[place], resting);
     }
-    for (const Couple c : announcedBefore_) {
-        visitIfIts(first(c), second(c));
+    for (const auto* couples : {&announcedBefore_, &swept_}) {
+        for (const Couple c : *couples) {
+            visitIfIts(first(c), second(c));
+        }
     }
     const auto watchedEnd = places.begin() + static_cast<std::ptrdiff_t>(watchedMobileCount_);
     if (std::find(places.begin(), watchedEnd, slot) != watchedEnd) {
@@ -111,7 +113,7 @@ void Pairs<Scalar>::findUnknown(std::uint32_t slot) {
     const auto add = [&](ProxyId other) {
         if (other.index != slot && !overlaps(grid_.before(slot), grid_.before(other.index))) {
             const Couple c = couple(slot, other.index);
-            if (!announced_.contains(c)) {
+            if (!announced_.contains(c) && !isSwept(c)) {
                 asked_.push_back(c);
             }
         }

@@ -10,7 +10,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 # Tools by the command that must be there, libraries by their Debian package.
 tools=(cmake:cmake ninja:ninja-build c++:g++ pkg-config:pkg-config)
 libraries=(libbullet-dev libbullet-extras-dev libeigen3-dev libcli11-dev nlohmann-json3-dev
-    libgtest-dev libtbb-dev)
+    libgtest-dev libtbb-dev libgmp-dev)
 
 say() {
     printf '%s: %s\n' "${script:-setup}" "$*" >&2
@@ -33,8 +33,8 @@ missing_packages() {
 install_missing_packages() {
     if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
         say "this is no Debian or Ubuntu: please see to CMake 3.22, Ninja, a C++20 compiler," \
-            "pkg-config, Bullet 3.05 (with its world importer), Eigen 3, CLI11, nlohmann-json and" \
-            "GoogleTest; CMake tells what it cannot find"
+            "pkg-config, Bullet 3.05 (with its world importer), Eigen 3, CLI11, nlohmann-json," \
+            "GoogleTest and GMP; CMake tells what it cannot find"
         return
     fi
     local missing=() apt=(apt-get)

@@ -86,13 +86,14 @@ void visitByBruteForce(std::span<const Placed<Scalar>> proxies, const Region& re
     }
 }
 
-/// All overlapping pairs whose colours pair, sorted.
-template <class Scalar>
-[[nodiscard]] std::vector<ProxyPair> pairsByBruteForce(std::span<const Placed<Scalar>> proxies) {
+/// All pairs of which doMeet(Placed, Placed) is true and whose colours pair, sorted.
+template <class Scalar, class DoMeet>
+[[nodiscard]] std::vector<ProxyPair> pairsByBruteForce(std::span<const Placed<Scalar>> proxies,
+                                                       const DoMeet& doMeet) {
     std::vector<ProxyPair> pairs;
     for (std::size_t i = 0; i < proxies.size(); ++i) {
         for (std::size_t j = i + 1; j < proxies.size(); ++j) {
-            if (overlaps(proxies[i].box, proxies[j].box) &&
+            if (doMeet(proxies[i], proxies[j]) &&
                 coloursPair(proxies[i].colour, proxies[j].colour)) {
                 pairs.push_back(makePair(proxies[i].id, proxies[j].id));
             }
@@ -100,6 +101,14 @@ template <class Scalar>
     }
     std::sort(pairs.begin(), pairs.end());
     return pairs;
+}
+
+/// All overlapping pairs whose colours pair, sorted.
+template <class Scalar>
+[[nodiscard]] std::vector<ProxyPair> pairsByBruteForce(std::span<const Placed<Scalar>> proxies) {
+    return pairsByBruteForce(proxies, [](const Placed<Scalar>& a, const Placed<Scalar>& b) {
+        return overlaps(a.box, b.box);
+    });
 }
 
 /// A collector that keeps every proxy with its key.

@@ -5,6 +5,8 @@
 // promise about the changes is checked on the way.
 
 #include <broadphase/pairs.hpp>
+#include <broadphase/sweeps.hpp>
+#include <tests/support/motion_oracle.hpp>
 #include <tests/support/oracles.hpp>
 
 #include <gtest/gtest.h>
@@ -13,6 +15,7 @@
 #include <cstring>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <set>
 #include <span>
 #include <string>
@@ -21,7 +24,7 @@
 
 namespace hashphase::test {
 
-/// Grid and Pairs, and the set of pairs as a client would keep it. A World for scripts.
+/// Grid, Sweeps and Pairs, and the set of pairs as a client would keep it. A World for scripts.
 template <class Scalar>
 class PairWorld {
 public:
@@ -29,7 +32,7 @@ public:
 
     explicit PairWorld(
         const GridConfig& config = {}, Filter filter = [](ProxyId, ProxyId) { return true; })
-        : grid(config), pairs(grid), filter_(std::move(filter)) {}
+        : grid(config), sweeps(grid), pairs(grid, &sweeps), filter_(std::move(filter)) {}
 
     ProxyId add(const Aabb<Scalar>& box, Mobility mobility = Mobility::mobile) {
         const ProxyId id = grid.add(box, mobility);
@@ -43,7 +46,18 @@ public:
         }
         grid.move(id, box);
     }
-    void remove(ProxyId id) { grid.remove(id); }
+    void remove(ProxyId id) {
+        grid.remove(id);
+        ways_.erase(id);
+    }
+    void sweep(ProxyId id, const Vector3<Scalar>& displacement, Sweep mode) {
+        sweeps.set(id, displacement, mode);
+        if (mode != Sweep::none && displacement.allFinite() && !displacement.isZero(0)) {
+            ways_[id] = displacement;
+        } else if (ways_.erase(id) > 0) {
+            changed_.insert(id);
+        }
+    }
 
     void refilter(ProxyId id) {
         asked_.clear();
@@ -72,7 +86,9 @@ public:
 
     /// To be called after update(): the pairs are those of brute force, and all accounts agree.
     void check(std::span<const Placed<Scalar>> proxies) {
-        const std::vector<ProxyPair> expected = pairsByBruteForce(proxies);
+        const std::vector<ProxyPair> expected = pairsByBruteForce(
+            proxies,
+            [this](const Placed<Scalar>& a, const Placed<Scalar>& b) { return doMeet(a, b); });
         const std::vector<ProxyPair> actual(set_.begin(), set_.end());
         ASSERT_EQ(differences(actual, expected), "");
         ASSERT_EQ(pairs.count(), expected.size());
@@ -85,6 +101,7 @@ public:
     void checkThoroughly(std::span<const Placed<Scalar>> proxies) {
         ASSERT_NO_FATAL_FAILURE(check(proxies));
         ASSERT_EQ(grid.validate(), "");
+        ASSERT_EQ(sweeps.validate(), "");
         ASSERT_EQ(pairs.validate(), "");
         checkAsked(proxies);
     }
@@ -93,6 +110,7 @@ public:
     [[nodiscard]] const std::vector<ProxyPair>& asked() const noexcept { return asked_; }
 
     Grid<Scalar> grid;
+    Sweeps<Scalar> sweeps;
     Pairs<Scalar> pairs;
 
 private:
@@ -137,19 +155,32 @@ private:
         }
     }
 
-    // Asked must be: couples that overlap now and did not before, unless decided already, and
-    // refused ones that still overlap and of which one has changed.
+    [[nodiscard]] bool doMeet(const Placed<Scalar>& a, const Placed<Scalar>& b) const {
+        if (overlaps(a.box, b.box) || ways_.empty()) {
+            return overlaps(a.box, b.box);
+        }
+        const auto moving = [this](const Placed<Scalar>& proxy) {
+            const auto way = ways_.find(proxy.id);
+            return way != ways_.end() ? MovingBox<Scalar>{proxy.box, way->second}
+                                      : MovingBox<Scalar>{proxy.box};
+        };
+        return (ways_.contains(a.id) || ways_.contains(b.id)) &&
+               firstContactByRationals(moving(a), moving(b)).has_value();
+    }
+
+    // Asked must be: couples that meet now and did not before, unless decided already, and refused
+    // ones that still meet and of which one has changed.
     void checkAsked(std::span<const Placed<Scalar>> proxies) {
-        std::set<ProxyPair> overlapping;
+        std::set<ProxyPair> meeting;
         std::vector<ProxyPair> expected;
         for (std::size_t i = 0; i < proxies.size(); ++i) {
             for (std::size_t j = i + 1; j < proxies.size(); ++j) {
-                if (!overlaps(proxies[i].box, proxies[j].box)) {
+                if (!doMeet(proxies[i], proxies[j])) {
                     continue;
                 }
                 const ProxyPair pair = makePair(proxies[i].id, proxies[j].id);
-                overlapping.insert(pair);
-                const bool isNew = !overlapped_.contains(pair) && !decided_.contains(pair);
+                meeting.insert(pair);
+                const bool isNew = !met_.contains(pair) && !decided_.contains(pair);
                 const bool isRefused = refused_.contains(pair) && hasChanged(pair);
                 if (isNew || isRefused) {
                     expected.push_back(pair);
@@ -159,24 +190,27 @@ private:
         std::sort(expected.begin(), expected.end());
         ASSERT_EQ(differences(asked_, expected), "") << "asked";
         refused_.clear();
-        std::set_difference(overlapping.begin(), overlapping.end(), set_.begin(), set_.end(),
+        std::set_difference(meeting.begin(), meeting.end(), set_.begin(), set_.end(),
                             std::inserter(refused_, refused_.end()));
         ASSERT_EQ(pairs.refusedCount(), refused_.size());
-        overlapped_.swap(overlapping);
+        met_.swap(meeting);
         decided_.clear();
         changed_.clear();
     }
 
     bool hasChanged(const ProxyPair& pair) const {
-        return changed_.contains(pair.first) || changed_.contains(pair.second);
+        return changed_.contains(pair.first) || changed_.contains(pair.second) ||
+               ways_.contains(pair.first) || ways_.contains(pair.second);
     }
 
     Filter filter_;
     std::set<ProxyPair> set_;
     std::vector<ProxyPair> asked_;
 
+    std::map<ProxyId, Vector3<Scalar>> ways_;  // of what sweeps
+
     // As of the last update, or since.
-    std::set<ProxyPair> overlapped_;
+    std::set<ProxyPair> met_;
     std::set<ProxyPair> refused_;
     std::set<ProxyPair> decided_;
     std::set<ProxyId> changed_;

@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: Zlib
+
+// What sweeping proxies meet. Those that stand are found around segments of the way, each about as
+// long as makes least work: boxes around longer ones hold more that is not met, and shorter ones
+// take more searches. Those that sweep as well are found slice by slice of time: who touch each other
+// do so in one slice. What is found so is then asked by firstContact().
+
+#include <broadphase/detail/contact_search.hpp>
+
+#include <broadphase/detail/join.hpp>
+#include <broadphase/detail/padded_box.hpp>
+#include <broadphase/detail/radix_sort.hpp>
+#include <broadphase/grid.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hashphase::detail {
+namespace {
+
+// A way of more segments is rather looked for as a whole, as a ray.
+constexpr int kMostSegments = 64;
+
+// Measured in a uniform world, and in one as flat as a landscape; anything from half to twice as
+// much does as well.
+constexpr int kCellsPerSegment = 3;
+
+constexpr int kMostSlices = 64;
+
+// About where the table's boxes are. Not all of them need lie in it: it only says where it pays to
+// look closely.
+template <class Scalar>
+void extendByTable(Aabb<Scalar>& world, const Table<Scalar>& table) {
+    for (const Level<Scalar>& level : table.levels()) {
+        if (level.count() == 0 || !level.hasCells) {
+            continue;
+        }
+        Vector3<Scalar> low;
+        Vector3<Scalar> high;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto at = static_cast<Eigen::Index>(axis);
+            const bool isFlat = level.inverseCellSize[axis] == 0;
+            const auto border = [&](std::int32_t cell) {
+                return level.origin[axis] + static_cast<Scalar>(cell) / level.inverseCellSize[axis];
+            };
+            low[at] = isFlat ? level.lowest[axis] : border(level.low[axis]);
+            high[at] = isFlat ? level.highest[axis] : border(level.high[axis] + 2);
+        }
+        world.extend(Aabb<Scalar>(low, high));
+    }
+}
+
+// The part of the way on which the moving box touches the other one, roughly; from > to when none.
+struct Part {
+    double from = 0;
+    double to = 1;
+};
+
+template <class Scalar>
+Part partWithin(const MovingBox<Scalar>& moving, const Aabb<Scalar>& world) {
+    Part part;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto way = static_cast<double>(moving.displacement[axis]);
+        const double first =
+            static_cast<double>(world.min()[axis]) - static_cast<double>(moving.box.max()[axis]);
+        const double last =
+            static_cast<double>(world.max()[axis]) - static_cast<double>(moving.box.min()[axis]);
+        if (way == 0) {
+            part.to = first <= 0 && last >= 0 ? part.to : -1.0;
+            continue;
+        }
+        part.from = std::max(part.from, std::min(first / way, last / way));
+        part.to = std::min(part.to, std::max(first / way, last / way));
+    }
+    return part;
+}
+
+}  // namespace
+
+template <class Scalar>
+const Aabb<Scalar>& ContactSearch<Scalar>::boxOf(std::uint32_t slot) const noexcept {
+    return grid_.records_[slot].box;
+}
+
+template <class Scalar>
+void ContactSearch<Scalar>::find(std::span<const Motion<Scalar>> motions,
+                                 std::span<const std::uint32_t> motionOfSlot,
+                                 ParallelFor parallelFor) {
+    motions_ = motions;
+    motionOfSlot_ = motionOfSlot;
+    cost_ = {};
+    cost_.sweeping = static_cast<std::uint32_t>(motions_.size());
+    contacts_.clear();
+    if (motions_.empty()) {
+        return;
+    }
+    touching_.clear();
+    cutIntoSegments();
+    meetStanding(parallelFor);
+    meetStandingByRay(parallelFor);
+    meetEachOther(parallelFor);
+    for (const auto [a, b] : touching_.pairs()) {
+        contacts_.push_back(std::uint64_t{std::min(a, b)} << 32 | std::max(a, b));
+    }
+    radixSort(contacts_, static_cast<std::uint32_t>(grid_.records_.size()), sorted_);
+    contacts_.erase(std::unique(contacts_.begin(), contacts_.end()), contacts_.end());
+}
+
+template <class Scalar>
+void ContactSearch<Scalar>::cutIntoSegments() {
+    segments_.clear();
+    motionOfSegment_.clear();
+    rays_.clear();
+    Box world;
+    extendByTable(world, grid_.mobile_);
+    extendByTable(world, grid_.resting_);
+    const auto cellSize = static_cast<Scalar>(
+        std::min(grid_.mobile_.finestCellSize(), grid_.resting_.finestCellSize()));
+    for (std::uint32_t i = 0; i < motions_.size(); ++i) {
+        cut(i, world, cellSize);
+    }
+    cost_.segments = segments_.size();
+    cost_.rays = static_cast<std::uint32_t>(rays_.size());
+}
+
+// Where nothing is, segments may be long.
+template <class Scalar>
+void ContactSearch<Scalar>::cut(std::uint32_t motion, const Box& world, Scalar cellSize) {
+    const MovingBox<Scalar> way = moving(motions_[motion]);
+    const Point far = way.displacement.cwiseAbs();
+    const Scalar length = kCellsPerSegment * std::max(cellSize, way.box.sizes().maxCoeff());
+    // Along one axis the box around the way is the way.
+    const bool isThin = (far.array() > length).count() < 2;
+    const Sweep sweep = motions_[motion].sweep;
+    if (sweep == Sweep::box || (sweep == Sweep::automatic && isThin) || !(length > 0)) {
+        addSegments(motion, way, 0, 1, 1);
+        return;
+    }
+    const Part within = partWithin(way, world);
+    if (!(within.from < within.to)) {
+        addSegments(motion, way, 0, 1, 1);
+        return;
+    }
+    const double count =
+        std::ceil((within.to - within.from) * static_cast<double>(far.maxCoeff() / length));
+    if (!(count <= kMostSegments)) {
+        rays_.push_back(motion);
+        return;
+    }
+    if (within.from > 0) {
+        addSegments(motion, way, 0, within.from, 1);
+    }
+    addSegments(motion, way, within.from, within.to, std::max(1, static_cast<int>(count)));
+    if (within.to < 1) {
+        addSegments(motion, way, within.to, 1, 1);
+    }
+}
+
+template <class Scalar>
+void ContactSearch<Scalar>::addSegments(std::uint32_t motion, const MovingBox<Scalar>& way,
+                                        double from, double to, int count) {
+    double begin = from;
+    for (int i = 1; i <= count; ++i) {
+        const double end = i == count ? to : from + (to - from) * i / count;
+        segments_.push(wayBounds(way, begin, end));
+        motionOfSegment_.push_back(motion);
+        begin = end;
+    }
+}
+
+// Of the candidates, test(candidate) says which two slots to ask about; equal ones mean none.
+template <class Scalar>
+template <class Test>
+void ContactSearch<Scalar>::addTouching(ParallelFor parallelFor, const Test& test) {
+    constexpr std::size_t kGrain = 4096;
+    const auto candidates = candidates_.pairs();
+    cost_.contactsTested += candidates.size();
+    KernelCost none;
+    touchingNow_.clear();
+    parts_.collect(parallelFor, candidates.size(), kGrain, touchingNow_, none,
+                   [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost&) {
+                       for (std::size_t i = first; i < last; ++i) {
+                           const IndexPair slots = test(candidates[i]);
+                           if (slots.a != slots.b) {
+                               makeRoom(sink, 1);
+                               *sink.next++ = slots;
+                           }
+                       }
+                   });
+    touching_.append(touchingNow_.pairs());
+}
+
+// Those that sweep do not stand.
+template <class Scalar>
+void ContactSearch<Scalar>::meetStanding(ParallelFor parallelFor) {
+    for (const Table<Scalar>* table : {&grid_.mobile_, &grid_.resting_}) {
+        if (table->size() == 0) {
+            continue;
+        }
+        KernelCost cost;
+        candidates_.clear();
+        walkTable(*table, segments_.columns(), segments_.size(), parallelFor, parts_, candidates_,
+                  cost);
+        cost_.boxesTested += cost.boxesTested;
+        addTouching(parallelFor, [&](const IndexPair& candidate) -> IndexPair {
+            const Motion<Scalar>& motion = motions_[motionOfSegment_[candidate.a]];
+            const std::uint32_t slot = table->slot(candidate.b);
+            const MovingBox<Scalar> way = moving(motion);
+            const MovingBox<Scalar> standing{table->box(candidate.b)};
+            const bool isContact =
+                !sweeps(slot) && !overlaps(way.box, standing.box) && firstContact(way, standing);
+            return isContact ? IndexPair{motion.id.index, slot} : IndexPair{};
+        });
+    }
+}
+
+/// Takes what a ray finds: key() has asked firstContact() already.
+template <class Scalar>
+struct ContactSearch<Scalar>::ContactsOfRay {
+    const ContactSearch& search;
+    const Motion<Scalar>& motion;
+    PairSink& sink;
+
+    void add(ProxyId id, Scalar /*time*/) {
+        const Box& own = search.boxOf(motion.id.index);
+        if (!search.sweeps(id.index) && !overlaps(own, search.boxOf(id.index))) {
+            makeRoom(sink, 1);
+            *sink.next++ = {motion.id.index, id.index};
+        }
+    }
+    static constexpr Scalar limit() { return 1; }
+};
+
+template <class Scalar>
+void ContactSearch<Scalar>::meetStandingByRay(ParallelFor parallelFor) {
+    constexpr std::size_t kGrain = 16;
+    KernelCost none;
+    touchingNow_.clear();
+    parts_.collect(parallelFor, rays_.size(), kGrain, touchingNow_, none,
+                   [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost&) {
+                       for (std::size_t i = first; i < last; ++i) {
+                           const Motion<Scalar>& motion = motions_[rays_[i]];
+                           ContactsOfRay contacts{*this, motion, sink};
+                           grid_.visit(MovingBoxRegion<Scalar>(moving(motion)), contacts);
+                       }
+                   });
+    touching_.append(touchingNow_.pairs());
+}
+
+// So many that in one slice a proxy moves about as far as the next one is away.
+template <class Scalar>
+int ContactSearch<Scalar>::sliceCount() const {
+    Box everything;
+    double size = 0;
+    double way = 0;
+    for (const Motion<Scalar>& motion : motions_) {
+        const MovingBox<Scalar> each = moving(motion);
+        everything.extend(wayBounds(each));
+        size += static_cast<double>(each.box.sizes().maxCoeff());
+        way += static_cast<double>(each.displacement.cwiseAbs().maxCoeff());
+    }
+    const auto count = static_cast<double>(motions_.size());
+    double room = 1 / count;
+    for (const Scalar edge : everything.sizes()) {
+        room *= std::max(static_cast<double>(edge), size / count);
+    }
+    const double apart = std::max(std::cbrt(room), size / count);
+    const double slices = std::ceil(way / count / apart);
+    return slices > 1 ? static_cast<int>(std::min<double>(slices, kMostSlices)) : 1;
+}
+
+template <class Scalar>
+void ContactSearch<Scalar>::meetEachOther(ParallelFor parallelFor) {
+    if (motions_.size() < 2) {
+        return;
+    }
+    const int count = sliceCount();
+    motionNumbers_.clear();
+    for (std::uint32_t i = 0; i < motions_.size(); ++i) {
+        motionNumbers_.push_back(i);
+    }
+    for (int slice = 0; slice < count; ++slice) {
+        const double from = static_cast<double>(slice) / count;
+        const double to = static_cast<double>(slice + 1) / count;
+        slice_.clear();
+        for (const Motion<Scalar>& motion : motions_) {
+            slice_.push_back(padded(wayBounds(moving(motion), from, to)));
+        }
+        sliceTable_.build(motionNumbers_, slice_, {}, parallelFor);
+        KernelCost cost;
+        candidates_.clear();
+        joinTable(sliceTable_, parallelFor, parts_, candidates_, cost);
+        cost_.boxesTested += cost.boxesTested;
+        addTouching(parallelFor, [&](const IndexPair& candidate) -> IndexPair {
+            const Motion<Scalar>& a = motions_[sliceTable_.slot(candidate.a)];
+            const Motion<Scalar>& b = motions_[sliceTable_.slot(candidate.b)];
+            const MovingBox<Scalar> wayOfA = moving(a);
+            const MovingBox<Scalar> wayOfB = moving(b);
+            const bool isContact =
+                !overlaps(wayOfA.box, wayOfB.box) && firstContact(wayOfA, wayOfB);
+            return isContact ? IndexPair{a.id.index, b.id.index} : IndexPair{};
+        });
+    }
+}
+
+template <class Scalar>
+std::size_t ContactSearch<Scalar>::memoryBytes() const noexcept {
+    return (contacts_.capacity() + sorted_.capacity()) * sizeof(std::uint64_t) +
+           (motionOfSegment_.capacity() + rays_.capacity() + motionNumbers_.capacity()) *
+               sizeof(std::uint32_t) +
+           segments_.memoryBytes() + parts_.memoryBytes() + candidates_.memoryBytes() +
+           touchingNow_.memoryBytes() + touching_.memoryBytes() +
+           slice_.capacity() * sizeof(PaddedBox<Scalar>) + sliceTable_.memoryBytes();
+}
+
+template class ContactSearch<float>;
+template class ContactSearch<double>;
+
+}  // namespace hashphase::detail

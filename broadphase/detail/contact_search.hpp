@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Finds what sweeping proxies touch on their ways, in a grid that has just been filed.
+
+#include <broadphase/detail/box_columns.hpp>
+#include <broadphase/detail/kernels.hpp>
+#include <broadphase/detail/padded_box.hpp>
+#include <broadphase/detail/pair_parts.hpp>
+#include <broadphase/detail/table.hpp>
+#include <broadphase/moving_box.hpp>
+#include <broadphase/parallel_for.hpp>
+#include <broadphase/proxy_id.hpp>
+#include <broadphase/sweep_mode.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace hashphase {
+template <class Scalar>
+class Grid;
+}
+
+namespace hashphase::detail {
+
+/// What a proxy does that sweeps.
+template <class Scalar>
+struct Motion {
+    ProxyId id;
+    Vector3<Scalar> displacement;
+    Sweep sweep;
+};
+
+inline constexpr std::uint32_t kNoMotion = ~std::uint32_t{0};
+
+template <class Scalar>
+class ContactSearch {
+public:
+    explicit ContactSearch(const Grid<Scalar>& grid) : grid_(grid) {}
+
+    /// Looks for everything that the motions' proxies touch on their ways but not yet at the start.
+    /// `motionOfSlot` says which of them, if any, is a slot's; slots beyond it have none.
+    void find(std::span<const Motion<Scalar>> motions, std::span<const std::uint32_t> motionOfSlot,
+              ParallelFor parallelFor);
+
+    /// What find() found: two slots each, the smaller one on top; sorted.
+    [[nodiscard]] std::span<const std::uint64_t> contacts() const noexcept { return contacts_; }
+    [[nodiscard]] const SweepCost& cost() const noexcept { return cost_; }
+    [[nodiscard]] std::size_t memoryBytes() const noexcept;
+
+private:
+    using Box = Aabb<Scalar>;
+    using Point = Vector3<Scalar>;
+
+    struct ContactsOfRay;
+
+    [[nodiscard]] bool sweeps(std::uint32_t slot) const noexcept {
+        return slot < motionOfSlot_.size() && motionOfSlot_[slot] != kNoMotion;
+    }
+    [[nodiscard]] const Box& boxOf(std::uint32_t slot) const noexcept;
+    [[nodiscard]] MovingBox<Scalar> moving(const Motion<Scalar>& motion) const noexcept {
+        return {boxOf(motion.id.index), motion.displacement};
+    }
+
+    void cutIntoSegments();
+    void cut(std::uint32_t motion, const Box& world, Scalar cellSize);
+    void addSegments(std::uint32_t motion, const MovingBox<Scalar>& way, double from, double to,
+                     int count);
+    void meetStanding(ParallelFor parallelFor);
+    void meetStandingByRay(ParallelFor parallelFor);
+    void meetEachOther(ParallelFor parallelFor);
+    [[nodiscard]] int sliceCount() const;
+    template <class Test>
+    void addTouching(ParallelFor parallelFor, const Test& test);
+
+    const Grid<Scalar>& grid_;
+    std::span<const Motion<Scalar>> motions_;      // of the present find()
+    std::span<const std::uint32_t> motionOfSlot_;  // the same
+    SweepCost cost_;
+    std::vector<std::uint64_t> contacts_;
+
+    // Scratch.
+    BoxColumns<Scalar> segments_;
+    std::vector<std::uint32_t> motionOfSegment_;
+    std::vector<std::uint32_t> rays_;  // motions
+    PairParts parts_;
+    PairList candidates_;
+    PairList touchingNow_;
+    PairList touching_;  // two slots each
+    std::vector<std::uint64_t> sorted_;
+    std::vector<std::uint32_t> motionNumbers_;
+    std::vector<PaddedBox<Scalar>> slice_;
+    Table<Scalar> sliceTable_;
+};
+
+extern template class ContactSearch<float>;
+extern template class ContactSearch<double>;
+
+}  // namespace hashphase::detail

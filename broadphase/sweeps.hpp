@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Proxies that move so far in a frame that it matters what they pass. A proxy that sweeps stands, for
+// Pairs, wherever it passes during the frame: it makes a pair with everything that it touches on its
+// way, at the same time, of what stands and of what sweeps as well.
+//
+// A frame   Grid::move() to where the proxy is when the frame begins, set() how far it moves until
+//           the frame ends, then Pairs::update(). Both hold until they are set again.
+// Modes     cost differently and find the same: pairs are confirmed by firstContact(), which is
+//           exact.
+// Cost      what sweeps costs time, whatever its speed; what does not costs what it did.
+// Threads   visit() is const and may run anywhere; everything else needs the grid for itself.
+// Units     metres; times are fractions of the frame, 0 to 1.
+// Bad data  A displacement that is NaN or infinite counts as none, and is reported once through the
+//           message handler.
+// Misuse    An id that is null, stale or of another grid is asserted.
+//
+// After Hastings, Mesit and Guha, "Optimization of Large-Scale, Real-Time Simulations by Spatial
+// Hashing", 2005: hashing over time, by a box or by a line of cells, chosen by behaviour.
+
+#include <broadphase/detail/contact_search.hpp>
+#include <broadphase/grid.hpp>
+#include <broadphase/moving_box.hpp>
+#include <broadphase/proxy_filter.hpp>
+#include <broadphase/sweep_mode.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hashphase {
+
+template <class Scalar>
+class Sweeps {
+public:
+    /// Keeps a reference to the grid, which must outlive this object. Hand it to Pairs.
+    explicit Sweeps(Grid<Scalar>& grid) : grid_(grid), search_(grid) {}
+
+    Sweeps(const Sweeps&) = delete;
+    Sweeps& operator=(const Sweeps&) = delete;
+
+    /// Lets the proxy move by `displacement` [m] in this frame, from where it is. No displacement, or
+    /// Sweep::none, ends that. Cost: O(1) amortised.
+    void set(ProxyId id, const Vector3<Scalar>& displacement, Sweep sweep = Sweep::automatic);
+
+    /// The proxy's box and displacement; none when it does not sweep.
+    [[nodiscard]] MovingBox<Scalar> motion(ProxyId id) const;
+
+    /// Number of proxies that sweep, those included that were removed since the last update.
+    [[nodiscard]] std::size_t size() const noexcept { return motions_.size(); }
+
+    /// Grid::visit(), but what sweeps is found wherever the box around its way, or around a part of
+    /// it, has a key: nothing that it passes is left out, some that it just misses may be found.
+    /// Cost: that of Grid::visit(), and a look at everything that sweeps.
+    template <class Region, class Collector>
+    QueryCost visit(const Region& region, Collector& collector) const;
+
+    /// Of the last Pairs::update().
+    [[nodiscard]] const SweepCost& lastCost() const noexcept { return search_.cost(); }
+    [[nodiscard]] std::size_t memoryBytes() const noexcept;
+
+    /// Says which invariant is broken, in a sentence; empty when all hold:
+    /// - Every motion is listed by its slot, and no other slot is.
+    [[nodiscard]] std::string validate() const;
+
+private:
+    friend class Pairs<Scalar>;
+
+    using Box = Aabb<Scalar>;
+    using Motion = detail::Motion<Scalar>;
+
+    static constexpr std::uint32_t kNone = detail::kNoMotion;
+
+    [[nodiscard]] std::uint32_t motionOf(std::uint32_t slot) const noexcept {
+        return slot < motionOfSlot_.size() ? motionOfSlot_[slot] : kNone;
+    }
+    [[nodiscard]] bool sweeps(std::uint32_t slot) const noexcept { return motionOf(slot) != kNone; }
+    [[nodiscard]] std::optional<Scalar> keyOnTheWay(const auto& region, const Motion& motion) const;
+    void end(std::uint32_t motion);
+
+    void beginUpdate();
+    void findContacts(ParallelFor parallelFor) {
+        search_.find(motions_, motionOfSlot_, parallelFor);
+    }
+    /// What findContacts() found.
+    [[nodiscard]] std::span<const std::uint64_t> contacts() const noexcept {
+        return search_.contacts();
+    }
+
+    Grid<Scalar>& grid_;
+    std::vector<Motion> motions_;
+    std::vector<std::uint32_t> motionOfSlot_;  // kNone where a slot does not sweep
+    bool reportedBadData_ = false;
+    detail::ContactSearch<Scalar> search_;
+};
+
+template <class Scalar>
+std::optional<Scalar> Sweeps<Scalar>::keyOnTheWay(const auto& region, const Motion& motion) const {
+    const MovingBox<Scalar> way{grid_.box(motion.id), motion.displacement};
+    const auto keyOf = [&](const Box& box) -> std::optional<Scalar> {
+        const Scalar key = region.key(box);
+        return key >= 0 ? std::optional(key) : std::nullopt;
+    };
+    const std::optional<Scalar> ofAll = keyOf(wayBounds(way));
+    if (!ofAll || motion.sweep == Sweep::box) {
+        return ofAll;
+    }
+    // Parts of about its own size; so long a way that it would take more of them is seen less sharply.
+    constexpr double mostParts = 64;
+    const auto size = static_cast<double>(way.box.sizes().maxCoeff());
+    const auto far = static_cast<double>(way.displacement.cwiseAbs().maxCoeff());
+    const int count =
+        static_cast<int>(far < mostParts * size ? std::max(std::ceil(far / size), 1.0) : mostParts);
+    std::optional<Scalar> least;
+    for (int i = 0; i < count; ++i) {
+        const std::optional<Scalar> key =
+            keyOf(wayBounds(way, static_cast<double>(i) / count, (i + 1.0) / count));
+        if (key && (!least || *key < *least)) {
+            least = key;
+        }
+    }
+    return least;
+}
+
+template <class Scalar>
+template <class Region, class Collector>
+QueryCost Sweeps<Scalar>::visit(const Region& region, Collector& collector) const {
+    const auto stands = [this](ProxyId id) { return !sweeps(id.index); };
+    CollectIf<Collector, decltype(stands)> standing(collector, stands);
+    QueryCost cost = grid_.visit(region, standing);
+    for (const Motion& motion : motions_) {
+        if (!(collector.limit() >= 0)) {
+            break;
+        }
+        if (!grid_.contains(motion.id)) {
+            continue;
+        }
+        ++cost.boxesTested;
+        const std::optional<Scalar> key = keyOnTheWay(region, motion);
+        if (key && *key <= collector.limit()) {
+            ++cost.hits;
+            collector.add(motion.id, *key);
+        }
+    }
+    return cost;
+}
+
+extern template class Sweeps<float>;
+extern template class Sweeps<double>;
+
+}  // namespace hashphase

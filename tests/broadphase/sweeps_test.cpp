@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: Zlib
+
+// Proxies that sweep make pairs with everything that they touch on their way, in whatever mode.
+
+#include <broadphase/sweeps.hpp>
+#include <tests/support/box_scenes.hpp>
+#include <tests/support/handlers.hpp>
+#include <tests/support/pair_world.hpp>
+#include <tests/support/script.hpp>
+#include <tests/support/threaded_for.hpp>
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace hashphase::test {
+namespace {
+
+constexpr std::array<Sweep, 3> kModes{Sweep::box, Sweep::line, Sweep::automatic};
+
+template <class Scalar>
+class SweptPairs : public testing::Test {
+    CaughtMessages aboutNan_;
+};
+
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(SweptPairs, Scalars);
+
+/// A way from the box towards another one of the scene, now and then far beyond.
+template <class Scalar>
+Vector3<Scalar> drawWay(const BoxScene<Scalar>& scene, Random& random, const Aabb<Scalar>& box) {
+    const auto share = static_cast<Scalar>(random.logBetween(0.01, 4));
+    return (scene.draw(random).min() - box.max()) * share;
+}
+
+template <class Scalar>
+void playSwept(const BoxScene<Scalar>& scene, const GridConfig& config, std::uint64_t seed,
+               int frames) {
+    SCOPED_TRACE(testing::Message() << scene.name << ", cell size " << config.cellSize);
+    ScriptRates rates;
+    rates.recolour = 0.01;
+    Script<Scalar> script(scene, seed, rates);
+    PairWorld<Scalar> world(config,
+                            [&script](ProxyId a, ProxyId b) { return script.accepts(a, b); });
+    script.begin(world);
+    for (int frame = 0; frame < frames; ++frame) {
+        SCOPED_TRACE(testing::Message() << "frame " << frame);
+        script.playFrame(world);
+        Random& random = script.random();
+        for (const Placed<Scalar>& proxy : script.proxies()) {
+            if (random.chance(0.04)) {
+                const Sweep mode = random.chance(0.4) ? Sweep::none : kModes[random.below(3)];
+                world.sweep(proxy.id, drawWay(scene, random, proxy.box), mode);
+            } else if (random.chance(0.01)) {
+                world.announce(proxy.id);
+            }
+        }
+        world.update();
+        ASSERT_NO_FATAL_FAILURE(world.checkThoroughly(script.proxies()));
+    }
+}
+
+TYPED_TEST(SweptPairs, EqualBruteForceInEveryScene) {
+    for (const BoxScene<TypeParam>& scene : allBoxScenes<TypeParam>()) {
+        GridConfig config;
+        config.updatesBeforeRest = 2;
+        for (const double cellSize : {0.0, 1.5}) {
+            config.cellSize = cellSize;
+            playSwept(scene, config, 0x5eed0d01, 10);
+            if (this->HasFatalFailure()) {
+                return;
+            }
+        }
+    }
+}
+
+/// Boxes of about 1 m in a cube, and the ways of those that sweep: all with a direction of their own.
+template <class Scalar>
+struct Bullets {
+    std::vector<Aabb<Scalar>> boxes;
+    std::vector<Vector3<Scalar>> ways;
+
+    Bullets(std::uint32_t count, std::uint32_t sweeping, double length, Random& random) {
+        const double side = 2.5 * std::cbrt(static_cast<double>(count));
+        for (std::uint32_t i = 0; i < count; ++i) {
+            boxes.push_back(boxAround<Scalar>(random.pointIn(0, side), random.pointIn(0.3, 0.6)));
+        }
+        for (std::uint32_t i = 0; i < sweeping; ++i) {
+            const Vector3<double> way = random.pointIn(-1, 1).normalized() * length;
+            ways.push_back(way.template cast<Scalar>());
+        }
+    }
+};
+
+template <class Scalar>
+struct BulletWorld {
+    Grid<Scalar> grid;
+    Sweeps<Scalar> sweeps{grid};
+    Pairs<Scalar> pairs{grid, &sweeps};
+    std::vector<ProxyId> ids;
+
+    BulletWorld(const Bullets<Scalar>& bullets, Sweep mode) {
+        for (const Aabb<Scalar>& box : bullets.boxes) {
+            ids.push_back(grid.add(box));
+        }
+        for (std::size_t i = 0; i < bullets.ways.size(); ++i) {
+            sweeps.set(ids[i], bullets.ways[i], mode);
+        }
+    }
+    std::vector<ProxyPair> update(ParallelFor parallelFor = serialFor) {
+        pairs.update([](ProxyId, ProxyId) { return true; }, parallelFor);
+        std::vector<ProxyPair> all;
+        pairs.collect(all);
+        return all;
+    }
+};
+
+TYPED_TEST(SweptPairs, AreTheSameInEveryMode) {
+    Random random(0x5eed0d02);
+    for (const double length : {0.1, 3.0, 40.0, 1e3, 1e6, 1e12}) {
+        const Bullets<TypeParam> bullets(4000, 300, length, random);
+        const std::vector<ProxyPair> byBox = BulletWorld<TypeParam>(bullets, Sweep::box).update();
+        const std::vector<ProxyPair> byLine = BulletWorld<TypeParam>(bullets, Sweep::line).update();
+        EXPECT_EQ(differences(byLine, byBox), "") << length;
+        const std::vector<ProxyPair> either =
+            BulletWorld<TypeParam>(bullets, Sweep::automatic).update();
+        EXPECT_EQ(differences(either, byBox), "") << length;
+        EXPECT_GT(byBox.size(), BulletWorld<TypeParam>(bullets, Sweep::none).update().size());
+    }
+}
+
+TYPED_TEST(SweptPairs, AreTheSameOnAnyNumberOfThreads) {
+    Random random(0x5eed0d03);
+    for (const double length : {20.0, 1e4}) {
+        const Bullets<TypeParam> bullets(20'000, 2000, length, random);
+        const std::vector<ProxyPair> expected =
+            BulletWorld<TypeParam>(bullets, Sweep::automatic).update();
+        for (const std::size_t threads : {2, 5}) {
+            ThreadedFor threadedFor(threads, 0x5eed0d04);
+            BulletWorld<TypeParam> world(bullets, Sweep::automatic);
+            EXPECT_EQ(differences(world.update(threadedFor), expected), "") << length;
+            EXPECT_GT(threadedFor.mostRanges(), 1U);
+        }
+    }
+}
+
+// However fast, a proxy is looked for in at most 66 boxes, or along a ray that reads no more than
+// lies near its way.
+TYPED_TEST(SweptPairs, CostNoMoreTheFasterTheyAre) {
+    Random random(0x5eed0d05);
+    const Bullets<TypeParam> slow(20'000, 200, 30, random);
+    for (const double speed : {1.0, 1e2, 1e4, 1e8}) {
+        Bullets<TypeParam> fast = slow;
+        for (Vector3<TypeParam>& way : fast.ways) {
+            way *= static_cast<TypeParam>(speed);
+        }
+        for (const Sweep mode : {Sweep::line, Sweep::automatic}) {
+            BulletWorld<TypeParam> world(fast, mode);
+            world.update();
+            const SweepCost& cost = world.sweeps.lastCost();
+            EXPECT_EQ(cost.sweeping, 200U);
+            EXPECT_LE(cost.segments, 200U * 66);
+            EXPECT_LE(cost.boxesTested + cost.contactsTested, 200U * 20'000 / 20) << speed;
+        }
+    }
+}
+
+// 200 m/s at 60 Hz against walls from 0.1 m down to 1 mm, wherever in its step the bullet meets the
+// wall: a hundred lanes, and hundreds of thousands of phases.
+TYPED_TEST(SweptPairs, OfABulletAndAThinWallAreNeverMissed) {
+    constexpr int kLanes = 100;
+    constexpr double kStep = 200.0 / 60;
+    for (const Sweep mode : kModes) {
+        Random random(0x5eed0d06);
+        Grid<TypeParam> grid;
+        Sweeps<TypeParam> sweeps(grid);
+        Pairs<TypeParam> pairs(grid, &sweeps);
+        std::vector<ProxyId> bullets;
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const double thickness = std::array{0.1, 0.03, 0.01, 0.001}[lane % 4];
+            static_cast<void>(grid.add(makeBox<TypeParam>(
+                0, 10 * lane, 0, static_cast<TypeParam>(thickness), 10 * lane + 4, 4)));
+            bullets.push_back(grid.add({}));
+        }
+        int met = 0;
+        const int frames = mode == Sweep::line ? 4000 : 400;
+        for (int frame = 0; frame < frames; ++frame) {
+            for (int lane = 0; lane < kLanes; ++lane) {
+                // Before the wall at the start of the step, behind it at its end.
+                const double phase = random.between(0.15, kStep - 0.01);
+                const auto radius = static_cast<TypeParam>(0.005);
+                const auto front = static_cast<TypeParam>(-phase);
+                const auto y = static_cast<TypeParam>(10 * lane + random.between(0, 4));
+                const auto id = bullets[static_cast<std::size_t>(lane)];
+                grid.move(id, makeBox<TypeParam>(front - 2 * radius, y - radius, 2 - radius, front,
+                                                 y + radius, 2 + radius));
+                const double aside = random.chance(0.5) ? random.between(-0.2, 0.2) : 0;
+                sweeps.set(id, {static_cast<TypeParam>(kStep), 0, static_cast<TypeParam>(aside)},
+                           mode);
+            }
+            pairs.update([](ProxyId, ProxyId) { return true; });
+            met += static_cast<int>(pairs.count());
+        }
+        EXPECT_EQ(met, frames * kLanes);
+    }
+}
+
+TYPED_TEST(SweptPairs, FollowWhoIsRemovedStopsAndComesAgain) {
+    PairWorld<TypeParam> world;
+    const auto place = [](TypeParam x) { return makeBox<TypeParam>(x, 0, 0, x + 1, 1, 1); };
+    const ProxyId wall = world.add(place(50), Mobility::resting);
+    const ProxyId bullet = world.add(place(0));
+    const Vector3<TypeParam> way(100, 0, 0);
+    world.sweep(bullet, way, Sweep::automatic);
+    world.update();
+    EXPECT_EQ(world.set().size(), 1U);
+    EXPECT_EQ(world.sweeps.motion(bullet).displacement, way);
+
+    world.update();  // it holds
+    EXPECT_EQ(world.set().size(), 1U);
+    world.sweep(bullet, way, Sweep::none);
+    world.update();
+    EXPECT_TRUE(world.set().empty());
+    EXPECT_EQ(world.sweeps.size(), 0U);
+
+    world.sweep(bullet, way, Sweep::line);
+    world.update();
+    world.remove(bullet);
+    world.update();
+    EXPECT_TRUE(world.set().empty());
+    const ProxyId next = world.add(place(0));
+    EXPECT_EQ(next.index, bullet.index);
+    world.update();
+    EXPECT_TRUE(world.set().empty()) << "who comes into its place does not sweep";
+    EXPECT_EQ(world.sweeps.motion(next).displacement, Vector3<TypeParam>(0, 0, 0));
+
+    world.sweep(next, way, Sweep::box);
+    world.update();
+    world.remove(wall);
+    world.update();
+    EXPECT_TRUE(world.set().empty());
+}
+
+// A pair that has touched on the way, then overlaps, and then parted on the way, is one pair.
+TYPED_TEST(SweptPairs, LiveOnWhenTheyOverlapLater) {
+    PairWorld<TypeParam> world;
+    const auto place = [](TypeParam x) { return makeBox<TypeParam>(x, 0, 0, x + 1, 1, 1); };
+    world.add(place(10));
+    const ProxyId bullet = world.add(place(4));
+    const Vector3<TypeParam> way(6, 0, 0);
+    world.sweep(bullet, way, Sweep::automatic);
+    EXPECT_EQ(world.update().born.size(), 1U);
+    world.move(bullet, place(10));
+    PairChanges changes = world.update();
+    EXPECT_TRUE(changes.born.empty() && changes.died.empty());
+    world.move(bullet, place(16));
+    world.sweep(bullet, -way, Sweep::automatic);
+    changes = world.update();
+    EXPECT_TRUE(changes.born.empty() && changes.died.empty());
+    world.sweep(bullet, way, Sweep::automatic);
+    EXPECT_EQ(world.update().died.size(), 1U);
+}
+
+TYPED_TEST(SweptPairs, CostNothingWhereNothingSweeps) {
+    Random random(0x5eed0d07);
+    const Bullets<TypeParam> still(2000, 0, 1, random);
+    BulletWorld<TypeParam> world(still, Sweep::automatic);
+    world.update();
+    const SweepCost& cost = world.sweeps.lastCost();
+    EXPECT_EQ(cost.segments + cost.rays + cost.boxesTested + cost.contactsTested, 0U);
+    EXPECT_EQ(world.sweeps.memoryBytes(), sizeof(world.sweeps));
+}
+
+TYPED_TEST(SweptPairs, TakeABadDisplacementForNone) {
+    PairWorld<TypeParam> world;
+    const CaughtMessages messages;
+    world.add(makeBox<TypeParam>(5, 0, 0, 6, 1, 1));
+    const ProxyId bullet = world.add(makeBox<TypeParam>(0, 0, 0, 1, 1, 1));
+    world.sweep(bullet, {10, 0, 0}, Sweep::automatic);
+    world.update();
+    EXPECT_EQ(world.set().size(), 1U);
+    for (const TypeParam bad : {std::numeric_limits<TypeParam>::quiet_NaN(),
+                                std::numeric_limits<TypeParam>::infinity()}) {
+        world.sweeps.set(bullet, {bad, 0, 0});
+        EXPECT_EQ(world.sweeps.size(), 0U);
+    }
+    world.update();
+    EXPECT_TRUE(world.set().empty());
+    ASSERT_EQ(messages.all().size(), 1U);
+    EXPECT_NE(messages.all()[0].find("displacement"), std::string::npos);
+}
+
+TYPED_TEST(SweptPairs, AssertWhoseTheyAre) {
+    const ThrowingAsserts throwing;
+    Grid<TypeParam> grid;
+    Grid<TypeParam> other;
+    Sweeps<TypeParam> sweeps(grid);
+    const ProxyId id = grid.add(makeBox<TypeParam>(0, 0, 0, 1, 1, 1));
+    grid.remove(id);
+    EXPECT_THROW(sweeps.set(id, {1, 0, 0}), BrokenAssert);
+    EXPECT_THROW(sweeps.set({}, {1, 0, 0}), BrokenAssert);
+    EXPECT_THROW((Pairs<TypeParam>(other, &sweeps)), BrokenAssert);
+}
+
+// Queries that ask for swept boxes: nothing that the way touches is left out, and who stands is found
+// as ever.
+TYPED_TEST(SweptPairs, AreFoundByQueriesAlongTheirWay) {
+    Random random(0x5eed0d08);
+    const Bullets<TypeParam> bullets(2000, 200, 25, random);
+    for (const Sweep mode : kModes) {
+        BulletWorld<TypeParam> world(bullets, mode);
+        world.update();
+        int onTheWay = 0;
+        for (int i = 0; i < 300; ++i) {
+            const Aabb<TypeParam> box =
+                boxAround<TypeParam>(random.pointIn(-10, 42), random.pointIn(0, 3));
+            const BoxRegion<TypeParam> region{box};
+            CollectKeys<TypeParam> found;
+            const QueryCost cost = world.sweeps.visit(region, found);
+            CollectKeys<TypeParam> current;
+            world.grid.visit(region, current);
+            ASSERT_GE(cost.hits, found.sorted().size());
+            std::vector<ProxyId> ids;
+            for (const auto& [id, key] : found.sorted()) {
+                ids.push_back(id);
+            }
+            ASSERT_EQ(std::adjacent_find(ids.begin(), ids.end()), ids.end()) << "found twice";
+            for (std::size_t j = 0; j < world.ids.size(); ++j) {
+                const bool isFound = std::binary_search(ids.begin(), ids.end(), world.ids[j]);
+                const MovingBox<TypeParam> motion = world.sweeps.motion(world.ids[j]);
+                if (firstContactByRationals(motion, MovingBox<TypeParam>{box})) {
+                    ASSERT_TRUE(isFound) << j;
+                    onTheWay += overlaps(motion.box, box) ? 0 : 1;
+                } else if (isFound) {
+                    ASSERT_TRUE(overlaps(wayBounds(motion), box)) << j;
+                    ASSERT_LT(j, bullets.ways.size()) << "who stands is found where it is";
+                }
+            }
+        }
+        EXPECT_GT(onTheWay, 100);
+    }
+}
+
+}  // namespace
+}  // namespace hashphase::test
