@@ -16,8 +16,6 @@
 namespace hashphase {
 namespace {
 
-constexpr double kUnit = 0x1p-53;  // of the rounding
-
 // A difference of two numbers that have a double's precision or less.
 struct Difference {
     double minuend;
@@ -93,12 +91,10 @@ int signOfDeterminant(const Difference& a, const Difference& b, const Difference
 // Whether one time comes before the other one: 1 when it does, -1 when it comes behind, 0 when
 // rounding leaves that open.
 int roundedOrder(double first, double second) noexcept {
-    constexpr double kDoubt = 16 * kUnit;  // each time is off by at most 3 units
-    constexpr double kTiny = 0x1p-1000;    // where units mean nothing
-    if (first <= kTiny && second <= kTiny) {
+    if (first <= detail::kTiniestTime && second <= detail::kTiniestTime) {
         return 0;
     }
-    return std::abs(first - second) <= kDoubt * second ? 0 : first < second ? 1 : -1;
+    return std::abs(first - second) <= detail::kTimeDoubt * second ? 0 : first < second ? 1 : -1;
 }
 
 // Whether the open gap has closed no later than the other one opens.
@@ -138,8 +134,8 @@ bool meetExactly(const std::array<Gap, 6>& gaps) noexcept {
 }  // namespace
 
 template <class Scalar>
-std::optional<double> firstContact(const MovingBox<Scalar>& a,
-                                   const MovingBox<Scalar>& b) noexcept {
+std::optional<double> detail::firstContactExactly(const MovingBox<Scalar>& a,
+                                                  const MovingBox<Scalar>& b) noexcept {
     if (!a.displacement.allFinite() || !b.displacement.allFinite()) {
         return std::nullopt;
     }
@@ -216,10 +212,10 @@ MovingBoxRegion<Scalar>::MovingBoxRegion(const MovingBox<Scalar>& moving)
 
 template Aabb<float> wayBounds(const MovingBox<float>&, double, double);
 template Aabb<double> wayBounds(const MovingBox<double>&, double, double);
-template std::optional<double> firstContact(const MovingBox<float>&,
-                                            const MovingBox<float>&) noexcept;
-template std::optional<double> firstContact(const MovingBox<double>&,
-                                            const MovingBox<double>&) noexcept;
+template std::optional<double> detail::firstContactExactly(const MovingBox<float>&,
+                                                           const MovingBox<float>&) noexcept;
+template std::optional<double> detail::firstContactExactly(const MovingBox<double>&,
+                                                           const MovingBox<double>&) noexcept;
 template class MovingBoxRegion<float>;
 template class MovingBoxRegion<double>;
 

@@ -31,10 +31,59 @@ template <class Scalar>
 [[nodiscard]] Aabb<Scalar> wayBounds(const MovingBox<Scalar>& moving, double from = 0,
                                      double to = 1);
 
-/// The first time at which the two touch: 0 when they do from the start; nothing when they never do.
+namespace detail {
+
+/// firstContact(), slowly, whatever the numbers.
 template <class Scalar>
-[[nodiscard]] std::optional<double> firstContact(const MovingBox<Scalar>& a,
-                                                 const MovingBox<Scalar>& b) noexcept;
+[[nodiscard]] std::optional<double> firstContactExactly(const MovingBox<Scalar>& a,
+                                                        const MovingBox<Scalar>& b) noexcept;
+
+/// A time as computed is off by less than this share of it.
+inline constexpr double kTimeDoubt = 0x1p-49;
+/// Below this, shares mean nothing.
+inline constexpr double kTiniestTime = 0x1p-1000;
+
+}  // namespace detail
+
+/// The first time at which the two touch: 0 when they do from the start; nothing when they never do.
+/// Cost: some ten nanoseconds; half a microsecond where rounding would decide.
+template <class Scalar>
+[[nodiscard]] inline std::optional<double> firstContact(const MovingBox<Scalar>& a,
+                                                        const MovingBox<Scalar>& b) noexcept {
+    // Slabs. Differences have the right sign, and one rounding; so do their quotients.
+    double begin = 0;
+    double end = 1;
+    double sum = 0;
+    bool neverMeet = false;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double closing =
+            static_cast<double>(a.displacement[axis]) - static_cast<double>(b.displacement[axis]);
+        const double below =
+            static_cast<double>(b.box.min()[axis]) - static_cast<double>(a.box.max()[axis]);
+        const double above =
+            static_cast<double>(a.box.min()[axis]) - static_cast<double>(b.box.max()[axis]);
+        const double ahead = closing > 0 ? below : above;   // closes, if anything
+        const double behind = closing > 0 ? above : below;  // opens
+        const double speed = std::abs(closing);
+        sum += speed + std::abs(below) + std::abs(above);
+        neverMeet |= (behind > 0) | ((ahead > 0) & (speed == 0));
+        const double inverse = 1 / (speed > 0 ? speed : 1);
+        const double opens = speed > 0 ? -behind * inverse : 1;
+        begin = ahead * inverse > begin ? ahead * inverse : begin;
+        end = opens < end ? opens : end;
+    }
+    const bool isUsual = sum < std::numeric_limits<double>::max();  // no NaN, nothing infinite
+    if (isUsual && neverMeet) {
+        return std::nullopt;
+    }
+    const bool isCertain =
+        isUsual && (begin == 0 || begin > detail::kTiniestTime) &&
+        (begin * (1 + detail::kTimeDoubt) < end || begin > end * (1 + detail::kTimeDoubt));
+    if (!isCertain) {
+        return detail::firstContactExactly(a, b);
+    }
+    return begin < end ? std::optional(begin) : std::nullopt;
+}
 
 /// What a moving box meets on its way. Key: the time of the first contact, by firstContact(). With
 /// CollectClosest, what is hit first.
@@ -58,10 +107,10 @@ private:
 
 extern template Aabb<float> wayBounds(const MovingBox<float>&, double, double);
 extern template Aabb<double> wayBounds(const MovingBox<double>&, double, double);
-extern template std::optional<double> firstContact(const MovingBox<float>&,
-                                                   const MovingBox<float>&) noexcept;
-extern template std::optional<double> firstContact(const MovingBox<double>&,
-                                                   const MovingBox<double>&) noexcept;
+extern template std::optional<double> detail::firstContactExactly(const MovingBox<float>&,
+                                                                  const MovingBox<float>&) noexcept;
+extern template std::optional<double> detail::firstContactExactly(
+    const MovingBox<double>&, const MovingBox<double>&) noexcept;
 extern template class MovingBoxRegion<float>;
 extern template class MovingBoxRegion<double>;
 

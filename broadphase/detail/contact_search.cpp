@@ -28,50 +28,67 @@ constexpr int kCellsPerSegment = 3;
 
 constexpr int kMostSlices = 64;
 
-// About where the table's boxes are. Not all of them need lie in it: it only says where it pays to
-// look closely.
+// Extends the world by where the level's boxes are, and a little more: cells are rounded.
 template <class Scalar>
-void extendByTable(Aabb<Scalar>& world, const Table<Scalar>& table) {
-    for (const Level<Scalar>& level : table.levels()) {
-        if (level.count() == 0 || !level.hasCells) {
+void extendByCells(Aabb<double>& world, const Level<Scalar>& level) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    Aabb<double> bounds;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto at = static_cast<Eigen::Index>(axis);
+        const auto border = [&](std::int64_t cell) {
+            return static_cast<double>(level.origin[axis]) +
+                   static_cast<double>(cell) / static_cast<double>(level.inverseCellSize[axis]);
+        };
+        if (level.inverseCellSize[axis] == 0) {
+            bounds.min()[at] = static_cast<double>(level.lowest[axis]);
+            bounds.max()[at] = static_cast<double>(level.highest[axis]);
             continue;
         }
-        Vector3<Scalar> low;
-        Vector3<Scalar> high;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const auto at = static_cast<Eigen::Index>(axis);
-            const bool isFlat = level.inverseCellSize[axis] == 0;
-            const auto border = [&](std::int32_t cell) {
-                return level.origin[axis] + static_cast<Scalar>(cell) / level.inverseCellSize[axis];
-            };
-            low[at] = isFlat ? level.lowest[axis] : border(level.low[axis]);
-            high[at] = isFlat ? level.highest[axis] : border(level.high[axis] + 2);
+        // In the last cells is whatever lies beyond.
+        const std::int64_t low = level.low[axis];
+        const std::int64_t high = level.high[axis];
+        bounds.min()[at] = low <= -kCellLimit ? -kInfinity : border(low - 1);
+        bounds.max()[at] = high >= kCellLimit - 2 ? kInfinity : border(high + 3);
+    }
+    world.extend(bounds);
+}
+
+// Extends the world by all boxes of the table.
+template <class Scalar>
+void extendByTable(Aabb<double>& world, const Table<Scalar>& table) {
+    for (const Level<Scalar>& level : table.levels()) {
+        if (level.count() > 0 && level.hasCells) {
+            extendByCells(world, level);
         }
-        world.extend(Aabb<Scalar>(low, high));
+        for (std::uint32_t i = level.firstEntry; i < level.lastEntry && !level.hasCells; ++i) {
+            const Aabb<Scalar> box = table.box(i);
+            if (!hasNan(box)) {
+                world.extend(box.template cast<double>());
+            }
+        }
     }
 }
 
-// The part of the way on which the moving box touches the other one, roughly; from > to when none.
+// Between which times a moving box may touch something in the world; from > to when never.
 struct Part {
     double from = 0;
     double to = 1;
 };
 
 template <class Scalar>
-Part partWithin(const MovingBox<Scalar>& moving, const Aabb<Scalar>& world) {
+Part partWithin(const MovingBox<Scalar>& moving, const Aabb<double>& world) {
+    constexpr double kWidened = 1e-12;  // more than the rounding
     Part part;
     for (int axis = 0; axis < 3; ++axis) {
         const auto way = static_cast<double>(moving.displacement[axis]);
-        const double first =
-            static_cast<double>(world.min()[axis]) - static_cast<double>(moving.box.max()[axis]);
-        const double last =
-            static_cast<double>(world.max()[axis]) - static_cast<double>(moving.box.min()[axis]);
+        const double first = world.min()[axis] - static_cast<double>(moving.box.max()[axis]);
+        const double last = world.max()[axis] - static_cast<double>(moving.box.min()[axis]);
         if (way == 0) {
             part.to = first <= 0 && last >= 0 ? part.to : -1.0;
             continue;
         }
-        part.from = std::max(part.from, std::min(first / way, last / way));
-        part.to = std::min(part.to, std::max(first / way, last / way));
+        part.from = std::max(part.from, std::min(first / way, last / way) * (1 - kWidened));
+        part.to = std::min(part.to, std::max(first / way, last / way) * (1 + kWidened));
     }
     return part;
 }
@@ -112,7 +129,7 @@ void ContactSearch<Scalar>::cutIntoSegments() {
     segments_.clear();
     motionOfSegment_.clear();
     rays_.clear();
-    Box world;
+    Aabb<double> world;
     extendByTable(world, grid_.mobile_);
     extendByTable(world, grid_.resting_);
     const auto cellSize = static_cast<Scalar>(
@@ -124,36 +141,29 @@ void ContactSearch<Scalar>::cutIntoSegments() {
     cost_.rays = static_cast<std::uint32_t>(rays_.size());
 }
 
-// Where nothing is, segments may be long.
+// Beyond the world there is nothing to be met.
 template <class Scalar>
-void ContactSearch<Scalar>::cut(std::uint32_t motion, const Box& world, Scalar cellSize) {
+void ContactSearch<Scalar>::cut(std::uint32_t motion, const Aabb<double>& world, Scalar cellSize) {
     const MovingBox<Scalar> way = moving(motions_[motion]);
+    const Part within = partWithin(way, world);
+    if (within.from > within.to) {
+        return;
+    }
     const Point far = way.displacement.cwiseAbs();
     const Scalar length = kCellsPerSegment * std::max(cellSize, way.box.sizes().maxCoeff());
     // Along one axis the box around the way is the way.
     const bool isThin = (far.array() > length).count() < 2;
     const Sweep sweep = motions_[motion].sweep;
     if (sweep == Sweep::box || (sweep == Sweep::automatic && isThin) || !(length > 0)) {
-        addSegments(motion, way, 0, 1, 1);
-        return;
-    }
-    const Part within = partWithin(way, world);
-    if (!(within.from < within.to)) {
-        addSegments(motion, way, 0, 1, 1);
+        addSegments(motion, way, within.from, within.to, 1);
         return;
     }
     const double count =
         std::ceil((within.to - within.from) * static_cast<double>(far.maxCoeff() / length));
-    if (!(count <= kMostSegments)) {
+    if (count <= kMostSegments) {
+        addSegments(motion, way, within.from, within.to, std::max(1, static_cast<int>(count)));
+    } else {
         rays_.push_back(motion);
-        return;
-    }
-    if (within.from > 0) {
-        addSegments(motion, way, 0, within.from, 1);
-    }
-    addSegments(motion, way, within.from, within.to, std::max(1, static_cast<int>(count)));
-    if (within.to < 1) {
-        addSegments(motion, way, within.to, 1, 1);
     }
 }
 
@@ -256,7 +266,7 @@ int ContactSearch<Scalar>::sliceCount() const {
     double way = 0;
     for (const Motion<Scalar>& motion : motions_) {
         const MovingBox<Scalar> each = moving(motion);
-        everything.extend(wayBounds(each));
+        everything.extend(each.box);
         size += static_cast<double>(each.box.sizes().maxCoeff());
         way += static_cast<double>(each.displacement.cwiseAbs().maxCoeff());
     }

@@ -65,7 +65,7 @@ private:
     }
 
     void cutIntoSegments();
-    void cut(std::uint32_t motion, const Box& world, Scalar cellSize);
+    void cut(std::uint32_t motion, const Aabb<double>& world, Scalar cellSize);
     void addSegments(std::uint32_t motion, const MovingBox<Scalar>& way, double from, double to,
                      int count);
     void meetStanding(ParallelFor parallelFor);
