@@ -91,7 +91,7 @@ int signOfDeterminant(const Difference& a, const Difference& b, const Difference
 // Whether one time comes before the other one: 1 when it does, -1 when it comes behind, 0 when
 // rounding leaves that open.
 int roundedOrder(double first, double second) noexcept {
-    if (first <= detail::kTiniestTime && second <= detail::kTiniestTime) {
+    if (first <= detail::kTiniest && second <= detail::kTiniest) {
         return 0;
     }
     return std::abs(first - second) <= detail::kTimeDoubt * second ? 0 : first < second ? 1 : -1;

@@ -41,7 +41,7 @@ template <class Scalar>
 /// A time as computed is off by less than this share of it.
 inline constexpr double kTimeDoubt = 0x1p-49;
 /// Below this, shares mean nothing.
-inline constexpr double kTiniestTime = 0x1p-1000;
+inline constexpr double kTiniest = 0x1p-1000;
 
 }  // namespace detail
 
@@ -54,6 +54,7 @@ template <class Scalar>
     double begin = 0;
     double end = 1;
     double sum = 0;
+    bool isTiny = false;
     bool neverMeet = false;
     for (int axis = 0; axis < 3; ++axis) {
         const double closing =
@@ -66,18 +67,20 @@ template <class Scalar>
         const double behind = closing > 0 ? above : below;  // opens
         const double speed = std::abs(closing);
         sum += speed + std::abs(below) + std::abs(above);
+        isTiny |= (speed > 0) & (speed < detail::kTiniest);
         neverMeet |= (behind > 0) | ((ahead > 0) & (speed == 0));
         const double inverse = 1 / (speed > 0 ? speed : 1);
         const double opens = speed > 0 ? -behind * inverse : 1;
         begin = ahead * inverse > begin ? ahead * inverse : begin;
         end = opens < end ? opens : end;
     }
-    const bool isUsual = sum < std::numeric_limits<double>::max();  // no NaN, nothing infinite
+    // No NaN, and nothing infinite, not even an inverse.
+    const bool isUsual = (sum < std::numeric_limits<double>::max()) & !isTiny;
     if (isUsual && neverMeet) {
         return std::nullopt;
     }
     const bool isCertain =
-        isUsual && (begin == 0 || begin > detail::kTiniestTime) &&
+        isUsual && (begin == 0 || begin > detail::kTiniest) &&
         (begin * (1 + detail::kTimeDoubt) < end || begin > end * (1 + detail::kTimeDoubt));
     if (!isCertain) {
         return detail::firstContactExactly(a, b);
