@@ -2,6 +2,7 @@
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
 #include <broadphase/detail/prefetch.hpp>
+#include <integration/bullet/body_motion.hpp>
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/pair_cache.hpp>
 
@@ -31,7 +32,11 @@ SpatialHashBroadphase::SpatialHashBroadphase(PairCache* pairCache, const Spatial
 
 SpatialHashBroadphase::SpatialHashBroadphase(btOverlappingPairCache* pairCache,
                                              const SpatialHashConfig& config)
-    : config_(config), grid_(config.grid), pairCache_(pairCache) {
+    : config_(config),
+      grid_(config.grid),
+      sweeps_(config.sweep != Sweep::none ? std::make_unique<Sweeps<btScalar>>(grid_) : nullptr),
+      pairs_(grid_, sweeps_.get()),
+      pairCache_(pairCache) {
     if (pairCache_ == nullptr) {
         ownCache_ = std::make_unique<PairCache>();
         batchCache_ = ownCache_.get();
@@ -78,14 +83,26 @@ void SpatialHashBroadphase::removeFromGrid(Proxy* proxy) {
 void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin,
                                     const btVector3& aabbMax, btDispatcher* dispatcher) {
     Proxy* own = checkedProxy(proxy);
-    if (isSameBits(own->m_aabbMin, aabbMin) && isSameBits(own->m_aabbMax, aabbMax)) {
+    const bool isSame = isSameBits(own->m_aabbMin, aabbMin) && isSameBits(own->m_aabbMax, aabbMax);
+    // A body that flies back may have the same box as when it came.
+    if (isSame && sweeps_ == nullptr) {
         return;
     }
     own->m_aabbMin = aabbMin;
     own->m_aabbMax = aabbMax;
-    grid_.move(own->id, toAabb(aabbMin, aabbMax));
-    if (isEager(*own)) {
+    move(*own);
+    if (!isSame && isEager(*own)) {
         announce(*own, dispatcher);
+    }
+}
+
+void SpatialHashBroadphase::move(const Proxy& proxy) {
+    const std::optional<MovingBox<btScalar>> motion =
+        sweeps_ != nullptr ? fastMotion(proxy, config_.fastFrom) : std::nullopt;
+    grid_.move(proxy.id, motion ? motion->box : toAabb(proxy.m_aabbMin, proxy.m_aabbMax));
+    if (sweeps_ != nullptr) {
+        sweeps_->set(proxy.id, motion ? motion->displacement : Vector3<btScalar>(0, 0, 0),
+                     config_.sweep);
     }
 }
 
@@ -186,7 +203,7 @@ void SpatialHashBroadphase::removeDeferred(const btBroadphaseProxy* refiltered,
         const btBroadphaseProxy& a = *pair.m_pProxy0;
         const btBroadphaseProxy& b = *pair.m_pProxy1;
         if (refiltered == nullptr) {
-            return overlaps(toAabb(a.m_aabbMin, a.m_aabbMax), toAabb(b.m_aabbMin, b.m_aabbMax));
+            return doMeet(a, b);
         }
         return (&a != refiltered && &b != refiltered) ||
                pairCache_->needsBroadphaseCollision(pair.m_pProxy0, pair.m_pProxy1);
@@ -205,11 +222,20 @@ void SpatialHashBroadphase::removeDeferred(const btBroadphaseProxy* refiltered,
     pairs.resize(kept);
 }
 
+bool SpatialHashBroadphase::doMeet(const btBroadphaseProxy& a, const btBroadphaseProxy& b) const {
+    if (sweeps_ == nullptr) {
+        return overlaps(toAabb(a.m_aabbMin, a.m_aabbMax), toAabb(b.m_aabbMin, b.m_aabbMax));
+    }
+    return firstContact(sweeps_->motion(idOf(&a)), sweeps_->motion(idOf(&b))).has_value();
+}
+
 void SpatialHashBroadphase::getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax) const {
     Aabb<btScalar> all;
-    grid_.forEach([&all](ProxyId, const Aabb<btScalar>& box) {
+    grid_.forEach([&](ProxyId id, const Aabb<btScalar>& box) {
         if (!hasNan(box)) {
-            all.extend(box);
+            const bool doesSweep =
+                sweeps_ != nullptr && !sweeps_->motion(id).displacement.isZero(0);
+            all.extend(doesSweep ? wayBounds(sweeps_->motion(id)) : box);
         }
     });
     aabbMin = all.isEmpty() ? btVector3(0, 0, 0) : toBullet(all.min());
@@ -233,13 +259,14 @@ ProxyId SpatialHashBroadphase::idOf(const btBroadphaseProxy* proxy) {
 
 std::size_t SpatialHashBroadphase::memoryBytes() const noexcept {
     return grid_.memoryBytes() + pairs_.memoryBytes() + proxies_.memoryBytes() +
-           uniqueIds_.capacity() * sizeof(int) +
+           (sweeps_ != nullptr ? sweeps_->memoryBytes() : 0) + uniqueIds_.capacity() * sizeof(int) +
            (died_.capacity() + born_.capacity()) * sizeof(ProxyCouple) +
            (ownCache_ != nullptr ? ownCache_->memoryBytes() : 0);
 }
 
 std::string SpatialHashBroadphase::validate() const {
-    for (std::string error : {grid_.validate(), pairs_.validate()}) {
+    const std::string ofSweeps = sweeps_ != nullptr ? sweeps_->validate() : std::string();
+    for (const std::string& error : {grid_.validate(), ofSweeps, pairs_.validate()}) {
         if (!error.empty()) {
             return error;
         }

@@ -26,6 +26,7 @@
 #include <broadphase/detail/stable_array.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/pairs.hpp>
+#include <broadphase/sweeps.hpp>
 #include <integration/bullet/pair_cache.hpp>
 #include <integration/bullet/precision.hpp>
 
@@ -56,6 +57,17 @@ struct SpatialHashConfig {
     /// result is the same on any number. See bullet_parallel_for.hpp and
     /// integration/tbb/tbb_parallel_for.hpp. Called with count, grain and body, see ParallelFor.
     std::function<void(std::size_t count, std::size_t grain, LoopBody body)> parallelFor;
+
+    /// How to find what a fast rigid body passes in a step; by default not at all. In place of the box
+    /// that Bullet hands in, which with m_useContinuous covers start and end and all that lies
+    /// between its corners, such a body is filed where it is, and sweeps along the way that Bullet has
+    /// predicted: its pairs are exactly what it touches at some time of the step, and queries find it
+    /// anywhere on its way. For worlds whose clients are btCollisionObjects.
+    Sweep sweep = Sweep::none;
+
+    /// A body is fast in a step in which it moves by more than this share of the smallest edge of its
+    /// box. The others keep the box that Bullet hands in.
+    btScalar fastFrom = 1;
 
     /// Ends a query when process() of its callback returns false. Off by default: Bullet's own
     /// broadphases ignore the result, and programs return false for other reasons.
@@ -118,6 +130,7 @@ public:
     void setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin, const btVector3& aabbMax,
                  btDispatcher* dispatcher) override;
 
+    /// As last set, whether the proxy sweeps or not.
     void getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin, btVector3& aabbMax) const override;
 
     /// Calls rayCallback.process() once for every proxy whose box, grown by the cast box
@@ -191,13 +204,17 @@ public:
     [[nodiscard]] btBroadphaseProxy* proxyOf(ProxyId id) const;
     [[nodiscard]] static ProxyId idOf(const btBroadphaseProxy* proxy);
 
+    /// What sweeps, and how far; nullptr unless SpatialHashConfig::sweep is set. The grid has what
+    /// sweeps where the step begins; Sweeps::visit() finds it on its way as well.
+    [[nodiscard]] const Sweeps<btScalar>* sweeps() const noexcept { return sweeps_.get(); }
+
     /// What the last calculateOverlappingPairs() cost.
     [[nodiscard]] const PairCost& lastCost() const noexcept { return pairs_.lastCost(); }
 
     /// Bytes held, Bullet's own proxies included, the pair cache excluded unless it is our own.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Grid::validate(), Pairs::validate() and PairCache::validate(), and:
+    /// Grid::validate(), Sweeps::validate(), Pairs::validate() and PairCache::validate(), and:
     /// - The cache holds as many pairs as the set of pairs (for a cache of our own).
     [[nodiscard]] std::string validate() const;
 
@@ -224,6 +241,13 @@ private:
         return (proxy.m_collisionFilterGroup & config_.eagerGroups) != 0;
     }
     void announce(const Proxy& proxy, btDispatcher* dispatcher);
+    void move(const Proxy& proxy);
+    [[nodiscard]] bool doMeet(const btBroadphaseProxy& a, const btBroadphaseProxy& b) const;
+    template <class Region, class Collector>
+    QueryCost visit(const Region& region, Collector& collector) const {
+        return sweeps_ != nullptr ? sweeps_->visit(region, collector)
+                                  : grid_.visit(region, collector);
+    }
     void removeDeferred(const btBroadphaseProxy* refiltered, btDispatcher* dispatcher);
     [[nodiscard]] Proxy* checkedProxy(btBroadphaseProxy* proxy) const {
         HASHPHASE_ASSERT(
@@ -234,7 +258,8 @@ private:
 
     SpatialHashConfig config_;
     Grid<btScalar> grid_;
-    Pairs<btScalar> pairs_{grid_};
+    std::unique_ptr<Sweeps<btScalar>> sweeps_;  // if the configuration asks for it
+    Pairs<btScalar> pairs_;
 
     detail::StableArray<Proxy> proxies_;  // by ProxyId::index
     std::vector<int> uniqueIds_;          // by ProxyId::index; 0 where no proxy is alive

@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: Zlib
+
+// SpatialHashConfig::sweep: fast bodies make pairs with what they pass, and with nothing else.
+
+#include <integration/bullet/body_motion.hpp>
+#include <integration/bullet/conversions.hpp>
+#include <integration/bullet/spatial_hash_broadphase.hpp>
+#include <tests/support/random.hpp>
+
+#include <btBulletDynamicsCommon.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace hashphase::test {
+namespace {
+
+constexpr btScalar kStep = btScalar(1) / 60;
+
+SpatialHashConfig withSweep(Sweep sweep) {
+    SpatialHashConfig config;
+    config.sweep = sweep;
+    return config;
+}
+
+/// Walls that stand, and balls that fly through them without touching: no response.
+struct Range {
+    using Couple = std::pair<const btBroadphaseProxy*, const btBroadphaseProxy*>;
+
+    explicit Range(std::unique_ptr<btBroadphaseInterface> ofWhat)
+        : broadphase(std::move(ofWhat)),
+          world(&dispatcher, broadphase.get(), &solver, &configuration) {
+        world.setGravity(btVector3(0, 0, 0));
+    }
+    ~Range() {
+        for (const auto& body : bodies) {
+            world.removeRigidBody(body.get());
+        }
+    }
+
+    btRigidBody& add(btCollisionShape& shape, btScalar mass, const btVector3& position,
+                     const btVector3& velocity = btVector3(0, 0, 0)) {
+        btVector3 inertia(0, 0, 0);
+        if (mass > 0) {
+            shape.calculateLocalInertia(mass, inertia);
+        }
+        auto body = std::make_unique<btRigidBody>(mass, nullptr, &shape, inertia);
+        body->setWorldTransform(btTransform(btMatrix3x3::getIdentity(), position));
+        body->setInterpolationWorldTransform(body->getWorldTransform());
+        body->setLinearVelocity(velocity);
+        body->setDamping(0, 0);
+        body->setActivationState(DISABLE_DEACTIVATION);
+        body->setCollisionFlags(body->getCollisionFlags() |
+                                btCollisionObject::CF_NO_CONTACT_RESPONSE);
+        world.addRigidBody(body.get());
+        bodies.push_back(std::move(body));
+        return *bodies.back();
+    }
+
+    /// 200 walls here and there, 60 balls and rods of which two in three are fast.
+    void fill(Random& random, double reach = 9) {
+        for (int i = 0; i < 200; ++i) {
+            const Vector3<double> place = random.pointIn(-reach, reach);
+            add(wall, 0, btVector3(btScalar(place.x()), btScalar(place.y()), btScalar(place.z())));
+        }
+        for (int i = 0; i < 60; ++i) {
+            const Vector3<double> place = random.pointIn(-reach, reach);
+            const Vector3<double> way = random.pointIn(-1, 1).normalized() * (i % 3 == 0 ? 2 : 400);
+            btRigidBody& body =
+                add(i % 2 == 0 ? static_cast<btCollisionShape&>(ball)
+                               : static_cast<btCollisionShape&>(rod),
+                    1, btVector3(btScalar(place.x()), btScalar(place.y()), btScalar(place.z())),
+                    btVector3(btScalar(way.x()), btScalar(way.y()), btScalar(way.z())));
+            body.setAngularVelocity(btVector3(0, btScalar(i), 0));
+        }
+    }
+
+    /// What a broadphase must know of the step that begins, by looking at every two bodies.
+    [[nodiscard]] std::set<Couple> expectedPairs(btScalar share) const {
+        std::vector<MovingBox<btScalar>> motions;
+        for (const auto& body : bodies) {
+            const btBroadphaseProxy& proxy = *body->getBroadphaseProxy();
+            motions.push_back(
+                fastMotion(proxy, share)
+                    .value_or(MovingBox<btScalar>{toAabb(proxy.m_aabbMin, proxy.m_aabbMax)}));
+        }
+        std::set<Couple> pairs;
+        for (std::size_t i = 0; i < bodies.size(); ++i) {
+            for (std::size_t j = i + 1; j < bodies.size(); ++j) {
+                const bool doStand = bodies[i]->isStaticObject() && bodies[j]->isStaticObject();
+                if (!doStand && firstContact(motions[i], motions[j])) {
+                    pairs.insert(std::minmax<const btBroadphaseProxy*>(
+                        bodies[i]->getBroadphaseProxy(), bodies[j]->getBroadphaseProxy()));
+                }
+            }
+        }
+        return pairs;
+    }
+
+    [[nodiscard]] std::set<Couple> pairs() const {
+        const btBroadphasePairArray& listed =
+            broadphase->getOverlappingPairCache()->getOverlappingPairArray();
+        std::set<Couple> pairs;
+        for (int i = 0; i < listed.size(); ++i) {
+            pairs.insert(
+                std::minmax<const btBroadphaseProxy*>(listed[i].m_pProxy0, listed[i].m_pProxy1));
+        }
+        return pairs;
+    }
+
+    btBoxShape wall{btVector3(1, 1, btScalar(0.01))};
+    btSphereShape ball{btScalar(0.1)};
+    btCapsuleShape rod{btScalar(0.05), 1};
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher{&configuration};
+    std::unique_ptr<btBroadphaseInterface> broadphase;
+    btSequentialImpulseConstraintSolver solver;
+    btDiscreteDynamicsWorld world;
+    std::vector<std::unique_ptr<btRigidBody>> bodies;
+};
+
+std::unique_ptr<SpatialHashBroadphase> swept(Sweep sweep) {
+    return std::make_unique<SpatialHashBroadphase>(withSweep(sweep));
+}
+
+TEST(SweptBodies, MakePairsWithWhatTheyPassAndNothingElse) {
+    for (const Sweep sweep : {Sweep::box, Sweep::line, Sweep::automatic}) {
+        Random random(0x5eed0e01);
+        Range range(swept(sweep));
+        range.fill(random);
+        const auto& broadphase = static_cast<const SpatialHashBroadphase&>(*range.broadphase);
+        std::size_t most = 0;
+        struct Check {
+            Range& range;
+            std::size_t& most;
+        } check{range, most};
+        // Before each step, with the same prediction.
+        range.world.setInternalTickCallback(
+            [](btDynamicsWorld* world, btScalar) {
+                auto& own = *static_cast<Check*>(world->getWorldUserInfo());
+                for (const auto& body : own.range.bodies) {
+                    btTransform predicted;
+                    body->predictIntegratedTransform(kStep, predicted);
+                    body->setInterpolationWorldTransform(predicted);
+                }
+                own.range.world.updateAabbs();
+                own.range.broadphase->calculateOverlappingPairs(&own.range.dispatcher);
+                EXPECT_EQ(own.range.pairs(), own.range.expectedPairs(1));
+                own.most = std::max(own.most, own.range.pairs().size());
+            },
+            &check, true);
+        for (int step = 0; step < 10; ++step) {
+            range.world.stepSimulation(kStep, 0);
+            EXPECT_EQ(broadphase.validate(), "");
+        }
+        EXPECT_GT(most, 20U);
+        EXPECT_EQ(broadphase.sweeps()->size(), 40U);
+    }
+}
+
+TEST(SweptBodies, HaveFewerPairsThanBoxesAroundStartAndEnd) {
+    std::vector<std::size_t> counts;
+    for (const Sweep sweep : {Sweep::none, Sweep::automatic}) {
+        Random random(0x5eed0e02);
+        Range range(swept(sweep));
+        range.fill(random);
+        range.world.stepSimulation(kStep, 0);
+        counts.push_back(range.pairs().size());
+    }
+    EXPECT_LT(5 * counts[1], 2 * counts[0]);
+    EXPECT_GT(counts[1], 0U);
+}
+
+// m_useContinuous off: Bullet hands in where a body is, and no more.
+TEST(SweptBodies, PassNoThinWallUnnoticedWithoutBulletsOwnBoxes) {
+    for (const Sweep sweep : {Sweep::none, Sweep::line}) {
+        Range range(swept(sweep));
+        range.world.getDispatchInfo().m_useContinuous = false;
+        range.add(range.wall, 0, btVector3(0, 0, 0));
+        range.add(range.ball, 1, btVector3(0, 0, -2), btVector3(0, 0, 240));
+        std::size_t noticed = 0;
+        for (int step = 0; step < 3; ++step) {
+            range.world.stepSimulation(kStep, 0);
+            noticed += range.pairs().size();
+        }
+        EXPECT_EQ(noticed, sweep == Sweep::none ? 0U : 1U);
+    }
+}
+
+TEST(SweptBodies, AreFoundByRaysWhereTheStepHasLeftThem) {
+    Range range(swept(Sweep::automatic));
+    btRigidBody& ball = range.add(range.ball, 1, btVector3(0, 0, 0), btVector3(300, 300, 0));
+    range.add(range.wall, 0, btVector3(0, 50, 0));
+    range.world.stepSimulation(kStep, 0);
+    const btVector3 now = ball.getWorldTransform().getOrigin();
+    EXPECT_NEAR(now.x(), 5, 1e-3);
+    const btVector3 from = now + btVector3(0, 0, 5);
+    const btVector3 to = now - btVector3(0, 0, 5);
+    btCollisionWorld::ClosestRayResultCallback stock(from, to);
+    range.world.rayTest(from, to, stock);
+    EXPECT_EQ(stock.m_collisionObject, &ball);
+    btCollisionWorld::ClosestRayResultCallback closest(from, to);
+    static_cast<SpatialHashBroadphase&>(*range.broadphase).closestRay(from, to, closest);
+    EXPECT_EQ(closest.m_collisionObject, &ball);
+
+    struct Count final : btBroadphaseAabbCallback {
+        bool process(const btBroadphaseProxy*) override { return ++count > 0; }
+        int count = 0;
+    } count;
+    range.broadphase->aabbTest(now, now, count);
+    EXPECT_EQ(count.count, 1);
+    btVector3 low;
+    btVector3 high;
+    range.broadphase->getBroadphaseAabb(low, high);
+    EXPECT_GT(high.x(), now.x());
+}
+
+// Bullet casts convex shapes by fat rays through the broadphase.
+TEST(SweptBodies, AreMetByConvexSweepsAsUnderBulletsTree) {
+    const auto hits = [](std::unique_ptr<btBroadphaseInterface> broadphase) {
+        Random random(0x5eed0e03);
+        Range range(std::move(broadphase));
+        range.fill(random);
+        range.world.stepSimulation(kStep, 0);
+        std::vector<std::pair<int, btScalar>> found;
+        for (int i = 0; i < 300; ++i) {
+            const Vector3<double> from = random.pointIn(-20, 20);
+            const Vector3<double> to = random.pointIn(-20, 20);
+            const btTransform start(
+                btMatrix3x3::getIdentity(),
+                btVector3(btScalar(from.x()), btScalar(from.y()), btScalar(from.z())));
+            const btTransform end(btMatrix3x3::getIdentity(),
+                                  btVector3(btScalar(to.x()), btScalar(to.y()), btScalar(to.z())));
+            btCollisionWorld::ClosestConvexResultCallback closest(start.getOrigin(),
+                                                                  end.getOrigin());
+            const btSphereShape sphere(btScalar(0.3));
+            range.world.convexSweepTest(&sphere, start, end, closest);
+            if (closest.hasHit()) {
+                found.emplace_back(closest.m_hitCollisionObject->getWorldArrayIndex(),
+                                   closest.m_closestHitFraction);
+            }
+        }
+        return found;
+    };
+    const auto expected = hits(std::make_unique<btDbvtBroadphase>());
+    EXPECT_GT(expected.size(), 100U);
+    EXPECT_EQ(hits(swept(Sweep::automatic)), expected);
+}
+
+TEST(SweptBodies, MoveAsWithoutSweeps) {
+    const auto finalPlaces = [](Sweep sweep) {
+        Random random(0x5eed0e04);
+        Range range(swept(sweep));
+        // So far apart that nothing touches two others: Bullet's solver heeds the order of contacts.
+        range.fill(random, 15);
+        for (const auto& body : range.bodies) {
+            body->setCollisionFlags(body->getCollisionFlags() &
+                                    ~btCollisionObject::CF_NO_CONTACT_RESPONSE);
+            body->setCcdMotionThreshold(btScalar(0.05));
+            body->setCcdSweptSphereRadius(btScalar(0.04));
+        }
+        std::vector<btScalar> places;
+        for (int step = 0; step < 2; ++step) {
+            range.world.stepSimulation(kStep, 0);
+        }
+        for (const auto& body : range.bodies) {
+            for (int axis = 0; axis < 3; ++axis) {
+                places.push_back(body->getWorldTransform().getOrigin()[axis]);
+            }
+        }
+        return places;
+    };
+    EXPECT_EQ(finalPlaces(Sweep::line), finalPlaces(Sweep::none));
+}
+
+TEST(SweptBodies, AreDynamicRigidBodiesThatMoveFarForTheirSize) {
+    Range range(swept(Sweep::automatic));
+    btRigidBody& ball = range.add(range.ball, 1, btVector3(0, 0, 0));
+    const auto predictBy = [](btCollisionObject& object, btScalar way) {
+        object.setInterpolationWorldTransform(
+            btTransform(btMatrix3x3::getIdentity(),
+                        object.getWorldTransform().getOrigin() + btVector3(way, 0, 0)));
+    };
+    const btBroadphaseProxy& proxy = *ball.getBroadphaseProxy();
+    EXPECT_FALSE(fastMotion(proxy, 1));
+    predictBy(ball, btScalar(0.2));  // its box, with margins, is 0.24 m long
+    EXPECT_FALSE(fastMotion(proxy, 1));
+    EXPECT_TRUE(fastMotion(proxy, btScalar(0.5)));
+    predictBy(ball, btScalar(0.3));
+    ASSERT_TRUE(fastMotion(proxy, 1));
+    EXPECT_FLOAT_EQ(static_cast<float>(fastMotion(proxy, 1)->displacement.x()), 0.3F);
+    predictBy(ball, std::numeric_limits<btScalar>::quiet_NaN());
+    EXPECT_FALSE(fastMotion(proxy, 1));
+
+    btRigidBody& wall = range.add(range.wall, 0, btVector3(5, 0, 0));
+    predictBy(wall, 9);
+    EXPECT_FALSE(fastMotion(*wall.getBroadphaseProxy(), 1));
+    btCollisionObject sensor;
+    sensor.setCollisionShape(&range.ball);
+    range.world.addCollisionObject(&sensor);
+    predictBy(sensor, 9);
+    EXPECT_FALSE(fastMotion(*sensor.getBroadphaseHandle(), 1));
+    range.world.removeCollisionObject(&sensor);
+    EXPECT_FALSE(fastMotion(btBroadphaseProxy(), 1));
+}
+
+}  // namespace
+}  // namespace hashphase::test
