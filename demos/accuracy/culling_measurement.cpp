@@ -23,9 +23,9 @@ std::vector<Aabb<float>> standingBoxes(std::size_t count, float tallest, std::ui
     Random random(seed);
     std::vector<Aabb<float>> boxes;
     for (std::size_t i = 0; i < count; ++i) {
-        const Vector3<float> low(random.between(0, kSide), 0, random.between(0, kSide));
-        const Vector3<float> size(random.between(1, 3), tallest * random.between(0.1F, 1),
-                                  random.between(1, 3));
+        const Vector3<float> low{random.between(0, kSide), 0, random.between(0, kSide)};
+        const Vector3<float> size{random.between(1, 3), tallest * random.between(0.1F, 1),
+                                  random.between(1, 3)};
         boxes.emplace_back(low, low + size);
     }
     return boxes;

@@ -10,6 +10,7 @@ namespace hashphase::demos {
 std::span<const Experiment> experiments() {
     static const std::vector<Experiment> all{
         cullingExperiment(),
+        pickingExperiment(),
     };
     return all;
 }
