@@ -3,6 +3,7 @@
 
 #include <demos/accuracy/binomial.hpp>
 #include <demos/accuracy/experiments.hpp>
+#include <demos/accuracy/percent.hpp>
 #include <demos/accuracy/timing.hpp>
 #include <demos/console/format.hpp>
 
@@ -12,10 +13,6 @@ namespace hashphase::demos {
 namespace {
 
 constexpr std::string_view kBullet = "btDbvt::collideKDOP";
-
-double percentOf(std::uint64_t part, std::uint64_t whole) {
-    return whole == 0 ? 0 : 100 * static_cast<double>(part) / static_cast<double>(whole);
-}
 
 double lostPercent(const CullingTally& tally) {
     return percentOf(tally.lost, tally.visible);
@@ -165,15 +162,20 @@ DataTable timeTable(std::span<const CullingRow> rows) {
     return table;
 }
 
-void addChecks(std::span<const CullingRow> rows, std::span<const CullingMethod> methods,
+void addChecks(const CullingMeasurement& measured, std::span<const CullingMethod> methods,
                Findings& findings) {
     for (const CullingMethod& method : methods) {
-        const CullingTally sum = lossesOf(rows, method).sum;
+        const CullingTally sum = lossesOf(measured.rows, method).sum;
         const std::string ofVisible = " of " + withThousands(sum.visible) + " visible";
         if (method.mustSeeAll) {
             findings.checks.push_back({method.name + " draws all that is visible",
                                        sum.lost == 0 && sum.visible > 0,
                                        withThousands(sum.lost) + " lost" + ofVisible});
+            const CullingTally touching = lossesOf(measured.touching, method).sum;
+            findings.checks.push_back({method.name + " draws what just touches the view",
+                                       touching.lost == 0 && touching.visible > 0,
+                                       withThousands(touching.lost) + " lost of " +
+                                           withThousands(touching.visible) + " visible"});
         }
         if (method.mustBeExact) {
             constexpr std::uint64_t oneByRounding = 10'000;  // in so many
@@ -206,14 +208,23 @@ void addChoices(std::span<const CullingRow> rows, const CullingPlan& plan, Findi
     }
 }
 
-void addConclusions(std::span<const CullingRow> rows, std::span<const CullingMethod> methods,
+void addConclusions(const CullingMeasurement& measured, std::span<const CullingMethod> methods,
                     Findings& findings) {
+    const std::span<const CullingRow> rows = measured.rows;
     for (const CullingMethod& method : methods) {
         const Losses losses = lossesOf(rows, method);
         if (losses.sum.lost > 0) {
             findings.conclusions.push_back(method.name + " loses up to " +
                                            percentText(losses.worst) + " of what is visible (" +
                                            losses.worstSetting + ").");
+        }
+    }
+    for (const CullingRow& row : measured.touching) {
+        if (row.tally.lost > 0) {
+            findings.conclusions.push_back(
+                row.method->name + " loses " + percentText(lostPercent(row.tally)) + " of " +
+                withThousands(row.tally.visible) + " objects that touch the view's sides by " +
+                "what single precision can tell.");
         }
     }
     const CullingRow* bullet = findRow(rows, kBullet);
@@ -229,7 +240,7 @@ void addConclusions(std::span<const CullingRow> rows, std::span<const CullingMet
 }
 
 CullingPlan planOf(const Effort& effort) {
-    return {effort.quickOrFull<std::size_t>(20'000, 50'000), effort.quickOrFull(1, 8),
+    return {effort.quickOrFull<std::size_t>(20'000, 50'000), 1000, effort.quickOrFull(1, 8),
             effort.quickOrFull(kFewestFrames, 2 * kFewestFrames)};
 }
 
@@ -270,7 +281,8 @@ std::vector<CullingSetting> cullingSettings() {
 Findings findCulling(const CullingPlan& plan, std::uint64_t seed,
                      std::span<const CullingMethod> methods, const TellProgress& tell) {
     const std::vector<CullingSetting> settings = cullingSettings();
-    const std::vector<CullingRow> rows = measureCulling(plan, seed, methods, settings, tell);
+    const CullingMeasurement measured = measureCulling(plan, seed, methods, settings, tell);
+    const std::span<const CullingRow> rows = measured.rows;
     const std::string text = settingsText(plan, seed);
     Findings findings;
     findings.settings = {
@@ -284,9 +296,9 @@ Findings findCulling(const CullingPlan& plan, std::uint64_t seed,
     findings.charts = {settingsChart(rows, text, true), settingsChart(rows, text, false),
                        timeChart(rows, text, true), timeChart(rows, text, false)};
     findings.tables = {timeTable(rows)};
-    addChecks(rows, methods, findings);
+    addChecks(measured, methods, findings);
     addChoices(rows, plan, findings);
-    addConclusions(rows, methods, findings);
+    addConclusions(measured, methods, findings);
     return findings;
 }
 
@@ -295,7 +307,7 @@ Experiment cullingExperiment() {
             "Culling",
             "How many visible objects are lost, and how many are drawn in vain?",
             3,
-            45,
+            20,
             [](const Effort& effort, const TellProgress& tell) {
                 return findCulling(planOf(effort), effort.seed, cullingMethods(), tell);
             }};

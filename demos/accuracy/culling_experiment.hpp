@@ -4,6 +4,7 @@
 // P4, its parts.
 
 #include <demos/accuracy/culling_methods.hpp>
+#include <demos/accuracy/culling_scenes.hpp>
 #include <demos/accuracy/experiment.hpp>
 #include <demos/report/statistics.hpp>
 
@@ -17,20 +18,9 @@ namespace hashphase::demos {
 /// How much is measured.
 struct CullingPlan {
     std::size_t objects;
-    int flights;  // for each setting; a flight is kViewsPerFlight views, one after another
-    int frames;   // that are timed; a flight each
-};
-
-inline constexpr int kViewsPerFlight = 8;
-
-/// Where the camera looks, and at what.
-struct CullingSetting {
-    std::string name;
-    float fieldOfView = 60;  // [degrees]
-    float pitch = -45;       // [degrees]
-    float yaw = 20;          // [degrees]
-    float tallest = 10;      // [m]
-    float cellSize = 10;     // [m]
+    std::size_t touching;  // in each view, its sides
+    int flights;           // for each setting; a flight is kViewsPerFlight views, one after another
+    int frames;            // that are timed; a flight each
 };
 
 /// What a method did in all views of a setting.
@@ -57,12 +47,17 @@ struct CullingRow {
 /// One factor after another around the first setting.
 [[nodiscard]] std::vector<CullingSetting> cullingSettings();
 
+struct CullingMeasurement {
+    std::vector<CullingRow> rows;      // of objects on the ground, in all settings
+    std::vector<CullingRow> touching;  // of objects that touch the view's sides, or just do not
+};
+
 /// Counts what the methods get wrong in all settings, and times them in the first one with all cell
 /// sizes.
-[[nodiscard]] std::vector<CullingRow> measureCulling(const CullingPlan& plan, std::uint64_t seed,
-                                                     std::span<const CullingMethod> methods,
-                                                     std::span<const CullingSetting> settings,
-                                                     const TellProgress& tell);
+[[nodiscard]] CullingMeasurement measureCulling(const CullingPlan& plan, std::uint64_t seed,
+                                                std::span<const CullingMethod> methods,
+                                                std::span<const CullingSetting> settings,
+                                                const TellProgress& tell);
 
 /// Measures, and says what it shows.
 [[nodiscard]] Findings findCulling(const CullingPlan& plan, std::uint64_t seed,

@@ -3,54 +3,24 @@
 
 #include <demos/accuracy/exact_frustum.hpp>
 #include <demos/accuracy/timing.hpp>
-#include <demos/scenes/random.hpp>
-
-#include <numbers>
 
 namespace hashphase::demos {
 namespace {
-
-constexpr float kSide = 1000;      // of the ground [m]
-constexpr float kEyeHeight = 120;  // [m]
-constexpr float kDegree = std::numbers::pi_v<float> / 180;
-
-// In a 60th of a second, at 6 m/s and 12 degrees a second.
-constexpr float kStride = 0.1F;          // [m]
-constexpr float kTurn = 0.2F * kDegree;  // [rad]
-
-/// Boxes of 1 to 3 m on the ground, up to `tallest` high.
-std::vector<Aabb<float>> standingBoxes(std::size_t count, float tallest, std::uint64_t seed) {
-    Random random(seed);
-    std::vector<Aabb<float>> boxes;
-    for (std::size_t i = 0; i < count; ++i) {
-        const Vector3<float> low{random.between(0, kSide), 0, random.between(0, kSide)};
-        const Vector3<float> size{random.between(1, 3), tallest * random.between(0.1F, 1),
-                                  random.between(1, 3)};
-        boxes.emplace_back(low, low + size);
-    }
-    return boxes;
-}
-
-/// A camera that flies straight on from a random place and turns a little.
-std::vector<CameraView> flight(const CullingSetting& setting, Random& random) {
-    CameraPose pose;
-    pose.eye = {random.between(0.3F, 0.7F) * kSide, kEyeHeight, random.between(0.3F, 0.7F) * kSide};
-    pose.yaw = setting.yaw * kDegree;
-    pose.pitch = setting.pitch * kDegree;
-    pose.fieldOfView = setting.fieldOfView * kDegree;
-    std::vector<CameraView> views;
-    for (int i = 0; i < kViewsPerFlight; ++i) {
-        views.push_back(cameraView(pose));
-        pose.eye.x() += kStride;
-        pose.yaw += kTurn;
-    }
-    return views;
-}
 
 struct Entry {
     CullingRow row;
     std::unique_ptr<Culling> culling;
 };
+
+/// Which of the boxes are visible; 1 or 0.
+std::vector<std::uint8_t> visibleOf(std::span<const Aabb<float>> boxes, const CameraView& view) {
+    const ExactFrustum truth(view);
+    std::vector<std::uint8_t> isVisible;
+    for (const Aabb<float>& box : boxes) {
+        isVisible.push_back(truth.sees(box) ? 1 : 0);
+    }
+    return isVisible;
+}
 
 void look(Entry& entry, const CameraView& view, std::span<const std::uint8_t> isVisible) {
     const CullingCost cost = entry.culling->look(view);
@@ -70,13 +40,9 @@ void look(Entry& entry, const CameraView& view, std::span<const std::uint8_t> is
 void count(std::span<Entry> entries, const CullingSetting& setting,
            std::span<const Aabb<float>> boxes, int flights, std::uint64_t seed) {
     Random random(seed);
-    std::vector<std::uint8_t> isVisible(boxes.size());
     for (int i = 0; i < flights; ++i) {
         for (const CameraView& view : flight(setting, random)) {
-            const ExactFrustum truth(view);
-            for (std::size_t object = 0; object < boxes.size(); ++object) {
-                isVisible[object] = truth.sees(boxes[object]) ? 1 : 0;
-            }
+            const std::vector<std::uint8_t> isVisible = visibleOf(boxes, view);
             for (Entry& entry : entries) {
                 look(entry, view, isVisible);
             }
@@ -112,14 +78,37 @@ bool isSameView(const CullingSetting& a, const CullingSetting& b) {
            a.tallest == b.tallest;
 }
 
+std::vector<CullingRow> countTouching(const CullingPlan& plan, std::uint64_t seed,
+                                      std::span<const CullingMethod> methods,
+                                      const CullingSetting& setting) {
+    std::vector<CullingRow> rows;
+    for (const CullingMethod& method : methods) {
+        rows.push_back({&method, &setting, {}});
+    }
+    Random random(seed);
+    for (int i = 0; i < plan.flights; ++i) {
+        for (const CameraView& view : flight(setting, random)) {
+            const std::vector<Aabb<float>> boxes =
+                touchingBoxes(plan.touching, setting.tallest, view, random);
+            const std::vector<std::uint8_t> isVisible = visibleOf(boxes, view);
+            for (CullingRow& row : rows) {
+                Entry entry{row, row.method->make({boxes, setting.tallest, setting.cellSize})};
+                look(entry, view, isVisible);
+                row = entry.row;
+            }
+        }
+    }
+    return rows;
+}
+
 }  // namespace
 
-std::vector<CullingRow> measureCulling(const CullingPlan& plan, std::uint64_t seed,
-                                       std::span<const CullingMethod> methods,
-                                       std::span<const CullingSetting> settings,
-                                       const TellProgress& tell) {
+CullingMeasurement measureCulling(const CullingPlan& plan, std::uint64_t seed,
+                                  std::span<const CullingMethod> methods,
+                                  std::span<const CullingSetting> settings,
+                                  const TellProgress& tell) {
     std::vector<Entry> timed;
-    std::vector<CullingRow> rows;
+    CullingMeasurement measured;
     const CullingSetting& first = settings.front();
     const std::vector<Aabb<float>> firstBoxes = standingBoxes(plan.objects, first.tallest, seed);
     for (std::size_t i = 0; i < settings.size(); ++i) {
@@ -142,16 +131,17 @@ std::vector<CullingRow> measureCulling(const CullingPlan& plan, std::uint64_t se
             if (isFirstView) {
                 timed.push_back(std::move(entry));
             } else {
-                rows.push_back(entry.row);
+                measured.rows.push_back(entry.row);
             }
         }
     }
     tell(0.7, "times");
     time(timed, first, plan.frames, seed + 2);
     for (const Entry& entry : timed) {
-        rows.push_back(entry.row);
+        measured.rows.push_back(entry.row);
     }
-    return rows;
+    measured.touching = countTouching(plan, seed + 3, methods, first);
+    return measured;
 }
 
 }  // namespace hashphase::demos

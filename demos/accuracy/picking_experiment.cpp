@@ -3,6 +3,7 @@
 
 #include <demos/accuracy/binomial.hpp>
 #include <demos/accuracy/experiments.hpp>
+#include <demos/accuracy/percent.hpp>
 #include <demos/accuracy/timing.hpp>
 #include <demos/console/format.hpp>
 
@@ -12,10 +13,6 @@ namespace hashphase::demos {
 namespace {
 
 constexpr std::string_view kBullet = "btDbvtBroadphase::rayTest";
-
-double percentOf(std::uint64_t part, std::uint64_t whole) {
-    return whole == 0 ? 0 : 100 * static_cast<double>(part) / static_cast<double>(whole);
-}
 
 std::string shareText(std::uint64_t part, std::uint64_t whole) {
     return withThousands(part) + " of " + withThousands(whole);

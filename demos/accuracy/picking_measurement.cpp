@@ -5,7 +5,7 @@
 #include <demos/accuracy/timing.hpp>
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 #include <map>
 
 namespace hashphase::demos {

@@ -3,6 +3,7 @@
 
 #include <demos/accuracy/binomial.hpp>
 #include <demos/accuracy/experiments.hpp>
+#include <demos/accuracy/percent.hpp>
 #include <demos/accuracy/timing.hpp>
 #include <demos/console/format.hpp>
 
@@ -18,10 +19,6 @@ constexpr std::string_view kBullet = "Bullet: sphere swept down";
 // Far above the rounding of heights to single precision, far below what anybody sees; a share of the
 // radius.
 constexpr double kRests = 1e-3;
-
-double percentOf(std::uint64_t part, std::uint64_t whole) {
-    return whole == 0 ? 0 : 100 * static_cast<double>(part) / static_cast<double>(whole);
-}
 
 // How deep a sphere is in a slope when it is lifted by its radius; a share of the radius.
 double theoryAt(double slope) {
@@ -207,10 +204,14 @@ void checkLine(const TerrainMeasurement& measured, const GroundMethod& method, F
                                "off by " + valueText(farthest) + " r at most"});
 }
 
+// What nobody sees is told as such.
+std::string radiusText(double share) {
+    return share <= kRests ? "less than 0.1 % of r" : valueText(100 * share) + " % of r";
+}
+
 std::string depthText(const RestRow& row) {
-    return "sinks in by " + valueText(100 * row.meanDepth) + " % of r, " +
-           valueText(100 * row.worstDepth) + " % at worst; hangs " +
-           valueText(100 * row.meanHeight) + " % above";
+    return "sinks in by " + radiusText(row.meanDepth) + ", " + radiusText(row.worstDepth) +
+           " at worst; hangs " + radiusText(row.meanHeight) + " above";
 }
 
 void addChoices(const TerrainPlan& plan, const TerrainMeasurement& measured, Findings& findings) {
