@@ -291,6 +291,9 @@ Findings findCulling(const CullingPlan& plan, std::uint64_t seed,
         "double.",
         "Objects stand still, so that filing them is not in the times; Bullet's trees are "
         "optimised.",
+        "Objects that touch the view's sides hang in the air above the ground, where footprints at "
+        "its "
+        "height do not look for them.",
         "A flight is 8 looks of a camera at 6 m/s that turns by 12 degrees a second, 60 looks a "
         "second; times are those of a flight by 8."};
     findings.charts = {settingsChart(rows, text, true), settingsChart(rows, text, false),

@@ -226,11 +226,14 @@ void addChoices(const PickingPlan& plan, const PickingMeasurement& measured,
     }
 }
 
-void addConclusions(const PickingMeasurement& measured, std::span<const RayMethod> methods,
-                    Findings& findings) {
-    for (const RayMethod& method : methods) {
+void addConclusions(const PickingPlan& plan, const PickingMeasurement& measured,
+                    std::span<const RayMethod> methods, Findings& findings) {
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        const RayMethod& method = methods[i];
         const RayTally graze = grazeSum(measured, method);
-        std::string sentence = method.name + ": ";
+        const double ns =
+            1e6 * measured.milliseconds[i].median / static_cast<double>(plan.raysPerFrame);
+        std::string sentence = method.name + ": " + valueText(ns) + " ns a ray; ";
         if (!method.findsNearestOnly) {
             sentence +=
                 "of grazing rays' hits " + shareText(graze.missed, graze.hits) + " are missed, ";
@@ -253,11 +256,11 @@ void addConclusions(const PickingMeasurement& measured, std::span<const RayMetho
 PickingPlan planOf(const Effort& effort) {
     return {5000,
             effort.quickOrFull(60, 1000),
-            effort.quickOrFull(kFewestFrames, 2 * kFewestFrames),
+            kFewestFrames,
             effort.quickOrFull<std::size_t>(50, 500),
             effort.quickOrFull<std::size_t>(1000, 4000),
-            1e8,
-            effort.quickOrFull(1e6, 2e7),
+            8,
+            effort.quickOrFull(1e6, 1e7),
             effort.quickOrFull(1e5, 1e8)};
 }
 
@@ -286,7 +289,7 @@ Findings findPicking(const PickingPlan& plan, std::uint64_t seed,
     findings.charts.push_back(timeChart(findings.tables.front(), slab, true));
     addChecks(measured, methods, findings);
     addChoices(plan, measured, methods, findings);
-    addConclusions(measured, methods, findings);
+    addConclusions(plan, measured, methods, findings);
     return findings;
 }
 

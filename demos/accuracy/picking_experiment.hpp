@@ -21,7 +21,7 @@ struct PickingPlan {
     int frames;         // that are timed
     std::size_t raysPerFrame;
     std::size_t strungBoxes;  // along all long rays of one length
-    double longest;           // ray [m], and so about as many cells
+    int longestPower;         // of ten: the longest ray [m], and so about as many cells
     double metresInAll;       // of the long rays of one length, if there is more than one
     double longestCellWalk;   // of methods that take time for each cell [m]
 };

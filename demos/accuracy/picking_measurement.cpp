@@ -226,9 +226,9 @@ PickingMeasurement measurePicking(const PickingPlan& plan, std::uint64_t seed,
     measured.grazes = graze(plan, random, methods, made, boxes);
     tell(0.4, "times");
     measured.milliseconds = time(plan, random, made, boxes);
-    for (double length = 1; length <= plan.longest; length *= 10) {
-        tell(length < plan.longest ? 0.5 : 0.6, "long rays");
-        cast(length, plan, seed, methods, measured.lengths);
+    for (int power = 0; power <= plan.longestPower; ++power) {
+        tell(0.5 + 0.05 * power, "rays of 10^" + std::to_string(power) + " cells");
+        cast(std::pow(10, power), plan, seed, methods, measured.lengths);
     }
     return measured;
 }

@@ -123,9 +123,9 @@ std::vector<RayMethod> treeRayMethods() {
         };
     };
     return {{"Grid::visit(RayRegion)", true, true, false, false, grid(false)},
-            {"the same, CollectClosest", true, true, true, false, grid(true)},
+            {"Grid::visit(RayRegion), closest", true, true, true, false, grid(true)},
             {"btDbvtBroadphase::rayTest", false, false, false, false, dbvt(false)},
-            {"the same and btRayAabb", false, false, false, false, dbvt(true)}};
+            {"btDbvtBroadphase::rayTest, btRayAabb", false, false, false, false, dbvt(true)}};
 }
 
 std::vector<RayMethod> rayMethods() {

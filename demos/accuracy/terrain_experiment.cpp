@@ -227,6 +227,31 @@ void addChoices(const TerrainPlan& plan, const TerrainMeasurement& measured, Fin
     }
 }
 
+// How long the methods of ours take beside the fastest of all and Bullet's sweep.
+void addTimes(const TerrainPlan& plan, const TerrainMeasurement& measured, Findings& findings) {
+    const RestRow* fastest = nullptr;
+    const RestRow* sweep = nullptr;
+    for (const RestRow& row : measured.rests) {
+        if (row.isTimed &&
+            (fastest == nullptr || row.milliseconds.median < fastest->milliseconds.median)) {
+            fastest = &row;
+        }
+        sweep = row.isTimed && row.method->name == kBullet ? &row : sweep;
+    }
+    const auto text = [&](const RestRow& row) {
+        return row.name() + " takes " +
+               valueText(1e6 * row.milliseconds.median /
+                         static_cast<double>(plan.spheresPerFrame)) +
+               " ns a sphere";
+    };
+    for (const RestRow& row : measured.rests) {
+        if (row.isTimed && row.method->isOurs && !row.method->takesCells) {
+            findings.conclusions.push_back(text(row) + "; the fastest, " + text(*fastest) +
+                                           (sweep != nullptr ? "; " + text(*sweep) + "." : "."));
+        }
+    }
+}
+
 void addConclusions(const TerrainMeasurement& measured, Findings& findings) {
     for (const RestRow& row : measured.rests) {
         const bool isSteep = row.kind == GroundKind::terraces && row.slope == 60;
@@ -289,6 +314,7 @@ Findings findTerrain(const TerrainPlan& plan, std::uint64_t seed,
     }
     addChoices(plan, measured, findings);
     addConclusions(measured, findings);
+    addTimes(plan, measured, findings);
     return findings;
 }
 
@@ -296,8 +322,8 @@ Experiment terrainExperiment() {
     return {"P9",
             "Terrain",
             "How deep do spheres sink into slopes and at edges, and who finds no ground?",
-            4,
-            60,
+            3,
+            22,
             [](const Effort& effort, const TellProgress& tell) {
                 return findTerrain(planOf(effort), effort.seed, groundMethods(), tell);
             }};

@@ -13,7 +13,7 @@ const PickingPlan kTiny{.boxes = 200,
                         .frames = 2,
                         .raysPerFrame = 5,
                         .strungBoxes = 100,
-                        .longest = 1e4,
+                        .longestPower = 4,
                         .metresInAll = 1e4,
                         .longestCellWalk = 1e3};
 
