@@ -4,6 +4,8 @@
 #include <demos/accuracy/exact_frustum.hpp>
 #include <demos/accuracy/timing.hpp>
 
+#include <algorithm>
+
 namespace hashphase::demos {
 namespace {
 
@@ -11,6 +13,18 @@ struct Entry {
     CullingRow row;
     std::unique_ptr<Culling> culling;
 };
+
+std::vector<Entry> entriesFor(const CullingSetting& setting, std::span<const Aabb<float>> boxes,
+                              std::span<const CullingMethod> methods, bool cellsMatterOnly) {
+    std::vector<Entry> entries;
+    for (const CullingMethod& method : methods) {
+        if (method.takesCells || !cellsMatterOnly) {
+            entries.push_back(
+                {{&method, &setting, {}}, method.make({boxes, setting.tallest, setting.cellSize})});
+        }
+    }
+    return entries;
+}
 
 /// Which of the boxes are visible; 1 or 0.
 std::vector<std::uint8_t> visibleOf(std::span<const Aabb<float>> boxes, const CameraView& view) {
@@ -107,26 +121,19 @@ CullingMeasurement measureCulling(const CullingPlan& plan, std::uint64_t seed,
                                   std::span<const CullingMethod> methods,
                                   std::span<const CullingSetting> settings,
                                   const TellProgress& tell) {
+    const CullingSetting& first = settings.front();
+    std::vector<std::vector<Aabb<float>>> scenes;  // methods go on reading what they have filed
     std::vector<Entry> timed;
     CullingMeasurement measured;
-    const CullingSetting& first = settings.front();
-    const std::vector<Aabb<float>> firstBoxes = standingBoxes(plan.objects, first.tallest, seed);
-    for (std::size_t i = 0; i < settings.size(); ++i) {
-        const CullingSetting& setting = settings[i];
-        tell(0.7 * static_cast<double>(i) / static_cast<double>(settings.size()), setting.name);
+    for (const CullingSetting& setting : settings) {
+        constexpr double share = 0.7;  // of all the time
+        tell(share * static_cast<double>(scenes.size()) / static_cast<double>(settings.size()),
+             setting.name);
+        scenes.push_back(standingBoxes(plan.objects, setting.tallest, seed));
         const bool isFirstView = isSameView(setting, first);
-        const std::vector<Aabb<float>> boxes =
-            isFirstView ? std::vector<Aabb<float>>()
-                        : standingBoxes(plan.objects, setting.tallest, seed);
-        const std::span<const Aabb<float>> standing = isFirstView ? firstBoxes : boxes;
-        std::vector<Entry> entries;
-        for (const CullingMethod& method : methods) {
-            if (i == 0 || !isFirstView || method.takesCells) {
-                entries.push_back({{&method, &setting, {}},
-                                   method.make({standing, setting.tallest, setting.cellSize})});
-            }
-        }
-        count(entries, setting, standing, plan.flights, seed + 1);
+        const bool cellsMatterOnly = isFirstView && &setting != &first;
+        std::vector<Entry> entries = entriesFor(setting, scenes.back(), methods, cellsMatterOnly);
+        count(entries, setting, scenes.back(), plan.flights, seed + 1);
         for (Entry& entry : entries) {
             if (isFirstView) {
                 timed.push_back(std::move(entry));
@@ -135,11 +142,13 @@ CullingMeasurement measureCulling(const CullingPlan& plan, std::uint64_t seed,
             }
         }
     }
-    tell(0.7, "times");
     time(timed, first, plan.frames, seed + 2);
     for (const Entry& entry : timed) {
         measured.rows.push_back(entry.row);
     }
+    std::stable_sort(
+        measured.rows.begin(), measured.rows.end(),
+        [](const CullingRow& a, const CullingRow& b) { return a.setting < b.setting; });
     measured.touching = countTouching(plan, seed + 3, methods, first);
     return measured;
 }
