@@ -255,7 +255,7 @@ void addConclusions(const PickingPlan& plan, const PickingMeasurement& measured,
 
 PickingPlan planOf(const Effort& effort) {
     return {5000,
-            effort.quickOrFull(60, 1000),
+            effort.quickOrFull(60, 600),
             kFewestFrames,
             effort.quickOrFull<std::size_t>(50, 500),
             effort.quickOrFull<std::size_t>(1000, 4000),
