@@ -8,7 +8,11 @@
 namespace hashphase::demos {
 
 std::span<const Experiment> experiments() {
-    static const std::vector<Experiment> all{};
+    static const std::vector<Experiment> all{
+        cullingExperiment(),
+        pickingExperiment(),
+        terrainExperiment(),
+    };
     return all;
 }
 

@@ -5,4 +5,10 @@
 
 #include <demos/accuracy/experiment.hpp>
 
-namespace hashphase::demos {}  // namespace hashphase::demos
+namespace hashphase::demos {
+
+[[nodiscard]] Experiment cullingExperiment();
+[[nodiscard]] Experiment pickingExperiment();
+[[nodiscard]] Experiment terrainExperiment();
+
+}  // namespace hashphase::demos
