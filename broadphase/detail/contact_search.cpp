@@ -13,6 +13,7 @@
 #include <broadphase/grid.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -179,49 +180,61 @@ void ContactSearch<Scalar>::addSegments(std::uint32_t motion, const MovingBox<Sc
     }
 }
 
-// Of the candidates, test(candidate) says which two slots to ask about; equal ones mean none.
+// Those that sweep do not stand. A few segments at a time: what is found around them is then still in
+// the processor's cache.
 template <class Scalar>
-template <class Test>
-void ContactSearch<Scalar>::addTouching(ParallelFor parallelFor, const Test& test) {
-    constexpr std::size_t kGrain = 4096;
-    const auto candidates = candidates_.pairs();
-    cost_.contactsTested += candidates.size();
-    KernelCost none;
+void ContactSearch<Scalar>::meetStanding(ParallelFor parallelFor) {
+    constexpr std::size_t kAtOnce = 32;
+    std::atomic<std::uint64_t> contactsTested{0};
+    KernelCost cost;
     touchingNow_.clear();
-    parts_.collect(parallelFor, candidates.size(), kGrain, touchingNow_, none,
-                   [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost&) {
-                       for (std::size_t i = first; i < last; ++i) {
-                           const IndexPair slots = test(candidates[i]);
-                           if (slots.a != slots.b) {
-                               makeRoom(sink, 1);
-                               *sink.next++ = slots;
+    parts_.collect(parallelFor, segments_.size(), kAtOnce, touchingNow_, cost,
+                   [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost& own) {
+                       FewPairs found;
+                       std::uint64_t tested = 0;
+                       for (; first < last; first += kAtOnce) {
+                           const std::size_t end = std::min(first + kAtOnce, last);
+                           for (const Table<Scalar>* table : {&grid_.mobile_, &grid_.resting_}) {
+                               found.assign([&](PairSink& candidates) {
+                                   walkSegments(*table, first, end, candidates, own);
+                               });
+                               tested += found.pairs().size();
+                               addTouching(*table, found.pairs(), sink);
                            }
                        }
+                       contactsTested += tested;
                    });
+    cost_.boxesTested += cost.boxesTested;
+    cost_.contactsTested += contactsTested;
     touching_.append(touchingNow_.pairs());
 }
 
-// Those that sweep do not stand.
 template <class Scalar>
-void ContactSearch<Scalar>::meetStanding(ParallelFor parallelFor) {
-    for (const Table<Scalar>* table : {&grid_.mobile_, &grid_.resting_}) {
-        if (table->size() == 0) {
-            continue;
+void ContactSearch<Scalar>::walkSegments(const Table<Scalar>& table, std::size_t first,
+                                         std::size_t last, PairSink& candidates,
+                                         KernelCost& cost) const {
+    for (const Level<Scalar>& level : table.levels()) {
+        if (level.count() > 0) {
+            kernels<Scalar>().walkLevel(table.view(level), segments_.columns().data(),
+                                        static_cast<std::uint32_t>(first),
+                                        static_cast<std::uint32_t>(last), candidates, cost);
         }
-        KernelCost cost;
-        candidates_.clear();
-        walkTable(*table, segments_.columns(), segments_.size(), parallelFor, parts_, candidates_,
-                  cost);
-        cost_.boxesTested += cost.boxesTested;
-        addTouching(parallelFor, [&](const IndexPair& candidate) -> IndexPair {
-            const Motion<Scalar>& motion = motions_[motionOfSegment_[candidate.a]];
-            const std::uint32_t slot = table->slot(candidate.b);
-            const MovingBox<Scalar> way = moving(motion);
-            const MovingBox<Scalar> standing{table->box(candidate.b)};
-            const bool isContact =
-                !sweeps(slot) && !overlaps(way.box, standing.box) && firstContact(way, standing);
-            return isContact ? IndexPair{motion.id.index, slot} : IndexPair{};
-        });
+    }
+}
+
+template <class Scalar>
+void ContactSearch<Scalar>::addTouching(const Table<Scalar>& table,
+                                        std::span<const IndexPair> candidates,
+                                        PairSink& sink) const {
+    for (const auto [segment, entry] : candidates) {
+        const Motion<Scalar>& motion = motions_[motionOfSegment_[segment]];
+        const std::uint32_t slot = table.slot(entry);
+        const MovingBox<Scalar> way = moving(motion);
+        const MovingBox<Scalar> standing{table.box(entry)};
+        if (!sweeps(slot) && !overlaps(way.box, standing.box) && firstContact(way, standing)) {
+            makeRoom(sink, 1);
+            *sink.next++ = {motion.id.index, slot};
+        }
     }
 }
 
@@ -302,15 +315,16 @@ void ContactSearch<Scalar>::meetEachOther(ParallelFor parallelFor) {
         candidates_.clear();
         joinTable(sliceTable_, parallelFor, parts_, candidates_, cost);
         cost_.boxesTested += cost.boxesTested;
-        addTouching(parallelFor, [&](const IndexPair& candidate) -> IndexPair {
-            const Motion<Scalar>& a = motions_[sliceTable_.slot(candidate.a)];
-            const Motion<Scalar>& b = motions_[sliceTable_.slot(candidate.b)];
+        cost_.contactsTested += candidates_.size();
+        for (const auto [first, second] : candidates_.pairs()) {
+            const Motion<Scalar>& a = motions_[sliceTable_.slot(first)];
+            const Motion<Scalar>& b = motions_[sliceTable_.slot(second)];
             const MovingBox<Scalar> wayOfA = moving(a);
             const MovingBox<Scalar> wayOfB = moving(b);
-            const bool isContact =
-                !overlaps(wayOfA.box, wayOfB.box) && firstContact(wayOfA, wayOfB);
-            return isContact ? IndexPair{a.id.index, b.id.index} : IndexPair{};
-        });
+            if (!overlaps(wayOfA.box, wayOfB.box) && firstContact(wayOfA, wayOfB)) {
+                touching_.push({a.id.index, b.id.index});
+            }
+        }
     }
 }
 

@@ -72,8 +72,10 @@ private:
     void meetStandingByRay(ParallelFor parallelFor);
     void meetEachOther(ParallelFor parallelFor);
     [[nodiscard]] int sliceCount() const;
-    template <class Test>
-    void addTouching(ParallelFor parallelFor, const Test& test);
+    void walkSegments(const Table<Scalar>& table, std::size_t first, std::size_t last,
+                      PairSink& candidates, KernelCost& cost) const;
+    void addTouching(const Table<Scalar>& table, std::span<const IndexPair> candidates,
+                     PairSink& sink) const;
 
     const Grid<Scalar>& grid_;
     std::span<const Motion<Scalar>> motions_;      // of the present find()
