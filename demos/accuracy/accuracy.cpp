@@ -136,8 +136,11 @@ std::string verdictLine(const AccuracyReport& report) {
         checks += outcome.findings.checks.size();
     }
     const std::size_t broken = brokenChecks(report).size();
-    return std::to_string(report.outcomes.size()) + " experiments, " + std::to_string(checks) +
-           " checks: " + (broken == 0 ? "all hold" : std::to_string(broken) + " BROKEN");
+    const auto counted = [](std::size_t count, const std::string& noun) {
+        return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+    };
+    return counted(report.outcomes.size(), "experiment") + ", " + counted(checks, "check") + ": " +
+           (broken == 0 ? "all hold" : std::to_string(broken) + " BROKEN");
 }
 
 int runAccuracy(const AccuracyOptions& options, std::span<const Experiment> experiments,

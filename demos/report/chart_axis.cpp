@@ -43,7 +43,7 @@ std::vector<double> evenSteps(double low, double high) {
 // "0.001", "50", "20k", "1e-7": as short as they are read.
 std::string labelExpression(std::optional<double> zeroAt) {
     const std::string number =
-        "datum.value >= 10000 ? format(datum.value, '~s') : datum.value < 0.001 ? "
+        "datum.value >= 10000 ? format(datum.value, '~s') : datum.value < 0.0001 ? "
         "format(datum.value, '~e') : format(datum.value, '~g')";
     return zeroAt ? "datum.value <= " + Json(*zeroAt).dump() + " ? '0' : " + number : number;
 }
@@ -65,7 +65,7 @@ std::vector<double> logTicks(double low, double high) {
 }
 
 ChartAxis::ChartAxis(const Chart& chart, const Axis& axis, const std::vector<std::string>& columns)
-    : axis_(axis) {
+    : axis_(axis), isBand_(chart.mark == ChartMark::kBar || chart.mark == ChartMark::kCell) {
     title_ = titleOf(chart.data.columns[chart.data.columnOf(axis.column)]);
     if (hasNames()) {
         findNames(chart.data);
@@ -150,7 +150,11 @@ Json ChartAxis::encoding(const std::string& field) const {
     Json axis{{"title", title_}};
     if (hasNames()) {
         axis["grid"] = false;
-        return {{"field", field}, {"type", "nominal"}, {"sort", names_}, {"axis", axis}};
+        return {{"field", field},
+                {"type", "nominal"},
+                {"sort", names_},
+                {"scale", {{"type", isBand_ ? "band" : "point"}}},
+                {"axis", axis}};
     }
     Json scale{{"type", "linear"}};
     if (isLog_) {

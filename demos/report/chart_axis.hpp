@@ -48,6 +48,7 @@ private:
     void layOut();
 
     Axis axis_;
+    bool isBand_;  // each of the names has a width of its own
     std::string title_;
     std::vector<std::string> names_;
     bool isLog_ = false;

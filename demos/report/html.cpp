@@ -1,15 +1,24 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/report/html.hpp>
 
+#include <algorithm>
 #include <ostream>
 
 namespace hashphase::demos {
 namespace {
 
+bool holdsNumbersOnly(const DataTable& table, std::size_t column) {
+    return std::none_of(table.rows.begin(), table.rows.end(), [column](const auto& row) {
+        return std::holds_alternative<std::string>(row[column]);
+    });
+}
+
 void writeHeader(const DataTable& table, std::ostream& out) {
     out << "<thead><tr>";
-    for (const DataColumn& column : table.columns) {
-        out << "<th scope=\"col\">" << escaped(titleOf(column)) << "</th>";
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        const bool isNumbers = holdsNumbersOnly(table, i);
+        out << "<th scope=\"col\"" << (isNumbers ? " class=\"number\">" : ">")
+            << escaped(titleOf(table.columns[i])) << "</th>";
     }
     out << "</tr></thead>\n";
 }

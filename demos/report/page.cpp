@@ -58,14 +58,14 @@ private:
 // Data are never code: the policy admits one script, by its hash. Vega sets styles of the elements
 // it draws.
 void PageWriter::writeHead() const {
-    const std::string script =
-        scripts_.code.empty() ? "'none'" : "'" + std::string(scripts_.hash) + "'";
-    out_ << "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-            "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src "
-         << script
-         << "; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'\">\n"
-            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>"
-         << escaped(page_.title) << "</title>\n<style>" << pageStyle() << "</style>\n</head>\n";
+    const std::string_view hash = scripts_.code.empty() ? "none" : scripts_.hash;
+    out_
+        << "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+           "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src '"
+        << hash
+        << "'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'\">\n"
+           "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>"
+        << escaped(page_.title) << "</title>\n<style>" << pageStyle() << "</style>\n</head>\n";
 }
 
 void PageWriter::writeTop() const {
@@ -166,7 +166,7 @@ void PageWriter::writeProvenance() const {
         {"its flags", provenance.compilerFlags.empty() ? "unknown" : provenance.compilerFlags});
     table.add({"optimised", provenance.optimised ? "yes" : "NO: times mean nothing"});
     table.add({"processor", provenance.cpu});
-    table.add({"cores", static_cast<double>(provenance.cores)});
+    table.add({"cores", std::to_string(provenance.cores)});
     if (provenance.loadAverage) {
         const auto& [one, five, fifteen] = *provenance.loadAverage;
         table.add({"load over 1, 5, 15 minutes before",

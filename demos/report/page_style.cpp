@@ -54,7 +54,7 @@ table { border-collapse: collapse; font-size: .875rem; line-height: 1.35; }
 th, td { text-align: left; vertical-align: top; padding: .3rem .75rem .3rem 0; }
 th { vertical-align: bottom; border-bottom: 1px solid var(--quiet); font-weight: 600; }
 td { border-bottom: 1px solid var(--faint); font-variant-numeric: tabular-nums; }
-td.number { text-align: right; }
+.number { text-align: right; }
 code { overflow-wrap: anywhere; }
 #vg-tooltip-element {
   position: fixed; visibility: hidden; z-index: 1; padding: .4rem .6rem; pointer-events: none;
