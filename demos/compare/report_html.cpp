@@ -132,6 +132,23 @@ Chart traceChart(const Report& report) {
     return chart;
 }
 
+/// Scenes without a simulation have no steps, and some broadphases do not tell their memory.
+DataTable withoutEmptyColumns(const DataTable& table) {
+    DataTable kept;
+    kept.rows.resize(table.rows.size());
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        const auto isEmpty = [i](const std::vector<Value>& row) { return row[i].index() == 0; };
+        if (std::all_of(table.rows.begin(), table.rows.end(), isEmpty)) {
+            continue;
+        }
+        kept.columns.push_back(table.columns[i]);
+        for (std::size_t row = 0; row < table.rows.size(); ++row) {
+            kept.rows[row].push_back(table.rows[row][i]);
+        }
+    }
+    return kept;
+}
+
 PageSection times(const Report& report) {
     PageSection section;
     section.heading = "How long does it take?";
@@ -158,7 +175,7 @@ PageSection times(const Report& report) {
                    result.memoryBytes ? Value(static_cast<double>(*result.memoryBytes) / (1 << 20))
                                       : Value()});
     }
-    section.tables = {std::move(table)};
+    section.tables = {withoutEmptyColumns(table)};
     if (report.comparison.framesDone > report.comparison.warmUpFrames) {
         section.charts = {mediansChart(report), traceChart(report)};
     }

@@ -15,6 +15,9 @@ constexpr std::size_t kFewestTicks = 3;
 constexpr double kMargin = 0.03;
 constexpr double kGap = 0.12;
 
+// How many times longer than where it begins a bar on a logarithmic axis is at least.
+constexpr double kLeastBar = 1.5;
+
 std::vector<double> decades(double low, double high, const std::vector<double>& steps, int stride) {
     std::vector<double> ticks;
     const int last = static_cast<int>(std::floor(std::log10(high)));
@@ -65,7 +68,7 @@ std::vector<double> logTicks(double low, double high) {
 }
 
 ChartAxis::ChartAxis(const Chart& chart, const Axis& axis, const std::vector<std::string>& columns)
-    : axis_(axis), isBand_(chart.mark == ChartMark::kBar || chart.mark == ChartMark::kCell) {
+    : axis_(axis), mark_(chart.mark) {
     title_ = titleOf(chart.data.columns[chart.data.columnOf(axis.column)]);
     if (hasNames()) {
         findNames(chart.data);
@@ -120,6 +123,11 @@ void ChartAxis::layOut() {
     const double decades = std::max(std::log10(high_ / low_), 0.3);
     begin_ = low_ * std::pow(10.0, -kMargin * decades);
     end_ = high_ * std::pow(10.0, kMargin * decades);
+    if (mark_ == ChartMark::kBar) {
+        // A bar must have some length, and begins at a round number.
+        begin_ = std::pow(10.0, std::floor(std::log10(low_ / kLeastBar)));
+        low_ = begin_;
+    }
     if (hasZero_) {
         gap_ = low_ * std::pow(10.0, -kGap / 2 * decades);
         zeroAt_ = low_ * std::pow(10.0, -kGap * decades);
@@ -150,10 +158,11 @@ Json ChartAxis::encoding(const std::string& field) const {
     Json axis{{"title", title_}};
     if (hasNames()) {
         axis["grid"] = false;
+        const bool areWide = mark_ == ChartMark::kBar || mark_ == ChartMark::kCell;
         return {{"field", field},
                 {"type", "nominal"},
                 {"sort", names_},
-                {"scale", {{"type", isBand_ ? "band" : "point"}}},
+                {"scale", {{"type", areWide ? "band" : "point"}}},
                 {"axis", axis}};
     }
     Json scale{{"type", "linear"}};

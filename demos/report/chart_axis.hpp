@@ -48,7 +48,7 @@ private:
     void layOut();
 
     Axis axis_;
-    bool isBand_;  // each of the names has a width of its own
+    ChartMark mark_;
     std::string title_;
     std::vector<std::string> names_;
     bool isLog_ = false;

@@ -122,7 +122,7 @@ void ChartDrawing::addLabelPlaces(Json& rows) const {
             rowOf.push_back(row);
         }
     }
-    const std::vector<LabelPlace> places = placeLabels(points);
+    const std::vector<LabelPlace> places = placeLabels(points, kWidth);
     for (std::size_t i = 0; i < places.size(); ++i) {
         rows[rowOf[i]][field::kLabelAlign] = places[i].align;
         rows[rowOf[i]][field::kLabelX] = places[i].dx;

@@ -40,8 +40,10 @@ double sharedArea(const Box& a, const Box& b) {
 
 }  // namespace
 
-std::vector<LabelPlace> placeLabels(std::span<const LabelledPoint> points) {
-    std::vector<Box> taken;
+std::vector<LabelPlace> placeLabels(std::span<const LabelledPoint> points, double width) {
+    // What is beyond the sides counts as taken.
+    constexpr double kFar = 1e6;
+    std::vector<Box> taken{{-kFar, -kFar, 0, kFar}, {width, -kFar, kFar, kFar}};
     for (const LabelledPoint& point : points) {
         taken.push_back({point.x - kPointRadius, point.y - kPointRadius, point.x + kPointRadius,
                          point.y + kPointRadius});

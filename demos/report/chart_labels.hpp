@@ -24,7 +24,8 @@ struct LabelPlace {
 };
 
 /// A place for each label: of eight around the point the first that is free, else the one where it
-/// hides least.
-[[nodiscard]] std::vector<LabelPlace> placeLabels(std::span<const LabelledPoint> points);
+/// hides least. None begins left of 0 or ends right of the width, where that can be helped.
+[[nodiscard]] std::vector<LabelPlace> placeLabels(std::span<const LabelledPoint> points,
+                                                  double width);
 
 }  // namespace hashphase::demos

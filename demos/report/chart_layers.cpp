@@ -76,7 +76,7 @@ void ChartDrawing::addGapLayers(Json& layers) const {
                                 {"color", theme_.ink},
                                 {"strokeDash", {1, 3}},
                                 {"opacity", 0.7}}},
-                              {"encoding", {{across, nullptr}}}});
+                              {"encoding", {{across, nullptr}, {across + "Offset", nullptr}}}});
         }
     };
     add(x_, field::kX, valueChannel());

@@ -134,8 +134,8 @@ void PageWriter::writeChecks(const std::vector<Check>& checks) const {
         out_ << "<li>"
              << (check.holds ? "<span class=\"holds\">holds</span>"
                              : "<span class=\"broken\">BROKEN</span>")
-             << ' ' << escaped(check.claim) << " <span class=\"quiet\">(" << escaped(check.evidence)
-             << ")</span></li>\n";
+             << "<span>" << escaped(check.claim) << " <span class=\"quiet\">("
+             << escaped(check.evidence) << ")</span></span></li>\n";
     }
     out_ << "</ul>\n";
 }

@@ -41,8 +41,8 @@ a { color: var(--link); }
 .broken { color: var(--bad); }
 .quiet, figcaption p, summary { color: var(--quiet); font-size: .875rem; }
 ul.checks { list-style: none; padding: 0; }
-ul.checks li { padding-left: 4.5rem; text-indent: -4.5rem; }
-ul.checks .holds, ul.checks .broken { display: inline-block; width: 4.5rem; text-indent: 0; }
+ul.checks li { display: flex; }
+ul.checks .holds, ul.checks .broken { flex: 0 0 5rem; }
 .contents ul { padding: 0; list-style: none; columns: 17rem; }
 figure { margin: 2rem 0; }
 figcaption p { margin: .15rem 0 .6rem; }

@@ -7,7 +7,7 @@
 // pipe: https://chromedevtools.github.io/devtools-protocol/
 
 import { spawn } from "node:child_process";
-import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -88,7 +88,8 @@ async function inTab(path, javaScript, task) {
     return { ...result, faults, requests };
 }
 
-const whatIsDrawn = `(async () => {
+// What there is to see once all charts are drawn.
+const charts = `(async () => {
     while (document.documentElement.dataset.charts !== "done") {
         await new Promise((resolve) => setTimeout(resolve, 20));
     }
@@ -97,32 +98,86 @@ const whatIsDrawn = `(async () => {
         return {
             name: figure.id,
             drawn: figure.dataset.drawn,
-            marks: svg ? svg.querySelectorAll(".mark-symbol path, .mark-rect path, .mark-line path").length : 0,
-            notNumbers: svg ? (svg.outerHTML.match(/NaN|Infinity|undefined/g) ?? []).length : 0,
-            text: svg ? [...svg.querySelectorAll("text")].map((each) => each.textContent).join("|") : "",
+            points: svg?.querySelectorAll(".mark-symbol.role-mark path").length,
+            bars: svg?.querySelectorAll(".mark-rect.role-mark path").length,
+            lines: svg?.querySelectorAll(".mark-line.role-mark path").length,
+            texts: [...(svg?.querySelectorAll("text") ?? [])].map((each) => each.textContent),
+            broken: svg?.outerHTML.match(/NaN|Infinity|undefined/g)?.length ?? 0,
         };
     });
 })()`;
 
-async function look(path) {
-    const drawn = await inTab(path, true, async ({ tab, evaluate }) => {
-        const charts = await evaluate(whatIsDrawn);
-        const evalIsRefused = await evaluate(
-            "(() => { const s = document.createElement('script'); s.textContent = 'window.ran = 1';" +
-            " document.body.append(s); return !window.ran; })()");
-        const { data } = await tab("Page.printToPDF");
-        return { charts, evalIsRefused, pdf: Buffer.from(data, "base64").subarray(0, 4).toString(), pdfBytes: data.length };
-    });
-    return { drawn };
+const ink = `getComputedStyle(document.querySelector(".drawing svg text")).fill`;
+
+const firstPoint = `(() => {
+    const point = document.querySelector(".drawing .mark-symbol.role-mark path, .drawing .mark-rect.role-mark path");
+    point.scrollIntoView({ block: "center" });
+    const { x, y, width, height } = point.getBoundingClientRect();
+    return { x: x + width / 2, y: y + height / 2 };
+})()`;
+
+const tooltip = `document.querySelector("#vg-tooltip-element.visible")?.textContent ?? ""`;
+
+// A script that the page did not bring along, as an attacker's data would be.
+const runForeignScript = `(() => {
+    const script = document.createElement("script");
+    script.textContent = "window.foreignScriptRan = true";
+    document.body.append(script);
+    return window.foreignScriptRan === true;
+})()`;
+
+const withoutScripts = `({
+    rows: document.querySelectorAll("tbody tr").length,
+    drawings: document.querySelectorAll("svg").length,
+    notice: document.querySelector("noscript p")?.innerText,
+})`;
+
+async function print(tab) {
+    const { data } = await tab("Page.printToPDF");
+    return { begin: data && Buffer.from(data, "base64").toString("latin1", 0, 4), bytes: data.length };
 }
 
-try {
-    const seen = [];
-    for (const page of pages) {
-        seen.push(await look(page));
-    }
-    console.log(JSON.stringify(seen, null, 1));
-} finally {
-    browser.kill();
-    rmSync(profile, { recursive: true, force: true, maxRetries: 5 });
+async function scheme(tab, name) {
+    await tab("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value: name }] });
 }
+
+async function withJavaScript({ tab, evaluate }) {
+    const seen = { charts: await evaluate(charts), inks: [] };
+    for (const name of ["light", "dark"]) {
+        await scheme(tab, name);
+        seen.inks.push(await evaluate(ink));
+    }
+    await tab("Input.dispatchMouseEvent", { type: "mouseMoved", ...(await evaluate(firstPoint)) });
+    seen.tooltip = await evaluate(tooltip);
+    seen.pdf = await print(tab);
+    seen.foreignScriptRan = await evaluate(runForeignScript);
+    return seen;
+}
+
+async function withoutJavaScript({ tab, evaluate }) {
+    return { ...(await evaluate(withoutScripts)), pdf: await print(tab) };
+}
+
+const gone = new Promise((resolve) => browser.once("exit", resolve));
+const tooLong = setTimeout(() => {
+    console.error("The browser did not answer in time.");
+    browser.kill("SIGKILL");
+    process.exit(1);
+}, 120_000);
+browser.once("error", (error) => {
+    console.error(error.message);
+    process.exit(1);
+});
+
+const seen = [];
+for (const page of pages) {
+    seen.push({
+        withJavaScript: await inTab(page, true, withJavaScript),
+        withoutJavaScript: await inTab(page, false, withoutJavaScript),
+    });
+}
+console.log(JSON.stringify(seen, null, 1));
+clearTimeout(tooLong);
+await call(undefined, "Browser.close");
+await gone;
+rmSync(profile, { recursive: true, force: true, maxRetries: 10, retryDelay: 100 });
