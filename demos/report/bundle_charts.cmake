@@ -42,9 +42,8 @@ if(NOT installedLock STREQUAL lock)
         RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output
         TIMEOUT 120)
     if(NOT status EQUAL 0)
-        message(STATUS "npm ci: ${output}")
-        write_without_charts("When the program was built, npm could not install what draws them. \
-(Delete ${FOLDER} to have it tried again.)")
+        message(STATUS "npm ci: ${output}\nTo have it tried again, delete ${FOLDER}.")
+        write_without_charts("When the program was built, npm could not install what draws them.")
         return()
     endif()
     file(WRITE ${installed} ${lock})

@@ -21,7 +21,7 @@ const code = [
     .map((path) => readFileSync(path, "utf8"))
     .join("\n")
     .replace(/^\/\/# sourceMappingURL=.*$/gm, "")
-    .replaceAll("\r", "")
+    .replace(/\r/g, "")
     // Within a page, these would end the script or hide what follows.
     .replace(/<(?=\/script|!--)/gi, "\\x3c");
 

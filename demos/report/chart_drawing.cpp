@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kBrightFrom = 0.55;  // of the way along the colours of a heat map
 constexpr int kBarHeight = 18;
-constexpr int kLongestName = 40;  // [letters] beside an axis; the rest is cut off
+constexpr int kLongestName = 45;  // [letters] beside an axis; the rest is cut off
 
 bool areNumbers(const std::vector<std::string>& names) {
     return std::all_of(names.begin(), names.end(), [](const std::string& name) {
@@ -142,6 +142,11 @@ Json ChartDrawing::encoding() const {
     if (lies_) {
         std::swap(x, y);
         y["axis"]["title"] = nullptr;  // the names speak for themselves
+    }
+    if (namesAtTheLeft() != nullptr) {
+        const std::string limit = std::to_string(kLongestName);
+        y["axis"]["labelExpr"] = "length(datum.label) > " + limit + " ? slice(datum.label, 0, " +
+                                 limit + " - 1) + '\u2026' : datum.label";
     }
     Json encoding{{"x", std::move(x)}, {"y", std::move(y)}};
     if (chart_.mark == ChartMark::kBar && !isOneSeries()) {

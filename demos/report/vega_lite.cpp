@@ -32,7 +32,7 @@ Json lines(const std::string& text, std::size_t width) {
 Json configOf(const ChartTheme& theme) {
     const Json texts{{"labelColor", theme.ink},     {"titleColor", theme.ink},
                      {"labelFontSize", 12},         {"titleFontSize", 13},
-                     {"titleFontWeight", "normal"}, {"labelLimit", 300}};
+                     {"titleFontWeight", "normal"}, {"labelLimit", 0}};
     Json axis = texts;
     axis.update({{"gridColor", theme.faint},
                  {"domainColor", theme.ink},
@@ -46,6 +46,7 @@ Json configOf(const ChartTheme& theme) {
                    {"direction", "horizontal"},
                    {"symbolSize", 90},
                    {"columnPadding", 18},
+                   {"titleLimit", 0},
                    {"gradientLength", 300},
                    {"offset", 14},
                    {"layout", {{"bottom", {{"anchor", "start"}, {"direction", "vertical"}}}}}});
