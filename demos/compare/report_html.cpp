@@ -176,9 +176,13 @@ PageSection times(const Report& report) {
                                       : Value()});
     }
     section.tables = {withoutEmptyColumns(table)};
-    if (report.comparison.framesDone > report.comparison.warmUpFrames) {
-        section.charts = {mediansChart(report), traceChart(report)};
-    }
+    return section;
+}
+
+PageSection drawnTimes(const Report& report) {
+    PageSection section;
+    section.heading = "The times, drawn";
+    section.charts = {mediansChart(report), traceChart(report)};
     return section;
 }
 
@@ -193,6 +197,9 @@ void writeHtml(const Report& report, std::ostream& out) {
               report.provenance};
     page.sections.front().sentences.insert(page.sections.front().sentences.begin(),
                                            "The scene: " + report.description + ".");
+    if (report.comparison.framesDone > report.comparison.warmUpFrames) {
+        page.sections.push_back(drawnTimes(report));
+    }
     if (report.comparison.timeLimitHit) {
         page.verdict += " The time limit was reached after " +
                         std::to_string(report.comparison.framesDone) + " of " +

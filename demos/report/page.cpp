@@ -100,11 +100,11 @@ void PageWriter::writeSection(const PageSection& section, std::size_t number) co
     }
     writeList(section.conclusions);
     writeChecks(section.checks);
-    for (const DataTable& table : section.tables) {
-        writeTable(table, out_);
-    }
     for (const Chart& chart : section.charts) {
         writeChart(chart);
+    }
+    for (const DataTable& table : section.tables) {
+        writeTable(table, out_);
     }
     if (!section.settings.empty()) {
         out_ << "<details><summary>How it was measured</summary>\n";

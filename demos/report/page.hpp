@@ -24,8 +24,8 @@ struct PageSection {
     std::vector<std::string> sentences;  // a paragraph each
     std::vector<std::string> conclusions;
     std::vector<Check> checks;
-    std::vector<DataTable> tables;
     std::vector<Chart> charts;
+    std::vector<DataTable> tables;
     std::vector<std::string> settings;  // how it was measured
 };
 

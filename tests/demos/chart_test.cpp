@@ -55,7 +55,8 @@ TEST(ChartAxis, HasNoGapWhereThereIsNoZero) {
 }
 
 TEST(ChartAxis, IsStraightWhereAllIsZeroOrNothing) {
-    for (const std::vector<double>& ys : {std::vector<double>{0, 0}, std::vector<double>{NAN, NAN}}) {
+    for (const std::vector<double>& ys :
+         {std::vector<double>{0, 0}, std::vector<double>{NAN, NAN}}) {
         const Chart chart = chartOf({1, 2}, ys, AxisScale::kLogAndZero);
         const ChartAxis axis(chart, chart.y, {"y"});
         EXPECT_FALSE(axis.isLog());

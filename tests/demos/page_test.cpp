@@ -37,7 +37,7 @@ std::size_t count(const std::string& text, const std::string& part) {
 Page samplePage() {
     Page page{"Title", "Introduction", "Verdict", true, {}, {}};
     page.sections.push_back(
-        {"Heading", {"Sentence"}, {"Conclusion"}, {}, {}, sampleCharts(), {"Setting"}});
+        {"Heading", {"Sentence"}, {"Conclusion"}, {}, sampleCharts(), {}, {"Setting"}});
     return page;
 }
 
@@ -72,8 +72,8 @@ TEST(Page, EscapesTextsFromData) {
                              {kHostile},
                              {kHostile},
                              {{kHostile, false, kHostile}},
-                             {{{{kHostile}}, {{kHostile}}}},
                              {chart},
+                             {{{{kHostile}}, {{kHostile}}}},
                              {kHostile}});
     const std::string html = withoutScripts(page);
     EXPECT_EQ(html.find("alert('x')</script>"), std::string::npos);
