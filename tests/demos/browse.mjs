@@ -107,12 +107,12 @@ const charts = `(async () => {
     });
 })()`;
 
-const ink = `getComputedStyle(document.querySelector(".drawing svg text")).fill`;
+const ink = `getComputedStyle(document.querySelector(".drawing svg text") ?? document.body).fill`;
 
 const firstPoint = `(() => {
     const point = document.querySelector(".drawing .mark-symbol.role-mark path, .drawing .mark-rect.role-mark path");
-    point.scrollIntoView({ block: "center" });
-    const { x, y, width, height } = point.getBoundingClientRect();
+    point?.scrollIntoView({ block: "center" });
+    const { x = 0, y = 0, width = 0, height = 0 } = point?.getBoundingClientRect() ?? {};
     return { x: x + width / 2, y: y + height / 2 };
 })()`;
 
