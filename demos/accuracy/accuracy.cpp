@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/accuracy.hpp>
 
-#include <demos/accuracy/advice.hpp>
+#include <demos/accuracy/accuracy_page.hpp>
 #include <demos/accuracy/report.hpp>
 #include <demos/accuracy/timing.hpp>
 #include <demos/console/nearest_name.hpp>
 #include <demos/console/progress.hpp>
+#include <demos/console/result_file.hpp>
 #include <demos/report/stopwatch.hpp>
 #include <demos/scenes/input_error.hpp>
 
@@ -120,14 +121,26 @@ std::vector<std::string> brokenChecks(const AccuracyReport& report) {
     return broken;
 }
 
+std::vector<Choice> allChoices(const AccuracyReport& report) {
+    std::vector<Choice> choices;
+    for (const Outcome& outcome : report.outcomes) {
+        const std::vector<Choice>& own = outcome.findings.choices;
+        choices.insert(choices.end(), own.begin(), own.end());
+    }
+    return choices;
+}
+
 std::string verdictLine(const AccuracyReport& report) {
     std::size_t checks = 0;
     for (const Outcome& outcome : report.outcomes) {
         checks += outcome.findings.checks.size();
     }
     const std::size_t broken = brokenChecks(report).size();
-    return std::to_string(report.outcomes.size()) + " experiments, " + std::to_string(checks) +
-           " checks: " + (broken == 0 ? "all hold" : std::to_string(broken) + " BROKEN");
+    const auto counted = [](std::size_t count, const std::string& noun) {
+        return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+    };
+    return counted(report.outcomes.size(), "experiment") + ", " + counted(checks, "check") + ": " +
+           (broken == 0 ? "all hold" : std::to_string(broken) + " BROKEN");
 }
 
 int runAccuracy(const AccuracyOptions& options, std::span<const Experiment> experiments,
@@ -144,6 +157,7 @@ int runAccuracy(const AccuracyOptions& options, std::span<const Experiment> expe
             throw InputError(options.folder + " cannot be made: " + error.message() + ".");
         }
     }
+    ResultFile page(options.folder.empty() ? "" : options.folder + "/accuracy.html");
     pinToThisCore();
     AccuracyReport report;
     report.effort = options.effort;
@@ -153,6 +167,7 @@ int runAccuracy(const AccuracyOptions& options, std::span<const Experiment> expe
     printReport(report, console.out);
     if (!options.folder.empty()) {
         writeReport(report, options.folder);
+        page.write([&report](std::ostream& file) { writePage(pageOf(report), file); });
     }
     return brokenChecks(report).empty() ? kExitOk : kExitCheckFailed;
 }

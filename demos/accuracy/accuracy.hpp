@@ -46,6 +46,9 @@ int runAccuracy(const AccuracyOptions& options, std::span<const Experiment> expe
 /// The checks of all outcomes that do not hold, as "P1: claim (evidence)".
 [[nodiscard]] std::vector<std::string> brokenChecks(const AccuracyReport& report);
 
+/// The choices of all experiments, in their order.
+[[nodiscard]] std::vector<Choice> allChoices(const AccuracyReport& report);
+
 /// One sentence: how many experiments and checks, and whether all hold.
 [[nodiscard]] std::string verdictLine(const AccuracyReport& report);
 

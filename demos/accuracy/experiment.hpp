@@ -10,6 +10,7 @@
 // Times     are medians of at least 60 different frames, methods in turn within each.
 
 #include <demos/report/chart.hpp>
+#include <demos/report/check.hpp>
 #include <demos/report/data_table.hpp>
 
 #include <cstdint>
@@ -30,13 +31,6 @@ struct Effort {
     [[nodiscard]] Number quickOrFull(Number quick, Number full) const {
         return isQuick ? quick : full;
     }
-};
-
-/// What must be so, and whether it is.
-struct Check {
-    std::string claim;  // "Swept modes miss nothing"
-    bool holds = false;
-    std::string evidence;  // the numbers: "0 of 1,000,000"
 };
 
 /// A method as a choice that somebody has: what it costs, what it gets wrong.

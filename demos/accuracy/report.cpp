@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/report.hpp>
 
+#include <demos/accuracy/accuracy_page.hpp>
 #include <demos/accuracy/advice.hpp>
 #include <demos/console/result_file.hpp>
 #include <demos/console/table.hpp>
 #include <demos/report/json_values.hpp>
 #include <demos/report/report_text.hpp>
+#include <demos/report/vega_lite.hpp>
 
-#include <cmath>
 #include <ostream>
 
 namespace hashphase::demos {
@@ -16,7 +17,7 @@ namespace {
 void print(const DataTable& data, std::ostream& out) {
     std::vector<std::string> header;
     for (const DataColumn& column : data.columns) {
-        header.push_back(column.title.empty() ? column.name : column.title);
+        header.push_back(titleOf(column));
     }
     Table table(header);
     for (const std::vector<Value>& row : data.rows) {
@@ -27,23 +28,6 @@ void print(const DataTable& data, std::ostream& out) {
         table.addRow(std::move(cells));
     }
     table.print(out);
-}
-
-std::vector<Choice> allChoices(const AccuracyReport& report) {
-    std::vector<Choice> choices;
-    for (const Outcome& outcome : report.outcomes) {
-        const std::vector<Choice>& own = outcome.findings.choices;
-        choices.insert(choices.end(), own.begin(), own.end());
-    }
-    return choices;
-}
-
-Json valueJson(const Value& value) {
-    if (const std::string* text = std::get_if<std::string>(&value)) {
-        return *text;
-    }
-    const double* number = std::get_if<double>(&value);
-    return number != nullptr && std::isfinite(*number) ? Json(*number) : Json(nullptr);
 }
 
 Json tableJson(const DataTable& data) {
@@ -139,16 +123,20 @@ void writeJson(const AccuracyReport& report, const Outcome& outcome, std::ostrea
                                    {"result", choice.result},
                                    {"ours", choice.isOurs}});
     }
-    out << json.dump(1, ' ', false, Json::error_handler_t::replace) << '\n';
+    out << textOf(json);
 }
 
 void writeReport(const AccuracyReport& report, const std::string& folder) {
+    const SeriesLooks looks = seriesLooks(pageOf(report));
     for (const Outcome& outcome : report.outcomes) {
         writeFile(folder, std::string(outcome.experiment->id) + ".json",
                   [&](std::ostream& file) { writeJson(report, outcome, file); });
         for (const Chart& chart : outcome.findings.charts) {
             writeFile(folder, chart.name + ".csv",
                       [&](std::ostream& file) { writeCsv(chart.data, file); });
+            writeFile(folder, chart.name + ".vl.json", [&](std::ostream& file) {
+                file << textOf(vegaLiteSpec(chart, looks, pictureTheme(), ChartTitle::kInside));
+            });
         }
     }
     writeFile(folder, "advice.csv",

@@ -16,8 +16,8 @@ void printReport(const AccuracyReport& report, std::ostream& out);
 /// Schema "hashphase-accuracy": one experiment with its provenance.
 void writeJson(const AccuracyReport& report, const Outcome& outcome, std::ostream& out);
 
-/// Writes to the folder, which exists, <id>.json of each experiment, <name>.csv of each chart, and
-/// advice.csv. Throws InputError when a file cannot be written.
+/// Writes to the folder, which exists, <id>.json of each experiment, <name>.csv and <name>.vl.json
+/// (as Vega-Lite draws it) of each chart, and advice.csv. Throws InputError when a file cannot be written.
 void writeReport(const AccuracyReport& report, const std::string& folder);
 
 }  // namespace hashphase::demos

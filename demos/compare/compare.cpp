@@ -102,6 +102,7 @@ int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> ki
     report.provenance = gatherProvenance(console.commandLine);
     ResultFile json(options.jsonFile);
     ResultFile csv(options.csvFile);
+    ResultFile html(options.htmlFile);
 
     report.comparison = runComparison(
         *opened.trial, chosen,
@@ -111,6 +112,7 @@ int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> ki
     printReport(report, console.out);
     json.write([&report](std::ostream& file) { writeJson(report, file); });
     csv.write([&report](std::ostream& file) { writeCsv(report, file); });
+    html.write([&report](std::ostream& file) { writeHtml(report, file); });
     return oursWereExact(report) == false && report.comparison.framesDone > 0 ? kExitCheckFailed
                                                                               : kExitOk;
 }

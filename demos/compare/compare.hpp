@@ -26,6 +26,7 @@ struct CompareOptions {
     ReferenceMethod reference = ReferenceMethod::kSweep;
     std::string jsonFile;             // empty: none
     std::string csvFile;              // empty: none
+    std::string htmlFile;             // empty: none
     std::optional<double> timeLimit;  // [s]
     bool quiet = false;               // no progress
     bool list = false;                // only say which scenes and broadphases there are

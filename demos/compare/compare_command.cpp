@@ -36,6 +36,7 @@ void declare(CLI::App& app, CompareOptions& options) {
         ->type_name("sweep|brute");
     app.add_option("--json", options.jsonFile, "write everything measured to this file");
     app.add_option("--csv", options.csvFile, "write the rows of all frames to this file");
+    app.add_option("--html", options.htmlFile, "write a page with charts to this file");
     app.add_option("--time-limit", options.timeLimit, "stop after so many seconds")
         ->check(positiveSecondsFault);
     app.add_flag("--quiet", options.quiet, "no progress on stderr");

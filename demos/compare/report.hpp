@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A finished comparison as text for people, JSON for programs, CSV for spreadsheets.
+// A finished comparison as text or a page for people, JSON for programs, CSV for spreadsheets.
 
 #include <demos/compare/compare.hpp>
 #include <demos/compare/comparison.hpp>
@@ -39,6 +39,9 @@ void printReport(const Report& report, std::ostream& out);
 
 /// Schema "hashphase-compare"; what was not measured is null, never NaN.
 void writeJson(const Report& report, std::ostream& out);
+
+/// A page with charts; see demos/report/page.hpp.
+void writeHtml(const Report& report, std::ostream& out);
 
 /// A header line, then a line for each frame of each broadphase.
 void writeCsv(const Report& report, std::ostream& out);

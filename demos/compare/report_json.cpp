@@ -108,8 +108,7 @@ void writeJson(const Report& report, std::ostream& out) {
     for (const Result& result : report.comparison.results) {
         json["broadphases"].push_back(resultJson(report, result));
     }
-    // Names of files need not be UTF-8.
-    out << json.dump(1, ' ', false, Json::error_handler_t::replace) << '\n';
+    out << textOf(json);
 }
 
 }  // namespace hashphase::demos

@@ -23,10 +23,10 @@ struct Axis {
 };
 
 enum class ChartMark {
-    kLine,   // a line with points a series
+    kLine,   // a line with points a series, in the order of the rows
     kPoint,  // points
-    kBar,    // bars side by side
-    kCell,   // a heat map: x and y are names, the colour is `shade`
+    kBar,    // bars side by side; x are names
+    kCell,   // a heat map: x and y are names, the colour is `shade`; numbers among them grow upwards
 };
 
 struct Chart {

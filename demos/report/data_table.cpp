@@ -46,6 +46,10 @@ std::size_t DataTable::columnOf(std::string_view name) const {
     return static_cast<std::size_t>(found - columns.begin());
 }
 
+const std::string& titleOf(const DataColumn& column) {
+    return column.title.empty() ? column.name : column.title;
+}
+
 std::string valueText(const Value& value) {
     if (const std::string* text = std::get_if<std::string>(&value)) {
         return *text;

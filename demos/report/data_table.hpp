@@ -31,6 +31,9 @@ struct DataTable {
     [[nodiscard]] std::size_t columnOf(std::string_view name) const;
 };
 
+/// What stands over the column: its title, or else its name.
+[[nodiscard]] const std::string& titleOf(const DataColumn& column);
+
 /// As people read it: four significant digits, thousands separated, "-" for nothing.
 [[nodiscard]] std::string valueText(const Value& value);
 

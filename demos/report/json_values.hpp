@@ -3,6 +3,7 @@
 
 // What all JSON reports have in common. What was not measured is null, never NaN.
 
+#include <demos/report/data_table.hpp>
 #include <demos/report/provenance.hpp>
 #include <demos/report/statistics.hpp>
 
@@ -21,6 +22,10 @@ template <class Value>
 }
 [[nodiscard]] Json orNull(const std::string& text);
 
+/// Indented, with a line break at the end. Names of files need not be UTF-8: what is not, is replaced.
+[[nodiscard]] std::string textOf(const Json& json);
+
+[[nodiscard]] Json valueJson(const Value& value);
 [[nodiscard]] Json spreadJson(const std::optional<Spread>& spread);
 [[nodiscard]] Json provenanceJson(const Provenance& provenance);
 

@@ -12,24 +12,43 @@ tools=(cmake:cmake ninja:ninja-build c++:g++ pkg-config:pkg-config)
 libraries=(libbullet-dev libbullet-extras-dev libeigen3-dev libcli11-dev nlohmann-json3-dev
     libgtest-dev libtbb-dev libgmp-dev)
 
+# What may be missing: npm brings what draws the charts of reports.
+optional_tools=(npm:npm)
+
 say() {
     printf '%s: %s\n' "${script:-setup}" "$*" >&2
 }
 
-# Prints the packages that are missing, one a line.
-missing_packages() {
-    local tool library status
-    for tool in "${tools[@]}"; do
+# Prints the packages of those tools that are missing, one a line.
+missing_tools() {
+    local tool
+    for tool; do
         command -v "${tool%%:*}" >/dev/null || echo "${tool#*:}"
     done
+}
+
+# Prints the packages that are missing, one a line.
+missing_packages() {
+    local library status
+    missing_tools "${tools[@]}"
     for library in "${libraries[@]}"; do
         status=$(dpkg-query --show --showformat='${db:Status-Status}' "$library" 2>/dev/null) || true
         [[ $status == installed ]] || echo "$library"
     done
 }
 
+# Prints the optional packages that are missing and that this system offers, one a line.
+missing_options() {
+    local package
+    for package in $(missing_tools "${optional_tools[@]}"); do
+        if apt-cache show "$package" >/dev/null 2>&1; then
+            echo "$package"
+        fi
+    done
+}
+
 # Installs what is missing, where that is allowed without a question; otherwise says which one
-# command is needed and ends with status 2.
+# command is needed and ends with status 2. Goes on without what is optional.
 install_missing_packages() {
     if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
         say "this is no Debian or Ubuntu: please see to CMake 3.22, Ninja, a C++20 compiler," \
@@ -37,28 +56,40 @@ install_missing_packages() {
             "GoogleTest and GMP; CMake tells what it cannot find"
         return
     fi
-    local missing=() apt=(apt-get)
+    local missing=() options=() apt=(apt-get)
     mapfile -t missing < <(missing_packages)
-    ((${#missing[@]})) || return 0
+    mapfile -t options < <(missing_options)
+    ((${#missing[@]} + ${#options[@]})) || return 0
     if [[ $EUID != 0 ]]; then
         if ! sudo -n true 2>/dev/null; then
             say "some packages are missing; install them and try again:"
-            say "    sudo apt-get install ${missing[*]}"
-            exit 2
+            say "    sudo apt-get install ${missing[*]} ${options[*]}"
+            ((${#missing[@]} == 0)) || exit 2
+            say "going on without"
+            return 0
         fi
         apt=(sudo -n env DEBIAN_FRONTEND=noninteractive apt-get)
     fi
     export DEBIAN_FRONTEND=noninteractive
-    say "installing ${missing[*]}"
     # Lists that cannot be renewed may still be good enough; the installation tells.
     "${apt[@]}" -o DPkg::Lock::Timeout=300 -q update >&2 </dev/null ||
         say "the package lists could not be renewed"
-    "${apt[@]}" -o DPkg::Lock::Timeout=300 -q install -y --no-install-recommends \
-        "${missing[@]}" >&2 </dev/null || {
+    install_packages "${missing[@]}" || {
         say "installing failed; make this work and try again:"
         say "    apt-get install ${missing[*]}"
         exit 2
     }
+    # New lists may offer more.
+    mapfile -t options < <(missing_options)
+    install_packages "${options[@]}" || say "going on without ${options[*]}"
+}
+
+# install_packages [<package>...]: by the caller's `apt`.
+install_packages() {
+    (($#)) || return 0
+    say "installing $*"
+    "${apt[@]}" -o DPkg::Lock::Timeout=300 -q install -y --no-install-recommends "$@" \
+        >&2 </dev/null
 }
 
 # build_preset <preset> [<target>...]: configures when need be, or when `reconfigure` is set, and

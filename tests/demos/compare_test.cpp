@@ -213,12 +213,44 @@ TEST(Compare, WritesCsvWithALineForEveryFrameOfEveryBroadphase) {
     EXPECT_NE(lines[6].back(), ',') << "a dynamics scene has step times";
 }
 
+TEST(Compare, WritesAPageWithTheVerdictFirst) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("r.html");
+    const Outcome outcome = run({"compare", "--objects", "50", "--frames", "8", "--html", path});
+    ASSERT_EQ(outcome.exitCode, kExitOk) << outcome.err;
+    std::ostringstream page;
+    page << std::ifstream(path).rdbuf();
+    const std::string html = page.str();
+    const std::size_t verdict = html.find("pair sets exact in every frame: yes.</p>");
+    EXPECT_LT(verdict, html.find("Are the pairs right?</h2>"));
+    EXPECT_NE(html.find(">holds</span><span>&#39;hash&#39; lists exactly the pairs"),
+              std::string::npos);
+    EXPECT_NE(html.find("id=\"compare-times\""), std::string::npos);
+    EXPECT_NE(html.find("id=\"compare-trace\""), std::string::npos);
+    EXPECT_EQ(html.find("whole step"), std::string::npos) << "boxes have no simulation";
+}
+
+TEST(Compare, WritesAPageWithoutChartsWhereNothingWasTimed) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("r.html");
+    run({"compare", "--objects", "2000", "--time-limit", "0.000001", "--broadphases", "hash",
+         "--html", path});
+    std::ostringstream page;
+    page << std::ifstream(path).rdbuf();
+    EXPECT_EQ(page.str().find("id=\"compare-times\""), std::string::npos);
+    EXPECT_NE(page.str().find("The time limit was reached after 0 of 120 frames."),
+              std::string::npos);
+}
+
 TEST(Compare, RefusesResultFilesThatCannotBeWritten) {
     const TemporaryFolder folder;
-    const std::string path = folder.file("none/r.json");
-    const Outcome outcome = run({"compare", "--objects", "10", "--frames", "1", "--json", path});
-    EXPECT_EQ(outcome.exitCode, kExitUsage);
-    EXPECT_EQ(outcome.err, "hashphase: " + path + " cannot be written.\n");
+    const std::string path = folder.file("none/r");
+    for (const char* option : {"--json", "--csv", "--html"}) {
+        const Outcome outcome = run({"compare", "--objects", "10", "--frames", "1", option, path});
+        EXPECT_EQ(outcome.exitCode, kExitUsage);
+        EXPECT_EQ(outcome.err, "hashphase: " + path + " cannot be written.\n");
+        EXPECT_EQ(outcome.out, "");
+    }
 }
 
 TEST(Compare, ReadsARecordingToItsEndAndNoFurther) {

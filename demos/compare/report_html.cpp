@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/compare/report.hpp>
+
+#include <demos/console/format.hpp>
+#include <demos/report/page.hpp>
+
+#include <algorithm>
+
+namespace hashphase::demos {
+namespace {
+
+constexpr const char* kIntroduction =
+    "A broadphase finds the pairs of bodies whose bounding boxes overlap. This page shows one "
+    "scene "
+    "under hashphase, a spatial hash for the Bullet physics engine, and under Bullet's own "
+    "broadphases: whether each listed exactly the pairs that overlap, in every frame, and how long "
+    "it took. All got the same frames, one after another in each frame.";
+
+Value nameOf(const Result& result) {
+    return std::string(result.kind->name);
+}
+
+Value number(std::size_t count) {
+    return static_cast<double>(count);
+}
+
+template <class Number>
+Value numberOrNothing(const std::optional<Number>& number) {
+    return number ? Value(static_cast<double>(*number)) : Value();
+}
+
+void addSpread(std::vector<Value>& row, const std::optional<Spread>& spread) {
+    if (!spread) {
+        row.resize(row.size() + 3);
+        return;
+    }
+    row.insert(row.end(), {spread->median, spread->low, spread->high});
+}
+
+std::vector<Check> checks(const Report& report) {
+    std::vector<Check> all;
+    for (const Result& result : report.comparison.results) {
+        if (result.kind->ours && !result.rows.empty()) {
+            all.push_back({"'" + std::string(result.kind->name) +
+                               "' lists exactly the pairs that overlap, in every frame",
+                           !result.firstFault,
+                           withThousands(tallyOf(result, &FrameVerdict::missing).total) +
+                               " missing and " +
+                               withThousands(tallyOf(result, &FrameVerdict::extra).total) +
+                               " extra in " + std::to_string(result.rows.size()) + " frames"});
+        }
+    }
+    return all;
+}
+
+PageSection correctness(const Report& report) {
+    PageSection section;
+    section.heading = "Are the pairs right?";
+    section.sentences = {
+        "Sums over all frames. Missing pairs overlap but are not listed, so that bodies fall "
+        "through "
+        "each other. Extra pairs are listed but do not overlap, which costs time further on; those "
+        "that overlapped once and were not removed since are stale."};
+    section.checks = checks(report);
+    DataTable table{{{"broadphase", "broadphase"},
+                     {"pairs", "listed pairs"},
+                     {"missing", "missing"},
+                     {"extra", "extra"},
+                     {"stale", "of these stale"}},
+                    {}};
+    for (const Result& result : report.comparison.results) {
+        table.add({nameOf(result), number(tallyOf(result, &FrameVerdict::pairs).total),
+                   number(tallyOf(result, &FrameVerdict::missing).total),
+                   number(tallyOf(result, &FrameVerdict::extra).total),
+                   number(tallyOf(result, &FrameVerdict::stale).total)});
+    }
+    section.tables = {std::move(table)};
+    return section;
+}
+
+std::string settingsOf(const Report& report) {
+    return report.scene + ", " + withThousands(report.objects) + " " + report.noun + ", " +
+           std::to_string(report.comparison.framesDone - report.comparison.warmUpFrames) +
+           " frames timed after " + std::to_string(report.comparison.warmUpFrames) +
+           " to warm up, seed " + std::to_string(report.options.seed) + ", one thread.";
+}
+
+Chart mediansChart(const Report& report) {
+    Chart chart{"compare-times",
+                "Time of a frame: setAabb for all objects, then calculateOverlappingPairs",
+                settingsOf(report) + " Medians, with the 5th to 95th percentile.",
+                ChartMark::kBar,
+                {{{"broadphase", "broadphase"},
+                  {"frame_ms", "median [ms a frame]"},
+                  {"p5_ms", "5th percentile [ms]"},
+                  {"p95_ms", "95th percentile [ms]"}},
+                 {}},
+                {"broadphase", AxisScale::kNames},
+                {"frame_ms", AxisScale::kLog},
+                "broadphase",
+                "p5_ms",
+                "p95_ms"};
+    for (const Result& result : report.comparison.results) {
+        std::vector<Value> row{nameOf(result)};
+        const std::optional<Timing> timing = timingOf(result);
+        addSpread(row, timing ? std::optional(timing->both) : std::nullopt);
+        chart.data.add(std::move(row));
+    }
+    return chart;
+}
+
+Chart traceChart(const Report& report) {
+    Chart chart{"compare-trace",
+                "Time of each frame",
+                settingsOf(report) + " setAabb for all objects, then calculateOverlappingPairs.",
+                ChartMark::kLine,
+                {{{"broadphase", "broadphase"},
+                  {"frame", "frame"},
+                  {"frame_ms", "setAabb and calculate [ms]"}},
+                 {}},
+                {"frame"},
+                {"frame_ms", AxisScale::kLog},
+                "broadphase"};
+    for (const Result& result : report.comparison.results) {
+        for (const FrameRow& row : result.rows) {
+            if (row.measured) {
+                chart.data.add({nameOf(result), static_cast<double>(row.frame),
+                                row.setAabbMs + row.calculateMs});
+            }
+        }
+    }
+    return chart;
+}
+
+/// Scenes without a simulation have no steps, and some broadphases do not tell their memory.
+DataTable withoutEmptyColumns(const DataTable& table) {
+    DataTable kept;
+    kept.rows.resize(table.rows.size());
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        const auto isEmpty = [i](const std::vector<Value>& row) { return row[i].index() == 0; };
+        if (std::all_of(table.rows.begin(), table.rows.end(), isEmpty)) {
+            continue;
+        }
+        kept.columns.push_back(table.columns[i]);
+        for (std::size_t row = 0; row < table.rows.size(); ++row) {
+            kept.rows[row].push_back(table.rows[row][i]);
+        }
+    }
+    return kept;
+}
+
+PageSection times(const Report& report) {
+    PageSection section;
+    section.heading = "How long does it take?";
+    section.sentences = {"Milliseconds, medians of the timed frames."};
+    DataTable table{{{"broadphase", "broadphase"},
+                     {"set_aabb_ms", "setAabb for all"},
+                     {"calculate_ms", "calculate"},
+                     {"both_ms", "both"},
+                     {"speed", "times as fast as dbvt"},
+                     {"step_ms", "whole step"},
+                     {"fill_ms", "creating all objects"},
+                     {"remove_ms", "removing " + withThousands(report.comparison.objectsRemoved)},
+                     {"memory_mib", "memory [MiB]"}},
+                    {}};
+    for (const Result& result : report.comparison.results) {
+        const std::optional<Timing> timing = timingOf(result);
+        const auto median = [&timing](Spread Timing::*part) {
+            return timing ? Value(((*timing).*part).median) : Value();
+        };
+        table.add({nameOf(result), median(&Timing::setAabb), median(&Timing::calculate),
+                   median(&Timing::both), numberOrNothing(speedAgainstDbvt(report, result)),
+                   timing && timing->step ? Value(timing->step->median) : Value(), result.fillMs,
+                   numberOrNothing(result.removeMs),
+                   result.memoryBytes ? Value(static_cast<double>(*result.memoryBytes) / (1 << 20))
+                                      : Value()});
+    }
+    section.tables = {withoutEmptyColumns(table)};
+    return section;
+}
+
+PageSection drawnTimes(const Report& report) {
+    PageSection section;
+    section.heading = "The times, drawn";
+    section.charts = {mediansChart(report), traceChart(report)};
+    return section;
+}
+
+}  // namespace
+
+void writeHtml(const Report& report, std::ostream& out) {
+    Page page{"hashphase compare: " + report.scene,
+              kIntroduction,
+              verdictLine(report) + ".",
+              oursWereExact(report).value_or(true),
+              {correctness(report), times(report)},
+              report.provenance};
+    page.sections.front().sentences.insert(page.sections.front().sentences.begin(),
+                                           "The scene: " + report.description + ".");
+    if (report.comparison.framesDone > report.comparison.warmUpFrames) {
+        page.sections.push_back(drawnTimes(report));
+    }
+    if (report.comparison.timeLimitHit) {
+        page.verdict += " The time limit was reached after " +
+                        std::to_string(report.comparison.framesDone) + " of " +
+                        std::to_string(report.framesAsked) + " frames.";
+    }
+    writePage(page, out);
+}
+
+}  // namespace hashphase::demos

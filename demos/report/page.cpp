@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/report/page.hpp>
+
+#include <demos/console/format.hpp>
+#include <demos/report/chart_scripts.hpp>
+#include <demos/report/html.hpp>
+#include <demos/report/page_style.hpp>
+#include <demos/report/vega_lite.hpp>
+
+#include <ostream>
+
+namespace hashphase::demos {
+namespace {
+
+constexpr const char* kProvenanceHeading = "Where this was measured";
+
+/// Writes one page, part by part.
+class PageWriter {
+public:
+    PageWriter(const Page& page, std::ostream& out)
+        : page_(page), out_(out), looks_(seriesLooks(page)) {}
+
+    void write() const {
+        writeHead();
+        out_ << "<body>\n<main>\n";
+        writeTop();
+        writeContents();
+        for (std::size_t i = 0; i < page_.sections.size(); ++i) {
+            writeSection(page_.sections[i], i);
+        }
+        writeProvenance();
+        out_ << "</main>\n";
+        if (!scripts_.code.empty()) {
+            out_ << "<script>" << scripts_.code << "</script>\n";
+        }
+        out_ << "</body>\n</html>\n";
+    }
+
+private:
+    void writeHead() const;
+    void writeTop() const;
+    void writeContents() const;
+    void writeSection(const PageSection& section, std::size_t number) const;
+    void writeChecks(const std::vector<Check>& checks) const;
+    void writeChart(const Chart& chart) const;
+    void writeProvenance() const;
+    void writeParagraph(const std::string& text) const {
+        out_ << "<p>" << escaped(text) << "</p>\n";
+    }
+    void writeList(const std::vector<std::string>& sentences) const;
+
+    const Page& page_;
+    std::ostream& out_;
+    SeriesLooks looks_;
+    ChartScripts scripts_ = chartScripts();
+};
+
+// Data are never code: the policy admits one script, by its hash. Vega sets styles of the elements
+// it draws.
+void PageWriter::writeHead() const {
+    const std::string_view hash = scripts_.code.empty() ? "none" : scripts_.hash;
+    out_
+        << "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+           "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src '"
+        << hash
+        << "'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'\">\n"
+           "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>"
+        << escaped(page_.title) << "</title>\n<style>" << pageStyle() << "</style>\n</head>\n";
+}
+
+void PageWriter::writeTop() const {
+    out_ << "<header>\n<h1>" << escaped(page_.title) << "</h1>\n";
+    writeParagraph(page_.introduction);
+    out_ << "<p class=\"verdict" << (page_.isGood ? "" : " bad") << "\">" << escaped(page_.verdict)
+         << "</p>\n";
+    if (scripts_.code.empty()) {
+        out_ << "<p class=\"quiet\">" << escaped(scripts_.whyNone)
+             << " This page has the numbers of all charts as tables.</p>\n";
+    } else {
+        out_ << "<noscript><p class=\"quiet\">Charts are drawn by JavaScript, which is off. Their "
+                "numbers are in the tables below their titles.</p></noscript>\n";
+    }
+    out_ << "</header>\n";
+}
+
+void PageWriter::writeContents() const {
+    out_ << "<nav class=\"contents\" aria-label=\"Contents\"><ul>\n";
+    for (std::size_t i = 0; i < page_.sections.size(); ++i) {
+        out_ << "<li><a href=\"#section-" << i << "\">" << escaped(page_.sections[i].heading)
+             << "</a></li>\n";
+    }
+    out_ << "<li><a href=\"#provenance\">" << kProvenanceHeading << "</a></li>\n</ul></nav>\n";
+}
+
+void PageWriter::writeSection(const PageSection& section, std::size_t number) const {
+    out_ << "<section id=\"section-" << number << "\">\n<h2>" << escaped(section.heading)
+         << "</h2>\n";
+    for (const std::string& sentence : section.sentences) {
+        writeParagraph(sentence);
+    }
+    writeList(section.conclusions);
+    writeChecks(section.checks);
+    for (const Chart& chart : section.charts) {
+        writeChart(chart);
+    }
+    for (const DataTable& table : section.tables) {
+        writeTable(table, out_);
+    }
+    if (!section.settings.empty()) {
+        out_ << "<details><summary>How it was measured</summary>\n";
+        writeList(section.settings);
+        out_ << "</details>\n";
+    }
+    out_ << "</section>\n";
+}
+
+void PageWriter::writeList(const std::vector<std::string>& sentences) const {
+    if (sentences.empty()) {
+        return;
+    }
+    out_ << "<ul>\n";
+    for (const std::string& sentence : sentences) {
+        out_ << "<li>" << escaped(sentence) << "</li>\n";
+    }
+    out_ << "</ul>\n";
+}
+
+void PageWriter::writeChecks(const std::vector<Check>& checks) const {
+    if (checks.empty()) {
+        return;
+    }
+    out_ << "<ul class=\"checks\">\n";
+    for (const Check& check : checks) {
+        out_ << "<li>"
+             << (check.holds ? "<span class=\"holds\">holds</span>"
+                             : "<span class=\"broken\">BROKEN</span>")
+             << "<span>" << escaped(check.claim) << " <span class=\"quiet\">("
+             << escaped(check.evidence) << ")</span></span></li>\n";
+    }
+    out_ << "</ul>\n";
+}
+
+void PageWriter::writeChart(const Chart& chart) const {
+    const bool isDrawn = !scripts_.code.empty();
+    out_ << "<figure" << (isDrawn ? " class=\"chart\"" : "") << " id=\"" << escaped(chart.name)
+         << "\">\n<figcaption><h3>" << escaped(chart.title) << "</h3><p>" << escaped(chart.settings)
+         << "</p></figcaption>\n";
+    if (isDrawn) {
+        out_ << "<div class=\"drawing\"></div>\n<script type=\"application/json\">"
+             << jsonInScript(vegaLiteSpec(chart, looks_, pageTheme(), ChartTitle::kNone))
+             << "</script>\n";
+    }
+    out_ << "<details" << (isDrawn ? "" : " open")
+         << "><summary>The numbers of this chart</summary>\n";
+    writeTable(chart.data, out_);
+    out_ << "</details>\n</figure>\n";
+}
+
+void PageWriter::writeProvenance() const {
+    const Provenance& provenance = page_.provenance;
+    DataTable table{{{"what", "what"}, {"value", "value"}}, {}};
+    table.add({"hashphase", provenance.hashphaseVersion});
+    table.add({"Bullet", provenance.bulletVersion + ", " + provenance.precision + " precision"});
+    table.add({"compiler", provenance.compiler});
+    table.add(
+        {"its flags", provenance.compilerFlags.empty() ? "unknown" : provenance.compilerFlags});
+    table.add({"optimised", provenance.optimised ? "yes" : "NO: times mean nothing"});
+    table.add({"processor", provenance.cpu});
+    table.add({"cores", std::to_string(provenance.cores)});
+    if (provenance.loadAverage) {
+        const auto& [one, five, fifteen] = *provenance.loadAverage;
+        table.add({"load over 1, 5, 15 minutes before",
+                   fixed(one, 2) + ", " + fixed(five, 2) + ", " + fixed(fifteen, 2)});
+    }
+    table.add({"command", provenance.commandLine});
+    out_ << "<section id=\"provenance\">\n<h2>" << kProvenanceHeading << "</h2>\n";
+    writeTable(table, out_);
+    out_ << "</section>\n";
+}
+
+}  // namespace
+
+void writePage(const Page& page, std::ostream& out) {
+    PageWriter(page, out).write();
+}
+
+SeriesLooks seriesLooks(const Page& page) {
+    std::vector<const Chart*> charts;
+    for (const PageSection& section : page.sections) {
+        for (const Chart& chart : section.charts) {
+            charts.push_back(&chart);
+        }
+    }
+    return seriesLooks(charts);
+}
+
+}  // namespace hashphase::demos

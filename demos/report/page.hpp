@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// A report as one HTML file that needs nothing else: no network, no folder beside it.
+//
+// Readable  with JavaScript off: every chart has its numbers as a table.
+// Safe      under a strict content-security policy, which it brings along: only its own scripts run.
+// Paper     prints with all tables, in the colours of paper.
+
+#include <demos/report/chart.hpp>
+#include <demos/report/check.hpp>
+#include <demos/report/provenance.hpp>
+#include <demos/report/series_looks.hpp>
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+namespace hashphase::demos {
+
+/// Written in the order of the members; what is empty is left out.
+struct PageSection {
+    std::string heading;
+    std::vector<std::string> sentences;  // a paragraph each
+    std::vector<std::string> conclusions;
+    std::vector<Check> checks;
+    std::vector<Chart> charts;
+    std::vector<DataTable> tables;
+    std::vector<std::string> settings;  // how it was measured
+};
+
+struct Page {
+    std::string title;
+    std::string introduction;  // for somebody who has never heard of the program
+    std::string verdict;
+    bool isGood = false;
+    std::vector<PageSection> sections;
+    Provenance provenance;
+};
+
+void writePage(const Page& page, std::ostream& out);
+
+/// The looks of the series of all charts of a page.
+[[nodiscard]] SeriesLooks seriesLooks(const Page& page);
+
+}  // namespace hashphase::demos

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/accuracy/accuracy_command.hpp>
+#include <tests/demos/sample_experiments.hpp>
+#include <tests/demos/temporary_folder.hpp>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <iterator>
+#include <sstream>
+#include <stdexcept>
+
+namespace hashphase::demos {
+namespace {
+
+struct Ran {
+    int exitCode = 0;
+    std::string out;
+    std::string err;
+};
+
+Ran run(std::vector<std::string> arguments,
+        const std::vector<Experiment>& experiments = sampleExperiments()) {
+    arguments.insert(arguments.begin(), "accuracy");
+    std::ostringstream out;
+    std::ostringstream err;
+    const std::array subcommands{accuracyCommand(experiments)};
+    const int exitCode = runProgram(arguments, subcommands, {out, err, false, "hashphase test"});
+    return {exitCode, out.str(), err.str()};
+}
+
+Experiment experimentOf(std::string_view id, std::function<Findings(const Effort&)> find) {
+    return {id,
+            "Title",
+            "Question?",
+            1,
+            1,
+            [find = std::move(find)](const Effort& effort, const TellProgress& /*tell*/) {
+                return find(effort);
+            }};
+}
+
+std::string contentOf(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+bool holds(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+TEST(Accuracy, EndsWithAVerdict) {
+    const Ran ran = run({});
+    EXPECT_EQ(ran.exitCode, kExitOk) << ran.err;
+    EXPECT_TRUE(holds(ran.out, "\n2 experiments, 1 check: all hold\n")) << ran.out;
+    EXPECT_TRUE(holds(ran.out, "  holds   Swept modes miss nothing (0 of 1,000,000)\n"));
+    EXPECT_TRUE(holds(ran.out, "  Sweeping along a line costs twice as much"));
+    EXPECT_TRUE(holds(ran.out, "misses nothing      0\n")) << "the advice";
+    EXPECT_FALSE(holds(ran.out, "misses a fifth")) << "slower and worse than another choice";
+}
+
+TEST(Accuracy, ListsTheExperiments) {
+    const Ran ran = run({"--list"});
+    EXPECT_EQ(ran.exitCode, kExitOk);
+    EXPECT_EQ(ran.out,
+              "  S1   Samples: What do charts look like?\n"
+              "  S2   Nothing: Is nothing found?\n");
+}
+
+TEST(Accuracy, RunsOnlyWhatIsAskedFor) {
+    const Ran ran = run({"--only", "S2"});
+    EXPECT_EQ(ran.exitCode, kExitOk);
+    EXPECT_TRUE(holds(ran.out, "1 experiment, 0 checks: all hold")) << ran.out;
+    EXPECT_FALSE(holds(ran.out, "S1")) << ran.out;
+}
+
+TEST(Accuracy, SuggestsTheNearestNameOfAnUnknownExperiment) {
+    const Ran ran = run({"--only", "S1,S22"});
+    EXPECT_EQ(ran.exitCode, kExitUsage);
+    EXPECT_EQ(ran.err, "hashphase: There is no experiment 'S22'; did you mean 'S2'?\n");
+    EXPECT_EQ(ran.out, "");
+}
+
+TEST(Accuracy, FailsAndNamesTheCheckThatIsBroken) {
+    const Ran ran = run({}, {experimentOf("B1", [](const Effort& /*effort*/) {
+                            Findings findings;
+                            findings.checks = {{"One is one", true, "1 of 1"},
+                                               {"Nothing is missed", false, "3 of 10"}};
+                            return findings;
+                        })});
+    EXPECT_EQ(ran.exitCode, kExitCheckFailed);
+    EXPECT_TRUE(holds(ran.out, "  BROKEN  Nothing is missed (3 of 10)\n")) << ran.out;
+    EXPECT_TRUE(holds(ran.out,
+                      "1 experiment, 2 checks: 1 BROKEN\n"
+                      "B1: Nothing is missed (3 of 10)\n"));
+}
+
+TEST(Accuracy, CountsAnExperimentThatThrowsAsBrokenAndRunsTheOthers) {
+    std::vector<Experiment> experiments{experimentOf(
+        "T1",
+        [](const Effort& /*effort*/) -> Findings { throw std::runtime_error("out of luck"); })};
+    experiments.push_back(sampleExperiments().front());
+    const Ran ran = run({}, experiments);
+    EXPECT_EQ(ran.exitCode, kExitCheckFailed);
+    EXPECT_TRUE(holds(ran.out, "T1: The experiment comes to its end (out of luck)\n")) << ran.out;
+    EXPECT_TRUE(holds(ran.out, "  holds   Swept modes miss nothing")) << ran.out;
+}
+
+TEST(Accuracy, PassesEffortAndSeedOn) {
+    Effort seen;
+    const std::vector<Experiment> experiments{experimentOf("E1", [&seen](const Effort& effort) {
+        seen = effort;
+        return Findings{};
+    })};
+    run({"--quick", "--seed", "42"}, experiments);
+    EXPECT_TRUE(seen.isQuick);
+    EXPECT_EQ(seen.seed, 42U);
+    EXPECT_EQ(seen.quickOrFull(1, 2), 1);
+    EXPECT_EQ(run({"--seed", "-1"}, experiments).exitCode, kExitUsage);
+}
+
+TEST(Accuracy, WritesAPageAndItsDataToAFolder) {
+    const TemporaryFolder folder;
+    const std::string output = folder.file("new/report");
+    ASSERT_EQ(run({"--output", output, "--quick"}).exitCode, kExitOk);
+
+    const auto findings = nlohmann::json::parse(contentOf(output + "/S1.json"));
+    EXPECT_EQ(findings["schema"], "hashphase-accuracy");
+    EXPECT_EQ(findings["experiment"], "S1");
+    EXPECT_EQ(findings["quick"], true);
+    EXPECT_EQ(findings["provenance"]["commandLine"], "hashphase test");
+    EXPECT_EQ(findings["checks"][0]["holds"], true);
+    EXPECT_EQ(findings["choices"].size(), 3U);
+    EXPECT_EQ(findings["charts"].size(), sampleCharts().size());
+    EXPECT_TRUE(findings["charts"][1]["data"]["rows"].back()[1].is_null()) << "not measured";
+    EXPECT_EQ(nlohmann::json::parse(contentOf(output + "/S2.json"))["experiment"], "S2");
+
+    for (const Chart& chart : sampleCharts()) {
+        const std::string csv = contentOf(output + "/" + chart.name + ".csv");
+        EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), chart.data.rows.size() + 1);
+        const auto drawn = nlohmann::json::parse(contentOf(output + "/" + chart.name + ".vl.json"));
+        EXPECT_EQ(drawn["title"]["text"][0].get<std::string>().substr(0, 4),
+                  chart.title.substr(0, 4));
+    }
+    EXPECT_TRUE(
+        holds(contentOf(output + "/advice.csv"), "Fast movers,2,Sweep::line,misses nothing,0\n"));
+    const std::string page = contentOf(output + "/accuracy.html");
+    EXPECT_LT(page.find("2 experiments, 1 check: all hold"), page.find("What to choose</h2>"));
+    EXPECT_LT(page.find("What to choose</h2>"), page.find("S1 Samples</h2>"));
+    EXPECT_TRUE(holds(page, "--quick, which measures less; seed 1."));
+}
+
+TEST(Accuracy, NamesBrokenChecksOnTopOfThePage) {
+    const TemporaryFolder folder;
+    run({"--output", folder.file("r")}, {experimentOf("B1", [](const Effort& /*effort*/) {
+            Findings findings;
+            findings.checks = {{"Nothing is missed", false, "3 < 10"}};
+            return findings;
+        })});
+    EXPECT_TRUE(
+        holds(contentOf(folder.file("r/accuracy.html")),
+              "<p class=\"verdict bad\">1 experiment, 1 check: 1 BROKEN. BROKEN: B1: Nothing "
+              "is missed (3 &lt; 10).</p>"));
+}
+
+TEST(Accuracy, RefusesAFolderThatCannotBeWrittenBeforeItMeasures) {
+    const TemporaryFolder folder;
+    bool measured = false;
+    const std::vector<Experiment> experiments{experimentOf("E1", [&](const Effort& /*effort*/) {
+        measured = true;
+        return Findings{};
+    })};
+    const std::string file = folder.write("file", "");
+    const Ran below = run({"--output", file + "/r"}, experiments);
+    EXPECT_EQ(below.exitCode, kExitUsage);
+    EXPECT_TRUE(holds(below.err, file + "/r cannot be made: ")) << below.err;
+    std::filesystem::create_directories(folder.file("taken/accuracy.html"));
+    const Ran taken = run({"--output", folder.file("taken")}, experiments);
+    EXPECT_EQ(taken.exitCode, kExitUsage);
+    EXPECT_EQ(taken.err,
+              "hashphase: " + folder.file("taken") + "/accuracy.html cannot be written.\n");
+    EXPECT_FALSE(measured);
+}
+
+}  // namespace
+}  // namespace hashphase::demos

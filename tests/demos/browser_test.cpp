@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/accuracy/accuracy_command.hpp>
+#include <demos/compare/compare_command.hpp>
+#include <demos/report/chart_scripts.hpp>
+#include <tests/demos/sample_experiments.hpp>
+#include <tests/demos/temporary_folder.hpp>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cstdlib>
+#include <sstream>
+
+namespace hashphase::demos {
+namespace {
+
+using nlohmann::json;
+
+void run(const std::vector<std::string>& arguments) {
+    std::ostringstream out;
+    std::ostringstream err;
+    const std::vector<Experiment> experiments = sampleExperiments();
+    const std::array subcommands{accuracyCommand(experiments), compareCommand()};
+    ASSERT_EQ(runProgram(arguments, subcommands, {out, err, false, "hashphase test"}), kExitOk)
+        << err.str();
+}
+
+/// What tests/demos/browse.mjs saw.
+json browse(const TemporaryFolder& folder, const std::vector<std::string>& pages) {
+    std::string command = std::string("'" HASHPHASE_NODE "' '") + HASHPHASE_BROWSE_SCRIPT +
+                          "' '" HASHPHASE_CHROMIUM "'";
+    for (const std::string& page : pages) {
+        command += " '" + page + "'";
+    }
+    const std::string seen = folder.file("seen.json");
+    EXPECT_EQ(std::system((command + " >'" + seen + "'").c_str()), 0) << command;
+    return json::parse(std::ifstream(seen), nullptr, false);
+}
+
+void expectDrawn(const json& charts, std::size_t number) {
+    EXPECT_EQ(charts.size(), number);
+    for (const json& chart : charts) {
+        EXPECT_EQ(chart["drawn"], "yes") << chart;
+        EXPECT_EQ(chart["broken"], 0) << chart;
+        EXPECT_GT(chart["points"].get<int>() + chart["bars"].get<int>(), 0) << chart;
+    }
+}
+
+void expectSound(const json& page) {
+    const json& with = page["withJavaScript"];
+    // The one fault is that of the foreign script, so that breaches are known to be seen.
+    EXPECT_EQ(with["foreignScriptRan"], false);
+    ASSERT_EQ(with["faults"].size(), 1U) << with["faults"];
+    EXPECT_NE(with["faults"][0].get<std::string>().find("Content Security Policy"),
+              std::string::npos);
+    EXPECT_EQ(with["requests"].size(), 1U) << "of the page alone: " << with["requests"];
+    EXPECT_NE(with["inks"][0], with["inks"][1]) << "on a light and a dark screen";
+    EXPECT_NE(with["tooltip"], "");
+    EXPECT_EQ(with["pdf"]["begin"], "%PDF");
+
+    const json& without = page["withoutJavaScript"];
+    EXPECT_EQ(without["faults"].size(), 0U) << without["faults"];
+    EXPECT_EQ(without["drawings"], 0);
+    EXPECT_NE(without["notice"].get<std::string>().find("JavaScript, which is off"),
+              std::string::npos);
+    EXPECT_EQ(without["pdf"]["begin"], "%PDF");
+}
+
+TEST(Browser, DrawsAllChartsUnderThePolicyOfThePage) {
+    if (std::string(HASHPHASE_CHROMIUM).empty() || std::string(HASHPHASE_NODE).empty()) {
+        GTEST_SKIP() << "Chromium and Node.js are needed (Debian: chromium, npm).";
+    }
+    if (chartScripts().code.empty()) {
+        GTEST_SKIP() << chartScripts().whyNone;
+    }
+    const TemporaryFolder folder;
+    run({"accuracy", "--output", folder.file("report")});
+    run({"compare", "--objects", "60", "--frames", "12", "--html", folder.file("compare.html")});
+    const json pages =
+        browse(folder, {folder.file("report/accuracy.html"), folder.file("compare.html")});
+    ASSERT_EQ(pages.size(), 2U);
+
+    expectSound(pages[0]);
+    expectSound(pages[1]);
+    expectDrawn(pages[0]["withJavaScript"]["charts"], sampleCharts().size());
+    expectDrawn(pages[1]["withJavaScript"]["charts"], 2);
+    std::size_t rows = 0;
+    for (const Chart& chart : sampleCharts()) {
+        rows += chart.data.rows.size();
+    }
+    EXPECT_GT(pages[0]["withoutJavaScript"]["rows"], rows);
+
+    const json& lines = pages[0]["withJavaScript"]["charts"][0];
+    EXPECT_EQ(lines["points"], 3 * 14);
+    EXPECT_EQ(lines["lines"], 3 + 1) << "methods and theory";
+    EXPECT_EQ(lines["texts"][5], "0") << "the lower end of an axis with 0 apart";
+}
+
+}  // namespace
+}  // namespace hashphase::demos

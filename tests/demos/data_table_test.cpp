@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/report/data_table.hpp>
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+namespace hashphase::demos {
+namespace {
+
+std::string csvOf(const DataTable& table) {
+    std::ostringstream out;
+    writeCsv(table, out);
+    return out.str();
+}
+
+TEST(DataTable, WritesNumbersWithAllTheirDigits) {
+    EXPECT_EQ(csvOf({{{"a"}, {"b"}, {"c"}}, {{0.1, 1e-300, 30000.0}, {1.0 / 3, -0.5, 1e21}}}),
+              "a,b,c\n0.1,1e-300,30000\n0.3333333333333333,-0.5,1e+21\n");
+}
+
+TEST(DataTable, QuotesWhatWouldEndAField) {
+    EXPECT_EQ(csvOf({{{"method"}, {"say \"how\""}}, {{"a, b", "plain"}, {"two\nlines", "\"x\""}}}),
+              "method,\"say \"\"how\"\"\"\n\"a, b\",plain\n\"two\nlines\",\"\"\"x\"\"\"\n");
+}
+
+TEST(DataTable, LeavesWhatWasNotMeasuredEmpty) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const double infinity = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(csvOf({{{"a"}, {"b"}, {"c"}, {"d"}}, {{Value(), nan, -infinity, ""}}}),
+              "a,b,c,d\n,,,\n");
+    EXPECT_EQ(valueText(Value()), "-");
+    EXPECT_EQ(valueText(nan), "-");
+    EXPECT_EQ(valueText(infinity), "-");
+}
+
+TEST(DataTable, ShowsFourDigitsAndThousands) {
+    EXPECT_EQ(valueText(0.123456), "0.1235");
+    EXPECT_EQ(valueText(12.0), "12");
+    EXPECT_EQ(valueText(1234567.0), "1,234,567");
+    EXPECT_EQ(valueText(-1234.4), "-1,234");
+    EXPECT_EQ(valueText(0.0), "0");
+    EXPECT_EQ(valueText("as it is"), "as it is");
+}
+
+TEST(DataTable, FindsColumnsByName) {
+    const DataTable table{{{"a"}, {"b", "the b"}}, {}};
+    EXPECT_EQ(table.columnOf("b"), 1U);
+    EXPECT_THROW(static_cast<void>(table.columnOf("the b")), std::logic_error);
+    EXPECT_EQ(titleOf(table.columns[0]), "a");
+    EXPECT_EQ(titleOf(table.columns[1]), "the b");
+}
+
+}  // namespace
+}  // namespace hashphase::demos

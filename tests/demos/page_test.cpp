@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/report/chart_scripts.hpp>
+#include <demos/report/html.hpp>
+#include <demos/report/page.hpp>
+#include <tests/demos/sample_experiments.hpp>
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+namespace hashphase::demos {
+namespace {
+
+const std::string kHostile = "<script>alert('x')</script> & \"quoted\" <!-- ]]>";
+
+/// All of a page but the scripts that it brings along, which anything may occur in.
+std::string withoutScripts(const Page& page) {
+    std::ostringstream out;
+    writePage(page, out);
+    std::string html = out.str();
+    const std::string_view code = chartScripts().code;
+    if (!code.empty()) {
+        html.erase(html.find(code), code.size());
+    }
+    return html;
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+    std::size_t found = 0;
+    for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += part.size()) {
+        ++found;
+    }
+    return found;
+}
+
+Page samplePage() {
+    Page page{"Title", "Introduction", "Verdict", true, {}, {}};
+    page.sections.push_back(
+        {"Heading", {"Sentence"}, {"Conclusion"}, {}, sampleCharts(), {}, {"Setting"}});
+    return page;
+}
+
+TEST(Html, EscapesWhatWouldBeMarkup) {
+    EXPECT_EQ(escaped("a < b && \"c\" > 'd'"),
+              "a &lt; b &amp;&amp; &quot;c&quot; &gt; &#39;d&#39;");
+    EXPECT_EQ(escaped(""), "");
+    const std::string json = jsonInScript({{"text", "</script><!--"}});
+    EXPECT_EQ(json.find('<'), std::string::npos);
+    EXPECT_EQ(Json::parse(json)["text"], "</script><!--");
+    EXPECT_EQ(Json::parse(jsonInScript({{"text", "\xff"}}))["text"], "\xEF\xBF\xBD");
+}
+
+TEST(Html, WritesARepeatedFirstTextOnce) {
+    std::ostringstream out;
+    writeTable({{{"task"}, {"ms", "time [ms]"}}, {{"a", 1.5}, {"a", Value()}, {"b", 3.0}}}, out);
+    EXPECT_EQ(out.str(),
+              "<div class=\"table\"><table>\n<thead><tr><th scope=\"col\">task</th>"
+              "<th scope=\"col\" class=\"number\">time [ms]</th></tr></thead>\n<tbody>\n"
+              "<tr><td rowspan=\"2\">a</td><td class=\"number\">1.5</td></tr>\n"
+              "<tr><td class=\"number\">-</td></tr>\n"
+              "<tr><td>b</td><td class=\"number\">3</td></tr>\n</tbody></table></div>\n");
+}
+
+TEST(Page, EscapesTextsFromData) {
+    Page page{kHostile, kHostile, kHostile, false, {}, {}};
+    page.provenance.commandLine = kHostile;
+    Chart chart{
+        "c",   kHostile, kHostile, ChartMark::kPoint, {{{"x", kHostile}, {"m"}}, {{1.0, kHostile}}},
+        {"x"}, {"x"},    "m"};
+    page.sections.push_back({kHostile,
+                             {kHostile},
+                             {kHostile},
+                             {{kHostile, false, kHostile}},
+                             {chart},
+                             {{{{kHostile}}, {{kHostile}}}},
+                             {kHostile}});
+    const std::string html = withoutScripts(page);
+    EXPECT_EQ(html.find("alert('x')</script>"), std::string::npos);
+    EXPECT_EQ(html.find("<script>alert"), std::string::npos);
+    EXPECT_EQ(html.find("<!--"), std::string::npos);
+    EXPECT_GE(count(html, "&lt;script&gt;alert(&#39;x&#39;)&lt;/script&gt;"), 14U);
+}
+
+TEST(Page, HoldsTheNumbersOfAllChartsAsTables) {
+    const std::string html = withoutScripts(samplePage());
+    std::size_t rows = 0;
+    for (const Chart& chart : sampleCharts()) {
+        rows += chart.data.rows.size() + 1;
+        EXPECT_NE(html.find(" id=\"" + chart.name + "\">"), std::string::npos) << chart.name;
+    }
+    EXPECT_EQ(count(html.substr(0, html.find("id=\"provenance\"")), "<tr>"), rows);
+}
+
+TEST(Page, SaysInWordsWhetherAChecksHolds) {
+    Page page = samplePage();
+    page.sections[0].checks = {{"One", true, "1 of 1"}, {"Other", false, "0 of 1"}};
+    const std::string html = withoutScripts(page);
+    EXPECT_NE(html.find(">holds</span><span>One "), std::string::npos);
+    EXPECT_NE(html.find(">BROKEN</span><span>Other "), std::string::npos);
+}
+
+TEST(Page, NeedsNothingElseAndRunsNoScriptButItsOwn) {
+    const std::string html = withoutScripts(samplePage());
+    EXPECT_EQ(html.find(" src="), std::string::npos);
+    EXPECT_EQ(html.find("<link"), std::string::npos);
+    for (const char* handler : {" onload=", " onerror=", " onclick=", " onmouseover="}) {
+        EXPECT_EQ(html.find(handler), std::string::npos) << handler;
+    }
+    EXPECT_NE(html.find("default-src 'none'"), std::string::npos);
+    const std::string_view hash = chartScripts().hash;
+    EXPECT_NE(html.find("script-src '" + std::string(hash.empty() ? "none" : hash) + "';"),
+              std::string::npos);
+}
+
+TEST(ChartScripts, AreThereOrSayWhyNot) {
+    const ChartScripts scripts = chartScripts();
+    EXPECT_NE(scripts.code.empty(), scripts.whyNone.empty());
+    EXPECT_EQ(scripts.code.find("</script"), std::string_view::npos);
+    EXPECT_EQ(scripts.code.find("<!--"), std::string_view::npos);
+}
+
+}  // namespace
+}  // namespace hashphase::demos
