@@ -5,4 +5,10 @@
 
 #include <demos/accuracy/experiment.hpp>
 
-namespace hashphase::demos {}  // namespace hashphase::demos
+namespace hashphase::demos {
+
+[[nodiscard]] Experiment originExperiment();
+[[nodiscard]] Experiment timeStepExperiment();
+[[nodiscard]] Experiment trajectoryExperiment();
+
+}  // namespace hashphase::demos
