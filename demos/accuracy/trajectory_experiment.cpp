@@ -256,10 +256,11 @@ std::string timeSentence(const Run& run) {
         ratios.push_back(scene[dbvt].stepMs.median / scene[hash].stepMs.median);
     }
     std::sort(ratios.begin(), ratios.end());
-    return "A whole step under hashphase takes 1/" + fixed(ratios.front(), 2) + " to 1/" +
-           fixed(ratios.back(), 2) + " of its time under btDbvtBroadphase, in the median scene 1/" +
+    return "A whole step over hashphase is " + fixed(ratios.front(), 2) + " to " +
+           fixed(ratios.back(), 2) + " times as fast as over btDbvtBroadphase, " +
            fixed(percentile(ratios, 0.5), 2) +
-           ": most of a step of so few bodies is narrowphase and solver.";
+           " times in the median scene: of so few bodies, most of a step is narrowphase and "
+           "solver.";
 }
 
 void conclude(const Run& run, Findings& findings) {
