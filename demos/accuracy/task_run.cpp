@@ -12,6 +12,13 @@ namespace {
 
 using Worlds = std::vector<std::unique_ptr<PhysicsWorld>>;
 
+void keepEnergy(PhysicsWorld& world) {
+    world.world().getSolverInfo().m_splitImpulsePenetrationThreshold = 1;  // [m]
+    for (const auto& body : world.contents().bodies()) {
+        body->setContactProcessingThreshold(0);
+    }
+}
+
 void look(const PhysicsTask& task, const Worlds& worlds, double seconds,
           std::vector<TaskOutcome>& outcomes) {
     for (std::size_t i = 0; i < worlds.size(); ++i) {
@@ -38,6 +45,9 @@ std::vector<TaskOutcome> runTask(const PhysicsTask& task, const Stepping& steppi
         solver.m_numIterations = stepping.iterations;
         solver.m_restitutionVelocityThreshold = 0;  // what is lossless is so at any speed
         task.fill(worlds.back()->contents(), seed);
+        if (stepping.keepsEnergy) {
+            keepEnergy(*worlds.back());
+        }
         methods.emplace_back([&stepping, step, world = worlds.back().get()] {
             world->step(step, stepping.substeps);
         });

@@ -34,6 +34,10 @@ struct Stepping {
     int substeps = 1;  // between two looks
     int iterations = 10;
 
+    /// Only what touches is in contact (setContactProcessingThreshold(0)), and overlap is undone
+    /// without adding speed, however small it is (m_splitImpulsePenetrationThreshold above 0).
+    bool keepsEnergy = false;
+
     [[nodiscard]] int stepsPerSecond() const noexcept { return kLooksPerSecond * substeps; }
 };
 

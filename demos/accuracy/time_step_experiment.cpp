@@ -35,6 +35,9 @@ std::vector<TaskPoint> runTimeSteps(std::span<const PhysicsTask> tasks,
         for (const int substeps : settings.substeps) {
             points.push_back({&task, std::string(kSmallerSteps), {substeps, 10}, {}});
         }
+        for (const int substeps : settings.substeps) {
+            points.push_back({&task, std::string(kKeepingEnergy), {substeps, 10, true}, {}});
+        }
     }
     for (const int iterations : settings.iterations) {
         points.push_back({&tasks.front(), "steps of 1/60 s, more iterations", {2, iterations}, {}});

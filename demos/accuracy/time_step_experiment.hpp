@@ -24,8 +24,10 @@ struct TimeStepSettings {
 /// Ours and btDbvtBroadphase, both with their lists in canonical order and as shipped.
 [[nodiscard]] std::vector<PhysicsContestant> timeStepContestants();
 
-/// The way in which all tasks are tried.
+/// The ways in which all tasks are tried: Bullet as it is, and with Stepping::keepsEnergy.
 inline constexpr std::string_view kSmallerSteps = "smaller steps, 10 iterations each";
+inline constexpr std::string_view kKeepingEnergy =
+    "smaller steps, 10 iterations each, contacts that keep energy";
 
 /// A task with one setting of the engine, done.
 struct TaskPoint {
@@ -35,7 +37,7 @@ struct TaskPoint {
     std::vector<TaskOutcome> outcomes;  // one a contestant
 };
 
-/// All tasks with each of the substeps; the first task, the hardest on the solver, with each number
+/// All tasks with each of the substeps, in both ways; the first task, the hardest on the solver, with each number
 /// of iterations and each way to share the product as well.
 [[nodiscard]] std::vector<TaskPoint> runTimeSteps(std::span<const PhysicsTask> tasks,
                                                   std::span<const PhysicsContestant> contestants,

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/time_step_experiment.hpp>
+#include <demos/accuracy/time_step_report.hpp>
 
 #include <demos/console/format.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 namespace hashphase::demos {
 namespace {
@@ -13,168 +12,10 @@ namespace {
 using Points = std::span<const TaskPoint>;
 using Contestants = std::span<const PhysicsContestant>;
 
-std::string stepText(const Stepping& stepping) {
-    return "1/" + std::to_string(stepping.stepsPerSecond()) + " s";
-}
-
-std::string settingText(const Stepping& stepping) {
-    return stepText(stepping) + ", " + std::to_string(stepping.iterations) + " iterations";
-}
-
 std::string withUnit(double error, const PhysicsMeasure& measure) {
     const std::string number = valueText(measure.unit.empty() ? 100 * error : error);
     return number + " " + (measure.unit.empty() ? "%" : measure.unit);
 }
-
-std::string axisTitle(const PhysicsMeasure& measure) {
-    return measure.title + ", root mean square" +
-           (measure.unit.empty() ? "" : " [" + measure.unit + "]");
-}
-
-/// The points of a task by smaller steps alone, the longest steps first.
-std::vector<const TaskPoint*> bySteps(Points points, const PhysicsTask& task) {
-    std::vector<const TaskPoint*> chosen;
-    for (const TaskPoint& point : points) {
-        if (point.task == &task && point.way == kSmallerSteps) {
-            chosen.push_back(&point);
-        }
-    }
-    return chosen;
-}
-
-/// True where all contestants with canonical lists passed through the same states.
-bool isSame(const TaskPoint& point, Contestants contestants) {
-    std::vector<std::uint64_t> states;
-    for (std::size_t i = 0; i < contestants.size(); ++i) {
-        if (contestants[i].isCanonical()) {
-            states.push_back(point.outcomes[i].states);
-        }
-    }
-    return std::adjacent_find(states.begin(), states.end(), std::not_equal_to<>()) == states.end();
-}
-
-// --- Tables and charts --------------------------------------------------------------------------------
-
-DataTable allTable(Contestants contestants, Points points) {
-    DataTable table{{{"task"},
-                     {"error", "error, root mean square"},
-                     {"step_s", "step"},
-                     {"iterations"},
-                     {"same", "same states in canonical order"}},
-                    {}};
-    for (const PhysicsContestant& each : contestants) {
-        table.columns.push_back({each.name + " error", each.name + ": error"});
-        table.columns.push_back({each.name + " ms", "ms a simulated second"});
-    }
-    for (const TaskPoint& point : points) {
-        for (std::size_t k = 0; k < point.task->measures.size(); ++k) {
-            const PhysicsMeasure& measure = point.task->measures[k];
-            std::vector<Value> row{
-                point.task->name,
-                measure.name + (measure.unit.empty() ? "" : " [" + measure.unit + "]"),
-                stepText(point.stepping), static_cast<double>(point.stepping.iterations),
-                isSame(point, contestants) ? "yes" : "no"};
-            for (const TaskOutcome& outcome : point.outcomes) {
-                row.emplace_back(outcome.errors[k]);
-                row.emplace_back(outcome.secondMs.median);
-            }
-            table.add(std::move(row));
-        }
-    }
-    return table;
-}
-
-const std::string kChartSettings =
-    "Bullet 3 in single precision; two simulated seconds, looked at 30 times a second; the time is "
-    "that of a simulated second, a real-time factor of 1 being 1,000 ms; lower left is better";
-
-Chart measureChart(const PhysicsTask& task, std::size_t k, Contestants contestants, Points points) {
-    const PhysicsMeasure& measure = task.measures[k];
-    Chart chart;
-    chart.name = "P7-" + task.name + "-" + measure.name;
-    chart.title = task.title + ": " + measure.title;
-    chart.settings = "10 iterations a step, a point for each length of step; " + kChartSettings;
-    chart.data.columns = {{"method"},
-                          {"step_s", "step"},
-                          {"second_ms", "time of a simulated second [ms]"},
-                          {"low_ms", "5 % [ms]"},
-                          {"high_ms", "95 % [ms]"},
-                          {"real_time_factor", "real-time factor"},
-                          {"error", axisTitle(measure)}};
-    for (std::size_t i = 0; i < contestants.size(); ++i) {
-        for (const TaskPoint* point : bySteps(points, task)) {
-            const TaskOutcome& outcome = point->outcomes[i];
-            chart.data.add({contestants[i].name, stepText(point->stepping), outcome.secondMs.median,
-                            outcome.secondMs.low, outcome.secondMs.high,
-                            1000 / outcome.secondMs.median, outcome.errors[k]});
-        }
-    }
-    chart.x = {"second_ms", AxisScale::kLog};
-    chart.y = {"error", AxisScale::kLogAndZero};
-    chart.series = "method";
-    chart.label = "step_s";
-    return chart;
-}
-
-Chart waysChart(const PhysicsTask& task, Contestants contestants, Points points) {
-    Chart chart;
-    chart.name = "P7-ways";
-    chart.title = task.title + ": what buys accuracy, smaller steps or more iterations?";
-    chart.settings = contestants.front().name + "; " + kChartSettings;
-    chart.data.columns = {{"way"},
-                          {"setting"},
-                          {"second_ms", "time of a simulated second [ms]"},
-                          {"error", axisTitle(task.measures.front())}};
-    for (const TaskPoint& point : points) {
-        if (point.task == &task) {
-            const TaskOutcome& outcome = point.outcomes.front();
-            chart.data.add({point.way, settingText(point.stepping), outcome.secondMs.median,
-                            outcome.errors.front()});
-        }
-    }
-    chart.x = {"second_ms", AxisScale::kLog};
-    chart.y = {"error", AxisScale::kLogAndZero};
-    chart.series = "way";
-    chart.label = "setting";
-    chart.showFront = true;
-    return chart;
-}
-
-/// The root mean square of what a free fall goes wrong by at the looks [mm].
-double predictedFallError(const Stepping& stepping) {
-    constexpr int kLooks = 60;
-    double sum = 0;
-    for (int look = 1; look <= kLooks; ++look) {
-        const double seconds = static_cast<double>(look) / kLooksPerSecond;
-        sum += std::pow(fallErrorOf(1.0 / stepping.stepsPerSecond(), seconds), 2);
-    }
-    return 1000 * std::sqrt(sum / kLooks);
-}
-
-Chart fallChart(const PhysicsTask& task, Contestants contestants, Points points) {
-    Chart chart;
-    chart.name = "P7-fall-theory";
-    chart.title = "Free fall goes wrong as theory says: by half a step at the speed gained";
-    chart.settings = kChartSettings;
-    chart.data.columns = {{"method"},
-                          {"step_ms", "step [ms]"},
-                          {"error", axisTitle(task.measures.front())},
-                          {"theory", "g t step / 2 [mm]"}};
-    for (std::size_t i = 0; i < contestants.size(); ++i) {
-        for (const TaskPoint* point : bySteps(points, task)) {
-            chart.data.add({contestants[i].name, 1000.0 / point->stepping.stepsPerSecond(),
-                            point->outcomes[i].errors.front(),
-                            predictedFallError(point->stepping)});
-        }
-    }
-    chart.x = {"step_ms", AxisScale::kLog};
-    chart.y = {"error", AxisScale::kLog};
-    chart.series = "method";
-    chart.theory = "theory";
-    return chart;
-}
-
-// --- Checks, choices, conclusions ---------------------------------------------------------------------
 
 Check sameCheck(Contestants contestants, Points points) {
     const auto same = std::count_if(points.begin(), points.end(), [&](const TaskPoint& point) {
@@ -187,28 +28,19 @@ Check sameCheck(Contestants contestants, Points points) {
         std::to_string(same) + " of " + std::to_string(points.size()) + " settings"};
 }
 
-/// The most that single precision can put the fall off: half a unit in the last place a step, in
-/// speed and in place [mm].
-double fallRounding(const Stepping& stepping) {
-    constexpr double kSeconds = 2;
-    constexpr double kGravity = 10;
-    constexpr double kUnitRoundoff = 0x1p-24;
-    const double depth = kGravity * kSeconds * kSeconds / 2;
-    return 1000 * 2 * depth * kUnitRoundoff * kSeconds * stepping.stepsPerSecond();
-}
-
 Check fallCheck(const PhysicsTask& task, Points points) {
     bool holds = true;
     double farthest = 0;
     double allowed = 0;
     for (const TaskPoint* point : bySteps(points, task)) {
+        const double rounding = 1000 * fallRoundingOf(1.0 / point->stepping.stepsPerSecond(), 2);
         for (const TaskOutcome& outcome : point->outcomes) {
             const double away =
                 std::abs(outcome.errors.front() - predictedFallError(point->stepping));
-            holds = holds && away <= fallRounding(point->stepping);
+            holds = holds && away <= rounding;
             farthest = std::max(farthest, away);
         }
-        allowed = std::max(allowed, fallRounding(point->stepping));
+        allowed = std::max(allowed, rounding);
     }
     return {"Free fall goes wrong by what theory says of such steps, up to single precision", holds,
             "at most " + fixed(farthest, 3) + " mm away; rounding may add up to " +
@@ -255,16 +87,17 @@ void compareTimes(Contestants contestants, Points points, std::vector<std::strin
 }
 
 /// What smaller steps did to every error, under the first contestant.
-void followSteps(std::span<const PhysicsTask> tasks, Points points,
+void followSteps(std::span<const PhysicsTask> tasks, Points points, std::string_view way,
                  std::vector<std::string>& conclusions) {
+    const std::string contacts = way == kKeepingEnergy ? ", contacts that keep energy, " : ", ";
     for (const PhysicsTask& task : tasks) {
-        const std::vector<const TaskPoint*> own = bySteps(points, task);
+        const std::vector<const TaskPoint*> own = bySteps(points, task, way);
         for (std::size_t k = 0; k < task.measures.size(); ++k) {
             const PhysicsMeasure& measure = task.measures[k];
             const double before = own.front()->outcomes.front().errors[k];
             const double after = own.back()->outcomes.front().errors[k];
             conclusions.push_back(
-                task.title + ", " + measure.title + ": " + withUnit(before, measure) +
+                task.title + contacts + measure.title + ": " + withUnit(before, measure) +
                 " with steps of " + stepText(own.front()->stepping) + ", " +
                 withUnit(after, measure) + " with " + stepText(own.back()->stepping) +
                 (after > before ? "; smaller steps make it worse." : "."));
@@ -304,31 +137,29 @@ Findings judgeTimeSteps(std::span<const PhysicsTask> tasks, Contestants contesta
                         Points points) {
     Findings findings;
     findings.settings = {
-        kChartSettings + ".",
+        std::string(kTimeStepSettings) + ".",
         "After SimBenchmark (Kang, Hwangbo and others). Truth: the laws of motion in double "
         "precision; that nothing overlaps. Errors of Bullet's steps against continuous motion are "
         "meant to be seen.",
         "Canonical order: pairs sorted by the numbers of the bodies, contacts by age and with "
         "m_deterministicOverlappingPairs. No body sleeps. Restitution holds at any speed.",
+        "Contacts that keep energy: setContactProcessingThreshold(0), so that only what touches is "
+        "in contact, and m_splitImpulsePenetrationThreshold above 0, so that overlap is undone "
+        "without adding speed.",
     };
-    findings.tables = {allTable(contestants, points)};
-    for (const PhysicsTask& task : tasks) {
-        for (std::size_t k = 0; k < task.measures.size(); ++k) {
-            findings.charts.push_back(measureChart(task, k, contestants, points));
-        }
-    }
-    findings.charts.push_back(waysChart(tasks.front(), contestants, points));
+    findings.tables = {timeStepTable(contestants, points)};
+    findings.charts = timeStepCharts(tasks, contestants, points);
     findings.checks.push_back(sameCheck(contestants, points));
     for (const PhysicsTask& task : tasks) {
-        if (task.name == "fall") {
-            findings.charts.push_back(fallChart(task, contestants, points));
+        if (task.name == kFallName) {
             findings.checks.push_back(fallCheck(task, points));
         }
     }
     offer(contestants, points, findings.choices);
     compareTimes(contestants, points, findings.conclusions);
     compareWays(tasks.front(), points, findings.conclusions);
-    followSteps(tasks, points, findings.conclusions);
+    followSteps(tasks, points, kSmallerSteps, findings.conclusions);
+    followSteps(tasks, points, kKeepingEnergy, findings.conclusions);
     return findings;
 }
 

@@ -93,9 +93,8 @@ TEST(TrajectoryExperiment, NoticesAPairThatIsForgottenForOneStep) {
 
 Findings timeSteps(const std::vector<PhysicsContestant>& contestants) {
     std::vector<PhysicsTask> tasks = physicsTasks();
-    std::erase_if(tasks, [](const PhysicsTask& task) {
-        return task.name != "roll" && task.name != "fall";
-    });
+    std::erase_if(
+        tasks, [](const PhysicsTask& task) { return task.name != "roll" && task.name != "fall"; });
     const TimeStepSettings settings{{1, 2}, {5}, 8, 1};
     const std::vector<TaskPoint> points = runTimeSteps(tasks, contestants, settings, kTellNobody);
     return judgeTimeSteps(tasks, contestants, points);
