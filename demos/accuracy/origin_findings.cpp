@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/origin_experiment.hpp>
+#include <demos/accuracy/origin_report.hpp>
 
-#include <demos/accuracy/binomial.hpp>
 #include <demos/console/format.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <string>
 
 namespace hashphase::demos {
@@ -16,131 +14,12 @@ using Points = std::span<const OriginPoint>;
 using Methods = std::span<const OriginMethod>;
 using SettleMethods = std::span<const SettleMethod>;
 
-double shareOf(std::uint64_t part, std::uint64_t whole) {
-    return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
-}
-
-double percentOf(std::uint64_t part, std::uint64_t whole) {
-    return 100 * shareOf(part, whole);
-}
-
-/// How much longer than in single precision at the origin [%].
-double overhead(const OriginOutcomes& outcomes, std::size_t method) {
-    return 100 * (outcomes.methods[method].frameMs.median / outcomes.atOriginMs.median - 1);
-}
-
 std::string distanceText(double offset) {
     return withThousands(static_cast<std::uint64_t>(offset)) + " m";
 }
 
 std::string countText(std::uint64_t part, std::uint64_t whole) {
     return withThousands(part) + " of " + withThousands(whole);
-}
-
-// --- Tables and charts --------------------------------------------------------------------------------
-
-DataTable fineTable(Methods methods, Points points) {
-    DataTable table{{{"offset_m", "distance from the origin [m]"},
-                     {"method"},
-                     {"pairs", "pairs that there are"},
-                     {"missed", "missed pairs"},
-                     {"missed_percent", "missed pairs [%]"},
-                     {"missed_low", "at least [%]"},
-                     {"missed_high", "at most [%]"},
-                     {"extra_percent", "false pairs [% of those that there are]"},
-                     {"hits", "hits of rays that there are"},
-                     {"missed_hits", "missed hits"},
-                     {"missed_hits_percent", "missed hits [%]"},
-                     {"false_hits_percent", "false hits [% of those that there are]"},
-                     {"frame_ms", "frame [ms]"},
-                     {"overhead_percent", "longer than float at the origin [%]"}},
-                    {}};
-    for (const OriginPoint& point : points) {
-        for (std::size_t i = 0; i < methods.size(); ++i) {
-            const OriginOutcome& each = point.fine.methods[i];
-            const ShareInterval missed =
-                each.pairs == 0 ? ShareInterval{} : wilsonInterval(each.missedPairs, each.pairs);
-            table.add({point.offset, methods[i].name, static_cast<double>(each.pairs),
-                       static_cast<double>(each.missedPairs),
-                       percentOf(each.missedPairs, each.pairs), 100 * missed.low, 100 * missed.high,
-                       percentOf(each.extraPairs, each.pairs), static_cast<double>(each.hits),
-                       static_cast<double>(each.missedHits), percentOf(each.missedHits, each.hits),
-                       percentOf(each.falseHits, each.hits), each.frameMs.median,
-                       overhead(point.fine, i)});
-        }
-    }
-    return table;
-}
-
-/// The origin, and what charts show of a thousand, ten thousand, ... metres: enough for a table.
-std::vector<OriginPoint> nextToPowersOfTen(Points points) {
-    std::vector<OriginPoint> few;
-    std::copy_if(points.begin(), points.end(), std::back_inserter(few), [](const auto& point) {
-        return point.offset == 0 || isNextToPowerOfTen(point.offset);
-    });
-    return few;
-}
-
-DataTable settleTable(SettleMethods methods, Points points) {
-    DataTable table{{{"offset_m", "distance from the origin [m]"},
-                     {"method"},
-                     {"position_error_m", "farthest from the place of rest [m]"},
-                     {"settle_step", "settled after step"},
-                     {"settle_difference", "steps later than at the origin"},
-                     {"step_ms", "step [ms]"}},
-                    {}};
-    for (const OriginPoint& point : points) {
-        for (std::size_t i = 0; i < methods.size(); ++i) {
-            const SettleOutcome& each = point.settled[i];
-            table.add({point.offset, methods[i].name, each.positionError,
-                       static_cast<double>(each.settleStep),
-                       static_cast<double>(each.settleStep - points.front().settled[i].settleStep),
-                       each.stepMs.median});
-        }
-    }
-    return table;
-}
-
-std::string settingsText(const OriginSettings& settings) {
-    return withThousands(settings.boxes) + " moving boxes of 0.5 to 2 m within 20 m, and " +
-           withThousands(settings.rays) +
-           " rays, moved away from the origin by powers of two along all three axes; coordinates "
-           "are multiples of 1/16 m, so many boxes just touch; 60 frames, 6 of them compared with "
-           "integer arithmetic; seed " +
-           std::to_string(settings.seed);
-}
-
-Chart lineChart(const std::string& name, const std::string& title, const std::string& settings,
-                const DataTable& data, const Axis& y) {
-    Chart chart;
-    chart.name = "P6-" + name;
-    chart.title = title;
-    chart.settings = settings;
-    chart.data = data;
-    chart.x = {"offset_m", AxisScale::kLogAndZero};
-    chart.y = y;
-    chart.series = "method";
-    return chart;
-}
-
-std::vector<Chart> charts(const OriginSettings& settings, const DataTable& fine,
-                          const DataTable& settled) {
-    const std::string text = settingsText(settings);
-    std::vector<Chart> all{
-        lineChart("extra-pairs", "How many false pairs there are far from the origin", text, fine,
-                  {"extra_percent", AxisScale::kLogAndZero}),
-        lineChart("missed-pairs", "How many pairs are missed far from the origin", text, fine,
-                  {"missed_percent", AxisScale::kLinear}),
-        lineChart("missed-hits", "How many hits of rays are missed far from the origin", text, fine,
-                  {"missed_hits_percent", AxisScale::kLinear}),
-        lineChart("overhead", "What each way costs, against single precision at the origin", text,
-                  fine, {"overhead_percent", AxisScale::kLinear}),
-        lineChart("position-error", "How far from their place balls come to rest",
-                  "16 balls dropped onto a floor, 300 steps of 1/60 s, Bullet in single precision",
-                  settled, {"position_error_m", AxisScale::kLogAndZero})};
-    all[1].low = "missed_low";
-    all[1].high = "missed_high";
-    return all;
 }
 
 // --- Checks -------------------------------------------------------------------------------------------
@@ -222,15 +101,15 @@ void offer(Methods methods, SettleMethods settleMethods, const OriginSettings& s
     for (std::size_t i = 0; i < methods.size(); ++i) {
         const OriginOutcome& each = far.fine.methods[i];
         choices.push_back({boxes + "no pair missed", methods[i].name, each.frameMs.median,
-                           shareOf(each.missedPairs, each.pairs),
+                           each.missedPairPercent() / 100,
                            "misses " + countText(each.missedPairs, each.pairs) + " pairs",
                            methods[i].isOurs});
     }
     for (std::size_t i = 0; i < methods.size(); ++i) {
         const OriginOutcome& each = far.fine.methods[i];
         choices.push_back({boxes + "no false pair", methods[i].name, each.frameMs.median,
-                           shareOf(each.extraPairs, each.pairs),
-                           fixed(percentOf(each.extraPairs, each.pairs), 1) + " % false pairs",
+                           each.extraPairPercent() / 100,
+                           fixed(each.extraPairPercent(), 1) + " % false pairs",
                            methods[i].isOurs});
     }
     for (std::size_t i = 0; i < settleMethods.size(); ++i) {
@@ -250,7 +129,7 @@ std::string firstDistance(Points points, const IsSo& isSo) {
 }
 
 std::string timesText(const OriginOutcomes& outcomes, std::size_t method) {
-    return fixed(1 + overhead(outcomes, method) / 100, 2);
+    return fixed(1 + overheadPercent(outcomes, method) / 100, 2);
 }
 
 void concludeMethods(Methods methods, Points points, std::vector<std::string>& conclusions) {
@@ -268,16 +147,16 @@ void concludeMethods(Methods methods, Points points, std::vector<std::string>& c
             firstDistance(points,
                           [i](const OriginPoint& p) {
                               const OriginOutcome& outcome = p.fine.methods[i];
-                              return percentOf(outcome.extraPairs, outcome.pairs) > 1;
+                              return outcome.extraPairPercent() > 1;
                           }) +
             ", misses hits of rays " +
             firstDistance(points,
                           [i](const OriginPoint& p) { return p.fine.methods[i].missedHits > 0; }) +
-            "; at " + distanceText(far.offset) + " " +
-            fixed(percentOf(each.missedPairs, each.pairs), 1) + " % of pairs missed, " +
-            fixed(percentOf(each.extraPairs, each.pairs), 1) + " % false, a frame takes " +
-            timesText(far.fine, i) + " times as long as float at the origin (" +
-            timesText(points.front().fine, i) + " when there as well).");
+            "; at " + distanceText(far.offset) + " " + fixed(each.missedPairPercent(), 1) +
+            " % of pairs missed, " + fixed(each.extraPairPercent(), 1) +
+            " % false, a frame takes " + timesText(far.fine, i) +
+            " times as long as float at the origin (" + timesText(points.front().fine, i) +
+            " when there as well).");
     }
 }
 
@@ -303,7 +182,7 @@ Findings judgeOrigin(Methods methods, SettleMethods settleMethods, const OriginS
                      Points points) {
     Findings findings;
     findings.settings = {
-        settingsText(settings) + ".",
+        originSettingsText(settings) + ".",
         "Truth: integer arithmetic. The coordinates given are exact in double precision at every "
         "distance; the same scene in steps of 128 m has coordinates that are exact in single "
         "precision as well.",
@@ -313,10 +192,8 @@ Findings judgeOrigin(Methods methods, SettleMethods settleMethods, const OriginS
         "A frame: convert and set all boxes, bring the pairs up to date. The ground truth of rays "
         "is the segment before rounding.",
     };
-    findings.charts =
-        charts(settings, fineTable(methods, points), settleTable(settleMethods, points));
-    const std::vector<OriginPoint> few = nextToPowersOfTen(points);
-    findings.tables = {fineTable(methods, few), settleTable(settleMethods, few)};
+    findings.tables = originTables(methods, settleMethods, points);
+    findings.charts = originCharts(methods, settleMethods, settings, points);
     for (std::size_t i = 0; i < methods.size(); ++i) {
         if (methods[i].isOurs) {
             judgeMethod(methods[i], sumOf(points, &OriginPoint::fine, i),

@@ -21,6 +21,17 @@ struct OriginOutcome {
     std::uint64_t missedHits = 0;
     std::uint64_t falseHits = 0;
     Spread frameMs;  // to set all boxes and bring the pairs up to date
+
+    // Of the pairs, or hits, that there are; false ones may be many times as many.
+    [[nodiscard]] double missedPairPercent() const { return percent(missedPairs, pairs); }
+    [[nodiscard]] double extraPairPercent() const { return percent(extraPairs, pairs); }
+    [[nodiscard]] double missedHitPercent() const { return percent(missedHits, hits); }
+    [[nodiscard]] double falseHitPercent() const { return percent(falseHits, hits); }
+
+private:
+    static double percent(std::uint64_t part, std::uint64_t whole) {
+        return whole == 0 ? 0 : 100 * static_cast<double>(part) / static_cast<double>(whole);
+    }
 };
 
 struct OriginOutcomes {

@@ -66,7 +66,7 @@ Experiment timeStepExperiment() {
     return {"P7",
             "Time step, substeps, iterations",
             "What do smaller steps and more iterations buy, and does the broadphase change it?",
-            4,
+            5,
             60,
             [](const Effort& effort, const TellProgress& tell) {
                 TimeStepSettings settings;

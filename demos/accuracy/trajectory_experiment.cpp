@@ -1,167 +1,17 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/trajectory_experiment.hpp>
+#include <demos/accuracy/trajectory_run.hpp>
 
 #include <demos/accuracy/experiments.hpp>
-#include <demos/accuracy/scene_run.hpp>
 #include <demos/console/format.hpp>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <string>
 #include <vector>
 
 namespace hashphase::demos {
 namespace {
 
-constexpr std::array kOrders{ListOrder::canonical, ListOrder::byUniqueId, ListOrder::asShipped};
-
-/// Everything that was run: outcomes[order][scene][broadphase].
-struct Run {
-    std::span<const PhysicsBroadphase> broadphases;
-    std::span<const PhysicsScene> scenes;
-    TrajectorySettings settings;
-    std::vector<std::vector<std::vector<SceneOutcome>>> outcomes;
-
-    [[nodiscard]] std::size_t objects(const PhysicsScene& scene) const {
-        return settings.isQuick ? scene.quickObjects : scene.fullObjects;
-    }
-    [[nodiscard]] std::size_t indexOf(std::string_view name) const {
-        const auto at = std::find_if(broadphases.begin(), broadphases.end(),
-                                     [name](const auto& each) { return each.name == name; });
-        return static_cast<std::size_t>(at - broadphases.begin());
-    }
-    [[nodiscard]] const std::vector<std::vector<SceneOutcome>>& in(ListOrder order) const {
-        return outcomes[static_cast<std::size_t>(std::find(kOrders.begin(), kOrders.end(), order) -
-                                                 kOrders.begin())];
-    }
-    /// In how many scenes the broadphase moves bodies as the reference does.
-    [[nodiscard]] std::size_t sameCount(ListOrder order, std::size_t broadphase) const {
-        const auto& scenesOfOrder = in(order);
-        return static_cast<std::size_t>(
-            std::count_if(scenesOfOrder.begin(), scenesOfOrder.end(),
-                          [&](const auto& scene) { return scene[broadphase].isSame(); }));
-    }
-    [[nodiscard]] std::string sameText(ListOrder order, std::size_t broadphase) const {
-        return std::to_string(sameCount(order, broadphase)) + " of " +
-               std::to_string(scenes.size());
-    }
-};
-
-Run runAll(std::span<const PhysicsBroadphase> broadphases, std::span<const PhysicsScene> scenes,
-           const TrajectorySettings& settings, const TellProgress& tell) {
-    Run run{broadphases, scenes, settings, {}};
-    const std::size_t reference = run.indexOf(kSimpleName);
-    double done = 0;
-    for (const ListOrder order : kOrders) {
-        auto& outcomes = run.outcomes.emplace_back();
-        for (const PhysicsScene& scene : scenes) {
-            tell(done++ / static_cast<double>(kOrders.size() * scenes.size()), scene.name);
-            outcomes.push_back(runScene(scene, run.objects(scene), settings.seed, settings.steps,
-                                        broadphases, order, reference));
-        }
-    }
-    return run;
-}
-
-DataTable sameTable(const Run& run) {
-    DataTable table{{{"order", "order of lists"}, {"scene"}, {"objects"}}, {}};
-    for (const PhysicsBroadphase& each : run.broadphases) {
-        if (each.name != kSimpleName) {
-            table.columns.push_back({each.name, "same bits with " + each.name});
-        }
-    }
-    for (const ListOrder order : kOrders) {
-        for (std::size_t scene = 0; scene < run.scenes.size(); ++scene) {
-            std::vector<Value> row{std::string(titleOf(order)), run.scenes[scene].name,
-                                   static_cast<double>(run.objects(run.scenes[scene]))};
-            for (std::size_t i = 0; i < run.broadphases.size(); ++i) {
-                const SceneOutcome& outcome = run.in(order)[scene][i];
-                if (run.broadphases[i].name != kSimpleName) {
-                    row.emplace_back(outcome.isSame()
-                                         ? "yes"
-                                         : "until step " + std::to_string(outcome.firstDifference));
-                }
-            }
-            table.add(std::move(row));
-        }
-    }
-    return table;
-}
-
-constexpr double kStepMs = 1000.0 / 60;
-
-DataTable timeTable(const Run& run) {
-    DataTable table{{{"scene"},
-                     {"objects"},
-                     {"method"},
-                     {"step_ms", "step [ms]"},
-                     {"low_ms", "5 % of steps [ms]"},
-                     {"high_ms", "95 % of steps [ms]"},
-                     {"real_time_factor", "real-time factor"},
-                     {"ratio_to_dbvt", "times as fast as btDbvtBroadphase"},
-                     {"pairs", "pairs at the end"},
-                     {"asleep", "asleep on average"}},
-                    {}};
-    const std::size_t dbvt = run.indexOf(kDbvtName);
-    for (std::size_t scene = 0; scene < run.scenes.size(); ++scene) {
-        const auto& outcomes = run.in(ListOrder::asShipped)[scene];
-        for (std::size_t i = 0; i < outcomes.size(); ++i) {
-            const SceneOutcome& each = outcomes[i];
-            table.add({run.scenes[scene].name, static_cast<double>(run.objects(run.scenes[scene])),
-                       run.broadphases[i].name, each.stepMs.median, each.stepMs.low,
-                       each.stepMs.high, kStepMs / each.stepMs.median,
-                       outcomes[dbvt].stepMs.median / each.stepMs.median,
-                       static_cast<double>(each.pairs),
-                       static_cast<double>(each.asleep) / run.settings.steps});
-        }
-    }
-    return table;
-}
-
-std::string settingsText(const Run& run) {
-    return withThousands(static_cast<std::uint64_t>(run.settings.steps)) +
-           " steps of 1/60 s, 10 solver iterations, sleeping on, single precision, seed " +
-           std::to_string(run.settings.seed);
-}
-
-Chart sameChart(const Run& run) {
-    Chart chart;
-    chart.name = "P8-same-motion";
-    chart.title = "In how many scenes do all bodies move as under brute force, to the last bit?";
-    chart.settings = settingsText(run) + "; " + std::to_string(run.scenes.size()) + " scenes";
-    chart.mark = ChartMark::kCell;
-    chart.data.columns = {{"method", "broadphase"},
-                          {"order", "order of lists"},
-                          {"same", "scenes with the same motion"}};
-    for (const ListOrder order : kOrders) {
-        for (std::size_t i = 0; i < run.broadphases.size(); ++i) {
-            chart.data.add({run.broadphases[i].name, std::string(titleOf(order)),
-                            static_cast<double>(run.sameCount(order, i))});
-        }
-    }
-    chart.x = {"method", AxisScale::kNames};
-    chart.y = {"order", AxisScale::kNames};
-    chart.shade = {"same", AxisScale::kLinear};
-    return chart;
-}
-
-Chart timeChart(const Run& run) {
-    Chart chart;
-    chart.name = "P8-step-time";
-    chart.title = "What a whole step costs under each broadphase";
-    chart.settings = settingsText(run) + "; lists as shipped; bars from 5 % to 95 % of the steps";
-    chart.mark = ChartMark::kPoint;
-    chart.data = timeTable(run);
-    chart.x = {"scene", AxisScale::kNames};
-    chart.y = {"step_ms", AxisScale::kLog};
-    chart.series = "method";
-    chart.low = "low_ms";
-    chart.high = "high_ms";
-    return chart;
-}
-
-void judge(const Run& run, Findings& findings) {
+void judge(const TrajectoryRun& run, Findings& findings) {
     for (std::size_t i = 0; i < run.broadphases.size(); ++i) {
         const PhysicsBroadphase& each = run.broadphases[i];
         if (each.isExact && each.name != kSimpleName) {
@@ -175,7 +25,7 @@ void judge(const Run& run, Findings& findings) {
     }
 }
 
-double meanStepMs(const Run& run, ListOrder order, std::size_t broadphase) {
+double meanStepMs(const TrajectoryRun& run, ListOrder order, std::size_t broadphase) {
     double sum = 0;
     for (const auto& scene : run.in(order)) {
         sum += scene[broadphase].stepMs.median;
@@ -183,11 +33,11 @@ double meanStepMs(const Run& run, ListOrder order, std::size_t broadphase) {
     return sum / static_cast<double>(run.scenes.size());
 }
 
-void offer(const Run& run, Findings& findings) {
+void offer(const TrajectoryRun& run, Findings& findings) {
     const auto scenes = static_cast<double>(run.scenes.size());
     const std::string task = "A step of a Bullet world that moves as under brute force (mean of " +
                              std::to_string(run.scenes.size()) + " scenes)";
-    for (const ListOrder order : kOrders) {
+    for (const ListOrder order : kListOrders) {
         for (std::size_t i = 0; i < run.broadphases.size(); ++i) {
             const auto same = static_cast<double>(run.sameCount(order, i));
             findings.choices.push_back(
@@ -199,7 +49,7 @@ void offer(const Run& run, Findings& findings) {
     }
 }
 
-std::string sameSentence(const Run& run, ListOrder order) {
+std::string sameSentence(const TrajectoryRun& run, ListOrder order) {
     std::string text;
     for (std::size_t i = 0; i < run.broadphases.size(); ++i) {
         if (run.broadphases[i].name != kSimpleName) {
@@ -211,7 +61,7 @@ std::string sameSentence(const Run& run, ListOrder order) {
 }
 
 /// Why the tree differs from brute force, as far as the runs tell.
-std::string dbvtSentence(const Run& run) {
+std::string dbvtSentence(const TrajectoryRun& run) {
     const std::size_t dbvt = run.indexOf(kDbvtName);
     const std::size_t simple = run.indexOf(kSimpleName);
     double extra = 0;
@@ -248,7 +98,7 @@ std::string dbvtSentence(const Run& run) {
     return text + ".";
 }
 
-std::string timeSentence(const Run& run) {
+std::string timeSentence(const TrajectoryRun& run) {
     const std::size_t dbvt = run.indexOf(kDbvtName);
     const std::size_t hash = run.indexOf(kHashName);
     std::vector<double> ratios;
@@ -263,7 +113,7 @@ std::string timeSentence(const Run& run) {
            "solver.";
 }
 
-void conclude(const Run& run, Findings& findings) {
+void conclude(const TrajectoryRun& run, Findings& findings) {
     findings.conclusions = {
         "Canonical order, the same motion as under btSimpleBroadphase: " +
             sameSentence(run, ListOrder::canonical) + " scenes.",
@@ -284,10 +134,10 @@ void conclude(const Run& run, Findings& findings) {
 Findings compareTrajectories(std::span<const PhysicsBroadphase> broadphases,
                              std::span<const PhysicsScene> scenes,
                              const TrajectorySettings& settings, const TellProgress& tell) {
-    const Run run = runAll(broadphases, scenes, settings, tell);
+    const TrajectoryRun run = runTrajectories(broadphases, scenes, settings, tell);
     Findings findings;
     findings.settings = {
-        settingsText(run) + ".",
+        trajectorySettingsText(run) + ".",
         "Truth: btSimpleBroadphase, which compares all boxes with all. Place, velocities and "
         "activation of all bodies are compared after every step, bit by bit.",
         "Canonical order: pairs sorted by the numbers of the bodies, contact manifolds by age, so "
@@ -299,8 +149,8 @@ Findings compareTrajectories(std::span<const PhysicsBroadphase> broadphases,
         "compounds: dumbbells and crosses that fall into a heap; churn: a pile out of which bodies "
         "are taken and dropped again; the others are those of `hashphase compare`.",
     };
-    findings.tables = {sameTable(run), timeTable(run)};
-    findings.charts = {sameChart(run), timeChart(run)};
+    findings.tables = trajectoryTables(run);
+    findings.charts = trajectoryCharts(run);
     judge(run, findings);
     offer(run, findings);
     conclude(run, findings);
