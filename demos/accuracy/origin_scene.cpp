@@ -13,8 +13,8 @@ constexpr std::int64_t kHalfSide = 160 * OriginScene::kStep;  // of where the bo
 
 /// One of low, low + step, ..., high.
 std::int64_t multiple(Random& random, std::int64_t low, std::int64_t high, std::int64_t step) {
-    const auto count = static_cast<float>((high - low) / step + 1);
-    return low + step * static_cast<std::int64_t>(random.unit() * count);
+    const std::int64_t count = (high - low) / step + 1;
+    return low + step * static_cast<std::int64_t>(random.unit() * static_cast<float>(count));
 }
 
 IntegerPoint pointWithin(Random& random, std::int64_t most, std::int64_t step) {

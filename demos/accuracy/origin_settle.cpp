@@ -58,8 +58,10 @@ double farthest(const Places& a, const Places& b) {
     double most = 0;
     for (std::size_t i = 0; i < kBalls; ++i) {
         const double distance = (a[i] - b[i]).norm();
-        most = std::max(most,
-                        std::isnan(distance) ? std::numeric_limits<double>::infinity() : distance);
+        if (std::isnan(distance)) {
+            return std::numeric_limits<double>::infinity();
+        }
+        most = std::max(most, distance);
     }
     return most;
 }
