@@ -12,6 +12,9 @@ std::span<const Experiment> experiments() {
         cullingExperiment(),
         pickingExperiment(),
         terrainExperiment(),
+        originExperiment(),
+        timeStepExperiment(),
+        trajectoryExperiment(),
     };
     return all;
 }

@@ -10,5 +10,8 @@ namespace hashphase::demos {
 [[nodiscard]] Experiment cullingExperiment();
 [[nodiscard]] Experiment pickingExperiment();
 [[nodiscard]] Experiment terrainExperiment();
+[[nodiscard]] Experiment originExperiment();
+[[nodiscard]] Experiment timeStepExperiment();
+[[nodiscard]] Experiment trajectoryExperiment();
 
 }  // namespace hashphase::demos

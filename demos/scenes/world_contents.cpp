@@ -25,6 +25,7 @@ btRigidBody& WorldContents::addBody(btCollisionShape& shape, btScalar mass,
     btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, &shape, inertia);
     info.m_startWorldTransform.setOrigin(position);
     bodies_.push_back(std::make_unique<btRigidBody>(info));
+    bodies_.back()->setUserIndex(static_cast<int>(bodies_.size()) - 1);
     world_.addRigidBody(bodies_.back().get());
     return *bodies_.back();
 }

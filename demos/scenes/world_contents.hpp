@@ -7,6 +7,7 @@
 #include <btBulletDynamicsCommon.h>
 
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace hashphase::demos {
@@ -30,8 +31,14 @@ public:
         return reference;
     }
 
-    /// Adds a body of the given mass [kg], 0 for a static one, with Bullet's default filter.
+    /// Adds a body of the given mass [kg], 0 for a static one, with Bullet's default filter. Bodies
+    /// are numbered from 0; a body's number is its user index.
     btRigidBody& addBody(btCollisionShape& shape, btScalar mass, const btVector3& position);
+
+    /// By their numbers.
+    [[nodiscard]] std::span<const std::unique_ptr<btRigidBody>> bodies() const noexcept {
+        return bodies_;
+    }
 
     /// Adds the constraint; bodies linked by it do not collide.
     void addConstraint(std::unique_ptr<btTypedConstraint> constraint);

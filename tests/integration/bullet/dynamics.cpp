@@ -3,35 +3,11 @@
 
 #include <tests/integration/bullet/bullet_scenes.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cstring>
 #include <ostream>
 
 namespace hashphase::test {
-
-btPersistentManifold* OrderedDispatcher::getNewManifold(const btCollisionObject* a,
-                                                        const btCollisionObject* b) {
-    btPersistentManifold* const manifold = btCollisionDispatcher::getNewManifold(a, b);
-    manifold->m_companionIdA = ++createdCount_;  // Bullet itself has no use for it
-    return manifold;
-}
-
-void OrderedDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* pairCache,
-                                                  const btDispatcherInfo& dispatchInfo,
-                                                  btDispatcher* dispatcher) {
-    btCollisionDispatcher::dispatchAllCollisionPairs(pairCache, dispatchInfo, dispatcher);
-    if (m_manifoldsPtr.size() == 0) {
-        return;
-    }
-    const auto isOlder = [](const btPersistentManifold* a, const btPersistentManifold* b) {
-        return a->m_companionIdA < b->m_companionIdA;
-    };
-    std::sort(&m_manifoldsPtr[0], &m_manifoldsPtr[0] + m_manifoldsPtr.size(), isOlder);
-    for (int i = 0; i < m_manifoldsPtr.size(); ++i) {
-        m_manifoldsPtr[i]->m_index1a = i;
-    }
-}
 
 DynamicsWorld::DynamicsWorld(std::unique_ptr<btBroadphaseInterface> broadphase,
                              std::unique_ptr<btOverlappingPairCache> cache)

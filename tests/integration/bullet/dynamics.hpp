@@ -4,6 +4,8 @@
 // Bullet worlds that are built and disturbed by script, so that two of them, over different
 // broadphases, can be compared bit by bit.
 
+#include <demos/scenes/ordered_dispatcher.hpp>
+
 #include <btBulletDynamicsCommon.h>
 
 #include <cstddef>
@@ -12,23 +14,6 @@
 #include <vector>
 
 namespace hashphase::test {
-
-/// Lists contact manifolds in the order of their creation. Bullet's own dispatcher fills the gap
-/// that a manifold leaves with the last one, so that results depend on the order in which the pairs
-/// of one step are removed; a pair set has no such order.
-class OrderedDispatcher : public btCollisionDispatcher {
-public:
-    using btCollisionDispatcher::btCollisionDispatcher;
-
-    btPersistentManifold* getNewManifold(const btCollisionObject* a,
-                                         const btCollisionObject* b) override;
-    void dispatchAllCollisionPairs(btOverlappingPairCache* pairCache,
-                                   const btDispatcherInfo& dispatchInfo,
-                                   btDispatcher* dispatcher) override;
-
-private:
-    int createdCount_ = 0;
-};
 
 /// A world with everything that it needs. Bodies are numbered; a body's number is its user index.
 class DynamicsWorld {
@@ -76,7 +61,7 @@ private:
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
     std::vector<std::unique_ptr<btTypedConstraint>> links_;
     btDefaultCollisionConfiguration configuration_;
-    OrderedDispatcher dispatcher_{&configuration_};
+    demos::OrderedDispatcher dispatcher_{&configuration_};
     std::unique_ptr<btOverlappingPairCache> cache_;
     std::unique_ptr<btBroadphaseInterface> broadphase_;
     btSequentialImpulseConstraintSolver solver_;
