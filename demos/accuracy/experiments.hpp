@@ -5,4 +5,10 @@
 
 #include <demos/accuracy/experiment.hpp>
 
-namespace hashphase::demos {}  // namespace hashphase::demos
+namespace hashphase::demos {
+
+[[nodiscard]] Experiment cellSizeExperiment();   // P2
+[[nodiscard]] Experiment proximityExperiment();  // P3
+[[nodiscard]] Experiment updateExperiment();     // P10
+
+}  // namespace hashphase::demos
