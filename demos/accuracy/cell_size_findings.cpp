@@ -336,7 +336,7 @@ Findings cellSizeFindings(std::span<const CellCaseResult> results) {
         "automatic: sizes chosen from the population. One grid: the paper's, with one size for "
         "all.",
         "Not measured: the paper's grids where an object would lie in more than 64 cells on "
-        "average, and their times where a frame compares more than 1,000 boxes an object; they "
+        "average, and their times where a frame compares more than 300 boxes an object; they "
         "and btDbvtBroadphase above 20,000 objects."};
     PairChecks checks;
     for (const CellCaseResult& result : results) {

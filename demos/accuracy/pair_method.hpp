@@ -51,6 +51,15 @@ struct PairMethod {
 /// btDbvtBroadphase, with m_deferedcollide or without.
 [[nodiscard]] PairMethod dbvtMethod(bool isDeferred);
 
+/// Whether the closed boxes share a point.
+[[nodiscard]] inline bool overlap(const BulletBox& a, const BulletBox& b) {
+    bool isApart = false;
+    for (int axis = 0; axis < 3; ++axis) {
+        isApart |= (a.min[axis] > b.max[axis]) | (b.min[axis] > a.max[axis]);
+    }
+    return !isApart;
+}
+
 /// The kind of broadphase of that name; asserted to exist.
 [[nodiscard]] const BroadphaseKind& broadphaseKind(std::string_view name);
 

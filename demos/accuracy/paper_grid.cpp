@@ -30,14 +30,6 @@ CellSpan cellsOf(const BulletBox& box, btScalar inverseCellSize) {
     return {cellOf(box.min, inverseCellSize), cellOf(box.max, inverseCellSize)};
 }
 
-bool overlap(const BulletBox& a, const BulletBox& b) {
-    bool isApart = false;
-    for (int axis = 0; axis < 3; ++axis) {
-        isApart |= (a.min[axis] > b.max[axis]) | (b.min[axis] > a.max[axis]);
-    }
-    return !isApart;
-}
-
 class PaperGrid : public PairSource {
 public:
     PaperGrid(double cellSize, FiledCells filed)
