@@ -79,7 +79,7 @@ std::vector<CellCase> cellCases(const Effort& effort) {
         }
     }
     if (!effort.isQuick) {
-        constexpr std::array kAroundTheBest{1.0, 2.0, 4.0};
+        constexpr std::array kAroundTheBest{2.0, 4.0};
         cases.push_back(cellCase(kPopulations[0], 1'000'000, kAroundTheBest));
         cases.back().judgedFrames = 1;
     }

@@ -138,8 +138,7 @@ DataTable resultTable(const CellCaseResult& result) {
         const PairMeasurement& measured = result.trial.measurements[i];
         std::vector<Value> row = pairValues(measured, result.nanosecondsOf(i), bulletTime);
         row.insert(row.begin(), {method.pairs.name, valueOf(method.factor)});
-        const double framePairs =
-            static_cast<double>(measured.truePairs) / result.trial.judgedFrames;
+        const double framePairs = static_cast<double>(measured.truePairs) / measured.judgedFrames;
         std::optional<double> tests;
         if (measured.testsPerFrame && framePairs > 0) {
             tests = *measured.testsPerFrame / framePairs;

@@ -8,7 +8,8 @@
 namespace hashphase::demos {
 
 std::span<const Experiment> experiments() {
-    static const std::vector<Experiment> all{cellSizeExperiment(), updateExperiment()};
+    static const std::vector<Experiment> all{cellSizeExperiment(), proximityExperiment(),
+                                             updateExperiment()};
     return all;
 }
 

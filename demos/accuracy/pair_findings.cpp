@@ -35,9 +35,10 @@ Value valueOf(std::optional<double> number) {
 
 std::vector<Value> pairValues(const PairMeasurement& measured, std::optional<double> nanoseconds,
                               std::optional<double> bulletNanoseconds) {
-    const ShareInterval interval = measured.truePairs > 0
-                                       ? wilsonInterval(measured.missed, measured.truePairs)
-                                       : ShareInterval{};
+    const ShareInterval interval =
+        measured.truePairs > 0
+            ? intervalOverFrames(measured.missed, measured.truePairs, measured.judgedFrames)
+            : ShareInterval{};
     std::optional<double> speed;
     if (nanoseconds && bulletNanoseconds) {
         speed = *bulletNanoseconds / *nanoseconds;

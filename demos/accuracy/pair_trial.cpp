@@ -23,7 +23,6 @@ public:
         for (int frame = 0; frame < frames; ++frame) {
             advance();
             findTruth(frame == 0);
-            ++trial_.judgedFrames;
             for (Entry& entry : entries_) {
                 judge(entry);
             }
@@ -113,6 +112,7 @@ private:
         }
         entry.source->listPairs(listed_);
         const FrameVerdict verdict = entry.verifier.judge(listed_, truth_);
+        ++entry.measured.judgedFrames;
         entry.measured.truePairs += verdict.exactPairs;
         entry.measured.missed += verdict.missing;
         entry.measured.extra += verdict.extra;

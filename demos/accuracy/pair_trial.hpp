@@ -19,6 +19,7 @@ struct PairTrialPlan {
 
 /// Sums over all judged frames, and times.
 struct PairMeasurement {
+    int judgedFrames = 0;
     std::uint64_t truePairs = 0;
     std::uint64_t missed = 0;  // overlapping, but not listed
     std::uint64_t extra = 0;   // listed, but not overlapping
@@ -29,7 +30,6 @@ struct PairMeasurement {
 
 struct PairTrial {
     std::vector<PairMeasurement> measurements;  // one a method
-    int judgedFrames = 0;
 
     // The truth comes from a sweep along one axis; brute force, up to so many objects, judges it.
     static constexpr std::size_t kBruteForceUpTo = 20'000;
