@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/cell_size.hpp>
 
+#include <demos/accuracy/cell_size_charts.hpp>
 #include <demos/accuracy/cell_size_findings.hpp>
 #include <demos/accuracy/experiments.hpp>
 #include <demos/accuracy/paper_grid.hpp>
@@ -12,9 +13,6 @@
 
 namespace hashphase::demos {
 namespace {
-
-constexpr std::array kFactors{0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0};
-constexpr std::array kFewFactors{0.25, 1.0, 2.0, 4.0, 16.0, 64.0};
 
 // With more the paper's grid would hold little else, or compare everything with everything.
 constexpr double kMostCellsPerObject = 64;
@@ -67,19 +65,22 @@ std::string CellCase::name() const {
 }
 
 std::vector<CellCase> cellCases(const Effort& effort) {
+    constexpr std::array kAll{0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0};
+    constexpr std::array kFew{0.25, 1.0, 2.0, 4.0, 16.0, 64.0};
+    constexpr std::array kLikely{0.5, 1.0, 2.0, 4.0, 8.0, 16.0};  // where a frame takes long
+    constexpr std::array kAroundTheBest{2.0, 4.0};
     std::vector<CellCase> cases;
-    const std::vector<std::size_t> sizes = effort.isQuick
-                                               ? std::vector<std::size_t>{1'000, 3'000}
-                                               : std::vector<std::size_t>{1'000, 10'000, 100'000};
-    const auto factors =
-        effort.isQuick ? std::span<const double>(kFewFactors) : std::span<const double>(kFactors);
     for (const Population& population : kPopulations) {
-        for (const std::size_t objects : sizes) {
-            cases.push_back(cellCase(population, objects, factors));
+        if (effort.isQuick) {
+            cases.push_back(cellCase(population, 1'000, kFew));
+            cases.push_back(cellCase(population, 3'000, kFew));
+        } else {
+            cases.push_back(cellCase(population, 1'000, kAll));
+            cases.push_back(cellCase(population, 10'000, kAll));
+            cases.push_back(cellCase(population, 100'000, kLikely));
         }
     }
     if (!effort.isQuick) {
-        constexpr std::array kAroundTheBest{2.0, 4.0};
         cases.push_back(cellCase(kPopulations[0], 1'000'000, kAroundTheBest));
         cases.back().judgedFrames = 1;
     }

@@ -34,20 +34,22 @@ ProximityCase circles(std::size_t agents) {
 
 ProximityExperimentPlan proximityPlan(const Effort& effort) {
     ProximityExperimentPlan plan;
-    const std::size_t agents = effort.quickOrFull<std::size_t>(1'200, 10'000);
-    const std::vector<double> ratios =
-        effort.isQuick ? std::vector{0.5, 1.0, 4.0} : std::vector{0.1, 0.5, 1.0, 2.0, 4.0, 8.0};
-    for (const double ratio : ratios) {
+    plan.trial.mostJudgedAgents = effort.quickOrFull<std::size_t>(300, 1000);
+    const auto agents = effort.quickOrFull<std::size_t>(1'200, 5'000);
+    for (const double ratio :
+         effort.isQuick ? std::vector{0.5, 1.0, 4.0} : std::vector{0.1, 0.5, 1.0, 2.0, 4.0, 8.0}) {
         plan.crowds.push_back(crowdOf(agents, 20, ratio));
     }
-    plan.trial.mostJudgedAgents = effort.quickOrFull<std::size_t>(300, 1000);
-    if (!effort.isQuick) {
-        for (const double neighbours : {5.0, 80.0}) {
-            plan.crowds.push_back(crowdOf(agents / 2, neighbours, 1));
-            plan.crowds.back().isTask = false;
-        }
-    }
     plan.crowds.push_back(circles(agents));
+    if (effort.isQuick) {
+        return plan;
+    }
+    for (const double ratio : {1.0, 4.0}) {
+        plan.crowds.push_back(crowdOf(10'000, 20, ratio));
+    }
+    for (const double neighbours : {5.0, 80.0}) {
+        plan.crowds.push_back(crowdOf(agents / 2, neighbours, 1));
+    }
     return plan;
 }
 

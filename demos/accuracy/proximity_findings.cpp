@@ -250,7 +250,7 @@ std::string nameOf(const ProximityResult& result, std::size_t method) {
 
 void addChoices(std::span<const ProximityResult> results, std::vector<Choice>& choices) {
     for (const ProximityResult& result : results) {
-        for (std::size_t i = 0; result.crowd.isTask && i < result.methods.size(); ++i) {
+        for (std::size_t i = 0; i < result.methods.size(); ++i) {
             const ProximityMeasurement& measured = result.measurements[i];
             choices.push_back({"Neighbours for AI: " + result.crowd.name, nameOf(result, i),
                                measured.time.median, measured.wrongShare(), resultText(measured),
