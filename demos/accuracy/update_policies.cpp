@@ -13,19 +13,20 @@
 namespace hashphase::demos {
 namespace {
 
-/// What was measured where that share of the boxes moves.
-struct SharedResult {
-    double movingShare;
+constexpr double kCentimetres = 100;  // in a metre
+
+struct MotionResult {
+    Motion motion;
     PairTrial trial;
 };
 
 struct Results {
     const UpdatePlan& plan;
     std::span<const PairMethod> policies;
-    std::vector<SharedResult> shares;
+    std::vector<MotionResult> motions;
     std::string settings;
 
-    [[nodiscard]] double nanoseconds(const SharedResult& at, std::size_t policy) const {
+    [[nodiscard]] double nanoseconds(const MotionResult& at, std::size_t policy) const {
         return at.trial.measurements[policy].time->median * 1e6 / static_cast<double>(plan.objects);
     }
     [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const {
@@ -36,17 +37,25 @@ struct Results {
         }
         return std::nullopt;
     }
-    [[nodiscard]] std::optional<double> bulletNanoseconds(const SharedResult& at) const {
+    [[nodiscard]] std::optional<double> bulletNanoseconds(const MotionResult& at) const {
         const auto bullet = find(dbvtMethod(false).name);
         return bullet ? std::optional(nanoseconds(at, *bullet)) : std::nullopt;
     }
+
+    /// The motions that differ from the first in their share only; they come first.
+    [[nodiscard]] std::span<const MotionResult> alike() const {
+        const auto end = std::find_if(motions.begin(), motions.end(), [&](const auto& each) {
+            return each.motion.step != motions.front().motion.step;
+        });
+        return {motions.begin(), end};
+    }
 };
 
-PairTrial measureShare(const UpdatePlan& plan, std::span<const PairMethod> policies,
-                       double movingShare, std::uint64_t seed) {
+PairTrial measureMotion(const UpdatePlan& plan, std::span<const PairMethod> policies,
+                        const Motion& motion, std::uint64_t seed) {
     ScatterPlan scatterPlan;
-    scatterPlan.movingShare = static_cast<float>(movingShare);
-    scatterPlan.step = static_cast<float>(plan.step);
+    scatterPlan.movingShare = static_cast<float>(motion.share);
+    scatterPlan.step = static_cast<float>(motion.step);
     BrownianScene scene(scatter(scatterPlan, plan.objects, seed), seed);
     PairTrialPlan trialPlan;
     trialPlan.judgedFrames = plan.judgedFrames;
@@ -55,16 +64,18 @@ PairTrial measureShare(const UpdatePlan& plan, std::span<const PairMethod> polic
     return tryPairs(scene, policies, trialPlan);
 }
 
-DataTable resultTable(const Results& results, std::span<const SharedResult> shares) {
+DataTable resultTable(const Results& results, std::span<const MotionResult> motions) {
     DataTable table{pairColumns(), {}};
-    table.columns.insert(table.columns.begin(),
-                         {{"policy", "policy"}, {"moving_percent", "boxes that move [%]"}});
-    for (const SharedResult& at : shares) {
+    table.columns.insert(table.columns.begin(), {{"policy", "policy"},
+                                                 {"motion", "how many boxes move, and how far"},
+                                                 {"moving_percent", "boxes that move [%]"}});
+    for (const MotionResult& at : motions) {
         for (std::size_t i = 0; i < results.policies.size(); ++i) {
             std::vector<Value> row =
                 pairValues(at.trial.measurements[i], results.nanoseconds(at, i),
                            results.bulletNanoseconds(at));
-            row.insert(row.begin(), {results.policies[i].name, 100 * at.movingShare});
+            row.insert(row.begin(),
+                       {results.policies[i].name, at.motion.name(), 100 * at.motion.share});
             table.add(std::move(row));
         }
     }
@@ -77,7 +88,7 @@ Chart breakEvenChart(const Results& results) {
     chart.title =
         "Time against the share of boxes that move: where lines cross, policies break even";
     chart.settings = results.settings;
-    chart.data = resultTable(results, results.shares);
+    chart.data = resultTable(results, results.alike());
     chart.x = {"moving_percent", AxisScale::kLinear};
     chart.y = {"ns", AxisScale::kLog};
     chart.series = "policy";
@@ -91,11 +102,11 @@ Chart errorChart(const Results& results, bool isMissed) {
                            : "False pairs against time: work for those who come after";
     chart.settings = results.settings;
     chart.mark = ChartMark::kPoint;
-    chart.data = resultTable(results, results.shares);
+    chart.data = resultTable(results, results.motions);
     chart.x = {"ns", AxisScale::kLog};
     chart.y = {isMissed ? "missed_share" : "false_share", AxisScale::kLogAndZero};
     chart.series = "policy";
-    chart.label = "moving_percent";
+    chart.label = "motion";
     chart.showFront = true;
     if (isMissed) {
         chart.low = "missed_low";
@@ -104,14 +115,13 @@ Chart errorChart(const Results& results, bool isMissed) {
     return chart;
 }
 
-Chart errorBars(const Results& results, bool isMissed) {
-    const SharedResult& busiest = results.shares.back();
+Chart errorBars(const Results& results, const MotionResult& at, bool isMissed) {
     Chart chart = errorChart(results, isMissed);
-    chart.name += "-by-policy";
-    chart.title = std::string(isMissed ? "Missed" : "False") + " pairs by policy, where " +
-                  percentText(busiest.movingShare) + " of the boxes move";
+    chart.name += "-by-policy-" + valueText(kCentimetres * at.motion.step) + "-cm";
+    chart.title =
+        std::string(isMissed ? "Missed" : "False") + " pairs by policy: " + at.motion.name();
     chart.mark = ChartMark::kBar;
-    chart.data = resultTable(results, {&busiest, 1});
+    chart.data = resultTable(results, {&at, 1});
     chart.x = {"policy", AxisScale::kNames};
     chart.y.scale = AxisScale::kLinear;
     chart.label.clear();
@@ -123,9 +133,9 @@ Chart errorBars(const Results& results, bool isMissed) {
 Check stillnessCheck(const Results& results) {
     std::uint64_t missed = 0;
     std::uint64_t truePairs = 0;
-    for (const SharedResult& at : results.shares) {
+    for (const MotionResult& at : results.motions) {
         for (const PairMeasurement& each : at.trial.measurements) {
-            if (at.movingShare == 0) {
+            if (at.motion.share == 0) {
                 missed += each.missed;
                 truePairs += each.truePairs;
             }
@@ -142,13 +152,12 @@ bool isUnfinished(const PairMethod& policy) {
 }
 
 void addChoices(const Results& results, std::vector<Choice>& choices) {
-    for (const SharedResult& at : results.shares) {
-        if (at.movingShare != 1 && at.movingShare != 0.05) {
+    for (const MotionResult& at : results.motions) {
+        if (!at.motion.isTask) {
             continue;
         }
-        const std::string task = "Pairs of " + withThousands(results.plan.objects) + " boxes, " +
-                                 (at.movingShare == 1 ? "all" : percentText(at.movingShare)) +
-                                 " moving";
+        const std::string task =
+            "Pairs of " + withThousands(results.plan.objects) + " boxes, " + at.motion.name();
         for (std::size_t i = 0; i < results.policies.size(); ++i) {
             const PairMeasurement& measured = at.trial.measurements[i];
             if (isUnfinished(results.policies[i])) {
@@ -161,7 +170,7 @@ void addChoices(const Results& results, std::vector<Choice>& choices) {
     }
 }
 
-/// Up to which share of moving boxes `policy` is faster than `other`.
+/// At which shares of moving boxes `policy` is faster than `other`.
 std::string breakEvenSentence(const Results& results, std::string_view policy,
                               std::string_view other) {
     const auto a = results.find(policy);
@@ -171,10 +180,10 @@ std::string breakEvenSentence(const Results& results, std::string_view policy,
     }
     std::string faster;
     std::string slower;
-    for (const SharedResult& at : results.shares) {
+    for (const MotionResult& at : results.alike()) {
         const double ratio = results.nanoseconds(at, *b) / results.nanoseconds(at, *a);
         std::string& list = ratio >= 1 ? faster : slower;
-        list += (list.empty() ? "" : ", ") + percentText(at.movingShare) + " (" +
+        list += (list.empty() ? "" : ", ") + percentText(at.motion.share) + " (" +
                 fixed(ratio, ratio < 10 ? 2 : 0) + "x)";
     }
     return "'" + std::string(policy) + "' against '" + std::string(other) + "': faster where " +
@@ -182,11 +191,29 @@ std::string breakEvenSentence(const Results& results, std::string_view policy,
            (slower.empty() ? "none of the shares" : slower) + ".";
 }
 
-std::string errorSentence(const Results& results) {
-    const SharedResult& busiest = results.shares.back();
-    std::string text = "Where " + percentText(busiest.movingShare) + " of the boxes move:";
+std::string fastestSentence(const Results& results) {
+    std::string text = "The fastest exact policy";
+    for (const MotionResult& at : results.motions) {
+        std::optional<std::size_t> best;
+        for (std::size_t i = 0; i < results.policies.size(); ++i) {
+            if (results.policies[i].isExact &&
+                (!best || results.nanoseconds(at, i) < results.nanoseconds(at, *best))) {
+                best = i;
+            }
+        }
+        if (best) {
+            text += (&at == &results.motions.front() ? " where " : "; where ") + at.motion.name() +
+                    ": '" + results.policies[*best].name + "' (" +
+                    fixed(results.nanoseconds(at, *best), 1) + " ns an object)";
+        }
+    }
+    return text + ".";
+}
+
+std::string errorSentence(const Results& results, const MotionResult& at) {
+    std::string text = "Where " + at.motion.name() + ":";
     for (std::size_t i = 0; i < results.policies.size(); ++i) {
-        const PairMeasurement& measured = busiest.trial.measurements[i];
+        const PairMeasurement& measured = at.trial.measurements[i];
         if (!results.policies[i].isExact) {
             text += (text.back() == ':' ? " '" : "; '") + results.policies[i].name + "' " +
                     pairResultText(measured);
@@ -198,9 +225,8 @@ std::string errorSentence(const Results& results) {
 std::string settingsText(const UpdatePlan& plan) {
     return withThousands(plan.objects) +
            " boxes with edges of 0.5-1.5 m, each overlapping about two others; those that move do "
-           "so by up to " +
-           valueText(100 * plan.step) +
-           " cm on each axis and frame. A frame is the calls of setAabb and all pairs, the pair "
+           "so by up to the given way on each axis and frame. A frame is the calls of setAabb and "
+           "all pairs, the pair "
            "cache included (the paper's grid keeps none); means of " +
            std::to_string(plan.framesTogether) + " frames in a row, medians of " +
            std::to_string(plan.rounds) + " such means.";
@@ -208,13 +234,24 @@ std::string settingsText(const UpdatePlan& plan) {
 
 }  // namespace
 
+std::string Motion::name() const {
+    return share == 0 ? "none move"
+                      : (share == 1 ? "all" : percentText(share)) + " move by " +
+                            valueText(kCentimetres * step) + " cm";
+}
+
 UpdatePlan updatePlan(const Effort& effort) {
     UpdatePlan plan;
     plan.objects = effort.quickOrFull<std::size_t>(2'000, 10'000);
-    plan.movingShares = effort.isQuick ? std::vector{0.0, 0.05, 0.5, 1.0}
-                                       : std::vector{0.0, 0.01, 0.05, 0.2, 0.5, 1.0};
+    for (const double share : effort.isQuick ? std::vector{0.0, 0.05, 0.5, 1.0}
+                                             : std::vector{0.0, 0.01, 0.05, 0.2, 0.5, 0.8, 1.0}) {
+        plan.motions.push_back({share});
+        plan.motions.back().isTask = share == 0.05 || share == 0.5 || share == 1;
+    }
+    constexpr double kFast = 0.2;  // up to 12 m/s at 60 frames a second
+    plan.motions.push_back({1, kFast});
     plan.judgedFrames = effort.quickOrFull(8, 16);
-    plan.rounds = effort.quickOrFull(16, 20);
+    plan.rounds = effort.quickOrFull(16, 30);
     return plan;
 }
 
@@ -239,12 +276,11 @@ Findings measurePolicies(const UpdatePlan& plan, std::span<const PairMethod> pol
                          std::uint64_t seed, const TellProgress& tell) {
     Results results{plan, policies, {}, settingsText(plan)};
     PairChecks checks;
-    for (const double share : plan.movingShares) {
-        tell(static_cast<double>(results.shares.size()) /
-                 static_cast<double>(plan.movingShares.size()),
-             percentText(share) + " of the boxes move");
-        results.shares.push_back({share, measureShare(plan, policies, share, seed)});
-        checks.take(policies, results.shares.back().trial);
+    for (const Motion& motion : plan.motions) {
+        tell(static_cast<double>(results.motions.size()) / static_cast<double>(plan.motions.size()),
+             motion.name());
+        results.motions.push_back({motion, measureMotion(plan, policies, motion, seed)});
+        checks.take(policies, results.motions.back().trial);
     }
     Findings findings;
     findings.settings = {
@@ -257,17 +293,22 @@ Findings measurePolicies(const UpdatePlan& plan, std::span<const PairMethod> pol
     findings.checks = checks.checks();
     findings.checks.push_back(stillnessCheck(results));
     findings.charts = {breakEvenChart(results), errorChart(results, true),
-                       errorChart(results, false), errorBars(results, true),
-                       errorBars(results, false)};
-    findings.tables = {resultTable(results, {&results.shares.back(), 1})};
+                       errorChart(results, false)};
     addChoices(results, findings.choices);
     for (std::string& sentence :
          std::vector{breakEvenSentence(results, "moved only", "all filed again"),
-                     breakEvenSentence(results, "fat by 5 cm, pairs tested", "moved only"),
-                     breakEvenSentence(results, "moved only", dbvtMethod(true).name),
-                     errorSentence(results)}) {
+                     breakEvenSentence(results, "moved only", dbvtMethod(false).name),
+                     fastestSentence(results)}) {
         if (!sentence.empty()) {
             findings.conclusions.push_back(std::move(sentence));
+        }
+    }
+    for (const MotionResult& at : results.motions) {
+        if (at.motion.share == 1) {
+            findings.tables.push_back(resultTable(results, {&at, 1}));
+            findings.charts.push_back(errorBars(results, at, true));
+            findings.charts.push_back(errorBars(results, at, false));
+            findings.conclusions.push_back(errorSentence(results, at));
         }
     }
     return findings;

@@ -8,11 +8,19 @@
 
 namespace hashphase::demos {
 
+/// How many of the boxes move, and how far.
+struct Motion {
+    double share = 1;    // 0 to 1
+    double step = 0.02;  // the largest move on an axis in a frame, by the mean edge of 1 m
+    bool isTask = true;  // its policies compete as choices
+
+    [[nodiscard]] std::string name() const;  // "5 % move by 2 cm"
+};
+
 struct UpdatePlan {
     std::size_t objects = 0;
-    std::vector<double> movingShares;  // 0 to 1
-    double step = 0.02;    // the largest move on an axis in a frame, by the mean edge of about 1 m
-    int judgedFrames = 0;  // a multiple of framesTogether
+    std::vector<Motion> motions;  // at least one; those with the step of the first are compared
+    int judgedFrames = 0;         // a multiple of framesTogether
     int rounds = 0;
     int framesTogether = 8;  // a multiple of every period, so that each round has as many updates
 };

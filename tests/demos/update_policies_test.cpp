@@ -11,7 +11,7 @@ namespace {
 UpdatePlan tinyPlan() {
     UpdatePlan plan;
     plan.objects = 200;
-    plan.movingShares = {0, 0.05, 1};
+    plan.motions = {{0}, {0.05}, {1}, {1, 0.2}};
     plan.judgedFrames = 8;
     plan.rounds = 2;
     return plan;
