@@ -17,7 +17,7 @@ Check cornersCheck(std::span<const CellCaseResult> results) {
     for (const CellCaseResult& result : results) {
         for (std::size_t i = 0; i < result.methods.size(); ++i) {
             const CellMethod& method = result.methods[i];
-            if (!method.pairs.missesNothing && method.factor &&
+            if (!method.pairs.isComplete && method.factor &&
                 *method.factor >= result.largestEdgeByMean) {
                 missed += result.trial.measurements[i].missed;
                 truePairs += result.trial.measurements[i].truePairs;

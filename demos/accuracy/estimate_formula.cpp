@@ -22,10 +22,6 @@ double ballVolume(double radius) {
     return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
 }
 
-double distanceToBox(const Vector3<double>& point, const Aabb<double>& box) {
-    return box.exteriorDistance(point);
-}
-
 void ask(const Grid<float>& grid, ProxyId self, double radius, StatedEstimate& counted) {
     const Vector3<float> centre = positionOf(grid.box(self));
     std::vector<ProxyId> found;
@@ -36,7 +32,7 @@ void ask(const Grid<float>& grid, ProxyId self, double radius, StatedEstimate& c
         const Aabb<double> box = grid.box(id).cast<double>();
         const double distance = (box.center() - centre.cast<double>()).norm();
         within += distance <= radius ? 1 : 0;
-        counted.tooFar += distanceToBox(centre.cast<double>(), box) > farthest ? 1 : 0;
+        counted.tooFar += box.exteriorDistance(centre.cast<double>().eval()) > farthest ? 1 : 0;
     }
     std::uint64_t truth = 0;
     grid.forEach([&](ProxyId id, const Aabb<float>& box) {
@@ -46,6 +42,40 @@ void ask(const Grid<float>& grid, ProxyId self, double radius, StatedEstimate& c
     counted.found += found.size();
     counted.within += within;
     counted.missed += truth - within;
+}
+
+/// Agents in a cube so large that each has twenty others in a ball of that radius.
+AgentPlan planFor(double radius) {
+    AgentPlan plan;
+    plan.agents = kAgents;
+    plan.side = std::cbrt(static_cast<double>(kAgents) * ballVolume(radius) / kNeighbours);
+    plan.edge = kEdge;
+    plan.isFlat = false;
+    return plan;
+}
+
+/// Asks for agents that have all the cells around them within the cube.
+void askMany(double radius, std::size_t estimates, std::uint64_t seed, StatedEstimate& counted) {
+    const AgentPlan plan = planFor(radius);
+    const AgentScene scene(plan, seed);
+    GridConfig config;
+    config.cellSize = kCellSize;
+    Grid<float> grid(config);
+    std::vector<ProxyId> ids;
+    for (const Aabb<float>& box : scene.boxes()) {
+        ids.push_back(grid.add(box));
+    }
+    grid.update();
+    const double margin = radius + kCellSize + kEdge;
+    std::size_t asked = 0;
+    for (std::size_t i = 0; i < ids.size() && asked < estimates; ++i) {
+        const Vector3<float> place = scene.boxes()[i].center();
+        if (static_cast<double>(place.minCoeff()) >= margin &&
+            static_cast<double>(place.maxCoeff()) <= plan.side - margin) {
+            ask(grid, ids[i], radius, counted);
+            ++asked;
+        }
+    }
 }
 
 }  // namespace
@@ -68,36 +98,12 @@ std::vector<StatedEstimate> checkStatedEstimates(std::size_t estimates, std::uin
     constexpr std::array<std::array<double, 2>, 4> kStated{{{1, 1}, {2, 2}, {4, 3}, {8, 4}}};
     std::vector<StatedEstimate> results;
     for (const auto& [radiusByCell, tenths] : kStated) {
+        const double radius = radiusByCell * kCellSize;
         StatedEstimate counted;
         counted.radiusByCell = radiusByCell;
         counted.statedTenths = tenths;
-        const double radius = radiusByCell * kCellSize;
         counted.theory = estimatePrecisionInSpace(radius, kCellSize, kEdge);
-
-        AgentPlan plan;
-        plan.agents = kAgents;
-        plan.side = std::cbrt(static_cast<double>(kAgents) * ballVolume(radius) / kNeighbours);
-        plan.edge = kEdge;
-        plan.isFlat = false;
-        const AgentScene scene(plan, seed);
-        GridConfig config;
-        config.cellSize = kCellSize;
-        Grid<float> grid(config);
-        std::vector<ProxyId> ids;
-        for (const Aabb<float>& box : scene.boxes()) {
-            ids.push_back(grid.add(box));
-        }
-        grid.update();
-        const double margin = radius + kCellSize + kEdge;
-        std::size_t asked = 0;
-        for (std::size_t i = 0; i < ids.size() && asked < estimates; ++i) {
-            const Vector3<float> place = scene.boxes()[i].center();
-            if (static_cast<double>(place.minCoeff()) >= margin &&
-                static_cast<double>(place.maxCoeff()) <= plan.side - margin) {
-                ask(grid, ids[i], radius, counted);
-                ++asked;
-            }
-        }
+        askMany(radius, estimates, seed, counted);
         results.push_back(counted);
     }
     return results;

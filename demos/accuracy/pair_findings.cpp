@@ -99,7 +99,7 @@ void PairChecks::take(std::span<const PairMethod> methods, const PairTrial& tria
         const bool misses = measured.missed > 0;
         if (methods[i].isExact) {
             exact_.add(methods[i], measured, misses || measured.extra > 0);
-        } else if (methods[i].missesNothing) {
+        } else if (methods[i].isComplete) {
             complete_.add(methods[i], measured, misses);
         }
     }

@@ -38,8 +38,8 @@ enum class MethodOrigin { kOurs, kPaper, kBullet };
 struct PairMethod {
     std::string name;
     MethodOrigin origin = MethodOrigin::kOurs;
-    bool isExact = true;        // promises the overlapping pairs, all of them and no other
-    bool missesNothing = true;  // promises all of them
+    bool isExact = true;     // promises the overlapping pairs, all of them and no other
+    bool isComplete = true;  // promises all of them, perhaps with others
     std::function<std::unique_ptr<PairSource>(const BroadphaseNeeds& needs,
                                               std::span<const BulletBox> boxes)>
         make;

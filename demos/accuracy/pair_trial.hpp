@@ -6,6 +6,8 @@
 #include <demos/accuracy/pair_method.hpp>
 #include <demos/report/statistics.hpp>
 
+#include <limits>
+
 namespace hashphase::demos {
 
 struct PairTrialPlan {
@@ -14,7 +16,7 @@ struct PairTrialPlan {
     int framesTogether = 1;
 
     /// A method that compares more boxes than this in a frame is judged, but not timed.
-    double mostTestsTimed = 1e300;
+    double mostTestsTimed = std::numeric_limits<double>::infinity();
 };
 
 /// Sums over all judged frames, and times.

@@ -139,7 +139,7 @@ PairMethod paperGridMethod(std::string name, double cellSize, FiledCells filed) 
     method.name = std::move(name);
     method.origin = MethodOrigin::kPaper;
     method.isExact = filed == FiledCells::kAll;
-    method.missesNothing = method.isExact;
+    method.isComplete = method.isExact;
     method.make = [cellSize, filed](const BroadphaseNeeds& /*needs*/,
                                     std::span<const BulletBox> /*boxes*/) {
         return std::make_unique<PaperGrid>(cellSize, filed);

@@ -148,7 +148,7 @@ Check stillnessCheck(const Results& results) {
 /// What lists false pairs for the sake of speed leaves their test to others: it does not compete with
 /// the same way that tests them itself.
 bool isUnfinished(const PairMethod& policy) {
-    return policy.origin == MethodOrigin::kOurs && policy.missesNothing && !policy.isExact;
+    return policy.origin == MethodOrigin::kOurs && policy.isComplete && !policy.isExact;
 }
 
 void addChoices(const Results& results, std::vector<Choice>& choices) {

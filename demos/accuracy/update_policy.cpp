@@ -123,7 +123,7 @@ PairMethod fatMethod(double margin, FalsePairs falsePairs) {
 PairMethod staleMethod(int period) {
     PairMethod method = hashMethod("every " + std::to_string(period) + " frames");
     method.isExact = false;
-    method.missesNothing = false;
+    method.isComplete = false;
     method.make = [period, make = method.make](const BroadphaseNeeds& needs,
                                                std::span<const BulletBox> boxes) {
         return std::make_unique<StaleSource>(period, make(needs, boxes));

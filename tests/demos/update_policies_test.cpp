@@ -24,7 +24,7 @@ Findings measureWith(std::span<const PairMethod> policies) {
 std::vector<std::string> brokenWith(Flaw flaw, bool isExact) {
     std::vector<PairMethod> policies = updatePolicies();
     for (PairMethod& policy : policies) {
-        if (policy.isExact == isExact && policy.missesNothing) {
+        if (policy.isExact == isExact && policy.isComplete) {
             policy = broken(flaw, policy);
             break;
         }
