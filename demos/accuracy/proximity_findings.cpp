@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/proximity_findings.hpp>
 
-#include <demos/accuracy/binomial.hpp>
 #include <demos/accuracy/pair_findings.hpp>
+#include <demos/accuracy/proximity_charts.hpp>
 #include <demos/console/format.hpp>
 
 #include <algorithm>
@@ -10,89 +10,6 @@
 
 namespace hashphase::demos {
 namespace {
-
-constexpr const char* kSettings =
-    "Agents with boxes of 0.5 m wander over a square by up to 1/50 of the radius on each axis and "
-    "frame; each counts four colours, drawn once, among those near it and takes the rarest (at "
-    "random, 75 % would be wrong). Time: agents moved in the index and decisions taken, for all; "
-    "means of 8 frames in a row, medians of 8 such means.";
-
-double nanoseconds(const ProximityResult& result, std::size_t method) {
-    return result.measurements[method].time.median * 1e6 / static_cast<double>(result.crowd.agents);
-}
-
-/// Of the same crowd: Bullet has no cells, and is measured once.
-std::optional<double> bulletNanoseconds(std::span<const ProximityResult> results,
-                                        const ProximityCase& crowd) {
-    for (const ProximityResult& result : results) {
-        for (std::size_t i = 0; i < result.methods.size(); ++i) {
-            if (result.crowd.name == crowd.name &&
-                result.methods[i].origin == MethodOrigin::kBullet) {
-                return nanoseconds(result, i);
-            }
-        }
-    }
-    return std::nullopt;
-}
-
-std::vector<Value> rowOf(std::span<const ProximityResult> results, const ProximityResult& result,
-                         std::size_t i) {
-    const ProximityMeasurement& measured = result.measurements[i];
-    const double ns = nanoseconds(result, i);
-    const double perAgent =
-        static_cast<double>(measured.neighbours) / static_cast<double>(measured.decisions);
-    const ShareInterval wrong =
-        intervalOverFrames(measured.wrong, measured.decisions, measured.judgedFrames);
-    std::optional<double> speed = bulletNanoseconds(results, result.crowd);
-    if (speed) {
-        *speed /= ns;
-    }
-    std::optional<double> theory;
-    if (result.methods[i].isEstimate) {
-        theory = estimatePrecisionOnPlain(result.crowd.radius, result.crowd.cellSize(), kAgentEdge);
-    }
-    std::optional<double> ratio;
-    if (result.methods[i].usesCells) {
-        ratio = result.crowd.radiusByCell;
-    }
-    return {result.crowd.name,
-            result.methods[i].name,
-            valueOf(ratio),
-            ns,
-            ns / perAgent,
-            valueOf(speed),
-            measured.recall(),
-            valueOf(measured.precision()),
-            valueOf(theory),
-            measured.wrongShare(),
-            wrong.low,
-            wrong.high,
-            static_cast<double>(measured.worse) / static_cast<double>(measured.decisions)};
-}
-
-DataTable resultTable(std::span<const ProximityResult> all,
-                      std::span<const ProximityResult> shown) {
-    DataTable table{{{"crowd", "crowd"},
-                     {"method", "method"},
-                     {"radius_by_cell", "radius / cell"},
-                     {"ns", "time [ns/agent]"},
-                     {"ns_neighbour", "time [ns/neighbour]"},
-                     {"speed", "times as fast as btDbvtBroadphase"},
-                     {"recall", "neighbours found (recall)"},
-                     {"precision", "of those named, neighbours (precision)"},
-                     {"theory", "precision in theory"},
-                     {"wrong", "wrong decisions"},
-                     {"wrong_low", "at least"},
-                     {"wrong_high", "at most (95 %)"},
-                     {"worse", "decisions for a colour that is not even equally rare"}},
-                    {}};
-    for (const ProximityResult& result : shown) {
-        for (std::size_t i = 0; i < result.methods.size(); ++i) {
-            table.add(rowOf(all, result, i));
-        }
-    }
-    return table;
-}
 
 /// Crowds of the same name, which differ by their cells, follow each other.
 std::vector<std::span<const ProximityResult>> byCrowd(std::span<const ProximityResult> results) {
@@ -105,44 +22,6 @@ std::vector<std::span<const ProximityResult>> byCrowd(std::span<const ProximityR
         }
     }
     return groups;
-}
-
-Chart decisionChart(std::span<const ProximityResult> group, std::size_t number) {
-    Chart chart;
-    chart.name = "P3-decisions-" + std::to_string(number);
-    chart.title = "Wrong decisions against time: " + group.front().crowd.name;
-    chart.settings = kSettings;
-    chart.mark = ChartMark::kPoint;
-    chart.data = resultTable(group, group);
-    chart.x = {"ns", AxisScale::kLog};
-    chart.y = {"wrong", AxisScale::kLogAndZero};
-    chart.series = "method";
-    chart.low = "wrong_low";
-    chart.high = "wrong_high";
-    chart.label = "radius_by_cell";
-    chart.showFront = true;
-    return chart;
-}
-
-/// Against the radius in cells, for methods to which that matters.
-Chart listChart(std::span<const ProximityResult> group, bool isRecall) {
-    Chart chart;
-    chart.name = isRecall ? "P3-recall" : "P3-precision";
-    chart.title = isRecall ? "How many of the neighbours are found"
-                           : "How many of those named are neighbours";
-    chart.settings = kSettings;
-    chart.data = resultTable(group, group);
-    const std::size_t ratio = chart.data.columnOf("radius_by_cell");
-    std::erase_if(chart.data.rows, [ratio](const std::vector<Value>& row) {
-        return std::holds_alternative<std::monostate>(row[ratio]);
-    });
-    chart.x = {"radius_by_cell", AxisScale::kLog};
-    chart.y = {isRecall ? "recall" : "precision", AxisScale::kLinear};
-    chart.series = "method";
-    if (!isRecall) {
-        chart.theory = "theory";
-    }
-    return chart;
 }
 
 DataTable statedTable(std::span<const StatedEstimate> stated) {
@@ -296,13 +175,37 @@ std::string groupSentence(std::span<const ProximityResult> group) {
     return text;
 }
 
+/// How agents that ask one by one fare against Bullet, over all cell sizes of a crowd.
+std::string oneByOneSentence(std::span<const ProximityResult> group) {
+    const auto bullet = bulletNanoseconds(group, group.front().crowd);
+    const std::string name = findWithinMethod().name;
+    double worst = 0;
+    double best = 0;
+    for (const ProximityResult& result : group) {
+        for (std::size_t i = 0; bullet && i < result.methods.size(); ++i) {
+            if (result.methods[i].name == name) {
+                const double speed = *bullet / nanoseconds(result, i);
+                worst = best == 0 ? speed : std::min(worst, speed);
+                best = std::max(best, speed);
+            }
+        }
+    }
+    if (best == 0) {
+        return {};
+    }
+    const std::string speeds = fixed(worst, 2) + " to " + fixed(best, 2);
+    return group.front().crowd.name + ", asked one by one: " + name + " is " +
+           (group.size() > 1 ? speeds + " times as fast as btDbvtBroadphase, by cell size."
+                             : fixed(best, 2) + " times as fast as btDbvtBroadphase.");
+}
+
 }  // namespace
 
 Findings proximityFindings(std::span<const ProximityResult> results,
                            std::span<const StatedEstimate> stated) {
     Findings findings;
     findings.settings = {
-        kSettings,
+        kProximitySettings,
         "Truth: the distance to every other agent in double precision, for agents that have all "
         "the cells around them within the square. Coordinates are multiples of 1/256 m, so that "
         "single precision decides without rounding.",
@@ -318,7 +221,12 @@ Findings proximityFindings(std::span<const ProximityResult> results,
     const auto groups = byCrowd(results);
     for (std::size_t i = 0; i < groups.size(); ++i) {
         findings.charts.push_back(decisionChart(groups[i], i + 1));
-        findings.conclusions.push_back(groupSentence(groups[i]));
+        for (std::string& sentence :
+             std::vector{groupSentence(groups[i]), oneByOneSentence(groups[i])}) {
+            if (!sentence.empty()) {
+                findings.conclusions.push_back(std::move(sentence));
+            }
+        }
     }
     if (!groups.empty()) {
         findings.charts.push_back(listChart(groups.front(), true));
