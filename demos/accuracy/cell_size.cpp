@@ -67,7 +67,7 @@ std::string CellCase::name() const {
 std::vector<CellCase> cellCases(const Effort& effort) {
     constexpr std::array kAll{0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0};
     constexpr std::array kFew{0.25, 1.0, 2.0, 4.0, 16.0, 64.0};
-    constexpr std::array kLikely{0.5, 1.0, 2.0, 4.0, 8.0, 16.0};  // where a frame takes long
+    constexpr std::array kLikely{0.5, 1.0, 2.0, 4.0, 8.0};  // where a frame takes long
     constexpr std::array kAroundTheBest{2.0, 4.0};
     std::vector<CellCase> cases;
     for (const Population& population : kPopulations) {
@@ -109,6 +109,8 @@ std::vector<CellMethod> cellMethods(const CellCase& each, double meanEdge) {
                                         FiledCells::kCorners)}) {
             methods.push_back({paper, factor});
             methods.back().filingCellSize = cellSize;
+            methods.back().pairs.mostTestsTimed =
+                kMostTestsPerObject * static_cast<double>(each.objects);
         }
     }
     methods.push_back({dbvtMethod(false)});
@@ -137,7 +139,6 @@ CellCaseResult measure(const CellCase& each, const CellMethods& methodsOf, std::
     PairTrialPlan plan;
     plan.judgedFrames = each.judgedFrames;
     plan.rounds = kFewestFrames;
-    plan.mostTestsTimed = kMostTestsPerObject * static_cast<double>(each.objects);
     result.trial = tryPairs(scene, methods, plan);
     return result;
 }
@@ -164,7 +165,7 @@ Experiment cellSizeExperiment() {
     return {"P2",
             "Cell size",
             "What does a cell size cost that is too small or too large, and what does it miss?",
-            5,
+            4,
             100,
             [](const Effort& effort, const TellProgress& tell) {
                 return measureCellSizes(cellCases(effort), cellMethods, effort, tell);

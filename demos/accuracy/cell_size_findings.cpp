@@ -148,8 +148,10 @@ Findings cellSizeFindings(std::span<const CellCaseResult> results) {
     findings.settings = {
         cellSizeSettings(),
         "True pairs: a sweep along one axis, which brute force judges up to 20,000 objects.",
-        "Levels: hashphase with finest cells of that size and coarser ones of 4, 16 ... times; "
-        "automatic: sizes chosen from the population. One grid: the paper's, with one size for "
+        "Levels: hashphase with finest cells of that size and coarser ones of 4, 16 ... times, of "
+        "which a box lies on the finest with cells no smaller than it; where most boxes are a "
+        "little smaller than the cells of one level, all of them share it. "
+        "Automatic: sizes chosen from the population. One grid: the paper's, with one size for "
         "all.",
         "Not measured: the paper's grids where an object would lie in more than 64 cells on "
         "average, and their times where a frame compares more than 300 boxes an object; they "

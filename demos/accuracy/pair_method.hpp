@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -40,6 +41,10 @@ struct PairMethod {
     MethodOrigin origin = MethodOrigin::kOurs;
     bool isExact = true;     // promises the overlapping pairs, all of them and no other
     bool isComplete = true;  // promises all of them, perhaps with others
+
+    /// When it compares more boxes than this in a frame, it is judged, but not timed.
+    double mostTestsTimed = std::numeric_limits<double>::infinity();
+
     std::function<std::unique_ptr<PairSource>(const BroadphaseNeeds& needs,
                                               std::span<const BulletBox> boxes)>
         make;

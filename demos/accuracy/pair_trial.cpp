@@ -14,6 +14,7 @@ public:
         takeBoxes();
         for (const PairMethod& method : methods) {
             Entry& entry = entries_.emplace_back();
+            entry.mostTestsTimed = method.mostTestsTimed;
             const HeapScope scope(entry.heap);
             entry.source = method.make(needs_, boxes_);
         }
@@ -33,7 +34,7 @@ public:
         std::vector<Entry*> timed;
         std::vector<std::function<void()>> runs;
         for (Entry& entry : entries_) {
-            if (entry.tests() <= plan.mostTestsTimed) {
+            if (entry.tests() <= entry.mostTestsTimed) {
                 timed.push_back(&entry);
                 runs.push_back([this, source = entry.source.get()] {
                     for (const std::vector<BulletBox>& boxes : block_) {
@@ -80,6 +81,7 @@ private:
         HeapMeter heap;
         Verifier verifier;
         PairMeasurement measured;
+        double mostTestsTimed = 0;
         double tested = 0;
         int testedFrames = 0;
 

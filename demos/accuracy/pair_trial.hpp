@@ -6,17 +6,12 @@
 #include <demos/accuracy/pair_method.hpp>
 #include <demos/report/statistics.hpp>
 
-#include <limits>
-
 namespace hashphase::demos {
 
 struct PairTrialPlan {
     int judgedFrames = 4;  // before the times are taken, and as many after them
     int rounds = 60;       // of `framesTogether` frames each, for which a method is timed
     int framesTogether = 1;
-
-    /// A method that compares more boxes than this in a frame is judged, but not timed.
-    double mostTestsTimed = std::numeric_limits<double>::infinity();
 };
 
 /// Sums over all judged frames, and times.

@@ -318,8 +318,8 @@ Experiment updateExperiment() {
     return {"P10",
             "Update policy",
             "What does it save not to tell the broadphase of every move, and what goes wrong?",
-            5,
-            100,
+            4,
+            40,
             [](const Effort& effort, const TellProgress& tell) {
                 return measurePolicies(updatePlan(effort), updatePolicies(), effort.seed, tell);
             }};
