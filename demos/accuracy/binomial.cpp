@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/binomial.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace hashphase::demos {
@@ -13,6 +14,15 @@ ShareInterval wilsonInterval(std::uint64_t hits, std::uint64_t trials) {
     const double reach =
         z / (1 + z * z / n) * std::sqrt(share * (1 - share) / n + z * z / (4 * n * n));
     return {hits == 0 ? 0 : centre - reach, hits == trials ? 1 : centre + reach};
+}
+
+ShareInterval intervalOverFrames(std::uint64_t hits, std::uint64_t trials, int frames) {
+    const auto count = static_cast<std::uint64_t>(frames);
+    const std::uint64_t trialsOfOne = std::max<std::uint64_t>(trials / count, 1);
+    const std::uint64_t hitsOfOne = std::min((hits + count / 2) / count, trialsOfOne);
+    const ShareInterval interval = wilsonInterval(hitsOfOne, trialsOfOne);
+    const double share = static_cast<double>(hits) / static_cast<double>(trials);
+    return {std::min(interval.low, share), std::max(interval.high, share)};
 }
 
 }  // namespace hashphase::demos

@@ -22,4 +22,9 @@ struct ShareInterval {
 /// Succession, and Statistical Inference", 1927.
 [[nodiscard]] ShareInterval wilsonInterval(std::uint64_t hits, std::uint64_t trials);
 
+/// The same where the trials are those of several frames in a row, in which the same objects are met
+/// again and tell little that is new: as wide as for the trials of one frame.
+[[nodiscard]] ShareInterval intervalOverFrames(std::uint64_t hits, std::uint64_t trials,
+                                               int frames);
+
 }  // namespace hashphase::demos

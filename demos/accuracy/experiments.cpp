@@ -9,12 +9,15 @@ namespace hashphase::demos {
 
 std::span<const Experiment> experiments() {
     static const std::vector<Experiment> all{
+        cellSizeExperiment(),
+        proximityExperiment(),
         cullingExperiment(),
         pickingExperiment(),
-        terrainExperiment(),
         originExperiment(),
         timeStepExperiment(),
         trajectoryExperiment(),
+        terrainExperiment(),
+        updateExperiment(),
     };
     return all;
 }

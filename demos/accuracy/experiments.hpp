@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The experiments, one file each.
+// The experiments, a folder each.
 
 #include <demos/accuracy/experiment.hpp>
 
 namespace hashphase::demos {
 
-[[nodiscard]] Experiment cullingExperiment();
-[[nodiscard]] Experiment pickingExperiment();
-[[nodiscard]] Experiment terrainExperiment();
-[[nodiscard]] Experiment originExperiment();
-[[nodiscard]] Experiment timeStepExperiment();
-[[nodiscard]] Experiment trajectoryExperiment();
+[[nodiscard]] Experiment cellSizeExperiment();    // P2
+[[nodiscard]] Experiment proximityExperiment();   // P3
+[[nodiscard]] Experiment cullingExperiment();     // P4
+[[nodiscard]] Experiment pickingExperiment();     // P5
+[[nodiscard]] Experiment originExperiment();      // P6
+[[nodiscard]] Experiment timeStepExperiment();    // P7
+[[nodiscard]] Experiment trajectoryExperiment();  // P8
+[[nodiscard]] Experiment terrainExperiment();     // P9
+[[nodiscard]] Experiment updateExperiment();      // P10
 
 }  // namespace hashphase::demos

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/timing.hpp>
 
-#include <demos/report/stopwatch.hpp>
+#include <demos/report/frame_clock.hpp>
 
 #if defined(__linux__)
 #include <sched.h>
@@ -16,9 +16,9 @@ std::vector<Spread> timeInTurn(int frames, int warmUp, const std::function<void(
         begin(frame);
         for (std::size_t turn = 0; turn < methods.size(); ++turn) {
             const std::size_t i = (turn + static_cast<std::size_t>(frame)) % methods.size();
-            const Stopwatch stopwatch;
+            const FrameClock clock;
             methods[i]();
-            const double elapsed = stopwatch.milliseconds();
+            const double elapsed = clock.milliseconds();
             if (frame >= warmUp) {
                 times[i].push_back(elapsed);
             }

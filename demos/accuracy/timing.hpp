@@ -15,7 +15,8 @@ namespace hashphase::demos {
 inline constexpr int kFewestFrames = 60;
 
 /// Runs begin(frame) and then all methods, in an order that rotates, for each of `frames` frames
-/// after `warmUp` more that are not timed. Returns the time of each method [ms a frame].
+/// after `warmUp` more that are not timed. Returns the time of each method
+/// [ms a frame], less what other programs took of the processor meanwhile; on this thread only.
 [[nodiscard]] std::vector<Spread> timeInTurn(int frames, int warmUp,
                                              const std::function<void(int frame)>& begin,
                                              std::span<const std::function<void()>> methods);

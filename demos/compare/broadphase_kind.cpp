@@ -14,8 +14,10 @@ namespace {
 
 constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
 
-std::unique_ptr<btBroadphaseInterface> makeHash(const BroadphaseNeeds& /*needs*/) {
-    return std::make_unique<SpatialHashBroadphase>();
+std::unique_ptr<btBroadphaseInterface> makeHash(const BroadphaseNeeds& needs) {
+    SpatialHashConfig config;
+    config.grid = needs.grid;
+    return std::make_unique<SpatialHashBroadphase>(config);
 }
 
 std::unique_ptr<btBroadphaseInterface> makeDbvt(const BroadphaseNeeds& /*needs*/) {

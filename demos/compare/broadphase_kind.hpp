@@ -6,6 +6,7 @@
 #include <btBulletCollisionCommon.h>
 
 #include <broadphase/aabb.hpp>
+#include <broadphase/grid_config.hpp>
 
 #include <limits>
 #include <memory>
@@ -18,6 +19,7 @@ namespace hashphase::demos {
 struct BroadphaseNeeds {
     Aabb<float> bounds;  // of everything that will ever be set
     std::size_t objects = 0;
+    GridConfig grid = {};  // of ours
 };
 
 struct BroadphaseKind {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #include <tests/benchmarks/catalog.hpp>
 
+#include <demos/scenes/scatter.hpp>
 #include <tests/benchmarks/pair_workload.hpp>
 #include <tests/benchmarks/population_workload.hpp>
-#include <tests/benchmarks/scatter.hpp>
 
 #include <algorithm>
 #include <array>
@@ -45,7 +45,7 @@ Benchmark stillBenchmark(std::string name, std::string description, Setting sett
     benchmark.sizes = {100'000};
     benchmark.admits = takesPartInFrames;
     benchmark.make = [setting](std::size_t objects, std::uint64_t seed) {
-        ScatterPlan plan;
+        demos::ScatterPlan plan;
         plan.movingShare = 0;
         demos::BrownianBoxes boxes = scatter(plan, objects, seed);
         boxes.filters.resize(objects);
@@ -123,7 +123,7 @@ std::vector<Benchmark> pairBenchmarks() {
 std::vector<Benchmark> randomBenchmarks(std::uint64_t seed) {
     std::vector<Benchmark> all;
     for (std::size_t i = 1; i <= kRandomScenes; ++i) {
-        const RandomScene drawn = drawScene(seed * kRandomScenes + i);
+        const demos::RandomScene drawn = demos::drawScene(seed * kRandomScenes + i);
         Benchmark benchmark;
         benchmark.name = "random-" + std::to_string(i);
         benchmark.group = "random";

@@ -4,11 +4,11 @@
 // chooses for itself and for grids with cells of 0.25 to 64 times the mean edge.
 
 #include <demos/console/format.hpp>
+#include <demos/scenes/scatter.hpp>
 #include <tests/benchmarks/catalog.hpp>
 #include <tests/benchmarks/cell_size.hpp>
 #include <tests/benchmarks/grid_contestant.hpp>
 #include <tests/benchmarks/pair_workload.hpp>
-#include <tests/benchmarks/scatter.hpp>
 
 #include <array>
 #include <string>
@@ -19,15 +19,15 @@ namespace {
 
 struct Distribution {
     const char* name;
-    SizeLaw sizes;
+    demos::SizeLaw sizes;
     float sizeRatio;
-    Placement placement;
+    demos::Placement placement;
 };
 
 constexpr std::array kDistributions{
-    Distribution{"uniform", SizeLaw::near, 1, Placement::cube},
-    Distribution{"clustered", SizeLaw::near, 1, Placement::clusters},
-    Distribution{"sizes-1000", SizeLaw::logUniform, 1000, Placement::cube},
+    Distribution{"uniform", demos::SizeLaw::near, 1, demos::Placement::cube},
+    Distribution{"clustered", demos::SizeLaw::near, 1, demos::Placement::clusters},
+    Distribution{"sizes-1000", demos::SizeLaw::logUniform, 1000, demos::Placement::cube},
 };
 constexpr std::array kOverlapsPerBox{0.2F, 2.0F, 10.0F};
 constexpr std::array kCellFactors{0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0};
@@ -37,14 +37,6 @@ constexpr double kHopeless = 5;
 
 std::string factorText(double factor) {
     return demos::fixed(factor, factor < 0.5 ? 2 : factor < 1 ? 1 : 0);
-}
-
-double meanEdge(const demos::BrownianBoxes& boxes) {
-    double sum = 0;
-    for (const demos::BrownianBoxes::Body& body : boxes.bodies) {
-        sum += 2 * static_cast<double>(body.halfEdges.mean());
-    }
-    return sum / static_cast<double>(boxes.bodies.size());
 }
 
 std::vector<ContestantKind> gridsFor(const demos::BrownianBoxes& boxes) {
@@ -58,7 +50,7 @@ std::vector<ContestantKind> gridsFor(const demos::BrownianBoxes& boxes) {
 }
 
 Benchmark cellSizeBenchmark(const Distribution& distribution, float overlapsPerBox) {
-    ScatterPlan plan;
+    demos::ScatterPlan plan;
     plan.sizes = distribution.sizes;
     plan.sizeRatio = distribution.sizeRatio;
     plan.placement = distribution.placement;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <tests/benchmarks/crowd_workload.hpp>
 
-#include <tests/benchmarks/frame_clock.hpp>
+#include <demos/report/frame_clock.hpp>
 
 #include <algorithm>
 #include <array>
@@ -78,7 +78,7 @@ void CrowdWorkload::beginFrame() {
 
 double CrowdWorkload::runFrame(std::size_t contestant) {
     Entry& entry = entries_[contestant];
-    const FrameClock watch(entry.onThreads);
+    const demos::FrameClock watch(entry.onThreads);
     entry.contestant->ask(radius_);
     return watch.milliseconds();
 }

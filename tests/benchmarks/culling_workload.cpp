@@ -2,9 +2,9 @@
 #include <tests/benchmarks/culling_workload.hpp>
 
 #include <broadphase/frustum.hpp>
+#include <demos/report/frame_clock.hpp>
 #include <integration/bullet/conversions.hpp>
 #include <integration/culling/culler.hpp>
-#include <tests/benchmarks/frame_clock.hpp>
 #include <tests/support/cameras.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
@@ -261,7 +261,7 @@ double CullingWorkload::runFrame(std::size_t contestant) {
     if (plan_.isSecond) {
         look();
     }
-    const FrameClock watch;
+    const demos::FrameClock watch;
     look();
     return watch.milliseconds();
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #include <tests/benchmarks/measurement.hpp>
 
-#include <demos/report/stopwatch.hpp>
 #include <demos/compare/verifier.hpp>
-#include <tests/benchmarks/frame_clock.hpp>
+#include <demos/report/frame_clock.hpp>
+#include <demos/report/stopwatch.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -91,7 +91,7 @@ private:
             contestant.frameMs.push_back(workload_->runFrame(i));
             return;
         }
-        const FrameClock watch;
+        const demos::FrameClock watch;
         workload_->runWatchedFrame(i);
         warmUpMs_[i] = std::min(warmUpMs_[i], watch.milliseconds());
         contestant.memory = workload_->memory(i);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <tests/benchmarks/pair_workload.hpp>
 
-#include <tests/benchmarks/frame_clock.hpp>
+#include <demos/report/frame_clock.hpp>
 
 namespace hashphase::benchmarks {
 
@@ -29,7 +29,7 @@ void PairWorkload::beginFrame() {
 double PairWorkload::runFrame(std::size_t contestant) {
     Contestant& current = *entries_[contestant].contestant;
     const FrameBoxes frame = scene_.frame();
-    const FrameClock watch(entries_[contestant].onThreads);
+    const demos::FrameClock watch(entries_[contestant].onThreads);
     if (setting_ == Setting::everything) {
         current.setAll(frame);
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <tests/benchmarks/population_workload.hpp>
 
-#include <tests/benchmarks/frame_clock.hpp>
+#include <demos/report/frame_clock.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -39,7 +39,7 @@ void RemovalWorkload::beginFrame() {
 double RemovalWorkload::runFrame(std::size_t contestant) {
     Contestant& current = *contestants_[contestant];
     Population& population = *current.population();
-    const FrameClock watch;
+    const demos::FrameClock watch;
     population.remove(removed());
     if (timing_ == RemovalTiming::removalsAndPairs) {
         current.findPairs();
@@ -84,7 +84,7 @@ void CreationWorkload::beginFrame() {
 
 double CreationWorkload::runFrame(std::size_t contestant) {
     Contestant& current = *entries_[contestant].contestant;
-    const FrameClock watch;
+    const demos::FrameClock watch;
     current.fill(scene_.frame());
     current.findPairs();
     return watch.milliseconds();

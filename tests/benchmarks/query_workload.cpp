@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #include <tests/benchmarks/query_workload.hpp>
 
+#include <demos/report/frame_clock.hpp>
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
-#include <tests/benchmarks/frame_clock.hpp>
 
 #include <algorithm>
 
@@ -45,7 +45,7 @@ void QueryWorkload::add(const ContestantKind& kind) {
 double QueryWorkload::runFrame(std::size_t contestant) {
     Entry& entry = entries_[contestant];
     entry.answers.clear();
-    const FrameClock watch;
+    const demos::FrameClock watch;
     ask(*entry.filled, entry.answers);
     return watch.milliseconds();
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <tests/benchmarks/terrain_workload.hpp>
 
+#include <demos/report/frame_clock.hpp>
 #include <demos/scenes/terrain.hpp>
-#include <tests/benchmarks/frame_clock.hpp>
 #include <tests/benchmarks/query_workload.hpp>
 
 #include <algorithm>
@@ -100,7 +100,7 @@ void TerrainWorkload::beginFrame() {
 
 double TerrainWorkload::runFrame(std::size_t contestant) {
     Entry& entry = entries_[contestant];
-    const FrameClock watch(entry.onThreads);
+    const demos::FrameClock watch(entry.onThreads);
     entry.contestant->ask(question_, spheres_, entry.heights);
     return watch.milliseconds();
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <tests/benchmarks/scatter.hpp>
+#include <demos/scenes/scatter.hpp>
 
 #include <demos/compare/reference_pairs.hpp>
 
@@ -8,11 +8,8 @@
 #include <algorithm>
 #include <set>
 
-namespace hashphase::benchmarks {
+namespace hashphase::demos {
 namespace {
-
-using demos::BrownianBoxes;
-using demos::BrownianScene;
 
 bool sameBodies(const BrownianBoxes& a, const BrownianBoxes& b) {
     return std::equal(a.bodies.begin(), a.bodies.end(), b.bodies.begin(), b.bodies.end(),
@@ -24,8 +21,8 @@ bool sameBodies(const BrownianBoxes& a, const BrownianBoxes& b) {
 
 double overlapsPerBox(const ScatterPlan& plan, std::size_t objects, std::uint64_t seed) {
     const BrownianScene scene(scatter(plan, objects, seed), seed);
-    std::vector<demos::PairKey> pairs;
-    demos::findExactPairs(demos::ReferenceMethod::kSweep, scene.boxes(), {}, pairs);
+    std::vector<PairKey> pairs;
+    findExactPairs(ReferenceMethod::kSweep, scene.boxes(), {}, pairs);
     return 2.0 * static_cast<double>(pairs.size()) / static_cast<double>(objects);
 }
 
@@ -94,4 +91,4 @@ TEST(RandomScenes, DependOnTheSeedAloneAndDiffer) {
 }
 
 }  // namespace
-}  // namespace hashphase::benchmarks
+}  // namespace hashphase::demos

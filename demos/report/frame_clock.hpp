@@ -7,7 +7,7 @@
 
 #include <time.h>
 
-namespace hashphase::benchmarks {
+namespace hashphase::demos {
 
 /// The time since its creation that went into this thread's work. Two clocks, of which the smaller
 /// counts: the processor time leaves out what other programs took meanwhile, the wall time is not
@@ -33,7 +33,7 @@ private:
 
     bool onThreads_;
     double processorStart_ = processorMilliseconds();
-    demos::Stopwatch wall_;  // read inside of the other
+    Stopwatch wall_;  // read inside of the other
 };
 
-}  // namespace hashphase::benchmarks
+}  // namespace hashphase::demos

@@ -8,7 +8,7 @@
 
 #include <string>
 
-namespace hashphase::benchmarks {
+namespace hashphase::demos {
 
 enum class SizeLaw {
     equal,       // every edge the same
@@ -33,8 +33,11 @@ struct ScatterPlan {
 };
 
 /// The smallest edge is about 1 m. The same arguments give the same boxes.
-[[nodiscard]] demos::BrownianBoxes scatter(const ScatterPlan& plan, std::size_t objects,
-                                           std::uint64_t seed);
+[[nodiscard]] BrownianBoxes scatter(const ScatterPlan& plan, std::size_t objects,
+                                    std::uint64_t seed);
+
+/// The mean of all edges on all axes [m]; there must be a box.
+[[nodiscard]] double meanEdge(const BrownianBoxes& boxes);
 
 /// A plan drawn from a seed, and a number of objects for it.
 struct RandomScene {
@@ -46,4 +49,4 @@ struct RandomScene {
 /// "log-uniform edges 1:140, in clusters, 3.1 overlaps a box, 17 % moving".
 [[nodiscard]] std::string describe(const ScatterPlan& plan);
 
-}  // namespace hashphase::benchmarks
+}  // namespace hashphase::demos

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <tests/benchmarks/scatter.hpp>
+#include <demos/scenes/scatter.hpp>
 
 #include <demos/console/format.hpp>
 
@@ -7,11 +7,8 @@
 #include <array>
 #include <cmath>
 
-namespace hashphase::benchmarks {
+namespace hashphase::demos {
 namespace {
-
-using demos::BrownianBoxes;
-using demos::Random;
 
 constexpr std::size_t kPerCluster = 1000;
 constexpr float kClusterDistance = 20;  // between clusters, by the edge of one
@@ -93,6 +90,14 @@ BrownianBoxes scatter(const ScatterPlan& plan, std::size_t objects, std::uint64_
     return boxes;
 }
 
+double meanEdge(const BrownianBoxes& boxes) {
+    double sum = 0;
+    for (const BrownianBoxes::Body& body : boxes.bodies) {
+        sum += 2 * static_cast<double>(body.halfEdges.mean());
+    }
+    return sum / static_cast<double>(boxes.bodies.size());
+}
+
 RandomScene drawScene(std::uint64_t seed) {
     Random random(seed);
     const auto upTo = [&random](float low, float high) {  // log-uniform
@@ -116,13 +121,13 @@ std::string describe(const ScatterPlan& plan) {
     constexpr std::array kPlacements{"in a cube", "on a plain", "in clusters"};
     std::string text = kSizes[static_cast<std::size_t>(plan.sizes)];
     if (plan.sizes == SizeLaw::logUniform || plan.sizes == SizeLaw::fewLarge) {
-        text += " 1:" + demos::fixed(static_cast<double>(plan.sizeRatio), 0);
+        text += " 1:" + fixed(static_cast<double>(plan.sizeRatio), 0);
     }
     text += std::string(", ") + kPlacements[static_cast<std::size_t>(plan.placement)];
-    text += ", " + demos::fixed(static_cast<double>(plan.overlapsPerBox), 1) + " overlaps a box, ";
-    text += demos::fixed(100.0 * static_cast<double>(plan.movingShare), 0) + " % moving by " +
-            demos::fixed(static_cast<double>(plan.step), 2) + " edges";
+    text += ", " + fixed(static_cast<double>(plan.overlapsPerBox), 1) + " overlaps a box, ";
+    text += fixed(100.0 * static_cast<double>(plan.movingShare), 0) + " % moving by " +
+            fixed(static_cast<double>(plan.step), 2) + " edges";
     return text;
 }
 
-}  // namespace hashphase::benchmarks
+}  // namespace hashphase::demos

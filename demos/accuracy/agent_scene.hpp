@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Agents that wander over a square or through a cube, at places where single precision tells who is
+// within up to 16 m without rounding: coordinates are multiples of 1/256 m.
+
+#include <demos/scenes/box_scene.hpp>
+#include <demos/scenes/random.hpp>
+
+namespace hashphase::demos {
+
+struct AgentPlan {
+    std::size_t agents = 0;
+    double side = 0;    // of the square or cube [m]; at most 60 km
+    double edge = 0.5;  // of an agent's box [m], a multiple of 1/128
+    double step = 0;    // largest move on an axis in a frame [m]
+    bool isFlat = true;
+};
+
+class AgentScene : public BoxScene {
+public:
+    AgentScene(const AgentPlan& plan, std::uint64_t seed);
+
+    void advance() override;
+    [[nodiscard]] Aabb<float> bounds() const override;
+
+private:
+    /// In 1/256 m.
+    using Place = std::array<std::int32_t, 3>;
+
+    [[nodiscard]] std::int32_t draw(std::int32_t low, std::int32_t high);
+    void placeBoxes();
+
+    Random random_;
+    int axes_;  // along which agents move: x, z, and in a cube y
+    std::int32_t side_;
+    std::int32_t step_;
+    float halfEdge_;
+    std::vector<Place> places_;  // of centres
+};
+
+}  // namespace hashphase::demos

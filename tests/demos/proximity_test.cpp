@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/accuracy/agent_scene.hpp>
+#include <demos/accuracy/proximity.hpp>
+#include <tests/demos/findings_checks.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace hashphase::demos {
+namespace {
+
+ProximityExperimentPlan tinyPlan() {
+    ProximityExperimentPlan plan;
+    ProximityCase crowd;
+    crowd.name = "a few agents";
+    crowd.agents = 300;
+    crowd.neighbours = 5;
+    plan.crowds = {crowd};
+    crowd.radiusByCell = 4;
+    crowd.hasAllMethods = false;
+    plan.crowds.push_back(crowd);
+    plan.trial.rounds = 2;
+    plan.statedEstimates = 100;
+    return plan;
+}
+
+Findings measureWith(std::span<const NeighbourMethod> methods) {
+    return measureProximity(tinyPlan(), methods, 1, ignoreProgress);
+}
+
+/// Leaves out the last neighbour of each agent, in lists and decisions.
+class Forgetful : public NeighbourSearch {
+public:
+    explicit Forgetful(std::unique_ptr<NeighbourSearch> search) : search_(std::move(search)) {}
+
+    void take(const AgentFrame& frame) override { search_->take(frame); }
+    void forEach(Visit visit) override {
+        search_->forEach([&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) {
+            visit(agent, neighbours.first(std::max<std::size_t>(neighbours.size(), 1) - 1));
+        });
+    }
+
+private:
+    std::unique_ptr<NeighbourSearch> search_;
+};
+
+std::vector<std::string> brokenWithForgetful(bool isExact) {
+    std::vector<NeighbourMethod> methods = neighbourMethods();
+    const auto chosen = std::find_if(methods.begin(), methods.end(), [&](const auto& method) {
+        return method.isExact == isExact && method.isComplete != isExact;
+    });
+    chosen->make = [make = chosen->make](const NeighbourNeeds& needs) {
+        return std::make_unique<Forgetful>(make(needs));
+    };
+    return brokenClaims(measureWith(methods));
+}
+
+TEST(ProximityExperiment, HoldsForEveryMethod) {
+    const Findings findings = measureWith(neighbourMethods());
+    EXPECT_EQ(brokenClaims(findings), std::vector<std::string>{});
+    expectChartsCanBeDrawn(findings);
+    EXPECT_FALSE(findings.choices.empty());
+    EXPECT_FALSE(findings.conclusions.empty());
+}
+
+TEST(ProximityExperiment, NoticesAnExactMethodThatForgetsANeighbour) {
+    EXPECT_EQ(brokenWithForgetful(true).size(), 1U);
+}
+
+TEST(ProximityExperiment, NoticesAnEstimateThatForgetsANeighbour) {
+    EXPECT_EQ(brokenWithForgetful(false).size(), 1U);
+}
+
+TEST(ProximityExperiment, RefusesASquareThatIsTooSmallForTheCells) {
+    ProximityExperimentPlan plan = tinyPlan();
+    plan.crowds.front().radiusByCell = 0.1;
+    EXPECT_THROW(static_cast<void>(measureProximity(plan, neighbourMethods(), 1, ignoreProgress)),
+                 std::invalid_argument);
+}
+
+TEST(AgentScene, KeepsPlacesThatSinglePrecisionHoldsExactly) {
+    AgentPlan plan;
+    plan.agents = 100;
+    plan.side = 50;
+    plan.step = 1;
+    AgentScene scene(plan, 1);
+    for (int frame = 0; frame < 20; ++frame) {
+        scene.advance();
+        for (const Aabb<float>& box : scene.boxes()) {
+            EXPECT_TRUE(scene.bounds().contains(box));
+            const Vector3<float> place = 256 * box.center();
+            EXPECT_EQ(place, place.array().round().matrix());
+            EXPECT_EQ(place.y(), 0);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace hashphase::demos
