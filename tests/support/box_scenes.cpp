@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Zlib
+
+#include <tests/support/box_scenes.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace hashphase::test {
+
+template <class Scalar>
+BoxScene<Scalar> spreadScene(std::string name, double scale, double middle) {
+    BoxScene<Scalar> scene;
+    scene.name = std::move(name);
+    scene.count = 200;
+    scene.draw = [scale, middle](Random& random) {
+        const Vector3<double> center = random.pointIn(middle - 7 * scale, middle + 7 * scale);
+        return boxAround<Scalar>(center, random.pointIn(0.5 * scale, scale));
+    };
+    scene.nudge = [scale](Random& random, const Aabb<Scalar>& box) {
+        return shifted(random, box, 0.4 * scale);
+    };
+    return scene;
+}
+template <class Scalar>
+Scalar hostileNumber(Random& random) {
+    using Limits = std::numeric_limits<Scalar>;
+    const std::array<Scalar, 16> numbers{0,
+                                         Limits::denorm_min(),
+                                         37 * Limits::denorm_min(),
+                                         Limits::min(),
+                                         Scalar(1e-30),
+                                         Scalar(0.1),
+                                         1,
+                                         268435456,
+                                         Scalar(3e9),
+                                         Scalar(1e18),
+                                         Scalar(1e30),
+                                         Limits::max() / 2,
+                                         Limits::max(),
+                                         Limits::infinity(),
+                                         Limits::quiet_NaN(),
+                                         16777216};
+    const Scalar number = numbers[random.below(numbers.size())];
+    return random.chance(0.5) ? number : -number;
+}
+
+template <class Scalar>
+Aabb<Scalar> hostileBox(Random& random) {
+    Aabb<Scalar> box = boxAround<Scalar>(random.pointIn(-4, 4), random.pointIn(0, 2));
+    const std::uint32_t spoiled = 1 + random.below(3);
+    for (std::uint32_t i = 0; i < spoiled; ++i) {
+        Vector3<Scalar>& corner = random.chance(0.5) ? box.min() : box.max();
+        corner[random.below(3)] = hostileNumber<Scalar>(random);
+    }
+    if (random.chance(0.2)) {
+        std::swap(box.min(), box.max());
+    }
+    return box;
+}
+
+namespace {
+
+// The paper's: spheres of radius 1 on flat ground of 400 x 400.
+template <class Scalar>
+BoxScene<Scalar> paperScene() {
+    BoxScene<Scalar> scene;
+    scene.name = "the paper's spheres on flat ground";
+    scene.count = 600;
+    scene.draw = [](Random& random) {
+        return boxAround<Scalar>({random.between(0, 400), random.between(0, 400), 1}, {1, 1, 1});
+    };
+    scene.nudge = [](Random& random, const Aabb<Scalar>& box) {
+        const Vector3<Scalar> by(static_cast<Scalar>(random.between(-1, 1)),
+                                 static_cast<Scalar>(random.between(-1, 1)), 0);
+        return Aabb<Scalar>(box.min() + by, box.max() + by);
+    };
+    return scene;
+}
+
+template <class Scalar>
+BoxScene<Scalar> sizesScene() {
+    BoxScene<Scalar> scene;
+    scene.name = "sizes from 1e-3 to 1e3";
+    scene.count = 200;
+    scene.draw = [](Random& random) {
+        const double half = random.logBetween(0.5e-3, 0.5e3);
+        return boxAround<Scalar>(random.pointIn(-500, 500), Vector3<double>::Constant(half));
+    };
+    scene.nudge = [](Random& random, const Aabb<Scalar>& box) {
+        return shifted(random, box, 0.3 * static_cast<double>(box.sizes()[0]));
+    };
+    return scene;
+}
+
+// Plates without thickness, all in one plane.
+template <class Scalar>
+BoxScene<Scalar> plateScene() {
+    BoxScene<Scalar> scene;
+    scene.name = "plates in one plane";
+    scene.count = 200;
+    scene.draw = [](Random& random) {
+        return boxAround<Scalar>({random.between(-20, 20), 3, random.between(-20, 20)},
+                                 {random.between(0, 2), 0, random.between(0, 2)});
+    };
+    scene.nudge = [](Random& random, const Aabb<Scalar>& box) {
+        const Vector3<Scalar> by(static_cast<Scalar>(random.between(-0.5, 0.5)), 0,
+                                 static_cast<Scalar>(random.between(-0.5, 0.5)));
+        return Aabb<Scalar>(box.min() + by, box.max() + by);
+    };
+    return scene;
+}
+
+// A few dense piles in a domain that is empty otherwise.
+template <class Scalar>
+BoxScene<Scalar> pileScene() {
+    BoxScene<Scalar> scene;
+    scene.name = "dense piles far apart";
+    scene.count = 150;
+    scene.draw = [](Random& random) {
+        const double pile = random.below(4);
+        const Vector3<double> middle(pile * 3000 - 5000, pile * 1000, 7000 - pile * 4000);
+        return boxAround<Scalar>(middle + random.pointIn(-2, 2), random.pointIn(0.3, 0.6));
+    };
+    scene.nudge = [](Random& random, const Aabb<Scalar>& box) { return shifted(random, box, 0.2); };
+    return scene;
+}
+
+// Boxes whose borders are multiples of `edge`, as rounded: they touch exactly or not at all.
+template <class Scalar>
+BoxScene<Scalar> latticeScene(std::string name, double edge, double lowest) {
+    const auto boxAt = [edge](const Vector3<double>& lattice, double cells) {
+        const Vector3<double> top = (lattice.array() + cells).matrix();
+        return Aabb<Scalar>((lattice * edge).template cast<Scalar>(),
+                            (top * edge).template cast<Scalar>());
+    };
+    BoxScene<Scalar> scene;
+    scene.name = std::move(name);
+    scene.count = 150;
+    scene.draw = [boxAt, lowest](Random& random) {
+        const Vector3<double> steps = random.pointIn(0, 9).array().floor().matrix();
+        return boxAt((steps.array() + lowest).matrix(), random.below(3));
+    };
+    scene.nudge = [boxAt, edge](Random& random, const Aabb<Scalar>& box) {
+        Vector3<double> lattice =
+            (box.min().template cast<double>() / edge).array().round().matrix();
+        const double cells = std::round(static_cast<double>(box.sizes()[0]) / edge);
+        lattice[random.below(3)] += random.chance(0.5) ? 1 : -1;
+        return boxAt(lattice, cells);
+    };
+    return scene;
+}
+
+// Unit boxes among half-spaces as Bullet's planes have them.
+template <class Scalar>
+BoxScene<Scalar> planeScene() {
+    BoxScene<Scalar> scene = spreadScene<Scalar>("half-spaces among small boxes", 1, 0);
+    const double huge = sizeof(Scalar) == sizeof(float) ? 1e18 : 1e30;
+    scene.draw = [huge, drawSmall = scene.draw](Random& random) {
+        if (!random.chance(0.04)) {
+            return drawSmall(random);
+        }
+        Aabb<Scalar> plane = makeBox<Scalar>(-huge, -huge, -huge, huge, huge, huge);
+        plane.max()[random.below(3)] = static_cast<Scalar>(random.between(-5, 5));
+        return plane;
+    };
+    return scene;
+}
+
+// Points without extent, many of them at the same places.
+template <class Scalar>
+BoxScene<Scalar> pointScene() {
+    BoxScene<Scalar> scene;
+    scene.name = "points";
+    scene.count = 150;
+    scene.draw = [](Random& random) {
+        const Vector3<double> point = random.pointIn(0, 4).array().floor().matrix();
+        return boxAround<Scalar>(point, Vector3<double>::Zero());
+    };
+    scene.nudge = [](Random& random, const Aabb<Scalar>& box) {
+        Aabb<Scalar> moved = box;
+        const std::uint32_t axis = random.below(3);
+        moved.min()[axis] += 1;
+        moved.max()[axis] += 1;
+        return moved;
+    };
+    return scene;
+}
+template <class Scalar>
+BoxScene<Scalar> hostileScene() {
+    BoxScene<Scalar> scene = spreadScene<Scalar>("hostile numbers", 1, 0);
+    scene.draw = [drawSmall = scene.draw](Random& random) {
+        return random.chance(0.5) ? hostileBox<Scalar>(random) : drawSmall(random);
+    };
+    return scene;
+}
+}  // namespace
+
+// Far from the origin, boxes grow with the distance between the numbers there.
+template <class Scalar>
+std::vector<BoxScene<Scalar>> allBoxScenes() {
+    using Limits = std::numeric_limits<Scalar>;
+    const auto atLeastUlps = [](double distance) {
+        return std::max(1.0, 3 * distance * static_cast<double>(Limits::epsilon()));
+    };
+    std::vector<BoxScene<Scalar>> scenes{
+        spreadScene<Scalar>("evenly spread", 1, 0),
+        spreadScene<Scalar>("evenly spread, mostly static", 1, 0),
+        spreadScene<Scalar>("at 1e6", atLeastUlps(1e6), 1e6),
+        spreadScene<Scalar>("at -1e9", atLeastUlps(1e9), -1e9),
+        spreadScene<Scalar>("denormal", 64 * static_cast<double>(Limits::denorm_min()), 0),
+        spreadScene<Scalar>("enormous", static_cast<double>(Limits::max()) / 9, 0),
+        paperScene<Scalar>(),
+        sizesScene<Scalar>(),
+        plateScene<Scalar>(),
+        pileScene<Scalar>(),
+        latticeScene<Scalar>("lattice of 1", 1, -4),
+        latticeScene<Scalar>("lattice of 0.1", 0.1, 30),
+        planeScene<Scalar>(),
+        pointScene<Scalar>(),
+        hostileScene<Scalar>()};
+    scenes[1].mobileShare = 0.1;
+    return scenes;
+}
+template BoxScene<float> spreadScene<float>(std::string, double, double);
+template float hostileNumber<float>(Random&);
+template Aabb<float> hostileBox<float>(Random&);
+template std::vector<BoxScene<float>> allBoxScenes<float>();
+
+template BoxScene<double> spreadScene<double>(std::string, double, double);
+template double hostileNumber<double>(Random&);
+template Aabb<double> hostileBox<double>(Random&);
+template std::vector<BoxScene<double>> allBoxScenes<double>();
+
+}  // namespace hashphase::test
