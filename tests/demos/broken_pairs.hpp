@@ -3,7 +3,7 @@
 
 // A way to find pairs that gets one of them wrong, for tests of what is to notice it.
 
-#include <demos/accuracy/pair_method.hpp>
+#include <demos/accuracy/pairs/pair_method.hpp>
 
 #include <memory>
 #include <utility>

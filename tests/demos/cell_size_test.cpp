@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/cell_size.hpp>
-#include <demos/accuracy/paper_grid.hpp>
+#include <demos/accuracy/pairs/cell_size.hpp>
+#include <demos/accuracy/baselines/paper_grid.hpp>
 #include <tests/demos/broken_pairs.hpp>
 #include <tests/demos/findings_checks.hpp>
 

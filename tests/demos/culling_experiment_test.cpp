@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/culling_experiment.hpp>
-#include <demos/accuracy/exact_frustum.hpp>
+#include <demos/accuracy/culling/culling_experiment.hpp>
+#include <demos/accuracy/culling/exact_frustum.hpp>
 
 #include <gtest/gtest.h>
 

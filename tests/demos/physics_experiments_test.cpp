@@ -3,9 +3,9 @@
 // The experiments with dynamics and with distance, at a tiny size: that their checks hold, and that
 // they notice a method that is broken.
 
-#include <demos/accuracy/origin_experiment.hpp>
-#include <demos/accuracy/time_step_experiment.hpp>
-#include <demos/accuracy/trajectory_experiment.hpp>
+#include <demos/accuracy/origin/origin_experiment.hpp>
+#include <demos/accuracy/physics/time_step_experiment.hpp>
+#include <demos/accuracy/physics/trajectory_experiment.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btSimpleBroadphase.h>
 

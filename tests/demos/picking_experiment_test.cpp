@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/cell_walks.hpp>
-#include <demos/accuracy/exact_ray.hpp>
-#include <demos/accuracy/picking_experiment.hpp>
+#include <demos/accuracy/picking/cell_walks.hpp>
+#include <demos/accuracy/picking/exact_ray.hpp>
+#include <demos/accuracy/picking/picking_experiment.hpp>
 
 #include <gtest/gtest.h>
 

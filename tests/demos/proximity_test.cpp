@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/agent_scene.hpp>
-#include <demos/accuracy/proximity.hpp>
+#include <demos/accuracy/proximity/agent_scene.hpp>
+#include <demos/accuracy/proximity/proximity.hpp>
 #include <tests/demos/findings_checks.hpp>
 
 #include <gtest/gtest.h>

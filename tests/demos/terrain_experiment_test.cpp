@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/exact_ground.hpp>
-#include <demos/accuracy/terrain_experiment.hpp>
+#include <demos/accuracy/terrain/exact_ground.hpp>
+#include <demos/accuracy/terrain/terrain_experiment.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/update_policies.hpp>
+#include <demos/accuracy/pairs/update_policies.hpp>
 #include <tests/demos/broken_pairs.hpp>
 #include <tests/demos/findings_checks.hpp>
 

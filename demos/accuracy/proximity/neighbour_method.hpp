@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Ways to know who is near an agent, and the decision that the paper's AI takes from it: of some
+// colours, to take the one that fewest of the neighbours have.
+
+#include <broadphase/function_ref.hpp>
+#include <demos/accuracy/pairs/pair_method.hpp>
+
+#include <array>
+
+namespace hashphase::demos {
+
+inline constexpr std::uint32_t kColourCount = 4;
+
+/// A frame: where the agents are. Agents are numbered by their place here.
+struct AgentFrame {
+    std::span<const Aabb<float>> boxes;
+    std::span<const BulletBox> bulletBoxes;  // the same
+};
+
+/// Of equally rare colours the lowest.
+[[nodiscard]] std::uint32_t rarestOf(const std::array<std::uint32_t, kColourCount>& counts);
+
+/// One way at work.
+class NeighbourSearch {
+public:
+    using Visit = FunctionRef<void(std::uint32_t agent, std::span<const std::uint32_t> neighbours)>;
+
+    NeighbourSearch() = default;
+    NeighbourSearch(const NeighbourSearch&) = delete;
+    NeighbourSearch& operator=(const NeighbourSearch&) = delete;
+    virtual ~NeighbourSearch() = default;
+
+    /// A frame: takes the agents as they are now; as many as in the first call.
+    virtual void take(const AgentFrame& frame) = 0;
+
+    /// Calls visit for every agent, with those that count as its neighbours, in any order.
+    virtual void forEach(Visit visit) = 0;
+
+    /// Sets chosen[agent] to the rarest colour among its neighbours.
+    virtual void decide(std::span<const std::uint32_t> colours, std::span<std::uint32_t> chosen);
+};
+
+/// What a search is made for.
+struct NeighbourNeeds {
+    std::size_t agents = 0;
+    Aabb<float> bounds;
+    float radius = 0;    // [m]
+    float cellSize = 0;  // [m]
+};
+
+struct NeighbourMethod {
+    std::string name;
+    MethodOrigin origin = MethodOrigin::kOurs;
+    bool isExact = false;
+    bool isComplete = false;  // misses nobody, but may name others
+    bool usesCells = true;    // of NeighbourNeeds::cellSize, in time or in errors
+    bool isEstimate = false;  // the library's, by cells: precision as proximity.hpp tells
+    std::function<std::unique_ptr<NeighbourSearch>(const NeighbourNeeds&)> make;
+};
+
+// --- Of the library --------------------------------------------------------------------------------
+
+[[nodiscard]] NeighbourMethod rarestColourMethod();  // RarestColour: counted, exactly
+[[nodiscard]] NeighbourMethod crowdMethod();         // Crowd::forEach(): listed, exactly
+[[nodiscard]] NeighbourMethod findWithinMethod();    // agent by agent, exactly
+[[nodiscard]] NeighbourMethod estimateMethod();      // estimateWithin(): by cells
+[[nodiscard]] NeighbourMethod countedCellsMethod();  // the same, only counted
+[[nodiscard]] NeighbourMethod ballBoxMethod();       // whose box touches the ball's box
+[[nodiscard]] NeighbourMethod firstFewMethod(std::size_t most);  // the first that are found
+
+/// RarestColour in each `period`-th frame; decisions stand until the next.
+[[nodiscard]] NeighbourMethod staleNeighboursMethod(int period);
+
+// --- Of others -------------------------------------------------------------------------------------
+
+/// As the paper prints it: a flat grid, and the cells from base - offset to base + offset - 1.
+[[nodiscard]] NeighbourMethod paperProximityMethod();
+
+/// btDbvtBroadphase::aabbTest() around each agent, and the distance to all whom it finds. No pairs are
+/// found on the way.
+[[nodiscard]] NeighbourMethod bulletProximityMethod();
+
+}  // namespace hashphase::demos
