@@ -8,7 +8,7 @@
 namespace hashphase::demos {
 
 std::span<const Experiment> experiments() {
-    static const std::vector<Experiment> all{};
+    static const std::vector<Experiment> all{sweepExperiment()};
     return all;
 }
 

@@ -5,4 +5,8 @@
 
 #include <demos/accuracy/experiment.hpp>
 
-namespace hashphase::demos {}  // namespace hashphase::demos
+namespace hashphase::demos {
+
+[[nodiscard]] Experiment sweepExperiment();  // P1
+
+}  // namespace hashphase::demos

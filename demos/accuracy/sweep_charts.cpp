@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/accuracy/sweep_experiment.hpp>
+
+#include <demos/console/format.hpp>
+
+#include <algorithm>
+
+namespace hashphase::demos {
+namespace {
+
+constexpr double kPercent = 100;
+
+std::string tunnellingSettings(const SweepResults& results) {
+    std::string walls;
+    for (const double thickness : results.plan.tunnelling.thicknesses) {
+        walls += (walls.empty() ? "" : ", ") + valueText(thickness);
+    }
+    return "bullets of radius 5 mm that touch a wall during a frame, at any moment of it as likely "
+           "as at any other; walls of " +
+           walls +
+           " m, every other one moving; up to 14 degrees aslant; truth in integers; bars: 95 % "
+           "intervals; seed " +
+           std::to_string(results.seed);
+}
+
+std::string moversSettings(const SweepResults& results) {
+    const FastMoversPlan& plan = results.plan.movers;
+    return withThousands(plan.movers) + " of " + withThousands(plan.objects) +
+           " boxes fly, in new directions each frame, on the ground as far as is said and up or "
+           "down by up to half as far; cells of 1 m; " +
+           std::to_string(plan.judgedFrames) + " frames judged, " +
+           std::to_string(plan.timedFrames) + " timed, methods in turn; seed " +
+           std::to_string(results.seed);
+}
+
+/// All walls, at one ratio.
+SweepTally atRatio(const SweepResults& results, double ratio, std::size_t method) {
+    SweepTally sum;
+    for (const TunnellingPoint& point : results.points) {
+        if (point.ratio == ratio) {
+            sum += point.tallies[method];
+        }
+    }
+    return sum;
+}
+
+Chart tunnellingChart(const SweepResults& results) {
+    Chart chart;
+    chart.name = "P1-tunnelling";
+    chart.title =
+        "Contacts of a bullet with a wall that are detected, by how far the bullet moves "
+        "in a frame";
+    chart.settings = tunnellingSettings(results);
+    chart.data.columns = {{"ratio", "step v dt, in units of wall and bullet, T + 2r"},
+                          {"method", "method"},
+                          {"detected", "contacts detected [%]"},
+                          {"low"},
+                          {"high"},
+                          {"theory", "theory for discrete: min(1, (T + 2r) / (v dt))"},
+                          {"contacts", "contacts"}};
+    const auto add = [&](double ratio, const std::string& method, std::uint64_t detected,
+                         std::uint64_t contacts) {
+        if (contacts > 0) {
+            const ShareInterval share = wilsonInterval(detected, contacts);
+            chart.data.add(
+                {ratio, method,
+                 kPercent * static_cast<double>(detected) / static_cast<double>(contacts),
+                 kPercent * share.low, kPercent * share.high, kPercent * std::min(1.0, 1 / ratio),
+                 static_cast<double>(contacts)});
+        }
+    };
+    for (std::size_t i = 0; i < results.methods.size(); ++i) {
+        for (const double ratio : results.plan.tunnelling.ratios) {
+            const SweepTally tally = atRatio(results, ratio, i);
+            add(ratio, results.methods[i].name, tally.detected(), tally.contacts);
+        }
+    }
+    for (const FlyingBodiesPoint& point : results.bodies) {
+        add(point.ratio, nameOf(point), point.bodies - point.tunnelled, point.bodies);
+    }
+    chart.x = {"ratio", AxisScale::kLog};
+    chart.y = {"detected", AxisScale::kLinear};
+    chart.series = "method";
+    chart.low = "low";
+    chart.high = "high";
+    chart.theory = "theory";
+    return chart;
+}
+
+Chart paretoChart(const SweepResults& results) {
+    Chart chart;
+    chart.name = "P1-pareto";
+    chart.title = "Contacts missed, against the time of a frame: what it costs to see all";
+    chart.settings = moversSettings(results);
+    chart.mark = ChartMark::kPoint;
+    chart.data = moversTable(results);
+    chart.x = {"frame_ms", AxisScale::kLog};
+    chart.y = {"missed_share", AxisScale::kLogAndZero};
+    chart.series = "method";
+    chart.low = "missed_low";
+    chart.high = "missed_high";
+    chart.label = "motion";
+    chart.showFront = true;
+    return chart;
+}
+
+Chart falseChart(const SweepResults& results, const MotionResult& at) {
+    Chart chart;
+    chart.name = "P1-false-" + valueText(at.motion) + "-cells";
+    chart.title = "Pairs that a method lists for each fast object though they never touch, at " +
+                  motionText(at.motion) + ": left to others to test";
+    chart.settings = moversSettings(results);
+    chart.mark = ChartMark::kBar;
+    chart.data.columns = {{"method", "method"}, {"false", "false pairs for each fast object"}};
+    for (std::size_t i = 0; i < results.methods.size(); ++i) {
+        chart.data.add({results.methods[i].name, at.tallies[i].perMover(at.tallies[i].invented)});
+    }
+    chart.x = {"method", AxisScale::kNames};
+    chart.y = {"false", AxisScale::kLinear};
+    chart.series = "method";
+    return chart;
+}
+
+Value workValue(const SweepTally& tally, std::uint64_t SweepWork::*count) {
+    return tally.work && *tally.work.*count > 0 ? Value(tally.perMover(*tally.work.*count))
+                                                : Value();
+}
+
+}  // namespace
+
+std::string motionText(double motion) {
+    return valueText(motion) + (motion == 1 ? " cell a frame" : " cells a frame");
+}
+
+DataTable tunnellingTable(const SweepResults& results) {
+    DataTable table{{{"method", "bullets at walls: method"},
+                     {"contacts", "contacts"},
+                     {"missed", "missed"},
+                     {"false", "false pairs"}},
+                    {}};
+    for (std::size_t i = 0; i < results.methods.size(); ++i) {
+        const SweepTally sum = wallsOf(results, i);
+        table.add({results.methods[i].name, static_cast<double>(sum.contacts),
+                   static_cast<double>(sum.missed), static_cast<double>(sum.invented)});
+    }
+    for (const bool isContinuous : {false, true}) {
+        FlyingBodiesPoint sum{0, isContinuous};
+        for (const FlyingBodiesPoint& point : results.bodies) {
+            if (point.isContinuous == isContinuous) {
+                sum.bodies += point.bodies;
+                sum.tunnelled += point.tunnelled;
+            }
+        }
+        table.add({nameOf(sum), static_cast<double>(sum.bodies), static_cast<double>(sum.tunnelled),
+                   Value()});
+    }
+    return table;
+}
+
+DataTable moversTable(const SweepResults& results) {
+    DataTable table{{{"motion", "fast objects move by"},
+                     {"method", "method"},
+                     {"frame_ms", "frame [ms]"},
+                     {"low_ms", "5 % [ms]"},
+                     {"high_ms", "95 % [ms]"},
+                     {"contacts", "contacts"},
+                     {"missed", "missed"},
+                     {"missed_share", "missed [%]"},
+                     {"missed_low", "at least [%]"},
+                     {"missed_high", "at most [%]"},
+                     {"false", "false pairs an object"},
+                     {"cells", "cells or boxes searched an object"},
+                     {"tests", "tests an object"},
+                     {"time_error", "worst time of contact [frames]"}},
+                    {}};
+    for (const MotionResult& at : results.motions) {
+        for (std::size_t i = 0; i < results.methods.size(); ++i) {
+            const SweepTally& tally = at.tallies[i];
+            const Spread& time = at.milliseconds[i];
+            const ShareInterval share = tally.missedInterval();
+            table.add({motionText(at.motion), results.methods[i].name, time.median, time.low,
+                       time.high, static_cast<double>(tally.contacts),
+                       static_cast<double>(tally.missed), kPercent * tally.missedShare(),
+                       kPercent * share.low, kPercent * share.high, tally.perMover(tally.invented),
+                       workValue(tally, &SweepWork::cells), workValue(tally, &SweepWork::tests),
+                       tally.timesAsked > 0 ? Value(tally.worstTimeError) : Value()});
+        }
+    }
+    return table;
+}
+
+std::vector<Chart> sweepCharts(const SweepResults& results) {
+    std::vector<Chart> charts{tunnellingChart(results), paretoChart(results)};
+    for (const MotionResult& at : results.motions) {
+        charts.push_back(falseChart(results, at));
+    }
+    return charts;
+}
+
+}  // namespace hashphase::demos
