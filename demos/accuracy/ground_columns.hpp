@@ -112,6 +112,8 @@ public:
     void unfile();
 
 private:
+    void grow();
+
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
     struct Entry {
@@ -127,7 +129,7 @@ private:
         return (mixed ^ mixed >> 15) & (heads_.size() - 1);
     }
 
-    std::vector<std::uint32_t> heads_;  // a power of two
+    std::vector<std::uint32_t> heads_;  // a power of two, no fewer than entries
     std::vector<Entry> entries_;
     std::size_t kept_ = 0;
 };

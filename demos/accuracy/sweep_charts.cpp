@@ -18,7 +18,7 @@ std::string tunnellingSettings(const SweepResults& results) {
     return "bullets of radius 5 mm that touch a wall during a frame, at any moment of it as likely "
            "as at any other; walls of " +
            walls +
-           " m, every other one moving; up to 14 degrees aslant; truth in integers; bars: 95 % "
+           " m, every other one moving; up to 7 degrees aslant; truth in integers; bars: 95 % "
            "intervals; seed " +
            std::to_string(results.seed);
 }

@@ -17,9 +17,21 @@ GroundColumns::GroundColumns(std::size_t expected)
     : heads_(std::bit_ceil(2 * expected + 1), kNone) {}
 
 void GroundColumns::file(const Column& column, std::uint32_t object) {
+    if (entries_.size() == heads_.size()) {
+        grow();
+    }
     std::uint32_t& head = heads_[bucketOf(column)];
     entries_.push_back({column, object, head});
     head = static_cast<std::uint32_t>(entries_.size() - 1);
+}
+
+void GroundColumns::grow() {
+    heads_.assign(2 * heads_.size(), kNone);
+    for (std::uint32_t i = 0; i < entries_.size(); ++i) {
+        std::uint32_t& head = heads_[bucketOf(entries_[i].column)];
+        entries_[i].next = head;
+        head = i;
+    }
 }
 
 // The newest of a bucket come first.
@@ -114,7 +126,7 @@ SweepMethod columnMethod(Raster raster) {
     method.origin = SweepOrigin::paper;
     method.missesNothing = raster != Raster::thinLine;
     method.inventsNothing = raster == Raster::thickLine;
-    method.oneFrameIn = 16;
+    method.oneFrameIn = 32;
     if (raster == Raster::thickLine) {
         method.contactTime = firstContact<float>;
     }

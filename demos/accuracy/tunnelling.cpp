@@ -6,7 +6,7 @@
 namespace hashphase::demos {
 namespace {
 
-constexpr double kAslant = 0.25;  // at most, of a step
+constexpr double kAslant = 0.125;  // at most, of a step
 constexpr double kAcross = static_cast<double>(SweptFrame::kUnit);
 
 // A power of two of which the whole way of everything is at most 2^23.

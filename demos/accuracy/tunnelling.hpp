@@ -26,7 +26,7 @@ struct TunnellingPoint {
 };
 
 /// Walls of one thickness and bullets of one speed, several pairs above each other; anew each frame.
-/// Every other wall moves as well, and bullets fly up to 14 degrees aslant.
+/// Every other wall moves as well, and bullets fly up to 7 degrees aslant.
 class BulletsAtWalls {
 public:
     static constexpr std::uint32_t kLanes = 8;
