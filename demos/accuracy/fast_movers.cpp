@@ -67,11 +67,11 @@ std::vector<MotionResult> measureFastMovers(const FastMoversPlan& plan,
                                             std::span<const SweepMethod> methods,
                                             std::uint64_t seed, const TellProgress& tell) {
     std::vector<MotionResult> results;
-    for (const double motion : plan.motions) {
-        FastMovers scene(plan.objects, plan.movers, motion, seed);
-        MotionResult result{motion, std::vector<SweepTally>(methods.size()), {}};
+    for (const FastMotion& motion : plan.motions) {
+        FastMovers scene(plan.objects, plan.movers, motion.cells, seed);
+        MotionResult result{motion.cells, std::vector<SweepTally>(methods.size()), {}};
         const SweepFinders finders = makeFinders(methods, scene.frame());
-        for (int frame = 0; frame < plan.judgedFrames; ++frame) {
+        for (int frame = 0; frame < motion.judgedFrames; ++frame) {
             judgeFrame(methods, finders, scene.frame(), 0, result.tallies);
             scene.advance();
         }

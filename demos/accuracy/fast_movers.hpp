@@ -30,16 +30,20 @@ private:
     float motion_;  // along the ground in a frame [m]
 };
 
+struct FastMotion {
+    double cells = 0;      // a frame; of 1 m
+    int judgedFrames = 0;  // the slower, the less is met in one
+};
+
 struct FastMoversPlan {
     std::uint32_t objects = 0;
     std::uint32_t movers = 0;
-    std::vector<double> motions;  // [cells, which is to say m, a frame]
-    int judgedFrames = 0;
+    std::vector<FastMotion> motions;
     int timedFrames = 0;
 };
 
 struct MotionResult {
-    double motion = 0;
+    double motion = 0;                 // [cells a frame]
     std::vector<SweepTally> tallies;   // one a method
     std::vector<Spread> milliseconds;  // a frame; the same
 };

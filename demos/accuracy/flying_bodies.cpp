@@ -6,6 +6,7 @@
 
 #include <btBulletDynamicsCommon.h>
 
+#include <cmath>
 #include <memory>
 
 namespace hashphase::demos {
@@ -44,10 +45,9 @@ public:
         }
     }
 
-    /// How many are behind their walls after the frame in which they should meet it, and some more.
-    [[nodiscard]] std::uint64_t tunnelled() {
-        constexpr int kFrames = 4;
-        for (int frame = 0; frame < kFrames; ++frame) {
+    /// How many are behind their walls after so many frames.
+    [[nodiscard]] std::uint64_t tunnelledAfter(int frames) {
+        for (int frame = 0; frame < frames; ++frame) {
             world_.stepSimulation(kFrame, 0);
         }
         std::uint64_t count = 0;
@@ -96,10 +96,12 @@ std::vector<FlyingBodiesPoint> measureFlyingBodies(const FlyingBodiesPlan& plan,
         for (const double ratio : plan.ratios) {
             FlyingBodiesPoint point{ratio, isContinuous};
             for (const double thickness : plan.thicknesses) {
+                // Until they have met the wall, and could be through.
+                const int frames = 3 + static_cast<int>(std::ceil(1 / ratio));
                 const double step = ratio * (thickness + 2 * kBulletRadius);
                 for (int round = 0; round < plan.rounds; ++round) {
                     FlyingBodies bodies(thickness, step, isContinuous, random);
-                    point.tunnelled += bodies.tunnelled();
+                    point.tunnelled += bodies.tunnelledAfter(frames);
                     point.bodies += kBodies;
                 }
             }

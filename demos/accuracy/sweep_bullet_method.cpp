@@ -41,12 +41,22 @@ public:
             pairs.insert(pairs.end(), touching_.begin(), touching_.end());
             return;
         }
-        std::vector<PairKey> all;
-        broadphase_.listPairs(all);
-        pairs.insert(pairs.end(), all.begin(), all.end());
+        btOverlappingPairCache& cache = *broadphase_.broadphase().getOverlappingPairCache();
+        for (int i = 0; i < cache.getNumOverlappingPairs(); ++i) {
+            const btBroadphasePair& pair = cache.getOverlappingPairArrayPtr()[i];
+            if (sweep_ == BulletSweep::united || overlapNow(pair)) {
+                pairs.push_back(pairKey(FilledBroadphase::objectOf(*pair.m_pProxy0),
+                                        FilledBroadphase::objectOf(*pair.m_pProxy1)));
+            }
+        }
     }
 
 private:
+    [[nodiscard]] static bool overlapNow(const btBroadphasePair& pair) {
+        return TestAabbAgainstAabb2(pair.m_pProxy0->m_aabbMin, pair.m_pProxy0->m_aabbMax,
+                                    pair.m_pProxy1->m_aabbMin, pair.m_pProxy1->m_aabbMax);
+    }
+
     [[nodiscard]] BulletBox knownBox(const MovingBox<float>& moving) const {
         const Aabb<float> box = sweep_ == BulletSweep::discrete ? endBox(moving) : wayBox(moving);
         return {btVector3(box.min().x(), box.min().y(), box.min().z()),
@@ -76,13 +86,14 @@ private:
 }  // namespace
 
 SweepMethod bulletSweep(BulletSweep sweep) {
-    constexpr std::array kNames{"btDbvtBroadphase, discrete", "btDbvtBroadphase, boxes united",
-                                "btDbvtBroadphase, boxes united, pairs tested"};
+    constexpr std::array kNames{"btDbvtBroadphase, discrete", "btDbvtBroadphase, united",
+                                "btDbvtBroadphase, united, tested"};
     SweepMethod method;
     method.name = kNames[static_cast<std::size_t>(sweep)];
     method.origin = SweepOrigin::bullet;
     method.missesNothing = sweep != BulletSweep::discrete;
-    method.inventsNothing = sweep == BulletSweep::unitedAndTested;
+    method.inventsNothing = sweep != BulletSweep::united;
+    method.isDiscrete = sweep == BulletSweep::discrete;
     if (sweep == BulletSweep::unitedAndTested) {
         method.contactTime = firstContact<float>;
     }

@@ -23,14 +23,22 @@ std::string tunnellingSettings(const SweepResults& results) {
            std::to_string(results.seed);
 }
 
+/// "200, 40, 10"
+std::string judgedText(const FastMoversPlan& plan) {
+    std::string text;
+    for (const FastMotion& motion : plan.motions) {
+        text += (text.empty() ? "" : ", ") + std::to_string(motion.judgedFrames);
+    }
+    return text;
+}
+
 std::string moversSettings(const SweepResults& results) {
     const FastMoversPlan& plan = results.plan.movers;
     return withThousands(plan.movers) + " of " + withThousands(plan.objects) +
            " boxes fly, in new directions each frame, on the ground as far as is said and up or "
            "down by up to half as far; cells of 1 m; " +
-           std::to_string(plan.judgedFrames) + " frames judged, " +
-           std::to_string(plan.timedFrames) + " timed, methods in turn; seed " +
-           std::to_string(results.seed);
+           judgedText(plan) + " frames judged, " + std::to_string(plan.timedFrames) +
+           " timed, methods in turn; seed " + std::to_string(results.seed);
 }
 
 /// All walls, at one ratio.
@@ -104,21 +112,29 @@ Chart paretoChart(const SweepResults& results) {
     return chart;
 }
 
-Chart falseChart(const SweepResults& results, const MotionResult& at) {
+Chart falseChart(const SweepResults& results) {
     Chart chart;
-    chart.name = "P1-false-" + valueText(at.motion) + "-cells";
-    chart.title = "Pairs that a method lists for each fast object though they never touch, at " +
-                  motionText(at.motion) + ": left to others to test";
+    chart.name = "P1-false";
+    chart.title =
+        "Pairs that are listed for each fast object though they never touch, and left to "
+        "others to test";
     chart.settings = moversSettings(results);
     chart.mark = ChartMark::kBar;
-    chart.data.columns = {{"method", "method"}, {"false", "false pairs for each fast object"}};
-    for (std::size_t i = 0; i < results.methods.size(); ++i) {
-        chart.data.add({results.methods[i].name, at.tallies[i].perMover(at.tallies[i].invented)});
-    }
+    chart.data = moversTable(results);
     chart.x = {"method", AxisScale::kNames};
-    chart.y = {"false", AxisScale::kLinear};
-    chart.series = "method";
+    chart.y = {"false", AxisScale::kLogAndZero};
+    chart.series = "motion";
     return chart;
+}
+
+/// Of Bullet's exact way.
+std::optional<double> bulletMilliseconds(const SweepResults& results, const MotionResult& at) {
+    for (std::size_t i = 0; i < results.methods.size(); ++i) {
+        if (results.methods[i].origin == SweepOrigin::bullet && results.methods[i].isExact()) {
+            return at.milliseconds[i].median;
+        }
+    }
+    return std::nullopt;
 }
 
 Value workValue(const SweepTally& tally, std::uint64_t SweepWork::*count) {
@@ -163,6 +179,7 @@ DataTable moversTable(const SweepResults& results) {
                      {"frame_ms", "frame [ms]"},
                      {"low_ms", "5 % [ms]"},
                      {"high_ms", "95 % [ms]"},
+                     {"ratio", "of Bullet's time, united and tested"},
                      {"contacts", "contacts"},
                      {"missed", "missed"},
                      {"missed_share", "missed [%]"},
@@ -174,27 +191,44 @@ DataTable moversTable(const SweepResults& results) {
                      {"time_error", "worst time of contact [frames]"}},
                     {}};
     for (const MotionResult& at : results.motions) {
+        const std::optional<double> bullet = bulletMilliseconds(results, at);
         for (std::size_t i = 0; i < results.methods.size(); ++i) {
             const SweepTally& tally = at.tallies[i];
             const Spread& time = at.milliseconds[i];
             const ShareInterval share = tally.missedInterval();
             table.add({motionText(at.motion), results.methods[i].name, time.median, time.low,
-                       time.high, static_cast<double>(tally.contacts),
-                       static_cast<double>(tally.missed), kPercent * tally.missedShare(),
-                       kPercent * share.low, kPercent * share.high, tally.perMover(tally.invented),
-                       workValue(tally, &SweepWork::cells), workValue(tally, &SweepWork::tests),
+                       time.high, bullet ? Value(time.median / *bullet) : Value(),
+                       static_cast<double>(tally.contacts), static_cast<double>(tally.missed),
+                       kPercent * tally.missedShare(), kPercent * share.low, kPercent * share.high,
+                       tally.perMover(tally.invented), workValue(tally, &SweepWork::cells),
+                       workValue(tally, &SweepWork::tests),
                        tally.timesAsked > 0 ? Value(tally.worstTimeError) : Value()});
         }
     }
     return table;
 }
 
-std::vector<Chart> sweepCharts(const SweepResults& results) {
-    std::vector<Chart> charts{tunnellingChart(results), paretoChart(results)};
-    for (const MotionResult& at : results.motions) {
-        charts.push_back(falseChart(results, at));
+DataTable shortMoversTable(const SweepResults& results) {
+    const DataTable all = moversTable(results);
+    DataTable table;
+    std::vector<std::size_t> columns;
+    for (const char* name : {"motion", "method", "frame_ms", "ratio", "contacts", "missed_share",
+                             "false", "cells", "tests", "time_error"}) {
+        columns.push_back(all.columnOf(name));
+        table.columns.push_back(all.columns[columns.back()]);
     }
-    return charts;
+    for (const std::vector<Value>& row : all.rows) {
+        std::vector<Value> values;
+        for (const std::size_t column : columns) {
+            values.push_back(row[column]);
+        }
+        table.add(std::move(values));
+    }
+    return table;
+}
+
+std::vector<Chart> sweepCharts(const SweepResults& results) {
+    return {tunnellingChart(results), paretoChart(results), falseChart(results)};
 }
 
 }  // namespace hashphase::demos

@@ -85,7 +85,7 @@ Check theoryCheck(const SweepResults& results) {
     std::uint64_t within = 0;
     std::uint64_t all = 0;
     for (std::size_t i = 0; i < results.methods.size(); ++i) {
-        if (results.methods[i].name != gridSweep(Sweep::none).name) {
+        if (!results.methods[i].isDiscrete) {
             continue;
         }
         for (const TunnellingPoint& point : results.points) {

@@ -107,9 +107,10 @@ SweepPlan sweepPlan(const Effort& effort) {
     plan.bodies.ratios = plan.tunnelling.ratios;
     plan.bodies.rounds = effort.quickOrFull(1, 8);
     plan.movers.objects = effort.quickOrFull(6'000U, 30'000U);
-    plan.movers.movers = effort.quickOrFull(100U, 1'000U);
-    plan.movers.motions = {1, 10, 100};
-    plan.movers.judgedFrames = effort.quickOrFull(8, 16);
+    plan.movers.movers = effort.quickOrFull(50U, 1'000U);
+    plan.movers.motions = {{1, effort.quickOrFull(200, 100)},
+                           {10, effort.quickOrFull(40, 32)},
+                           {100, effort.quickOrFull(10, 8)}};
     plan.movers.timedFrames = 60;
     return plan;
 }
@@ -145,7 +146,7 @@ Findings measureSweeps(const SweepPlan& plan, std::span<const SweepMethod> metho
 
     Findings findings;
     findings.charts = sweepCharts(results);
-    findings.tables = {tunnellingTable(results), moversTable(results)};
+    findings.tables = {tunnellingTable(results), shortMoversTable(results)};
     findings.checks = sweepChecks(results);
     for (const Chart& chart : {findings.charts[0], findings.charts[1]}) {
         findings.settings.push_back(chart.name + ": " + chart.settings + ".");

@@ -35,6 +35,8 @@ struct SweepResults {
 [[nodiscard]] std::vector<Chart> sweepCharts(const SweepResults& results);
 [[nodiscard]] DataTable tunnellingTable(const SweepResults& results);
 [[nodiscard]] DataTable moversTable(const SweepResults& results);
+/// The same, of the columns that matter most.
+[[nodiscard]] DataTable shortMoversTable(const SweepResults& results);
 [[nodiscard]] std::vector<Check> sweepChecks(const SweepResults& results);
 
 /// All tallies of a method, of both parts.

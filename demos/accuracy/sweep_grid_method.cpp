@@ -61,6 +61,7 @@ SweepMethod gridSweep(Sweep sweep) {
     SweepMethod method;
     method.name = kNames[static_cast<std::size_t>(sweep)];
     method.missesNothing = sweep != Sweep::none;
+    method.isDiscrete = sweep == Sweep::none;
     if (sweep != Sweep::none) {
         method.contactTime = firstContact<float>;
     }

@@ -62,6 +62,7 @@ struct SweepMethod {
     SweepOrigin origin = SweepOrigin::ours;
     bool missesNothing = true;   // promises every pair that touches
     bool inventsNothing = true;  // promises that the pairs it lists touch
+    bool isDiscrete = false;     // looks at the end of the frame alone
 
     /// Slow ones take part in every so manieth frame of many.
     int oneFrameIn = 1;
@@ -90,7 +91,8 @@ struct SweepMethod {
 /// The same grid, with all columns that the thick way touches, and firstContact().
 [[nodiscard]] SweepMethod thickLine();
 
-/// btDbvtBroadphase: the boxes at the end of the frame; those around the ways, as m_useContinuous
+/// btDbvtBroadphase: the boxes at the end of the frame, without the pairs that it keeps though they
+/// have come apart, in which the narrowphase finds nothing; the boxes around the ways, as m_useContinuous
 /// has it; and these with firstContact() for every pair that is listed.
 enum class BulletSweep : std::uint8_t { discrete, united, unitedAndTested };
 [[nodiscard]] SweepMethod bulletSweep(BulletSweep sweep);
