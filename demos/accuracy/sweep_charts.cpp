@@ -52,6 +52,64 @@ SweepTally atRatio(const SweepResults& results, double ratio, std::size_t method
     return sum;
 }
 
+/// A line of the chart of tunnelling.
+struct DetectionLine {
+    std::string name;
+    std::vector<std::uint64_t> detected;  // one a ratio
+    std::vector<std::uint64_t> contacts;
+    std::string same;  // names of those that have the same line
+
+    [[nodiscard]] double percent(std::size_t at) const {
+        return kPercent * static_cast<double>(detected[at]) / static_cast<double>(contacts[at]);
+    }
+    [[nodiscard]] bool liesOn(const DetectionLine& other) const {
+        bool isSame = true;
+        for (std::size_t i = 0; i < detected.size(); ++i) {
+            isSame &= percent(i) == other.percent(i);
+        }
+        return isSame;
+    }
+};
+
+std::vector<DetectionLine> allLines(const SweepResults& results) {
+    std::vector<DetectionLine> lines;
+    for (std::size_t i = 0; i < results.methods.size(); ++i) {
+        DetectionLine& line =
+            lines.emplace_back(DetectionLine{results.methods[i].name, {}, {}, {}});
+        for (const double ratio : results.plan.tunnelling.ratios) {
+            const SweepTally tally = atRatio(results, ratio, i);
+            line.detected.push_back(tally.detected());
+            line.contacts.push_back(tally.contacts);
+        }
+    }
+    for (const bool isContinuous : {false, true}) {
+        DetectionLine& line = lines.emplace_back();
+        for (const FlyingBodiesPoint& point : results.bodies) {
+            if (point.isContinuous == isContinuous) {
+                line.name = nameOf(point);
+                line.detected.push_back(point.bodies - point.tunnelled);
+                line.contacts.push_back(point.bodies);
+            }
+        }
+    }
+    return lines;
+}
+
+/// Lines that lie on each other are drawn once, as that of the first.
+std::vector<DetectionLine> differentLines(const SweepResults& results) {
+    std::vector<DetectionLine> different;
+    for (DetectionLine& line : allLines(results)) {
+        const auto twin = std::find_if(different.begin(), different.end(),
+                                       [&](const auto& each) { return line.liesOn(each); });
+        if (twin == different.end()) {
+            different.push_back(std::move(line));
+        } else {
+            twin->same += (twin->same.empty() ? "" : ", ") + line.name;
+        }
+    }
+    return different;
+}
+
 Chart tunnellingChart(const SweepResults& results) {
     Chart chart;
     chart.name = "P1-tunnelling";
@@ -66,25 +124,17 @@ Chart tunnellingChart(const SweepResults& results) {
                           {"high"},
                           {"theory", "theory for discrete: min(1, (T + 2r) / (v dt))"},
                           {"contacts", "contacts"}};
-    const auto add = [&](double ratio, const std::string& method, std::uint64_t detected,
-                         std::uint64_t contacts) {
-        if (contacts > 0) {
-            const ShareInterval share = wilsonInterval(detected, contacts);
-            chart.data.add(
-                {ratio, method,
-                 kPercent * static_cast<double>(detected) / static_cast<double>(contacts),
-                 kPercent * share.low, kPercent * share.high, kPercent * std::min(1.0, 1 / ratio),
-                 static_cast<double>(contacts)});
+    const std::vector<double>& ratios = results.plan.tunnelling.ratios;
+    for (const DetectionLine& line : differentLines(results)) {
+        for (std::size_t i = 0; i < ratios.size(); ++i) {
+            const ShareInterval share = wilsonInterval(line.detected[i], line.contacts[i]);
+            chart.data.add({ratios[i], line.name, line.percent(i), kPercent * share.low,
+                            kPercent * share.high, kPercent * std::min(1.0, 1 / ratios[i]),
+                            static_cast<double>(line.contacts[i])});
         }
-    };
-    for (std::size_t i = 0; i < results.methods.size(); ++i) {
-        for (const double ratio : results.plan.tunnelling.ratios) {
-            const SweepTally tally = atRatio(results, ratio, i);
-            add(ratio, results.methods[i].name, tally.detected(), tally.contacts);
+        if (!line.same.empty()) {
+            chart.settings += "; on the line of " + line.name + " also lie: " + line.same;
         }
-    }
-    for (const FlyingBodiesPoint& point : results.bodies) {
-        add(point.ratio, nameOf(point), point.bodies - point.tunnelled, point.bodies);
     }
     chart.x = {"ratio", AxisScale::kLog};
     chart.y = {"detected", AxisScale::kLinear};

@@ -82,26 +82,26 @@ Check timesCheck(const SweepResults& results) {
 // Of intervals that hold the truth in 95 of 100 cases, 15 of 100 fail next to never.
 Check theoryCheck(const SweepResults& results) {
     constexpr double kShareWithin = 0.85;
-    std::uint64_t within = 0;
-    std::uint64_t all = 0;
+    MethodCounts counts;
+    counts.holds = !results.points.empty();
     for (std::size_t i = 0; i < results.methods.size(); ++i) {
         if (!results.methods[i].isDiscrete) {
             continue;
         }
+        std::uint64_t within = 0;
         for (const TunnellingPoint& point : results.points) {
             const SweepTally& tally = point.tallies[i];
-            within +=
-                wilsonInterval(tally.detected(), tally.contacts).contains(point.detectedInTheory())
-                    ? 1
-                    : 0;
-            ++all;
+            const ShareInterval share = wilsonInterval(tally.detected(), tally.contacts);
+            within += share.contains(point.detectedInTheory()) ? 1 : 0;
         }
+        const auto points = static_cast<double>(results.points.size());
+        counts.add(results.methods[i], ofText(within, results.points.size()) + " points",
+                   static_cast<double>(within) >= kShareWithin * points);
     }
     return {
         "Discrete detection lies on the line min(1, (T + 2r) / (v dt)): the 95 % intervals of at "
         "least 85 % of the points hold it",
-        all > 0 && static_cast<double>(within) >= kShareWithin * static_cast<double>(all),
-        ofText(within, all) + " points"};
+        counts.holds, counts.evidence};
 }
 
 }  // namespace

@@ -73,12 +73,12 @@ SweepMethod gridSweep(Sweep sweep) {
 
 std::vector<SweepMethod> sweepMethods() {
     return {gridSweep(Sweep::none),
+            gridSweep(Sweep::automatic),
+            gridSweep(Sweep::line),
+            gridSweep(Sweep::box),
+            thickLine(),
             paperBox(),
             paperLine(),
-            thickLine(),
-            gridSweep(Sweep::box),
-            gridSweep(Sweep::line),
-            gridSweep(Sweep::automatic),
             bulletSweep(BulletSweep::discrete),
             bulletSweep(BulletSweep::united),
             bulletSweep(BulletSweep::unitedAndTested)};

@@ -76,7 +76,7 @@ struct SweepMethod {
     [[nodiscard]] bool isExact() const noexcept { return missesNothing && inventsNothing; }
 };
 
-/// All of them: none, the paper's, ours, Bullet's.
+/// All of them: ours, those on the paper's grid, Bullet's.
 [[nodiscard]] std::vector<SweepMethod> sweepMethods();
 
 /// Grid, Sweeps and Pairs. With Sweep::none it knows the boxes at the end of the frame, as every
