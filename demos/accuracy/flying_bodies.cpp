@@ -88,18 +88,19 @@ std::string nameOf(const FlyingBodiesPoint& point) {
     return point.isContinuous ? "Bullet's bodies, CCD" : "Bullet's bodies, no CCD";
 }
 
-std::vector<FlyingBodiesPoint> measureFlyingBodies(const FlyingBodiesPlan& plan,
+std::vector<FlyingBodiesPoint> measureFlyingBodies(std::span<const double> thicknesses,
+                                                   std::span<const double> ratios, int rounds,
                                                    std::uint64_t seed) {
     Random random(seed);
     std::vector<FlyingBodiesPoint> points;
     for (const bool isContinuous : {false, true}) {
-        for (const double ratio : plan.ratios) {
+        for (const double ratio : ratios) {
             FlyingBodiesPoint point{ratio, isContinuous};
-            for (const double thickness : plan.thicknesses) {
+            for (const double thickness : thicknesses) {
                 // Until they have met the wall, and could be through.
                 const int frames = 3 + static_cast<int>(std::ceil(1 / ratio));
                 const double step = ratio * (thickness + 2 * kBulletRadius);
-                for (int round = 0; round < plan.rounds; ++round) {
+                for (int round = 0; round < rounds; ++round) {
                     FlyingBodies bodies(thickness, step, isContinuous, random);
                     point.tunnelled += bodies.tunnelledAfter(frames);
                     point.bodies += kBodies;

@@ -6,16 +6,11 @@
 // on the other side.
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace hashphase::demos {
-
-struct FlyingBodiesPlan {
-    std::vector<double> thicknesses;  // [m]
-    std::vector<double> ratios;       // of the step to thickness + 2 * kBulletRadius
-    int rounds = 0;                   // of kBodies each, a point
-};
 
 struct FlyingBodiesPoint {
     double ratio = 0;
@@ -27,8 +22,10 @@ struct FlyingBodiesPoint {
 /// "Bullet's bodies, continuous"
 [[nodiscard]] std::string nameOf(const FlyingBodiesPoint& point);
 
-/// A point for each ratio with continuous detection, and one without, over all thicknesses.
-[[nodiscard]] std::vector<FlyingBodiesPoint> measureFlyingBodies(const FlyingBodiesPlan& plan,
-                                                                 std::uint64_t seed);
+/// A point for each ratio without continuous detection, then one with it, of `rounds` times 32 bodies
+/// for each thickness [m]. Ratios are of the step to thickness + 2 * kBulletRadius.
+[[nodiscard]] std::vector<FlyingBodiesPoint> measureFlyingBodies(
+    std::span<const double> thicknesses, std::span<const double> ratios, int rounds,
+    std::uint64_t seed);
 
 }  // namespace hashphase::demos

@@ -28,10 +28,11 @@ struct Column {
 /// All columns of a box.
 template <class Visit>
 void visitBox(const Aabb<float>& box, const Visit& visit) {
+    const std::int32_t firstX = columnAt(static_cast<double>(box.min().x()));
     const std::int32_t lastX = columnAt(static_cast<double>(box.max().x()));
     const std::int32_t lastZ = columnAt(static_cast<double>(box.max().z()));
-    for (Column at{columnAt(static_cast<double>(box.min().x()))}; at.x <= lastX; ++at.x) {
-        for (at.z = columnAt(static_cast<double>(box.min().z())); at.z <= lastZ; ++at.z) {
+    for (Column at{firstX, columnAt(static_cast<double>(box.min().z()))}; at.z <= lastZ; ++at.z) {
+        for (at.x = firstX; at.x <= lastX; ++at.x) {
             visit(at);
         }
     }
@@ -123,10 +124,9 @@ private:
     };
 
     [[nodiscard]] std::size_t bucketOf(const Column& column) const noexcept {
-        // Large odd numbers, by which neighbours come far apart.
-        const std::uint32_t mixed = static_cast<std::uint32_t>(column.x) * 0x9e3779b1U +
-                                    static_cast<std::uint32_t>(column.z) * 0x85ebca77U;
-        return (mixed ^ mixed >> 15) & (heads_.size() - 1);
+        // Neighbours along x stay neighbours; a large odd number takes rows far apart.
+        const std::uint32_t row = static_cast<std::uint32_t>(column.z) * 0x9e3779b1U;
+        return (static_cast<std::uint32_t>(column.x) + row) & (heads_.size() - 1);
     }
 
     std::vector<std::uint32_t> heads_;  // a power of two, no fewer than entries

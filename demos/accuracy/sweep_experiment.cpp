@@ -102,10 +102,8 @@ SweepPlan sweepPlan(const Effort& effort) {
     SweepPlan plan;
     plan.tunnelling.thicknesses = {0.001, 0.01, 0.1, 1};
     plan.tunnelling.ratios = ratiosPerDecade(effort.quickOrFull(2, 4));
-    plan.tunnelling.frames = effort.quickOrFull(64, 2048);
-    plan.bodies.thicknesses = plan.tunnelling.thicknesses;
-    plan.bodies.ratios = plan.tunnelling.ratios;
-    plan.bodies.rounds = effort.quickOrFull(1, 8);
+    plan.tunnelling.frames = effort.quickOrFull(64, 1024);
+    plan.bodyRounds = effort.quickOrFull(1, 8);
     plan.movers.objects = effort.quickOrFull(6'000U, 30'000U);
     plan.movers.movers = effort.quickOrFull(50U, 1'000U);
     plan.movers.motions = {{1, effort.quickOrFull(200, 100)},
@@ -138,7 +136,8 @@ Findings measureSweeps(const SweepPlan& plan, std::span<const SweepMethod> metho
     tell(0, "bullets at walls");
     results.points = measureTunnelling(plan.tunnelling, methods, seed);
     tell(kShareOfWalls, "bodies at walls");
-    results.bodies = measureFlyingBodies(plan.bodies, seed);
+    results.bodies = measureFlyingBodies(plan.tunnelling.thicknesses, plan.tunnelling.ratios,
+                                         plan.bodyRounds, seed);
     results.motions =
         measureFastMovers(plan.movers, methods, seed, [&](double share, std::string_view what) {
             tell(kShareOfWalls + (1 - kShareOfWalls) * share, what);

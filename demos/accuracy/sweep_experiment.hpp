@@ -12,7 +12,7 @@ namespace hashphase::demos {
 
 struct SweepPlan {
     TunnellingPlan tunnelling;
-    FlyingBodiesPlan bodies;
+    int bodyRounds = 0;  // of bodies in Bullet's world, at the same walls and ratios
     FastMoversPlan movers;
 };
 

@@ -13,7 +13,7 @@ namespace {
 SweepPlan tinyPlan() {
     SweepPlan plan;
     plan.tunnelling = {{0.001, 0.1}, {0.3, 1, 3, 30}, 40};
-    plan.bodies = {{0.1}, plan.tunnelling.ratios, 1};
+    plan.bodyRounds = 1;
     plan.movers = {400, 40, {{3, 8}}, 2};
     return plan;
 }
