@@ -9,6 +9,7 @@ namespace hashphase::demos {
 
 std::span<const Experiment> experiments() {
     static const std::vector<Experiment> all{
+        sweepExperiment(),
         cellSizeExperiment(),
         proximityExperiment(),
         cullingExperiment(),

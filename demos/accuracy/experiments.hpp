@@ -7,6 +7,7 @@
 
 namespace hashphase::demos {
 
+[[nodiscard]] Experiment sweepExperiment();       // P1
 [[nodiscard]] Experiment cellSizeExperiment();    // P2
 [[nodiscard]] Experiment proximityExperiment();   // P3
 [[nodiscard]] Experiment cullingExperiment();     // P4

@@ -35,6 +35,11 @@ function(hashphase_compile_together target group)
     if(HASHPHASE_QUICK_BUILD)
         set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
         set_source_files_properties(${ARGN} PROPERTIES UNITY_GROUP ${group})
+        if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+            # GCC 12 inlines more then, and sees in the standard library what is not so.
+            target_compile_options(
+                ${target} PRIVATE -Wno-array-bounds -Wno-maybe-uninitialized -Wno-restrict)
+        endif()
     endif()
 endfunction()
 

@@ -16,7 +16,7 @@ constexpr float kHigh = 1700;
 constexpr float kFloor = 1500;
 constexpr float kCeiling = 1516;
 
-float onLattice(float coordinate) {
+float roundedToLattice(float coordinate) {
     return std::floor(coordinate / kLattice) * kLattice;
 }
 
@@ -26,13 +26,13 @@ bool tossed(Random& random) {
 
 // Not 0; a whole or half metre where the ray is to run through corners of cells.
 float stride(Random& random, bool isDiagonal) {
-    const float size =
-        isDiagonal ? (tossed(random) ? 0.5F : 1) : kLattice + onLattice(random.between(0, 1));
+    const float size = isDiagonal ? (tossed(random) ? 0.5F : 1)
+                                  : kLattice + roundedToLattice(random.between(0, 1));
     return tossed(random) ? size : -size;
 }
 
 float within(const Aabb<float>& box, int axis, Random& random) {
-    return onLattice(random.between(box.min()[axis], box.max()[axis]));
+    return roundedToLattice(random.between(box.min()[axis], box.max()[axis]));
 }
 
 }  // namespace
@@ -49,10 +49,12 @@ std::vector<Aabb<float>> slabOfBoxes(std::size_t count, std::uint64_t seed) {
         const bool isAligned = i % 2 == 0;
         const auto place = [&](float low, float high) {
             const float number = random.between(low, high);
-            return isAligned ? std::floor(number) : onLattice(number);
+            return isAligned ? std::floor(number) : roundedToLattice(number);
         };
         const Vector3<float> low{place(kLow, kHigh), place(kFloor, kCeiling), place(kLow, kHigh)};
-        const auto edge = [&] { return isAligned ? 1 : onLattice(random.between(0.25F, 1)); };
+        const auto edge = [&] {
+            return isAligned ? 1 : roundedToLattice(random.between(0.25F, 1));
+        };
         const Vector3<float> size{edge(), edge(), edge()};
         boxes.emplace_back(low, low + size);
     }
@@ -96,13 +98,13 @@ StrungBoxes strungBoxes(double length, std::size_t rays, std::size_t boxes, std:
         Ray ray;
         Vector3<double> way;
         for (int axis = 0; axis < 3; ++axis) {
-            ray.from[axis] = onLattice(random.between(1, 2));
+            ray.from[axis] = roundedToLattice(random.between(1, 2));
             way[axis] = static_cast<double>(random.between(0.1F, 1));
         }
         const Vector3<double> from = ray.from.cast<double>();
         way *= length / way.norm();
         for (int axis = 0; axis < 3; ++axis) {
-            ray.to[axis] = onLattice(static_cast<float>(from[axis] + way[axis]));
+            ray.to[axis] = roundedToLattice(static_cast<float>(from[axis] + way[axis]));
         }
         scene.rays.push_back(ray);
         for (std::size_t k = 0; k < boxes; ++k) {
@@ -114,8 +116,8 @@ StrungBoxes strungBoxes(double length, std::size_t rays, std::size_t boxes, std:
             Aabb<float> box;
             for (int axis = 0; axis < 3; ++axis) {
                 const auto offset = static_cast<double>(size * random.between(-1.2F, 0.2F));
-                box.min()[axis] = onLattice(static_cast<float>(point[axis] + offset));
-                box.max()[axis] = onLattice(box.min()[axis] + size);
+                box.min()[axis] = roundedToLattice(static_cast<float>(point[axis] + offset));
+                box.max()[axis] = roundedToLattice(box.min()[axis] + size);
             }
             scene.boxes.push_back(box);
         }
