@@ -38,7 +38,7 @@ function(hashphase_compile_together target group)
         if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
             # GCC 12 inlines more then, and sees in the standard library what is not so.
             target_compile_options(
-                ${target} PRIVATE -Wno-array-bounds -Wno-maybe-uninitialized -Wno-restrict)
+                ${target} PRIVATE -Wno-array-bounds -Wno-maybe-uninitialized -Wno-stringop-overread)
         endif()
     endif()
 endfunction()

@@ -5,8 +5,8 @@
 // The loops include their ends and run both ways, which those that were printed do not; a box has
 // all its corners.
 
-#include <demos/accuracy/terrain/ground_columns.hpp>
 #include <demos/accuracy/sweeps/sweep_method.hpp>
+#include <demos/accuracy/terrain/ground_columns.hpp>
 
 #include <array>
 #include <bit>

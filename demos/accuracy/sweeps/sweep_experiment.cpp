@@ -11,8 +11,6 @@
 namespace hashphase::demos {
 namespace {
 
-constexpr double kPercent = 100;
-
 /// 0.1 to 1000, evenly on a logarithmic axis.
 std::vector<double> ratiosPerDecade(int count) {
     std::vector<double> ratios;
@@ -23,9 +21,8 @@ std::vector<double> ratiosPerDecade(int count) {
 }
 
 std::string missedText(const SweepTally& tally) {
-    return tally.missed == 0
-               ? "misses none of " + withThousands(tally.contacts) + " contacts"
-               : "misses " + valueText(kPercent * tally.missedShare()) + " % of contacts";
+    return tally.missed == 0 ? "misses none of " + withThousands(tally.contacts) + " contacts"
+                             : "misses " + valueText(100 * tally.missedShare()) + " % of contacts";
 }
 
 // What lists false pairs leaves their test to others: it does not compete with what tests them.
