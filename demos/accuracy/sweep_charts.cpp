@@ -262,6 +262,7 @@ DataTable shortMoversTable(const SweepResults& results) {
     const DataTable all = moversTable(results, results.motions);
     DataTable table;
     std::vector<std::size_t> columns;
+    columns.reserve(all.columns.size());
     for (const char* name : {"motion", "method", "frame_ms", "ratio", "contacts", "missed_share",
                              "false", "cells", "tests", "time_error"}) {
         columns.push_back(all.columnOf(name));

@@ -102,8 +102,8 @@ SweepPlan sweepPlan(const Effort& effort) {
     SweepPlan plan;
     plan.tunnelling.thicknesses = {0.001, 0.01, 0.1, 1};
     plan.tunnelling.ratios = ratiosPerDecade(effort.quickOrFull(2, 4));
-    plan.tunnelling.frames = effort.quickOrFull(64, 1024);
-    plan.bodyRounds = effort.quickOrFull(1, 8);
+    plan.tunnelling.frames = effort.quickOrFull(64, 768);
+    plan.bodyRounds = effort.quickOrFull(1, 4);
     plan.movers.objects = effort.quickOrFull(6'000U, 30'000U);
     plan.movers.movers = effort.quickOrFull(50U, 1'000U);
     plan.movers.motions = {{1, effort.quickOrFull(200, 100)},
@@ -176,8 +176,8 @@ Experiment sweepExperiment() {
     return {"P1",
             "Fast objects",
             "What do fast objects fly through unseen, and what does it cost to see it all?",
-            5,
-            90,
+            4,
+            100,
             [](const Effort& effort, const TellProgress& tell) {
                 const SweepPlan plan = sweepPlan(effort);
                 return measureSweeps(plan, sweepMethods(), effort.seed, tell);
