@@ -119,7 +119,7 @@ Chart tunnellingChart(const SweepResults& results) {
     chart.settings = tunnellingSettings(results);
     chart.data.columns = {{"ratio", "step v dt, in units of wall and bullet, T + 2r"},
                           {"method", "method"},
-                          {"detected", "contacts detected [%]"},
+                          {"detected", "contacts detected, bodies stopped [%]"},
                           {"low"},
                           {"high"},
                           {"theory", "theory for discrete: min(1, (T + 2r) / (v dt))"},
@@ -145,19 +145,19 @@ Chart tunnellingChart(const SweepResults& results) {
     return chart;
 }
 
-Chart paretoChart(const SweepResults& results) {
+/// Of one motion: what does one task.
+Chart paretoChart(const SweepResults& results, const MotionResult& at, const std::string& name) {
     Chart chart;
-    chart.name = "P1-pareto";
-    chart.title = "Contacts missed, against the time of a frame: what it costs to see all";
+    chart.name = name;
+    chart.title = "Contacts missed, against the time of a frame, at " + motionText(at.motion);
     chart.settings = moversSettings(results);
     chart.mark = ChartMark::kPoint;
-    chart.data = moversTable(results);
+    chart.data = moversTable(results, {&at, 1});
     chart.x = {"frame_ms", AxisScale::kLog};
     chart.y = {"missed_share", AxisScale::kLogAndZero};
     chart.series = "method";
     chart.low = "missed_low";
     chart.high = "missed_high";
-    chart.label = "motion";
     chart.showFront = true;
     return chart;
 }
@@ -170,7 +170,7 @@ Chart falseChart(const SweepResults& results) {
         "others to test";
     chart.settings = moversSettings(results);
     chart.mark = ChartMark::kBar;
-    chart.data = moversTable(results);
+    chart.data = moversTable(results, results.motions);
     chart.x = {"method", AxisScale::kNames};
     chart.y = {"false", AxisScale::kLogAndZero};
     chart.series = "motion";
@@ -223,7 +223,7 @@ DataTable tunnellingTable(const SweepResults& results) {
     return table;
 }
 
-DataTable moversTable(const SweepResults& results) {
+DataTable moversTable(const SweepResults& results, std::span<const MotionResult> motions) {
     DataTable table{{{"motion", "fast objects move by"},
                      {"method", "method"},
                      {"frame_ms", "frame [ms]"},
@@ -240,7 +240,7 @@ DataTable moversTable(const SweepResults& results) {
                      {"tests", "tests an object"},
                      {"time_error", "worst time of contact [frames]"}},
                     {}};
-    for (const MotionResult& at : results.motions) {
+    for (const MotionResult& at : motions) {
         const std::optional<double> bullet = bulletMilliseconds(results, at);
         for (std::size_t i = 0; i < results.methods.size(); ++i) {
             const SweepTally& tally = at.tallies[i];
@@ -259,9 +259,10 @@ DataTable moversTable(const SweepResults& results) {
 }
 
 DataTable shortMoversTable(const SweepResults& results) {
-    const DataTable all = moversTable(results);
+    const DataTable all = moversTable(results, results.motions);
     DataTable table;
     std::vector<std::size_t> columns;
+    columns.reserve(all.columns.size());
     for (const char* name : {"motion", "method", "frame_ms", "ratio", "contacts", "missed_share",
                              "false", "cells", "tests", "time_error"}) {
         columns.push_back(all.columnOf(name));
@@ -278,7 +279,14 @@ DataTable shortMoversTable(const SweepResults& results) {
 }
 
 std::vector<Chart> sweepCharts(const SweepResults& results) {
-    return {tunnellingChart(results), paretoChart(results), falseChart(results)};
+    std::vector<Chart> charts{tunnellingChart(results)};
+    for (const MotionResult& at : results.motions) {
+        const bool isFastest = &at == &results.motions.back();
+        charts.push_back(paretoChart(
+            results, at, isFastest ? "P1-pareto" : "P1-pareto-" + valueText(at.motion) + "-cells"));
+    }
+    charts.push_back(falseChart(results));
+    return charts;
 }
 
 }  // namespace hashphase::demos

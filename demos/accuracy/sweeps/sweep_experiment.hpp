@@ -34,8 +34,9 @@ struct SweepResults {
 /// Its parts.
 [[nodiscard]] std::vector<Chart> sweepCharts(const SweepResults& results);
 [[nodiscard]] DataTable tunnellingTable(const SweepResults& results);
-[[nodiscard]] DataTable moversTable(const SweepResults& results);
-/// The same, of the columns that matter most.
+[[nodiscard]] DataTable moversTable(const SweepResults& results,
+                                    std::span<const MotionResult> motions);
+/// The same for all motions, of the columns that matter most.
 [[nodiscard]] DataTable shortMoversTable(const SweepResults& results);
 [[nodiscard]] std::vector<Check> sweepChecks(const SweepResults& results);
 

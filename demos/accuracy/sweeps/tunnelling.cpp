@@ -73,11 +73,14 @@ void BulletsAtWalls::advance() {
 
 std::vector<TunnellingPoint> measureTunnelling(const TunnellingPlan& plan,
                                                std::span<const SweepMethod> methods,
-                                               std::uint64_t seed) {
+                                               std::uint64_t seed, const TellProgress& tell) {
     Random random(seed);
     std::vector<TunnellingPoint> points;
     for (const double thickness : plan.thicknesses) {
         for (const double ratio : plan.ratios) {
+            tell(static_cast<double>(points.size()) /
+                     static_cast<double>(plan.thicknesses.size() * plan.ratios.size()),
+                 "bullets at walls");
             TunnellingPoint point{thickness, ratio, std::vector<SweepTally>(methods.size())};
             BulletsAtWalls lanes(thickness, ratio, random);
             const SweepFinders finders = makeFinders(methods, lanes.frame());

@@ -5,6 +5,7 @@
 // as likely as at any other. Who looks at the end of the frame alone sees it as often as
 // (thickness + bullet) / step says: that line the measurement must lie on.
 
+#include <demos/accuracy/experiment.hpp>
 #include <demos/accuracy/sweeps/sweep_tally.hpp>
 #include <demos/scenes/random.hpp>
 
@@ -55,6 +56,7 @@ struct TunnellingPlan {
 
 [[nodiscard]] std::vector<TunnellingPoint> measureTunnelling(const TunnellingPlan& plan,
                                                              std::span<const SweepMethod> methods,
-                                                             std::uint64_t seed);
+                                                             std::uint64_t seed,
+                                                             const TellProgress& tell);
 
 }  // namespace hashphase::demos
