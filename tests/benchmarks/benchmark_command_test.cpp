@@ -34,6 +34,11 @@ Outcome run(std::vector<std::string> arguments,
     return outcome;
 }
 
+// Some are told nothing of the motions.
+bool missesByDesign(const json& result, const json& contestant) {
+    return result["group"] == "sweeps" && contestant["name"].get<std::string>().starts_with("hash");
+}
+
 void expectComplete(const json& contestant, const std::string& where) {
     const bool droppedOut = contestant["droppedOut"];
     EXPECT_EQ(contestant["ms"].is_null(), droppedOut) << where;
@@ -44,7 +49,6 @@ void expectComplete(const json& contestant, const std::string& where) {
         EXPECT_EQ(contestant["frameMs"].size(), 5U) << where;
         EXPECT_EQ(contestant["answers"]["framesChecked"], 8) << where;
     }
-    EXPECT_EQ(contestant["answers"]["missing"], 0) << where;
     EXPECT_EQ(contestant["ours"] == true && contestant["answers"]["extra"] != 0, false) << where;
     EXPECT_FALSE(contestant["package"].get<std::string>().empty()) << where;
 }
@@ -67,7 +71,10 @@ TEST(Benchmarks, MeasureAndCheckEveryCaseAndWriteItDown) {
         EXPECT_EQ(result["framesDone"], 5) << name;
         EXPECT_FALSE(result["contestants"].empty()) << name;
         for (const json& contestant : result["contestants"]) {
-            expectComplete(contestant, name + " " + contestant["name"].get<std::string>());
+            const std::string where = name + " " + contestant["name"].get<std::string>();
+            expectComplete(contestant, where);
+            EXPECT_TRUE(contestant["answers"]["missing"] == 0 || missesByDesign(result, contestant))
+                << where;
         }
         if (result["group"] == "cell size") {
             EXPECT_TRUE(result["cellSizeRegret"]["regret"].is_number()) << name;

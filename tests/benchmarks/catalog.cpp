@@ -163,9 +163,10 @@ std::vector<Benchmark> populationBenchmarks() {
 
 std::vector<Benchmark> catalog(std::uint64_t seed) {
     std::vector<Benchmark> all;
-    for (std::vector<Benchmark>& part : std::array{
-             pairBenchmarks(), randomBenchmarks(seed), populationBenchmarks(), queryBenchmarks(),
-             crowdBenchmarks(), cullingBenchmarks(), terrainBenchmarks(), cellSizeBenchmarks()}) {
+    for (std::vector<Benchmark>& part :
+         std::array{pairBenchmarks(), randomBenchmarks(seed), populationBenchmarks(),
+                    queryBenchmarks(), crowdBenchmarks(), cullingBenchmarks(), sweepBenchmarks(),
+                    terrainBenchmarks(), cellSizeBenchmarks()}) {
         std::move(part.begin(), part.end(), std::back_inserter(all));
     }
     return all;

@@ -48,6 +48,7 @@ struct Benchmark {
 [[nodiscard]] std::vector<Benchmark> queryBenchmarks();
 [[nodiscard]] std::vector<Benchmark> crowdBenchmarks();
 [[nodiscard]] std::vector<Benchmark> cullingBenchmarks();
+[[nodiscard]] std::vector<Benchmark> sweepBenchmarks();
 [[nodiscard]] std::vector<Benchmark> terrainBenchmarks();
 [[nodiscard]] std::vector<Benchmark> cellSizeBenchmarks();
 

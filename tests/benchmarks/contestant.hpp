@@ -18,11 +18,18 @@
 
 namespace hashphase::benchmarks {
 
+/// How far an object moves during a frame, for those who look for what it passes.
+struct ObjectMotion {
+    std::uint32_t object = 0;
+    Vector3<float> displacement;  // [m]
+};
+
 /// The boxes of a frame, in the two forms in which broadphases take them.
 struct FrameBoxes {
     std::span<const Aabb<float>> boxes;
     std::span<const demos::BulletBox> bulletBoxes;    // the same
     std::span<const demos::CollisionFilter> filters;  // empty: all may pair
+    std::span<const ObjectMotion> motions = {};       // of those that sweep
 
     [[nodiscard]] demos::CollisionFilter filterOf(std::size_t object) const {
         return filters.empty() ? demos::CollisionFilter{} : filters[object];

@@ -2,6 +2,7 @@
 #include <tests/benchmarks/grid_contestant.hpp>
 
 #include <broadphase/pairs.hpp>
+#include <broadphase/sweeps.hpp>
 
 #include <algorithm>
 #include <iterator>
@@ -15,6 +16,11 @@ using demos::PairKey;
 class GridContestant : public Contestant, private Population {
 public:
     GridContestant(const GridConfig& config, std::size_t objects) : grid_(config), ids_(objects) {}
+    GridContestant(Sweep sweep, ParallelFor parallelFor, std::size_t objects)
+        : sweeps_(std::make_unique<Sweeps<float>>(grid_)),
+          sweep_(sweep),
+          parallelFor_(parallelFor),
+          ids_(objects) {}
 
     void fill(const FrameBoxes& frame) override {
         for (std::size_t i = 0; i < frame.boxes.size(); ++i) {
@@ -26,13 +32,20 @@ public:
         for (std::size_t i = 0; i < frame.boxes.size(); ++i) {
             grid_.move(ids_[i], frame.boxes[i]);
         }
+        if (sweep_ == Sweep::none) {
+            return;
+        }
+        for (const ObjectMotion& motion : frame.motions) {
+            sweeps_->set(ids_[motion.object], motion.displacement, sweep_);
+        }
     }
 
     void findPairs() override {
-        changes_ = pairs_.update([this](ProxyId a, ProxyId b) {
+        const auto mayPair = [this](ProxyId a, ProxyId b) {
             return filters_.empty() ||
                    demos::mayPair(filters_[objects_[a.index]], filters_[objects_[b.index]]);
-        });
+        };
+        changes_ = pairs_.update(mayPair, parallelFor_);
     }
 
     void afterFrame() override { applyChanges(); }
@@ -45,7 +58,8 @@ public:
     Population* population() override { return this; }
 
     [[nodiscard]] std::optional<OwnBytes> ownBytes() const override {
-        return OwnBytes{grid_.memoryBytes(), pairs_.memoryBytes()};
+        const std::size_t forSweeps = sweeps_ == nullptr ? 0 : sweeps_->memoryBytes();
+        return OwnBytes{grid_.memoryBytes() + forSweeps, pairs_.memoryBytes()};
     }
 
 private:
@@ -92,7 +106,10 @@ private:
     }
 
     Grid<float> grid_;
-    Pairs<float> pairs_{grid_};
+    std::unique_ptr<Sweeps<float>> sweeps_;
+    Sweep sweep_ = Sweep::none;
+    ParallelFor parallelFor_ = serialFor;
+    Pairs<float> pairs_{grid_, sweeps_.get()};
     std::vector<ProxyId> ids_;            // by object
     std::vector<std::uint32_t> objects_;  // by slot
     std::span<const demos::CollisionFilter> filters_;
@@ -101,18 +118,32 @@ private:
     std::vector<PairKey> kept_;
 };
 
-}  // namespace
-
-ContestantKind gridKind(std::string name, const GridConfig& config) {
+ContestantKind kindOf(std::string name, std::string description) {
     ContestantKind kind;
     kind.name = std::move(name);
     kind.title = "hashphase::Pairs";
-    kind.description = "the grid without Bullet: births and deaths of pairs, no pair cache";
+    kind.description = std::move(description);
     kind.package = "this build";
     kind.ours = true;
+    return kind;
+}
+
+}  // namespace
+
+ContestantKind gridKind(std::string name, const GridConfig& config) {
+    ContestantKind kind = kindOf(
+        std::move(name), "the grid without Bullet: births and deaths of pairs, no pair cache");
     kind.changes = true;
     kind.make = [config](const demos::BroadphaseNeeds& needs) {
         return std::make_unique<GridContestant>(config, needs.objects);
+    };
+    return kind;
+}
+
+ContestantKind sweepingGridKind(std::string name, Sweep sweep, ParallelFor parallelFor) {
+    ContestantKind kind = kindOf(std::move(name), "the grid without Bullet, and its Sweeps");
+    kind.make = [sweep, parallelFor](const demos::BroadphaseNeeds& needs) {
+        return std::make_unique<GridContestant>(sweep, parallelFor, needs.objects);
     };
     return kind;
 }

@@ -10,7 +10,7 @@ PairWorkload::PairWorkload(std::unique_ptr<demos::BoxScene> scene, Setting setti
 
 void PairWorkload::add(const ContestantKind& kind) {
     Entry entry;
-    entry.onThreads = kind.onThreads;
+    entry.kind = kind;
     {
         const demos::HeapScope scope(entry.heap);
         entry.contestant = kind.make(scene_.needs());
@@ -27,9 +27,10 @@ void PairWorkload::beginFrame() {
 }
 
 double PairWorkload::runFrame(std::size_t contestant) {
-    Contestant& current = *entries_[contestant].contestant;
-    const FrameBoxes frame = scene_.frame();
-    const demos::FrameClock watch(entries_[contestant].onThreads);
+    const Entry& entry = entries_[contestant];
+    Contestant& current = *entry.contestant;
+    const FrameBoxes frame = frameFor(entry.kind);
+    const demos::FrameClock watch(entry.kind.onThreads);
     if (setting_ == Setting::everything) {
         current.setAll(frame);
     }

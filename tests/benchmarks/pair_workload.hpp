@@ -30,11 +30,19 @@ public:
     [[nodiscard]] std::size_t objects() const override { return scene_.size(); }
     [[nodiscard]] std::size_t operations() const override { return scene_.size(); }
 
+protected:
+    /// What is handed to contestants of the kind.
+    [[nodiscard]] virtual FrameBoxes frameFor(const ContestantKind& /*kind*/) const {
+        return scene_.frame();
+    }
+
+    [[nodiscard]] const SceneBoxes& scene() const noexcept { return scene_; }
+
 private:
     struct Entry {
+        ContestantKind kind;
         std::unique_ptr<Contestant> contestant;
         demos::HeapMeter heap;
-        bool onThreads = false;
     };
 
     SceneBoxes scene_;
