@@ -27,7 +27,7 @@ constexpr int kQuickWarmUpFrames = 3;
 void declare(CLI::App& app, BenchmarkOptions& options) {
     app.add_option("--only", options.only,
                    "cases whose name contains a match of one of these regular expressions, "
-                   "separated by commas; 'cellsize' is run on request only")
+                   "separated by commas; some, as 'cellsize', are run on request only")
         ->delimiter(',')
         ->type_name("REGEX");
     app.add_option("--sizes", options.sizes,
