@@ -188,6 +188,9 @@ BoxScene<Scalar> pointScene() {
     };
     return scene;
 }
+
+}  // namespace
+
 template <class Scalar>
 BoxScene<Scalar> hostileScene() {
     BoxScene<Scalar> scene = spreadScene<Scalar>("hostile numbers", 1, 0);
@@ -196,7 +199,6 @@ BoxScene<Scalar> hostileScene() {
     };
     return scene;
 }
-}  // namespace
 
 // Far from the origin, boxes grow with the distance between the numbers there.
 template <class Scalar>
@@ -227,11 +229,13 @@ std::vector<BoxScene<Scalar>> allBoxScenes() {
 template BoxScene<float> spreadScene<float>(std::string, double, double);
 template float hostileNumber<float>(Random&);
 template Aabb<float> hostileBox<float>(Random&);
+template BoxScene<float> hostileScene<float>();
 template std::vector<BoxScene<float>> allBoxScenes<float>();
 
 template BoxScene<double> spreadScene<double>(std::string, double, double);
 template double hostileNumber<double>(Random&);
 template Aabb<double> hostileBox<double>(Random&);
+template BoxScene<double> hostileScene<double>();
 template std::vector<BoxScene<double>> allBoxScenes<double>();
 
 }  // namespace hashphase::test

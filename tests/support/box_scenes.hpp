@@ -51,6 +51,10 @@ template <class Scalar>
 template <class Scalar>
 [[nodiscard]] Aabb<Scalar> hostileBox(Random& random);
 
+/// Half of the boxes hostile, the other half small.
+template <class Scalar>
+[[nodiscard]] BoxScene<Scalar> hostileScene();
+
 /// The above and many more, all that a broadphase must be right in.
 template <class Scalar>
 [[nodiscard]] std::vector<BoxScene<Scalar>> allBoxScenes();
