@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/pairs/cell_size.hpp>
 #include <demos/accuracy/baselines/paper_grid.hpp>
-#include <tests/demos/broken_pairs.hpp>
-#include <tests/demos/findings_checks.hpp>
+#include <tests/demos/accuracy/broken_pairs.hpp>
+#include <tests/demos/accuracy/findings_checks.hpp>
 
 #include <gtest/gtest.h>
 

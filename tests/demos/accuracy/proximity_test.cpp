@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/proximity/agent_scene.hpp>
 #include <demos/accuracy/proximity/proximity.hpp>
-#include <tests/demos/findings_checks.hpp>
+#include <tests/demos/accuracy/findings_checks.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/pairs/update_policies.hpp>
-#include <tests/demos/broken_pairs.hpp>
-#include <tests/demos/findings_checks.hpp>
+#include <tests/demos/accuracy/broken_pairs.hpp>
+#include <tests/demos/accuracy/findings_checks.hpp>
 
 #include <gtest/gtest.h>
 
