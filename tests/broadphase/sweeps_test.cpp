@@ -69,7 +69,7 @@ TYPED_TEST(SweptPairs, EqualBruteForceInEveryScene) {
         config.updatesBeforeRest = 2;
         for (const double cellSize : {0.0, 1.5}) {
             config.cellSize = cellSize;
-            playSwept(scene, config, 0x5eed0d01, 10);
+            playSwept(scene, config, 0x5eed0d01, 6);
             if (this->HasFatalFailure()) {
                 return;
             }
