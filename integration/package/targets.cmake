@@ -20,12 +20,23 @@ function(hashphase_own_target target)
     endif()
 endfunction()
 
+# In quick builds, GCC 12 takes the standard library's precompiled headers for ours, inlines more, and
+# warns of what is not so.
+function(hashphase_calm_warnings target)
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+        target_compile_options(
+            ${target} PRIVATE -Wno-array-bounds -Wno-maybe-uninitialized -Wno-restrict
+                              -Wno-stringop-overflow -Wno-stringop-overread)
+    endif()
+endfunction()
+
 # hashphase_precompile_headers(<target> [<header>...]): in a quick build, compiles what most sources
 # include once for the target, and the headers given. It takes as long as five sources save.
 function(hashphase_precompile_headers target)
     if(HASHPHASE_QUICK_BUILD)
         target_precompile_headers(
             ${target} PRIVATE ${ARGN} <Eigen/Geometry> <algorithm> <memory> <span> <vector>)
+        hashphase_calm_warnings(${target})
     endif()
 endfunction()
 
@@ -35,11 +46,7 @@ function(hashphase_compile_together target group)
     if(HASHPHASE_QUICK_BUILD)
         set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
         set_source_files_properties(${ARGN} PROPERTIES UNITY_GROUP ${group})
-        if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-            # GCC 12 inlines more then, and sees in the standard library what is not so.
-            target_compile_options(
-                ${target} PRIVATE -Wno-array-bounds -Wno-maybe-uninitialized -Wno-stringop-overread)
-        endif()
+        hashphase_calm_warnings(${target})
     endif()
 endfunction()
 
