@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Zlib
+
+// The whole set of pairs, found from scratch: for those who ask for it, and to check what is kept.
+
+#include <broadphase/pairs.hpp>
+
+#include <broadphase/detail/join.hpp>
+
+#include <algorithm>
+
+namespace hashphase {
+
+template <class Scalar>
+void Pairs<Scalar>::forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const {
+    detail::PairParts parts;
+    detail::PairList found;
+    detail::KernelCost cost;
+    for (const detail::Table<Scalar>* table : {&grid_.mobile_, &grid_.resting_}) {
+        found.clear();
+        detail::joinTable(*table, serialFor, parts, found, cost);
+        for (const auto [a, b] : found.pairs()) {
+            visit(table->slot(a), table->slot(b));
+        }
+    }
+    found.clear();
+    detail::walkTable(grid_.resting_, grid_.mobile_.columns(), grid_.mobile_.size(), serialFor,
+                      parts, found, cost);
+    for (const auto [a, b] : found.pairs()) {
+        visit(grid_.mobile_.slot(a), grid_.resting_.slot(b));
+    }
+}
+
+template <class Scalar>
+void Pairs<Scalar>::collect(std::vector<ProxyPair>& pairs) const {
+    HASHPHASE_ASSERT(grid_.cost_.changed == 0,
+                     "The set of pairs is asked for directly after an update.");
+    const auto begin = static_cast<std::ptrdiff_t>(pairs.size());
+    forEachOverlap([&](std::uint32_t a, std::uint32_t b) {
+        if (!isRefused(couple(a, b))) {
+            pairs.push_back(pairOf(couple(a, b)));
+        }
+    });
+    for (const Couple c : swept_) {
+        if (!isRefused(c)) {
+            pairs.push_back(pairOf(c));
+        }
+    }
+    std::sort(pairs.begin() + begin, pairs.end());
+}
+
+template <class Scalar>
+std::string Pairs<Scalar>::validate() const {
+    std::vector<Couple> watched;
+    for (const auto [a, b] : amongMobile_.pairs()) {
+        watched.push_back(couple(grid_.mobileSlots_[a], grid_.mobileSlots_[b]));
+    }
+    for (const auto [place, slot] : toResting_.pairs()) {
+        watched.push_back(couple(grid_.mobileSlots_[place], slot));
+    }
+    std::sort(watched.begin(), watched.end());
+    std::size_t overlapping = 0;
+    std::vector<Couple> expected;
+    forEachOverlap([&](std::uint32_t a, std::uint32_t b) {
+        ++overlapping;
+        if (!isAtRest(couple(a, b))) {
+            expected.push_back(couple(a, b));
+        }
+    });
+    std::sort(expected.begin(), expected.end());
+    if (watched != expected) {
+        return "The watched couples are the overlapping ones of which one is mobile, each once: "
+               "broken.";
+    }
+    if (count_ + refusedCount() != overlapping + swept_.size()) {
+        return "count() is the number of overlapping and swept couples less the refused ones: "
+               "broken.";
+    }
+    const bool isApart =
+        std::none_of(swept_.begin(), swept_.end(), [this](Couple c) { return overlapNow(c); });
+    return isApart ? std::string() : "What is swept does not overlap: broken.";
+}
+
+template void Pairs<float>::forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)>) const;
+template void Pairs<double>::forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)>) const;
+template void Pairs<float>::collect(std::vector<ProxyPair>&) const;
+template void Pairs<double>::collect(std::vector<ProxyPair>&) const;
+template std::string Pairs<float>::validate() const;
+template std::string Pairs<double>::validate() const;
+
+}  // namespace hashphase
