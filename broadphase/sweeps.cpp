@@ -38,9 +38,10 @@ void Sweeps<Scalar>::set(ProxyId id, const Vector3<Scalar>& displacement, Sweep 
 
 template <class Scalar>
 MovingBox<Scalar> Sweeps<Scalar>::motion(ProxyId id) const {
-    const std::uint32_t known = motionOf(id.index);
-    const bool isIts = known != kNone && motions_[known].id == id;
-    return {grid_.box(id), isIts ? motions_[known].displacement : Vector3<Scalar>::Zero()};
+    if (!sweeps(id)) {
+        return {grid_.box(id)};
+    }
+    return {grid_.box(id), motions_[motionOf(id.index)].displacement};
 }
 
 // The last motion takes the place of the one that ends.

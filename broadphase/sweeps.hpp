@@ -79,7 +79,11 @@ private:
     [[nodiscard]] std::uint32_t motionOf(std::uint32_t slot) const noexcept {
         return slot < motionOfSlot_.size() ? motionOfSlot_[slot] : kNone;
     }
-    [[nodiscard]] bool sweeps(std::uint32_t slot) const noexcept { return motionOf(slot) != kNone; }
+    /// Not of one that has taken the place of another one that swept.
+    [[nodiscard]] bool sweeps(ProxyId id) const noexcept {
+        const std::uint32_t known = motionOf(id.index);
+        return known != kNone && motions_[known].id == id;
+    }
     [[nodiscard]] std::optional<Scalar> keyOnTheWay(const auto& region, const Motion& motion) const;
     void end(std::uint32_t motion);
 
@@ -130,7 +134,7 @@ std::optional<Scalar> Sweeps<Scalar>::keyOnTheWay(const auto& region, const Moti
 template <class Scalar>
 template <class Region, class Collector>
 QueryCost Sweeps<Scalar>::visit(const Region& region, Collector& collector) const {
-    const auto stands = [this](ProxyId id) { return !sweeps(id.index); };
+    const auto stands = [this](ProxyId id) { return !sweeps(id); };
     CollectIf<Collector, decltype(stands)> standing(collector, stands);
     QueryCost cost = grid_.visit(region, standing);
     for (const Motion& motion : motions_) {

@@ -85,7 +85,7 @@ Part partWithin(const MovingBox<Scalar>& moving, const Aabb<double>& world) {
         const double first = world.min()[axis] - static_cast<double>(moving.box.max()[axis]);
         const double last = world.max()[axis] - static_cast<double>(moving.box.min()[axis]);
         if (way == 0) {
-            part.to = first <= 0 && last >= 0 ? part.to : -1.0;
+            part.to = first > 0 || last < 0 ? -1.0 : part.to;
             continue;
         }
         part.from = std::max(part.from, std::min(first / way, last / way) * (1 - kWidened));

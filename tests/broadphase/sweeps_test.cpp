@@ -169,7 +169,7 @@ TYPED_TEST(SweptPairs, CostNoMoreTheFasterTheyAre) {
 }
 
 // 200 m/s at 60 Hz against walls from 0.1 m down to 1 mm, wherever in its step the bullet meets the
-// wall: a hundred lanes, and hundreds of thousands of phases.
+// wall: a hundred lanes, and a million phases along the line.
 TYPED_TEST(SweptPairs, OfABulletAndAThinWallAreNeverMissed) {
     constexpr int kLanes = 100;
     constexpr double kStep = 200.0 / 60;
@@ -186,7 +186,7 @@ TYPED_TEST(SweptPairs, OfABulletAndAThinWallAreNeverMissed) {
             bullets.push_back(grid.add({}));
         }
         int met = 0;
-        const int frames = mode == Sweep::line ? 4000 : 400;
+        const int frames = mode == Sweep::line ? 10'000 : 400;
         for (int frame = 0; frame < frames; ++frame) {
             for (int lane = 0; lane < kLanes; ++lane) {
                 // Before the wall at the start of the step, behind it at its end.
@@ -242,6 +242,23 @@ TYPED_TEST(SweptPairs, FollowWhoIsRemovedStopsAndComesAgain) {
     world.remove(wall);
     world.update();
     EXPECT_TRUE(world.set().empty());
+}
+
+// Without Pairs nobody tells Sweeps of an update: who comes into the place of what swept is found.
+TYPED_TEST(SweptPairs, HideNobodyWhoComesIntoTheirPlace) {
+    Grid<TypeParam> grid;
+    Sweeps<TypeParam> sweeps(grid);
+    const Aabb<TypeParam> box = makeBox<TypeParam>(0, 0, 0, 1, 1, 1);
+    const ProxyId bullet = grid.add(box);
+    sweeps.set(bullet, {100, 0, 0});
+    grid.remove(bullet);
+    grid.update();
+    const ProxyId next = grid.add(box);
+    ASSERT_EQ(next.index, bullet.index);
+    CollectKeys<TypeParam> found;
+    sweeps.visit(BoxRegion<TypeParam>{box}, found);
+    ASSERT_EQ(found.sorted().size(), 1U);
+    EXPECT_EQ(found.sorted()[0].first, next);
 }
 
 // A pair that has touched on the way, then overlaps, and then parted on the way, is one pair.
@@ -337,6 +354,38 @@ TYPED_TEST(SweptPairs, AreFoundByQueriesAlongTheirWay) {
                 } else if (isFound) {
                     ASSERT_TRUE(overlaps(wayBounds(motion), box)) << j;
                     ASSERT_LT(j, bullets.ways.size()) << "who stands is found where it is";
+                }
+            }
+        }
+        EXPECT_GT(onTheWay, 100);
+    }
+}
+
+TYPED_TEST(SweptPairs, AreFoundByRaysWhereverTheyAreAtSomeTime) {
+    Random random(0x5eed0d09);
+    const Bullets<TypeParam> bullets(2000, 200, 25, random);
+    for (const Sweep mode : kModes) {
+        BulletWorld<TypeParam> world(bullets, mode);
+        world.update();
+        int onTheWay = 0;
+        for (int i = 0; i < 100; ++i) {
+            const RayRegion<TypeParam> ray(random.pointIn(-10, 42).template cast<TypeParam>(),
+                                           random.pointIn(-10, 42).template cast<TypeParam>());
+            CollectKeys<TypeParam> found;
+            world.sweeps.visit(ray, found);
+            std::vector<ProxyId> ids;
+            for (const auto& [id, key] : found.sorted()) {
+                ids.push_back(id);
+            }
+            for (std::size_t j = 0; j < bullets.ways.size(); ++j) {
+                for (int step = 0; step <= 16; ++step) {
+                    const Vector3<TypeParam> by = bullets.ways[j] * TypeParam(step) / 16;
+                    const Aabb<TypeParam> there(bullets.boxes[j].min() + by,
+                                                bullets.boxes[j].max() + by);
+                    if (ray.key(there) >= 0) {
+                        ASSERT_TRUE(std::binary_search(ids.begin(), ids.end(), world.ids[j]));
+                        onTheWay += ray.key(bullets.boxes[j]) >= 0 ? 0 : 1;
+                    }
                 }
             }
         }
