@@ -13,7 +13,7 @@ void declare(CLI::App& app, AccuracyOptions& options) {
                    "run these experiments, separated by commas (see --list)")
         ->delimiter(',');
     app.add_flag("--quick", options.effort.isQuick,
-                 "measure less: under a minute for all, in place of about 20");
+                 "measure less: under a minute for all, in place of some ten");
     app.add_option("--output", options.folder,
                    "write the report (accuracy.html) and its data (JSON, CSV) to this folder");
     app.add_option("--seed", options.effort.seed, "seed of all random numbers")
