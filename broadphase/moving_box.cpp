@@ -167,20 +167,24 @@ std::optional<double> detail::firstContactExactly(const MovingBox<Scalar>& a,
 template <class Scalar>
 Aabb<Scalar> wayBounds(const MovingBox<Scalar>& moving, double from, double to) {
     using Limits = std::numeric_limits<Scalar>;
-    const Vector3<double> way = moving.displacement.template cast<double>();
-    const Vector3<double> start = from * way;
-    const Vector3<double> stop = to * way;
-    const Vector3<double> low = moving.box.min().template cast<double>() + start.cwiseMin(stop);
-    const Vector3<double> high = moving.box.max().template cast<double>() + start.cwiseMax(stop);
-    // A product and two sums, each off by half a unit of its last place.
-    const auto padding = [&way](const Vector3<double>& sum) -> Vector3<double> {
-        constexpr auto kLargest = static_cast<double>(Limits::max());
-        return sum.cwiseAbs().cwiseMin(kLargest) * 2 * static_cast<double>(Limits::epsilon()) +
-               way.cwiseAbs() * std::numeric_limits<double>::epsilon() +
-               Vector3<double>::Constant(static_cast<double>(Limits::min()));
-    };
-    return {(low - padding(low)).template cast<Scalar>(),
-            (high + padding(high)).template cast<Scalar>()};
+    constexpr auto kLargest = static_cast<double>(Limits::max());
+    constexpr auto kShare = 2 * static_cast<double>(Limits::epsilon());
+    Aabb<Scalar> bounds;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto way = static_cast<double>(moving.displacement[axis]);
+        const double start = from * way;
+        const double stop = to * way;
+        const double low = static_cast<double>(moving.box.min()[axis]) + std::min(start, stop);
+        const double high = static_cast<double>(moving.box.max()[axis]) + std::max(start, stop);
+        // A product and two sums, each off by half a unit of its last place.
+        const double ofWay = std::abs(way) * std::numeric_limits<double>::epsilon() +
+                             static_cast<double>(Limits::min());
+        bounds.min()[axis] =
+            static_cast<Scalar>(low - (std::min(std::abs(low), kLargest) * kShare + ofWay));
+        bounds.max()[axis] =
+            static_cast<Scalar>(high + (std::min(std::abs(high), kLargest) * kShare + ofWay));
+    }
+    return bounds;
 }
 
 namespace {

@@ -28,9 +28,7 @@ void Sweeps<Scalar>::set(ProxyId id, const Vector3<Scalar>& displacement, Sweep 
         motions_[known] = {id, displacement, sweep};
         return;
     }
-    if (id.index >= motionOfSlot_.size()) {
-        motionOfSlot_.resize(grid_.records_.size(), kNone);
-    }
+    makeRoom();
     motionOfSlot_[id.index] = static_cast<std::uint32_t>(motions_.size());
     motions_.push_back({id, displacement, sweep});
     grid_.noteChange(id.index);
@@ -55,10 +53,20 @@ void Sweeps<Scalar>::end(std::uint32_t motion) {
     }
 }
 
+template <class Scalar>
+void Sweeps<Scalar>::makeRoom() {
+    if (motionOfSlot_.size() < grid_.records_.size()) {
+        motionOfSlot_.resize(grid_.records_.size(), kNone);
+    }
+}
+
 // What sweeps counts as changed in each update, whether its box has changed or not: it never comes to
 // rest, and what it meets is looked for anew.
 template <class Scalar>
 void Sweeps<Scalar>::beginUpdate() {
+    if (!motions_.empty()) {
+        makeRoom();
+    }
     for (std::uint32_t i = 0; i < motions_.size();) {
         if (grid_.contains(motions_[i].id)) {
             grid_.noteChange(motions_[i].id.index);

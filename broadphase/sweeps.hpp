@@ -86,6 +86,7 @@ private:
     }
     [[nodiscard]] std::optional<Scalar> keyOnTheWay(const auto& region, const Motion& motion) const;
     void end(std::uint32_t motion);
+    void makeRoom();
 
     void beginUpdate();
     void findContacts(ParallelFor parallelFor) {

@@ -41,7 +41,7 @@ public:
     explicit ContactSearch(const Grid<Scalar>& grid) : grid_(grid) {}
 
     /// Looks for everything that the motions' proxies touch on their ways but not yet at the start.
-    /// `motionOfSlot` says which of them, if any, is a slot's; slots beyond it have none.
+    /// `motionOfSlot` says which of them, if any, is a slot's.
     void find(std::span<const Motion<Scalar>> motions, std::span<const std::uint32_t> motionOfSlot,
               ParallelFor parallelFor);
 
@@ -57,7 +57,7 @@ private:
     struct ContactsOfRay;
 
     [[nodiscard]] bool sweeps(std::uint32_t slot) const noexcept {
-        return slot < motionOfSlot_.size() && motionOfSlot_[slot] != kNoMotion;
+        return motionOfSlot_[slot] != kNoMotion;
     }
     [[nodiscard]] const Box& boxOf(std::uint32_t slot) const noexcept;
     [[nodiscard]] MovingBox<Scalar> moving(const Motion<Scalar>& motion) const noexcept {
@@ -85,6 +85,7 @@ private:
 
     // Scratch.
     BoxColumns<Scalar> segments_;
+    std::vector<Way<Scalar>> ways_;  // of the motions
     std::vector<std::uint32_t> motionOfSegment_;
     std::vector<std::uint32_t> rays_;  // motions
     PairParts parts_;

@@ -44,6 +44,61 @@ private:
     typename Pack::Numbers high_[3];
 };
 
+/// The same for a box on its way: `box` is around that part of it which matters.
+template <class Pack, class Scalar>
+class WayLanes {
+public:
+    WayLanes(const Lanes<Pack, Scalar>& box, const Way<Scalar>& way) : box_(box), way_(&way) {
+        for (int k = 0; k < 3; ++k) {
+            enterFrom_[k] = Pack::all(way.enterFrom[k]);
+            leaveFrom_[k] = Pack::all(way.leaveFrom[k]);
+            inverse_[k] = Pack::all(way.inverse[k]);
+        }
+    }
+
+    template <std::uint32_t kCount>
+    [[nodiscard]] std::uint32_t overlapMask(const Scalar* const* columns,
+                                            std::uint32_t first) const {
+        std::uint32_t mask = box_.template overlapMask<kCount>(columns, first);
+        if (mask != 0) {
+            std::uint32_t reached = 0;
+            for (std::uint32_t k = 0; k < kCount; k += Pack::kWidth) {
+                reached |= maskOfPack(columns, first + k) << k;
+            }
+            mask &= reached;
+        }
+        return mask;
+    }
+
+private:
+    // A time is off by three roundings, or less than the least number of which no bit is lost.
+    [[nodiscard]] std::uint32_t maskOfPack(const Scalar* const* columns,
+                                           std::uint32_t first) const {
+        constexpr Scalar kWidened =
+            sizeof(Scalar) == sizeof(float) ? Scalar(1) + 0x1p-19F : Scalar(1) + 0x1p-48;
+        constexpr Scalar kTiny =
+            sizeof(Scalar) == sizeof(float) ? Scalar(0x1p-126) : Scalar(0x1p-1022);
+        auto enter = Pack::all(0);
+        auto leave = Pack::all(1);
+        for (int k = 0; k < 3; ++k) {
+            const auto enters =
+                Pack::minus(Pack::load(columns[way_->enterColumn[k]] + first), enterFrom_[k]);
+            const auto leaves =
+                Pack::minus(Pack::load(columns[way_->leaveColumn[k]] + first), leaveFrom_[k]);
+            enter = Pack::greatest(Pack::times(enters, inverse_[k]), enter);
+            leave = Pack::least(Pack::times(leaves, inverse_[k]), leave);
+        }
+        leave = Pack::plus(Pack::times(leave, Pack::all(kWidened)), Pack::all(kTiny));
+        return Pack::bits(Pack::notAbove(enter, leave));
+    }
+
+    Lanes<Pack, Scalar> box_;
+    const Way<Scalar>* way_;
+    typename Pack::Numbers enterFrom_[3];
+    typename Pack::Numbers leaveFrom_[3];
+    typename Pack::Numbers inverse_[3];
+};
+
 /// Entries to be read, from first to last, one past.
 struct Run {
     std::uint32_t first;
@@ -55,6 +110,22 @@ template <class Scalar>
 struct Query {
     const Scalar* const* columns;
     std::uint32_t number;
+
+    template <class Pack>
+    [[nodiscard]] Lanes<Pack, Scalar> lanes() const {
+        return Lanes<Pack, Scalar>(columns, number);
+    }
+};
+
+/// The same for a part of a way, of which the box is around.
+template <class Scalar>
+struct WayQuery : Query<Scalar> {
+    const Way<Scalar>* way;
+
+    template <class Pack>
+    [[nodiscard]] WayLanes<Pack, Scalar> lanes() const {
+        return {Query<Scalar>::template lanes<Pack>(), *way};
+    }
 };
 
 inline std::uint32_t lowest(std::uint32_t a, std::uint32_t b) {
@@ -78,12 +149,12 @@ bool isInRow(const LevelView<Scalar>& level, std::uint32_t entry, Row row) {
 }
 
 // Tests all entries of a run.
-template <bool kIsDense, class Scalar>
-void scanAll(const LevelView<Scalar>& level, const Query<Scalar>& query, Run run, Row row,
+template <bool kIsDense, class Scalar, class Query>
+void scanAll(const LevelView<Scalar>& level, const Query& query, Run run, Row row,
              PairSink& found) {
     using Pack = WidePack<Scalar>;
     constexpr std::uint32_t width = Pack::kWidth < kWidth ? kWidth : Pack::kWidth;
-    const Lanes<Pack, Scalar> box(query.columns, query.number);
+    const auto box = query.template lanes<Pack>();
     makeRoom(found, run.last - run.first);
     for (std::uint32_t first = run.first; first < run.last; first += width) {
         std::uint32_t mask = box.template overlapMask<width>(level.columns, first) &
@@ -130,9 +201,9 @@ std::uint32_t upperBound(const Scalar* column, Run run, Scalar bound) {
 // Tests the entries of a run on a level whose crowded buckets are sorted along an axis: of these,
 // those that begin before the box ends, and no farther before it than the longest of them reaches.
 // Returns how many it tested.
-template <bool kIsDense, class Scalar>
-[[gnu::noinline]] std::uint32_t sweep(const LevelView<Scalar>& level, const Query<Scalar>& query,
-                                      Run run, Row row, PairSink& found) {
+template <bool kIsDense, class Scalar, class Query>
+[[gnu::noinline]] std::uint32_t sweep(const LevelView<Scalar>& level, const Query& query, Run run,
+                                      Row row, PairSink& found) {
     const int axis = level.sweepAxis;
     const Scalar* const column = level.columns[axis];
     const Scalar low = query.columns[axis][query.number];
@@ -157,8 +228,8 @@ template <bool kIsDense, class Scalar>
 }
 
 // Finds all entries of a run that overlap the box. Returns how many it tested.
-template <bool kIsDense, class Scalar>
-std::uint32_t scan(const LevelView<Scalar>& level, const Query<Scalar>& query, Run run, Row row,
+template <bool kIsDense, class Scalar, class Query>
+std::uint32_t scan(const LevelView<Scalar>& level, const Query& query, Run run, Row row,
                    PairSink& found) {
     if (level.sweepAxis >= 0) {
         return sweep<kIsDense>(level, query, run, row, found);

@@ -80,6 +80,18 @@ struct Volume {
     bool isInside;
 };
 
+/// A box on its way through others: with what it passes on three axes, and when, in a unit of time.
+/// On axis k it reaches a box when (columns[enterColumn[k]] - enterFrom[k]) * inverse[k] units have
+/// passed, and leaves it behind by leaveColumn and leaveFrom. Where `inverse` is 0, always.
+template <class Scalar>
+struct Way {
+    Scalar enterFrom[3];
+    Scalar leaveFrom[3];
+    Scalar inverse[3];
+    std::uint32_t enterColumn[3];
+    std::uint32_t leaveColumn[3];
+};
+
 /// A row of cells, along x.
 struct Row {
     std::int32_t y;
@@ -198,7 +210,13 @@ struct Kernels {
     void (*walkLevel)(const LevelView<Scalar>& level, const Scalar* const* queries,
                       std::uint32_t first, std::uint32_t last, PairSink& found, KernelCost& cost);
 
-    /// The same, sooner where boxes that follow each other are near each other.
+    /// The same, but for entries that are not within reach of ways[wayOf[i]] between the times 0 and
+    /// 1; some that it just misses may be found.
+    void (*walkWays)(const LevelView<Scalar>& level, const Scalar* const* queries,
+                     const Way<Scalar>* ways, const std::uint32_t* wayOf, std::uint32_t first,
+                     std::uint32_t last, PairSink& found, KernelCost& cost);
+
+    /// As walkLevel(), sooner where boxes that follow each other are near each other.
     void (*walkTogether)(const LevelView<Scalar>& level, const Scalar* const* queries,
                          std::uint32_t first, std::uint32_t last, PairSink& found,
                          KernelCost& cost);

@@ -41,10 +41,9 @@ CellBlock blockAround(const LevelView<Scalar>& level, const Query<Scalar>& query
 }
 
 // Runs of up to kWidth rows, read with few branches in between: most are shorter than kWidth.
-template <bool kIsDense, class Scalar>
-void scanRows(const LevelView<Scalar>& level, const Query<Scalar>& query,
-              const Lanes<Pack<Scalar>, Scalar>& box, const Run* runs, const Row* rows,
-              std::uint32_t rowCount, PairSink& found, KernelCost& cost) {
+template <bool kIsDense, class Scalar, class Query, class Lanes>
+void scanRows(const LevelView<Scalar>& level, const Query& query, const Lanes& box, const Run* runs,
+              const Row* rows, std::uint32_t rowCount, PairSink& found, KernelCost& cost) {
     std::uint64_t hits = 0;
     std::uint32_t candidates = 0;
     std::uint32_t longest = 0;
@@ -74,14 +73,14 @@ void scanRows(const LevelView<Scalar>& level, const Query<Scalar>& query,
     }
 }
 
-template <class Scalar, bool kIsDense>
-[[gnu::flatten]] void walkBox(const LevelView<Scalar>& level, const Query<Scalar>& query,
-                              PairSink& found, KernelCost& cost) {
+template <bool kIsDense, class Scalar, class Query>
+[[gnu::flatten]] void walkBox(const LevelView<Scalar>& level, const Query& query, PairSink& found,
+                              KernelCost& cost) {
     const CellBlock block = blockAround(level, query);
     if (block.isEmpty()) {
         return;
     }
-    const Lanes<Pack<Scalar>, Scalar> box(query.columns, query.number);
+    const auto box = query.template lanes<Pack<Scalar>>();
     const std::uint32_t count = level.lastEntry - level.firstEntry;
     const std::uint64_t rowCount = block.extent(1) * block.extent(2);
     if (rowCount * kBoxesPerRun > count) {
@@ -121,18 +120,31 @@ template <class Scalar, bool kIsDense>
     scanRows<kIsDense>(level, query, box, runs, rows, waiting, found, cost);
 }
 
+template <class Scalar, class Query>
+void walk(const LevelView<Scalar>& level, const Query& query, PairSink& found, KernelCost& cost) {
+    if (!level.hasCells) {
+        cost.boxesTested +=
+            scan<true>(level, query, Run{level.firstEntry, level.lastEntry}, Row{}, found);
+    } else if (level.isDense) {
+        walkBox<true>(level, query, found, cost);
+    } else {
+        walkBox<false>(level, query, found, cost);
+    }
+}
+
 template <class Scalar>
 void walkLevel(const LevelView<Scalar>& level, const Scalar* const* queries, std::uint32_t first,
                std::uint32_t last, PairSink& found, KernelCost& cost) {
     for (std::uint32_t number = first; number < last; ++number) {
-        const Query<Scalar> query{queries, number};
-        if (!level.hasCells) {
-            cost.boxesTested +=
-                scan<true>(level, query, Run{level.firstEntry, level.lastEntry}, Row{}, found);
-        } else if (level.isDense) {
-            walkBox<Scalar, true>(level, query, found, cost);
-        } else {
-            walkBox<Scalar, false>(level, query, found, cost);
-        }
+        walk(level, Query<Scalar>{queries, number}, found, cost);
+    }
+}
+
+template <class Scalar>
+void walkWays(const LevelView<Scalar>& level, const Scalar* const* queries, const Way<Scalar>* ways,
+              const std::uint32_t* wayOf, std::uint32_t first, std::uint32_t last, PairSink& found,
+              KernelCost& cost) {
+    for (std::uint32_t number = first; number < last; ++number) {
+        walk(level, WayQuery<Scalar>{{queries, number}, &ways[wayOf[number]]}, found, cost);
     }
 }

@@ -12,6 +12,7 @@
 //     both(hits, hits) ... and
 //     bits(hits)       ... take: bit k tells about number k
 //     minus, plus, times(a, b), magnitude(a)
+//     least, greatest(a, b)  b where one is NaN
 //     compress(mask, numbers, to)  where it is there, writes numbers[k] to `to` for every bit k of the
 //                      mask, which has kWidth, and may write so many; reads no others
 //   WidePack<Scalar>   the same for long runs, perhaps wider
@@ -93,6 +94,6 @@ std::size_t selectApart(const IndexPair* couples, std::size_t count, const std::
 
 template <class Scalar>
 constexpr Kernels<Scalar> kKernels{
-    &fileBoxes<Scalar>,  &joinLevel<Scalar>,        &walkLevel<Scalar>, &walkTogether<Scalar>,
-    &walkVolume<Scalar>, &joinList<Scalar>,         &findRange<Scalar>, &selectApart<Scalar>,
-    &countCrowd<Scalar>, &countCrowdGroups<Scalar>, &listCrowd<Scalar>};
+    &fileBoxes<Scalar>,    &joinLevel<Scalar>,  &walkLevel<Scalar>,        &walkWays<Scalar>,
+    &walkTogether<Scalar>, &walkVolume<Scalar>, &joinList<Scalar>,         &findRange<Scalar>,
+    &selectApart<Scalar>,  &countCrowd<Scalar>, &countCrowdGroups<Scalar>, &listCrowd<Scalar>};

@@ -14,6 +14,8 @@ struct Pack<float> {
     static Numbers minus(Numbers a, Numbers b) { return _mm256_sub_ps(a, b); }
     static Numbers plus(Numbers a, Numbers b) { return _mm256_add_ps(a, b); }
     static Numbers times(Numbers a, Numbers b) { return _mm256_mul_ps(a, b); }
+    static Numbers least(Numbers a, Numbers b) { return _mm256_min_ps(a, b); }
+    static Numbers greatest(Numbers a, Numbers b) { return _mm256_max_ps(a, b); }
     static Numbers magnitude(Numbers a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0F), a); }
     static __m256 notAbove(Numbers a, Numbers b) { return _mm256_cmp_ps(a, b, _CMP_LE_OQ); }
     static __m256 both(__m256 a, __m256 b) { return _mm256_and_ps(a, b); }

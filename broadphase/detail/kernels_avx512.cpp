@@ -23,6 +23,8 @@ struct Pack<double> {
     static Numbers minus(Numbers a, Numbers b) { return _mm512_sub_pd(a, b); }
     static Numbers plus(Numbers a, Numbers b) { return _mm512_add_pd(a, b); }
     static Numbers times(Numbers a, Numbers b) { return _mm512_mul_pd(a, b); }
+    static Numbers least(Numbers a, Numbers b) { return _mm512_min_pd(a, b); }
+    static Numbers greatest(Numbers a, Numbers b) { return _mm512_max_pd(a, b); }
     static Numbers magnitude(Numbers a) { return _mm512_abs_pd(a); }
     static void compress(std::uint32_t mask, const std::uint32_t* numbers, std::uint32_t* to) {
         const auto lanes = static_cast<__mmask8>(mask);
@@ -47,6 +49,8 @@ struct WidePack<float> {
     static Numbers minus(Numbers a, Numbers b) { return _mm512_sub_ps(a, b); }
     static Numbers plus(Numbers a, Numbers b) { return _mm512_add_ps(a, b); }
     static Numbers times(Numbers a, Numbers b) { return _mm512_mul_ps(a, b); }
+    static Numbers least(Numbers a, Numbers b) { return _mm512_min_ps(a, b); }
+    static Numbers greatest(Numbers a, Numbers b) { return _mm512_max_ps(a, b); }
     static Numbers magnitude(Numbers a) { return _mm512_abs_ps(a); }
     static void compress(std::uint32_t mask, const std::uint32_t* numbers, std::uint32_t* to) {
         const auto lanes = static_cast<__mmask16>(mask);

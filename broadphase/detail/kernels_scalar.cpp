@@ -17,6 +17,8 @@ struct Pack {
     static Numbers minus(Numbers a, Numbers b) { return a - b; }
     static Numbers plus(Numbers a, Numbers b) { return a + b; }
     static Numbers times(Numbers a, Numbers b) { return a * b; }
+    static Numbers least(Numbers a, Numbers b) { return a < b ? a : b; }
+    static Numbers greatest(Numbers a, Numbers b) { return a > b ? a : b; }
     static Numbers magnitude(Numbers a) { return a < 0 ? -a : a; }
     static bool notAbove(Numbers a, Numbers b) { return a <= b; }
     static bool both(bool a, bool b) { return a & b; }

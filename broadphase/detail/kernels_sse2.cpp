@@ -22,6 +22,8 @@ struct Pack<float> {
     static Numbers minus(Numbers a, Numbers b) { return _mm_sub_ps(a, b); }
     static Numbers plus(Numbers a, Numbers b) { return _mm_add_ps(a, b); }
     static Numbers times(Numbers a, Numbers b) { return _mm_mul_ps(a, b); }
+    static Numbers least(Numbers a, Numbers b) { return _mm_min_ps(a, b); }
+    static Numbers greatest(Numbers a, Numbers b) { return _mm_max_ps(a, b); }
     static Numbers magnitude(Numbers a) { return _mm_andnot_ps(_mm_set1_ps(-0.0F), a); }
     static __m128 notAbove(Numbers a, Numbers b) { return _mm_cmple_ps(a, b); }
     static __m128 both(__m128 a, __m128 b) { return _mm_and_ps(a, b); }
@@ -39,6 +41,8 @@ struct Pack<double> {
     static Numbers minus(Numbers a, Numbers b) { return _mm_sub_pd(a, b); }
     static Numbers plus(Numbers a, Numbers b) { return _mm_add_pd(a, b); }
     static Numbers times(Numbers a, Numbers b) { return _mm_mul_pd(a, b); }
+    static Numbers least(Numbers a, Numbers b) { return _mm_min_pd(a, b); }
+    static Numbers greatest(Numbers a, Numbers b) { return _mm_max_pd(a, b); }
     static Numbers magnitude(Numbers a) { return _mm_andnot_pd(_mm_set1_pd(-0.0), a); }
     static __m128d notAbove(Numbers a, Numbers b) { return _mm_cmple_pd(a, b); }
     static __m128d both(__m128d a, __m128d b) { return _mm_and_pd(a, b); }

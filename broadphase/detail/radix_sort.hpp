@@ -29,7 +29,10 @@ inline void radixSort(std::vector<std::uint64_t>& keys, std::uint32_t bound,
     scratch.resize(keys.size());
     std::array<std::uint32_t, kDigits> start;
     const auto sortBy = [&](unsigned shift) {
-        const auto digit = [shift](std::uint64_t key) { return (key >> shift) & (kDigits - 1); };
+        const auto digit = [shift, bits](std::uint64_t key) {
+            const std::uint64_t closedUp = (key >> 32) << bits | (key & 0xffffffff);
+            return (closedUp >> shift) & (kDigits - 1);
+        };
         start.fill(0);
         for (const std::uint64_t key : keys) {
             ++start[digit(key)];
@@ -43,10 +46,8 @@ inline void radixSort(std::vector<std::uint64_t>& keys, std::uint32_t bound,
         }
         keys.swap(scratch);
     };
-    for (const unsigned half : {0U, 32U}) {
-        for (unsigned shift = 0; shift < bits; shift += kDigitBits) {
-            sortBy(half + shift);
-        }
+    for (unsigned shift = 0; shift < 2 * bits; shift += kDigitBits) {
+        sortBy(shift);
     }
 }
 

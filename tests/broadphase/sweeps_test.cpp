@@ -208,6 +208,49 @@ TYPED_TEST(SweptPairs, OfABulletAndAThinWallAreNeverMissed) {
     }
 }
 
+/// A box and its way, and another box that it touches for a moment, by an edge: along one axis it
+/// leaves it when along another one it arrives, at a time that is rounded.
+template <class Scalar>
+struct Graze {
+    MovingBox<Scalar> mover;
+    Aabb<Scalar> other;
+
+    Graze(const Vector3<Scalar>& where, Random& random) {
+        const auto draw = [&](std::uint32_t count) {
+            return static_cast<Scalar>(1 + random.below(count));
+        };
+        const Scalar parts = draw(30);
+        const Scalar passed = draw(static_cast<std::uint32_t>(parts));
+        const Vector3<Scalar> step(draw(9), draw(9), draw(9) - 5);
+        const Vector3<Scalar> way = passed * step;
+        mover = {{where, where + Vector3<Scalar>(1, 1, 40)}, parts * step};
+        other = {where + Vector3<Scalar>(way[0] - 3, 1 + way[1], way[2] + 1),
+                 where + Vector3<Scalar>(way[0], 3 + way[1], way[2] + 2)};
+    }
+};
+
+TYPED_TEST(SweptPairs, OfBoxesThatJustGrazeAreNeverMissed) {
+    Random random(0x5eed0d0a);
+    for (const Sweep mode : kModes) {
+        Grid<TypeParam> grid;
+        Sweeps<TypeParam> sweeps(grid);
+        Pairs<TypeParam> pairs(grid, &sweeps);
+        std::size_t count = 0;
+        for (TypeParam x = 0; x < 12; ++x) {
+            for (TypeParam y = 0; y < 12; ++y) {
+                for (TypeParam z = 0; z < 12; ++z) {
+                    const Graze<TypeParam> graze(Vector3<TypeParam>(x, y, z) * 1000, random);
+                    sweeps.set(grid.add(graze.mover.box), graze.mover.displacement, mode);
+                    static_cast<void>(grid.add(graze.other));
+                    ++count;
+                }
+            }
+        }
+        pairs.update([](ProxyId, ProxyId) { return true; });
+        EXPECT_EQ(pairs.count(), count);
+    }
+}
+
 TYPED_TEST(SweptPairs, FollowWhoIsRemovedStopsAndComesAgain) {
     PairWorld<TypeParam> world;
     const auto place = [](TypeParam x) { return makeBox<TypeParam>(x, 0, 0, x + 1, 1, 1); };
