@@ -6,7 +6,7 @@
 // A pair is two proxies whose closed boxes overlap and which the filter accepts; with Sweeps, whose
 // boxes overlap now or touch on their ways. update() tells which pairs were born and which died since
 // the last one, each once, sorted; what persists is not touched. Nothing is remembered of a pair but
-// what the boxes tell: a pair is new when the boxes overlap now and did not at the last update.
+// what boxes and ways tell: a pair is new when they touch now and did not at the last update.
 //
 // A frame   move proxies in the grid, then update() here (it updates the grid).
 // Threads   every member needs the grid and this object for itself.
@@ -99,7 +99,8 @@ public:
     /// query.
     PairChanges announce(ProxyId id, PairFilter filter);
 
-    /// Asks the filter again about everything that the proxy overlaps, refused or not, at once.
+    /// Asks the filter again about everything that the proxy overlaps, or met on its way at the last
+    /// update, refused or not, at once.
     /// Cost: that of a box query, and a look at all watched couples.
     PairChanges refilter(ProxyId id, PairFilter filter);
 

@@ -51,7 +51,7 @@ PairChanges Pairs<Scalar>::refilter(ProxyId id, PairFilter filter) {
         if (!isRefused(c) && grid_.isAlive(first(c)) && grid_.isAlive(second(c))) {
             standing_.push_back(c);
             asked_.push_back(c);
-        } else if (isRefused(c) && overlapNow(c)) {
+        } else if (isRefused(c) && (overlapNow(c) || isSwept(c))) {
             // Those apart for the moment are asked about by update(), should they meet again.
             asked_.push_back(c);
         }

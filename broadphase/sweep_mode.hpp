@@ -18,8 +18,8 @@ struct SweepCost {
     std::uint32_t sweeping = 0;        ///< proxies
     std::uint32_t segments = 0;        ///< boxes along their ways that were looked for
     std::uint32_t rays = 0;            ///< ways so long that they were looked for as a whole
-    std::uint64_t boxesTested = 0;     ///< against segments
-    std::uint64_t contactsTested = 0;  ///< by firstContact()
+    std::uint64_t boxesTested = 0;     ///< against segments and rays, and with each other
+    std::uint64_t contactsTested = 0;  ///< by firstContact(), for all but rays
 };
 
 }  // namespace hashphase

@@ -13,8 +13,7 @@ void Sweeps<Scalar>::set(ProxyId id, const Vector3<Scalar>& displacement, Sweep 
         reportedBadData_ = true;
         detail::reportMessage(
             "A proxy was to sweep by a displacement that is NaN or infinite. It counts as "
-            "standing; "
-            "further ones do so silently.");
+            "standing; further ones do so silently.");
     }
     const std::uint32_t known = motionOf(id.index);
     if (!isUsable || sweep == Sweep::none || displacement.isZero(0)) {

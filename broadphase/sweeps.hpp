@@ -9,7 +9,8 @@
 //           the frame ends, then Pairs::update(). Both hold until they are set again.
 // Modes     cost differently and find the same: pairs are confirmed by firstContact(), which is
 //           exact.
-// Cost      what sweeps costs time, whatever its speed; what does not costs what it did.
+// Cost      what sweeps costs time, whatever its speed, but for Sweep::box, which reads all that is in
+//           the box around its way; what does not sweep costs what it did.
 // Threads   visit() is const and may run anywhere; everything else needs the grid for itself.
 // Units     metres; times are fractions of the frame, 0 to 1.
 // Bad data  A displacement that is NaN or infinite counts as none, and is reported once through the
@@ -56,6 +57,8 @@ public:
 
     /// Grid::visit(), but what sweeps is found wherever the box around its way, or around a part of
     /// it, has a key: nothing that it passes is left out, some that it just misses may be found.
+    /// A PositionRegion, or one of boxes that lie inside, finds for certain only what does where it
+    /// stands: a larger box need not have a key where a smaller one has.
     /// Cost: that of Grid::visit(), and a look at everything that sweeps.
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
@@ -111,9 +114,16 @@ std::optional<Scalar> Sweeps<Scalar>::keyOnTheWay(const auto& region, const Moti
         const Scalar key = region.key(box);
         return key >= 0 ? std::optional(key) : std::nullopt;
     };
+    std::optional<Scalar> least = keyOf(way.box);
+    const auto add = [&least](const std::optional<Scalar>& key) {
+        if (key && (!least || *key < *least)) {
+            least = key;
+        }
+    };
     const std::optional<Scalar> ofAll = keyOf(wayBounds(way));
     if (!ofAll || motion.sweep == Sweep::box) {
-        return ofAll;
+        add(ofAll);
+        return least;
     }
     // Parts of about its own size; so long a way that it would take more of them is seen less sharply.
     constexpr double mostParts = 64;
@@ -121,13 +131,8 @@ std::optional<Scalar> Sweeps<Scalar>::keyOnTheWay(const auto& region, const Moti
     const auto far = static_cast<double>(way.displacement.cwiseAbs().maxCoeff());
     const int count =
         static_cast<int>(far < mostParts * size ? std::max(std::ceil(far / size), 1.0) : mostParts);
-    std::optional<Scalar> least;
     for (int i = 0; i < count; ++i) {
-        const std::optional<Scalar> key =
-            keyOf(wayBounds(way, static_cast<double>(i) / count, (i + 1.0) / count));
-        if (key && (!least || *key < *least)) {
-            least = key;
-        }
+        add(keyOf(wayBounds(way, static_cast<double>(i) / count, (i + 1.0) / count)));
     }
     return least;
 }

@@ -30,16 +30,19 @@ constexpr int kCellsPerSegment = 5;
 
 constexpr int kMostSlices = 64;
 
-// Extends the world by where the level's boxes are, and a little more: cells are rounded.
+// Extends the world by where the level's boxes are, and a little more: a cell may be one off, and more
+// where its number has as many digits as a coordinate.
 template <class Scalar>
 void extendByCells(Aabb<double>& world, const Level<Scalar>& level) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     Aabb<double> bounds;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto at = static_cast<Eigen::Index>(axis);
-        const auto border = [&](std::int64_t cell) {
-            return static_cast<double>(level.origin[axis]) +
-                   static_cast<double>(cell) / static_cast<double>(level.inverseCellSize[axis]);
+        const auto border = [&](std::int64_t cell, double outward) {
+            const double far =
+                static_cast<double>(cell) / static_cast<double>(level.inverseCellSize[axis]);
+            const double doubt = 2 * static_cast<double>(std::numeric_limits<Scalar>::epsilon());
+            return static_cast<double>(level.origin[axis]) + far + outward * doubt * std::abs(far);
         };
         if (level.inverseCellSize[axis] == 0) {
             bounds.min()[at] = static_cast<double>(level.lowest[axis]);
@@ -49,8 +52,8 @@ void extendByCells(Aabb<double>& world, const Level<Scalar>& level) {
         // In the last cells is whatever lies beyond.
         const std::int64_t low = level.low[axis];
         const std::int64_t high = level.high[axis];
-        bounds.min()[at] = low <= -kCellLimit ? -kInfinity : border(low - 1);
-        bounds.max()[at] = high >= kCellLimit - 2 ? kInfinity : border(high + 3);
+        bounds.min()[at] = low <= -kCellLimit ? -kInfinity : border(low - 1, -1);
+        bounds.max()[at] = high >= kCellLimit - 2 ? kInfinity : border(high + 3, 1);
     }
     world.extend(bounds);
 }
@@ -72,11 +75,6 @@ void extendByTable(Aabb<double>& world, const Table<Scalar>& table) {
 }
 
 // Between which times a moving box may touch something in the world; from > to when never.
-struct Part {
-    double from = 0;
-    double to = 1;
-};
-
 template <class Scalar>
 Part partWithin(const MovingBox<Scalar>& moving, const Aabb<double>& world) {
     constexpr double kWidened = 1e-12;  // more than the rounding
@@ -85,6 +83,9 @@ Part partWithin(const MovingBox<Scalar>& moving, const Aabb<double>& world) {
         const auto way = static_cast<double>(moving.displacement[axis]);
         const double first = world.min()[axis] - static_cast<double>(moving.box.max()[axis]);
         const double last = world.max()[axis] - static_cast<double>(moving.box.min()[axis]);
+        if (std::isnan(first) || std::isnan(last)) {
+            continue;  // both are infinite
+        }
         if (way == 0) {
             part.to = first > 0 || last < 0 ? -1.0 : part.to;
             continue;
@@ -170,6 +171,7 @@ void ContactSearch<Scalar>::cutIntoSegments() {
         ways_.push_back(wayOf(moving(motions_[i])));
         cut(i, world, cellSize);
     }
+    cutFewRays();
     cost_.segments = segments_.size();
     cost_.rays = static_cast<std::uint32_t>(rays_.size());
 }
@@ -188,24 +190,42 @@ void ContactSearch<Scalar>::cut(std::uint32_t motion, const Aabb<double>& world,
     const bool isThin = (far.array() > length).count() < 2;
     const Sweep sweep = motions_[motion].sweep;
     if (sweep == Sweep::box || (sweep == Sweep::automatic && isThin) || !(length > 0)) {
-        addSegments(motion, way, within.from, within.to, 1);
+        addSegments(motion, way, within, 1);
         return;
     }
     const double count =
         std::ceil((within.to - within.from) * static_cast<double>(far.maxCoeff() / length));
     if (count <= kMostSegments) {
-        addSegments(motion, way, within.from, within.to, std::max(1, static_cast<int>(count)));
+        addSegments(motion, way, within, std::max(1, static_cast<int>(count)));
     } else {
-        rays_.push_back(motion);
+        rays_.push_back({motion, within, count});
     }
+}
+
+// The first ray after an update makes a tree of all mobile boxes. For a few it is not worth it.
+template <class Scalar>
+void ContactSearch<Scalar>::cutFewRays() {
+    constexpr double kBoxesPerSegment = 8;  // of a tree made in the time of a segment
+    double count = 0;
+    for (const LongWay& ray : rays_) {
+        count += ray.segments;
+    }
+    if (!(count * kBoxesPerSegment < static_cast<double>(grid_.mobile_.size()))) {
+        return;
+    }
+    for (const LongWay& ray : rays_) {
+        addSegments(ray.motion, moving(motions_[ray.motion]), ray.within,
+                    static_cast<int>(ray.segments));
+    }
+    rays_.clear();
 }
 
 template <class Scalar>
 void ContactSearch<Scalar>::addSegments(std::uint32_t motion, const MovingBox<Scalar>& way,
-                                        double from, double to, int count) {
-    double begin = from;
+                                        const Part& part, int count) {
+    double begin = part.from;
     for (int i = 1; i <= count; ++i) {
-        const double end = i == count ? to : from + (to - from) * i / count;
+        const double end = i == count ? part.to : part.from + (part.to - part.from) * i / count;
         segments_.push(wayBounds(way, begin, end));
         motionOfSegment_.push_back(motion);
         begin = end;
@@ -295,39 +315,58 @@ struct ContactSearch<Scalar>::ContactsOfRay {
 template <class Scalar>
 void ContactSearch<Scalar>::meetStandingByRay(ParallelFor parallelFor) {
     constexpr std::size_t kGrain = 16;
-    KernelCost none;
+    KernelCost cost;
     touchingNow_.clear();
-    parts_.collect(parallelFor, rays_.size(), kGrain, touchingNow_, none,
-                   [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost&) {
+    parts_.collect(parallelFor, rays_.size(), kGrain, touchingNow_, cost,
+                   [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost& own) {
                        for (std::size_t i = first; i < last; ++i) {
-                           const Motion<Scalar>& motion = motions_[rays_[i]];
+                           const Motion<Scalar>& motion = motions_[rays_[i].motion];
                            ContactsOfRay contacts{*this, motion, sink};
-                           grid_.visit(MovingBoxRegion<Scalar>(moving(motion)), contacts);
+                           const MovingBoxRegion<Scalar> region(moving(motion));
+                           own.boxesTested += grid_.visit(region, contacts).boxesTested;
                        }
                    });
+    cost_.boxesTested += cost.boxesTested;
     touching_.append(touchingNow_.pairs());
 }
 
-// So many that in one slice a proxy moves about twice as far as the next one is away: measured, as
-// the lengths of segments.
+// The value that a share of a sample of the motions stays below. A stray or a giant does not decide.
 template <class Scalar>
-int ContactSearch<Scalar>::sliceCount() const {
-    Box everything;
-    double size = 0;
-    double way = 0;
-    for (const Motion<Scalar>& motion : motions_) {
-        const MovingBox<Scalar> each = moving(motion);
-        everything.extend(each.box);
-        size += static_cast<double>(each.box.sizes().maxCoeff());
-        way += static_cast<double>(each.displacement.cwiseAbs().maxCoeff());
+template <class ValueOf>
+double ContactSearch<Scalar>::quantile(double share, const ValueOf& valueOf) {
+    constexpr std::size_t kSample = 64;
+    sample_.clear();
+    for (std::size_t i = 0; i < motions_.size(); i += motions_.size() / kSample + 1) {
+        const auto value = static_cast<double>(valueOf(moving(motions_[i])));
+        if (!std::isnan(value)) {
+            sample_.push_back(value);
+        }
     }
-    const auto count = static_cast<double>(motions_.size());
-    double room = 1 / count;
-    for (const Scalar edge : everything.sizes()) {
-        room *= std::max(static_cast<double>(edge), size / count);
+    if (sample_.empty()) {
+        return 0;
     }
-    const double apart = std::max(std::cbrt(room), size / count);
-    const double slices = std::ceil(way / count / (2 * apart));
+    const auto at = sample_.begin() +
+                    static_cast<std::ptrdiff_t>(share * static_cast<double>(sample_.size() - 1));
+    std::nth_element(sample_.begin(), at, sample_.end());
+    return *at;
+}
+
+// So many that in one slice most proxies move no more than twice as far as the next one is away:
+// measured, as the lengths of segments.
+template <class Scalar>
+int ContactSearch<Scalar>::sliceCount() {
+    using Moving = MovingBox<Scalar>;
+    const double size = quantile(0.5, [](const Moving& m) { return m.box.sizes().maxCoeff(); });
+    const double way =
+        quantile(0.75, [](const Moving& m) { return m.displacement.cwiseAbs().maxCoeff(); });
+    double room = 1 / static_cast<double>(motions_.size());
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low = quantile(0.125, [&](const Moving& m) { return m.box.min()[axis]; });
+        const double high = quantile(0.875, [&](const Moving& m) { return m.box.max()[axis]; });
+        room *= std::max((high - low) / 0.75, size);
+    }
+    const double apart = std::max(std::cbrt(room), size);
+    const double slices = std::ceil(way / (2 * apart));
     return slices > 1 ? static_cast<int>(std::min<double>(slices, kMostSlices)) : 1;
 }
 
@@ -354,23 +393,36 @@ void ContactSearch<Scalar>::meetEachOther(ParallelFor parallelFor) {
         joinTable(sliceTable_, parallelFor, parts_, candidates_, cost);
         cost_.boxesTested += cost.boxesTested;
         cost_.contactsTested += candidates_.size();
-        for (const auto [first, second] : candidates_.pairs()) {
-            const Motion<Scalar>& a = motions_[sliceTable_.slot(first)];
-            const Motion<Scalar>& b = motions_[sliceTable_.slot(second)];
-            const MovingBox<Scalar> wayOfA = moving(a);
-            const MovingBox<Scalar> wayOfB = moving(b);
-            if (!overlaps(wayOfA.box, wayOfB.box) && firstContact(wayOfA, wayOfB)) {
-                touching_.push({a.id.index, b.id.index});
-            }
-        }
+        addMeeting(parallelFor);
     }
+}
+
+template <class Scalar>
+void ContactSearch<Scalar>::addMeeting(ParallelFor parallelFor) {
+    constexpr std::size_t kGrain = 1024;
+    KernelCost none;
+    touchingNow_.clear();
+    parts_.collect(parallelFor, candidates_.size(), kGrain, touchingNow_, none,
+                   [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost&) {
+                       makeRoom(sink, last - first);
+                       for (const auto [i, j] : candidates_.pairs().subspan(first, last - first)) {
+                           const Motion<Scalar>& a = motions_[sliceTable_.slot(i)];
+                           const Motion<Scalar>& b = motions_[sliceTable_.slot(j)];
+                           const MovingBox<Scalar> wayOfA = moving(a);
+                           const MovingBox<Scalar> wayOfB = moving(b);
+                           if (!overlaps(wayOfA.box, wayOfB.box) && firstContact(wayOfA, wayOfB)) {
+                               *sink.next++ = {a.id.index, b.id.index};
+                           }
+                       }
+                   });
+    touching_.append(touchingNow_.pairs());
 }
 
 template <class Scalar>
 std::size_t ContactSearch<Scalar>::memoryBytes() const noexcept {
     return (contacts_.capacity() + sorted_.capacity()) * sizeof(std::uint64_t) +
-           (motionOfSegment_.capacity() + rays_.capacity() + motionNumbers_.capacity()) *
-               sizeof(std::uint32_t) +
+           (motionOfSegment_.capacity() + motionNumbers_.capacity()) * sizeof(std::uint32_t) +
+           rays_.capacity() * sizeof(LongWay) + sample_.capacity() * sizeof(double) +
            segments_.memoryBytes() + ways_.capacity() * sizeof(Way<Scalar>) + parts_.memoryBytes() +
            candidates_.memoryBytes() + touchingNow_.memoryBytes() + touching_.memoryBytes() +
            slice_.capacity() * sizeof(PaddedBox<Scalar>) + sliceTable_.memoryBytes();

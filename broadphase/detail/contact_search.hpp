@@ -35,6 +35,12 @@ struct Motion {
 
 inline constexpr std::uint32_t kNoMotion = ~std::uint32_t{0};
 
+/// A part of a frame.
+struct Part {
+    double from = 0;
+    double to = 1;
+};
+
 template <class Scalar>
 class ContactSearch {
 public:
@@ -56,6 +62,13 @@ private:
 
     struct ContactsOfRay;
 
+    /// A way that would take so many segments.
+    struct LongWay {
+        std::uint32_t motion;
+        Part within;
+        double segments;
+    };
+
     [[nodiscard]] bool sweeps(std::uint32_t slot) const noexcept {
         return motionOfSlot_[slot] != kNoMotion;
     }
@@ -66,12 +79,16 @@ private:
 
     void cutIntoSegments();
     void cut(std::uint32_t motion, const Aabb<double>& world, Scalar cellSize);
-    void addSegments(std::uint32_t motion, const MovingBox<Scalar>& way, double from, double to,
+    void cutFewRays();
+    void addSegments(std::uint32_t motion, const MovingBox<Scalar>& way, const Part& part,
                      int count);
     void meetStanding(ParallelFor parallelFor);
     void meetStandingByRay(ParallelFor parallelFor);
     void meetEachOther(ParallelFor parallelFor);
-    [[nodiscard]] int sliceCount() const;
+    void addMeeting(ParallelFor parallelFor);
+    template <class ValueOf>
+    [[nodiscard]] double quantile(double share, const ValueOf& valueOf);
+    [[nodiscard]] int sliceCount();
     void walkSegments(const Table<Scalar>& table, std::size_t first, std::size_t last,
                       PairSink& candidates, KernelCost& cost) const;
     void addTouching(const Table<Scalar>& table, std::span<const IndexPair> candidates,
@@ -87,7 +104,8 @@ private:
     BoxColumns<Scalar> segments_;
     std::vector<Way<Scalar>> ways_;  // of the motions
     std::vector<std::uint32_t> motionOfSegment_;
-    std::vector<std::uint32_t> rays_;  // motions
+    std::vector<LongWay> rays_;
+    std::vector<double> sample_;
     PairParts parts_;
     PairList candidates_;
     PairList touchingNow_;

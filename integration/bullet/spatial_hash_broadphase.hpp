@@ -62,7 +62,9 @@ struct SpatialHashConfig {
     /// that Bullet hands in, which with m_useContinuous covers start and end and all that lies
     /// between its corners, such a body is filed where it is, and sweeps along the way that Bullet has
     /// predicted: its pairs are exactly what it touches at some time of the step, and queries find it
-    /// anywhere on its way. For worlds whose clients are btCollisionObjects.
+    /// anywhere on its way. For worlds whose clients are btCollisionObjects. What sweeps does so until
+    /// its next setAabb(): after moving a body by hand between steps, set its interpolation transform
+    /// too. Costs a look at the shape of each body that moves.
     Sweep sweep = Sweep::none;
 
     /// A body is fast in a step in which it moves by more than this share of the smallest edge of its
@@ -126,7 +128,8 @@ public:
     /// with PairCache the number of the proxy's pairs.
     void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
 
-    /// Cost: O(1); a comparison when the box is the same.
+    /// Cost: O(1); a comparison when the box is the same, and with SpatialHashConfig::sweep a look at
+    /// the body.
     void setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin, const btVector3& aabbMax,
                  btDispatcher* dispatcher) override;
 
@@ -146,13 +149,14 @@ public:
                   btBroadphaseAabbCallback& callback) override;
 
     /// Makes the cache's pairs exact: afterwards it holds precisely the overlapping proxies that
-    /// its filter accepts. Pairs that overlap at both ends of a step are not touched.
+    /// its filter accepts, and with SpatialHashConfig::sweep those that meet on their ways. Pairs that
+    /// did so before are not touched.
     void calculateOverlappingPairs(btDispatcher* dispatcher) override;
 
     btOverlappingPairCache* getOverlappingPairCache() override { return pairCache_; }
     const btOverlappingPairCache* getOverlappingPairCache() const override { return pairCache_; }
 
-    /// The box around all boxes; zero when there is none. Cost: O(proxies).
+    /// The box around all boxes, and all ways; zero when there is none. Cost: O(proxies).
     void getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax) const override;
 
     /// Counts m_uniqueId from 1 again when no proxy is alive; else does nothing.
@@ -195,8 +199,8 @@ public:
     void rayTests(std::span<const BroadphaseRay> rays, ParallelFor parallelFor = serialFor);
     void closestRays(std::span<const ClosestRay> rays, ParallelFor parallelFor = serialFor) const;
 
-    /// Asks the filter again about everything that the proxy overlaps, and adds and removes its
-    /// pairs accordingly, at once. For use after a change of its group, mask, or of the filter.
+    /// Asks the filter again about everything that the proxy overlaps, or met on its way, and adds and
+    /// removes its pairs accordingly, at once. For use after a change of its group, mask, or of the filter.
     void refilter(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
     /// The grid, for queries that Bullet has none for. proxyOf() leads back to Bullet.

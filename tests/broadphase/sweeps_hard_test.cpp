@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Zlib
+
+// Sweeps where rounding, infinities and strays could mislead the search.
+
+#include <broadphase/position_region.hpp>
+#include <broadphase/sweeps.hpp>
+#include <tests/support/bullet_world.hpp>
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+namespace hashphase::test {
+namespace {
+
+template <class Scalar>
+class HardSweeps : public testing::Test {};
+
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(HardSweeps, Scalars);
+
+template <class Scalar>
+Aabb<Scalar> cubeAt(Scalar x) {
+    return {Vector3<Scalar>(x, 0, 0), Vector3<Scalar>(x + 1, 1, 1)};
+}
+
+/// All pairs by firstContact(); the first boxes sweep.
+template <class Scalar>
+std::size_t pairCountOf(const Bullets<Scalar>& bullets) {
+    const auto moving = [&](std::size_t i) {
+        return i < bullets.ways.size() ? MovingBox<Scalar>{bullets.boxes[i], bullets.ways[i]}
+                                       : MovingBox<Scalar>{bullets.boxes[i]};
+    };
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < bullets.boxes.size(); ++i) {
+        for (std::size_t j = i + 1; j < bullets.boxes.size(); ++j) {
+            const bool sweeps = i < bullets.ways.size() || j < bullets.ways.size();
+            count += overlaps(bullets.boxes[i], bullets.boxes[j]) ||
+                             (sweeps && firstContact(moving(i), moving(j)))
+                         ? 1
+                         : 0;
+        }
+    }
+    return count;
+}
+
+/// A box and its way, and another box that it touches for a moment, by an edge: along one axis it
+/// leaves it when along another one it arrives, at a time that is rounded.
+template <class Scalar>
+struct Graze {
+    MovingBox<Scalar> mover;
+    Aabb<Scalar> other;
+
+    Graze(const Vector3<Scalar>& where, Random& random) {
+        const auto draw = [&](std::uint32_t count) {
+            return static_cast<Scalar>(1 + random.below(count));
+        };
+        const Scalar parts = draw(30);
+        const Scalar passed = draw(static_cast<std::uint32_t>(parts));
+        const Vector3<Scalar> step(draw(9), draw(9), draw(9) - 5);
+        const Vector3<Scalar> way = passed * step;
+        mover = {{where, where + Vector3<Scalar>(1, 1, 40)}, parts * step};
+        other = {where + Vector3<Scalar>(way[0] - 3, 1 + way[1], way[2] + 1),
+                 where + Vector3<Scalar>(way[0], 3 + way[1], way[2] + 2)};
+    }
+};
+
+TYPED_TEST(HardSweeps, MissNothingThatTheyJustGraze) {
+    Random random(0x5eed0d0a);
+    for (const Sweep mode : kSweepModes) {
+        Grid<TypeParam> grid;
+        Sweeps<TypeParam> sweeps(grid);
+        Pairs<TypeParam> pairs(grid, &sweeps);
+        std::size_t count = 0;
+        for (TypeParam x = 0; x < 12; ++x) {
+            for (TypeParam y = 0; y < 12; ++y) {
+                for (TypeParam z = 0; z < 12; ++z) {
+                    const Graze<TypeParam> graze(Vector3<TypeParam>(x, y, z) * 1000, random);
+                    sweeps.set(grid.add(graze.mover.box), graze.mover.displacement, mode);
+                    static_cast<void>(grid.add(graze.other));
+                    ++count;
+                }
+            }
+        }
+        pairs.update([](ProxyId, ProxyId) { return true; });
+        EXPECT_EQ(pairs.count(), count);
+    }
+}
+
+// Infinite corners, inverted boxes: differences of coordinates need not be numbers.
+TYPED_TEST(HardSweeps, MissNothingAtInfinity) {
+    using Scalar = TypeParam;
+    constexpr Scalar kInfinity = std::numeric_limits<Scalar>::infinity();
+    const auto boxOf = [](Vector3<Scalar> low, Vector3<Scalar> high) {
+        return Aabb<Scalar>(low, high);
+    };
+    Bullets<Scalar> high;
+    high.boxes = {boxOf({8, kInfinity, 3}, {8.25F, kInfinity, 4.5F}),
+                  boxOf({8, -4, 5.5F}, {10, kInfinity, 6})};
+    high.ways = {{0, 10, 9.5F}};
+    Bullets<Scalar> inverted;
+    inverted.boxes = {boxOf({-9, -7, kInfinity}, {-8.5F, -5, 1e6F}),
+                      boxOf({0, 1e37F, 0}, {1, 2e38F, kInfinity})};
+    inverted.ways = {{10, 1.7e38F, -1e6F}};
+    for (const Bullets<Scalar>& bullets : {high, inverted}) {
+        ASSERT_EQ(pairCountOf(bullets), 1U);
+        for (const Sweep mode : kSweepModes) {
+            EXPECT_EQ((BulletWorld<Scalar>(bullets, mode).update().size()), 1U);
+        }
+    }
+}
+
+// A crowd far away decides where cells are counted from: here their numbers have as many digits as a
+// coordinate, and what lies at the edge of the world may be filed some cells farther in.
+TYPED_TEST(HardSweeps, MissNothingWhereCellsAreRounded) {
+    using Scalar = TypeParam;
+    GridConfig config;
+    config.cellSize = 1;
+    for (const double shift : {0.0, 3.0, 6.0, 9.0, 12.0}) {
+        Random random(0x5eed0d0b);
+        Bullets<Scalar> bullets;
+        for (int i = 0; i < 100; ++i) {
+            const Vector3<double> from(80, random.between(-10, 10), random.between(-10, 10));
+            bullets.boxes.push_back(boxAround<Scalar>(from, {0.45, 0.45, 0.45}));
+            bullets.ways.push_back(Vector3<Scalar>(-200, 0.01F, 0));
+        }
+        for (int i = 0; i < 300; ++i) {
+            const Vector3<double> at = random.pointIn({0, -10, -10}, {40, 10, 10});
+            bullets.boxes.push_back(
+                boxAround<Scalar>(at + Vector3<double>(shift, 0, 0), {0.45, 0.45, 0.45}));
+        }
+        const std::size_t expected = pairCountOf(bullets);
+        EXPECT_GT(expected, 200U);
+        for (int i = 0; i < 3000; ++i) {
+            bullets.boxes.push_back(
+                boxAround<Scalar>(Vector3<double>(2e8, 10 * i, 1000), {0.5, 0.5, 0.5}));
+        }
+        for (const Sweep mode : kSweepModes) {
+            EXPECT_EQ((BulletWorld<Scalar>(bullets, mode, config).update().size()), expected)
+                << shift;
+        }
+    }
+}
+
+// A body that has fallen out of the world, and one that is larger than it.
+TYPED_TEST(HardSweeps, CostTheSameBesideAStray) {
+    Random random(0x5eed0d0c);
+    const Bullets<TypeParam> bullets(2000, 2000, 25, random);
+    BulletWorld<TypeParam> alone(bullets, Sweep::automatic);
+    alone.update();
+    const SweepCost usual = alone.sweeps.lastCost();
+    Bullets<TypeParam> withStray = bullets;
+    withStray.boxes.push_back(boxAround<TypeParam>({0, -1e6, 0}, {0.5, 0.5, 0.5}));
+    withStray.ways.push_back(Vector3<TypeParam>(0, -100, 0));
+    Bullets<TypeParam> withGiant = bullets;
+    withGiant.boxes.push_back(boxAround<TypeParam>({0, -2e4, 0}, {1e4, 1e4, 1e4}));
+    withGiant.ways.push_back(Vector3<TypeParam>(0, 0, 1e4));
+    for (const Bullets<TypeParam>& some : {withStray, withGiant}) {
+        BulletWorld<TypeParam> world(some, Sweep::automatic);
+        world.update();
+        const SweepCost& cost = world.sweeps.lastCost();
+        EXPECT_LE(cost.contactsTested, usual.contactsTested * 5 / 4);
+        EXPECT_LE(cost.boxesTested, usual.boxesTested * 5 / 4);
+    }
+}
+
+// For three that fly far, a tree over everything is not worth while.
+TYPED_TEST(HardSweeps, TakeRaysOnlyWhereThereAreManyForTheTree) {
+    Random random(0x5eed0d0d);
+    for (const std::uint32_t sweeping : {3U, 300U}) {
+        Bullets<TypeParam> bullets(20'000, sweeping, 1, random);
+        bullets.ways.assign(sweeping, {4000, 4000, 4000});
+        bullets.boxes.push_back(boxAround<TypeParam>({1e4, 1e4, 1e4}, {0.5, 0.5, 0.5}));
+        BulletWorld<TypeParam> world(bullets, Sweep::line);
+        world.update();
+        EXPECT_EQ(world.sweeps.lastCost().rays, sweeping == 3 ? 0U : 300U);
+    }
+}
+
+TYPED_TEST(HardSweeps, AreFoundWhereTheyStandByWhateverAsks) {
+    Bullets<TypeParam> bullets;
+    bullets.boxes = {cubeAt<TypeParam>(0)};
+    bullets.ways = {{100, 0, 0}};
+    for (const Sweep mode : kSweepModes) {
+        const BulletWorld<TypeParam> world(bullets, mode);
+        std::vector<ProxyId> found;
+        CollectAll collector(found);
+        world.sweeps.visit(PositionRegion<TypeParam>({0.5, 0.5, 0.5}, 2), collector);
+        EXPECT_EQ(found.size(), 1U);
+    }
+}
+
+// What a proxy has met on its way and the filter has refused, is asked about again at once.
+TYPED_TEST(HardSweeps, AreFilteredAgainAtOnce) {
+    Bullets<TypeParam> bullets;
+    bullets.boxes = {cubeAt<TypeParam>(0), cubeAt<TypeParam>(5)};
+    bullets.ways = {{10, 0, 0}};
+    BulletWorld<TypeParam> world(bullets, Sweep::line);
+    world.pairs.update([](ProxyId, ProxyId) { return false; });
+    EXPECT_EQ(world.pairs.refusedCount(), 1U);
+    const auto yes = [](ProxyId, ProxyId) { return true; };
+    EXPECT_EQ(world.pairs.refilter(world.ids[1], yes).born.size(), 1U);
+    EXPECT_EQ(world.pairs.validate(), "");
+    const PairChanges next = world.pairs.update(yes);
+    EXPECT_TRUE(next.born.empty());
+    EXPECT_TRUE(next.died.empty());
+}
+
+}  // namespace
+}  // namespace hashphase::test
