@@ -24,8 +24,7 @@ namespace {
 // A way of more segments is rather looked for as a whole, as a ray.
 constexpr int kMostSegments = 40;
 
-// Measured in a uniform world, and in one as flat as a landscape; two thirds of it, or a fifth more,
-// do as well.
+// Measured in a uniform world, and in one as flat as a landscape; 4 and 6 do as well.
 constexpr int kCellsPerSegment = 5;
 
 constexpr int kMostSlices = 64;

@@ -200,7 +200,8 @@ public:
     void closestRays(std::span<const ClosestRay> rays, ParallelFor parallelFor = serialFor) const;
 
     /// Asks the filter again about everything that the proxy overlaps, or met on its way, and adds and
-    /// removes its pairs accordingly, at once. For use after a change of its group, mask, or of the filter.
+    /// removes its pairs accordingly, at once. For use after a change of its group, mask, or of the
+    /// filter.
     void refilter(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
     /// The grid, for queries that Bullet has none for. proxyOf() leads back to Bullet.
