@@ -99,3 +99,12 @@ function(hashphase_enable_sanitizers)
     add_compile_options(${flags} -fno-omit-frame-pointer)
     add_link_options(${flags})
 endfunction()
+
+# Spares what is in the calling directory and below those checks of UndefinedBehaviorSanitizer that
+# take the compiler longest: for tests and programs, a third of the time. AddressSanitizer sees null
+# pointers too, and the libraries keep them all.
+function(hashphase_spare_checks)
+    if(HASHPHASE_SANITIZE STREQUAL "address")
+        add_compile_options(-fno-sanitize=null,alignment,object-size,vptr)
+    endif()
+endfunction()
