@@ -15,7 +15,7 @@
 namespace hashphase::detail {
 
 /// Sorts keys of the form high << 32 | low, both halves below `bound`, ascending. `scratch` is
-/// overwritten. Cost: linear, some 3 ns a key for each eleven bits of `bound`, twice.
+/// overwritten. Cost: linear, some 3 ns a key for each eleven bits of the two halves closed up.
 inline void radixSort(std::vector<std::uint64_t>& keys, std::uint32_t bound,
                       std::vector<std::uint64_t>& scratch) {
     constexpr std::size_t kWorthIt = 256;
