@@ -89,7 +89,8 @@ private:
 /// Everything that a segment meets, or that a box meets while it moves along the segment (a "fat"
 /// ray). Key: the fraction of the way at which the box is entered, 0 when it begins inside. Closed:
 /// grazing a face, an edge or a corner counts, and rounding errs to the side of a hit. A segment of
-/// no length is a point, or a box that stands still; one with an infinite end is empty.
+/// no length is a point, or a box that stands still; one with an infinite end, or longer than 2^126 m
+/// along an axis (double: 2^1022), is empty.
 template <class Scalar>
 class RayRegion {
 public:
@@ -98,8 +99,11 @@ public:
     RayRegion(const Vector3<Scalar>& from, const Vector3<Scalar>& to,
               const Aabb<Scalar>& fatness = {Vector3<Scalar>::Zero(), Vector3<Scalar>::Zero()})
         : from_(from), direction_(to - from), fatness_(fatness) {
-        if (!from_.allFinite() || !direction_.allFinite()) {
-            direction_.setConstant(std::numeric_limits<Scalar>::quiet_NaN());
+        // Of what is longer, the inverse has fewer digits, or is 0 where denormals are flushed.
+        using Limits = std::numeric_limits<Scalar>;
+        const auto lengths = direction_.array().abs();
+        if (!from_.allFinite() || !(lengths <= 1 / Limits::min()).all()) {
+            direction_.setConstant(Limits::quiet_NaN());
         }
         inverse_ = direction_.cwiseInverse();
         for (int axis = 0; axis < 3; ++axis) {
