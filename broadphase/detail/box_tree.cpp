@@ -112,7 +112,7 @@ void BoxTree::sortAlongCurve() {
     constexpr auto most = static_cast<float>((1 << kHilbertBits) - 1);
     const float steps = std::clamp(extent / curveStep(), 1.0F, most);
     const float perMetre = std::min(steps / extent, 1 / std::numeric_limits<float>::min());
-    const int bits = std::bit_width(static_cast<std::uint32_t>(steps));
+    const auto bits = static_cast<int>(std::bit_width(static_cast<std::uint32_t>(steps)));
     places_.resize(boxes_.size());
     for (std::uint32_t i = 0; i < boxes_.size(); ++i) {
         std::array<std::uint32_t, 3> point{};
