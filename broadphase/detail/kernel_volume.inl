@@ -196,9 +196,11 @@ std::uint32_t* writeNumbers(std::uint32_t mask, const std::uint32_t* numbers, st
 
 #include <broadphase/detail/kernel_volume_read.inl>
 
-template <class Scalar>
-bool walkRows(const VolumeView<Scalar>& view, PlaneSet crossing, CellInterval layers,
-              CellInterval rowsOfAll, VolumeReader<Scalar>& reader) {
+// Calls visit(batch), which empties it, for batches of the rows that the volume's planes leave along y
+// and z. Returns false as soon as visit() does.
+template <class Scalar, class Visit>
+bool forRowBatches(const VolumeView<Scalar>& view, PlaneSet crossing, CellInterval layers,
+                   CellInterval rowsOfAll, const Visit& visit) {
     RowBatch<Scalar> batch(view, crossing);
     for (std::int32_t z = layers.low; z <= layers.high; ++z) {
         CellInterval rows = rowsOfAll;
@@ -208,12 +210,30 @@ bool walkRows(const VolumeView<Scalar>& view, PlaneSet crossing, CellInterval la
             rows = view.cellsOf(view.clip(layer, 1), 1);
         }
         for (std::int32_t y = rows.low; y <= rows.high; ++y) {
-            if (batch.add(Row{y, z}) && !reader.readRows(batch)) {
+            if (batch.add(Row{y, z}) && !visit(batch)) {
                 return false;
             }
         }
     }
-    return reader.readRows(batch);
+    return visit(batch);
+}
+
+// Whether the volume has as many cells as a hashed level has buckets. Rows share these: every box might
+// be read once a row.
+template <class Scalar>
+bool coversBuckets(const VolumeView<Scalar>& view, PlaneSet crossing, CellInterval layers,
+                   CellInterval rows) {
+    const LevelView<Scalar>& level = view.level;
+    const std::uint64_t longest = CellInterval{level.low[0], level.high[0]}.count();
+    if (level.isDense || layers.count() * rows.count() * longest < level.bucketCount) {
+        return false;
+    }
+    std::uint64_t cells = 0;
+    return !forRowBatches(view, crossing, layers, rows, [&](RowBatch<Scalar>& batch) {
+        cells += batch.countCells();
+        batch.count = 0;
+        return cells < level.bucketCount;
+    });
 }
 
 template <class Scalar>
@@ -237,8 +257,10 @@ bool walkVolume(const LevelView<Scalar>& level, const Volume<Scalar>& volume, Sl
     }
     const CellInterval layers = view.cellsOf(view.clip(view.all, 2), 2);
     const CellInterval rows = view.cellsOf(view.clip(view.all, 1), 1);
-    if (layers.count() * rows.count() * kBoxesPerVolumeRow > all.last - all.first) {
+    if (layers.count() * rows.count() * kBoxesPerVolumeRow > all.last - all.first ||
+        coversBuckets(view, crossing, layers, rows)) {
         return reader.test(all);
     }
-    return walkRows(view, crossing, layers, rows, reader);
+    return forRowBatches(view, crossing, layers, rows,
+                         [&reader](RowBatch<Scalar>& batch) { return reader.readRows(batch); });
 }

@@ -61,6 +61,16 @@ public:
         findCrossings(least);
     }
 
+    /// Clips the rows, and returns how many cells they have.
+    std::uint64_t countCells() {
+        clip();
+        std::uint64_t cells = 0;
+        for (int k = 0; k < count; ++k) {
+            cells += first[k] <= last[k] ? static_cast<std::uint64_t>(last[k] - first[k]) + 1 : 0;
+        }
+        return cells;
+    }
+
 private:
     static constexpr auto kNowhere = static_cast<Scalar>(-__builtin_inf());
 

@@ -83,14 +83,19 @@ template <bool kIsDense, class Scalar, class Query>
     const auto box = query.template lanes<Pack<Scalar>>();
     const std::uint32_t count = level.lastEntry - level.firstEntry;
     const std::uint64_t rowCount = block.extent(1) * block.extent(2);
-    if (rowCount * kBoxesPerRun > count) {
+    const auto length = static_cast<std::uint32_t>(block.extent(0));
+    bool isWhole = rowCount * kBoxesPerRun > count;
+    if constexpr (!kIsDense) {
+        // Rows share buckets: long ones would have every box read once a row.
+        isWhole |= rowCount * lowest(length, level.bucketCount) >= level.bucketCount;
+    }
+    if (isWhole) {
         cost.boxesTested +=
             scan<true>(level, query, Run{level.firstEntry, level.lastEntry}, Row{}, found);
         return;
     }
     cost.rowsVisited += rowCount;
     const std::uint32_t* starts = level.bucketStart;
-    const auto length = static_cast<std::uint32_t>(block.extent(0));
     Run runs[kWidth];
     Row rows[kWidth];
     std::uint32_t waiting = 0;

@@ -55,7 +55,12 @@ bool forRowsOfBox(const Level<Scalar>& level, const Aabb<Scalar>& bounds, VisitR
             rows *= static_cast<std::uint64_t>(high[axis] - low[axis]) + 1;
         }
     }
-    if (rows * kBoxesPerRun > level.count()) {
+    // Rows of a hashed level share buckets: long ones would have every box read once a row.
+    const auto length = static_cast<std::uint64_t>(high[0] - low[0]) + 1;
+    const bool coversBuckets =
+        !level.isDense &&
+        rows * std::min<std::uint64_t>(length, level.bucketCount) >= level.bucketCount;
+    if (rows * kBoxesPerRun > level.count() || coversBuckets) {
         return false;
     }
     for (std::int32_t z = low[2]; z <= high[2]; ++z) {
