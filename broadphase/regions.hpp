@@ -105,10 +105,17 @@ public:
         if (!from_.allFinite() || !(lengths <= 1 / Limits::min()).all()) {
             direction_.setConstant(Limits::quiet_NaN());
         }
+        // key() takes the fatness from numbers that were rounded before.
+        constexpr Scalar epsilon = std::numeric_limits<Scalar>::epsilon();
+        fatness_.min() -= epsilon * fatness_.min().cwiseAbs();
+        fatness_.max() += epsilon * fatness_.max().cwiseAbs();
+        last_ = fatness.min().isZero(0) && fatness.max().isZero(0) ? Scalar(1) : kWidened;
         inverse_ = direction_.cwiseInverse();
         for (int axis = 0; axis < 3; ++axis) {
             if (std::isinf(inverse_[axis])) {
-                direction_[axis] = 0;  // or so little that it comes to the same
+                // Too short a way to be inverted makes what moves as much thicker.
+                (direction_[axis] > 0 ? fatness_.max() : fatness_.min())[axis] += direction_[axis];
+                direction_[axis] = 0;
             }
         }
     }
@@ -116,9 +123,8 @@ public:
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept {
         // Slabs; each distance is off by at most gamma(3), see Pharr, Jakob, Humphreys,
         // "Physically Based Rendering", 4th edition, section 6.8.3.
-        constexpr Scalar widened = 1 + 6 * std::numeric_limits<Scalar>::epsilon();
         Scalar enter = 0;
-        Scalar leave = 1;
+        Scalar leave = last_;
         for (int axis = 0; axis < 3; ++axis) {
             // Relative to the ray first: far from the origin, the small numbers stay exact.
             const Scalar low = (box.min()[axis] - from_[axis]) - fatness_.max()[axis];
@@ -137,30 +143,34 @@ public:
             if (!(near <= far)) {
                 return -1;
             }
-            far *= far > 0 ? widened : Scalar(1);
+            far *= far > 0 ? kWidened : Scalar(1);
             enter = std::max(enter, near);
             leave = std::min(leave, far);
         }
-        return enter <= leave ? enter : Scalar(-1);
+        return enter <= leave ? std::min(enter, Scalar(1)) : Scalar(-1);
     }
 
-    /// True when an end is NaN or infinite: nothing has a key.
+    /// True when an end is NaN or infinite, or the way too long: nothing has a key.
     [[nodiscard]] bool isEmpty() const noexcept { return direction_.hasNaN(); }
     [[nodiscard]] const Vector3<Scalar>& from() const noexcept { return from_; }
     /// `to` - `from`, but 0 where its inverse would be infinite.
     [[nodiscard]] const Vector3<Scalar>& direction() const noexcept { return direction_; }
     /// One by direction(); infinite where that is 0.
     [[nodiscard]] const Vector3<Scalar>& inverse() const noexcept { return inverse_; }
+    /// As given, or thicker by a rounding error.
     [[nodiscard]] const Aabb<Scalar>& fatness() const noexcept { return fatness_; }
 
     /// Grids read this line, thick as the region is, and no cells.
     [[nodiscard]] const RayRegion& segment() const noexcept { return *this; }
 
 private:
+    static constexpr Scalar kWidened = 1 + 6 * std::numeric_limits<Scalar>::epsilon();
+
     Vector3<Scalar> from_;
     Vector3<Scalar> direction_;
     Vector3<Scalar> inverse_;
     Aabb<Scalar> fatness_;
+    Scalar last_ = 1;  // key at which the way ends, beyond 1 where that would be rounded
 };
 
 }  // namespace hashphase
