@@ -4,6 +4,7 @@
 #include <broadphase/collectors.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace hashphase {
 namespace {
@@ -45,7 +46,12 @@ Culler<Scalar>::Culler(Scalar margin)
 // farther than the view lies inside of that.
 template <class Scalar>
 bool Culler<Scalar>::keepsSet(Scalar moved) {
-    moved_ += moved >= 0 ? moved : std::numeric_limits<Scalar>::infinity();
+    constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
+    const Scalar step = moved >= 0 ? moved : infinity;
+    const Scalar sum = moved_ + step;
+    // Never rounded down: of many small steps each would be lost.
+    const bool isShort = sum - std::max(moved_, step) < std::min(moved_, step);
+    moved_ = isShort ? std::nextafter(sum, infinity) : sum;
     return moved_ <= margin_ && view_.isEmpty() == grown_.isEmpty() && !view_.volume().isInside &&
            !grown_.volume().isInside && grown_.contains(view_, moved_);
 }
