@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -188,6 +189,99 @@ TYPED_TEST(HardSweeps, AreFoundWhereTheyStandByWhateverAsks) {
         CollectAll collector(found);
         world.sweeps.visit(PositionRegion<TypeParam>({0.5, 0.5, 0.5}, 2), collector);
         EXPECT_EQ(found.size(), 1U);
+    }
+}
+
+// Less than a coordinate can be changed by: as standing still, but for what is nearer than that.
+TYPED_TEST(HardSweeps, OfLessThanAnUlpTouchWhatIsWithinThem) {
+    using Limits = std::numeric_limits<TypeParam>;
+    const TypeParam face = 1000;
+    const TypeParam ulp = std::nextafter(face, Limits::max()) - face;
+    struct Case {
+        TypeParam gap;
+        TypeParam way;
+        std::size_t pairs;
+    };
+    for (const Case& one :
+         {Case{0, 0, 1}, Case{ulp, 0, 0}, Case{0, ulp / 8, 1}, Case{0, -ulp / 8, 1},
+          Case{ulp, ulp / 8, 0}, Case{ulp, ulp, 1}, Case{ulp, ulp * 7 / 8, 0},
+          Case{0, Limits::denorm_min(), 1}, Case{ulp, Limits::min(), 0}}) {
+        Bullets<TypeParam> bullets;
+        bullets.boxes = {
+            {Vector3<TypeParam>(face - 1, 0, 0), Vector3<TypeParam>(face, 1, 1)},
+            {Vector3<TypeParam>(face + one.gap, 0, 0), Vector3<TypeParam>(face + 1, 1, 1)}};
+        bullets.ways = {{one.way, 0, 0}};
+        ASSERT_EQ(pairCountOf(bullets), one.pairs) << one.gap << ", " << one.way;
+        for (const Sweep mode : kSweepModes) {
+            EXPECT_EQ((BulletWorld<TypeParam>(bullets, mode).update().size()), one.pairs)
+                << one.gap << ", " << one.way;
+        }
+    }
+}
+
+// Two movers that cross, neither where the other one begins or ends; that touch at the first moment or
+// at the last one only; and that pass at -1, 0 and 1 ulp.
+TYPED_TEST(HardSweeps, FindInEveryModeWhatTouchesForAMoment) {
+    using Limits = std::numeric_limits<TypeParam>;
+    const auto countOf = [](Vector3<TypeParam> wayA, TypeParam atB, TypeParam heightB,
+                            Vector3<TypeParam> wayB) {
+        Bullets<TypeParam> bullets;
+        bullets.boxes = {
+            cubeAt<TypeParam>(0),
+            {Vector3<TypeParam>(atB, heightB, 0), Vector3<TypeParam>(atB + 1, heightB + 1, 1)}};
+        bullets.ways = {wayA, wayB};
+        const std::size_t count = pairCountOf(bullets);
+        for (const Sweep mode : kSweepModes) {
+            EXPECT_EQ((BulletWorld<TypeParam>(bullets, mode).update().size()), count);
+        }
+        return count;
+    };
+    const TypeParam above = std::nextafter(TypeParam(1), TypeParam(2));
+    const TypeParam below = std::nextafter(TypeParam(1), TypeParam(0));
+    EXPECT_EQ(countOf({40, 0, 0}, 30, 0, {-40, 0, 0}), 1U) << "they cross";
+    EXPECT_EQ(countOf({40, 0, 0}, 30, 0, {40, 0, 0}), 0U) << "they keep their distance";
+    EXPECT_EQ(countOf({-9, 0, 0}, 1, 0, {9, 0, 0}), 1U) << "at the first moment";
+    EXPECT_EQ(countOf({-9, 0, 0}, above, 0, {9, 0, 0}), 0U);
+    EXPECT_EQ(countOf({9, 0, 0}, 17, 0, {-7, 0, 0}), 1U) << "at the last moment";
+    EXPECT_EQ(countOf({9, 0, 0}, std::nextafter(TypeParam(17), Limits::max()), 0, {-7, 0, 0}), 0U);
+    EXPECT_EQ(countOf({40, 0, 0}, 30, below, {-40, 0, 0}), 1U) << "grazing, an ulp inside";
+    EXPECT_EQ(countOf({40, 0, 0}, 30, 1, {-40, 0, 0}), 1U);
+    EXPECT_EQ(countOf({40, 0, 0}, 30, above, {-40, 0, 0}), 0U);
+}
+
+// A million cells in a step, and across the world; what is on the straight way is met, nothing else, at
+// a cost that does not follow the way.
+TYPED_TEST(HardSweeps, ThatTeleportMeetWhatIsOnTheStraightWay) {
+    GridConfig config;
+    config.cellSize = 1;
+    for (const double length : {1e6, 2e9}) {
+        Random random(0x5eed0d0e);
+        Bullets<TypeParam> bullets;
+        for (int i = 0; i < 40; ++i) {
+            const Vector3<double> at = random.pointIn(-9, 9);
+            bullets.boxes.push_back(boxAround<TypeParam>(at, {0.5, 0.5, 0.5}));
+            const Vector3<double> way =
+                random.pointIn({0.5, -0.02, -0.02}, {1, 0.02, 0.02}) * length;
+            bullets.ways.push_back(way.template cast<TypeParam>());
+        }
+        for (int i = 0; i < 600; ++i) {
+            // Half where they start, the others along the ways of some.
+            const auto mover = static_cast<std::size_t>(i % 40);
+            const double share = i % 2 == 0 ? 0 : random.unit();
+            const Vector3<double> at = bullets.boxes[mover].center().template cast<double>() +
+                                       share * bullets.ways[mover].template cast<double>() +
+                                       random.pointIn(-9, 9);
+            bullets.boxes.push_back(boxAround<TypeParam>(at, {2, 2, 2}));
+        }
+        const std::size_t expected = pairCountOf(bullets);
+        EXPECT_GT(expected, 100U);
+        for (const Sweep mode : kSweepModes) {
+            BulletWorld<TypeParam> world(bullets, mode, config);
+            EXPECT_EQ(world.update().size(), expected) << length;
+            const SweepCost& cost = world.sweeps.lastCost();
+            EXPECT_LE(cost.segments, 40U * 40);
+            EXPECT_LE(cost.boxesTested + cost.contactsTested, 40 * 4 * 640U);
+        }
     }
 }
 
