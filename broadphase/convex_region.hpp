@@ -21,7 +21,7 @@ enum class Touch : std::uint8_t { exact, byPlanes };
 
 /// Everything that touches a convex volume, or lies wholly inside: the points p with
 /// plane.signedDistance(p) >= 0 for each of its planes. Key: 0. Cells that are wholly inside are taken
-/// without a test of their boxes.
+/// without a test of their boxes; a query costs at most one pass over all boxes, as Grid::visit() says.
 ///
 /// Closed, and rounding errs to the side of a hit: by about 1e-6 of the coordinates' size in single
 /// precision, 1e-9 in double. Volumes may be unbounded; no planes at all are all of space. A volume

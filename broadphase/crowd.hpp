@@ -83,7 +83,8 @@ public:
     /// Calls visit(std::uint32_t agent, std::span<const std::uint32_t> neighbours) for every agent;
     /// the neighbours' numbers are valid during the call, in an order that does not depend on
     /// `parallelFor`, on whose threads visit() is called. Nothing is kept of all of them. Returns the
-    /// cost; hits are neighbours. Cost: that of comparing each agent with those in the cells around.
+    /// cost; hits are neighbours. Cost: that of comparing each agent with those in the cells around;
+    /// at most all with all.
     template <std::invocable<std::uint32_t, std::span<const std::uint32_t>> Visit>
     QueryCost forEach(Visit&& visit, ParallelFor parallelFor = serialFor) {
         using Target = std::remove_reference_t<Visit>;

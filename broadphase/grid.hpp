@@ -112,14 +112,17 @@ public:
     // --- Queries ---------------------------------------------------------------------------------
 
     /// The one query: offers to `collector` every proxy whose box has a key in `region`, each once.
-    /// See regions.hpp and collectors.hpp. Cost: the cells that the region touches, at most one
-    /// test per proxy; returned as data.
+    /// See regions.hpp and collectors.hpp. Cost: the cells that the region touches, returned as
+    /// data. However large or long the region, about one test for each proxy at most, and one more
+    /// for each that has changed since it was filed; none for a region that is empty by a NaN, but
+    /// for these.
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
 
     /// visit() for many: collectors[i] takes what regions[i] finds, in any order. The collectors
-    /// must not share anything when `parallelFor` is parallel. Returns the sum of the costs. Faster
-    /// than one by one where regions have bounds(), unless the collectors stop early.
+    /// must not share anything when `parallelFor` is parallel. Returns the sum of the costs, each at
+    /// most that of visit(). Faster than one by one where regions have bounds(), unless the
+    /// collectors stop early.
     template <class Region, class Collector>
     QueryCost visitEach(std::span<const Region> regions, std::span<Collector> collectors,
                         ParallelFor parallelFor = serialFor) const;
@@ -129,7 +132,7 @@ public:
     [[nodiscard]] Scalar cellSize() const noexcept { return cellSize_; }
 
     /// Cell query: who is in the cell? Offers every proxy p with `cell` in cellsOf(p) to the
-    /// collector. Cost: O(1) buckets.
+    /// collector. Cost: O(1) buckets; at most that of visit().
     template <class Collector>
     QueryCost visitCell(const std::array<std::int64_t, 3>& cell, Collector& collector) const;
 

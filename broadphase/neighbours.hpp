@@ -24,7 +24,8 @@ public:
     /// Every two proxies of the grid whose boxes are at most `distance` [m] apart (closed, by the
     /// straight line between the nearest points; 0 apart where they overlap), each couple once, in
     /// any order. Valid until the next call. None for a negative or NaN distance. The result does
-    /// not depend on `parallelFor`. Cost: that of an update of the grid, and of the couples.
+    /// not depend on `parallelFor`. Cost: that of an update of the grid, and of the couples; at most
+    /// that of comparing all with all.
     std::span<const ProxyPair> find(const Grid<Scalar>& grid, Scalar distance,
                                     ParallelFor parallelFor = serialFor);
 

@@ -59,7 +59,8 @@ public:
     /// it, has a key: nothing that it passes is left out, some that it just misses may be found.
     /// A PositionRegion, or one of boxes that lie inside, finds for certain only what does where it
     /// stands: a larger box need not have a key where a smaller one has.
-    /// Cost: that of Grid::visit(), and a look at everything that sweeps.
+    /// Cost: that of Grid::visit(), and for everything that sweeps one look at its way, or at 64 parts
+    /// of it at most, whatever its speed.
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
 

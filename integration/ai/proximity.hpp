@@ -20,7 +20,8 @@
 
 namespace hashphase {
 
-/// Finds those whose position is within `radius` [m] of `position`. Cost: the cells around.
+/// Finds those whose position is within `radius` [m] of `position`. Cost: the cells around, at most
+/// one test for each proxy, as Grid::visit() says, and sorting what is found.
 template <class Scalar>
 QueryCost findWithin(const Grid<Scalar>& grid,
                      const Vector3<std::type_identity_t<Scalar>>& position,
@@ -33,7 +34,7 @@ QueryCost findWithin(const Grid<Scalar>& grid,
 /// cells, those found that are really within are 1, 2, 3 and 4 in 10 where the radius is 1, 2, 4 and
 /// 8 cells, at any density; a ball fills about half of its box, so it is never many more. Saves time
 /// where they are only counted, by Grid::visit(CellsRegion, CollectCount), and the radius is some
-/// cells: in lists, and within a cell in space, the exact ones take less.
+/// cells: in lists, and within a cell in space, the exact ones take less. Cost: at most as above.
 template <class Scalar>
 QueryCost estimateWithin(const Grid<Scalar>& grid,
                          const Vector3<std::type_identity_t<Scalar>>& position,

@@ -57,7 +57,7 @@ public:
 
     /// Counts the proxies in the window, as [group][layer][row][column], the last index running
     /// fastest; one layer where the window has none. Valid until the next call. Cost: the grid's
-    /// cells in the window, and the counts set to 0.
+    /// cells in the window, at most one test for each proxy (Grid::visit()), and the counts set to 0.
     std::span<const std::uint32_t> scan(const Grid<Scalar>& grid, const RadarWindow<Scalar>& window,
                                         std::uint32_t groupCount, RadarGroups groupOf);
 

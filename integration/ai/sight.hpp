@@ -65,7 +65,7 @@ private:
 
 /// True when the line meets no box before `to` that the filter makes a blocker, those of `viewer`
 /// and `target` aside. False when an end, or the distance, is not finite. Cost: a ray that stops at
-/// the first blocker found.
+/// the first blocker found; at most one test for each proxy.
 template <class Scalar>
 [[nodiscard]] bool hasLineOfSight(const Grid<Scalar>& grid,
                                   const Vector3<std::type_identity_t<Scalar>>& from,
@@ -73,13 +73,15 @@ template <class Scalar>
                                   ProxyFilter blockers = acceptAll, ProxyId viewer = {},
                                   ProxyId target = {});
 
-/// True when the viewer sees the proxy. Not itself, nor one that is not in the grid (any more).
+/// True when the viewer sees the proxy. Not itself, nor one that is not in the grid (any more). Cost:
+/// at most that of hasLineOfSight().
 template <class Scalar>
 [[nodiscard]] bool canSee(const Grid<Scalar>& grid, const Viewer<Scalar>& viewer, ProxyId target,
                           ProxyFilter blockers = acceptAll);
 
 /// Finds all whom the viewer sees of those that `targets` accepts, sorted, in place of what `seen`
-/// held. Cost: the cells around the cone, and a ray for each target in it.
+/// held. Cost: the cells around the cone, and a ray for each target in it; at most one test for each
+/// proxy, and for each proxy and target.
 template <class Scalar>
 QueryCost visibleFrom(const Grid<Scalar>& grid, const Viewer<Scalar>& viewer,
                       std::vector<ProxyId>& seen, ProxyFilter targets = acceptAll,

@@ -95,8 +95,8 @@ public:
     // --- Frame -----------------------------------------------------------------------------------
 
     /// Finds out who is in each zone now, and what has changed since the last update. Valid until
-    /// the next one. The result does not depend on `parallelFor`. Cost: a query for each zone, and
-    /// the sum of the occupants.
+    /// the next one. The result does not depend on `parallelFor`. Cost: a query for each zone, at
+    /// most one test for each zone and proxy (Grid::visit()), and the sum of the occupants.
     ZoneEvents update(const Grid<Scalar>& grid, ZoneFilter filter = acceptAllInZones,
                       ParallelFor parallelFor = serialFor);
 

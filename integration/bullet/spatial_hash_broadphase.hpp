@@ -138,13 +138,18 @@ public:
 
     /// Calls rayCallback.process() once for every proxy whose box, grown by the cast box
     /// (aabbMin, aabbMax), passes btRayAabb2() with the callback's own fields. Sees every box as it
-    /// was last set. Order roughly from near to far, but not to be relied on.
+    /// was last set. Order roughly from near to far, but not to be relied on. A ray of no length, or
+    /// one too long to be squared, for which Bullet makes NaN or nothing of the direction, finds what
+    /// these fields say, as under btDbvtBroadphase: of no length nothing. Ask grid() with a RayRegion
+    /// for what is at a point, or on the longest ways. One with NaN or infinite ends finds nothing.
+    /// Cost: what lies near the ray; however long it is, at most one test for each proxy.
     void rayTest(const btVector3& rayFrom, const btVector3& rayTo,
                  btBroadphaseRayCallback& rayCallback,
                  const btVector3& aabbMin = btVector3(0, 0, 0),
                  const btVector3& aabbMax = btVector3(0, 0, 0)) override;
 
-    /// Calls callback.process() once for every proxy whose box overlaps the given one (closed).
+    /// Calls callback.process() once for every proxy whose box overlaps the given one (closed). Cost:
+    /// at most one test for each proxy.
     void aabbTest(const btVector3& aabbMin, const btVector3& aabbMax,
                   btBroadphaseAabbCallback& callback) override;
 
@@ -189,7 +194,8 @@ public:
     /// possible: reports to `callback` what it would report, less what lies more than 2 cm behind
     /// callback.m_closestHitFraction. That makes no difference for a ClosestRayResultCallback, but
     /// for which of several hits at the same fraction is kept. For worlds whose clients are
-    /// btCollisionObjects; soft bodies need their world's own rayTest(). Any number of threads.
+    /// btCollisionObjects; soft bodies need their world's own rayTest(). Any number of threads. Cost:
+    /// at most that of rayTest(), and a cast at the shape of each proxy that it finds.
     QueryCost closestRay(const btVector3& from, const btVector3& to,
                          btCollisionWorld::RayResultCallback& callback) const;
 

@@ -54,7 +54,8 @@ public:
     /// since the last call; infinite when anything was added, or nobody knows. A Touch::byPlanes
     /// region takes less time than an exact one; of one for what lies inside no set is kept. Give
     /// infinity after a change of the grid object or the filter as well. Returns the query's cost, none
-    /// when the set was kept.
+    /// when the set was kept. Cost: the cells at the surface of the volume; at most one test for each
+    /// proxy (Grid::visit()).
     QueryCost look(const Grid<Scalar>& grid, const View& view,
                    Scalar moved = std::numeric_limits<Scalar>::infinity());
     QueryCost look(const Grid<Scalar>& grid, const View& view, ProxyFilter filter,

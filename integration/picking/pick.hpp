@@ -9,6 +9,8 @@
 // Threads  any number at the same time, like every query of a grid
 // Bad data An empty ray (RayRegion::isEmpty()) picks nothing. An exact test that answers NaN, a number
 //          below 0, or one above the limit has found nothing.
+// Cost     what lies near the ray, up to what is found; however long the ray, at most one test for each
+//          proxy (Grid::visit()), an exact one for each box that is met, and sorting these
 
 #include <broadphase/function_ref.hpp>
 #include <broadphase/grid.hpp>

@@ -96,7 +96,7 @@ public:
     /// The highest surface at or below the point, on the vertical line through it; of several the
     /// one with the smallest number. None outside of all triangles, and below them. Asked again at
     /// the height that it gave, it gives the same. Adds what it cost to `cost`. Cost: the triangles
-    /// whose boxes the line below the point meets.
+    /// whose boxes the line below the point meets; at most one test for each proxy of the grid.
     [[nodiscard]] Found surfaceBelow(const Point& point, QueryCost* cost = nullptr) const;
 
     /// How high the centre of a sphere is that rests on the ground, and on which triangle, when it
@@ -106,12 +106,12 @@ public:
     /// hill is lifted. On a slope with the unit normal n, that is the height of the ground + radius /
     /// n_up; with radius 0 the ground itself. None where nothing is below within the radius, and for
     /// a radius that is negative, NaN or above kFarthest. Cost: the triangles whose boxes overlap
-    /// the square column below the sphere.
+    /// the square column below the sphere; at most as above.
     [[nodiscard]] Found restingHeight(const Point& center, Scalar radius,
                                       QueryCost* cost = nullptr) const;
 
     /// surfaceBelow() for many: found[i] is that of points[i]. The result does not depend on
-    /// `parallelFor`. Fastest when near ones follow each other.
+    /// `parallelFor`. Fastest when near ones follow each other; each costs at most as above.
     QueryCost surfacesBelow(std::span<const Point> points, std::span<Found> found,
                             ParallelFor parallelFor = serialFor) const;
 
