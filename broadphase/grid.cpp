@@ -181,8 +181,7 @@ void Grid<Scalar>::stage(ParallelFor parallelFor) {
             const Record& record = records_[mobileSlots_[i]];
             staged_[i] = detail::padded(record.box);
             if (hasPairs_) {
-                stagedBefore_[i] =
-                    detail::padded(record.changedAt == updateNumber_ ? record.before : record.box);
+                stagedBefore_[i] = detail::padded(boxAtUpdate(mobileSlots_[i]));
             }
             quietCount += isQuiet(record) ? 1 : 0;
         }
@@ -198,15 +197,8 @@ bool Grid<Scalar>::putQuietToRest(ParallelFor parallelFor) {
     if (std::max<std::uint32_t>(quietCount_, restingErased_) < worthRefiling(filedCount)) {
         return false;
     }
-    // Those that stay at rest come first, in the order of the table, then those that join.
-    restSlots_.clear();
-    restBoxes_.clear();
-    for (const std::uint32_t slot : resting_.slots()) {
-        if (records_[slot].place == Place::resting) {
-            restSlots_.push_back(slot);
-            restBoxes_.push_back(detail::padded(records_[slot].box));
-        }
-    }
+    // Those that stay at rest come first, then those that join.
+    listResting();
     for (std::size_t i = 0; quietCount_ > 0 && i < mobileSlots_.size(); ++i) {
         Record& record = records_[mobileSlots_[i]];
         if (record.place == Place::mobile && isQuiet(record)) {
@@ -216,6 +208,25 @@ bool Grid<Scalar>::putQuietToRest(ParallelFor parallelFor) {
             staged_[i] = detail::padded(nanBox());
         }
     }
+    fileResting(parallelFor);
+    return quietCount_ > 0;
+}
+
+// Those that are at rest, in the order of their table.
+template <class Scalar>
+void Grid<Scalar>::listResting() {
+    restSlots_.clear();
+    restBoxes_.clear();
+    for (const std::uint32_t slot : resting_.slots()) {
+        if (records_[slot].place == Place::resting) {
+            restSlots_.push_back(slot);
+            restBoxes_.push_back(detail::padded(records_[slot].box));
+        }
+    }
+}
+
+template <class Scalar>
+void Grid<Scalar>::fileResting(ParallelFor parallelFor) {
     resting_.build(restSlots_, restBoxes_, fixedSizes_, parallelFor);
     for (std::uint32_t entry = 0; entry < resting_.size(); ++entry) {
         records_[resting_.slot(entry)].restingEntry = entry;
@@ -223,7 +234,6 @@ bool Grid<Scalar>::putQuietToRest(ParallelFor parallelFor) {
     restingErased_ = 0;
     restingTree_.isStale.store(true, std::memory_order_relaxed);
     cost_.filed += resting_.size();
-    return quietCount_ > 0;
 }
 
 template <class Scalar>
@@ -258,6 +268,7 @@ void Grid<Scalar>::settle() {
 template <class Scalar>
 void Grid<Scalar>::endUpdate() {
     woken_.clear();
+    boxesAtUpdate_.clear();
     cost_ = {};
     ++updateNumber_;
     if (config_.cellSize == 0) {
@@ -343,6 +354,7 @@ std::size_t Grid<Scalar>::memoryBytes() const noexcept {
             mobileSlots_.capacity() + woken_.capacity() + restSlots_.capacity() +
             nanSlots_.capacity()) *
                sizeof(std::uint32_t) +
+           boxesAtUpdate_.capacity() * sizeof(Box) + roundedBefore_.capacity() * sizeof(SlotBox) +
            (staged_.capacity() + stagedBefore_.capacity() + restBoxes_.capacity()) *
                sizeof(detail::PaddedBox<Scalar>) +
            mobile_.memoryBytes() + resting_.memoryBytes() + mobileTree_.tree.memoryBytes() +

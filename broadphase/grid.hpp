@@ -94,6 +94,17 @@ public:
     /// Removes the proxy; its id is never valid again. Cost: O(1).
     void remove(ProxyId id);
 
+    /// Moves the origin of all coordinates to `shift` [m]: subtracts it from every box. What could be
+    /// subtracted without rounding, or is so large that the shift is lost in it, stays as it was: at
+    /// rest, or not, and in its pairs. The others count as moved, by what they were rounded; such
+    /// boxes may come to touch, but none that overlap can part. (A shift by multiples of a power of two
+    /// rounds least: a kilometre, say, or 1024 m, towards where things are.) Queries see it at once.
+    /// Returns how many boxes were rounded. A shift that is not finite is asserted, and does nothing.
+    /// Everything else that has coordinates of its own is for the caller to shift: regions, zones,
+    /// terrains. Cost: a pass or two over all boxes; when cells had to change, an update(), or the
+    /// next one's.
+    std::size_t shiftOrigin(const Point& shift);
+
     [[nodiscard]] bool contains(ProxyId id) const noexcept;
 
     /// The box last set, exactly.
@@ -185,7 +196,8 @@ private:
         std::uint32_t restingEntry = 0;
         Place place = Place::nowhere;
         bool isWaiting = false;    // changed since filed: listed in waiting_
-        bool restsAtOnce = false;  // Mobility::resting, and has not moved since it was added
+        bool restsAtOnce = false;  // Mobility::resting, or rested, and has not moved since but by a
+                                   // shift of the origin
         bool isNan = false;        // has a NaN; of a proxy alive
     };
 
@@ -220,9 +232,16 @@ private:
         return records_[slot].changedAt == updateNumber_;
     }
 
-    /// The slot's box at the last update; NaN when it had no proxy.
+    /// The slot's box at the last update, in present coordinates; NaN when it had no proxy.
     [[nodiscard]] const Box& before(std::uint32_t slot) const noexcept {
         return changedNow(slot) ? records_[slot].before : records_[slot].box;
+    }
+    /// The same in coordinates in which such boxes may be compared with each other.
+    [[nodiscard]] const Box& boxAtUpdate(std::uint32_t slot) const noexcept {
+        return slot < boxesAtUpdate_.size() ? boxesAtUpdate_[slot] : before(slot);
+    }
+    [[nodiscard]] bool overlappedAtUpdate(std::uint32_t a, std::uint32_t b) const noexcept {
+        return overlaps(boxAtUpdate(a), boxAtUpdate(b));
     }
     [[nodiscard]] bool isQuiet(const Record& record) const noexcept {
         return record.changedAt != updateNumber_ && !record.isNan &&
@@ -233,9 +252,15 @@ private:
     void leaveRest(std::uint32_t slot);
     void setBox(Record& record, const Box& box);
 
+    bool shiftRecord(std::uint32_t slot, const Point& shift);
+    void keepBoxesAtUpdate(const Point& shift);
+    void shiftTables(const Point& shift);
+
     // The passes of an update. Between them, Pairs finds what was born and what died.
     void stage(ParallelFor parallelFor);
     [[nodiscard]] bool putQuietToRest(ParallelFor parallelFor);
+    void listResting();
+    void fileResting(ParallelFor parallelFor);
     void fileMobile(ParallelFor parallelFor);
     void settle();
     void endUpdate();
@@ -267,8 +292,8 @@ private:
     bool nanReported_ = false;
     bool hasPairs_ = false;
 
-    std::uint32_t updateNumber_ = 1;  // of the update that ends the present frame
-    UpdateCost cost_;                 // of the present frame
+    std::uint32_t updateNumber_ = 1;             // of the update that ends the present frame
+    UpdateCost cost_;                            // of the present frame
     std::atomic<std::uint64_t> filingCount_{0};  // a query may file while others ask
 
     // What changed since it was filed, until there are too many to list.
@@ -297,6 +322,15 @@ private:
     std::vector<detail::PaddedBox<Scalar>> staged_;
     std::vector<detail::PaddedBox<Scalar>> stagedBefore_;
     std::atomic<std::uint32_t> quietCount_{0};
+
+    // By slot, when a shift of the origin has rounded boxes since the last update: the boxes of that
+    // update in the coordinates of then. Those at the end that are missing had no proxy.
+    std::vector<Box> boxesAtUpdate_;
+    struct SlotBox {
+        std::uint32_t slot;
+        Box box;
+    };
+    std::vector<SlotBox> roundedBefore_;  // scratch of shiftOrigin()
 
     std::vector<std::uint32_t> restSlots_;  // scratch of putQuietToRest()
     std::vector<detail::PaddedBox<Scalar>> restBoxes_;

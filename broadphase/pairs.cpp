@@ -117,8 +117,12 @@ void Pairs<Scalar>::findDeaths(ParallelFor parallelFor) {
 // found in the resting table where the other one has not changed, and among the woken otherwise.
 template <class Scalar>
 void Pairs<Scalar>::findDeathsOfWoken(ParallelFor parallelFor) {
-    const auto wake = [this](std::uint32_t a, std::uint32_t b) {
+    const bool isShifted = !grid_.boxesAtUpdate_.empty();
+    const auto wake = [this, isShifted](std::uint32_t a, std::uint32_t b) {
         const Couple c = couple(a, b);
+        if (isShifted && !grid_.overlappedAtUpdate(a, b)) {
+            return;  // a shift of the origin has rounded them together
+        }
         if (refusedAtRest_.erase(c) != detail::FlatSet::kNone) {
             refused_.findOrInsert(c);
         }
@@ -127,7 +131,7 @@ void Pairs<Scalar>::findDeathsOfWoken(ParallelFor parallelFor) {
     wokenBoxes_.clear();
     wokenBounds_.clear();
     for (const std::uint32_t slot : grid_.woken_) {
-        wokenBoxes_.push_back(detail::padded(grid_.before(slot)));
+        wokenBoxes_.push_back(detail::padded(grid_.boxAtUpdate(slot)));
         wokenBounds_.push(grid_.before(slot));
     }
     detail::KernelCost cost;
@@ -264,13 +268,15 @@ void Pairs<Scalar>::walkResting(ParallelFor parallelFor) {
     detail::walkTable(grid_.resting_, walkerBounds_.columns(), walkerBounds_.size(), parallelFor,
                       parts_, selected_, cost);
     cost_.boxesTested += cost.boxesTested;
+    const bool isShifted = !grid_.boxesAtUpdate_.empty();
     for (const auto [walker, restingEntry] : selected_.pairs()) {
         const std::uint32_t entry = walkers_[walker];
         const std::uint32_t slot = grid_.resting_.slot(restingEntry);
         toResting_.push({entry, slot});
         // Not by their slots: these boxes are at hand.
         const detail::PaddedBox<Scalar>& before = grid_.stagedBefore_[table.order()[entry]];
-        if (!overlaps(detail::unpadded(before), grid_.resting_.box(restingEntry))) {
+        const Box resting = isShifted ? grid_.boxAtUpdate(slot) : grid_.resting_.box(restingEntry);
+        if (!overlaps(detail::unpadded(before), resting)) {
             asked_.push_back(couple(table.slot(entry), slot));
         }
     }

@@ -96,12 +96,13 @@ void Pairs<Scalar>::forKnownCouples(std::uint32_t slot, const Visit& visit) cons
     detail::KernelCost cost;
     detail::walkTable(grid_.resting_, bounds.columns(), 1, serialFor, parts, found, cost);
     for (const auto [query, entry] : found.pairs()) {
-        if (grid_.resting_.slot(entry) != slot) {
-            visit(couple(slot, grid_.resting_.slot(entry)));
+        const std::uint32_t other = grid_.resting_.slot(entry);
+        if (other != slot && grid_.overlappedAtUpdate(slot, other)) {
+            visit(couple(slot, other));
         }
     }
     for (const std::uint32_t other : grid_.woken_) {
-        if (other != slot && overlaps(before, grid_.before(other))) {
+        if (other != slot && grid_.overlappedAtUpdate(slot, other)) {
             visit(couple(slot, other));
         }
     }
@@ -111,7 +112,7 @@ void Pairs<Scalar>::forKnownCouples(std::uint32_t slot, const Visit& visit) cons
 template <class Scalar>
 void Pairs<Scalar>::findUnknown(std::uint32_t slot) {
     const auto add = [&](ProxyId other) {
-        if (other.index != slot && !overlaps(grid_.before(slot), grid_.before(other.index))) {
+        if (other.index != slot && !grid_.overlappedAtUpdate(slot, other.index)) {
             const Couple c = couple(slot, other.index);
             if (!announced_.contains(c) && !isSwept(c)) {
                 asked_.push_back(c);

@@ -198,6 +198,15 @@ void LevelLayout<Scalar>::layOut(std::span<const PaddedBox<Scalar>> boxes,
     }
 }
 
+template <class Scalar>
+void LevelLayout<Scalar>::shiftOrigin(const Vector3<Scalar>& shift) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        origin_[axis] -= shift[static_cast<Eigen::Index>(axis)];
+    }
+    const Vector3<double> exact = shift.template cast<double>();
+    census_.shiftOrigin({exact[0], exact[1], exact[2]});
+}
+
 template class LevelLayout<float>;
 template class LevelLayout<double>;
 

@@ -54,6 +54,9 @@ public:
     /// The last one is the list without cells. Cost: a pass or two over the boxes.
     void layOut(std::span<const PaddedBox<Scalar>> boxes, std::vector<Level<Scalar>>& levels);
 
+    /// To be told when `shift` is subtracted from all coordinates.
+    void shiftOrigin(const Vector3<Scalar>& shift);
+
     [[nodiscard]] const LevelSizes& sizes() const noexcept { return sizes_; }
     [[nodiscard]] std::size_t memoryBytes() const noexcept { return census_.memoryBytes(); }
 

@@ -281,6 +281,15 @@ std::array<double, 3> SizeCensus::middle() {
     return middle_;
 }
 
+void SizeCensus::shiftOrigin(const std::array<double, 3>& shift) noexcept {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        middle_[axis] -= shift[axis];
+        for (auto& sample : samples_) {
+            sample[axis] -= shift[axis];
+        }
+    }
+}
+
 std::size_t SizeCensus::memoryBytes() const noexcept {
     return samples_.capacity() * sizeof(samples_[0]) + classes_.capacity() * sizeof(SizeClass) +
            column_.capacity() * sizeof(double) + crowding_.memoryBytes();

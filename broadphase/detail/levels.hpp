@@ -55,6 +55,9 @@ public:
     /// The middle of the population: the median min corner on each axis; finite.
     [[nodiscard]] std::array<double, 3> middle();
 
+    /// Subtracts `shift` from what is known of where the population is.
+    void shiftOrigin(const std::array<double, 3>& shift) noexcept;
+
     /// Between which coordinates [m] the min corners lie, but for `share` of them at either end of
     /// each axis; finite.
     struct Range {

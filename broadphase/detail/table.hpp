@@ -60,6 +60,10 @@ public:
     /// Takes the entry out of every later answer. Cost: O(1); its place is reclaimed by build().
     void erase(std::uint32_t entry) noexcept;
 
+    /// Subtracts `shift` from every coordinate. Returns false when something was rounded, so that the
+    /// table has to be built again before it is read. Cost: a pass over the boxes.
+    [[nodiscard]] bool shiftOrigin(const Vector3<Scalar>& shift);
+
     [[nodiscard]] std::uint32_t size() const noexcept {
         return static_cast<std::uint32_t>(slots_.size());
     }

@@ -36,7 +36,8 @@ struct RadarWindow {
     UpAxis up = UpAxis::y;
 
     /// Without a heading, cells begin at multiples of their size: the counts of what rests do not
-    /// flicker while the agent moves within its cell. The window begins columns / 2 cells (integer
+    /// flicker while the agent moves within its cell, nor when the origin is shifted by a multiple
+    /// of their size. The window begins columns / 2 cells (integer
     /// division) before the cell of the centre; likewise rows and layers.
     ///
     /// With one, the window is turned about the up axis and its middle is the centre, which lies

@@ -6,7 +6,9 @@
 //
 // A frame   move bodies and zones, then update() once: every proxy and zone that have to do with
 //           each other are in one event.
-// Grid      holds the bodies; zones are not filed in it. update() is always given the same one.
+// Grid      holds the bodies; zones are not filed in it. update() is always given the same one. After a
+//           Grid::shiftOrigin() every zone has to be set() where it is now, before the next update():
+//           who was in it then stays.
 // Threads   update() reads the grid, as queries do, and needs this object for itself, as add(), set()
 //           and remove() do. All else is const and may be called from any number of threads.
 // Bad data  Nobody is in a zone whose shape has a NaN or a negative radius. An inverted box means

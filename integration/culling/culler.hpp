@@ -53,9 +53,9 @@ public:
     /// can have come in since. `moved` [m] says how far any corner of a box of the grid may have moved
     /// since the last call; infinite when anything was added, or nobody knows. A Touch::byPlanes
     /// region takes less time than an exact one; of one for what lies inside no set is kept. Give
-    /// infinity after a change of the grid object or the filter as well. Returns the query's cost, none
-    /// when the set was kept. Cost: the cells at the surface of the volume; at most one test for each
-    /// proxy (Grid::visit()).
+    /// infinity after a change of the grid object or the filter, or a shift of the origin, as well.
+    /// Returns the query's cost, none when the set was kept. Cost: the cells at the surface of the
+    /// volume; at most one test for each proxy (Grid::visit()).
     QueryCost look(const Grid<Scalar>& grid, const View& view,
                    Scalar moved = std::numeric_limits<Scalar>::infinity());
     QueryCost look(const Grid<Scalar>& grid, const View& view, ProxyFilter filter,

@@ -109,6 +109,17 @@ void Terrain<Scalar>::clear() {
 }
 
 template <class Scalar>
+void Terrain<Scalar>::shiftOrigin(const Point& shift) {
+    for (std::uint32_t number = 0; number < size(); ++number) {
+        Corners shifted = corners(number);
+        for (Point& corner : shifted) {
+            corner -= shift;
+        }
+        triangles_[number] = groundTriangle(shifted);
+    }
+}
+
+template <class Scalar>
 typename Terrain<Scalar>::Corners Terrain<Scalar>::corners(std::uint32_t triangle) const {
     HASHPHASE_ASSERT(triangle < size(), "Triangles have numbers below size().");
     const detail::GroundTriangle<Scalar>& stored = triangles_[triangle];

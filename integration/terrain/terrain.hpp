@@ -77,6 +77,10 @@ public:
     /// Removes all triangles; numbers begin at 0 again.
     void clear();
 
+    /// To be called with each Grid::shiftOrigin() of the grid: subtracts `shift` [m] from the corners,
+    /// as the grid does from their boxes. Cost: O(triangles).
+    void shiftOrigin(const Point& shift);
+
     /// How many triangles were handed in: all numbers are below. Refused ones included.
     [[nodiscard]] std::uint32_t size() const noexcept {
         return static_cast<std::uint32_t>(triangles_.size());

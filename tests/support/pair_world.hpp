@@ -59,6 +59,18 @@ public:
         }
     }
 
+    /// Shifts the origin, and notes whose boxes that changes, as Grid::shiftOrigin() says.
+    void shiftOrigin(const Vector3<Scalar>& shift) {
+        std::size_t count = 0;
+        grid.forEach([&](ProxyId id, const Aabb<Scalar>& box) {
+            if (isRoundedBy(shift, box)) {
+                ++count;
+                changed_.insert(id);
+            }
+        });
+        ASSERT_EQ(grid.shiftOrigin(shift), count);
+    }
+
     void refilter(ProxyId id) {
         asked_.clear();
         apply(pairs.refilter(id, recordingFilter()));
@@ -121,6 +133,20 @@ private:
             asked_.push_back({a, b});
             return filter_(a, b);
         };
+    }
+
+    static bool isRoundedBy(const Vector3<Scalar>& shift, const Aabb<Scalar>& box) {
+        bool isRounded = false;
+        for (const auto* corner : {&box.min(), &box.max()}) {
+            for (int axis = 0; axis < 3; ++axis) {
+                const Scalar x = (*corner)[axis];
+                const Scalar difference = x - shift[axis];
+                const bool isExact = std::isfinite(difference) &&
+                                     mpq_class(x) - mpq_class(shift[axis]) == mpq_class(difference);
+                isRounded = isRounded || (!isExact && x - 2 * shift[axis] != x);
+            }
+        }
+        return isRounded && !hasNan(box);
     }
 
     static bool isAscending(std::span<const ProxyPair> list) {

@@ -65,6 +65,18 @@ public:
         recolourSome(world, share);
     }
 
+    /// To be called before the shift of a world's origin. What is created later, or jumps, is drawn
+    /// where the scene has always been.
+    void shiftOrigin(const Vector3<Scalar>& shift) {
+        const auto by = [&shift](Aabb<Scalar>& box) {
+            box = {box.min() - shift, box.max() - shift};
+        };
+        for (std::size_t i = 0; i < proxies_.size(); ++i) {
+            by(proxies_[i].box);
+            by(plans_[i].healthy);
+        }
+    }
+
     [[nodiscard]] std::span<const Placed<Scalar>> proxies() const noexcept { return proxies_; }
 
     /// The filter that the colours make.

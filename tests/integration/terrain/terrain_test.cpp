@@ -40,6 +40,32 @@ TYPED_TEST(TerrainTriangles, AreNumberedAsTheyAreHandedIn) {
     EXPECT_GT(terrain.memoryBytes(), 2 * 9 * sizeof(TypeParam));
 }
 
+TYPED_TEST(TerrainTriangles, GoAlongWhenTheOriginIsShifted) {
+    Grid<TypeParam> grid;
+    Terrain<TypeParam> terrain(grid);
+    terrain.add(std::vector<Vector3<TypeParam>>{at<TypeParam>(0, 1, 0), at<TypeParam>(8, 3, 0),
+                                                at<TypeParam>(0, 2, 8)});
+    terrain.add(this->flatTriangle(std::numeric_limits<double>::quiet_NaN()));  // refused
+    terrain.add(this->flatTriangle(0.5));
+    const auto shift = at<TypeParam>(1024, -512, 64);
+    for (const TypeParam height : {TypeParam(9), TypeParam(0.75)}) {
+        const auto point = at<TypeParam>(1, static_cast<double>(height), 2);
+        const auto before = terrain.surfaceBelow(point);
+        ASSERT_TRUE(before);
+        grid.shiftOrigin(shift);
+        terrain.shiftOrigin(shift);
+        const auto after = terrain.surfaceBelow(point - shift);
+        ASSERT_TRUE(after);
+        EXPECT_EQ(after->triangle, before->triangle);
+        EXPECT_EQ(after->height, before->height + 512);
+        grid.shiftOrigin(-shift);
+        terrain.shiftOrigin(-shift);
+        EXPECT_EQ(terrain.surfaceBelow(point), before);
+    }
+    EXPECT_TRUE(hasNan(Aabb<TypeParam>(terrain.corners(1)[0], terrain.corners(1)[1])));
+    EXPECT_EQ(terrain.corners(2)[1], at<TypeParam>(4, 0.5, 0));
+}
+
 TYPED_TEST(TerrainTriangles, KeepTheirCornersInOrderAndTheirNormalsUpward) {
     Grid<TypeParam> grid;
     for (const UpAxis up : {UpAxis::x, UpAxis::y, UpAxis::z}) {
