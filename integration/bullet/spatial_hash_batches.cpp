@@ -3,6 +3,7 @@
 // Many proxies at once, with the result of as many single calls.
 
 #include <broadphase/detail/prefetch.hpp>
+#include <integration/bullet/conversions.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
@@ -60,6 +61,21 @@ void SpatialHashBroadphase::destroyProxies(std::span<btBroadphaseProxy* const> p
         prefetchAhead(proxies, i);
         removeFromGrid(checkedProxy(proxies[i]));
     }
+}
+
+std::size_t SpatialHashBroadphase::shiftOrigin(const btVector3& shift) {
+    const Vector3<btScalar> by = toEigen(shift);
+    const std::size_t roundedCount = grid_.shiftOrigin(by);
+    if (by.allFinite()) {
+        for (std::uint32_t slot = 0; slot < uniqueIds_.size(); ++slot) {
+            if (uniqueIds_[slot] != 0) {
+                Proxy& proxy = *proxyAt(slot);
+                proxy.m_aabbMin -= shift;
+                proxy.m_aabbMax -= shift;
+            }
+        }
+    }
+    return roundedCount;
 }
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

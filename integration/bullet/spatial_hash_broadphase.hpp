@@ -210,6 +210,13 @@ public:
     /// filter.
     void refilter(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
+    /// Moves the origin of all coordinates to `shift`: subtracts it from the box of every proxy, in one
+    /// call, with what Grid::shiftOrigin() says. Pairs stay as they are; should rounding have brought
+    /// boxes together, the next calculateOverlappingPairs() makes them pairs. The objects are not
+    /// moved: shiftWorldOrigin() (origin_shift.hpp) does all of a world. Returns how many boxes
+    /// were rounded. Cost: a pass over the proxies, and that of Grid::shiftOrigin().
+    std::size_t shiftOrigin(const btVector3& shift);
+
     /// The grid, for queries that Bullet has none for. proxyOf() leads back to Bullet.
     [[nodiscard]] const Grid<btScalar>& grid() const noexcept { return grid_; }
     [[nodiscard]] btBroadphaseProxy* proxyOf(ProxyId id) const;

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Zlib
+#include <integration/bullet/origin_shift.hpp>
+
+#include <broadphase/diagnostics.hpp>
+#include <integration/bullet/conversions.hpp>
+
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+#include <BulletDynamics/ConstraintSolver/btConeTwistConstraint.h>
+#include <BulletDynamics/ConstraintSolver/btGeneric6DofConstraint.h>
+#include <BulletDynamics/ConstraintSolver/btGeneric6DofSpring2Constraint.h>
+#include <BulletDynamics/ConstraintSolver/btHingeConstraint.h>
+#include <BulletDynamics/ConstraintSolver/btPoint2PointConstraint.h>
+#include <BulletDynamics/ConstraintSolver/btSliderConstraint.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <LinearMath/btMotionState.h>
+
+namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+namespace {
+
+btTransform shifted(const btTransform& place, const btVector3& shift) {
+    return btTransform(place.getBasis(), place.getOrigin() - shift);
+}
+
+bool hasOnlyKnownCoordinates(btCollisionWorld& world) {
+    constexpr int unknown =
+        btCollisionObject::CO_SOFT_BODY | btCollisionObject::CO_FEATHERSTONE_LINK;
+    const btCollisionObjectArray& objects = world.getCollisionObjectArray();
+    for (int i = 0; i < objects.size(); ++i) {
+        if ((objects[i]->getInternalType() & unknown) != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool canShift(btCollisionWorld& world, const SpatialHashBroadphase& broadphase,
+              const btVector3& shift) {
+    const bool isItsOwn = world.getBroadphase() == &broadphase;
+    const bool isKnown = hasOnlyKnownCoordinates(world);
+    const bool isFinite = toEigen(shift).allFinite();
+    HASHPHASE_ASSERT(isItsOwn, "A world is shifted together with its own broadphase.");
+    HASHPHASE_ASSERT(isKnown, "Worlds with soft bodies or multibodies cannot be shifted.");
+    HASHPHASE_ASSERT(isFinite, "The origin is shifted by what is finite.");
+    return isItsOwn && isKnown && isFinite;
+}
+
+// Kinematic bodies are placed by their motion states in the next step; those of bodies asleep are told
+// by nobody else.
+void shiftMotionState(btRigidBody* body, const btVector3& shift) {
+    btMotionState* const state = body != nullptr ? body->getMotionState() : nullptr;
+    if (state != nullptr) {
+        btTransform place;
+        state->getWorldTransform(place);
+        state->setWorldTransform(shifted(place, shift));
+    }
+}
+
+void shiftObjects(btCollisionWorld& world, const btVector3& shift) {
+    btCollisionObjectArray& objects = world.getCollisionObjectArray();
+    for (int i = 0; i < objects.size(); ++i) {
+        btCollisionObject& object = *objects[i];
+        object.setWorldTransform(shifted(object.getWorldTransform(), shift));
+        object.setInterpolationWorldTransform(
+            shifted(object.getInterpolationWorldTransform(), shift));
+        shiftMotionState(btRigidBody::upcast(&object), shift);
+    }
+}
+
+void shiftContacts(btDispatcher* dispatcher, const btVector3& shift) {
+    for (int i = 0; dispatcher != nullptr && i < dispatcher->getNumManifolds(); ++i) {
+        btPersistentManifold& manifold = *dispatcher->getManifoldByIndexInternal(i);
+        for (int k = 0; k < manifold.getNumContacts(); ++k) {
+            btManifoldPoint& point = manifold.getContactPoint(k);
+            point.m_positionWorldOnA -= shift;
+            point.m_positionWorldOnB -= shift;
+        }
+    }
+}
+
+template <class Joint>
+void shiftFrames(btTypedConstraint& constraint, bool ofA, const btVector3& shift) {
+    auto& joint = static_cast<Joint&>(constraint);
+    (ofA ? joint.getFrameOffsetA() : joint.getFrameOffsetB()).getOrigin() -= shift;
+}
+
+// A joint of one body has the world as its other one, a body that stays at the origin: its frame
+// there has the coordinates of the world.
+void shiftJoint(btTypedConstraint& joint, const btVector3& shift) {
+    const btRigidBody* const theWorld = &btTypedConstraint::getFixedBody();
+    const bool ofA = &joint.getRigidBodyA() == theWorld;
+    if (!ofA && &joint.getRigidBodyB() != theWorld) {
+        return;
+    }
+    switch (joint.getConstraintType()) {
+        case POINT2POINT_CONSTRAINT_TYPE: {
+            auto& point = static_cast<btPoint2PointConstraint&>(joint);
+            ofA ? point.setPivotA(point.getPivotInA() - shift)
+                : point.setPivotB(point.getPivotInB() - shift);
+            break;
+        }
+        case CONETWIST_CONSTRAINT_TYPE: {
+            auto& cone = static_cast<btConeTwistConstraint&>(joint);
+            cone.setFrames(ofA ? shifted(cone.getAFrame(), shift) : cone.getAFrame(),
+                           ofA ? cone.getBFrame() : shifted(cone.getBFrame(), shift));
+            break;
+        }
+        case HINGE_CONSTRAINT_TYPE:
+            shiftFrames<btHingeConstraint>(joint, ofA, shift);
+            break;
+        case SLIDER_CONSTRAINT_TYPE:
+            shiftFrames<btSliderConstraint>(joint, ofA, shift);
+            break;
+        case D6_CONSTRAINT_TYPE:
+        case D6_SPRING_CONSTRAINT_TYPE:
+            shiftFrames<btGeneric6DofConstraint>(joint, ofA, shift);
+            break;
+        case D6_SPRING_2_CONSTRAINT_TYPE:
+            shiftFrames<btGeneric6DofSpring2Constraint>(joint, ofA, shift);
+            break;
+        default:  // axes only
+            break;
+    }
+}
+
+}  // namespace
+
+void shiftWorldOrigin(btCollisionWorld& world, SpatialHashBroadphase& broadphase,
+                      const btVector3& shift) {
+    if (!canShift(world, broadphase, shift)) {
+        return;
+    }
+    shiftObjects(world, shift);
+    shiftContacts(world.getDispatcher(), shift);
+    broadphase.shiftOrigin(shift);
+}
+
+void shiftWorldOrigin(btDynamicsWorld& world, SpatialHashBroadphase& broadphase,
+                      const btVector3& shift) {
+    if (!canShift(world, broadphase, shift)) {
+        return;
+    }
+    for (int i = 0; i < world.getNumConstraints(); ++i) {
+        shiftJoint(*world.getConstraint(i), shift);
+    }
+    shiftWorldOrigin(static_cast<btCollisionWorld&>(world), broadphase, shift);
+}
+
+}  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE
