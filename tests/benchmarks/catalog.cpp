@@ -166,7 +166,7 @@ std::vector<Benchmark> catalog(std::uint64_t seed) {
     for (std::vector<Benchmark>& part :
          std::array{pairBenchmarks(), randomBenchmarks(seed), populationBenchmarks(),
                     queryBenchmarks(), crowdBenchmarks(), cullingBenchmarks(), sweepBenchmarks(),
-                    terrainBenchmarks(), cellSizeBenchmarks()}) {
+                    terrainBenchmarks(), cellSizeBenchmarks(), farBenchmarks()}) {
         std::move(part.begin(), part.end(), std::back_inserter(all));
     }
     return all;

@@ -13,11 +13,38 @@ namespace {
 
 using demos::PairKey;
 
+// Where the boxes of the scene are in the grid.
+struct AsGiven {
+    static const Aabb<float>& place(const Aabb<float>& box) noexcept { return box; }
+    static void beginFrame(Grid<float>& /*grid*/) noexcept {}
+};
+
+template <class Scalar>
+struct FarAway {
+    FarGrid far;
+    double origin = 0;
+
+    [[nodiscard]] Aabb<Scalar> place(const Aabb<float>& box) const noexcept {
+        const Vector3<Scalar> by =
+            Vector3<Scalar>::Constant(static_cast<Scalar>(far.distance - origin));
+        return {box.min().cast<Scalar>() + by, box.max().cast<Scalar>() + by};
+    }
+    void beginFrame(Grid<Scalar>& grid) {
+        if (far.shift != 0) {
+            const double shift = origin == 0 ? far.shift : -far.shift;
+            grid.shiftOrigin(Vector3<Scalar>::Constant(static_cast<Scalar>(shift)));
+            origin += shift;
+        }
+    }
+};
+
+template <class Scalar, class Places>
 class GridContestant : public Contestant, private Population {
 public:
-    GridContestant(const GridConfig& config, std::size_t objects) : grid_(config), ids_(objects) {}
+    GridContestant(const GridConfig& config, std::size_t objects, const Places& places = {})
+        : places_(places), grid_(config), ids_(objects) {}
     GridContestant(Sweep sweep, ParallelFor parallelFor, std::size_t objects)
-        : sweeps_(std::make_unique<Sweeps<float>>(grid_)),
+        : sweeps_(std::make_unique<Sweeps<Scalar>>(grid_)),
           sweep_(sweep),
           parallelFor_(parallelFor),
           ids_(objects) {}
@@ -29,14 +56,15 @@ public:
     }
 
     void setAll(const FrameBoxes& frame) override {
+        places_.beginFrame(grid_);
         for (std::size_t i = 0; i < frame.boxes.size(); ++i) {
-            grid_.move(ids_[i], frame.boxes[i]);
+            grid_.move(ids_[i], places_.place(frame.boxes[i]));
         }
         if (sweep_ == Sweep::none) {
             return;
         }
         for (const ObjectMotion& motion : frame.motions) {
-            sweeps_->set(ids_[motion.object], motion.displacement, sweep_);
+            sweeps_->set(ids_[motion.object], motion.displacement.template cast<Scalar>(), sweep_);
         }
     }
 
@@ -76,7 +104,7 @@ private:
 
     void addOne(std::uint32_t object, const FrameBoxes& frame) {
         filters_ = frame.filters;
-        ids_[object] = grid_.add(frame.boxes[object]);
+        ids_[object] = grid_.add(places_.place(frame.boxes[object]));
         const std::uint32_t slot = ids_[object].index;
         objects_.resize(std::max<std::size_t>(objects_.size(), slot + std::size_t{1}));
         objects_[slot] = object;
@@ -105,11 +133,12 @@ private:
         return keys;
     }
 
-    Grid<float> grid_;
-    std::unique_ptr<Sweeps<float>> sweeps_;
+    Places places_;
+    Grid<Scalar> grid_;
+    std::unique_ptr<Sweeps<Scalar>> sweeps_;
     Sweep sweep_ = Sweep::none;
     ParallelFor parallelFor_ = serialFor;
-    Pairs<float> pairs_{grid_, sweeps_.get()};
+    Pairs<Scalar> pairs_{grid_, sweeps_.get()};
     std::vector<ProxyId> ids_;            // by object
     std::vector<std::uint32_t> objects_;  // by slot
     std::span<const demos::CollisionFilter> filters_;
@@ -135,7 +164,7 @@ ContestantKind gridKind(std::string name, const GridConfig& config) {
         std::move(name), "the grid without Bullet: births and deaths of pairs, no pair cache");
     kind.changes = true;
     kind.make = [config](const demos::BroadphaseNeeds& needs) {
-        return std::make_unique<GridContestant>(config, needs.objects);
+        return std::make_unique<GridContestant<float, AsGiven>>(config, needs.objects);
     };
     return kind;
 }
@@ -143,7 +172,21 @@ ContestantKind gridKind(std::string name, const GridConfig& config) {
 ContestantKind sweepingGridKind(std::string name, Sweep sweep, ParallelFor parallelFor) {
     ContestantKind kind = kindOf(std::move(name), "the grid without Bullet, and its Sweeps");
     kind.make = [sweep, parallelFor](const demos::BroadphaseNeeds& needs) {
-        return std::make_unique<GridContestant>(sweep, parallelFor, needs.objects);
+        return std::make_unique<GridContestant<float, AsGiven>>(sweep, parallelFor, needs.objects);
+    };
+    return kind;
+}
+
+ContestantKind farGridKind(std::string name, const FarGrid& far) {
+    ContestantKind kind =
+        kindOf(std::move(name), far.isDouble ? "the grid in double precision" : "in single");
+    kind.make = [far](const demos::BroadphaseNeeds& needs) -> std::unique_ptr<Contestant> {
+        if (far.isDouble) {
+            return std::make_unique<GridContestant<double, FarAway<double>>>(
+                GridConfig{}, needs.objects, FarAway<double>{far});
+        }
+        return std::make_unique<GridContestant<float, FarAway<float>>>(GridConfig{}, needs.objects,
+                                                                       FarAway<float>{far});
     };
     return kind;
 }

@@ -21,4 +21,14 @@ namespace hashphase::benchmarks {
 [[nodiscard]] ContestantKind sweepingGridKind(std::string name, Sweep sweep,
                                               ParallelFor parallelFor);
 
+/// A grid that has the scene far away.
+struct FarGrid {
+    double distance = 0;   ///< of the scene's origin on each axis [m]
+    double shift = 0;      ///< by which the origin is shifted in every frame, there and back [m]
+    bool isDouble = true;  ///< else in single precision
+};
+
+/// gridKind() of a scene of which the boxes are exact there, see farBenchmarks().
+[[nodiscard]] ContestantKind farGridKind(std::string name, const FarGrid& far);
+
 }  // namespace hashphase::benchmarks

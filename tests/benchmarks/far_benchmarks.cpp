@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Zlib
+
+// What it costs to be far from the origin, and to shift the origin: the same frames for grids that
+// have them at home and far away.
+
+#include <demos/scenes/brownian_scene.hpp>
+#include <tests/benchmarks/catalog.hpp>
+#include <tests/benchmarks/grid_contestant.hpp>
+#include <tests/benchmarks/pair_workload.hpp>
+
+#include <utility>
+
+namespace hashphase::benchmarks {
+namespace {
+
+// A scene whose coordinates are multiples of a millimetre, about, so that they are exact far away.
+class LatticeScene : public demos::BoxScene {
+public:
+    explicit LatticeScene(std::unique_ptr<demos::BoxScene> scene) : scene_(std::move(scene)) {
+        filters_ = scene_->filters();
+        round();
+    }
+    void advance() override {
+        scene_->advance();
+        round();
+    }
+    [[nodiscard]] Aabb<float> bounds() const override {
+        const Vector3<float> step = Vector3<float>::Constant(kStep);
+        return {scene_->bounds().min() - step, scene_->bounds().max() + step};
+    }
+
+private:
+    static constexpr float kStep = 0x1p-10F;
+
+    void round() {
+        const auto rounded = [](const Vector3<float>& x) -> Vector3<float> {
+            return (x / kStep).array().round() * kStep;
+        };
+        boxes_.clear();
+        for (const Aabb<float>& box : scene_->boxes()) {
+            boxes_.emplace_back(rounded(box.min()), rounded(box.max()));
+        }
+    }
+
+    std::unique_ptr<demos::BoxScene> scene_;
+};
+
+std::vector<ContestantKind> farKinds() {
+    std::vector<ContestantKind> kinds{
+        farGridKind("home", {}),
+        farGridKind("at-2^20", {.distance = 0x1p20}),
+        farGridKind("at-2^30", {.distance = 0x1p30}),
+        farGridKind("shifting", {.distance = 0x1p30, .shift = 0x1p20}),
+        farGridKind("home-single", {.isDouble = false}),
+        farGridKind("at-2^12-single", {.distance = 0x1p12, .isDouble = false}),
+        farGridKind("shifting-single", {.distance = 0x1p12, .shift = 0x1p11, .isDouble = false})};
+    return kinds;
+}
+
+using MakeBoxes = demos::BrownianBoxes (*)(std::size_t objects, std::uint64_t seed);
+
+Benchmark far(std::string name, std::string description, MakeBoxes makeBoxes) {
+    Benchmark benchmark;
+    benchmark.name = std::move(name);
+    benchmark.group = "far";
+    benchmark.description = std::move(description);
+    benchmark.sizes = {30'000, 100'000};
+    benchmark.onRequest = true;
+    benchmark.admits = [](const ContestantKind&, std::size_t) { return true; };
+    benchmark.contestants = [](std::size_t, std::uint64_t) { return farKinds(); };
+    benchmark.make = [makeBoxes](std::size_t objects, std::uint64_t seed) {
+        return std::make_unique<PairWorkload>(std::make_unique<LatticeScene>(
+            std::make_unique<demos::BrownianScene>(makeBoxes(objects, seed), seed)));
+    };
+    return benchmark;
+}
+
+}  // namespace
+
+std::vector<Benchmark> farBenchmarks() {
+    std::vector<Benchmark> all;
+    all.push_back(
+        far("far-uniform", "S2-uniform, near the origin and far from it", demos::uniformBoxes));
+    all.push_back(
+        far("far-resting", "uniform boxes of which 2 % move, near and far", demos::restingBoxes));
+    return all;
+}
+
+}  // namespace hashphase::benchmarks
