@@ -75,7 +75,7 @@ private:
     [[nodiscard]] std::uint32_t maskOfPack(const Scalar* const* columns,
                                            std::uint32_t first) const {
         constexpr Scalar kWidened =
-            sizeof(Scalar) == sizeof(float) ? Scalar(1) + 0x1p-19F : Scalar(1) + 0x1p-48;
+            static_cast<Scalar>(sizeof(Scalar) == sizeof(float) ? 1 + 0x1p-19 : 1 + 0x1p-48);
         constexpr Scalar kTiny =
             sizeof(Scalar) == sizeof(float) ? Scalar(0x1p-126) : Scalar(0x1p-1022);
         auto enter = Pack::all(0);
