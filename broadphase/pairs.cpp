@@ -345,7 +345,10 @@ void Pairs<Scalar>::decide(PairFilter filter) {
             if (wasPair) {
                 lose(c);
             }
-            (isAtRest(c) ? refusedAtRest_ : refused_).findOrInsert(c);
+            // One that was refused at rest, and has woken since, moves over in the next update.
+            if (!isRefused(c)) {
+                (isAtRest(c) ? refusedAtRest_ : refused_).findOrInsert(c);
+            }
         } else if (!wasPair) {
             forgetRefused(c);
             bornCouples_.push_back(c);

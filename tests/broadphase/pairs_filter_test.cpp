@@ -255,5 +255,31 @@ TEST(Refilter, OfAProxyWhosePartnerWasRemovedLeavesTheDeathToTheUpdate) {
     }
 }
 
+// Such a couple is still noted down among those at rest, and must not be noted down twice.
+TEST(Refilter, CountsOnceWhatIsRefusedAtRestAndAgainWhenOneHasWoken) {
+    Couple couple(false);
+    // Proxies are put to rest when there are many, by an update in which something moves.
+    const ProxyId mover = couple.world.add(cubeAt(-9));
+    for (int i = 0; i < 200; ++i) {
+        couple.world.add(cubeAt(10 + 2 * i));
+    }
+    for (int i = 0; i < 40; ++i) {
+        couple.world.move(mover, cubeAt(-9 - i));
+        couple.world.update();
+    }
+    EXPECT_GT(couple.world.pairs.lastCost().grid.resting, 200U);
+    couple.world.move(couple.b, cubeAt(0.25));
+    couple.world.refilter(couple.a);
+    EXPECT_EQ(couple.world.pairs.refusedCount(), 1U);
+    couple.accept = true;
+    couple.world.refilter(couple.a);
+    EXPECT_TRUE(couple.isPair());
+    EXPECT_EQ(couple.world.pairs.refusedCount(), 0U);
+    couple.world.update();
+    EXPECT_TRUE(couple.isPair());
+    EXPECT_EQ(couple.world.pairs.refusedCount(), 0U);
+    EXPECT_EQ(couple.world.pairs.validate(), "");
+}
+
 }  // namespace
 }  // namespace hashphase::test
