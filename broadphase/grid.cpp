@@ -335,7 +335,8 @@ std::array<std::int64_t, 3> Grid<Scalar>::cellAt(const Point& point) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double scaled = std::floor(static_cast<double>(point[static_cast<int>(axis)]) /
                                          static_cast<double>(cellSize()));
-        cell[axis] = static_cast<std::int64_t>(std::clamp(scaled, -9e18, 9e18));
+        constexpr auto last = static_cast<double>(detail::kLastCell);
+        cell[axis] = static_cast<std::int64_t>(std::clamp(scaled, -last, last));
     }
     return cell;
 }

@@ -60,6 +60,11 @@ struct CellRange {
     friend bool operator==(const CellRange&, const CellRange&) = default;
 };
 
+namespace detail {
+/// Cells are numbered as far as this on either side.
+inline constexpr std::int64_t kLastCell = 9'000'000'000'000'000'000;
+}  // namespace detail
+
 /// What update() did: how many proxies it touched, and how many it left alone.
 struct UpdateCost {
     std::uint32_t changed = 0;  ///< added, moved or removed since the last update
@@ -147,7 +152,8 @@ public:
     template <class Collector>
     QueryCost visitCell(const std::array<std::int64_t, 3>& cell, Collector& collector) const;
 
-    /// The cell of a point: floor(point / cellSize()). The point must be finite.
+    /// The cell of a point: floor(point / cellSize()), at most 9e18 from 0, beyond which all is in the
+    /// last cell. The point must be finite.
     [[nodiscard]] std::array<std::int64_t, 3> cellAt(const Point& point) const;
 
     /// Object query: which cells does the proxy's box touch? Its box must be finite. Cost: O(1).

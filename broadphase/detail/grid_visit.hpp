@@ -305,15 +305,20 @@ struct Grid<Scalar>::CellRegion {
     }
 
     [[nodiscard]] Box bounds() const {
-        // A little more than the cell: its borders are rounded.
+        // A little more than the cell: its borders are rounded. All that is farther away than cells
+        // are numbered is in the last one.
+        using Limits = std::numeric_limits<Scalar>;
         const Scalar size = grid.cellSize();
         Box bounds;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const Scalar low = static_cast<Scalar>(cell[axis]) * size;
-            const Scalar margin =
-                8 * std::numeric_limits<Scalar>::epsilon() * (std::abs(low) + size);
-            bounds.min()[static_cast<int>(axis)] = low - margin;
-            bounds.max()[static_cast<int>(axis)] = low + size + margin;
+            const Scalar low =
+                std::clamp(static_cast<Scalar>(cell[axis]) * size, Limits::lowest(), Limits::max());
+            const Scalar margin = 8 * Limits::epsilon() * (std::abs(low) + size);
+            const bool isFirst = cell[axis] <= -detail::kLastCell;
+            const bool isLast = cell[axis] >= detail::kLastCell;
+            bounds.min()[static_cast<int>(axis)] = isFirst ? -Limits::infinity() : low - margin;
+            bounds.max()[static_cast<int>(axis)] =
+                isLast ? Limits::infinity() : low + size + margin;
         }
         return bounds;
     }
