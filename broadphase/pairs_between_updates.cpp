@@ -119,7 +119,7 @@ void Pairs<Scalar>::findUnknown(std::uint32_t slot) {
             }
         }
     };
-    CollectInto collector{add};
+    CollectInto<decltype(add)> collector{add};
     grid_.visit(BoxRegion<Scalar>{grid_.records_[slot].box}, collector);
 }
 
