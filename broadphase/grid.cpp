@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/grid.hpp>
 
+#include <broadphase/detail/limits.hpp>
 #include <broadphase/detail/prefetch.hpp>
 
 #include <algorithm>
@@ -20,6 +21,10 @@ std::size_t manyWaiting(std::size_t mobileCount) {
 // and seldom enough to be cheap for each of them.
 std::size_t worthRefiling(std::size_t restingCount) {
     return std::max<std::size_t>(32, restingCount / 8);
+}
+
+void checkProxyCount(std::size_t count) {
+    detail::checkCount(count, detail::kMostProxies, "A grid holds at most 268,435,456 proxies.");
 }
 
 const GridConfig& checked(const GridConfig& config) {
@@ -45,9 +50,9 @@ Grid<Scalar>::Grid(const GridConfig& config) : config_(checked(config)) {
 template <class Scalar>
 ProxyId Grid<Scalar>::add(const Box& box, Mobility mobility) {
     if (freeSlots_.empty()) {
-        HASHPHASE_ASSERT(records_.size() < (1U << 31), "A grid holds at most 2^31 proxies.");
-        freeSlots_.push_back(static_cast<std::uint32_t>(records_.size()));
+        checkProxyCount(records_.size() + 1);
         records_.emplace_back();
+        freeSlots_.push_back(static_cast<std::uint32_t>(records_.size()) - 1);
     }
     const std::uint32_t slot = freeSlots_.back();
     freeSlots_.pop_back();
@@ -65,6 +70,7 @@ ProxyId Grid<Scalar>::add(const Box& box, Mobility mobility) {
 
 template <class Scalar>
 void Grid<Scalar>::reserve(std::size_t count) {
+    checkProxyCount(count);
     // At least doubled, or a program that asks for a few more each time would move all each time.
     const auto makeRoom = [count](auto& array) {
         if (array.capacity() < count) {
@@ -270,11 +276,25 @@ void Grid<Scalar>::endUpdate() {
     woken_.clear();
     boxesAtUpdate_.clear();
     cost_ = {};
-    ++updateNumber_;
+    if (++updateNumber_ == std::numeric_limits<std::uint32_t>::max()) {
+        countUpdatesAnew();
+    }
     if (config_.cellSize == 0) {
         const double finest = std::min(mobile_.finestCellSize(), resting_.finestCellSize());
         cellSize_ = std::isinf(finest) ? Scalar(1) : static_cast<Scalar>(finest);
     }
+}
+
+// After 2^32 updates the numbers would come round to those of the first ones, and what has not
+// changed since then would seem to have changed just now. All that matters is how long ago a change
+// was, up to when a proxy comes to rest.
+template <class Scalar>
+void Grid<Scalar>::countUpdatesAnew() {
+    const std::uint32_t longAgo = config_.updatesBeforeRest + 1;
+    for (Record& record : records_) {
+        record.changedAt = longAgo - std::min(updateNumber_ - record.changedAt, longAgo);
+    }
+    updateNumber_ = longAgo;
 }
 
 template <class Scalar>

@@ -14,6 +14,11 @@
 // Bad data   A box with a NaN is kept, found by nothing, counted by nanCount(), and reported once
 //            through the message handler. Infinite, huge and inverted boxes are answered exactly as
 //            overlaps() says.
+// Denormals  Boxes are compared as the thread's processor compares numbers: one that takes denormal
+//            numbers (nearer to 0 than 1.2e-38, or 2.2e-308) for 0 finds that more of these touch.
+//            All threads must agree on that where coordinates are denormal; elsewhere they need not,
+//            and the answers are the same.
+// Limits     2^28 proxies; who adds more is thrown std::length_error.
 // Misuse     An id that is null, stale or of another grid is asserted.
 
 #include <broadphase/aabb.hpp>
@@ -68,7 +73,7 @@ inline constexpr std::int64_t kLastCell = 9'000'000'000'000'000'000;
 /// What update() did: how many proxies it touched, and how many it left alone.
 struct UpdateCost {
     std::uint32_t changed = 0;  ///< added, moved or removed since the last update
-    std::uint32_t filed = 0;    ///< written into a table
+    std::uint64_t filed = 0;    ///< written into a table
     std::uint32_t resting = 0;  ///< in the table that was left alone
 };
 
@@ -86,10 +91,12 @@ public:
 
     // --- Proxies ---------------------------------------------------------------------------------
 
-    /// Adds a proxy. The hint saves work for what will not move. Cost: O(1) amortised.
+    /// Adds a proxy. The hint saves work for what will not move. Throws std::length_error, and adds
+    /// nothing, when there are 2^28 already. Cost: O(1) amortised.
     [[nodiscard]] ProxyId add(const Box& box, Mobility mobility = Mobility::mobile);
 
     /// Makes room for `count` proxies altogether, so that adding many moves nothing on the way.
+    /// Throws std::length_error for more than 2^28.
     void reserve(std::size_t count);
 
     /// Sets the proxy's box. Bit-equal to the present one: a comparison, and nothing is marked.
@@ -162,9 +169,9 @@ public:
     // --- Frame -----------------------------------------------------------------------------------
 
     /// Ends a frame: files what changed, and puts to rest what has not changed for a while.
-    /// Cost: a rebuild of the mobile proxies when one of them changed, nothing otherwise. Not for
-    /// a grid with Pairs: their update() does it (asserted). The result does not depend on
-    /// `parallelFor`.
+    /// Cost: a rebuild of the mobile proxies when one of them changed, nothing otherwise; at worst
+    /// O(n log n), which is that of sorting crowds. Not for a grid with Pairs: their update() does it
+    /// (asserted). The result does not depend on `parallelFor`.
     UpdateCost update(ParallelFor parallelFor = serialFor);
 
     /// How often the mobile proxies have been filed: once by each update that found a change, and
@@ -270,6 +277,7 @@ private:
     void fileMobile(ParallelFor parallelFor);
     void settle();
     void endUpdate();
+    void countUpdatesAnew();
 
     void fileIfMany() const;
     template <class Visit>

@@ -13,8 +13,10 @@
 //           takes 7 to 14 bytes a key, the keys themselves eight.
 // Order     A function of the calls so far, and nothing that means anything.
 // Threads   Everything const may run anywhere, the rest needs the container for itself.
-// Keys      Every key is valid.
+// Keys      Every key is valid. At most 2^32 - 1 of them: whoever inserts or reserves more is thrown
+//           std::length_error, and the set is as it was.
 
+#include <broadphase/detail/limits.hpp>
 #include <broadphase/detail/prefetch.hpp>
 #include <broadphase/detail/tag_kernel.hpp>
 #include <broadphase/diagnostics.hpp>
@@ -107,6 +109,7 @@ public:
     /// Cost: O(1), amortised.
     std::uint32_t insert(std::uint64_t key, std::uint32_t number) {
         if (keys_.size() >= sizeLimit_) {
+            checkSize(keys_.size() + 1);
             rehash(groups_.empty() ? 1 : 2 * groups_.size());
         }
         const std::uint32_t keyHash = hash(key);
@@ -150,6 +153,7 @@ public:
 
     /// Makes room for `count` keys, so that no insertion allocates until there are more.
     void reserve(std::size_t count) {
+        checkSize(count);
         keys_.reserve(count);
         std::size_t groupCount = std::max<std::size_t>(1, groups_.size());
         while (groupCount * kFullGroup < count) {
@@ -251,6 +255,11 @@ private:
         [[nodiscard]] bool isNone() const noexcept { return lane == kLanes; }
     };
 
+    // kNone is no key's number.
+    static void checkSize(std::size_t count) {
+        checkCount(count, kNone, "A set holds at most 4,294,967,295 keys.");
+    }
+
     static std::uint32_t lowest(std::uint32_t lanes) noexcept {
         return static_cast<std::uint32_t>(std::countr_zero(lanes));
     }
@@ -316,7 +325,7 @@ private:
 
     void rehash(std::size_t groupCount) {
         const std::vector<Group> old = std::exchange(groups_, std::vector<Group>(groupCount));
-        sizeLimit_ = groupCount * kFullGroup;
+        sizeLimit_ = std::min<std::size_t>(groupCount * kFullGroup, kNone);
         shift_ = 32 - static_cast<unsigned>(std::countr_zero(groupCount));
         for (const Group& group : old) {
             for (std::uint32_t lanes = group.used(); lanes != 0; lanes &= lanes - 1) {

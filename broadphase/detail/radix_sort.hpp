@@ -19,7 +19,8 @@ namespace hashphase::detail {
 inline void radixSort(std::vector<std::uint64_t>& keys, std::uint32_t bound,
                       std::vector<std::uint64_t>& scratch) {
     constexpr std::size_t kWorthIt = 256;
-    if (keys.size() < kWorthIt) {
+    constexpr std::size_t kMost = 0xffffffff;  // that can be counted
+    if (keys.size() < kWorthIt || keys.size() > kMost) {
         std::sort(keys.begin(), keys.end());
         return;
     }

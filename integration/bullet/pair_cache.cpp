@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/bullet/pair_cache.hpp>
 
+#include <broadphase/detail/limits.hpp>
+
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 
@@ -40,7 +42,13 @@ btBroadphasePair* PairCache::addAcceptedPair(btBroadphaseProxy* proxy0, btBroadp
     return add({*proxy0, *proxy1});
 }
 
+void PairCache::checkRoomFor(std::size_t bornCount) const {
+    detail::checkCount(ids_.size() + bornCount, kMostPairs,
+                       "A pair cache holds at most 1,073,741,824 pairs.");
+}
+
 btBroadphasePair* PairCache::add(const ProxyCouple& couple) {
+    checkRoomFor(1);
     const auto index = static_cast<int>(ids_.findOrInsert(couple.ids()));
     if (index < pairs_.size()) {
         HASHPHASE_ASSERT(

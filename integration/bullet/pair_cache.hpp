@@ -92,10 +92,14 @@ public:
 
     static int uniqueId(const btBroadphaseProxy& proxy) { return proxy.m_uniqueId; }
 
+    /// So many pairs are the most that Bullet's array can hold.
+    static constexpr std::size_t kMostPairs = std::size_t{1} << 30;
+
     // --- One pair --------------------------------------------------------------------------------
 
     /// Returns the pair, which is made when it is not there yet; NULL when the filter refuses it.
-    /// The ghost callback is told of a new pair. Cost: O(1).
+    /// The ghost callback is told of a new pair. Throws std::length_error, and changes nothing, when
+    /// there are kMostPairs already. Cost: O(1).
     btBroadphasePair* addOverlappingPair(btBroadphaseProxy* proxy0,
                                          btBroadphaseProxy* proxy1) override;
 
@@ -122,7 +126,9 @@ public:
     /// the places of the first that died, so that nothing else moves, the others go to the end;
     /// places left are filled from the end. Algorithms are freed when all is in order again.
     /// With a ghost callback, or called by one of processAllOverlappingPairs(), it is the same as
-    /// single calls in every respect. Cost: O(1) a pair, a third of that of single calls.
+    /// single calls in every respect. Throws std::length_error, and changes nothing, when there are
+    /// more than kMostPairs with those that are born. Cost: O(1) a pair, a third of that of single
+    /// calls.
     void update(std::span<const ProxyCouple> died, std::span<const ProxyCouple> born,
                 btDispatcher* dispatcher);
 
@@ -246,6 +252,7 @@ private:
         btDispatcher* dispatcher;
     };
 
+    void checkRoomFor(std::size_t bornCount) const;
     [[nodiscard]] bool isLower(const btBroadphaseProxy& a, const btBroadphaseProxy& b) const;
     [[nodiscard]] std::uint64_t keysOf(const btBroadphasePair& pair, std::uint64_t ids) const;
     [[nodiscard]] Note noteOf(std::uint32_t index) const;

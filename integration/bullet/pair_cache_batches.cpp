@@ -22,6 +22,7 @@ constexpr std::size_t kNear = 8;
 
 void PairCache::update(std::span<const ProxyCouple> died, std::span<const ProxyCouple> born,
                        btDispatcher* dispatcher) {
+    checkRoomFor(born.size());
     if (isTold()) {
         updateOneByOne(died, born, dispatcher);
         return;

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
+#include <broadphase/detail/limits.hpp>
 #include <broadphase/detail/prefetch.hpp>
 #include <integration/bullet/body_motion.hpp>
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/pair_cache.hpp>
 
 #include <LinearMath/btGeometryUtil.h>
+
+#include <limits>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
@@ -49,6 +52,8 @@ btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
                                                       void* userPtr, int collisionFilterGroup,
                                                       int collisionFilterMask,
                                                       btDispatcher* dispatcher) {
+    detail::checkCount(static_cast<std::size_t>(lastUniqueId_) + 1, std::numeric_limits<int>::max(),
+                       "All unique ids are used up. Without proxies, resetPool() counts anew.");
     const bool isStatic = (collisionFilterGroup & btBroadphaseProxy::StaticFilter) != 0;
     const ProxyId id =
         grid_.add(toAabb(aabbMin, aabbMax), isStatic ? Mobility::resting : Mobility::mobile);

@@ -119,7 +119,8 @@ public:
     // --- btBroadphaseInterface -------------------------------------------------------------------
 
     /// The proxy's address is fixed for its life, m_uniqueId counts 1, 2, 3 ... and is never used
-    /// again. `shapeType` is ignored. Cost: O(1).
+    /// again: after 2^31 - 1 of them std::length_error is thrown until resetPool(); likewise where there
+    /// are 2^28 proxies. `shapeType` is ignored. Cost: O(1).
     btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
                                    int shapeType, void* userPtr, int collisionFilterGroup,
                                    int collisionFilterMask, btDispatcher* dispatcher) override;
