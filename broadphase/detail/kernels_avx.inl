@@ -49,12 +49,25 @@ inline bool fitsEdge(const LevelView<double>& level, const PaddedBox<double>& bo
     return _mm256_movemask_pd(_mm256_cmp_pd(edges, largest, _CMP_LE_OQ)) == 0xf;
 }
 
+// What is hardly anything, on either side, is 0.
+
+inline __m128 onBorder(__m128 scaled) {
+    const __m128 size = _mm_andnot_ps(_mm_set1_ps(-0.0F), scaled);
+    return _mm_andnot_ps(_mm_cmp_ps(size, _mm_set1_ps(kOnBorder<float>), _CMP_LT_OQ), scaled);
+}
+
+inline __m256d onBorder(__m256d scaled) {
+    const __m256d size = _mm256_andnot_pd(_mm256_set1_pd(-0.0), scaled);
+    return _mm256_andnot_pd(_mm256_cmp_pd(size, _mm256_set1_pd(kOnBorder<double>), _CMP_LT_OQ),
+                            scaled);
+}
+
 inline __m128 quantiseCorner(const float* corner, const LevelView<float>& level) {
     const __m128 limit = _mm_set1_ps(static_cast<float>(kCellLimit));
     const __m128 relative = _mm_sub_ps(_mm_load_ps(corner), _mm_loadu_ps(level.origin));
     const __m128 scaled = _mm_mul_ps(relative, _mm_loadu_ps(level.inverseCellSize));
     const __m128 low = _mm_set1_ps(-static_cast<float>(kCellLimit));
-    return _mm_floor_ps(_mm_max_ps(_mm_min_ps(scaled, limit), low));
+    return _mm_floor_ps(onBorder(_mm_max_ps(_mm_min_ps(scaled, limit), low)));
 }
 
 inline __m256d quantiseCorner(const double* corner, const LevelView<double>& level) {
@@ -62,7 +75,7 @@ inline __m256d quantiseCorner(const double* corner, const LevelView<double>& lev
     const __m256d relative = _mm256_sub_pd(_mm256_load_pd(corner), _mm256_loadu_pd(level.origin));
     const __m256d scaled = _mm256_mul_pd(relative, _mm256_loadu_pd(level.inverseCellSize));
     const __m256d low = _mm256_set1_pd(-static_cast<double>(kCellLimit));
-    return _mm256_floor_pd(_mm256_max_pd(_mm256_min_pd(scaled, limit), low));
+    return _mm256_floor_pd(onBorder(_mm256_max_pd(_mm256_min_pd(scaled, limit), low)));
 }
 
 // Whether each span is 0 or 1 and no cell is clamped.

@@ -15,6 +15,13 @@ inline constexpr std::int32_t kCellLimit = 1 << 28;
 
 using Cell = std::array<std::int32_t, 3>;
 
+/// So little below a border counts as on it: more than what a processor that flushes denormal numbers
+/// makes of (x - origin) * inverseCellSize differs from what another one makes of it, when the three
+/// are normal numbers or zero, and the cells no smaller than 1e-30. So threads may differ in this.
+template <class Scalar>
+inline constexpr Scalar kOnBorder = sizeof(Scalar) == sizeof(float) ? Scalar(0x1p-25)
+                                                                    : Scalar(0x1p-54);
+
 /// floor((x - origin) * inverseCellSize), clamped to the cell range in floating point, before the
 /// conversion, so that no value is undefined behaviour; NaN gives kCellLimit. The subtraction, the
 /// multiplication and the floor are each monotone after rounding. An origin near the population
@@ -26,6 +33,7 @@ template <class Scalar>
     Scalar scaled = (x - origin) * inverseCellSize;
     scaled = scaled < limit ? scaled : limit;
     scaled = scaled > -limit ? scaled : -limit;
+    scaled = scaled < 0 && scaled > -kOnBorder<Scalar> ? Scalar(0) : scaled;
     const auto truncated = static_cast<std::int32_t>(scaled);
     return truncated - static_cast<std::int32_t>(static_cast<Scalar>(truncated) > scaled);
 }

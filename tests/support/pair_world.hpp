@@ -242,4 +242,19 @@ private:
     std::set<ProxyId> changed_;
 };
 
+/// The pairs of the boxes, in one update of a grid of the configuration, are those of brute force, and
+/// all accounts agree. Returns how many there are.
+template <class Scalar>
+std::size_t expectPairsOfBruteForce(std::span<const Aabb<Scalar>> boxes,
+                                    const GridConfig& config = {}) {
+    PairWorld<Scalar> world(config);
+    std::vector<Placed<Scalar>> proxies;
+    for (const Aabb<Scalar>& box : boxes) {
+        proxies.push_back({world.add(box), box});
+    }
+    world.update();
+    world.checkThoroughly(proxies);
+    return world.pairs.count();
+}
+
 }  // namespace hashphase::test
