@@ -91,7 +91,10 @@ public:
 
     /// Ends the frame: updates the grid and returns all pairs born and died since the last call.
     /// The result does not depend on `parallelFor`; the filter is asked on the caller's thread.
-    /// Cost: follows what changed, and the pairs of what changed lately.
+    /// Cost: follows what changed, and the pairs of what changed lately. Where more than 256 share a
+    /// cell, or by accident or malice a bucket of the hash, it is that of sweeping them along one
+    /// axis, the best one of each; at worst, for proxies that lie side by side along every axis and do
+    /// not touch, or that are inverted, a few tests of every two.
     PairChanges update(PairFilter filter, ParallelFor parallelFor = serialFor);
 
     /// Pairs of one proxy that have come to overlap since the last update, at once; update() will

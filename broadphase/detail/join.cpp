@@ -14,18 +14,14 @@ constexpr double kBoxesPerRowRead = 8;
 
 template <class Scalar>
 double rowsLookedUp(const Level<Scalar>& own, const Level<Scalar>& level) {
-    double rows = static_cast<double>(level.count()) / kBoxesPerRowRead;
-    if (!level.hasCells) {
-        return rows;
-    }
+    const double rows = static_cast<double>(level.count()) / kBoxesPerRowRead;
     double byCells = 1;
     for (const std::size_t axis : {std::size_t{1}, std::size_t{2}}) {
         const auto cellsPerEdge =
             static_cast<double>(own.largestEdge) * static_cast<double>(level.inverseCellSize[axis]);
         byCells *= level.inverseCellSize[axis] == 0 ? 1 : cellsPerEdge + 2;
     }
-    // Listed boxes are of any size.
-    return own.hasCells ? std::min(rows, byCells) : rows;
+    return std::min(rows, byCells);
 }
 
 // A search of the entries of one level: among themselves, or for those of another one.
@@ -37,9 +33,13 @@ struct Search {
 
 // The boxes of either level may be looked up among those of the other one. Mostly the small ones
 // look for the large ones, of which there are few in each row; but a few large ones, or a few that
-// are filed far away, had better look for the small ones themselves.
+// are filed far away, had better look for the small ones themselves. So do listed ones, of which each
+// reads no more than the cells around it, where the other way round everyone would read all of them.
 template <class Scalar>
 Search<Scalar> searchOf(const Level<Scalar>& a, const Level<Scalar>& b) {
+    if (!a.hasCells || !b.hasCells) {
+        return a.hasCells ? Search<Scalar>{&b, &a} : Search<Scalar>{&a, &b};
+    }
     const bool isFromA = a.count() * rowsLookedUp(a, b) <= b.count() * rowsLookedUp(b, a);
     return isFromA ? Search<Scalar>{&a, &b} : Search<Scalar>{&b, &a};
 }

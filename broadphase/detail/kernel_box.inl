@@ -132,6 +132,10 @@ inline std::uint32_t lowest(std::uint32_t a, std::uint32_t b) {
     return a < b ? a : b;
 }
 
+inline std::uint32_t highest(std::uint32_t a, std::uint32_t b) {
+    return a < b ? b : a;
+}
+
 /// The lowest `count` of `width` bits.
 inline std::uint32_t laneMask(std::uint32_t count, std::uint32_t width) {
     return (1U << lowest(count, width)) - 1;
@@ -148,10 +152,14 @@ bool isInRow(const LevelView<Scalar>& level, std::uint32_t entry, Row row) {
     }
 }
 
-// Tests all entries of a run.
+// Tests all entries of a run; none where it ends before it begins, as what is looked for in a
+// sorted one may. Returns how many.
 template <bool kIsDense, class Scalar, class Query>
-void scanAll(const LevelView<Scalar>& level, const Query& query, Run run, Row row,
-             PairSink& found) {
+std::uint32_t scanAll(const LevelView<Scalar>& level, const Query& query, Run run, Row row,
+                      PairSink& found) {
+    if (run.last <= run.first) {
+        return 0;
+    }
     using Pack = WidePack<Scalar>;
     constexpr std::uint32_t width = Pack::kWidth < kWidth ? kWidth : Pack::kWidth;
     const auto box = query.template lanes<Pack>();
@@ -165,6 +173,7 @@ void scanAll(const LevelView<Scalar>& level, const Query& query, Run run, Row ro
             found.next += isInRow<kIsDense>(level, hit, row) ? 1 : 0;
         }
     }
+    return run.last - run.first;
 }
 
 // Binary searches in a run that is sorted by the column, but for erased entries, which are NaN: at
@@ -198,31 +207,50 @@ std::uint32_t upperBound(const Scalar* column, Run run, Scalar bound) {
     return run.first;
 }
 
-// Tests the entries of a run on a level whose crowded buckets are sorted along an axis: of these,
-// those that begin before the box ends, and no farther before it than the longest of them reaches.
-// Returns how many it tested.
+/// Null when the bucket, counted over all levels, is not sorted.
+template <class Scalar>
+const SortedBucket<Scalar>* sortedBucket(const LevelView<Scalar>& level, std::uint32_t bucket) {
+    std::uint32_t first = 0;
+    std::uint32_t last = level.sortedCount;
+    while (first < last) {
+        const std::uint32_t middle = first + (last - first) / 2;
+        if (level.sortedBuckets[middle].bucket < bucket) {
+            first = middle + 1;
+        } else {
+            last = middle;
+        }
+    }
+    const SortedBucket<Scalar>* const found = level.sortedBuckets + first;
+    return first < level.sortedCount && found->bucket == bucket ? found : nullptr;
+}
+
+// Tests the entries of a run on a level of which some crowded buckets are sorted along an axis: of
+// these, those that begin before the box ends, and no farther before it than the longest of them
+// reaches, and the long ones. Returns how many it tested.
 template <bool kIsDense, class Scalar, class Query>
 [[gnu::noinline]] std::uint32_t sweep(const LevelView<Scalar>& level, const Query& query, Run run,
                                       Row row, PairSink& found) {
-    const int axis = level.sweepAxis;
-    const Scalar* const column = level.columns[axis];
-    const Scalar low = query.columns[axis][query.number];
-    const Scalar high = query.columns[axis + 3][query.number];
     std::uint32_t tested = 0;
     while (run.first < run.last) {
-        const std::uint32_t bucket = level.bucketOfEntry[run.first] - level.firstBucket;
-        const std::uint32_t begin = level.bucketStart[bucket];
-        const std::uint32_t end = level.bucketStart[bucket + 1];
+        const std::uint32_t bucket = level.bucketOfEntry[run.first];
+        const std::uint32_t begin = level.bucketStart[bucket - level.firstBucket];
+        const std::uint32_t end = level.bucketStart[bucket - level.firstBucket + 1];
+        const SortedBucket<Scalar>* const sorted =
+            end - begin > kCrowd ? sortedBucket(level, bucket) : nullptr;
         Run part = {run.first, lowest(end, run.last)};
         run.first = part.last;
-        if (end - begin > kCrowd) {
+        if (sorted != nullptr) {
+            const Scalar* const column = level.columns[sorted->axis];
+            const Scalar low = query.columns[sorted->axis][query.number];
+            const Scalar high = query.columns[sorted->axis + 3][query.number];
             // Rounded, the difference is still no more than the min corner of any box that reaches
             // `low`: that is a number, and rounding is monotone.
-            part.first = lowerBound(column, part, low - level.sweepReach);
-            part.last = upperBound(column, part, high);
+            const Run longOnes = {highest(part.first, sorted->firstLong), part.last};
+            part.last = lowest(part.last, sorted->firstLong);
+            tested += scanAll<kIsDense>(level, query, longOnes, row, found);
+            part = {lowerBound(column, part, low - sorted->reach), upperBound(column, part, high)};
         }
-        tested += part.last - part.first;
-        scanAll<kIsDense>(level, query, part, row, found);
+        tested += scanAll<kIsDense>(level, query, part, row, found);
     }
     return tested;
 }
@@ -231,9 +259,8 @@ template <bool kIsDense, class Scalar, class Query>
 template <bool kIsDense, class Scalar, class Query>
 std::uint32_t scan(const LevelView<Scalar>& level, const Query& query, Run run, Row row,
                    PairSink& found) {
-    if (level.sweepAxis >= 0) {
+    if (level.sortedCount > 0) {
         return sweep<kIsDense>(level, query, run, row, found);
     }
-    scanAll<kIsDense>(level, query, run, row, found);
-    return run.last - run.first;
+    return scanAll<kIsDense>(level, query, run, row, found);
 }

@@ -101,6 +101,16 @@ struct Row {
 /// A bucket with more entries than this is crowded, and may be sorted along an axis.
 inline constexpr std::uint32_t kCrowd = 256;
 
+/// A crowded bucket whose entries are sorted by their min corners along an axis, so that kernels need
+/// not read them all; but for the last ones, which are long.
+template <class Scalar>
+struct SortedBucket {
+    std::uint32_t bucket;  // counted over all levels
+    std::uint32_t axis;
+    std::uint32_t firstLong;  // entry from which on they are long
+    Scalar reach;             // none of the others is longer along the axis
+};
+
 /// A level of a table (see table.hpp) as plain arrays.
 template <class Scalar>
 struct LevelView {
@@ -125,8 +135,8 @@ struct LevelView {
     std::uint32_t denseBase;
     bool isDense;
     bool hasCells;
-    int sweepAxis;      // along which the entries of crowded buckets are sorted; negative: none
-    Scalar sweepReach;  // none of these is longer along it
+    const SortedBucket<Scalar>* sortedBuckets;  // of the level, in ascending order
+    std::uint32_t sortedCount;
 };
 
 /// A hash of a row's number whose lower bits are well mixed.

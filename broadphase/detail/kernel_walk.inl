@@ -40,6 +40,35 @@ CellBlock blockAround(const LevelView<Scalar>& level, const Query<Scalar>& query
     return block;
 }
 
+// So few rows are read without a look at how long their runs are.
+constexpr std::uint64_t kFewRows = 16;
+
+// Whether the rows of a hashed level have more entries in their buckets, those of other rows and those
+// that several of them share included, than there are.
+template <class Scalar>
+[[gnu::noinline]] bool haveMoreThanAll(const LevelView<Scalar>& level, const CellBlock& block) {
+    const std::uint32_t* starts = level.bucketStart;
+    const std::uint32_t length =
+        lowest(static_cast<std::uint32_t>(block.extent(0)), level.bucketCount);
+    std::uint64_t left = level.lastEntry - level.firstEntry;
+    for (std::int32_t z = block.low[2]; z <= block.high[2]; ++z) {
+        for (std::int32_t y = block.low[1]; y <= block.high[1]; ++y) {
+            const std::uint32_t first =
+                (rowBase(level, Row{y, z}) + static_cast<std::uint32_t>(block.low[0])) &
+                (level.bucketCount - 1);
+            const std::uint32_t end = first + length;
+            const std::uint32_t wrapped = end > level.bucketCount ? end - level.bucketCount : 0;
+            const std::uint64_t inRow = starts[lowest(end, level.bucketCount)] - starts[first] +
+                                        std::uint64_t{starts[wrapped] - starts[0]};
+            if (inRow > left) {
+                return true;
+            }
+            left -= inRow;
+        }
+    }
+    return false;
+}
+
 // Runs of up to kWidth rows, read with few branches in between: most are shorter than kWidth.
 template <bool kIsDense, class Scalar, class Query, class Lanes>
 void scanRows(const LevelView<Scalar>& level, const Query& query, const Lanes& box, const Run* runs,
@@ -83,11 +112,9 @@ template <bool kIsDense, class Scalar, class Query>
     const auto box = query.template lanes<Pack<Scalar>>();
     const std::uint32_t count = level.lastEntry - level.firstEntry;
     const std::uint64_t rowCount = block.extent(1) * block.extent(2);
-    const auto length = static_cast<std::uint32_t>(block.extent(0));
     bool isWhole = rowCount * kBoxesPerRun > count;
     if constexpr (!kIsDense) {
-        // Rows share buckets: long ones would have every box read once a row.
-        isWhole |= rowCount * lowest(length, level.bucketCount) >= level.bucketCount;
+        isWhole = isWhole || (rowCount > kFewRows && haveMoreThanAll(level, block));
     }
     if (isWhole) {
         cost.boxesTested +=
@@ -96,6 +123,7 @@ template <bool kIsDense, class Scalar, class Query>
     }
     cost.rowsVisited += rowCount;
     const std::uint32_t* starts = level.bucketStart;
+    const auto length = static_cast<std::uint32_t>(block.extent(0));
     Run runs[kWidth];
     Row rows[kWidth];
     std::uint32_t waiting = 0;

@@ -38,10 +38,9 @@ struct Level {
     std::uint32_t strideY = 0;
     std::uint32_t strideZ = 0;
     std::uint32_t denseBase = 0;
-    // The axis along which the entries of crowded buckets are sorted, by their min corners, so that
-    // kernels need not read them all; negative: none. No box in them is longer there than the reach.
-    int sweepAxis = -1;
-    Scalar sweepReach = 0;
+    // Of the table's sorted buckets, those of this level.
+    std::uint32_t firstSorted = 0;
+    std::uint32_t sortedCount = 0;
 
     [[nodiscard]] std::uint32_t count() const noexcept { return lastEntry - firstEntry; }
 

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 namespace hashphase::detail {
@@ -108,7 +109,7 @@ void Table<Scalar>::sortEntries(std::span<const std::uint32_t> slots,
     noteHeights();
 }
 
-// Calls visit(span of entries in order_) for the crowded buckets of the level.
+// Calls visit(bucket, span of entries in order_) for the crowded buckets of the level.
 template <class Scalar>
 template <class Visit>
 void Table<Scalar>::forCrowds(const Level<Scalar>& level, const Visit& visit) {
@@ -116,7 +117,7 @@ void Table<Scalar>::forCrowds(const Level<Scalar>& level, const Visit& visit) {
     for (std::uint32_t bucket = 0; bucket < level.bucketCount; ++bucket) {
         const std::uint32_t count = starts[bucket + 1] - starts[bucket];
         if (count > kCrowd) {
-            visit(std::span(order_).subspan(starts[bucket], count));
+            visit(level.firstBucket + bucket, std::span(order_).subspan(starts[bucket], count));
         }
     }
 }
@@ -125,25 +126,31 @@ void Table<Scalar>::forCrowds(const Level<Scalar>& level, const Visit& visit) {
 // read them all; when they are sorted, only what is near along the axis.
 template <class Scalar>
 void Table<Scalar>::sortCrowds(std::span<const PaddedBox<Scalar>> boxes) {
+    sortedBuckets_.clear();
     for (Level<Scalar>& level : levels_) {
-        level.sweepAxis = -1;
+        level.firstSorted = static_cast<std::uint32_t>(sortedBuckets_.size());
+        level.sortedCount = 0;
         if (largestBucket_ <= kCrowd || !level.hasCells || level.count() <= kCrowd) {
             continue;
         }
-        CrowdCensus<Scalar> census;
-        forCrowds(level, [&](std::span<std::uint32_t> crowd) { census.add(crowd, boxes); });
-        level.sweepAxis = census.sweepAxis();
-        if (level.sweepAxis < 0) {
-            continue;
-        }
-        const auto axis = static_cast<std::size_t>(level.sweepAxis);
-        level.sweepReach = census.reach(axis);
-        forCrowds(level, [&](std::span<std::uint32_t> crowd) {
-            std::sort(crowd.begin(), crowd.end(), [&](std::uint32_t a, std::uint32_t b) {
-                const Scalar lowA = boxes[a].low[axis];
-                const Scalar lowB = boxes[b].low[axis];
+        forCrowds(level, [&](std::uint32_t bucket, std::span<std::uint32_t> crowd) {
+            const CrowdCensus<Scalar> census(crowd, boxes);
+            const std::optional<std::uint32_t> axis = census.sweepAxis();
+            if (!axis) {
+                return;
+            }
+            const auto longOnes = std::stable_partition(
+                crowd.begin(), crowd.end(),
+                [&](std::uint32_t i) { return !census.isLong(boxes[i], *axis); });
+            const auto shortCount = static_cast<std::uint32_t>(longOnes - crowd.begin());
+            std::sort(crowd.begin(), longOnes, [&](std::uint32_t a, std::uint32_t b) {
+                const Scalar lowA = boxes[a].low[*axis];
+                const Scalar lowB = boxes[b].low[*axis];
                 return lowA != lowB ? lowA < lowB : a < b;
             });
+            sortedBuckets_.push_back({bucket, *axis, bucketStart_[bucket] + shortCount,
+                                      census.reach(crowd.first(shortCount), boxes, *axis)});
+            ++level.sortedCount;
         });
     }
 }
@@ -249,8 +256,8 @@ LevelView<Scalar> Table<Scalar>::view(const Level<Scalar>& level) const noexcept
     view.denseBase = level.denseBase;
     view.isDense = level.isDense;
     view.hasCells = level.hasCells;
-    view.sweepAxis = level.sweepAxis;
-    view.sweepReach = level.sweepReach;
+    view.sortedBuckets = sortedBuckets_.data() + level.firstSorted;
+    view.sortedCount = level.sortedCount;
     return view;
 }
 
@@ -268,18 +275,14 @@ std::size_t Table<Scalar>::memoryBytes() const noexcept {
             bucketOfEntry_.capacity() + buckets_.capacity()) *
                sizeof(std::uint32_t) +
            6 * bounds_[0].capacity() * sizeof(Scalar) + rowOfEntry_.capacity() * sizeof(Row) +
-           views_.capacity() * sizeof(LevelView<Scalar>) + layout_.memoryBytes();
+           views_.capacity() * sizeof(LevelView<Scalar>) +
+           sortedBuckets_.capacity() * sizeof(SortedBucket<Scalar>) + layout_.memoryBytes();
 }
 
 template <class Scalar>
-bool Table<Scalar>::isSortedIfCrowded(const Level<Scalar>& level, std::uint32_t bucket) const {
-    const std::uint32_t first = bucketStart_[bucket];
-    const std::uint32_t last = bucketStart_[bucket + 1];
-    if (level.sweepAxis < 0 || last - first <= kCrowd) {
-        return true;
-    }
-    const Scalar* column = bounds_[static_cast<std::size_t>(level.sweepAxis)].data();
-    return std::is_sorted(column + first, column + last);
+bool Table<Scalar>::isSorted(const SortedBucket<Scalar>& sorted) const {
+    const Scalar* column = bounds_[sorted.axis].data();
+    return std::is_sorted(column + bucketStart_[sorted.bucket], column + sorted.firstLong);
 }
 
 template <class Scalar>
@@ -294,10 +297,6 @@ std::string Table<Scalar>::validate() const {
         for (std::uint32_t b = level.firstBucket; b < end; ++b) {
             if (bucketStart_[b] != entry || bucketStart_[b] > bucketStart_[b + 1]) {
                 return "Buckets partition the entries in order: broken.";
-            }
-            if (!isSortedIfCrowded(level, b)) {
-                return "Crowded buckets are sorted along their level's sweep axis, where it has "
-                       "one: broken.";
             }
             for (; entry < bucketStart_[b + 1]; ++entry) {
                 const Aabb<Scalar> box = this->box(entry);
@@ -322,6 +321,10 @@ std::string Table<Scalar>::validate() const {
     }
     if (entry != slots_.size()) {
         return "Buckets partition the entries in order: broken.";
+    }
+    if (!std::all_of(sortedBuckets_.begin(), sortedBuckets_.end(),
+                     [this](const auto& sorted) { return isSorted(sorted); })) {
+        return "A sorted bucket is sorted along its axis: broken.";
     }
     return {};
 }

@@ -127,7 +127,7 @@ public:
     /// - Every entry lies in the bucket of the cell of its min corner.
     /// - Every entry spans at most two cells of its level an axis, or is listed without cells.
     /// - Buckets partition the entries in order.
-    /// - Crowded buckets are sorted along their level's sweep axis, where it has one.
+    /// - A sorted bucket is sorted along its axis.
     [[nodiscard]] std::string validate() const;
 
 private:
@@ -139,7 +139,7 @@ private:
     template <class Visit>
     void forCrowds(const Level<Scalar>& level, const Visit& visit);
     void sortCrowds(std::span<const PaddedBox<Scalar>> boxes);
-    [[nodiscard]] bool isSortedIfCrowded(const Level<Scalar>& level, std::uint32_t bucket) const;
+    [[nodiscard]] bool isSorted(const SortedBucket<Scalar>& sorted) const;
     void noteRows();
     void noteHeights();
 
@@ -152,7 +152,8 @@ private:
     std::vector<std::uint32_t> slots_;
     std::vector<std::uint32_t> order_;
     std::vector<std::uint32_t> bucketOfEntry_;
-    std::vector<Row> rowOfEntry_;                // where a level is hashed
+    std::vector<Row> rowOfEntry_;  // where a level is hashed
+    std::vector<SortedBucket<Scalar>> sortedBuckets_;
     std::array<std::vector<Scalar>, 6> bounds_;  // kColumnPadding longer than the entries
 
     std::vector<std::uint32_t> buckets_;    // scratch of build()

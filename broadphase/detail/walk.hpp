@@ -30,78 +30,105 @@ namespace detail {
 // Looking up a run of buckets costs about as much as testing this many boxes one after another.
 inline constexpr std::uint64_t kBoxesPerRun = 4;
 
-/// Calls visitRow(CellRun) for the rows of `level` in which anything overlapping `bounds` may be
-/// filed: from one cell before the box to its last cell. Returns false, without a call, when
-/// reading the whole level is cheaper (and always correct), or the box is inverted.
-template <class Scalar, class VisitRow>
-bool forRowsOfBox(const Level<Scalar>& level, const Aabb<Scalar>& bounds, VisitRow&& visitRow) {
+// So few rows are read without a look at how long their runs are.
+inline constexpr std::uint64_t kFewRows = 16;
+
+/// The rows of cells in which anything overlapping a box may be filed: from one cell before the box to
+/// its last cell.
+struct RowsOfBox {
+    Cell low{};
+    Cell high{};
+    std::uint64_t count = 0;
+    bool areTooMany = false;  // reading the whole level is cheaper, and always correct
+};
+
+template <class Scalar>
+RowsOfBox rowsOfBox(const Level<Scalar>& level, const Aabb<Scalar>& bounds) {
+    RowsOfBox rows;
     if (hasNan(bounds)) {
-        return true;
+        return rows;
     }
     if (!(bounds.min().array() <= bounds.max().array()).all()) {
-        return false;
+        rows.areTooMany = true;  // an inverted box may overlap boxes that it lies within
+        return rows;
     }
-    Cell low;
-    Cell high;
-    std::uint64_t rows = 1;
+    std::uint64_t count = 1;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto i = static_cast<Eigen::Index>(axis);
-        low[axis] = std::max(level.cell(bounds.min()[i], axis) - 1, level.low[axis]);
-        high[axis] = std::min(level.cell(bounds.max()[i], axis), level.high[axis]);
-        if (low[axis] > high[axis]) {
-            return true;
+        rows.low[axis] = std::max(level.cell(bounds.min()[i], axis) - 1, level.low[axis]);
+        rows.high[axis] = std::min(level.cell(bounds.max()[i], axis), level.high[axis]);
+        if (rows.low[axis] > rows.high[axis]) {
+            return rows;
         }
         if (axis > 0) {
-            rows *= static_cast<std::uint64_t>(high[axis] - low[axis]) + 1;
+            count *= static_cast<std::uint64_t>(rows.high[axis] - rows.low[axis]) + 1;
         }
     }
-    // Rows of a hashed level share buckets: long ones would have every box read once a row.
-    const auto length = static_cast<std::uint64_t>(high[0] - low[0]) + 1;
-    const bool coversBuckets =
-        !level.isDense &&
-        rows * std::min<std::uint64_t>(length, level.bucketCount) >= level.bucketCount;
-    if (rows * kBoxesPerRun > level.count() || coversBuckets) {
-        return false;
+    rows.count = count;
+    rows.areTooMany = count * kBoxesPerRun > level.count();
+    return rows;
+}
+
+/// Calls visitRow(CellRun) -> bool, false to stop, for each of the rows.
+template <class VisitRow>
+void forRows(const RowsOfBox& rows, VisitRow&& visitRow) {
+    if (rows.count == 0) {
+        return;
     }
-    for (std::int32_t z = low[2]; z <= high[2]; ++z) {
-        for (std::int32_t y = low[1]; y <= high[1]; ++y) {
-            if (!visitRow(CellRun{y, z, low[0], high[0]})) {
-                return true;
+    for (std::int32_t z = rows.low[2]; z <= rows.high[2]; ++z) {
+        for (std::int32_t y = rows.low[1]; y <= rows.high[1]; ++y) {
+            if (!visitRow(CellRun{y, z, rows.low[0], rows.high[0]})) {
+                return;
             }
         }
     }
-    return true;
 }
 
-/// Reads the entries of one level that may overlap `bounds`. For each range of entries calls
-/// reader.read(range, isOwn) -> bool, false to stop; isOwn(entry) must be asked about every hit, and
-/// tells whether this range is the one that reports it. Returns false when stopped.
+/// Whether the rows of a hashed level have more entries in their buckets, those of other rows and those
+/// that several of them share included, than there are.
+template <class Scalar>
+bool haveMoreThanAll(const Table<Scalar>& table, const Level<Scalar>& level,
+                     const RowsOfBox& rows) {
+    if (level.isDense || rows.count <= kFewRows) {
+        return false;
+    }
+    std::uint64_t count = 0;
+    forRows(rows, [&](const CellRun& run) {
+        table.forRun(level, run, [&](const EntryRange& range) { count += range.count(); });
+        return count <= level.count();
+    });
+    return count > level.count();
+}
+
+/// Reads the entries of one level that may overlap `bounds`: each once at most, but for those of a hashed
+/// level, which may be read once for each of the rows where these are kFewRows at most. For each
+/// range of entries calls reader.read(range, isOwn) -> bool, false to stop; isOwn(entry) must be
+/// asked about every hit, and tells whether this range is the one that reports it. Returns false
+/// when stopped.
 template <class Scalar, class Reader>
 bool walkLevel(const Table<Scalar>& table, const Level<Scalar>& level, const Aabb<Scalar>& bounds,
                QueryCost& cost, Reader&& reader) {
     if (level.count() == 0) {
         return true;
     }
-    const auto readWhole = [&] {
-        const EntryRange all{level.firstEntry, level.lastEntry};
+    const RowsOfBox rows = rowsOfBox(level, bounds);
+    if (!level.hasCells || rows.areTooMany || haveMoreThanAll(table, level, rows)) {
         cost.boxesTested += level.count();
-        return reader.read(all, [](std::uint32_t) { return true; });
-    };
-    if (!level.hasCells) {
-        return readWhole();
+        return reader.read(EntryRange{level.firstEntry, level.lastEntry},
+                           [](std::uint32_t) { return true; });
     }
     bool goOn = true;
-    const bool byRows = forRowsOfBox(level, bounds, [&](const CellRun& run) {
+    forRows(rows, [&](const CellRun& run) {
         ++cost.rowsVisited;
         table.forRun(level, run, [&](const EntryRange& range) {
-            cost.boxesTested += range.last - range.first;
+            cost.boxesTested += range.count();
             goOn = goOn && reader.read(range, [&](std::uint32_t entry) {
                 return table.isInRow(level, entry, run.y, run.z);
             });
         });
         return goOn;
     });
-    return byRows ? goOn : readWhole();
+    return goOn;
 }
 
 /// walkLevel() over all levels of a table. Returns false when stopped.
