@@ -3,8 +3,8 @@
 
 // Where balls come to rest that fall far from the origin, in Bullet with single precision.
 
-#include <demos/accuracy/physics/physics_world.hpp>
 #include <demos/report/statistics.hpp>
+#include <demos/scenes/physics_world.hpp>
 
 #include <cstdint>
 #include <span>

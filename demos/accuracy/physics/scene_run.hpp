@@ -4,8 +4,8 @@
 // One scene in many worlds at once, step by step.
 
 #include <demos/accuracy/physics/physics_scenes.hpp>
-#include <demos/accuracy/physics/physics_world.hpp>
 #include <demos/report/statistics.hpp>
+#include <demos/scenes/physics_world.hpp>
 
 #include <span>
 #include <vector>

@@ -4,8 +4,8 @@
 // A task in several worlds at once, with one setting of the engine.
 
 #include <demos/accuracy/physics/physics_tasks.hpp>
-#include <demos/accuracy/physics/physics_world.hpp>
 #include <demos/report/statistics.hpp>
+#include <demos/scenes/physics_world.hpp>
 
 #include <cstdint>
 #include <span>

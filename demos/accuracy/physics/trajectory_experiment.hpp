@@ -6,7 +6,7 @@
 
 #include <demos/accuracy/experiment.hpp>
 #include <demos/accuracy/physics/physics_scenes.hpp>
-#include <demos/accuracy/physics/physics_world.hpp>
+#include <demos/scenes/physics_world.hpp>
 
 #include <cstdint>
 #include <span>

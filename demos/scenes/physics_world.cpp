@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/physics/physics_world.hpp>
+#include <demos/scenes/physics_world.hpp>
 
 #include <demos/scenes/ordered_dispatcher.hpp>
 
