@@ -4,6 +4,7 @@
 // it ends, in time, and never a body that has long left.
 
 #include <tests/integration/bullet/broadphases.hpp>
+#include <tests/integration/bullet/ghost_world.hpp>
 #include <tests/integration/bullet/pair_journal.hpp>
 
 #include <integration/bullet/pair_cache.hpp>
@@ -186,78 +187,6 @@ INSTANTIATE_TEST_SUITE_P(Groups, EagerGroups,
                                          Proxy::CharacterFilter | Proxy::DebrisFilter));
 
 // --- Bullet's own ghosts -------------------------------------------------------------------------
-
-/// A world without gravity, with a btGhostObject and a btPairCachingGhostObject at the origin and
-/// boxes in a row elsewhere, of which some come and go. The others touch, so that btDbvtBroadphase,
-/// which checks a part of its pairs in a step, would not check the ghosts' for long.
-struct GhostWorld {
-    explicit GhostWorld(const SpatialHashConfig& config = {}) : broadphase(config) {
-        world.setGravity({0, 0, 0});
-        world.getPairCache()->setInternalGhostPairCallback(&ghostCallback);
-        for (btGhostObject* const object : {&ghost, static_cast<btGhostObject*>(&cachingGhost)}) {
-            object->setCollisionShape(&large);
-            object->setCollisionFlags(btCollisionObject::CF_NO_CONTACT_RESPONSE);
-            world.addCollisionObject(object, Proxy::SensorTrigger, Proxy::AllFilter);
-        }
-        for (int i = 0; i < 30; ++i) {
-            bodies.push_back(std::make_unique<btRigidBody>(1, nullptr, &small));
-            bodies.back()->setActivationState(DISABLE_DEACTIVATION);
-            bodies.back()->setWorldTransform(at({100 + btScalar(i) * btScalar(1.01), 0, 0}));
-            world.addRigidBody(bodies.back().get());
-        }
-    }
-    ~GhostWorld() {
-        for (const auto& body : bodies) {
-            world.removeRigidBody(body.get());
-        }
-        world.removeCollisionObject(&ghost);
-        world.removeCollisionObject(&cachingGhost);
-    }
-
-    static btTransform at(const btVector3& place) {
-        return btTransform(btQuaternion(0, 0, 0, 1), place);
-    }
-
-    static bool touches(const btCollisionObject& a, const btCollisionObject& b) {
-        const Proxy& p = *a.getBroadphaseHandle();
-        const Proxy& q = *b.getBroadphaseHandle();
-        return overlap({p.m_aabbMin, p.m_aabbMax}, {q.m_aabbMin, q.m_aabbMax});
-    }
-
-    /// Numbers of the bodies that a ghost lists; the other ghost is not counted.
-    std::vector<int> listedBy(btGhostObject& object) const {
-        std::vector<int> listed;
-        for (int i = 0; i < static_cast<int>(bodies.size()); ++i) {
-            btAlignedObjectArray<btCollisionObject*>& all = object.getOverlappingPairs();
-            if (all.findLinearSearch(bodies[static_cast<std::size_t>(i)].get()) < all.size()) {
-                listed.push_back(i);
-            }
-        }
-        return listed;
-    }
-
-    std::vector<int> touching(const btCollisionObject& object) const {
-        std::vector<int> touched;
-        for (int i = 0; i < static_cast<int>(bodies.size()); ++i) {
-            if (touches(object, *bodies[static_cast<std::size_t>(i)])) {
-                touched.push_back(i);
-            }
-        }
-        return touched;
-    }
-
-    btDefaultCollisionConfiguration configuration;
-    btCollisionDispatcher dispatcher{&configuration};
-    SpatialHashBroadphase broadphase;
-    btSequentialImpulseConstraintSolver solver;
-    btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
-    btGhostPairCallback ghostCallback;
-    btBoxShape large{btVector3(2, 2, 2)};
-    btBoxShape small{btVector3(btScalar(0.5), btScalar(0.5), btScalar(0.5))};
-    btGhostObject ghost;
-    btPairCachingGhostObject cachingGhost;
-    std::vector<std::unique_ptr<btRigidBody>> bodies;
-};
 
 TEST(GhostObject, NeverListsWhatHasLeft) {
     GhostWorld scene;
