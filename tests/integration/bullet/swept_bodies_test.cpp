@@ -63,14 +63,15 @@ struct Range {
         return *bodies.back();
     }
 
-    /// 200 walls here and there, 60 balls and rods of which two in three are fast.
-    void fill(Random& random, double reach = 9) {
+    /// 200 walls here and there, 60 balls and rods of which two in three are fast; all so far from
+    /// the origin, along each axis.
+    void fill(Random& random, double reach = 9, double offset = 0) {
         for (int i = 0; i < 200; ++i) {
-            const Vector3<double> place = random.pointIn(-reach, reach);
+            const Vector3<double> place = random.pointIn(offset - reach, offset + reach);
             add(wall, 0, btVector3(btScalar(place.x()), btScalar(place.y()), btScalar(place.z())));
         }
         for (int i = 0; i < 60; ++i) {
-            const Vector3<double> place = random.pointIn(-reach, reach);
+            const Vector3<double> place = random.pointIn(offset - reach, offset + reach);
             const Vector3<double> way = random.pointIn(-1, 1).normalized() * (i % 3 == 0 ? 2 : 400);
             btRigidBody& body =
                 add(i % 2 == 0 ? static_cast<btCollisionShape&>(ball)
@@ -129,11 +130,11 @@ std::unique_ptr<SpatialHashBroadphase> swept(Sweep sweep) {
     return std::make_unique<SpatialHashBroadphase>(withSweep(sweep));
 }
 
-TEST(SweptBodies, MakePairsWithWhatTheyPassAndNothingElse) {
+void expectPairsOfWhatIsPassed(double offset) {
     for (const Sweep sweep : {Sweep::box, Sweep::line, Sweep::automatic}) {
         Random random(0x5eed0e01);
         Range range(swept(sweep));
-        range.fill(random);
+        range.fill(random, 9, offset);
         const auto& broadphase = static_cast<const SpatialHashBroadphase&>(*range.broadphase);
         std::size_t most = 0;
         struct Check {
@@ -162,6 +163,15 @@ TEST(SweptBodies, MakePairsWithWhatTheyPassAndNothingElse) {
         EXPECT_GT(most, 20U);
         EXPECT_EQ(broadphase.sweeps()->size(), 40U);
     }
+}
+
+TEST(SweptBodies, MakePairsWithWhatTheyPassAndNothingElse) {
+    expectPairsOfWhatIsPassed(0);
+}
+
+TEST(SweptBodies, DoSoFarFromTheOrigin) {
+    expectPairsOfWhatIsPassed(16'384);
+    expectPairsOfWhatIsPassed(-1'048'576);
 }
 
 TEST(SweptBodies, HaveFewerPairsThanBoxesAroundStartAndEnd) {
