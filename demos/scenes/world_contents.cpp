@@ -18,12 +18,17 @@ WorldContents::~WorldContents() {
 
 btRigidBody& WorldContents::addBody(btCollisionShape& shape, btScalar mass,
                                     const btVector3& position) {
+    return addBody(shape, mass, btTransform(btMatrix3x3::getIdentity(), position));
+}
+
+btRigidBody& WorldContents::addBody(btCollisionShape& shape, btScalar mass,
+                                    const btTransform& place) {
     btVector3 inertia(0, 0, 0);
     if (mass > 0) {
         shape.calculateLocalInertia(mass, inertia);
     }
     btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, &shape, inertia);
-    info.m_startWorldTransform.setOrigin(position);
+    info.m_startWorldTransform = place;
     bodies_.push_back(std::make_unique<btRigidBody>(info));
     bodies_.back()->setUserIndex(static_cast<int>(bodies_.size()) - 1);
     world_.addRigidBody(bodies_.back().get());

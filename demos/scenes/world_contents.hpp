@@ -34,6 +34,7 @@ public:
     /// Adds a body of the given mass [kg], 0 for a static one, with Bullet's default filter. Bodies
     /// are numbered from 0; a body's number is its user index.
     btRigidBody& addBody(btCollisionShape& shape, btScalar mass, const btVector3& position);
+    btRigidBody& addBody(btCollisionShape& shape, btScalar mass, const btTransform& place);
 
     /// By their numbers.
     [[nodiscard]] std::span<const std::unique_ptr<btRigidBody>> bodies() const noexcept {

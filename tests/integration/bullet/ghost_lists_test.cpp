@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 //
-// What ghosts list, in a random life: in every step precisely the bodies whose boxes overlap theirs.
-// Bodies teleport, fly, push one another, leave the world and come back, sleep and wake; the ghosts
-// move.
+// What ghosts list, in a random life: in every step precisely the bodies whose boxes overlap
+// theirs. Bodies teleport, fly, push one another, leave the world and come back, sleep and wake;
+// the ghosts move.
 
 #include <tests/integration/bullet/broadphases.hpp>
 #include <tests/integration/bullet/ghost_world.hpp>
