@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Zlib
 # shellcheck shell=bash
 #
-# Sourced by demos/run, tests/run and tests/benchmarks/run: from a fresh machine to an up-to-date
-# build.
+# Sourced by demos/run, tests/run, tests/fuzz/run and tests/benchmarks/run: from a fresh machine to
+# an up-to-date build.
 # Everything is said on stderr, so that the output of the program that is run stays clean.
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -12,8 +12,10 @@ tools=(cmake:cmake ninja:ninja-build c++:g++ pkg-config:pkg-config)
 libraries=(libbullet-dev libbullet-extras-dev libeigen3-dev libcli11-dev nlohmann-json3-dev
     libgtest-dev libtbb-dev libgmp-dev)
 
-# What may be missing: npm brings what draws the charts of reports.
+# What may be missing: npm brings what draws the charts of reports, rapidcheck makes up operations
+# for tests.
 optional_tools=(npm:npm)
+optional_libraries=(librapidcheck-dev)
 
 say() {
     printf '%s: %s\n' "${script:-setup}" "$*" >&2
@@ -27,20 +29,26 @@ missing_tools() {
     done
 }
 
-# Prints the packages that are missing, one a line.
-missing_packages() {
+# Prints those of the packages that are missing, one a line.
+missing_libraries() {
     local library status
-    missing_tools "${tools[@]}"
-    for library in "${libraries[@]}"; do
+    for library; do
         status=$(dpkg-query --show --showformat='${db:Status-Status}' "$library" 2>/dev/null) || true
         [[ $status == installed ]] || echo "$library"
     done
 }
 
+# Prints the packages that are missing, one a line.
+missing_packages() {
+    missing_tools "${tools[@]}"
+    missing_libraries "${libraries[@]}"
+}
+
 # Prints the optional packages that are missing and that this system offers, one a line.
 missing_options() {
     local package
-    for package in $(missing_tools "${optional_tools[@]}"); do
+    for package in $(missing_tools "${optional_tools[@]}") \
+        $(missing_libraries "${optional_libraries[@]}"); do
         if apt-cache show "$package" >/dev/null 2>&1; then
             echo "$package"
         fi

@@ -135,7 +135,7 @@ void Player::play(const Command& command) {
 
 void Player::create(const Command& command) {
     const auto object = static_cast<std::size_t>(command.object);
-    clients_[object] = std::make_unique<Client>(Client{command.object, true});
+    clients_[object] = std::make_unique<Client>(command.object);
     proxies_[object] =
         broadphase_->createProxy(command.box.min, command.box.max, BOX_SHAPE_PROXYTYPE,
                                  clients_[object].get(), command.group, command.mask, nullptr);

@@ -10,6 +10,7 @@
 
 #include <BulletCollision/BroadphaseCollision/btBroadphaseInterface.h>
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
 #include <memory>
 #include <string>
@@ -30,9 +31,11 @@ std::string excess(const ObjectPairs& pairs, const ObjectPairs& superset);
 /// The filter of a broadphase that has no callback: group and mask, both ways.
 bool groupsCollide(int groupA, int maskA, int groupB, int maskB);
 
-/// What a proxy stands for.
-struct Client {
-    int object = 0;
+/// What a proxy stands for. A collision object, for those queries that read one.
+struct Client : btCollisionObject {
+    explicit Client(int number = 0) : object(number) {}
+
+    int object;
     bool isAlive = true;
 };
 

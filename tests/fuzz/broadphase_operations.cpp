@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: Zlib
+
+// SpatialHashBroadphase over several pair caches, and btDbvtBroadphase over ours, against
+// tests/integration/bullet/player.hpp's Truth.
+
+#include <tests/fuzz/bullet_life_world.hpp>
+#include <tests/fuzz/subjects.hpp>
+#include <tests/integration/bullet/queries.hpp>
+
+namespace hashphase::test {
+namespace {
+
+/// Lists the objects that a ray is to be cast at, and casts at none.
+struct AskedRay : btCollisionWorld::RayResultCallback {
+    bool needsCollision(btBroadphaseProxy* proxy) const override {
+        asked.push_back(objectOf(proxy));
+        return false;
+    }
+    btScalar addSingleResult(btCollisionWorld::LocalRayResult& /*result*/,
+                             bool /*isInWorld*/) override {
+        return 1;
+    }
+    mutable std::vector<int> asked;
+};
+
+class BroadphasePlay {
+public:
+    BroadphasePlay(const Operation& first, Story& story)
+        : story_(story), world_(first), life_(first, world_, story) {
+        if (world_.hash() == nullptr) {
+            life_.palette().calm();
+        }
+    }
+
+    void play(const Operation& operation) {
+        Arguments arguments(operation);
+        constexpr std::uint32_t kOwn = 14;
+        const std::uint32_t kind = operation.kind % (life_.kKinds + kOwn);
+        if (kind < life_.kKinds || life_.proxies().empty()) {
+            life_.change(kind, arguments);
+        } else {
+            act(kind - life_.kKinds, arguments);
+        }
+        EXPECT_TRUE(world_.journal.errors().empty()) << world_.journal.errors()[0];
+        EXPECT_TRUE(world_.ours() == nullptr || world_.ours()->validate().empty())
+            << world_.ours()->validate();
+        EXPECT_TRUE(!world_.hasGhosts() || world_.journal.alive() == uidPairs(world_.cache()))
+            << "ghosts were told otherwise";
+        if (world_.hash() != nullptr) {
+            EXPECT_EQ(world_.hash()->grid().validate(), "");
+            EXPECT_EQ(world_.hash()->grid().size(), life_.proxies().size());
+        }
+    }
+
+private:
+    void act(std::uint32_t kind, Arguments& arguments) {
+        switch (kind) {
+            case 0:
+            case 1:
+            case 2:
+                calculate(1);
+                break;
+            case 3:
+                calculate(1 + arguments.below(12));
+                break;
+            case 4:
+                regroup(arguments);
+                break;
+            case 5:
+                changeFilter(arguments);
+                break;
+            case 6:
+                createMany(arguments);
+                break;
+            case 7:
+                setMany(arguments);
+                break;
+            case 8:
+                destroyMany(arguments);
+                break;
+            case 9:
+                askBox(arguments);
+                break;
+            case 10:
+            case 11:
+                askRay(arguments);
+                break;
+            case 12:
+                askClosest(arguments);
+                break;
+            default:
+                cleanAndSort(arguments);
+                break;
+        }
+    }
+
+    void calculate(std::uint32_t count) {
+        story_.tell("calculate ", count, " times");
+        for (std::uint32_t i = 0; i < count; ++i) {
+            world_.broadphase().calculateOverlappingPairs(nullptr);
+            EXPECT_EQ(difference(world_.pairs(), world_.truth.pairs()), "");
+            if (world_.hash() != nullptr) {
+                EXPECT_EQ(world_.hash()->validate(), "");
+            }
+        }
+    }
+
+    void regroup(Arguments& arguments) {
+        const ProxyId id = life_.proxies()[life_.any(arguments)].id;
+        btBroadphaseProxy* const proxy = world_.proxyOf(id);
+        const int group = 1 << arguments.below(6);
+        const int mask = arguments.flag() ? btBroadphaseProxy::AllFilter : arguments.byte() % 64;
+        story_.tell("group ", group, " and mask ", mask, " for ", id.index);
+        proxy->m_collisionFilterGroup = group;
+        proxy->m_collisionFilterMask = mask;
+        askFilterAgain(world_.broadphase(), proxy);
+        world_.truth.play({{Action::regroup, world_.numberOf(id), {}, group, mask}});
+    }
+
+    void changeFilter(Arguments& arguments) {
+        const int divisor = static_cast<int>(arguments.below(4));
+        story_.tell("filter with the divisor ", divisor);
+        world_.filter.divisor = divisor;
+        world_.cache().setOverlapFilterCallback(divisor != 0 ? &world_.filter : nullptr);
+        for (btBroadphaseProxy* const proxy : world_.proxies) {
+            if (proxy != nullptr) {
+                askFilterAgain(world_.broadphase(), proxy);
+            }
+        }
+        world_.truth.play({{Action::changeFilter, 0, {}, 0, divisor}});
+    }
+
+    void createMany(Arguments& arguments) {
+        const std::uint32_t count = arguments.below(20);
+        if (world_.hash() == nullptr || life_.proxies().size() + count > kMostProxies) {
+            return;
+        }
+        story_.tell("create ", count, " at once");
+        Random random = arguments.random();
+        std::vector<ProxyDefinition> definitions;
+        std::vector<Aabb<btScalar>> boxes;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            boxes.push_back(anyBox(random));
+            definitions.push_back({toBullet(boxes.back().min()), toBullet(boxes.back().max()),
+                                   world_.newClient(), 1 << random.below(6),
+                                   btBroadphaseProxy::AllFilter});
+        }
+        std::vector<btBroadphaseProxy*> created(count);
+        world_.hash()->createProxies(definitions, created, nullptr);
+        for (std::size_t i = 0; i < count; ++i) {
+            Placed<btScalar> proxy;
+            proxy.box = boxes[i];
+            proxy.id = world_.note(created[i], boxes[i]);
+            life_.list().push_back(proxy);
+        }
+    }
+
+    void setMany(Arguments& arguments) {
+        const std::uint32_t each = 1 + arguments.below(5);
+        if (world_.hash() == nullptr) {
+            return;
+        }
+        story_.tell("set each ", each, "th at once");
+        Random random = arguments.random();
+        std::vector<btBroadphaseProxy*> proxies;
+        std::vector<btVector3> mins;
+        std::vector<btVector3> maxs;
+        for (std::size_t i = 0; i < life_.list().size(); i += each) {
+            Placed<btScalar>& proxy = life_.list()[i];
+            proxy.box = random.chance(0.3) ? proxy.box : anyBox(random);
+            proxies.push_back(world_.proxyOf(proxy.id));
+            mins.push_back(toBullet(proxy.box.min()));
+            maxs.push_back(toBullet(proxy.box.max()));
+            world_.noteBox(proxy.id, proxy.box);
+        }
+        world_.hash()->setAabbs(proxies, mins, maxs, nullptr);
+    }
+
+    void destroyMany(Arguments& arguments) {
+        const std::uint32_t each = 1 + arguments.below(5);
+        if (world_.hash() == nullptr) {
+            return;
+        }
+        story_.tell("destroy each ", each, "th at once");
+        std::vector<btBroadphaseProxy*> proxies;
+        std::vector<int> objects;
+        std::vector<Placed<btScalar>> left;
+        for (std::size_t i = 0; i < life_.list().size(); ++i) {
+            const Placed<btScalar>& proxy = life_.list()[i];
+            if (i % each == 0) {
+                proxies.push_back(world_.proxyOf(proxy.id));
+                objects.push_back(world_.numberOf(proxy.id));
+            } else {
+                left.push_back(proxy);
+            }
+        }
+        world_.hash()->destroyProxies(proxies, nullptr);
+        for (const int object : objects) {
+            world_.noteDestroyed(object);
+        }
+        life_.list() = left;
+        world_.hash()->resetPool(nullptr);
+    }
+
+    Aabb<btScalar> anyBox(Random& random) {
+        Operation drawn;
+        for (std::uint8_t& byte : drawn.arguments) {
+            byte = static_cast<std::uint8_t>(random.below(256));
+        }
+        Arguments from(drawn);
+        return life_.palette().box(from, life_.proxies());
+    }
+
+    void askBox(Arguments& arguments) {
+        const Aabb<btScalar> box = life_.palette().box(arguments, life_.proxies());
+        story_.tell("box ", story_.isTold() ? textOf(box) : std::string());
+        if (world_.hash() == nullptr || hasNan(box)) {
+            return;
+        }
+        const Box asked{toBullet(box.min()), toBullet(box.max())};
+        CollectBox found;
+        world_.broadphase().aabbTest(asked.min, asked.max, found);
+        EXPECT_EQ(sorted(found.found),
+                  withoutNan(bruteForceBox(world_.truth, kMostObjects, asked)));
+    }
+
+    [[nodiscard]] Ray anyRay(Arguments& arguments) {
+        Ray ray{toBullet(life_.palette().point(arguments)),
+                toBullet(life_.palette().point(arguments))};
+        const std::uint8_t form = arguments.byte();
+        if (form % 4 == 1) {
+            ray.to[form / 4 % 3] = ray.from[form / 4 % 3];
+        } else if (form % 4 == 2) {
+            const btScalar half = life_.palette().extent(arguments.byte());
+            ray.castMin = btVector3(-half, -half, -half);
+            ray.castMax = btVector3(half, half, half);
+        }
+        return ray;
+    }
+    /// Whether Bullet's own arithmetic of rays holds.
+    [[nodiscard]] bool castsRays() {
+        const btScalar scale = life_.palette().scale();
+        return world_.hash() != nullptr && scale >= btScalar(1e-3) && scale <= btScalar(1e4);
+    }
+    /// Bullet's predicates take NaN for a hit.
+    [[nodiscard]] std::vector<int> withoutNan(std::vector<int> objects) const {
+        std::erase_if(objects, [this](int object) {
+            const Box& box = world_.truth.box(object);
+            return hasNan(toAabb(box.min, box.max));
+        });
+        return objects;
+    }
+    [[nodiscard]] std::vector<int> expectedOnRay(const Ray& ray) const {
+        return withoutNan(bruteForceRay(world_.truth, kMostObjects, ray));
+    }
+
+    void askRay(Arguments& arguments) {
+        const Ray ray = anyRay(arguments);
+        story_.tell(describe(ray));
+        if (!castsRays()) {
+            return;
+        }
+        CollectRay found(ray);
+        world_.broadphase().rayTest(ray.from, ray.to, found, ray.castMin, ray.castMax);
+        EXPECT_EQ(sorted(found.found), expectedOnRay(ray));
+    }
+
+    void askClosest(Arguments& arguments) {
+        Ray ray = anyRay(arguments);
+        ray.castMin = ray.castMax = btVector3(0, 0, 0);
+        story_.tell("closest: ", describe(ray));
+        if (!castsRays()) {
+            return;
+        }
+        AskedRay one;
+        world_.hash()->closestRay(ray.from, ray.to, one);
+        EXPECT_EQ(sorted(one.asked), expectedOnRay(ray));
+        std::array<AskedRay, 3> callbacks;
+        std::vector<ClosestRay> rays;
+        for (AskedRay& callback : callbacks) {
+            rays.push_back({ray.from, ray.to, &callback});
+        }
+        world_.hash()->closestRays(rays);
+        for (const AskedRay& callback : callbacks) {
+            EXPECT_EQ(callback.asked, one.asked);
+        }
+    }
+
+    // What changes no pair.
+    void cleanAndSort(Arguments& arguments) {
+        const ProxyId id = life_.proxies()[life_.any(arguments)].id;
+        story_.tell("clean ", id.index, " from pairs, and sort");
+        const auto before = uidPairs(world_.cache());
+        world_.cache().cleanProxyFromPairs(world_.proxyOf(id), nullptr);
+        if (world_.ours() != nullptr) {
+            world_.cache().sortOverlappingPairs(nullptr);
+        }
+        EXPECT_EQ(uidPairs(world_.cache()), before);
+    }
+
+    Story& story_;
+    BulletLifeWorld world_;
+    BoxLife<btScalar, BulletLifeWorld> life_;
+};
+
+}  // namespace
+
+Verdict playBroadphase(std::span<const Operation> operations, bool tellsStory) {
+    return playLife<BroadphasePlay>(operations, tellsStory);
+}
+
+}  // namespace hashphase::test

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// A broadphase of Bullet's kind with its proxies and clients, beside what brute force knows of them.
+
+#include <tests/fuzz/grid_world.hpp>
+#include <tests/integration/bullet/broadphases.hpp>
+#include <tests/integration/bullet/pair_journal.hpp>
+
+#include <integration/bullet/conversions.hpp>
+#include <integration/bullet/pair_cache.hpp>
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+namespace hashphase::test {
+
+inline constexpr int kMostObjects = 512;
+
+/// The broadphase and the truth beside it, as a World. Objects have the lowest numbers that are free.
+class BulletLifeWorld {
+public:
+    explicit BulletLifeWorld(const Operation& first) : truth(kMostObjects) {
+        constexpr int all = btBroadphaseProxy::AllFilter;
+        SpatialHashConfig config;
+        config.grid = configOf(first);
+        config.eagerGroups = first.arguments[6] / 2 % 3 == 0   ? config.eagerGroups
+                             : first.arguments[6] / 2 % 3 == 1 ? 0
+                                                               : all;
+        const int kind = first.arguments[5] % 7;
+        if (kind == 0) {
+            hash_ = std::make_unique<SpatialHashBroadphase>(config);
+        } else if (kind == 1 || kind == 2) {
+            cache_ = std::make_unique<btHashedOverlappingPairCache>();
+            if (kind == 2) {
+                cache_ = std::make_unique<btSortedOverlappingPairCache>();
+            }
+            hash_ = std::make_unique<SpatialHashBroadphase>(cache_.get(), config);
+        } else {
+            auto cache = std::make_unique<PairCache>(kind % 2 == 0 ? PairOrder::canonical
+                                                                   : PairOrder::arrival);
+            ours_ = cache.get();
+            cache_ = std::move(cache);
+            if (kind < 5) {
+                hash_ = std::make_unique<SpatialHashBroadphase>(ours_, config);
+            } else {
+                dbvt_ = std::make_unique<ExactDbvt>(ours_);
+            }
+        }
+        // btSortedOverlappingPairCache does not tell its ghosts of all that it removes.
+        hasGhosts_ = first.arguments[6] % 2 == 1 && kind != 2;
+        if (hasGhosts_) {
+            cache().setInternalGhostPairCallback(&journal);
+        }
+    }
+    ~BulletLifeWorld() {
+        for (std::size_t i = 0; i < proxies.size(); ++i) {
+            if (proxies[i] != nullptr) {
+                broadphase().destroyProxy(proxies[i], nullptr);
+            }
+        }
+    }
+    BulletLifeWorld(const BulletLifeWorld&) = delete;
+    BulletLifeWorld& operator=(const BulletLifeWorld&) = delete;
+
+    [[nodiscard]] btBroadphaseInterface& broadphase() {
+        return hash_ != nullptr ? static_cast<btBroadphaseInterface&>(*hash_) : *dbvt_;
+    }
+    [[nodiscard]] bool hasGhosts() const noexcept { return hasGhosts_; }
+    [[nodiscard]] SpatialHashBroadphase* hash() { return hash_.get(); }
+    [[nodiscard]] PairCache* ours() { return ours_; }
+    [[nodiscard]] btOverlappingPairCache& cache() {
+        return *broadphase().getOverlappingPairCache();
+    }
+
+    /// A client for the proxy that is created next; it has its number already, which filters ask for.
+    [[nodiscard]] Client* newClient() {
+        const auto free = std::find(isTaken_.begin(), isTaken_.end(), 0);
+        const auto object = static_cast<int>(free - isTaken_.begin());
+        EXPECT_LT(object, kMostObjects);
+        if (free == isTaken_.end()) {
+            isTaken_.push_back(0);
+            proxies.push_back(nullptr);
+        }
+        isTaken_[static_cast<std::size_t>(object)] = 1;
+        clients_.push_back(std::make_unique<Client>(object));
+        return clients_.back().get();
+    }
+
+    ProxyId add(const Aabb<btScalar>& box, Mobility /*mobility*/) {
+        const int group = 1 << (created_++ % 6);
+        return note(
+            broadphase().createProxy(toBullet(box.min()), toBullet(box.max()), BOX_SHAPE_PROXYTYPE,
+                                     newClient(), group, btBroadphaseProxy::AllFilter, nullptr),
+            box);
+    }
+    void move(ProxyId id, const Aabb<btScalar>& box) {
+        broadphase().setAabb(proxyOf(id), toBullet(box.min()), toBullet(box.max()), nullptr);
+        noteBox(id, box);
+    }
+    void remove(ProxyId id) {
+        const int object = numberOf(id);
+        broadphase().destroyProxy(proxyOf(id), nullptr);
+        noteDestroyed(object);
+    }
+
+    [[nodiscard]] btBroadphaseProxy* proxyOf(ProxyId id) const {
+        return hash_ != nullptr ? hash_->proxyOf(id) : proxies[id.index];
+    }
+    /// The object's number.
+    [[nodiscard]] int numberOf(ProxyId id) const { return objectOf(proxyOf(id)); }
+
+    ProxyId note(btBroadphaseProxy* proxy, const Aabb<btScalar>& box) {
+        auto* const client = static_cast<Client*>(proxy->m_clientObject);
+        client->setBroadphaseHandle(proxy);
+        const int object = client->object;
+        proxies[static_cast<std::size_t>(object)] = proxy;
+        truth.play({{Action::create,
+                     object,
+                     {toBullet(box.min()), toBullet(box.max())},
+                     proxy->m_collisionFilterGroup,
+                     proxy->m_collisionFilterMask}});
+        return hash_ != nullptr ? SpatialHashBroadphase::idOf(proxy)
+                                : ProxyId{static_cast<std::uint32_t>(object), 1};
+    }
+    void noteBox(ProxyId id, const Aabb<btScalar>& box) {
+        truth.play({{Action::set, numberOf(id), {toBullet(box.min()), toBullet(box.max())}, 0, 0}});
+    }
+    void noteDestroyed(int object) {
+        proxies[static_cast<std::size_t>(object)] = nullptr;
+        isTaken_[static_cast<std::size_t>(object)] = 0;
+        for (const auto& client : clients_) {
+            client->isAlive = client->isAlive && client->object != object;
+        }
+        truth.play({{Action::destroy, object, {}, 0, 0}});
+    }
+
+    [[nodiscard]] ObjectPairs pairs() {
+        ObjectPairs pairs;
+        const btBroadphasePairArray& array = cache().getOverlappingPairArray();
+        for (int i = 0; i < array.size(); ++i) {
+            pairs.push_back(
+                std::minmax({objectOf(array[i].m_pProxy0), objectOf(array[i].m_pProxy1)}));
+        }
+        std::sort(pairs.begin(), pairs.end());
+        return pairs;
+    }
+
+    Truth truth;
+    PairJournal journal;
+    DivisorFilter filter;
+    std::vector<btBroadphaseProxy*> proxies;  // by object
+
+private:
+    std::vector<char> isTaken_;  // by object: has a client
+    std::vector<std::unique_ptr<Client>> clients_;
+    std::unique_ptr<btOverlappingPairCache> cache_;
+    PairCache* ours_ = nullptr;
+    std::unique_ptr<SpatialHashBroadphase> hash_;
+    std::unique_ptr<ExactDbvt> dbvt_;
+    int created_ = 0;
+    bool hasGhosts_ = false;
+};
+
+}  // namespace hashphase::test

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Zlib
+
+// Pairs and sweeps, by tests/support/pair_world.hpp.
+
+#include <tests/fuzz/grid_world.hpp>
+#include <tests/fuzz/subjects.hpp>
+#include <tests/support/pair_world.hpp>
+
+namespace hashphase::test {
+namespace {
+
+template <class Scalar>
+class PairPlay {
+public:
+    PairPlay(const Operation& first, Story& story)
+        : story_(story),
+          world_(configOf(first),
+                 [this](ProxyId a, ProxyId b) {
+                     return coloursPair(colours_[a.index], colours_[b.index]);
+                 }),
+          life_(first, world_, story) {
+        // Contacts of moving boxes are exact in double precision but for the extremes.
+        maySweep_ = first.arguments[5] % 2 == 1;
+        if (maySweep_ && sizeof(Scalar) == sizeof(double)) {
+            life_.palette().tame();
+        }
+    }
+
+    void play(const Operation& operation) {
+        Arguments arguments(operation);
+        constexpr std::uint32_t kOwn = 10;
+        const std::uint32_t kind = operation.kind % (life_.kKinds + kOwn);
+        noteColours();
+        if (kind < life_.kKinds || life_.proxies().empty()) {
+            life_.change(kind, arguments);
+        } else {
+            act(kind - life_.kKinds, arguments);
+        }
+        EXPECT_EQ(world_.grid.validate(), "");
+        EXPECT_EQ(world_.sweeps.validate(), "");
+        EXPECT_EQ(world_.pairs.count(), world_.set().size());
+    }
+
+private:
+    void act(std::uint32_t kind, Arguments& arguments) {
+        switch (kind) {
+            case 0:
+            case 1:
+            case 2:
+            case 3:
+                update(1);
+                break;
+            case 4:
+                update(1 + arguments.below(12));
+                break;
+            case 5: {
+                Placed<Scalar>& proxy = life_.list()[life_.any(arguments)];
+                proxy.colour = arguments.below(3);
+                story_.tell("colour ", proxy.id.index, " with ", proxy.colour);
+                noteColours();
+                world_.refilter(proxy.id);
+                break;
+            }
+            case 6: {
+                const ProxyId id = life_.proxies()[life_.any(arguments)].id;
+                story_.tell("announce ", id.index);
+                world_.announce(id);
+                break;
+            }
+            case 7:
+            case 8:
+                sweep(arguments);
+                break;
+            default:
+                ask(arguments);
+                break;
+        }
+    }
+
+    void update(std::uint32_t count) {
+        story_.tell(count, " updates");
+        for (std::uint32_t i = 0; i < count; ++i) {
+            world_.update();
+            world_.checkThoroughly(life_.proxies());
+        }
+    }
+
+    void sweep(Arguments& arguments) {
+        const Placed<Scalar>& proxy = life_.proxies()[life_.any(arguments)];
+        constexpr std::array<Sweep, 4> kModes{Sweep::automatic, Sweep::line, Sweep::box,
+                                              Sweep::none};
+        const Sweep mode = kModes[arguments.below(4)];
+        Vector3<Scalar> way;
+        for (int axis = 0; axis < 3; ++axis) {
+            const std::uint8_t byte = arguments.byte();
+            way[axis] = (byte % 2 == 0 ? 1 : -1) * life_.palette().extent(byte / 2);
+        }
+        if (!maySweep_) {
+            story_.tell("nothing: nobody sweeps here");
+            return;
+        }
+        story_.tell("sweep ", proxy.id.index, " in mode ", static_cast<int>(mode), " by ",
+                    story_.isTold() ? textOf(way) : std::string());
+        ways_[proxy.id] = mode == Sweep::none ? Vector3<Scalar>(Vector3<Scalar>::Zero()) : way;
+        world_.sweep(proxy.id, way, mode);
+    }
+
+    // Nothing that is touched on a way is left out; nothing is found that no box around a way touches.
+    void ask(Arguments& arguments) {
+        const Aabb<Scalar> box = life_.palette().box(arguments, life_.proxies());
+        story_.tell("box ", story_.isTold() ? textOf(box) : std::string());
+        std::vector<ProxyId> found;
+        CollectAll collect(found);
+        world_.sweeps.visit(BoxRegion<Scalar>{box}, collect);
+        std::sort(found.begin(), found.end());
+        EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end()) << "each once";
+        for (const Placed<Scalar>& proxy : life_.proxies()) {
+            const auto way = ways_.find(proxy.id);
+            const bool sweeps = way != ways_.end() && !way->second.isZero(0);
+            const MovingBox<Scalar> moving{
+                proxy.box, sweeps ? way->second : Vector3<Scalar>(Vector3<Scalar>::Zero())};
+            const bool isFound = std::binary_search(found.begin(), found.end(), proxy.id);
+            const bool touches =
+                sweeps ? overlaps(proxy.box, box) ||
+                             firstContactByRationals(moving, MovingBox<Scalar>{box}).has_value()
+                       : overlaps(proxy.box, box);
+            EXPECT_TRUE(isFound || !touches) << proxy.id.index << " is left out";
+            EXPECT_TRUE(!isFound || touches || (sweeps && overlaps(wayBounds(moving), box)))
+                << proxy.id.index << " is nowhere near";
+        }
+    }
+
+    void noteColours() {
+        for (const Placed<Scalar>& proxy : life_.proxies()) {
+            if (colours_.size() <= proxy.id.index) {
+                colours_.resize(proxy.id.index + 1);
+            }
+            colours_[proxy.id.index] = proxy.colour;
+        }
+    }
+
+    Story& story_;
+    std::vector<std::uint32_t> colours_;  // by index of proxy
+    std::map<ProxyId, Vector3<Scalar>> ways_;
+    bool maySweep_ = false;
+    PairWorld<Scalar> world_;
+    BoxLife<Scalar, PairWorld<Scalar>> life_;
+};
+
+}  // namespace
+
+Verdict playPairs(std::span<const Operation> operations, bool tellsStory) {
+    return operations.empty() || operations[0].kind % 2 == 0
+               ? playLife<PairPlay<float>>(operations, tellsStory)
+               : playLife<PairPlay<double>>(operations, tellsStory);
+}
+
+}  // namespace hashphase::test
