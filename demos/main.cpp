@@ -5,6 +5,7 @@
 #include <demos/accuracy/accuracy_command.hpp>
 #include <demos/compare/compare_command.hpp>
 #include <demos/console/program.hpp>
+#include <demos/stability/stability_command.hpp>
 
 #include <array>
 #include <iostream>
@@ -20,6 +21,6 @@ int main(int argc, char** argv) {
     for (const std::string& argument : arguments) {
         console.commandLine += " " + argument;
     }
-    const std::array subcommands{compareCommand(), accuracyCommand()};
+    const std::array subcommands{compareCommand(), accuracyCommand(), stabilityCommand()};
     return runProgram(arguments, subcommands, console);
 }

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// The hard cases by what they are about, a file each.
+
+#include <demos/stability/hard_case.hpp>
+
+#include <span>
+
+namespace hashphase::demos {
+
+[[nodiscard]] std::span<const HardCase> numberCases();   // what is no number, or too large for one
+[[nodiscard]] std::span<const HardCase> borderCases();   // borders of cells, and rounding
+[[nodiscard]] std::span<const HardCase> rayCases();      // rays
+[[nodiscard]] std::span<const HardCase> sweepCases();    // what moves fast
+[[nodiscard]] std::span<const HardCase> sizeCases();     // sizes that differ, cells, keys
+[[nodiscard]] std::span<const HardCase> crowdCases();    // many at one place
+[[nodiscard]] std::span<const HardCase> churnCases();    // changes, of everything, at any time
+[[nodiscard]] std::span<const HardCase> physicsCases();  // bodies in a world
+[[nodiscard]] std::span<const HardCase> repeatCases();   // the same on every machine
+[[nodiscard]] std::span<const HardCase> clientCases();   // terrain, cameras, selection, neighbours
+
+}  // namespace hashphase::demos

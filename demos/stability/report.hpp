@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What the broadphases do in hard cases, as text for people, JSON for programs, CSV for spreadsheets, a
+// page for browsers.
+
+#include <demos/stability/stability.hpp>
+
+#include <iosfwd>
+
+namespace hashphase::demos {
+
+/// A row for each case; all about each case where that was asked for; what is not as required; the
+/// verdict.
+void printReport(const StabilityReport& report, std::ostream& out);
+
+/// Schema "hashphase-stability".
+void writeJson(const StabilityReport& report, std::ostream& out);
+
+/// A row for each case and broadphase.
+void writeCsv(const StabilityReport& report, std::ostream& out);
+
+void writeHtml(const StabilityReport& report, std::ostream& out);
+
+}  // namespace hashphase::demos

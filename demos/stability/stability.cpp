@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/stability/stability.hpp>
+
+#include <demos/console/nearest_name.hpp>
+#include <demos/console/progress.hpp>
+#include <demos/console/result_file.hpp>
+#include <demos/report/stopwatch.hpp>
+#include <demos/scenes/input_error.hpp>
+#include <demos/stability/isolation.hpp>
+#include <demos/stability/report.hpp>
+
+#include <algorithm>
+#include <ostream>
+
+namespace hashphase::demos {
+namespace {
+
+// Ours is to end whatever the machine has to do beside it.
+constexpr double kPatienceWithOurs = 10;
+
+void printList(std::span<const HardCase> cases, std::ostream& out) {
+    for (const HardCase& each : cases) {
+        const std::string id = each.id;
+        out << "  " << id << std::string(5 - id.size(), ' ') << each.name << '\n';
+    }
+}
+
+std::vector<const HardCase*> chosenCases(const std::vector<std::string>& ids,
+                                         std::span<const HardCase> cases) {
+    std::vector<std::string> known;
+    for (const HardCase& each : cases) {
+        known.emplace_back(each.id);
+    }
+    for (const std::string& id : ids) {
+        if (std::find(known.begin(), known.end(), id) == known.end()) {
+            throw InputError(unknownNameSentence("case", id, known));
+        }
+    }
+    std::vector<const HardCase*> chosen;
+    for (const HardCase& each : cases) {
+        if (ids.empty() || std::find(ids.begin(), ids.end(), each.id) != ids.end()) {
+            chosen.push_back(&each);
+        }
+    }
+    return chosen;
+}
+
+void runCases(std::span<const HardCase* const> chosen, StabilityReport& report, Console& console) {
+    const StabilityOptions& options = report.options;
+    Progress progress(console.err, progressStyle(console, options.quiet), "hard cases",
+                      chosen.size() * report.kinds.size());
+    std::size_t done = 0;
+    for (const HardCase* hardCase : chosen) {
+        const Stopwatch watch;
+        CaseResult result{hardCase, {}, 0};
+        for (const BroadphaseKind* kind : report.kinds) {
+            const std::string what =
+                std::string(hardCase->id) + ": " + hardCase->name + ", " + std::string(kind->name);
+            const auto tell = [&] { progress.update(done, what); };
+            tell();
+            const CaseContext context{*kind, options.isQuick, options.seed};
+            const double seconds = options.caseSeconds * (kind->ours ? kPatienceWithOurs : 1);
+            result.outcomes.push_back(
+                runIsolated([&] { return hardCase->run(context); }, {seconds}, tell));
+            ++done;
+        }
+        result.seconds = watch.milliseconds() / 1000;
+        report.results.push_back(std::move(result));
+    }
+}
+
+bool allHold(const StabilityReport& report) {
+    return std::all_of(report.results.begin(), report.results.end(),
+                       [&](const CaseResult& result) { return caseHolds(report, result); });
+}
+
+}  // namespace
+
+bool caseHolds(const StabilityReport& report, const CaseResult& result) {
+    bool isAsked = false;
+    for (std::size_t i = 0; i < report.kinds.size(); ++i) {
+        if (report.kinds[i]->ours) {
+            isAsked = true;
+            if (!holds(*result.hardCase, result.outcomes[i])) {
+                return false;
+            }
+        }
+    }
+    return isAsked;
+}
+
+std::string verdictLine(const StabilityReport& report) {
+    const auto count = static_cast<std::size_t>(
+        std::count_if(report.results.begin(), report.results.end(),
+                      [&](const CaseResult& result) { return caseHolds(report, result); }));
+    std::string line =
+        std::to_string(count) + " of " + std::to_string(report.results.size()) + " hard cases hold";
+    std::string others;
+    for (std::size_t i = 0; i < report.kinds.size(); ++i) {
+        if (report.kinds[i]->ours) {
+            continue;
+        }
+        std::size_t asked = 0;
+        std::size_t held = 0;
+        for (const CaseResult& result : report.results) {
+            if (result.outcomes[i].kind != OutcomeKind::nothing) {
+                ++asked;
+                held += holds(*result.hardCase, result.outcomes[i]) ? 1 : 0;
+            }
+        }
+        others += (others.empty() ? "" : ", ") + std::string(report.kinds[i]->name) + " in " +
+                  std::to_string(asked - held) + " of " + std::to_string(asked);
+    }
+    if (!others.empty()) {
+        line += "; Bullet's broadphases do not: " + others;
+    }
+    return line;
+}
+
+int runStability(const StabilityOptions& options, std::span<const BroadphaseKind> kinds,
+                 std::span<const HardCase> cases, Console& console) {
+    if (options.list) {
+        printList(cases, console.out);
+        return kExitOk;
+    }
+    const std::vector<const HardCase*> chosen = chosenCases(options.only, cases);
+    StabilityReport report;
+    report.options = options;
+    for (const BroadphaseKind& kind : kinds) {
+        report.kinds.push_back(&kind);
+    }
+    ResultFile json(options.jsonFile);
+    ResultFile csv(options.csvFile);
+    ResultFile html(options.htmlFile);
+    report.provenance = gatherProvenance(console.commandLine);
+    const Stopwatch watch;
+    runCases(chosen, report, console);
+    report.seconds = watch.milliseconds() / 1000;
+
+    printReport(report, console.out);
+    json.write([&report](std::ostream& file) { writeJson(report, file); });
+    csv.write([&report](std::ostream& file) { writeCsv(report, file); });
+    html.write([&report](std::ostream& file) { writeHtml(report, file); });
+    return allHold(report) ? kExitOk : kExitCheckFailed;
+}
+
+}  // namespace hashphase::demos

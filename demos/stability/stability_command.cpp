@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/stability/stability_command.hpp>
+
+#include <demos/console/option_checks.hpp>
+#include <demos/stability/stability.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <memory>
+
+namespace hashphase::demos {
+namespace {
+
+void declareStability(CLI::App& app, StabilityOptions& options) {
+    app.add_option("--only", options.only, "run these cases, separated by commas (see --list)")
+        ->delimiter(',');
+    app.add_flag("--quick", options.isQuick, "run smaller inputs: some seconds for all");
+    app.add_flag("--explain", options.isExplained,
+                 "tell of each case what is handed in, what is required, and what each one does");
+    app.add_option("--seed", options.seed, "seed of all random numbers")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    app.add_option("--case-time-limit", options.caseSeconds,
+                   "seconds of processor time that a broadphase has for a case (ours ten times "
+                   "that)")
+        ->check(positiveSecondsFault)
+        ->capture_default_str();
+    app.add_option("--json", options.jsonFile, "write everything found to this file");
+    app.add_option("--csv", options.csvFile,
+                   "write a row for each case and broadphase to this file");
+    app.add_option("--html", options.htmlFile, "write a page with the table to this file");
+    app.add_flag("--quiet", options.quiet, "no progress on stderr");
+    app.add_flag("--list", options.list, "say which cases there are");
+}
+
+}  // namespace
+
+Subcommand stabilityCommand(std::span<const BroadphaseKind> kinds,
+                            std::span<const HardCase> cases) {
+    auto options = std::make_shared<StabilityOptions>();
+    Subcommand command;
+    command.name = "stability";
+    command.description = "Run hard cases with our broadphase and Bullet's; say what each one does";
+    command.declareOptions = [options](CLI::App& app) { declareStability(app, *options); };
+    command.run = [options, kinds, cases](Console& console) {
+        return runStability(*options, kinds, cases, console);
+    };
+    return command;
+}
+
+}  // namespace hashphase::demos
