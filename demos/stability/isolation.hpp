@@ -17,7 +17,7 @@ struct IsolationLimits {
     double seconds = 2;  // of processor time, less what LimitPause excludes
 
     /// Of wall time, for what waits and does not work.
-    [[nodiscard]] double wallSeconds() const noexcept { return 60 + 20 * seconds; }
+    [[nodiscard]] double wallSeconds() const noexcept { return 300 + 50 * seconds; }
 };
 
 /// What work() returns; OutcomeKind::hangs, crashes or, when it throws, wrong, with a note that says

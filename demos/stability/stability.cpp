@@ -25,20 +25,22 @@ void printList(std::span<const HardCase> cases, std::ostream& out) {
     }
 }
 
-std::vector<const HardCase*> chosenCases(const std::vector<std::string>& ids,
-                                         std::span<const HardCase> cases) {
+// The items with these names, in their own order; all when none is named.
+template <class Item, class NameOf>
+std::vector<const Item*> chosenOf(std::string_view whatItIs, const std::vector<std::string>& names,
+                                  std::span<const Item> items, const NameOf& nameOf) {
     std::vector<std::string> known;
-    for (const HardCase& each : cases) {
-        known.emplace_back(each.id);
+    for (const Item& each : items) {
+        known.emplace_back(nameOf(each));
     }
-    for (const std::string& id : ids) {
-        if (std::find(known.begin(), known.end(), id) == known.end()) {
-            throw InputError(unknownNameSentence("case", id, known));
+    for (const std::string& name : names) {
+        if (std::find(known.begin(), known.end(), name) == known.end()) {
+            throw InputError(unknownNameSentence(whatItIs, name, known));
         }
     }
-    std::vector<const HardCase*> chosen;
-    for (const HardCase& each : cases) {
-        if (ids.empty() || std::find(ids.begin(), ids.end(), each.id) != ids.end()) {
+    std::vector<const Item*> chosen;
+    for (const Item& each : items) {
+        if (names.empty() || std::find(names.begin(), names.end(), nameOf(each)) != names.end()) {
             chosen.push_back(&each);
         }
     }
@@ -123,12 +125,12 @@ int runStability(const StabilityOptions& options, std::span<const BroadphaseKind
         printList(cases, console.out);
         return kExitOk;
     }
-    const std::vector<const HardCase*> chosen = chosenCases(options.only, cases);
+    const std::vector<const HardCase*> chosen =
+        chosenOf("case", options.only, cases, [](const HardCase& each) { return each.id; });
     StabilityReport report;
     report.options = options;
-    for (const BroadphaseKind& kind : kinds) {
-        report.kinds.push_back(&kind);
-    }
+    report.kinds = chosenOf("broadphase", options.broadphases, kinds,
+                            [](const BroadphaseKind& each) { return each.name; });
     ResultFile json(options.jsonFile);
     ResultFile csv(options.csvFile);
     ResultFile html(options.htmlFile);

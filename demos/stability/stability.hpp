@@ -16,7 +16,8 @@
 namespace hashphase::demos {
 
 struct StabilityOptions {
-    std::vector<std::string> only;  // ids; empty: all
+    std::vector<std::string> only;         // ids; empty: all
+    std::vector<std::string> broadphases;  // names; empty: all
     bool isQuick = false;
     bool isExplained = false;
     std::uint64_t seed = 1;

@@ -14,6 +14,9 @@ namespace {
 void declareStability(CLI::App& app, StabilityOptions& options) {
     app.add_option("--only", options.only, "run these cases, separated by commas (see --list)")
         ->delimiter(',');
+    app.add_option("--broadphases", options.broadphases,
+                   "run these broadphases, separated by commas: hash and Bullet's")
+        ->delimiter(',');
     app.add_flag("--quick", options.isQuick, "run smaller inputs: some seconds for all");
     app.add_flag("--explain", options.isExplained,
                  "tell of each case what is handed in, what is required, and what each one does");

@@ -18,6 +18,8 @@ namespace hashphase::demos {
 [[nodiscard]] std::span<const HardCase> churnCases();    // changes, of everything, at any time
 [[nodiscard]] std::span<const HardCase> physicsCases();  // bodies in a world
 [[nodiscard]] std::span<const HardCase> repeatCases();   // the same on every machine
-[[nodiscard]] std::span<const HardCase> clientCases();   // terrain, cameras, selection, neighbours
+[[nodiscard]] std::span<const HardCase> groundCases();   // terrain
+[[nodiscard]] std::span<const HardCase> viewCases();     // cameras and dragged rectangles
+[[nodiscard]] std::span<const HardCase> proximityCases();  // who is near
 
 }  // namespace hashphase::demos

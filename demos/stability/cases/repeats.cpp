@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Zlib
+//
+// The same answer with all instructions, on any number of threads, in any order.
+
+#include <demos/stability/cases/cases.hpp>
+
+#include <broadphase/crowd.hpp>
+#include <broadphase/detail/kernels.hpp>
+#include <broadphase/frustum.hpp>
+#include <broadphase/pairs.hpp>
+#include <broadphase/sweeps.hpp>
+#include <demos/scenes/random.hpp>
+#include <demos/stability/grid_scene.hpp>
+#include <demos/stability/pair_scene.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <numeric>
+#include <thread>
+
+namespace hashphase::demos {
+namespace {
+
+using Point = Vector3<float>;
+using detail::InstructionSet;
+
+/// A number that changes with every bit of what it is given; FNV-1a, after Fowler, Noll and Vo.
+class Digest {
+public:
+    void add(std::uint64_t value) noexcept {
+        for (int byte = 0; byte < 8; ++byte) {
+            hash_ = (hash_ ^ (value >> (8 * byte) & 0xff)) * 0x100000001b3;
+        }
+    }
+    void add(std::span<const ProxyPair> pairs) noexcept {
+        add(pairs.size());
+        for (const ProxyPair& pair : pairs) {
+            add(keyOf(pair));
+        }
+    }
+    [[nodiscard]] std::uint64_t value() const noexcept { return hash_; }
+
+private:
+    std::uint64_t hash_ = 0xcbf29ce484222325;
+};
+
+/// A ParallelFor on threads of its own.
+class OnThreads {
+public:
+    explicit OnThreads(std::size_t count) : count_(count) {}
+
+    void operator()(std::size_t count, std::size_t grain, LoopBody body) const {
+        const std::size_t parts =
+            std::min(count_, (count + grain - 1) / std::max<std::size_t>(grain, 1));
+        std::vector<std::thread> threads;
+        for (std::size_t part = 1; part < parts; ++part) {
+            threads.emplace_back([=] { body(count * part / parts, count * (part + 1) / parts); });
+        }
+        if (parts > 0) {
+            body(0, count / parts);
+        }
+        for (std::thread& thread : threads) {
+            thread.join();
+        }
+    }
+
+private:
+    std::size_t count_;
+};
+
+// Boxes of many sizes, on borders and beside them.
+template <class Scalar>
+std::vector<Aabb<Scalar>> variedBoxes(std::size_t count, std::uint64_t seed) {
+    const float side = 1.2F * std::cbrt(static_cast<float>(count));
+    std::vector<Aabb<Scalar>> boxes;
+    for (const Aabb<float>& box : scatteredCubes(count, side, 0.05F, 1.5F, seed)) {
+        boxes.push_back(box.cast<Scalar>());
+    }
+    for (std::size_t i = 0; i < count; i += 3) {
+        const Vector3<Scalar> low = boxes[i].min().array().floor();
+        boxes[i] = {low, low + boxes[i].sizes()};
+    }
+    return boxes;
+}
+
+// All that pairs, sweeps, rays, volumes and crowds say over some frames.
+template <class Scalar>
+std::uint64_t digestOfAll(std::size_t count, std::uint64_t seed, ParallelFor parallelFor) {
+    Digest digest;
+    Grid<Scalar> grid;
+    Sweeps<Scalar> sweeps(grid);
+    Pairs<Scalar> pairs(grid, &sweeps);
+    std::vector<Aabb<Scalar>> boxes = variedBoxes<Scalar>(count, seed);
+    std::vector<ProxyId> ids;
+    for (const Aabb<Scalar>& box : boxes) {
+        ids.push_back(grid.add(box));
+    }
+    const auto all = [](ProxyId, ProxyId) { return true; };
+    Random random(seed);
+    for (int frame = 0; frame < 4; ++frame) {
+        for (std::size_t i = 0; i < count; i += 2) {
+            const Vector3<Scalar> by(random.between(-0.2F, 0.2F), random.between(-0.2F, 0.2F), 0);
+            boxes[i].translate(by);
+            grid.move(ids[i], boxes[i]);
+            if (i % 20 == 0) {
+                sweeps.set(ids[i], 40 * by);
+            }
+        }
+        const PairChanges changes = pairs.update(all, parallelFor);
+        digest.add(changes.born);
+        digest.add(changes.died);
+    }
+    CollectClosest<Scalar> closest;
+    grid.visit(RayRegion<Scalar>(boxes[0].min(), boxes[1].max()), closest);
+    digest.add(closest.found().index);
+    std::vector<std::uint64_t> bits;
+    CollectBits seen(bits);
+    const std::array<Eigen::Hyperplane<Scalar, 3>, 3> planes{
+        {{Vector3<Scalar>(1, 2, 3), Scalar(-1)},
+         {Vector3<Scalar>(-2, 1, 0), Scalar(4)},
+         {Vector3<Scalar>(0, -1, 1), Scalar(2)}}};
+    grid.visit(ConvexRegion<Scalar>(planes), seen);
+    for (const std::uint64_t word : bits) {
+        digest.add(word);
+    }
+    Crowd<Scalar> crowd;
+    crowd.take(grid, 1, acceptAll, parallelFor);
+    std::vector<std::uint32_t> counts(crowd.size());
+    crowd.count(counts, parallelFor);
+    for (std::uint32_t agent = 0; agent < crowd.size(); ++agent) {
+        digest.add(std::uint64_t{crowd.id(agent).index} << 32 | counts[agent]);
+    }
+    return digest.value();
+}
+
+CaseOutcome allInstructions(const CaseContext& context) {
+    if (!context.kind.ours) {
+        return {};
+    }
+    CaseTally tally;
+    std::string tried;
+    const std::size_t count = context.quickOrFull<std::size_t>(1500, 10'000);
+    std::array<std::uint64_t, 2> expected{};
+    for (const InstructionSet set : {InstructionSet::scalar, InstructionSet::sse2,
+                                     InstructionSet::avx2, InstructionSet::avx512}) {
+        if (!detail::isAvailable(set)) {
+            continue;
+        }
+        detail::useInstructionSet(set);
+        const std::array digests{digestOfAll<float>(count, context.seed, serialFor),
+                                 digestOfAll<double>(count, context.seed, serialFor)};
+        if (tried.empty()) {
+            expected = digests;
+        }
+        tally.expect(digests == expected, "the answers are those of scalar code");
+        judgePairs(context, tally, variedBoxes<float>(1000, context.seed));
+        tried += (tried.empty() ? "" : ", ") + std::string(detail::nameOf(set));
+    }
+    tally.note("Tried here: " + tried + ".");
+    return tally.outcome();
+}
+
+// The boxes in another order, and back by what they were called before.
+std::vector<PairKey> pairsInOrder(const CaseContext& context, const Boxes& boxes,
+                                  const std::vector<std::uint32_t>& order) {
+    Boxes permuted;
+    for (const std::uint32_t object : order) {
+        permuted.push_back(boxes[object]);
+    }
+    PairScene scene(context, permuted);
+    for (int frame = 0; frame < 4; ++frame) {
+        for (std::uint32_t i = 0; i < scene.size(); ++i) {
+            const float by = frame % 2 == 0 ? 0.125F : -0.125F;
+            scene.move(i, scene.boxes()[i].translated(Point(by, 0, 0)));
+        }
+        scene.findPairs();
+    }
+    std::vector<PairKey> pairs;
+    for (const PairKey pair : scene.reported()) {
+        pairs.push_back(pairKey(order[firstOf(pair)], order[secondOf(pair)]));
+    }
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+CaseOutcome anyOrder(const CaseContext& context) {
+    CaseTally tally;
+    const Boxes boxes = variedBoxes<float>(1000, context.seed);
+    std::vector<std::uint32_t> order(boxes.size());
+    std::iota(order.begin(), order.end(), 0U);
+    const std::vector<PairKey> expected = pairsInOrder(context, boxes, order);
+    Random random(context.seed);
+    for (int i = 0; i < 4; ++i) {
+        for (std::size_t k = order.size(); k > 1; --k) {
+            const auto other = static_cast<std::size_t>(random.unit() * static_cast<float>(k));
+            std::swap(order[k - 1], order[std::min(other, k - 1)]);
+        }
+        tally.compare(pairsInOrder(context, boxes, order), expected);
+    }
+    if (context.kind.ours) {
+        const std::size_t count = context.quickOrFull<std::size_t>(3000, 20'000);
+        const std::uint64_t alone = digestOfAll<float>(count, context.seed, serialFor);
+        for (const std::size_t threads : {1U, 2U, 3U, 5U, 8U, 16U}) {
+            const OnThreads parallel(threads);
+            tally.expect(digestOfAll<float>(count, context.seed, parallel) == alone,
+                         "the answers on threads are those on one");
+        }
+    }
+    return tally.outcome();
+}
+
+constexpr std::array kCases{
+    HardCase{
+        "H38", "all instruction sets",
+        "pairs, sweeps, a ray, a volume and a crowd of 10,000 boxes (--quick: 1,500) over four "
+        "frames, in both precisions, with each instruction set that this processor has",
+        "the same answers to the last bit", allInstructions},
+    HardCase{
+        "H39", "any order, any number of threads",
+        "1,000 boxes created in five orders and moved; all answers about 20,000 (--quick: 3,000) "
+        "on 1, 2, 3, 5, 8 and 16 threads",
+        "the same sorted pairs in any order; the same answers on any number of threads", anyOrder},
+};
+
+}  // namespace
+
+std::span<const HardCase> repeatCases() {
+    return kCases;
+}
+
+}  // namespace hashphase::demos
