@@ -16,7 +16,7 @@ namespace hashphase::demos {
 [[nodiscard]] std::span<const HardCase> sizeCases();     // sizes that differ, cells, keys
 [[nodiscard]] std::span<const HardCase> crowdCases();    // many at one place
 [[nodiscard]] std::span<const HardCase> churnCases();    // changes, of everything, at any time
-[[nodiscard]] std::span<const HardCase> physicsCases();  // bodies in a world
+[[nodiscard]] std::span<const HardCase> bodyCases();  // bodies in a world
 [[nodiscard]] std::span<const HardCase> repeatCases();   // the same on every machine
 [[nodiscard]] std::span<const HardCase> groundCases();   // terrain
 [[nodiscard]] std::span<const HardCase> viewCases();     // cameras and dragged rectangles

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/stability/isolation.hpp>
+#include <demos/stability/pair_scene.hpp>
+#include <demos/stability/stability_command.hpp>
+#include <tests/demos/temporary_folder.hpp>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+#include <unistd.h>
+
+namespace hashphase::demos {
+namespace {
+
+struct Printed {
+    int exitCode = 0;
+    std::string out;
+    std::string err;
+};
+
+Printed run(const std::vector<std::string>& arguments,
+            std::span<const BroadphaseKind> kinds = broadphaseKinds(),
+            std::span<const HardCase> cases = hardCases()) {
+    std::ostringstream out;
+    std::ostringstream err;
+    std::vector<std::string> all{"stability"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    const std::array subcommands{stabilityCommand(kinds, cases)};
+    Printed printed;
+    printed.exitCode = runProgram(all, subcommands, {out, err, false, "hashphase test"});
+    printed.out = out.str();
+    printed.err = err.str();
+    return printed;
+}
+
+std::string lastLineOf(const std::string& text) {
+    return text.substr(text.rfind('\n', text.size() - 2) + 1);
+}
+
+// --- The catalogue --------------------------------------------------------------------------------
+
+TEST(HardCases, AreAllThereEachOnceInOrder) {
+    std::vector<std::string> ids;
+    std::vector<std::string> expected;
+    for (const HardCase& each : hardCases()) {
+        ids.emplace_back(each.id);
+        expected.push_back("H" + std::to_string(expected.size() + 1));
+    }
+    EXPECT_EQ(ids, expected);
+    EXPECT_EQ(ids.size(), 45U);
+}
+
+TEST(HardCases, SayWhatTheyAreInAWidthThatATableHas) {
+    std::set<std::string> names;
+    for (const HardCase& each : hardCases()) {
+        SCOPED_TRACE(each.id);
+        EXPECT_TRUE(names.insert(each.name).second) << "another case has that name";
+        EXPECT_LE(std::string(each.name).size(), 36U);
+        EXPECT_GT(std::string(each.input).size(), 10U);
+        EXPECT_GT(std::string(each.required).size(), 10U);
+        EXPECT_NE(each.run, nullptr);
+    }
+}
+
+TEST(HardCases, AllHoldInAQuickRun) {
+    const std::array ours{broadphaseKinds()[0]};
+    const Printed printed = run({"--quick", "--quiet"}, ours);
+    EXPECT_EQ(printed.exitCode, kExitOk) << printed.out;
+    EXPECT_EQ(lastLineOf(printed.out), "45 of 45 hard cases hold\n");
+    EXPECT_EQ(printed.err, "");
+}
+
+// --- The table ------------------------------------------------------------------------------------
+
+TEST(Stability, TellsWhatEachBroadphaseDoes) {
+    const Printed printed = run({"--quick", "--quiet", "--only", "H3,H24"});
+    EXPECT_EQ(printed.exitCode, kExitOk) << printed.out;
+    for (const char* text :
+         {"H3 ", "H24 ", "hash", "dbvt", "axis-sweep", "holds", "-n: n answers"}) {
+        EXPECT_NE(printed.out.find(text), std::string::npos) << text;
+    }
+    const std::string verdict = lastLineOf(printed.out);
+    EXPECT_EQ(verdict.find("2 of 2 hard cases hold; Bullet's broadphases do not: dbvt in 2 of 2, "),
+              0U)
+        << verdict;
+    std::istringstream lines(printed.out);
+    for (std::string line; std::getline(lines, line) && line.find("-n:") != 0;) {
+        EXPECT_LE(line.size(), 120U) << line;
+    }
+}
+
+TEST(Stability, ExplainsACase) {
+    const Printed printed = run({"--quick", "--quiet", "--only", "H31", "--explain"});
+    EXPECT_EQ(printed.exitCode, kExitOk) << printed.out;
+    for (const char* text :
+         {"  input: a cell size of -1", "  required: refused", "  hash: exact (", "  dbvt: -\n"}) {
+        EXPECT_NE(printed.out.find(text), std::string::npos) << text << '\n' << printed.out;
+    }
+}
+
+TEST(Stability, ListsItsCases) {
+    const Printed printed = run({"--list"});
+    EXPECT_EQ(printed.exitCode, kExitOk);
+    EXPECT_NE(printed.out.find("  H16  "), std::string::npos) << printed.out;
+}
+
+TEST(Stability, RefusesWhatItDoesNotKnow) {
+    EXPECT_EQ(run({"--only", "H99"}).exitCode, kExitUsage);
+    EXPECT_EQ(run({"--only", "H4", "--case-time-limit", "0"}).exitCode, kExitUsage);
+    EXPECT_EQ(run({"--only", "H4", "--json", "/no/such/folder/x.json"}).exitCode, kExitUsage);
+    const Printed printed = run({"--quik"});
+    EXPECT_EQ(printed.exitCode, kExitUsage);
+    EXPECT_NE(printed.err.find("--quick"), std::string::npos) << printed.err;
+}
+
+TEST(Stability, WritesJsonCsvAndAPage) {
+    const TemporaryFolder folder;
+    const std::string json = folder.file("out.json");
+    const std::string csv = folder.file("out.csv");
+    const std::string html = folder.file("out.html");
+    const Printed printed = run(
+        {"--quick", "--quiet", "--only", "H9,H31", "--json", json, "--csv", csv, "--html", html});
+    ASSERT_EQ(printed.exitCode, kExitOk) << printed.out;
+
+    std::ifstream jsonFile(json);
+    const nlohmann::json report = nlohmann::json::parse(jsonFile);
+    EXPECT_EQ(report["schema"], "hashphase-stability");
+    EXPECT_EQ(report["verdict"]["holds"], true);
+    ASSERT_EQ(report["cases"].size(), 2U);
+    EXPECT_EQ(report["cases"][0]["id"], "H9");
+    EXPECT_EQ(report["cases"][0]["outcomes"].size(), broadphaseKinds().size());
+    EXPECT_EQ(report["cases"][0]["outcomes"][0]["outcome"], "exact");
+    EXPECT_EQ(report["cases"][1]["outcomes"][1]["outcome"], "nothing");
+
+    std::ifstream csvFile(csv);
+    std::size_t rows = 0;
+    for (std::string line; std::getline(csvFile, line); ++rows) {
+        EXPECT_EQ(line.find(rows == 0 ? "case,name,broadphase,outcome" : "H"), 0U) << line;
+    }
+    EXPECT_EQ(rows, 1 + 2 * broadphaseKinds().size());
+
+    std::ifstream htmlFile(html);
+    const std::string page{std::istreambuf_iterator<char>(htmlFile), {}};
+    for (const char* text : {"Content-Security-Policy", "default-src 'none'",
+                             "H9 eight boxes at a "
+                             "cell&#39;s corner",
+                             "2 of 2 hard cases hold"}) {
+        EXPECT_NE(page.find(text), std::string::npos) << text;
+    }
+}
+
+// --- What goes wrong ------------------------------------------------------------------------------
+
+// Bullet's brute force, but for the first pair, which it forgets.
+class Forgetful : public btSimpleBroadphase {
+public:
+    using btSimpleBroadphase::btSimpleBroadphase;
+    void calculateOverlappingPairs(btDispatcher* dispatcher) override {
+        btSimpleBroadphase::calculateOverlappingPairs(dispatcher);
+        btOverlappingPairCache& cache = *getOverlappingPairCache();
+        if (cache.getNumOverlappingPairs() > 0) {
+            const btBroadphasePair first = cache.getOverlappingPairArray()[0];
+            cache.removeOverlappingPair(first.m_pProxy0, first.m_pProxy1, dispatcher);
+        }
+    }
+};
+
+BroadphaseKind forgetful() {
+    return {"forgetful",
+            "a forgetful one",
+            "for tests",
+            true,
+            1'000'000,
+            true,
+            [](const BroadphaseNeeds& needs) -> std::unique_ptr<btBroadphaseInterface> {
+                return std::make_unique<Forgetful>(static_cast<int>(needs.objects) + 1);
+            }};
+}
+
+TEST(Stability, EndsWithStatus1WhenABroadphaseOfOursForgetsAPair) {
+    const std::array kinds{forgetful()};
+    const Printed printed = run({"--quick", "--quiet", "--only", "H1,H9,H31"}, kinds);
+    EXPECT_EQ(printed.exitCode, kExitCheckFailed);
+    EXPECT_NE(printed.out.find("WRONG"), std::string::npos) << printed.out;
+    EXPECT_NE(printed.out.find("H9 eight boxes at a cell's corner: WRONG"), std::string::npos)
+        << "what is wrong is explained unasked:\n"
+        << printed.out;
+    EXPECT_EQ(lastLineOf(printed.out), "0 of 3 hard cases hold\n");
+}
+
+CaseOutcome crashes(const CaseContext& /*context*/) {
+    std::fputs("about to fall\n", stderr);
+    std::abort();
+}
+CaseOutcome neverEnds(const CaseContext& /*context*/) {
+    for (volatile bool isOn = true; isOn;) {
+    }
+    return {};
+}
+CaseOutcome isFine(const CaseContext& /*context*/) {
+    CaseTally tally;
+    tally.compare(std::vector<int>{1, 2, 3}, std::vector<int>{1, 2, 3});
+    return tally.outcome();
+}
+
+TEST(Stability, GoesOnAfterWhatCrashesAndWhatNeverEnds) {
+    const std::array cases{HardCase{"H1", "a crash", "what crashes", "that it does not", crashes},
+                           HardCase{"H2", "no end", "what never ends", "that it does", neverEnds},
+                           HardCase{"H3", "fine", "what is fine", "that it is", isFine}};
+    const std::array kinds{broadphaseKinds()[1], broadphaseKinds()[0]};
+    const Printed printed = run({"--case-time-limit", "0.02", "--quiet"}, kinds, cases);
+    EXPECT_EQ(printed.exitCode, kExitCheckFailed);
+    EXPECT_EQ(lastLineOf(printed.out),
+              "1 of 3 hard cases hold; Bullet's broadphases do not: dbvt in 2 of 3\n")
+        << printed.out;
+    EXPECT_NE(printed.out.find("about to fall"), std::string::npos) << printed.out;
+}
+
+TEST(Isolation, MakesACrashAnOutcome) {
+    const CaseOutcome outcome = runIsolated([] { return crashes({broadphaseKinds()[0]}); }, {});
+    EXPECT_EQ(outcome.kind, OutcomeKind::crashes);
+    EXPECT_NE(outcome.note.find("about to fall"), std::string::npos) << outcome.note;
+    const CaseOutcome fault = runIsolated(
+        [] {
+            raise(SIGSEGV);
+            return CaseOutcome{};
+        },
+        {});
+    EXPECT_EQ(fault.kind, OutcomeKind::crashes);
+    const CaseOutcome exited = runIsolated([]() -> CaseOutcome { _exit(3); }, {});
+    EXPECT_EQ(exited.kind, OutcomeKind::crashes);
+}
+
+TEST(Isolation, EndsWhatNeverEnds) {
+    const CaseOutcome outcome =
+        runIsolated([] { return neverEnds({broadphaseKinds()[0]}); }, {.seconds = 0.05});
+    EXPECT_EQ(outcome.kind, OutcomeKind::hangs);
+    EXPECT_EQ(outcome.note, "It did not end within 0.05 s of processor time.");
+    EXPECT_EQ(outcomeText(outcome), "no end");
+}
+
+TEST(Isolation, DoesNotCountTimeThatIsPaused) {
+    const auto work = [] {
+        const LimitPause pause;
+        const auto begin = std::clock();
+        while (std::clock() - begin < CLOCKS_PER_SEC / 10) {
+        }
+        return isFine({broadphaseKinds()[0]});
+    };
+    EXPECT_EQ(runIsolated(work, {.seconds = 0.02}).kind, OutcomeKind::exact);
+}
+
+TEST(Isolation, TellsWhatTheWorkFound) {
+    const CaseOutcome found{OutcomeKind::wrong, 10, 3, 4, 1.5, "It is so."};
+    const CaseOutcome told = runIsolated([&] { return found; }, {});
+    EXPECT_EQ(told.kind, found.kind);
+    EXPECT_EQ(told.compared, found.compared);
+    EXPECT_EQ(told.missing, found.missing);
+    EXPECT_EQ(told.extra, found.extra);
+    EXPECT_EQ(told.costRatio, found.costRatio);
+    EXPECT_EQ(told.note, found.note);
+    const CaseOutcome thrown =
+        runIsolated([]() -> CaseOutcome { throw std::runtime_error("no luck"); }, {});
+    EXPECT_EQ(thrown.kind, OutcomeKind::wrong);
+    EXPECT_EQ(thrown.note, "It threw: no luck");
+}
+
+TEST(Isolation, LeavesTheCallerAsItWas) {
+    int number = 1;
+    const CaseOutcome outcome = runIsolated(
+        [&] {
+            number = 2;
+            std::puts("not to be seen");
+            return isFine({broadphaseKinds()[0]});
+        },
+        {});
+    EXPECT_EQ(outcome.kind, OutcomeKind::exact);
+    EXPECT_EQ(number, 1);
+}
+
+TEST(CaseTally, CountsWhatIsMissingAndWhatIsTooMany) {
+    CaseTally tally;
+    tally.compare(std::vector<int>{1, 3, 3, 5}, std::vector<int>{1, 2, 3});
+    const CaseOutcome outcome = tally.outcome();
+    EXPECT_EQ(outcome.kind, OutcomeKind::wrong);
+    EXPECT_EQ(outcome.compared, 3U);
+    EXPECT_EQ(outcome.missing, 1U);
+    EXPECT_EQ(outcome.extra, 2U);
+    EXPECT_EQ(outcomeText(outcome), "-1 +2");
+}
+
+TEST(CaseTally, TellsExtraCostlyAndBroken) {
+    CaseTally extra;
+    extra.compare(std::vector<int>{1, 2}, std::vector<int>{1});
+    EXPECT_EQ(outcomeText(extra.outcome()), "+1");
+    CaseTally costly;
+    costly.addCost(1.01, 2);
+    EXPECT_EQ(outcomeText(costly.outcome()), "exact 1.0x");
+    costly.addCost(12.3, 2);
+    EXPECT_EQ(costly.outcome().kind, OutcomeKind::costly);
+    EXPECT_EQ(outcomeText(costly.outcome()), "costly 12x");
+    costly.expect(false, "the sky is green");
+    EXPECT_EQ(outcomeText(costly.outcome()), "wrong");
+    EXPECT_EQ(costly.outcome().note, "Not so: the sky is green.");
+}
+
+}  // namespace
+}  // namespace hashphase::demos
