@@ -78,7 +78,7 @@ TEST(HardCases, AllHoldInAQuickRun) {
     const Printed printed = run({"--quick", "--quiet"}, ours);
     EXPECT_EQ(printed.exitCode, kExitOk) << printed.out;
     EXPECT_EQ(lastLineOf(printed.out), "45 of 45 hard cases hold\n");
-    EXPECT_EQ(printed.err, "");
+    EXPECT_EQ(printed.err.find("hard cases:"), std::string::npos) << "it is quiet";
 }
 
 // --- The table ------------------------------------------------------------------------------------

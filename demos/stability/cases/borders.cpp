@@ -279,7 +279,7 @@ constexpr std::array kCases{
              "closed boxes: what touches pairs", pointsAndPlates},
     HardCase{"H7", "-0 and +0 as a border",
              "boxes that end or begin at 0, in all 64 combinations of signs; then mirrored",
-             "-0 is +0", signsOfZero},
+             "-0 is +0: the same pairs, whatever the signs", signsOfZero},
     HardCase{
         "H8", "multiples of the cell size",
         "for cells of 0.1, 0.2 ... 100 m (ours; some of them for the others, which have no "

@@ -78,8 +78,12 @@ CaseOutcome allTheSame(const CaseContext& context) {
 
 // --- Counts beyond 32 bits ------------------------------------------------------------------------
 
+// Sanitizers end a program that runs out of memory.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kCanRunOutOfMemory = false;  // sanitizers end a program that does
+constexpr bool kCanRunOutOfMemory = false;
+#elif defined(__has_feature)
+constexpr bool kCanRunOutOfMemory =
+    !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer);
 #else
 constexpr bool kCanRunOutOfMemory = true;
 #endif
