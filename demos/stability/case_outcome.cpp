@@ -22,6 +22,10 @@ std::string ratioText(double ratio) {
     return fixed(ratio, ratio < 9.95 ? 1 : 0) + "x";
 }
 
+std::string secondsText(double seconds) {
+    return fixed(seconds, seconds < 1 ? 2 : 0) + " s";
+}
+
 std::string countsText(const CaseOutcome& outcome) {
     std::string text;
     if (outcome.missing > 0) {
@@ -56,7 +60,7 @@ std::string outcomeText(const CaseOutcome& outcome) {
             return counts.empty() ? "wrong" : counts;
         }
         case OutcomeKind::hangs:
-            return "no end";
+            return "> " + secondsText(outcome.seconds);
         default:
             return std::string(nameOf(outcome.kind));
     }

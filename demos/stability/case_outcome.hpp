@@ -34,6 +34,9 @@ struct CaseOutcome {
 
     /// What else is to be told, in sentences.
     std::string note;
+
+    /// Of what did not end: the time that it had [s].
+    double seconds = 0;
 };
 
 /// In a word or two: "exact", "-3 +12", "costly 12x", "> 2 s", "crashes"; "-" for nothing.

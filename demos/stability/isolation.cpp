@@ -153,6 +153,7 @@ CaseOutcome crash(const std::string& how, std::FILE* said) {
 CaseOutcome hang(double seconds, const char* ofWhat) {
     CaseOutcome outcome;
     outcome.kind = OutcomeKind::hangs;
+    outcome.seconds = seconds;
     outcome.note =
         "It did not end within " + fixed(seconds, seconds < 1 ? 2 : 0) + " s of " + ofWhat + ".";
     return outcome;

@@ -17,12 +17,10 @@ std::string verdictOf(const StabilityReport& report, const CaseResult& result) {
     return caseHolds(report, result) ? "holds" : "WRONG";
 }
 
-std::string legend(const StabilityReport& report) {
-    return "-n: n answers missing; +n: n too many; nx: cost beside the case's measure; no end: not "
-           "within " +
-           fixed(report.options.caseSeconds, report.options.caseSeconds < 1 ? 2 : 0) +
-           " s; -: nothing to ask it for";
-}
+constexpr const char* kLegend =
+    "-n: n answers missing; +n: n too many; nx: cost, by what the case measures it with; > n s: "
+    "did "
+    "not end within n s; -: nothing to ask it for";
 
 // --- Text -----------------------------------------------------------------------------------------
 
@@ -157,7 +155,7 @@ constexpr const char* kIntroduction =
 PageSection tableSection(const StabilityReport& report) {
     PageSection section;
     section.heading = "What each one does";
-    section.sentences = {legend(report) + "."};
+    section.sentences = {std::string(kLegend) + "."};
     DataTable table{{{"id", "id"}, {"case", "case"}}, {}};
     for (const BroadphaseKind* kind : report.kinds) {
         table.columns.push_back({std::string(kind->name), std::string(kind->name)});
@@ -199,7 +197,7 @@ PageSection caseSection(const StabilityReport& report, const CaseResult& result)
 
 void printReport(const StabilityReport& report, std::ostream& out) {
     printTable(report, out);
-    out << legend(report) << '\n';
+    out << kLegend << '\n';
     for (const CaseResult& result : report.results) {
         if (report.options.isExplained || !caseHolds(report, result)) {
             explain(report, result, out);

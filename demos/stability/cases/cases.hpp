@@ -9,17 +9,17 @@
 
 namespace hashphase::demos {
 
-[[nodiscard]] std::span<const HardCase> numberCases();   // what is no number, or too large for one
-[[nodiscard]] std::span<const HardCase> borderCases();   // borders of cells, and rounding
-[[nodiscard]] std::span<const HardCase> rayCases();      // rays
-[[nodiscard]] std::span<const HardCase> sweepCases();    // what moves fast
-[[nodiscard]] std::span<const HardCase> sizeCases();     // sizes that differ, cells, keys
-[[nodiscard]] std::span<const HardCase> crowdCases();    // many at one place
-[[nodiscard]] std::span<const HardCase> churnCases();    // changes, of everything, at any time
-[[nodiscard]] std::span<const HardCase> bodyCases();  // bodies in a world
-[[nodiscard]] std::span<const HardCase> repeatCases();   // the same on every machine
-[[nodiscard]] std::span<const HardCase> groundCases();   // terrain
-[[nodiscard]] std::span<const HardCase> viewCases();     // cameras and dragged rectangles
+[[nodiscard]] std::span<const HardCase> numberCases();  // what is no number, or too large for one
+[[nodiscard]] std::span<const HardCase> borderCases();  // borders of cells, and rounding
+[[nodiscard]] std::span<const HardCase> rayCases();     // rays
+[[nodiscard]] std::span<const HardCase> sweepCases();   // what moves fast
+[[nodiscard]] std::span<const HardCase> sizeCases();    // sizes that differ, cells, keys
+[[nodiscard]] std::span<const HardCase> crowdCases();   // many at one place
+[[nodiscard]] std::span<const HardCase> churnCases();   // changes, of everything, at any time
+[[nodiscard]] std::span<const HardCase> bodyCases();    // bodies in a world
+[[nodiscard]] std::span<const HardCase> repeatCases();  // the same on every machine
+[[nodiscard]] std::span<const HardCase> groundCases();  // terrain
+[[nodiscard]] std::span<const HardCase> viewCases();    // cameras and dragged rectangles
 [[nodiscard]] std::span<const HardCase> proximityCases();  // who is near
 
 }  // namespace hashphase::demos

@@ -183,8 +183,8 @@ CaseOutcome smallMoves(const CaseContext& context) {
     CaseTally tally;
     Boxes boxes{cubeAt({0, 0, 0}, 1)};
     const int frames = context.quickOrFull(1000, 10'000);
-    for (int i = 0; i < frames / 20; ++i) {
-        boxes.push_back(cubeAt({1.5F * static_cast<float>(i), 1, 0}, 1));
+    for (int i = 0; i < frames / 100; ++i) {
+        boxes.push_back(cubeAt({5 * static_cast<float>(i), 1, 0}, 1));
     }
     PairScene scene(
         context, boxes, {},

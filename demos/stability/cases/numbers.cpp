@@ -98,7 +98,7 @@ void judgeDoublePlane(CaseTally& tally) {
 }
 
 CaseOutcome endlessPlane(const CaseContext& context) {
-    const std::size_t count = context.quickOrFull<std::size_t>(1000, 4000);
+    const std::size_t count = context.quickOrFull<std::size_t>(500, 2000);
     PlaneWorld with(context, count, true);
     PlaneWorld without(context, count, false);
     CaseTally tally;
