@@ -26,7 +26,7 @@ enum class Bullets {
 
 struct HardWorld {
     std::string name;    // "tower"; with the distance from the origin: "tower@2^10"
-    std::string title;   // "40 boxes, one on top of the other"
+    std::string title;   // "boxes, one on top of the other": what there are `size` of
     int size = 0;        // of boxes, storeys, links ... in the world
     double offset = 0;   // of the whole world from the origin, along each axis [m]
     int steps = 0;       // of 1/60 s: after these, what comes to rest has done so
