@@ -112,9 +112,12 @@ template <bool kIsDense, class Scalar, class Query>
     const auto box = query.template lanes<Pack<Scalar>>();
     const std::uint32_t count = level.lastEntry - level.firstEntry;
     const std::uint64_t rowCount = block.extent(1) * block.extent(2);
+    const auto length = static_cast<std::uint32_t>(block.extent(0));
     bool isWhole = rowCount * kBoxesPerRun > count;
     if constexpr (!kIsDense) {
-        isWhole = isWhole || (rowCount > kFewRows && haveMoreThanAll(level, block));
+        // Rows that pass as many buckets as there are would have every box read about once a row.
+        isWhole = isWhole || rowCount * lowest(length, level.bucketCount) >= level.bucketCount ||
+                  (rowCount > kFewRows && haveMoreThanAll(level, block));
     }
     if (isWhole) {
         cost.boxesTested +=
@@ -123,7 +126,6 @@ template <bool kIsDense, class Scalar, class Query>
     }
     cost.rowsVisited += rowCount;
     const std::uint32_t* starts = level.bucketStart;
-    const auto length = static_cast<std::uint32_t>(block.extent(0));
     Run runs[kWidth];
     Row rows[kWidth];
     std::uint32_t waiting = 0;

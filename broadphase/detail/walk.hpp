@@ -85,11 +85,18 @@ void forRows(const RowsOfBox& rows, VisitRow&& visitRow) {
 }
 
 /// Whether the rows of a hashed level have more entries in their buckets, those of other rows and those
-/// that several of them share included, than there are.
+/// that several of them share included, than there are; or as many buckets.
 template <class Scalar>
 bool haveMoreThanAll(const Table<Scalar>& table, const Level<Scalar>& level,
                      const RowsOfBox& rows) {
-    if (level.isDense || rows.count <= kFewRows) {
+    if (level.isDense || rows.count == 0) {
+        return false;
+    }
+    const auto length = static_cast<std::uint64_t>(rows.high[0] - rows.low[0]) + 1;
+    if (rows.count * std::min<std::uint64_t>(length, level.bucketCount) >= level.bucketCount) {
+        return true;
+    }
+    if (rows.count <= kFewRows) {
         return false;
     }
     std::uint64_t count = 0;
