@@ -55,15 +55,16 @@ struct Crowd<Scalar>::Tile {
             columns[axis].resize(capacity + kTilePadding);
             view.columns[axis] = columns[axis].data();
         }
+        // Each with its view, so that they agree should memory run out on the way.
         numbers.resize(capacity + kTilePadding);
-        groups.resize(capacity + kTilePadding);
-        hits.resize(16 * words);
-        members.resize(detail::kMostGroups * words);
-        found.resize(capacity + kTilePadding);
         view.numbers = numbers.data();
+        groups.resize(capacity + kTilePadding);
         view.groups = groups.data();
+        hits.resize(16 * words);
         view.hits = hits.data();
+        members.resize(detail::kMostGroups * words);
         view.members = members.data();
+        found.resize(capacity + kTilePadding);
         view.found = found.data();
         view.capacity = static_cast<std::uint32_t>(capacity);
     }
@@ -236,10 +237,17 @@ void Crowd<Scalar>::prepare(Scalar radius) {
 template <class Scalar>
 void Crowd<Scalar>::take(const Grid<Scalar>& grid, Scalar radius, ProxyFilter filter,
                          ParallelFor parallelFor) {
-    chooseCells(grid, radius, filter);
-    stage(grid, filter, parallelFor);
-    sort(parallelFor);
-    prepare(radius);
+    try {
+        chooseCells(grid, radius, filter);
+        stage(grid, filter, parallelFor);
+        sort(parallelFor);
+        prepare(radius);
+    } catch (...) {
+        ids_.clear();
+        agentCount_ = 0;
+        leftOut_ = 0;
+        throw;
+    }
 }
 
 // --- Questions -----------------------------------------------------------------------------------

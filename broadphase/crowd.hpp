@@ -59,8 +59,9 @@ public:
     // --- The agents ------------------------------------------------------------------------------
 
     /// Takes the proxies that the filter accepts, as they are now, for questions about `radius` [m].
-    /// The filter is asked on the loop's threads, about some proxies twice. Cost: a few passes over
-    /// the proxies of the grid, whether or not they are filed.
+    /// The filter is asked on the loop's threads, about some proxies twice. Where memory runs out, or
+    /// the filter throws, there are no agents. Cost: a few passes over the proxies of the grid, whether
+    /// or not they are filed.
     void take(const Grid<Scalar>& grid, Scalar radius, ProxyFilter filter = acceptAll,
               ParallelFor parallelFor = serialFor);
 
@@ -72,9 +73,14 @@ public:
     /// Number of proxies that are no agents because they have no position.
     [[nodiscard]] std::uint32_t leftOut() const noexcept { return leftOut_; }
 
-    [[nodiscard]] ProxyId id(std::uint32_t agent) const noexcept { return ids_[agent]; }
+    /// Of an agent, by its number below size() (asserted).
+    [[nodiscard]] ProxyId id(std::uint32_t agent) const {
+        HASHPHASE_ASSERT(agent < size(), "Agents have numbers below size().");
+        return ids_[agent];
+    }
     [[nodiscard]] std::span<const ProxyId> ids() const noexcept { return ids_; }
-    [[nodiscard]] Point position(std::uint32_t agent) const noexcept {
+    [[nodiscard]] Point position(std::uint32_t agent) const {
+        HASHPHASE_ASSERT(agent < size(), "Agents have numbers below size().");
         return {columns_[0][agent], columns_[1][agent], columns_[2][agent]};
     }
 
@@ -96,13 +102,14 @@ public:
                     parallelFor);
     }
 
-    /// Sets counts[agent] to how many neighbours the agent has; size() numbers. Cheaper than
-    /// forEach().
+    /// Sets counts[agent] to how many neighbours the agent has; size() numbers (asserted). Cheaper
+    /// than forEach().
     QueryCost count(std::span<std::uint32_t> counts, ParallelFor parallelFor = serialFor);
 
     /// Sets counts[agent * groupCount + group] to how many neighbours of that group the agent has;
-    /// size() * groupCount numbers. groupOf(ProxyId) is asked once for every agent, on the loop's
-    /// threads; who is in no group below groupCount, at most kMostGroups, is not counted.
+    /// size() * groupCount numbers (asserted). groupOf(ProxyId) is asked once for every agent, on the
+    /// loop's threads; who is in no group below groupCount, at most kMostGroups (asserted), is not
+    /// counted.
     QueryCost countGroups(FunctionRef<std::uint32_t(ProxyId)> groupOf, std::uint32_t groupCount,
                           std::span<std::uint32_t> counts, ParallelFor parallelFor = serialFor);
 

@@ -2,25 +2,22 @@
 #include <broadphase/grid.hpp>
 
 #include <broadphase/detail/limits.hpp>
-#include <broadphase/detail/prefetch.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace hashphase {
 namespace {
+
+[[maybe_unused]] constexpr const char* kMustNotChange =
+    "A grid is not changed from within a PairFilter, visitEach() or the query of a convex volume.";
 
 // Reading the waiting list costs each query about a nanosecond a proxy, filing costs about ten for
 // every mobile proxy: this many waiting proxies balance the two for a write and a query in turn.
 std::size_t manyWaiting(std::size_t mobileCount) {
     return 64 + mobileCount / 128;
-}
-
-// Resting proxies are refiled when this many want to join or have left: often enough to be of use,
-// and seldom enough to be cheap for each of them.
-std::size_t worthRefiling(std::size_t restingCount) {
-    return std::max<std::size_t>(32, restingCount / 8);
 }
 
 void checkProxyCount(std::size_t count) {
@@ -49,13 +46,15 @@ Grid<Scalar>::Grid(const GridConfig& config) : config_(checked(config)) {
 
 template <class Scalar>
 ProxyId Grid<Scalar>::add(const Box& box, Mobility mobility) {
-    if (freeSlots_.empty()) {
-        checkProxyCount(records_.size() + 1);
+    HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(this), kMustNotChange);
+    std::uint32_t slot = firstFree_;
+    if (slot == kNoSlot) {
+        reserve(records_.size() + 1);
+        slot = static_cast<std::uint32_t>(records_.size());
         records_.emplace_back();
-        freeSlots_.push_back(static_cast<std::uint32_t>(records_.size()) - 1);
+    } else {
+        firstFree_ = records_[slot].restingEntry;
     }
-    const std::uint32_t slot = freeSlots_.back();
-    freeSlots_.pop_back();
     Record& record = records_[slot];
     ++record.generation;
     record.place = Place::mobile;
@@ -71,19 +70,22 @@ ProxyId Grid<Scalar>::add(const Box& box, Mobility mobility) {
 template <class Scalar>
 void Grid<Scalar>::reserve(std::size_t count) {
     checkProxyCount(count);
+    if (count <= records_.capacity()) {
+        return;
+    }
     // At least doubled, or a program that asks for a few more each time would move all each time.
-    const auto makeRoom = [count](auto& array) {
-        if (array.capacity() < count) {
-            array.reserve(std::max(count, 2 * array.capacity()));
-        }
-    };
-    makeRoom(records_);
-    makeRoom(mobileSlots_);
+    const std::size_t twice = std::min(2 * records_.capacity(), detail::kMostProxies);
+    const std::size_t room = std::max<std::size_t>({count, twice, 8});
+    mobileSlots_.reserve(room);
+    woken_.reserve(room);
+    waiting_.reserve(manyWaiting(room) + 1);
+    records_.reserve(room);  // last: the others have room for as many
 }
 
 template <class Scalar>
 void Grid<Scalar>::move(ProxyId id, const Box& box) {
     HASHPHASE_ASSERT(contains(id), "Only a proxy of this grid that was not removed can be moved.");
+    HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(this), kMustNotChange);
     Record& record = records_[id.index];
     if (!isSameBits(record.box, box)) {
         noteChange(id.index);
@@ -95,6 +97,7 @@ template <class Scalar>
 void Grid<Scalar>::remove(ProxyId id) {
     HASHPHASE_ASSERT(contains(id),
                      "Only a proxy of this grid that was not removed can be removed.");
+    HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(this), kMustNotChange);
     const std::uint32_t slot = id.index;
     noteChange(slot);
     Record& record = records_[slot];
@@ -103,7 +106,9 @@ void Grid<Scalar>::remove(ProxyId id) {
     record.box = nanBox();
     record.place = Place::nowhere;
     ++record.generation;
-    removedSlots_.push_back(slot);
+    record.restingEntry = firstRemoved_;
+    lastRemoved_ = firstRemoved_ == kNoSlot ? slot : lastRemoved_;
+    firstRemoved_ = slot;
     --size_;
 }
 
@@ -121,7 +126,7 @@ const Aabb<Scalar>& Grid<Scalar>::box(ProxyId id) const {
 
 // To be called before every change of a slot's box.
 template <class Scalar>
-void Grid<Scalar>::noteChange(std::uint32_t slot) {
+void Grid<Scalar>::noteChange(std::uint32_t slot) noexcept {
     Record& record = records_[slot];
     if (record.changedAt != updateNumber_) {
         record.before = record.box;
@@ -141,7 +146,7 @@ void Grid<Scalar>::noteChange(std::uint32_t slot) {
 }
 
 template <class Scalar>
-void Grid<Scalar>::leaveRest(std::uint32_t slot) {
+void Grid<Scalar>::leaveRest(std::uint32_t slot) noexcept {
     Record& record = records_[slot];
     resting_.erase(record.restingEntry);
     ++restingErased_;
@@ -164,186 +169,6 @@ void Grid<Scalar>::setBox(Record& record, const Box& box) {
             "A box with a NaN coordinate was set. It will pair with nothing and be found by "
             "nothing until a box without NaN is set; further ones are counted silently.");
     }
-}
-
-// --- Filing --------------------------------------------------------------------------------------
-
-// Copies the mobile boxes side by side. Slots that are near each other in space are near each other
-// in mobileSlots_, but anywhere in records_.
-template <class Scalar>
-void Grid<Scalar>::stage(ParallelFor parallelFor) {
-    constexpr std::size_t kGrain = 4096;
-    constexpr std::size_t kAhead = 12;
-    const std::size_t count = mobileSlots_.size();
-    staged_.resize(count);
-    stagedBefore_.resize(hasPairs_ ? count : 0);
-    quietCount_ = 0;
-    parallelFor(count, kGrain, [&](std::size_t begin, std::size_t end) {
-        std::uint32_t quietCount = 0;
-        for (std::size_t i = begin; i < end; ++i) {
-            if (i + kAhead < count) {
-                detail::prefetch(&records_[mobileSlots_[i + kAhead]]);
-            }
-            const Record& record = records_[mobileSlots_[i]];
-            staged_[i] = detail::padded(record.box);
-            if (hasPairs_) {
-                stagedBefore_[i] = detail::padded(boxAtUpdate(mobileSlots_[i]));
-            }
-            quietCount += isQuiet(record) ? 1 : 0;
-        }
-        quietCount_ += quietCount;
-    });
-}
-
-// Quiet proxies leave the mobile ones when enough have gathered, or enough others have left rest, to
-// be worth filing the resting ones anew. Returns whether any did.
-template <class Scalar>
-bool Grid<Scalar>::putQuietToRest(ParallelFor parallelFor) {
-    const std::size_t filedCount = resting_.size() - restingErased_;
-    if (std::max<std::uint32_t>(quietCount_, restingErased_) < worthRefiling(filedCount)) {
-        return false;
-    }
-    // Those that stay at rest come first, then those that join.
-    listResting();
-    for (std::size_t i = 0; quietCount_ > 0 && i < mobileSlots_.size(); ++i) {
-        Record& record = records_[mobileSlots_[i]];
-        if (record.place == Place::mobile && isQuiet(record)) {
-            record.place = Place::resting;
-            restSlots_.push_back(mobileSlots_[i]);
-            restBoxes_.push_back(staged_[i]);
-            staged_[i] = detail::padded(nanBox());
-        }
-    }
-    fileResting(parallelFor);
-    return quietCount_ > 0;
-}
-
-// Those that are at rest, in the order of their table.
-template <class Scalar>
-void Grid<Scalar>::listResting() {
-    restSlots_.clear();
-    restBoxes_.clear();
-    for (const std::uint32_t slot : resting_.slots()) {
-        if (records_[slot].place == Place::resting) {
-            restSlots_.push_back(slot);
-            restBoxes_.push_back(detail::padded(records_[slot].box));
-        }
-    }
-}
-
-template <class Scalar>
-void Grid<Scalar>::fileResting(ParallelFor parallelFor) {
-    resting_.build(restSlots_, restBoxes_, fixedSizes_, parallelFor);
-    for (std::uint32_t entry = 0; entry < resting_.size(); ++entry) {
-        records_[resting_.slot(entry)].restingEntry = entry;
-    }
-    restingErased_ = 0;
-    restingTree_.isStale.store(true, std::memory_order_relaxed);
-    cost_.filed += resting_.size();
-}
-
-template <class Scalar>
-void Grid<Scalar>::fileMobile(ParallelFor parallelFor) {
-    mobile_.build(mobileSlots_, staged_, fixedSizes_, parallelFor);
-    ++filingCount_;
-    mobileTree_.isStale.store(true, std::memory_order_relaxed);
-    cost_.filed += mobile_.size();
-    for (const std::uint32_t slot : waiting_) {
-        records_[slot].isWaiting = false;
-    }
-    waiting_.clear();
-    manyWait_.store(false, std::memory_order_release);
-}
-
-// Lists the mobile proxies in the order of their table, for the next time, and forgets those that
-// have left. Only now may a slot be given away again: nobody has to tell its old proxy from the
-// next one any more.
-template <class Scalar>
-void Grid<Scalar>::settle() {
-    nanSlots_.clear();
-    if (mobile_.size() != mobileSlots_.size() && nanCount_ > 0) {
-        std::copy_if(mobileSlots_.begin(), mobileSlots_.end(), std::back_inserter(nanSlots_),
-                     [this](std::uint32_t slot) { return records_[slot].isNan; });
-    }
-    mobileSlots_.assign(mobile_.slots().begin(), mobile_.slots().end());
-    mobileSlots_.insert(mobileSlots_.end(), nanSlots_.begin(), nanSlots_.end());
-    freeSlots_.insert(freeSlots_.end(), removedSlots_.begin(), removedSlots_.end());
-    removedSlots_.clear();
-}
-
-template <class Scalar>
-void Grid<Scalar>::endUpdate() {
-    woken_.clear();
-    boxesAtUpdate_.clear();
-    cost_ = {};
-    if (++updateNumber_ == std::numeric_limits<std::uint32_t>::max()) {
-        countUpdatesAnew();
-    }
-    if (config_.cellSize == 0) {
-        const double finest = std::min(mobile_.finestCellSize(), resting_.finestCellSize());
-        cellSize_ = std::isinf(finest) ? Scalar(1) : static_cast<Scalar>(finest);
-    }
-}
-
-// After 2^32 updates the numbers would come round to those of the first ones, and what has not
-// changed since then would seem to have changed just now. All that matters is how long ago a change
-// was, up to when a proxy comes to rest.
-template <class Scalar>
-void Grid<Scalar>::countUpdatesAnew() {
-    const std::uint32_t longAgo = config_.updatesBeforeRest + 1;
-    for (Record& record : records_) {
-        record.changedAt = longAgo - std::min(updateNumber_ - record.changedAt, longAgo);
-    }
-    updateNumber_ = longAgo;
-}
-
-template <class Scalar>
-UpdateCost Grid<Scalar>::update(ParallelFor parallelFor) {
-    HASHPHASE_ASSERT(!hasPairs_, "Where there are Pairs, Pairs::update() ends the frame.");
-    if (cost_.changed > 0) {
-        stage(parallelFor);
-        static_cast<void>(putQuietToRest(parallelFor));
-        fileMobile(parallelFor);
-        settle();
-    }
-    cost_.resting = resting_.size() - restingErased_;
-    const UpdateCost cost = cost_;
-    endUpdate();
-    return cost;
-}
-
-template <class Scalar>
-void Grid<Scalar>::fileIfMany() const {
-    if (!manyWait_.load(std::memory_order_acquire)) {
-        return;
-    }
-    // The one write on behalf of readers: no reader has passed this point while many wait, and the
-    // first to come here files for all. The grid itself is never a const object: it is created by
-    // its owner, and only seen as const by readers.
-    auto& self = const_cast<Grid&>(*this);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
-    const std::lock_guard lock(self.filing_);
-    if (manyWait_.load(std::memory_order_relaxed)) {
-        self.stage(serialFor);
-        self.fileMobile(serialFor);
-        if (!hasPairs_) {
-            self.settle();
-        }
-    }
-}
-
-// As fileIfMany(): a write on behalf of readers, none of whom passes before it is done.
-template <class Scalar>
-void Grid<Scalar>::growTrees() const {
-    auto& self = const_cast<Grid&>(*this);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
-    const std::lock_guard lock(self.filing_);
-    const auto grow = [](TableTree& tree, const detail::Table<Scalar>& table) {
-        if (tree.isStale.load(std::memory_order_relaxed)) {
-            tree.tree.build(table);
-            tree.isStale.store(false, std::memory_order_release);
-        }
-    };
-    grow(self.mobileTree_, mobile_);
-    grow(self.restingTree_, resting_);
 }
 
 // --- Cells ---------------------------------------------------------------------------------------
@@ -371,11 +196,10 @@ CellRange Grid<Scalar>::cellsOf(ProxyId id) const {
 template <class Scalar>
 std::size_t Grid<Scalar>::memoryBytes() const noexcept {
     return sizeof(*this) + records_.capacity() * sizeof(Record) +
-           (freeSlots_.capacity() + removedSlots_.capacity() + waiting_.capacity() +
-            mobileSlots_.capacity() + woken_.capacity() + restSlots_.capacity() +
-            nanSlots_.capacity()) *
+           (waiting_.capacity() + mobileSlots_.capacity() + woken_.capacity() +
+            restSlots_.capacity() + nanSlots_.capacity()) *
                sizeof(std::uint32_t) +
-           boxesAtUpdate_.capacity() * sizeof(Box) + roundedBefore_.capacity() * sizeof(SlotBox) +
+           boxesAtUpdate_.capacity() * sizeof(Box) +
            (staged_.capacity() + stagedBefore_.capacity() + restBoxes_.capacity()) *
                sizeof(detail::PaddedBox<Scalar>) +
            mobile_.memoryBytes() + resting_.memoryBytes() + mobileTree_.tree.memoryBytes() +
@@ -384,7 +208,9 @@ std::size_t Grid<Scalar>::memoryBytes() const noexcept {
 
 template <class Scalar>
 std::string Grid<Scalar>::validate() const {
-    fileIfMany();
+    if (!fileIfMany()) {
+        return {};  // within a query that has changed the grid nothing of the kind holds
+    }
     // How often each proxy stands where a query would look for it.
     std::vector<std::uint32_t> timesFound(records_.size(), 0);
     for (const detail::Table<Scalar>* table : {&mobile_, &resting_}) {
@@ -403,6 +229,9 @@ std::string Grid<Scalar>::validate() const {
         }
     }
     for (const TableTree* table : {&mobileTree_, &restingTree_}) {
+        if (table->isStale.load(std::memory_order_relaxed)) {
+            continue;
+        }
         if (std::string error = table->tree.validate(); !error.empty()) {
             return error;
         }

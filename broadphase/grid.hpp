@@ -19,6 +19,14 @@
 //            All threads must agree on that where coordinates are denormal; elsewhere they need not,
 //            and the answers are the same.
 // Limits     2^28 proxies; who adds more is thrown std::length_error.
+// Callbacks  A collector may ask the grid, and change it, in a query of its own: what it removes is
+//            not offered any more; what it moves or adds may be offered again, as it is then, or not.
+//            Not so where many are dealt with at once, in visitEach(), in the queries of convex
+//            volumes, and in a PairFilter; update() and shiftOrigin() run within none of them.
+//            Asserted.
+// Memory     Where it runs out, std::bad_alloc comes from add(), reserve(), shiftOrigin(), update() and
+//            queries that file or grow; nothing is lost, and the call may be repeated. move() and
+//            remove() allocate nothing.
 // Misuse     An id that is null, stale or of another grid is asserted.
 
 #include <broadphase/aabb.hpp>
@@ -26,6 +34,7 @@
 #include <broadphase/detail/box_columns.hpp>
 #include <broadphase/detail/box_tree.hpp>
 #include <broadphase/detail/kernels.hpp>
+#include <broadphase/detail/query_scope.hpp>
 #include <broadphase/detail/table.hpp>
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/grid_config.hpp>
@@ -95,8 +104,8 @@ public:
     /// nothing, when there are 2^28 already. Cost: O(1) amortised.
     [[nodiscard]] ProxyId add(const Box& box, Mobility mobility = Mobility::mobile);
 
-    /// Makes room for `count` proxies altogether, so that adding many moves nothing on the way.
-    /// Throws std::length_error for more than 2^28.
+    /// Makes room for `count` proxies altogether, so that adding many neither moves anything on the
+    /// way nor fails for want of memory. Throws std::length_error for more than 2^28.
     void reserve(std::size_t count);
 
     /// Sets the proxy's box. Bit-equal to the present one: a comparison, and nothing is marked.
@@ -113,8 +122,8 @@ public:
     /// rounds least: a kilometre, say, or 1024 m, towards where things are.) Queries see it at once.
     /// Returns how many boxes were rounded. A shift that is not finite is asserted, and does nothing.
     /// Everything else that has coordinates of its own is for the caller to shift: regions, zones,
-    /// terrains. Cost: a pass or two over all boxes; when cells had to change, an update(), or the
-    /// next one's.
+    /// terrains. Where it throws, for want of memory, nothing has changed. Cost: up to three passes
+    /// over all boxes; when cells had to change, an update(), or the next one's.
     std::size_t shiftOrigin(const Point& shift);
 
     [[nodiscard]] bool contains(ProxyId id) const noexcept;
@@ -128,7 +137,8 @@ public:
     /// Number of proxies whose box has a NaN now.
     [[nodiscard]] std::size_t nanCount() const noexcept { return nanCount_; }
 
-    /// Calls visit(ProxyId, const Box&) for every proxy alive, in the order of their indices.
+    /// Calls visit(ProxyId, const Box&) for every proxy alive, in the order of their indices; it may
+    /// change the grid.
     template <class Visit>
     void forEach(Visit&& visit) const;
 
@@ -142,10 +152,10 @@ public:
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
 
-    /// visit() for many: collectors[i] takes what regions[i] finds, in any order. The collectors
-    /// must not share anything when `parallelFor` is parallel. Returns the sum of the costs, each at
-    /// most that of visit(). Faster than one by one where regions have bounds(), unless the
-    /// collectors stop early.
+    /// visit() for many: collectors[i] takes what regions[i] finds, in any order; there are as many
+    /// of both (asserted). The collectors must not share anything when `parallelFor` is parallel.
+    /// Returns the sum of the costs, each at most that of visit(). Faster than one by one where
+    /// regions have bounds(), unless the collectors stop early.
     template <class Region, class Collector>
     QueryCost visitEach(std::span<const Region> regions, std::span<Collector> collectors,
                         ParallelFor parallelFor = serialFor) const;
@@ -160,10 +170,11 @@ public:
     QueryCost visitCell(const std::array<std::int64_t, 3>& cell, Collector& collector) const;
 
     /// The cell of a point: floor(point / cellSize()), at most 9e18 from 0, beyond which all is in the
-    /// last cell. The point must be finite.
+    /// last cell. The point must be finite (asserted).
     [[nodiscard]] std::array<std::int64_t, 3> cellAt(const Point& point) const;
 
-    /// Object query: which cells does the proxy's box touch? Its box must be finite. Cost: O(1).
+    /// Object query: which cells does the proxy's box touch? Its box must be finite (asserted).
+    /// Cost: O(1).
     [[nodiscard]] CellRange cellsOf(ProxyId id) const;
 
     // --- Frame -----------------------------------------------------------------------------------
@@ -206,7 +217,7 @@ private:
         Box before = nanBox();         // at the last update, when it has changed since
         std::uint32_t generation = 0;  // odd while the slot has a proxy
         std::uint32_t changedAt = 0;  // number of the update that will see, or saw, the last change
-        std::uint32_t restingEntry = 0;
+        std::uint32_t restingEntry = 0;  // or, of a slot without a proxy, the next one of those
         Place place = Place::nowhere;
         bool isWaiting = false;    // changed since filed: listed in waiting_
         bool restsAtOnce = false;  // Mobility::resting, or rested, and has not moved since but by a
@@ -221,6 +232,8 @@ private:
     template <class Region, class Collector>
     struct VolumeReader;
     struct CellRegion;
+
+    static constexpr std::uint32_t kNoSlot = ~std::uint32_t{0};
 
     /// The proxy in the slot, or the last one that was.
     [[nodiscard]] ProxyId idOf(std::uint32_t slot) const noexcept {
@@ -261,12 +274,13 @@ private:
                (record.restsAtOnce || updateNumber_ - record.changedAt > config_.updatesBeforeRest);
     }
 
-    void noteChange(std::uint32_t slot);
-    void leaveRest(std::uint32_t slot);
+    // None of these allocates: reserve() has made room for all of it.
+    void noteChange(std::uint32_t slot) noexcept;
+    void leaveRest(std::uint32_t slot) noexcept;
     void setBox(Record& record, const Box& box);
 
-    bool shiftRecord(std::uint32_t slot, const Point& shift);
     void keepBoxesAtUpdate(const Point& shift);
+    bool shiftRecord(std::uint32_t slot, const Point& shift) noexcept;
     void shiftTables(const Point& shift);
 
     // The passes of an update. Between them, Pairs finds what was born and what died.
@@ -275,11 +289,15 @@ private:
     void listResting();
     void fileResting(ParallelFor parallelFor);
     void fileMobile(ParallelFor parallelFor);
-    void settle();
-    void endUpdate();
-    void countUpdatesAnew();
+    void settle() noexcept;
+    void endUpdate() noexcept;
+    void countUpdatesAnew() noexcept;
 
-    void fileIfMany() const;
+    // What is left where memory ran out, and Pairs can go on from: everything is mobile.
+    void wakeAll() noexcept;
+
+    /// Returns false where that is impossible: from within a query, which reads the tables.
+    bool fileIfMany() const;
     template <class Visit>
     void forEachFiled(Visit&& visit) const;
     void growTrees() const;
@@ -288,7 +306,12 @@ private:
                restingTree_.isStale.load(std::memory_order_acquire);
     }
     template <class Region, class Collector>
+    bool offer(std::uint32_t slot, const Region& region, Collector& collector,
+               QueryCost& cost) const;
+    template <class Region, class Collector>
     void visitWaiting(const Region& region, Collector& collector, QueryCost& cost) const;
+    template <class Region, class Collector>
+    QueryCost visitUnfiled(const Region& region, Collector& collector) const;
     template <class Region, class Collector>
     QueryCost visitTogether(std::span<const Region> regions, std::span<Collector> collectors,
                             detail::FewPairs& found) const;
@@ -298,13 +321,16 @@ private:
     GridConfig config_;
     detail::LevelSizes fixedSizes_;
 
+    // What a change appends to, mobileSlots_, woken_ and waiting_, has room for as many.
     std::vector<Record> records_;
-    std::vector<std::uint32_t> freeSlots_;
-    std::vector<std::uint32_t> removedSlots_;
+    std::uint32_t firstFree_ = kNoSlot;     // the next ones follow by restingEntry
+    std::uint32_t firstRemoved_ = kNoSlot;  // since the tables were last settled
+    std::uint32_t lastRemoved_ = kNoSlot;
     std::size_t size_ = 0;
     std::size_t nanCount_ = 0;
     bool nanReported_ = false;
     bool hasPairs_ = false;
+    bool isTorn_ = false;  // by wakeAll(): what Pairs watches is to be found anew
 
     std::uint32_t updateNumber_ = 1;             // of the update that ends the present frame
     UpdateCost cost_;                            // of the present frame
@@ -340,13 +366,8 @@ private:
     // By slot, when a shift of the origin has rounded boxes since the last update: the boxes of that
     // update in the coordinates of then. Those at the end that are missing had no proxy.
     std::vector<Box> boxesAtUpdate_;
-    struct SlotBox {
-        std::uint32_t slot;
-        Box box;
-    };
-    std::vector<SlotBox> roundedBefore_;  // scratch of shiftOrigin()
 
-    std::vector<std::uint32_t> restSlots_;  // scratch of putQuietToRest()
+    std::vector<std::uint32_t> restSlots_;  // scratch of listResting()
     std::vector<detail::PaddedBox<Scalar>> restBoxes_;
     std::vector<std::uint32_t> nanSlots_;  // scratch of settle()
 

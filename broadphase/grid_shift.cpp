@@ -7,34 +7,53 @@
 
 #include <broadphase/detail/origin_shift.hpp>
 
+#include <algorithm>
+#include <new>
+
 namespace hashphase {
 
 template <class Scalar>
 std::size_t Grid<Scalar>::shiftOrigin(const Point& shift) {
     HASHPHASE_ASSERT(shift.allFinite(), "The origin is shifted by what is finite.");
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
+                     "The origin is not shifted within a query.");
     if (!shift.allFinite() || shift.isZero(0)) {
         return 0;
     }
-    roundedBefore_.clear();
+    if (hasPairs_ && boxesAtUpdate_.empty()) {
+        keepBoxesAtUpdate(shift);
+    }
     std::size_t roundedCount = 0;
     for (std::uint32_t slot = 0; slot < records_.size(); ++slot) {
         roundedCount += shiftRecord(slot, shift) ? 1 : 0;
-    }
-    if (hasPairs_ && !roundedBefore_.empty() && boxesAtUpdate_.empty()) {
-        keepBoxesAtUpdate(shift);
     }
     shiftTables(shift);
     return roundedCount;
 }
 
+// Boxes that are rounded will not tell any more what overlapped at the last update. Of the others
+// nothing is lost, and they compare as they did.
+template <class Scalar>
+void Grid<Scalar>::keepBoxesAtUpdate(const Point& shift) {
+    const bool someAreRounded =
+        std::any_of(records_.begin(), records_.end(), [&](const Record& record) {
+            return detail::isRounded(record.box, shift) ||
+                   (record.changedAt == updateNumber_ && detail::isRounded(record.before, shift));
+        });
+    if (!someAreRounded) {
+        return;
+    }
+    boxesAtUpdate_.reserve(records_.size());
+    for (std::uint32_t slot = 0; slot < records_.size(); ++slot) {
+        boxesAtUpdate_.push_back(before(slot));
+    }
+}
+
 // Returns whether the slot's box was rounded.
 template <class Scalar>
-bool Grid<Scalar>::shiftRecord(std::uint32_t slot, const Point& shift) {
+bool Grid<Scalar>::shiftRecord(std::uint32_t slot, const Point& shift) noexcept {
     Record& record = records_[slot];
     const bool isRounded = detail::isRounded(record.box, shift);
-    if (isRounded || (changedNow(slot) && detail::isRounded(record.before, shift))) {
-        roundedBefore_.push_back({slot, before(slot)});
-    }
     if (isRounded) {
         record.restsAtOnce = record.restsAtOnce || record.place == Place::resting;
         noteChange(slot);
@@ -46,42 +65,36 @@ bool Grid<Scalar>::shiftRecord(std::uint32_t slot, const Point& shift) {
     return isRounded;
 }
 
-// Boxes that were rounded do not tell any more what overlapped at the last update. What was not
-// rounded comes back as it was.
-template <class Scalar>
-void Grid<Scalar>::keepBoxesAtUpdate(const Point& shift) {
-    boxesAtUpdate_.reserve(records_.size());
-    for (std::uint32_t slot = 0; slot < records_.size(); ++slot) {
-        boxesAtUpdate_.push_back(detail::shiftedBox<Scalar>(before(slot), -shift));
-    }
-    for (const auto& [slot, box] : roundedBefore_) {
-        boxesAtUpdate_[slot] = box;
-    }
-}
-
+// By now all boxes are shifted: where there is no memory to file them anew, who asks first does it, or
+// the next update that finds a change.
 template <class Scalar>
 void Grid<Scalar>::shiftTables(const Point& shift) {
-    if (!resting_.shiftOrigin(shift)) {
-        listResting();
-        fileResting(serialFor);
-    }
-    if (!mobile_.shiftOrigin(shift)) {
-        // The update that is due files them, or a query before it.
-        manyWait_.store(true, std::memory_order_release);
-        if (cost_.changed == 0) {
-            fileIfMany();
-        }
-    }
+    const bool isRestFiled = resting_.shiftOrigin(shift);
+    const bool isMobileFiled = mobile_.shiftOrigin(shift);
     mobileTree_.isStale.store(true, std::memory_order_relaxed);
     restingTree_.isStale.store(true, std::memory_order_relaxed);
+    if (!isMobileFiled) {
+        manyWait_.store(true, std::memory_order_release);
+    }
+    try {
+        if (!isRestFiled) {
+            listResting();
+            fileResting(serialFor);
+        }
+        if (!isMobileFiled && cost_.changed == 0) {
+            fileIfMany();
+        }
+    } catch (const std::bad_alloc&) {
+        wakeAll();
+    }
 }
 
 template std::size_t Grid<float>::shiftOrigin(const Point&);
 template std::size_t Grid<double>::shiftOrigin(const Point&);
-template bool Grid<float>::shiftRecord(std::uint32_t, const Point&);
-template bool Grid<double>::shiftRecord(std::uint32_t, const Point&);
 template void Grid<float>::keepBoxesAtUpdate(const Point&);
+template bool Grid<float>::shiftRecord(std::uint32_t, const Point&) noexcept;
 template void Grid<double>::keepBoxesAtUpdate(const Point&);
+template bool Grid<double>::shiftRecord(std::uint32_t, const Point&) noexcept;
 template void Grid<float>::shiftTables(const Point&);
 template void Grid<double>::shiftTables(const Point&);
 

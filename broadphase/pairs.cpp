@@ -30,56 +30,92 @@ Pairs<Scalar>::~Pairs() {
 
 template <class Scalar>
 PairChanges Pairs<Scalar>::update(PairFilter filter, ParallelFor parallelFor) {
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(&grid_),
+                     "An update is not begun within a query, or within the filter.");
     beginCall();
     cost_ = {};
-    if (sweeps_ != nullptr) {
-        sweeps_->beginUpdate();
+    try {
+        recover();
+        findChanges(parallelFor);
+        ask(filter, toldByUpdate_);
+    } catch (...) {
+        grid_.wakeAll();
+        throw;
     }
-    if (grid_.cost_.changed > 0) {
-        grid_.stage(parallelFor);
-        findDeaths(parallelFor);
-        const bool someCameToRest = grid_.putQuietToRest(parallelFor);
-        grid_.fileMobile(parallelFor);
-        findBirths(someCameToRest, parallelFor);
-        if (sweeps_ != nullptr) {
-            findSwept(parallelFor);
-        }
-        for (const Couple c : lost_) {
-            lose(c);
-        }
-        grid_.settle();
-        watchedMobileCount_ = grid_.mobileSlots_.size();
-        askRefusedAgain();
-    }
-    announced_.clear();
-    decide(filter);
-    grid_.cost_.resting = grid_.resting_.size() - grid_.restingErased_;
-    cost_.grid = grid_.cost_;
-    grid_.endUpdate();
-    endCall();
-    return {born_, died_};
+    endUpdate();
+    return tell(toldByUpdate_);
 }
 
 template <class Scalar>
 void Pairs<Scalar>::beginCall() {
     lost_.clear();
     asked_.clear();
+    unknown_.clear();
     standing_.clear();
     bornCouples_.clear();
     diedCouples_.clear();
 }
 
+// Where memory has run out, everything is mobile, and what the last one has left to be watched
+// are the couples of the boxes at that time.
 template <class Scalar>
-void Pairs<Scalar>::endCall() {
-    const auto list = [this](const std::vector<Couple>& couples, std::vector<ProxyPair>& pairs) {
-        pairs.clear();
-        for (const Couple c : couples) {
-            pairs.push_back(pairOf(c));
-        }
-    };
-    sortCouples(diedCouples_);
-    list(bornCouples_, born_);  // as sorted as what was asked
-    list(diedCouples_, died_);
+void Pairs<Scalar>::recover() {
+    if (!grid_.isTorn_) {
+        return;
+    }
+    for (const Couple c : refusedAtRest_.keys()) {
+        refused_.findOrInsert(c);
+    }
+    grid_.stage(serialFor);
+    wokenTable_.build(grid_.mobileSlots_, grid_.stagedBefore_, grid_.fixedSizes_);
+    detail::KernelCost cost;
+    selected_.clear();
+    detail::joinTable(wokenTable_, serialFor, parts_, selected_, cost);
+    amongMobile_.clear();
+    for (const auto [a, b] : selected_.pairs()) {
+        amongMobile_.push({wokenTable_.order()[a], wokenTable_.order()[b]});
+    }
+    toResting_.clear();
+    refusedAtRest_.clear();
+    grid_.woken_.clear();
+    watchedMobileCount_ = grid_.mobileSlots_.size();
+    grid_.isTorn_ = false;
+}
+
+template <class Scalar>
+void Pairs<Scalar>::findChanges(ParallelFor parallelFor) {
+    if (sweeps_ != nullptr) {
+        sweeps_->beginUpdate();
+    }
+    if (grid_.cost_.changed == 0) {
+        return;
+    }
+    grid_.stage(parallelFor);
+    findDeaths(parallelFor);
+    const bool someCameToRest = grid_.putQuietToRest(parallelFor);
+    grid_.fileMobile(parallelFor);
+    findBirths(someCameToRest, parallelFor);
+    if (sweeps_ != nullptr) {
+        findSwept(parallelFor);
+    }
+    askRefusedAgain();
+}
+
+template <class Scalar>
+void Pairs<Scalar>::endUpdate() noexcept {
+    for (const Couple c : lost_) {
+        lose(c);
+    }
+    if (grid_.cost_.changed > 0) {
+        swept_.swap(sweptNow_);
+        grid_.settle();
+        watchedMobileCount_ = grid_.mobileSlots_.size();
+    }
+    announced_.clear();
+    decide();
+    grid_.cost_.resting = grid_.resting_.size() - grid_.restingErased_;
+    cost_.grid = grid_.cost_;
+    grid_.endUpdate();
 }
 
 template <class Scalar>
@@ -123,8 +159,9 @@ void Pairs<Scalar>::findDeathsOfWoken(ParallelFor parallelFor) {
         if (isShifted && !grid_.overlappedAtUpdate(a, b)) {
             return;  // a shift of the origin has rounded them together
         }
-        if (refusedAtRest_.erase(c) != detail::FlatSet::kNone) {
+        if (refusedAtRest_.contains(c)) {
             refused_.findOrInsert(c);
+            refusedAtRest_.erase(c);
         }
         loseIfApart(c);
     };
@@ -156,14 +193,6 @@ template <class Scalar>
 void Pairs<Scalar>::loseIfApart(Couple c) {
     if (!overlapNow(c)) {
         lost_.push_back(c);
-    }
-}
-
-template <class Scalar>
-void Pairs<Scalar>::lose(Couple c) {
-    if (!forgetRefused(c)) {
-        diedCouples_.push_back(c);
-        --count_;
     }
 }
 
@@ -288,6 +317,7 @@ template <class Scalar>
 void Pairs<Scalar>::findSwept(ParallelFor parallelFor) {
     sweeps_->findContacts(parallelFor);
     const auto now = sweeps_->contacts();
+    sweptNow_.assign(now.begin(), now.end());
     if (now.empty() && swept_.empty()) {
         return;
     }
@@ -295,7 +325,6 @@ void Pairs<Scalar>::findSwept(ParallelFor parallelFor) {
                         std::back_inserter(lost_));
     std::set_difference(now.begin(), now.end(), swept_.begin(), swept_.end(),
                         std::back_inserter(asked_));
-    swept_.assign(now.begin(), now.end());
     sortCouples(asked_);
     sortCouples(lost_);
     gone_.clear();
@@ -306,62 +335,6 @@ void Pairs<Scalar>::findSwept(ParallelFor parallelFor) {
                         std::back_inserter(fresh_));
     lost_.swap(gone_);
     asked_.swap(fresh_);
-}
-
-// What the filter refused is asked about again when one of the two has changed, and put aside when
-// both have come to rest.
-template <class Scalar>
-void Pairs<Scalar>::askRefusedAgain() {
-    restedCouples_.clear();
-    for (const Couple c : refused_.keys()) {
-        if (isAtRest(c)) {
-            restedCouples_.push_back(c);
-        } else if (grid_.changedNow(first(c)) || grid_.changedNow(second(c))) {
-            asked_.push_back(c);
-        }
-    }
-    for (const Couple c : restedCouples_) {
-        refused_.erase(c);
-        refusedAtRest_.findOrInsert(c);
-    }
-}
-
-// Asks the filter about what is to be asked, of which the standing ones are pairs already.
-template <class Scalar>
-void Pairs<Scalar>::decide(PairFilter filter) {
-    sortCouples(asked_);
-    std::sort(standing_.begin(), standing_.end());
-    askedPairs_.clear();
-    for (const Couple c : asked_) {
-        askedPairs_.push_back(pairOf(c));
-    }
-    accepted_.assign(asked_.size(), 0);
-    filter(askedPairs_, accepted_);
-    for (std::size_t i = 0; i < asked_.size(); ++i) {
-        const Couple c = asked_[i];
-        const bool wasPair =
-            !standing_.empty() && std::binary_search(standing_.begin(), standing_.end(), c);
-        if (accepted_[i] == 0) {
-            if (wasPair) {
-                lose(c);
-            }
-            // One that was refused at rest, and has woken since, moves over in the next update.
-            if (!isRefused(c)) {
-                (isAtRest(c) ? refusedAtRest_ : refused_).findOrInsert(c);
-            }
-        } else if (!wasPair) {
-            forgetRefused(c);
-            bornCouples_.push_back(c);
-            ++count_;
-        }
-    }
-}
-
-// Returns whether the couple was refused.
-template <class Scalar>
-bool Pairs<Scalar>::forgetRefused(Couple c) {
-    return refused_.erase(c) != detail::FlatSet::kNone ||
-           refusedAtRest_.erase(c) != detail::FlatSet::kNone;
 }
 
 template <class Scalar>
@@ -393,9 +366,11 @@ std::size_t Pairs<Scalar>::memoryBytes() const noexcept {
            (asked_.capacity() + standing_.capacity() + bornCouples_.capacity() +
             diedCouples_.capacity() + sorted_.capacity() + restedCouples_.capacity() +
             announcedBefore_.capacity() + lost_.capacity() + swept_.capacity() + gone_.capacity() +
-            fresh_.capacity()) *
+            fresh_.capacity() + unknown_.capacity() + sweptNow_.capacity()) *
                sizeof(Couple) +
-           (born_.capacity() + died_.capacity() + askedPairs_.capacity()) * sizeof(ProxyPair) +
+           (toldByUpdate_.born.capacity() + toldByUpdate_.died.capacity() +
+            toldBetween_.born.capacity() + toldBetween_.died.capacity() + askedPairs_.capacity()) *
+               sizeof(ProxyPair) +
            accepted_.capacity() +
            (entryOf_.capacity() + walkers_.capacity()) * sizeof(std::uint32_t) +
            wokenBoxes_.capacity() * sizeof(detail::PaddedBox<Scalar>) + wokenTable_.memoryBytes() +

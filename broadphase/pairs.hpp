@@ -10,7 +10,11 @@
 //
 // A frame   move proxies in the grid, then update() here (it updates the grid).
 // Threads   every member needs the grid and this object for itself.
-// Misuse    one Pairs per grid, created before the grid's first proxy; asserted.
+// Failure   An exception, of the filter or for want of memory, is passed on. After one from announce()
+//           or refilter() nothing has happened; one from update() has ended nothing: the frame goes
+//           on, and the next update() tells all that has changed since the last one that returned.
+// Misuse    one Pairs per grid, created before the grid's first proxy; and no call from within the
+//           filter; asserted.
 
 #include <broadphase/detail/box_columns.hpp>
 #include <broadphase/detail/flat_set.hpp>
@@ -33,8 +37,8 @@ namespace hashphase {
 /// Says which overlapping proxies make a pair: a function that is asked about two of them, or one
 /// that is asked about many at once and sets accepted[i], given as 0, to 1 where asked[i] make a
 /// pair. Asked once when two proxies begin to overlap, in ascending order of ids; again, for couples
-/// that it refused, whenever one of them has changed or refilter() is called. Must not change the
-/// grid. For parameters only, as FunctionRef.
+/// that it refused, whenever one of them has changed or refilter() is called. May ask the grid, and
+/// must not change it (asserted). For parameters only, as FunctionRef.
 class PairFilter {
 public:
     using OfOne = FunctionRef<bool(ProxyId, ProxyId)>;
@@ -64,7 +68,8 @@ private:
     std::variant<OfOne, OfMany> ask_;
 };
 
-/// Sorted; valid until the next call. A pair that died may name a proxy that was removed.
+/// Sorted; what update() returns is valid until the next update(), the rest until the next call of
+/// another kind. A pair that died may name a proxy that was removed.
 struct PairChanges {
     std::span<const ProxyPair> born;
     std::span<const ProxyPair> died;
@@ -82,7 +87,7 @@ template <class Scalar>
 class Pairs {
 public:
     /// Keeps a reference to the grid, and to the sweeps over it if there are any, which must outlive
-    /// this object.
+    /// this object. They are of the same grid, which has no proxy yet and no other Pairs (asserted).
     explicit Pairs(Grid<Scalar>& grid, Sweeps<Scalar>* sweeps = nullptr);
     ~Pairs();
 
@@ -97,14 +102,14 @@ public:
     /// not touch, or that are inverted, a few tests of every two.
     PairChanges update(PairFilter filter, ParallelFor parallelFor = serialFor);
 
-    /// Pairs of one proxy that have come to overlap since the last update, at once; update() will
-    /// not report them again. Returns births only; not what it meets on its way. Cost: that of a box
-    /// query.
+    /// Pairs of one proxy, which is alive (asserted), that have come to overlap since the last update,
+    /// at once; update() will not report them again. Returns births only; not what it meets on its
+    /// way. Cost: that of a box query.
     PairChanges announce(ProxyId id, PairFilter filter);
 
-    /// Asks the filter again about everything that the proxy overlaps, or met on its way at the last
-    /// update, refused or not, at once.
-    /// Cost: that of a box query, and a look at all watched couples.
+    /// Asks the filter again about everything that the proxy, which is alive (asserted), overlaps, or
+    /// met on its way at the last update, refused or not, at once. Cost: that of a box query, and a
+    /// look at all watched couples.
     PairChanges refilter(ProxyId id, PairFilter filter);
 
     /// The whole set as of the last update, sorted, appended to `pairs`. The grid must not have
@@ -131,6 +136,11 @@ public:
 private:
     using Box = Aabb<Scalar>;
 
+    struct Told {
+        std::vector<ProxyPair> born;
+        std::vector<ProxyPair> died;
+    };
+
     /// Two slots, the smaller one on top, so that couples sort by slots.
     using Couple = std::uint64_t;
 
@@ -153,6 +163,8 @@ private:
     [[nodiscard]] bool isSwept(Couple c) const noexcept;
 
     void beginCall();
+    void recover();
+    void findChanges(ParallelFor parallelFor);
     void findDeaths(ParallelFor parallelFor);
     void findDeathsOfWoken(ParallelFor parallelFor);
     void loseIfApart(Couple c);
@@ -164,12 +176,17 @@ private:
     [[nodiscard]] std::span<const detail::IndexPair> selectApart(
         std::span<const detail::IndexPair> couples, const std::uint32_t* order,
         const detail::PaddedBox<Scalar>* boxes, ParallelFor parallelFor);
-    void lose(Couple c);
     void askRefusedAgain();
-    void decide(PairFilter filter);
-    bool forgetRefused(Couple c);
     void sortCouples(std::vector<Couple>& couples);
-    void endCall();
+    void ask(PairFilter filter, Told& told);
+
+    // The rest of a call, which takes no more memory: ask() has made room.
+    void endUpdate() noexcept;
+    void announceUnknown() noexcept;
+    void lose(Couple c) noexcept;
+    void decide() noexcept;
+    bool forgetRefused(Couple c) noexcept;
+    PairChanges tell(Told& told) noexcept;
 
     template <class Visit>
     void forKnownCouples(std::uint32_t slot, const Visit& visit) const;
@@ -190,7 +207,8 @@ private:
     detail::FlatSet announced_;      // couples decided since the last update
 
     Sweeps<Scalar>* sweeps_;
-    std::vector<Couple> swept_;  // couples that touched on their ways at the last update; sorted
+    std::vector<Couple> swept_;     // couples that touched on their ways at the last update; sorted
+    std::vector<Couple> sweptNow_;  // the same of the update under way
 
     std::vector<Couple> lost_;      // what overlapped and does not any more, refused or not
     std::vector<Couple> asked_;     // what the filter is to be asked about
@@ -199,8 +217,8 @@ private:
     std::vector<char> accepted_;
     std::vector<Couple> bornCouples_;
     std::vector<Couple> diedCouples_;
-    std::vector<ProxyPair> born_;
-    std::vector<ProxyPair> died_;
+    Told toldByUpdate_;
+    Told toldBetween_;
     std::size_t count_ = 0;
     PairCost cost_;
 
@@ -208,6 +226,7 @@ private:
     std::vector<Couple> sorted_;
     std::vector<Couple> restedCouples_;
     std::vector<Couple> announcedBefore_;
+    std::vector<Couple> unknown_;  // what is announced by the call under way
     std::vector<Couple> gone_;
     std::vector<Couple> fresh_;
     detail::PairList selected_;

@@ -23,30 +23,33 @@ struct CollectInto {
     static constexpr double limit() { return std::numeric_limits<double>::infinity(); }
 };
 
+[[maybe_unused]] constexpr const char* kMustNotAsk =
+    "Pairs are not announced, nor filtered again, from within the filter.";
+
 }  // namespace
 
 template <class Scalar>
 PairChanges Pairs<Scalar>::announce(ProxyId id, PairFilter filter) {
     HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid can announce its pairs.");
+    HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(&grid_), kMustNotAsk);
     beginCall();
     findUnknown(id.index);
-    for (const Couple c : asked_) {
-        announced_.findOrInsert(c);
-    }
-    decide(filter);
-    endCall();
-    return {born_, died_};
+    unknown_ = asked_;
+    ask(filter, toldBetween_);
+    announceUnknown();
+    decide();
+    return tell(toldBetween_);
 }
 
 template <class Scalar>
 PairChanges Pairs<Scalar>::refilter(ProxyId id, PairFilter filter) {
     HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid can be filtered again.");
+    HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(&grid_), kMustNotAsk);
     beginCall();
+    recover();
     announcedBefore_.assign(announced_.keys().begin(), announced_.keys().end());
     findUnknown(id.index);
-    for (const Couple c : asked_) {
-        announced_.findOrInsert(c);
-    }
+    unknown_ = asked_;
     forKnownCouples(id.index, [this](Couple c) {
         if (!isRefused(c) && grid_.isAlive(first(c)) && grid_.isAlive(second(c))) {
             standing_.push_back(c);
@@ -56,9 +59,17 @@ PairChanges Pairs<Scalar>::refilter(ProxyId id, PairFilter filter) {
             asked_.push_back(c);
         }
     });
-    decide(filter);
-    endCall();
-    return {born_, died_};
+    ask(filter, toldBetween_);
+    announceUnknown();
+    decide();
+    return tell(toldBetween_);
+}
+
+template <class Scalar>
+void Pairs<Scalar>::announceUnknown() noexcept {
+    for (const Couple c : unknown_) {
+        announced_.findOrInsert(c);
+    }
 }
 
 // Calls visit for each of the proxy's couples that overlapped at the last update or were announced
@@ -127,6 +138,8 @@ template PairChanges Pairs<float>::announce(ProxyId, PairFilter);
 template PairChanges Pairs<double>::announce(ProxyId, PairFilter);
 template PairChanges Pairs<float>::refilter(ProxyId, PairFilter);
 template PairChanges Pairs<double>::refilter(ProxyId, PairFilter);
+template void Pairs<float>::announceUnknown() noexcept;
+template void Pairs<double>::announceUnknown() noexcept;
 template void Pairs<float>::findUnknown(std::uint32_t);
 template void Pairs<double>::findUnknown(std::uint32_t);
 

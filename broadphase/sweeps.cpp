@@ -28,8 +28,8 @@ void Sweeps<Scalar>::set(ProxyId id, const Vector3<Scalar>& displacement, Sweep 
         return;
     }
     makeRoom();
-    motionOfSlot_[id.index] = static_cast<std::uint32_t>(motions_.size());
     motions_.push_back({id, displacement, sweep});
+    motionOfSlot_[id.index] = static_cast<std::uint32_t>(motions_.size() - 1);
     grid_.noteChange(id.index);
 }
 

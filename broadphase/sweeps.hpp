@@ -46,7 +46,7 @@ public:
     Sweeps& operator=(const Sweeps&) = delete;
 
     /// Lets the proxy move by `displacement` [m] in this frame, from where it is. No displacement, or
-    /// Sweep::none, ends that. Cost: O(1) amortised.
+    /// Sweep::none, ends that. Where memory runs out, nothing has changed. Cost: O(1) amortised.
     void set(ProxyId id, const Vector3<Scalar>& displacement, Sweep sweep = Sweep::automatic);
 
     /// The proxy's box and displacement; none when it does not sweep.
@@ -144,10 +144,9 @@ QueryCost Sweeps<Scalar>::visit(const Region& region, Collector& collector) cons
     const auto stands = [this](ProxyId id) { return !sweeps(id); };
     CollectIf<Collector, decltype(stands)> standing(collector, stands);
     QueryCost cost = grid_.visit(region, standing);
-    for (const Motion& motion : motions_) {
-        if (!(collector.limit() >= 0)) {
-            break;
-        }
+    // Neither by iterators nor by reference: the collector may change what sweeps.
+    for (std::size_t i = 0; i < motions_.size() && collector.limit() >= 0; ++i) {
+        const Motion motion = motions_[i];
         if (!grid_.contains(motion.id)) {
             continue;
         }

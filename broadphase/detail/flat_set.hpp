@@ -72,7 +72,7 @@ public:
     }
 
     /// The key's number. A key that was not there gets the next one, size() before the call.
-    /// Cost: O(1), amortised.
+    /// Where memory runs out, nothing has changed. Cost: O(1), amortised.
     std::uint32_t findOrInsert(std::uint64_t key) {
         return insert(key, static_cast<std::uint32_t>(keys_.size()));
     }
@@ -154,7 +154,6 @@ public:
     /// Makes room for `count` keys, so that no insertion allocates until there are more.
     void reserve(std::size_t count) {
         checkSize(count);
-        keys_.reserve(count);
         std::size_t groupCount = std::max<std::size_t>(1, groups_.size());
         while (groupCount * kFullGroup < count) {
             groupCount *= 2;
@@ -323,9 +322,13 @@ private:
         groups_[place.group].tags[place.lane] = 0;
     }
 
+    // Allocates first, for the keys as well: where that fails, nothing has changed.
     void rehash(std::size_t groupCount) {
-        const std::vector<Group> old = std::exchange(groups_, std::vector<Group>(groupCount));
-        sizeLimit_ = std::min<std::size_t>(groupCount * kFullGroup, kNone);
+        const std::size_t limit = std::min<std::size_t>(groupCount * kFullGroup, kNone);
+        std::vector<Group> fresh(groupCount);
+        keys_.reserve(limit);
+        const std::vector<Group> old = std::exchange(groups_, std::move(fresh));
+        sizeLimit_ = limit;
         shift_ = 32 - static_cast<unsigned>(std::countr_zero(groupCount));
         for (const Group& group : old) {
             for (std::uint32_t lanes = group.used(); lanes != 0; lanes &= lanes - 1) {

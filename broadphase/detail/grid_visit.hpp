@@ -177,31 +177,53 @@ bool Grid<Scalar>::visitTables(const Region& region, Collector& collector, Query
     }
 }
 
-// Offers what changed since it was filed.
+// Offers the slot's proxy, by its box as it is now. Returns false when the collector wants no more.
+template <class Scalar>
+template <class Region, class Collector>
+bool Grid<Scalar>::offer(std::uint32_t slot, const Region& region, Collector& collector,
+                         QueryCost& cost) const {
+    if (!isAlive(slot)) {
+        return true;
+    }
+    ++cost.boxesTested;
+    const Scalar key = region.key(records_[slot].box);
+    if (!(key >= 0 && key <= collector.limit())) {
+        return true;
+    }
+    ++cost.hits;
+    collector.add(idOf(slot), key);
+    return collector.limit() >= 0;
+}
+
+// Offers what changed since it was filed. Not by iterators: the collector may change the list.
 template <class Scalar>
 template <class Region, class Collector>
 void Grid<Scalar>::visitWaiting(const Region& region, Collector& collector, QueryCost& cost) const {
-    for (const std::uint32_t slot : waiting_) {
-        if (!isAlive(slot)) {
-            continue;
-        }
-        ++cost.boxesTested;
-        const Scalar key = region.key(records_[slot].box);
-        if (!(key >= 0 && key <= collector.limit())) {
-            continue;
-        }
-        ++cost.hits;
-        collector.add(idOf(slot), key);
-        if (!(collector.limit() >= 0)) {
-            break;
-        }
+    const std::size_t count = waiting_.size();
+    for (std::size_t i = 0; i < count && offer(waiting_[i], region, collector, cost); ++i) {
     }
+}
+
+// From within a query that has changed so much that it is not listed any more: everything.
+template <class Scalar>
+template <class Region, class Collector>
+QueryCost Grid<Scalar>::visitUnfiled(const Region& region, Collector& collector) const {
+    QueryCost cost;
+    const auto count = static_cast<std::uint32_t>(records_.size());
+    for (std::uint32_t slot = 0; slot < count && offer(slot, region, collector, cost); ++slot) {
+    }
+    return cost;
 }
 
 template <class Scalar>
 template <class Region, class Collector>
 QueryCost Grid<Scalar>::visit(const Region& region, Collector& collector) const {
-    fileIfMany();
+    using Changes = detail::QueryScope::Changes;
+    if (!fileIfMany()) {
+        return visitUnfiled(region, collector);
+    }
+    const detail::QueryScope scope(
+        this, requires { region.volume(); } ? Changes::forbidden : Changes::allowed);
     QueryCost cost;
     if (visitTables(region, collector, cost)) {
         visitWaiting(region, collector, cost);
@@ -257,25 +279,26 @@ QueryCost Grid<Scalar>::visitEach(std::span<const Region> regions, std::span<Col
                                   ParallelFor parallelFor) const {
     HASHPHASE_ASSERT(regions.size() == collectors.size(), "Each region has a collector.");
     constexpr std::size_t grain = 256;
-    fileIfMany();
+    const bool isFiled = fileIfMany();
     std::atomic<std::uint64_t> rowsVisited{0};
     std::atomic<std::uint64_t> boxesTested{0};
     std::atomic<std::uint64_t> hits{0};
     parallelFor(regions.size(), grain, [&](std::size_t begin, std::size_t end) {
         QueryCost cost;
+        const detail::QueryScope scope(this, detail::QueryScope::Changes::forbidden);
         if constexpr (requires { regions[0].bounds(); }) {
             // So few that what they find has room, though each of them finds everything.
             constexpr std::size_t atOnce = detail::QueryColumns<Scalar>::kMost;
             detail::FewPairs found;
-            for (; begin < end; begin += atOnce) {
+            for (; begin < end && isFiled; begin += atOnce) {
                 const std::size_t count = std::min(atOnce, end - begin);
                 cost += visitTogether(regions.subspan(begin, count),
                                       collectors.subspan(begin, count), found);
             }
-        } else {
-            for (std::size_t i = begin; i < end; ++i) {
-                cost += visit(regions[i], collectors[i]);
-            }
+        }
+        for (; begin < end; ++begin) {
+            cost += isFiled ? visit(regions[begin], collectors[begin])
+                            : visitUnfiled(regions[begin], collectors[begin]);
         }
         rowsVisited += cost.rowsVisited;
         boxesTested += cost.boxesTested;
@@ -335,7 +358,14 @@ QueryCost Grid<Scalar>::visitCell(const std::array<std::int64_t, 3>& cell,
 template <class Scalar>
 template <class Visit>
 void Grid<Scalar>::forEachFiled(Visit&& visit) const {
-    fileIfMany();
+    if (!fileIfMany()) {
+        forEach([&](ProxyId id, const Box& box) {
+            if (!hasNan(box)) {
+                visit(id, box);
+            }
+        });
+        return;
+    }
     for (const detail::Table<Scalar>* table : {&mobile_, &resting_}) {
         for (std::uint32_t entry = 0; entry < table->size(); ++entry) {
             const Box box = table->box(entry);
@@ -356,7 +386,8 @@ template <class Visit>
 void Grid<Scalar>::forEach(Visit&& visit) const {
     for (std::uint32_t slot = 0; slot < records_.size(); ++slot) {
         if (isAlive(slot)) {
-            visit(idOf(slot), records_[slot].box);
+            const Box box = records_[slot].box;  // a copy: `visit` may move the records
+            visit(idOf(slot), box);
         }
     }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
+#include <broadphase/detail/ensure_capacity.hpp>
 #include <broadphase/detail/flat_set.hpp>
 
 #include <algorithm>
@@ -25,10 +26,13 @@ public:
         return number == kNone ? kNone : values_[number].of[key % kBlockSize];
     }
 
-    /// Gives the key a value and returns the last one. Cost: O(1), amortised.
+    /// Gives the key a value and returns the last one. Where memory runs out, nothing has changed;
+    /// that cannot be where the key has a value. Cost: O(1), amortised.
     std::uint32_t exchange(std::uint64_t key, std::uint32_t value) {
-        const std::uint32_t number = blocks_.findOrInsert(key / kBlockSize);
-        if (number == values_.size()) {
+        std::uint32_t number = blocks_.find(key / kBlockSize);
+        if (number == kNone) {
+            ensureCapacity(values_, values_.size() + 1);
+            number = blocks_.findOrInsert(key / kBlockSize);
             values_.emplace_back().of.fill(kNone);
         }
         Block& block = values_[number];

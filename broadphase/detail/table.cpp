@@ -205,6 +205,19 @@ void Table<Scalar>::build(std::span<const std::uint32_t> slots,
                           std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed,
                           ParallelFor parallelFor) {
     HASHPHASE_ASSERT(slots.size() == boxes.size(), "Every box has a slot.");
+    try {
+        findBuckets(boxes, fixed, parallelFor);
+        sortEntries(slots, boxes, parallelFor);
+    } catch (...) {
+        clear();
+        throw;
+    }
+}
+
+// In the cells of the last time, unless too many boxes have left them.
+template <class Scalar>
+void Table<Scalar>::findBuckets(std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed,
+                                ParallelFor parallelFor) {
     const auto areMany = [&](std::size_t strays, std::size_t usual) {
         using Layout = LevelLayout<Scalar>;
         return strays > 2 * usual + Layout::kThinLevel + boxes.size() / Layout::kStrays;
@@ -225,7 +238,6 @@ void Table<Scalar>::build(std::span<const std::uint32_t> slots,
             choose();
         }
     }
-    sortEntries(slots, boxes, parallelFor);
 }
 
 template <class Scalar>
@@ -259,6 +271,14 @@ LevelView<Scalar> Table<Scalar>::view(const Level<Scalar>& level) const noexcept
     view.sortedBuckets = sortedBuckets_.data() + level.firstSorted;
     view.sortedCount = level.sortedCount;
     return view;
+}
+
+template <class Scalar>
+void Table<Scalar>::clear() noexcept {
+    levels_.clear();
+    slots_.clear();
+    order_.clear();
+    sortedBuckets_.clear();
 }
 
 template <class Scalar>

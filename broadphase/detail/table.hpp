@@ -52,10 +52,14 @@ template <class Scalar>
 class Table {
 public:
     /// Files boxes[i], of slots[i], for every i, anew; boxes with a NaN are left out. Cell sizes
-    /// follow the population, or are fixed when `fixed.count` > 0. Cost: a few passes over the
-    /// boxes; least when they come in about the order of the last time, see order().
+    /// follow the population, or are fixed when `fixed.count` > 0. Where it throws, for want of
+    /// memory, nothing is filed. Cost: a few passes over the boxes; least when they come in about the
+    /// order of the last time, see order().
     void build(std::span<const std::uint32_t> slots, std::span<const PaddedBox<Scalar>> boxes,
                const LevelSizes& fixed, ParallelFor parallelFor = serialFor);
+
+    /// Leaves nothing filed.
+    void clear() noexcept;
 
     /// Takes the entry out of every later answer. Cost: O(1); its place is reclaimed by build().
     void erase(std::uint32_t entry) noexcept;
@@ -131,6 +135,8 @@ public:
     [[nodiscard]] std::string validate() const;
 
 private:
+    void findBuckets(std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed,
+                     ParallelFor parallelFor);
     void layOut(std::span<const PaddedBox<Scalar>> boxes);
     [[nodiscard]] std::size_t countBuckets(std::span<const PaddedBox<Scalar>> boxes,
                                            ParallelFor parallelFor);

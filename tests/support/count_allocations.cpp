@@ -2,6 +2,7 @@
 #include <tests/support/count_allocations.hpp>
 
 #include <atomic>
+#include <cstdint>
 #include <cstdlib>
 #include <new>
 
@@ -9,6 +10,19 @@ namespace hashphase::test {
 namespace {
 
 std::atomic<std::size_t> allocations{0};
+std::atomic<std::size_t> releases{0};
+
+// How many allocations are still to work; negative where all are.
+constexpr std::int64_t kUnlimited = -1;
+std::atomic<std::int64_t> allowance{kUnlimited};
+
+// Says whether this allocation is to fail.
+bool isRefused() noexcept {
+    std::int64_t left = allowance.load(std::memory_order_relaxed);
+    while (left > 0 && !allowance.compare_exchange_weak(left, left - 1)) {
+    }
+    return left == 0;
+}
 
 }  // namespace
 
@@ -16,9 +30,32 @@ std::size_t allocationCount() noexcept {
     return allocations;
 }
 
+std::size_t blocksHeld() noexcept {
+    return allocations - releases;
+}
+
+FailingAllocations::FailingAllocations(std::size_t after) noexcept
+    : before_(allowance.exchange(static_cast<std::int64_t>(after))) {}
+
+FailingAllocations::~FailingAllocations() {
+    allowance = before_;
+}
+
+WorkingAllocations::WorkingAllocations() noexcept : before_(allowance.exchange(kUnlimited)) {}
+
+WorkingAllocations::~WorkingAllocations() {
+    allowance = before_;
+}
+
 void* countedAllocate(std::size_t size) {
     ++allocations;
     return std::malloc(size);
+}
+
+// Of what either kind of `new` has returned.
+static void release(void* memory) noexcept {
+    releases += memory != nullptr ? 1 : 0;
+    std::free(memory);
 }
 
 }  // namespace hashphase::test
@@ -27,12 +64,18 @@ void* countedAllocate(std::size_t size) {
 
 // Not inlined: compilers take free() for a mismatch where they see only one half of the pair.
 [[gnu::noinline]] void* operator new(std::size_t size) {
+    if (hashphase::test::isRefused()) {
+        throw std::bad_alloc();
+    }
     if (void* memory = hashphase::test::countedAllocate(size == 0 ? 1 : size)) {
         return memory;
     }
     throw std::bad_alloc();
 }
 [[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
+    if (hashphase::test::isRefused()) {
+        throw std::bad_alloc();
+    }
     ++hashphase::test::allocations;
     const auto step = static_cast<std::size_t>(alignment);
     if (void* memory = std::aligned_alloc(step, (size + step - 1) / step * step)) {
@@ -41,16 +84,16 @@ void* countedAllocate(std::size_t size) {
     throw std::bad_alloc();
 }
 [[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
-    std::free(memory);
+    hashphase::test::release(memory);
 }
 [[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-    std::free(memory);
+    hashphase::test::release(memory);
 }
 [[gnu::noinline]] void operator delete(void* memory) noexcept {
-    std::free(memory);
+    hashphase::test::release(memory);
 }
 [[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
+    hashphase::test::release(memory);
 }
 
 #endif

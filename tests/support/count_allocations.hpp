@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Counts every `new` of a program that count_allocations.cpp is a part of.
+// Counts every `new` of a program that count_allocations.cpp is a part of, and makes it fail on demand.
 
 #include <cstddef>
+#include <cstdint>
 
 namespace hashphase::test {
 
@@ -16,6 +17,34 @@ inline constexpr bool kCountsAllocations = true;
 
 /// So far; always 0 where none are counted.
 [[nodiscard]] std::size_t allocationCount() noexcept;
+
+/// How many blocks are held at the moment; always 0 where none are counted.
+[[nodiscard]] std::size_t blocksHeld() noexcept;
+
+/// While it lives, `new` works so many times more, on all threads together, and then throws
+/// std::bad_alloc. Does nothing where none are counted.
+class FailingAllocations {
+public:
+    explicit FailingAllocations(std::size_t after) noexcept;
+    ~FailingAllocations();
+    FailingAllocations(const FailingAllocations&) = delete;
+    FailingAllocations& operator=(const FailingAllocations&) = delete;
+
+private:
+    std::int64_t before_;
+};
+
+/// While it lives, `new` works, within the life of FailingAllocations too: for a test's own lists.
+class WorkingAllocations {
+public:
+    WorkingAllocations() noexcept;
+    ~WorkingAllocations();
+    WorkingAllocations(const WorkingAllocations&) = delete;
+    WorkingAllocations& operator=(const WorkingAllocations&) = delete;
+
+private:
+    std::int64_t before_;
+};
 
 /// malloc(), counted, for libraries that take a function to allocate by.
 [[nodiscard]] void* countedAllocate(std::size_t size);

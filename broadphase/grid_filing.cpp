@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Zlib
+
+// How a grid files what has changed: an update's passes, and what the first query after many does.
+
+#include <broadphase/grid.hpp>
+
+#include <broadphase/detail/ensure_capacity.hpp>
+#include <broadphase/detail/prefetch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+namespace hashphase {
+namespace {
+
+// Resting proxies are refiled when this many want to join or have left: often enough to be of use,
+// and seldom enough to be cheap for each of them.
+std::size_t worthRefiling(std::size_t restingCount) {
+    return std::max<std::size_t>(32, restingCount / 8);
+}
+
+}  // namespace
+
+// Copies the mobile boxes side by side. Slots that are near each other in space are near each other
+// in mobileSlots_, but anywhere in records_.
+template <class Scalar>
+void Grid<Scalar>::stage(ParallelFor parallelFor) {
+    constexpr std::size_t kGrain = 4096;
+    constexpr std::size_t kAhead = 12;
+    const std::size_t count = mobileSlots_.size();
+    staged_.resize(count);
+    stagedBefore_.resize(hasPairs_ ? count : 0);
+    detail::ensureCapacity(nanSlots_, nanCount_);  // for settle()
+    quietCount_ = 0;
+    parallelFor(count, kGrain, [&](std::size_t begin, std::size_t end) {
+        std::uint32_t quietCount = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+            if (i + kAhead < count) {
+                detail::prefetch(&records_[mobileSlots_[i + kAhead]]);
+            }
+            const Record& record = records_[mobileSlots_[i]];
+            staged_[i] = detail::padded(record.box);
+            if (hasPairs_) {
+                stagedBefore_[i] = detail::padded(boxAtUpdate(mobileSlots_[i]));
+            }
+            quietCount += isQuiet(record) ? 1 : 0;
+        }
+        quietCount_ += quietCount;
+    });
+}
+
+// Quiet proxies leave the mobile ones when enough have gathered, or enough others have left rest, to
+// be worth filing the resting ones anew. Returns whether any did.
+template <class Scalar>
+bool Grid<Scalar>::putQuietToRest(ParallelFor parallelFor) {
+    const std::size_t filedCount = resting_.size() - restingErased_;
+    if (std::max<std::uint32_t>(quietCount_, restingErased_) < worthRefiling(filedCount)) {
+        return false;
+    }
+    // Those that stay at rest come first, then those that join.
+    detail::ensureCapacity(restSlots_, filedCount + quietCount_);
+    detail::ensureCapacity(restBoxes_, filedCount + quietCount_);
+    listResting();
+    for (std::size_t i = 0; quietCount_ > 0 && i < mobileSlots_.size(); ++i) {
+        Record& record = records_[mobileSlots_[i]];
+        if (record.place == Place::mobile && isQuiet(record)) {
+            record.place = Place::resting;
+            restSlots_.push_back(mobileSlots_[i]);
+            restBoxes_.push_back(staged_[i]);
+            staged_[i] = detail::padded(nanBox());
+        }
+    }
+    fileResting(parallelFor);
+    return quietCount_ > 0;
+}
+
+// Those that are at rest, in the order of their table.
+template <class Scalar>
+void Grid<Scalar>::listResting() {
+    restSlots_.clear();
+    restBoxes_.clear();
+    for (const std::uint32_t slot : resting_.slots()) {
+        if (records_[slot].place == Place::resting) {
+            restSlots_.push_back(slot);
+            restBoxes_.push_back(detail::padded(records_[slot].box));
+        }
+    }
+}
+
+template <class Scalar>
+void Grid<Scalar>::fileResting(ParallelFor parallelFor) {
+    resting_.build(restSlots_, restBoxes_, fixedSizes_, parallelFor);
+    for (std::uint32_t entry = 0; entry < resting_.size(); ++entry) {
+        records_[resting_.slot(entry)].restingEntry = entry;
+    }
+    restingErased_ = 0;
+    restingTree_.isStale.store(true, std::memory_order_relaxed);
+    cost_.filed += resting_.size();
+}
+
+template <class Scalar>
+void Grid<Scalar>::fileMobile(ParallelFor parallelFor) {
+    manyWait_.store(true, std::memory_order_relaxed);  // should it fail, the next one files anew
+    mobile_.build(mobileSlots_, staged_, fixedSizes_, parallelFor);
+    ++filingCount_;
+    mobileTree_.isStale.store(true, std::memory_order_relaxed);
+    cost_.filed += mobile_.size();
+    for (const std::uint32_t slot : waiting_) {
+        records_[slot].isWaiting = false;
+    }
+    waiting_.clear();
+    manyWait_.store(false, std::memory_order_release);
+}
+
+// Lists the mobile proxies in the order of their table, for the next time, and forgets those that
+// have left. Only now may a slot be given away again: nobody has to tell its old proxy from the
+// next one any more.
+template <class Scalar>
+void Grid<Scalar>::settle() noexcept {
+    nanSlots_.clear();
+    if (mobile_.size() != mobileSlots_.size() && nanCount_ > 0) {
+        std::copy_if(mobileSlots_.begin(), mobileSlots_.end(), std::back_inserter(nanSlots_),
+                     [this](std::uint32_t slot) { return records_[slot].isNan; });
+    }
+    mobileSlots_.assign(mobile_.slots().begin(), mobile_.slots().end());
+    mobileSlots_.insert(mobileSlots_.end(), nanSlots_.begin(), nanSlots_.end());
+    if (firstRemoved_ != kNoSlot) {
+        records_[lastRemoved_].restingEntry = firstFree_;
+        firstFree_ = std::exchange(firstRemoved_, kNoSlot);
+    }
+}
+
+template <class Scalar>
+void Grid<Scalar>::endUpdate() noexcept {
+    woken_.clear();
+    boxesAtUpdate_.clear();
+    cost_ = {};
+    if (++updateNumber_ == std::numeric_limits<std::uint32_t>::max()) {
+        countUpdatesAnew();
+    }
+    if (config_.cellSize == 0 && !manyWait_.load(std::memory_order_relaxed)) {
+        const double finest = std::min(mobile_.finestCellSize(), resting_.finestCellSize());
+        cellSize_ = std::isinf(finest) ? Scalar(1) : static_cast<Scalar>(finest);
+    }
+}
+
+// After 2^32 updates the numbers would come round to those of the first ones, and what has not
+// changed since then would seem to have changed just now. All that matters is how long ago a change
+// was, up to when a proxy comes to rest.
+template <class Scalar>
+void Grid<Scalar>::countUpdatesAnew() noexcept {
+    const std::uint32_t longAgo = config_.updatesBeforeRest + 1;
+    for (Record& record : records_) {
+        record.changedAt = longAgo - std::min(updateNumber_ - record.changedAt, longAgo);
+    }
+    updateNumber_ = longAgo;
+}
+
+template <class Scalar>
+UpdateCost Grid<Scalar>::update(ParallelFor parallelFor) {
+    HASHPHASE_ASSERT(!hasPairs_, "Where there are Pairs, Pairs::update() ends the frame.");
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), "An update is not begun within a query.");
+    if (cost_.changed > 0) {
+        try {
+            stage(parallelFor);
+            static_cast<void>(putQuietToRest(parallelFor));
+            fileMobile(parallelFor);
+        } catch (...) {
+            wakeAll();
+            throw;
+        }
+        settle();
+    }
+    cost_.resting = resting_.size() - restingErased_;
+    const UpdateCost cost = cost_;
+    endUpdate();
+    return cost;
+}
+
+// Whoever has been put to rest by now is still listed among the mobile ones; who rested before is not.
+template <class Scalar>
+void Grid<Scalar>::wakeAll() noexcept {
+    for (const std::uint32_t slot : mobileSlots_) {
+        Record& record = records_[slot];
+        record.place = record.place == Place::resting ? Place::mobile : record.place;
+    }
+    for (std::uint32_t slot = 0; slot < records_.size(); ++slot) {
+        if (records_[slot].place == Place::resting) {
+            records_[slot].place = Place::mobile;
+            mobileSlots_.push_back(slot);
+            woken_.push_back(slot);
+        }
+    }
+    isTorn_ = true;
+    resting_.clear();
+    restingErased_ = 0;
+    restingTree_.isStale.store(true, std::memory_order_relaxed);
+    manyWait_.store(true, std::memory_order_relaxed);
+}
+
+template <class Scalar>
+bool Grid<Scalar>::fileIfMany() const {
+    if (!manyWait_.load(std::memory_order_acquire)) {
+        return true;
+    }
+    if (detail::QueryScope::isWithin(this)) {
+        return false;
+    }
+    // The one write on behalf of readers: no reader has passed this point while many wait, and the
+    // first to come here files for all. The grid itself is never a const object: it is created by
+    // its owner, and only seen as const by readers.
+    auto& self = const_cast<Grid&>(*this);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+    const std::lock_guard lock(self.filing_);
+    if (manyWait_.load(std::memory_order_relaxed)) {
+        self.stage(serialFor);
+        self.fileMobile(serialFor);
+        if (!hasPairs_) {
+            self.settle();
+        }
+    }
+    return true;
+}
+
+// As fileIfMany(): a write on behalf of readers, none of whom passes before it is done.
+template <class Scalar>
+void Grid<Scalar>::growTrees() const {
+    auto& self = const_cast<Grid&>(*this);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+    const std::lock_guard lock(self.filing_);
+    const auto grow = [](TableTree& tree, const detail::Table<Scalar>& table) {
+        if (tree.isStale.load(std::memory_order_relaxed)) {
+            tree.tree.build(table);
+            tree.isStale.store(false, std::memory_order_release);
+        }
+    };
+    grow(self.mobileTree_, mobile_);
+    grow(self.restingTree_, resting_);
+}
+
+template void Grid<float>::stage(ParallelFor);
+template bool Grid<float>::putQuietToRest(ParallelFor);
+template void Grid<float>::listResting();
+template void Grid<float>::fileResting(ParallelFor);
+template void Grid<float>::fileMobile(ParallelFor);
+template void Grid<float>::settle() noexcept;
+template void Grid<float>::endUpdate() noexcept;
+template void Grid<float>::countUpdatesAnew() noexcept;
+template UpdateCost Grid<float>::update(ParallelFor);
+template void Grid<float>::wakeAll() noexcept;
+template bool Grid<float>::fileIfMany() const;
+template void Grid<float>::growTrees() const;
+template void Grid<double>::stage(ParallelFor);
+template bool Grid<double>::putQuietToRest(ParallelFor);
+template void Grid<double>::listResting();
+template void Grid<double>::fileResting(ParallelFor);
+template void Grid<double>::fileMobile(ParallelFor);
+template void Grid<double>::settle() noexcept;
+template void Grid<double>::endUpdate() noexcept;
+template void Grid<double>::countUpdatesAnew() noexcept;
+template UpdateCost Grid<double>::update(ParallelFor);
+template void Grid<double>::wakeAll() noexcept;
+template bool Grid<double>::fileIfMany() const;
+template void Grid<double>::growTrees() const;
+
+}  // namespace hashphase

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Zlib
+
+// What becomes of the couples that have come to touch, or touch no more: who is a pair, by the filter.
+
+#include <broadphase/pairs.hpp>
+
+#include <broadphase/detail/ensure_capacity.hpp>
+
+#include <algorithm>
+
+namespace hashphase {
+
+// What the filter refused, and is not lost, is asked about again when one of the two has changed, and
+// put aside when both have come to rest.
+template <class Scalar>
+void Pairs<Scalar>::askRefusedAgain() {
+    restedCouples_.clear();
+    for (const Couple c : refused_.keys()) {
+        if (isAtRest(c)) {
+            restedCouples_.push_back(c);
+        } else if ((grid_.changedNow(first(c)) || grid_.changedNow(second(c))) &&
+                   (overlapNow(c) || std::binary_search(sweptNow_.begin(), sweptNow_.end(), c))) {
+            asked_.push_back(c);
+        }
+    }
+    for (const Couple c : restedCouples_) {
+        refusedAtRest_.findOrInsert(c);
+        refused_.erase(c);
+    }
+}
+
+// Asks the filter about what is to be asked, and makes room for all that may come of it.
+template <class Scalar>
+void Pairs<Scalar>::ask(PairFilter filter, Told& told) {
+    sortCouples(asked_);
+    std::sort(standing_.begin(), standing_.end());
+    askedPairs_.clear();
+    for (const Couple c : asked_) {
+        askedPairs_.push_back(pairOf(c));
+    }
+    accepted_.assign(asked_.size(), 0);
+    {
+        const detail::QueryScope scope(&grid_, detail::QueryScope::Changes::forbidden);
+        filter(askedPairs_, accepted_);
+    }
+    const auto refused =
+        static_cast<std::size_t>(std::count(accepted_.begin(), accepted_.end(), 0));
+    if (refused > 0) {
+        refused_.reserve(refused_.size() + refused);
+    }
+    if (!unknown_.empty()) {
+        announced_.reserve(announced_.size() + unknown_.size());
+    }
+    const std::size_t mayDie = lost_.size() + standing_.size();
+    detail::ensureCapacity(bornCouples_, asked_.size());
+    detail::ensureCapacity(told.born, asked_.size());
+    detail::ensureCapacity(diedCouples_, mayDie);
+    detail::ensureCapacity(told.died, mayDie);
+    detail::ensureCapacity(sorted_, mayDie);
+}
+
+// Of what was asked, the standing ones are pairs already. Couples at rest that are refused are put
+// aside by the next update.
+template <class Scalar>
+void Pairs<Scalar>::decide() noexcept {
+    for (std::size_t i = 0; i < asked_.size(); ++i) {
+        const Couple c = asked_[i];
+        const bool wasPair =
+            !standing_.empty() && std::binary_search(standing_.begin(), standing_.end(), c);
+        if (accepted_[i] == 0) {
+            if (wasPair) {
+                lose(c);
+            }
+            if (!refusedAtRest_.contains(c)) {
+                refused_.findOrInsert(c);
+            }
+        } else if (!wasPair) {
+            forgetRefused(c);
+            bornCouples_.push_back(c);
+            ++count_;
+        }
+    }
+}
+
+// Returns whether the couple was refused.
+template <class Scalar>
+bool Pairs<Scalar>::forgetRefused(Couple c) noexcept {
+    return refused_.erase(c) != detail::FlatSet::kNone ||
+           refusedAtRest_.erase(c) != detail::FlatSet::kNone;
+}
+
+template <class Scalar>
+void Pairs<Scalar>::lose(Couple c) noexcept {
+    if (!forgetRefused(c)) {
+        diedCouples_.push_back(c);
+        --count_;
+    }
+}
+
+template <class Scalar>
+PairChanges Pairs<Scalar>::tell(Told& told) noexcept {
+    const auto list = [this](const std::vector<Couple>& couples, std::vector<ProxyPair>& pairs) {
+        pairs.clear();
+        for (const Couple c : couples) {
+            pairs.push_back(pairOf(c));
+        }
+    };
+    sortCouples(diedCouples_);
+    list(bornCouples_, told.born);  // as sorted as what was asked
+    list(diedCouples_, told.died);
+    return {told.born, told.died};
+}
+
+template void Pairs<float>::askRefusedAgain();
+template void Pairs<float>::ask(PairFilter, Told&);
+template void Pairs<float>::decide() noexcept;
+template void Pairs<float>::lose(Couple) noexcept;
+template bool Pairs<float>::forgetRefused(Couple) noexcept;
+template PairChanges Pairs<float>::tell(Told&) noexcept;
+template void Pairs<double>::askRefusedAgain();
+template void Pairs<double>::ask(PairFilter, Told&);
+template void Pairs<double>::decide() noexcept;
+template void Pairs<double>::lose(Couple) noexcept;
+template bool Pairs<double>::forgetRefused(Couple) noexcept;
+template PairChanges Pairs<double>::tell(Told&) noexcept;
+
+}  // namespace hashphase

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: Zlib
+
+// What a caller may not do is asserted; what a callback may do, and where, is safe.
+
+#include <broadphase/convex_region.hpp>
+#include <broadphase/crowd.hpp>
+#include <broadphase/pairs.hpp>
+#include <broadphase/sweeps.hpp>
+#include <tests/support/box_scenes.hpp>
+#include <tests/support/handlers.hpp>
+#include <tests/support/query_checks.hpp>
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <map>
+#include <vector>
+
+namespace hashphase::test {
+namespace {
+
+using Box = Aabb<float>;
+using Point = Vector3<float>;
+
+/// A collector that calls a function for each proxy found.
+struct CallEach {
+    std::function<void(ProxyId)> call;
+
+    void add(ProxyId id, float /*key*/) { call(id); }
+    static constexpr float limit() { return std::numeric_limits<float>::infinity(); }
+};
+
+Box cube(double x, double half = 1) {
+    return boxAround<float>({x, 0, 0}, Vector3<double>::Constant(half));
+}
+
+/// A grid that a collector changes at will, and who is alive in it.
+struct Changed {
+    explicit Changed(int count) {
+        for (int i = 0; i < count; ++i) {
+            add(i % 2 == 0 ? Mobility::resting : Mobility::mobile);
+        }
+    }
+    void add(Mobility mobility = Mobility::mobile) {
+        const Box box = scene.draw(random);
+        alive[grid.add(box, mobility)] = box;
+    }
+    void removeOne(ProxyId id) {
+        grid.remove(id);
+        alive.erase(id);
+    }
+    ProxyId any() {
+        auto at = alive.begin();
+        std::advance(at, random.below(static_cast<std::uint32_t>(alive.size())));
+        return at->first;
+    }
+    void changeSomething(ProxyId found) {
+        ASSERT_TRUE(alive.contains(found)) << "who was removed is offered";
+        const double choice = random.unit();
+        if (choice < 0.4) {
+            removeOne(found);
+        } else if (choice < 0.6 && alive.size() > 1) {
+            removeOne(any());
+        } else if (choice < 0.8) {
+            const ProxyId id = alive.empty() ? ProxyId{} : any();
+            if (!id.isNull()) {
+                grid.move(id, alive[id] = scene.draw(random));
+            }
+        } else {
+            add();
+        }
+    }
+    template <class Region>
+    void checkQuery(const Region& region) {
+        std::vector<Placed<float>> placed;
+        for (const auto& [id, box] : alive) {
+            placed.push_back({id, box});
+        }
+        expectLikeBruteForce<float>(grid, placed, region);
+    }
+
+    Random random{2};
+    BoxScene<float> scene = spreadScene<float>("spread", 1, 0);
+    Grid<float> grid;
+    std::map<ProxyId, Box> alive;
+};
+
+TEST(GridCallbacks, MayChangeTheGridInAQueryOfTheirOwn) {
+    for (const int settled : {0, 1, 12}) {
+        Changed changed(300);
+        for (int i = 0; i < settled; ++i) {
+            changed.grid.update();
+        }
+        CallEach collector{[&](ProxyId id) { changed.changeSomething(id); }};
+        for (int round = 0; round < 6; ++round) {
+            changed.grid.visit(BoxRegion<float>{cube(0, 5)}, collector);
+            changed.grid.visit(SphereRegion<float>({1, 0, 0}, 4), collector);
+            changed.grid.visit(RayRegion<float>({-9, 0, 0}, {9, 1, 1}), collector);
+            changed.grid.visitCell({0, 0, 0}, collector);
+            changed.grid.forEach([&](ProxyId id, const Box&) {
+                if (changed.random.chance(0.1)) {
+                    changed.changeSomething(id);
+                }
+            });
+            EXPECT_EQ(changed.grid.validate(), "");
+            changed.checkQuery(BoxRegion<float>{cube(0, 3)});
+            changed.checkQuery(RayRegion<float>({-9, 0, 0}, {9, 1, 1}));
+            if (round % 2 == 0) {
+                changed.grid.update();
+            }
+            while (changed.alive.size() < 200) {
+                changed.add();
+            }
+        }
+    }
+}
+
+// So much has changed that it is not listed any more, and the tables are being read.
+TEST(GridCallbacks, MayAskAfterManyChangesAndFindWhatIsThere) {
+    Changed changed(500);
+    CallEach collector{[&](ProxyId) {
+        for (int i = 0; i < 50 && changed.alive.size() > 100; ++i) {
+            changed.removeOne(changed.any());
+        }
+        for (int i = 0; i < 30; ++i) {
+            changed.add();
+        }
+        const BoxRegion<float> region{cube(0, 3)};
+        changed.checkQuery(region);
+        changed.checkQuery(RayRegion<float>({-9, 0, 0}, {9, 1, 1}));
+        changed.checkQuery(ConvexRegion<float>({}));
+        CollectCount one;
+        CollectCount each;
+        changed.grid.visit(region, one);
+        changed.grid.visitEach(std::span(&region, 1), std::span(&each, 1));
+        EXPECT_EQ(one.count(), each.count());
+        EXPECT_EQ(changed.grid.validate(), "");
+    }};
+    changed.grid.visit(BoxRegion<float>{cube(0, 2)}, collector);
+    EXPECT_EQ(changed.grid.validate(), "");
+    changed.checkQuery(BoxRegion<float>{cube(0, 3)});
+}
+
+TEST(SweepsCallbacks, MayChangeWhatSweeps) {
+    Grid<float> grid;
+    Sweeps<float> sweeps(grid);
+    std::vector<ProxyId> ids;
+    for (int i = 0; i < 40; ++i) {
+        ids.push_back(grid.add(cube(0)));
+        sweeps.set(ids.back(), {float(i), 0, 0});
+    }
+    std::size_t found = 0;
+    CallEach collector{[&](ProxyId id) {
+        EXPECT_TRUE(grid.contains(id));
+        sweeps.set(ids[(7 * found) % 30], found % 2 == 0 ? Point(0, 0, 0) : Point(0, 5, 0));
+        if (++found % 4 == 0) {
+            const ProxyId added = grid.add(cube(0));
+            sweeps.set(added, {1, 1, 1});
+        }
+    }};
+    sweeps.visit(BoxRegion<float>{cube(0)}, collector);
+    EXPECT_GT(found, 10U);
+    EXPECT_EQ(sweeps.validate(), "");
+    EXPECT_EQ(grid.validate(), "");
+}
+
+#if HASHPHASE_ENABLE_ASSERTS
+
+/// Calls everything that changes a grid; all of it must be asserted, and none of it happen.
+void expectThatNothingMayChange(Grid<float>& grid, ProxyId id) {
+    EXPECT_THROW(static_cast<void>(grid.add(cube(0))), BrokenAssert);
+    EXPECT_THROW(grid.move(id, cube(5)), BrokenAssert);
+    EXPECT_THROW(grid.remove(id), BrokenAssert);
+}
+
+TEST(GridCallbacks, MustNotChangeTheGridWhereManyAreDealtWithAtOnce) {
+    const ThrowingAsserts throwing;
+    Grid<float> grid;
+    const ProxyId id = grid.add(cube(0));
+    std::size_t calls = 0;
+    CallEach collector{[&](ProxyId) {
+        ++calls;
+        expectThatNothingMayChange(grid, id);
+    }};
+    const BoxRegion<float> region{cube(0)};
+    const RayRegion<float> ray({-9, 0, 0}, {9, 0, 0});
+    grid.visitEach(std::span(&region, 1), std::span(&collector, 1));
+    grid.visitEach(std::span(&ray, 1), std::span(&collector, 1));
+    grid.visit(ConvexRegion<float>({}), collector);
+    EXPECT_EQ(calls, 3U);
+    grid.move(id, cube(1));
+    EXPECT_EQ(grid.validate(), "");
+}
+
+TEST(GridCallbacks, MustNotBeginAnUpdate) {
+    const ThrowingAsserts throwing;
+    Grid<float> grid;
+    static_cast<void>(grid.add(cube(0)));
+    CallEach collector{[&](ProxyId) { grid.update(); }};
+    EXPECT_THROW(grid.visit(BoxRegion<float>{cube(0)}, collector), BrokenAssert);
+    grid.update();
+
+    Grid<float> paired;
+    Pairs<float> pairs(paired);
+    static_cast<void>(paired.add(cube(0)));
+    const auto all = [](ProxyId, ProxyId) { return true; };
+    CallEach updating{[&](ProxyId) { pairs.update(all); }};
+    EXPECT_THROW(paired.visit(BoxRegion<float>{cube(0)}, updating), BrokenAssert);
+    pairs.update(all);
+    EXPECT_EQ(pairs.validate(), "");
+}
+
+TEST(PairFilterCallback, MayAskTheGridButMustNotChangeItNorAskForPairs) {
+    const ThrowingAsserts throwing;
+    Grid<float> grid;
+    Pairs<float> pairs(grid);
+    const ProxyId a = grid.add(cube(0));
+    static_cast<void>(grid.add(cube(1)));
+    int calls = 0;
+    const auto all = [](ProxyId, ProxyId) { return true; };
+    const auto filter = [&](ProxyId, ProxyId) {
+        ++calls;
+        expectThatNothingMayChange(grid, a);
+        EXPECT_THROW(pairs.update(all), BrokenAssert);
+        EXPECT_THROW(pairs.announce(a, all), BrokenAssert);
+        EXPECT_THROW(pairs.refilter(a, all), BrokenAssert);
+        CollectCount count;
+        grid.visit(BoxRegion<float>{cube(0)}, count);
+        EXPECT_EQ(count.count(), 2U);
+        return true;
+    };
+    EXPECT_EQ(pairs.update(filter).born.size(), 1U);
+    EXPECT_TRUE(pairs.refilter(a, filter).born.empty());
+    EXPECT_EQ(calls, 2);
+    EXPECT_EQ(pairs.validate(), "");
+}
+
+TEST(GridMisuse, OfUpdateWherePairsEndTheFrameIsAsserted) {
+    const ThrowingAsserts throwing;
+    Grid<float> grid;
+    const Pairs<float> pairs(grid);
+    EXPECT_THROW(grid.update(), BrokenAssert);
+}
+
+TEST(GridMisuse, OfVisitEachWithoutACollectorForEachRegionIsAsserted) {
+    const ThrowingAsserts throwing;
+    Grid<float> grid;
+    const std::vector<BoxRegion<float>> regions(2, {cube(0)});
+    std::vector<CollectCount> counts(3);
+    EXPECT_THROW(grid.visitEach(std::span(regions), std::span(counts)), BrokenAssert);
+}
+
+TEST(SweepsMisuse, OfAStaleIdIsAsserted) {
+    const ThrowingAsserts throwing;
+    Grid<float> grid;
+    const Sweeps<float> sweeps(grid);
+    const ProxyId id = grid.add(cube(0));
+    grid.remove(id);
+    EXPECT_THROW(static_cast<void>(sweeps.motion(id)), BrokenAssert);
+}
+
+TEST(CrowdMisuse, OfAgentsThatThereAreNotIsAsserted) {
+    const ThrowingAsserts throwing;
+    Grid<float> grid;
+    static_cast<void>(grid.add(cube(0)));
+    Crowd<float> crowd;
+    crowd.take(grid, 1);
+    EXPECT_EQ(crowd.position(0), Point(0, 0, 0));
+    EXPECT_THROW(static_cast<void>(crowd.id(1)), BrokenAssert);
+    EXPECT_THROW(static_cast<void>(crowd.position(1)), BrokenAssert);
+}
+
+TEST(GridMisuseDeathTest, EndsTheProgramWithASentence) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    Grid<float> grid;
+    EXPECT_DEATH(grid.remove({}), "Only a proxy of this grid that was not removed can be removed");
+}
+
+#endif
+
+}  // namespace
+}  // namespace hashphase::test

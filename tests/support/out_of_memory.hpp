@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What becomes of something for which memory runs out, at each of its allocations in turn.
+
+#include <tests/support/count_allocations.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <new>
+#include <string>
+
+namespace hashphase::test {
+
+/// Makes a World, lets attempt(world) run out of memory at its first allocation, and calls
+/// check(world, n); the same with a new world and the second allocation, and so on, until the attempt
+/// comes to its end, after which check() is called too. Nothing must be left of any world. Returns
+/// how often it failed.
+template <class MakeWorld, class Attempt, class Check>
+std::size_t runOutOfMemory(const MakeWorld& make, const Attempt& attempt, const Check& check) {
+    for (std::size_t n = 0;; ++n) {
+        SCOPED_TRACE("after " + std::to_string(n) + " allocations");
+        bool hasFailed = false;
+        const std::size_t heldBefore = blocksHeld();
+        {
+            auto world = make();
+            try {
+                const FailingAllocations failing(n);
+                attempt(*world);
+            } catch (const std::bad_alloc&) {
+                hasFailed = true;
+            }
+            check(*world, n);
+        }
+        EXPECT_EQ(blocksHeld(), heldBefore) << "blocks are left";
+        if (!hasFailed || testing::Test::HasFatalFailure()) {
+            return n;
+        }
+    }
+}
+
+}  // namespace hashphase::test
