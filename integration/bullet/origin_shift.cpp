@@ -130,9 +130,9 @@ void shiftWorldOrigin(btCollisionWorld& world, SpatialHashBroadphase& broadphase
     if (!canShift(world, broadphase, shift)) {
         return;
     }
+    broadphase.shiftOrigin(shift);  // first: nothing else takes memory
     shiftObjects(world, shift);
     shiftContacts(world.getDispatcher(), shift);
-    broadphase.shiftOrigin(shift);
 }
 
 void shiftWorldOrigin(btDynamicsWorld& world, SpatialHashBroadphase& broadphase,
@@ -140,10 +140,10 @@ void shiftWorldOrigin(btDynamicsWorld& world, SpatialHashBroadphase& broadphase,
     if (!canShift(world, broadphase, shift)) {
         return;
     }
+    shiftWorldOrigin(static_cast<btCollisionWorld&>(world), broadphase, shift);
     for (int i = 0; i < world.getNumConstraints(); ++i) {
         shiftJoint(*world.getConstraint(i), shift);
     }
-    shiftWorldOrigin(static_cast<btCollisionWorld&>(world), broadphase, shift);
 }
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

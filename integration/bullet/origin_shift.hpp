@@ -9,6 +9,7 @@
 // Choose    shifts by multiples of a power of two, such as 1024 m, towards where the bodies are: they
 //           round nothing there, and leave all that is relative as it was, to the bit.
 // Threads   needs the world for itself.
+// Memory    Where it runs out, std::bad_alloc is passed on, and nothing is shifted.
 // Misuse    Soft bodies and multibodies keep coordinates of their own, which are not known here: a
 //           world that has any is asserted. A shift that is not finite is asserted, too. Either does
 //           nothing.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/bullet/pair_cache.hpp>
 
+#include <broadphase/detail/ensure_capacity.hpp>
 #include <broadphase/detail/limits.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
@@ -30,6 +31,18 @@ std::uint64_t idsOf(const btBroadphaseProxy& a, const btBroadphaseProxy& b) noex
 }
 
 }  // namespace
+
+/// Counts a call that is under way, however it ends.
+class PairCache::Processing {
+public:
+    explicit Processing(int& depth) noexcept : depth_(depth) { ++depth_; }
+    ~Processing() { --depth_; }
+    Processing(const Processing&) = delete;
+    Processing& operator=(const Processing&) = delete;
+
+private:
+    int& depth_;
+};
 
 // --- One pair ------------------------------------------------------------------------------------
 
@@ -82,6 +95,9 @@ PairCache::Freeing PairCache::freeingNow() const noexcept {
 // Callbacks come when everything is in order again, and get a copy, so that they may change the
 // cache.
 void* PairCache::remove(std::uint64_t ids, btDispatcher* dispatcher, Freeing freeing) {
+    if (freeing == Freeing::inTurn) {
+        detail::ensureCapacity(retired_, retired_.size() + 1);
+    }
     const std::uint32_t index = ids_.vacate(ids);
     if (index == kNone) {
         return nullptr;
@@ -102,7 +118,7 @@ void* PairCache::remove(std::uint64_t ids, btDispatcher* dispatcher, Freeing fre
 
 // The last pair takes a place that is vacant, unless that is the last itself. If it was not chained
 // before, it is to be now where its new place is among the chained.
-void PairCache::fill(std::uint32_t index) {
+void PairCache::fill(std::uint32_t index) noexcept {
     const auto last = static_cast<std::uint32_t>(pairs_.size()) - 1;
     ids_.fill(index);
     if (index != last) {
@@ -139,7 +155,7 @@ void PairCache::cleanOverlappingPair(btBroadphasePair& pair, btDispatcher* dispa
 
 void PairCache::processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher* dispatcher) {
     prepareWholeArray();
-    ++processDepth_;
+    const Processing processing(processDepth_);
     for (int i = 0; i < pairs_.size();) {
         btBroadphaseProxy* const proxy0 = pairs_[i].m_pProxy0;
         btBroadphaseProxy* const proxy1 = pairs_[i].m_pProxy1;
@@ -155,7 +171,6 @@ void PairCache::processAllOverlappingPairs(btOverlapCallback* callback, btDispat
             (i >= pairs_.size() || pairs_[i].m_pProxy0 != proxy0 || pairs_[i].m_pProxy1 != proxy1);
         i += isReplaced ? 0 : 1;
     }
-    --processDepth_;
 }
 
 void PairCache::processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher* dispatcher,
@@ -169,7 +184,7 @@ void PairCache::processAllOverlappingPairs(btOverlapCallback* callback, btDispat
 
 void PairCache::processByUniqueId(btOverlapCallback& callback, btDispatcher* dispatcher) {
     prepareWholeArray();
-    ++processDepth_;
+    const Processing processing(processDepth_);
     std::vector<Note> notes = std::move(scratch_);
     noteAll(notes);
     std::sort(notes.begin(), notes.end(),
@@ -181,7 +196,6 @@ void PairCache::processByUniqueId(btOverlapCallback& callback, btDispatcher* dis
         }
     }
     scratch_ = std::move(notes);
-    --processDepth_;
 }
 
 btBroadphasePair* PairCache::getOverlappingPairArrayPtr() {

@@ -17,10 +17,14 @@
 //           until the next look at the whole array. Others must not resize or reorder the array.
 // Batches   update() and removeOverlappingPairsContainingProxies() do in a pass what single calls do
 //           one by one, at a fraction of the cost.
-// Callbacks See the cache as it is after the change that they are told of, and may change it.
+// Callbacks See the cache as it is after the change that they are told of, and may change it: those of
+//           ghosts, of processAllOverlappingPairs(), and of algorithms that are freed. The filter
+//           may not.
+// Memory    Where it runs out, std::bad_alloc is passed on: a single call has changed nothing, a batch
+//           has removed some of its pairs or all, and added none. Bullet's own arrays do not tell.
 // NULL      A NULL dispatcher frees no algorithms, as in Bullet; NULL clients are fine.
-// Misuse    Pairs of a proxy with itself, and proxies alive with the same or with negative unique
-//           ids; asserted.
+// Misuse    Pairs of a proxy with itself, proxies alive with the same or with negative unique ids,
+//           and no key; asserted.
 
 #include <broadphase/detail/flat_set.hpp>
 #include <broadphase/detail/run_map.hpp>
@@ -60,7 +64,7 @@ public:
     ProxyCouple(btBroadphaseProxy& a, btBroadphaseProxy& b) noexcept
         : ProxyCouple(a, a.m_uniqueId, b, b.m_uniqueId) {}
 
-    /// The ids must be those of the proxies.
+    /// The ids must be those of the proxies, which are not read to see whether they are.
     ProxyCouple(btBroadphaseProxy& a, int idOfA, btBroadphaseProxy& b, int idOfB) noexcept
         : lower_(idOfA < idOfB ? &a : &b),
           upper_(idOfA < idOfB ? &b : &a),
@@ -74,6 +78,12 @@ public:
     /// Both unique ids, the lower one on top.
     [[nodiscard]] std::uint64_t ids() const noexcept { return ids_; }
 
+    /// False when one of the two has another unique id by now, as one that was destroyed.
+    [[nodiscard]] bool isUpToDate() const noexcept {
+        return static_cast<std::uint32_t>(lower_->m_uniqueId) == ids_ >> 32 &&
+               static_cast<std::uint32_t>(upper_->m_uniqueId) == (ids_ & 0xffffffffU);
+    }
+
 private:
     btBroadphaseProxy* lower_;
     btBroadphaseProxy* upper_;
@@ -84,8 +94,10 @@ class PairCache final : public btOverlappingPairCache {
 public:
     /// The key orients pairs in either order: m_pProxy0 has the lower one. The default orients as
     /// Bullet does; another one is for broadphases that re-use unique ids.
-    explicit PairCache(PairOrder order = PairOrder::arrival, ProxyKey key = &uniqueId) noexcept
-        : order_(order), key_(key) {}
+    explicit PairCache(PairOrder order = PairOrder::arrival, ProxyKey key = &uniqueId)
+        : order_(order), key_(key) {
+        HASHPHASE_ASSERT(key != nullptr, "There is a key to order proxies by.");
+    }
 
     PairCache(const PairCache&) = delete;
     PairCache& operator=(const PairCache&) = delete;
@@ -242,6 +254,8 @@ private:
 
     enum class Freeing { now, inTurn };
 
+    class Processing;
+
     static constexpr std::uint32_t kNone = detail::FlatSet::kNone;
     static constexpr std::uint64_t kLowerHalf = 0xffffffffU;  // of two unique ids
 
@@ -277,9 +291,10 @@ private:
     void prefetchAhead(std::span<const ProxyCouple> couples, std::size_t i) const;
     void vacate(std::uint64_t ids, btDispatcher* dispatcher);
     void vacateAll(std::span<const ProxyCouple> died, btDispatcher* dispatcher);
+    void makeRoomFor(std::size_t bornCount);
     std::size_t settle(std::span<const ProxyCouple> born);
-    void closeVacant(std::size_t firstVacant);
-    void fill(std::uint32_t index);
+    void closeVacant(std::size_t firstVacant) noexcept;
+    void fill(std::uint32_t index) noexcept;
     [[nodiscard]] std::vector<Note> notesOfAll(std::span<btBroadphaseProxy* const> proxies);
 
     [[nodiscard]] bool isChained(std::uint32_t index) const noexcept {
@@ -288,14 +303,8 @@ private:
     [[nodiscard]] std::uint64_t idOfEnd(std::uint32_t edge) const;
     void chainIfWorth();
     void dropChainsIfMany(std::size_t changeCount);
-    void dropChains();
-    // Of a place that is not among the chained, nothing.
-    void chainPair(std::uint32_t index) {
-        if (isChained(index)) {
-            chain(2 * index);
-            chain(2 * index + 1);
-        }
-    }
+    void dropChains() noexcept;
+    void chainPair(std::uint32_t index) noexcept;
     void unchainPair(std::uint32_t index, std::uint64_t ids) {
         if (isChained(index)) {
             unchain(2 * index, ids >> 32);

@@ -6,6 +6,8 @@
 
 #include <integration/bullet/pair_cache.hpp>
 
+#include <broadphase/detail/ensure_capacity.hpp>
+
 #include <algorithm>
 #include <utility>
 
@@ -29,7 +31,14 @@ void PairCache::update(std::span<const ProxyCouple> died, std::span<const ProxyC
     }
     dropChainsIfMany(died.size());
     vacant_.clear();
-    vacateAll(died, dispatcher);
+    detail::ensureCapacity(vacant_, died.size());
+    try {
+        vacateAll(died, dispatcher);
+        makeRoomFor(born.size());
+    } catch (...) {
+        closeVacant(0);
+        throw;
+    }
     closeVacant(settle(born));
     if (order_ == PairOrder::arrival) {
         freeRetiredAsListed();
@@ -47,7 +56,9 @@ void PairCache::updateOneByOne(std::span<const ProxyCouple> died, std::span<cons
     }
     for (std::size_t i = 0; i < born.size(); ++i) {
         prefetchAhead(born, i);
-        add(born[i]);
+        if (born[i].isUpToDate()) {  // a callback may have destroyed one of the two
+            add(born[i]);
+        }
     }
 }
 
@@ -70,6 +81,9 @@ void PairCache::vacateAll(std::span<const ProxyCouple> died, btDispatcher* dispa
 
 // Removes the pair, if it is there, and leaves its place vacant.
 void PairCache::vacate(std::uint64_t ids, btDispatcher* dispatcher) {
+    if (dispatcher != nullptr) {
+        detail::ensureCapacity(retired_, retired_.size() + 1);
+    }
     const std::uint32_t index = ids_.vacate(ids);
     if (index == kNone) {
         return;
@@ -80,6 +94,14 @@ void PairCache::vacate(std::uint64_t ids, btDispatcher* dispatcher) {
     pair.m_pProxy0 = nullptr;
     vacant_.push_back(index);
     isSorted_ = false;
+}
+
+// So that settle() takes no more memory.
+void PairCache::makeRoomFor(std::size_t bornCount) {
+    if (bornCount > 0) {
+        const std::size_t more = bornCount - std::min(bornCount, vacant_.size());
+        ids_.reserve(ids_.size() + std::max<std::size_t>(more, 1));
+    }
 }
 
 // Adds the pairs in vacant places, as long as there are some, and returns how many it took.
@@ -109,7 +131,7 @@ std::size_t PairCache::settle(std::span<const ProxyCouple> born) {
 }
 
 // Pairs from the end take the places that are still vacant.
-void PairCache::closeVacant(std::size_t firstVacant) {
+void PairCache::closeVacant(std::size_t firstVacant) noexcept {
     for (std::size_t i = firstVacant; i < vacant_.size(); ++i) {
         while (pairs_.size() > 0 && pairs_[pairs_.size() - 1].m_pProxy0 == nullptr) {
             fill(static_cast<std::uint32_t>(pairs_.size()) - 1);
@@ -136,11 +158,17 @@ void PairCache::removeOverlappingPairsContainingProxies(std::span<btBroadphasePr
     chainIfWorth();
     std::vector<Note> notes = notesOfAll(proxies);
     vacant_.clear();
-    for (std::size_t i = 0; i < notes.size(); ++i) {
-        if (i + kFar < notes.size()) {
-            ids_.prefetch(notes[i + kFar].uniqueIds);
+    detail::ensureCapacity(vacant_, notes.size());
+    try {
+        for (std::size_t i = 0; i < notes.size(); ++i) {
+            if (i + kFar < notes.size()) {
+                ids_.prefetch(notes[i + kFar].uniqueIds);
+            }
+            vacate(notes[i].uniqueIds, dispatcher);
         }
-        vacate(notes[i].uniqueIds, dispatcher);
+    } catch (...) {
+        closeVacant(0);
+        throw;
     }
     closeVacant(0);
     scratch_ = std::move(notes);

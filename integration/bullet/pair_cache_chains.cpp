@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <new>
 #include <utility>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
@@ -64,9 +65,27 @@ void PairCache::chainIfWorth() {
         return;
     }
     pairsScanned_ = 0;
-    links_.resize(2 * ids_.size());
+    try {
+        links_.resize(2 * ids_.size());
+    } catch (const std::bad_alloc&) {
+        return;
+    }
     for (std::size_t i = chained; i < ids_.size(); ++i) {
         chainPair(static_cast<std::uint32_t>(i));
+    }
+}
+
+// Of a place that is not among the chained, nothing. Chains are a convenience: where there is no memory
+// for one there are none.
+void PairCache::chainPair(std::uint32_t index) noexcept {
+    if (!isChained(index)) {
+        return;
+    }
+    try {
+        chain(2 * index);
+        chain(2 * index + 1);
+    } catch (const std::bad_alloc&) {
+        dropChains();
     }
 }
 
@@ -79,7 +98,7 @@ void PairCache::dropChainsIfMany(std::size_t changeCount) {
     }
 }
 
-void PairCache::dropChains() {
+void PairCache::dropChains() noexcept {
     links_.clear();
     firstEdge_.clear();
     pairsScanned_ = 0;

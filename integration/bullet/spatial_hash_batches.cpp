@@ -2,6 +2,7 @@
 //
 // Many proxies at once, with the result of as many single calls.
 
+#include <broadphase/detail/ensure_capacity.hpp>
 #include <broadphase/detail/prefetch.hpp>
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
@@ -25,6 +26,7 @@ void SpatialHashBroadphase::createProxies(std::span<const ProxyDefinition> defin
                      "There is room for exactly one proxy a definition.");
     grid_.reserve(grid_.size() + definitions.size());
     proxies_.reserve(grid_.size() + definitions.size());
+    detail::ensureCapacity(uniqueIds_, grid_.size() + definitions.size());
     for (std::size_t i = 0; i < definitions.size(); ++i) {
         const ProxyDefinition& each = definitions[i];
         proxies[i] = createProxy(each.aabbMin, each.aabbMax, INVALID_SHAPE_PROXYTYPE, each.userPtr,
@@ -50,7 +52,12 @@ void SpatialHashBroadphase::destroyProxies(std::span<btBroadphaseProxy* const> p
         static_cast<void>(checkedProxy(proxy));
     }
     if (batchCache_ != nullptr) {
-        batchCache_->removeOverlappingPairsContainingProxies(proxies, dispatcher);
+        try {
+            batchCache_->removeOverlappingPairsContainingProxies(proxies, dispatcher);
+        } catch (...) {
+            isCacheBehind_ = true;  // for nobody is destroyed
+            throw;
+        }
     } else {
         for (btBroadphaseProxy* proxy : proxies) {
             pairCache_->removeOverlappingPairsContainingProxy(proxy, dispatcher);
@@ -64,6 +71,8 @@ void SpatialHashBroadphase::destroyProxies(std::span<btBroadphaseProxy* const> p
 }
 
 std::size_t SpatialHashBroadphase::shiftOrigin(const btVector3& shift) {
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
+                     "The origin is not shifted by callbacks of calculateOverlappingPairs().");
     const Vector3<btScalar> by = toEigen(shift);
     const std::size_t roundedCount = grid_.shiftOrigin(by);
     if (by.allFinite()) {

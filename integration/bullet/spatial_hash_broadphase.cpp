@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
+#include <broadphase/detail/ensure_capacity.hpp>
 #include <broadphase/detail/limits.hpp>
 #include <broadphase/detail/prefetch.hpp>
 #include <integration/bullet/body_motion.hpp>
@@ -9,7 +10,9 @@
 
 #include <LinearMath/btGeometryUtil.h>
 
+#include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
@@ -45,6 +48,8 @@ SpatialHashBroadphase::SpatialHashBroadphase(btOverlappingPairCache* pairCache,
         batchCache_ = ownCache_.get();
         pairCache_ = ownCache_.get();
     }
+    HASHPHASE_ASSERT(pairCache_->getNumOverlappingPairs() == 0,
+                     "A pair cache has no pairs yet when it is given to a broadphase.");
 }
 
 btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
@@ -54,12 +59,14 @@ btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
                                                       btDispatcher* dispatcher) {
     detail::checkCount(static_cast<std::size_t>(lastUniqueId_) + 1, std::numeric_limits<int>::max(),
                        "All unique ids are used up. Without proxies, resetPool() counts anew.");
+    // All that the proxy needs, before it is in the grid.
+    detail::ensureCapacity(uniqueIds_, uniqueIds_.size() + 1);
+    proxies_.reserve(uniqueIds_.size() + 1);
     const bool isStatic = (collisionFilterGroup & btBroadphaseProxy::StaticFilter) != 0;
     const ProxyId id =
         grid_.add(toAabb(aabbMin, aabbMax), isStatic ? Mobility::resting : Mobility::mobile);
     if (id.index >= uniqueIds_.size()) {
         uniqueIds_.resize(id.index + 1, 0);
-        proxies_.reserve(uniqueIds_.size());
     }
     Proxy& proxy = *proxyAt(id.index);
     static_cast<btBroadphaseProxy&>(proxy) =
@@ -68,7 +75,12 @@ btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
     proxy.id = id;
     uniqueIds_[id.index] = proxy.m_uniqueId;
     if (isEager(proxy)) {
-        announce(proxy, dispatcher);
+        try {
+            announce(proxy, dispatcher);
+        } catch (...) {
+            destroyProxy(&proxy, dispatcher);
+            throw;
+        }
     }
     return &proxy;
 }
@@ -82,6 +94,7 @@ void SpatialHashBroadphase::removeFromGrid(Proxy* proxy) {
     grid_.remove(proxy->id);
     uniqueIds_[proxy->id.index] = 0;
     proxy->id = {};
+    proxy->m_uniqueId = 0;
     proxy->m_clientObject = nullptr;
 }
 
@@ -113,8 +126,9 @@ void SpatialHashBroadphase::move(const Proxy& proxy) {
 
 void SpatialHashBroadphase::getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin,
                                     btVector3& aabbMax) const {
-    aabbMin = proxy->m_aabbMin;
-    aabbMax = proxy->m_aabbMax;
+    const Proxy* own = checkedProxy(proxy);
+    aabbMin = own->m_aabbMin;
+    aabbMax = own->m_aabbMax;
 }
 
 // --- Pairs ---------------------------------------------------------------------------------------
@@ -139,9 +153,18 @@ void SpatialHashBroadphase::askFilter(std::span<const ProxyPair> asked,
 }
 
 void SpatialHashBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
-    apply(config_.parallelFor ? pairs_.update(cacheFilter(), config_.parallelFor)
-                              : pairs_.update(cacheFilter()),
-          dispatcher);
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
+                     "calculateOverlappingPairs() is not called by its own callbacks.");
+    const detail::QueryScope scope(this, detail::QueryScope::Changes::allowed);
+    const PairChanges changes = config_.parallelFor
+                                    ? pairs_.update(cacheFilter(), config_.parallelFor)
+                                    : pairs_.update(cacheFilter());
+    if (isCacheBehind_) {
+        catchUp(dispatcher);
+    } else {
+        constexpr std::size_t kBirthsAtOnce = 4096;
+        apply(changes, kBirthsAtOnce, dispatcher);
+    }
     removeDeferred(nullptr, dispatcher);
 }
 
@@ -158,41 +181,91 @@ void SpatialHashBroadphase::findCouples(std::span<const ProxyPair> pairs,
     }
 }
 
-void SpatialHashBroadphase::apply(const PairChanges& changes, btDispatcher* dispatcher) {
-    // The first births, as many as there are deaths at least, go with these, to take their places.
-    constexpr std::size_t kBirthsAtOnce = 4096;
-    findCouples(changes.died, died_);
-    std::span<const ProxyPair> born = changes.born;
-    std::size_t count = std::min(born.size(), std::max(died_.size(), kBirthsAtOnce));
-    do {
-        findCouples(born.first(count), born_);
-        applyToCache(dispatcher);
-        died_.clear();
-        born = born.subspan(count);
-        count = std::min(born.size(), kBirthsAtOnce);
-    } while (count > 0);
+/// The lists of couples that are applied, lent to a call: its callbacks may bring another one about.
+struct SpatialHashBroadphase::Couples {
+    explicit Couples(SpatialHashBroadphase& lender)
+        : died(std::move(lender.died_)), born(std::move(lender.born_)), lender_(lender) {}
+    ~Couples() {
+        lender_.died_ = std::move(died);
+        lender_.born_ = std::move(born);
+    }
+    Couples(const Couples&) = delete;
+    Couples& operator=(const Couples&) = delete;
+
+    std::vector<ProxyCouple> died;
+    std::vector<ProxyCouple> born;
+
+private:
+    SpatialHashBroadphase& lender_;
+};
+
+void SpatialHashBroadphase::apply(const PairChanges& changes, std::size_t birthsAtOnce,
+                                  btDispatcher* dispatcher) {
+    Couples couples(*this);
+    try {
+        // The first births, as many as there are deaths at least, go with these, to take their places.
+        findCouples(changes.died, couples.died);
+        std::span<const ProxyPair> born = changes.born;
+        std::size_t count = std::min(born.size(), std::max(couples.died.size(), birthsAtOnce));
+        do {
+            findCouples(born.first(count), couples.born);
+            applyToCache(couples, dispatcher);
+            couples.died.clear();
+            born = born.subspan(count);
+            count = std::min(born.size(), birthsAtOnce);
+        } while (count > 0);
+    } catch (...) {
+        isCacheBehind_ = true;
+        throw;
+    }
 }
 
-void SpatialHashBroadphase::applyToCache(btDispatcher* dispatcher) {
+void SpatialHashBroadphase::applyToCache(const Couples& couples, btDispatcher* dispatcher) {
     if (batchCache_ != nullptr) {
-        batchCache_->update(died_, born_, dispatcher);
+        batchCache_->update(couples.died, couples.born, dispatcher);
         return;
     }
-    for (const ProxyCouple& couple : died_) {
+    for (const ProxyCouple& couple : couples.died) {
         pairCache_->removeOverlappingPair(couple.lower(), couple.upper(), dispatcher);
     }
-    for (const ProxyCouple& couple : born_) {
-        pairCache_->addOverlappingPair(couple.lower(), couple.upper());
+    for (const ProxyCouple& couple : couples.born) {
+        if (couple.isUpToDate()) {  // a callback may have destroyed one of the two
+            pairCache_->addOverlappingPair(couple.lower(), couple.upper());
+        }
     }
 }
 
+// After changes that did not all reach the cache: what it holds and is no pair goes, what is one and is
+// missing comes.
+void SpatialHashBroadphase::catchUp(btDispatcher* dispatcher) {
+    std::vector<ProxyPair> all;
+    pairs_.collect(all);
+    Couples couples(*this);
+    findCouples(all, couples.born);
+    couples.died.clear();
+    btBroadphasePairArray& present = pairCache_->getOverlappingPairArray();
+    for (int i = 0; i < present.size(); ++i) {
+        const ProxyId a = idOf(present[i].m_pProxy0);
+        const ProxyId b = idOf(present[i].m_pProxy1);
+        if (!std::binary_search(all.begin(), all.end(),
+                                a < b ? ProxyPair{a, b} : ProxyPair{b, a})) {
+            couples.died.emplace_back(*present[i].m_pProxy0, *present[i].m_pProxy1);
+        }
+    }
+    applyToCache(couples, dispatcher);
+    isCacheBehind_ = false;
+}
+
+// All births at once: should memory run out, there are none.
 void SpatialHashBroadphase::announce(const Proxy& proxy, btDispatcher* dispatcher) {
-    apply(pairs_.announce(proxy.id, cacheFilter()), dispatcher);
+    const PairChanges changes = pairs_.announce(proxy.id, cacheFilter());
+    apply(changes, changes.born.size(), dispatcher);
 }
 
 void SpatialHashBroadphase::refilter(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
     const Proxy* own = checkedProxy(proxy);
-    apply(pairs_.refilter(own->id, cacheFilter()), dispatcher);
+    const PairChanges changes = pairs_.refilter(own->id, cacheFilter());
+    apply(changes, changes.born.size(), dispatcher);
     removeDeferred(own, dispatcher);
 }
 
@@ -259,6 +332,7 @@ btBroadphaseProxy* SpatialHashBroadphase::proxyOf(ProxyId id) const {
 }
 
 ProxyId SpatialHashBroadphase::idOf(const btBroadphaseProxy* proxy) {
+    HASHPHASE_ASSERT(proxy != nullptr, "Only a proxy has an id.");
     return static_cast<const Proxy*>(proxy)->id;
 }
 

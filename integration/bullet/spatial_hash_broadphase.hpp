@@ -20,8 +20,17 @@
 // Bad data  A box with NaN pairs with nothing and is reported once (diagnostics.hpp). Infinite, huge
 //           and inverted boxes are treated exactly as comparing their coordinates says. NULL
 //           clients and NULL dispatchers are fine.
-// Misuse    Proxies that are not alive, proxies of other broadphases, and spans of different lengths
-//           in a batch are asserted.
+// Callbacks Those of rayTest(), aabbTest() and closestRay(), of the pair cache and of the dispatcher
+//           may create, move and destroy proxies, and ask. What is destroyed is not reported any
+//           more; what is moved or created may be reported, once more, or not. Bullet itself must be
+//           able to bear it: it cannot where an object is removed that it is at work on. The overlap
+//           filter may ask but not change anything, and calculateOverlappingPairs() and
+//           shiftOrigin() are not called from within any of them; asserted.
+// Memory    Where it runs out, std::bad_alloc is passed on and the call may be repeated:
+//           createProxy() has created nothing, shiftOrigin() has shifted nothing, and the first
+//           calculateOverlappingPairs() that returns brings the cache up to date. Bullet's own arrays do not tell.
+// Misuse    Proxies that are not alive, proxies of other broadphases, spans of different lengths in a
+//           batch, and rays without a callback are asserted.
 
 #include <broadphase/detail/stable_array.hpp>
 #include <broadphase/grid.hpp>
@@ -106,8 +115,9 @@ public:
     /// Makes and owns a PairCache. Throws std::invalid_argument with configError(config.grid).
     explicit SpatialHashBroadphase(const SpatialHashConfig& config = {});
 
-    /// Uses `pairCache`, which must outlive the broadphase and have no pairs yet; with nullptr, as
-    /// above. A cache that is given as a PairCache is changed in batches, any other pair by pair.
+    /// Uses `pairCache`, which must outlive the broadphase and have no pairs yet (asserted); with
+    /// nullptr, as above. A cache that is given as a PairCache is changed in batches, any other pair
+    /// by pair.
     explicit SpatialHashBroadphase(PairCache* pairCache, const SpatialHashConfig& config = {});
     explicit SpatialHashBroadphase(btOverlappingPairCache* pairCache,
                                    const SpatialHashConfig& config = {});
@@ -174,7 +184,8 @@ public:
     // --- Many at once ----------------------------------------------------------------------------
 
     /// Creates a proxy for each definition, in their order, and writes them to `proxies`, which is
-    /// as long. Cost: O(1) a proxy.
+    /// as long. Where memory runs out, those that were written are created, and no others. Cost: O(1)
+    /// a proxy.
     void createProxies(std::span<const ProxyDefinition> definitions,
                        std::span<btBroadphaseProxy*> proxies, btDispatcher* dispatcher);
 
@@ -202,7 +213,7 @@ public:
 
     /// rayTest() and closestRay() for many rays: each callback hears what it would hear from a ray
     /// alone, in the same order; callbacks are called at the same time where `parallelFor` is
-    /// parallel. A callback serves one ray of the batch.
+    /// parallel, and change nothing then. Each ray has a callback (asserted), of its own.
     void rayTests(std::span<const BroadphaseRay> rays, ParallelFor parallelFor = serialFor);
     void closestRays(std::span<const ClosestRay> rays, ParallelFor parallelFor = serialFor) const;
 
@@ -218,7 +229,8 @@ public:
     /// were rounded. Cost: a pass over the proxies, and that of Grid::shiftOrigin().
     std::size_t shiftOrigin(const btVector3& shift);
 
-    /// The grid, for queries that Bullet has none for. proxyOf() leads back to Bullet.
+    /// The grid, for queries that Bullet has none for. proxyOf() leads back to Bullet, of what is
+    /// alive (asserted); idOf() is for proxies of this class.
     [[nodiscard]] const Grid<btScalar>& grid() const noexcept { return grid_; }
     [[nodiscard]] btBroadphaseProxy* proxyOf(ProxyId id) const;
     [[nodiscard]] static ProxyId idOf(const btBroadphaseProxy* proxy);
@@ -241,6 +253,7 @@ private:
     struct Proxy : btBroadphaseProxy {
         ProxyId id;
     };
+    struct Couples;
     template <class Callback>
     struct ProcessCollector;
 
@@ -254,8 +267,9 @@ private:
     }
     void removeFromGrid(Proxy* proxy);
     void findCouples(std::span<const ProxyPair> pairs, std::vector<ProxyCouple>& couples) const;
-    void apply(const PairChanges& changes, btDispatcher* dispatcher);
-    void applyToCache(btDispatcher* dispatcher);
+    void apply(const PairChanges& changes, std::size_t birthsAtOnce, btDispatcher* dispatcher);
+    void applyToCache(const Couples& couples, btDispatcher* dispatcher);
+    void catchUp(btDispatcher* dispatcher);
     [[nodiscard]] bool isEager(const Proxy& proxy) const noexcept {
         return (proxy.m_collisionFilterGroup & config_.eagerGroups) != 0;
     }
@@ -287,7 +301,8 @@ private:
     std::unique_ptr<PairCache> ownCache_;  // if none was given
     PairCache* batchCache_ = nullptr;      // the cache, if it is known to be a PairCache
     btOverlappingPairCache* pairCache_ = nullptr;
-    std::vector<ProxyCouple> died_;  // scratch of apply()
+    bool isCacheBehind_ = false;     // of changes that did not all reach it
+    std::vector<ProxyCouple> died_;  // scratch of Couples
     std::vector<ProxyCouple> born_;
 };
 

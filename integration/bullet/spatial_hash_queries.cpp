@@ -149,6 +149,7 @@ void SpatialHashBroadphase::rayTest(const btVector3& rayFrom, const btVector3& r
 void SpatialHashBroadphase::rayTests(std::span<const BroadphaseRay> rays, ParallelFor parallelFor) {
     parallelFor(rays.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         for (const BroadphaseRay& ray : rays.subspan(begin, end - begin)) {
+            HASHPHASE_ASSERT(ray.callback != nullptr, "Each ray has a callback.");
             rayTest(ray.from, ray.to, *ray.callback, ray.castMin, ray.castMax);
         }
     });
@@ -167,6 +168,7 @@ void SpatialHashBroadphase::closestRays(std::span<const ClosestRay> rays,
                                         ParallelFor parallelFor) const {
     parallelFor(rays.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         for (const ClosestRay& ray : rays.subspan(begin, end - begin)) {
+            HASHPHASE_ASSERT(ray.callback != nullptr, "Each ray has a callback.");
             closestRay(ray.from, ray.to, *ray.callback);
         }
     });

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Zlib
+
+// What a caller of the broadphase or of its pair cache may not do is asserted.
+
+#include <integration/bullet/spatial_hash_broadphase.hpp>
+#include <tests/support/handlers.hpp>
+
+#include <gtest/gtest.h>
+
+namespace hashphase::test {
+namespace {
+
+#if HASHPHASE_ENABLE_ASSERTS
+
+btBroadphaseProxy numbered(int uniqueId) {
+    btBroadphaseProxy proxy({0, 0, 0}, {1, 1, 1}, nullptr, 1, 1);
+    proxy.m_uniqueId = uniqueId;
+    return proxy;
+}
+
+TEST(PairCacheMisuse, OfProxiesWithTheSameUniqueIdIsAsserted) {
+    const ThrowingAsserts throwing;
+    PairCache cache;
+    btBroadphaseProxy one = numbered(1);
+    btBroadphaseProxy two = numbered(2);
+    btBroadphaseProxy otherOne = numbered(1);
+    btBroadphaseProxy otherTwo = numbered(2);
+    cache.addAcceptedPair(&one, &two);
+    EXPECT_THROW(cache.addAcceptedPair(&otherOne, &otherTwo), BrokenAssert);
+    const ProxyCouple couple(otherOne, otherTwo);
+    EXPECT_THROW(cache.update({}, std::span(&couple, 1), nullptr), BrokenAssert);
+    EXPECT_EQ(cache.getNumOverlappingPairs(), 1);
+}
+
+TEST(PairCacheMisuse, OfNoKeyIsAsserted) {
+    const ThrowingAsserts throwing;
+    EXPECT_THROW(PairCache(PairOrder::canonical, nullptr), BrokenAssert);
+}
+
+TEST(BroadphaseMisuse, OfACacheThatHasPairsIsAsserted) {
+    const ThrowingAsserts throwing;
+    PairCache cache;
+    btBroadphaseProxy one = numbered(1);
+    btBroadphaseProxy two = numbered(2);
+    cache.addAcceptedPair(&one, &two);
+    EXPECT_THROW(SpatialHashBroadphase{&cache}, BrokenAssert);
+}
+
+TEST(BroadphaseMisuse, OfProxiesThatAreNotAliveIsAsserted) {
+    const ThrowingAsserts throwing;
+    SpatialHashBroadphase broadphase;
+    btBroadphaseProxy* proxy =
+        broadphase.createProxy({0, 0, 0}, {1, 1, 1}, 0, nullptr, 1, 1, nullptr);
+    btVector3 low;
+    btVector3 high;
+    broadphase.getAabb(proxy, low, high);
+    EXPECT_EQ(high, btVector3(1, 1, 1));
+    broadphase.destroyProxy(proxy, nullptr);
+    EXPECT_THROW(broadphase.getAabb(proxy, low, high), BrokenAssert);
+    EXPECT_THROW(broadphase.getAabb(nullptr, low, high), BrokenAssert);
+    EXPECT_THROW(static_cast<void>(SpatialHashBroadphase::idOf(nullptr)), BrokenAssert);
+}
+
+TEST(BroadphaseMisuse, OfRaysWithoutACallbackIsAsserted) {
+    const ThrowingAsserts throwing;
+    SpatialHashBroadphase broadphase;
+    const BroadphaseRay ray{{0, 0, 0}, {1, 0, 0}};
+    const ClosestRay closest{{0, 0, 0}, {1, 0, 0}};
+    EXPECT_THROW(broadphase.rayTests(std::span(&ray, 1)), BrokenAssert);
+    EXPECT_THROW(broadphase.closestRays(std::span(&closest, 1)), BrokenAssert);
+}
+
+#endif
+
+}  // namespace
+}  // namespace hashphase::test
