@@ -149,13 +149,14 @@ template <class Scalar>
 QueryCost Sight<Scalar>::look(const Grid<Scalar>& grid, std::span<const Viewer<Scalar>> viewers,
                               ProxyFilter targets, ProxyFilter blockers, ParallelFor parallelFor) {
     constexpr std::size_t grain = 16;
-    viewerCount_ = viewers.size();
-    views_.resize(std::max(views_.size(), viewerCount_));
-    parallelFor(viewerCount_, grain, [&](std::size_t begin, std::size_t end) {
+    viewerCount_ = 0;  // nobody has seen anybody, should memory run out
+    views_.resize(std::max(views_.size(), viewers.size()));
+    parallelFor(viewers.size(), grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             views_[i].cost = visibleFrom(grid, viewers[i], views_[i].seen, targets, blockers);
         }
     });
+    viewerCount_ = viewers.size();
     QueryCost cost;
     for (std::size_t i = 0; i < viewerCount_; ++i) {
         cost += views_[i].cost;

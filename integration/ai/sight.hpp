@@ -96,7 +96,8 @@ public:
                    ProxyFilter targets = acceptAll, ProxyFilter blockers = acceptAll,
                    ParallelFor parallelFor = serialFor);
 
-    /// Whom the viewer at this place in look()'s span saw, sorted. Valid until the next look().
+    /// Whom the viewer at this place in look()'s span (asserted) saw, sorted. Valid until the next
+    /// look().
     [[nodiscard]] std::span<const ProxyId> seenBy(std::size_t viewer) const;
 
 private:

@@ -2,6 +2,7 @@
 #include <integration/ai/zones.hpp>
 
 #include <broadphase/collectors.hpp>
+#include <broadphase/detail/ensure_capacity.hpp>
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/proxy_filter.hpp>
 
@@ -37,16 +38,16 @@ QueryCost findOccupants(const Grid<Scalar>& grid, const Region& region, Presence
 
 template <class Scalar>
 ZoneId Zones<Scalar>::add(const Zone<Scalar>& zone) {
+    auto index = static_cast<std::uint32_t>(slots_.size());
     if (freeSlots_.empty()) {
-        freeSlots_.push_back(static_cast<std::uint32_t>(slots_.size()));
+        detail::ensureCapacity(freeSlots_, slots_.size() + 1);  // so that remove() has room
         slots_.push_back({zone, 0, {}, {}, {}});
+    } else {
+        index = freeSlots_.back();
+        slots_[index].zone = zone;
+        freeSlots_.pop_back();
     }
-    const std::uint32_t index = freeSlots_.back();
-    freeSlots_.pop_back();
-    Slot& slot = slots_[index];
-    slot.zone = zone;
-    ++slot.generation;
-    return {index, slot.generation};
+    return {index, ++slots_[index].generation};
 }
 
 template <class Scalar>
@@ -59,6 +60,7 @@ template <class Scalar>
 void Zones<Scalar>::remove(ZoneId id) {
     HASHPHASE_ASSERT(contains(id), "Only a zone that was not removed can be removed.");
     Slot& slot = slots_[id.index];
+    detail::ensureCapacity(abandoned_, abandoned_.size() + slot.occupants.size());
     for (const ProxyId proxy : slot.occupants) {
         abandoned_.push_back({id, proxy});
     }
@@ -99,10 +101,9 @@ ZoneEvents Zones<Scalar>::update(const Grid<Scalar>& grid, ZoneFilter filter,
             }
             const ZoneId id{static_cast<std::uint32_t>(i), slot.generation};
             const auto counts = [&](ProxyId proxy) { return filter(id, proxy); };
-            slot.before.swap(slot.occupants);
             slot.cost = std::visit(
                 [&](const auto& region) {
-                    return findOccupants(grid, region, slot.zone.presence, counts, slot.occupants);
+                    return findOccupants(grid, region, slot.zone.presence, counts, slot.found);
                 },
                 slot.zone.shape);
         }
@@ -124,18 +125,23 @@ ZoneEvents Zones<Scalar>::update(const Grid<Scalar>& grid, ZoneFilter filter,
         std::sort(left_.begin(), left_.end());
         abandoned_.clear();
     }
+    for (Slot& slot : slots_) {
+        if (isAlive(slot)) {
+            slot.occupants.swap(slot.found);
+        }
+    }
     return {entered_, stayed_, left_};
 }
 
 // Merges who was there and who is.
 template <class Scalar>
 void Zones<Scalar>::tellApart(ZoneId id, const Slot& slot) {
-    auto before = slot.before.begin();
-    auto now = slot.occupants.begin();
-    while (before != slot.before.end() || now != slot.occupants.end()) {
-        if (now == slot.occupants.end() || (before != slot.before.end() && *before < *now)) {
+    auto before = slot.occupants.begin();
+    auto now = slot.found.begin();
+    while (before != slot.occupants.end() || now != slot.found.end()) {
+        if (now == slot.found.end() || (before != slot.occupants.end() && *before < *now)) {
             left_.push_back({id, *before++});
-        } else if (before == slot.before.end() || *now < *before) {
+        } else if (before == slot.occupants.end() || *now < *before) {
             entered_.push_back({id, *now++});
         } else {
             stayed_.push_back({id, *now++});

@@ -11,6 +11,8 @@
 //           who was in it then stays.
 // Threads   update() reads the grid, as queries do, and needs this object for itself, as add(), set()
 //           and remove() do. All else is const and may be called from any number of threads.
+// Failure   Where memory runs out, or a filter throws, nothing has happened: what update() would have
+//           told the next one does.
 // Bad data  Nobody is in a zone whose shape has a NaN or a negative radius. An inverted box means
 //           what overlaps() says.
 // Misuse    An id of no zone is asserted.
@@ -117,9 +119,9 @@ public:
 private:
     struct Slot {
         Zone<Scalar> zone;
-        std::uint32_t generation = 0;  // odd while the slot has a zone
-        std::vector<ProxyId> occupants;
-        std::vector<ProxyId> before;  // occupants at the update before the last
+        std::uint32_t generation = 0;    // odd while the slot has a zone
+        std::vector<ProxyId> occupants;  // at the last update
+        std::vector<ProxyId> found;      // by the one under way
         QueryCost cost;
     };
 

@@ -56,7 +56,8 @@ bool Culler<Scalar>::keepsSet(Scalar moved) {
            !grown_.volume().isInside && grown_.contains(view_, moved_);
 }
 
-// Returns whether the set is to be found anew, and empties it if so.
+// Returns whether the set is to be found anew, and empties it if so. It is not to be kept before it is
+// found: should the query throw, it has not all that is visible.
 template <class Scalar>
 bool Culler<Scalar>::begin(const View& view, Scalar moved) {
     if (!isFrozen_) {
@@ -66,7 +67,7 @@ bool Culler<Scalar>::begin(const View& view, Scalar moved) {
         return false;
     }
     grown_ = margin_ > 0 ? view_.grownBy(margin_) : view_;
-    moved_ = 0;
+    moved_ = std::numeric_limits<Scalar>::infinity();
     std::fill(bits_.begin(), bits_.end(), 0);
     return true;
 }
@@ -77,7 +78,9 @@ QueryCost Culler<Scalar>::look(const Grid<Scalar>& grid, const View& view, Scala
         return {};
     }
     CollectBits bits(bits_);
-    return grid.visit(grown_, bits);
+    const QueryCost cost = grid.visit(grown_, bits);
+    moved_ = 0;
+    return cost;
 }
 
 template <class Scalar>
@@ -88,7 +91,9 @@ QueryCost Culler<Scalar>::look(const Grid<Scalar>& grid, const View& view, Proxy
     }
     CollectBits bits(bits_);
     CollectIf accepted(bits, filter);
-    return grid.visit(grown_, accepted);
+    const QueryCost cost = grid.visit(grown_, accepted);
+    moved_ = 0;
+    return cost;
 }
 
 template <class Scalar>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/terrain/terrain.hpp>
 
+#include <broadphase/detail/ensure_capacity.hpp>
+
 #include <limits>
 #include <utility>
 
@@ -21,29 +23,46 @@ Terrain<Scalar>::~Terrain() {
 template <class Scalar>
 AddedTriangles Terrain<Scalar>::add(std::span<const Point> corners) {
     HASHPHASE_ASSERT(corners.size() % 3 == 0, "Each triangle has three corners.");
-    AddedTriangles added;
-    added.first = size();
-    grid_->reserve(grid_->size() + corners.size() / 3);
-    for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
-        addOne({corners[i], corners[i + 1], corners[i + 2]}, added);
-    }
-    return added;
+    return addAll(corners.size() / 3, [&](std::size_t i) {
+        return Corners{corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]};
+    });
 }
 
 template <class Scalar>
 AddedTriangles Terrain<Scalar>::add(std::span<const Point> vertices,
                                     std::span<const std::uint32_t> indices) {
     HASHPHASE_ASSERT(indices.size() % 3 == 0, "Each triangle has three corners.");
-    AddedTriangles added;
-    added.first = size();
-    grid_->reserve(grid_->size() + indices.size() / 3);
     const Point none = Point::Constant(std::numeric_limits<Scalar>::quiet_NaN());
-    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+    return addAll(indices.size() / 3, [&](std::size_t i) {
         Corners corners;
         for (std::size_t k = 0; k < 3; ++k) {
-            corners[k] = indices[i + k] < vertices.size() ? vertices[indices[i + k]] : none;
+            const std::uint32_t index = indices[3 * i + k];
+            corners[k] = index < vertices.size() ? vertices[index] : none;
         }
-        addOne(corners, added);
+        return corners;
+    });
+}
+
+// All of them or, should memory run out, none.
+template <class Scalar>
+template <class CornersOf>
+AddedTriangles Terrain<Scalar>::addAll(std::size_t count, const CornersOf& cornersOf) {
+    AddedTriangles added;
+    added.first = size();
+    const Aabb<Scalar> boundsBefore = bounds_;
+    const Point tilesBefore = tilesPerMetre_;
+    try {
+        grid_->reserve(grid_->size() + count);
+        detail::ensureCapacity(triangles_, triangles_.size() + count);
+        detail::ensureCapacity(proxies_, proxies_.size() + count);
+        for (std::size_t i = 0; i < count; ++i) {
+            addOne(cornersOf(i), added);
+        }
+    } catch (...) {
+        removeFrom(added.first);
+        bounds_ = boundsBefore;
+        tilesPerMetre_ = tilesBefore;
+        throw;
     }
     return added;
 }
@@ -64,9 +83,9 @@ void Terrain<Scalar>::addOne(const Corners& corners, AddedTriangles& added) {
     }
     if (!isGood) {
         const Point nan = Point::Constant(std::numeric_limits<Scalar>::quiet_NaN());
+        added.refused.push_back(number);
         triangles_.push_back(groundTriangle({nan, nan, nan}));
         proxies_.emplace_back();
-        added.refused.push_back(number);
         return;
     }
     bounds_.extend(box);
@@ -98,14 +117,23 @@ detail::GroundTriangle<Scalar> Terrain<Scalar>::groundTriangle(const Corners& co
 
 template <class Scalar>
 void Terrain<Scalar>::clear() {
-    for (const ProxyId id : proxies_) {
+    removeFrom(0);
+    triangleOfProxy_.clear();
+}
+
+template <class Scalar>
+void Terrain<Scalar>::removeFrom(std::size_t first) {
+    for (std::size_t i = first; i < proxies_.size(); ++i) {
+        const ProxyId id = proxies_[i];
         if (!id.isNull()) {
             grid_->remove(id);
         }
+        if (id.index < triangleOfProxy_.size() && !id.isNull()) {
+            triangleOfProxy_[id.index] = kNone;
+        }
     }
-    triangles_.clear();
-    proxies_.clear();
-    triangleOfProxy_.clear();
+    triangles_.resize(first);
+    proxies_.resize(first);
 }
 
 template <class Scalar>

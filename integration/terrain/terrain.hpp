@@ -14,7 +14,8 @@
 // Memory     A query allocates nothing, unless a few points meet hundreds of boxes; one about more
 //            than a thousand points takes 0.3 MB of the stack.
 // Bad data   Triangles with a bad corner are refused and named; bad points and radii have no ground.
-// Misuse     Corners that do not come in threes, and batches of unequal lengths, are asserted.
+// Misuse     Corners that do not come in threes, batches of unequal lengths, numbers that no triangle
+//            has, and more than 2^32 - 2 triangles are asserted.
 
 #include <broadphase/grid.hpp>
 #include <broadphase/parallel_for.hpp>
@@ -68,7 +69,8 @@ public:
 
     /// Adds triangles, three corners each. Refused is what has a corner that is NaN, infinite or
     /// farther than kFarthest. Vertical triangles, and those without an area, carry spheres but have
-    /// no height themselves. Either side may be up. Cost: O(1) amortised for each.
+    /// no height themselves. Either side may be up. Where memory runs out, nothing has been added.
+    /// Cost: O(1) amortised for each.
     AddedTriangles add(std::span<const Point> corners);
 
     /// The same, corners by their place in `vertices`. Refused is also what names no vertex.
@@ -161,7 +163,10 @@ private:
     QueryCost searchEach(std::span<const Point> points, std::span<Found> found,
                          ParallelFor parallelFor, const MakeSearch& makeSearch) const;
 
+    template <class CornersOf>
+    AddedTriangles addAll(std::size_t count, const CornersOf& cornersOf);
     void addOne(const Corners& corners, AddedTriangles& added);
+    void removeFrom(std::size_t first);
     [[nodiscard]] detail::GroundTriangle<Scalar> groundTriangle(const Corners& corners) const;
     [[nodiscard]] detail::Point2 above(const Point& point) const noexcept {
         return {static_cast<double>(point[alongX_]), static_cast<double>(point[alongZ_])};
