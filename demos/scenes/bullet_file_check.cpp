@@ -3,6 +3,7 @@
 
 #include <demos/scenes/input_error.hpp>
 
+#include <algorithm>
 #include <cctype>
 #include <cstdint>
 #include <cstring>
@@ -133,8 +134,11 @@ std::vector<Chunk> readChunks(std::string_view bytes) {
             fail(bytes.size(), "the file ends before its type table (DNA1)");
         }
         chunks.push_back(readChunk(bytes, cursor));
-        const std::string what = "chunk '" + std::string(chunks.back().code) + "' of " +
-                                 std::to_string(chunks.back().length) + " bytes";
+        std::string code(chunks.back().code);
+        std::replace_if(
+            code.begin(), code.end(), [](unsigned char c) { return std::isprint(c) == 0; }, '?');
+        const std::string what =
+            "chunk '" + code + "' of " + std::to_string(chunks.back().length) + " bytes";
         cursor.take(static_cast<std::size_t>(chunks.back().length), what.c_str());
     } while (chunks.back().code != "DNA1");
     return chunks;
@@ -200,9 +204,13 @@ void checkChunk(const Chunk& chunk, const Dna& dna) {
     if (chunk.structure < 0 || structure >= dna.structLengths.size()) {
         fail(chunk.place, "the chunk's type is not in the type table");
     }
+    if (chunk.count > 0 && dna.structLengths[structure] <= 0) {
+        fail(chunk.place, "the chunk's type has no size, but the chunk has " +
+                              std::to_string(chunk.count) + " elements");
+    }
     const std::int64_t needed =
         std::int64_t{chunk.count} * std::int64_t{dna.structLengths[structure]};
-    if (needed < 0 || needed > chunk.length) {
+    if (needed > chunk.length) {
         fail(chunk.place, "the chunk holds " + std::to_string(chunk.length) + " bytes, but its " +
                               std::to_string(chunk.count) + " elements need " +
                               std::to_string(needed));

@@ -4,21 +4,40 @@
 #include <demos/scenes/input_error.hpp>
 
 #include <fstream>
-#include <iterator>
+#include <system_error>
 
 namespace hashphase::demos {
 
-std::string readFile(const std::filesystem::path& path) {
-    std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored)) {
+void requireFile(const std::filesystem::path& path) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (std::filesystem::is_directory(status)) {
         throw InputError(path.string() + " is a folder, not a file.");
     }
+    if (!std::filesystem::exists(status)) {
+        throw InputError(path.string() + " cannot be opened for reading.");
+    }
+    if (!std::filesystem::is_regular_file(status)) {
+        throw InputError(path.string() + " is a device or a pipe, not a file.");
+    }
+}
+
+std::string readFile(const std::filesystem::path& path) {
+    requireFile(path);
     std::ifstream file(path, std::ios::binary);
     if (!file) {
         throw InputError(path.string() + " cannot be opened for reading.");
     }
-    std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-    if (file.bad()) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    if (!error && size > kLargestFile) {
+        throw InputError(path.string() + " has " + std::to_string(size) +
+                         " bytes, which is more than the " + std::to_string(kLargestFile) +
+                         " that are read.");
+    }
+    std::string bytes(error ? 0 : static_cast<std::size_t>(size), '\0');
+    file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    if (error || static_cast<std::size_t>(file.gcount()) != bytes.size()) {
         throw InputError(path.string() + " cannot be read.");
     }
     return bytes;

@@ -27,9 +27,13 @@ std::array<float, 8> floatsOfBox(const char* bytes) {
 }  // namespace
 
 RecordingScene::RecordingScene(const std::filesystem::path& path, std::size_t objects)
-    : path_(path.string()), file_(path, std::ios::binary) {
+    : path_(path.string()) {
+    // Not opened before: to open a pipe may take for ever.
     std::error_code error;
-    if (!file_ || !std::filesystem::is_regular_file(path, error)) {
+    if (std::filesystem::is_regular_file(path, error)) {
+        file_.open(path, std::ios::binary);
+    }
+    if (!file_.is_open()) {
         throw InputError(path_ + " cannot be opened for reading.");
     }
     readHeader();

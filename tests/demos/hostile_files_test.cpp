@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Zlib
+
+// Files that are none, that never end, that are too large, or that hold something else: each reader
+// refuses each of them with a sentence.
+
+#include <demos/scenes/bullet_file_check.hpp>
+#include <demos/scenes/bullet_world_file.hpp>
+#include <demos/scenes/file_bytes.hpp>
+#include <demos/scenes/input_error.hpp>
+#include <demos/scenes/recording_scene.hpp>
+#include <demos/scenes/text_boxes.hpp>
+#include <tests/demos/bullet_file.hpp>
+#include <tests/demos/temporary_folder.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <sys/stat.h>
+
+namespace hashphase::demos {
+namespace {
+
+struct Reader {
+    const char* name;
+    std::function<void(const std::string&)> read;
+};
+
+std::vector<Reader> readers() {
+    return {
+        {"text", [](const std::string& path) { static_cast<void>(readTextBoxes(path)); }},
+        {"recording", [](const std::string& path) { const RecordingScene scene(path, 0); }},
+        {"world", [](const std::string& path) { const BulletWorldFile file(path); }},
+    };
+}
+
+/// All readers refuse the file, with its path and a sentence of bearable length that can be printed.
+void expectRefused(const std::string& path, const std::string& why = {}) {
+    for (const Reader& reader : readers()) {
+        SCOPED_TRACE(reader.name);
+        const std::string message = messageOf<InputError>([&] { reader.read(path); });
+        EXPECT_EQ(message.rfind(path, 0), 0U) << message;
+        EXPECT_NE(message.find(why), std::string::npos) << message;
+        EXPECT_EQ(message.back(), '.') << message;
+        EXPECT_LT(message.size(), path.size() + 200);
+        EXPECT_EQ(message.find('\0'), std::string::npos);
+    }
+}
+
+TEST(HostileFiles, ThatAreNoneAreRefused) {
+    const TemporaryFolder folder;
+    expectRefused(folder.file("none"), "cannot be opened for reading");
+    expectRefused(folder.file(""));
+    expectRefused(folder.write("empty", ""));
+}
+
+// A reader that opened them would wait, or read, for ever.
+TEST(HostileFiles, ThatNeverBeginOrNeverEndAreRefused) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(mkfifo(folder.file("pipe").c_str(), 0600), 0);
+    expectRefused(folder.file("pipe"));
+    expectRefused("/dev/zero");
+    expectRefused("/dev/null");
+    const std::string message =
+        messageOf<InputError>([] { static_cast<void>(readFile("/dev/zero")); });
+    EXPECT_EQ(message, "/dev/zero is a device or a pipe, not a file.");
+}
+
+// It takes no room on the disk, and must take none in memory.
+TEST(HostileFiles, ThatAreTooLargeAreNotRead) {
+    const TemporaryFolder folder;
+    const std::string path = folder.write("large", "");
+    std::filesystem::resize_file(path, kLargestFile + 1);
+    EXPECT_EQ(messageOf<InputError>([&] { static_cast<void>(readFile(path)); }),
+              path + " has 1073741825 bytes, which is more than the 1073741824 that are read.");
+    expectRefused(path);
+}
+
+TEST(HostileFiles, ThatHoldSomethingElseAreRefused) {
+    const TemporaryFolder folder;
+    expectRefused(folder.write("zeros", std::string(5000, '\0')));
+    expectRefused(folder.write("ones", std::string(5000, '\xff')));
+    expectRefused(folder.write("escape", "\x1b[2J" + std::string(2000, '\x7f')));
+    expectRefused(folder.write("digits", std::string(100'000, '9')));
+    expectRefused(folder.write("lines", std::string(100'000, '\n')));
+    expectRefused(folder.write("nesting", std::string(100'000, '[')));
+    expectRefused(folder.write("comment", "#" + std::string(100'000, ' ')));
+}
+
+TEST(HostileFiles, WithALongWordAreRefusedInAShortSentence) {
+    const auto faultIn = [](const std::string& text) {
+        return messageOf<InputError>([&] { static_cast<void>(parseTextBoxes(text)); });
+    };
+    EXPECT_EQ(faultIn("0 0 " + std::string(1000, '9') + " 1 1 1"),
+              "line 1, column 5: '" + std::string(40, '9') +
+                  "...' does not fit a single-precision number.");
+    EXPECT_EQ(faultIn(std::string("0 \0\x1b[0m", 7) + " 1 1 1"),
+              "line 1, column 3: expected a number, found '??[0m'.");
+}
+
+TEST(HostileFiles, OfRightShapeAreReadWhateverTheLengthOfALine) {
+    const std::string blanks(100'000, ' ');
+    EXPECT_EQ(parseTextBoxes("0" + blanks + "0 0 1 1 1" + blanks).size(), 1U);
+}
+
+// Each 32-bit number in turn, of a whole world, becomes as bad as can be: the check of the outer shape
+// finds it or it is none of its business, but it never reads beyond the file.
+TEST(HostileFiles, WithHostileNumbersInAWorldAreReadWithinTheirBounds) {
+    const std::string whole = serialisedWorld(1);
+    for (const std::int32_t bad : {-1, 0x7fffffff}) {
+        for (std::size_t place = 12; place + 4 <= whole.size(); place += 4) {
+            // A heap block that ends with the bytes, so that a sanitizer sees what lies beyond.
+            std::vector<char> bytes(whole.begin(), whole.end());
+            std::memcpy(bytes.data() + place, &bad, sizeof bad);
+            const std::string fault = bulletFileFault({bytes.data(), bytes.size()});
+            EXPECT_TRUE(fault.empty() || fault.rfind("byte ", 0) == 0 ||
+                        fault.rfind("the world", 0) == 0)
+                << fault;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace hashphase::demos
