@@ -89,8 +89,8 @@ private:
 /// Everything that a segment meets, or that a box meets while it moves along the segment (a "fat"
 /// ray). Key: the fraction of the way at which the box is entered, 0 when it begins inside. Closed:
 /// grazing a face, an edge or a corner counts, and rounding errs to the side of a hit. A segment of
-/// no length is a point, or a box that stands still; one with an infinite end, or longer than 2^126 m
-/// along an axis (double: 2^1022), is empty.
+/// no length is a point, or a box that stands still; one with an infinite end, or so long that its
+/// length along an axis is infinite, is empty.
 template <class Scalar>
 class RayRegion {
 public:
@@ -99,18 +99,17 @@ public:
     RayRegion(const Vector3<Scalar>& from, const Vector3<Scalar>& to,
               const Aabb<Scalar>& fatness = {Vector3<Scalar>::Zero(), Vector3<Scalar>::Zero()})
         : from_(from), direction_(to - from), fatness_(fatness) {
-        // Of what is longer, the inverse has fewer digits, or is 0 where denormals are flushed.
         using Limits = std::numeric_limits<Scalar>;
-        const auto lengths = direction_.array().abs();
-        if (!from_.allFinite() || !(lengths <= 1 / Limits::min()).all()) {
+        if (!from_.allFinite() || !direction_.allFinite()) {
             direction_.setConstant(Limits::quiet_NaN());
+        } else if (direction_.cwiseAbs().maxCoeff() > 1 / Limits::min()) {
+            scale_ = Scalar(0.125);
         }
         // key() takes the fatness from numbers that were rounded before.
-        constexpr Scalar epsilon = std::numeric_limits<Scalar>::epsilon();
-        fatness_.min() -= epsilon * fatness_.min().cwiseAbs();
-        fatness_.max() += epsilon * fatness_.max().cwiseAbs();
+        fatness_.min() -= Limits::epsilon() * fatness_.min().cwiseAbs();
+        fatness_.max() += Limits::epsilon() * fatness_.max().cwiseAbs();
         last_ = fatness.min().isZero(0) && fatness.max().isZero(0) ? Scalar(1) : kWidened;
-        inverse_ = direction_.cwiseInverse();
+        inverse_ = (scale_ * direction_).cwiseInverse();
         for (int axis = 0; axis < 3; ++axis) {
             if (std::isinf(inverse_[axis])) {
                 // Too short a way to be inverted makes what moves as much thicker.
@@ -135,8 +134,8 @@ public:
                 }
                 continue;
             }
-            Scalar near = low * inverse_[axis];
-            Scalar far = high * inverse_[axis];
+            Scalar near = low * scale_ * inverse_[axis];
+            Scalar far = high * scale_ * inverse_[axis];
             if (direction_[axis] < 0) {
                 std::swap(near, far);
             }
@@ -150,13 +149,11 @@ public:
         return enter <= leave ? std::min(enter, Scalar(1)) : Scalar(-1);
     }
 
-    /// True when an end is NaN or infinite, or the way too long: nothing has a key.
+    /// True when an end is NaN or infinite, or the length: nothing has a key.
     [[nodiscard]] bool isEmpty() const noexcept { return direction_.hasNaN(); }
     [[nodiscard]] const Vector3<Scalar>& from() const noexcept { return from_; }
-    /// `to` - `from`, but 0 where its inverse would be infinite.
+    /// `to` - `from`, but 0 where that is too short to be inverted.
     [[nodiscard]] const Vector3<Scalar>& direction() const noexcept { return direction_; }
-    /// One by direction(); infinite where that is 0.
-    [[nodiscard]] const Vector3<Scalar>& inverse() const noexcept { return inverse_; }
     /// As given, or thicker by a rounding error.
     [[nodiscard]] const Aabb<Scalar>& fatness() const noexcept { return fatness_; }
 
@@ -168,9 +165,11 @@ private:
 
     Vector3<Scalar> from_;
     Vector3<Scalar> direction_;
-    Vector3<Scalar> inverse_;
+    Vector3<Scalar> inverse_;  // of scale_ * direction_
     Aabb<Scalar> fatness_;
     Scalar last_ = 1;  // key at which the way ends, beyond 1 where that would be rounded
+    // A power of two: less than 1 where the inverse would be denormal, and lose digits, or be flushed.
+    Scalar scale_ = 1;
 };
 
 }  // namespace hashphase

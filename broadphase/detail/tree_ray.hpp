@@ -29,7 +29,7 @@ public:
             const Scalar b = ray.fatness().max()[i];
             start_[axis] = from - zero;
             way_[axis] = ray.direction()[i];
-            inverse_[axis] = ray.inverse()[i];
+            inverse_[axis] = 1 / way_[axis];
             low_[axis] = std::min(a, b);
             high_[axis] = std::max(a, b);
             // Of the exact test: relative to the largest number in play.
@@ -126,7 +126,7 @@ private:
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const auto way = static_cast<double>(way_[axis]);
             const double there = static_cast<double>(start_[axis]) + first * way;
-            aim<double>(axis, there, static_cast<double>(inverse_[axis]) / span_);
+            aim<double>(axis, there, 1 / (span_ * way));
             reach +=
                 std::abs(there) + std::abs(span_ * way) +
                 static_cast<double>(padding_[axis] + std::abs(low_[axis]) + std::abs(high_[axis]));

@@ -111,7 +111,7 @@ TYPED_TEST(HardRays, AlongAxesMeetWhatTheSlabsSayWhateverTheSignsOfZeros) {
         const Vector3<TypeParam> to(x[1], y[1], z[1]);
         met += world.expectAsRationalsSay(from, to, 0);
         const RayRegion<TypeParam> ray(from, to);
-        hasNegativeZero |= ray.direction()[0] == 0 && ray.inverse()[0] < 0;
+        hasNegativeZero |= ray.direction()[0] == 0 && std::signbit(ray.direction()[0]);
     }
     EXPECT_TRUE(hasNegativeZero);
     EXPECT_GT(met, 4000U);
