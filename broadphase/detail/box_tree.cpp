@@ -96,7 +96,8 @@ float BoxTree::curveStep() {
 
 // In the order of their lowest corners.
 void BoxTree::sortAlongCurve() {
-    constexpr float limit = std::numeric_limits<float>::max() / 4;
+    // Of an extent of twice as much, the inverse is no denormal number, which might be flushed to 0.
+    constexpr float limit = std::numeric_limits<float>::max() / 16;
     std::array<float, 3> lowest{limit, limit, limit};
     float extent = std::numeric_limits<float>::min();
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -117,7 +118,8 @@ void BoxTree::sortAlongCurve() {
     for (std::uint32_t i = 0; i < boxes_.size(); ++i) {
         std::array<std::uint32_t, 3> point{};
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const float step = (boxes_[i].low[axis] - lowest[axis]) * perMetre;
+            const float low = std::min(boxes_[i].low[axis], limit);
+            const float step = (low - lowest[axis]) * perMetre;
             point[axis] = static_cast<std::uint32_t>(std::clamp(step, 0.0F, steps));
         }
         places_[i] = {placeOnHilbertCurve(point, bits), i};
