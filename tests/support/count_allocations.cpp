@@ -16,8 +16,8 @@ std::atomic<std::size_t> releases{0};
 constexpr std::int64_t kUnlimited = -1;
 std::atomic<std::int64_t> allowance{kUnlimited};
 
-// Says whether this allocation is to fail.
-bool isRefused() noexcept {
+// Says whether this allocation is to fail. (Under sanitizers, nobody asks.)
+[[maybe_unused]] bool isRefused() noexcept {
     std::int64_t left = allowance.load(std::memory_order_relaxed);
     while (left > 0 && !allowance.compare_exchange_weak(left, left - 1)) {
     }
@@ -53,7 +53,7 @@ void* countedAllocate(std::size_t size) {
 }
 
 // Of what either kind of `new` has returned.
-static void release(void* memory) noexcept {
+[[maybe_unused]] static void release(void* memory) noexcept {
     releases += memory != nullptr ? 1 : 0;
     std::free(memory);
 }
