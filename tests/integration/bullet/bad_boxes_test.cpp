@@ -3,6 +3,7 @@
 // Boxes that reach a broadphase from addCollisionObject, which checks nothing: NaN, infinite, as
 // large as the scalar goes, inside out.
 
+#include <tests/integration/bullet/box_commands.hpp>
 #include <tests/integration/bullet/broadphases.hpp>
 #include <tests/integration/bullet/queries.hpp>
 
@@ -19,16 +20,6 @@
 
 namespace hashphase::test {
 namespace {
-
-constexpr btScalar kNan = std::numeric_limits<btScalar>::quiet_NaN();
-constexpr btScalar kInfinity = std::numeric_limits<btScalar>::infinity();
-
-const Box kUnit = boxAround({0, 0, 0}, {1, 1, 1});
-
-Command createCommand(int object, const Box& box) {
-    return {Action::create, object, box, btBroadphaseProxy::DefaultFilter,
-            btBroadphaseProxy::AllFilter};
-}
 
 /// Catches the messages of its time.
 class Messages {

@@ -3,6 +3,7 @@
 // Boxes that have broken broadphases, as Bullet hands them in: a plane's, those of bodies that
 // Bullet takes out of the simulation, thousands at one place, none at all.
 
+#include <tests/integration/bullet/box_commands.hpp>
 #include <tests/integration/bullet/broadphases.hpp>
 #include <tests/integration/bullet/dynamics.hpp>
 #include <tests/support/handlers.hpp>
@@ -17,16 +18,6 @@
 
 namespace hashphase::test {
 namespace {
-
-constexpr btScalar kNan = std::numeric_limits<btScalar>::quiet_NaN();
-constexpr btScalar kInfinity = std::numeric_limits<btScalar>::infinity();
-
-const Box kUnit = boxAround({0, 0, 0}, {1, 1, 1});
-
-Command createCommand(int object, const Box& box) {
-    return {Action::create, object, box, btBroadphaseProxy::DefaultFilter,
-            btBroadphaseProxy::AllFilter};
-}
 
 SpatialHashConfig cellsOf(double size) {
     SpatialHashConfig config;
