@@ -53,9 +53,9 @@ void importAndStep(const BulletWorldFile& file) {
     btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
     WorldContents contents(world);
     file.fill(contents);
-    constexpr btScalar kStep = btScalar(1) / btScalar(60);
-    world.stepSimulation(kStep, 0);
-    world.stepSimulation(kStep, 0);
+    const btScalar step = btScalar(1) / btScalar(60);
+    world.stepSimulation(step, 0);
+    world.stepSimulation(step, 0);
 }
 
 // Damage inside the chunks (pointers, indices, sizes of shapes) passes every check of the outer

@@ -8,6 +8,7 @@
 #include <demos/stability/hard_case.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
@@ -16,6 +17,16 @@
 namespace hashphase::demos {
 
 using Boxes = std::vector<Aabb<float>>;
+using Objects = std::vector<std::uint32_t>;
+
+inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// A collector for Grid::visit(): the places of what is found.
+struct NoteIndices {
+    void add(ProxyId id, float /*key*/) { found.push_back(id.index); }
+    [[nodiscard]] static float limit() { return kInfinity; }
+    Objects found;
+};
 
 /// A box from its centre and its edge [m].
 [[nodiscard]] Aabb<float> cubeAt(const Vector3<float>& center, float edge);

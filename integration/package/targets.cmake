@@ -40,12 +40,12 @@ function(hashphase_precompile_headers target)
     endif()
 endfunction()
 
-# hashphase_compile_together(<target> <group> <file>...): in a quick build, compiles these sources as
-# one, because most of what they take are the same templates. So they share their names.
-function(hashphase_compile_together target group)
+# hashphase_compile_together(<target> <number>): in a quick build, compiles so many sources at a time as
+# one, because most of what they take are the same headers and templates: six in the time of two. So
+# they share their names.
+function(hashphase_compile_together target number)
     if(HASHPHASE_QUICK_BUILD)
-        set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-        set_source_files_properties(${ARGN} PROPERTIES UNITY_GROUP ${group})
+        set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${number})
         hashphase_calm_warnings(${target})
     endif()
 endfunction()

@@ -12,9 +12,7 @@
 namespace hashphase::test {
 namespace {
 
-using Box = Aabb<double>;
-
-Box cubeAt(double x) {
+Aabb<double> unitCubeAt(double x) {
     return makeBox<double>(x, 0, 0, x + 1, 1, 1);
 }
 
@@ -29,8 +27,8 @@ struct Couple {
     explicit Couple(bool acceptAtFirst)
         : accept(acceptAtFirst),
           world({}, [this](ProxyId, ProxyId) { return accept; }),
-          a(world.add(cubeAt(0))),
-          b(world.add(cubeAt(0.5))),
+          a(world.add(unitCubeAt(0))),
+          b(world.add(unitCubeAt(0.5))),
           pair(makePair(a, b)) {
         world.update();
     }
@@ -49,7 +47,7 @@ TEST(PairFilter, IsAskedOnceWhileTheBoxesOverlap) {
     Couple couple(true);
     EXPECT_EQ(couple.world.asked(), std::vector{couple.pair});
     for (int i = 0; i < 30; ++i) {
-        couple.world.move(couple.b, cubeAt(0.5 + 0.01 * (i % 2)));
+        couple.world.move(couple.b, unitCubeAt(0.5 + 0.01 * (i % 2)));
         couple.world.update();
         EXPECT_TRUE(couple.world.asked().empty());
     }
@@ -59,11 +57,11 @@ TEST(PairFilter, IsAskedInAscendingOrderWhateverTheOrderOfChanges) {
     PairWorld<double> world;
     std::vector<ProxyId> ids;
     for (int i = 0; i < 100; ++i) {
-        ids.push_back(world.add(cubeAt(10 * i)));
+        ids.push_back(world.add(unitCubeAt(10 * i)));
     }
     world.update();
     for (int i = 99; i >= 0; --i) {
-        world.move(ids[static_cast<std::size_t>(i)], cubeAt(0.3 * (i * 37 % 100)));
+        world.move(ids[static_cast<std::size_t>(i)], unitCubeAt(0.3 * (i * 37 % 100)));
     }
     world.update();  // checks the order
     EXPECT_GT(world.asked().size(), 100U);
@@ -77,13 +75,13 @@ TEST(PairFilter, IsAskedAgainAboutARefusedCoupleOnlyWhenOneOfThemChanged) {
         couple.world.update();
         EXPECT_TRUE(couple.world.asked().empty());
         if (i % 13 == 12) {
-            couple.world.move(couple.b, cubeAt(0.5 + 0.01 * i));
+            couple.world.move(couple.b, unitCubeAt(0.5 + 0.01 * i));
             couple.world.update();
             EXPECT_EQ(couple.world.asked(), std::vector{couple.pair});
         }
     }
     couple.accept = true;
-    couple.world.move(couple.a, cubeAt(0.1));
+    couple.world.move(couple.a, unitCubeAt(0.1));
     couple.world.update();
     EXPECT_TRUE(couple.isPair());
     EXPECT_EQ(couple.world.pairs.refusedCount(), 0U);
@@ -93,7 +91,7 @@ TEST(PairFilter, RefusedCouplesThatPartMakeNoDeath) {
     for (const int updatesBetween : {0, 40}) {
         Couple couple(false);
         couple.rest(updatesBetween);
-        couple.world.move(couple.b, cubeAt(5));
+        couple.world.move(couple.b, unitCubeAt(5));
         EXPECT_TRUE(couple.world.update().died.empty());
         EXPECT_EQ(couple.world.pairs.refusedCount(), 0U);
     }
@@ -113,7 +111,7 @@ TEST(PairFilter, RefusedCouplesOfWhichOneIsRemovedMakeNoDeath) {
 TEST(PairFilter, IsNotAskedAgainBecauseARestingProxyWakes) {
     Couple couple(true);
     couple.rest();
-    couple.world.move(couple.b, cubeAt(0.6));
+    couple.world.move(couple.b, unitCubeAt(0.6));
     couple.world.update();
     EXPECT_TRUE(couple.world.asked().empty());
     EXPECT_TRUE(couple.isPair());
@@ -135,12 +133,13 @@ TEST(PairFilter, OfManyAtOnceDecidesAsOneByOneDoes) {
     };
     std::vector<ProxyId> ids;
     for (int i = 0; i < 60; ++i) {
-        ids.push_back(grid.add(cubeAt(0.4 * i)));
-        ASSERT_EQ(oneByOne.add(cubeAt(0.4 * i)), ids.back());
+        ids.push_back(grid.add(unitCubeAt(0.4 * i)));
+        ASSERT_EQ(oneByOne.add(unitCubeAt(0.4 * i)), ids.back());
     }
     for (std::size_t frame = 0; frame < 20; ++frame) {
         for (std::size_t i = frame % 2; i < ids.size(); i += 2) {
-            const Box box = cubeAt(0.4 * static_cast<double>((i * 7 + frame) % ids.size()));
+            const Aabb<double> box =
+                unitCubeAt(0.4 * static_cast<double>((i * 7 + frame) % ids.size()));
             grid.move(ids[i], box);
             oneByOne.move(ids[i], box);
         }
@@ -159,7 +158,7 @@ TEST(PairFilter, OfManyAtOnceDecidesAsOneByOneDoes) {
 TEST(PairFilter, MayTakeItsArgumentsAsAuto) {
     Grid<double> grid;
     Pairs<double> pairs(grid);
-    const ProxyPair pair = makePair(grid.add(cubeAt(0)), grid.add(cubeAt(0.5)));
+    const ProxyPair pair = makePair(grid.add(unitCubeAt(0)), grid.add(unitCubeAt(0.5)));
     const auto accept = [](auto a, auto b) { return a != b; };
     PairFilter filter = accept;
     PairFilter copy = filter;
@@ -211,7 +210,7 @@ TEST(Refilter, WithTheSameFilterReportsNothing) {
 
 TEST(Refilter, OfANewProxyTellsItsPairsOnce) {
     Couple couple(true);
-    const ProxyId c = couple.world.add(cubeAt(0.25));
+    const ProxyId c = couple.world.add(unitCubeAt(0.25));
     couple.world.refilter(c);
     EXPECT_EQ(couple.world.pairs.count(), 3U);
     couple.accept = false;
@@ -224,17 +223,17 @@ TEST(Refilter, OfANewProxyTellsItsPairsOnce) {
 TEST(Refilter, DecidesAlsoForAPairThatIsApartForTheMoment) {
     // Known from the last update, apart when filtered again, and together at the next update.
     Couple couple(true);
-    couple.world.move(couple.a, cubeAt(9));
+    couple.world.move(couple.a, unitCubeAt(9));
     couple.accept = false;
     couple.world.refilter(couple.a);
-    couple.world.move(couple.a, cubeAt(0));
+    couple.world.move(couple.a, unitCubeAt(0));
     couple.world.update();
     EXPECT_FALSE(couple.isPair());
 }
 
 TEST(Refilter, OfAProxyThatMovedAwayLeavesTheDeathToTheUpdate) {
     Couple couple(true);
-    couple.world.move(couple.a, cubeAt(9));
+    couple.world.move(couple.a, unitCubeAt(9));
     couple.world.refilter(couple.a);
     couple.world.update();
     EXPECT_FALSE(couple.isPair());
@@ -259,16 +258,16 @@ TEST(Refilter, OfAProxyWhosePartnerWasRemovedLeavesTheDeathToTheUpdate) {
 TEST(Refilter, CountsOnceWhatIsRefusedAtRestAndAgainWhenOneHasWoken) {
     Couple couple(false);
     // Proxies are put to rest when there are many, by an update in which something moves.
-    const ProxyId mover = couple.world.add(cubeAt(-9));
+    const ProxyId mover = couple.world.add(unitCubeAt(-9));
     for (int i = 0; i < 200; ++i) {
-        couple.world.add(cubeAt(10 + 2 * i));
+        couple.world.add(unitCubeAt(10 + 2 * i));
     }
     for (int i = 0; i < 40; ++i) {
-        couple.world.move(mover, cubeAt(-9 - i));
+        couple.world.move(mover, unitCubeAt(-9 - i));
         couple.world.update();
     }
     EXPECT_GT(couple.world.pairs.lastCost().grid.resting, 200U);
-    couple.world.move(couple.b, cubeAt(0.25));
+    couple.world.move(couple.b, unitCubeAt(0.25));
     couple.world.refilter(couple.a);
     EXPECT_EQ(couple.world.pairs.refusedCount(), 1U);
     couple.accept = true;

@@ -15,7 +15,7 @@ namespace hashphase::test {
 namespace {
 
 template <class Scalar>
-struct World {
+struct UpdatedWorld {
     Grid<Scalar> grid;
     Pairs<Scalar> pairs{grid};
     std::vector<ProxyId> ids;
@@ -56,16 +56,16 @@ TYPED_TEST(PairsOnThreads, AreTheSameOnAnyNumberOfThreads) {
         SCOPED_TRACE(testing::Message() << threadCount << " threads");
         Random random(0x5eed0701);
         ThreadedFor threadedFor(threadCount, 0x5eed0702);
-        World<TypeParam> serial;
-        World<TypeParam> parallel;
+        UpdatedWorld<TypeParam> serial;
+        UpdatedWorld<TypeParam> parallel;
         std::vector<Aabb<TypeParam>> boxes = draw<TypeParam>(20000, random);
         std::size_t changes = 0;
         for (int frame = 0; frame < 14; ++frame) {
             serial.apply(boxes);
             parallel.apply(boxes);
-            const PairChanges expected = serial.pairs.update(World<TypeParam>::accepts);
+            const PairChanges expected = serial.pairs.update(UpdatedWorld<TypeParam>::accepts);
             const PairChanges actual =
-                parallel.pairs.update(World<TypeParam>::accepts, threadedFor);
+                parallel.pairs.update(UpdatedWorld<TypeParam>::accepts, threadedFor);
             ASSERT_TRUE(std::ranges::equal(expected.born, actual.born)) << "frame " << frame;
             ASSERT_TRUE(std::ranges::equal(expected.died, actual.died)) << "frame " << frame;
             ASSERT_EQ(serial.pairs.lastCost().boxesTested, parallel.pairs.lastCost().boxesTested);

@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-void run(const std::vector<std::string>& arguments) {
+void runProgramFor(const std::vector<std::string>& arguments) {
     std::ostringstream out;
     std::ostringstream err;
     const std::vector<Experiment> experiments = sampleExperiments();
@@ -75,8 +75,9 @@ TEST(Browser, DrawsAllChartsUnderThePolicyOfThePage) {
         GTEST_SKIP() << chartScripts().whyNone;
     }
     const TemporaryFolder folder;
-    run({"accuracy", "--output", folder.file("report")});
-    run({"compare", "--objects", "60", "--frames", "12", "--html", folder.file("compare.html")});
+    runProgramFor({"accuracy", "--output", folder.file("report")});
+    runProgramFor(
+        {"compare", "--objects", "60", "--frames", "12", "--html", folder.file("compare.html")});
     const json pages =
         browse(folder, {folder.file("report/accuracy.html"), folder.file("compare.html")});
     ASSERT_EQ(pages.size(), 2U);

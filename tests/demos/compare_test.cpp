@@ -59,7 +59,7 @@ private:
     int frame_ = 0;
 };
 
-class Forgetful : public Broken {
+class ForgetfulKind : public Broken {
     using Broken::Broken;
     void spoil(btDispatcher* dispatcher) override {
         getOverlappingPairCache()->removeOverlappingPair(proxies_[0], proxies_[1], dispatcher);
@@ -125,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, CompareScene,
 
 TEST(Compare, FailsAndNamesTheFirstMissedPair) {
     const TemporaryFolder folder;
-    const std::array kinds{kindOf<Forgetful>(true)};
+    const std::array kinds{kindOf<ForgetfulKind>(true)};
     const Outcome outcome =
         run({"compare", "--file", folder.write("b.txt", kThreeBoxes), "--frames", "6"}, kinds);
     EXPECT_EQ(outcome.exitCode, kExitCheckFailed);
@@ -155,7 +155,7 @@ TEST(Compare, FailsAndNamesTheFirstInventedPair) {
 
 TEST(Compare, DoesNotFailForWhatOthersGetWrong) {
     const TemporaryFolder folder;
-    const std::array kinds{kindOf<Forgetful>(false)};
+    const std::array kinds{kindOf<ForgetfulKind>(false)};
     const Outcome outcome =
         run({"compare", "--file", folder.write("b.txt", kThreeBoxes), "--frames", "6"}, kinds);
     EXPECT_EQ(outcome.exitCode, kExitOk);

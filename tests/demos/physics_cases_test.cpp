@@ -37,9 +37,9 @@ std::string faultText(const PhysicsOutcome& ours, std::span<const PhysicsOutcome
 }
 
 /// btSimpleBroadphase, but the pair of bodies 0 and 1 is never there.
-class Forgetful : public btSimpleBroadphase {
+class ForgetfulSimple : public btSimpleBroadphase {
 public:
-    explicit Forgetful(btOverlappingPairCache* cache) : btSimpleBroadphase(1000, cache) {}
+    explicit ForgetfulSimple(btOverlappingPairCache* cache) : btSimpleBroadphase(1000, cache) {}
 
     void calculateOverlappingPairs(btDispatcher* dispatcher) override {
         btSimpleBroadphase::calculateOverlappingPairs(dispatcher);
@@ -84,8 +84,9 @@ TEST(PhysicsCases, FindNothingWrongWithOurs) {
 TEST(PhysicsCases, NoticeAPairThatIsForgotten) {
     const HardWorld world = smallWorld("tower", 4);
     std::vector<PhysicsBroadphase> broadphases = hardBroadphases(world);
-    broadphases.front() = {"forgetful", true, true,
-                           [](PairCache* cache) { return std::make_unique<Forgetful>(cache); }};
+    broadphases.front() = {"forgetful", true, true, [](PairCache* cache) {
+                               return std::make_unique<ForgetfulSimple>(cache);
+                           }};
     const std::vector<PhysicsOutcome> outcomes = runPhysicsCase(world, 200, broadphases);
     const std::string faults = faultText(outcomes.front(), outcomes);
     EXPECT_NE(faults.find("otherwise than btSimpleBroadphase"), std::string::npos);

@@ -12,7 +12,7 @@ namespace {
 
 using Worlds = std::vector<std::unique_ptr<OriginWorld>>;
 
-std::vector<WorldBox> worldBoxes(const OriginScene& scene, const Placement& place) {
+std::vector<WorldBox> worldBoxes(const OriginScene& scene, const BodyPlacement& place) {
     std::vector<WorldBox> boxes;
     for (const IntegerBox& box : scene.boxes()) {
         boxes.push_back(place(box));
@@ -68,7 +68,7 @@ void judgePairs(const OriginScene& scene, const Worlds& worlds,
     }
 }
 
-void judgeRays(const OriginScene& scene, const Placement& place, const Worlds& worlds,
+void judgeRays(const OriginScene& scene, const BodyPlacement& place, const Worlds& worlds,
                std::vector<OriginOutcome>& outcomes) {
     for (const IntegerRay& ray : scene.rays()) {
         Marks marks(scene.boxes().size());
@@ -90,11 +90,11 @@ void judgeRays(const OriginScene& scene, const Placement& place, const Worlds& w
 
 }  // namespace
 
-OriginOutcomes runAt(const Placement& place, OriginScene scene,
+OriginOutcomes runAt(const BodyPlacement& place, OriginScene scene,
                      std::span<const OriginMethod> methods) {
     constexpr int kFramesALook = 10;
     constexpr int kWarmUp = 2;
-    const Placement atOrigin{0, place.unit};
+    const BodyPlacement atOrigin{0, place.unit};
     std::vector<WorldBox> boxes = worldBoxes(scene, place);
     std::vector<WorldBox> boxesAtOrigin = worldBoxes(scene, atOrigin);
     Worlds worlds;

@@ -41,7 +41,7 @@ struct OriginOutcomes {
 
 /// Moves the scene for 60 frames or more, all methods in turn in each, and compares every tenth with
 /// exact arithmetic.
-[[nodiscard]] OriginOutcomes runAt(const Placement& place, OriginScene scene,
+[[nodiscard]] OriginOutcomes runAt(const BodyPlacement& place, OriginScene scene,
                                    std::span<const OriginMethod> methods);
 
 }  // namespace hashphase::demos

@@ -38,7 +38,7 @@ struct WorldRay {
 };
 
 /// Where the scene is, and how large a unit is there [m]; both powers of two, the offset also 0.
-struct Placement {
+struct BodyPlacement {
     double offset = 0;  // along all three axes
     double unit = 1;
 
@@ -48,7 +48,7 @@ struct Placement {
                 offset + unit * static_cast<double>(point[2])};
     }
     [[nodiscard]] WorldBox operator()(const IntegerBox& box) const {
-        return {(*this)(box.centre), Placement{0, unit}(box.half)};
+        return {(*this)(box.centre), BodyPlacement{0, unit}(box.half)};
     }
     [[nodiscard]] WorldRay operator()(const IntegerRay& ray) const {
         return {(*this)(ray.from), (*this)(ray.to)};

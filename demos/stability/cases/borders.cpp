@@ -17,8 +17,6 @@
 namespace hashphase::demos {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
 float below(float x) {
     return std::nextafter(x, -kInfinity);
 }
@@ -272,7 +270,7 @@ CaseOutcome shiftedScene(const CaseContext& context) {
     return tally.outcome();
 }
 
-constexpr std::array kCases{
+constexpr std::array kBorderCases{
     HardCase{"H6", "points, plates and lines",
              "boxes without extent on three, one and two axes, each twice, at the same places, and "
              "boxes that touch them",
@@ -312,7 +310,7 @@ constexpr std::array kCases{
 }  // namespace
 
 std::span<const HardCase> borderCases() {
-    return kCases;
+    return kBorderCases;
 }
 
 }  // namespace hashphase::demos

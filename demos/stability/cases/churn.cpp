@@ -20,7 +20,6 @@ namespace hashphase::demos {
 namespace {
 
 using Point = Vector3<float>;
-using Objects = std::vector<std::uint32_t>;
 
 // --- In the midst of it ---------------------------------------------------------------------------
 
@@ -331,7 +330,7 @@ CaseOutcome nothingThere(const CaseContext& context) {
     return tally.outcome();
 }
 
-constexpr std::array kCases{
+constexpr std::array kChurnCases{
     HardCase{
         "H32", "changes and questions within one",
         "box queries within box queries and rays within rays, by their callbacks; the same "
@@ -363,7 +362,7 @@ constexpr std::array kCases{
 }  // namespace
 
 std::span<const HardCase> churnCases() {
-    return kCases;
+    return kChurnCases;
 }
 
 }  // namespace hashphase::demos

@@ -162,7 +162,7 @@ CaseOutcome beyond32Bits(const CaseContext& context) {
     return tally.outcome();
 }
 
-constexpr std::array kCases{
+constexpr std::array kCrowdCases{
     HardCase{"H25", "100,000 in one cell",
              "100,000 (--quick: 10,000) cubes of 8 mm in a cell of 1 m",
              "exact pairs; no more work than sorting along an axis", oneCell},
@@ -179,7 +179,7 @@ constexpr std::array kCases{
 }  // namespace
 
 std::span<const HardCase> crowdCases() {
-    return kCases;
+    return kCrowdCases;
 }
 
 }  // namespace hashphase::demos

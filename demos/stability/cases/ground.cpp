@@ -185,7 +185,7 @@ CaseOutcome ground(const CaseContext& context) {
     return tally.outcome();
 }
 
-constexpr std::array kCases{
+constexpr std::array kGroundCases{
     HardCase{
         "H40", "points on the edges of triangles",
         "a million points (--quick: 20,000) exactly on edges, diagonals and corners of 4,608 "
@@ -197,7 +197,7 @@ constexpr std::array kCases{
 }  // namespace
 
 std::span<const HardCase> groundCases() {
-    return kCases;
+    return kGroundCases;
 }
 
 }  // namespace hashphase::demos

@@ -20,7 +20,6 @@
 namespace hashphase::demos {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 // Some that touch each other, for the strange ones to stand among.
@@ -330,7 +329,7 @@ CaseOutcome cellSizesThatAreNone(const CaseContext& context) {
     return tally.outcome();
 }
 
-constexpr std::array kCases{
+constexpr std::array kNumberCases{
     HardCase{"H1", "coordinates beyond any cell",
              "60 boxes around the origin, cells of 1 m, and boxes at or reaching to 3e9, 1e18, "
              "infinity (each sign) and NaN, on one axis and on all; automatic cells too",
@@ -367,7 +366,7 @@ constexpr std::array kCases{
 }  // namespace
 
 std::span<const HardCase> numberCases() {
-    return kCases;
+    return kNumberCases;
 }
 
 }  // namespace hashphase::demos

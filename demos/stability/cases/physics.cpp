@@ -79,7 +79,7 @@ CaseOutcome massRatios(const CaseContext& context) {
     return runWorlds(context, kWorlds, 6);
 }
 
-constexpr std::array kCases{
+constexpr std::array kPhysicsCases{
     HardCase{
         "H36", "a tower, a pyramid, a house of cards",
         "the three worlds of bodies until they rest (--quick: small ones, 120 steps), over lists "
@@ -96,7 +96,7 @@ constexpr std::array kCases{
 }  // namespace
 
 std::span<const HardCase> bodyCases() {
-    return kCases;
+    return kPhysicsCases;
 }
 
 }  // namespace hashphase::demos

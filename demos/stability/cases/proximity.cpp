@@ -18,13 +18,6 @@ namespace hashphase::demos {
 namespace {
 
 using Point = Vector3<float>;
-using Objects = std::vector<std::uint32_t>;
-
-struct NoteIndices {
-    void add(ProxyId id, float /*key*/) { found.push_back(id.index); }
-    [[nodiscard]] static float limit() { return std::numeric_limits<float>::infinity(); }
-    Objects found;
-};
 
 struct NoteObjects final : btBroadphaseAabbCallback {
     bool process(const btBroadphaseProxy* proxy) override {
@@ -100,7 +93,7 @@ CaseOutcome anyRadius(const CaseContext& context) {
     return tally.outcome();
 }
 
-constexpr std::array kCases{
+constexpr std::array kProximityCases{
     HardCase{
         "H43", "radii of 0, -1, 1e30 and NaN",
         "balls of such radii, and of 1/8, 3 and 40 m, around six points, on boxes, between them, "
@@ -111,7 +104,7 @@ constexpr std::array kCases{
 }  // namespace
 
 std::span<const HardCase> proximityCases() {
-    return kCases;
+    return kProximityCases;
 }
 
 }  // namespace hashphase::demos

@@ -19,7 +19,6 @@ namespace hashphase::demos {
 namespace {
 
 using Point = Vector3<float>;
-using Objects = std::vector<std::uint32_t>;
 
 /// Notes objects, with the fields that btCollisionWorld::rayTest() gives its callback.
 struct NoteHits final : btBroadphaseRayCallback {
@@ -43,12 +42,6 @@ struct NoteHits final : btBroadphaseRayCallback {
 };
 
 /// Notes objects by ProxyId::index: in a grid that was empty, they count from 0.
-struct NoteIndices {
-    void add(ProxyId id, float /*key*/) { found.push_back(id.index); }
-    [[nodiscard]] static float limit() { return std::numeric_limits<float>::infinity(); }
-    Objects found;
-};
-
 /// What rays find, of ours both ways: asked by Grid::visit(), and by rayTest(), which is to answer as
 /// Bullet's test of a box does.
 struct RayTally : CaseTally {
@@ -289,7 +282,6 @@ CaseOutcome noRay(const CaseContext& context) {
     scene.judge(tally, {-30, 1, 2}, {30, -1, 3});
     const double normalWork = static_cast<double>(scene.cost().rowsVisited);
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
     double worst = 0;
     for (const float bad : {kNan, kInfinity, -kInfinity}) {
         for (int axis = 0; axis < 3; ++axis) {
@@ -311,7 +303,7 @@ CaseOutcome noRay(const CaseContext& context) {
     return tally.outcome();
 }
 
-constexpr std::array kCases{
+constexpr std::array kRayCases{
     HardCase{
         "H13", "rays along an axis",
         "rays along x, y and z, both ways, through the corners and centres of 50 of 400 boxes; "
@@ -341,7 +333,7 @@ constexpr std::array kCases{
 }  // namespace
 
 std::span<const HardCase> rayCases() {
-    return kCases;
+    return kRayCases;
 }
 
 }  // namespace hashphase::demos

@@ -210,7 +210,7 @@ CaseOutcome anyOrder(const CaseContext& context) {
     return tally.outcome();
 }
 
-constexpr std::array kCases{
+constexpr std::array kRepeatCases{
     HardCase{
         "H38", "all instruction sets",
         "pairs, sweeps, a ray, a volume and a crowd of 10,000 boxes (--quick: 1,500) over four "
@@ -226,7 +226,7 @@ constexpr std::array kCases{
 }  // namespace
 
 std::span<const HardCase> repeatCases() {
-    return kCases;
+    return kRepeatCases;
 }
 
 }  // namespace hashphase::demos

@@ -166,7 +166,7 @@ CaseOutcome cellsThatCollide(const CaseContext& context) {
     return tally.outcome();
 }
 
-constexpr std::array kCases{
+constexpr std::array kSizeCases{
     HardCase{"H27", "sizes from 1e-6 to 1e6 m",
              "4,000 (--quick: 1,000) cubes of 1e-6 to 1e6 m, as many of each size, within 12 edges "
              "of the origin; as many of 1 m",
@@ -184,7 +184,7 @@ constexpr std::array kCases{
 }  // namespace
 
 std::span<const HardCase> sizeCases() {
-    return kCases;
+    return kSizeCases;
 }
 
 }  // namespace hashphase::demos

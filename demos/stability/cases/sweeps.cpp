@@ -268,7 +268,7 @@ CaseOutcome crossing(const CaseContext& context) {
     return tally.outcome();
 }
 
-constexpr std::array kCases{
+constexpr std::array kSweepCases{
     HardCase{"H20", "a million cells in a frame",
              "20 cubes that fly 1e6 m through 2,000 others, and 40 of 400 that are moved by 1e6 m "
              "without a way, and back",
@@ -297,7 +297,7 @@ constexpr std::array kCases{
 }  // namespace
 
 std::span<const HardCase> sweepCases() {
-    return kCases;
+    return kSweepCases;
 }
 
 }  // namespace hashphase::demos

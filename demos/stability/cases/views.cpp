@@ -26,7 +26,6 @@ namespace hashphase::demos {
 namespace {
 
 using Point = Vector3<float>;
-using Objects = std::vector<std::uint32_t>;
 using Planes = std::array<Eigen::Hyperplane<float, 3>, 6>;
 
 constexpr float kNear = 0.5F;  // [m]
@@ -220,7 +219,7 @@ CaseOutcome strangeRectangles(const CaseContext& context) {
     return tally.outcome();
 }
 
-constexpr std::array kCases{
+constexpr std::array kViewCases{
     HardCase{
         "H41", "strange cameras",
         "1,503 boxes, one around the camera, one around all that it sees, one 3 km away; far "
@@ -240,7 +239,7 @@ constexpr std::array kCases{
 }  // namespace
 
 std::span<const HardCase> viewCases() {
-    return kCases;
+    return kViewCases;
 }
 
 }  // namespace hashphase::demos

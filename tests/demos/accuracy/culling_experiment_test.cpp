@@ -7,12 +7,12 @@
 namespace hashphase::demos {
 namespace {
 
-const CullingPlan kTiny{.objects = 300, .touching = 20, .flights = 1, .frames = 2};
+const CullingPlan kTinyCulling{.objects = 300, .touching = 20, .flights = 1, .frames = 2};
 
 // Another one's work, but for some objects.
-class Forgetful final : public Culling {
+class ForgetfulCulling final : public Culling {
 public:
-    explicit Forgetful(std::unique_ptr<Culling> inner) : inner_(std::move(inner)) {}
+    explicit ForgetfulCulling(std::unique_ptr<Culling> inner) : inner_(std::move(inner)) {}
 
     CullingCost look(const CameraView& view) override { return inner_->look(view); }
     [[nodiscard]] bool draws(std::uint32_t object) const override {
@@ -30,7 +30,7 @@ public:
 };
 
 Findings findWith(CullingMethod method) {
-    return findCulling(kTiny, 1, std::span(&method, 1), [](double, std::string_view) {});
+    return findCulling(kTinyCulling, 1, std::span(&method, 1), [](double, std::string_view) {});
 }
 
 CullingMethod exactMethod() {
@@ -44,7 +44,7 @@ CullingMethod exactMethod() {
 
 TEST(CullingExperiment, FindsThatNoMethodOfOursLosesAnything) {
     const Findings findings =
-        findCulling(kTiny, 1, cullingMethods(), [](double, std::string_view) {});
+        findCulling(kTinyCulling, 1, cullingMethods(), [](double, std::string_view) {});
     ASSERT_GE(findings.checks.size(), 13U);
     for (const Check& check : findings.checks) {
         EXPECT_TRUE(check.holds) << check.claim << ": " << check.evidence;
@@ -56,7 +56,7 @@ TEST(CullingExperiment, FindsThatNoMethodOfOursLosesAnything) {
 TEST(CullingExperiment, NoticesAVisibleObjectThatIsNotDrawn) {
     CullingMethod method = exactMethod();
     method.make = [make = method.make](const CullingScene& scene) {
-        return std::make_unique<Forgetful>(make(scene));
+        return std::make_unique<ForgetfulCulling>(make(scene));
     };
     const Findings findings = findWith(method);
     ASSERT_EQ(findings.checks.size(), 3U);

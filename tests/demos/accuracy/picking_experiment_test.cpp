@@ -8,14 +8,14 @@
 namespace hashphase::demos {
 namespace {
 
-const PickingPlan kTiny{.boxes = 200,
-                        .graze = 4,
-                        .frames = 2,
-                        .raysPerFrame = 5,
-                        .strungBoxes = 100,
-                        .longestPower = 4,
-                        .metresInAll = 1e4,
-                        .longestCellWalk = 1e3};
+const PickingPlan kTinyPicking{.boxes = 200,
+                               .graze = 4,
+                               .frames = 2,
+                               .raysPerFrame = 5,
+                               .strungBoxes = 100,
+                               .longestPower = 4,
+                               .metresInAll = 1e4,
+                               .longestCellWalk = 1e3};
 
 // Another one's work, but for a change of what is found.
 class Changed final : public RayCaster {
@@ -42,11 +42,12 @@ Findings findChanged(const Changed::Change& change) {
     method.make = [make = method.make, change](std::span<const Aabb<float>> boxes) {
         return std::make_unique<Changed>(make(boxes), change);
     };
-    return findPicking(kTiny, 1, std::span(&method, 1), [](double, std::string_view) {});
+    return findPicking(kTinyPicking, 1, std::span(&method, 1), [](double, std::string_view) {});
 }
 
 TEST(PickingExperiment, FindsThatConservativeMethodsMissNothing) {
-    const Findings findings = findPicking(kTiny, 1, rayMethods(), [](double, std::string_view) {});
+    const Findings findings =
+        findPicking(kTinyPicking, 1, rayMethods(), [](double, std::string_view) {});
     ASSERT_EQ(findings.checks.size(), 6U);
     for (const Check& check : findings.checks) {
         EXPECT_TRUE(check.holds) << check.claim << ": " << check.evidence;

@@ -10,7 +10,7 @@
 namespace hashphase::demos {
 namespace {
 
-ProximityExperimentPlan tinyPlan() {
+ProximityExperimentPlan tinyProximity() {
     ProximityExperimentPlan plan;
     ProximityCase crowd;
     crowd.name = "a few agents";
@@ -26,13 +26,14 @@ ProximityExperimentPlan tinyPlan() {
 }
 
 Findings measureWith(std::span<const NeighbourMethod> methods) {
-    return measureProximity(tinyPlan(), methods, 1, ignoreProgress);
+    return measureProximity(tinyProximity(), methods, 1, ignoreProgress);
 }
 
 /// Leaves out the last neighbour of each agent, in lists and decisions.
-class Forgetful : public NeighbourSearch {
+class ForgetfulSearch : public NeighbourSearch {
 public:
-    explicit Forgetful(std::unique_ptr<NeighbourSearch> search) : search_(std::move(search)) {}
+    explicit ForgetfulSearch(std::unique_ptr<NeighbourSearch> search)
+        : search_(std::move(search)) {}
 
     void take(const AgentFrame& frame) override { search_->take(frame); }
     void forEach(Visit visit) override {
@@ -51,7 +52,7 @@ std::vector<std::string> brokenWithForgetful(bool isExact) {
         return method.isExact == isExact && method.isComplete != isExact;
     });
     chosen->make = [make = chosen->make](const NeighbourNeeds& needs) {
-        return std::make_unique<Forgetful>(make(needs));
+        return std::make_unique<ForgetfulSearch>(make(needs));
     };
     return brokenClaims(measureWith(methods));
 }
@@ -73,7 +74,7 @@ TEST(ProximityExperiment, NoticesAnEstimateThatForgetsANeighbour) {
 }
 
 TEST(ProximityExperiment, RefusesASquareThatIsTooSmallForTheCells) {
-    ProximityExperimentPlan plan = tinyPlan();
+    ProximityExperimentPlan plan = tinyProximity();
     plan.crowds.front().radiusByCell = 0.1;
     EXPECT_THROW(static_cast<void>(measureProximity(plan, neighbourMethods(), 1, ignoreProgress)),
                  std::invalid_argument);

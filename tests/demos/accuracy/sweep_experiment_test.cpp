@@ -10,7 +10,7 @@
 namespace hashphase::demos {
 namespace {
 
-SweepPlan tinyPlan() {
+SweepPlan tinySweeps() {
     SweepPlan plan;
     plan.tunnelling = {{0.001, 0.1}, {0.3, 1, 3, 30}, 40};
     plan.bodyRounds = 1;
@@ -19,7 +19,7 @@ SweepPlan tinyPlan() {
 }
 
 Findings measureWith(std::span<const SweepMethod> methods) {
-    return measureSweeps(tinyPlan(), methods, 1, [](double, std::string_view) {});
+    return measureSweeps(tinySweeps(), methods, 1, [](double, std::string_view) {});
 }
 
 std::vector<std::string> brokenClaims(std::span<const SweepMethod> methods) {

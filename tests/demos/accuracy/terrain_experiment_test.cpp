@@ -10,7 +10,7 @@
 namespace hashphase::demos {
 namespace {
 
-const TerrainPlan kTiny{.spheres = 3, .points = 100, .frames = 2, .spheresPerFrame = 20};
+const TerrainPlan kTinyTerrain{.spheres = 3, .points = 100, .frames = 2, .spheresPerFrame = 20};
 
 // Another one's work, but for a change of what it finds for each eighth sphere.
 class Changed final : public GroundFinder {
@@ -33,7 +33,7 @@ private:
 };
 
 Findings findWith(std::span<const GroundMethod> methods) {
-    return findTerrain(kTiny, 1, methods, [](double, std::string_view) {});
+    return findTerrain(kTinyTerrain, 1, methods, [](double, std::string_view) {});
 }
 
 // The first of the methods that has the quality, changed.

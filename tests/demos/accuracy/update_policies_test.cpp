@@ -8,7 +8,7 @@
 namespace hashphase::demos {
 namespace {
 
-UpdatePlan tinyPlan() {
+UpdatePlan tinyUpdates() {
     UpdatePlan plan;
     plan.objects = 200;
     plan.motions = {{0}, {0.05}, {1}, {1, 0.2}};
@@ -18,7 +18,7 @@ UpdatePlan tinyPlan() {
 }
 
 Findings measureWith(std::span<const PairMethod> policies) {
-    return measurePolicies(tinyPlan(), policies, 1, ignoreProgress);
+    return measurePolicies(tinyUpdates(), policies, 1, ignoreProgress);
 }
 
 std::vector<std::string> brokenWith(Flaw flaw, bool isExact) {

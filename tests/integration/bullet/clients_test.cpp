@@ -40,10 +40,10 @@ namespace {
 using Scalar = btScalar;
 using Ids = std::vector<ProxyId>;
 
-constexpr int kRed = 64;        // a collision group, of every third body
-constexpr double kSide = 400;   // of the ground [m]
-constexpr int kQuads = 40;      // of the ground, a side
-constexpr Scalar kRadius = 10;  // within which agents have neighbours [m]
+constexpr int kRed = 64;             // a collision group, of every third body
+constexpr double kGroundSide = 400;  // of the ground [m]
+constexpr int kQuads = 40;           // of the ground, a side
+constexpr Scalar kRadius = 10;       // within which agents have neighbours [m]
 
 /// Spheres that roam over hills.
 class RoamingBodies {
@@ -52,9 +52,10 @@ public:
         addHills();
         auto* const sphere = scene.keep(std::make_unique<btSphereShape>(btScalar(1)));
         for (int i = 0; i < count; ++i) {
-            const btTransform place(btQuaternion::getIdentity(),
-                                    btVector3(random_.uniform(0, kSide), random_.uniform(6, 20),
-                                              random_.uniform(0, kSide)));
+            const btTransform place(
+                btQuaternion::getIdentity(),
+                btVector3(random_.uniform(0, kGroundSide), random_.uniform(6, 20),
+                          random_.uniform(0, kGroundSide)));
             bodies.push_back(scene.add(sphere, 1, place));
             btRigidBody& body = scene.body(bodies.back());
             body.setLinearVelocity(random_.vector(-5, 5));
@@ -83,7 +84,7 @@ private:
     void addHills() {
         auto mesh = std::make_unique<btTriangleMesh>();
         const auto vertex = [](int i, int k) {
-            const double edge = kSide / kQuads;
+            const double edge = kGroundSide / kQuads;
             const double height = 2 * std::sin(0.7 * i) + 2 * std::cos(0.5 * k);
             return btVector3(btScalar(edge * i), btScalar(height), btScalar(edge * k));
         };
@@ -110,7 +111,7 @@ private:
 class AllClients {
 public:
     explicit AllClients(const RoamingBodies& world) : world_(world), red_(*world.broadphase, kRed) {
-        Vector3<Scalar> middle(kSide / 2, 5, kSide / 2);
+        Vector3<Scalar> middle(kGroundSide / 2, 5, kGroundSide / 2);
         static_cast<void>(zones.add({SphereRegion<Scalar>(middle, 30)}));
         static_cast<void>(zones.add({BoxRegion<Scalar>{{middle, Vector3<Scalar>(middle * 2)}}}));
         viewer.eye = middle;
@@ -127,7 +128,7 @@ public:
 
     void ask() {
         const Grid<Scalar>& grid = world_.grid();
-        const Eigen::Vector3d eye(kSide / 2, 25, kSide / 2);
+        const Eigen::Vector3d eye(kGroundSide / 2, 25, kGroundSide / 2);
         const auto camera = cameraMatrix<Scalar>({}, eye, eye + Eigen::Vector3d(1, -0.3, 0.2));
         view = frustumRegion<Scalar>(camera, DepthRange::zeroToOne);
         culler.look(grid, view);

@@ -72,41 +72,41 @@ TEST(HardBoxes, WithoutExtentOfBothZeroesAndInsideOutPairAsBruteForceSays) {
 }
 
 TEST(HardBoxes, OfAPlanePairWithEverybodyAtTheCostOfOneTestEach) {
-    constexpr int kObjects = 1000;
+    constexpr int kBoxes = 1000;
     BulletRandom random(77);
     Frame frame;
-    for (int object = 0; object < kObjects; ++object) {
+    for (int object = 0; object < kBoxes; ++object) {
         frame.push_back(createCommand(object, boxAround(random.vector(-20, 20), {1, 1, 1})));
     }
-    Player without = hashPlayer(kObjects + 1);
+    Player without = hashPlayer(kBoxes + 1);
     without.play(frame);
     without.calculate();
 
     const btStaticPlaneShape plane({0, 1, 0}, 0);
     Box box;
     plane.getAabb(btTransform::getIdentity(), box.min, box.max);
-    frame.push_back(createCommand(kObjects, box));
-    Player with = hashPlayer(kObjects + 1);
+    frame.push_back(createCommand(kBoxes, box));
+    Player with = hashPlayer(kBoxes + 1);
     with.play(frame);
     with.calculate();
-    EXPECT_EQ(with.pairs().size(), without.pairs().size() + kObjects);
+    EXPECT_EQ(with.pairs().size(), without.pairs().size() + kBoxes);
     EXPECT_LE(hashOf(with).lastCost().boxesTested,
-              hashOf(without).lastCost().boxesTested + kObjects + kObjects / 20);
+              hashOf(without).lastCost().boxesTested + kBoxes + kBoxes / 20);
 }
 
 TEST(HardBoxes, AtOnePlaceAreAllPairsAndNoneOnceApart) {
-    constexpr int kObjects = 2000;
+    constexpr int kCopies = 2000;
     constexpr int kPairs = 1'999'000;
     SpatialHashBroadphase broadphase;
     std::vector<ProxyDefinition> definitions(
-        kObjects, {kUnit.min, kUnit.max, nullptr, btBroadphaseProxy::DefaultFilter,
-                   btBroadphaseProxy::AllFilter});
-    std::vector<btBroadphaseProxy*> proxies(kObjects);
+        kCopies, {kUnit.min, kUnit.max, nullptr, btBroadphaseProxy::DefaultFilter,
+                  btBroadphaseProxy::AllFilter});
+    std::vector<btBroadphaseProxy*> proxies(kCopies);
     broadphase.createProxies(definitions, proxies, nullptr);
     broadphase.calculateOverlappingPairs(nullptr);
     EXPECT_EQ(broadphase.getOverlappingPairCache()->getNumOverlappingPairs(), kPairs);
     EXPECT_LT(broadphase.memoryBytes(), std::size_t{300} * kPairs);
-    for (int i = 0; i < kObjects; ++i) {
+    for (int i = 0; i < kCopies; ++i) {
         const btVector3 away(btScalar(9 * i), 0, 0);
         broadphase.setAabb(proxies[static_cast<std::size_t>(i)], kUnit.min + away, kUnit.max + away,
                            nullptr);

@@ -17,16 +17,16 @@ namespace {
 
 constexpr btScalar kNan = std::numeric_limits<btScalar>::quiet_NaN();
 constexpr btScalar kInfinity = std::numeric_limits<btScalar>::infinity();
-constexpr int kSide = 5;
+constexpr int kCubes = 5;
 
 /// Cubes of a metre that touch, plates, points, and boxes far away and of 1e18 m; the same under
 /// Bullet's tree.
-class HardWorld {
+class RayWorld {
 public:
-    HardWorld() {
-        for (int i = 0; i < kSide * kSide * kSide; ++i) {
-            const btVector3 low(btScalar(i % kSide), btScalar(i / kSide % kSide),
-                                btScalar(i / kSide / kSide));
+    RayWorld() {
+        for (int i = 0; i < kCubes * kCubes * kCubes; ++i) {
+            const btVector3 low(btScalar(i % kCubes), btScalar(i / kCubes % kCubes),
+                                btScalar(i / kCubes / kCubes));
             create({low, low + btVector3(1, 1, 1)});
         }
         create({{-9, 0, 0}, {9, btScalar(-0.0), 4}});
@@ -113,7 +113,7 @@ std::vector<Ray> hardRays() {
 }
 
 TEST(HardRays, FindWhatBruteForceAndBulletsTreeFind) {
-    HardWorld world;
+    RayWorld world;
     std::size_t found = 0;
     for (int stage = 0; stage < 4; ++stage) {
         SCOPED_TRACE(stage);
@@ -131,7 +131,7 @@ TEST(HardRays, FindWhatBruteForceAndBulletsTreeFind) {
 // Bullet divides by the length, whose square overflows or is 0: what its fields come to then is what
 // counts, in either broadphase.
 TEST(HardRays, OfLengthsThatCannotBeSquaredFindWhatBulletsFieldsSay) {
-    HardWorld world;
+    RayWorld world;
     world.advance(1);
     const bool isSingle = sizeof(btScalar) == sizeof(float);
     for (const double length : {1e19, 1e30, isSingle ? 3e38 : 1e200, isSingle ? 1e-30 : 1e-200}) {
@@ -149,13 +149,13 @@ TEST(HardRays, OfLengthsThatCannotBeSquaredFindWhatBulletsFieldsSay) {
     // 1e19 can be squared in double precision: the whole row is met.
     const auto far = static_cast<btScalar>(1e19);
     const Ray row{{-far, btScalar(2.5), btScalar(2.5)}, {far, btScalar(2.5), btScalar(2.5)}};
-    EXPECT_EQ(world.expectAsBruteForceSays(row).size() >= kSide, !isSingle);
+    EXPECT_EQ(world.expectAsBruteForceSays(row).size() >= kCubes, !isSingle);
 }
 
 // Of the direction of a ray without length Bullet makes NaN, so that nothing is hit; a cast without
 // length asks for the place itself, and so does the grid.
 TEST(HardRays, OfNoLengthFindNothingUnlessTheyAreCasts) {
-    HardWorld world;
+    RayWorld world;
     for (int stage = 0; stage < 4; ++stage) {
         world.advance(stage);
         for (const btVector3& at : {btVector3(2, 2, 2), btVector3(btScalar(1.5), 2, btScalar(0.5)),
@@ -170,7 +170,7 @@ TEST(HardRays, OfNoLengthFindNothingUnlessTheyAreCasts) {
 }
 
 TEST(HardRays, WithABadNumberAnywhereFindNothing) {
-    HardWorld world;
+    RayWorld world;
     world.advance(1);
     for (const btScalar bad : {kNan, kInfinity, -kInfinity}) {
         for (int field = 0; field < 6; ++field) {
@@ -192,7 +192,7 @@ TEST(HardRays, WithABadNumberAnywhereFindNothing) {
 
 // closestRay() asks about as little for the worst of rays as for others.
 TEST(HardRays, CostAtMostATestForEachBox) {
-    HardWorld world;
+    RayWorld world;
     world.advance(1);
     const SpatialHashBroadphase& broadphase = hashOf(world.hash);
     const auto boxes = static_cast<std::uint64_t>(broadphase.grid().size());

@@ -23,7 +23,7 @@ constexpr std::uint64_t kSeed = 4;
 /// Number of the body, and how far along: the same bits are expected.
 using Hits = std::vector<std::pair<int, btScalar>>;
 
-Hits sorted(Hits hits) {
+Hits inOrder(Hits hits) {
     std::sort(hits.begin(), hits.end());
     return hits;
 }
@@ -91,7 +91,7 @@ TEST_F(WorldQueries, ByRayFindTheSameHitsAsOverBtDbvtBroadphase) {
                 hits.emplace_back(all.m_collisionObjects[k]->getUserIndex(), all.m_hitFractions[k]);
             }
         }
-        ASSERT_EQ(sorted(found[1]), sorted(found[0])) << "ray " << i;
+        ASSERT_EQ(inOrder(found[1]), inOrder(found[0])) << "ray " << i;
         hitCount += found[0].size();
     }
     EXPECT_GT(hitCount, 400U);
@@ -118,7 +118,7 @@ TEST_F(WorldQueries, BySweepFindTheSameHitsAsOverBtDbvtBroadphase) {
         AllSweepHits found[2];
         dbvt.world().convexSweepTest(&box, from, to, found[0]);
         hash.world().convexSweepTest(&box, from, to, found[1]);
-        ASSERT_EQ(sorted(found[1].hits), sorted(found[0].hits)) << "sweep " << i;
+        ASSERT_EQ(inOrder(found[1].hits), inOrder(found[0].hits)) << "sweep " << i;
         hitCount += found[0].hits.size();
     }
     EXPECT_GT(hitCount, 200U);
@@ -136,7 +136,7 @@ TEST_F(WorldQueries, ByContactFindTheSamePenetrationsAsOverBtDbvtBroadphase) {
         Contacts found[2];
         dbvt.world().contactTest(&probe, found[0]);
         hash.world().contactTest(&probe, found[1]);
-        ASSERT_EQ(sorted(found[1].hits), sorted(found[0].hits)) << "probe " << i;
+        ASSERT_EQ(inOrder(found[1].hits), inOrder(found[0].hits)) << "probe " << i;
         hitCount += found[0].hits.size();
     }
     EXPECT_GT(hitCount, 200U);

@@ -17,7 +17,7 @@ namespace hashphase::test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr Viewport kViewport{0, 0, 1280, 720};
+constexpr Viewport kScreen{0, 0, 1280, 720};
 
 template <class Scalar>
 class Ground : public testing::Test {
@@ -27,7 +27,7 @@ protected:
     static View<Scalar> viewFrom(const Vector3<double>& eye, const Vector3<double>& target) {
         CameraLens lens;
         lens.farPlane = kInfinity;
-        return {cameraMatrix<Scalar>(lens, eye, target), lens.depthRange, kViewport};
+        return {cameraMatrix<Scalar>(lens, eye, target), lens.depthRange, kScreen};
     }
 };
 
@@ -226,8 +226,7 @@ TYPED_TEST(Ground, ADragCoversOnTheGroundWhateverItSelectsThere) {
         grid.visit(footprint.region(), collector);
         std::sort(onMap.begin(), onMap.end());
         select(grid, view, a, b, selected);
-        const auto planes =
-            planesBetween(view.viewProjection(), view.depthRange(), kViewport, a, b);
+        const auto planes = planesBetween(view.viewProjection(), view.depthRange(), kScreen, a, b);
         for (const ProxyId id : selected) {
             if (!std::binary_search(onMap.begin(), onMap.end(), id)) {
                 const double depth = depthInVolume(planes, grid.box(id).template cast<double>());
@@ -244,7 +243,7 @@ TYPED_TEST(Ground, ADragCoversOnTheGroundWhateverItSelectsThere) {
     EXPECT_GT(seen, 5000U);
     EXPECT_GT(covered, seen);
     const auto bad =
-        View<TypeParam>(Eigen::Matrix<TypeParam, 4, 4>::Zero(), DepthRange::zeroToOne, kViewport);
+        View<TypeParam>(Eigen::Matrix<TypeParam, 4, 4>::Zero(), DepthRange::zeroToOne, kScreen);
     EXPECT_TRUE(dragFootprint(bad, {0, 0}, {9, 9}, heights).isEmpty());
 }
 
