@@ -222,8 +222,10 @@ QueryCost Grid<Scalar>::visit(const Region& region, Collector& collector) const 
     if (!fileIfMany()) {
         return visitUnfiled(region, collector);
     }
-    const detail::QueryScope scope(
-        this, requires { region.volume(); } ? Changes::forbidden : Changes::allowed);
+    constexpr bool kReadsRows = requires {
+        region.volume();
+    };
+    const detail::QueryScope scope(this, kReadsRows ? Changes::forbidden : Changes::allowed);
     QueryCost cost;
     if (visitTables(region, collector, cost)) {
         visitWaiting(region, collector, cost);

@@ -22,7 +22,9 @@ public:
     PlaneSet rising = 0;             // have more of a later cell inside than of an earlier one
     PlaneSet falling = 0;            // less
 
-    /// By `planes`, all that may part the boxes of the level.
+    /// By `planes`, all that may part the boxes of the level. What add() and clip() write is left as it
+    /// is: most batches are short.
+    // cppcheck-suppress uninitMemberVar
     RowBatch(const VolumeView<Scalar>& view, PlaneSet planes) : view_(view), planes_(planes) {
         for (PlaneSet left = planes; left != 0; left &= left - 1) {
             const std::uint32_t i = firstPlane(left);

@@ -80,8 +80,8 @@ const Implementation& implementation() noexcept {
 }  // namespace
 
 const char* nameOf(InstructionSet set) noexcept {
-    constexpr std::array<const char*, 4> names{"scalar", "SSE2", "AVX2", "AVX-512"};
-    return names[static_cast<std::size_t>(set)];
+    static constexpr const char* kNames[] = {"scalar", "SSE2", "AVX2", "AVX-512"};
+    return kNames[static_cast<std::size_t>(set)];
 }
 
 bool isAvailable(InstructionSet set) noexcept {

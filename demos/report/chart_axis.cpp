@@ -68,8 +68,9 @@ std::vector<double> logTicks(double low, double high) {
 }
 
 ChartAxis::ChartAxis(const Chart& chart, const Axis& axis, const std::vector<std::string>& columns)
-    : axis_(axis), mark_(chart.mark) {
-    title_ = titleOf(chart.data.columns[chart.data.columnOf(axis.column)]);
+    : axis_(axis),
+      mark_(chart.mark),
+      title_(titleOf(chart.data.columns[chart.data.columnOf(axis.column)])) {
     if (hasNames()) {
         findNames(chart.data);
         return;

@@ -99,13 +99,12 @@ void fillChain(WorldContents& contents, const btVector3& origin, int size) {
     addFloor(contents, origin);
     auto& shape = contents.addShape<btCapsuleShapeX>(0.1F, 0.3F);
     const btVector3 anchor = origin + btVector3(0, kLink * static_cast<btScalar>(size) / 2, 0);
-    btRigidBody* last = nullptr;
-    for (int i = 0; i < size; ++i) {
+    btRigidBody* last = &contents.addBody(shape, 1, anchor + half);
+    contents.addConstraint(std::make_unique<btPoint2PointConstraint>(*last, -half));
+    for (int i = 1; i < size; ++i) {
         const btVector3 place = anchor + btVector3(kLink * static_cast<btScalar>(i), 0, 0) + half;
         btRigidBody& link = contents.addBody(shape, 1, place);
-        contents.addConstraint(
-            last == nullptr ? std::make_unique<btPoint2PointConstraint>(link, -half)
-                            : std::make_unique<btPoint2PointConstraint>(*last, link, half, -half));
+        contents.addConstraint(std::make_unique<btPoint2PointConstraint>(*last, link, half, -half));
         last = &link;
     }
     auto& ball = contents.addShape<btSphereShape>(kRadius);

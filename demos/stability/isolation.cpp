@@ -38,23 +38,21 @@ File temporaryFile() {
 
 // The outcome, as its numbers and then its note.
 struct Numbers {
-    OutcomeKind kind;
-    bool hasRatio;
     double ratio;
+    std::uint64_t hasRatio;
+    std::uint64_t kind;
     std::uint64_t compared;
     std::uint64_t missing;
     std::uint64_t extra;
 };
 
 void writeOutcome(const CaseOutcome& outcome, std::FILE* file) {
-    Numbers numbers;
-    std::memset(&numbers, 0, sizeof numbers);
-    numbers.kind = outcome.kind;
-    numbers.hasRatio = outcome.costRatio.has_value();
-    numbers.ratio = outcome.costRatio.value_or(0);
-    numbers.compared = outcome.compared;
-    numbers.missing = outcome.missing;
-    numbers.extra = outcome.extra;
+    const Numbers numbers{outcome.costRatio.value_or(0),
+                          outcome.costRatio.has_value(),
+                          static_cast<std::uint64_t>(outcome.kind),
+                          outcome.compared,
+                          outcome.missing,
+                          outcome.extra};
     std::fwrite(&numbers, sizeof numbers, 1, file);
     std::fwrite(outcome.note.data(), 1, outcome.note.size(), file);
     std::fflush(file);
@@ -75,11 +73,11 @@ CaseOutcome readOutcome(std::FILE* file) {
         outcome.note = "It ended without an answer.";
         return outcome;
     }
-    outcome.kind = numbers.kind;
+    outcome.kind = static_cast<OutcomeKind>(numbers.kind);
     outcome.compared = numbers.compared;
     outcome.missing = numbers.missing;
     outcome.extra = numbers.extra;
-    if (numbers.hasRatio) {
+    if (numbers.hasRatio != 0) {
         outcome.costRatio = numbers.ratio;
     }
     outcome.note = textOf(file, 4000);
