@@ -35,7 +35,7 @@ std::array<Eigen::Hyperplane<Scalar, 3>, 6> frustumPlanes(
     }
     // A clip coordinate is a row times a point; a bound on it is a plane. In double precision, so that
     // small differences of large numbers are rounded once.
-    const Eigen::Matrix4d rows = viewProjection.template cast<double>();
+    const auto rows = viewProjection.template cast<double>().eval();
     const auto set = [&](std::size_t i, const Eigen::RowVector4d& row) {
         planes[i].coeffs() = row.transpose().template cast<Scalar>();
     };

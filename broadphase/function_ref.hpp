@@ -18,8 +18,9 @@ public:
     template <class Callable>
         requires(!std::is_same_v<std::remove_cvref_t<Callable>, FunctionRef> &&
                  std::is_invocable_r_v<Result, Callable&, Arguments...>)
+    // NOLINTNEXTLINE(bugprone-forwarding-reference-overload): copies are ruled out above
     FunctionRef(Callable&& callable)
-    noexcept {  // NOLINT: conversion is its purpose
+    noexcept {
         using Target = std::remove_reference_t<Callable>;
         if constexpr (std::is_function_v<Target>) {
             object_ = reinterpret_cast<void*>(&callable);

@@ -297,7 +297,7 @@ private:
     void wakeAll() noexcept;
 
     /// Returns false where that is impossible: from within a query, which reads the tables.
-    bool fileIfMany() const;
+    [[nodiscard]] bool fileIfMany() const;
     template <class Visit>
     void forEachFiled(Visit&& visit) const;
     void growTrees() const;

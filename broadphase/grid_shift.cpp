@@ -82,7 +82,7 @@ void Grid<Scalar>::shiftTables(const Point& shift) {
             fileResting(serialFor);
         }
         if (!isMobileFiled && cost_.changed == 0) {
-            fileIfMany();
+            static_cast<void>(fileIfMany());
         }
     } catch (const std::bad_alloc&) {
         wakeAll();

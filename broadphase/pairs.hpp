@@ -54,7 +54,7 @@ public:
         : ask_(OfMany(ask)) {}
 
     void operator()(std::span<const ProxyPair> asked, std::span<char> accepted) const {
-        if (const OfMany* ofMany = std::get_if<OfMany>(&ask_)) {
+        if (const auto* ofMany = std::get_if<OfMany>(&ask_)) {
             (*ofMany)(asked, accepted);
             return;
         }
@@ -182,7 +182,7 @@ private:
 
     // The rest of a call, which takes no more memory: ask() has made room.
     void endUpdate() noexcept;
-    void announceUnknown() noexcept;
+    void announceUnknown() noexcept;  // NOLINT(bugprone-exception-escape)
     void lose(Couple c) noexcept;
     void decide() noexcept;
     bool forgetRefused(Couple c) noexcept;

@@ -14,11 +14,11 @@ namespace {
 
 template <class Add>
 struct CollectInto {
-    Add& add_;
+    Add& addTo;
 
     template <class Scalar>
     void add(ProxyId id, Scalar /*key*/) {
-        add_(id);
+        addTo(id);
     }
     static constexpr double limit() { return std::numeric_limits<double>::infinity(); }
 };
@@ -66,7 +66,7 @@ PairChanges Pairs<Scalar>::refilter(ProxyId id, PairFilter filter) {
 }
 
 template <class Scalar>
-void Pairs<Scalar>::announceUnknown() noexcept {
+void Pairs<Scalar>::announceUnknown() noexcept {  // NOLINT(bugprone-exception-escape)
     for (const Couple c : unknown_) {
         announced_.findOrInsert(c);
     }

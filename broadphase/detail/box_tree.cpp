@@ -89,9 +89,10 @@ float BoxTree::curveStep() {
     for (std::size_t i = 0; i < boxes_.size(); i += stride) {
         sizes[count++] = boxes_[i].longestEdge();
     }
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(count / 2);
-    std::nth_element(sizes.begin(), middle, sizes.begin() + static_cast<std::ptrdiff_t>(count));
-    return *middle / 2;
+    const std::size_t middle = count / 2;
+    std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(middle),
+                     sizes.begin() + static_cast<std::ptrdiff_t>(count));
+    return sizes[middle] / 2;
 }
 
 // In the order of their lowest corners.
@@ -136,7 +137,7 @@ void BoxTree::sortAlongCurve() {
 void BoxTree::sortPlaces(int bits) {
     constexpr int kMostDigitBits = 11;
     const int passes = (bits + kMostDigitBits - 1) / kMostDigitBits;
-    const int digitBits = (bits + passes - 1) / passes;
+    const int digitBits = (bits + passes - 1) / passes;  // NOLINT(*DivideZero): bits is positive
     std::array<std::uint32_t, (1U << kMostDigitBits) + 1> starts;
     places2_.resize(places_.size());
     for (int pass = 0; pass < passes; ++pass) {

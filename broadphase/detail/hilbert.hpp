@@ -51,15 +51,17 @@ constexpr HilbertStep step(std::uint32_t entry, std::uint32_t axis, std::uint32_
             static_cast<std::uint8_t>(8 * (nextEntry * 3 + nextAxis))};
 }
 
-constexpr std::array<HilbertStep, 8 * 3 * 8> allSteps() {
-    std::array<HilbertStep, 8 * 3 * 8> steps{};
+using HilbertSteps = std::array<HilbertStep, 192>;  // by entry, axis and corner: 8 * 3 * 8
+
+constexpr HilbertSteps allSteps() {
+    HilbertSteps steps{};
     for (std::uint32_t i = 0; i < steps.size(); ++i) {
         steps[i] = step(i / 24, i / 8 % 3, i % 8);
     }
     return steps;
 }
 
-inline constexpr std::array<HilbertStep, 8 * 3 * 8> kSteps = allSteps();
+inline constexpr HilbertSteps kSteps = allSteps();
 
 /// Moves bit i of the lowest 21 to bit 3 i.
 constexpr std::uint64_t spreadBits(std::uint64_t x) {

@@ -74,7 +74,7 @@ private:
     // A time is off by three roundings, or less than the least number of which no bit is lost.
     [[nodiscard]] std::uint32_t maskOfPack(const Scalar* const* columns,
                                            std::uint32_t first) const {
-        constexpr Scalar kWidened =
+        constexpr auto kWidened =
             static_cast<Scalar>(sizeof(Scalar) == sizeof(float) ? 1 + 0x1p-19 : 1 + 0x1p-48);
         constexpr Scalar kTiny =
             sizeof(Scalar) == sizeof(float) ? Scalar(0x1p-126) : Scalar(0x1p-1022);

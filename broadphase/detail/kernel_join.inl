@@ -28,12 +28,12 @@ struct Neighbourhood {
         }
     }
 
-    Row row(std::uint32_t entry, int k) const {
+    [[nodiscard]] Row row(std::uint32_t entry, int k) const {
         return kIsDense ? Row{0, 0} : level.rowOfEntry[entry] + steps[k];
     }
 
     // The bucket before the entry's own in another of its rows, where these are hashed.
-    std::uint32_t bucketBefore(std::uint32_t entry, int k) const {
+    [[nodiscard]] std::uint32_t bucketBefore(std::uint32_t entry, int k) const {
         const Row own = level.rowOfEntry[entry];
         const std::uint32_t bucket = level.bucketOfEntry[entry] - level.firstBucket;
         return (bucket - rowBase(level, own) + rowBase(level, own + steps[k]) - 1) &
@@ -65,7 +65,7 @@ struct Neighbourhood {
     }
 
     // How run k goes on at the beginning of the buckets; mostly not at all.
-    Run wrapped(std::uint32_t entry, int k) const {
+    [[nodiscard]] Run wrapped(std::uint32_t entry, int k) const {
         const std::uint32_t first = bucketBefore(entry, k);
         // A run in the entry's own row begins with the entry, whose bucket may be the first one.
         const bool hasBegun = k == 0 && first + 1 == level.bucketCount;
@@ -125,7 +125,7 @@ template <class Scalar, bool kIsDense, int kRows>
         for (int i = 0; i < kUnbranchedHits; ++i) {
             take();
         }
-        while (hits != 0) {
+        while (hits != 0) {  // NOLINT(bugprone-infinite-loop): take() takes one away
             take();
         }
         found.next = next;

@@ -37,8 +37,8 @@ struct Interval {
     Number low;
     Number high;
 
-    bool isEmpty() const { return !(low <= high); }
-    std::uint64_t count() const {
+    [[nodiscard]] bool isEmpty() const { return !(low <= high); }
+    [[nodiscard]] std::uint64_t count() const {
         return isEmpty() ? 0 : static_cast<std::uint64_t>(high - low) + 1;
     }
 };
@@ -95,10 +95,10 @@ public:
 
     /// Along an axis that is not flat, where the boxes begin that are filed in a cell, and where those
     /// end, which reach into the next cell.
-    Scalar beginOf(std::int32_t cell, int axis) const {
+    [[nodiscard]] Scalar beginOf(std::int32_t cell, int axis) const {
         return lowOrigin_[axis] + static_cast<Scalar>(cell) * cellSize_[axis];
     }
-    Scalar endOf(std::int32_t cell, int axis) const {
+    [[nodiscard]] Scalar endOf(std::int32_t cell, int axis) const {
         return highOrigin_[axis] + static_cast<Scalar>(cell) * cellSize_[axis];
     }
 
@@ -113,7 +113,7 @@ public:
 
     /// The part of the hull along the axis that may be in the volume, by the planes that slope along
     /// it and along none before it.
-    Interval<Scalar> clip(const Hull<Scalar>& hull, int axis) const {
+    [[nodiscard]] Interval<Scalar> clip(const Hull<Scalar>& hull, int axis) const {
         Interval<Scalar> part{hull.low[axis], hull.high[axis]};
         for (std::uint32_t i = 0; i < volume.planeCount; ++i) {
             const BoxPlane<Scalar>& plane = planes[i];
@@ -137,7 +137,7 @@ public:
     }
 
     /// The cells along the axis in which boxes may be filed that touch a part of the level.
-    CellInterval cellsOf(const Interval<Scalar>& part, int axis) const {
+    [[nodiscard]] CellInterval cellsOf(const Interval<Scalar>& part, int axis) const {
         if (part.isEmpty()) {
             return {1, 0};
         }
@@ -146,7 +146,8 @@ public:
     }
 
     /// The least that a plane may be found to sum up to over the boxes of a hull, and the most.
-    Interval<Scalar> sumOver(const BoxPlane<Scalar>& plane, const Hull<Scalar>& hull) const {
+    [[nodiscard]] Interval<Scalar> sumOver(const BoxPlane<Scalar>& plane,
+                                           const Hull<Scalar>& hull) const {
         Interval<Scalar> sum{plane.offset - plane.slack, plane.offset + plane.slack};
         for (int axis = 0; axis < 3; ++axis) {
             const Scalar atLow = plane.slope[axis] * hull.low[axis];

@@ -186,7 +186,7 @@ private:
 
     // Bit k tells whether the plane has some of box first + k inside.
     template <class Pack>
-    std::uint32_t bitsOf(const BoxPlane<Scalar>& plane, std::uint32_t first) const {
+    [[nodiscard]] std::uint32_t bitsOf(const BoxPlane<Scalar>& plane, std::uint32_t first) const {
         auto sum = Pack::all(plane.offset);
         for (int axis = 0; axis < 3; ++axis) {
             sum = Pack::plus(sum, Pack::times(Pack::all(plane.slope[axis]),
@@ -198,8 +198,8 @@ private:
     }
 
     template <class Pack>
-    [[gnu::noinline]] std::uint32_t exactBitsOf(const BoxPlane<Scalar>& plane,
-                                                std::uint32_t first) const {
+    [[nodiscard, gnu::noinline]] std::uint32_t exactBitsOf(const BoxPlane<Scalar>& plane,
+                                                           std::uint32_t first) const {
         auto sum = Pack::all(plane.offset);
         auto size = Pack::all(absolute(plane.offset));
         for (int axis = 0; axis < 3; ++axis) {

@@ -10,8 +10,10 @@ struct CellBlock {
     std::int32_t low[3];
     std::int32_t high[3];
 
-    bool isEmpty() const { return low[0] > high[0] || low[1] > high[1] || low[2] > high[2]; }
-    std::uint64_t extent(int axis) const {
+    [[nodiscard]] bool isEmpty() const {
+        return low[0] > high[0] || low[1] > high[1] || low[2] > high[2];
+    }
+    [[nodiscard]] std::uint64_t extent(int axis) const {
         return static_cast<std::uint64_t>(high[axis] - low[axis]) + 1;
     }
 };

@@ -203,8 +203,7 @@ void LevelLayout<Scalar>::shiftOrigin(const Vector3<Scalar>& shift) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         origin_[axis] -= shift[static_cast<Eigen::Index>(axis)];
     }
-    const Vector3<double> exact = shift.template cast<double>();
-    census_.shiftOrigin({exact[0], exact[1], exact[2]});
+    census_.shiftOrigin({double{shift[0]}, double{shift[1]}, double{shift[2]}});
 }
 
 template class LevelLayout<float>;

@@ -29,7 +29,7 @@ inline constexpr Scalar kOnBorder = sizeof(Scalar) == sizeof(float) ? Scalar(0x1
 template <class Scalar>
 [[nodiscard, gnu::always_inline]] inline std::int32_t quantise(Scalar x, Scalar origin,
                                                                Scalar inverseCellSize) noexcept {
-    constexpr Scalar limit = static_cast<Scalar>(kCellLimit);
+    constexpr auto limit = static_cast<Scalar>(kCellLimit);
     Scalar scaled = (x - origin) * inverseCellSize;
     scaled = scaled < limit ? scaled : limit;
     scaled = scaled > -limit ? scaled : -limit;
