@@ -75,7 +75,7 @@ void Grid<Scalar>::reserve(std::size_t count) {
     }
     // At least doubled, or a program that asks for a few more each time would move all each time.
     const std::size_t twice = std::min(2 * records_.capacity(), detail::kMostProxies);
-    const std::size_t room = std::max<std::size_t>({count, twice, 8});
+    const auto room = std::max<std::size_t>({count, twice, 8});
     mobileSlots_.reserve(room);
     woken_.reserve(room);
     waiting_.reserve(manyWaiting(room) + 1);

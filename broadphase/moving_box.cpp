@@ -57,7 +57,7 @@ template <class Scalar>
 std::array<Gap, 6> gapsBetween(const MovingBox<Scalar>& a, const MovingBox<Scalar>& b) noexcept {
     std::array<Gap, 6> gaps;
     for (int axis = 0; axis < 3; ++axis) {
-        const auto at = static_cast<std::size_t>(2 * axis);
+        const auto at = 2 * static_cast<std::size_t>(axis);
         const auto moveA = static_cast<double>(a.displacement[axis]);
         const auto moveB = static_cast<double>(b.displacement[axis]);
         gaps[at] = gapBetween(a.box.min()[axis], b.box.max()[axis], moveA, moveB);

@@ -180,11 +180,11 @@ private:
     void sortCouples(std::vector<Couple>& couples);
     void ask(PairFilter filter, Told& told);
 
-    // The rest of a call, which takes no more memory: ask() has made room.
+    // The rest of a call, which takes no more memory, and so cannot throw: ask() has made room.
     void endUpdate() noexcept;
     void announceUnknown() noexcept;  // NOLINT(bugprone-exception-escape)
     void lose(Couple c) noexcept;
-    void decide() noexcept;
+    void decide() noexcept;  // NOLINT(bugprone-exception-escape)
     bool forgetRefused(Couple c) noexcept;
     PairChanges tell(Told& told) noexcept;
 

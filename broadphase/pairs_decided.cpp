@@ -62,7 +62,7 @@ void Pairs<Scalar>::ask(PairFilter filter, Told& told) {
 // Of what was asked, the standing ones are pairs already. Couples at rest that are refused are put
 // aside by the next update.
 template <class Scalar>
-void Pairs<Scalar>::decide() noexcept {
+void Pairs<Scalar>::decide() noexcept {  // NOLINT(bugprone-exception-escape)
     for (std::size_t i = 0; i < asked_.size(); ++i) {
         const Couple c = asked_[i];
         const bool wasPair =

@@ -83,8 +83,9 @@ private:
         std::uint32_t couples = 0;
         for (std::size_t a = 0; a < kSample; ++a) {
             for (std::size_t b = 0; b < a; ++b) {
-                couples += (sample[a]->low[axis] <= sample[b]->high[axis]) &
-                           (sample[b]->low[axis] <= sample[a]->high[axis]);
+                const bool beginsBefore = sample[a]->low[axis] <= sample[b]->high[axis];
+                const bool endsBehind = sample[b]->low[axis] <= sample[a]->high[axis];
+                couples += static_cast<std::uint32_t>(beginsBefore & endsBehind);
             }
         }
         return couples;

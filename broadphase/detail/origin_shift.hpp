@@ -41,8 +41,8 @@ template <class Scalar>
     const Scalar* by = shift.data();
     bool isExact = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        isExact &= isExactDifference(low[axis], by[axis], low[axis] - by[axis]) &
-                   isExactDifference(high[axis], by[axis], high[axis] - by[axis]);
+        isExact &= isExactDifference(low[axis], by[axis], low[axis] - by[axis]);
+        isExact &= isExactDifference(high[axis], by[axis], high[axis] - by[axis]);
     }
     if (isExact) {
         return false;
