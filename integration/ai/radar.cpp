@@ -32,9 +32,9 @@ public:
         sine_ = std::sin(heading);
         for (std::size_t i = 0; i < 3; ++i) {
             center_[i] = window.center[axes_[i]];
-            first_[i] = isTurned_
-                            ? Scalar(0)
-                            : std::floor(center_[i] / size_) - static_cast<Scalar>(counts_[i] / 2);
+            const auto before = counts_[i] / 2;
+            first_[i] = isTurned_ ? Scalar(0)
+                                  : std::floor(center_[i] / size_) - static_cast<Scalar>(before);
         }
     }
 

@@ -170,7 +170,9 @@ public:
     void calculateOverlappingPairs(btDispatcher* dispatcher) override;
 
     btOverlappingPairCache* getOverlappingPairCache() override { return pairCache_; }
-    const btOverlappingPairCache* getOverlappingPairCache() const override { return pairCache_; }
+    [[nodiscard]] const btOverlappingPairCache* getOverlappingPairCache() const override {
+        return pairCache_;
+    }
 
     /// The box around all boxes, and all ways; zero when there is none. Cost: O(proxies).
     void getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax) const override;

@@ -53,7 +53,7 @@ template <class Scalar>
 RayRegion<Scalar> View<Scalar>::rayThrough(const Pixel& pixel, double farthest) const {
     const Vector3<Scalar> nowhere =
         Vector3<Scalar>::Constant(std::numeric_limits<Scalar>::quiet_NaN());
-    const RayRegion<Scalar> nothing(nowhere, nowhere);
+    RayRegion<Scalar> nothing(nowhere, nowhere);
     if (!isValid_ || !(farthest > 0)) {
         return nothing;
     }
