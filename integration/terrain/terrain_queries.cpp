@@ -141,7 +141,9 @@ public:
         for (std::size_t i = 0; i < points.size(); ++i) {
             ++starts[tiles[i] + 1U];
         }
-        std::partial_sum(starts.begin(), starts.end(), starts.begin());
+        std::partial_sum(starts.begin(), starts.end(), starts.begin(), [](auto sum, auto count) {
+            return static_cast<std::uint16_t>(sum + count);
+        });
         for (std::size_t i = 0; i < points.size(); ++i) {
             order_[starts[tiles[i]]++] = static_cast<std::uint16_t>(i);
         }
