@@ -30,12 +30,12 @@ function(hashphase_calm_warnings target)
     endif()
 endfunction()
 
-# hashphase_precompile_headers(<target> [<header>...]): in a quick build, compiles what most sources
-# include once for the target, and the headers given. It takes as long as five sources save.
+# hashphase_precompile_headers(<target>): in a quick build, compiles what most sources include once for
+# the target. It takes as long as five sources save.
 function(hashphase_precompile_headers target)
     if(HASHPHASE_QUICK_BUILD)
         target_precompile_headers(
-            ${target} PRIVATE ${ARGN} <Eigen/Geometry> <algorithm> <memory> <span> <vector>)
+            ${target} PRIVATE <Eigen/Geometry> <algorithm> <memory> <span> <vector>)
         hashphase_calm_warnings(${target})
     endif()
 endfunction()

@@ -17,16 +17,16 @@ namespace {
 
 constexpr btScalar kNan = std::numeric_limits<btScalar>::quiet_NaN();
 constexpr btScalar kInfinity = std::numeric_limits<btScalar>::infinity();
-constexpr int kCubes = 5;
+constexpr int kCubesAlong = 5;
 
 /// Cubes of a metre that touch, plates, points, and boxes far away and of 1e18 m; the same under
 /// Bullet's tree.
 class RayWorld {
 public:
     RayWorld() {
-        for (int i = 0; i < kCubes * kCubes * kCubes; ++i) {
-            const btVector3 low(btScalar(i % kCubes), btScalar(i / kCubes % kCubes),
-                                btScalar(i / kCubes / kCubes));
+        for (int i = 0; i < kCubesAlong * kCubesAlong * kCubesAlong; ++i) {
+            const btVector3 low(btScalar(i % kCubesAlong), btScalar(i / kCubesAlong % kCubesAlong),
+                                btScalar(i / kCubesAlong / kCubesAlong));
             create({low, low + btVector3(1, 1, 1)});
         }
         create({{-9, 0, 0}, {9, btScalar(-0.0), 4}});
@@ -149,7 +149,7 @@ TEST(HardRays, OfLengthsThatCannotBeSquaredFindWhatBulletsFieldsSay) {
     // 1e19 can be squared in double precision: the whole row is met.
     const auto far = static_cast<btScalar>(1e19);
     const Ray row{{-far, btScalar(2.5), btScalar(2.5)}, {far, btScalar(2.5), btScalar(2.5)}};
-    EXPECT_EQ(world.expectAsBruteForceSays(row).size() >= kCubes, !isSingle);
+    EXPECT_EQ(world.expectAsBruteForceSays(row).size() >= kCubesAlong, !isSingle);
 }
 
 // Of the direction of a ray without length Bullet makes NaN, so that nothing is hit; a cast without
