@@ -20,7 +20,9 @@ public:
     /// by the w of clip space: positive in front of the eye, the smaller the farther away, 0 at
     /// infinity. Points of a segment in device coordinates are those between its homogeneous ends.
     [[nodiscard]] Eigen::Vector4d at(double x, double y, double z) const {
-        return inverse_ * Eigen::Vector4d(x, y, z, 1);
+        Eigen::Vector4d point = inverse_ * Eigen::Vector4d(x, y, z, 1);
+        point.head<3>() += point.w() * origin_;
+        return point;
     }
 
     /// The weight of points that lie `farther` [m] behind those of weight `near`, as seen from the
@@ -30,8 +32,11 @@ public:
     }
 
 private:
+    // Of the matrix for a world with its origin near the eye. For one far away, what a weight loses by
+    // cancellation would move points by as large a share of the way from there.
     Eigen::Matrix4d inverse_ = Eigen::Matrix4d::Zero();
-    double weightPerMetre_ = 0;  // of the w of clip space, along the view
+    Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // [m]
+    double weightPerMetre_ = 0;                         // of the w of clip space, along the view
     bool isValid_ = false;
 };
 
