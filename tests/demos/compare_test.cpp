@@ -59,14 +59,14 @@ private:
     int frame_ = 0;
 };
 
-class ForgetfulKind : public Broken {
+class MissesOnePair : public Broken {
     using Broken::Broken;
     void spoil(btDispatcher* dispatcher) override {
         getOverlappingPairCache()->removeOverlappingPair(proxies_[0], proxies_[1], dispatcher);
     }
 };
 
-class Inventive : public Broken {
+class InventsOnePair : public Broken {
     using Broken::Broken;
     void spoil(btDispatcher* /*dispatcher*/) override {
         getOverlappingPairCache()->addOverlappingPair(proxies_[0], proxies_[2]);
@@ -125,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, CompareScene,
 
 TEST(Compare, FailsAndNamesTheFirstMissedPair) {
     const TemporaryFolder folder;
-    const std::array kinds{kindOf<ForgetfulKind>(true)};
+    const std::array kinds{kindOf<MissesOnePair>(true)};
     const Outcome outcome =
         run({"compare", "--file", folder.write("b.txt", kThreeBoxes), "--frames", "6"}, kinds);
     EXPECT_EQ(outcome.exitCode, kExitCheckFailed);
@@ -137,7 +137,7 @@ TEST(Compare, FailsAndNamesTheFirstMissedPair) {
 
 TEST(Compare, FailsAndNamesTheFirstInventedPair) {
     const TemporaryFolder folder;
-    const std::array kinds{kindOf<Inventive>(true)};
+    const std::array kinds{kindOf<InventsOnePair>(true)};
     const std::string json = folder.file("r.json");
     const Outcome outcome = run(
         {"compare", "--file", folder.write("b.txt", kThreeBoxes), "--frames", "6", "--json", json},
@@ -155,7 +155,7 @@ TEST(Compare, FailsAndNamesTheFirstInventedPair) {
 
 TEST(Compare, DoesNotFailForWhatOthersGetWrong) {
     const TemporaryFolder folder;
-    const std::array kinds{kindOf<ForgetfulKind>(false)};
+    const std::array kinds{kindOf<MissesOnePair>(false)};
     const Outcome outcome =
         run({"compare", "--file", folder.write("b.txt", kThreeBoxes), "--frames", "6"}, kinds);
     EXPECT_EQ(outcome.exitCode, kExitOk);

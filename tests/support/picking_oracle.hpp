@@ -16,6 +16,13 @@
 
 namespace hashphase::test {
 
+/// Of a window within a larger one.
+inline constexpr Viewport kViewport{100, 50, 1280, 720};
+
+[[nodiscard]] inline Pixel middleOf(const Viewport& viewport) {
+    return {viewport.x + viewport.width / 2, viewport.y + viewport.height / 2};
+}
+
 /// Clip coordinates of a point.
 template <class Scalar>
 [[nodiscard]] Eigen::Vector4d clipCoordinates(const Eigen::Matrix<Scalar, 4, 4>& viewProjection,

@@ -28,8 +28,6 @@
 namespace hashphase::test {
 namespace {
 
-constexpr Viewport kViewport{0, 0, 1280, 720};
-
 /// A pile that falls on the ground, seen from around.
 class WorldPicking : public testing::Test {
 protected:
@@ -55,7 +53,10 @@ protected:
         return {cameraMatrix<btScalar>(lens, eye, target), lens.depthRange, kViewport};
     }
 
-    Pixel somePixel() { return {between(0, 1280), between(0, 720)}; }
+    Pixel somePixel() {
+        return {kViewport.x + between(0, kViewport.width),
+                kViewport.y + between(0, kViewport.height)};
+    }
 
     const btCollisionObject* objectOf(ProxyId id) const {
         return static_cast<const btCollisionObject*>(hash().proxyOf(id)->m_clientObject);
@@ -198,11 +199,13 @@ TEST_F(WorldPicking, SeesABodyAtOnceWhereItWasMoved) {
         const View<btScalar> view(
             cameraMatrix<btScalar>(lens, target + Vector3<double>(9, 5, 3), target),
             lens.depthRange, kViewport);
-        const Pixel middle(640, 360);
+        const Pixel middle = middleOf(kViewport);
         EXPECT_EQ(objectOf(pickNearest(grid(), view.rayThrough(middle), isMobile()).id), &body);
         EXPECT_EQ(objectOf(closestShape(hash(), view.rayThrough(middle)).id), &body);
         std::vector<ProxyId> selected;
-        select(grid(), view, {630, 350}, {650, 370}, selected, Containment::touching, isMobile());
+        const Pixel reach(10, 10);
+        select(grid(), view, middle - reach, middle + reach, selected, Containment::touching,
+               isMobile());
         EXPECT_EQ(selected, std::vector{SpatialHashBroadphase::idOf(body.getBroadphaseHandle())});
     }
 }

@@ -17,12 +17,13 @@
 namespace hashphase::test {
 namespace {
 
-constexpr int kPlayed = 250;
-constexpr std::uint64_t kPlaySeed = 7;
+constexpr int kQueryProxies = 250;
+constexpr std::uint64_t kQuerySeed = 7;
 
 /// A scene after some life in it, the last frames of which the broadphase has not yet calculated.
 struct Playground {
-    explicit Playground(const Scene& scene) : script(makeScript(scene, kPlayed, 30, kPlaySeed)) {
+    explicit Playground(const Scene& scene)
+        : script(makeScript(scene, kQueryProxies, 30, kQuerySeed)) {
         for (std::size_t frame = 0; frame < script.frames.size(); ++frame) {
             truth.play(script.frames[frame]);
             player.play(script.frames[frame]);
@@ -35,7 +36,7 @@ struct Playground {
     /// Somewhere at an object, but never at the middle of nowhere.
     btVector3 somewhere(BulletRandom& random) const {
         for (;;) {
-            const int object = random.below(kPlayed);
+            const int object = random.below(kQueryProxies);
             const btVector3 size = truth.box(object).max - truth.box(object).min;
             if (truth.isAlive(object) && size.length2() < btScalar(1e10)) {
                 return truth.box(object).min + size * random.vector(-1, 2) +
@@ -45,14 +46,14 @@ struct Playground {
     }
 
     Script script;
-    Truth truth{kPlayed};
-    Player player = hashPlayer(kPlayed);
+    Truth truth{kQueryProxies};
+    Player player = hashPlayer(kQueryProxies);
 };
 
 void expectRayAsBruteForce(const Playground& world, const Ray& ray, std::size_t* hitCount) {
     CollectRay collected(ray);
     world.player.broadphase().rayTest(ray.from, ray.to, collected, ray.castMin, ray.castMax);
-    const std::vector<int> expected = bruteForceRay(world.truth, kPlayed, ray);
+    const std::vector<int> expected = bruteForceRay(world.truth, kQueryProxies, ray);
     EXPECT_EQ(sorted(collected.found), expected) << describe(ray);
     *hitCount += expected.size();
 }
@@ -61,7 +62,7 @@ class Queries : public testing::TestWithParam<Scene> {};
 
 TEST_P(Queries, ByRayFindWhatBruteForceFinds) {
     const Playground world(GetParam());
-    BulletRandom random(kPlaySeed);
+    BulletRandom random(kQuerySeed);
     std::size_t hitCount = 0;
     for (int i = 0; i < 400 && !HasFailure(); ++i) {
         expectRayAsBruteForce(world, {world.somewhere(random), world.somewhere(random)}, &hitCount);
@@ -71,7 +72,7 @@ TEST_P(Queries, ByRayFindWhatBruteForceFinds) {
 
 TEST_P(Queries, ByShortRayFindWhatBruteForceFinds) {
     const Playground world(GetParam());
-    BulletRandom random(kPlaySeed);
+    BulletRandom random(kQuerySeed);
     std::size_t hitCount = 0;
     for (int i = 0; i < 400 && !HasFailure(); ++i) {
         const btVector3 from = world.somewhere(random);
@@ -83,7 +84,7 @@ TEST_P(Queries, ByShortRayFindWhatBruteForceFinds) {
 
 TEST_P(Queries, ByAxisParallelRayFindWhatBruteForceFinds) {
     const Playground world(GetParam());
-    BulletRandom random(kPlaySeed);
+    BulletRandom random(kQuerySeed);
     std::size_t hitCount = 0;
     for (int i = 0; i < 400 && !HasFailure(); ++i) {
         const btVector3 from = world.somewhere(random);
@@ -91,7 +92,7 @@ TEST_P(Queries, ByAxisParallelRayFindWhatBruteForceFinds) {
         to[i % 3] += random.uniform(-20, 20);
         expectRayAsBruteForce(world, {from, to}, &hitCount);
         // Along the faces and edges of boxes.
-        const Box& box = world.truth.box(random.below(kPlayed));
+        const Box& box = world.truth.box(random.below(kQueryProxies));
         Ray edge{box.min, box.min};
         edge.to[i % 3] = box.max[i % 3];
         expectRayAsBruteForce(world, edge, &hitCount);
@@ -101,7 +102,7 @@ TEST_P(Queries, ByAxisParallelRayFindWhatBruteForceFinds) {
 
 TEST_P(Queries, ByCastOfABoxFindWhatBruteForceFinds) {
     const Playground world(GetParam());
-    BulletRandom random(kPlaySeed);
+    BulletRandom random(kQuerySeed);
     std::size_t hitCount = 0;
     for (int i = 0; i < 300 && !HasFailure(); ++i) {
         Ray ray{world.somewhere(random), world.somewhere(random)};
@@ -117,7 +118,7 @@ TEST_P(Queries, ByCastOfABoxFindWhatBruteForceFinds) {
 
 TEST_P(Queries, ByRayOfNoLengthFindWhatBruteForceFinds) {
     const Playground world(GetParam());
-    BulletRandom random(kPlaySeed);
+    BulletRandom random(kQuerySeed);
     std::size_t hitCount = 0;
     for (int i = 0; i < 200 && !HasFailure(); ++i) {
         const btVector3 point = world.somewhere(random);
@@ -127,7 +128,7 @@ TEST_P(Queries, ByRayOfNoLengthFindWhatBruteForceFinds) {
 
 TEST_P(Queries, ByRayOfAMillionKilometresFindWhatBruteForceFinds) {
     const Playground world(GetParam());
-    BulletRandom random(kPlaySeed);
+    BulletRandom random(kQuerySeed);
     std::size_t hitCount = 0;
     for (int i = 0; i < 100 && !HasFailure(); ++i) {
         const btVector3 middle = world.somewhere(random);
@@ -143,7 +144,7 @@ TEST_P(Queries, ByRayOfAMillionKilometresFindWhatBruteForceFinds) {
 // So long that BT_LARGE_FLOAT is a slow inverse of 0: btRayAabb2() hits what is a metre beside it.
 TEST_P(Queries, ByRayAsLongAsBulletsLargestNumberFindWhatBruteForceFinds) {
     const Playground world(GetParam());
-    BulletRandom random(kPlaySeed);
+    BulletRandom random(kQuerySeed);
     std::size_t hitCount = 0;
     for (int i = 0; i < 100 && !HasFailure(); ++i) {
         const btVector3 middle = world.somewhere(random);
@@ -157,19 +158,19 @@ TEST_P(Queries, ByRayAsLongAsBulletsLargestNumberFindWhatBruteForceFinds) {
 
 TEST_P(Queries, ByBoxFindWhatBruteForceFinds) {
     const Playground world(GetParam());
-    BulletRandom random(kPlaySeed);
+    BulletRandom random(kQuerySeed);
     std::size_t hitCount = 0;
     for (int i = 0; i < 400 && !HasFailure(); ++i) {
         const btScalar half = std::pow(btScalar(10), random.uniform(-2, 1.5));
         Box box = boxAround(world.somewhere(random), random.vector(0, 1) * half);
         if (i % 4 == 0) {
-            box = world.truth.box(random.below(kPlayed));  // touches its neighbours
+            box = world.truth.box(random.below(kQueryProxies));  // touches its neighbours
         } else if (i % 50 == 1) {
             std::swap(box.min, box.max);
         }
         CollectBox collected;
         world.player.broadphase().aabbTest(box.min, box.max, collected);
-        const std::vector<int> expected = bruteForceBox(world.truth, kPlayed, box);
+        const std::vector<int> expected = bruteForceBox(world.truth, kQueryProxies, box);
         EXPECT_EQ(sorted(collected.found), expected) << describe(box);
         hitCount += expected.size();
     }
@@ -178,10 +179,10 @@ TEST_P(Queries, ByBoxFindWhatBruteForceFinds) {
 
 TEST_P(Queries, SeeEachBoxAsItWasLastSet) {
     Playground world(GetParam());
-    BulletRandom random(kPlaySeed);
+    BulletRandom random(kQuerySeed);
     std::size_t hitCount = 0;
     for (int i = 0; i < 500 && !HasFailure(); ++i) {
-        const int object = random.below(kPlayed);
+        const int object = random.below(kQueryProxies);
         Command command{Action::set, object, GetParam().place(random, object),
                         btBroadphaseProxy::DefaultFilter, btBroadphaseProxy::AllFilter};
         if (!world.truth.isAlive(object)) {
@@ -200,10 +201,10 @@ TEST_P(Queries, RunOnManyThreadsAtOnce) {
     const Playground world(GetParam());
     std::vector<Ray> rays;
     std::vector<std::vector<int>> expected;
-    BulletRandom random(kPlaySeed);
+    BulletRandom random(kQuerySeed);
     for (int i = 0; i < 200; ++i) {
         rays.push_back({world.somewhere(random), world.somewhere(random)});
-        expected.push_back(bruteForceRay(world.truth, kPlayed, rays.back()));
+        expected.push_back(bruteForceRay(world.truth, kQueryProxies, rays.back()));
     }
     std::vector<int> wrong(4, 0);
     std::vector<std::thread> threads;
@@ -217,7 +218,8 @@ TEST_P(Queries, RunOnManyThreadsAtOnce) {
                 CollectBox inBox;
                 world.player.broadphase().aabbTest(box.min, box.max, inBox);
                 wrong[thread] += sorted(ray.found) != expected[k];
-                wrong[thread] += sorted(inBox.found) != bruteForceBox(world.truth, kPlayed, box);
+                wrong[thread] +=
+                    sorted(inBox.found) != bruteForceBox(world.truth, kQueryProxies, box);
             }
         });
     }
@@ -229,7 +231,7 @@ TEST_P(Queries, RunOnManyThreadsAtOnce) {
 
 TEST_P(Queries, RunInsideEachOther) {
     const Playground world(GetParam());
-    BulletRandom random(kPlaySeed);
+    BulletRandom random(kQuerySeed);
 
     /// Casts the inner ray and asks for the inner box at every hit of the outer ray.
     struct Outer : CollectRay {
@@ -238,11 +240,11 @@ TEST_P(Queries, RunInsideEachOther) {
         bool process(const btBroadphaseProxy* proxy) override {
             CollectRay ray(inner);
             world.player.broadphase().rayTest(inner.from, inner.to, ray);
-            EXPECT_EQ(sorted(ray.found), bruteForceRay(world.truth, kPlayed, inner));
+            EXPECT_EQ(sorted(ray.found), bruteForceRay(world.truth, kQueryProxies, inner));
             const Box box{proxy->m_aabbMin, proxy->m_aabbMax};
             CollectBox inBox;
             world.player.broadphase().aabbTest(box.min, box.max, inBox);
-            EXPECT_EQ(sorted(inBox.found), bruteForceBox(world.truth, kPlayed, box));
+            EXPECT_EQ(sorted(inBox.found), bruteForceBox(world.truth, kQueryProxies, box));
             return CollectRay::process(proxy);
         }
         const Playground& world;
@@ -252,7 +254,7 @@ TEST_P(Queries, RunInsideEachOther) {
         const Ray ray{world.somewhere(random), world.somewhere(random)};
         Outer outer(ray, world, {world.somewhere(random), world.somewhere(random)});
         world.player.broadphase().rayTest(ray.from, ray.to, outer);
-        EXPECT_EQ(sorted(outer.found), bruteForceRay(world.truth, kPlayed, ray));
+        EXPECT_EQ(sorted(outer.found), bruteForceRay(world.truth, kQueryProxies, ray));
     }
 }
 
@@ -261,19 +263,19 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Queries, testing::ValuesIn(allScenes()),
 
 TEST(Queries, GoOnWhenProcessReturnsFalse) {
     const Playground world(sceneNamed("piles"));
-    BulletRandom random(kPlaySeed);
+    BulletRandom random(kQuerySeed);
     std::size_t hitCount = 0;
     for (int i = 0; i < 50; ++i) {
         const Ray ray{world.somewhere(random), world.somewhere(random)};
         CollectRay byRay(ray);
         byRay.answer = false;
         world.player.broadphase().rayTest(ray.from, ray.to, byRay);
-        EXPECT_EQ(sorted(byRay.found), bruteForceRay(world.truth, kPlayed, ray));
+        EXPECT_EQ(sorted(byRay.found), bruteForceRay(world.truth, kQueryProxies, ray));
         const Box box = boxAround(ray.from, {2, 2, 2});
         CollectBox byBox;
         byBox.answer = false;
         world.player.broadphase().aabbTest(box.min, box.max, byBox);
-        EXPECT_EQ(sorted(byBox.found), bruteForceBox(world.truth, kPlayed, box));
+        EXPECT_EQ(sorted(byBox.found), bruteForceBox(world.truth, kQueryProxies, box));
         hitCount += byRay.found.size() + byBox.found.size();
     }
     EXPECT_GT(hitCount, 100U);
@@ -298,7 +300,7 @@ TEST(Queries, StopWhenProcessReturnsFalseIfToldTo) {
 // Soft-body worlds put 1e30, not BT_LARGE_FLOAT, where the ray does not move.
 TEST(Queries, TrustTheCallbacksFieldsForTheHitAndNotForTheWay) {
     const Playground world(sceneNamed("paper"));
-    BulletRandom random(kPlaySeed);
+    BulletRandom random(kQuerySeed);
     for (int i = 0; i < 100 && !HasFailure(); ++i) {
         Ray ray{world.somewhere(random), world.somewhere(random)};
         ray.to[i % 3] = ray.from[i % 3];
@@ -336,7 +338,7 @@ TEST(Queries, WithNanFindNothingAndHarmNobody) {
     world.player.broadphase().aabbTest({-infinity, -infinity, -infinity},
                                        {infinity, infinity, infinity}, everything);
     EXPECT_EQ(sorted(everything.found),
-              bruteForceBox(world.truth, kPlayed, {{-99, -99, -99}, {99, 99, 99}}));
+              bruteForceBox(world.truth, kQueryProxies, {{-99, -99, -99}, {99, 99, 99}}));
 }
 
 }  // namespace

@@ -14,8 +14,6 @@
 namespace hashphase::test {
 namespace {
 
-constexpr Viewport kViewport{100, 50, 1280, 720};
-
 template <class Scalar>
 class DragSelection : public testing::Test {
 protected:

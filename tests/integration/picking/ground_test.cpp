@@ -16,9 +16,6 @@
 namespace hashphase::test {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr Viewport kScreen{0, 0, 1280, 720};
-
 template <class Scalar>
 class Ground : public testing::Test {
 protected:
@@ -26,8 +23,8 @@ protected:
 
     static View<Scalar> viewFrom(const Vector3<double>& eye, const Vector3<double>& target) {
         CameraLens lens;
-        lens.farPlane = kInfinity;
-        return {cameraMatrix<Scalar>(lens, eye, target), lens.depthRange, kScreen};
+        lens.farPlane = std::numeric_limits<double>::infinity();
+        return {cameraMatrix<Scalar>(lens, eye, target), lens.depthRange, kViewport};
     }
 };
 
@@ -105,7 +102,7 @@ TYPED_TEST(Ground, APickFindsWhatHasHeightInFrontOfThePointOnTheGround) {
     const ProxyId tower = grid.add(makeBox<TypeParam>(-1, 0, -21, 1, 9, -19));
     const ProxyId bush = grid.add(makeBox<TypeParam>(-1, 0, -41, 1, 1, -39));
     const auto view = this->viewFrom({0, 10, 0}, {0, 0, -40});
-    const RayRegion<TypeParam> ray = view.rayThrough({640, 360});
+    const RayRegion<TypeParam> ray = view.rayThrough(middleOf(kViewport));
     const auto point = groundPoint(ray);
     ASSERT_TRUE(point.has_value());
     EXPECT_NEAR(point->z(), -40, 1e-3);
@@ -163,7 +160,8 @@ TYPED_TEST(Ground, ThePointUnderAPixelIsSeenThere) {
         const Vector3<double> eye(random.between(-50, 50), random.between(4, 30),
                                   random.between(-50, 50));
         const auto view = this->viewFrom(eye, eye + random.pointIn({-20, -12, -20}, {20, 4, 20}));
-        const Pixel pixel(random.between(0, 1280), random.between(0, 720));
+        const Pixel pixel(kViewport.x + random.between(0, kViewport.width),
+                          kViewport.y + random.between(0, kViewport.height));
         const RayRegion<TypeParam> ray = view.rayThrough(pixel);
         const auto point = groundPoint(ray, static_cast<TypeParam>(height));
         const bool isDownwards = ray.direction().y() < -1;  // of a million metres
@@ -178,10 +176,9 @@ TYPED_TEST(Ground, ThePointUnderAPixelIsSeenThere) {
         ASSERT_TRUE(point.has_value());
         ++points;
         EXPECT_EQ(point->y(), static_cast<TypeParam>(height));
-        const Eigen::Vector4d clip = view.viewProjection().template cast<double>() *
-                                     point->template cast<double>().homogeneous();
-        EXPECT_NEAR((clip.x() / clip.w() + 1) * 640, pixel.x(), 2e3 * this->kNearly);
-        EXPECT_NEAR((1 - clip.y() / clip.w()) * 360, pixel.y(), 2e3 * this->kNearly);
+        const Pixel seen = pixelOf(
+            clipCoordinates(view.viewProjection(), point->template cast<double>()), kViewport);
+        EXPECT_LT((seen - pixel).cwiseAbs().maxCoeff(), 2e3 * this->kNearly);
     }
     EXPECT_GT(points, 1000);
     EXPECT_GT(overTheHorizon, 200);
@@ -226,7 +223,8 @@ TYPED_TEST(Ground, ADragCoversOnTheGroundWhateverItSelectsThere) {
         grid.visit(footprint.region(), collector);
         std::sort(onMap.begin(), onMap.end());
         select(grid, view, a, b, selected);
-        const auto planes = planesBetween(view.viewProjection(), view.depthRange(), kScreen, a, b);
+        const auto planes =
+            planesBetween(view.viewProjection(), view.depthRange(), kViewport, a, b);
         for (const ProxyId id : selected) {
             if (!std::binary_search(onMap.begin(), onMap.end(), id)) {
                 const double depth = depthInVolume(planes, grid.box(id).template cast<double>());
@@ -243,7 +241,7 @@ TYPED_TEST(Ground, ADragCoversOnTheGroundWhateverItSelectsThere) {
     EXPECT_GT(seen, 5000U);
     EXPECT_GT(covered, seen);
     const auto bad =
-        View<TypeParam>(Eigen::Matrix<TypeParam, 4, 4>::Zero(), DepthRange::zeroToOne, kScreen);
+        View<TypeParam>(Eigen::Matrix<TypeParam, 4, 4>::Zero(), DepthRange::zeroToOne, kViewport);
     EXPECT_TRUE(dragFootprint(bad, {0, 0}, {9, 9}, heights).isEmpty());
 }
 

@@ -12,17 +12,15 @@
 namespace hashphase::test {
 namespace {
 
-constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-constexpr Viewport kFrame{100, 50, 1280, 720};
-
 template <class Scalar>
 class Views : public testing::Test {
 protected:
+    static constexpr double kInfinity = std::numeric_limits<double>::infinity();
     using Matrix = Eigen::Matrix<Scalar, 4, 4>;
 
     static View<Scalar> viewOf(const CameraLens& lens, const Vector3<double>& eye,
                                const Vector3<double>& target) {
-        return {cameraMatrix<Scalar>(lens, eye, target), lens.depthRange, kFrame,
+        return {cameraMatrix<Scalar>(lens, eye, target), lens.depthRange, kViewport,
                 lens.isReversed ? DepthOrder::reversed : DepthOrder::nearFirst};
     }
 
@@ -47,9 +45,9 @@ protected:
         EXPECT_GT(clip.w(), 0);
         const Pixel found = pixelOf(clip, view.viewport());
         EXPECT_NEAR(found.x(), pixel.x(),
-                    1280 / 2.0 * doubtOf(view.viewProjection(), 0, exact, clip));
+                    kViewport.width / 2 * doubtOf(view.viewProjection(), 0, exact, clip));
         EXPECT_NEAR(found.y(), pixel.y(),
-                    720 / 2.0 * doubtOf(view.viewProjection(), 1, exact, clip));
+                    kViewport.height / 2 * doubtOf(view.viewProjection(), 1, exact, clip));
     }
 
     static Vector3<Scalar> endOf(const RayRegion<Scalar>& ray) {
@@ -119,7 +117,7 @@ TYPED_TEST(Views, AreExactThoughTheFarPlaneIsAMillionTimesAsFarAsTheNearOne) {
             const auto along = static_cast<TypeParam>(share);
             const Vector3<TypeParam> point = ray.from() + along * ray.direction();
             const Pixel found = pixelOf(
-                clipCoordinates(view.viewProjection(), point.template cast<double>()), kFrame);
+                clipCoordinates(view.viewProjection(), point.template cast<double>()), kViewport);
             EXPECT_LT((found - pixel).norm(), sizeof(TypeParam) == sizeof(float) ? 0.01 : 1e-7);
         }
     }
@@ -145,7 +143,7 @@ TYPED_TEST(Views, CastRaysFromObliqueNearPlanes) {
         projection.row(2) = plane.transpose() * (2 / plane.dot(corner)) - projection.row(3);
         const Eigen::Matrix4d world = viewMatrix(random.pointIn(-9, 9), random.pointIn(-9, 9));
         const View<TypeParam> view((projection * world).template cast<TypeParam>(), lens.depthRange,
-                                   kFrame);
+                                   kViewport);
         const Pixel pixel(random.between(100, 1380), random.between(50, 770));
         const RayRegion<TypeParam> ray = view.rayThrough(pixel, 200);
         ASSERT_FALSE(ray.isEmpty());
@@ -164,8 +162,8 @@ TYPED_TEST(Views, TakeTheOrderOfDepthsFromThePerspective) {
         CameraLens lens = randomLens(random);
         const auto matrix =
             cameraMatrix<TypeParam>(lens, random.pointIn(-9, 9), random.pointIn(-9, 9));
-        const View<TypeParam> forth(matrix, lens.depthRange, kFrame, DepthOrder::nearFirst);
-        const View<TypeParam> back(matrix, lens.depthRange, kFrame, DepthOrder::reversed);
+        const View<TypeParam> forth(matrix, lens.depthRange, kViewport, DepthOrder::nearFirst);
+        const View<TypeParam> back(matrix, lens.depthRange, kViewport, DepthOrder::reversed);
         const Pixel pixel(random.between(100, 1380), random.between(50, 770));
         const RayRegion<TypeParam> a = forth.rayThrough(pixel);
         const RayRegion<TypeParam> b = back.rayThrough(pixel);
@@ -181,21 +179,21 @@ TEST(ViewsFarAway, AreExactAHundredThousandKilometresFromTheOrigin) {
         lens.fieldOfView = std::max(lens.fieldOfView, 0.3);
         const Vector3<double> eye = random.pointIn(-1e8, 1e8);
         const Eigen::Matrix4d matrix = cameraMatrix<double>(lens, eye, eye + random.pointIn(-9, 9));
-        const View<double> view(matrix, lens.depthRange, kFrame);
-        ASSERT_EQ(viewError(matrix, kFrame), "");
+        const View<double> view(matrix, lens.depthRange, kViewport);
+        ASSERT_EQ(viewError(matrix, kViewport), "");
         const Pixel pixel(random.between(100, 1380), random.between(50, 770));
         const RayRegion<double> ray = view.rayThrough(pixel, 1000);
         for (const double share : {0.1, 1.0}) {
             const Vector3<double> point = ray.from() + share * ray.direction();
             const Eigen::Vector4d clip = clipCoordinates(matrix, point);
-            EXPECT_LT((pixelOf(clip, kFrame) - pixel).norm() * std::min(clip.w(), 1.0), 2e-3);
+            EXPECT_LT((pixelOf(clip, kViewport) - pixel).norm() * std::min(clip.w(), 1.0), 2e-3);
         }
     }
 }
 
 TYPED_TEST(Views, EndRaysAtTheFarthestDistance) {
     CameraLens lens;
-    lens.farPlane = kUnbounded;
+    lens.farPlane = this->kInfinity;
     for (const bool isReversed : {false, true}) {
         lens.isReversed = isReversed;
         const auto view = this->viewOf(lens, {0, 0, 0}, {0, 0, -1});
@@ -206,7 +204,8 @@ TYPED_TEST(Views, EndRaysAtTheFarthestDistance) {
         EXPECT_NEAR(-this->endOf(view.rayThrough({300, 100})).z(), kFarthest, 1);
         EXPECT_TRUE(view.rayThrough({300, 100}, 0).isEmpty());
         EXPECT_TRUE(view.rayThrough({300, 100}, -1).isEmpty());
-        EXPECT_TRUE(view.rayThrough({300, 100}, kUnbounded).isEmpty() || depthOf(kUnbounded) > 1e6);
+        EXPECT_TRUE(view.rayThrough({300, 100}, this->kInfinity).isEmpty() ||
+                    depthOf(this->kInfinity) > 1e6);
     }
 }
 
@@ -233,29 +232,29 @@ TYPED_TEST(Views, SeeNothingWhenTheyAreBad) {
         EXPECT_TRUE(view.rectangleBetween({0, 0}, {9, 9}).isEmpty());
         return viewError(matrix, viewport);
     };
-    EXPECT_EQ(viewError(good, kFrame), "");
+    EXPECT_EQ(viewError(good, kViewport), "");
     Matrix4 bad = good;
     bad(3, 3) = std::numeric_limits<TypeParam>::quiet_NaN();
-    EXPECT_NE(errorOf(bad, kFrame).find("must be finite"), std::string::npos);
+    EXPECT_NE(errorOf(bad, kViewport).find("must be finite"), std::string::npos);
     bad = good;
     bad.row(1) = bad.row(0) * TypeParam(2);
-    EXPECT_NE(errorOf(bad, kFrame).find("must have an inverse"), std::string::npos);
+    EXPECT_NE(errorOf(bad, kViewport).find("must have an inverse"), std::string::npos);
     bad.setZero();
-    EXPECT_NE(errorOf(bad, kFrame), "");
+    EXPECT_NE(errorOf(bad, kViewport), "");
     for (const Viewport& viewport :
-         {Viewport{}, Viewport{0, 0, 10, 0}, Viewport{0, 0, -10, 10}, Viewport{0, 0, kUnbounded, 1},
-          Viewport{std::nan(""), 0, 1, 1}}) {
+         {Viewport{}, Viewport{0, 0, 10, 0}, Viewport{0, 0, -10, 10},
+          Viewport{0, 0, this->kInfinity, 1}, Viewport{std::nan(""), 0, 1, 1}}) {
         EXPECT_NE(errorOf(good, viewport).find("viewport must be"), std::string::npos);
     }
     // Everything is behind the eye.
-    const View<TypeParam> behind(-good, DepthRange::zeroToOne, kFrame);
+    const View<TypeParam> behind(-good, DepthRange::zeroToOne, kViewport);
     EXPECT_TRUE(behind.rayThrough({700, 400}).isEmpty());
 }
 
 TYPED_TEST(Views, HaveEmptyRaysAtPixelsThatAreNaN) {
     const auto view = this->viewOf({}, {0, 0, 0}, {0, 0, -1});
     EXPECT_TRUE(view.rayThrough({std::nan(""), 100}).isEmpty());
-    EXPECT_TRUE(view.rayThrough({100, kUnbounded}).isEmpty());
+    EXPECT_TRUE(view.rayThrough({100, this->kInfinity}).isEmpty());
     EXPECT_TRUE(view.rayThrough({100, 100}, std::nan("")).isEmpty());
     EXPECT_TRUE(view.rectangleBetween({std::nan(""), 100}, {200, 200}).isEmpty());
 }
