@@ -134,10 +134,11 @@ void Grid<Scalar>::settle() noexcept {
 }
 
 template <class Scalar>
-void Grid<Scalar>::endUpdate() noexcept {
+UpdateCost Grid<Scalar>::endUpdate() noexcept {
+    cost_.resting = resting_.size() - restingErased_;
+    cost_.largestCell = std::max(mobile_.largestCell(), resting_.largestCell());
     woken_.clear();
     boxesAtUpdate_.clear();
-    cost_ = {};
     if (++updateNumber_ == std::numeric_limits<std::uint32_t>::max()) {
         countUpdatesAnew();
     }
@@ -145,6 +146,7 @@ void Grid<Scalar>::endUpdate() noexcept {
         const double finest = std::min(mobile_.finestCellSize(), resting_.finestCellSize());
         cellSize_ = std::isinf(finest) ? Scalar(1) : static_cast<Scalar>(finest);
     }
+    return std::exchange(cost_, {});
 }
 
 // After 2^32 updates the numbers would come round to those of the first ones, and what has not
@@ -174,10 +176,7 @@ UpdateCost Grid<Scalar>::update(ParallelFor parallelFor) {
         }
         settle();
     }
-    cost_.resting = resting_.size() - restingErased_;
-    const UpdateCost cost = cost_;
-    endUpdate();
-    return cost;
+    return endUpdate();
 }
 
 // Whoever has been put to rest by now is still listed among the mobile ones; who rested before is not.
@@ -245,7 +244,7 @@ template void Grid<float>::listResting();
 template void Grid<float>::fileResting(ParallelFor);
 template void Grid<float>::fileMobile(ParallelFor);
 template void Grid<float>::settle() noexcept;
-template void Grid<float>::endUpdate() noexcept;
+template UpdateCost Grid<float>::endUpdate() noexcept;
 template void Grid<float>::countUpdatesAnew() noexcept;
 template UpdateCost Grid<float>::update(ParallelFor);
 template void Grid<float>::wakeAll() noexcept;
@@ -257,7 +256,7 @@ template void Grid<double>::listResting();
 template void Grid<double>::fileResting(ParallelFor);
 template void Grid<double>::fileMobile(ParallelFor);
 template void Grid<double>::settle() noexcept;
-template void Grid<double>::endUpdate() noexcept;
+template UpdateCost Grid<double>::endUpdate() noexcept;
 template void Grid<double>::countUpdatesAnew() noexcept;
 template UpdateCost Grid<double>::update(ParallelFor);
 template void Grid<double>::wakeAll() noexcept;

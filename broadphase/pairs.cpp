@@ -113,9 +113,7 @@ void Pairs<Scalar>::endUpdate() noexcept {
     }
     announced_.clear();
     decide();
-    grid_.cost_.resting = grid_.resting_.size() - grid_.restingErased_;
-    cost_.grid = grid_.cost_;
-    grid_.endUpdate();
+    cost_.grid = grid_.endUpdate();
 }
 
 template <class Scalar>

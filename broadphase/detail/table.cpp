@@ -275,6 +275,7 @@ LevelView<Scalar> Table<Scalar>::view(const Level<Scalar>& level) const noexcept
 
 template <class Scalar>
 void Table<Scalar>::clear() noexcept {
+    largestBucket_ = 0;
     levels_.clear();
     slots_.clear();
     order_.clear();

@@ -76,6 +76,8 @@ public:
     [[nodiscard]] std::uint32_t slot(std::uint32_t entry) const noexcept { return slots_[entry]; }
     /// For every entry the number under which build() was given it.
     [[nodiscard]] std::span<const std::uint32_t> order() const noexcept { return order_; }
+    /// The most entries that share a bucket of cells.
+    [[nodiscard]] std::uint32_t largestCell() const noexcept { return largestBucket_; }
     /// Edge of the finest cells [m]; infinity when nothing is filed by cells.
     [[nodiscard]] double finestCellSize() const noexcept {
         return layout_.sizes().count > 0 && !slots_.empty()

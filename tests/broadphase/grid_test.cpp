@@ -146,6 +146,26 @@ TEST(GridUpdate, CountsEachChangedProxyOnce) {
     EXPECT_EQ(grid.update().changed, 2U);
 }
 
+TEST(GridUpdate, TellsHowManyShareACell) {
+    Grid<float> grid({.cellSize = 2});
+    EXPECT_EQ(grid.update().largestCell, 0U);
+    std::vector<ProxyId> together;
+    for (int i = 0; i < 1000; ++i) {
+        together.push_back(grid.add(cubeAt(0), Mobility::resting));
+        static_cast<void>(grid.add(cubeAt(100 + 10 * i)));
+    }
+    EXPECT_EQ(grid.update().largestCell, 1000U);
+    EXPECT_EQ(grid.update().largestCell, 1000U) << "though nothing has changed";
+    for (const ProxyId id : together) {
+        grid.move(id, cubeAt(1));
+    }
+    EXPECT_EQ(grid.update().largestCell, 1000U) << "of those that move";
+    for (const ProxyId id : together) {
+        grid.remove(id);
+    }
+    EXPECT_EQ(grid.update().largestCell, 1U);
+}
+
 TEST(GridUpdate, LeavesRestingProxiesAlone) {
     Grid<float> grid;
     std::vector<ProxyId> ids;

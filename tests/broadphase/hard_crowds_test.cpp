@@ -96,8 +96,12 @@ TYPED_TEST(HardCrowds, OfAHundredThousandInACellCostWhatSweepingAlongAnAxisDoes)
     constexpr std::uint32_t kCount = 100'000;
     const auto boxes = crowd<TypeParam>(kCount, 400, 0x5eed1301);
     const std::uint64_t ofTheSweep = Swept(boxes).tests;
-    EXPECT_LE(expectPairsOfSweep(boxes, cellsOf(1e4)).boxesTested, ofTheSweep + ofTheSweep / 2);
-    EXPECT_LT(expectPairsOfSweep(boxes, {}).boxesTested, 10U * kCount) << "cells of their own size";
+    const PairCost inOneCell = expectPairsOfSweep(boxes, cellsOf(1e4));
+    EXPECT_LE(inOneCell.boxesTested, ofTheSweep + ofTheSweep / 2);
+    EXPECT_GT(inOneCell.grid.largestCell, kCount / 10) << "and it is told";
+    const PairCost inCellsOfTheirSize = expectPairsOfSweep(boxes, {});
+    EXPECT_LT(inCellsOfTheirSize.boxesTested, 10U * kCount);
+    EXPECT_LT(inCellsOfTheirSize.grid.largestCell, 50U);
 }
 
 // A long box is tested with everyone, and makes nobody else slower.
