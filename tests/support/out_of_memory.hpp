@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <memory>
 #include <new>
 #include <string>
 
@@ -38,6 +39,21 @@ std::size_t runOutOfMemory(const MakeWorld& make, const Attempt& attempt, const 
             return n;
         }
     }
+}
+
+/// A query that runs out of memory, and is asked again, is answered as if it had not: ask() of a fresh
+/// Asked at each of its allocations in turn, then ask() and answer() beside those of another. Returns
+/// how often it failed.
+template <class Asked>
+std::size_t askOutOfMemory() {
+    Asked whole;
+    whole.ask();
+    return runOutOfMemory([] { return std::make_unique<Asked>(); },
+                          [](Asked& asked) { asked.ask(); },
+                          [&](Asked& asked, std::size_t) {
+                              asked.ask();
+                              EXPECT_EQ(asked.answer(), whole.answer());
+                          });
 }
 
 }  // namespace hashphase::test

@@ -2,6 +2,10 @@
 
 // Memory runs out at every allocation, and then is there again: nothing is torn, and no event is lost.
 
+#include <broadphase/nearest.hpp>
+#include <integration/ai/proximity.hpp>
+#include <integration/ai/radar.hpp>
+#include <integration/ai/rarest_colour.hpp>
 #include <integration/ai/sight.hpp>
 #include <integration/ai/zones.hpp>
 #include <tests/support/box_scenes.hpp>
@@ -11,6 +15,7 @@
 
 #include <memory>
 #include <set>
+#include <tuple>
 #include <vector>
 
 namespace hashphase::test {
@@ -117,6 +122,75 @@ TEST(SightOutOfMemory, NobodyHasSeenAnybodyUntilTheLookIsRepeated) {
         EXPECT_GT(l.sight.seenBy(29).size(), 0U);
     };
     EXPECT_GE(runOutOfMemory([] { return std::make_unique<Looking>(); }, look, check), 10U);
+}
+
+TEST(ProximityOutOfMemory, IsTheSameWhenAskedAgain) {
+    if (!kCountsAllocations) {
+        GTEST_SKIP() << "this program has another `new`";
+    }
+    struct Asked {
+        void ask() {
+            findWithin(watched.grid, {30, 0, 0}, 9, within);
+            estimateWithin(watched.grid, {30, 0, 0}, 9, estimated);
+            findNearest(watched.grid, {30, 0, 0}, 20, 100, nearest);
+        }
+        [[nodiscard]] auto answer() const { return std::tie(within, estimated, nearest); }
+        Watched watched{0};
+        std::vector<ProxyId> within;
+        std::vector<ProxyId> estimated;
+        std::vector<KeyedProxy<float>> nearest;
+    };
+    EXPECT_GE(askOutOfMemory<Asked>(), 12U);
+}
+
+TEST(RadarOutOfMemory, CountsWhenAskedAgain) {
+    if (!kCountsAllocations) {
+        GTEST_SKIP() << "this program has another `new`";
+    }
+    struct Asked {
+        void ask() {
+            const auto counted = radar.scan(watched.grid, {.columns = 9, .rows = 9}, 3,
+                                            [](ProxyId id) { return id.index % 3; });
+            const WorkingAllocations working;
+            counts.assign(counted.begin(), counted.end());
+        }
+        [[nodiscard]] const auto& answer() const { return counts; }
+        Watched watched{0};
+        Radar<float> radar;
+        std::vector<std::uint32_t> counts;
+    };
+    EXPECT_GE(askOutOfMemory<Asked>(), 1U);
+}
+
+TEST(RarestColourOutOfMemory, EverybodyHasChangedOrNobody) {
+    if (!kCountsAllocations) {
+        GTEST_SKIP() << "this program has another `new`";
+    }
+    struct Asked {
+        Asked() {
+            for (std::uint32_t i = 0; i < 60; ++i) {
+                before.push_back(i * i % 5);
+            }
+            colours = before;
+        }
+        void ask() { rarest.update(watched.grid, 7, 5, colours); }
+        Watched watched{0};
+        RarestColour<float> rarest;
+        std::vector<std::uint32_t> before;
+        std::vector<std::uint32_t> colours;
+    };
+    Asked whole;
+    whole.ask();
+    ASSERT_NE(whole.colours, whole.before);
+    const std::size_t failures =
+        runOutOfMemory([] { return std::make_unique<Asked>(); }, [](Asked& asked) { asked.ask(); },
+                       [&](Asked& asked, std::size_t) {
+                           if (asked.colours == asked.before) {
+                               asked.ask();
+                           }
+                           EXPECT_EQ(asked.colours, whole.colours);
+                       });
+    EXPECT_GE(failures, 10U);
 }
 
 }  // namespace
