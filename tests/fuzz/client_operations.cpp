@@ -114,8 +114,7 @@ private:
         const Vector3<double> eye = make.point().template cast<double>();
         const Vector3<double> target = make.point().template cast<double>();
         // Farther away, products with the camera's matrix overflow.
-        if (!(std::max(eye.cwiseAbs().maxCoeff(), target.cwiseAbs().maxCoeff()) < 1e18) ||
-            life_.palette().scale() > Scalar(1e18)) {
+        if (!(std::max(eye.cwiseAbs().maxCoeff(), target.cwiseAbs().maxCoeff()) < 1e18)) {
             return;
         }
         const auto matrix = cameraMatrix<Scalar>(lens, eye, target);
