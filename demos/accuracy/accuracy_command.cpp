@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/accuracy_command.hpp>
 
+#include <demos/console/option_checks.hpp>
+
 #include <CLI/CLI.hpp>
 
 #include <memory>
@@ -17,7 +19,7 @@ void declare(CLI::App& app, AccuracyOptions& options) {
     app.add_option("--output", options.folder,
                    "write the report (accuracy.html) and its data (JSON, CSV) to this folder");
     app.add_option("--seed", options.effort.seed, "seed of all random numbers")
-        ->check(CLI::NonNegativeNumber)
+        ->check(seedFault)
         ->capture_default_str();
     app.add_flag("--quiet", options.quiet, "no progress on stderr");
     app.add_flag("--list", options.list, "say which experiments there are");

@@ -27,7 +27,7 @@ void declare(CLI::App& app, CompareOptions& options) {
                    "which to compare, separated by commas (see --list)")
         ->delimiter(',');
     app.add_option("--seed", options.seed, "seed of the scene")
-        ->check(CLI::NonNegativeNumber)
+        ->check(seedFault)
         ->capture_default_str();
     app.add_option("--reference", options.reference,
                    "how the exact pairs are found: sweep (along one axis) or brute (all pairs)")

@@ -55,10 +55,8 @@ std::string outcomeText(const CaseOutcome& outcome) {
             return "costly " + ratioText(outcome.costRatio.value_or(0));
         case OutcomeKind::extra:
             return countsText(outcome);
-        case OutcomeKind::wrong: {
-            const std::string counts = countsText(outcome);
-            return counts.empty() ? "wrong" : counts;
-        }
+        case OutcomeKind::wrong:
+            return outcome.missing > 0 ? countsText(outcome) : "wrong";
         case OutcomeKind::hangs:
             return "> " + secondsText(outcome.seconds);
         default:
@@ -92,10 +90,10 @@ CaseOutcome CaseTally::outcome() const {
     }
     if (outcome.missing > 0 || !broken_.empty()) {
         outcome.kind = OutcomeKind::wrong;
-    } else if (outcome.extra > 0) {
-        outcome.kind = OutcomeKind::extra;
+    } else if (isCostly_) {
+        outcome.kind = OutcomeKind::costly;
     } else {
-        outcome.kind = isCostly_ ? OutcomeKind::costly : OutcomeKind::exact;
+        outcome.kind = outcome.extra > 0 ? OutcomeKind::extra : OutcomeKind::exact;
     }
     return outcome;
 }

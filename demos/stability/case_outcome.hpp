@@ -16,7 +16,7 @@ enum class OutcomeKind : std::uint8_t {
     nothing,  // it offers nothing for the question
     exact,    // every answer, none too many, at no more than the cost allowed
     extra,    // every answer, and some too many
-    costly,   // right, but at more than the cost allowed
+    costly,   // every answer, but at more than the cost allowed
     refuses,  // says that it cannot, and goes on
     wrong,    // answers are missing, or something else is not as required
     hangs,    // did not end within its time

@@ -18,10 +18,18 @@ namespace {
 // Ours is to end whatever the machine has to do beside it.
 constexpr double kPatienceWithOurs = 10;
 
-void printList(std::span<const HardCase> cases, std::ostream& out) {
-    for (const HardCase& each : cases) {
-        const std::string id = each.id;
-        out << "  " << id << std::string(5 - id.size(), ' ') << each.name << '\n';
+void printList(std::span<const HardCase* const> cases, std::span<const BroadphaseKind* const> kinds,
+               std::ostream& out) {
+    const auto print = [&](const std::string& name, std::string_view about, std::size_t width) {
+        out << "  " << name << std::string(width - name.size(), ' ') << about << '\n';
+    };
+    out << "Hard cases:\n";
+    for (const HardCase* each : cases) {
+        print(each->id, each->name, 5);
+    }
+    out << "Broadphases:\n";
+    for (const BroadphaseKind* each : kinds) {
+        print(std::string(each->name), each->description, 15);
     }
 }
 
@@ -71,32 +79,33 @@ void runCases(std::span<const HardCase* const> chosen, StabilityReport& report, 
     }
 }
 
-bool allHold(const StabilityReport& report) {
-    return std::all_of(report.results.begin(), report.results.end(),
-                       [&](const CaseResult& result) { return caseHolds(report, result); });
-}
-
 }  // namespace
 
-bool caseHolds(const StabilityReport& report, const CaseResult& result) {
-    bool isAsked = false;
+std::optional<bool> caseHolds(const StabilityReport& report, const CaseResult& result) {
+    std::optional<bool> isHeld;
     for (std::size_t i = 0; i < report.kinds.size(); ++i) {
         if (report.kinds[i]->ours) {
-            isAsked = true;
-            if (!holds(*result.hardCase, result.outcomes[i])) {
-                return false;
-            }
+            isHeld = isHeld.value_or(true) && holds(result.outcomes[i]);
         }
     }
-    return isAsked;
+    return isHeld;
+}
+
+bool allHold(const StabilityReport& report) {
+    return std::all_of(report.results.begin(), report.results.end(), [&](const CaseResult& result) {
+        return caseHolds(report, result).value_or(true);
+    });
 }
 
 std::string verdictLine(const StabilityReport& report) {
-    const auto count = static_cast<std::size_t>(
-        std::count_if(report.results.begin(), report.results.end(),
-                      [&](const CaseResult& result) { return caseHolds(report, result); }));
-    std::string line =
-        std::to_string(count) + " of " + std::to_string(report.results.size()) + " hard cases hold";
+    const auto count = std::count_if(
+        report.results.begin(), report.results.end(),
+        [&](const CaseResult& result) { return caseHolds(report, result).value_or(false); });
+    const bool isOursAsked = std::any_of(report.kinds.begin(), report.kinds.end(),
+                                         [](const BroadphaseKind* kind) { return kind->ours; });
+    std::string line = isOursAsked ? std::to_string(count) + " of " +
+                                         std::to_string(report.results.size()) + " hard cases hold"
+                                   : "ours was not asked";
     std::string others;
     for (std::size_t i = 0; i < report.kinds.size(); ++i) {
         if (report.kinds[i]->ours) {
@@ -107,8 +116,11 @@ std::string verdictLine(const StabilityReport& report) {
         for (const CaseResult& result : report.results) {
             if (result.outcomes[i].kind != OutcomeKind::nothing) {
                 ++asked;
-                held += holds(*result.hardCase, result.outcomes[i]) ? 1 : 0;
+                held += holds(result.outcomes[i]) ? 1 : 0;
             }
+        }
+        if (held == asked) {
+            continue;
         }
         others += (others.empty() ? "" : ", ") + std::string(report.kinds[i]->name) + " in " +
                   std::to_string(asked - held) + " of " + std::to_string(asked);
@@ -121,16 +133,16 @@ std::string verdictLine(const StabilityReport& report) {
 
 int runStability(const StabilityOptions& options, std::span<const BroadphaseKind> kinds,
                  std::span<const HardCase> cases, Console& console) {
-    if (options.list) {
-        printList(cases, console.out);
-        return kExitOk;
-    }
     const std::vector<const HardCase*> chosen =
         chosenOf("case", options.only, cases, [](const HardCase& each) { return each.id; });
     StabilityReport report;
     report.options = options;
     report.kinds = chosenOf("broadphase", options.broadphases, kinds,
                             [](const BroadphaseKind& each) { return each.name; });
+    if (options.list) {
+        printList(chosen, report.kinds, console.out);
+        return kExitOk;
+    }
     ResultFile json(options.jsonFile);
     ResultFile csv(options.csvFile);
     ResultFile html(options.htmlFile);

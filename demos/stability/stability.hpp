@@ -9,6 +9,7 @@
 #include <demos/stability/hard_case.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -51,8 +52,12 @@ struct StabilityReport {
 int runStability(const StabilityOptions& options, std::span<const BroadphaseKind> kinds,
                  std::span<const HardCase> cases, Console& console);
 
-/// Whether ours is as required.
-[[nodiscard]] bool caseHolds(const StabilityReport& report, const CaseResult& result);
+/// Whether ours is as required; nothing where ours was not asked.
+[[nodiscard]] std::optional<bool> caseHolds(const StabilityReport& report,
+                                            const CaseResult& result);
+
+/// Whether ours is as required wherever it was asked.
+[[nodiscard]] bool allHold(const StabilityReport& report);
 
 /// One sentence: in how many cases ours is as required, and in how many each other one is not.
 [[nodiscard]] std::string verdictLine(const StabilityReport& report);

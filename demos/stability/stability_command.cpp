@@ -15,13 +15,13 @@ void declareStability(CLI::App& app, StabilityOptions& options) {
     app.add_option("--only", options.only, "run these cases, separated by commas (see --list)")
         ->delimiter(',');
     app.add_option("--broadphases", options.broadphases,
-                   "run these broadphases, separated by commas: hash and Bullet's")
+                   "run these broadphases, separated by commas (see --list)")
         ->delimiter(',');
     app.add_flag("--quick", options.isQuick, "run smaller inputs: some seconds for all");
     app.add_flag("--explain", options.isExplained,
                  "tell of each case what is handed in, what is required, and what each one does");
     app.add_option("--seed", options.seed, "seed of all random numbers")
-        ->check(CLI::NonNegativeNumber)
+        ->check(seedFault)
         ->capture_default_str();
     app.add_option("--case-time-limit", options.caseSeconds,
                    "seconds of processor time that a broadphase has for a case (ours ten times "
@@ -33,7 +33,7 @@ void declareStability(CLI::App& app, StabilityOptions& options) {
                    "write a row for each case and broadphase to this file");
     app.add_option("--html", options.htmlFile, "write a page with the table to this file");
     app.add_flag("--quiet", options.quiet, "no progress on stderr");
-    app.add_flag("--list", options.list, "say which cases there are");
+    app.add_flag("--list", options.list, "say which cases and broadphases there are");
 }
 
 }  // namespace

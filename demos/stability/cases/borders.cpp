@@ -167,7 +167,7 @@ CaseOutcome denormalNumbers(const CaseContext& context) {
     for (const bool flushes : {false, true}) {
         const FlushToZero flush(flushes);
         PairScene scene(context, apart);
-        scene.findPairs();
+        scene.judge(tally);
         found[flushes ? 1 : 0] = scene.reported();
     }
     tally.compare(found[1], found[0]);

@@ -225,19 +225,27 @@ CaseOutcome thinWalls(const CaseContext& context) {
 
 CaseOutcome grazing(const CaseContext& context) {
     CaseTally tally;
-    constexpr float kUnit = 0x1p-13F;
     for (const int apart : {-1, 0, 1}) {
-        SweptFrame frame;
-        frame.unit.fill(kUnit);
-        const float gap = kUnit * static_cast<float>(apart);  // 1 ulp of the coordinates
-        // Along an axis, past a face; slantwise, past an edge, which it meets at (1024, 1024).
-        frame.objects.push_back({{Point(0, 1024 + gap, 0), Point(1, 1025 + gap, 1)}, {500, 0, 0}});
-        frame.objects.push_back({{Point(0, 0, 512), Point(1, 1, 513)}, {500, 500, 0}});
-        frame.movers = 2;
-        frame.objects.push_back({{Point(250, 1023, 0), Point(251, 1024, 1)}});
-        // The lower right corner of the slanting one, (1, 0), runs along y = x - 1.
-        frame.objects.push_back({{Point(251 + gap, 249, 512), Point(252 + gap, 250, 513)}});
-        judgeFrame(context, tally, frame);
+        // Along an axis, past a face; 1 ulp of the coordinates at 1024 m.
+        const float gap = 0x1p-13F * static_cast<float>(apart);
+        SweptFrame straight;
+        straight.unit.fill(0x1p-13F);
+        straight.movers = 1;
+        straight.objects.push_back(
+            {{Point(0, 1024 + gap, 0), Point(1, 1025 + gap, 1)}, {500, 0, 0}});
+        straight.objects.push_back({{Point(250, 1023, 0), Point(251, 1024, 1)}});
+        judgeFrame(context, tally, straight);
+
+        // Slantwise, past an edge: the lower right corner, (1, 0), runs along y = x - 1 and meets
+        // the edge at (129, 128); 1 ulp there.
+        const float slantingGap = 0x1p-16F * static_cast<float>(apart);
+        SweptFrame slanting;
+        slanting.unit.fill(0x1p-16F);
+        slanting.movers = 1;
+        slanting.objects.push_back({{Point(0, 0, 0), Point(1, 1, 1)}, {240, 240, 0}});
+        slanting.objects.push_back(
+            {{Point(129 + slantingGap, 127, 0), Point(130 + slantingGap, 128, 1)}});
+        judgeFrame(context, tally, slanting);
     }
     return tally.outcome();
 }
