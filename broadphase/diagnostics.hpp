@@ -5,6 +5,7 @@
 //
 // Threads   The handlers may be called from any thread that uses the library. Replace them before
 //           other threads start.
+// Errors    A handler of messages does not throw. One of assertions may, to get away from misuse.
 // Messages  Bad data from outside (a NaN box) is kept out of harm's way and told once, in a
 //           sentence; the default handler writes it to stderr.
 // Misuse    A broken precondition is an assertion. The default handler writes the sentence with its

@@ -47,9 +47,10 @@ Grid<Scalar>::Grid(const GridConfig& config) : config_(checked(config)) {
 template <class Scalar>
 ProxyId Grid<Scalar>::add(const Box& box, Mobility mobility) {
     HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(this), kMustNotChange);
+    const Box own = box;  // it may be that of another proxy, which moves
     std::uint32_t slot = firstFree_;
     if (slot == kNoSlot) {
-        reserve(records_.size() + 1);
+        reserveSlots(records_.size() + 1);
         slot = static_cast<std::uint32_t>(records_.size());
         records_.emplace_back();
     } else {
@@ -62,20 +63,25 @@ ProxyId Grid<Scalar>::add(const Box& box, Mobility mobility) {
     mobileSlots_.push_back(slot);
     ++size_;
     noteChange(slot);
-    setBox(record, box);
+    setBox(record, own);
     record.restsAtOnce = mobility == Mobility::resting;
     return idOf(slot);
 }
 
 template <class Scalar>
 void Grid<Scalar>::reserve(std::size_t count) {
-    checkProxyCount(count);
-    if (count <= records_.capacity()) {
+    reserveSlots(count + removedCount_);
+}
+
+template <class Scalar>
+void Grid<Scalar>::reserveSlots(std::size_t slotCount) {
+    checkProxyCount(slotCount);
+    if (slotCount <= records_.capacity()) {
         return;
     }
     // At least doubled, or a program that asks for a few more each time would move all each time.
     const std::size_t twice = std::min(2 * records_.capacity(), detail::kMostProxies);
-    const auto room = std::max<std::size_t>({count, twice, 8});
+    const auto room = std::max<std::size_t>({slotCount, twice, 8});
     mobileSlots_.reserve(room);
     woken_.reserve(room);
     waiting_.reserve(manyWaiting(room) + 1);
@@ -109,6 +115,7 @@ void Grid<Scalar>::remove(ProxyId id) {
     record.restingEntry = firstRemoved_;
     lastRemoved_ = firstRemoved_ == kNoSlot ? slot : lastRemoved_;
     firstRemoved_ = slot;
+    ++removedCount_;
     --size_;
 }
 

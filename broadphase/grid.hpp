@@ -21,6 +21,7 @@
 // Limits     2^28 proxies; who adds more is thrown std::length_error.
 // Callbacks  A collector may ask the grid, and change it, in a query of its own: what it removes is
 //            not offered any more; what it moves or adds may be offered again, as it is then, or not.
+//            After a change, no other thread asks until the query is over.
 //            Not so where many are dealt with at once, in visitEach(), in the queries of convex
 //            volumes, and in a PairFilter; update() and shiftOrigin() run within none of them.
 //            Asserted.
@@ -279,6 +280,7 @@ private:
     }
 
     // None of these allocates: reserve() has made room for all of it.
+    void reserveSlots(std::size_t slotCount);
     void noteChange(std::uint32_t slot) noexcept;
     void leaveRest(std::uint32_t slot) noexcept;
     void setBox(Record& record, const Box& box);
@@ -330,6 +332,7 @@ private:
     std::uint32_t firstFree_ = kNoSlot;     // the next ones follow by restingEntry
     std::uint32_t firstRemoved_ = kNoSlot;  // since the tables were last settled
     std::uint32_t lastRemoved_ = kNoSlot;
+    std::uint32_t removedCount_ = 0;  // of these
     std::size_t size_ = 0;
     std::size_t nanCount_ = 0;
     bool nanReported_ = false;

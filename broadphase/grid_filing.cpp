@@ -130,6 +130,7 @@ void Grid<Scalar>::settle() noexcept {
     if (firstRemoved_ != kNoSlot) {
         records_[lastRemoved_].restingEntry = firstFree_;
         firstFree_ = std::exchange(firstRemoved_, kNoSlot);
+        removedCount_ = 0;
     }
 }
 

@@ -63,9 +63,7 @@ void Pairs<Scalar>::recover() {
     if (!grid_.isTorn_) {
         return;
     }
-    for (const Couple c : refusedAtRest_.keys()) {
-        refused_.findOrInsert(c);
-    }
+    refused_.reserve(refused_.size() + refusedAtRest_.size());
     grid_.stage(serialFor);
     wokenTable_.build(grid_.mobileSlots_, grid_.stagedBefore_, grid_.fixedSizes_);
     detail::KernelCost cost;
@@ -74,6 +72,9 @@ void Pairs<Scalar>::recover() {
     amongMobile_.clear();
     for (const auto [a, b] : selected_.pairs()) {
         amongMobile_.push({wokenTable_.order()[a], wokenTable_.order()[b]});
+    }
+    for (const Couple c : refusedAtRest_.keys()) {
+        refused_.findOrInsert(c);
     }
     toResting_.clear();
     refusedAtRest_.clear();

@@ -3,6 +3,8 @@
 
 #include <broadphase/diagnostics.hpp>
 
+#include <utility>
+
 namespace hashphase {
 
 template <class Scalar>
@@ -28,8 +30,15 @@ void Sweeps<Scalar>::set(ProxyId id, const Vector3<Scalar>& displacement, Sweep 
         return;
     }
     makeRoom();
-    motions_.push_back({id, displacement, sweep});
-    motionOfSlot_[id.index] = static_cast<std::uint32_t>(motions_.size() - 1);
+    auto place = static_cast<std::uint32_t>(motions_.size());
+    if (firstVacant_ == kNone) {
+        motions_.push_back({id, displacement, sweep});
+    } else {
+        place = std::exchange(firstVacant_, motions_[firstVacant_].id.index);
+        --vacantCount_;
+        motions_[place] = {id, displacement, sweep};
+    }
+    motionOfSlot_[id.index] = place;
     grid_.noteChange(id.index);
 }
 
@@ -41,13 +50,25 @@ MovingBox<Scalar> Sweeps<Scalar>::motion(ProxyId id) const {
     return {grid_.box(id), motions_[motionOf(id.index)].displacement};
 }
 
-// The last motion takes the place of the one that ends.
+// Its place stays, for the next one that begins: a query whose collector ends motions goes on where
+// it was.
 template <class Scalar>
-void Sweeps<Scalar>::end(std::uint32_t motion) {
+void Sweeps<Scalar>::end(std::uint32_t motion) noexcept {
     motionOfSlot_[motions_[motion].id.index] = kNone;
+    motions_[motion].id = {firstVacant_, 0};
+    firstVacant_ = motion;
+    ++vacantCount_;
+}
+
+// The last motion takes the place of the one that goes.
+template <class Scalar>
+void Sweeps<Scalar>::drop(std::uint32_t motion) noexcept {
+    if (!motions_[motion].id.isNull()) {
+        motionOfSlot_[motions_[motion].id.index] = kNone;
+    }
     motions_[motion] = motions_.back();
     motions_.pop_back();
-    if (motion < motions_.size()) {
+    if (motion < motions_.size() && !motions_[motion].id.isNull()) {
         motionOfSlot_[motions_[motion].id.index] = motion;
     }
 }
@@ -71,9 +92,11 @@ void Sweeps<Scalar>::beginUpdate() {
             grid_.noteChange(motions_[i].id.index);
             ++i;
         } else {
-            end(i);
+            drop(i);
         }
     }
+    firstVacant_ = kNone;
+    vacantCount_ = 0;
 }
 
 template <class Scalar>
@@ -89,13 +112,12 @@ std::string Sweeps<Scalar>::validate() const {
         const std::uint32_t motion = motionOfSlot_[slot];
         listed += motion != kNone ? 1 : 0;
         if (motion != kNone && (motion >= motions_.size() || motions_[motion].id.index != slot)) {
-            listed = motions_.size() + 1;
+            listed = size() + 1;
             break;
         }
     }
-    return listed == motions_.size()
-               ? std::string()
-               : "Every motion is listed by its slot, and no other slot is: broken.";
+    return listed == size() ? std::string()
+                            : "Every motion is listed by its slot, and no other slot is: broken.";
 }
 
 template class Sweeps<float>;

@@ -53,7 +53,7 @@ public:
     [[nodiscard]] MovingBox<Scalar> motion(ProxyId id) const;
 
     /// Number of proxies that sweep, those included that were removed since the last update.
-    [[nodiscard]] std::size_t size() const noexcept { return motions_.size(); }
+    [[nodiscard]] std::size_t size() const noexcept { return motions_.size() - vacantCount_; }
 
     /// Grid::visit(), but what sweeps is found wherever the box around its way, or around a part of
     /// it, has a key: nothing that it passes is left out, some that it just misses may be found.
@@ -89,7 +89,8 @@ private:
         return known != kNone && motions_[known].id == id;
     }
     [[nodiscard]] std::optional<Scalar> keyOnTheWay(const auto& region, const Motion& motion) const;
-    void end(std::uint32_t motion);
+    void end(std::uint32_t motion) noexcept;
+    void drop(std::uint32_t motion) noexcept;
     void makeRoom();
 
     void beginUpdate();
@@ -103,6 +104,9 @@ private:
 
     Grid<Scalar>& grid_;
     std::vector<Motion> motions_;
+    // The places of what has ended since the last update: null ids, whose index is the next place.
+    std::uint32_t firstVacant_ = kNone;
+    std::uint32_t vacantCount_ = 0;
     std::vector<std::uint32_t> motionOfSlot_;  // kNone where a slot does not sweep
     bool reportedBadData_ = false;
     detail::ContactSearch<Scalar> search_;
@@ -144,8 +148,10 @@ QueryCost Sweeps<Scalar>::visit(const Region& region, Collector& collector) cons
     const auto stands = [this](ProxyId id) { return !sweeps(id); };
     CollectIf<Collector, decltype(stands)> standing(collector, stands);
     QueryCost cost = grid_.visit(region, standing);
-    // Neither by iterators nor by reference: the collector may change what sweeps.
-    for (std::size_t i = 0; i < motions_.size() && collector.limit() >= 0; ++i) {
+    // Neither by iterators nor by reference: the collector may change what sweeps. What begins to is
+    // not looked for.
+    const std::size_t count = motions_.size();
+    for (std::size_t i = 0; i < count && collector.limit() >= 0; ++i) {
         const Motion motion = motions_[i];
         if (!grid_.contains(motion.id)) {
             continue;

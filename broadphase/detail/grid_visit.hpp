@@ -35,11 +35,21 @@ struct Grid<Scalar>::VisitReader {
                 continue;
             }
             const std::uint32_t slot = table.slot(entry);
-            if (grid.isFiled(slot) && !offer(slot, key)) {
+            if (grid.isFiled(slot) && isStillWanted(slot) && !offer(slot, key)) {
                 return false;
             }
         }
         return true;
+    }
+
+    // The collector may have changed so much that it is not listed any more: then boxes are asked for
+    // as they are now.
+    [[nodiscard]] bool isStillWanted(std::uint32_t slot) const {
+        if (!grid.manyWait_.load(std::memory_order_relaxed)) {
+            return true;
+        }
+        const Scalar key = region.key(grid.records_[slot].box);
+        return key >= 0 && key <= limit();
     }
 
     bool offer(std::uint32_t slot, Scalar key) {
@@ -386,7 +396,8 @@ void Grid<Scalar>::forEachFiled(Visit&& visit) const {
 template <class Scalar>
 template <class Visit>
 void Grid<Scalar>::forEach(Visit&& visit) const {
-    for (std::uint32_t slot = 0; slot < records_.size(); ++slot) {
+    const std::size_t count = records_.size();  // not those that `visit` adds
+    for (std::uint32_t slot = 0; slot < count; ++slot) {
         if (isAlive(slot)) {
             const Box box = records_[slot].box;  // a copy: `visit` may move the records
             visit(idOf(slot), box);

@@ -133,16 +133,10 @@ void shiftWorldOrigin(btCollisionWorld& world, SpatialHashBroadphase& broadphase
     broadphase.shiftOrigin(shift);  // first: nothing else takes memory
     shiftObjects(world, shift);
     shiftContacts(world.getDispatcher(), shift);
-}
-
-void shiftWorldOrigin(btDynamicsWorld& world, SpatialHashBroadphase& broadphase,
-                      const btVector3& shift) {
-    if (!canShift(world, broadphase, shift)) {
-        return;
-    }
-    shiftWorldOrigin(static_cast<btCollisionWorld&>(world), broadphase, shift);
-    for (int i = 0; i < world.getNumConstraints(); ++i) {
-        shiftJoint(*world.getConstraint(i), shift);
+    if (auto* const dynamics = dynamic_cast<btDynamicsWorld*>(&world)) {
+        for (int i = 0; i < dynamics->getNumConstraints(); ++i) {
+            shiftJoint(*dynamics->getConstraint(i), shift);
+        }
     }
 }
 

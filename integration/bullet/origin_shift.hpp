@@ -29,10 +29,6 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 /// its own to shift: bodies that are in no world, zones, cameras, terrains. A motion state is asked for
 /// its place and told the new one, whether its body moves or not. Cost: a look at each object,
 /// contact and joint, and SpatialHashBroadphase::shiftOrigin().
-void shiftWorldOrigin(btDynamicsWorld& world, SpatialHashBroadphase& broadphase,
-                      const btVector3& shift);
-
-/// The same for a world without dynamics.
 void shiftWorldOrigin(btCollisionWorld& world, SpatialHashBroadphase& broadphase,
                       const btVector3& shift);
 

@@ -21,7 +21,8 @@
 //           ghosts, of processAllOverlappingPairs(), and of algorithms that are freed. The filter
 //           may not.
 // Memory    Where it runs out, std::bad_alloc is passed on: a single call has changed nothing, a batch
-//           has removed some of its pairs or all, and added none. Bullet's own arrays do not tell.
+//           has removed some of its pairs or all, and added none. The pairs of one proxy go without
+//           any, in time proportional to all. Bullet's own arrays do not tell.
 // NULL      A NULL dispatcher frees no algorithms, as in Bullet; NULL clients are fine.
 // Misuse    Pairs of a proxy with itself, proxies alive with the same or with negative unique ids,
 //           and no key; asserted.
@@ -316,6 +317,7 @@ private:
     void rename(std::uint32_t from, std::uint32_t to);
     void noteUnchained(std::uint32_t id, std::vector<Note>& notes) const;
     [[nodiscard]] std::vector<Note> notesOf(const btBroadphaseProxy& proxy);
+    void removeUnnoted(const btBroadphaseProxy& proxy, btDispatcher* dispatcher);
     void processByUniqueId(btOverlapCallback& callback, btDispatcher* dispatcher);
     void prepareWholeArray();
     void sort();

@@ -146,7 +146,13 @@ std::vector<PairCache::Note> PairCache::notesOf(const btBroadphaseProxy& proxy) 
 
 void PairCache::removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy,
                                                       btDispatcher* dispatcher) {
-    std::vector<Note> notes = notesOf(*proxy);
+    std::vector<Note> notes;
+    try {
+        notes = notesOf(*proxy);
+    } catch (const std::bad_alloc&) {
+        removeUnnoted(*proxy, dispatcher);
+        return;
+    }
     std::size_t first = 0;
     std::size_t last = notes.size();
     std::uint32_t count = static_cast<std::uint32_t>(pairs_.size());
@@ -161,6 +167,15 @@ void PairCache::removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy,
         }
     }
     scratch_ = std::move(notes);
+}
+
+// Without memory to note pairs down: from the end, for the last pair takes the place of one that goes.
+void PairCache::removeUnnoted(const btBroadphaseProxy& proxy, btDispatcher* dispatcher) {
+    for (int i = pairs_.size() - 1; i >= 0; i = std::min(i, pairs_.size()) - 1) {
+        if (pairs_[i].m_pProxy0 == &proxy || pairs_[i].m_pProxy1 == &proxy) {
+            remove(ids_.keys()[static_cast<std::size_t>(i)], dispatcher, Freeing::now);
+        }
+    }
 }
 
 void PairCache::cleanProxyFromPairs(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {

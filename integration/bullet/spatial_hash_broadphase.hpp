@@ -27,8 +27,9 @@
 //           filter may ask but not change anything, and calculateOverlappingPairs() and
 //           shiftOrigin() are not called from within any of them; asserted.
 // Memory    Where it runs out, std::bad_alloc is passed on and the call may be repeated:
-//           createProxy() has created nothing, shiftOrigin() has shifted nothing, and the first
-//           calculateOverlappingPairs() that returns brings the cache up to date. Bullet's own arrays do not tell.
+//           createProxy() has created nothing, shiftOrigin() has shifted nothing, setAabb() has moved
+//           the proxy, and the first calculateOverlappingPairs() that returns brings the cache up to
+//           date, with the pairs that eager ones lack. Bullet's own arrays do not tell.
 // Misuse    Proxies that are not alive, proxies of other broadphases, spans of different lengths in a
 //           batch, and rays without a callback are asserted.
 

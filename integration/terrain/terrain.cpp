@@ -119,16 +119,18 @@ template <class Scalar>
 void Terrain<Scalar>::clear() {
     removeFrom(0);
     triangleOfProxy_.clear();
+    bounds_.setEmpty();
 }
 
 template <class Scalar>
 void Terrain<Scalar>::removeFrom(std::size_t first) {
     for (std::size_t i = first; i < proxies_.size(); ++i) {
         const ProxyId id = proxies_[i];
-        if (!id.isNull()) {
-            grid_->remove(id);
+        if (id.isNull()) {
+            continue;
         }
-        if (id.index < triangleOfProxy_.size() && !id.isNull()) {
+        grid_->remove(id);
+        if (id.index < triangleOfProxy_.size()) {
             triangleOfProxy_[id.index] = kNone;
         }
     }
@@ -145,6 +147,7 @@ void Terrain<Scalar>::shiftOrigin(const Point& shift) {
         }
         triangles_[number] = groundTriangle(shifted);
     }
+    bounds_.translate(-shift);
 }
 
 template <class Scalar>

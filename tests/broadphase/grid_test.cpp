@@ -146,6 +146,75 @@ TEST(GridUpdate, CountsEachChangedProxyOnce) {
     EXPECT_EQ(grid.update().changed, 2U);
 }
 
+TEST(GridProxies, MayBeAddedWithTheBoxOfAnotherOne) {
+    Grid<float> grid;
+    const ProxyId first = grid.add(cubeAt(1));
+    for (int i = 0; i < 300; ++i) {
+        const ProxyId copy = grid.add(grid.box(first));  // records move now and then
+        ASSERT_EQ(grid.box(copy).min(), cubeAt(1).min()) << "copy " << i;
+    }
+}
+
+TEST(GridProxies, HaveRoomThoughAsManyHaveJustBeenRemoved) {
+    Grid<float> grid;
+    std::vector<ProxyId> ids;
+    for (int i = 0; i < 128; ++i) {
+        ids.push_back(grid.add(cubeAt(i)));
+    }
+    grid.update();
+    for (const ProxyId id : ids) {
+        grid.remove(id);
+    }
+    grid.reserve(128);
+    const std::size_t bytes = grid.memoryBytes();
+    for (int i = 0; i < 128; ++i) {
+        static_cast<void>(grid.add(cubeAt(i)));
+    }
+    EXPECT_EQ(grid.memoryBytes(), bytes);
+}
+
+TEST(GridProxies, AreVisitedWithoutThoseThatAreAddedOnTheWay) {
+    Grid<float> grid;
+    for (int i = 0; i < 3; ++i) {
+        static_cast<void>(grid.add(cubeAt(i)));
+    }
+    int visited = 0;
+    grid.forEach([&](ProxyId, const Aabb<float>& box) {
+        static_cast<void>(grid.add(box));
+        ASSERT_LT(++visited, 100);
+    });
+    EXPECT_EQ(visited, 3);
+    EXPECT_EQ(grid.size(), 6U);
+}
+
+// After so many changes that they are not listed any more.
+TEST(GridCallback, IsOfferedWhatItHasMovedWhereItIsNow) {
+    Grid<float> grid;
+    std::vector<ProxyId> ids;
+    for (int i = 0; i < 300; ++i) {
+        ids.push_back(grid.add(cubeAt(2 * i)));
+    }
+    grid.update();
+    struct MoveAllButTheLast {
+        void add(ProxyId id, float /*key*/) {
+            found.push_back(id);
+            if (found.size() == 1) {
+                for (std::size_t i = 0; i + 1 < ids.size(); ++i) {
+                    grid.move(ids[i], cubeAt(100000 + 2 * static_cast<double>(i)));
+                }
+            }
+        }
+        [[nodiscard]] static double limit() { return std::numeric_limits<double>::infinity(); }
+        Grid<float>& grid;
+        const std::vector<ProxyId>& ids;
+        std::vector<ProxyId> found = {};
+    };
+    MoveAllButTheLast collector{grid, ids};
+    grid.visit(BoxRegion<float>(makeBox<float>(-10, -10, -10, 1000, 10, 10)), collector);
+    EXPECT_LE(collector.found.size(), 2U);
+    EXPECT_EQ(collector.found.back(), ids.back());
+}
+
 TEST(GridUpdate, TellsHowManyShareACell) {
     Grid<float> grid({.cellSize = 2});
     EXPECT_EQ(grid.update().largestCell, 0U);

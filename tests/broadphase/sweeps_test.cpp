@@ -12,6 +12,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -349,6 +350,44 @@ TYPED_TEST(SweptPairs, AreFoundByRaysWhereverTheyAreAtSomeTime) {
         }
         EXPECT_GT(onTheWay, 100);
     }
+}
+
+/// Lets what it finds end, and others begin.
+template <class Scalar>
+struct ChangeSweeps {
+    void add(ProxyId id, Scalar /*key*/) {
+        found.push_back(id);
+        sweeps.set(id, Vector3<Scalar>::Zero());
+        if (found.size() < 100) {
+            sweeps.set(grid.add(grid.box(id)), Vector3<Scalar>(0, 2, 0));
+        }
+    }
+    [[nodiscard]] static double limit() { return std::numeric_limits<double>::infinity(); }
+    Grid<Scalar>& grid;
+    Sweeps<Scalar>& sweeps;
+    std::vector<ProxyId> found = {};
+};
+
+TYPED_TEST(SweptPairs, AreOfProxiesThatAreFoundOnceThoughTheCollectorEndsTheirWays) {
+    Grid<TypeParam> grid;
+    Sweeps<TypeParam> sweeps(grid);
+    Pairs<TypeParam> pairs(grid, &sweeps);
+    std::vector<ProxyId> ids;
+    for (int i = 0; i < 10; ++i) {
+        ids.push_back(grid.add(makeBox<TypeParam>(4 * i, 0, 0, 4 * i + 1, 1, 1)));
+        sweeps.set(ids.back(), {0, 2, 0});
+    }
+    pairs.update([](ProxyId, ProxyId) { return true; });
+    ChangeSweeps<TypeParam> collector{grid, sweeps};
+    const BoxRegion<TypeParam> everything(makeBox<TypeParam>(-9, -9, -9, 99, 9, 9));
+    sweeps.visit(everything, collector);
+    std::sort(collector.found.begin(), collector.found.end());
+    EXPECT_EQ(collector.found, ids);
+    EXPECT_EQ(sweeps.size(), 10U) << "those that have begun";
+    EXPECT_EQ(sweeps.validate(), "");
+    pairs.update([](ProxyId, ProxyId) { return true; });
+    EXPECT_EQ(sweeps.size(), 10U);
+    EXPECT_EQ(sweeps.validate(), "");
 }
 
 }  // namespace

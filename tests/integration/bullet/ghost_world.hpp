@@ -86,12 +86,12 @@ struct GhostWorld {
         return touched;
     }
 
+    btGhostPairCallback ghostCallback;  // outlives the world, which tells it of its end
     btDefaultCollisionConfiguration configuration;
     btCollisionDispatcher dispatcher{&configuration};
     std::unique_ptr<btBroadphaseInterface> broadphase;
     btSequentialImpulseConstraintSolver solver;
     btDiscreteDynamicsWorld world{&dispatcher, broadphase.get(), &solver, &configuration};
-    btGhostPairCallback ghostCallback;
     btBoxShape large{btVector3(2, 2, 2)};
     btBoxShape small{btVector3(btScalar(0.5), btScalar(0.5), btScalar(0.5))};
     btGhostObject ghost;

@@ -297,9 +297,9 @@ TEST(WorldOriginShift, TellsMotionStates) {
 }
 
 TEST(WorldOriginShift, MovesGhostsAndWhatTheyOverlap) {
+    btGhostPairCallback callback;  // outlives the world, which tells it of its end
     World world;
     buildWall(world, {0, 0, 0}, 3);
-    btGhostPairCallback callback;
     world.hash().getOverlappingPairCache()->setInternalGhostPairCallback(&callback);
     btSphereShape shape(2);
     btPairCachingGhostObject ghost;

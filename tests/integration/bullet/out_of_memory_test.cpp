@@ -7,6 +7,7 @@
 #include <tests/support/out_of_memory.hpp>
 #include <tests/support/random.hpp>
 
+#include <BulletCollision/CollisionDispatch/btGhostObject.h>
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -21,8 +22,10 @@ using Couple = std::pair<btBroadphaseProxy*, btBroadphaseProxy*>;
 
 /// A broadphase over a cache of any kind, and its proxies.
 struct Proxies {
-    explicit Proxies(int count, PairOrder order = PairOrder::arrival, int group = 1)
+    explicit Proxies(int count, PairOrder order = PairOrder::arrival, int group = 1,
+                     bool hasGhosts = false)
         : cache(order), broadphase(&cache) {
+        cache.setInternalGhostPairCallback(hasGhosts ? &ghosts : nullptr);
         createSome(count, group);
     }
     ~Proxies() {
@@ -90,6 +93,7 @@ struct Proxies {
     }
 
     Random random{11};
+    btGhostPairCallback ghosts;
     PairCache cache;
     SpatialHashBroadphase broadphase;
     std::vector<btBroadphaseProxy*> proxies;
@@ -105,6 +109,14 @@ protected:
     static auto some(int count, int group = 1) {
         return [=] { return std::make_unique<Proxies>(count, GetParam(), group); };
     }
+    /// With all pairs in the cache.
+    static auto settled(int count, bool hasGhosts = false) {
+        return [=] {
+            auto proxies = std::make_unique<Proxies>(count, GetParam(), 1, hasGhosts);
+            proxies->step();
+            return proxies;
+        };
+    }
     static void check(Proxies& proxies, std::size_t) { proxies.check(); }
 };
 
@@ -112,7 +124,7 @@ TEST_P(BulletOutOfMemory, CalculatingPairsIsRepeated) {
     EXPECT_GE(runOutOfMemory(
                   some(100), [](Proxies& p) { p.step(); }, check),
               40U);
-    const auto settled = [] {
+    const auto atRest = [] {
         auto proxies = std::make_unique<Proxies>(60, GetParam());
         for (int i = 0; i < 11; ++i) {
             proxies->step();
@@ -122,7 +134,7 @@ TEST_P(BulletOutOfMemory, CalculatingPairsIsRepeated) {
         return proxies;
     };
     EXPECT_GE(runOutOfMemory(
-                  settled, [](Proxies& p) { p.step(); }, check),
+                  atRest, [](Proxies& p) { p.step(); }, check),
               10U);
 }
 
@@ -131,6 +143,26 @@ TEST_P(BulletOutOfMemory, AProxyIsCreatedOrNot) {
         const auto create = [=](Proxies& p) { p.createSome(70, group); };
         EXPECT_GE(runOutOfMemory(some(0), create, check), 8U);
     }
+}
+
+// Told of one pair after the other, the cache has some of a new proxy's when memory runs out.
+TEST_P(BulletOutOfMemory, AnEagerProxyIsCreatedOrNotWhereGhostsAreTold) {
+    const auto create = [](Proxies& p) {
+        btBroadphaseProxy* sensor = p.broadphase.createProxy(
+            {-9, -9, -9}, {9, 9, 9}, 0, &p, btBroadphaseProxy::SensorTrigger, -1, nullptr);
+        const WorkingAllocations working;
+        p.proxies.push_back(sensor);
+    };
+    const auto checkAtOnce = [](Proxies& p, std::size_t) {
+        EXPECT_EQ(p.broadphase.grid().size(), p.proxies.size());
+        for (int i = 0; i < p.cache.getNumOverlappingPairs(); ++i) {
+            const btBroadphasePair& pair = p.cache.getOverlappingPairArray()[i];
+            EXPECT_NE(pair.m_pProxy0->m_clientObject, nullptr);
+            EXPECT_NE(pair.m_pProxy1->m_clientObject, nullptr);
+        }
+        p.check();
+    };
+    EXPECT_GE(runOutOfMemory(settled(60, true), create, checkAtOnce), 6U);
 }
 
 TEST_P(BulletOutOfMemory, OfABatchThoseAreCreatedThatAreWritten) {
@@ -166,27 +198,22 @@ TEST_P(BulletOutOfMemory, MovingWhatIsEagerIsRepeatedByTheStep) {
     runOutOfMemory(some(60, btBroadphaseProxy::CharacterFilter), move, check);
 }
 
-TEST_P(BulletOutOfMemory, DestroyingHasHappenedOrNot) {
-    for (const bool isBatch : {false, true}) {
-        const auto make = [] {
-            auto proxies = std::make_unique<Proxies>(100, GetParam());
-            proxies->step();
-            return proxies;
-        };
-        const auto destroy = [=](Proxies& p) {
-            const std::size_t count = p.proxies.size() / 2;
-            if (isBatch) {
-                p.broadphase.destroyProxies(std::span(p.proxies).first(count), nullptr);
-                p.proxies.erase(p.proxies.begin(), p.proxies.begin() + std::ptrdiff_t(count));
-                return;
-            }
-            for (std::size_t i = 0; i < count; ++i) {
-                p.broadphase.destroyProxy(p.proxies.back(), nullptr);
-                p.proxies.pop_back();
-            }
-        };
-        EXPECT_GE(runOutOfMemory(make, destroy, check), 3U);
-    }
+TEST_P(BulletOutOfMemory, DestroyingNeedsNone) {
+    const auto destroy = [](Proxies& p) {
+        for (int i = 0; i < 50; ++i) {
+            p.broadphase.destroyProxy(p.proxies.back(), nullptr);
+            p.proxies.pop_back();
+        }
+    };
+    EXPECT_EQ(runOutOfMemory(settled(100), destroy, check), 0U);
+}
+
+TEST_P(BulletOutOfMemory, DestroyingABatchHasHappenedOrNot) {
+    const auto destroy = [](Proxies& p) {
+        p.broadphase.destroyProxies(std::span(p.proxies).first(50), nullptr);
+        p.proxies.erase(p.proxies.begin(), p.proxies.begin() + 50);
+    };
+    EXPECT_GE(runOutOfMemory(settled(100), destroy, check), 3U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Orders, BulletOutOfMemory,

@@ -110,6 +110,23 @@ TYPED_TEST(TerrainBatch, CostsWhatTheColumnsMeet) {
     EXPECT_LT(cost.boxesTested, 1000000U);  // of 3,200 triangles a hundred each, at most
 }
 
+TYPED_TEST(TerrainBatch, CostsNoMoreAfterAShiftOfTheOrigin) {
+    using Point = Vector3<TypeParam>;
+    this->draw(10000);
+    auto& grid = this->world_.grid;
+    auto& terrain = this->world_.terrain;
+    const QueryCost before = terrain.surfacesBelow(this->points_, this->found_);
+    const Point shift(1024, 0, -4096);
+    grid.shiftOrigin(shift);
+    terrain.shiftOrigin(shift);
+    for (Point& point : this->points_) {
+        point -= shift;
+    }
+    const QueryCost after = terrain.surfacesBelow(this->points_, this->found_);
+    EXPECT_GT(after.hits, 10000U);
+    EXPECT_LE(after.rowsVisited, before.rowsVisited + before.rowsVisited / 50);
+}
+
 TYPED_TEST(TerrainBatch, HasAPlaceForEachAnswer) {
     if (!HASHPHASE_ENABLE_ASSERTS) {
         return;
