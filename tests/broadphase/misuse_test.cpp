@@ -37,7 +37,7 @@ Box cube(double x, double half = 1) {
     return boxAround<float>({x, 0, 0}, Vector3<double>::Constant(half));
 }
 
-bool isIn(const std::array<std::int64_t, 3>& cell, const CellRange& range) {
+bool isCellOf(const std::array<std::int64_t, 3>& cell, const CellRange& range) {
     bool isWithin = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         isWithin =
@@ -119,7 +119,7 @@ struct Changed {
     }
     std::size_t visitCellAndChange(const std::array<std::int64_t, 3>& cell) {
         return expectTheOthersOnce(
-            [&](ProxyId id, const Box&) { return isIn(cell, grid.cellsOf(id)); },
+            [&](ProxyId id, const Box&) { return isCellOf(cell, grid.cellsOf(id)); },
             [&](CallEach& collector) { grid.visitCell(cell, collector); },
             [&](ProxyId id) { changeSomething(id); });
     }

@@ -31,16 +31,16 @@ Aabb<Scalar> cubeAt(Scalar x) {
 }
 
 /// Two boxes by their numbers, lower one first.
-using Couple = std::pair<std::uint32_t, std::uint32_t>;
+using NumberPair = std::pair<std::uint32_t, std::uint32_t>;
 
 /// All pairs by firstContact(), sorted; the first boxes sweep.
 template <class Scalar>
-std::vector<Couple> couplesOf(const Bullets<Scalar>& bullets) {
+std::vector<NumberPair> couplesOf(const Bullets<Scalar>& bullets) {
     const auto moving = [&](std::size_t i) {
         return i < bullets.ways.size() ? MovingBox<Scalar>{bullets.boxes[i], bullets.ways[i]}
                                        : MovingBox<Scalar>{bullets.boxes[i]};
     };
-    std::vector<Couple> couples;
+    std::vector<NumberPair> couples;
     for (std::uint32_t i = 0; i < bullets.boxes.size(); ++i) {
         for (std::uint32_t j = i + 1; j < bullets.boxes.size(); ++j) {
             const bool sweeps = i < bullets.ways.size() || j < bullets.ways.size();
@@ -54,8 +54,8 @@ std::vector<Couple> couplesOf(const Bullets<Scalar>& bullets) {
 }
 
 /// Proxies of a grid from which none was removed are numbered as they were added.
-std::vector<Couple> numbersOf(const std::vector<ProxyPair>& pairs) {
-    std::vector<Couple> numbers;
+std::vector<NumberPair> numbersOf(const std::vector<ProxyPair>& pairs) {
+    std::vector<NumberPair> numbers;
     for (const ProxyPair& pair : pairs) {
         numbers.emplace_back(pair.first.index, pair.second.index);
     }
@@ -65,7 +65,7 @@ std::vector<Couple> numbersOf(const std::vector<ProxyPair>& pairs) {
 /// In each mode, one update makes these pairs. Returns what each takes, in tests.
 template <class Scalar>
 std::array<std::uint64_t, kSweepModes.size()> expectCouples(const Bullets<Scalar>& bullets,
-                                                            const std::vector<Couple>& expected,
+                                                            const std::vector<NumberPair>& expected,
                                                             const GridConfig& config = {}) {
     std::array<std::uint64_t, kSweepModes.size()> tests{};
     for (std::size_t i = 0; i < kSweepModes.size(); ++i) {
@@ -105,7 +105,7 @@ TYPED_TEST(HardSweeps, MissNothingThatTheyJustGraze) {
         Grid<TypeParam> grid;
         Sweeps<TypeParam> sweeps(grid);
         Pairs<TypeParam> pairs(grid, &sweeps);
-        std::vector<Couple> expected;
+        std::vector<NumberPair> expected;
         for (TypeParam x = 0; x < 12; ++x) {
             for (TypeParam y = 0; y < 12; ++y) {
                 for (TypeParam z = 0; z < 12; ++z) {
@@ -139,7 +139,7 @@ TYPED_TEST(HardSweeps, MissNothingAtInfinity) {
                       boxOf({0, 1e37F, 0}, {1, 2e38F, kInfinity})};
     inverted.ways = {{10, 1.7e38F, -1e6F}};
     for (const Bullets<Scalar>& bullets : {high, inverted}) {
-        const std::vector<Couple> one{{0, 1}};
+        const std::vector<NumberPair> one{{0, 1}};
         ASSERT_EQ(couplesOf(bullets), one);
         expectCouples(bullets, one);
     }
@@ -164,7 +164,7 @@ TYPED_TEST(HardSweeps, MissNothingWhereCellsAreRounded) {
             bullets.boxes.push_back(
                 boxAround<Scalar>(at + Vector3<double>(shift, 0, 0), {0.45, 0.45, 0.45}));
         }
-        const std::vector<Couple> expected = couplesOf(bullets);
+        const std::vector<NumberPair> expected = couplesOf(bullets);
         EXPECT_GT(expected.size(), 200U);
         for (int i = 0; i < 3000; ++i) {
             bullets.boxes.push_back(
@@ -243,7 +243,7 @@ TYPED_TEST(HardSweeps, OfLessThanAnUlpTouchWhatIsWithinThem) {
             {Vector3<TypeParam>(face + one.gap, 0, 0), Vector3<TypeParam>(face + 1, 1, 1)}};
         bullets.ways = {{one.way, 0, 0}};
         SCOPED_TRACE(testing::Message() << one.gap << ", " << one.way);
-        const std::vector<Couple> expected = couplesOf(bullets);
+        const std::vector<NumberPair> expected = couplesOf(bullets);
         ASSERT_EQ(expected.size(), one.pairs);
         expectCouples(bullets, expected);
     }
@@ -260,7 +260,7 @@ TYPED_TEST(HardSweeps, FindInEveryModeWhatTouchesForAMoment) {
             cubeAt<TypeParam>(0),
             {Vector3<TypeParam>(atB, heightB, 0), Vector3<TypeParam>(atB + 1, heightB + 1, 1)}};
         bullets.ways = {wayA, wayB};
-        const std::vector<Couple> expected = couplesOf(bullets);
+        const std::vector<NumberPair> expected = couplesOf(bullets);
         expectCouples(bullets, expected);
         return expected.size();
     };
@@ -303,7 +303,7 @@ TYPED_TEST(HardSweeps, ThatTeleportMeetWhatIsOnTheStraightWay) {
                                        random.pointIn(-9, 9);
             bullets.boxes.push_back(boxAround<TypeParam>(at, {2, 2, 2}));
         }
-        const std::vector<Couple> expected = couplesOf(bullets);
+        const std::vector<NumberPair> expected = couplesOf(bullets);
         EXPECT_GT(expected.size(), 100U);
         const auto tests = expectCouples(bullets, expected, config);
         for (std::size_t mode = 0; mode < tests.size(); ++mode) {
