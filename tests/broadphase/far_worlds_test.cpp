@@ -8,9 +8,9 @@
 #include <tests/support/handlers.hpp>
 #include <tests/support/pair_world.hpp>
 #include <tests/support/query_checks.hpp>
+#include <tests/support/ray_oracle.hpp>
 #include <tests/support/script.hpp>
 
-#include <gmpxx.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -254,31 +254,6 @@ TYPED_TEST(FarWorlds, MissNoPairAndNothingThatIsAskedForWhateverTheRounding) {
 }
 
 // --- Rays ----------------------------------------------------------------------------------------
-
-/// Whether the segment meets the closed box, in rational numbers.
-template <class Scalar>
-bool meetsByRationals(const Vector3<Scalar>& from, const Vector3<Scalar>& to,
-                      const Aabb<Scalar>& box) {
-    mpq_class enter = 0;
-    mpq_class leave = 1;
-    for (int axis = 0; axis < 3; ++axis) {
-        const mpq_class start(from[axis]);
-        const mpq_class way = mpq_class(to[axis]) - start;
-        const mpq_class low = mpq_class(box.min()[axis]) - start;
-        const mpq_class high = mpq_class(box.max()[axis]) - start;
-        if (way == 0) {
-            if (low > 0 || high < 0) {
-                return false;
-            }
-            continue;
-        }
-        const mpq_class first = (way > 0 ? low : high) / way;
-        const mpq_class last = (way > 0 ? high : low) / way;
-        enter = std::max(enter, first);
-        leave = std::min(leave, last);
-    }
-    return enter <= leave;
-}
 
 // Rays that run out there, and those that come from the origin, aimed at corners and edges.
 TYPED_TEST(FarWorlds, RaysMissNothingThatTheyMeetInRationalNumbers) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 
 // Rays and moving boxes in the cases that break them: along axes, in cell faces, through corners,
-// without length, very long, and with numbers that are none.
+// without length, very long, with the smallest numbers, and boxes that are none.
 
 #include <tests/support/box_scenes.hpp>
 #include <tests/support/query_checks.hpp>
@@ -176,42 +176,23 @@ TYPED_TEST(RayQuery, MeetsBoxesAllAlongAVeryLongWay) {
     Grid<TypeParam> grid(config);
     std::vector<Placed<TypeParam>> proxies;
     const Vector3<double> direction(1, 0.37, -0.011);
-    for (int i = 0; i < 2000; ++i) {
-        const Vector3<double> center = direction * 50000.0 * i;
-        const Vector3<double> half(0.5, 0.5 + 4e-8 * 50000 * i, 0.5 + 4e-8 * 50000 * i);
+    for (int i = 0; i < 3000; ++i) {
+        const double along = 100'000.0 / 3 * i;
+        Vector3<double> center = direction * along;
+        const Vector3<double> half(0.5, 0.5 + 4e-8 * along, 0.5 + 4e-8 * along);
+        center[2] += i % 3 == 2 ? 8 * half[2] : 0;  // every third stands aside
         const Aabb<TypeParam> box = boxAround<TypeParam>(center, half);
         proxies.push_back({grid.add(box), box});
     }
     grid.update();
     const Vector3<double> end = direction * 1e8;
     const RayRegion<TypeParam> ray(Vector3<TypeParam>::Zero(), end.cast<TypeParam>());
-    EXPECT_GT(expectLikeBruteForce<TypeParam>(grid, proxies, ray), 1900U);
+    const std::size_t count = expectLikeBruteForce<TypeParam>(grid, proxies, ray);
+    EXPECT_GT(count, 1900U);
+    EXPECT_LE(count, 2000U);
 }
 
-// --- Numbers that are none -----------------------------------------------------------------------
-
-TYPED_TEST(RayQuery, WithNanOrInfiniteEndsMeetsNothing) {
-    using Limits = std::numeric_limits<TypeParam>;
-    for (const TypeParam bad : {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity()}) {
-        for (int axis = 0; axis < 3; ++axis) {
-            Vector3<TypeParam> from(3.5, 3.5, -1);
-            Vector3<TypeParam> to(3.5, 3.5, 9);
-            from[axis] = bad;
-            EXPECT_EQ(this->count(from, to), 0U);
-            EXPECT_EQ(this->count(to, from), 0U);
-        }
-    }
-    Aabb<TypeParam> bad = makeBox<TypeParam>(-1, -1, -1, 1, 1, 1);
-    bad.max()[1] = Limits::quiet_NaN();
-    EXPECT_EQ(this->count(RayRegion<TypeParam>({3, 3, -1}, {3, 3, 9}, bad)), 0U);
-}
-
-TYPED_TEST(RayQuery, WithNanCostsNoMoreThanAnother) {
-    CollectCount found;
-    const TypeParam nan = std::numeric_limits<TypeParam>::quiet_NaN();
-    const QueryCost cost = this->grid_.visit(RayRegion<TypeParam>({nan, 3, -1}, {3, 3, 9}), found);
-    EXPECT_LT(cost.boxesTested, 100U);
-}
+// --- Numbers at the ends of what there is --------------------------------------------------------
 
 TYPED_TEST(RayQuery, WithADirectionTooSmallToInvertMeetsWhatItTouches) {
     using Limits = std::numeric_limits<TypeParam>;

@@ -186,33 +186,50 @@ struct CoupleSum {
     friend bool operator==(const CoupleSum&, const CoupleSum&) = default;
 };
 
-// All of them: k * cell as rounded for k from -1000 to 999 and cells of 0.1, 0.2 ... 100. A good
-// tenth of these numbers times 1 / cell is not k.
+/// Boxes from each border of cells to the next along the axis, k * cell as rounded for k from -1000
+/// to 999, in the order of where they begin; and points an ulp before and behind every eighth border,
+/// or every one where the number of the cells' size is a multiple of eight.
+template <class Scalar>
+std::vector<Aabb<Scalar>> boxesOnBorders(Scalar cell, int sizeNumber, int axis) {
+    using Limits = std::numeric_limits<Scalar>;
+    std::vector<Aabb<Scalar>> boxes;
+    const auto add = [&](Scalar low, Scalar high) {
+        boxes.emplace_back(Vector3<Scalar>::Unit(axis) * low, Vector3<Scalar>::Unit(axis) * high);
+    };
+    for (int k = -1000; k < 1000; ++k) {
+        const Scalar border = static_cast<Scalar>(k) * cell;
+        const bool hasPoints = sizeNumber % 8 == 0 || (k + sizeNumber) % 8 == 0;
+        const Scalar below = std::nextafter(border, -Limits::infinity());
+        const Scalar above = std::nextafter(border, Limits::infinity());
+        if (hasPoints) {
+            add(below, below);
+        }
+        add(border, static_cast<Scalar>(k + 1) * cell);
+        if (hasPoints) {
+            add(above, above);
+        }
+    }
+    return boxes;
+}
+
+// All of them, for cells of 0.1, 0.2 ... 100 along x, and every fourth of these along the other axes. A
+// good tenth of these numbers times 1 / cell is not k.
 TYPED_TEST(HardNumbers, OnTheBordersOfAHundredThousandCellsPartNoBoxes) {
-    using Limits = std::numeric_limits<TypeParam>;
     std::size_t elsewhere = 0;
     detail::PairParts parts;
     detail::PairList found;
-    for (int tenths = 1; tenths <= 1000; ++tenths) {
-        const double cellSize = 0.1 * tenths;
-        const auto cell = static_cast<TypeParam>(cellSize);
-        std::vector<Aabb<TypeParam>> boxes;  // in the order of where they begin
-        const auto add = [&](TypeParam low, TypeParam high) {
-            boxes.emplace_back(Vector3<TypeParam>(low, 0, 0), Vector3<TypeParam>(high, 0, 0));
-        };
-        for (int k = -1000; k < 1000; ++k) {
-            const TypeParam border = static_cast<TypeParam>(k) * cell;
-            elsewhere += std::floor(border * (1 / cell)) != static_cast<TypeParam>(k) ? 1 : 0;
-            if ((k + tenths) % 8 == 0) {
-                const TypeParam below = std::nextafter(border, -Limits::infinity());
-                const TypeParam above = std::nextafter(border, Limits::infinity());
-                add(below, below);
-                add(border, static_cast<TypeParam>(k + 1) * cell);
-                add(above, above);
-            } else {
-                add(border, static_cast<TypeParam>(k + 1) * cell);
-            }
+    for (int number = 3; number < 3003; ++number) {
+        const int tenths = number / 3;
+        const int axis = number % 3;
+        if (axis > 0 && tenths % 4 != 0) {
+            continue;
         }
+        const auto cell = static_cast<TypeParam>(0.1 * tenths);
+        for (int k = -1000; k < 1000 && axis == 0; ++k) {
+            const auto exact = static_cast<TypeParam>(k);
+            elsewhere += std::floor(exact * cell * (1 / cell)) != exact ? 1 : 0;
+        }
+        const std::vector<Aabb<TypeParam>> boxes = boxesOnBorders(cell, tenths, axis);
         CoupleSum expected;
         for (std::uint32_t a = 0; a < boxes.size(); ++a) {
             for (std::uint32_t b = a + 1; b < boxes.size() && overlaps(boxes[a], boxes[b]); ++b) {
@@ -220,15 +237,15 @@ TYPED_TEST(HardNumbers, OnTheBordersOfAHundredThousandCellsPartNoBoxes) {
             }
         }
         detail::Table<TypeParam> table;
-        fill(table, boxes, detail::fixedLevels(cellSize, 4));
+        fill(table, boxes, detail::fixedLevels(0.1 * tenths, 4));
         found.clear();
         detail::KernelCost cost;
         detail::joinTable(table, serialFor, parts, found, cost);
         CoupleSum actual;
-        for (const auto [a, b] : found.pairs()) {
-            actual.add(table.slot(a), table.slot(b));
+        for (const auto [first, second] : found.pairs()) {
+            actual.add(table.slot(first), table.slot(second));
         }
-        ASSERT_EQ(actual, expected) << "cells of " << cellSize;
+        ASSERT_EQ(actual, expected) << "cells of " << cell << " along axis " << axis;
         ASSERT_GE(actual.count, 1999U);
     }
     EXPECT_GT(elsewhere, 100'000U);

@@ -10,10 +10,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace hashphase::test {
@@ -52,6 +54,15 @@ struct RayWorld {
                 << describe();
         }
         return met;
+    }
+
+    /// How many boxes the segment passes farther off than that doubt.
+    std::size_t countClear(const Vector3<Scalar>& from, const Vector3<Scalar>& to,
+                           double doubt) const {
+        return static_cast<std::size_t>(
+            std::count_if(proxies.begin(), proxies.end(), [&](const Placed<Scalar>& proxy) {
+                return !meetsByRationals(from, to, withDoubt(proxy.box, from, to, doubt));
+            }));
     }
 
 private:
@@ -118,7 +129,8 @@ TYPED_TEST(HardRays, AlongAxesMeetWhatTheSlabsSayWhateverTheSignsOfZeros) {
 }
 
 // 1e5, 3.4e7 and 1e9 cells of a metre, straight and slanted. What adds up steps along such a way stops
-// or strays; here the box at its very end is met, and no more is read than lies there.
+// or strays; here the box at its very end is met, what stands well aside is not, and no more is read
+// than lies there.
 TYPED_TEST(HardRays, OfABillionCellsMeetWhatLiesAlongTheirWayUntilItsEnd) {
     constexpr std::uint32_t kCount = 300;
     Random random(0x5eed1001);
@@ -131,9 +143,14 @@ TYPED_TEST(HardRays, OfABillionCellsMeetWhatLiesAlongTheirWayUntilItsEnd) {
             for (std::uint32_t i = 0; i < kCount; ++i) {
                 const Vector3<double> at = direction * length * i / (kCount - 1);
                 const double half = 0.5 + length * this->kDoubt;
-                const Vector3<double> beside = random.pointIn(-1.5, 1.5) * half;
-                world.add(boxAround<TypeParam>(i % 2 == 0 ? at : Vector3<double>(at + beside),
-                                               Vector3<double>::Constant(half)));
+                Vector3<double> beside = Vector3<double>::Zero();
+                if (i % 3 == 2) {
+                    beside = direction.cross(Vector3<double>::UnitZ()) * (i % 2 == 0 ? 8 : -8);
+                } else if (i % 6 == 1) {
+                    beside = random.pointIn(-1.5, 1.5);
+                }
+                world.add(
+                    boxAround<TypeParam>(at + beside * half, Vector3<double>::Constant(half)));
             }
             const Vector3<TypeParam> end = this->point(direction * length);
             world.add({end, end});
@@ -141,6 +158,7 @@ TYPED_TEST(HardRays, OfABillionCellsMeetWhatLiesAlongTheirWayUntilItsEnd) {
             const Vector3<TypeParam> start = Vector3<TypeParam>::Zero();
             const std::size_t met = world.expectAsRationalsSay(start, end, this->kDoubt);
             EXPECT_GT(met, kCount / 2);
+            EXPECT_GT(world.countClear(start, end, this->kDoubt), 50U);
             CollectCount found;
             const QueryCost cost = world.grid.visit(RayRegion<TypeParam>(start, end), found);
             EXPECT_LE(cost.boxesTested, kCount + 1);
@@ -221,6 +239,33 @@ TYPED_TEST(HardRays, WithABadNumberAnywhereMeetNothingAndReadLittle) {
     // Good numbers, but the way between them is none.
     const auto most = Vector3<TypeParam>::Constant(std::numeric_limits<TypeParam>::max());
     expectNothing(Ray(-most, most));
+}
+
+TYPED_TEST(HardRays, ThatAreFatByNanMeetNothing) {
+    RayWorld<TypeParam> world;
+    Random random(0x5eed1006);
+    for (int i = 0; i < 500; ++i) {
+        world.add(boxAround<TypeParam>(random.pointIn(-5, 5), random.pointIn(0.2, 0.6)),
+                  i % 2 == 0 ? Mobility::resting : Mobility::mobile);
+    }
+    const Vector3<TypeParam> from(-6, 1, 2);
+    const Vector3<TypeParam> to(6, -3, 4);
+    Aabb<TypeParam> fatness = makeBox<TypeParam>(-1, -1, -1, 1, 1, 1);
+    for (const bool isFiled : {false, true}) {
+        EXPECT_GT(find(world.grid, RayRegion<TypeParam>(from, to, fatness)).size(), 5U);
+        for (int field = 0; field < 6; ++field) {
+            TypeParam& number = (field < 3 ? fatness.min() : fatness.max())[field % 3];
+            const TypeParam good = std::exchange(number, this->kNan);
+            CollectCount found;
+            const QueryCost cost = world.grid.visit(RayRegion<TypeParam>(from, to, fatness), found);
+            EXPECT_EQ(found.count(), 0U);
+            EXPECT_LE(cost.boxesTested, world.proxies.size());
+            number = good;
+        }
+        if (!isFiled) {
+            world.grid.update();
+        }
+    }
 }
 
 // Asked before anything is filed, with few and with many changes waiting, and with all at rest; among

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace hashphase::test {
@@ -131,6 +132,27 @@ TYPED_TEST(HardSizes, FromAMicrometreToAThousandKilometresCostNoMoreThanThreeTim
     const double ofAll = perBox(this->costOf(this->mixture(kCount, 1e-6, 1e6)));
     EXPECT_LE(ofAll, 3 * ofOne) << ofOne;
     EXPECT_GT(expectPairsOfBruteForce<TypeParam>(this->mixture(800, 1e-6, 1e6, 2)), 100U);
+}
+
+// As many of each size lie within twelve of its edges as of any other, and so many more of all sizes,
+// that it costs what levels of cells cannot spare; numbers are fine enough for the smallest.
+TYPED_TEST(HardSizes, OfAllKindsAtOnePlacePairAsBruteForceSaysAtAFractionOfItsCost) {
+    constexpr std::size_t kCount = 4000;
+    for (const double largest : {1.0, 1e3, 1e6}) {
+        SCOPED_TRACE(largest);
+        Random random(0x5eed1205);
+        std::vector<Aabb<TypeParam>> boxes;
+        while (boxes.size() < kCount) {
+            const double size = random.logBetween(1 / largest, largest);
+            const Vector3<double> center = random.pointIn(-6, 6) * size;
+            boxes.push_back(boxAround<TypeParam>(center, Vector3<double>::Constant(size / 2)));
+        }
+        const std::size_t pairs = expectPairsOfBruteForce<TypeParam>(boxes);
+        EXPECT_GT(pairs, 2 * kCount);
+        const std::uint64_t tests = this->costOf(boxes).boxesTested;
+        EXPECT_LE(tests, kCount * kCount / 2 / (largest == 1 ? 50 : 4));
+        EXPECT_LE(tests, (largest == 1 ? 4 : 120) * (pairs + kCount)) << "for each box and pair";
+    }
 }
 
 TYPED_TEST(HardSizes, OfThousandsOfCellsAreFiledOnce) {

@@ -12,8 +12,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <map>
+#include <set>
 #include <vector>
 
 namespace hashphase::test {
@@ -34,6 +37,15 @@ Box cube(double x, double half = 1) {
     return boxAround<float>({x, 0, 0}, Vector3<double>::Constant(half));
 }
 
+bool isCellOf(const std::array<std::int64_t, 3>& cell, const CellRange& range) {
+    bool isWithin = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        isWithin =
+            isWithin && range.lowest[axis] <= cell[axis] && cell[axis] <= range.highest[axis];
+    }
+    return isWithin;
+}
+
 /// A grid that a collector changes at will, and who is alive in it.
 struct Changed {
     explicit Changed(int count) {
@@ -48,6 +60,7 @@ struct Changed {
     void removeOne(ProxyId id) {
         grid.remove(id);
         alive.erase(id);
+        touched.insert(id);
     }
     ProxyId any() {
         auto at = alive.begin();
@@ -65,10 +78,62 @@ struct Changed {
             const ProxyId id = alive.empty() ? ProxyId{} : any();
             if (!id.isNull()) {
                 grid.move(id, alive[id] = scene.draw(random));
+                touched.insert(id);
             }
         } else {
             add();
         }
+    }
+    /// query(collector), whose collector calls change() for each proxy offered, must offer all those of
+    /// which matches(id, box) was true before and that were neither moved nor removed meanwhile, once
+    /// each, and nothing else that stayed as it was. Returns how many they are.
+    template <class Matches, class Query>
+    std::size_t expectTheOthersOnce(const Matches& matches, const Query& query,
+                                    const std::function<void(ProxyId)>& change) {
+        touched.clear();
+        std::map<ProxyId, int> expected;
+        for (const auto& [id, box] : alive) {
+            expected[id] = matches(id, box) ? 1 : 0;
+        }
+        std::map<ProxyId, int> offered;
+        CallEach collector{[&](ProxyId id) {
+            ++offered[id];
+            change(id);
+        }};
+        query(collector);
+        std::size_t others = 0;
+        for (const auto& [id, times] : expected) {
+            if (!touched.contains(id)) {
+                EXPECT_EQ(offered[id], times) << testing::PrintToString(id);
+                others += static_cast<std::size_t>(times);
+            }
+        }
+        return others;
+    }
+    /// The same for a query of the grid.
+    template <class Region>
+    std::size_t visitAndChange(const Region& region) {
+        return expectTheOthersOnce([&](ProxyId, const Box& box) { return region.key(box) >= 0; },
+                                   [&](CallEach& collector) { grid.visit(region, collector); },
+                                   [&](ProxyId id) { changeSomething(id); });
+    }
+    std::size_t visitCellAndChange(const std::array<std::int64_t, 3>& cell) {
+        return expectTheOthersOnce(
+            [&](ProxyId id, const Box&) { return isCellOf(cell, grid.cellsOf(id)); },
+            [&](CallEach& collector) { grid.visitCell(cell, collector); },
+            [&](ProxyId id) { changeSomething(id); });
+    }
+    std::size_t forEachAndChange() {
+        return expectTheOthersOnce(
+            [](ProxyId, const Box&) { return true; },
+            [&](CallEach& collector) {
+                grid.forEach([&](ProxyId id, const Box&) { collector.add(id, 0); });
+            },
+            [&](ProxyId id) {
+                if (random.chance(0.1)) {
+                    changeSomething(id);
+                }
+            });
     }
     template <class Region>
     void checkQuery(const Region& region) {
@@ -83,6 +148,7 @@ struct Changed {
     BoxScene<float> scene = spreadScene<float>("spread", 1, 0);
     Grid<float> grid;
     std::map<ProxyId, Box> alive;
+    std::set<ProxyId> touched;  // moved or removed since a query began
 };
 
 TEST(GridCallbacks, MayChangeTheGridInAQueryOfTheirOwn) {
@@ -91,17 +157,17 @@ TEST(GridCallbacks, MayChangeTheGridInAQueryOfTheirOwn) {
         for (int i = 0; i < settled; ++i) {
             changed.grid.update();
         }
-        CallEach collector{[&](ProxyId id) { changed.changeSomething(id); }};
+        std::array<std::size_t, 5> others{};
         for (int round = 0; round < 6; ++round) {
-            changed.grid.visit(BoxRegion<float>{cube(0, 5)}, collector);
-            changed.grid.visit(SphereRegion<float>({1, 0, 0}, 4), collector);
-            changed.grid.visit(RayRegion<float>({-9, 0, 0}, {9, 1, 1}), collector);
-            changed.grid.visitCell({0, 0, 0}, collector);
-            changed.grid.forEach([&](ProxyId id, const Box&) {
-                if (changed.random.chance(0.1)) {
-                    changed.changeSomething(id);
-                }
-            });
+            others[0] += changed.visitAndChange(BoxRegion<float>{cube(0, 5)});
+            others[1] += changed.visitAndChange(SphereRegion<float>({1, 0, 0}, 4));
+            others[2] += changed.visitAndChange(RayRegion<float>({-9, 0, 0}, {9, 1, 1}));
+            others[2] += changed.visitAndChange(RayRegion<float>({-9, 0, 0}, {9, 1, 1}, cube(0)));
+            for (int corner = 0; corner < 8; ++corner) {
+                others[3] += changed.visitCellAndChange(
+                    {corner % 2 - 1, corner / 2 % 2 - 1, corner / 4 - 1});
+            }
+            others[4] += changed.forEachAndChange();
             EXPECT_EQ(changed.grid.validate(), "");
             changed.checkQuery(BoxRegion<float>{cube(0, 3)});
             changed.checkQuery(RayRegion<float>({-9, 0, 0}, {9, 1, 1}));
@@ -112,15 +178,28 @@ TEST(GridCallbacks, MayChangeTheGridInAQueryOfTheirOwn) {
                 changed.add();
             }
         }
+        for (const std::size_t count : others) {
+            EXPECT_GT(count, 5U) << "were neither moved nor removed";
+        }
     }
 }
 
 // So much has changed that it is not listed any more, and the tables are being read.
 TEST(GridCallbacks, MayAskAfterManyChangesAndFindWhatIsThere) {
     Changed changed(500);
-    CallEach collector{[&](ProxyId) {
+    const BoxRegion<float> asked{cube(0, 2)};
+    std::set<ProxyId> spared;  // every second of those who are asked for
+    for (const auto& [id, box] : changed.alive) {
+        if (asked.key(box) >= 0 && id.index % 2 == 0) {
+            spared.insert(id);
+        }
+    }
+    const auto changeMuch = [&](ProxyId) {
         for (int i = 0; i < 50 && changed.alive.size() > 100; ++i) {
-            changed.removeOne(changed.any());
+            const ProxyId id = changed.any();
+            if (!spared.contains(id)) {
+                changed.removeOne(id);
+            }
         }
         for (int i = 0; i < 30; ++i) {
             changed.add();
@@ -135,8 +214,12 @@ TEST(GridCallbacks, MayAskAfterManyChangesAndFindWhatIsThere) {
         changed.grid.visitEach(std::span(&region, 1), std::span(&each, 1));
         EXPECT_EQ(one.count(), each.count());
         EXPECT_EQ(changed.grid.validate(), "");
-    }};
-    changed.grid.visit(BoxRegion<float>{cube(0, 2)}, collector);
+    };
+    const std::size_t others = changed.expectTheOthersOnce(
+        [&](ProxyId, const Box& box) { return asked.key(box) >= 0; },
+        [&](CallEach& collector) { changed.grid.visit(asked, collector); }, changeMuch);
+    EXPECT_GE(others, spared.size());
+    EXPECT_GT(spared.size(), 5U);
     EXPECT_EQ(changed.grid.validate(), "");
     changed.checkQuery(BoxRegion<float>{cube(0, 3)});
 }
@@ -150,8 +233,10 @@ TEST(SweepsCallbacks, MayChangeWhatSweeps) {
         sweeps.set(ids.back(), {float(i), 0, 0});
     }
     std::size_t found = 0;
+    std::map<ProxyId, int> offered;
     CallEach collector{[&](ProxyId id) {
         EXPECT_TRUE(grid.contains(id));
+        ++offered[id];
         sweeps.set(ids[(7 * found) % 30], found % 2 == 0 ? Point(0, 0, 0) : Point(0, 5, 0));
         if (++found % 4 == 0) {
             const ProxyId added = grid.add(cube(0));
@@ -160,6 +245,9 @@ TEST(SweepsCallbacks, MayChangeWhatSweeps) {
     }};
     sweeps.visit(BoxRegion<float>{cube(0)}, collector);
     EXPECT_GT(found, 10U);
+    for (std::size_t i = 30; i < ids.size(); ++i) {
+        EXPECT_EQ(offered[ids[i]], 1) << "nobody has changed how it sweeps";
+    }
     EXPECT_EQ(sweeps.validate(), "");
     EXPECT_EQ(grid.validate(), "");
 }

@@ -9,8 +9,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace hashphase::test {
@@ -158,6 +161,115 @@ TYPED_TEST(PairsInScripts, AreTheSameSequenceInEveryRun) {
     EXPECT_EQ(record({}), first);
     // Nor do they depend on how the boxes are filed.
     EXPECT_EQ(record(withCellSize(0.7)), first);
+}
+
+// --- Change by change ----------------------------------------------------------------------------
+
+/// A few boxes that come, move and go, and who overlaps whom: by brute force, and as the pairs report
+/// births and deaths.
+template <class Scalar>
+class SmallWorld {
+public:
+    static constexpr std::uint32_t kObjects = 24;
+
+    SmallWorld(const GridConfig& config, std::uint64_t seed)
+        : random_(seed), grid_(config), pairs_(grid_) {}
+
+    /// Most of them move; so few do not change that a box may come to rest.
+    void changeOne() {
+        const std::uint32_t object = random_.below(kObjects);
+        const double choice = random_.unit();
+        if (ids_[object].isNull()) {
+            boxes_[object] = draw();
+            ids_[object] =
+                grid_.add(boxes_[object], choice < 0.3 ? Mobility::resting : Mobility::mobile);
+            objectOf_.resize(std::max<std::size_t>(objectOf_.size(), ids_[object].index + 1));
+            objectOf_[ids_[object].index] = object;
+        } else if (choice < 0.1) {
+            grid_.remove(ids_[object]);
+            ids_[object] = {};
+        } else if (choice < 0.9) {
+            boxes_[object] = choice < 0.5 ? shifted(random_, boxes_[object], 0.3) : draw();
+            grid_.move(ids_[object], boxes_[object]);
+        }
+        for (std::uint32_t other = 0; other < kObjects; ++other) {
+            set(expected_, object, other,
+                other != object && !ids_[object].isNull() && !ids_[other].isNull() &&
+                    overlaps(boxes_[object], boxes_[other]));
+        }
+    }
+
+    /// False when a birth or a death is reported that is none.
+    [[nodiscard]] bool update() {
+        const PairChanges changes = pairs_.update([](ProxyId, ProxyId) { return true; });
+        bool isTrue = true;
+        for (const bool isBirth : {false, true}) {
+            for (const ProxyPair& pair : isBirth ? changes.born : changes.died) {
+                const std::uint32_t a = objectOf_[pair.first.index];
+                const std::uint32_t b = objectOf_[pair.second.index];
+                isTrue = isTrue && ((present_[a] >> b) & 1) == (isBirth ? 0U : 1U);
+                set(present_, a, b, isBirth);
+            }
+        }
+        births += changes.born.size();
+        return isTrue;
+    }
+
+    [[nodiscard]] bool isLikeBruteForce() const {
+        std::size_t count = 0;
+        for (const std::uint32_t others : expected_) {
+            count += static_cast<std::size_t>(std::popcount(others));
+        }
+        return present_ == expected_ && 2 * pairs_.count() == count;
+    }
+    [[nodiscard]] std::string validate() const { return grid_.validate() + pairs_.validate(); }
+
+    std::size_t births = 0;
+
+private:
+    using Row = std::array<std::uint32_t, kObjects>;  // a bit for each other object
+
+    static void set(Row& row, std::uint32_t a, std::uint32_t b, bool isPair) {
+        row[a] = isPair ? row[a] | 1U << b : row[a] & ~(1U << b);
+        row[b] = isPair ? row[b] | 1U << a : row[b] & ~(1U << a);
+    }
+    /// On a lattice, so that many touch, or anywhere; some as large as the room.
+    Aabb<Scalar> draw() {
+        const bool isOnLattice = random_.chance(0.5);
+        Vector3<double> low = random_.pointIn(-3, 3);
+        low = isOnLattice ? Vector3<double>(low.array().floor()) : low;
+        const double size = random_.chance(0.05) ? 5 : 1;
+        return {low.cast<Scalar>(), (low.array() + size).matrix().template cast<Scalar>()};
+    }
+
+    Random random_;
+    Grid<Scalar> grid_;
+    Pairs<Scalar> pairs_;
+    std::array<ProxyId, kObjects> ids_{};
+    std::array<Aabb<Scalar>, kObjects> boxes_;
+    std::vector<std::uint32_t> objectOf_;  // by the index of its proxy
+    Row expected_{};
+    Row present_{};
+};
+
+// With an update after each: half a million in each precision.
+TYPED_TEST(PairsInScripts, EqualBruteForceAfterEachOfAMillionChanges) {
+    constexpr int kChanges = 125'000;
+    for (const double cellSize : kCellSizes) {
+        SCOPED_TRACE(cellSize);
+        GridConfig config = withCellSize(cellSize);
+        config.updatesBeforeRest = 2;
+        SmallWorld<TypeParam> world(config, 0x5eed0007);
+        for (int change = 0; change < kChanges; ++change) {
+            world.changeOne();
+            ASSERT_TRUE(world.update()) << change;
+            ASSERT_TRUE(world.isLikeBruteForce()) << change;
+            if (change % 1000 == 0) {
+                ASSERT_EQ(world.validate(), "") << change;
+            }
+        }
+        EXPECT_GT(world.births, std::size_t{kChanges} / 2);
+    }
 }
 
 }  // namespace

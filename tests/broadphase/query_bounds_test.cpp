@@ -27,6 +27,7 @@ protected:
     struct World {
         Grid<Scalar> grid;
         std::uint64_t count;
+        std::uint32_t largestCell = 0;
 
         World(std::uint32_t boxes, const Vector3<double>& high, double cellSize)
             : grid(configFor(cellSize)), count(boxes) {
@@ -35,7 +36,18 @@ protected:
                 const Vector3<double> at = random.pointIn(Vector3<double>::Zero(), high);
                 static_cast<void>(grid.add(boxAround<Scalar>(at, {0.25, 0.25, 0.25})));
             }
-            grid.update();
+            largestCell = grid.update().largestCell;
+        }
+
+        /// Many more boxes, far away, each in a cell of 8 m of its own: that they are not looked at,
+        /// and that cells do not begin in the middle of the others.
+        void addAnchors() {
+            for (std::uint64_t i = 0; i <= count; ++i) {
+                const Vector3<double> at(1004 + 20.0 * static_cast<double>(i % 1000),
+                                         1004 + 20.0 * static_cast<double>(i / 1000), 1004);
+                static_cast<void>(grid.add(boxAround<Scalar>(at, {0.25, 0.25, 0.25})));
+            }
+            largestCell = grid.update().largestCell;
         }
 
         static GridConfig configFor(double cellSize) {
@@ -115,7 +127,9 @@ TYPED_TEST(QueryBounds, HoldInALongCorridorOfSmallCells) {
 }
 
 TYPED_TEST(QueryBounds, HoldForAHundredThousandInOneCell) {
-    const typename TestFixture::World world(100'000, {1, 1, 1}, 8);
+    typename TestFixture::World world(102'000, {1, 1, 1}, 8);
+    world.addAnchors();
+    ASSERT_GE(world.largestCell, 100'000U);
     const auto corner = makeBox<TypeParam>(0, 0, 0, 0.5, 0.5, 0.5);
     EXPECT_GT(this->expectOneTestEach(world, BoxRegion<TypeParam>{corner}), 1000U);
     EXPECT_GT(this->expectOneTestEach(world, RayRegion<TypeParam>({-1, 0, 0}, {2, 1, 1})), 1000U);

@@ -20,11 +20,12 @@ inline constexpr Subject kPairs{"pairs", &playPairs};
 Verdict playClients(std::span<const Operation> operations, bool tellsStory);
 inline constexpr Subject kClients{"clients", &playClients};
 
-/// SpatialHashBroadphase with its queries and batches, over several pair caches.
+/// SpatialHashBroadphase with its queries and batches, over several pair caches; and PairCache under
+/// btDbvtBroadphase.
 Verdict playBroadphase(std::span<const Operation> operations, bool tellsStory);
 inline constexpr Subject kBroadphase{"broadphase", &playBroadphase};
 
-/// PairCache by itself, and under btDbvtBroadphase.
+/// PairCache by itself.
 Verdict playCache(std::span<const Operation> operations, bool tellsStory);
 inline constexpr Subject kCache{"cache", &playCache};
 

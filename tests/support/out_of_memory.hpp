@@ -42,8 +42,8 @@ std::size_t runOutOfMemory(const MakeWorld& make, const Attempt& attempt, const 
 }
 
 /// A query that runs out of memory, and is asked again, is answered as if it had not: ask() of a fresh
-/// Asked at each of its allocations in turn, then ask() and answer() beside those of another. Returns
-/// how often it failed.
+/// Asked fails at each of its allocations in turn, then ask() and answer() are as those of another.
+/// Returns how often it failed.
 template <class Asked>
 std::size_t askOutOfMemory() {
     Asked whole;

@@ -6,8 +6,7 @@
 #include <tests/integration/bullet/box_commands.hpp>
 #include <tests/integration/bullet/broadphases.hpp>
 #include <tests/integration/bullet/queries.hpp>
-
-#include <broadphase/diagnostics.hpp>
+#include <tests/support/handlers.hpp>
 
 #include <gtest/gtest.h>
 
@@ -21,26 +20,6 @@
 namespace hashphase::test {
 namespace {
 
-/// Catches the messages of its time.
-class Messages {
-public:
-    Messages()
-        : previous_(setMessageHandler([](const char* text) { texts().emplace_back(text); })) {
-        texts().clear();
-    }
-    ~Messages() { setMessageHandler(previous_); }
-    Messages(const Messages&) = delete;
-    Messages& operator=(const Messages&) = delete;
-
-    static std::vector<std::string>& texts() {
-        static std::vector<std::string> all;
-        return all;
-    }
-
-private:
-    MessageHandler previous_;
-};
-
 Box withNan(Box box, int field) {
     (field < 3 ? box.min : box.max)[field % 3] = kNan;
     return box;
@@ -48,7 +27,7 @@ Box withNan(Box box, int field) {
 
 class NanBox : public testing::TestWithParam<int> {
 protected:
-    Messages messages;
+    CaughtMessages messages;
 };
 
 TEST_P(NanBox, PairsWithNothing) {
@@ -112,26 +91,26 @@ TEST_P(NanBox, OfAnEagerProxyIsHarmless) {
 INSTANTIATE_TEST_SUITE_P(Fields, NanBox, testing::Range(0, 6));
 
 TEST(NanBoxes, AreReportedOnceAndCounted) {
-    const Messages messages;
+    const CaughtMessages messages;
     Player player = hashPlayer(4);
     const SpatialHashBroadphase& broadphase = hashOf(player);
     player.play(createCommand(0, kUnit));
-    EXPECT_TRUE(Messages::texts().empty());
+    EXPECT_TRUE(messages.all().empty());
     player.play(createCommand(1, withNan(kUnit, 4)));
-    ASSERT_EQ(Messages::texts().size(), 1U);
-    EXPECT_NE(Messages::texts()[0].find("NaN"), std::string::npos) << Messages::texts()[0];
+    ASSERT_EQ(messages.all().size(), 1U);
+    EXPECT_NE(messages.all()[0].find("NaN"), std::string::npos) << messages.all()[0];
     for (int frame = 0; frame < 20; ++frame) {
         player.play({Action::set, 0, frame % 2 == 0 ? withNan(kUnit, frame % 6) : kUnit, 0, 0});
         player.play({Action::set, 1, withNan(kUnit, frame % 6), 0, 0});
         player.calculate();
         EXPECT_EQ(broadphase.grid().nanCount(), frame % 2 == 0 ? 2U : 1U);
     }
-    EXPECT_EQ(Messages::texts().size(), 1U);
+    EXPECT_EQ(messages.all().size(), 1U);
 }
 
 // Bullet's tree loses pairs of others when a NaN is merged into an inner node.
 TEST(NanBoxes, ChangeNothingForTheOthers) {
-    const Messages messages;
+    const CaughtMessages messages;
     constexpr int kObjects = 300;
     for (const Scene& scene : allScenes()) {
         SCOPED_TRACE(scene.name);
@@ -157,7 +136,7 @@ TEST(NanBoxes, ChangeNothingForTheOthers) {
 }
 
 TEST(NanBoxes, DoNotSpoilTheBoxAroundEverything) {
-    const Messages messages;
+    const CaughtMessages messages;
     Player player = hashPlayer(2);
     player.play({createCommand(0, kUnit), createCommand(1, withNan(kUnit, 1))});
     Box all;

@@ -108,6 +108,21 @@ TEST(StepCost, FollowsWhatMovesAmongManyAtRest) {
     }
 }
 
+TEST(StepCost, TellsACrowdInACellThatIsTooLarge) {
+    constexpr int kObjects = 5000;
+    for (const double cellSize : {0.0, 1000.0}) {
+        SpatialHashConfig config;
+        config.grid.cellSize = cellSize;
+        Player player = hashPlayer(kObjects, nullptr, config);
+        fill(player, kObjects, 7);
+        if (cellSize == 0) {
+            EXPECT_LT(costOf(player).grid.largestCell, 50U);
+        } else {  // cells begin in the middle of them
+            EXPECT_GE(costOf(player).grid.largestCell, unsigned(kObjects) / 8);
+        }
+    }
+}
+
 // A query must not pay for a rebuild after every box that is set.
 TEST(QueryCost, OfSettingABoxAndCastingARayInTurnIsNoRebuildEach) {
     constexpr int kObjects = 30'000;

@@ -190,6 +190,25 @@ TEST(HardRays, WithABadNumberAnywhereFindNothing) {
     }
 }
 
+// Comparing with NaN is false, by which btRayAabb2() takes some slabs for hit and others for missed.
+TEST(HardRays, ThatAreFatByNanFindWhatBulletsFieldsSay) {
+    RayWorld world;
+    std::size_t found = 0;
+    for (int stage = 0; stage < 4; ++stage) {
+        SCOPED_TRACE(stage);
+        world.advance(stage);
+        for (int field = 0; field < 6; ++field) {
+            Ray cast{{-9, btScalar(2.5), btScalar(2.5)}, {9, btScalar(1.5), 2}};
+            cast.castMin = {btScalar(-0.5), btScalar(-0.5), btScalar(-0.5)};
+            cast.castMax = -cast.castMin;
+            EXPECT_GT(world.expectAsBruteForceSays(cast).size(), 5U);
+            (field < 3 ? cast.castMin : cast.castMax)[field % 3] = kNan;
+            found += world.expectAsBruteForceSays(cast).size();
+        }
+    }
+    EXPECT_GT(found, 0U);
+}
+
 // closestRay() asks about as little for the worst of rays as for others.
 TEST(HardRays, CostAtMostATestForEachBox) {
     RayWorld world;

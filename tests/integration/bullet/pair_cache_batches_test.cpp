@@ -12,6 +12,7 @@
 #include <random>
 #include <set>
 #include <span>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -316,6 +317,31 @@ TEST(PairCacheBatch, AllocatesNothingForPairsThatComeAndGo) {
 }
 
 #if HASHPHASE_ENABLE_ASSERTS
+// They are counted before any is read: there is but one.
+TEST(PairCacheBatch, OfMoreThanThereMayBeIsRefusedAndChangesNothing) {
+    for (const bool hasGhosts : {false, true}) {
+        Side side(PairOrder::arrival);
+        side.cache.setInternalGhostPairCallback(hasGhosts ? &side.ghosts : nullptr);
+        side.cache.update({}, side.couples({{0, 1}}), &side.dispatcher);
+        side.ghosts.told.clear();
+        const std::vector<ProxyCouple> present = side.couples({{0, 1}});
+        const std::vector<ProxyCouple> another = side.couples({{2, 3}});
+        for (const std::size_t count : {PairCache::kMostPairs, PairCache::kMostPairs + 1}) {
+            const std::span<const ProxyCouple> tooMany(another.data(), count);
+            EXPECT_THROW(side.cache.update({}, tooMany, nullptr), std::length_error);
+            EXPECT_THROW(side.cache.update(present, tooMany, nullptr), std::length_error);
+        }
+        EXPECT_EQ(side.cache.getNumOverlappingPairs(), 1);
+        EXPECT_NE(side.cache.findPair(present[0].lower(), present[0].upper()), nullptr);
+        EXPECT_EQ(side.cache.findPair(another[0].lower(), another[0].upper()), nullptr);
+        EXPECT_EQ(side.cache.validate(), "");
+        EXPECT_TRUE(side.ghosts.told.empty());
+        side.cache.update(present, another, &side.dispatcher);  // and goes on
+        EXPECT_EQ(side.cache.getNumOverlappingPairs(), 1);
+        EXPECT_EQ(side.cache.validate(), "");
+    }
+}
+
 TEST(PairCacheBatchDeathTest, AssertsThatAPairIsOfTwoProxies) {
     Side side(PairOrder::arrival);
     EXPECT_DEATH(side.update({}, {{4, 4}}), "two proxies with different unique ids");

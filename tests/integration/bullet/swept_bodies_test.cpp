@@ -65,14 +65,15 @@ struct Range {
 
     /// 200 walls here and there, 60 balls and rods of which two in three are fast; all so far from
     /// the origin, along each axis.
-    void fill(Random& random, double reach = 9, double offset = 0) {
+    void fill(Random& random, double reach = 9, double offset = 0, double speed = 400) {
         for (int i = 0; i < 200; ++i) {
             const Vector3<double> place = random.pointIn(offset - reach, offset + reach);
             add(wall, 0, btVector3(btScalar(place.x()), btScalar(place.y()), btScalar(place.z())));
         }
         for (int i = 0; i < 60; ++i) {
             const Vector3<double> place = random.pointIn(offset - reach, offset + reach);
-            const Vector3<double> way = random.pointIn(-1, 1).normalized() * (i % 3 == 0 ? 2 : 400);
+            const Vector3<double> way =
+                random.pointIn(-1, 1).normalized() * (i % 3 == 0 ? 2 : speed);
             btRigidBody& body =
                 add(i % 2 == 0 ? static_cast<btCollisionShape&>(ball)
                                : static_cast<btCollisionShape&>(rod),
@@ -130,11 +131,11 @@ std::unique_ptr<SpatialHashBroadphase> swept(Sweep sweep) {
     return std::make_unique<SpatialHashBroadphase>(withSweep(sweep));
 }
 
-void expectPairsOfWhatIsPassed(double offset) {
+void expectPairsOfWhatIsPassed(double offset, double speed = 400) {
     for (const Sweep sweep : {Sweep::box, Sweep::line, Sweep::automatic}) {
         Random random(0x5eed0e01);
         Range range(swept(sweep));
-        range.fill(random, 9, offset);
+        range.fill(random, 9, offset, speed);
         const auto& broadphase = static_cast<const SpatialHashBroadphase&>(*range.broadphase);
         std::size_t most = 0;
         struct Check {
@@ -174,6 +175,12 @@ TEST(SweptBodies, DoSoFarFromTheOrigin) {
     expectPairsOfWhatIsPassed(-1'048'576);
 }
 
+// Nearly a million metres in a step: boxes of more than that Bullet takes out of the simulation.
+TEST(SweptBodies, DoSoHoweverFastTheyAre) {
+    expectPairsOfWhatIsPassed(0, 1e5);
+    expectPairsOfWhatIsPassed(0, 5.9e7);
+}
+
 TEST(SweptBodies, HaveFewerPairsThanBoxesAroundStartAndEnd) {
     std::vector<std::size_t> counts;
     for (const Sweep sweep : {Sweep::none, Sweep::automatic}) {
@@ -200,6 +207,35 @@ TEST(SweptBodies, PassNoThinWallUnnoticedWithoutBulletsOwnBoxes) {
             noticed += range.pairs().size();
         }
         EXPECT_EQ(noticed, sweep == Sweep::none ? 0U : 1U);
+    }
+}
+
+// Each ball has a wall of its own, and meets it at another moment of its step.
+TEST(SweptBodies, PassNoThinWallUnnoticedWhereverInTheirStepItStands) {
+    constexpr int kPhases = 1000;
+    for (const double thickness : {0.1, 0.01, 0.001}) {
+        for (const Sweep sweep : {Sweep::none, Sweep::box, Sweep::line, Sweep::automatic}) {
+            Range range(swept(sweep));
+            range.world.getDispatchInfo().m_useContinuous = false;
+            btBoxShape thinWall(btVector3(1, 1, btScalar(thickness / 2)));
+            std::set<Range::Couple> expected;
+            for (int i = 0; i < kPhases; ++i) {
+                const auto x = btScalar(3 * i);
+                const btRigidBody& wall = range.add(thinWall, 0, btVector3(x, 0, 0));
+                // 4 m a step.
+                const btRigidBody& ball =
+                    range.add(range.ball, 1, btVector3(x, 0, btScalar(-4 * (i + 0.5) / kPhases)),
+                              btVector3(0, 0, 240));
+                expected.insert(std::minmax<const btBroadphaseProxy*>(wall.getBroadphaseProxy(),
+                                                                      ball.getBroadphaseProxy()));
+            }
+            range.world.stepSimulation(kStep, 0);
+            if (sweep == Sweep::none) {
+                EXPECT_LT(range.pairs().size(), std::size_t{kPhases} / 10);
+            } else {
+                EXPECT_EQ(range.pairs(), expected) << thickness;
+            }
+        }
     }
 }
 

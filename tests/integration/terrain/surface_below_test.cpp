@@ -8,7 +8,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
 #include <limits>
+#include <utility>
 
 namespace hashphase::test {
 namespace {
@@ -65,9 +68,28 @@ TYPED_TEST(SurfaceBelow, OfEqualOnesIsTheOneWithTheSmallestNumber) {
     EXPECT_GT(found, 200);
 }
 
+/// Whether a vertex of 24 x 24 quads has quads on all sides.
+bool isWithinGround(std::uint32_t vertex) {
+    const auto isWithin = [](std::uint32_t place) { return place > 0 && place < 24; };
+    return isWithin(vertex % 25) && isWithin(vertex / 25);
+}
+
+/// An edge of a triangle of 24 x 24 quads that begins within: on either side of it is a triangle.
+template <class Scalar>
+std::pair<std::uint32_t, std::uint32_t> innerEdge(Random& random, const Mesh<Scalar>& mesh) {
+    while (true) {
+        const std::uint32_t corner = random.below(static_cast<std::uint32_t>(mesh.indices.size()));
+        const std::uint32_t next = corner % 3 == 2 ? corner - 2 : corner + 1;
+        if (isWithinGround(mesh.indices[corner])) {
+            return {mesh.indices[corner], mesh.indices[next]};
+        }
+    }
+}
+
 TYPED_TEST(SurfaceBelow, HasNoGapsWhereTrianglesMeet) {
     Random random(0x5eed2102);
     std::size_t asked = 0;
+    std::size_t diagonals = 0;
     std::vector<Vector3<TypeParam>> points;
     std::vector<std::optional<Ground<TypeParam>>> found;
     for (const double offset : {0.0, 1000.0, -1e6}) {
@@ -77,16 +99,18 @@ TYPED_TEST(SurfaceBelow, HasNoGapsWhereTrianglesMeet) {
                 roughGround<TypeParam>(random, 24, edge, 4, 0.19, {offset, 0, -offset});
             const GroundWorld<TypeParam> world(mesh);
             points.clear();
-            const auto vertex = [&](std::uint32_t i, std::uint32_t k) {
-                return mesh.vertices[k * 25 + i].template cast<double>().eval();
+            const auto vertex = [&](std::uint32_t number) {
+                return mesh.vertices[number].template cast<double>().eval();
             };
             for (int i = 0; i < 34000; ++i) {
-                // Inner edges of the lattice, and corners; as near as numbers get to them.
-                const std::uint32_t x = 1 + random.below(23);
-                const std::uint32_t z = 1 + random.below(23);
-                const Vector3<double> a = vertex(x, z);
-                const Vector3<double> b = random.chance(0.5) ? vertex(x + 1, z) : vertex(x, z + 1);
-                const double share = random.chance(0.05) ? 0 : random.unit();
+                // Inner edges, and corners; as near as numbers get to them.
+                const auto [from, to] = innerEdge(random, mesh);
+                const Vector3<double> a = vertex(from);
+                const Vector3<double> b = vertex(to);
+                diagonals += from % 25 != to % 25 && from / 25 != to / 25 ? 1 : 0;
+                // Not as far as the outer edge, beyond which there is no ground.
+                const double most = isWithinGround(to) ? 1 : 0.9;
+                const double share = random.chance(0.05) ? 0 : random.between(0, most);
                 Vector3<TypeParam> point = (a + share * (b - a)).template cast<TypeParam>();
                 point[1] = 100;
                 points.push_back(point);
@@ -96,12 +120,14 @@ TYPED_TEST(SurfaceBelow, HasNoGapsWhereTrianglesMeet) {
             std::size_t misses = 0;
             for (const auto& ground : found) {
                 misses += ground ? 0 : 1;
+                ASSERT_TRUE(!ground || std::isfinite(ground->height));
             }
             asked += points.size();
             ASSERT_EQ(misses, 0U) << "offset " << offset << ", mesh " << meshNumber;
         }
     }
     EXPECT_GE(asked, 1000000U);
+    EXPECT_GT(diagonals, asked / 4);
 }
 
 TYPED_TEST(SurfaceBelow, IsTheSameFromItsOwnHeight) {
