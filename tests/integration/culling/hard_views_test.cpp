@@ -59,8 +59,8 @@ TYPED_TEST(HardViews, NeverDriftsOutOfItsMargin) {
         std::vector<Placed<TypeParam>> proxies;
         Culler<TypeParam> culler(1);
         for (int k = 0; k < 8; ++k) {
-            // Outside of the margin by 5,000 of the least steps and less, so that they are not in the
-            // set at first.
+            // Outside of the margin by 5,000 of the least steps and less, so that they are not in
+            // the set at first.
             const TypeParam front = -1 - 625 * tiny * static_cast<TypeParam>(k + 1);
             const Aabb<TypeParam> box(Vector3<TypeParam>(front - 1, 2, TypeParam(k) / 2),
                                       Vector3<TypeParam>(front, 3, TypeParam(k) / 2));
