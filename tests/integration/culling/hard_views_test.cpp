@@ -59,9 +59,9 @@ TYPED_TEST(HardViews, NeverDriftsOutOfItsMargin) {
         std::vector<Placed<TypeParam>> proxies;
         Culler<TypeParam> culler(1);
         for (int k = 0; k < 8; ++k) {
-            // Just outside of the margin, by 4,000 of the least steps at most, so that they are not
+            // Just outside of the margin, by 800 of the least steps at most, so that they are not
             // in the set at first.
-            const TypeParam front = -1 - 500 * tiny * static_cast<TypeParam>(k + 1);
+            const TypeParam front = -1 - 100 * tiny * static_cast<TypeParam>(k + 1);
             const Aabb<TypeParam> box(Vector3<TypeParam>(front - 1, 2, TypeParam(k) / 2),
                                       Vector3<TypeParam>(front, 3, TypeParam(k) / 2));
             proxies.push_back({grid.add(box), box});
@@ -77,7 +77,7 @@ TYPED_TEST(HardViews, NeverDriftsOutOfItsMargin) {
             }
             culler.look(grid, view, moved);
         };
-        approach(1 - 1000 * tiny);  // nearly the whole margin at once
+        approach(1 - 9000 * tiny);  // nearly the whole margin at once
         std::size_t visible = 0;
         for (int frame = 0; frame < 10'000; ++frame) {
             approach(step);
