@@ -97,8 +97,8 @@ Boxes<Scalar> crowd(std::uint32_t count, double side, std::uint64_t seed) {
     return boxes;
 }
 
-/// So many boxes elsewhere, each in a cell of 1e4 m of its own, that the crowds at the origin are not
-/// in the middle of all, where cells begin.
+/// So many boxes elsewhere, each in a cell of 1e4 m of its own, that the crowds at the origin are
+/// not in the middle of all, where cells begin.
 template <class Scalar>
 void addAnchors(Boxes<Scalar>& boxes) {
     const auto count = static_cast<int>(boxes.size() + 1);

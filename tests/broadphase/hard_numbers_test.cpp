@@ -187,8 +187,8 @@ struct CoupleSum {
 };
 
 /// Boxes from each border of cells to the next along the axis, k * cell as rounded for k from -1000
-/// to 999, in the order of where they begin; and points an ulp before and behind every eighth border,
-/// or every one where the number of the cells' size is a multiple of eight.
+/// to 999, in the order of where they begin; and points an ulp before and behind every eighth
+/// border, or every one where the number of the cells' size is a multiple of eight.
 template <class Scalar>
 std::vector<Aabb<Scalar>> boxesOnBorders(Scalar cell, int sizeNumber, int axis) {
     using Limits = std::numeric_limits<Scalar>;
@@ -212,8 +212,8 @@ std::vector<Aabb<Scalar>> boxesOnBorders(Scalar cell, int sizeNumber, int axis) 
     return boxes;
 }
 
-// All of them, for cells of 0.1, 0.2 ... 100 along x, and every fourth of these along the other axes. A
-// good tenth of these numbers times 1 / cell is not k.
+// All of them, for cells of 0.1, 0.2 ... 100 along x, and every fourth of these along the other
+// axes. A good tenth of these numbers times 1 / cell is not k.
 TYPED_TEST(HardNumbers, OnTheBordersOfAHundredThousandCellsPartNoBoxes) {
     std::size_t elsewhere = 0;
     detail::PairParts parts;

@@ -128,9 +128,9 @@ TYPED_TEST(HardRays, AlongAxesMeetWhatTheSlabsSayWhateverTheSignsOfZeros) {
     EXPECT_GT(met, 4000U);
 }
 
-// 1e5, 3.4e7 and 1e9 cells of a metre, straight and slanted. What adds up steps along such a way stops
-// or strays; here the box at its very end is met, what stands well aside is not, and no more is read
-// than lies there.
+// 1e5, 3.4e7 and 1e9 cells of a metre, straight and slanted. What adds up steps along such a way
+// stops or strays; here the box at its very end is met, what stands well aside is not, and no more
+// is read than lies there.
 TYPED_TEST(HardRays, OfABillionCellsMeetWhatLiesAlongTheirWayUntilItsEnd) {
     constexpr std::uint32_t kCount = 300;
     Random random(0x5eed1001);

@@ -134,8 +134,8 @@ TYPED_TEST(HardSizes, FromAMicrometreToAThousandKilometresCostNoMoreThanThreeTim
     EXPECT_GT(expectPairsOfBruteForce<TypeParam>(this->mixture(800, 1e-6, 1e6, 2)), 100U);
 }
 
-// As many of each size lie within twelve of its edges as of any other, and so many more of all sizes,
-// that it costs what levels of cells cannot spare; numbers are fine enough for the smallest.
+// As many of each size lie within twelve of its edges as of any other, and so many more of all
+// sizes, that it costs what levels of cells cannot spare; numbers are fine enough for the smallest.
 TYPED_TEST(HardSizes, OfAllKindsAtOnePlacePairAsBruteForceSaysAtAFractionOfItsCost) {
     constexpr std::size_t kCount = 4000;
     for (const double largest : {1.0, 1e3, 1e6}) {

@@ -84,9 +84,9 @@ struct Changed {
             add();
         }
     }
-    /// query(collector), whose collector calls change() for each proxy offered, must offer all those of
-    /// which matches(id, box) was true before and that were neither moved nor removed meanwhile, once
-    /// each, and nothing else that stayed as it was. Returns how many they are.
+    /// query(collector), whose collector calls change() for each proxy offered, must offer all
+    /// those of which matches(id, box) was true before and that were neither moved nor removed
+    /// meanwhile, once each, and nothing else that stayed as it was. Returns how many they are.
     template <class Matches, class Query>
     std::size_t expectTheOthersOnce(const Matches& matches, const Query& query,
                                     const std::function<void(ProxyId)>& change) {

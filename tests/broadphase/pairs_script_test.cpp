@@ -165,8 +165,8 @@ TYPED_TEST(PairsInScripts, AreTheSameSequenceInEveryRun) {
 
 // --- Change by change ----------------------------------------------------------------------------
 
-/// A few boxes that come, move and go, and who overlaps whom: by brute force, and as the pairs report
-/// births and deaths.
+/// A few boxes that come, move and go, and who overlaps whom: by brute force, and as the pairs
+/// report births and deaths.
 template <class Scalar>
 class SmallWorld {
 public:

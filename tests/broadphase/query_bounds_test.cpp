@@ -39,8 +39,8 @@ protected:
             largestCell = grid.update().largestCell;
         }
 
-        /// Many more boxes, far away, each in a cell of 8 m of its own: that they are not looked at,
-        /// and that cells do not begin in the middle of the others.
+        /// Many more boxes, far away, each in a cell of 8 m of its own: that they are not looked
+        /// at, and that cells do not begin in the middle of the others.
         void addAnchors() {
             for (std::uint64_t i = 0; i <= count; ++i) {
                 const Vector3<double> at(1004 + 20.0 * static_cast<double>(i % 1000),

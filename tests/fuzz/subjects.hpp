@@ -20,8 +20,8 @@ inline constexpr Subject kPairs{"pairs", &playPairs};
 Verdict playClients(std::span<const Operation> operations, bool tellsStory);
 inline constexpr Subject kClients{"clients", &playClients};
 
-/// SpatialHashBroadphase with its queries and batches, over several pair caches; and PairCache under
-/// btDbvtBroadphase.
+/// SpatialHashBroadphase with its queries and batches, over several pair caches; and PairCache
+/// under btDbvtBroadphase.
 Verdict playBroadphase(std::span<const Operation> operations, bool tellsStory);
 inline constexpr Subject kBroadphase{"broadphase", &playBroadphase};
 

@@ -87,8 +87,8 @@ public:
         return {from, from + btVector3(2, 2, 2)};
     }
 
-    /// Both expect that whoever is there is found once, unless the callback moves or destroys it, and
-    /// return how many others are.
+    /// Both expect that whoever is there is found once, unless the callback moves or destroys it,
+    /// and return how many others are.
     std::size_t castRay(ChangingRay& callback) {
         callback.m_rayDirectionInverse = btVector3(BT_LARGE_FLOAT, BT_LARGE_FLOAT, 1);
         callback.m_signs[0] = callback.m_signs[1] = callback.m_signs[2] = 0;

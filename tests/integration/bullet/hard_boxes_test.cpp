@@ -27,8 +27,8 @@ SpatialHashConfig cellsOf(double size) {
     return config;
 }
 
-/// In cells of each size, of which 0 is the automatic one, the pairs are those of brute force. Returns
-/// how many there are.
+/// In cells of each size, of which 0 is the automatic one, the pairs are those of brute force.
+/// Returns how many there are.
 std::size_t expectPairsOfBruteForce(const std::vector<Box>& boxes,
                                     const std::vector<btScalar>& cellSizes = {1, 0}) {
     const int count = static_cast<int>(boxes.size());

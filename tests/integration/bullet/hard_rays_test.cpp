@@ -190,7 +190,8 @@ TEST(HardRays, WithABadNumberAnywhereFindNothing) {
     }
 }
 
-// Comparing with NaN is false, by which btRayAabb2() takes some slabs for hit and others for missed.
+// Comparing with NaN is false, by which btRayAabb2() takes some slabs for hit and others for
+// missed.
 TEST(HardRays, ThatAreFatByNanFindWhatBulletsFieldsSay) {
     RayWorld world;
     std::size_t found = 0;
