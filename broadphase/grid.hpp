@@ -151,9 +151,10 @@ public:
 
     /// The one query: offers to `collector` every proxy whose box has a key in `region`, each once.
     /// See regions.hpp and collectors.hpp. Cost: the cells that the region touches, returned as
-    /// data. However large or long the region, about one test for each proxy at most, and one more
-    /// for each that has changed since it was filed; none for a region that is empty by a NaN, but
-    /// for these.
+    /// data. However large or long the region, about one test for each proxy at most, up to 16 where
+    /// so many rows of cells share a bucket, and one more for each that has changed since it was
+    /// filed; none, but for these, for a region that is empty by a NaN (one for each, if the NaN is in
+    /// a ray's fatness).
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
 
