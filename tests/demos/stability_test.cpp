@@ -220,9 +220,16 @@ TEST(Stability, EndsWithStatus1WhenABroadphaseOfOursForgetsAPair) {
     EXPECT_EQ(lastLineOf(printed.out), "0 of 3 hard cases hold\n");
 }
 
-// The cases that hold under a broken broadphase in place of ours.
+// The cases that hold under a broken broadphase in place of ours; but for two that take brute force,
+// which these are, too long.
 std::string heldBy(const BroadphaseKind& broken) {
-    const Printed printed = run({"--quick", "--quiet"}, std::array{broken});
+    std::string cases;
+    for (const HardCase& each : hardCases()) {
+        const std::string id = each.id;
+        cases += id == "H8" || id == "H25" ? "" : id + ',';
+    }
+    cases.pop_back();
+    const Printed printed = run({"--quick", "--quiet", "--only", cases}, std::array{broken});
     EXPECT_EQ(printed.exitCode, kExitCheckFailed);
     std::istringstream lines(printed.out);
     std::string held;
