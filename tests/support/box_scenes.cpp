@@ -49,7 +49,8 @@ Scalar hostileNumber(Random& random) {
 
 template <class Scalar>
 Aabb<Scalar> hostileBox(Random& random) {
-    Aabb<Scalar> box = boxAround<Scalar>(random.pointIn(-4, 4), random.pointIn(0, 2));
+    const Vector3<double> half = random.pointIn(0, 2);
+    Aabb<Scalar> box = boxAround<Scalar>(random.pointIn(-4, 4), half);
     const std::uint32_t spoiled = 1 + random.below(3);
     for (std::uint32_t i = 0; i < spoiled; ++i) {
         Vector3<Scalar>& corner = random.chance(0.5) ? box.min() : box.max();
@@ -73,8 +74,8 @@ BoxScene<Scalar> paperScene() {
         return boxAround<Scalar>({random.between(0, 400), random.between(0, 400), 1}, {1, 1, 1});
     };
     scene.nudge = [](Random& random, const Aabb<Scalar>& box) {
-        const Vector3<Scalar> by(static_cast<Scalar>(random.between(-1, 1)),
-                                 static_cast<Scalar>(random.between(-1, 1)), 0);
+        const auto byY = static_cast<Scalar>(random.between(-1, 1));
+        const Vector3<Scalar> by(static_cast<Scalar>(random.between(-1, 1)), byY, 0);
         return Aabb<Scalar>(box.min() + by, box.max() + by);
     };
     return scene;
@@ -102,12 +103,12 @@ BoxScene<Scalar> plateScene() {
     scene.name = "plates in one plane";
     scene.count = 200;
     scene.draw = [](Random& random) {
-        return boxAround<Scalar>({random.between(-20, 20), 3, random.between(-20, 20)},
-                                 {random.between(0, 2), 0, random.between(0, 2)});
+        const Vector3<double> half{random.between(0, 2), 0, random.between(0, 2)};
+        return boxAround<Scalar>({random.between(-20, 20), 3, random.between(-20, 20)}, half);
     };
     scene.nudge = [](Random& random, const Aabb<Scalar>& box) {
-        const Vector3<Scalar> by(static_cast<Scalar>(random.between(-0.5, 0.5)), 0,
-                                 static_cast<Scalar>(random.between(-0.5, 0.5)));
+        const auto byZ = static_cast<Scalar>(random.between(-0.5, 0.5));
+        const Vector3<Scalar> by(static_cast<Scalar>(random.between(-0.5, 0.5)), 0, byZ);
         return Aabb<Scalar>(box.min() + by, box.max() + by);
     };
     return scene;
@@ -122,7 +123,8 @@ BoxScene<Scalar> pileScene() {
     scene.draw = [](Random& random) {
         const double pile = random.below(4);
         const Vector3<double> middle(pile * 3000 - 5000, pile * 1000, 7000 - pile * 4000);
-        return boxAround<Scalar>(middle + random.pointIn(-2, 2), random.pointIn(0.3, 0.6));
+        const Vector3<double> half = random.pointIn(0.3, 0.6);
+        return boxAround<Scalar>(middle + random.pointIn(-2, 2), half);
     };
     scene.nudge = [](Random& random, const Aabb<Scalar>& box) { return shifted(random, box, 0.2); };
     return scene;

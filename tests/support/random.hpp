@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Random numbers that are the same on every machine and standard library.
+// Random numbers that are the same on every machine and standard library. Draw one in a statement, or
+// in braces: of two arguments of a call, compilers choose which one is drawn first.
 
 #include <broadphase/aabb.hpp>
 
