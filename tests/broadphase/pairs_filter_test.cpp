@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Zlib
 
 #include <tests/support/box_scenes.hpp>
+#include <tests/support/out_of_memory.hpp>
 #include <tests/support/pair_world.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -278,6 +280,34 @@ TEST(Refilter, CountsOnceWhatIsRefusedAtRestAndAgainWhenOneHasWoken) {
     EXPECT_TRUE(couple.isPair());
     EXPECT_EQ(couple.world.pairs.refusedCount(), 0U);
     EXPECT_EQ(couple.world.pairs.validate(), "");
+}
+
+TEST(PairFilterOutOfMemory, LeavesWhatIsRefusedAsItWasWhenAFailedUpdateIsRepairedInVain) {
+    if (!kCountsAllocations) {
+        GTEST_SKIP() << "this program has another `new`";
+    }
+    struct Refusing {
+        Refusing() {
+            for (int i = 0; i < 100; ++i) {
+                ids.push_back(grid.add(boxAt(0.9 * i), Mobility::resting));
+            }
+            for (int i = 0; i < 4; ++i) {
+                pairs.update(refuse);
+                grid.move(ids[0], boxAt(0.001 * (i + 1)));
+            }
+            EXPECT_THROW(pairs.update([](ProxyId, ProxyId) -> bool { throw 1; }), int);
+        }
+        static Aabb<float> boxAt(double x) { return boxAround<float>({x, 0, 0}, {0.5, 0.5, 0.5}); }
+        static bool refuse(ProxyId, ProxyId) { return false; }
+        Grid<float> grid;
+        Pairs<float> pairs{grid};
+        std::vector<ProxyId> ids;
+    };
+    const std::size_t failures = runOutOfMemory(
+        [] { return std::make_unique<Refusing>(); },
+        [](Refusing& world) { world.pairs.refilter(world.ids[50], Refusing::refuse); },
+        [](Refusing& world, std::size_t) { EXPECT_EQ(world.pairs.refusedCount(), 99U); });
+    EXPECT_GE(failures, 1U);
 }
 
 }  // namespace
