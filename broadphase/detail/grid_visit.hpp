@@ -30,27 +30,27 @@ struct Grid<Scalar>::VisitReader {
     template <class IsOwn>
     bool read(const detail::EntryRange& range, const IsOwn& isOwn) {
         for (std::uint32_t entry = range.first; entry < range.last; ++entry) {
-            const Scalar key = region.key(table.box(entry));
-            if (!(key >= 0 && key <= limit()) || !isOwn(entry)) {
+            Scalar key = region.key(table.box(entry));
+            if (!isWanted(key) || !isOwn(entry)) {
                 continue;
             }
             const std::uint32_t slot = table.slot(entry);
-            if (grid.isFiled(slot) && isStillWanted(slot) && !offer(slot, key)) {
+            if (!grid.isFiled(slot)) {
+                continue;
+            }
+            // The collector may have changed so much that it is not listed any more: then boxes are
+            // asked for as they are now.
+            if (grid.manyWait_.load(std::memory_order_relaxed)) {
+                key = region.key(grid.records_[slot].box);
+            }
+            if (isWanted(key) && !offer(slot, key)) {
                 return false;
             }
         }
         return true;
     }
 
-    // The collector may have changed so much that it is not listed any more: then boxes are asked for
-    // as they are now.
-    [[nodiscard]] bool isStillWanted(std::uint32_t slot) const {
-        if (!grid.manyWait_.load(std::memory_order_relaxed)) {
-            return true;
-        }
-        const Scalar key = region.key(grid.records_[slot].box);
-        return key >= 0 && key <= limit();
-    }
+    [[nodiscard]] bool isWanted(Scalar key) const { return key >= 0 && key <= limit(); }
 
     bool offer(std::uint32_t slot, Scalar key) {
         ++cost.hits;

@@ -215,6 +215,33 @@ TEST(GridCallback, IsOfferedWhatItHasMovedWhereItIsNow) {
     EXPECT_EQ(collector.found.back(), ids.back());
 }
 
+TEST(GridCallback, IsOfferedTheKeyOfWhereThingsAreNow) {
+    struct MoveAll {
+        void add(ProxyId id, float key) {
+            EXPECT_EQ(key, region.key(grid.box(id)));
+            if (++offered == 1) {
+                for (const ProxyId each : ids) {
+                    grid.move(each, cubeAt(grid.box(each).min().x() + 7));
+                }
+            }
+        }
+        [[nodiscard]] static double limit() { return std::numeric_limits<double>::infinity(); }
+        Grid<float>& grid;
+        const std::vector<ProxyId>& ids;
+        SphereRegion<float> region{{0, 0, 0}, 1000};
+        std::size_t offered = 0;
+    };
+    Grid<float> grid;
+    std::vector<ProxyId> ids;
+    for (int i = 0; i < 300; ++i) {
+        ids.push_back(grid.add(cubeAt(2 * i)));
+    }
+    grid.update();
+    MoveAll collector{grid, ids};
+    grid.visit(SphereRegion<float>({0, 0, 0}, 1000), collector);
+    EXPECT_GT(collector.offered, 100U);
+}
+
 TEST(GridUpdate, TellsHowManyShareACell) {
     Grid<float> grid({.cellSize = 2});
     EXPECT_EQ(grid.update().largestCell, 0U);
