@@ -5,8 +5,10 @@
 
 #include <CLI/CLI.hpp>
 
+#include <charconv>
 #include <cstdint>
 #include <string>
+#include <system_error>
 
 namespace hashphase::demos {
 
@@ -21,10 +23,11 @@ namespace hashphase::demos {
 }
 
 /// What is wrong with a seed; empty when it is one. CLI11's own check answers with a range of 300
-/// digits.
+/// digits, and takes what is too large.
 [[nodiscard]] inline std::string seedFault(const std::string& text) {
     std::uint64_t seed = 0;
-    if (text.front() == '-' || !CLI::detail::lexical_cast(text, seed)) {
+    const char* const end = text.data() + text.size();
+    if (std::from_chars(text.data(), end, seed) != std::from_chars_result{end, std::errc()}) {
         return "'" + text + "' is no seed, which is a whole number from 0 to 2^64 - 1";
     }
     return {};

@@ -402,11 +402,11 @@ constexpr std::array kChurnCases{
         "a cube that moves by 5 cm, and 1 ulp more and less, in each of 10,000 frames (--quick: "
         "1,000), past others; btDbvtBroadphase fattens boxes by 5 cm",
         "exact pairs in every frame", smallMoves},
-    HardCase{"H35", "changes at random",
-             "1,000,000 (--quick: 20,000; a fiftieth of it for the others) creations, moves and "
-             "removals of 40 "
-             "boxes, among them points, large and far ones, and such as touch exactly",
-             "the pairs of brute force after each", randomChanges},
+    HardCase{
+        "H35", "changes at random",
+        "1,000,000 (--quick: 20,000; a fiftieth of it for the others) creations, moves and "
+        "removals of 40 boxes, among them points, large and far ones, and such as touch exactly",
+        "the pairs of brute force after each", randomChanges},
     HardCase{
         "H44", "nobody, one, all outside",
         "0, 1 and 40 boxes 1 km outside of the region that is asked about, and of the axis sweep's "
