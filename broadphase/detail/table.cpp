@@ -10,6 +10,7 @@
 #include <broadphase/diagnostics.hpp>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -139,11 +140,13 @@ void Table<Scalar>::sortCrowds(std::span<const PaddedBox<Scalar>> boxes) {
             if (!axis) {
                 return;
             }
-            const auto longOnes = std::stable_partition(
-                crowd.begin(), crowd.end(),
-                [&](std::uint32_t i) { return !census.isLong(boxes[i], *axis); });
-            const auto shortCount = static_cast<std::uint32_t>(longOnes - crowd.begin());
-            std::sort(crowd.begin(), longOnes, [&](std::uint32_t a, std::uint32_t b) {
+            const auto isLong = [&](std::uint32_t i) { return census.isLong(boxes[i], *axis); };
+            longOnes_.clear();
+            std::copy_if(crowd.begin(), crowd.end(), std::back_inserter(longOnes_), isLong);
+            const auto shortEnd = std::remove_if(crowd.begin(), crowd.end(), isLong);
+            std::copy(longOnes_.begin(), longOnes_.end(), shortEnd);
+            const auto shortCount = static_cast<std::uint32_t>(shortEnd - crowd.begin());
+            std::sort(crowd.begin(), shortEnd, [&](std::uint32_t a, std::uint32_t b) {
                 const Scalar lowA = boxes[a].low[*axis];
                 const Scalar lowB = boxes[b].low[*axis];
                 return lowA != lowB ? lowA < lowB : a < b;
@@ -293,7 +296,7 @@ template <class Scalar>
 std::size_t Table<Scalar>::memoryBytes() const noexcept {
     return levels_.capacity() * sizeof(Level<Scalar>) +
            (bucketStart_.capacity() + slots_.capacity() + order_.capacity() +
-            bucketOfEntry_.capacity() + buckets_.capacity()) *
+            bucketOfEntry_.capacity() + buckets_.capacity() + longOnes_.capacity()) *
                sizeof(std::uint32_t) +
            6 * bounds_[0].capacity() * sizeof(Scalar) + rowOfEntry_.capacity() * sizeof(Row) +
            views_.capacity() * sizeof(LevelView<Scalar>) +

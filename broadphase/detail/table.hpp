@@ -165,6 +165,7 @@ private:
     std::array<std::vector<Scalar>, 6> bounds_;  // kColumnPadding longer than the entries
 
     std::vector<std::uint32_t> buckets_;    // scratch of build()
+    std::vector<std::uint32_t> longOnes_;   // the same
     std::vector<LevelView<Scalar>> views_;  // the same
 };
 

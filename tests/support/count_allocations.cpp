@@ -83,6 +83,10 @@ void* countedAllocate(std::size_t size) {
     }
     throw std::bad_alloc();
 }
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+    return hashphase::test::isRefused() ? nullptr
+                                        : hashphase::test::countedAllocate(size == 0 ? 1 : size);
+}
 [[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
     hashphase::test::release(memory);
 }
