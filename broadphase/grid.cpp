@@ -47,7 +47,8 @@ Grid<Scalar>::Grid(const GridConfig& config) : config_(checked(config)) {
 template <class Scalar>
 ProxyId Grid<Scalar>::add(const Box& box, Mobility mobility) {
     HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(this), kMustNotChange);
-    const Box own = box;  // it may be that of another proxy, which moves
+    // It may be that of another proxy, which moves. NOLINTNEXTLINE(*-unnecessary-copy-initialization)
+    const Box own = box;
     std::uint32_t slot = firstFree_;
     if (slot == kNoSlot) {
         reserveSlots(records_.size() + 1);

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 namespace hashphase {
 namespace {
@@ -83,17 +84,18 @@ using PointList = detail::FixedList<Point2, 32>;
 // The points from left to right, without those that are hardly to be told from others.
 PointList distinctPoints(const PointList& points, double doubt) {
     std::array<Point2, 32> sorted;
-    const auto end = std::copy(points.begin(), points.end(), sorted.begin());
-    std::sort(sorted.begin(), end, [](const Point2& a, const Point2& b) {
+    std::copy(points.begin(), points.end(), sorted.begin());
+    const std::span fromLeft(sorted.data(), points.size());
+    std::ranges::sort(fromLeft, [](const Point2& a, const Point2& b) {
         return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
     });
     PointList distinct;
-    std::for_each(sorted.begin(), end, [&](const Point2& point) {
+    for (const Point2& point : fromLeft) {
         const auto isClose = [&](const Point2& other) { return (point - other).norm() <= doubt; };
         if (std::none_of(distinct.begin(), distinct.end(), isClose)) {
             distinct.push(point);
         }
-    });
+    }
     return distinct;
 }
 
@@ -104,7 +106,7 @@ PointList hullOf(const PointList& points, double doubt) {
         return points;
     }
     // First below, from left to right, then above and back.
-    std::array<Point2, 2 * 32> chain;
+    std::array<Point2, 64> chain;
     std::size_t size = 0;
     std::size_t first = 0;
     const auto append = [&](const Point2& point) {
@@ -117,9 +119,7 @@ PointList hullOf(const PointList& points, double doubt) {
         }
         chain[size++] = point;
     };
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        append(points[i]);
-    }
+    std::for_each(points.begin(), points.end(), append);
     first = size - 1;
     for (std::size_t i = points.size() - 1; i > 0; --i) {
         append(points[i - 1]);

@@ -58,7 +58,7 @@ public:
             (*ofMany)(asked, accepted);
             return;
         }
-        const OfOne& ofOne = std::get<OfOne>(ask_);
+        const auto& ofOne = std::get<OfOne>(ask_);
         for (std::size_t i = 0; i < asked.size(); ++i) {
             accepted[i] = ofOne(asked[i].first, asked[i].second) ? 1 : 0;
         }

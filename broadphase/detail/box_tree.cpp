@@ -25,7 +25,7 @@ float roundedDown(double x) {
 }
 
 BoxBlock emptyBlock() {
-    BoxBlock block;
+    BoxBlock block{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         block.bounds[axis].fill(kInfinity);
         block.bounds[axis + 3].fill(-kInfinity);

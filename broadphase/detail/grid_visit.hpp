@@ -100,12 +100,10 @@ struct Grid<Scalar>::VolumeReader {
         if (!(reader.limit() >= 0)) {
             return false;
         }
-        for (const detail::Level<Scalar>& level : reader.table.levels()) {
-            if (level.count() > 0 && !(level.hasCells ? readCells(level) : readList(level))) {
-                return false;
-            }
-        }
-        return true;
+        return std::ranges::all_of(
+            reader.table.levels(), [this](const detail::Level<Scalar>& level) {
+                return level.count() == 0 || (level.hasCells ? readCells(level) : readList(level));
+            });
     }
 
 private:

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <exception>
 #include <new>
 #include <utility>
 
@@ -84,7 +85,7 @@ void PairCache::chainPair(std::uint32_t index) noexcept {
     try {
         chain(2 * index);
         chain(2 * index + 1);
-    } catch (const std::bad_alloc&) {
+    } catch (const std::exception&) {
         dropChains();
     }
 }
@@ -155,7 +156,7 @@ void PairCache::removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy,
     }
     std::size_t first = 0;
     std::size_t last = notes.size();
-    std::uint32_t count = static_cast<std::uint32_t>(pairs_.size());
+    auto count = static_cast<std::uint32_t>(pairs_.size());
     while (first < last) {
         remove(notes[first++].uniqueIds, dispatcher, Freeing::now);
         --count;

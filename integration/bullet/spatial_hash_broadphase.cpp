@@ -18,10 +18,10 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 // Bullet's own interfaces have the same symbols in both precisions. This one has not: a program that
 // links a Bullet of the other precision fails to link, with this name in the message.
-extern bool (*const bulletOfTheSamePrecision)(const btAlignedObjectArray<btVector3>&,
-                                              const btVector3&, btScalar);
-bool (*const bulletOfTheSamePrecision)(const btAlignedObjectArray<btVector3>&, const btVector3&,
-                                       btScalar) = &btGeometryUtil::isPointInsidePlanes;
+extern bool (*const kBulletOfTheSamePrecision)(const btAlignedObjectArray<btVector3>&,
+                                               const btVector3&, btScalar);
+bool (*const kBulletOfTheSamePrecision)(const btAlignedObjectArray<btVector3>&, const btVector3&,
+                                        btScalar) = &btGeometryUtil::isPointInsidePlanes;
 
 // --- Proxies -------------------------------------------------------------------------------------
 

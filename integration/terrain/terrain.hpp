@@ -138,7 +138,7 @@ private:
     class TileOrder;
 
     static constexpr std::uint32_t kTilesPerSide = 128;
-    static constexpr std::size_t kTiles = kTilesPerSide * kTilesPerSide;
+    static constexpr std::size_t kTiles = std::size_t{kTilesPerSide} * kTilesPerSide;
 
     /// The tile in which the point lies, of a grid of tiles over all of the ground.
     [[nodiscard]] std::uint16_t tileOf(const Point& point) const noexcept {

@@ -17,7 +17,7 @@ template <class Scalar>
 template <class Search>
 struct Terrain<Scalar>::Candidates {
     void add(ProxyId id, Scalar /*key*/) noexcept {
-        const Search& search = static_cast<const Search&>(*this);
+        const auto& search = static_cast<const Search&>(*this);
         const std::uint32_t number = search.terrain->triangleOf(id);
         if (number == kNone) {
             return;
