@@ -202,6 +202,15 @@ void forOnTwoThreads(std::size_t count, std::size_t grain, LoopBody body) {
     second.join();
 }
 
+/// The proxies here are those of collision objects.
+struct CollectIds : CollectRay {
+    using CollectRay::CollectRay;
+    bool process(const btBroadphaseProxy* proxy) override {
+        found.push_back(proxy->m_uniqueId);
+        return true;
+    }
+};
+
 TEST(RayBatches, CallEachCallbackAsARayAloneDoes) {
     ShapeWorld scene(1500, 24);
     for (const ParallelFor parallelFor : {ParallelFor(serialFor), ParallelFor(forOnTwoThreads)}) {
@@ -209,7 +218,7 @@ TEST(RayBatches, CallEachCallbackAsARayAloneDoes) {
             scene.jump(2 + i);  // so many that the batch files them
         }
         std::vector<Ray> rays;
-        std::deque<CollectRay> collectors;
+        std::deque<CollectIds> collectors;
         std::vector<BroadphaseRay> batch;
         std::deque<Closest> closest;
         std::vector<ClosestRay> closestBatch;
@@ -228,7 +237,7 @@ TEST(RayBatches, CallEachCallbackAsARayAloneDoes) {
         scene.broadphase.closestRays(closestBatch, parallelFor);
         for (std::size_t i = 0; i < rays.size(); ++i) {
             const Ray& ray = rays[i];
-            CollectRay alone(ray);
+            CollectIds alone(ray);
             scene.broadphase.rayTest(ray.from, ray.to, alone, ray.castMin, ray.castMax);
             ASSERT_EQ(collectors[i].found, alone.found);
             Closest closestAlone(ray.from, ray.to);
