@@ -379,7 +379,7 @@ TYPED_TEST(SweptPairs, AreOfProxiesThatAreFoundOnceThoughTheCollectorEndsTheirWa
     }
     pairs.update([](ProxyId, ProxyId) { return true; });
     ChangeSweeps<TypeParam> collector{grid, sweeps};
-    const BoxRegion<TypeParam> everything(makeBox<TypeParam>(-9, -9, -9, 99, 9, 9));
+    const BoxRegion<TypeParam> everything{makeBox<TypeParam>(-9, -9, -9, 99, 9, 9)};
     sweeps.visit(everything, collector);
     std::sort(collector.found.begin(), collector.found.end());
     EXPECT_EQ(collector.found, ids);
