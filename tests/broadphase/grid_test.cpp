@@ -210,7 +210,7 @@ TEST(GridCallback, IsOfferedWhatItHasMovedWhereItIsNow) {
         std::vector<ProxyId> found = {};
     };
     MoveAllButTheLast collector{grid, ids};
-    grid.visit(BoxRegion<float>(makeBox<float>(-10, -10, -10, 1000, 10, 10)), collector);
+    grid.visit(BoxRegion<float>{makeBox<float>(-10, -10, -10, 1000, 10, 10)}, collector);
     EXPECT_LE(collector.found.size(), 2U);
     EXPECT_EQ(collector.found.back(), ids.back());
 }

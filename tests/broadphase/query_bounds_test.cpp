@@ -94,7 +94,7 @@ protected:
         using Plane = typename ConvexRegion<Scalar>::Plane;
         const std::vector<Plane> wedge{Plane(Vector3<Scalar>(1, Scalar(1e-3), 0), -length / 4),
                                        Plane(Vector3<Scalar>(-1, 0, Scalar(1e-2)), 3 * length / 4)};
-        for (const std::size_t planes : {0, 1, 2}) {
+        for (const std::size_t planes : {0U, 1U, 2U}) {
             for (const Containment part : {Containment::touching, Containment::inside}) {
                 expectOneTestEach(world,
                                   ConvexRegion<Scalar>(std::span(wedge).first(planes), part));
