@@ -124,10 +124,9 @@ struct Terrain<Scalar>::RestSearch : Candidates<RestSearch> {
 template <class Scalar>
 class Terrain<Scalar>::TileOrder {
 public:
-    static constexpr std::size_t kMost = 1 << 16;
+    static constexpr std::size_t kMost = std::numeric_limits<std::uint16_t>::max();
 
-    // A counting sort. Of the places in the order, only the end of the last tile may not fit into 16
-    // bits, and nobody is written there.
+    // A counting sort.
     [[gnu::noinline]] TileOrder(const Terrain& terrain, std::span<const Point> points,
                                 ParallelFor parallelFor) {
         constexpr std::size_t grain = 8192;

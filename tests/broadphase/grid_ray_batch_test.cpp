@@ -32,8 +32,8 @@ class RayBatch : public testing::Test {
 protected:
     explicit RayBatch(std::uint32_t count = 3000) {
         for (std::uint32_t i = 0; i < count; ++i) {
-            const Aabb<Scalar> box =
-                boxAround<Scalar>(random_.pointIn(-12, 12), random_.pointIn(0.25, 0.75));
+            const Vector3<double> half = random_.pointIn(0.25, 0.75);
+            const auto box = boxAround<Scalar>(random_.pointIn(-12, 12), half);
             const auto mobility = i % 2 == 0 ? Mobility::resting : Mobility::mobile;
             proxies_.push_back({grid_.add(box, mobility), box});
         }

@@ -181,7 +181,8 @@ TEST(ViewsFarAway, AreExactAHundredThousandKilometresFromTheOrigin) {
         const Eigen::Matrix4d matrix = cameraMatrix<double>(lens, eye, eye + random.pointIn(-9, 9));
         const View<double> view(matrix, lens.depthRange, kViewport);
         ASSERT_EQ(viewError(matrix, kViewport), "");
-        const Pixel pixel(random.between(100, 1380), random.between(50, 770));
+        const double y = random.between(50, 770);
+        const Pixel pixel(random.between(100, 1380), y);
         const RayRegion<double> ray = view.rayThrough(pixel, 1000);
         for (const double share : {0.1, 1.0}) {
             const Vector3<double> point = ray.from() + share * ray.direction();

@@ -72,7 +72,7 @@ TYPED_TEST(TerrainBatch, IsAsOneByOne) {
 
 // More than the places in an order, all in a single tile.
 TYPED_TEST(TerrainBatch, IsAsOneByOneAtASingleSpot) {
-    for (const std::size_t count : {65536U, 65540U}) {
+    for (const std::size_t count : {65535U, 65536U, 65540U}) {
         SCOPED_TRACE(count);
         this->draw(count);
         for (Vector3<TypeParam>& point : this->points_) {
