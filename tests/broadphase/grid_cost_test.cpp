@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Zlib
 
-// What a query costs, counted rather than timed.
+// What queries and updates cost, counted rather than timed.
 
 #include <tests/support/box_scenes.hpp>
+#include <tests/support/count_allocations.hpp>
 #include <tests/support/query_checks.hpp>
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <vector>
 
 namespace hashphase::test {
@@ -112,6 +114,44 @@ TEST(GridCost, OfAFewEnormousBoxesIsOneTestEach) {
         with += crowd.grid.visit(crowd.shortRay(), count).boxesTested;
     }
     EXPECT_LT(with, 2 * without + 500);
+}
+
+// Most are swept, and a long one is tested with everyone.
+template <class Scalar>
+void expectThatACrowdedCellAllocatesNothing() {
+    GridConfig config;
+    config.cellSize = 1e4;
+    Grid<Scalar> grid(config);
+    Random random(0x5eed0705);
+    std::vector<Placed<Scalar>> proxies;
+    for (int i = 0; i < 2000; ++i) {
+        const Aabb<Scalar> box =
+            boxAround<Scalar>(random.pointIn(1, 99), Vector3<double>::Constant(0.3));
+        proxies.push_back({grid.add(box), box});
+    }
+    const auto longBox = makeBox<Scalar>(20, 20, 20, 75, 75, 75);
+    proxies.push_back({grid.add(longBox), longBox});
+    std::size_t before = 0;
+    for (int frame = 0; frame < 8; ++frame) {
+        if (frame == 4) {
+            before = allocationCount();
+        }
+        const Vector3<Scalar> way(Scalar(frame % 2 == 0 ? 0.5 : -0.5), 0, 0);
+        for (Placed<Scalar>& placed : proxies) {
+            placed.box.translate(way);
+            grid.move(placed.id, placed.box);
+        }
+        ASSERT_GT(grid.update().largestCell, 1000U);
+    }
+    EXPECT_EQ(allocationCount(), before);
+}
+
+TEST(GridCost, OfACrowdThatMovesIsNoAllocation) {
+    if (!kCountsAllocations) {
+        GTEST_SKIP() << "this program has another `new`";
+    }
+    expectThatACrowdedCellAllocatesNothing<float>();
+    expectThatACrowdedCellAllocatesNothing<double>();
 }
 
 }  // namespace

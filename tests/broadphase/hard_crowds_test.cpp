@@ -5,7 +5,6 @@
 
 #include <broadphase/detail/limits.hpp>
 #include <tests/support/box_scenes.hpp>
-#include <tests/support/count_allocations.hpp>
 #include <tests/support/fill_table.hpp>
 #include <tests/support/pair_world.hpp>
 #include <tests/support/query_checks.hpp>
@@ -148,34 +147,6 @@ TYPED_TEST(HardCrowds, OfEachCellAreSweptAlongAnAxisOfItsOwn) {
         boxes.push_back(boxAround<TypeParam>(center, Vector3<double>::Constant(0.2)));
     }
     EXPECT_LT(expectPairsOfSweep(boxes, cellsOf(1000)).boxesTested, 200U * kCount);
-}
-
-TYPED_TEST(HardCrowds, ThatMoveAllocateNothing) {
-    if (!kCountsAllocations) {
-        GTEST_SKIP() << "this program has another `new`";
-    }
-    auto boxes = crowd<TypeParam>(2000, 100, 0x5eed1305);
-    boxes.push_back(makeBox<TypeParam>(20, 20, 20, 75, 75, 75));
-    Grid<TypeParam> grid(cellsOf(1e4));
-    std::vector<ProxyId> ids;
-    for (const Aabb<TypeParam>& box : boxes) {
-        ids.push_back(grid.add(box));
-    }
-    const auto frame = [&](int number) {
-        const Vector3<TypeParam> step(TypeParam(number % 2 == 0 ? 0.5 : -0.5), 0, 0);
-        for (const ProxyId id : ids) {
-            grid.move(id, Aabb<TypeParam>(grid.box(id)).translate(step));
-        }
-        grid.update();
-    };
-    for (int number = 0; number < 4; ++number) {
-        frame(number);
-    }
-    const std::size_t before = allocationCount();
-    for (int number = 0; number < 4; ++number) {
-        frame(number);
-    }
-    EXPECT_EQ(allocationCount(), before);
 }
 
 TEST(HardCrowd, AtOnePlaceArePairsOfAllAndNoMoreMemoryEachTime) {
