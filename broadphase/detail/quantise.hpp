@@ -33,7 +33,9 @@ template <class Scalar>
     Scalar scaled = (x - origin) * inverseCellSize;
     scaled = scaled < limit ? scaled : limit;
     scaled = scaled > -limit ? scaled : -limit;
-    scaled = scaled < 0 && scaled > -kOnBorder<Scalar> ? Scalar(0) : scaled;
+    // Both sides, for compilers make vector instructions of that. The other one's floor is 0 anyway.
+    const Scalar size = scaled < 0 ? -scaled : scaled;
+    scaled = size < kOnBorder<Scalar> ? Scalar(0) : scaled;
     const auto truncated = static_cast<std::int32_t>(scaled);
     return truncated - static_cast<std::int32_t>(static_cast<Scalar>(truncated) > scaled);
 }
