@@ -3,6 +3,7 @@
 
 #include <broadphase/detail/kernels.hpp>
 #include <broadphase/detail/prefetch.hpp>
+#include <broadphase/detail/query_scope.hpp>
 #include <broadphase/detail/unit_scale.hpp>
 
 #include <algorithm>
@@ -19,6 +20,9 @@ constexpr std::size_t kAgentsGrain = 1024;  // the same of agents that look arou
 constexpr std::size_t kSampleSize = 512;
 constexpr std::size_t kAhead = 12;  // agents to be read that are fetched meanwhile
 constexpr std::uint32_t kNoCell = ~std::uint32_t{0};
+
+[[maybe_unused]] constexpr const char* kIsAsked =
+    "A crowd neither takes nor answers from within its own filters and visitors.";
 
 // What kernels write beyond the candidates, and beyond the last neighbour.
 constexpr std::size_t kTilePadding = 64 + detail::kColumnPadding;
@@ -111,6 +115,8 @@ void Crowd<Scalar>::chooseCells(const Grid<Scalar>& grid, Scalar radius, ProxyFi
     for (std::vector<double>& column : sample_) {
         column.clear();
     }
+    const detail::QueryScope gridScope(&grid);
+    const detail::QueryScope scope(this);
     const std::size_t count = grid.records_.size();
     const std::size_t step = 1 + count / kSampleSize;
     std::size_t examined = 0;
@@ -140,6 +146,8 @@ void Crowd<Scalar>::stage(const Grid<Scalar>& grid, ProxyFilter filter, Parallel
     std::atomic<std::uint32_t> agentCount{0};
     std::atomic<std::uint32_t> leftOut{0};
     parallelFor(staged_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        const detail::QueryScope gridScope(&grid);
+        const detail::QueryScope scope(this);
         const detail::Torus torus = torus_;
         std::uint32_t agents = 0;
         std::uint32_t others = 0;
@@ -237,6 +245,7 @@ void Crowd<Scalar>::prepare(Scalar radius) {
 template <class Scalar>
 void Crowd<Scalar>::take(const Grid<Scalar>& grid, Scalar radius, ProxyFilter filter,
                          ParallelFor parallelFor) {
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kIsAsked);
     try {
         chooseCells(grid, radius, filter);
         stage(grid, filter, parallelFor);
@@ -275,10 +284,12 @@ void Crowd<Scalar>::returnTile(std::unique_ptr<Tile> tile) {
 template <class Scalar>
 template <class Kernel>
 QueryCost Crowd<Scalar>::ask(ParallelFor parallelFor, const Kernel& kernel) {
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kIsAsked);
     std::atomic<std::uint64_t> rowsVisited{0};
     std::atomic<std::uint64_t> boxesTested{0};
     std::atomic<std::uint64_t> hits{0};
     parallelFor(agentCount_, kAgentsGrain, [&](std::size_t begin, std::size_t end) {
+        const detail::QueryScope scope(this);
         std::unique_ptr<Tile> tile = borrowTile();
         detail::KernelCost cost;
         hits += kernel(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end),
@@ -322,8 +333,10 @@ QueryCost Crowd<Scalar>::countGroups(FunctionRef<std::uint32_t(ProxyId)> groupOf
     HASHPHASE_ASSERT(groupCount <= kMostGroups, "There are at most kMostGroups groups.");
     HASHPHASE_ASSERT(counts.size() == std::size_t{size()} * groupCount,
                      "There is one count for each agent and group.");
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kIsAsked);
     groups_.resize(size() + detail::kColumnPadding);
     parallelFor(size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        const detail::QueryScope scope(this);
         for (std::size_t agent = begin; agent < end; ++agent) {
             const std::uint32_t group = groupOf(ids_[agent]);
             groups_[agent] = static_cast<std::uint8_t>(std::min(group, kMostGroups));

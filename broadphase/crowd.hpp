@@ -59,9 +59,9 @@ public:
     // --- The agents ------------------------------------------------------------------------------
 
     /// Takes the proxies that the filter accepts, as they are now, for questions about `radius` [m].
-    /// The filter is asked on the loop's threads, about some proxies twice. Where memory runs out, or
-    /// the filter throws, there are no agents. Cost: a few passes over the proxies of the grid, whether
-    /// or not they are filed.
+    /// The filter is asked on the loop's threads, about some proxies twice; it changes neither the grid
+    /// nor the crowd (asserted). Where memory runs out, or the filter throws, there are no agents.
+    /// Cost: a few passes over the proxies of the grid, whether or not they are filed.
     void take(const Grid<Scalar>& grid, Scalar radius, ProxyFilter filter = acceptAll,
               ParallelFor parallelFor = serialFor);
 
@@ -88,9 +88,9 @@ public:
 
     /// Calls visit(std::uint32_t agent, std::span<const std::uint32_t> neighbours) for every agent;
     /// the neighbours' numbers are valid during the call, in an order that does not depend on
-    /// `parallelFor`, on whose threads visit() is called. Nothing is kept of all of them. Returns the
-    /// cost; hits are neighbours. Cost: that of comparing each agent with those in the cells around;
-    /// at most all with all.
+    /// `parallelFor`, on whose threads visit() is called; it does not call the crowd (asserted), but for
+    /// ids and positions. Nothing is kept of all of them. Returns the cost; hits are neighbours. Cost:
+    /// that of comparing each agent with those in the cells around; at most all with all.
     template <std::invocable<std::uint32_t, std::span<const std::uint32_t>> Visit>
     QueryCost forEach(Visit&& visit, ParallelFor parallelFor = serialFor) {
         using Target = std::remove_reference_t<Visit>;
@@ -109,7 +109,7 @@ public:
     /// Sets counts[agent * groupCount + group] to how many neighbours of that group the agent has;
     /// size() * groupCount numbers (asserted). groupOf(ProxyId) is asked once for every agent, on the
     /// loop's threads; who is in no group below groupCount, at most kMostGroups (asserted), is not
-    /// counted.
+    /// counted. Cost: that of count(), and a pass over the agents.
     QueryCost countGroups(FunctionRef<std::uint32_t(ProxyId)> groupOf, std::uint32_t groupCount,
                           std::span<std::uint32_t> counts, ParallelFor parallelFor = serialFor);
 

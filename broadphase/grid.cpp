@@ -2,6 +2,7 @@
 #include <broadphase/grid.hpp>
 
 #include <broadphase/detail/limits.hpp>
+#include <broadphase/detail/query_scope.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +11,6 @@
 
 namespace hashphase {
 namespace {
-
-[[maybe_unused]] constexpr const char* kMustNotChange =
-    "A grid is not changed from within a PairFilter, visitEach() or the query of a convex volume.";
 
 // Reading the waiting list costs each query about a nanosecond a proxy, filing costs about ten for
 // every mobile proxy: this many waiting proxies balance the two for a write and a query in turn.
@@ -46,7 +44,7 @@ Grid<Scalar>::Grid(const GridConfig& config) : config_(checked(config)) {
 
 template <class Scalar>
 ProxyId Grid<Scalar>::add(const Box& box, Mobility mobility) {
-    HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(this), kMustNotChange);
+    HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(this), detail::kMustNotChange);
     // It may be that of another proxy, which moves. NOLINTNEXTLINE(*-unnecessary-copy-initialization)
     const Box own = box;
     std::uint32_t slot = firstFree_;
@@ -71,6 +69,8 @@ ProxyId Grid<Scalar>::add(const Box& box, Mobility mobility) {
 
 template <class Scalar>
 void Grid<Scalar>::reserve(std::size_t count) {
+    HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(this), detail::kMustNotChange);
+    checkProxyCount(count);
     reserveSlots(count + removedCount_);
 }
 
@@ -92,7 +92,7 @@ void Grid<Scalar>::reserveSlots(std::size_t slotCount) {
 template <class Scalar>
 void Grid<Scalar>::move(ProxyId id, const Box& box) {
     HASHPHASE_ASSERT(contains(id), "Only a proxy of this grid that was not removed can be moved.");
-    HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(this), kMustNotChange);
+    HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(this), detail::kMustNotChange);
     Record& record = records_[id.index];
     if (!isSameBits(record.box, box)) {
         noteChange(id.index);
@@ -104,7 +104,7 @@ template <class Scalar>
 void Grid<Scalar>::remove(ProxyId id) {
     HASHPHASE_ASSERT(contains(id),
                      "Only a proxy of this grid that was not removed can be removed.");
-    HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(this), kMustNotChange);
+    HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(this), detail::kMustNotChange);
     const std::uint32_t slot = id.index;
     noteChange(slot);
     Record& record = records_[slot];
@@ -113,11 +113,14 @@ void Grid<Scalar>::remove(ProxyId id) {
     record.box = nanBox();
     record.place = Place::nowhere;
     ++record.generation;
+    --size_;
+    if (record.generation == detail::kLastGeneration) {
+        return;  // nobody gets the slot any more, or an id would name two proxies
+    }
     record.restingEntry = firstRemoved_;
     lastRemoved_ = firstRemoved_ == kNoSlot ? slot : lastRemoved_;
     firstRemoved_ = slot;
     ++removedCount_;
-    --size_;
 }
 
 template <class Scalar>

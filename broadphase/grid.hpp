@@ -110,7 +110,8 @@ public:
     [[nodiscard]] ProxyId add(const Box& box, Mobility mobility = Mobility::mobile);
 
     /// Makes room for `count` proxies altogether, so that adding many neither moves anything on the
-    /// way nor fails for want of memory. Throws std::length_error for more than 2^28.
+    /// way nor fails for want of memory. Throws std::length_error for more than 2^28. Cost: O(count) where
+    /// there is not room already.
     void reserve(std::size_t count);
 
     /// Sets the proxy's box. Bit-equal to the present one: a comparison, and nothing is marked.
@@ -143,7 +144,7 @@ public:
     [[nodiscard]] std::size_t nanCount() const noexcept { return nanCount_; }
 
     /// Calls visit(ProxyId, const Box&) for every proxy alive, in the order of their indices; it may
-    /// change the grid.
+    /// change the grid. Cost: O(proxies).
     template <class Visit>
     void forEach(Visit&& visit) const;
 

@@ -99,7 +99,8 @@ public:
     /// Cost: follows what changed, and the pairs of what changed lately. Where more than 256 share a
     /// cell, or by accident or malice a bucket of the hash, it is that of sweeping them along one
     /// axis, the best one of each; at worst, for proxies that lie side by side along every axis and do
-    /// not touch, or that are inverted, a few tests of every two.
+    /// not touch, or that are inverted, a few tests of every two. Ways of Sweeps are searched in up to
+    /// 40 parts each, and against each other in up to 64.
     PairChanges update(PairFilter filter, ParallelFor parallelFor = serialFor);
 
     /// Pairs of one proxy, which is alive (asserted), that have come to overlap since the last update,

@@ -11,8 +11,9 @@ namespace hashphase {
 using LoopBody = FunctionRef<void(std::size_t begin, std::size_t end)>;
 
 /// Runs iterations 0 to count - 1: calls body(begin, end) for ranges that cover each of them once,
-/// of about `grain` iterations or more, in any order and on any threads, and returns when all are
-/// done. Bring your own over any task system; what takes one gives the same results under all.
+/// of about `grain` iterations or more (0 is taken as 1), in any order and on any threads, and returns
+/// when all are done. Bring your own over any task system; what takes one gives the same results
+/// under all.
 using ParallelFor = FunctionRef<void(std::size_t count, std::size_t grain, LoopBody body)>;
 
 /// The loop as it is, on the caller's thread.

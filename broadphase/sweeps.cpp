@@ -10,6 +10,7 @@ namespace hashphase {
 template <class Scalar>
 void Sweeps<Scalar>::set(ProxyId id, const Vector3<Scalar>& displacement, Sweep sweep) {
     HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid can sweep.");
+    HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(&grid_), detail::kMustNotChange);
     const bool isUsable = displacement.allFinite();
     if (!isUsable && !reportedBadData_) {
         reportedBadData_ = true;

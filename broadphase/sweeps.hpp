@@ -21,6 +21,7 @@
 // Hashing", 2005: hashing over time, by a box or by a line of cells, chosen by behaviour.
 
 #include <broadphase/detail/contact_search.hpp>
+#include <broadphase/detail/query_scope.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/moving_box.hpp>
 #include <broadphase/proxy_filter.hpp>
@@ -148,6 +149,7 @@ QueryCost Sweeps<Scalar>::visit(const Region& region, Collector& collector) cons
     const auto stands = [this](ProxyId id) { return !sweeps(id); };
     CollectIf<Collector, decltype(stands)> standing(collector, stands);
     QueryCost cost = grid_.visit(region, standing);
+    const detail::QueryScope scope(&grid_, detail::QueryScope::Changes::allowed);
     // Neither by iterators nor by reference: the collector may change what sweeps. What begins to is
     // not looked for.
     const std::size_t count = motions_.size();

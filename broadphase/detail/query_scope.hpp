@@ -3,35 +3,39 @@
 
 namespace hashphase::detail {
 
-/// Lives while a grid calls somebody back on this thread, so that it can tell a call from within.
-/// Costs two writes to memory of the thread's own.
+/// Must not be broken by who is called back.
+inline constexpr const char* kMustNotChange =
+    "A grid is not changed from within filters, visitEach() or the query of a convex volume.";
+
+/// Lives while a grid, or a client of one, calls somebody back on this thread, so that it can tell a
+/// call from within. Costs two writes to memory of the thread's own.
 class QueryScope {
 public:
-    /// Whether who is called back may change the grid.
+    /// Whether who is called back may change the owner.
     enum class Changes : bool { forbidden, allowed };
 
-    QueryScope(const void* grid, Changes changes) noexcept
-        : grid_(grid), outer_(innermost_), changes_(changes) {
+    explicit QueryScope(const void* owner, Changes changes = Changes::forbidden) noexcept
+        : owner_(owner), outer_(innermost_), changes_(changes) {
         innermost_ = this;
     }
     ~QueryScope() { innermost_ = outer_; }
     QueryScope(const QueryScope&) = delete;
     QueryScope& operator=(const QueryScope&) = delete;
 
-    /// Whether this thread is within a call of the grid's.
-    [[nodiscard]] static bool isWithin(const void* grid) noexcept {
-        return any(grid, [](const QueryScope&) { return true; });
+    /// Whether this thread is within a call of the owner's.
+    [[nodiscard]] static bool isWithin(const void* owner) noexcept {
+        return any(owner, [](const QueryScope&) { return true; });
     }
     /// Whether it is within one that takes no changes.
-    [[nodiscard]] static bool forbidsChanges(const void* grid) noexcept {
-        return any(grid, [](const QueryScope& s) { return s.changes_ == Changes::forbidden; });
+    [[nodiscard]] static bool forbidsChanges(const void* owner) noexcept {
+        return any(owner, [](const QueryScope& s) { return s.changes_ == Changes::forbidden; });
     }
 
 private:
     template <class Predicate>
-    [[nodiscard]] static bool any(const void* grid, const Predicate& predicate) noexcept {
+    [[nodiscard]] static bool any(const void* owner, const Predicate& predicate) noexcept {
         for (const QueryScope* scope = innermost_; scope != nullptr; scope = scope->outer_) {
-            if (scope->grid_ == grid && predicate(*scope)) {
+            if (scope->owner_ == owner && predicate(*scope)) {
                 return true;
             }
         }
@@ -40,7 +44,7 @@ private:
 
     static inline constinit thread_local const QueryScope* innermost_ = nullptr;
 
-    const void* grid_;
+    const void* owner_;
     const QueryScope* outer_;
     Changes changes_;
 };

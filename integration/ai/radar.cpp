@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/ai/radar.hpp>
 
+#include <broadphase/detail/query_scope.hpp>
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/position_region.hpp>
 
@@ -133,6 +134,9 @@ template <class Scalar>
 std::span<const std::uint32_t> Radar<Scalar>::scan(const Grid<Scalar>& grid,
                                                    const RadarWindow<Scalar>& window,
                                                    std::uint32_t groupCount, RadarGroups groupOf) {
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
+                     "A radar does not scan from within its own scan.");
+    const detail::QueryScope scope(this);
     const RadarCells<Scalar> cells(window);
     HASHPHASE_ASSERT(
         double{1} * window.columns * window.rows * std::max(window.layers, 1U) * groupCount <=

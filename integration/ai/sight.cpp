@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/ai/sight.hpp>
 
+#include <broadphase/detail/query_scope.hpp>
 #include <broadphase/detail/unit_scale.hpp>
 #include <broadphase/diagnostics.hpp>
 
@@ -148,10 +149,13 @@ QueryCost visibleFrom(const Grid<Scalar>& grid, const Viewer<Scalar>& viewer,
 template <class Scalar>
 QueryCost Sight<Scalar>::look(const Grid<Scalar>& grid, std::span<const Viewer<Scalar>> viewers,
                               ProxyFilter targets, ProxyFilter blockers, ParallelFor parallelFor) {
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
+                     "Viewers are not replaced from within the filters of look().");
     constexpr std::size_t grain = 16;
     viewerCount_ = 0;  // nobody has seen anybody, should memory run out
     views_.resize(std::max(views_.size(), viewers.size()));
     parallelFor(viewers.size(), grain, [&](std::size_t begin, std::size_t end) {
+        const detail::QueryScope scope(this);
         for (std::size_t i = begin; i < end; ++i) {
             views_[i].cost = visibleFrom(grid, viewers[i], views_[i].seen, targets, blockers);
         }

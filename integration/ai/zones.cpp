@@ -3,6 +3,8 @@
 
 #include <broadphase/collectors.hpp>
 #include <broadphase/detail/ensure_capacity.hpp>
+#include <broadphase/detail/limits.hpp>
+#include <broadphase/detail/query_scope.hpp>
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/proxy_filter.hpp>
 
@@ -10,6 +12,9 @@
 
 namespace hashphase {
 namespace {
+
+[[maybe_unused]] constexpr const char* kMustNotChange =
+    "Zones are neither changed nor updated from within the filter of update().";
 
 template <class Scalar, class Region>
 bool isIn(const Region& region, const Vector3<Scalar>& point) {
@@ -38,6 +43,7 @@ QueryCost findOccupants(const Grid<Scalar>& grid, const Region& region, Presence
 
 template <class Scalar>
 ZoneId Zones<Scalar>::add(const Zone<Scalar>& zone) {
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kMustNotChange);
     auto index = static_cast<std::uint32_t>(slots_.size());
     if (freeSlots_.empty()) {
         detail::ensureCapacity(freeSlots_, slots_.size() + 1);  // so that remove() has room
@@ -53,12 +59,14 @@ ZoneId Zones<Scalar>::add(const Zone<Scalar>& zone) {
 template <class Scalar>
 void Zones<Scalar>::set(ZoneId id, const Zone<Scalar>& zone) {
     HASHPHASE_ASSERT(contains(id), "Only a zone that was not removed can be set.");
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kMustNotChange);
     slots_[id.index].zone = zone;
 }
 
 template <class Scalar>
 void Zones<Scalar>::remove(ZoneId id) {
     HASHPHASE_ASSERT(contains(id), "Only a zone that was not removed can be removed.");
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kMustNotChange);
     Slot& slot = slots_[id.index];
     detail::ensureCapacity(abandoned_, abandoned_.size() + slot.occupants.size());
     for (const ProxyId proxy : slot.occupants) {
@@ -66,7 +74,9 @@ void Zones<Scalar>::remove(ZoneId id) {
     }
     slot.occupants.clear();
     ++slot.generation;
-    freeSlots_.push_back(id.index);
+    if (slot.generation != detail::kLastGeneration) {  // else an id would name two zones
+        freeSlots_.push_back(id.index);
+    }
 }
 
 template <class Scalar>
@@ -91,6 +101,7 @@ const Zone<Scalar>& Zones<Scalar>::zone(ZoneId id) const {
 template <class Scalar>
 ZoneEvents Zones<Scalar>::update(const Grid<Scalar>& grid, ZoneFilter filter,
                                  ParallelFor parallelFor) {
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kMustNotChange);
     // Who is where.
     constexpr std::size_t grain = 8;
     parallelFor(slots_.size(), grain, [&](std::size_t begin, std::size_t end) {
@@ -99,6 +110,7 @@ ZoneEvents Zones<Scalar>::update(const Grid<Scalar>& grid, ZoneFilter filter,
             if (!isAlive(slot)) {
                 continue;
             }
+            const detail::QueryScope scope(this);
             const ZoneId id{static_cast<std::uint32_t>(i), slot.generation};
             const auto counts = [&](ProxyId proxy) { return filter(id, proxy); };
             slot.cost = std::visit(

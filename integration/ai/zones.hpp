@@ -89,7 +89,8 @@ public:
     /// Moves, resizes or reshapes a zone, seen by the next update. Cost: O(1).
     void set(ZoneId id, const Zone<Scalar>& zone);
 
-    /// Removes a zone; its id is never valid again. Its occupants leave in the next update.
+    /// Removes a zone; its id is never valid again. Its occupants leave in the next update. Cost:
+    /// O(occupants).
     void remove(ZoneId id);
 
     [[nodiscard]] bool contains(ZoneId id) const noexcept;

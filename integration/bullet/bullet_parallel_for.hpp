@@ -28,8 +28,8 @@ inline void bulletFor(std::size_t count, std::size_t grain, LoopBody body) {
     if (count > kMost) {
         body(0, count);  // more than Bullet can count
     } else if (count > 0) {
-        btParallelFor(0, static_cast<int>(count), static_cast<int>(std::min(grain, kMost)),
-                      Body(body));
+        btParallelFor(0, static_cast<int>(count),
+                      static_cast<int>(std::clamp<std::size_t>(grain, 1, kMost)), Body(body));
     }
 }
 

@@ -171,7 +171,8 @@ public:
 
     /// Calls callback->processOverlap() for every pair, and removes those for which it returns
     /// true. The callback may add pairs, which it will be shown too, and remove any; where it
-    /// removes others than the one it is shown, some may not be shown this time.
+    /// removes others than the one it is shown, some may not be shown this time. Cost: O(pairs), those
+    /// included that the callback adds: it ends when that adds no more.
     void processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher* dispatcher) override;
 
     /// The same, but with dispatchInfo.m_deterministicOverlappingPairs in the order of unique ids,

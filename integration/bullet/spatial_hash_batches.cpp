@@ -48,6 +48,7 @@ void SpatialHashBroadphase::setAabbs(std::span<btBroadphaseProxy* const> proxies
 
 void SpatialHashBroadphase::destroyProxies(std::span<btBroadphaseProxy* const> proxies,
                                            btDispatcher* dispatcher) {
+    checkMayChange();
     for (btBroadphaseProxy* proxy : proxies) {
         static_cast<void>(checkedProxy(proxy));
     }

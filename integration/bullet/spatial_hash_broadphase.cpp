@@ -86,6 +86,7 @@ btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
 }
 
 void SpatialHashBroadphase::destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
+    checkMayChange();
     pairCache_->removeOverlappingPairsContainingProxy(checkedProxy(proxy), dispatcher);
     removeFromGrid(checkedProxy(proxy));
 }
@@ -100,6 +101,7 @@ void SpatialHashBroadphase::removeFromGrid(Proxy* proxy) {
 
 void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin,
                                     const btVector3& aabbMax, btDispatcher* dispatcher) {
+    checkMayChange();
     Proxy* own = checkedProxy(proxy);
     const bool isSame = isSameBits(own->m_aabbMin, aabbMin) && isSameBits(own->m_aabbMax, aabbMax);
     // A body that flies back may have the same box as when it came.

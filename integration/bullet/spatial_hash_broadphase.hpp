@@ -131,7 +131,8 @@ public:
 
     /// The proxy's address is fixed for its life, m_uniqueId counts 1, 2, 3 ... and is never used
     /// again: after 2^31 - 1 of them std::length_error is thrown until resetPool(); likewise where there
-    /// are 2^28 proxies. `shapeType` is ignored. Cost: O(1).
+    /// are 2^28 proxies. `shapeType` is ignored. Cost: O(1); of
+    /// SpatialHashConfig::eagerGroups that of Pairs::announce() and of its pairs, too.
     btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
                                    int shapeType, void* userPtr, int collisionFilterGroup,
                                    int collisionFilterMask, btDispatcher* dispatcher) override;
@@ -140,8 +141,8 @@ public:
     /// with PairCache the number of the proxy's pairs.
     void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
 
-    /// Cost: O(1); a comparison when the box is the same, and with SpatialHashConfig::sweep a look at
-    /// the body.
+    /// Cost: O(1); a comparison when the box is the same, with SpatialHashConfig::sweep a look at the
+    /// body, and of eagerGroups as in createProxy().
     void setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin, const btVector3& aabbMax,
                  btDispatcher* dispatcher) override;
 
@@ -167,7 +168,8 @@ public:
 
     /// Makes the cache's pairs exact: afterwards it holds precisely the overlapping proxies that
     /// its filter accepts, and with SpatialHashConfig::sweep those that meet on their ways. Pairs that
-    /// did so before are not touched.
+    /// did so before are not touched. Cost: that of Pairs::update(), and of the cache for each pair that
+    /// comes or goes.
     void calculateOverlappingPairs(btDispatcher* dispatcher) override;
 
     btOverlappingPairCache* getOverlappingPairCache() override { return pairCache_; }
@@ -187,13 +189,13 @@ public:
     // --- Many at once ----------------------------------------------------------------------------
 
     /// Creates a proxy for each definition, in their order, and writes them to `proxies`, which is
-    /// as long. Where memory runs out, those that were written are created, and no others. Cost: O(1)
-    /// a proxy.
+    /// as long. Where memory runs out, those that were written are created, and no others. Cost: that
+    /// of createProxy(), each.
     void createProxies(std::span<const ProxyDefinition> definitions,
                        std::span<btBroadphaseProxy*> proxies, btDispatcher* dispatcher);
 
     /// Sets the box of each proxy, in their order; all three are of the same length.
-    /// Cost: O(1) a proxy; a comparison where the box is the same.
+    /// Cost: that of setAabb(), each.
     void setAabbs(std::span<btBroadphaseProxy* const> proxies, std::span<const btVector3> aabbMins,
                   std::span<const btVector3> aabbMaxs, btDispatcher* dispatcher);
 
@@ -216,13 +218,14 @@ public:
 
     /// rayTest() and closestRay() for many rays: each callback hears what it would hear from a ray
     /// alone, in the same order; callbacks are called at the same time where `parallelFor` is
-    /// parallel, and change nothing then. Each ray has a callback (asserted), of its own.
+    /// parallel, and change nothing then. Each ray has a callback (asserted), of its own. Cost: that of
+    /// the rays alone, or less.
     void rayTests(std::span<const BroadphaseRay> rays, ParallelFor parallelFor = serialFor);
     void closestRays(std::span<const ClosestRay> rays, ParallelFor parallelFor = serialFor) const;
 
     /// Asks the filter again about everything that the proxy overlaps, or met on its way, and adds and
     /// removes its pairs accordingly, at once. For use after a change of its group, mask, or of the
-    /// filter.
+    /// filter. Cost: that of Pairs::refilter(), and of the proxy's pairs.
     void refilter(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
     /// Moves the origin of all coordinates to `shift`: subtracts it from the box of every proxy, in one
@@ -285,6 +288,10 @@ private:
                                   : grid_.visit(region, collector);
     }
     void removeDeferred(const btBroadphaseProxy* refiltered, btDispatcher* dispatcher);
+    // Before anything is changed: who breaks it may be stopped by an exception.
+    void checkMayChange() const {
+        HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(&grid_), detail::kMustNotChange);
+    }
     [[nodiscard]] Proxy* checkedProxy(btBroadphaseProxy* proxy) const {
         HASHPHASE_ASSERT(
             proxy != nullptr && grid_.contains(idOf(proxy)) && proxyAt(idOf(proxy).index) == proxy,

@@ -25,13 +25,20 @@ private:
     std::vector<Vector3<btScalar>>& corners_;
 };
 
+// Deeper are only compounds that contain themselves.
+constexpr int kDeepest = 64;
+
 std::string append(const btCollisionShape& shape, const btTransform& transform,
-                   std::vector<Vector3<btScalar>>& corners) {
+                   std::vector<Vector3<btScalar>>& corners, int depth = 0) {
+    if (depth > kDeepest) {
+        return "compounds lie within each other more than 64 deep, or one contains itself.";
+    }
     if (shape.isCompound()) {
         const auto& compound = static_cast<const btCompoundShape&>(shape);
         for (int i = 0; i < compound.getNumChildShapes(); ++i) {
-            const std::string error = append(*compound.getChildShape(i),
-                                             transform * compound.getChildTransform(i), corners);
+            const std::string error =
+                append(*compound.getChildShape(i), transform * compound.getChildTransform(i),
+                       corners, depth + 1);
             if (!error.empty()) {
                 return "Child " + std::to_string(i) + " of a compound: " + error;
             }

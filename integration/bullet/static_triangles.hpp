@@ -23,8 +23,10 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 /// btHeightfieldTerrainShape, any other btConcaveShape that lists its triangles, and of compounds of
 /// these. They come in Bullet's order, which is not the mesh's; corners that triangles share stay
 /// equal to the bit. Returns nothing; or, where the shape or a child of it has no triangles (a plane,
-/// a convex shape), a sentence that names it, and then nothing was appended. A heightfield with a
-/// negative scaling has none either: Bullet itself finds none there. Cost: O(triangles).
+/// a convex shape), or compounds lie more than 64 deep within each other, as one that contains itself
+/// does, a sentence that says so, and then nothing was appended. A heightfield with a negative scaling
+/// has none either: Bullet itself finds none there. Cost: O(triangles), and the children of
+/// compounds, each as often as it is contained.
 [[nodiscard]] std::string appendTriangles(const btCollisionShape& shape,
                                           const btTransform& transform,
                                           std::vector<Vector3<btScalar>>& corners);

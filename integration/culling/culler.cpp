@@ -60,6 +60,8 @@ bool Culler<Scalar>::keepsSet(Scalar moved) {
 // found: should the query throw, it has not all that is visible.
 template <class Scalar>
 bool Culler<Scalar>::begin(const View& view, Scalar moved) {
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
+                     "A culler does not look from within its own filter or forEach().");
     if (!isFrozen_) {
         view_ = view;
     }
@@ -89,6 +91,7 @@ QueryCost Culler<Scalar>::look(const Grid<Scalar>& grid, const View& view, Proxy
     if (!begin(view, moved)) {
         return {};
     }
+    const detail::QueryScope scope(this);
     CollectBits bits(bits_);
     CollectIf accepted(bits, filter);
     const QueryCost cost = grid.visit(grown_, accepted);

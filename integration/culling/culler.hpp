@@ -19,6 +19,7 @@
 // Memory    A bit for each proxy; a frame like the last one allocates nothing.
 
 #include <broadphase/convex_region.hpp>
+#include <broadphase/detail/query_scope.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/proxy_filter.hpp>
 
@@ -79,9 +80,11 @@ public:
 
     [[nodiscard]] std::size_t count() const noexcept;
 
-    /// Calls visit(index) for the ProxyId::index of every proxy in the set, ascending.
+    /// Calls visit(index) for the ProxyId::index of every proxy in the set, ascending. It does not look
+    /// anew (asserted). Cost: a 64th of the proxies, and the calls.
     template <class Visit>
     void forEach(Visit&& visit) const {
+        const detail::QueryScope scope(this);
         for (std::size_t word = 0; word < bits_.size(); ++word) {
             for (std::uint64_t bits = bits_[word]; bits != 0; bits &= bits - 1) {
                 visit(static_cast<std::uint32_t>(64 * word) +

@@ -8,13 +8,14 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cstddef>
 
 namespace hashphase {
 
 /// A ParallelFor: pairs.update(filter, hashphase::tbbFor). Threads that have nothing to do sleep.
 inline void tbbFor(std::size_t count, std::size_t grain, LoopBody body) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, std::max<std::size_t>(grain, 1)),
                       [&body](const tbb::blocked_range<std::size_t>& range) {
                           body(range.begin(), range.end());
                       });

@@ -2,6 +2,7 @@
 #include <integration/terrain/terrain.hpp>
 
 #include <broadphase/detail/ensure_capacity.hpp>
+#include <broadphase/diagnostics.hpp>
 
 #include <limits>
 #include <utility>
@@ -140,6 +141,10 @@ void Terrain<Scalar>::removeFrom(std::size_t first) {
 
 template <class Scalar>
 void Terrain<Scalar>::shiftOrigin(const Point& shift) {
+    HASHPHASE_ASSERT(shift.allFinite(), "The origin is shifted by what is finite.");
+    if (!shift.allFinite()) {
+        return;
+    }
     for (std::uint32_t number = 0; number < size(); ++number) {
         Corners shifted = corners(number);
         for (Point& corner : shifted) {

@@ -58,5 +58,26 @@ TEST(Limits, OfTheNumbersOfUpdatesAreNotNoticed) {
     EXPECT_EQ(pairs.validate(), "");
 }
 
+TEST(Limits, OfIdsAreReachedWithoutOneThatNamesTwoProxies) {
+    if (std::getenv("HASHPHASE_LONG_TESTS") == nullptr) {
+        GTEST_SKIP() << "takes minutes; set HASHPHASE_LONG_TESTS";
+    }
+    Grid<float> grid;
+    const auto box = makeBox<float>(0, 0, 0, 1, 1, 1);
+    const ProxyId first = grid.add(box);
+    ProxyId id = first;
+    std::uint64_t count = 0;
+    for (; id.index == first.index; ++count) {
+        grid.remove(id);
+        ASSERT_FALSE(grid.contains(id));
+        grid.update();
+        id = grid.add(box);
+        ASSERT_FALSE(grid.contains(first));
+    }
+    EXPECT_EQ(count, (std::uint64_t{1} << 31) - 1);
+    EXPECT_EQ(grid.size(), 1U);
+    EXPECT_EQ(grid.validate(), "");
+}
+
 }  // namespace
 }  // namespace hashphase::test

@@ -259,6 +259,7 @@ void expectThatNothingMayChange(Grid<float>& grid, ProxyId id) {
     EXPECT_THROW(static_cast<void>(grid.add(cube(0))), BrokenAssert);
     EXPECT_THROW(grid.move(id, cube(5)), BrokenAssert);
     EXPECT_THROW(grid.remove(id), BrokenAssert);
+    EXPECT_THROW(grid.reserve(100), BrokenAssert);
 }
 
 TEST(GridCallbacks, MustNotChangeTheGridWhereManyAreDealtWithAtOnce) {
@@ -338,6 +339,46 @@ TEST(GridMisuse, OfVisitEachWithoutACollectorForEachRegionIsAsserted) {
     EXPECT_THROW(grid.visitEach(std::span(regions), std::span(counts)), BrokenAssert);
 }
 
+TEST(GridMisuse, OfRoomForMoreThanCanBeCountedIsRefused) {
+    Grid<float> grid;
+    grid.remove(grid.add(cube(0)));
+    EXPECT_THROW(grid.reserve(~std::size_t{0}), std::length_error);
+}
+
+TEST(SweepsMisuse, OfAFilterOrConvexQueryThatSetsIsAsserted) {
+    const ThrowingAsserts throwing;
+    Grid<float> grid;
+    Sweeps<float> sweeps(grid);
+    Pairs<float> pairs(grid, &sweeps);
+    const ProxyId id = grid.add(cube(0), Mobility::resting);
+    static_cast<void>(grid.add(cube(1)));
+    int calls = 0;
+    const auto setting = [&](ProxyId, ProxyId) {
+        ++calls;
+        EXPECT_THROW(sweeps.set(id, {9, 0, 0}), BrokenAssert);
+        return true;
+    };
+    EXPECT_EQ(pairs.update(setting).born.size(), 1U);
+    CallEach collector{[&](ProxyId found) { setting(found, found); }};
+    grid.visit(ConvexRegion<float>({}), collector);
+    EXPECT_EQ(calls, 3);
+    EXPECT_TRUE(sweeps.motion(id).displacement.isZero(0));
+    EXPECT_EQ(sweeps.validate(), "");
+}
+
+TEST(SweepsMisuse, OfACollectorThatUpdatesIsAssertedWhenItIsOfferedWhatSweeps) {
+    const ThrowingAsserts throwing;
+    Grid<float> grid;
+    Sweeps<float> sweeps(grid);
+    Pairs<float> pairs(grid, &sweeps);
+    sweeps.set(grid.add(cube(0)), {9, 0, 0});
+    const auto all = [](ProxyId, ProxyId) { return true; };
+    CallEach collector{[&](ProxyId) { pairs.update(all); }};
+    EXPECT_THROW(sweeps.visit(BoxRegion<float>{cube(5)}, collector), BrokenAssert);
+    pairs.update(all);
+    EXPECT_EQ(sweeps.validate(), "");
+}
+
 TEST(SweepsMisuse, OfAStaleIdIsAsserted) {
     const ThrowingAsserts throwing;
     Grid<float> grid;
@@ -356,6 +397,36 @@ TEST(CrowdMisuse, OfAgentsThatThereAreNotIsAsserted) {
     EXPECT_EQ(crowd.position(0), Point(0, 0, 0));
     EXPECT_THROW(static_cast<void>(crowd.id(1)), BrokenAssert);
     EXPECT_THROW(static_cast<void>(crowd.position(1)), BrokenAssert);
+}
+
+TEST(CrowdMisuse, OfItsOwnCallbacksIsAsserted) {
+    const ThrowingAsserts throwing;
+    Grid<float> grid;
+    const ProxyId id = grid.add(cube(0));
+    Crowd<float> crowd;
+    int calls = 0;
+    crowd.take(grid, 1, [&](ProxyId) {
+        ++calls;
+        expectThatNothingMayChange(grid, id);
+        EXPECT_THROW(crowd.take(grid, 1), BrokenAssert);
+        return true;
+    });
+    std::vector<std::uint32_t> counts(1);
+    const auto ask = [&] {
+        ++calls;
+        EXPECT_THROW(crowd.take(grid, 2), BrokenAssert);
+        EXPECT_THROW(crowd.count(counts), BrokenAssert);
+    };
+    crowd.forEach([&](std::uint32_t, std::span<const std::uint32_t>) { ask(); });
+    const auto groupOf = [&](ProxyId) {
+        ask();
+        return 0U;
+    };
+    crowd.countGroups(groupOf, 1, counts);
+    EXPECT_GE(calls, 4);
+    grid.move(id, cube(3));  // all scopes have ended
+    crowd.take(grid, 1);
+    EXPECT_EQ(crowd.position(0), Point(3, 0, 0));
 }
 
 TEST(GridMisuseDeathTest, EndsTheProgramWithASentence) {

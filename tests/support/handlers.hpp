@@ -5,6 +5,7 @@
 
 #include <broadphase/diagnostics.hpp>
 
+#include <atomic>
 #include <mutex>
 #include <stdexcept>
 #include <string>
@@ -63,6 +64,26 @@ private:
                                      const char* /*file*/, int /*line*/) {
         throw BrokenAssert(sentence);
     }
+
+    AssertHandler previous_;
+};
+
+/// Counts broken assertions while it lives, and goes on, as without assertions.
+class CaughtAsserts {
+public:
+    CaughtAsserts() : previous_(setAssertHandler(&note)) { count_ = 0; }
+    ~CaughtAsserts() { setAssertHandler(previous_); }
+    CaughtAsserts(const CaughtAsserts&) = delete;
+    CaughtAsserts& operator=(const CaughtAsserts&) = delete;
+
+    [[nodiscard]] int count() const { return count_; }
+
+private:
+    static void note(const char* /*condition*/, const char* /*sentence*/, const char* /*file*/,
+                     int /*line*/) {
+        ++count_;
+    }
+    static inline std::atomic<int> count_ = 0;
 
     AssertHandler previous_;
 };

@@ -336,11 +336,23 @@ TEST(Callbacks, OfTheFilterMustChangeNothing) {
         Change change;
     };
     Room room(50);
+    room.check();
     Filter filter;
     room.broadphase.getOverlappingPairCache()->setOverlapFilterCallback(&filter);
+    for (int i = 0; i < 10; ++i) {
+        room.create(kMoving);  // of whose pairs the filter is to be asked
+    }
     const ThrowingAsserts throwing;
+    const int pairCount = room.broadphase.getOverlappingPairCache()->getNumOverlappingPairs();
+    ASSERT_GT(pairCount, 5);
     const std::vector<Change> changes{
         [&](btBroadphaseProxy* proxy) { room.broadphase.destroyProxy(proxy, nullptr); },
+        [&](btBroadphaseProxy* proxy) {
+            room.broadphase.destroyProxies({&proxy, 1}, nullptr);
+        },
+        [&](btBroadphaseProxy* proxy) {
+            room.broadphase.setAabb(proxy, {90, 90, 90}, {91, 91, 91}, nullptr);
+        },
         [&](btBroadphaseProxy*) { room.create(kMoving); },
         [&](btBroadphaseProxy* proxy) { room.broadphase.refilter(proxy, nullptr); },
         [&](btBroadphaseProxy*) { room.broadphase.calculateOverlappingPairs(nullptr); },
@@ -348,6 +360,7 @@ TEST(Callbacks, OfTheFilterMustChangeNothing) {
     for (const Change& change : changes) {
         filter.change = change;
         EXPECT_THROW(room.broadphase.calculateOverlappingPairs(nullptr), BrokenAssert);
+        EXPECT_EQ(room.broadphase.getOverlappingPairCache()->getNumOverlappingPairs(), pairCount);
     }
     filter.change = [&](btBroadphaseProxy*) {
         ChangingBox box([](btBroadphaseProxy*) {});

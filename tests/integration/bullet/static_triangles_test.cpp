@@ -242,7 +242,7 @@ TEST(StaticTriangles, AreNotToBeHadFromPlanesAndConvexShapes) {
     btCompoundShape compound;
     compound.addChildShape(btTransform::getIdentity(), &shape);
     compound.addChildShape(btTransform::getIdentity(), &box);
-    const btCompoundShape childless;
+    btCompoundShape childless;
     Corners corners(3, Vector3<btScalar>::Zero());
     const auto errorOf = [&](const btCollisionShape& of) {
         std::string error = appendTriangles(of, somewhere(true), corners);
@@ -256,6 +256,12 @@ TEST(StaticTriangles, AreNotToBeHadFromPlanesAndConvexShapes) {
     EXPECT_NE(errorOf(compound).find("Child 1 of a compound: A shape of the kind Box"),
               std::string::npos);
     EXPECT_EQ(errorOf(childless), "");
+    btCompoundShape endless(false);
+    endless.addChildShape(btTransform::getIdentity(), &shape);
+    endless.addChildShape(btTransform::getIdentity(), &childless);
+    endless.getChildList()[1].m_childShape = &endless;
+    EXPECT_NE(errorOf(endless).find("one contains itself"), std::string::npos);
+    endless.getChildList()[1].m_childShape = &box;
 }
 
 }  // namespace

@@ -277,5 +277,28 @@ TYPED_TEST(CullerTest, SeesNothingThroughABadCameraOrInAnEmptyGrid) {
     EXPECT_EQ(culler.overdraw(grid).visible, 0U);
 }
 
+#if HASHPHASE_ENABLE_ASSERTS
+TYPED_TEST(CullerTest, DoesNotLookFromWithinItsOwnCallbacks) {
+    const ThrowingAsserts throwing;
+    Grid<TypeParam> grid;
+    this->addBoxes(grid, 5, 3);
+    const ConvexRegion<TypeParam> everything(std::span<const Eigen::Hyperplane<TypeParam, 3>>{});
+    Culler<TypeParam> culler;
+    int calls = 0;
+    const auto lookAgain = [&] {
+        ++calls;
+        EXPECT_THROW(culler.look(grid, everything), BrokenAssert);
+    };
+    const auto filter = [&](ProxyId) {
+        lookAgain();
+        return true;
+    };
+    culler.look(grid, everything, filter);
+    culler.forEach([&](std::uint32_t) { lookAgain(); });
+    EXPECT_EQ(calls, 10);
+    EXPECT_EQ(culler.count(), 5U);
+}
+#endif
+
 }  // namespace
 }  // namespace hashphase::test

@@ -210,5 +210,16 @@ TYPED_TEST(TerrainTriangles, ComeInThrees) {
     }
 }
 
+TYPED_TEST(TerrainTriangles, StayWhereTheyAreWhenTheShiftIsNotFinite) {
+    CaughtAsserts caught;
+    Grid<TypeParam> grid;
+    Terrain<TypeParam> terrain(grid);
+    terrain.add(this->flatTriangle(2));
+    const TypeParam nan = std::numeric_limits<TypeParam>::quiet_NaN();
+    terrain.shiftOrigin(at<TypeParam>(nan, 0, 0));
+    EXPECT_EQ(caught.count(), HASHPHASE_ENABLE_ASSERTS);
+    EXPECT_EQ(terrain.surfaceBelow(at<TypeParam>(1, 5, 1))->height, 2);
+}
+
 }  // namespace
 }  // namespace hashphase::test
