@@ -55,12 +55,18 @@ btBroadphasePair* PairCache::addAcceptedPair(btBroadphaseProxy* proxy0, btBroadp
     return add({*proxy0, *proxy1});
 }
 
+void PairCache::checkMayChange() const {
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
+                     "A pair cache is not changed from within its filter.");
+}
+
 void PairCache::checkRoomFor(std::size_t bornCount) const {
     detail::checkCount(ids_.size() + bornCount, kMostPairs,
                        "A pair cache holds at most 1,073,741,824 pairs.");
 }
 
 btBroadphasePair* PairCache::add(const ProxyCouple& couple) {
+    checkMayChange();
     checkRoomFor(1);
     const auto index = static_cast<int>(ids_.findOrInsert(couple.ids()));
     if (index < pairs_.size()) {
@@ -95,6 +101,7 @@ PairCache::Freeing PairCache::freeingNow() const noexcept {
 // Callbacks come when everything is in order again, and get a copy, so that they may change the
 // cache.
 void* PairCache::remove(std::uint64_t ids, btDispatcher* dispatcher, Freeing freeing) {
+    checkMayChange();
     if (freeing == Freeing::inTurn) {
         detail::ensureCapacity(retired_, retired_.size() + 1);
     }

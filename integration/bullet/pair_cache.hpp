@@ -25,9 +25,10 @@
 //           any, in time proportional to all. Bullet's own arrays do not tell.
 // NULL      A NULL dispatcher frees no algorithms, as in Bullet; NULL clients are fine.
 // Misuse    Pairs of a proxy with itself, proxies alive with the same or with negative unique ids,
-//           and no key; asserted.
+//           no key, and a filter that changes the cache; asserted.
 
 #include <broadphase/detail/flat_set.hpp>
+#include <broadphase/detail/query_scope.hpp>
 #include <broadphase/detail/run_map.hpp>
 #include <integration/bullet/precision.hpp>
 #include <integration/bullet/proxy_ranks.hpp>
@@ -204,10 +205,12 @@ public:
     /// Asks the filter callback; without one, group and mask decide, both ways.
     [[nodiscard]] bool needsBroadphaseCollision(btBroadphaseProxy* proxy0,
                                                 btBroadphaseProxy* proxy1) const override {
-        return filter_ != nullptr
-                   ? filter_->needBroadphaseCollision(proxy0, proxy1)
-                   : (proxy0->m_collisionFilterGroup & proxy1->m_collisionFilterMask) != 0 &&
-                         (proxy1->m_collisionFilterGroup & proxy0->m_collisionFilterMask) != 0;
+        if (filter_ != nullptr) {
+            const detail::QueryScope scope(this);
+            return filter_->needBroadphaseCollision(proxy0, proxy1);
+        }
+        return (proxy0->m_collisionFilterGroup & proxy1->m_collisionFilterMask) != 0 &&
+               (proxy1->m_collisionFilterGroup & proxy0->m_collisionFilterMask) != 0;
     }
     btOverlapFilterCallback* getOverlapFilterCallback() override { return filter_; }
     void setOverlapFilterCallback(btOverlapFilterCallback* callback) override {
@@ -268,6 +271,7 @@ private:
         btDispatcher* dispatcher;
     };
 
+    void checkMayChange() const;
     void checkRoomFor(std::size_t bornCount) const;
     [[nodiscard]] bool isLower(const btBroadphaseProxy& a, const btBroadphaseProxy& b) const;
     [[nodiscard]] std::uint64_t keysOf(const btBroadphasePair& pair, std::uint64_t ids) const;

@@ -24,6 +24,7 @@ constexpr std::size_t kNear = 8;
 
 void PairCache::update(std::span<const ProxyCouple> died, std::span<const ProxyCouple> born,
                        btDispatcher* dispatcher) {
+    checkMayChange();
     checkRoomFor(born.size());
     if (isTold()) {
         updateOneByOne(died, born, dispatcher);
@@ -146,6 +147,7 @@ void PairCache::closeVacant(std::size_t firstVacant) noexcept {
 
 void PairCache::removeOverlappingPairsContainingProxies(std::span<btBroadphaseProxy* const> proxies,
                                                         btDispatcher* dispatcher) {
+    checkMayChange();
     constexpr std::size_t kFew = 4;  // so many single scans cost what one for many does
     if (isTold() || proxies.size() < kFew) {
         for (btBroadphaseProxy* proxy : proxies) {

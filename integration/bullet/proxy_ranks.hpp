@@ -50,8 +50,8 @@ private:
     }
     static std::uint64_t bitOf(std::uint32_t id) noexcept { return std::uint64_t{1} << id % 64; }
 
-    std::vector<std::uint64_t> bits_;  // a power of two of words
-    detail::FlatSet ids_;              // numbered by rank
+    std::vector<std::uint64_t> bits_{0};  // a power of two of words
+    detail::FlatSet ids_;                 // numbered by rank
 };
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

@@ -37,6 +37,42 @@ TEST(PairCacheMisuse, OfNoKeyIsAsserted) {
     EXPECT_THROW(PairCache(PairOrder::canonical, nullptr), BrokenAssert);
 }
 
+TEST(PairCacheMisuse, OfAFilterThatChangesIsAsserted) {
+    struct Filter : btOverlapFilterCallback {
+        bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override {
+            ++calls;
+            const ProxyCouple couple(*a, *b);
+            EXPECT_THROW(cache.addAcceptedPair(a, b), BrokenAssert);
+            EXPECT_THROW(cache.update({}, {&couple, 1}, nullptr), BrokenAssert);
+            EXPECT_THROW(cache.removeOverlappingPair(a, known, nullptr), BrokenAssert);
+            EXPECT_THROW(cache.removeOverlappingPairsContainingProxy(a, nullptr), BrokenAssert);
+            EXPECT_THROW(cache.removeOverlappingPairsContainingProxies({&a, 1}, nullptr),
+                         BrokenAssert);
+            return true;
+        }
+        PairCache& cache;
+        btBroadphaseProxy* known;
+        mutable int calls = 0;
+        Filter(PairCache& asked, btBroadphaseProxy& proxy) : cache(asked), known(&proxy) {}
+    };
+    const ThrowingAsserts throwing;
+    PairCache cache;
+    btBroadphaseProxy one = numbered(1);
+    btBroadphaseProxy two = numbered(2);
+    btBroadphaseProxy three = numbered(3);
+    cache.addAcceptedPair(&one, &three);
+    Filter filter(cache, three);
+    cache.setOverlapFilterCallback(&filter);
+    EXPECT_NE(cache.addOverlappingPair(&one, &two), nullptr);
+    EXPECT_EQ(filter.calls, 1);
+    EXPECT_EQ(cache.getNumOverlappingPairs(), 2);
+    EXPECT_EQ(cache.validate(), "");
+}
+
+TEST(ProxyRanksMisuse, OfNobodyFindsNobody) {
+    EXPECT_EQ(ProxyRanks().lowestRank(1, 2), ProxyRanks::kNone);
+}
+
 TEST(BroadphaseMisuse, OfACacheThatHasPairsIsAsserted) {
     const ThrowingAsserts throwing;
     PairCache cache;

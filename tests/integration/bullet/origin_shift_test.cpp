@@ -369,6 +369,20 @@ TEST(WorldOriginShift, OfAnotherWorldOrByWhatIsNotFiniteIsAsserted) {
     EXPECT_THROW(shiftWorldOrigin(world.world(), other, {1, 0, 0}), BrokenAssert);
     EXPECT_THROW(world.shift({0, std::numeric_limits<btScalar>::infinity(), 0}), BrokenAssert);
 }
+
+TEST(WorldOriginShift, OfWhatHasUnknownCoordinatesIsAsserted) {
+    struct Soft : btCollisionObject {
+        Soft() { m_internalType = CO_SOFT_BODY; }
+    };
+    const ThrowingAsserts throwing;
+    World world;
+    btSphereShape shape(1);
+    Soft soft;
+    soft.setCollisionShape(&shape);
+    world.world().addCollisionObject(&soft);
+    EXPECT_THROW(world.shift({1, 0, 0}), BrokenAssert);
+    world.world().removeCollisionObject(&soft);
+}
 #endif
 
 }  // namespace
