@@ -78,6 +78,22 @@ Benchmark removalBenchmark(std::string name, std::string description, RemovalTim
     return benchmark;
 }
 
+Benchmark scatterBenchmark(std::string name, std::string group, const demos::ScatterPlan& plan,
+                           std::size_t objects) {
+    Benchmark benchmark;
+    benchmark.name = std::move(name);
+    benchmark.group = std::move(group);
+    benchmark.description = describe(plan);
+    benchmark.sizes = {objects};
+    benchmark.takesOtherSizes = false;
+    benchmark.admits = takesPartInFrames;
+    benchmark.make = [plan](std::size_t count, std::uint64_t seed) {
+        return std::make_unique<PairWorkload>(
+            std::make_unique<demos::BrownianScene>(scatter(plan, count, seed), seed));
+    };
+    return benchmark;
+}
+
 }  // namespace
 
 bool isFastEnough(const ContestantKind& kind, std::size_t objects) {
@@ -117,6 +133,16 @@ std::vector<Benchmark> pairBenchmarks() {
     };
     threads.onRequest = true;
     all.push_back(std::move(threads));
+    // One size, and sizes from a micrometre to a thousand kilometres, so to speak, as dense.
+    demos::ScatterPlan plan;
+    plan.overlapsPerBox = 1;
+    plan.sizes = demos::SizeLaw::equal;
+    all.push_back(scatterBenchmark("sizes-one", "pairs", plan, 20'000));
+    all.back().onRequest = true;
+    plan.sizes = demos::SizeLaw::logUniform;
+    plan.sizeRatio = 0x1p40F;
+    all.push_back(scatterBenchmark("sizes-trillion", "pairs", plan, 20'000));
+    all.back().onRequest = true;
     return all;
 }
 
@@ -124,18 +150,8 @@ std::vector<Benchmark> randomBenchmarks(std::uint64_t seed) {
     std::vector<Benchmark> all;
     for (std::size_t i = 1; i <= kRandomScenes; ++i) {
         const demos::RandomScene drawn = demos::drawScene(seed * kRandomScenes + i);
-        Benchmark benchmark;
-        benchmark.name = "random-" + std::to_string(i);
-        benchmark.group = "random";
-        benchmark.description = describe(drawn.plan);
-        benchmark.sizes = {drawn.objects};
-        benchmark.takesOtherSizes = false;
-        benchmark.admits = takesPartInFrames;
-        benchmark.make = [plan = drawn.plan](std::size_t objects, std::uint64_t sceneSeed) {
-            return std::make_unique<PairWorkload>(std::make_unique<demos::BrownianScene>(
-                scatter(plan, objects, sceneSeed), sceneSeed));
-        };
-        all.push_back(std::move(benchmark));
+        all.push_back(
+            scatterBenchmark("random-" + std::to_string(i), "random", drawn.plan, drawn.objects));
     }
     return all;
 }
