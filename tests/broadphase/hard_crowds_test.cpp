@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 
-// Crowds that have broken broadphases: all in one cell, all at one place, all in one bucket of the
-// hash though far apart, in any order, and none at all. Costs are counted.
+// Crowds that have broken broadphases: all in one cell, all at one place, in any order, and none at
+// all. Costs are counted.
 
 #include <broadphase/detail/limits.hpp>
 #include <tests/support/box_scenes.hpp>
-#include <tests/support/fill_table.hpp>
+#include <tests/support/pair_sweep.hpp>
 #include <tests/support/pair_world.hpp>
 #include <tests/support/query_checks.hpp>
 #include <tests/support/threaded_for.hpp>
@@ -13,7 +13,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -29,56 +30,6 @@ GridConfig cellsOf(double size) {
     GridConfig config;
     config.cellSize = size;
     return config;
-}
-
-/// Numbers of boxes that overlap, found by sorting along x; and how many tests of two boxes that
-/// takes.
-struct Swept {
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> couples;
-    std::uint64_t tests = 0;
-
-    template <class Scalar>
-    explicit Swept(const Boxes<Scalar>& boxes) {
-        std::vector<std::uint32_t> order(boxes.size());
-        std::iota(order.begin(), order.end(), 0U);
-        std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-            return boxes[a].min()[0] < boxes[b].min()[0];
-        });
-        for (std::size_t i = 0; i < order.size(); ++i) {
-            const Aabb<Scalar>& box = boxes[order[i]];
-            for (std::size_t j = i + 1;
-                 j < order.size() && boxes[order[j]].min()[0] <= box.max()[0]; ++j) {
-                ++tests;
-                if (overlaps(box, boxes[order[j]])) {
-                    couples.push_back(std::minmax(order[i], order[j]));
-                }
-            }
-        }
-        std::sort(couples.begin(), couples.end());
-    }
-};
-
-/// The pairs are those of the sweep; returns what they cost.
-template <class Scalar>
-PairCost expectPairsOfSweep(const Boxes<Scalar>& boxes, const GridConfig& config,
-                            const Swept& swept) {
-    Grid<Scalar> grid(config);
-    Pairs<Scalar> pairs(grid);
-    for (const Aabb<Scalar>& box : boxes) {
-        static_cast<void>(grid.add(box));
-    }
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
-    for (const ProxyPair& pair : pairs.update([](ProxyId, ProxyId) { return true; }).born) {
-        found.emplace_back(pair.first.index, pair.second.index);
-    }
-    EXPECT_EQ(differences(found, swept.couples), "");
-    EXPECT_EQ(grid.validate(), "");
-    return pairs.lastCost();
-}
-
-template <class Scalar>
-PairCost expectPairsOfSweep(const Boxes<Scalar>& boxes, const GridConfig& config) {
-    return expectPairsOfSweep(boxes, config, Swept(boxes));
 }
 
 template <class Scalar>
@@ -178,172 +129,6 @@ TEST(HardCrowd, AtOnePlaceArePairsOfAllAndNoMoreMemoryEachTime) {
         EXPECT_TRUE(round == 0 || pairs.memoryBytes() <= bytes);
         bytes = pairs.memoryBytes();
     }
-}
-
-// --- Collisions of the hash ----------------------------------------------------------------------
-
-/// The hash of a row of cells, as detail::Level has it where rows are hashed.
-std::uint32_t hashOfRow(std::int32_t y, std::int32_t z) {
-    return detail::mixRow(static_cast<std::uint32_t>(y) * 0x9e3779b1U +
-                          static_cast<std::uint32_t>(z) * 0x85ebca77U);
-}
-
-/// Rows of one hash, so near that numbers of single precision tell their cells apart.
-std::vector<detail::Row> rowsOfOneHash() {
-    constexpr std::int32_t kMost = 1 << 22;
-    // What z has to be follows from y: the factor of z is odd, and has an inverse.
-    std::uint32_t inverse = 1;
-    for (int i = 0; i < 5; ++i) {
-        inverse *= 2 - 0x85ebca77U * inverse;
-    }
-    std::vector<detail::Row> rows;
-    for (std::int32_t y = -kMost; y < kMost; ++y) {
-        const auto z =
-            static_cast<std::int32_t>(0 - static_cast<std::uint32_t>(y) * 0x9e3779b1U * inverse);
-        if (std::abs(z) < kMost) {
-            rows.push_back({y, z});
-        }
-    }
-    return rows;
-}
-
-template <class Scalar>
-Aabb<Scalar> boxInCell(std::int64_t x, std::int64_t y, std::int64_t z) {
-    const Vector3<double> cell(static_cast<double>(x), static_cast<double>(y),
-                               static_cast<double>(z));
-    return boxAround<Scalar>((cell.array() + 0.5).matrix(), Vector3<double>::Constant(0.125));
-}
-
-/// Whether most boxes lie in one bucket.
-template <class Scalar>
-bool areInOneBucket(const Boxes<Scalar>& boxes) {
-    detail::Table<Scalar> table;
-    fill(table, boxes, detail::fixedLevels(1, 4));
-    std::vector<std::uint32_t> buckets;
-    const detail::Level<Scalar>& hashed = table.levels()[1];
-    for (std::uint32_t i = hashed.firstEntry; i < hashed.lastEntry; ++i) {
-        buckets.push_back(hashed.bucket({hashed.cell(table.box(i).min()[0], 0),
-                                         hashed.cell(table.box(i).min()[1], 1),
-                                         hashed.cell(table.box(i).min()[2], 2)}));
-    }
-    std::sort(buckets.begin(), buckets.end());
-    std::size_t most = 0;
-    for (std::size_t i = 0; i < buckets.size();) {
-        const auto end = std::upper_bound(buckets.begin(), buckets.end(), buckets[i]);
-        most = std::max(most, static_cast<std::size_t>(end - buckets.begin()) - i);
-        i = static_cast<std::size_t>(end - buckets.begin());
-    }
-    return 2 * most >= boxes.size();
-}
-
-constexpr std::int32_t kAttackers = 12'000;
-constexpr std::int32_t kBuckets = 32'768;  // for so many
-
-/// Boxes whose rows have one and the same hash of 32 bits.
-template <class Scalar>
-Boxes<Scalar> boxesInRowsOfOneHash() {
-    Boxes<Scalar> boxes;
-    for (const auto [y, z] : rowsOfOneHash()) {
-        boxes.push_back(boxInCell<Scalar>(7, y, z));
-    }
-    EXPECT_GE(boxes.size(), 12'000U);
-    boxes.resize(kAttackers);
-    return boxes;
-}
-
-/// Boxes in rows of any hash, each as far along its row as makes up for it.
-template <class Scalar>
-Boxes<Scalar> boxesThatMakeUpForTheirRows() {
-    // Rows are counted from the median of the population.
-    Boxes<Scalar> boxes(kAttackers);
-    Vector3<double> origin(0, 0, 0);
-    for (int pass = 0; pass < 2; ++pass) {
-        for (std::int32_t i = 0; i < kAttackers; ++i) {
-            const std::int32_t y = 40 * (i % 110);
-            const std::int32_t z = 40 * (i / 110);
-            const std::uint32_t hash = hashOfRow(y - static_cast<std::int32_t>(origin[1]),
-                                                 z - static_cast<std::int32_t>(origin[2]));
-            boxes[static_cast<std::size_t>(i)] = boxInCell<Scalar>((0U - hash) % kBuckets, y, z);
-        }
-        detail::Table<Scalar> table;
-        fill(table, boxes, detail::fixedLevels(1, 4));
-        const detail::Level<Scalar>& level = table.levels()[1];
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            origin[static_cast<int>(axis)] = static_cast<double>(level.origin[axis]);
-        }
-    }
-    return boxes;
-}
-
-/// Boxes in one row, farther apart than there are buckets.
-template <class Scalar>
-Boxes<Scalar> boxesInALongRow() {
-    Boxes<Scalar> boxes;
-    for (std::int32_t i = 0; i < kAttackers; ++i) {
-        boxes.push_back(boxInCell<Scalar>(std::int64_t{kBuckets} * (i - kAttackers / 2), 3, 5));
-    }
-    return boxes;
-}
-
-TYPED_TEST(HardCrowds, WithEveryBoxInOneBucketAreSweptToo) {
-    const Boxes<TypeParam> attacks[] = {boxesInRowsOfOneHash<TypeParam>(),
-                                        boxesThatMakeUpForTheirRows<TypeParam>(),
-                                        boxesInALongRow<TypeParam>()};
-    for (const Boxes<TypeParam>& attack : attacks) {
-        SCOPED_TRACE(&attack - attacks);
-        Boxes<TypeParam> boxes = attack;
-        EXPECT_TRUE(areInOneBucket(boxes));
-        for (std::size_t i = 0; i < 300; ++i) {
-            boxes.push_back(attack[i * 37]);  // couples
-        }
-        for (const double cellSize : {1.0, 0.0}) {
-            const PairCost cost = expectPairsOfSweep(boxes, cellsOf(cellSize));
-            EXPECT_LT(cost.boxesTested, 5 * detail::kCrowd * boxes.size())
-                << "cells of " << cellSize;
-        }
-        Grid<TypeParam> grid(cellsOf(1));
-        for (const Aabb<TypeParam>& box : boxes) {
-            static_cast<void>(grid.add(box));
-        }
-        grid.update();
-        QueryCost cost;
-        for (std::size_t i = 0; i < boxes.size(); i += 97) {
-            CollectCount count;
-            cost += grid.visit(BoxRegion<TypeParam>{boxes[i]}, count);
-            ASSERT_GE(count.count(), 1U);
-        }
-        EXPECT_LE(cost.boxesTested, 127 * boxes.size()) << "at worst everyone, once a query";
-    }
-}
-
-// A long region in a sparse world has more cells than there are buckets.
-TYPED_TEST(HardCrowds, ThatAreHashedAreLookedAtOnceAQueryHoweverLarge) {
-    Random random(0x5eed1306);
-    std::vector<Placed<TypeParam>> proxies;
-    Grid<TypeParam> grid(cellsOf(1));
-    for (int i = 0; i < 4000; ++i) {
-        const Vector3<double> at = random.pointIn({-1e6, -30, -30}, {1e6, 30, 30});
-        const Aabb<TypeParam> box = boxAround<TypeParam>(at, {0.3, 0.3, 0.3});
-        proxies.push_back({grid.add(box), box});
-    }
-    grid.update();
-    std::vector<BoxRegion<TypeParam>> regions;
-    for (const double length : {1.0, 100.0, 1e4, 1e5, 1e6}) {
-        for (int i = 0; i < 4; ++i) {
-            const double begin = random.between(-1e6, 1e6 - length);
-            regions.push_back({makeBox<TypeParam>(begin, -15, -15, begin + length, 15, 15)});
-        }
-    }
-    std::uint64_t together = 0;
-    for (const BoxRegion<TypeParam>& region : regions) {
-        expectLikeBruteForce<TypeParam>(grid, proxies, region);
-        CollectCount count;
-        EXPECT_LE(grid.visit(region, count).boxesTested, proxies.size());
-        CollectCount each;
-        together += grid.visitEach(std::span(&region, 1), std::span(&each, 1)).boxesTested;
-        EXPECT_EQ(each.count(), count.count());
-    }
-    EXPECT_LE(together, regions.size() * proxies.size());
 }
 
 // --- Order ---------------------------------------------------------------------------------------
