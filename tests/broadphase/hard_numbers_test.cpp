@@ -248,8 +248,8 @@ std::size_t expectCellsAtBorders(const detail::Level<Scalar>& level, Scalar size
     return elsewhere;
 }
 
-/// For cells of so many tenths of a metre, the pairs are those that touch. Returns how many borders are
-/// not in the cell that begins there.
+/// For cells of so many tenths of a metre, the pairs are those that touch. Returns how many borders
+/// are not in the cell that begins there.
 template <class Scalar>
 std::size_t expectNoneParted(int tenths, int axis) {
     SCOPED_TRACE(testing::Message() << tenths << " tenths of a metre along axis " << axis);

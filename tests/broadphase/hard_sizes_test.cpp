@@ -64,7 +64,7 @@ protected:
                        ? std::pow(largest, power)
                        : (std::pow(largest, power) - std::pow(smallest, power)) / (power * spread);
         };
-        // Of (a + b)^3: two boxes overlap when their centres are no farther apart than half of a + b.
+        // Of (a + b)^3: two boxes overlap when their centres are no farther apart than (a + b) / 2.
         const double around = 2 * mean(3) + 6 * mean(2) * mean(1);
         const double side = std::cbrt(static_cast<double>(count) * around / (2 * pairsPerBox));
         return mixture(count, smallest, largest, side / largest);
@@ -176,8 +176,9 @@ TYPED_TEST(HardSizes, FromAMicrometreToAThousandKilometresPairAsBruteForceSays) 
 }
 
 // As many pairs a box of all sizes as of one. The larger ones are tested with many of the smaller,
-// which follow one another in memory: 98 tests a box here instead of 4, in 1.4 times the time, or 1.7
-// without vector code. So it is time that is compared, of the processor, and the least of some rounds.
+// which follow one another in memory: 98 tests a box here instead of 4, in 1.4 times the time, or
+// 1.7 without vector code. So it is time that is compared, of the processor, and the least of some
+// rounds.
 TYPED_TEST(HardSizes, FromAMicrometreToAThousandKilometresCostNoMoreThanThreeTimesThatOfOne) {
     for (const double pairsPerBox : {0.1, 1.0}) {
         for (const std::size_t count : {4000U, 20'000U}) {

@@ -188,9 +188,9 @@ void expectFewTestsAQuery(const Attack<Scalar>& boxes, double cellSize, std::uin
     }
 }
 
-// Cells of 1 m are those that the boxes are made for. There a query alone reads its buckets whole, at
-// worst everyone once, as Grid::visit() says; of queries together, the buckets are swept, with 534
-// tests each in the worst crowd. Cells that the grid chooses are others, and take 16 tests at most.
+// Cells of 1 m are those that the boxes are made for. There a query alone reads its buckets whole,
+// at worst everyone once, as Grid::visit() says; of queries together, the buckets are swept, with
+// 534 tests each in the worst crowd. Cells chosen by the grid are others, and take 16 tests at most.
 TYPED_TEST(HashedCrowds, InOneBucketAreFoundByQueriesThatTestNobodyTwice) {
     const Attack<TypeParam> attacks[] = {boxesInRowsOfOneHash<TypeParam>(),
                                          boxesThatMakeUpForTheirRows<TypeParam>(),

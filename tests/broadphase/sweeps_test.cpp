@@ -127,8 +127,8 @@ TYPED_TEST(SweptPairs, CostNoMoreTheFasterTheyAre) {
     }
 }
 
-/// How many of a million bullets of 200 m/s at 60 Hz meet a wall, from 0.1 m down to 1 mm thick: from
-/// those that stand in it at the start of the step to those that just reach it at the end.
+/// How many of a million bullets of 200 m/s at 60 Hz meet a wall, from 0.1 m down to 1 mm thick:
+/// from those that stand in it at the start of the step to those that just reach it at the end.
 template <class Scalar>
 int meetThinWalls(Sweep mode) {
     constexpr int kLanes = 400;
