@@ -18,7 +18,8 @@ std::vector<HardCase> collect() {
     std::vector<HardCase> all;
     for (const std::span<const HardCase> group :
          {numberCases(), borderCases(), rayCases(), sweepCases(), sizeCases(), crowdCases(),
-          churnCases(), bodyCases(), repeatCases(), groundCases(), viewCases(), proximityCases()}) {
+          churnCases(), withinCases(), bodyCases(), repeatCases(), groundCases(), viewCases(),
+          proximityCases()}) {
         all.insert(all.end(), group.begin(), group.end());
     }
     std::sort(all.begin(), all.end(),

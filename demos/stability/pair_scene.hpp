@@ -28,6 +28,15 @@ struct NoteIndices {
     Objects found;
 };
 
+/// A callback of box queries: the objects of what is found.
+struct NoteObjects final : btBroadphaseAabbCallback {
+    bool process(const btBroadphaseProxy* proxy) override {
+        found.push_back(FilledBroadphase::objectOf(*proxy));
+        return true;
+    }
+    Objects found;
+};
+
 /// A box from its centre and its edge [m].
 [[nodiscard]] Aabb<float> cubeAt(const Vector3<float>& center, float edge);
 

@@ -15,7 +15,8 @@ namespace hashphase::demos {
 [[nodiscard]] std::span<const HardCase> sweepCases();   // what moves fast
 [[nodiscard]] std::span<const HardCase> sizeCases();    // sizes that differ, cells, keys
 [[nodiscard]] std::span<const HardCase> crowdCases();   // many at one place
-[[nodiscard]] std::span<const HardCase> churnCases();   // changes, of everything, at any time
+[[nodiscard]] std::span<const HardCase> churnCases();   // changes, by a hair and of everything
+[[nodiscard]] std::span<const HardCase> withinCases();  // questions within questions, about nothing
 [[nodiscard]] std::span<const HardCase> bodyCases();    // bodies in a world
 [[nodiscard]] std::span<const HardCase> repeatCases();  // the same on every machine
 [[nodiscard]] std::span<const HardCase> groundCases();  // terrain

@@ -19,14 +19,6 @@ namespace {
 
 using Point = Vector3<float>;
 
-struct NoteObjects final : btBroadphaseAabbCallback {
-    bool process(const btBroadphaseProxy* proxy) override {
-        found.push_back(FilledBroadphase::objectOf(*proxy));
-        return true;
-    }
-    Objects found;
-};
-
 // The closed ball and the closed box, in double precision: no rounding decides on these boxes.
 bool isWithin(const Aabb<float>& box, const Point& center, float radius) {
     double squared = 0;

@@ -53,7 +53,7 @@ TYPED_TEST(HardViews, NeverDriftsOutOfItsMargin) {
     for (const TypeParam step :
          {tiny, std::nextafter(tiny, most), TypeParam(0.25), std::nextafter(TypeParam(0.25), most),
           std::nextafter(TypeParam(0.25), TypeParam(0)), TypeParam(1),
-          std::nextafter(TypeParam(1), most)}) {
+          std::nextafter(TypeParam(1), most), std::nextafter(TypeParam(1), TypeParam(0))}) {
         SCOPED_TRACE(step);
         Grid<TypeParam> grid;
         std::vector<Placed<TypeParam>> proxies;
