@@ -15,7 +15,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 namespace hashphase::demos {
 namespace {
@@ -283,7 +282,7 @@ CaseOutcome invertedBoxes(const CaseContext& context) {
     return tally.outcome();
 }
 
-// --- Cell sizes and cell numbers ------------------------------------------------------------------
+// --- Cell numbers ---------------------------------------------------------------------------------
 
 CaseOutcome cellNumbersThatOverflow(const CaseContext& context) {
     CaseTally tally;
@@ -300,32 +299,6 @@ CaseOutcome cellNumbersThatOverflow(const CaseContext& context) {
         }
         judgePairs(context, tally, boxes, {.cellSize = 1});
     }
-    return tally.outcome();
-}
-
-CaseOutcome cellSizesThatAreNone(const CaseContext& context) {
-    if (!context.kind.ours) {
-        return {};
-    }
-    CaseTally tally;
-    PairScene scene(context, ordinaryBoxes(context));
-    scene.judge(tally);
-    using Limits = std::numeric_limits<double>;
-    for (const double size : {-1.0, Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity(),
-                              1e31, 1e-31, Limits::denorm_min()}) {
-        bool isRefused = false;
-        try {
-            SpatialHashConfig config;
-            config.grid.cellSize = size;
-            const SpatialHashBroadphase broadphase(config);
-        } catch (const std::invalid_argument&) {
-            isRefused = true;
-        }
-        tally.expect(isRefused && !configError({.cellSize = size}).empty(),
-                     "a cell of that size is refused with a reason");
-    }
-    tally.expect(configError({.cellSize = 0}).empty(), "0 chooses the size");
-    scene.judge(tally);
     return tally.outcome();
 }
 
@@ -357,10 +330,6 @@ constexpr std::array kNumberCases{
     HardCase{"H30", "cell numbers beyond 2^31",
              "cells of 1 m, boxes of 1 to 2 ulp at the eight corners +-2^31, 2^32, 2^62, 2^64",
              "exact pairs; no product overflows", cellNumbersThatOverflow},
-    HardCase{"H31", "cell sizes that are none",
-             "a cell size of -1, NaN, +-infinity, 1e31, 1e-31, the smallest denormal; and 0",
-             "refused with a reason; 0 chooses one; what runs already is not touched",
-             cellSizesThatAreNone},
 };
 
 }  // namespace

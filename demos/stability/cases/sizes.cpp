@@ -1,15 +1,24 @@
 // SPDX-License-Identifier: Zlib
 //
-// Sizes that differ by twelve orders of magnitude, and cells that were chosen to collide.
+// Sizes that differ by twelve orders of magnitude, cells that were chosen to collide, and cells of no
+// size.
 
 #include <demos/stability/cases/cases.hpp>
 
+#include <demos/compare/reference_pairs.hpp>
+#include <demos/compare/trial.hpp>
 #include <demos/scenes/random.hpp>
 #include <demos/stability/pair_scene.hpp>
+#include <integration/bullet/conversions.hpp>
 
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
 
 namespace hashphase::demos {
 namespace {
@@ -166,6 +175,90 @@ CaseOutcome cellsThatCollide(const CaseContext& context) {
     return tally.outcome();
 }
 
+// --- Cells of no size -----------------------------------------------------------------------------
+
+// What a scene says: its pairs, and who is around the origin, in the order in which it tells.
+struct Answers {
+    explicit Answers(PairScene& scene) {
+        scene.findPairs();
+        pairs = scene.reported();
+        NoteObjects callback;
+        scene.broadphase().aabbTest({-2, -2, -2}, {2, 2, 2}, callback);
+        found = std::move(callback.found);
+    }
+    friend bool operator==(const Answers&, const Answers&) = default;
+
+    std::vector<PairKey> pairs;
+    Objects found;
+};
+
+template <class Make>
+bool isRefused(const Make& make) {
+    try {
+        static_cast<void>(make());
+    } catch (const std::invalid_argument& refusal) {
+        return *refusal.what() != '\0';
+    }
+    return false;
+}
+
+// A grid of either precision, and a broadphase, to which a pair cache is given.
+void expectRefused(double cellSize, PairCache& cache, CaseTally& tally) {
+    SpatialHashConfig config;
+    config.grid.cellSize = cellSize;
+    constexpr std::string_view kWhat = "a cell of that size is refused with a reason";
+    tally.expect(isRefused([&] { return std::make_unique<Grid<float>>(config.grid); }), kWhat);
+    tally.expect(isRefused([&] { return std::make_unique<Grid<double>>(config.grid); }), kWhat);
+    tally.expect(isRefused([&] { return std::make_unique<SpatialHashBroadphase>(&cache, config); }),
+                 kWhat);
+    tally.expect(!configError(config.grid).empty(), kWhat);
+}
+
+// The cache serves a broadphase.
+void judgeCache(PairCache& cache, const Boxes& boxes, CaseTally& tally) {
+    SpatialHashBroadphase broadphase(&cache);
+    for (const Aabb<float>& box : boxes) {
+        broadphase.createProxy(toBullet(box.min()), toBullet(box.max()), 0, nullptr, 1, -1,
+                               nullptr);
+    }
+    broadphase.calculateOverlappingPairs(nullptr);
+    const auto numberOf = [](const btBroadphaseProxy& proxy) {
+        return static_cast<std::uint32_t>(proxy.m_uniqueId) - 1;
+    };
+    std::vector<PairKey> reported;
+    std::vector<PairKey> exact;
+    listPairs(cache, numberOf, reported);
+    findExactPairs(ReferenceMethod::kBrute, boxes, {}, exact);
+    tally.compare(reported, exact);
+}
+
+CaseOutcome cellSizesThatAreNone(const CaseContext& context) {
+    if (!context.kind.ours) {
+        return {};
+    }
+    CaseTally tally;
+    PairScene scene(context, scatteredCubes(60, 8, 0.5F, 1.5F, context.seed));
+    scene.judge(tally);
+    const Answers before(scene);
+    PairCache cache;
+    const std::size_t cacheBytes = cache.memoryBytes();
+    using Limits = std::numeric_limits<double>;
+    for (const double size : {-1.0, Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity(),
+                              1e31, 1e-31, Limits::denorm_min()}) {
+        expectRefused(size, cache, tally);
+    }
+    tally.expect(configError({.cellSize = 0}).empty(), "0 chooses the size");
+    tally.expect(Answers(scene) == before, "what runs already answers as before");
+    tally.expect(cache.memoryBytes() == cacheBytes && cache.validate().empty(),
+                 "a pair cache given to what is refused stays as it was");
+    judgeCache(cache, scene.boxes(), tally);
+    for (std::uint32_t i = 0; i < scene.size(); i += 3) {
+        scene.move(i, scene.boxes()[i].translated(Point(0.5F, 0, 0)));
+    }
+    scene.judge(tally);
+    return tally.outcome();
+}
+
 constexpr std::array kSizeCases{
     HardCase{"H27", "sizes from 1e-6 to 1e6 m",
              "4,000 (--quick: 1,000) cubes of 1e-6 to 1e6 m, as many of each size, within 12 edges "
@@ -179,6 +272,12 @@ constexpr std::array kSizeCases{
         "cells of 1 m; couples in rows of cells that our hash cannot tell apart, on multiples of "
         "table sizes, and of large primes",
         "exact pairs, and bounded work", cellsThatCollide},
+    HardCase{"H31", "cell sizes that are none",
+             "a cell size of -1, NaN, +-infinity, 1e31, 1e-31, the smallest denormal; and 0",
+             "refused with a reason by grids of both precisions and the broadphase; 0 chooses one; "
+             "what runs already answers as before, and the pair cache that the refused one was "
+             "given serves another",
+             cellSizesThatAreNone},
 };
 
 }  // namespace
