@@ -42,12 +42,17 @@ struct AskWithin final : btBroadphaseAabbCallback {
     bool hasFoundItself = true;
 };
 
-struct RayWithin final : btBroadphaseRayCallback {
-    RayWithin(PairScene& asked, int howDeep) : scene(asked), depth(howDeep) {
+// Of rays along x, 40 m long.
+struct AlongX : btBroadphaseRayCallback {
+    AlongX() {
         m_rayDirectionInverse = btVector3(1, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
         m_signs[0] = m_signs[1] = m_signs[2] = 0;
         m_lambda_max = 40;
     }
+};
+
+struct RayWithin final : AlongX {
+    RayWithin(PairScene& asked, int howDeep) : scene(asked), depth(howDeep) {}
 
     void cast() {
         scene.broadphase().rayTest({-20, 0, 0}, {20, 0, 0}, *this);
@@ -72,19 +77,27 @@ struct RayWithin final : btBroadphaseRayCallback {
     bool isRepeated = true;
 };
 
+Objects touching(const PairScene& scene, const Aabb<float>& region) {
+    Objects objects;
+    for (std::uint32_t i = 0; i < scene.size(); ++i) {
+        if (overlaps(scene.boxes()[i], region)) {
+            objects.push_back(i);
+        }
+    }
+    return objects;
+}
+
+Boxes someCubes(const CaseContext& context) {
+    return scatteredCubes(200, 10, 0.5F, 1.5F, context.seed);
+}
+
 void askNested(PairScene& scene, CaseTally& tally) {
     Objects found;
     AskWithin callback(scene, found, 1);
     const Aabb<float> region = cubeAt({0, 0, 0}, 6);
     scene.broadphase().aabbTest(toBullet(region.min()), toBullet(region.max()), callback);
-    Objects exact;
-    for (std::uint32_t i = 0; i < scene.size(); ++i) {
-        if (overlaps(scene.boxes()[i], region)) {
-            exact.push_back(i);
-        }
-    }
     std::sort(found.begin(), found.end());
-    tally.compare(found, exact);
+    tally.compare(found, touching(scene, region));
     tally.expect(callback.hasFoundItself, "a box query within a query finds the box it asks with");
 
     RayWithin alone(scene, 0);
@@ -105,59 +118,104 @@ struct RemoveSome final : btOverlapCallback {
     std::size_t seen = 0;
 };
 
-// Destroys, moves and creates while it is told who is there.
-struct ChangeWithin final : btBroadphaseAabbCallback {
-    explicit ChangeWithin(PairScene& asked) : scene(asked), isChanged(asked.size(), false) {}
+// Destroys, moves and creates while it is told who is there: of whom it is told, and of others.
+struct Changes {
+    explicit Changes(PairScene& asked) : scene(asked), isChanged(asked.size(), false) {}
 
-    bool process(const btBroadphaseProxy* proxy) override {
-        const std::uint32_t object = FilledBroadphase::objectOf(*proxy);
+    void hear(const btBroadphaseProxy& proxy) {
+        const std::uint32_t object = FilledBroadphase::objectOf(proxy);
         found.push_back(object);
         isDeadOffered |= hasNan(scene.boxes()[object]);
-        const std::uint32_t other = (object * 7 + 3) % scene.size();
-        if (object % 2 == 0 && !isChanged[other]) {
-            isChanged[other] = true;
-            const Aabb<float> box = scene.boxes()[other];
-            if (object % 4 == 0) {
-                scene.destroy(other);
-                if (object % 8 == 0) {
-                    scene.create(other, box.translated(Point(0.25F, 0, 0)));
-                }
-            } else {
-                scene.move(other, box.translated(Point(0, 20, 0)));
-            }
+        if (object % 3 == 0) {
+            change(object, object / 3);
+            selfCount += 1;
         }
-        return true;
+        if (object % 2 == 0) {
+            change((object * 7 + 3) % scene.size(), object / 2);
+        }
+    }
+
+    void change(std::uint32_t object, std::uint32_t how) {
+        if (isChanged[object]) {
+            return;
+        }
+        isChanged[object] = true;
+        const Aabb<float> box = scene.boxes()[object];
+        if (how % 2 == 0) {
+            scene.destroy(object);
+            if (how % 4 == 0) {
+                scene.create(object, box.translated(Point(0.25F, 0, 0)));
+            }
+        } else {
+            scene.move(object, box.translated(Point(0, 20, 0)));
+        }
     }
 
     PairScene& scene;
     Objects found;
     std::vector<bool> isChanged;
+    int selfCount = 0;  // how often who is told of was to be changed itself
     bool isDeadOffered = false;
 };
 
-// What was not changed is found, once; nobody is found who is no more.
-void changeNested(PairScene& scene, CaseTally& tally) {
-    const Aabb<float> region = cubeAt({0, 0, 0}, 6);
-    Objects before;
-    for (std::uint32_t i = 0; i < scene.size(); ++i) {
-        if (overlaps(scene.boxes()[i], region)) {
-            before.push_back(i);
-        }
+struct ChangeInBox final : btBroadphaseAabbCallback {
+    explicit ChangeInBox(Changes& made) : changes(made) {}
+    bool process(const btBroadphaseProxy* proxy) override {
+        changes.hear(*proxy);
+        return true;
     }
-    ChangeWithin callback(scene);
-    scene.broadphase().aabbTest(toBullet(region.min()), toBullet(region.max()), callback);
-    const auto isChanged = [&](std::uint32_t object) { return callback.isChanged[object]; };
-    std::erase_if(before, isChanged);
-    std::erase_if(callback.found, isChanged);
-    std::sort(callback.found.begin(), callback.found.end());
-    tally.compare(callback.found, before);
-    tally.expect(!callback.isDeadOffered, "a query finds nobody whom its callback has destroyed");
+    Changes& changes;
+};
+
+struct ChangeOnRay final : AlongX {
+    explicit ChangeOnRay(Changes& made) : changes(made) {}
+    bool process(const btBroadphaseProxy* proxy) override {
+        changes.hear(*proxy);
+        return true;
+    }
+    Changes& changes;
+};
+
+// What was not changed is found, once; nobody is found who is no more.
+template <class Ask>
+void judgeChanges(const CaseContext& context, CaseTally& tally, const Aabb<float>& region,
+                  const Ask& ask) {
+    PairScene scene(context, someCubes(context));
     scene.judge(tally);
+    Objects before = touching(scene, region);
+    Changes changes(scene);
+    ask(scene.broadphase(), changes);
+    const auto isChanged = [&](std::uint32_t object) { return changes.isChanged[object]; };
+    std::erase_if(before, isChanged);
+    std::erase_if(changes.found, isChanged);
+    std::sort(changes.found.begin(), changes.found.end());
+    tally.compare(changes.found, before);
+    tally.expect(!changes.isDeadOffered, "a query finds nobody whom its callback has destroyed");
+    tally.expect(changes.selfCount >= 8, "callbacks change the proxies that they are given");
+    scene.judge(tally);
+    if (const SpatialHashBroadphase* hash = scene.hash()) {
+        tally.expect(hash->validate().empty(), "all invariants hold after changes within");
+    }
+}
+
+void changeNested(const CaseContext& context, CaseTally& tally) {
+    const Aabb<float> region = cubeAt({0, 0, 0}, 6);
+    judgeChanges(context, tally, region, [&](btBroadphaseInterface& broadphase, Changes& changes) {
+        ChangeInBox callback(changes);
+        broadphase.aabbTest(toBullet(region.min()), toBullet(region.max()), callback);
+    });
+    // A box of 6 m along x.
+    const Point half(0, 3, 3);
+    const Aabb<float> way(Point(-20, -3, -3), Point(20, 3, 3));
+    judgeChanges(context, tally, way, [&](btBroadphaseInterface& broadphase, Changes& changes) {
+        ChangeOnRay callback(changes);
+        broadphase.rayTest({-20, 0, 0}, {20, 0, 0}, callback, toBullet(-half), toBullet(half));
+    });
 }
 
 CaseOutcome changesWithin(const CaseContext& context) {
     CaseTally tally;
-    PairScene scene(context, scatteredCubes(200, 10, 0.5F, 1.5F, context.seed));
+    PairScene scene(context, someCubes(context));
     scene.judge(tally);
     askNested(scene, tally);
 
@@ -175,7 +233,7 @@ CaseOutcome changesWithin(const CaseContext& context) {
         scene.judge(tally);
     }
     askNested(scene, tally);
-    changeNested(scene, tally);
+    changeNested(context, tally);
 
     RemoveSome callback;
     btOverlappingPairCache& cache = *scene.broadphase().getOverlappingPairCache();
@@ -221,9 +279,10 @@ CaseOutcome nothingThere(const CaseContext& context) {
 constexpr std::array kWithinCases{
     HardCase{
         "H32", "changes and questions within one",
-        "box queries within box queries and rays within rays, by their callbacks; callbacks that "
-        "destroy, create and move; the same proxies moved, destroyed, created and moved again "
-        "within a frame; pairs removed while walking over them; 200 cubes",
+        "box queries within box queries and rays within rays, by their callbacks; callbacks of "
+        "both that destroy, create and move whom they are told of, and others; the same proxies "
+        "moved, destroyed, created and moved again within a frame; pairs removed while walking "
+        "over them; 200 cubes",
         "all answers as if asked alone, of what has not changed; exact pairs; every pair seen once",
         changesWithin},
     HardCase{
