@@ -14,9 +14,13 @@
 #include <ctime>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <string>
+#include <tuple>
+#include <utility>
 
 #include <unistd.h>
 
@@ -198,21 +202,43 @@ public:
     }
 };
 
-template <class Broken>
-BroadphaseKind brokenKind() {
-    return {"broken",
-            "a broken one",
+// Ours, but a ray forgets the first that it meets.
+class ForgetfulOnRays : public SpatialHashBroadphase {
+public:
+    explicit ForgetfulOnRays(int /*proxies*/) {}
+    void rayTest(const btVector3& from, const btVector3& to, btBroadphaseRayCallback& callback,
+                 const btVector3& castMin, const btVector3& castMax) override {
+        ButForTheFirst others(callback);
+        SpatialHashBroadphase::rayTest(from, to, others, castMin, castMax);
+    }
+
+private:
+    struct ButForTheFirst final : btBroadphaseRayCallback {
+        explicit ButForTheFirst(btBroadphaseRayCallback& told)
+            : btBroadphaseRayCallback(told), callback(told) {}
+        bool process(const btBroadphaseProxy* proxy) override {
+            return std::exchange(isFirst, false) || callback.process(proxy);
+        }
+        btBroadphaseRayCallback& callback;
+        bool isFirst = true;
+    };
+};
+
+template <class Broadphase>
+BroadphaseKind inPlaceOfOurs() {
+    return {"stand-in",
+            "a stand-in",
             "for tests",
             true,
             1'000'000,
             true,
             [](const BroadphaseNeeds& needs) -> std::unique_ptr<btBroadphaseInterface> {
-                return std::make_unique<Broken>(static_cast<int>(needs.objects) + 1);
+                return std::make_unique<Broadphase>(static_cast<int>(needs.objects) + 1);
             }};
 }
 
 TEST(Stability, EndsWithStatus1WhenABroadphaseOfOursForgetsAPair) {
-    const std::array kinds{brokenKind<Forgetful>()};
+    const std::array kinds{inPlaceOfOurs<Forgetful>()};
     const Printed printed = run({"--quick", "--quiet", "--only", "H1,H9,H31"}, kinds);
     EXPECT_EQ(printed.exitCode, kExitCheckFailed);
     EXPECT_NE(printed.out.find("WRONG"), std::string::npos) << printed.out;
@@ -222,32 +248,63 @@ TEST(Stability, EndsWithStatus1WhenABroadphaseOfOursForgetsAPair) {
     EXPECT_EQ(lastLineOf(printed.out), "0 of 3 hard cases hold\n");
 }
 
-// The cases that hold under a broken broadphase in place of ours; but for two that take brute force,
-// which these are, too long.
-std::string heldBy(const BroadphaseKind& broken) {
+// What the cases say of a broadphase in place of ours, by id; but for two that take brute force too
+// long, and one that takes it too much memory.
+using Findings = std::map<std::string, std::tuple<std::string, std::uint64_t, std::uint64_t>>;
+Findings findingsOf(const BroadphaseKind& kind) {
     std::string cases;
     for (const HardCase& each : hardCases()) {
         const std::string id = each.id;
-        cases += id == "H8" || id == "H25" ? "" : id + ',';
+        cases += id == "H8" || id == "H25" || id == "H45" ? "" : id + ',';
     }
     cases.pop_back();
-    const Printed printed = run({"--quick", "--quiet", "--only", cases}, std::array{broken});
+    const TemporaryFolder folder;
+    const std::string json = folder.file("out.json");
+    const Printed printed =
+        run({"--quick", "--quiet", "--only", cases, "--json", json}, std::array{kind});
     EXPECT_EQ(printed.exitCode, kExitCheckFailed);
-    std::istringstream lines(printed.out);
-    std::string held;
-    for (std::string line; std::getline(lines, line) && line.find("-n:") != 0;) {
-        if (line.find(" holds") != std::string::npos) {
-            held += line.substr(0, line.find(' ')) + ' ';
-        }
+    std::ifstream file(json);
+    const nlohmann::json report = nlohmann::json::parse(file);
+    Findings findings;
+    for (const nlohmann::json& each : report["cases"]) {
+        const nlohmann::json& outcome = each["outcomes"][0];
+        findings[each["id"]] = {outcome["outcome"], outcome["missing"], outcome["extra"]};
     }
-    return held;
+    EXPECT_EQ(findings.size(), hardCases().size() - 3);
+    return findings;
 }
 
-// But for those in which ours is not asked as Bullet's are: by sweeps, worlds of bodies and terrains of
-// their own. In three cases everybody touches everybody, and no pair is too many.
-TEST(Stability, FindsAPairTooFewOrTooManyInEveryCase) {
-    EXPECT_EQ(heldBy(brokenKind<Forgetful>()), "H21 H22 H23 H24 H36 H37 H40 ");
-    EXPECT_EQ(heldBy(brokenKind<Inventive>()), "H7 H21 H22 H23 H24 H26 H33 H36 H37 H40 ");
+// The cases that say the same of both.
+std::string sameOf(const Findings& some, const Findings& others) {
+    std::string same;
+    for (const auto& [id, finding] : some) {
+        same += others.at(id) == finding ? id + ' ' : "";
+    }
+    return same;
+}
+
+// Bullet's brute force without a fault is the control: that a broken one does not hold says nothing
+// where the control does not either. A case finds the fault when it says something else of the
+// broken one.
+//
+// It does but for those in which no pair is asked for, by rays (H13 to H19), volumes and radii (H41
+// to H43), and those in which ours is not asked as Bullet's are, by sweeps, worlds of bodies and
+// terrains of their own. In three cases everybody touches everybody, and no pair is too many.
+TEST(Stability, FindsAPairTooFewOrTooManyInEveryCaseThatAsksForPairs) {
+    const Findings control = findingsOf(inPlaceOfOurs<btSimpleBroadphase>());
+    EXPECT_EQ(sameOf(control, findingsOf(inPlaceOfOurs<Forgetful>())),
+              "H13 H14 H15 H16 H17 H18 H19 H21 H22 H23 H24 H36 H37 H40 H41 H42 H43 ");
+    EXPECT_EQ(sameOf(control, findingsOf(inPlaceOfOurs<Inventive>())),
+              "H13 H14 H15 H16 H17 H18 H19 H21 H22 H23 H24 H26 H33 H36 H37 H40 H41 H42 H43 H7 ");
+}
+
+// But for rays of no length and such as are none, which are to hit nothing.
+TEST(Stability, FindsAHitTooFewInEveryCaseOfRays) {
+    const std::array kinds{inPlaceOfOurs<ForgetfulOnRays>()};
+    for (const char* id : {"H13", "H14", "H16", "H17", "H18", "H32"}) {
+        const Printed printed = run({"--quick", "--quiet", "--only", id}, kinds);
+        EXPECT_EQ(printed.exitCode, kExitCheckFailed) << printed.out;
+    }
 }
 
 TEST(Stability, DoesNotJudgeOursWhereItIsNotAsked) {
