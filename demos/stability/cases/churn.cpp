@@ -63,14 +63,14 @@ CaseOutcome duplicates(const CaseContext& context) {
 
 constexpr float kMargin = 0.05F;  // by which btDbvtBroadphase fattens boxes [m]
 
-// An ulp of the margin [m]. As long as nothing is farther from 0 than 2^24 of them, moves by the margin
-// and an ulp more or less are not rounded.
+// An ulp of the margin [m]. As long as nothing is farther from 0 than 2^24 of them, moves by the
+// margin and an ulp more or less are not rounded.
 constexpr float kMarginUlp = 0x1p-28F;
 
 constexpr std::array kUlpsBeyond{-1.0F, 0.0F, 1.0F};
 
-// A cube at 0, and on each of its sides three boxes side by side that begin where the cube ends when it
-// has moved by the margin, an ulp less and an ulp more.
+// A cube at 0, and on each of its sides three boxes side by side that begin where the cube ends
+// when it has moved by the margin, an ulp less and an ulp more.
 Boxes boxesAtTheMargin() {
     constexpr float kHalf = 0x1p20F * kMarginUlp;  // 4 mm
     Boxes boxes{cubeAt({0, 0, 0}, 2 * kHalf)};
@@ -109,8 +109,8 @@ void judgeMove(PairScene& scene, CaseTally& tally) {
     }
 }
 
-// To the margin and back at a stroke, by an ulp less, nothing and an ulp more, then creeping across it
-// by an ulp a frame; along each axis, both ways.
+// To the margin and back at a stroke, by an ulp less, nothing and an ulp more, then creeping across
+// it by an ulp a frame; along each axis, both ways.
 void moveByTheMargin(const CaseContext& context, CaseTally& tally, int frames) {
     PairScene scene(context, boxesAtTheMargin());
     const Aabb<float> rest = scene.boxes()[0];

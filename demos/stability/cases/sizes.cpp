@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 //
-// Sizes that differ by twelve orders of magnitude, cells that were chosen to collide, and cells of no
-// size.
+// Sizes that differ by twelve orders of magnitude, cells that were chosen to collide, and cells of
+// no size.
 
 #include <demos/stability/cases/cases.hpp>
 

@@ -181,9 +181,9 @@ CaseOutcome noMotion(const CaseContext& context) {
 
 // --- Thin walls -----------------------------------------------------------------------------------
 
-// Lanes, each with a wall somewhere along it and a bullet that begins somewhere in front of the wall and
-// ends behind; every other one flies the other way. Coordinates are multiples of an eighth of a
-// millimetre up to 1024 m, so that none is rounded.
+// Lanes, each with a wall somewhere along it and a bullet that begins somewhere in front of the
+// wall and ends behind; every other one flies the other way. Coordinates are multiples of an eighth
+// of a millimetre up to 1024 m, so that none is rounded.
 SweptFrame bulletsAtWalls(int lanes, float thickness, Random& random) {
     constexpr float kUnit = 0x1p-13F;
     constexpr float kBullet = 0x1p-7F;  // 8 mm
