@@ -150,7 +150,7 @@ TYPED_TEST(HardSizes, FromAMicrometreToAThousandKilometresPairAsBruteForceSays) 
 
 // As many pairs a box of all sizes as of one. The larger ones are tested with many of the smaller,
 // which follow one another in memory: 98 tests a box here instead of 4, in 1.1 times the time
-// (tests/benchmarks/run --only sizes).
+// (tests/benchmarks/run --only '^sizes').
 TYPED_TEST(HardSizes, FromAMicrometreToAThousandKilometresCostAHundredTestsABox) {
     for (const double pairsPerBox : {0.1, 1.0}) {
         for (const std::size_t count : {4000U, 20'000U}) {
