@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstdlib>
 #include <span>
@@ -138,17 +139,23 @@ Attack<Scalar> boxesInALongRow() {
     return boxes;
 }
 
-TYPED_TEST(HashedCrowds, InOneBucketAreSweptToo) {
-    const Attack<TypeParam> attacks[] = {boxesInRowsOfOneHash<TypeParam>(),
-                                         boxesThatMakeUpForTheirRows<TypeParam>(),
-                                         boxesInALongRow<TypeParam>()};
-    for (const Attack<TypeParam>& attack : attacks) {
-        SCOPED_TRACE(&attack - attacks);
-        Attack<TypeParam> boxes = attack;
+/// Crowds in one bucket, each in a way of its own, with some couples in it.
+template <class Scalar>
+std::array<Attack<Scalar>, 3> attacksWithCouples() {
+    std::array attacks{boxesInRowsOfOneHash<Scalar>(), boxesThatMakeUpForTheirRows<Scalar>(),
+                       boxesInALongRow<Scalar>()};
+    for (Attack<Scalar>& boxes : attacks) {
         EXPECT_TRUE(areInOneBucket(boxes));
         for (std::size_t i = 0; i < 300; ++i) {
-            boxes.push_back(attack[i * 37]);  // couples
+            const Aabb<Scalar> box = boxes[i * 37];
+            boxes.push_back(box);
         }
+    }
+    return attacks;
+}
+
+TYPED_TEST(HashedCrowds, InOneBucketAreSweptToo) {
+    for (const Attack<TypeParam>& boxes : attacksWithCouples<TypeParam>()) {
         for (const double cellSize : {1.0, 0.0}) {
             const PairCost cost = expectPairsOfSweep(boxes, hashedCellsOf(cellSize));
             EXPECT_LT(cost.boxesTested, 5 * detail::kCrowd * boxes.size())
@@ -192,16 +199,7 @@ void expectFewTestsAQuery(const Attack<Scalar>& boxes, double cellSize, std::uin
 // at worst everyone once, as Grid::visit() says; of queries together, the buckets are swept, with
 // 534 tests each in the worst crowd. Cells chosen by the grid are others, and take 16 tests at most.
 TYPED_TEST(HashedCrowds, InOneBucketAreFoundByQueriesThatTestNobodyTwice) {
-    const Attack<TypeParam> attacks[] = {boxesInRowsOfOneHash<TypeParam>(),
-                                         boxesThatMakeUpForTheirRows<TypeParam>(),
-                                         boxesInALongRow<TypeParam>()};
-    for (const Attack<TypeParam>& attack : attacks) {
-        SCOPED_TRACE(&attack - attacks);
-        Attack<TypeParam> boxes = attack;
-        ASSERT_TRUE(areInOneBucket(boxes));
-        for (std::size_t i = 0; i < 300; ++i) {
-            boxes.push_back(attack[i * 37]);  // couples
-        }
+    for (const Attack<TypeParam>& boxes : attacksWithCouples<TypeParam>()) {
         expectFewTestsAQuery<TypeParam>(boxes, 1, boxes.size(), 3 * detail::kCrowd);
         expectFewTestsAQuery<TypeParam>(boxes, 0, 32, 32);
     }
