@@ -155,13 +155,14 @@ public:
     /// data. However large or long the region, about one test for each proxy at most, up to 16 where
     /// so many rows of cells share a bucket, and one more for each that has changed since it was
     /// filed; none, but for these, for a region that is empty by a NaN (one for each, if the NaN is in
-    /// a ray's fatness).
+    /// a ray's fatness). Of hundreds that share a cell, only what is near along an axis, where the
+    /// region has bounds().
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
 
     /// visit() for many: collectors[i] takes what regions[i] finds, in any order; there are as many
     /// of both (asserted). The collectors must not share anything when `parallelFor` is parallel.
-    /// Returns the sum of the costs, each at most that of visit(). Faster than one by one where
+    /// Returns the sum of the costs, each within the bounds of visit(). Faster than one by one where
     /// regions have bounds(), unless the collectors stop early.
     template <class Region, class Collector>
     QueryCost visitEach(std::span<const Region> regions, std::span<Collector> collectors,

@@ -176,37 +176,6 @@ std::uint32_t scanAll(const LevelView<Scalar>& level, const Query& query, Run ru
     return run.last - run.first;
 }
 
-// Binary searches in a run that is sorted by the column, but for erased entries, which are NaN: at
-// these, as at a bound that is NaN, both err to the side of a longer run.
-
-/// The first entry that is not below `bound`, or one before it.
-template <class Scalar>
-std::uint32_t lowerBound(const Scalar* column, Run run, Scalar bound) {
-    while (run.first < run.last) {
-        const std::uint32_t middle = run.first + (run.last - run.first) / 2;
-        if (column[middle] < bound) {
-            run.first = middle + 1;
-        } else {
-            run.last = middle;
-        }
-    }
-    return run.first;
-}
-
-/// One past the last entry that is not above `bound`, or one behind it.
-template <class Scalar>
-std::uint32_t upperBound(const Scalar* column, Run run, Scalar bound) {
-    while (run.first < run.last) {
-        const std::uint32_t middle = run.first + (run.last - run.first) / 2;
-        if (bound < column[middle]) {
-            run.last = middle;
-        } else {
-            run.first = middle + 1;
-        }
-    }
-    return run.first;
-}
-
 /// Null when the bucket, counted over all levels, is not sorted.
 template <class Scalar>
 const SortedBucket<Scalar>* sortedBucket(const LevelView<Scalar>& level, std::uint32_t bucket) {
@@ -243,12 +212,11 @@ template <bool kIsDense, class Scalar, class Query>
             const Scalar* const column = level.columns[sorted->axis];
             const Scalar low = query.columns[sorted->axis][query.number];
             const Scalar high = query.columns[sorted->axis + 3][query.number];
-            // Rounded, the difference is still no more than the min corner of any box that reaches
-            // `low`: that is a number, and rounding is monotone.
             const Run longOnes = {highest(part.first, sorted->firstLong), part.last};
             part.last = lowest(part.last, sorted->firstLong);
             tested += scanAll<kIsDense>(level, query, longOnes, row, found);
-            part = {lowerBound(column, part, low - sorted->reach), upperBound(column, part, high)};
+            part = {firstNear(*sorted, column, part.first, part.last, low),
+                    endOfNear(column, part.first, part.last, high)};
         }
         tested += scanAll<kIsDense>(level, query, part, row, found);
     }

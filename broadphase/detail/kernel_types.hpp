@@ -5,6 +5,8 @@
 // several instruction sets, and an inline function of the standard library that such a file emits
 // could be the copy that the linker keeps for the whole program.
 
+#include <broadphase/detail/sorted_bucket.hpp>
+
 #include <cstddef>
 #include <cstdint>
 
@@ -96,19 +98,6 @@ struct Way {
 struct Row {
     std::int32_t y;
     std::int32_t z;
-};
-
-/// A bucket with more entries than this is crowded, and may be sorted along an axis.
-inline constexpr std::uint32_t kCrowd = 256;
-
-/// A crowded bucket whose entries are sorted by their min corners along an axis, so that kernels need
-/// not read them all; but for the last ones, which are long.
-template <class Scalar>
-struct SortedBucket {
-    std::uint32_t bucket;  // counted over all levels
-    std::uint32_t axis;
-    std::uint32_t firstLong;  // entry from which on they are long
-    Scalar reach;             // none of the others is longer along the axis
 };
 
 /// A level of a table (see table.hpp) as plain arrays.

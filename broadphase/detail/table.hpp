@@ -17,6 +17,7 @@
 #include <broadphase/detail/level_layout.hpp>
 #include <broadphase/detail/padded_box.hpp>
 #include <broadphase/detail/quantise.hpp>
+#include <broadphase/detail/sorted_bucket.hpp>
 #include <broadphase/parallel_for.hpp>
 
 #include <algorithm>
@@ -129,6 +130,12 @@ public:
         }
     }
 
+    /// Calls visit(EntryRange) for those of a range of whole buckets that may overlap `bounds`: all but
+    /// what is far from it in a sorted bucket. Cost: O(log n) for each sorted bucket + visits.
+    template <class Visit>
+    void forNear(const Level<Scalar>& level, EntryRange range, const Aabb<Scalar>& bounds,
+                 Visit&& visit) const;
+
     /// Says which invariant is broken, in a sentence; empty when all hold:
     /// - Every entry lies in the bucket of the cell of its min corner.
     /// - Every entry spans at most two cells of its level an axis, or is listed without cells.
@@ -168,6 +175,33 @@ private:
     std::vector<std::uint32_t> longOnes_;   // the same
     std::vector<LevelView<Scalar>> views_;  // the same
 };
+
+template <class Scalar>
+template <class Visit>
+void Table<Scalar>::forNear(const Level<Scalar>& level, EntryRange range,
+                            const Aabb<Scalar>& bounds, Visit&& visit) const {
+    const auto visitSome = [&](std::uint32_t first, std::uint32_t last) {
+        if (first < last) {
+            visit(EntryRange{first, last});
+        }
+    };
+    const std::span<const SortedBucket<Scalar>> buckets =
+        std::span(sortedBuckets_).subspan(level.firstSorted, level.sortedCount);
+    auto sorted = std::partition_point(buckets.begin(), buckets.end(), [&](const auto& one) {
+        return bucketStart_[one.bucket] < range.first;
+    });
+    for (; sorted != buckets.end() && bucketStart_[sorted->bucket] < range.last; ++sorted) {
+        const Scalar* const column = bounds_[sorted->axis].data();
+        const auto axis = static_cast<Eigen::Index>(sorted->axis);
+        const std::uint32_t begin = bucketStart_[sorted->bucket];
+        const std::uint32_t end = sorted->firstLong;
+        visitSome(range.first, begin);
+        visitSome(firstNear(*sorted, column, begin, end, bounds.min()[axis]),
+                  endOfNear(column, begin, end, bounds.max()[axis]));
+        range.first = end;
+    }
+    visitSome(range.first, range.last);
+}
 
 extern template class Table<float>;
 extern template class Table<double>;

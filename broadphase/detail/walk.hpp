@@ -107,6 +107,29 @@ bool haveMoreThanAll(const Table<Scalar>& table, const Level<Scalar>& level,
     return count > level.count();
 }
 
+/// For each range of whole buckets in which anything overlapping `bounds` may be filed calls
+/// read(range, isOwn) -> bool, false to stop; returns false when stopped. See walkLevel().
+template <class Scalar, class Read>
+bool walkBuckets(const Table<Scalar>& table, const Level<Scalar>& level, const Aabb<Scalar>& bounds,
+                 QueryCost& cost, const Read& read) {
+    const RowsOfBox rows = rowsOfBox(level, bounds);
+    if (!level.hasCells || rows.areTooMany || haveMoreThanAll(table, level, rows)) {
+        return read(EntryRange{level.firstEntry, level.lastEntry},
+                    [](std::uint32_t) { return true; });
+    }
+    bool goOn = true;
+    forRows(rows, [&](const CellRun& run) {
+        ++cost.rowsVisited;
+        table.forRun(level, run, [&](const EntryRange& range) {
+            goOn = goOn && read(range, [&](std::uint32_t entry) {
+                       return table.isInRow(level, entry, run.y, run.z);
+                   });
+        });
+        return goOn;
+    });
+    return goOn;
+}
+
 /// Reads the entries of one level that may overlap `bounds`: each once at most, but for those of a hashed
 /// level, which may be read once for each of the rows where these are kFewRows at most. For each
 /// range of entries calls reader.read(range, isOwn) -> bool, false to stop; isOwn(entry) must be
@@ -118,24 +141,20 @@ bool walkLevel(const Table<Scalar>& table, const Level<Scalar>& level, const Aab
     if (level.count() == 0) {
         return true;
     }
-    const RowsOfBox rows = rowsOfBox(level, bounds);
-    if (!level.hasCells || rows.areTooMany || haveMoreThanAll(table, level, rows)) {
-        cost.boxesTested += level.count();
-        return reader.read(EntryRange{level.firstEntry, level.lastEntry},
-                           [](std::uint32_t) { return true; });
+    const auto read = [&](const EntryRange& range, const auto& isOwn) {
+        cost.boxesTested += range.count();
+        return reader.read(range, isOwn);
+    };
+    if (level.sortedCount == 0) {
+        return walkBuckets(table, level, bounds, cost, read);
     }
-    bool goOn = true;
-    forRows(rows, [&](const CellRun& run) {
-        ++cost.rowsVisited;
-        table.forRun(level, run, [&](const EntryRange& range) {
-            cost.boxesTested += range.count();
-            goOn = goOn && reader.read(range, [&](std::uint32_t entry) {
-                return table.isInRow(level, entry, run.y, run.z);
-            });
+    return walkBuckets(
+        table, level, bounds, cost, [&](const EntryRange& buckets, const auto& isOwn) {
+            bool goOn = true;
+            table.forNear(level, buckets, bounds,
+                          [&](const EntryRange& range) { goOn = goOn && read(range, isOwn); });
+            return goOn;
         });
-        return goOn;
-    });
-    return goOn;
 }
 
 /// walkLevel() over all levels of a table. Returns false when stopped.

@@ -100,6 +100,42 @@ TYPED_TEST(HardCrowds, OfEachCellAreSweptAlongAnAxisOfItsOwn) {
     EXPECT_LT(expectPairsOfSweep(boxes, cellsOf(1000)).boxesTested, 200U * kCount);
 }
 
+// Though some have left, or moved, since they were sorted, and a few are long.
+TYPED_TEST(HardCrowds, OfWhichQueriesWantAFewAreSearchedAlongAnAxis) {
+    constexpr std::uint32_t kCount = 8'000;
+    auto boxes = crowd<TypeParam>(kCount, 100, 0x5eed1307);
+    for (int i = 0; i < 3; ++i) {
+        boxes.push_back(makeBox<TypeParam>(30 * i, 1, 1, 30 * i + 35, 9, 9));
+    }
+    addAnchors(boxes);
+    Grid<TypeParam> grid(cellsOf(1e4));
+    std::vector<Placed<TypeParam>> proxies;
+    for (const Aabb<TypeParam>& box : boxes) {
+        proxies.push_back({grid.add(box), box});
+    }
+    ASSERT_GT(grid.update().largestCell, kCount - 100);
+    for (std::uint32_t i = 0; i < kCount; i += 50) {
+        proxies[i].box = proxies[i + 1].box;
+        grid.move(proxies[i].id, proxies[i].box);
+        grid.remove(proxies[i + 25].id);
+    }
+    for (std::uint32_t i = kCount; i > 0; i -= 50) {
+        proxies.erase(proxies.begin() + (i - 25));
+    }
+    Random random(0x5eed1308);
+    std::uint64_t found = 0;
+    std::uint64_t tested = 0;
+    constexpr std::uint64_t kQueries = 60;
+    for (std::uint64_t i = 0; i < kQueries; ++i) {
+        const SphereRegion<TypeParam> sphere(random.pointIn(0, 100).template cast<TypeParam>(), 3);
+        found += expectLikeBruteForce<TypeParam>(grid, proxies, sphere);
+        CollectCount count;
+        tested += grid.visit(sphere, count).boxesTested;
+    }
+    EXPECT_GT(found, kQueries);
+    EXPECT_LT(tested, kQueries * kCount / 8) << "of about " << kCount << " in the cell";
+}
+
 TEST(HardCrowd, AtOnePlaceArePairsOfAllAndNoMoreMemoryEachTime) {
     constexpr std::uint32_t kCount = 2000;
     constexpr std::size_t kPairs = std::size_t{kCount} * (kCount - 1) / 2;
