@@ -155,8 +155,8 @@ public:
     /// data. However large or long the region, about one test for each proxy at most, up to 16 where
     /// so many rows of cells share a bucket, and one more for each that has changed since it was
     /// filed; none, but for these, for a region that is empty by a NaN (one for each, if the NaN is in
-    /// a ray's fatness). Of hundreds that share a cell, only what is near along an axis, where the
-    /// region has bounds().
+    /// a ray's fatness). Of hundreds that share a cell, only the long ones and what is near along
+    /// an axis, where the region has bounds().
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
 
