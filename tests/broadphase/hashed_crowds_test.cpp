@@ -155,7 +155,9 @@ std::array<Attack<Scalar>, 3> attacksWithCouples() {
 }
 
 TYPED_TEST(HashedCrowds, InOneBucketAreSweptToo) {
-    for (const Attack<TypeParam>& boxes : attacksWithCouples<TypeParam>()) {
+    const auto attacks = attacksWithCouples<TypeParam>();
+    for (const Attack<TypeParam>& boxes : attacks) {
+        SCOPED_TRACE(testing::Message() << "attack " << &boxes - attacks.data());
         for (const double cellSize : {1.0, 0.0}) {
             const PairCost cost = expectPairsOfSweep(boxes, hashedCellsOf(cellSize));
             EXPECT_LT(cost.boxesTested, 5 * detail::kCrowd * boxes.size())
@@ -196,7 +198,9 @@ void expectFewTestsAQuery(const Attack<Scalar>& boxes, double cellSize, std::uin
 
 // Cells of 1 m are those that the boxes are made for: there the bucket is sorted.
 TYPED_TEST(HashedCrowds, InOneBucketAreFoundByQueriesOfFewTests) {
-    for (const Attack<TypeParam>& boxes : attacksWithCouples<TypeParam>()) {
+    const auto attacks = attacksWithCouples<TypeParam>();
+    for (const Attack<TypeParam>& boxes : attacks) {
+        SCOPED_TRACE(testing::Message() << "attack " << &boxes - attacks.data());
         expectFewTestsAQuery<TypeParam>(boxes, 1, 3 * detail::kCrowd);
         expectFewTestsAQuery<TypeParam>(boxes, 0, 32);
     }
