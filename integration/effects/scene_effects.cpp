@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Zlib
+#include <integration/effects/scene_effects.hpp>
+
+#include <broadphase/crowd.hpp>
+#include <integration/ai/radar.hpp>
+
+#include <array>
+#include <sstream>
+
+namespace hashphase {
+namespace {
+
+/// Calls visit(effect, optional) for every member of the declaration.
+template <class Declaration, class Visit>
+void forEachMember(Declaration& effects, const Visit& visit) {
+    visit(Effect::motion, effects.motion);
+    visit(Effect::terrain, effects.terrain);
+    visit(Effect::pairs, effects.pairs);
+    visit(Effect::response, effects.response);
+    visit(Effect::sweep, effects.sweep);
+    visit(Effect::sleeping, effects.sleeping);
+    visit(Effect::rotation, effects.rotation);
+    visit(Effect::friction, effects.friction);
+    visit(Effect::picking, effects.picking);
+    visit(Effect::boxSelection, effects.boxSelection);
+    visit(Effect::culling, effects.culling);
+    visit(Effect::proximity, effects.proximity);
+    visit(Effect::zones, effects.zones);
+    visit(Effect::radar, effects.radar);
+}
+
+struct Need {
+    Effect effect;
+    Effect needed;
+    std::string_view why;
+};
+
+constexpr std::array kNeeds{
+    Need{Effect::terrain, Effect::motion, "puts on the ground what has moved"},
+    Need{Effect::response, Effect::pairs, "is the answer to pairs"},
+    Need{Effect::response, Effect::motion, "changes the velocities of what moves"},
+    Need{Effect::sweep, Effect::pairs, "finds pairs on the way of fast bodies"},
+    Need{Effect::sweep, Effect::motion, "follows bodies that move"},
+    Need{Effect::sleeping, Effect::motion, "stops bodies that move"},
+    Need{Effect::rotation, Effect::motion, "turns bodies that move"},
+    Need{Effect::friction, Effect::response, "acts between bodies that bounce off each other"},
+};
+
+std::string missingNeed(EffectSet declared) {
+    for (const Need& need : kNeeds) {
+        if (declared.contains(need.effect) && !declared.contains(need.needed)) {
+            std::ostringstream sentence;
+            sentence << nameOf(need.effect) << " is declared without " << nameOf(need.needed)
+                     << ", but " << need.why << ": declare " << nameOf(need.needed)
+                     << " as well, or leave out " << nameOf(need.effect) << '.';
+            return sentence.str();
+        }
+    }
+    return {};
+}
+
+/// Gathers the first setting that is wrong.
+class Settings {
+public:
+    template <class Number>
+    void require(bool isRight, std::string_view field, Number value, std::string_view valid) {
+        if (!isRight && error_.empty()) {
+            std::ostringstream sentence;
+            sentence << field << " is " << value << ", but must be " << valid << '.';
+            error_ = sentence.str();
+        }
+    }
+    void requireSomeFar(std::string_view effect, double interestRadius, std::uint32_t frames) {
+        require(interestRadius >= 0, std::string(effect) + ".interestRadius", interestRadius,
+                "0 or more [m]");
+        require(frames >= 1 && frames <= kMostFrames, std::string(effect) + ".farFrames", frames,
+                "from 1 to 1000000");
+        if (error_.empty() && frames > 1 && !(interestRadius < kInfinity)) {
+            std::ostringstream sentence;
+            sentence << effect << ".farFrames is " << frames << ", but nothing is far: set "
+                     << effect << ".interestRadius as well [m].";
+            error_ = sentence.str();
+        }
+    }
+    [[nodiscard]] const std::string& error() const noexcept { return error_; }
+
+    static constexpr std::uint32_t kMostFrames = 1'000'000;
+    static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+private:
+    std::string error_;
+};
+
+// Each test is phrased so that NaN fails it.
+std::string badSetting(const SceneEffects& effects) {
+    Settings settings;
+    if (effects.motion) {
+        const Aabb<double>& bounds = effects.motion->bounds;
+        for (int axis = 0; axis < 3; ++axis) {
+            settings.require(bounds.min()[axis] <= bounds.max()[axis], "motion.bounds",
+                             bounds.min()[axis],
+                             "a box whose lower corner is not above its upper one");
+        }
+    }
+    if (effects.response) {
+        const double restitution = effects.response->restitution;
+        settings.require(restitution >= 0 && restitution <= 1, "response.restitution", restitution,
+                         "between 0 and 1");
+    }
+    if (effects.sweep) {
+        settings.require(effects.sweep->mode != Sweep::none, "sweep.mode", "none",
+                         "automatic, box or line; not to sweep, leave out sweep");
+        settings.require(effects.sweep->fastFrom >= 0, "sweep.fastFrom", effects.sweep->fastFrom,
+                         "0 or more diameters a frame");
+    }
+    if (effects.sleeping) {
+        const SleepingEffect& sleeping = *effects.sleeping;
+        settings.require(sleeping.interestRadius >= 0, "sleeping.interestRadius",
+                         sleeping.interestRadius, "0 or more [m]");
+        settings.require(sleeping.slowBelow >= 0, "sleeping.slowBelow", sleeping.slowBelow,
+                         "0 or more [m/s]");
+        settings.require(
+            sleeping.framesBeforeSleep >= 1 && sleeping.framesBeforeSleep <= Settings::kMostFrames,
+            "sleeping.framesBeforeSleep", sleeping.framesBeforeSleep, "from 1 to 1000000");
+    }
+    if (effects.culling) {
+        const CullingEffect& culling = *effects.culling;
+        settings.require(culling.margin >= 0 && culling.margin < Settings::kInfinity,
+                         "culling.margin", culling.margin, "0 or more, and finite [m]");
+        settings.require(culling.restingCameraFrames >= 1 &&
+                             culling.restingCameraFrames <= Settings::kMostFrames,
+                         "culling.restingCameraFrames", culling.restingCameraFrames,
+                         "from 1 to 1000000");
+    }
+    if (effects.proximity) {
+        const ProximityEffect& proximity = *effects.proximity;
+        settings.require(proximity.radius >= 0, "proximity.radius", proximity.radius,
+                         "0 or more [m]");
+        settings.require(
+            proximity.colourCount >= 1 && proximity.colourCount <= Crowd<float>::kMostGroups,
+            "proximity.colourCount", proximity.colourCount,
+            "from 1 to " + std::to_string(Crowd<float>::kMostGroups));
+        settings.requireSomeFar("proximity", proximity.interestRadius, proximity.farFrames);
+    }
+    if (effects.zones) {
+        settings.requireSomeFar("zones", effects.zones->interestRadius, effects.zones->farFrames);
+    }
+    if (effects.radar) {
+        const RadarEffect& radar = *effects.radar;
+        settings.require(radar.cellSize > 0 && radar.cellSize < Settings::kInfinity,
+                         "radar.cellSize", radar.cellSize, "above 0, and finite [m]");
+        const double counts = double{1} * radar.columns * radar.rows * radar.groupCount;
+        settings.require(counts >= 1 && counts <= static_cast<double>(Radar<float>::kMostCounts),
+                         "radar: columns * rows * groupCount", counts,
+                         "from 1 to " + std::to_string(Radar<float>::kMostCounts));
+        settings.require(radar.frames >= 1 && radar.frames <= Settings::kMostFrames, "radar.frames",
+                         radar.frames, "from 1 to 1000000");
+    }
+    return settings.error();
+}
+
+}  // namespace
+
+EffectSet SceneEffects::set() const noexcept {
+    EffectSet declared;
+    forEachMember(*this, [&](Effect effect, const auto& member) {
+        if (member) {
+            declared.insert(effect);
+        }
+    });
+    return declared;
+}
+
+void SceneEffects::declare(Effect effect) {
+    forEachMember(*this, [&](Effect each, auto& member) {
+        if (each == effect && !member) {
+            member.emplace();
+        }
+    });
+}
+
+void SceneEffects::remove(Effect effect) {
+    forEachMember(*this, [&](Effect each, auto& member) {
+        if (each == effect) {
+            member.reset();
+        }
+    });
+}
+
+std::string effectsError(const SceneEffects& effects) {
+    std::string error = missingNeed(effects.set());
+    if (error.empty()) {
+        error = badSetting(effects);
+    }
+    return error.empty() ? configError(effects.grid) : error;
+}
+
+}  // namespace hashphase
