@@ -110,6 +110,19 @@ ConvexRegion<Scalar>::ownPlanes() const {
 }
 
 template <class Scalar>
+bool ConvexRegion<Scalar>::isSameAs(const ConvexRegion& other) const noexcept {
+    bool isSame = ownPlaneCount_ == other.ownPlaneCount_ && isEmpty_ == other.isEmpty_ &&
+                  isExact_ == other.isExact_ && volume_.isInside == other.volume_.isInside;
+    for (std::uint32_t i = 0; isSame && i < ownPlaneCount_; ++i) {
+        isSame = volume_.offset[i] == other.volume_.offset[i];
+        for (int axis = 0; axis < 3; ++axis) {
+            isSame = isSame && volume_.slope[axis][i] == other.volume_.slope[axis][i];
+        }
+    }
+    return isSame;
+}
+
+template <class Scalar>
 bool ConvexRegion<Scalar>::contains(const ConvexRegion& other, Scalar margin) const {
     if (isEmpty_ || other.isEmpty_) {
         return other.isEmpty_;

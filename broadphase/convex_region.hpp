@@ -54,10 +54,17 @@ public:
     /// The same volume with Touch::exact.
     [[nodiscard]] ConvexRegion exact() const;
 
+    /// Whether they are made of the same planes, in the same order and for the same questions; false
+    /// for a plane that is NaN.
+    friend bool operator==(const ConvexRegion& a, const ConvexRegion& b) noexcept {
+        return a.isSameAs(b);
+    }
+
     /// The planes given and those that were found to bound the volume as boxes see it, for grids.
     [[nodiscard]] const detail::Volume<Scalar>& volume() const noexcept { return volume_; }
 
 private:
+    [[nodiscard]] bool isSameAs(const ConvexRegion& other) const noexcept;
     [[nodiscard]] detail::FixedList<Plane, kMostPlanes> ownPlanes() const;
     [[nodiscard]] ConvexRegion movedOut(Scalar distance, Touch touch) const;
 

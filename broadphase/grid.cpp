@@ -213,8 +213,12 @@ std::size_t Grid<Scalar>::memoryBytes() const noexcept {
            boxesAtUpdate_.capacity() * sizeof(Box) +
            (staged_.capacity() + stagedBefore_.capacity() + restBoxes_.capacity()) *
                sizeof(detail::PaddedBox<Scalar>) +
-           mobile_.memoryBytes() + resting_.memoryBytes() + mobileTree_.tree.memoryBytes() +
-           restingTree_.tree.memoryBytes();
+           mobile_.memoryBytes() + resting_.memoryBytes() + rayMemoryBytes();
+}
+
+template <class Scalar>
+std::size_t Grid<Scalar>::rayMemoryBytes() const noexcept {
+    return mobileTree_.tree.memoryBytes() + restingTree_.tree.memoryBytes();
 }
 
 template <class Scalar>

@@ -140,6 +140,11 @@ public:
     /// Number of proxies alive, those with a NaN box included.
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
+    /// ProxyId::index of every proxy, present and past, is below it: the length of an array by index.
+    [[nodiscard]] std::uint32_t indexLimit() const noexcept {
+        return static_cast<std::uint32_t>(records_.size());
+    }
+
     /// Number of proxies whose box has a NaN now.
     [[nodiscard]] std::size_t nanCount() const noexcept { return nanCount_; }
 
@@ -199,6 +204,9 @@ public:
 
     /// Bytes held, capacity included.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
+
+    /// Those of them that only rays read; 0 before the first one.
+    [[nodiscard]] std::size_t rayMemoryBytes() const noexcept;
 
     /// Says which invariant is broken, in a sentence; empty when all hold:
     /// - Every proxy alive is filed in exactly one table, or waits in the list of changes, or is NaN.

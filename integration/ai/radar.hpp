@@ -65,6 +65,11 @@ public:
     /// What the last scan() cost; hits are boxes that touch the window's bounds.
     [[nodiscard]] const QueryCost& lastCost() const noexcept { return cost_; }
 
+    /// Bytes held, capacity included.
+    [[nodiscard]] std::size_t memoryBytes() const noexcept {
+        return sizeof(*this) + counts_.capacity() * sizeof(std::uint32_t);
+    }
+
 private:
     std::vector<std::uint32_t> counts_;
     QueryCost cost_;

@@ -11,7 +11,8 @@ namespace hashphase {
 template <class Scalar>
 QueryCost RarestColour<Scalar>::update(const Grid<Scalar>& grid, Scalar radius,
                                        std::uint32_t colourCount, std::span<std::uint32_t> colours,
-                                       ProxyFilter filter, ParallelFor parallelFor) {
+                                       ProxyFilter filter, ParallelFor parallelFor,
+                                       ProxyFilter changes) {
     HASHPHASE_ASSERT(colourCount > 0 && colourCount <= Crowd<Scalar>::kMostGroups,
                      "There are 1 to kMostGroups colours.");
     crowd_.take(grid, radius, filter, parallelFor);
@@ -29,6 +30,9 @@ QueryCost RarestColour<Scalar>::update(const Grid<Scalar>& grid, Scalar radius,
     constexpr std::size_t kGrain = 4096;
     parallelFor(ids.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t agent = begin; agent < end; ++agent) {
+            if (!changes(ids[agent])) {
+                continue;
+            }
             const std::uint32_t* counts = counts_.data() + agent * colourCount;
             const std::uint32_t* rarest = std::min_element(counts, counts + colourCount);
             colours[ids[agent].index] = static_cast<std::uint32_t>(rarest - counts);
@@ -39,7 +43,8 @@ QueryCost RarestColour<Scalar>::update(const Grid<Scalar>& grid, Scalar radius,
 
 template <class Scalar>
 std::size_t RarestColour<Scalar>::memoryBytes() const noexcept {
-    return crowd_.memoryBytes() + counts_.capacity() * sizeof(std::uint32_t);
+    return sizeof(*this) - sizeof(crowd_) + crowd_.memoryBytes() +
+           counts_.capacity() * sizeof(std::uint32_t);
 }
 
 template class RarestColour<float>;

@@ -28,11 +28,12 @@ public:
     /// Of every proxy that the filter accepts, sets colours[ProxyId::index] to that of the colours
     /// 0 to colourCount - 1 which fewest of the other ones within `radius` [m] of its centre have; of
     /// equally rare ones the lowest. An agent does not count itself: whoever is alone takes colour 0.
-    /// There are 1 to Crowd::kMostGroups colours, and one place for each agent (asserted). Returns the
-    /// cost of counting. Cost: that of Crowd::countGroups().
+    /// There are 1 to Crowd::kMostGroups colours, and one place for each agent (asserted). Whom
+    /// `changes` refuses, asked once about each, is counted and keeps its colour. Returns the cost of
+    /// counting. Cost: that of Crowd::countGroups().
     QueryCost update(const Grid<Scalar>& grid, Scalar radius, std::uint32_t colourCount,
                      std::span<std::uint32_t> colours, ProxyFilter filter = acceptAll,
-                     ParallelFor parallelFor = serialFor);
+                     ParallelFor parallelFor = serialFor, ProxyFilter changes = acceptAll);
 
     /// The agents of the last update().
     [[nodiscard]] const Crowd<Scalar>& crowd() const noexcept { return crowd_; }

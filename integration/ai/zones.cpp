@@ -47,7 +47,7 @@ ZoneId Zones<Scalar>::add(const Zone<Scalar>& zone) {
     auto index = static_cast<std::uint32_t>(slots_.size());
     if (freeSlots_.empty()) {
         detail::ensureCapacity(freeSlots_, slots_.size() + 1);  // so that remove() has room
-        slots_.push_back({zone, 0, {}, {}, {}});
+        slots_.push_back({zone, 0, {}, {}, {}, false});
     } else {
         index = freeSlots_.back();
         slots_[index].zone = zone;
@@ -100,18 +100,19 @@ const Zone<Scalar>& Zones<Scalar>::zone(ZoneId id) const {
 
 template <class Scalar>
 ZoneEvents Zones<Scalar>::update(const Grid<Scalar>& grid, ZoneFilter filter,
-                                 ParallelFor parallelFor) {
+                                 ParallelFor parallelFor, ZoneChoice due) {
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kMustNotChange);
     // Who is where.
     constexpr std::size_t grain = 8;
     parallelFor(slots_.size(), grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
+            const detail::QueryScope scope(this);
             Slot& slot = slots_[i];
-            if (!isAlive(slot)) {
+            const ZoneId id{static_cast<std::uint32_t>(i), slot.generation};
+            slot.isDue = isAlive(slot) && due(id);
+            if (!slot.isDue) {
                 continue;
             }
-            const detail::QueryScope scope(this);
-            const ZoneId id{static_cast<std::uint32_t>(i), slot.generation};
             const auto counts = [&](ProxyId proxy) { return filter(id, proxy); };
             slot.cost = std::visit(
                 [&](const auto& region) {
@@ -127,7 +128,7 @@ ZoneEvents Zones<Scalar>::update(const Grid<Scalar>& grid, ZoneFilter filter,
     left_.clear();
     cost_ = {};
     for (std::size_t i = 0; i < slots_.size(); ++i) {
-        if (isAlive(slots_[i])) {
+        if (slots_[i].isDue) {
             tellApart({static_cast<std::uint32_t>(i), slots_[i].generation}, slots_[i]);
             cost_ += slots_[i].cost;
         }
@@ -138,7 +139,7 @@ ZoneEvents Zones<Scalar>::update(const Grid<Scalar>& grid, ZoneFilter filter,
         abandoned_.clear();
     }
     for (Slot& slot : slots_) {
-        if (isAlive(slot)) {
+        if (slot.isDue) {
             slot.occupants.swap(slot.found);
         }
     }
@@ -160,6 +161,19 @@ void Zones<Scalar>::tellApart(ZoneId id, const Slot& slot) {
             ++before;
         }
     }
+}
+
+template <class Scalar>
+std::size_t Zones<Scalar>::memoryBytes() const noexcept {
+    std::size_t bytes =
+        sizeof(*this) + slots_.capacity() * sizeof(Slot) +
+        freeSlots_.capacity() * sizeof(std::uint32_t) +
+        (entered_.capacity() + stayed_.capacity() + left_.capacity() + abandoned_.capacity()) *
+            sizeof(ZoneEvent);
+    for (const Slot& slot : slots_) {
+        bytes += (slot.occupants.capacity() + slot.found.capacity()) * sizeof(ProxyId);
+    }
+    return bytes;
 }
 
 // --- Queries -------------------------------------------------------------------------------------

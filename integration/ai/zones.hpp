@@ -77,6 +77,13 @@ using ZoneFilter = FunctionRef<bool(ZoneId, ProxyId)>;
     return true;
 }
 
+/// Says whether an update looks into a zone.
+using ZoneChoice = FunctionRef<bool(ZoneId)>;
+
+[[nodiscard]] inline bool allZones(ZoneId /*zone*/) noexcept {
+    return true;
+}
+
 /// Watches zones. Keeps its memory: a frame like the last one allocates nothing.
 template <class Scalar>
 class Zones {
@@ -100,10 +107,13 @@ public:
     // --- Frame -----------------------------------------------------------------------------------
 
     /// Finds out who is in each zone now, and what has changed since the last update. Valid until
-    /// the next one. The result does not depend on `parallelFor`. Cost: a query for each zone, at
-    /// most one test for each zone and proxy (Grid::visit()), and the sum of the occupants.
+    /// the next one. The result does not depend on `parallelFor`. A zone that `due` leaves out, asked
+    /// once for each, keeps its occupants, removed ones included, and has no events: the next update
+    /// that looks into it tells all that has changed since the last one that did. Cost: a query for
+    /// each zone that is due, at most one test for each zone and proxy (Grid::visit()), and the sum of
+    /// the occupants.
     ZoneEvents update(const Grid<Scalar>& grid, ZoneFilter filter = acceptAllInZones,
-                      ParallelFor parallelFor = serialFor);
+                      ParallelFor parallelFor = serialFor, ZoneChoice due = allZones);
 
     // --- Queries ---------------------------------------------------------------------------------
 
@@ -117,6 +127,9 @@ public:
     /// What the last update() cost; hits are boxes, before presence and filter are asked about.
     [[nodiscard]] const QueryCost& lastCost() const noexcept { return cost_; }
 
+    /// Bytes held, capacity included. Cost: O(zones).
+    [[nodiscard]] std::size_t memoryBytes() const noexcept;
+
 private:
     struct Slot {
         Zone<Scalar> zone;
@@ -124,6 +137,7 @@ private:
         std::vector<ProxyId> occupants;  // at the last update
         std::vector<ProxyId> found;      // by the one under way
         QueryCost cost;
+        bool isDue = false;  // the update under way looks into it
     };
 
     [[nodiscard]] const Slot& slot(ZoneId id) const;

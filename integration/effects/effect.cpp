@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/effects/effect.hpp>
 
+#include <integration/effects/undeclared_effect.hpp>
+
 namespace hashphase {
 
 std::string_view nameOf(Effect effect) noexcept {
@@ -47,5 +49,11 @@ std::string namesOf(EffectSet effects) {
     }
     return names.empty() ? "nothing" : names;
 }
+
+UndeclaredEffect::UndeclaredEffect(Effect effect, std::string_view call)
+    : std::logic_error(std::string(call) + " needs " + std::string(nameOf(effect)) +
+                       ", which the scene does not declare: set SceneEffects::" +
+                       std::string(nameOf(effect)) + '.'),
+      effect_(effect) {}
 
 }  // namespace hashphase

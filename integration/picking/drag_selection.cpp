@@ -29,11 +29,14 @@ ConvexRegion<Scalar> selectionRegion(const View<Scalar>& view, const Pixel& a, c
 template <class Scalar>
 std::span<const ProxyId> select(const Grid<Scalar>& grid, const View<Scalar>& view, const Pixel& a,
                                 const Pixel& b, std::vector<ProxyId>& selected,
-                                Containment containment, ProxyFilter filter) {
+                                Containment containment, ProxyFilter filter, QueryCost* cost) {
     selected.clear();
     CollectAll all(selected);
     CollectIf accepted(all, filter);
-    grid.visit(selectionRegion(view, a, b, containment), accepted);
+    const QueryCost spent = grid.visit(selectionRegion(view, a, b, containment), accepted);
+    if (cost != nullptr) {
+        *cost += spent;
+    }
     std::sort(selected.begin(), selected.end());
     return selected;
 }
@@ -44,7 +47,7 @@ std::span<const ProxyId> select(const Grid<Scalar>& grid, const View<Scalar>& vi
                                                   Containment);                                    \
     template std::span<const ProxyId> select(const Grid<Scalar>&, const View<Scalar>&,             \
                                              const Pixel&, const Pixel&, std::vector<ProxyId>&,    \
-                                             Containment, ProxyFilter)
+                                             Containment, ProxyFilter, QueryCost*)
 
 HASHPHASE_INSTANTIATE(float);
 HASHPHASE_INSTANTIATE(double);

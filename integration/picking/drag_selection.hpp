@@ -33,11 +33,11 @@ template <class Scalar>
 
 /// The proxies whose boxes touch what is seen between two corners, or lie wholly inside, by their ids,
 /// in a vector of the caller's, which is emptied first. Returns what is in it. Cost: at most one test
-/// for each proxy (Grid::visit()), and sorting what is found.
+/// for each proxy (Grid::visit()), and sorting what is found. That of the query is added to `cost`.
 template <class Scalar>
 std::span<const ProxyId> select(const Grid<Scalar>& grid, const View<Scalar>& view, const Pixel& a,
                                 const Pixel& b, std::vector<ProxyId>& selected,
                                 Containment containment = Containment::touching,
-                                ProxyFilter filter = acceptAll);
+                                ProxyFilter filter = acceptAll, QueryCost* cost = nullptr);
 
 }  // namespace hashphase

@@ -59,9 +59,12 @@ private:
 
 template <class Scalar, class Collector>
 void visitIf(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray, Collector& collector,
-             ProxyFilter filter) {
+             ProxyFilter filter, QueryCost* cost) {
     CollectIf accepted(collector, filter);
-    grid.visit(ray, accepted);
+    const QueryCost spent = grid.visit(ray, accepted);
+    if (cost != nullptr) {
+        *cost += spent;
+    }
 }
 
 template <class Scalar>
@@ -74,26 +77,28 @@ Picked<Scalar> nearestOf(const RayRegion<Scalar>& ray, const CollectClosest<Scal
 
 template <class Scalar>
 Picked<Scalar> pickNearest(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
-                           ProxyFilter filter) {
+                           ProxyFilter filter, QueryCost* cost) {
     CollectClosest<Scalar> closest;
-    visitIf(grid, ray, closest, filter);
+    visitIf(grid, ray, closest, filter, cost);
     return nearestOf(ray, closest);
 }
 
 template <class Scalar>
 Picked<Scalar> pickNearest(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
-                           std::type_identity_t<ExactTest<Scalar>> test, ProxyFilter filter) {
+                           std::type_identity_t<ExactTest<Scalar>> test, ProxyFilter filter,
+                           QueryCost* cost) {
     CollectClosest<Scalar> closest;
     CollectConfirmed confirmed(ray, test, closest);
-    visitIf(grid, ray, confirmed, filter);
+    visitIf(grid, ray, confirmed, filter, cost);
     return nearestOf(ray, closest);
 }
 
 template <class Scalar>
 std::span<const Picked<Scalar>> pickAll(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
-                                        std::vector<Picked<Scalar>>& picked, ProxyFilter filter) {
+                                        std::vector<Picked<Scalar>>& picked, ProxyFilter filter,
+                                        QueryCost* cost) {
     CollectPicked<Scalar> all(ray, picked);
-    visitIf(grid, ray, all, filter);
+    visitIf(grid, ray, all, filter, cost);
     return all.sort();
 }
 
@@ -101,23 +106,24 @@ template <class Scalar>
 std::span<const Picked<Scalar>> pickAll(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
                                         std::vector<Picked<Scalar>>& picked,
                                         std::type_identity_t<ExactTest<Scalar>> test,
-                                        ProxyFilter filter) {
+                                        ProxyFilter filter, QueryCost* cost) {
     CollectPicked<Scalar> all(ray, picked);
     CollectConfirmed confirmed(ray, test, all);
-    visitIf(grid, ray, confirmed, filter);
+    visitIf(grid, ray, confirmed, filter, cost);
     return all.sort();
 }
 
 #define HASHPHASE_INSTANTIATE(Scalar)                                                              \
     template Picked<Scalar> pickNearest(const Grid<Scalar>&, const RayRegion<Scalar>&,             \
-                                        ProxyFilter);                                              \
+                                        ProxyFilter, QueryCost*);                                  \
     template Picked<Scalar> pickNearest(const Grid<Scalar>&, const RayRegion<Scalar>&,             \
-                                        ExactTest<Scalar>, ProxyFilter);                           \
+                                        ExactTest<Scalar>, ProxyFilter, QueryCost*);               \
     template std::span<const Picked<Scalar>> pickAll(                                              \
-        const Grid<Scalar>&, const RayRegion<Scalar>&, std::vector<Picked<Scalar>>&, ProxyFilter); \
+        const Grid<Scalar>&, const RayRegion<Scalar>&, std::vector<Picked<Scalar>>&, ProxyFilter,  \
+        QueryCost*);                                                                               \
     template std::span<const Picked<Scalar>> pickAll(                                              \
         const Grid<Scalar>&, const RayRegion<Scalar>&, std::vector<Picked<Scalar>>&,               \
-        ExactTest<Scalar>, ProxyFilter)
+        ExactTest<Scalar>, ProxyFilter, QueryCost*)
 
 HASHPHASE_INSTANTIATE(float);
 HASHPHASE_INSTANTIATE(double);

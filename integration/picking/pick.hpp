@@ -10,7 +10,8 @@
 // Bad data An empty ray (RayRegion::isEmpty()) picks nothing. An exact test that answers NaN, a number
 //          below 0, or one above the limit has found nothing.
 // Cost     what lies near the ray, up to what is found; however long the ray, at most one test for each
-//          proxy (Grid::visit()), an exact one for each box that is met, and sorting these
+//          proxy (Grid::visit()), an exact one for each box that is met, and sorting these. Where a
+//          `cost` is given, that of the query is added to it.
 
 #include <broadphase/function_ref.hpp>
 #include <broadphase/grid.hpp>
@@ -40,25 +41,25 @@ using ExactTest =
 /// The nearest proxy whose box the ray meets.
 template <class Scalar>
 [[nodiscard]] Picked<Scalar> pickNearest(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
-                                         ProxyFilter filter = acceptAll);
+                                         ProxyFilter filter = acceptAll, QueryCost* cost = nullptr);
 
 /// The nearest by the exact test, which is not asked about boxes behind what was found before.
 template <class Scalar>
 [[nodiscard]] Picked<Scalar> pickNearest(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
                                          std::type_identity_t<ExactTest<Scalar>> test,
-                                         ProxyFilter filter = acceptAll);
+                                         ProxyFilter filter = acceptAll, QueryCost* cost = nullptr);
 
 /// All that the ray meets, near to far, in a vector of the caller's, which is emptied first. Returns
 /// what is in it.
 template <class Scalar>
 std::span<const Picked<Scalar>> pickAll(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
                                         std::vector<Picked<Scalar>>& picked,
-                                        ProxyFilter filter = acceptAll);
+                                        ProxyFilter filter = acceptAll, QueryCost* cost = nullptr);
 
 template <class Scalar>
 std::span<const Picked<Scalar>> pickAll(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
                                         std::vector<Picked<Scalar>>& picked,
                                         std::type_identity_t<ExactTest<Scalar>> test,
-                                        ProxyFilter filter = acceptAll);
+                                        ProxyFilter filter = acceptAll, QueryCost* cost = nullptr);
 
 }  // namespace hashphase

@@ -1,0 +1,383 @@
+// SPDX-License-Identifier: Zlib
+#include <integration/effects/observers.hpp>
+
+#include <broadphase/position_region.hpp>
+#include <integration/ai/radar.hpp>
+#include <integration/ai/rarest_colour.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <stdexcept>
+#include <variant>
+
+namespace hashphase {
+namespace {
+
+/// Asks a query for those who take part in an effect: query(filter), or query(acceptAll), which is
+/// faster, where nobody is left out.
+template <class Scalar, class Query>
+decltype(auto) askFor(const ObservedScene<Scalar>& scene, Effect effect, const Query& query) {
+    if (scene.effects.empty()) {
+        return query(ProxyFilter(acceptAll));
+    }
+    const auto takesPart = [&scene, effect](ProxyId id) {
+        return id.index >= scene.effects.size() || scene.effects[id.index].contains(effect);
+    };
+    return query(ProxyFilter(takesPart));
+}
+
+}  // namespace
+
+template <class Scalar>
+struct Observers<Scalar>::Culling {
+    explicit Culling(Scalar margin) : culler(margin), view({}) {}
+
+    Culler<Scalar> culler;
+    ConvexRegion<Scalar> view;
+    bool hasMoved = true;          // the view, since the set was found
+    std::uint32_t framesKept = 0;  // since then, by declaration
+};
+
+template <class Scalar>
+struct Observers<Scalar>::Proximity {
+    void makeRoom(std::size_t count) {
+        if (colours.size() < count) {
+            colours.resize(count, 0);
+        }
+    }
+
+    RarestColour<Scalar> rarest;
+    std::vector<std::uint32_t> colours;
+    std::uint32_t agentCount = 0;  // when all looked around
+};
+
+template <class Scalar>
+struct Observers<Scalar>::ZoneWatch {
+    Zones<Scalar> zones;
+    ZoneEvents events;
+};
+
+template <class Scalar>
+struct Observers<Scalar>::RadarWatch {
+    Radar<Scalar> radar;
+    std::span<const std::uint32_t> counts;
+};
+
+// --- The declaration -----------------------------------------------------------------------------
+
+template <class Scalar>
+Observers<Scalar>::Observers(const SceneEffects& effects) {
+    declare(effects);
+}
+
+template <class Scalar>
+Observers<Scalar>::~Observers() = default;
+
+// Makes what is missing first, so that nothing has changed should memory run out.
+template <class Scalar>
+void Observers<Scalar>::declare(const SceneEffects& effects) {
+    if (const std::string error = effectsError(effects); !error.empty()) {
+        throw std::invalid_argument(error);
+    }
+    std::unique_ptr<Culling> culling;
+    if (effects.culling) {
+        culling = std::make_unique<Culling>(static_cast<Scalar>(effects.culling->margin));
+        culling->view = culling_ ? culling_->view : culling->view;
+    }
+    const auto made = [](bool isDeclared, auto& part) {
+        using Part = typename std::remove_reference_t<decltype(part)>::element_type;
+        return isDeclared && !part ? std::make_unique<Part>() : nullptr;
+    };
+    auto proximity = made(effects.proximity.has_value(), proximity_);
+    auto zones = made(effects.zones.has_value(), zones_);
+    auto radar = made(effects.radar.has_value(), radar_);
+    phases_.reserve(4);
+
+    const auto replace = [](bool isDeclared, auto& part, auto& fresh) {
+        if (!isDeclared || fresh) {
+            part = std::move(fresh);
+        }
+    };
+    culling_ = std::move(culling);
+    replace(effects.proximity.has_value(), proximity_, proximity);
+    replace(effects.zones.has_value(), zones_, zones);
+    replace(effects.radar.has_value(), radar_, radar);
+    effects_ = effects;
+    compile();
+}
+
+template <class Scalar>
+void Observers<Scalar>::compile() {
+    phases_.clear();
+    const EffectSet declared = effects_.set();
+    for (const Phase& phase : {Phase{Effect::culling, &Observers::cull},
+                               Phase{Effect::proximity, &Observers::lookAround},
+                               Phase{Effect::zones, &Observers::watchZones},
+                               Phase{Effect::radar, &Observers::scanRadar}}) {
+        if (declared.contains(phase.effect)) {
+            phases_.push_back(phase);
+        }
+    }
+    presentBefore_ = EffectSet::all();
+    frame_ = 0;
+}
+
+template <class Scalar>
+void Observers<Scalar>::require(Effect effect, const char* call) const {
+    if (!effects_.set().contains(effect)) {
+        throw UndeclaredEffect(effect, call);
+    }
+}
+
+// --- A frame -------------------------------------------------------------------------------------
+
+template <class Scalar>
+const SceneCost& Observers<Scalar>::observe(const Scene& scene, Scalar moved,
+                                            ParallelFor parallelFor) {
+    cost_ = asked_;
+    asked_ = {};
+    // Whoever took part the last time and does not any more has to be forgotten.
+    const EffectSet wanted = scene.present | presentBefore_;
+    for (const Phase& phase : phases_) {
+        if (wanted.contains(phase.effect)) {
+            (this->*phase.run)(scene, moved, parallelFor);
+        }
+    }
+    presentBefore_ = scene.present;
+    ++frame_;
+    return cost_;
+}
+
+template <class Scalar>
+void Observers<Scalar>::cull(const Scene& scene, Scalar moved, ParallelFor /*parallelFor*/) {
+    Culling& culling = *culling_;
+    if (!culling.hasMoved && culling.framesKept + 1 < effects_.culling->restingCameraFrames) {
+        ++culling.framesKept;
+        cost_[SceneCounter::framesCulledLate] = 1;
+        return;
+    }
+    const Scalar movedSince =
+        culling.framesKept == 0 ? moved : std::numeric_limits<Scalar>::infinity();
+    const QueryCost cost = askFor(scene, Effect::culling, [&](ProxyFilter filter) {
+        return scene.effects.empty()
+                   ? culling.culler.look(scene.grid, culling.view, movedSince)
+                   : culling.culler.look(scene.grid, culling.view, filter, movedSince);
+    });
+    culling.hasMoved = false;
+    culling.framesKept = 0;
+    cost_[SceneCounter::viewsFound] = cost.rowsVisited + cost.boxesTested > 0 ? 1 : 0;
+    cost_[SceneCounter::cellRowsCulled] = cost.rowsVisited;
+    cost_[SceneCounter::cullingBoxesTested] = cost.boxesTested;
+}
+
+// Between the frames in which all look around, those near the player do, and see who is near them.
+template <class Scalar>
+void Observers<Scalar>::lookAround(const Scene& scene, Scalar /*moved*/, ParallelFor parallelFor) {
+    const ProximityEffect& effect = *effects_.proximity;
+    Proximity& proximity = *proximity_;
+    proximity.makeRoom(scene.grid.indexLimit());
+    const bool allLook = !interest_ || isDue(effect.farFrames);
+    const auto isWithin = [&](ProxyId id, double distance) {
+        const Vector3<double> offset =
+            (positionOf(scene.grid.box(id)) - *interest_).template cast<double>();
+        return offset.squaredNorm() <= distance * distance;
+    };
+    // Rounding must not leave out a neighbour.
+    const double reach = (effect.interestRadius + effect.radius) * (1 + 1e-5);
+    std::atomic<std::uint32_t> lookingCount{0};
+    const QueryCost cost = askFor(scene, Effect::proximity, [&](ProxyFilter filter) {
+        const auto update = [&](ProxyFilter counts, ProxyFilter looks) {
+            return proximity.rarest.update(scene.grid, static_cast<Scalar>(effect.radius),
+                                           effect.colourCount, proximity.colours, counts,
+                                           parallelFor, looks);
+        };
+        if (allLook) {
+            return update(filter, acceptAll);
+        }
+        const auto counts = [&](ProxyId id) { return filter(id) && isWithin(id, reach); };
+        const auto looks = [&](ProxyId id) {
+            const bool isNear = isWithin(id, effect.interestRadius);
+            lookingCount.fetch_add(isNear ? 1 : 0, std::memory_order_relaxed);
+            return isNear;
+        };
+        return update(counts, looks);
+    });
+    const std::uint32_t agentCount = proximity.rarest.crowd().size();
+    if (allLook) {
+        proximity.agentCount = agentCount;
+        lookingCount = agentCount;
+    }
+    cost_[SceneCounter::agentsScanned] = agentCount;
+    cost_[SceneCounter::neighboursTested] = cost.boxesTested;
+    cost_[SceneCounter::agentsLate] =
+        proximity.agentCount - std::min<std::uint32_t>(lookingCount, proximity.agentCount);
+}
+
+template <class Scalar>
+void Observers<Scalar>::watchZones(const Scene& scene, Scalar /*moved*/, ParallelFor parallelFor) {
+    const ZonesEffect& effect = *effects_.zones;
+    ZoneWatch& watch = *zones_;
+    const bool allAreDue = !interest_ || isDue(effect.farFrames);
+    Aabb<Scalar> near;
+    if (!allAreDue) {
+        const auto half = Point::Constant(static_cast<Scalar>(effect.interestRadius)).eval();
+        near = {*interest_ - half, *interest_ + half};
+    }
+    std::atomic<std::uint32_t> lateCount{0};
+    const auto isDueZone = [&](ZoneId id) {
+        const bool isFar =
+            !allAreDue && std::visit(
+                              [&](const auto& shape) {
+                                  if constexpr (requires { shape.volume(); }) {
+                                      // One that wants boxes inside has no key for one around it.
+                                      return !shape.volume().isInside && shape.key(near) < 0;
+                                  } else {
+                                      return shape.key(near) < 0;
+                                  }
+                              },
+                              watch.zones.zone(id).shape);
+        lateCount.fetch_add(isFar ? 1 : 0, std::memory_order_relaxed);
+        return !isFar;
+    };
+    askFor(scene, Effect::zones, [&](ProxyFilter filter) {
+        const auto counts = [&](ZoneId /*zone*/, ProxyId proxy) { return filter(proxy); };
+        watch.events = watch.zones.update(scene.grid, counts, parallelFor, isDueZone);
+    });
+    cost_[SceneCounter::zonesTested] = watch.zones.size() - lateCount;
+    cost_[SceneCounter::zoneBoxesTested] = watch.zones.lastCost().boxesTested;
+    cost_[SceneCounter::zonesLate] = lateCount;
+}
+
+template <class Scalar>
+void Observers<Scalar>::scanRadar(const Scene& scene, Scalar /*moved*/,
+                                  ParallelFor /*parallelFor*/) {
+    const RadarEffect& effect = *effects_.radar;
+    if (!isDue(effect.frames)) {
+        cost_[SceneCounter::radarsLate] = 1;
+        return;
+    }
+    const RadarWindow<Scalar> window{.center = interest_.value_or(Point::Zero()),
+                                     .cellSize = static_cast<Scalar>(effect.cellSize),
+                                     .columns = effect.columns,
+                                     .rows = effect.rows,
+                                     .up = effect.up};
+    const auto groupOf = [&](ProxyId id) -> std::uint32_t {
+        if (id.index < scene.effects.size() && !scene.effects[id.index].contains(Effect::radar)) {
+            return effect.groupCount;  // which is counted nowhere
+        }
+        return id.index < scene.groups.size() ? scene.groups[id.index] : 0;
+    };
+    RadarWatch& watch = *radar_;
+    watch.counts = watch.radar.scan(scene.grid, window, effect.groupCount, groupOf);
+    cost_[SceneCounter::radarScans] = 1;
+    cost_[SceneCounter::radarBoxesTested] = watch.radar.lastCost().boxesTested;
+}
+
+// --- What is looked at, and what was found -------------------------------------------------------
+
+template <class Scalar>
+void Observers<Scalar>::setView(const ConvexRegion<Scalar>& view) {
+    Culling& culling = partOf(culling_, Effect::culling, "setView()");
+    culling.hasMoved = culling.hasMoved || !(view == culling.view);
+    culling.view = view;
+}
+
+template <class Scalar>
+Zones<Scalar>& Observers<Scalar>::zones() {
+    return partOf(zones_, Effect::zones, "zones()").zones;
+}
+
+template <class Scalar>
+void Observers<Scalar>::setColour(std::uint32_t index, std::uint32_t colour) {
+    Proximity& proximity = partOf(proximity_, Effect::proximity, "setColour()");
+    proximity.makeRoom(std::size_t{index} + 1);
+    proximity.colours[index] = colour;
+}
+
+template <class Scalar>
+const Culler<Scalar>& Observers<Scalar>::culler() const {
+    return partOf(culling_, Effect::culling, "culler()").culler;
+}
+
+template <class Scalar>
+std::span<const std::uint32_t> Observers<Scalar>::colours() const {
+    return partOf(proximity_, Effect::proximity, "colours()").colours;
+}
+
+template <class Scalar>
+const ZoneEvents& Observers<Scalar>::zoneEvents() const {
+    return partOf(zones_, Effect::zones, "zoneEvents()").events;
+}
+
+template <class Scalar>
+std::span<const std::uint32_t> Observers<Scalar>::radarCounts() const {
+    return partOf(radar_, Effect::radar, "radarCounts()").counts;
+}
+
+// --- When it is asked for ------------------------------------------------------------------------
+
+template <class Scalar>
+Picked<Scalar> Observers<Scalar>::pick(const Scene& scene, const RayRegion<Scalar>& ray) {
+    require(Effect::picking, "pick()");
+    QueryCost cost;
+    const Picked<Scalar> picked = askFor(scene, Effect::picking, [&](ProxyFilter filter) {
+        return pickNearest(scene.grid, ray, filter, &cost);
+    });
+    ++asked_[SceneCounter::picks];
+    asked_[SceneCounter::pickBoxesTested] += cost.boxesTested;
+    return picked;
+}
+
+template <class Scalar>
+Picked<Scalar> Observers<Scalar>::pick(const Scene& scene, const RayRegion<Scalar>& ray,
+                                       ExactTest<Scalar> test) {
+    require(Effect::picking, "pick()");
+    QueryCost cost;
+    const Picked<Scalar> picked = askFor(scene, Effect::picking, [&](ProxyFilter filter) {
+        return pickNearest(scene.grid, ray, test, filter, &cost);
+    });
+    ++asked_[SceneCounter::picks];
+    asked_[SceneCounter::pickBoxesTested] += cost.boxesTested;
+    return picked;
+}
+
+template <class Scalar>
+std::span<const ProxyId> Observers<Scalar>::select(const Scene& scene, const View<Scalar>& view,
+                                                   const Pixel& a, const Pixel& b,
+                                                   std::vector<ProxyId>& selected,
+                                                   Containment containment) {
+    require(Effect::boxSelection, "select()");
+    QueryCost cost;
+    askFor(scene, Effect::boxSelection, [&](ProxyFilter filter) {
+        return hashphase::select(scene.grid, view, a, b, selected, containment, filter, &cost);
+    });
+    ++asked_[SceneCounter::selections];
+    asked_[SceneCounter::selectionBoxesTested] += cost.boxesTested;
+    return selected;
+}
+
+template <class Scalar>
+void Observers<Scalar>::addFootprint(SceneFootprint& footprint) const {
+    if (culling_) {
+        footprint[SceneTable::visible] +=
+            sizeof(Culling) - sizeof(culling_->culler) + culling_->culler.memoryBytes();
+    }
+    if (proximity_) {
+        footprint[SceneTable::agents] += sizeof(Proximity) - sizeof(proximity_->rarest) +
+                                         proximity_->rarest.memoryBytes() +
+                                         proximity_->colours.capacity() * sizeof(std::uint32_t);
+    }
+    if (zones_) {
+        footprint[SceneTable::zones] +=
+            sizeof(ZoneWatch) - sizeof(zones_->zones) + zones_->zones.memoryBytes();
+    }
+    if (radar_) {
+        footprint[SceneTable::radar] +=
+            sizeof(RadarWatch) - sizeof(radar_->radar) + radar_->radar.memoryBytes();
+    }
+}
+
+template class Observers<float>;
+template class Observers<double>;
+
+}  // namespace hashphase

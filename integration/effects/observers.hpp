@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// The effects of a scene that only look at it: culling, proximity, zones, radar in each frame, picking
+// and box selection when they are asked for. Over any grid: that of a Simulation, or of a live Bullet
+// world (SpatialHashBroadphase::grid()).
+//
+//     Observers<float> observers(effects);
+//     observers.setView(frustumRegion<float>(viewProjection, DepthRange::zeroToOne));
+//     observers.observe({grid});
+//     observers.culler().forEach([&](std::uint32_t index) { draw(objects[index]); });
+//
+// Undeclared  an effect that is not declared has no phase, no table and no cost. A call for it throws
+//             UndeclaredEffect.
+// A frame     Say what has changed (view, interest, zones), then observe() once.
+// Exact       what an effect finds depends on the boxes and on its own settings alone, whatever else is
+//             declared.
+// Late        where a declaration says that something is looked at in every n-th frame only, in frames
+//             between the answer is that of an earlier one: cost() counts these.
+// Threads     everything reads the grid, as queries do, and needs this object for itself.
+// Failure     Where memory runs out, frames go on after it; the one under way has not all answers.
+
+#include <broadphase/convex_region.hpp>
+#include <broadphase/grid.hpp>
+#include <broadphase/parallel_for.hpp>
+#include <integration/ai/zones.hpp>
+#include <integration/culling/culler.hpp>
+#include <integration/effects/scene_cost.hpp>
+#include <integration/effects/scene_effects.hpp>
+#include <integration/effects/undeclared_effect.hpp>
+#include <integration/picking/drag_selection.hpp>
+#include <integration/picking/pick.hpp>
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace hashphase {
+
+/// A grid, and what each of its proxies takes part in.
+template <class Scalar>
+struct ObservedScene {
+    const Grid<Scalar>& grid;
+
+    /// By ProxyId::index: which effects may find the proxy. Whoever is beyond its end takes part in all.
+    std::span<const EffectSet> effects = {};
+
+    /// By ProxyId::index: the group in which the radar counts the proxy. Beyond its end 0.
+    std::span<const std::uint32_t> groups = {};
+
+    /// Effects that some proxy takes part in. What nobody does is not looked for.
+    EffectSet present = EffectSet::all();
+};
+
+template <class Scalar>
+class Observers {
+public:
+    using Point = Vector3<Scalar>;
+    using Scene = ObservedScene<Scalar>;
+
+    /// Throws std::invalid_argument with effectsError(effects).
+    explicit Observers(const SceneEffects& effects = {});
+    ~Observers();
+    Observers(const Observers&) = delete;
+    Observers& operator=(const Observers&) = delete;
+
+    /// Goes on with another declaration. Tables of effects that are not declared any more are gone; the
+    /// zones, colours and view of those that still are stay. Throws as above, and then nothing has
+    /// changed.
+    void declare(const SceneEffects& effects);
+
+    [[nodiscard]] const SceneEffects& declared() const noexcept { return effects_; }
+
+    // --- What is looked at -----------------------------------------------------------------------
+
+    /// The camera's volume, or any other; all of space until it is set. Needs culling.
+    void setView(const ConvexRegion<Scalar>& view);
+
+    /// Where the player is [m]: what is far from it is late, where that is declared, and the radar is
+    /// around it. Without it nothing is far, and the radar is around the origin.
+    void setInterest(const std::optional<Point>& interest) { interest_ = interest; }
+    [[nodiscard]] const std::optional<Point>& interest() const noexcept { return interest_; }
+
+    /// Zones are added, set and removed here; Zones::update() is observe()'s. Needs zones.
+    [[nodiscard]] Zones<Scalar>& zones();
+
+    /// Gives the proxy with that index a colour, 0 until it is set. Needs proximity.
+    void setColour(std::uint32_t index, std::uint32_t colour);
+
+    /// Runs one frame of what is declared. `moved` [m] is how far any corner of a box may have moved
+    /// since the last frame; infinite when any proxy was added, or nobody knows: see Culler::look().
+    /// The result does not depend on `parallelFor`.
+    const SceneCost& observe(const Scene& scene,
+                             Scalar moved = std::numeric_limits<Scalar>::infinity(),
+                             ParallelFor parallelFor = serialFor);
+
+    // --- What was found in the last frame --------------------------------------------------------
+
+    /// Who is visible. Needs culling.
+    [[nodiscard]] const Culler<Scalar>& culler() const;
+
+    /// By ProxyId::index: which colour each agent has taken. Valid until the next frame. Needs proximity.
+    [[nodiscard]] std::span<const std::uint32_t> colours() const;
+
+    /// Who entered, stayed in and left zones. Valid until the next frame. Needs zones.
+    [[nodiscard]] const ZoneEvents& zoneEvents() const;
+
+    /// Counts as Radar::scan() gives them. Valid until the next frame. Needs radar.
+    [[nodiscard]] std::span<const std::uint32_t> radarCounts() const;
+
+    /// The last frame's, and of picks and selections since the frame before.
+    [[nodiscard]] const SceneCost& cost() const noexcept { return cost_; }
+
+    // --- When it is asked for --------------------------------------------------------------------
+
+    /// pickNearest(), of those that take part in picking, which it needs.
+    [[nodiscard]] Picked<Scalar> pick(const Scene& scene, const RayRegion<Scalar>& ray);
+    [[nodiscard]] Picked<Scalar> pick(const Scene& scene, const RayRegion<Scalar>& ray,
+                                      ExactTest<Scalar> test);
+
+    /// hashphase::select(), of those that take part in box selection, which it needs.
+    std::span<const ProxyId> select(const Scene& scene, const View<Scalar>& view, const Pixel& a,
+                                    const Pixel& b, std::vector<ProxyId>& selected,
+                                    Containment containment = Containment::touching);
+
+    /// Adds the bytes of all tables here, capacity included. Cost: O(zones).
+    void addFootprint(SceneFootprint& footprint) const;
+
+private:
+    struct Culling;
+    struct Proximity;
+    struct ZoneWatch;
+    struct RadarWatch;
+
+    /// A phase of observe(), and whose it is.
+    struct Phase {
+        Effect effect;
+        void (Observers::*run)(const Scene&, Scalar moved, ParallelFor);
+    };
+
+    void cull(const Scene& scene, Scalar moved, ParallelFor parallelFor);
+    void lookAround(const Scene& scene, Scalar moved, ParallelFor parallelFor);
+    void watchZones(const Scene& scene, Scalar moved, ParallelFor parallelFor);
+    void scanRadar(const Scene& scene, Scalar moved, ParallelFor parallelFor);
+    void compile();
+    [[nodiscard]] bool isDue(std::uint32_t everyFrames) const noexcept {
+        return frame_ % everyFrames == 0;
+    }
+    template <class Part>
+    static Part& partOf(const std::unique_ptr<Part>& part, Effect effect, const char* call) {
+        if (!part) {
+            throw UndeclaredEffect(effect, call);
+        }
+        return *part;
+    }
+    void require(Effect effect, const char* call) const;
+
+    SceneEffects effects_;
+    std::vector<Phase> phases_;
+    std::uint64_t frame_ = 0;
+    EffectSet presentBefore_;
+    std::optional<Point> interest_;
+    SceneCost cost_;   // of the last frame
+    SceneCost asked_;  // of picks and selections since
+
+    std::unique_ptr<Culling> culling_;
+    std::unique_ptr<Proximity> proximity_;
+    std::unique_ptr<ZoneWatch> zones_;
+    std::unique_ptr<RadarWatch> radar_;
+};
+
+extern template class Observers<float>;
+extern template class Observers<double>;
+
+}  // namespace hashphase

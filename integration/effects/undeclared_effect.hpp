@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+#include <integration/effects/effect.hpp>
+
+#include <stdexcept>
+
+namespace hashphase {
+
+/// Thrown by a call for an effect that the scene does not declare. It has done nothing.
+class UndeclaredEffect : public std::logic_error {
+public:
+    /// `call` is what was asked for: "colours()".
+    UndeclaredEffect(Effect effect, std::string_view call);
+
+    [[nodiscard]] Effect effect() const noexcept { return effect_; }
+
+private:
+    Effect effect_;
+};
+
+}  // namespace hashphase
