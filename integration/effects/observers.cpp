@@ -288,6 +288,14 @@ Zones<Scalar>& Observers<Scalar>::zones() {
 }
 
 template <class Scalar>
+void Observers<Scalar>::forgetProxies(const Grid<Scalar>& grid) {
+    if (zones_) {
+        zones_->zones.update(grid, [](ZoneId, ProxyId) { return false; });
+        zones_->events = {};
+    }
+}
+
+template <class Scalar>
 void Observers<Scalar>::setColour(std::uint32_t index, std::uint32_t colour) {
     Proximity& proximity = partOf(proximity_, Effect::proximity, "setColour()");
     proximity.makeRoom(std::size_t{index} + 1);

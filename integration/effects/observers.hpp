@@ -97,6 +97,10 @@ public:
                              Scalar moved = std::numeric_limits<Scalar>::infinity(),
                              ParallelFor parallelFor = serialFor);
 
+    /// To be called before the grid is replaced by another one, in which indices mean the same and
+    /// generations do not: whoever is in a zone enters it again. `grid` is the one so far.
+    void forgetProxies(const Grid<Scalar>& grid);
+
     // --- What was found in the last frame --------------------------------------------------------
 
     /// Who is visible. Needs culling.

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// The tables of a Simulation's effects; each is there while its effect is declared.
+
+#include <broadphase/sweeps.hpp>
+#include <integration/effects/simulation.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace hashphase {
+
+template <class Scalar>
+struct Simulation<Scalar>::Motion {
+    std::vector<Point> velocities;
+    std::vector<std::uint32_t> movers;  // who is awake
+};
+
+template <class Scalar>
+struct Simulation<Scalar>::Walkers {
+    explicit Walkers(UpAxis axis) : up(static_cast<Eigen::Index>(axis)), terrain(grid, axis) {}
+
+    Eigen::Index up;
+    Grid<Scalar> grid;  // of the triangles
+    Terrain<Scalar> terrain;
+    std::vector<std::uint32_t> bodies;  // whose height is asked for in this frame
+    std::vector<Point> centers;
+    std::vector<Scalar> radii;
+    std::vector<std::optional<Ground<Scalar>>> found;
+};
+
+template <class Scalar>
+struct Simulation<Scalar>::Sleep {
+    enum class State : std::uint8_t { awake, slow, far };
+
+    std::vector<State> states;
+    std::vector<std::uint32_t> slowFrames;  // how many in a row, until now
+    std::size_t farCount = 0;
+    std::optional<Point> interest;  // of the last look at who is far
+};
+
+template <class Scalar>
+struct Simulation<Scalar>::Index {
+    explicit Index(const GridConfig& config) : grid(config) {}
+
+    Grid<Scalar> grid;
+    std::vector<ProxyId> proxies;  // by body
+    bool isFiling = true;          // somebody takes part in an effect that asks the grid
+};
+
+template <class Scalar>
+struct Simulation<Scalar>::Pairing {
+    Pairing(Grid<Scalar>& grid, bool withSweeps)
+        : sweeps(withSweeps ? std::make_unique<Sweeps<Scalar>>(grid) : nullptr),
+          pairs(grid, sweeps.get()) {}
+
+    std::unique_ptr<Sweeps<Scalar>> sweeps;
+    Pairs<Scalar> pairs;
+    PairChanges changes;
+};
+
+template <class Scalar>
+struct Simulation<Scalar>::Contacts {
+    struct Couple {
+        std::uint32_t first;
+        std::uint32_t second;
+
+        friend constexpr auto operator<=>(const Couple&, const Couple&) = default;
+    };
+
+    std::vector<Couple> present;  // sorted
+    std::vector<Couple> next;
+};
+
+template <class Scalar>
+struct Simulation<Scalar>::Sweepers {
+    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+    struct Sweeper {
+        std::uint32_t body;
+        std::uint32_t hit = kNone;  // whom it meets first
+        Point start;
+        Point way = Point::Zero();
+        double time = 1;  // when, as a share of the frame
+    };
+
+    std::vector<Sweeper> list;          // of this frame, by body
+    std::vector<std::uint32_t> ofBody;  // its place there, or kNone
+};
+
+}  // namespace hashphase

@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: Zlib
+#include <integration/effects/detail/simulation_parts.hpp>
+#include <integration/effects/simulation.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace hashphase {
+
+std::string simulationError(const SceneEffects& effects) {
+    for (const Effect effect : {Effect::rotation, Effect::friction}) {
+        if (effects.set().contains(effect)) {
+            return std::string(nameOf(effect)) +
+                   " is declared, but Bullet alone simulates it: declare it for a Bullet world, or "
+                   "leave it out.";
+        }
+    }
+    return effectsError(effects);
+}
+
+template <class Scalar>
+Simulation<Scalar>::Simulation(const SceneEffects& effects) {
+    declare(effects);
+}
+
+template <class Scalar>
+Simulation<Scalar>::~Simulation() = default;
+
+// --- The declaration -----------------------------------------------------------------------------
+
+template <class Scalar>
+void Simulation<Scalar>::declare(const SceneEffects& effects) {
+    if (const std::string error = simulationError(effects); !error.empty()) {
+        throw std::invalid_argument(error);
+    }
+    const EffectSet now = effects.set();
+    const std::size_t count = positions_.size();
+
+    // What is missing is made first, so that nothing has changed should memory run out.
+    auto motion = now.contains(Effect::motion) && !motion_ ? std::make_unique<Motion>() : nullptr;
+    if (motion) {
+        motion->velocities.resize(count, Point::Zero());
+    }
+    auto walkers = effects.terrain && (!walkers_ || effects_.terrain->up != effects.terrain->up)
+                       ? std::make_unique<Walkers>(effects.terrain->up)
+                       : nullptr;
+    auto sleep = now.contains(Effect::sleeping) && !sleep_ ? std::make_unique<Sleep>() : nullptr;
+    if (sleep) {
+        sleep->states.resize(count, Sleep::State::awake);
+        sleep->slowFrames.resize(count, 0);
+    }
+    auto contacts =
+        now.contains(Effect::response) && !contacts_ ? std::make_unique<Contacts>() : nullptr;
+    auto sweepers =
+        now.contains(Effect::sweep) && !sweepers_ ? std::make_unique<Sweepers>() : nullptr;
+    if (sweepers) {
+        sweepers->ofBody.resize(count, Sweepers::kNone);
+    }
+    if (now.contains(Effect::radar)) {
+        groups_.resize(count, 0);
+    }
+    observers_.declare(effects);
+
+    const auto replace = [](bool isDeclared, auto& part, auto& fresh) {
+        if (!isDeclared || fresh) {
+            part = std::move(fresh);
+        }
+    };
+    replace(now.contains(Effect::motion), motion_, motion);
+    replace(now.contains(Effect::terrain), walkers_, walkers);
+    replace(now.contains(Effect::sleeping), sleep_, sleep);
+    replace(now.contains(Effect::response), contacts_, contacts);
+    replace(now.contains(Effect::sweep), sweepers_, sweepers);
+    if (!now.contains(Effect::radar)) {
+        groups_ = {};
+    }
+    effects_ = effects;
+    stockIsStale_ = true;
+    changedOutside_ = true;
+    takeStock();
+}
+
+template <class Scalar>
+void Simulation<Scalar>::require(Effect effect, const char* call) const {
+    if (!effects_.set().contains(effect)) {
+        throw UndeclaredEffect(effect, call);
+    }
+}
+
+// --- Bodies --------------------------------------------------------------------------------------
+
+template <class Scalar>
+Aabb<Scalar> Simulation<Scalar>::boxOf(std::size_t body) const {
+    const auto half = Point::Constant(radii_[body]);
+    return {positions_[body] - half, positions_[body] + half};
+}
+
+// The grid gives out indices; where there is none, the last one that became vacant.
+template <class Scalar>
+std::uint32_t Simulation<Scalar>::takeIndex(const Aabb<Scalar>& box, Mobility mobility) {
+    if (index_) {
+        const ProxyId proxy = index_->grid.add(box, mobility);
+        if (proxy.index >= index_->proxies.size()) {
+            index_->proxies.resize(std::size_t{proxy.index} + 1);
+        }
+        index_->proxies[proxy.index] = proxy;
+        return proxy.index;
+    }
+    if (vacant_.empty()) {
+        return static_cast<std::uint32_t>(positions_.size());
+    }
+    const std::uint32_t index = vacant_.back();
+    vacant_.pop_back();
+    return index;
+}
+
+template <class Scalar>
+BodyId Simulation<Scalar>::add(const Body<Scalar>& body) {
+    const auto half = Point::Constant(body.radius);
+    const bool isAtRest =
+        !motion_ || !body.effects.contains(Effect::motion) || (sleep_ && body.isAsleep);
+    const std::uint32_t index = takeIndex({body.position - half, body.position + half},
+                                          isAtRest ? Mobility::resting : Mobility::mobile);
+    const auto set = [index](auto& column, const auto& value) {
+        if (index >= column.size()) {
+            column.resize(std::size_t{index} + 1);
+        }
+        column[index] = value;
+    };
+    set(positions_, body.position);
+    set(radii_, body.radius);
+    set(effectsOf_, body.effects);
+    if (index >= generations_.size()) {
+        generations_.resize(std::size_t{index} + 1, 0);
+    }
+    if (effects_.radar) {
+        set(groups_, body.group);
+    }
+    if (motion_) {
+        set(motion_->velocities, body.velocity);
+    }
+    if (sleep_) {
+        set(sleep_->states, body.isAsleep ? Sleep::State::slow : Sleep::State::awake);
+        set(sleep_->slowFrames, 0U);
+    }
+    if (sweepers_) {
+        set(sweepers_->ofBody, Sweepers::kNone);
+    }
+    ++size_;
+    stockIsStale_ = true;
+    changedOutside_ = true;
+    return {index, ++generations_[index]};
+}
+
+template <class Scalar>
+void Simulation<Scalar>::remove(BodyId id) {
+    const std::size_t body = indexOf(id);
+    if (index_) {
+        index_->grid.remove(index_->proxies[body]);
+        index_->proxies[body] = {};
+    } else {
+        vacant_.push_back(id.index);
+    }
+    if (sleep_ && sleep_->states[body] == Sleep::State::far) {
+        --sleep_->farCount;
+    }
+    ++generations_[body];
+    --size_;
+    stockIsStale_ = true;
+    changedOutside_ = true;
+}
+
+template <class Scalar>
+bool Simulation<Scalar>::contains(BodyId id) const noexcept {
+    return id.index < generations_.size() && generations_[id.index] == id.generation &&
+           isAlive(id.index);
+}
+
+template <class Scalar>
+std::size_t Simulation<Scalar>::indexOf(BodyId id) const {
+    HASHPHASE_ASSERT(contains(id), "Only a body that was not removed can be asked about.");
+    return id.index;
+}
+
+template <class Scalar>
+const Vector3<Scalar>& Simulation<Scalar>::position(BodyId id) const {
+    return positions_[indexOf(id)];
+}
+
+template <class Scalar>
+Scalar Simulation<Scalar>::radius(BodyId id) const {
+    return radii_[indexOf(id)];
+}
+
+template <class Scalar>
+EffectSet Simulation<Scalar>::effects(BodyId id) const {
+    return effectsOf_[indexOf(id)];
+}
+
+template <class Scalar>
+const Vector3<Scalar>& Simulation<Scalar>::velocity(BodyId id) const {
+    require(Effect::motion, "velocity()");
+    return motion_->velocities[indexOf(id)];
+}
+
+template <class Scalar>
+void Simulation<Scalar>::setVelocity(BodyId id, const Point& velocity) {
+    require(Effect::motion, "setVelocity()");
+    const std::size_t body = indexOf(id);
+    motion_->velocities[body] = velocity;
+    if (sleep_ && sleep_->states[body] == Sleep::State::slow) {
+        sleep_->states[body] = Sleep::State::awake;
+        sleep_->slowFrames[body] = 0;
+        stockIsStale_ = true;
+    }
+}
+
+template <class Scalar>
+bool Simulation<Scalar>::isAwake(std::size_t body) const noexcept {
+    return isMovable(body) && (!sleep_ || sleep_->states[body] == Sleep::State::awake);
+}
+
+template <class Scalar>
+bool Simulation<Scalar>::isAsleep(BodyId id) const {
+    require(Effect::sleeping, "isAsleep()");
+    const std::size_t body = indexOf(id);
+    return isMovable(body) && !isAwake(body);
+}
+
+template <class Scalar>
+void Simulation<Scalar>::setPosition(BodyId id, const Point& position) {
+    const std::size_t body = indexOf(id);
+    positions_[body] = position;
+    if (index_) {
+        index_->grid.move(index_->proxies[body], boxOf(body));
+    }
+    changedOutside_ = true;
+}
+
+template <class Scalar>
+BodyId Simulation<Scalar>::bodyOf(ProxyId id) const {
+    const bool isPresent =
+        index_ && id.index < index_->proxies.size() && index_->proxies[id.index] == id;
+    return isPresent && isAlive(id.index) ? BodyId{id.index, generations_[id.index]} : BodyId{};
+}
+
+// --- The scene -----------------------------------------------------------------------------------
+
+template <class Scalar>
+Terrain<Scalar>& Simulation<Scalar>::ground() {
+    require(Effect::terrain, "ground()");
+    return walkers_->terrain;
+}
+
+template <class Scalar>
+const Grid<Scalar>& Simulation<Scalar>::grid() const {
+    if (!index_) {
+        throw UndeclaredEffect(Effect::pairs, "grid()");
+    }
+    return index_->grid;
+}
+
+template <class Scalar>
+const PairChanges& Simulation<Scalar>::pairChanges() const {
+    static constexpr PairChanges kNone;
+    require(Effect::pairs, "pairChanges()");
+    return pairing_ ? pairing_->changes : kNone;
+}
+
+template <class Scalar>
+std::vector<std::string_view> Simulation<Scalar>::phases() const {
+    std::vector<std::string_view> names;
+    for (const Phase& phase : phases_) {
+        names.push_back(phase.name);
+    }
+    return names;
+}
+
+template <class Scalar>
+ObservedScene<Scalar> Simulation<Scalar>::observed() const {
+    ObservedScene<Scalar> scene{index_->grid};
+    if (!allTakePartInAll_) {
+        scene.effects = effectsOf_;
+    }
+    scene.groups = groups_;
+    scene.present = present_;
+    return scene;
+}
+
+template <class Scalar>
+Picked<Scalar> Simulation<Scalar>::pick(const RayRegion<Scalar>& ray) {
+    require(Effect::picking, "pick()");
+    takeStock();
+    return observers_.pick(observed(), ray);
+}
+
+template <class Scalar>
+std::span<const ProxyId> Simulation<Scalar>::select(const View<Scalar>& view, const Pixel& a,
+                                                    const Pixel& b, std::vector<ProxyId>& selected,
+                                                    Containment containment) {
+    require(Effect::boxSelection, "select()");
+    takeStock();
+    return observers_.select(observed(), view, a, b, selected, containment);
+}
+
+template class Simulation<float>;
+template class Simulation<double>;
+
+}  // namespace hashphase

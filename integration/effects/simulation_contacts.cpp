@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Zlib
+//
+// What comes of pairs: who touches, and how it bounces off.
+
+#include <integration/effects/detail/simulation_parts.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hashphase {
+namespace {
+
+/// When two spheres, of which one moves by `way` against the other, first touch, as a share of the way;
+/// more than 1 when they do not, or when they only part. `apart` is from the one that moves to the
+/// other. By the quadratic formula that does not cancel.
+template <class Scalar>
+double timeOfContact(const Vector3<Scalar>& apart, const Vector3<Scalar>& way, Scalar radii) {
+    const Vector3<double> p = apart.template cast<double>();
+    const Vector3<double> d = way.template cast<double>();
+    const double r = static_cast<double>(radii);
+    constexpr double never = 2;
+    const double closing = p.dot(d);
+    if (!(closing > 0)) {
+        return never;
+    }
+    const double distance = p.squaredNorm() - r * r;
+    if (distance <= 0) {
+        return 0;
+    }
+    const double discriminant = closing * closing - d.squaredNorm() * distance;
+    return discriminant >= 0 ? distance / (closing + std::sqrt(discriminant)) : never;
+}
+
+}  // namespace
+
+// The present pairs, from those of the last frame and what has changed; all three are sorted.
+template <class Scalar>
+void Simulation<Scalar>::gather() {
+    const auto& [born, died] = pairing_->changes;
+    if (born.empty() && died.empty()) {
+        return;
+    }
+    using Couple = typename Contacts::Couple;
+    const auto coupleOf = [](const ProxyPair& pair) {
+        return Couple{pair.first.index, pair.second.index};
+    };
+    std::vector<Couple>& present = contacts_->present;
+    std::vector<Couple>& next = contacts_->next;
+    next.clear();
+    auto fresh = born.begin();
+    auto gone = died.begin();
+    for (const Couple& couple : present) {
+        if (gone != died.end() && coupleOf(*gone) == couple) {
+            ++gone;
+            continue;
+        }
+        for (; fresh != born.end() && coupleOf(*fresh) < couple; ++fresh) {
+            next.push_back(coupleOf(*fresh));
+        }
+        next.push_back(couple);
+    }
+    for (; fresh != born.end(); ++fresh) {
+        next.push_back(coupleOf(*fresh));
+    }
+    present.swap(next);
+}
+
+// Exchanges what two bodies of the same mass have of their velocities along `apart`, from a to b, if they
+// approach each other; one that does not move has all the mass of the world.
+template <class Scalar>
+bool Simulation<Scalar>::bounce(std::size_t a, std::size_t b, const Point& apart) {
+    const Scalar distance = apart.norm();
+    const Point normal = distance > 0 ? Point(apart / distance) : Point(Point::UnitX());
+    Point& velocityA = motion_->velocities[a];
+    Point& velocityB = motion_->velocities[b];
+    const bool movesA = isMovable(a);
+    const bool movesB = isMovable(b);
+    const Scalar approach =
+        (movesA ? velocityA.dot(normal) : Scalar(0)) - (movesB ? velocityB.dot(normal) : Scalar(0));
+    if (!(approach > 0)) {
+        return false;
+    }
+    const auto bounciness = static_cast<Scalar>(1 + effects_.response->restitution);
+    const Point change = normal * (approach * bounciness / (movesA && movesB ? 2 : 1));
+    for (const auto& [body, velocity, push] :
+         {std::tuple<std::size_t, Point&, Point>{a, velocityA, -change}, {b, velocityB, change}}) {
+        if (!isMovable(body)) {
+            continue;
+        }
+        velocity += push;
+        if (sleep_ && sleep_->states[body] != Sleep::State::awake) {
+            sleep_->farCount -= sleep_->states[body] == Sleep::State::far ? 1 : 0;
+            sleep_->states[body] = Sleep::State::awake;
+            sleep_->slowFrames[body] = 0;
+            ++cost_[SceneCounter::wokeUp];
+            stockIsStale_ = true;
+        }
+    }
+    ++cost_[SceneCounter::contactsSolved];
+    return true;
+}
+
+template <class Scalar>
+void Simulation<Scalar>::respond() {
+    if (motion_->movers.empty()) {
+        return;
+    }
+    const auto sweeps = [this](std::uint32_t body) {
+        return sweepers_ && sweepers_->ofBody[body] != Sweepers::kNone;
+    };
+    for (const auto& [a, b] : contacts_->present) {
+        const EffectSet both = effectsOf_[a] & effectsOf_[b];
+        if (!both.contains(Effect::response) || !(isAwake(a) || isAwake(b)) || sweeps(a) ||
+            sweeps(b)) {
+            continue;
+        }
+        ++cost_[SceneCounter::contactsTested];
+        const Point apart = positions_[b] - positions_[a];
+        const Scalar radii = radii_[a] + radii_[b];
+        if (apart.squaredNorm() <= radii * radii) {
+            static_cast<void>(bounce(a, b, apart));
+        }
+    }
+}
+
+// Sweepers go as far as what they meet first, and bounce off it. What is left of the frame is lost.
+template <class Scalar>
+void Simulation<Scalar>::land() {
+    auto& [list, ofBody] = *sweepers_;
+    const auto wayOf = [&](std::uint32_t body) -> Point {
+        return ofBody[body] == Sweepers::kNone ? Point(Point::Zero()) : list[ofBody[body]].way;
+    };
+    const bool responds = effects_.response.has_value();
+    for (const auto& [a, b] : contacts_->present) {
+        const EffectSet both = effectsOf_[a] & effectsOf_[b];
+        if (!responds || !both.contains(Effect::response) ||
+            (ofBody[a] == Sweepers::kNone && ofBody[b] == Sweepers::kNone)) {
+            continue;
+        }
+        ++cost_[SceneCounter::contactsTested];
+        const Point way = wayOf(a) - wayOf(b);
+        const double time =
+            timeOfContact<Scalar>(positions_[b] - positions_[a], way, radii_[a] + radii_[b]);
+        for (const auto& [body, other] : {std::pair(a, b), std::pair(b, a)}) {
+            if (ofBody[body] != Sweepers::kNone && time < list[ofBody[body]].time) {
+                list[ofBody[body]].time = time;
+                list[ofBody[body]].hit = other;
+            }
+        }
+    }
+    for (const auto& sweeper : list) {
+        positions_[sweeper.body] = sweeper.start + sweeper.way * static_cast<Scalar>(sweeper.time);
+        index_->grid.move(index_->proxies[sweeper.body], boxOf(sweeper.body));
+        pairing_->sweeps->set(index_->proxies[sweeper.body], Point::Zero());
+    }
+    for (const auto& sweeper : list) {
+        ofBody[sweeper.body] = Sweepers::kNone;
+        if (sweeper.hit != Sweepers::kNone) {
+            static_cast<void>(bounce(sweeper.body, sweeper.hit,
+                                     positions_[sweeper.hit] - positions_[sweeper.body]));
+        }
+    }
+}
+
+template class Simulation<float>;
+template class Simulation<double>;
+
+}  // namespace hashphase

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Zlib
+//
+// The phases of a frame, but for those of contacts. Each loops over those that it is about; what is not
+// declared is not among the phases.
+
+#include <integration/effects/detail/simulation_parts.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hashphase {
+
+template <class Scalar>
+const SceneCost& Simulation<Scalar>::advance(Scalar seconds, ParallelFor parallelFor) {
+    HASHPHASE_ASSERT(seconds >= 0 && std::isfinite(seconds),
+                     "A time step is finite and not negative [s].");
+    takeStock();
+    seconds_ = seconds;
+    parallelFor_ = &parallelFor;
+    farthestMove_ = 0;
+    cost_ = {};
+    for (const Phase& phase : phases_) {
+        (this->*phase.run)();
+    }
+    changedOutside_ = false;
+    return cost_;
+}
+
+// --- Where bodies are ----------------------------------------------------------------------------
+
+// Who fell asleep because nobody was near wakes when the player has come.
+template <class Scalar>
+void Simulation<Scalar>::wake() {
+    Sleep& sleep = *sleep_;
+    const std::optional<Point>& interest = observers_.interest();
+    if (sleep.farCount == 0 || sleep.interest == interest) {
+        return;
+    }
+    sleep.interest = interest;
+    const auto radius = static_cast<Scalar>(effects_.sleeping->interestRadius);
+    for (std::size_t body = 0; body < positions_.size(); ++body) {
+        if (!isAlive(body) || sleep.states[body] != Sleep::State::far) {
+            continue;
+        }
+        ++cost_[SceneCounter::sleepersAsked];
+        if (!interest || (positions_[body] - *interest).norm() <= radius) {
+            sleep.states[body] = Sleep::State::awake;
+            --sleep.farCount;
+            ++cost_[SceneCounter::wokeUp];
+            motion_->movers.push_back(static_cast<std::uint32_t>(body));
+        }
+    }
+    std::sort(motion_->movers.begin(), motion_->movers.end());
+}
+
+// Notes who is fast for its size, and where it starts.
+template <class Scalar>
+void Simulation<Scalar>::aim() {
+    Sweepers& sweepers = *sweepers_;
+    sweepers.list.clear();
+    const auto fastFrom = static_cast<Scalar>(effects_.sweep->fastFrom);
+    for (const std::uint32_t body : motion_->movers) {
+        const Scalar distance = motion_->velocities[body].norm() * seconds_;
+        if (effectsOf_[body].contains(Effect::sweep) && distance > 0 &&
+            distance >= fastFrom * 2 * radii_[body]) {
+            sweepers.list.push_back({.body = body, .start = positions_[body]});
+        }
+    }
+}
+
+template <class Scalar>
+template <bool isBounded>
+void Simulation<Scalar>::move() {
+    const Point low = effects_.motion->bounds.min().template cast<Scalar>();
+    const Point high = effects_.motion->bounds.max().template cast<Scalar>();
+    for (const std::uint32_t body : motion_->movers) {
+        Point& position = positions_[body];
+        Point& velocity = motion_->velocities[body];
+        position += velocity * seconds_;
+        if constexpr (isBounded) {
+            for (int axis = 0; axis < 3; ++axis) {
+                if (position[axis] < low[axis]) {
+                    position[axis] = low[axis];
+                    velocity[axis] = std::abs(velocity[axis]);
+                } else if (position[axis] > high[axis]) {
+                    position[axis] = high[axis];
+                    velocity[axis] = -std::abs(velocity[axis]);
+                }
+            }
+        }
+    }
+    cost_[SceneCounter::bodiesMoved] += motion_->movers.size();
+}
+
+// Asked from as much higher as the body has moved, so that it climbs what is no steeper than 45 degrees.
+template <class Scalar>
+void Simulation<Scalar>::stand() {
+    Walkers& walkers = *walkers_;
+    walkers.bodies.clear();
+    walkers.centers.clear();
+    walkers.radii.clear();
+    for (const std::uint32_t body : motion_->movers) {
+        if (effectsOf_[body].contains(Effect::terrain)) {
+            Point center = positions_[body];
+            center[walkers.up] += motion_->velocities[body].norm() * seconds_;
+            walkers.bodies.push_back(body);
+            walkers.centers.push_back(center);
+            walkers.radii.push_back(radii_[body]);
+        }
+    }
+    walkers.found.resize(walkers.bodies.size());
+    const QueryCost cost = walkers.terrain.restingHeights(walkers.centers, walkers.radii,
+                                                          walkers.found, *parallelFor_);
+    for (std::size_t i = 0; i < walkers.bodies.size(); ++i) {
+        if (walkers.found[i]) {
+            positions_[walkers.bodies[i]][walkers.up] = walkers.found[i]->height;
+        }
+    }
+    cost_[SceneCounter::groundsAsked] += walkers.bodies.size();
+    cost_[SceneCounter::trianglesTested] += cost.boxesTested;
+}
+
+// --- Where the grid has them ---------------------------------------------------------------------
+
+template <class Scalar>
+template <bool measure>
+void Simulation<Scalar>::file() {
+    Grid<Scalar>& grid = index_->grid;
+    Scalar farthestSquared = 0;
+    for (const std::uint32_t body : motion_->movers) {
+        const Aabb<Scalar> box = boxOf(body);
+        const ProxyId proxy = index_->proxies[body];
+        if constexpr (measure) {
+            const Aabb<Scalar>& before = grid.box(proxy);
+            const Point corner = (box.min() - before.min())
+                                     .cwiseAbs()
+                                     .cwiseMax((box.max() - before.max()).cwiseAbs());
+            farthestSquared = std::max(farthestSquared, corner.squaredNorm());
+        }
+        grid.move(proxy, box);
+    }
+    if constexpr (measure) {
+        // Rounded up.
+        farthestMove_ =
+            std::sqrt(farthestSquared) * (1 + 4 * std::numeric_limits<Scalar>::epsilon());
+    }
+    cost_[SceneCounter::proxiesHashed] += motion_->movers.size();
+}
+
+// Where sweepers start, and how far they go.
+template <class Scalar>
+void Simulation<Scalar>::sweep() {
+    Sweepers& sweepers = *sweepers_;
+    for (std::size_t i = 0; i < sweepers.list.size(); ++i) {
+        auto& sweeper = sweepers.list[i];
+        Point& position = positions_[sweeper.body];
+        sweeper.way = position - sweeper.start;
+        position = sweeper.start;
+        sweepers.ofBody[sweeper.body] = static_cast<std::uint32_t>(i);
+        const ProxyId proxy = index_->proxies[sweeper.body];
+        index_->grid.move(proxy, boxOf(sweeper.body));
+        pairing_->sweeps->set(proxy, sweeper.way, effects_.sweep->mode);
+    }
+    cost_[SceneCounter::sweepsSolved] += sweepers.list.size();
+}
+
+template <class Scalar>
+void Simulation<Scalar>::pair() {
+    Pairs<Scalar>& pairs = pairing_->pairs;
+    if (allTakePartInAll_) {
+        const auto accept = [](std::span<const ProxyPair> /*asked*/, std::span<char> accepted) {
+            std::fill(accepted.begin(), accepted.end(), char{1});
+        };
+        pairing_->changes = pairs.update(accept, *parallelFor_);
+    } else {
+        const auto takePart = [this](ProxyId a, ProxyId b) {
+            return (effectsOf_[a.index] & effectsOf_[b.index]).contains(Effect::pairs);
+        };
+        pairing_->changes = pairs.update(takePart, *parallelFor_);
+    }
+    const PairCost& cost = pairs.lastCost();
+    cost_[SceneCounter::entriesFiled] += cost.grid.filed;
+    cost_[SceneCounter::boxesTested] += cost.boxesTested;
+    cost_[SceneCounter::couplesWatched] += cost.couplesWatched;
+    cost_[SceneCounter::pairsBorn] += pairing_->changes.born.size();
+    cost_[SceneCounter::pairsDied] += pairing_->changes.died.size();
+    if (pairing_->sweeps) {
+        cost_[SceneCounter::sweepBoxesTested] += pairing_->sweeps->lastCost().boxesTested;
+    }
+}
+
+template <class Scalar>
+void Simulation<Scalar>::updateGrid() {
+    cost_[SceneCounter::entriesFiled] += index_->grid.update(*parallelFor_).filed;
+}
+
+// --- What comes of it ----------------------------------------------------------------------------
+
+template <class Scalar>
+void Simulation<Scalar>::rest() {
+    Sleep& sleep = *sleep_;
+    const SleepingEffect& effect = *effects_.sleeping;
+    const auto slowBelow = static_cast<Scalar>(effect.slowBelow);
+    const auto radius = static_cast<Scalar>(effect.interestRadius);
+    const std::optional<Point>& interest = observers_.interest();
+    const auto fallsAsleep = [&](std::uint32_t body) {
+        Point& velocity = motion_->velocities[body];
+        std::uint32_t& slowFrames = sleep.slowFrames[body];
+        slowFrames = velocity.norm() < slowBelow ? slowFrames + 1 : 0;
+        if (!effectsOf_[body].contains(Effect::sleeping)) {
+            return false;
+        }
+        if (slowFrames >= effect.framesBeforeSleep) {
+            sleep.states[body] = Sleep::State::slow;
+            velocity.setZero();
+            return true;
+        }
+        if (interest && (positions_[body] - *interest).norm() > radius) {
+            sleep.states[body] = Sleep::State::far;
+            ++sleep.farCount;
+            return true;
+        }
+        return false;
+    };
+    std::vector<std::uint32_t>& movers = motion_->movers;
+    const auto end = std::remove_if(movers.begin(), movers.end(), fallsAsleep);
+    cost_[SceneCounter::fellAsleep] += static_cast<std::size_t>(movers.end() - end);
+    movers.erase(end, movers.end());
+    sleep.interest = interest;
+}
+
+template <class Scalar>
+void Simulation<Scalar>::observe() {
+    const Scalar moved = changedOutside_ ? std::numeric_limits<Scalar>::infinity() : farthestMove_;
+    cost_ += observers_.observe(observed(), moved, *parallelFor_);
+}
+
+template class Simulation<float>;
+template class Simulation<double>;
+
+}  // namespace hashphase

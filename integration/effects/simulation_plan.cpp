@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Zlib
+//
+// From a declaration and the bodies to the phases of a frame, and to the tables that they need.
+
+#include <integration/effects/detail/simulation_parts.hpp>
+
+#include <broadphase/collectors.hpp>
+
+#include <string>
+
+namespace hashphase {
+
+// Who takes part in what, and who is awake. Asked before each frame, and looks at all bodies only after
+// one of them has come, gone, fallen asleep or woken.
+template <class Scalar>
+void Simulation<Scalar>::takeStock() {
+    if (!stockIsStale_) {
+        return;
+    }
+    present_ = {};
+    EffectSet common = EffectSet::all();
+    if (motion_) {
+        motion_->movers.clear();
+    }
+    for (std::size_t body = 0; body < positions_.size(); ++body) {
+        if (!isAlive(body)) {
+            continue;
+        }
+        present_ = present_ | effectsOf_[body];
+        common = common & effectsOf_[body];
+        if (isAwake(body)) {
+            motion_->movers.push_back(static_cast<std::uint32_t>(body));
+        }
+    }
+    const EffectSet declared = effects_.set();
+    allTakePartInAll_ = (declared - common).isEmpty();
+
+    const bool wantsIndex = declared.containsAny(kGridEffects);
+    const bool wantsPairs =
+        declared.contains(Effect::pairs) && (pairing_ || present_.contains(Effect::pairs));
+    const bool wantsSweeps = wantsPairs && declared.contains(Effect::sweep);
+    const bool hasSweeps = pairing_ && pairing_->sweeps;
+    if (wantsIndex != (index_ != nullptr) || wantsPairs != (pairing_ != nullptr) ||
+        wantsSweeps != hasSweeps) {
+        fileAnew();
+    }
+    compile();
+    stockIsStale_ = false;
+}
+
+// A grid with pairs and sweeps, or without, in which each proxy has the index of its body; or none.
+template <class Scalar>
+void Simulation<Scalar>::fileAnew() {
+    const EffectSet declared = effects_.set();
+    std::unique_ptr<Index> index;
+    std::unique_ptr<Pairing> pairing;
+    if (declared.containsAny(kGridEffects)) {
+        index = std::make_unique<Index>(effects_.grid);
+        if (declared.contains(Effect::pairs) && present_.contains(Effect::pairs)) {
+            pairing = std::make_unique<Pairing>(index->grid, declared.contains(Effect::sweep));
+        }
+        index->proxies.reserve(positions_.capacity());
+        for (std::size_t body = 0; body < positions_.size(); ++body) {
+            const bool isMobile = isAlive(body) && isAwake(body);
+            index->proxies.push_back(
+                index->grid.add(boxOf(body), isMobile ? Mobility::mobile : Mobility::resting));
+        }
+        for (std::size_t body = 0; body < positions_.size(); ++body) {
+            if (!isAlive(body)) {
+                index->grid.remove(index->proxies[body]);
+                index->proxies[body] = {};
+            }
+        }
+    }
+    vacant_.clear();
+    for (std::size_t body = positions_.size(); !index && body-- > 0;) {
+        if (!isAlive(body)) {
+            vacant_.push_back(static_cast<std::uint32_t>(body));
+        }
+    }
+    if (index_) {
+        observers_.forgetProxies(index_->grid);
+    }
+    if (contacts_) {
+        contacts_->present.clear();
+    }
+    pairing_ = std::move(pairing);  // before the grid that it refers to
+    index_ = std::move(index);
+    changedOutside_ = true;
+}
+
+template <class Scalar>
+void Simulation<Scalar>::compile() {
+    const EffectSet running = effects_.set() & present_;
+    const auto runs = [running](Effect effect) { return running.contains(effect); };
+    phases_.clear();
+    const auto add = [this](bool isWanted, const char* name, void (Simulation::*run)()) {
+        if (isWanted) {
+            phases_.push_back({name, run});
+        }
+    };
+    const bool moves = runs(Effect::motion);
+    const bool sweeps = moves && runs(Effect::sweep) && pairing_;
+    const bool isBounded =
+        effects_.motion && !effects_.motion->bounds.isEmpty() &&
+        !(effects_.motion->bounds.sizes().minCoeff() == std::numeric_limits<double>::infinity());
+    const bool isFiling = index_ && running.containsAny(kGridEffects);
+    const bool measures = effects_.culling && effects_.culling->margin > 0;
+    if (isFiling && !index_->isFiling) {  // nobody looked, so nobody was filed
+        for (std::size_t body = 0; body < positions_.size(); ++body) {
+            if (isAlive(body)) {
+                index_->grid.move(index_->proxies[body], boxOf(body));
+            }
+        }
+        changedOutside_ = true;
+    }
+    if (index_) {
+        index_->isFiling = isFiling;
+    }
+
+    add(moves && runs(Effect::sleeping), "wake", &Simulation::wake);
+    add(sweeps, "aim", &Simulation::aim);
+    add(moves, "move", isBounded ? &Simulation::move<true> : &Simulation::move<false>);
+    add(moves && runs(Effect::terrain), "stand", &Simulation::stand);
+    add(moves && isFiling, "file", measures ? &Simulation::file<true> : &Simulation::file<false>);
+    add(sweeps, "sweep", &Simulation::sweep);
+    add(pairing_ != nullptr, "pair", &Simulation::pair);
+    add(pairing_ && contacts_, "gather", &Simulation::gather);
+    add(!pairing_ && isFiling, "update", &Simulation::updateGrid);
+    add(moves && pairing_ && runs(Effect::response), "respond", &Simulation::respond);
+    add(sweeps, "land", &Simulation::land);
+    add(moves && runs(Effect::sleeping), "rest", &Simulation::rest);
+    add(effects_.set().containsAny(kGridEffects - EffectSet{Effect::pairs}), "observe",
+        &Simulation::observe);
+}
+
+// --- Accounts ------------------------------------------------------------------------------------
+
+namespace {
+
+template <class Element>
+std::size_t bytesOf(const std::vector<Element>& column) {
+    return column.capacity() * sizeof(Element);
+}
+
+}  // namespace
+
+template <class Scalar>
+SceneFootprint Simulation<Scalar>::footprint() const {
+    SceneFootprint bytes;
+    bytes[SceneTable::bodies] = sizeof(*this) + bytesOf(phases_) + bytesOf(positions_) +
+                                bytesOf(radii_) + bytesOf(effectsOf_) + bytesOf(generations_) +
+                                bytesOf(vacant_);
+    bytes[SceneTable::groups] = bytesOf(groups_);
+    if (motion_) {
+        bytes[SceneTable::velocities] = sizeof(Motion) + bytesOf(motion_->velocities);
+        bytes[SceneTable::movers] = bytesOf(motion_->movers);
+    }
+    if (sleep_) {
+        bytes[SceneTable::sleepers] =
+            sizeof(Sleep) + bytesOf(sleep_->states) + bytesOf(sleep_->slowFrames);
+    }
+    if (walkers_) {
+        const std::size_t ground = walkers_->grid.memoryBytes() + walkers_->terrain.memoryBytes();
+        bytes[SceneTable::ground] = ground;
+        bytes[SceneTable::walkers] = sizeof(Walkers) - sizeof(walkers_->grid) -
+                                     sizeof(walkers_->terrain) + bytesOf(walkers_->bodies) +
+                                     bytesOf(walkers_->centers) + bytesOf(walkers_->radii) +
+                                     bytesOf(walkers_->found);
+    }
+    if (index_) {
+        bytes[SceneTable::rayTrees] = index_->grid.rayMemoryBytes();
+        bytes[SceneTable::grid] = index_->grid.memoryBytes() - index_->grid.rayMemoryBytes();
+        bytes[SceneTable::proxies] =
+            sizeof(Index) - sizeof(index_->grid) + bytesOf(index_->proxies);
+    }
+    if (pairing_) {
+        bytes[SceneTable::pairs] =
+            sizeof(Pairing) - sizeof(pairing_->pairs) + pairing_->pairs.memoryBytes();
+        bytes[SceneTable::sweeps] = pairing_->sweeps ? pairing_->sweeps->memoryBytes() : 0;
+    }
+    if (contacts_) {
+        bytes[SceneTable::contacts] =
+            sizeof(Contacts) + bytesOf(contacts_->present) + bytesOf(contacts_->next);
+    }
+    if (sweepers_) {
+        bytes[SceneTable::sweepers] =
+            sizeof(Sweepers) + bytesOf(sweepers_->list) + bytesOf(sweepers_->ofBody);
+    }
+    observers_.addFootprint(bytes);
+    return bytes;
+}
+
+template <class Scalar>
+std::string Simulation<Scalar>::validate() const {
+    if (!index_) {
+        return {};
+    }
+    std::string error = pairing_ ? pairing_->pairs.validate() : index_->grid.validate();
+    if (error.empty() && pairing_ && pairing_->sweeps) {
+        error = pairing_->sweeps->validate();
+    }
+    for (std::size_t body = 0; error.empty() && body < positions_.size(); ++body) {
+        const ProxyId proxy = index_->proxies[body];
+        const bool isRight = isAlive(body) ? proxy.index == body && index_->grid.contains(proxy) &&
+                                                 (!index_->isFiling ||
+                                                  isSameBits(index_->grid.box(proxy), boxOf(body)))
+                                           : proxy.isNull();
+        error = isRight ? "" : "Each body's proxy has the body's index and box: broken.";
+    }
+    if (error.empty() && contacts_ && pairing_ &&
+        contacts_->present.size() != pairing_->pairs.count()) {
+        error = "Contacts are the present pairs: broken.";
+    }
+    return error;
+}
+
+template class Simulation<float>;
+template class Simulation<double>;
+
+}  // namespace hashphase
