@@ -19,6 +19,8 @@ struct GridConfig {
     /// After this many updates without a change a proxy counts as resting, and later updates no
     /// longer touch it. Valid: 1 to 1,000,000.
     std::uint32_t updatesBeforeRest = 8;
+
+    friend bool operator==(const GridConfig&, const GridConfig&) = default;
 };
 
 /// Says what is wrong with `config` in a sentence that names the field and its valid range; empty

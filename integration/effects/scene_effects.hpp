@@ -35,7 +35,7 @@ struct MotionEffect {
 
 /// Bodies that have moved are put on the ground, where there is any below them. Needs motion.
 struct TerrainEffect {
-    UpAxis up = UpAxis::y;
+    UpAxis up = UpAxis::y;  ///< who declares another one has a ground without triangles
 };
 
 struct PairsEffect {};

@@ -127,14 +127,16 @@ void Simulation<Scalar>::respond() {
 template <class Scalar>
 void Simulation<Scalar>::land() {
     auto& [list, ofBody] = *sweepers_;
+    const auto sweeps = [&](std::uint32_t body) { return ofBody[body] != Sweepers::kNone; };
     const auto wayOf = [&](std::uint32_t body) -> Point {
-        return ofBody[body] == Sweepers::kNone ? Point(Point::Zero()) : list[ofBody[body]].way;
+        return sweeps(body) ? list[ofBody[body]].way : Point(Point::Zero());
     };
-    const bool responds = effects_.response.has_value();
-    for (const auto& [a, b] : contacts_->present) {
+    const std::span<const typename Contacts::Couple> contacts =
+        contacts_ && !list.empty() ? std::span(contacts_->present)
+                                   : std::span<typename Contacts::Couple>();
+    for (const auto& [a, b] : contacts) {
         const EffectSet both = effectsOf_[a] & effectsOf_[b];
-        if (!responds || !both.contains(Effect::response) ||
-            (ofBody[a] == Sweepers::kNone && ofBody[b] == Sweepers::kNone)) {
+        if (!both.contains(Effect::response) || !(sweeps(a) || sweeps(b))) {
             continue;
         }
         ++cost_[SceneCounter::contactsTested];
@@ -142,7 +144,7 @@ void Simulation<Scalar>::land() {
         const double time =
             timeOfContact<Scalar>(positions_[b] - positions_[a], way, radii_[a] + radii_[b]);
         for (const auto& [body, other] : {std::pair(a, b), std::pair(b, a)}) {
-            if (ofBody[body] != Sweepers::kNone && time < list[ofBody[body]].time) {
+            if (sweeps(body) && time < list[ofBody[body]].time) {
                 list[ofBody[body]].time = time;
                 list[ofBody[body]].hit = other;
             }

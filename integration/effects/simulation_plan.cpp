@@ -41,7 +41,7 @@ void Simulation<Scalar>::takeStock() {
     const bool wantsSweeps = wantsPairs && declared.contains(Effect::sweep);
     const bool hasSweeps = pairing_ && pairing_->sweeps;
     if (wantsIndex != (index_ != nullptr) || wantsPairs != (pairing_ != nullptr) ||
-        wantsSweeps != hasSweeps) {
+        wantsSweeps != hasSweeps || (index_ && index_->config != effects_.grid)) {
         fileAnew();
     }
     compile();
@@ -101,9 +101,9 @@ void Simulation<Scalar>::compile() {
     };
     const bool moves = runs(Effect::motion);
     const bool sweeps = moves && runs(Effect::sweep) && pairing_;
-    const bool isBounded =
-        effects_.motion && !effects_.motion->bounds.isEmpty() &&
-        !(effects_.motion->bounds.sizes().minCoeff() == std::numeric_limits<double>::infinity());
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const bool isBounded = moves && !((effects_.motion->bounds.min().array() == -infinity).all() &&
+                                      (effects_.motion->bounds.max().array() == infinity).all());
     const bool isFiling = index_ && running.containsAny(kGridEffects);
     const bool measures = effects_.culling && effects_.culling->margin > 0;
     if (isFiling && !index_->isFiling) {  // nobody looked, so nobody was filed

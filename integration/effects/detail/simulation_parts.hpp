@@ -42,8 +42,9 @@ struct Simulation<Scalar>::Sleep {
 
 template <class Scalar>
 struct Simulation<Scalar>::Index {
-    explicit Index(const GridConfig& config) : grid(config) {}
+    explicit Index(const GridConfig& gridConfig) : config(gridConfig), grid(gridConfig) {}
 
+    GridConfig config;
     Grid<Scalar> grid;
     std::vector<ProxyId> proxies;  // by body
     bool isFiling = true;          // somebody takes part in an effect that asks the grid
