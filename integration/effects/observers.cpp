@@ -91,7 +91,6 @@ void Observers<Scalar>::declare(const SceneEffects& effects) {
     auto proximity = made(effects.proximity.has_value(), proximity_);
     auto zones = made(effects.zones.has_value(), zones_);
     auto radar = made(effects.radar.has_value(), radar_);
-    phases_.reserve(4);
 
     const auto replace = [](bool isDeclared, auto& part, auto& fresh) {
         if (!isDeclared || fresh) {
@@ -115,7 +114,7 @@ void Observers<Scalar>::compile() {
                                Phase{Effect::zones, &Observers::watchZones},
                                Phase{Effect::radar, &Observers::scanRadar}}) {
         if (declared.contains(phase.effect)) {
-            phases_.push_back(phase);
+            static_cast<void>(phases_.push(phase));
         }
     }
     presentBefore_ = EffectSet::all();

@@ -21,6 +21,7 @@
 // Failure     Where memory runs out, frames go on after it; the one under way has not all answers.
 
 #include <broadphase/convex_region.hpp>
+#include <broadphase/detail/fixed_list.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/parallel_for.hpp>
 #include <integration/ai/zones.hpp>
@@ -163,7 +164,7 @@ private:
     void require(Effect effect, const char* call) const;
 
     SceneEffects effects_;
-    std::vector<Phase> phases_;
+    detail::FixedList<Phase, 4> phases_;
     std::uint64_t frame_ = 0;
     EffectSet presentBefore_;
     std::optional<Point> interest_;

@@ -71,10 +71,13 @@ void Simulation<Scalar>::declare(const SceneEffects& effects) {
     replace(now.contains(Effect::motion), motion_, motion);
     replace(now.contains(Effect::terrain), walkers_, walkers);
     replace(now.contains(Effect::sleeping), sleep_, sleep);
+    if (contacts) {
+        pairing_ = nullptr;  // so that it begins with the present pairs
+    }
     replace(now.contains(Effect::response), contacts_, contacts);
     replace(now.contains(Effect::sweep), sweepers_, sweepers);
     if (!now.contains(Effect::radar)) {
-        groups_ = {};
+        std::vector<std::uint32_t>().swap(groups_);
     }
     effects_ = effects;
     stockIsStale_ = true;

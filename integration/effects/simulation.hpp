@@ -26,6 +26,7 @@
 // Units       metres, seconds
 // Misuse      An id of no body and a time step that is negative or not finite are asserted.
 
+#include <broadphase/detail/fixed_list.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/pairs.hpp>
 #include <broadphase/parallel_for.hpp>
@@ -78,8 +79,9 @@ public:
 
     /// Goes on with another declaration: tables of what is new appear, those of what is not declared
     /// any more are gone; bodies are where they are, without velocity if motion is new. Where pairs or
-    /// sweep come or go, all bodies are filed anew: pairs are told again, and who is in a zone enters it
-    /// again. Throws as above, and then nothing has changed. Cost: up to that of adding all bodies.
+    /// sweep come or go, response comes, or GridConfig is another one, all bodies are filed anew: pairs
+    /// are told again, and who is in a zone enters it again. Throws as above, and then nothing has
+    /// changed. Cost: up to that of adding all bodies.
     void declare(const SceneEffects& effects);
 
     [[nodiscard]] const SceneEffects& declared() const noexcept { return effects_; }
@@ -153,7 +155,7 @@ public:
     [[nodiscard]] SceneFootprint footprint() const;
 
     /// Says which invariant is broken, in a sentence; empty when all hold (ask after advance()):
-    /// - Those of the grid, the pairs and the sweeps.
+    /// - Those of the grid and the sweeps, and of the pairs in a frame in which nobody swept.
     /// - Each body's proxy has the body's index and box.
     /// - Contacts are the present pairs.
     [[nodiscard]] std::string validate() const;
@@ -190,16 +192,20 @@ private:
     void takeStock();
     void fileAnew();
     void compile();
+    template <bool isBounded>
+    void moveBodies();
+    template <bool measures>
+    void fileBodies();
     [[nodiscard]] bool bounce(std::size_t a, std::size_t b, const Point& apart);
 
     // The phases.
     void wake();
     void aim();
-    template <bool isBounded>
     void move();
+    void moveWithinBounds();
     void stand();
-    template <bool measure>
     void file();
+    void fileAndMeasure();
     void sweep();
     void pair();
     void updateGrid();
@@ -210,7 +216,7 @@ private:
     void observe();
 
     SceneEffects effects_;
-    std::vector<Phase> phases_;
+    detail::FixedList<Phase, 16> phases_;
     bool stockIsStale_ = true;
 
     // Bodies by index; those without one have an even generation.

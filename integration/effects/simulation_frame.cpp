@@ -70,7 +70,7 @@ void Simulation<Scalar>::aim() {
 
 template <class Scalar>
 template <bool isBounded>
-void Simulation<Scalar>::move() {
+void Simulation<Scalar>::moveBodies() {
     const Point low = effects_.motion->bounds.min().template cast<Scalar>();
     const Point high = effects_.motion->bounds.max().template cast<Scalar>();
     for (const std::uint32_t body : motion_->movers) {
@@ -90,6 +90,16 @@ void Simulation<Scalar>::move() {
         }
     }
     cost_[SceneCounter::bodiesMoved] += motion_->movers.size();
+}
+
+template <class Scalar>
+void Simulation<Scalar>::move() {
+    moveBodies<false>();
+}
+
+template <class Scalar>
+void Simulation<Scalar>::moveWithinBounds() {
+    moveBodies<true>();
 }
 
 // Asked from as much higher as the body has moved, so that it climbs what is no steeper than 45 degrees.
@@ -123,14 +133,14 @@ void Simulation<Scalar>::stand() {
 // --- Where the grid has them ---------------------------------------------------------------------
 
 template <class Scalar>
-template <bool measure>
-void Simulation<Scalar>::file() {
+template <bool measures>
+void Simulation<Scalar>::fileBodies() {
     Grid<Scalar>& grid = index_->grid;
     Scalar farthestSquared = 0;
     for (const std::uint32_t body : motion_->movers) {
         const Aabb<Scalar> box = boxOf(body);
         const ProxyId proxy = index_->proxies[body];
-        if constexpr (measure) {
+        if constexpr (measures) {
             const Aabb<Scalar>& before = grid.box(proxy);
             const Point corner = (box.min() - before.min())
                                      .cwiseAbs()
@@ -139,12 +149,22 @@ void Simulation<Scalar>::file() {
         }
         grid.move(proxy, box);
     }
-    if constexpr (measure) {
+    if constexpr (measures) {
         // Rounded up.
         farthestMove_ =
             std::sqrt(farthestSquared) * (1 + 4 * std::numeric_limits<Scalar>::epsilon());
     }
     cost_[SceneCounter::proxiesHashed] += motion_->movers.size();
+}
+
+template <class Scalar>
+void Simulation<Scalar>::file() {
+    fileBodies<false>();
+}
+
+template <class Scalar>
+void Simulation<Scalar>::fileAndMeasure() {
+    fileBodies<true>();
 }
 
 // Where sweepers start, and how far they go.

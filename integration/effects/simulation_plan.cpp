@@ -96,7 +96,7 @@ void Simulation<Scalar>::compile() {
     phases_.clear();
     const auto add = [this](bool isWanted, const char* name, void (Simulation::*run)()) {
         if (isWanted) {
-            phases_.push_back({name, run});
+            static_cast<void>(phases_.push({name, run}));
         }
     };
     const bool moves = runs(Effect::motion);
@@ -120,9 +120,9 @@ void Simulation<Scalar>::compile() {
 
     add(moves && runs(Effect::sleeping), "wake", &Simulation::wake);
     add(sweeps, "aim", &Simulation::aim);
-    add(moves, "move", isBounded ? &Simulation::move<true> : &Simulation::move<false>);
+    add(moves, "move", isBounded ? &Simulation::moveWithinBounds : &Simulation::move);
     add(moves && runs(Effect::terrain), "stand", &Simulation::stand);
-    add(moves && isFiling, "file", measures ? &Simulation::file<true> : &Simulation::file<false>);
+    add(moves && isFiling, "file", measures ? &Simulation::fileAndMeasure : &Simulation::file);
     add(sweeps, "sweep", &Simulation::sweep);
     add(pairing_ != nullptr, "pair", &Simulation::pair);
     add(pairing_ && contacts_, "gather", &Simulation::gather);
@@ -148,9 +148,8 @@ std::size_t bytesOf(const std::vector<Element>& column) {
 template <class Scalar>
 SceneFootprint Simulation<Scalar>::footprint() const {
     SceneFootprint bytes;
-    bytes[SceneTable::bodies] = sizeof(*this) + bytesOf(phases_) + bytesOf(positions_) +
-                                bytesOf(radii_) + bytesOf(effectsOf_) + bytesOf(generations_) +
-                                bytesOf(vacant_);
+    bytes[SceneTable::bodies] = sizeof(*this) + bytesOf(positions_) + bytesOf(radii_) +
+                                bytesOf(effectsOf_) + bytesOf(generations_) + bytesOf(vacant_);
     bytes[SceneTable::groups] = bytesOf(groups_);
     if (motion_) {
         bytes[SceneTable::velocities] = sizeof(Motion) + bytesOf(motion_->velocities);
@@ -161,12 +160,10 @@ SceneFootprint Simulation<Scalar>::footprint() const {
             sizeof(Sleep) + bytesOf(sleep_->states) + bytesOf(sleep_->slowFrames);
     }
     if (walkers_) {
-        const std::size_t ground = walkers_->grid.memoryBytes() + walkers_->terrain.memoryBytes();
-        bytes[SceneTable::ground] = ground;
-        bytes[SceneTable::walkers] = sizeof(Walkers) - sizeof(walkers_->grid) -
-                                     sizeof(walkers_->terrain) + bytesOf(walkers_->bodies) +
-                                     bytesOf(walkers_->centers) + bytesOf(walkers_->radii) +
-                                     bytesOf(walkers_->found);
+        bytes[SceneTable::ground] = walkers_->grid.memoryBytes() + walkers_->terrain.memoryBytes();
+        bytes[SceneTable::walkers] = sizeof(Walkers) - sizeof(walkers_->grid) +
+                                     bytesOf(walkers_->bodies) + bytesOf(walkers_->centers) +
+                                     bytesOf(walkers_->radii) + bytesOf(walkers_->found);
     }
     if (index_) {
         bytes[SceneTable::rayTrees] = index_->grid.rayMemoryBytes();
@@ -196,7 +193,10 @@ std::string Simulation<Scalar>::validate() const {
     if (!index_) {
         return {};
     }
-    std::string error = pairing_ ? pairing_->pairs.validate() : index_->grid.validate();
+    const bool nobodySwept =
+        !sweepers_ || sweepers_->list.empty();  // and so moved since the update
+    std::string error =
+        pairing_ && nobodySwept ? pairing_->pairs.validate() : index_->grid.validate();
     if (error.empty() && pairing_ && pairing_->sweeps) {
         error = pairing_->sweeps->validate();
     }

@@ -2,8 +2,10 @@
 #include <tests/support/count_allocations.hpp>
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <new>
 
 namespace hashphase::test {
@@ -11,6 +13,7 @@ namespace {
 
 std::atomic<std::size_t> allocations{0};
 std::atomic<std::size_t> releases{0};
+std::atomic<std::size_t> bytes{0};
 
 // How many allocations are still to work; negative where all are.
 constexpr std::int64_t kUnlimited = -1;
@@ -34,6 +37,10 @@ std::size_t blocksHeld() noexcept {
     return allocations - releases;
 }
 
+std::size_t bytesHeld() noexcept {
+    return bytes;
+}
+
 FailingAllocations::FailingAllocations(std::size_t after) noexcept
     : before_(allowance.exchange(static_cast<std::int64_t>(after))) {}
 
@@ -52,52 +59,70 @@ void* countedAllocate(std::size_t size) {
     return std::malloc(size);
 }
 
-// Of what either kind of `new` has returned.
-[[maybe_unused]] static void release(void* memory) noexcept {
-    releases += memory != nullptr ? 1 : 0;
-    std::free(memory);
+// Before each block stands its size, so far before it that the block is aligned.
+constexpr std::size_t kUsualAlignment = 16;
+static_assert(alignof(std::max_align_t) <= kUsualAlignment && sizeof(std::size_t) <= 16);
+
+[[maybe_unused]] static void* allocate(std::size_t size, std::size_t alignment) {
+    if (isRefused()) {
+        return nullptr;
+    }
+    ++allocations;
+    const std::size_t whole = (alignment + size + alignment - 1) / alignment * alignment;
+    auto* const memory = static_cast<char*>(std::aligned_alloc(alignment, whole));
+    if (memory == nullptr) {
+        return nullptr;
+    }
+    bytes += size;
+    std::memcpy(memory + alignment - sizeof(size), &size, sizeof(size));
+    return memory + alignment;
+}
+
+[[maybe_unused]] static void release(void* block, std::size_t alignment) noexcept {
+    if (block == nullptr) {
+        return;
+    }
+    std::size_t size = 0;
+    std::memcpy(&size, static_cast<char*>(block) - sizeof(size), sizeof(size));
+    bytes -= size;
+    ++releases;
+    std::free(static_cast<char*>(block) - alignment);
 }
 
 }  // namespace hashphase::test
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
+using hashphase::test::kUsualAlignment;
+
 // Not inlined: compilers take free() for a mismatch where they see only one half of the pair.
 [[gnu::noinline]] void* operator new(std::size_t size) {
-    if (hashphase::test::isRefused()) {
-        throw std::bad_alloc();
-    }
-    if (void* memory = hashphase::test::countedAllocate(size == 0 ? 1 : size)) {
-        return memory;
+    if (void* block = hashphase::test::allocate(size, kUsualAlignment)) {
+        return block;
     }
     throw std::bad_alloc();
 }
 [[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
-    if (hashphase::test::isRefused()) {
-        throw std::bad_alloc();
-    }
-    ++hashphase::test::allocations;
-    const auto step = static_cast<std::size_t>(alignment);
-    if (void* memory = std::aligned_alloc(step, (size + step - 1) / step * step)) {
-        return memory;
+    if (void* block = hashphase::test::allocate(size, static_cast<std::size_t>(alignment))) {
+        return block;
     }
     throw std::bad_alloc();
 }
 [[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-    return hashphase::test::isRefused() ? nullptr
-                                        : hashphase::test::countedAllocate(size == 0 ? 1 : size);
+    return hashphase::test::allocate(size, kUsualAlignment);
 }
-[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
-    hashphase::test::release(memory);
+[[gnu::noinline]] void operator delete(void* block, std::align_val_t alignment) noexcept {
+    hashphase::test::release(block, static_cast<std::size_t>(alignment));
 }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-    hashphase::test::release(memory);
+[[gnu::noinline]] void operator delete(void* block, std::size_t,
+                                       std::align_val_t alignment) noexcept {
+    hashphase::test::release(block, static_cast<std::size_t>(alignment));
 }
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-    hashphase::test::release(memory);
+[[gnu::noinline]] void operator delete(void* block) noexcept {
+    hashphase::test::release(block, kUsualAlignment);
 }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-    hashphase::test::release(memory);
+[[gnu::noinline]] void operator delete(void* block, std::size_t) noexcept {
+    hashphase::test::release(block, kUsualAlignment);
 }
 
 #endif

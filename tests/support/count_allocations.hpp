@@ -21,6 +21,9 @@ inline constexpr bool kCountsAllocations = true;
 /// How many blocks are held at the moment; always 0 where none are counted.
 [[nodiscard]] std::size_t blocksHeld() noexcept;
 
+/// How many bytes `new` was asked for that are held at the moment; always 0 where none are counted.
+[[nodiscard]] std::size_t bytesHeld() noexcept;
+
 /// While it lives, `new` works so many times more, on all threads together, and then throws
 /// std::bad_alloc. Does nothing where none are counted.
 class FailingAllocations {

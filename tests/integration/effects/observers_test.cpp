@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Zlib
+//
+// Levels of detail: what is declared to be late is, by so much and no more, and the rest is exact.
+
+#include <integration/effects/observers.hpp>
+#include <tests/support/random.hpp>
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <vector>
+
+namespace hashphase::test {
+namespace {
+
+using Point = Vector3<float>;
+
+/// Agents that walk about, and twins of what looks at them.
+class Walk {
+public:
+    explicit Walk(std::uint64_t seed) : random_(seed) {
+        for (int i = 0; i < 400; ++i) {
+            places_.push_back(random_.pointIn({0, 0, 0}, {60, 2, 60}).cast<float>());
+            ids_.push_back(grid.add(boxAt(places_.back())));
+        }
+    }
+    void step() {
+        for (std::size_t i = 0; i < ids_.size(); ++i) {
+            places_[i] += random_.pointIn({-0.5, 0, -0.5}, {0.5, 0, 0.5}).cast<float>();
+            grid.move(ids_[i], boxAt(places_[i]));
+        }
+        grid.update();
+    }
+    [[nodiscard]] const std::vector<Point>& places() const { return places_; }
+
+    Grid<float> grid;
+
+private:
+    static Aabb<float> boxAt(const Point& place) {
+        return {place - Point::Constant(0.5F), place + Point::Constant(0.5F)};
+    }
+
+    Random random_;
+    std::vector<Point> places_;
+    std::vector<ProxyId> ids_;
+};
+
+TEST(Observers, LetFarAgentsLookEachNthFrameAndNearOnesAlways) {
+    constexpr std::uint32_t kEvery = 4;
+    SceneEffects effects;
+    effects.proximity = ProximityEffect{.radius = 5};
+    Observers<float> all(effects);
+    effects.proximity->interestRadius = 15;
+    effects.proximity->farFrames = kEvery;
+    Observers<float> some(effects);
+    const Point player(30, 1, 30);
+    some.setInterest(player);
+    Walk walk(0x5eed0fef);
+    for (std::uint32_t frame = 0; frame < 12; ++frame) {
+        walk.step();
+        // The same colours for both, so that those who look take the same.
+        std::vector<std::uint32_t> before(walk.places().size());
+        for (std::uint32_t i = 0; i < before.size(); ++i) {
+            before[i] = (i + frame) % 4;
+            all.setColour(i, before[i]);
+            some.setColour(i, before[i]);
+        }
+        all.observe({walk.grid});
+        const SceneCost& cost = some.observe({walk.grid});
+        std::uint64_t late = 0;
+        for (std::uint32_t i = 0; i < before.size(); ++i) {
+            const bool looks = frame % kEvery == 0 || (walk.places()[i] - player).norm() <= 14.99F;
+            const bool waits = frame % kEvery != 0 && (walk.places()[i] - player).norm() > 15.01F;
+            late += waits ? 1 : 0;
+            if (looks) {
+                ASSERT_EQ(some.colours()[i], all.colours()[i]) << "frame " << frame;
+            } else if (waits) {
+                ASSERT_EQ(some.colours()[i], before[i]) << "frame " << frame;
+            }
+        }
+        EXPECT_EQ(cost[SceneCounter::agentsLate], late);
+        EXPECT_EQ(all.cost()[SceneCounter::agentsLate], 0U);
+        if (frame % kEvery != 0) {
+            EXPECT_LT(cost[SceneCounter::agentsScanned], 400U);
+        }
+    }
+}
+
+TEST(Observers, LookIntoFarZonesEachNthFrameAndTellAllThen) {
+    SceneEffects effects;
+    effects.zones = ZonesEffect{};
+    Observers<float> all(effects);
+    effects.zones = ZonesEffect{.interestRadius = 10, .farFrames = 3};
+    Observers<float> some(effects);
+    some.setInterest(Point(0, 0, 0));
+    std::vector<ZoneId> zones;
+    for (Observers<float>* each : {&all, &some}) {
+        zones = {each->zones().add({SphereRegion<float>({5, 0, 5}, 4)}),
+                 each->zones().add({SphereRegion<float>({50, 0, 50}, 6)})};
+    }
+    const ZoneId near = zones[0];
+    const ZoneId far = zones[1];
+    Walk walk(0x5eed0ff0);
+    std::set<ProxyId> inside;  // of the far zone, by the events of those that are late
+    for (int frame = 0; frame < 12; ++frame) {
+        walk.step();
+        all.observe({walk.grid});
+        const SceneCost& cost = some.observe({walk.grid});
+        EXPECT_EQ(cost[SceneCounter::zonesLate], frame % 3 == 0 ? 0U : 1U);
+        EXPECT_EQ(cost[SceneCounter::zonesTested], frame % 3 == 0 ? 2U : 1U);
+        for (const ZoneEvent& event : some.zoneEvents().entered) {
+            EXPECT_TRUE(event.zone == near || inside.insert(event.proxy).second);
+        }
+        for (const ZoneEvent& event : some.zoneEvents().left) {
+            EXPECT_TRUE(event.zone == near || inside.erase(event.proxy) == 1);
+        }
+        const auto occupants = [](Observers<float>& observers, ZoneId zone) {
+            const auto found = observers.zones().occupants(zone);
+            return std::vector<ProxyId>(found.begin(), found.end());
+        };
+        EXPECT_EQ(occupants(some, near), occupants(all, near));
+        EXPECT_EQ(occupants(some, far), std::vector<ProxyId>(inside.begin(), inside.end()));
+        if (frame % 3 == 0) {
+            EXPECT_EQ(occupants(some, far), occupants(all, far));
+        }
+    }
+    EXPECT_FALSE(inside.empty());
+}
+
+TEST(Observers, FindTheViewAnewWhenTheCameraMovesOrItIsTime) {
+    SceneEffects effects;
+    effects.culling = CullingEffect{.restingCameraFrames = 4};
+    Observers<float> observers(effects);
+    const auto halfSpace = [](float x) {
+        const Eigen::Hyperplane<float, 3> plane(Point(1, 0, 0), -x);
+        return ConvexRegion<float>(std::span(&plane, 1));
+    };
+    Walk walk(0x5eed0ff1);
+    std::vector<std::uint64_t> late;
+    for (int frame = 0; frame < 10; ++frame) {
+        walk.step();
+        observers.setView(halfSpace(frame < 6 ? 20 : 30));  // it moves once
+        late.push_back(observers.observe({walk.grid})[SceneCounter::framesCulledLate]);
+    }
+    EXPECT_EQ(late, (std::vector<std::uint64_t>{0, 1, 1, 1, 0, 1, 0, 1, 1, 1}));
+}
+
+TEST(Observers, ScanTheRadarEachNthFrame) {
+    SceneEffects effects;
+    effects.radar = RadarEffect{.frames = 3};
+    Observers<float> observers(effects);
+    Walk walk(0x5eed0ff2);
+    std::uint64_t late = 0;
+    for (int frame = 0; frame < 9; ++frame) {
+        walk.step();
+        late += observers.observe({walk.grid})[SceneCounter::radarsLate];
+        std::uint64_t counted = 0;
+        for (const std::uint32_t count : observers.radarCounts()) {
+            counted += count;
+        }
+        EXPECT_GT(counted, 0U);
+    }
+    EXPECT_EQ(late, 6U);
+}
+
+TEST(Observers, FindWhoTakesPart) {
+    Walk walk(0x5eed0ff3);
+    walk.step();
+    SceneEffects effects;
+    for (const Effect effect :
+         {Effect::culling, Effect::radar, Effect::zones, Effect::proximity, Effect::picking}) {
+        effects.declare(effect);
+    }
+    Observers<float> observers(effects);
+    const ZoneId zone = observers.zones().add({SphereRegion<float>({30, 1, 30}, 50)});
+    std::vector<EffectSet> takePart(400);
+    for (std::size_t i = 0; i < takePart.size(); i += 8) {
+        takePart[i] = EffectSet::all();
+    }
+    const ObservedScene<float> scene{.grid = walk.grid, .effects = takePart};
+    const SceneCost& cost = observers.observe(scene);
+    EXPECT_EQ(observers.culler().count(), 50U);
+    EXPECT_EQ(observers.zones().occupants(zone).size(), 50U);
+    EXPECT_EQ(cost[SceneCounter::agentsScanned], 50U);
+    const Picked<float> picked =
+        observers.pick(scene, {walk.places()[8] - Point(0, 9, 0), walk.places()[8]});
+    EXPECT_EQ(picked.id.index % 8, 0U);
+    EXPECT_FALSE(picked.id.isNull());
+
+    // Whom nobody may see any more is gone at once.
+    const std::vector<EffectSet> nobody(400);
+    observers.observe({.grid = walk.grid, .effects = nobody, .present = {}});
+    EXPECT_EQ(observers.culler().count(), 0U);
+    EXPECT_EQ(observers.zoneEvents().left.size(), 50U);
+    const SceneCost& after =
+        observers.observe({.grid = walk.grid, .effects = nobody, .present = {}});
+    EXPECT_EQ(after[SceneCounter::cullingBoxesTested] + after[SceneCounter::zoneBoxesTested] +
+                  after[SceneCounter::radarBoxesTested] + after[SceneCounter::agentsScanned],
+              0U);
+}
+
+}  // namespace
+}  // namespace hashphase::test

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Zlib
+
+#include <integration/effects/scene_cost.hpp>
+#include <integration/effects/scene_effects.hpp>
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace hashphase::test {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+SceneEffects everything() {
+    SceneEffects effects;
+    for (const Effect effect : kAllEffects) {
+        effects.declare(effect);
+    }
+    return effects;
+}
+
+TEST(EffectSet, IsASet) {
+    EffectSet set{Effect::pairs, Effect::zones};
+    EXPECT_TRUE(set.contains(Effect::pairs));
+    EXPECT_FALSE(set.contains(Effect::motion));
+    set.insert(Effect::motion);
+    set.erase(Effect::pairs);
+    EXPECT_EQ(set, (EffectSet{Effect::zones, Effect::motion}));
+    EXPECT_EQ(namesOf(set), "motion, zones");
+    EXPECT_EQ(namesOf({}), "nothing");
+    EXPECT_EQ(set | EffectSet{Effect::radar},
+              (EffectSet{Effect::zones, Effect::motion, Effect::radar}));
+    EXPECT_EQ(set & EffectSet{Effect::zones}, EffectSet{Effect::zones});
+    EXPECT_EQ(set - EffectSet{Effect::zones}, EffectSet{Effect::motion});
+    EXPECT_TRUE(EffectSet::all().containsAny(set));
+    EXPECT_FALSE(set.containsAny({Effect::radar}));
+    EXPECT_TRUE(EffectSet().isEmpty());
+    std::set<std::string_view> names;
+    for (const Effect effect : kAllEffects) {
+        EXPECT_TRUE(EffectSet::all().contains(effect));
+        names.insert(nameOf(effect));
+    }
+    EXPECT_EQ(names.size(), kAllEffects.size());
+}
+
+TEST(SceneEffects, TellsWhatIsDeclared) {
+    SceneEffects effects;
+    EXPECT_TRUE(effects.set().isEmpty());
+    effects.declare(Effect::zones);
+    effects.zones->farFrames = 7;
+    effects.declare(Effect::zones);
+    EXPECT_EQ(effects.zones->farFrames, 7U);  // declared already
+    effects.declare(Effect::motion);
+    EXPECT_EQ(effects.set(), (EffectSet{Effect::zones, Effect::motion}));
+    effects.remove(Effect::zones);
+    EXPECT_FALSE(effects.zones);
+    EXPECT_EQ(everything().set(), EffectSet::all());
+    EXPECT_EQ(effectsError(everything()), "");
+    EXPECT_EQ(effectsError({}), "");
+}
+
+TEST(SceneEffects, NamesWhatContradictsItself) {
+    const auto errorWithout = [](Effect effect) {
+        SceneEffects effects = everything();
+        effects.remove(effect);
+        return effectsError(effects);
+    };
+    EXPECT_EQ(errorWithout(Effect::motion),
+              "terrain is declared without motion, but puts on the ground what has moved: declare "
+              "motion as well, or leave out terrain.");
+    EXPECT_EQ(errorWithout(Effect::pairs),
+              "response is declared without pairs, but is the answer to pairs: declare pairs as "
+              "well, or leave out response.");
+    EXPECT_EQ(errorWithout(Effect::response),
+              "friction is declared without response, but acts between bodies that bounce off each "
+              "other: declare response as well, or leave out friction.");
+    for (const Effect effect : {Effect::terrain, Effect::sweep, Effect::sleeping, Effect::rotation,
+                                Effect::friction, Effect::picking, Effect::boxSelection,
+                                Effect::culling, Effect::proximity, Effect::zones, Effect::radar}) {
+        EXPECT_EQ(errorWithout(effect), "");
+    }
+}
+
+template <class Change>
+std::string errorAfter(const Change& change) {
+    SceneEffects effects = everything();
+    change(effects);
+    return effectsError(effects);
+}
+
+TEST(SceneEffects, NamesTheSettingThatIsWrong) {
+    EXPECT_EQ(errorAfter([](SceneEffects& e) { e.response->restitution = 1.5; }),
+              "response.restitution is 1.5, but must be between 0 and 1.");
+    EXPECT_EQ(errorAfter([](SceneEffects& e) { e.sweep->mode = Sweep::none; }),
+              "sweep.mode is none, but must be automatic, box or line; not to sweep, leave out "
+              "sweep.");
+    EXPECT_EQ(errorAfter([](SceneEffects& e) { e.sweep->fastFrom = kNan; }),
+              "sweep.fastFrom is nan, but must be 0 or more diameters a frame.");
+    EXPECT_EQ(errorAfter([](SceneEffects& e) { e.proximity->farFrames = 4; }),
+              "proximity.farFrames is 4, but nothing is far: set proximity.interestRadius as well "
+              "[m].");
+    EXPECT_EQ(errorAfter([](SceneEffects& e) { e.proximity->colourCount = 33; }),
+              "proximity.colourCount is 33, but must be from 1 to 32.");
+    EXPECT_EQ(errorAfter([](SceneEffects& e) { e.zones->farFrames = 0; }),
+              "zones.farFrames is 0, but must be from 1 to 1000000.");
+    EXPECT_EQ(
+        errorAfter([](SceneEffects& e) { e.radar->columns = 1U << 31; }),
+        "radar: columns * rows * groupCount is 6.87195e+10, but must be from 1 to 268435456.");
+    EXPECT_EQ(errorAfter([](SceneEffects& e) { e.grid.levelRatio = 1; }),
+              "GridConfig::levelRatio is 1, but must be between 2 and 64.");
+}
+
+TEST(SceneEffects, AcceptsNoSettingOutOfItsRange) {
+    const std::vector<void (*)(SceneEffects&)> changes{
+        [](SceneEffects& e) {
+            e.motion->bounds.min().x() = 1;
+            e.motion->bounds.max().x() = 0;
+        },
+        [](SceneEffects& e) { e.motion->bounds.max().y() = kNan; },
+        [](SceneEffects& e) { e.response->restitution = kNan; },
+        [](SceneEffects& e) { e.sweep->fastFrom = -1; },
+        [](SceneEffects& e) { e.sleeping->interestRadius = kNan; },
+        [](SceneEffects& e) { e.sleeping->slowBelow = -1; },
+        [](SceneEffects& e) { e.sleeping->framesBeforeSleep = 0; },
+        [](SceneEffects& e) { e.culling->margin = std::numeric_limits<double>::infinity(); },
+        [](SceneEffects& e) { e.culling->restingCameraFrames = 0; },
+        [](SceneEffects& e) { e.proximity->radius = -1; },
+        [](SceneEffects& e) { e.proximity->colourCount = 0; },
+        [](SceneEffects& e) { e.proximity->interestRadius = -1; },
+        [](SceneEffects& e) { e.zones->interestRadius = kNan; },
+        [](SceneEffects& e) { e.radar->cellSize = 0; },
+        [](SceneEffects& e) { e.radar->groupCount = 0; },
+        [](SceneEffects& e) { e.radar->frames = 0; },
+    };
+    for (std::size_t i = 0; i < changes.size(); ++i) {
+        EXPECT_NE(errorAfter(changes[i]), "") << i;
+    }
+}
+
+TEST(SceneCost, NamesEverythingOnce) {
+    std::set<std::string_view> names;
+    for (const SceneItem& item : sceneCounters()) {
+        names.insert(item.name);
+        EXPECT_FALSE(item.description.empty()) << item.name;
+        EXPECT_FALSE(item.owners.isEmpty()) << item.name;
+    }
+    for (const SceneItem& item : sceneTables()) {
+        names.insert(item.name);
+        EXPECT_FALSE(item.description.empty()) << item.name;
+    }
+    names.erase("");
+    // pairs, zones and the like name a table each, no counter.
+    EXPECT_EQ(names.size(), kSceneCounterCount + kSceneTableCount);
+    EXPECT_EQ(sceneCounters().back().name, "radarsLate");  // as the last enumerator
+    EXPECT_EQ(sceneTables().back().name, "groups");
+    EXPECT_EQ(static_cast<std::size_t>(SceneCounter::radarsLate) + 1, kSceneCounterCount);
+    EXPECT_EQ(static_cast<std::size_t>(SceneTable::groups) + 1, kSceneTableCount);
+}
+
+}  // namespace
+}  // namespace hashphase::test

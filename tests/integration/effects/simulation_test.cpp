@@ -1,0 +1,395 @@
+// SPDX-License-Identifier: Zlib
+
+#include <integration/effects/simulation.hpp>
+#include <tests/integration/effects/small_scene.hpp>
+#include <tests/support/handlers.hpp>
+#include <tests/support/threaded_for.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace hashphase::test {
+namespace {
+
+SceneEffects declared(std::initializer_list<Effect> effects) {
+    SceneEffects all;
+    for (const Effect effect : effects) {
+        all.declare(effect);
+    }
+    return all;
+}
+
+constexpr float kStep = 1.0F / 64;
+
+// --- What is counted -----------------------------------------------------------------------------
+
+TEST(Simulation, FilesExactlyWhatMoves) {
+    constexpr std::uint64_t kMoving = 17;
+    Simulation<float> simulation(declared({Effect::motion, Effect::pairs, Effect::culling}));
+    for (int i = 0; i < 500; ++i) {
+        const bool moves = static_cast<std::uint64_t>(i) < kMoving;
+        EffectSet effects = EffectSet::all();
+        if (!moves) {
+            effects.erase(Effect::motion);
+        }
+        simulation.add({.position = {3.0F * static_cast<float>(i), 0, 0},
+                        .velocity = {0, 1, 0},
+                        .effects = effects});
+    }
+    simulation.advance(kStep);  // all are new
+    simulation.advance(kStep);  // those that stand come to rest
+    for (int frame = 0; frame < 20; ++frame) {
+        const SceneCost& cost = simulation.advance(kStep);
+        EXPECT_EQ(cost[SceneCounter::bodiesMoved], kMoving);
+        EXPECT_EQ(cost[SceneCounter::proxiesHashed], kMoving);
+        EXPECT_EQ(cost[SceneCounter::entriesFiled], kMoving);
+    }
+}
+
+TEST(Simulation, SweepsExactlyWhatIsFastForItsSize) {
+    Simulation<float> simulation(declared({Effect::motion, Effect::pairs, Effect::sweep}));
+    for (int i = 0; i < 300; ++i) {
+        const bool isFast = i % 30 == 0;
+        simulation.add({.position = {3.0F * static_cast<float>(i), 0, 0},
+                        .velocity = {0, isFast ? 2 / kStep : 1.99F / kStep, 0}});
+    }
+    for (int frame = 0; frame < 5; ++frame) {
+        EXPECT_EQ(simulation.advance(kStep)[SceneCounter::sweepsSolved], 10U);
+    }
+}
+
+TEST(Simulation, SweepsNobodyWhoDoesNotTakePart) {
+    Simulation<float> simulation(declared({Effect::motion, Effect::pairs, Effect::sweep}));
+    EffectSet effects = EffectSet::all();
+    effects.erase(Effect::sweep);
+    for (int i = 0; i < 30; ++i) {
+        simulation.add({.position = {3.0F * static_cast<float>(i), 0, 0},
+                        .velocity = {0, 1000, 0},
+                        .effects = effects});
+    }
+    EXPECT_EQ(simulation.advance(kStep)[SceneCounter::sweepsSolved], 0U);
+}
+
+TEST(Simulation, TouchesNothingWhileAllSleep) {
+    Simulation<float> simulation(smallSceneEffects(kSimulated));
+    fill(simulation, 0);
+    for (int i = 0; i < 200; ++i) {
+        simulation.add(
+            {.position = {1.5F * static_cast<float>(i % 20), 1, 1.5F * static_cast<float>(i / 20)},
+             .velocity = {5, 0, 5},
+             .isAsleep = true});
+    }
+    simulation.advance(kStep);
+    for (int frame = 0; frame < 20; ++frame) {
+        const SceneCost& cost = simulation.advance(kStep);
+        for (const SceneCounter counter :
+             {SceneCounter::bodiesMoved, SceneCounter::groundsAsked, SceneCounter::trianglesTested,
+              SceneCounter::proxiesHashed, SceneCounter::entriesFiled, SceneCounter::boxesTested,
+              SceneCounter::couplesWatched, SceneCounter::contactsTested,
+              SceneCounter::sweepsSolved, SceneCounter::sleepersAsked,
+              SceneCounter::cellRowsCulled}) {
+            EXPECT_EQ(cost[counter], 0U)
+                << sceneCounters()[static_cast<std::size_t>(counter)].name << ", frame " << frame;
+        }
+    }
+}
+
+// --- What bodies do ------------------------------------------------------------------------------
+
+TEST(Simulation, TurnsBackAtItsBounds) {
+    SceneEffects effects = declared({Effect::motion});
+    effects.motion->bounds = {Vector3<double>(-1, -1, -1), Vector3<double>(1, 1, 1)};
+    Simulation<float> simulation(effects);
+    const BodyId body = simulation.add({.velocity = {1, -2, 0}});
+    for (int frame = 0; frame < 640; ++frame) {
+        simulation.advance(kStep);
+        EXPECT_LE(simulation.position(body).cwiseAbs().maxCoeff(), 1);
+    }
+    EXPECT_EQ(simulation.velocity(body).cwiseAbs(), Vector3<float>(1, 2, 0));
+}
+
+TEST(Simulation, BouncesOffByTheAngleOfImpact) {
+    Simulation<double> simulation(declared({Effect::motion, Effect::pairs, Effect::response}));
+    const double c = std::sqrt(0.5);
+    // It meets the other at 45 degrees: they part at a right angle, as billiard balls do.
+    const BodyId cue = simulation.add({.position = {-2.5 - c, 0, 0}, .velocity = {4, 0, 0}});
+    const BodyId ball = simulation.add({.position = {0, 0, 2 * c}});
+    for (int frame = 0; frame < 200; ++frame) {
+        simulation.advance(1.0 / 256);
+    }
+    const Vector3<double> a = simulation.velocity(cue);
+    const Vector3<double> b = simulation.velocity(ball);
+    EXPECT_NEAR(a.squaredNorm() + b.squaredNorm(), 16, 1e-9);
+    EXPECT_NEAR((a + b - Vector3<double>(4, 0, 0)).norm(), 0, 1e-9);
+    EXPECT_NEAR(a.dot(b), 0, 1e-9);
+    EXPECT_GT(b.norm(), 1);
+}
+
+TEST(Simulation, BouncesOffWhatStands) {
+    SceneEffects effects = declared({Effect::motion, Effect::pairs, Effect::response});
+    effects.response->restitution = 0.5;
+    Simulation<float> simulation(effects);
+    EffectSet standing = EffectSet::all();
+    standing.erase(Effect::motion);
+    const BodyId ball = simulation.add({.position = {-3, 0, 0}, .velocity = {1, 0, 0}});
+    const BodyId post = simulation.add({.effects = standing});
+    for (int frame = 0; frame < 128; ++frame) {
+        simulation.advance(kStep);
+    }
+    EXPECT_EQ(simulation.velocity(ball), Vector3<float>(-0.5F, 0, 0));
+    EXPECT_EQ(simulation.position(post), Vector3<float>(0, 0, 0));
+}
+
+TEST(Simulation, LetsSensorsFeelWithoutBouncing) {
+    Simulation<float> simulation(declared({Effect::motion, Effect::pairs, Effect::response}));
+    EffectSet sensing = EffectSet::all();
+    sensing.erase(Effect::response);
+    const BodyId ball = simulation.add({.position = {-3, 0, 0}, .velocity = {8, 0, 0}});
+    simulation.add({.effects = sensing});
+    SceneCost sum;
+    for (int frame = 0; frame < 64; ++frame) {
+        sum += simulation.advance(kStep);
+    }
+    EXPECT_EQ(simulation.velocity(ball), Vector3<float>(8, 0, 0));
+    EXPECT_EQ(sum[SceneCounter::pairsBorn], 1U);
+    EXPECT_EQ(sum[SceneCounter::pairsDied], 1U);
+    EXPECT_EQ(sum[SceneCounter::contactsTested], 0U);
+}
+
+/// Whether a bullet that flies by `speed` [m/s] has come through a wall of spheres.
+bool comesThrough(const SceneEffects& effects, float speed) {
+    Simulation<float> simulation(effects);
+    EffectSet standing = EffectSet::all();
+    standing.erase(Effect::motion);
+    for (int i = -5; i <= 5; ++i) {
+        for (int k = -5; k <= 5; ++k) {
+            simulation.add(
+                {.position = {0, 0.2F * static_cast<float>(i), 0.2F * static_cast<float>(k)},
+                 .radius = 0.2F,
+                 .effects = standing});
+        }
+    }
+    const BodyId bullet = simulation.add(
+        {.position = {-50.1F, 0.03F, 0.02F}, .radius = 0.05F, .velocity = {speed, 0, 0}});
+    while (simulation.position(bullet).x() < 50 && simulation.velocity(bullet).x() > 0) {
+        simulation.advance(kStep);
+    }
+    return simulation.position(bullet).x() > 0;
+}
+
+TEST(Simulation, StopsBulletsWhereTheySweepAndLosesThemWhereNot) {
+    const SceneEffects without = declared({Effect::motion, Effect::pairs, Effect::response});
+    SceneEffects with = without;
+    for (const float speed : {300.0F, 1000.0F, 3000.0F, 30000.0F}) {
+        EXPECT_TRUE(comesThrough(without, speed)) << speed;
+        for (const Sweep mode : {Sweep::automatic, Sweep::box, Sweep::line}) {
+            with.sweep = SweepEffect{.mode = mode};
+            EXPECT_FALSE(comesThrough(with, speed)) << speed;
+        }
+    }
+}
+
+TEST(Simulation, StandsOnTheGround) {
+    Simulation<float> simulation(declared({Effect::motion, Effect::terrain}));
+    using Point = Vector3<float>;
+    const std::vector<Point> slope{Point(0, 0, -50),    Point(100, 50, -50), Point(0, 0, 50),
+                                   Point(100, 50, -50), Point(100, 50, 50),  Point(0, 0, 50)};
+    simulation.ground().add(slope);
+    const BodyId body = simulation.add({.position = {5, 6, 0}, .velocity = {10, 0, 0}});
+    for (int frame = 0; frame < 500; ++frame) {
+        simulation.advance(kStep);
+    }
+    const float x = simulation.position(body).x();
+    // On a slope of 1 : 2 the centre is higher by radius / cos(angle).
+    EXPECT_NEAR(simulation.position(body).y(), x / 2 + std::sqrt(1.25F), 1e-3F);
+}
+
+TEST(Simulation, SleepsWhereNobodyLooksAndWakesWhenSomebodyComes) {
+    SceneEffects effects = declared({Effect::motion, Effect::sleeping});
+    effects.sleeping->interestRadius = 10;
+    Simulation<float> simulation(effects);
+    const BodyId near = simulation.add({.position = {5, 0, 0}, .velocity = {0, 1, 0}});
+    const BodyId far = simulation.add({.position = {50, 0, 0}, .velocity = {0, 1, 0}});
+    simulation.observers().setInterest(Vector3<float>(0, 0, 0));
+    EXPECT_EQ(simulation.advance(kStep)[SceneCounter::fellAsleep], 1U);
+    const SceneCost& quiet = simulation.advance(kStep);
+    EXPECT_EQ(quiet[SceneCounter::bodiesMoved], 1U);
+    EXPECT_EQ(quiet[SceneCounter::sleepersAsked], 0U);
+    EXPECT_TRUE(simulation.isAsleep(far));
+    EXPECT_FALSE(simulation.isAsleep(near));
+    simulation.observers().setInterest(Vector3<float>(50, 0, 0));
+    const SceneCost& came = simulation.advance(kStep);
+    EXPECT_EQ(came[SceneCounter::wokeUp], 1U);
+    EXPECT_EQ(came[SceneCounter::fellAsleep], 1U);
+    EXPECT_FALSE(simulation.isAsleep(far));
+    EXPECT_EQ(simulation.velocity(far), Vector3<float>(0, 1, 0));
+}
+
+TEST(Simulation, PutsTheSlowToSleepUntilSomebodyHitsThem) {
+    SceneEffects effects =
+        declared({Effect::motion, Effect::pairs, Effect::response, Effect::sleeping});
+    effects.sleeping->slowBelow = 0.1;
+    effects.sleeping->framesBeforeSleep = 5;
+    Simulation<float> simulation(effects);
+    const BodyId slow = simulation.add({.velocity = {0.01F, 0, 0}});
+    for (int frame = 0; frame < 5; ++frame) {
+        EXPECT_FALSE(simulation.isAsleep(slow));
+        simulation.advance(kStep);
+    }
+    EXPECT_TRUE(simulation.isAsleep(slow));
+    simulation.add({.position = {-4, 0, 0}, .velocity = {8, 0, 0}});
+    SceneCost sum;
+    for (int frame = 0; frame < 64; ++frame) {
+        sum += simulation.advance(kStep);
+    }
+    EXPECT_FALSE(simulation.isAsleep(slow));
+    EXPECT_EQ(sum[SceneCounter::wokeUp], 1U);
+    EXPECT_GT(simulation.position(slow).x(), 1);
+}
+
+// --- Changes -------------------------------------------------------------------------------------
+
+TEST(Simulation, GoesOnAfterAnotherDeclaration) {
+    Random random(0x5eed0fed);
+    Simulation<float> simulation(smallSceneEffects(kSimulated));
+    fill(simulation);
+    std::vector<BodyId> added;
+    for (int round = 0; round < 60; ++round) {
+        EffectSet some = kSimulated;
+        for (const Effect effect : kAllEffects) {
+            if (random.chance(0.4)) {
+                some.erase(effect);
+            }
+        }
+        const SceneEffects effects = smallSceneEffects(some);
+        if (effectsError(effects).empty()) {
+            simulation.declare(effects);
+        } else {
+            EXPECT_THROW(simulation.declare(effects), std::invalid_argument);
+        }
+        if (!added.empty() && random.chance(0.6)) {
+            const std::size_t chosen = random.below(static_cast<std::uint32_t>(added.size()));
+            simulation.remove(added[chosen]);
+            EXPECT_FALSE(simulation.contains(added[chosen]));
+            added.erase(added.begin() + static_cast<std::ptrdiff_t>(chosen));
+        }
+        for (int i = 0; i < 2; ++i) {
+            added.push_back(
+                simulation.add({.position = random.pointIn({0, 1, 0}, {20, 3, 20}).cast<float>()}));
+        }
+        simulation.advance(kStep);
+        ASSERT_EQ(simulation.validate(), "") << "round " << round << ", " << namesOf(some);
+        ASSERT_EQ(simulation.size(), 40 + added.size());
+    }
+}
+
+TEST(Simulation, TakesUpPairsLater) {
+    Simulation<float> simulation(declared({Effect::motion, Effect::culling}));
+    const BodyId a = simulation.add({});
+    const BodyId b = simulation.add({.position = {1, 0, 0}});
+    simulation.advance(kStep);
+    simulation.declare(declared({Effect::motion, Effect::culling, Effect::pairs}));
+    simulation.advance(kStep);
+    ASSERT_EQ(simulation.pairChanges().born.size(), 1U);
+    EXPECT_EQ(simulation.bodyOf(simulation.pairChanges().born[0].first), a);
+    EXPECT_EQ(simulation.bodyOf(simulation.pairChanges().born[0].second), b);
+}
+
+TEST(Simulation, GivesTheSameOnAnyNumberOfThreads) {
+    Simulation<float> one(smallSceneEffects(kSimulated));
+    Simulation<float> many(smallSceneEffects(kSimulated));
+    fill(one, 3000);
+    fill(many, 3000);
+    ThreadedFor threads(4, 0x5eed0fee);
+    for (int frame = 0; frame < 5; ++frame) {
+        EXPECT_EQ(one.advance(kStep), many.advance(kStep, threads));
+    }
+    for (std::uint32_t body = 0; body < 3000; ++body) {
+        ASSERT_EQ(one.position({body, 1}), many.position({body, 1})) << body;
+    }
+}
+
+// --- Misuse --------------------------------------------------------------------------------------
+
+template <class Call>
+std::string undeclared(const Call& call) {
+    try {
+        call();
+    } catch (const UndeclaredEffect& error) {
+        return error.what();
+    }
+    return "nothing was thrown";
+}
+
+TEST(SimulationMisuse, NamesWhatIsToBeDeclared) {
+    Simulation<float> simulation;
+    const BodyId body = simulation.add({});
+    std::vector<ProxyId> selected;
+    EXPECT_EQ(
+        undeclared([&] { static_cast<void>(simulation.velocity(body)); }),
+        "velocity() needs motion, which the scene does not declare: set SceneEffects::motion.");
+    EXPECT_EQ(undeclared([&] {
+                  static_cast<void>(simulation.pick({{0, 0, 0}, {1, 1, 1}}));
+              }),
+              "pick() needs picking, which the scene does not declare: set SceneEffects::picking.");
+    EXPECT_THROW(simulation.setVelocity(body, {1, 0, 0}), UndeclaredEffect);
+    EXPECT_THROW(static_cast<void>(simulation.isAsleep(body)), UndeclaredEffect);
+    EXPECT_THROW(static_cast<void>(simulation.ground()), UndeclaredEffect);
+    EXPECT_THROW(static_cast<void>(simulation.grid()), UndeclaredEffect);
+    EXPECT_THROW(static_cast<void>(simulation.pairChanges()), UndeclaredEffect);
+    EXPECT_THROW(simulation.select(smallSceneView(), {0, 0}, {1, 1}, selected), UndeclaredEffect);
+    EXPECT_THROW(static_cast<void>(simulation.observers().culler()), UndeclaredEffect);
+    EXPECT_THROW(static_cast<void>(simulation.observers().colours()), UndeclaredEffect);
+    EXPECT_THROW(static_cast<void>(simulation.observers().zones()), UndeclaredEffect);
+    EXPECT_THROW(static_cast<void>(simulation.observers().zoneEvents()), UndeclaredEffect);
+    EXPECT_THROW(static_cast<void>(simulation.observers().radarCounts()), UndeclaredEffect);
+    EXPECT_THROW(simulation.observers().setColour(0, 1), UndeclaredEffect);
+}
+
+TEST(SimulationMisuse, LeavesToBulletWhatIsBullets) {
+    try {
+        Simulation<float> simulation(declared({Effect::motion, Effect::rotation}));
+        ADD_FAILURE() << "nothing was thrown";
+    } catch (const std::invalid_argument& error) {
+        EXPECT_STREQ(error.what(),
+                     "rotation is declared, but Bullet alone simulates it: declare it for a Bullet "
+                     "world, or leave it out.");
+    }
+}
+
+TEST(SimulationMisuse, AssertsLivingBodiesAndOrdinarySteps) {
+    if (HASHPHASE_ENABLE_ASSERTS == 0) {
+        GTEST_SKIP() << "assertions are compiled out";
+    }
+    ThrowingAsserts asserts;
+    Simulation<float> simulation(declared({Effect::motion}));
+    const BodyId body = simulation.add({});
+    simulation.remove(body);
+    EXPECT_THROW(static_cast<void>(simulation.position(body)), BrokenAssert);
+    EXPECT_THROW(simulation.advance(-1), BrokenAssert);
+    EXPECT_THROW(simulation.advance(std::numeric_limits<float>::quiet_NaN()), BrokenAssert);
+}
+
+TEST(SimulationMisuse, BearsBodiesThatAreNowhere) {
+    const CaughtMessages messages;
+    Simulation<float> simulation(smallSceneEffects(kSimulated));
+    fill(simulation);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float infinity = std::numeric_limits<float>::infinity();
+    simulation.add({.position = {nan, 0, 0}, .velocity = {1, 0, 0}});
+    simulation.add({.position = {5, 1, 5}, .velocity = {nan, infinity, 0}});
+    simulation.add({.position = {infinity, 1, 5}, .radius = -1});
+    simulation.add({.position = {5, 1, 5}, .radius = nan});
+    for (int frame = 0; frame < 5; ++frame) {
+        simulation.advance(kStep);
+    }
+    EXPECT_EQ(simulation.size(), 44U);
+}
+
+}  // namespace
+}  // namespace hashphase::test
