@@ -36,6 +36,7 @@ enum class SceneCounter : std::uint8_t {
     contactsSolved,
     sweepsSolved,
     sweepBoxesTested,
+    sweepersStopped,
     picks,
     pickBoxesTested,
     selections,
@@ -83,7 +84,7 @@ struct SceneItem {
     std::string_view description;
 };
 
-inline constexpr std::size_t kSceneCounterCount = 33;
+inline constexpr std::size_t kSceneCounterCount = 34;
 inline constexpr std::size_t kSceneTableCount = 18;
 
 /// In the order of SceneCounter, and of SceneTable.

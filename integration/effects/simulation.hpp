@@ -211,6 +211,7 @@ private:
     void updateGrid();
     void gather();
     void respond();
+    void meet();
     void land();
     void rest();
     void observe();

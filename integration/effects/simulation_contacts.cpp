@@ -123,18 +123,18 @@ void Simulation<Scalar>::respond() {
     }
 }
 
-// Sweepers go as far as what they meet first, and bounce off it. What is left of the frame is lost.
+// Whom each sweeper meets first, and when.
 template <class Scalar>
-void Simulation<Scalar>::land() {
+void Simulation<Scalar>::meet() {
     auto& [list, ofBody] = *sweepers_;
+    if (list.empty()) {
+        return;
+    }
     const auto sweeps = [&](std::uint32_t body) { return ofBody[body] != Sweepers::kNone; };
     const auto wayOf = [&](std::uint32_t body) -> Point {
         return sweeps(body) ? list[ofBody[body]].way : Point(Point::Zero());
     };
-    const std::span<const typename Contacts::Couple> contacts =
-        contacts_ && !list.empty() ? std::span(contacts_->present)
-                                   : std::span<typename Contacts::Couple>();
-    for (const auto& [a, b] : contacts) {
+    for (const auto& [a, b] : contacts_->present) {
         const EffectSet both = effectsOf_[a] & effectsOf_[b];
         if (!both.contains(Effect::response) || !(sweeps(a) || sweeps(b))) {
             continue;
@@ -150,16 +150,28 @@ void Simulation<Scalar>::land() {
             }
         }
     }
-    for (const auto& sweeper : list) {
-        positions_[sweeper.body] = sweeper.start + sweeper.way * static_cast<Scalar>(sweeper.time);
-        index_->grid.move(index_->proxies[sweeper.body], boxOf(sweeper.body));
-        pairing_->sweeps->set(index_->proxies[sweeper.body], Point::Zero());
+    for (const auto& [body, hit, start, way, time] : list) {
+        if (hit != Sweepers::kNone) {
+            const Scalar radii = radii_[hit] + radii_[body];
+            const Point apartInTheEnd = positions_[hit] + wayOf(hit) - start - way;
+            cost_[SceneCounter::sweepersStopped] +=
+                apartInTheEnd.squaredNorm() > radii * radii ? 1 : 0;
+        }
     }
-    for (const auto& sweeper : list) {
-        ofBody[sweeper.body] = Sweepers::kNone;
-        if (sweeper.hit != Sweepers::kNone) {
-            static_cast<void>(bounce(sweeper.body, sweeper.hit,
-                                     positions_[sweeper.hit] - positions_[sweeper.body]));
+}
+
+// Sweepers go as far as what they meet first, and bounce off it. What is left of the frame is lost.
+template <class Scalar>
+void Simulation<Scalar>::land() {
+    for (const auto& [body, hit, start, way, time] : sweepers_->list) {
+        positions_[body] = start + way * static_cast<Scalar>(time);
+        index_->grid.move(index_->proxies[body], boxOf(body));
+        pairing_->sweeps->set(index_->proxies[body], Point::Zero());
+        sweepers_->ofBody[body] = Sweepers::kNone;
+    }
+    for (const auto& [body, hit, start, way, time] : sweepers_->list) {
+        if (hit != Sweepers::kNone) {
+            static_cast<void>(bounce(body, hit, positions_[hit] - positions_[body]));
         }
     }
 }

@@ -128,6 +128,7 @@ void Simulation<Scalar>::compile() {
     add(pairing_ && contacts_, "gather", &Simulation::gather);
     add(!pairing_ && isFiling, "update", &Simulation::updateGrid);
     add(moves && pairing_ && runs(Effect::response), "respond", &Simulation::respond);
+    add(sweeps && contacts_, "meet", &Simulation::meet);
     add(sweeps, "land", &Simulation::land);
     add(moves && runs(Effect::sleeping), "rest", &Simulation::rest);
     add(effects_.set().containsAny(kGridEffects - EffectSet{Effect::pairs}), "observe",

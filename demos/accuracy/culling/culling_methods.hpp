@@ -3,7 +3,7 @@
 
 // Ways to find out what a camera sees of objects that stand on flat ground at height 0.
 
-#include <demos/accuracy/culling/camera_view.hpp>
+#include <demos/scenes/camera_view.hpp>
 
 #include <algorithm>
 #include <cstdint>

@@ -3,7 +3,7 @@
 
 // What stands on the ground, and how cameras fly over it.
 
-#include <demos/accuracy/culling/camera_view.hpp>
+#include <demos/scenes/camera_view.hpp>
 #include <demos/scenes/random.hpp>
 
 #include <string>

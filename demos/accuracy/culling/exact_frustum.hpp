@@ -3,7 +3,7 @@
 
 // The truth about what a camera sees, by clipping in long double.
 
-#include <demos/accuracy/culling/camera_view.hpp>
+#include <demos/scenes/camera_view.hpp>
 
 #include <array>
 

@@ -19,6 +19,7 @@ struct CameraPose {
     float yaw = 0;          // around the y axis, which is up; 0 looks along -z [rad]
     float pitch = 0;        // -pi / 2 looks straight down [rad]
     float fieldOfView = 1;  // vertical [rad]
+    float farPlane = kFarPlane;
 };
 
 /// What is seen: the same as a matrix and as planes that face inwards.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/culling/camera_view.hpp>
+#include <demos/scenes/camera_view.hpp>
 
 #include <cmath>
 
@@ -9,9 +9,9 @@ namespace {
 constexpr double kAspect = 16.0 / 9;
 
 // Eye space looks along -z; its depths become 0 at the near plane and 1 at the far one.
-Eigen::Matrix4d projection(double fieldOfView) {
+Eigen::Matrix4d projection(double fieldOfView, double farPlane) {
     const double scale = 1 / std::tan(fieldOfView / 2);
-    const double slope = double{kFarPlane} / (double{kNearPlane} - kFarPlane);
+    const double slope = farPlane / (double{kNearPlane} - farPlane);
     Eigen::Matrix4d matrix = Eigen::Matrix4d::Zero();
     matrix(0, 0) = scale / kAspect;
     matrix(1, 1) = scale;
@@ -31,7 +31,7 @@ CameraView cameraView(const CameraPose& pose) {
     toEye.topLeftCorner<3, 3>() = turn.transpose();
     toEye.topRightCorner<3, 1>() = -turn.transpose() * pose.eye.cast<double>();
     CameraView view;
-    view.viewProjection = (projection(pose.fieldOfView) * toEye).cast<float>();
+    view.viewProjection = (projection(pose.fieldOfView, pose.farPlane) * toEye).cast<float>();
     view.planes = frustumPlanes<float>(view.viewProjection, kDepthRange);
     return view;
 }
