@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/scenes/text_boxes.hpp>
 
+#include <demos/console/quoted_word.hpp>
 #include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/input_error.hpp>
 
@@ -17,15 +18,6 @@ constexpr std::string_view kBlanks = " \t\r";
 
 // Leaves room for sums and differences of coordinates.
 constexpr float kLargest = 1e30F;
-
-// The word for a message: not all of a long one, and nothing that a terminal would obey.
-std::string quoted(std::string_view word) {
-    constexpr std::size_t kMost = 40;
-    std::string text(word.substr(0, kMost));
-    std::replace_if(
-        text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-    return "'" + text + (word.size() > kMost ? "...'" : "'");
-}
 
 // One line being read, which knows how to say where it is.
 class LineReader {
@@ -46,16 +38,16 @@ public:
         float value = 0;
         const auto [parsed, error] = std::from_chars(word.data(), word.data() + word.size(), value);
         if (error == std::errc::result_out_of_range) {
-            fail(quoted(word) + " does not fit a single-precision number");
+            fail(quotedWord(word) + " does not fit a single-precision number");
         }
         if (error != std::errc() || parsed != word.data() + word.size()) {
-            fail("expected a number, found " + quoted(word));
+            fail("expected a number, found " + quotedWord(word));
         }
         if (!std::isfinite(value)) {
-            fail(quoted(word) + " is not a finite number");
+            fail(quotedWord(word) + " is not a finite number");
         }
         if (std::abs(value) > kLargest) {
-            fail(quoted(word) + " is beyond the largest coordinate, 1e30");
+            fail(quotedWord(word) + " is beyond the largest coordinate, 1e30");
         }
         lastStart_ = position_;
         position_ = end;
