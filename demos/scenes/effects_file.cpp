@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/scenes/effects_file.hpp>
+
+#include <demos/console/nearest_name.hpp>
+#include <demos/console/quoted_word.hpp>
+#include <demos/scenes/effects_fields.hpp>
+#include <demos/scenes/file_bytes.hpp>
+#include <demos/scenes/input_error.hpp>
+#include <demos/scenes/json_tree.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+namespace hashphase::demos {
+namespace {
+
+using Kind = JsonValue::Kind;
+
+bool hasNoBound(const JsonValue& value) {
+    return value.kind == Kind::text && value.text == kNoBound;
+}
+
+/// Each returns false when the value is not what the field must be.
+bool assign(const SectionField& /*field*/, const JsonValue& value, EffectsFile& /*file*/) {
+    return value.kind == Kind::object;
+}
+
+bool assign(const EffectField& field, const JsonValue& value, EffectsFile& file) {
+    if (value.kind == Kind::object || value.truth) {
+        file.effects.declare(field.effect);
+    }
+    return value.kind == Kind::object || value.kind == Kind::boolean;
+}
+
+bool assign(const TextField& field, const JsonValue& value, EffectsFile& file) {
+    field.place(file) = value.text;
+    return value.kind == Kind::text;
+}
+
+bool assign(const WholeField& field, const JsonValue& value, EffectsFile& file) {
+    const double number = value.number;
+    const bool isRight = value.kind == Kind::number && number == std::trunc(number) &&
+                         number >= field.least && number <= field.most;
+    if (isRight) {
+        field.place(file) = static_cast<std::uint32_t>(number);
+    }
+    return isRight;
+}
+
+bool assign(const NumberField& field, const JsonValue& value, EffectsFile& file) {
+    if (hasNoBound(value) && field.most == NumberField::kInfinite) {
+        field.place(file) = NumberField::kInfinite;
+        return true;
+    }
+    field.place(file) = value.number;
+    const bool isHighEnough =
+        field.isAboveLeast ? value.number > field.least : value.number >= field.least;
+    return value.kind == Kind::number && isHighEnough && value.number <= field.most;
+}
+
+bool assign(const ChoiceField& field, const JsonValue& value, EffectsFile& file) {
+    const auto found =
+        std::find_if(field.choices.begin(), field.choices.end(),
+                     [&](const NamedValue& choice) { return choice.name == value.text; });
+    if (value.kind != Kind::text || found == field.choices.end()) {
+        return false;
+    }
+    field.set(file, found->value);
+    return true;
+}
+
+bool assign(const CornerField& field, const JsonValue& value, EffectsFile& file) {
+    if (value.kind != Kind::array || value.members.size() != 3) {
+        return false;
+    }
+    Vector3<double>& corner = field.place(file);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        const JsonValue& element = value.members[static_cast<std::size_t>(axis)];
+        if (element.kind != Kind::number && !hasNoBound(element)) {
+            return false;
+        }
+        corner[axis] = hasNoBound(element) ? field.noBound : element.number;
+    }
+    return true;
+}
+
+/// What it is, an array with its elements.
+std::string found(const JsonValue& value) {
+    if (value.kind != Kind::array || value.members.empty() || value.members.size() > 4) {
+        return describe(value);
+    }
+    std::string elements;
+    for (const JsonValue& element : value.members) {
+        elements += (elements.empty() ? "[" : ", ") + describe(element);
+    }
+    return elements + "]";
+}
+
+/// What fields that are right for themselves have against each other; begins with a path.
+std::string contradictionIn(const EffectsFile& file) {
+    const EffectsScene& scene = file.scene;
+    if (2 * scene.radius > scene.domain) {
+        std::ostringstream sentence;
+        sentence << "scene.radius is " << scene.radius
+                 << ", but a body must fit into scene.domain, which is " << scene.domain << " [m].";
+        return sentence.str();
+    }
+    const std::string error = effectsError(file.effects);
+    const std::string_view ofGrid = "GridConfig::";
+    if (error.rfind(ofGrid, 0) == 0) {
+        return "grid." + error.substr(ofGrid.size());
+    }
+    return error.empty() ? error : "effects." + error;
+}
+
+class FileReader {
+public:
+    FileReader(const JsonValue& root, const std::string& name) : root_(root), name_(name) {}
+
+    [[nodiscard]] EffectsFile read() {
+        if (root_.kind != Kind::object) {
+            fail(root_, "the file holds " + describe(root_) + ", but must hold an object.");
+        }
+        readMembers(root_, "");
+        const std::string error = contradictionIn(file_);
+        if (!error.empty()) {
+            failWith(error);
+        }
+        return std::move(file_);
+    }
+
+private:
+    void readMembers(const JsonValue& object, const std::string& section) {
+        for (const JsonValue& member : object.members) {
+            readField(fieldOf(member, section), member);
+        }
+    }
+
+    void readField(const EffectsField& field, const JsonValue& value) {
+        const std::string path = pathOf(field.section, field.name);
+        const bool isRight =
+            std::visit([&](const auto& kind) { return assign(kind, value, file_); }, field.kind);
+        if (!isRight) {
+            fail(value,
+                 path + " is " + found(value) + ", but must be " + requirementOf(field) + ".");
+        }
+        if (value.kind == Kind::object) {
+            readMembers(value, path);
+        }
+    }
+
+    [[nodiscard]] const EffectsField& fieldOf(const JsonValue& member,
+                                              const std::string& section) const {
+        std::vector<std::string> names;
+        for (const EffectsField& field : effectsFields()) {
+            if (field.section == section) {
+                if (field.name == member.name) {
+                    return field;
+                }
+                names.emplace_back(field.name);
+            }
+        }
+        failUnknown(member, section, names);
+    }
+
+    [[noreturn]] void failUnknown(const JsonValue& member, const std::string& section,
+                                  const std::vector<std::string>& names) const {
+        const std::string path = pathOf(section, printable(member.name));
+        if (names.empty()) {
+            fail(member, path + ": there is no such field; " + section + " has no settings.");
+        }
+        std::string sentence =
+            path + ": there is no such " + (section == "effects" ? "effect" : "field");
+        const std::string nearest = nearestName(printable(member.name), names);
+        if (!nearest.empty()) {
+            fail(member, sentence + "; did you mean " + nearest + "?");
+        }
+        sentence += "; there are";
+        for (const std::string& name : names) {
+            sentence += (&name == &names.front() ? " " : ", ") + name;
+        }
+        fail(member, sentence + ".");
+    }
+
+    /// Fails with the sentence, which begins with a path, at the innermost value on it that there is.
+    [[noreturn]] void failWith(const std::string& sentence) const {
+        const JsonValue* value = &root_;
+        std::istringstream path(sentence.substr(0, sentence.find_first_of(" :")));
+        for (std::string name; std::getline(path, name, '.');) {
+            const JsonValue* const member = value->find(name);
+            if (member == nullptr) {
+                break;
+            }
+            value = member;
+        }
+        fail(*value, sentence);
+    }
+
+    [[noreturn]] void fail(const JsonValue& value, const std::string& sentence) const {
+        throw InputError(name_ + ":" + std::to_string(value.line) + ": " + sentence);
+    }
+
+    const JsonValue& root_;
+    const std::string& name_;
+    EffectsFile file_;
+};
+
+}  // namespace
+
+EffectsFile parseEffectsFile(std::string_view text, const std::string& name) {
+    if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {
+        throw InputError(name +
+                         " is empty; a scene is an object, such as {\"effects\": "
+                         "{\"motion\": true}}.");
+    }
+    const JsonValue root = parseJson(text, name);
+    return FileReader(root, name).read();
+}
+
+EffectsFile readEffectsFile(const std::filesystem::path& path) {
+    return parseEffectsFile(readFile(path), path.string());
+}
+
+}  // namespace hashphase::demos
