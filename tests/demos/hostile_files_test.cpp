@@ -5,6 +5,7 @@
 
 #include <demos/scenes/bullet_file_check.hpp>
 #include <demos/scenes/bullet_world_file.hpp>
+#include <demos/scenes/effects_file.hpp>
 #include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <demos/scenes/recording_scene.hpp>
@@ -31,6 +32,7 @@ struct Reader {
 
 std::vector<Reader> readers() {
     return {
+        {"effects", [](const std::string& path) { static_cast<void>(readEffectsFile(path)); }},
         {"text", [](const std::string& path) { static_cast<void>(readTextBoxes(path)); }},
         {"recording", [](const std::string& path) { const RecordingScene scene(path, 0); }},
         {"world", [](const std::string& path) { const BulletWorldFile file(path); }},

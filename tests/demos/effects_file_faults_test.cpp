@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/scenes/effects_file.hpp>
+#include <demos/scenes/input_error.hpp>
+#include <tests/demos/temporary_folder.hpp>
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace hashphase::demos {
+namespace {
+
+struct Fault {
+    std::string text;
+    std::string sentence;  // behind the file's name
+};
+
+void expectFaults(const std::vector<Fault>& faults) {
+    for (const Fault& fault : faults) {
+        const std::string found = messageOf<InputError>(
+            [&] { static_cast<void>(parseEffectsFile(fault.text, "scene.json")); });
+        EXPECT_EQ(found, "scene.json" + fault.sentence) << fault.text;
+    }
+}
+
+TEST(EffectsFileFaults, NameAnUnknownField) {
+    expectFaults({
+        {"{\"effects\": {\n  \"culing\": true}}",
+         ":2: effects.culing: there is no such effect; did you mean culling?"},
+        {R"({"effects": {"levitation": true}})",
+         ":1: effects.levitation: there is no such effect; there are motion, terrain, pairs, "
+         "response, sweep, sleeping, rotation, friction, picking, boxSelection, culling, "
+         "proximity, zones, radar."},
+        {R"({"titel": "x"})", ":1: titel: there is no such field; did you mean title?"},
+        {"{\"scene\": {\n\n\"timestep\": 1}}",
+         ":3: scene.timestep: there is no such field; did you mean timeStep?"},
+        {R"({"effects": {"pairs": {"radius": 1}}})",
+         ":1: effects.pairs.radius: there is no such field; effects.pairs has no settings."},
+        {R"({"scene.objects": 3})",
+         ":1: scene.objects: there is no such field; there are $schema, title, scene, effects, "
+         "grid."},
+    });
+}
+
+TEST(EffectsFileFaults, NameAFieldOfTheWrongKind) {
+    expectFaults({
+        {"[]", ":1: the file holds an array, but must hold an object."},
+        {"3", ":1: the file holds 3, but must hold an object."},
+        {R"({"title": 3})", ":1: title is 3, but must be a text."},
+        {R"({"scene": null})", ":1: scene is null, but must be an object."},
+        {"{\"scene\":\n{\"radius\":\n\"large\"}}",
+         ":2: scene.radius is 'large', but must be a number from 0.001 to 1000 [m]."},
+        {R"({"scene": {"objects": true}})",
+         ":1: scene.objects is true, but must be a whole number from 1 to 10000000."},
+        {R"({"scene": {"objects": {}}})",
+         ":1: scene.objects is an object, but must be a whole number from 1 to 10000000."},
+        {R"({"scene": {"objects": []}})",
+         ":1: scene.objects is an array, but must be a whole number from 1 to 10000000."},
+        {R"({"effects": {"motion": 5}})",
+         ":1: effects.motion is 5, but must be true, false or an object of settings."},
+        {R"({"effects": {"sweep": {"mode": "none"}}})",
+         ":1: effects.sweep.mode is 'none', but must be 'automatic', 'box' or 'line'."},
+        {R"({"effects": {"radar": {"up": 1}}})",
+         ":1: effects.radar.up is 1, but must be 'x', 'y' or 'z'."},
+        {R"({"effects": {"culling": {"margin": "none"}}})",
+         ":1: effects.culling.margin is 'none', but must be a number, 0 or more [m]."},
+        {R"({"effects": {"motion": {"bounds": {"min": [1, 2]}}}})",
+         ":1: effects.motion.bounds.min is [1, 2], but must be an array of three numbers, each of "
+         "which may be 'none' [m]."},
+        {R"({"effects": {"motion": {"bounds": {"max": [1, "a", {}]}}}})",
+         ":1: effects.motion.bounds.max is [1, 'a', an object], but must be an array of three "
+         "numbers, each of which may be 'none' [m]."},
+    });
+}
+
+TEST(EffectsFileFaults, NameANumberOutOfItsRange) {
+    expectFaults({
+        {R"({"scene": {"objects": 0}})",
+         ":1: scene.objects is 0, but must be a whole number from 1 to 10000000."},
+        {R"({"scene": {"objects": -1}})",
+         ":1: scene.objects is -1, but must be a whole number from 1 to 10000000."},
+        {R"({"scene": {"objects": 1.5}})",
+         ":1: scene.objects is 1.5, but must be a whole number from 1 to 10000000."},
+        {R"({"scene": {"seed": 4294967296}})",
+         ":1: scene.seed is 4294967296, but must be a whole number from 0 to 4294967295."},
+        {R"({"scene": {"seed": 123456789012345678901234567890}})",
+         ":1: scene.seed is 123456789012345678901234567890, but must be a whole number from 0 to "
+         "4294967295."},
+        {R"({"scene": {"radius": 1e-9}})",
+         ":1: scene.radius is 1e-9, but must be a number from 0.001 to 1000 [m]."},
+        {R"({"effects": {"response": {"restitution": 1.01}}})",
+         ":1: effects.response.restitution is 1.01, but must be a number from 0 to 1."},
+        {R"({"effects": {"sleeping": {"slowBelow": -1}}})",
+         ":1: effects.sleeping.slowBelow is -1, but must be a number, 0 or more, or 'none' [m/s]."},
+        {R"({"effects": {"radar": {"cellSize": 0}}})",
+         ":1: effects.radar.cellSize is 0, but must be a number above 0 [m]."},
+    });
+}
+
+TEST(EffectsFileFaults, NameTheLineOfAContradiction) {
+    expectFaults({
+        {"{\"effects\": {\n  \"terrain\":\n true}}",
+         ":2: effects.terrain is declared without motion, but puts on the ground what has moved: "
+         "declare motion as well, or leave out terrain."},
+        {"{\"effects\": {\"motion\": {\n\"bounds\": {\"min\": [5, 0, 0],\n\"max\": [1, 1, 1]}}}}",
+         ":2: effects.motion.bounds is 5, but must be a box whose lower corner is not above its "
+         "upper one."},
+        {"{\"effects\": {\n\"zones\": {\n\"farFrames\": 2}}}",
+         ":3: effects.zones.farFrames is 2, but nothing is far: set zones.interestRadius as well "
+         "[m]."},
+        {"{\"effects\": {\n\"radar\": {\"columns\": 100000, \"rows\": 100000}}}",
+         ":2: effects.radar: columns * rows * groupCount is 1e+10, but must be from 1 to "
+         "268435456."},
+        {"{\"grid\": {\n\"cellSize\": 1e-31}}",
+         ":2: grid.cellSize is 1e-31, but must be 0 (choose automatically) or between 1e-30 and "
+         "1e30."},
+        {"{\"scene\": {\n\"radius\": 300}}",
+         ":2: scene.radius is 300, but a body must fit into scene.domain, which is 400 [m]."},
+        {"{\"scene\": {\n\"domain\": 1}}",
+         ":1: scene.radius is 1, but a body must fit into scene.domain, which is 1 [m]."},
+    });
+}
+
+TEST(EffectsFileFaults, NameLineAndColumnOfBrokenSyntax) {
+    expectFaults({
+        {"{", ":1:2: broken JSON: unexpected end of input; expected string literal."},
+        {"{\"title\": \"x\",\n}", ":2:1: broken JSON: unexpected '}'; expected string literal."},
+        {"{\n \"scene\": {\"objects\": 5 \"radius\": 2}}",
+         ":2:32: broken JSON: unexpected string literal; expected ',' or '}'."},
+        {R"({"scene": {"objects": tru}})",
+         ":1:26: broken JSON: invalid literal 'tru'; expected a value."},
+        {R"({"scene": {"radius": NaN}})",
+         ":1:22: broken JSON: invalid literal 'NaN'; expected a value."},
+        {R"({"scene": {"radius": .5}})",
+         ":1:22: broken JSON: invalid literal '.5'; expected a value."},
+        {R"({"scene": {"radius": 5.}})",
+         ":1:24: broken JSON: invalid number; expected digit after '.'."},
+        {R"({"scene": {"radius": 1e999}})", ":1:26: 1e999 is beyond the largest number, 1.8e308."},
+        {R"({"scene": {"radius"}})", ":1:20: broken JSON: unexpected '}'; expected ':'."},
+        {R"({"effects": {"motion": {"bounds": {"min": [1 2]}}}})",
+         ":1:46: broken JSON: unexpected number literal; expected ',' or ']'."},
+        {"{\"title\": \"a\nb\"}",
+         ":1:13: broken JSON: invalid string: control character U+000A (LF) must be escaped to "
+         "\\u000A or \\n."},
+        {R"({"title": "a)", ":1:13: broken JSON: invalid string: missing closing quote."},
+        {"{} {}", ":1:4: broken JSON: unexpected '{'; expected end of input."},
+        {"// a scene\n{}", ":1:1: broken JSON: invalid literal '/'; expected a value."},
+        {"{'title': 1}", ":1:2: broken JSON: invalid literal '''; expected string literal."},
+    });
+}
+
+TEST(EffectsFileFaults, NameAFieldThatIsGivenTwice) {
+    expectFaults({
+        {"{\"scene\": {\"domain\":\n300,\n\"domain\": 300}}",
+         ":3: 'domain' stands here again; line 1 has it already."},
+        {"{\"title\": \"\",\n\"title\": \"\"}",
+         ":2: 'title' stands here again; line 1 has it already."},
+    });
+}
+
+TEST(EffectsFileFaults, NameWhatIsNotUtf8) {
+    expectFaults({
+        {"{\"title\": \"\xff\"}", ":1:12: broken JSON: the text is not UTF-8."},
+        {"\xff\xfe{", ":1:1: broken JSON: this is not UTF-8, or stands outside quotes."},
+    });
+}
+
+TEST(EffectsFileFaults, NameWhatIsNoSceneAtAll) {
+    const std::string empty =
+        " is empty; a scene is an object, such as {\"effects\": {\"motion\": true}}.";
+    expectFaults({
+        {"", empty},
+        {" \t\r\n", empty},
+        {"\n" + std::string(60'000, '['), ":2: more than 8 objects and arrays lie in each other."},
+        {std::string(70'000, '1'),
+         " has 70000 bytes, which is more than the 65536 that a declaration may have."},
+        {"{\"" + std::string(50'000, 'x') + "\": 1}",
+         ":1: " + std::string(40, 'x') +
+             "...: there is no such field; there are $schema, title, scene, effects, grid."},
+        {"{\"\\u001b[2J\": 1}",
+         ":1: ?[2J: there is no such field; there are $schema, title, scene, effects, grid."},
+    });
+}
+
+}  // namespace
+}  // namespace hashphase::demos

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/scenes/effects_fields.hpp>
+#include <demos/scenes/effects_file.hpp>
+#include <demos/scenes/input_error.hpp>
+#include <tests/demos/temporary_folder.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <string>
+
+namespace hashphase::demos {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+EffectsFile parse(const std::string& text) {
+    return parseEffectsFile(text, "scene.json");
+}
+
+EffectsFile withAllEffects() {
+    EffectsFile file;
+    for (const Effect effect : kAllEffects) {
+        file.effects.declare(effect);
+    }
+    return file;
+}
+
+// Every field, none of them as it is by default, spelled as it is written.
+const std::string kEveryField = R"({
+  "$schema": "scene.schema.json",
+  "title": "\"Ωmega\", a test",
+  "scene": {
+    "objects": 4000,
+    "radius": 0.1,
+    "domain": 123.5,
+    "terrain": 64,
+    "speed": 7,
+    "moving": 0.5,
+    "fast": 0.01,
+    "fastSpeed": 555,
+    "seed": 4294967295,
+    "zones": 20,
+    "frames": 60,
+    "timeStep": 0.01
+  },
+  "effects": {
+    "motion": {
+      "bounds": {
+        "min": [
+          -1,
+          -2.5,
+          -1e+300
+        ],
+        "max": [
+          1,
+          2,
+          3
+        ]
+      }
+    },
+    "terrain": {
+      "up": "z"
+    },
+    "pairs": {},
+    "response": {
+      "restitution": 0.9
+    },
+    "sweep": {
+      "mode": "line",
+      "fastFrom": 0.25
+    },
+    "sleeping": {
+      "interestRadius": 100,
+      "slowBelow": 0.125,
+      "framesBeforeSleep": 31
+    },
+    "rotation": {},
+    "friction": {},
+    "picking": {},
+    "boxSelection": {},
+    "culling": {
+      "margin": 2,
+      "restingCameraFrames": 3
+    },
+    "proximity": {
+      "radius": "none",
+      "colourCount": 32,
+      "interestRadius": 50,
+      "farFrames": 4
+    },
+    "zones": {
+      "interestRadius": 60,
+      "farFrames": 5
+    },
+    "radar": {
+      "cellSize": 0.5,
+      "columns": 16,
+      "rows": 8,
+      "groupCount": 2,
+      "frames": 6,
+      "up": "x"
+    }
+  },
+  "grid": {
+    "cellSize": 3,
+    "levelRatio": 8,
+    "updatesBeforeRest": 1
+  }
+}
+)";
+
+TEST(EffectsFile, OfEveryFieldIsReadAndWrittenAsItIs) {
+    EXPECT_EQ(effectsFileText(parse(kEveryField)), kEveryField);
+
+    // Would a field be missing, or be as it is by default, the above might hold by chance.
+    for (const EffectsField& field : effectsFields()) {
+        EXPECT_NE(kEveryField.find('"' + std::string(field.name) + '"'), std::string::npos);
+    }
+    EffectsFile defaults = withAllEffects();
+    defaults.title = defaults.schema = "default";
+    std::istringstream given(kEveryField);
+    std::istringstream byDefault(effectsFileText(defaults));
+    for (std::string line, other; std::getline(given, line);) {
+        ASSERT_TRUE(std::getline(byDefault, other));
+        const bool isValue = line.find_last_of("{}[]") == std::string::npos;
+        EXPECT_EQ(line == other, !isValue) << line;
+    }
+}
+
+TEST(EffectsFile, HasTheSceneInItsMembers) {
+    const EffectsFile file = parse(kEveryField);
+    EXPECT_EQ(file.title, "\"Ωmega\", a test");
+    EXPECT_EQ(file.schema, "scene.schema.json");
+    EXPECT_EQ(file.scene.objects, 4000U);
+    EXPECT_EQ(file.scene.radius, 0.1);
+    EXPECT_EQ(file.scene.domain, 123.5);
+    EXPECT_EQ(file.scene.terrain, 64U);
+    EXPECT_EQ(file.scene.speed, 7);
+    EXPECT_EQ(file.scene.moving, 0.5);
+    EXPECT_EQ(file.scene.fast, 0.01);
+    EXPECT_EQ(file.scene.fastSpeed, 555);
+    EXPECT_EQ(file.scene.seed, 4294967295U);
+    EXPECT_EQ(file.scene.zones, 20U);
+    EXPECT_EQ(file.scene.frames, 60U);
+    EXPECT_EQ(file.scene.timeStep, 0.01);
+    EXPECT_EQ(file.effects.grid.cellSize, 3);
+    EXPECT_EQ(file.effects.grid.levelRatio, 8);
+    EXPECT_EQ(file.effects.grid.updatesBeforeRest, 1U);
+}
+
+TEST(EffectsFile, HasTheSettingsInTheirMembers) {
+    const SceneEffects effects = parse(kEveryField).effects;
+    EXPECT_EQ(effects.set(), EffectSet::all());
+    EXPECT_EQ(effects.motion->bounds.min(), Vector3<double>(-1, -2.5, -1e300));
+    EXPECT_EQ(effects.motion->bounds.max(), Vector3<double>(1, 2, 3));
+    EXPECT_EQ(effects.terrain->up, UpAxis::z);
+    EXPECT_EQ(effects.response->restitution, 0.9);
+    EXPECT_EQ(effects.sweep->mode, Sweep::line);
+    EXPECT_EQ(effects.sweep->fastFrom, 0.25);
+    EXPECT_EQ(effects.sleeping->interestRadius, 100);
+    EXPECT_EQ(effects.sleeping->slowBelow, 0.125);
+    EXPECT_EQ(effects.sleeping->framesBeforeSleep, 31U);
+    EXPECT_EQ(effects.culling->margin, 2);
+    EXPECT_EQ(effects.culling->restingCameraFrames, 3U);
+    EXPECT_EQ(effects.proximity->radius, kInfinity);
+    EXPECT_EQ(effects.proximity->colourCount, 32U);
+    EXPECT_EQ(effects.proximity->interestRadius, 50);
+    EXPECT_EQ(effects.proximity->farFrames, 4U);
+    EXPECT_EQ(effects.zones->interestRadius, 60);
+    EXPECT_EQ(effects.zones->farFrames, 5U);
+    EXPECT_EQ(effects.radar->cellSize, 0.5);
+    EXPECT_EQ(effects.radar->columns, 16U);
+    EXPECT_EQ(effects.radar->rows, 8U);
+    EXPECT_EQ(effects.radar->groupCount, 2U);
+    EXPECT_EQ(effects.radar->frames, 6U);
+    EXPECT_EQ(effects.radar->up, UpAxis::x);
+}
+
+TEST(EffectsFile, LeavesWhatIsNotGivenAsItIsByDefault) {
+    EXPECT_EQ(effectsFileText(parse("{}")), effectsFileText(EffectsFile{}));
+    EXPECT_EQ(effectsFileText(parse(R"({"scene": {}, "effects": {}, "grid": {}})")),
+              effectsFileText(EffectsFile{}));
+    EXPECT_EQ(parse(R"({"scene": {"objects": 7}})").scene.radius, EffectsScene{}.radius);
+}
+
+TEST(EffectsFile, DeclaresAnEffectByTrueOrByAnObject) {
+    const SceneEffects effects =
+        parse(R"({"effects": {"motion": true, "pairs": {}, "zones": false}})").effects;
+    EXPECT_EQ(effects.set(), (EffectSet{Effect::motion, Effect::pairs}));
+}
+
+TEST(EffectsFile, MayLeaveASideOfTheBoundsOpen) {
+    const Aabb<double> bounds =
+        parse(R"({"effects": {"motion": {"bounds": {"min": [0, "none", 2]}}}})")
+            .effects.motion->bounds;
+    EXPECT_EQ(bounds.min(), Vector3<double>(0, -kInfinity, 2));
+    EXPECT_EQ(bounds.max(), Vector3<double>::Constant(kInfinity));
+}
+
+TEST(EffectsFile, TakesAWholeNumberHoweverItIsSpelled) {
+    EXPECT_EQ(parse(R"({"scene": {"objects": 1.0e3}})").scene.objects, 1000U);
+}
+
+TEST(EffectsFile, OfTheExamplesIsReadAndWritten) {
+    for (const char* name : {"paper", "projectiles", "lookers"}) {
+        SCOPED_TRACE(name);
+        const EffectsFile file =
+            readEffectsFile(std::string(HASHPHASE_SCENE_EXAMPLES "/") + name + ".json");
+        EXPECT_EQ(effectsError(file.effects), "");
+        EXPECT_FALSE(file.effects.set().isEmpty());
+        EXPECT_EQ(effectsFileText(parse(effectsFileText(file))), effectsFileText(file));
+    }
+}
+
+TEST(EffectsFile, HasAFieldForEveryEffect) {
+    EffectSet effects;
+    for (const EffectsField& field : effectsFields()) {
+        if (const auto* effect = std::get_if<EffectField>(&field.kind)) {
+            EXPECT_EQ(field.name, nameOf(effect->effect));
+            EXPECT_EQ(field.section, "effects");
+            effects.insert(effect->effect);
+        }
+    }
+    EXPECT_EQ(effects, EffectSet::all());
+}
+
+// Sets one field and says whether the declaration is without an error.
+template <class Field, class Number>
+bool isAllowed(const Field& field, Number number) {
+    EffectsFile file = withAllEffects();
+    field.place(file) = number;
+    return effectsError(file.effects).empty();
+}
+
+TEST(EffectsFile, HasTheRangesThatADeclarationHas) {
+    for (const EffectsField& field : effectsFields()) {
+        if (field.section == "scene") {
+            continue;
+        }
+        SCOPED_TRACE(pathOf(field.section, field.name));
+        if (const auto* whole = std::get_if<WholeField>(&field.kind)) {
+            EXPECT_TRUE(isAllowed(*whole, whole->least));
+            EXPECT_FALSE(isAllowed(*whole, whole->least - 1));
+            EXPECT_FALSE(isAllowed(*whole, whole->most + 1));
+        } else if (const auto* number = std::get_if<NumberField>(&field.kind)) {
+            EXPECT_EQ(isAllowed(*number, number->least), !number->isAboveLeast);
+            EXPECT_TRUE(isAllowed(*number, number->most));
+            EXPECT_FALSE(isAllowed(*number, std::nextafter(number->least, -kInfinity)));
+            EXPECT_EQ(isAllowed(*number, std::nextafter(number->most, kInfinity)),
+                      number->most == kInfinity);
+        }
+    }
+}
+
+// Each byte in turn is left out, or becomes another: what comes of it is read, or refused in a sentence.
+TEST(EffectsFile, WithAnyByteDamagedIsReadOrRefused) {
+    for (std::size_t place = 0; place < kEveryField.size(); ++place) {
+        for (const std::string with : {"", "\xff", "}", "\"", "9"}) {
+            std::string text = kEveryField;
+            text.replace(place, 1, with);
+            try {
+                const std::string written = effectsFileText(parse(text));
+                EXPECT_EQ(effectsFileText(parse(written)), written);
+            } catch (const InputError& error) {
+                const std::string sentence = error.what();
+                EXPECT_EQ(sentence.rfind("scene.json:", 0), 0U) << sentence;
+                EXPECT_TRUE(sentence.back() == '.' || sentence.back() == '?') << sentence;
+                EXPECT_LT(sentence.size(), 300U) << sentence;
+            }
+        }
+    }
+}
+
+TEST(EffectsFile, CutShortIsRefused) {
+    for (std::size_t length = 0; length + 2 < kEveryField.size(); ++length) {
+        EXPECT_THROW(static_cast<void>(parse(kEveryField.substr(0, length))), InputError) << length;
+    }
+}
+
+TEST(EffectsFile, HasItsPathInFrontOfTheFault) {
+    const TemporaryFolder folder;
+    const std::string path = folder.write("wrong.json", "{\n\"scene\": 1}");
+    EXPECT_EQ(messageOf<InputError>([&] { static_cast<void>(readEffectsFile(path)); }),
+              path + ":2: scene is 1, but must be an object.");
+}
+
+}  // namespace
+}  // namespace hashphase::demos
