@@ -6,16 +6,18 @@
 #include <tests/fuzz/life.hpp>
 #include <tests/fuzz/palette.hpp>
 #include <tests/fuzz/subjects.hpp>
+#include <tests/fuzz/text_line.hpp>
 
 #include <demos/scenes/bullet_file_check.hpp>
+#include <demos/scenes/effects_file.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <demos/scenes/recording_scene.hpp>
 #include <demos/scenes/text_boxes.hpp>
 #include <tests/demos/bullet_file.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <optional>
 #include <sstream>
@@ -75,71 +77,18 @@ std::string recording(std::int32_t objects, std::int32_t frames) {
     return bytes;
 }
 
-/// What one line of text holds by a slow look: a box, nothing, or a fault; undecided where numbers
-/// are so small or so many digits long that readers may differ.
-struct Line {
-    bool isBox = false;
-    bool isFaulty = false;
-    bool isUndecided = false;
-    std::array<float, 6> numbers{};
-};
-
-bool looksLikeNumber(const std::string& word) {
-    std::size_t i = word[0] == '-' ? 1 : 0;
-    std::size_t digits = 0;
-    for (; i < word.size() && (std::isdigit(static_cast<unsigned char>(word[i])) || word[i] == '.');
-         ++i) {
-        digits += word[i] == '.' ? 0 : 1;
+/// A scene of effects that declares so many of them.
+std::string sceneOfEffects(std::uint32_t count) {
+    demos::EffectsFile file;
+    for (std::uint32_t i = 0; i < count && i < kAllEffects.size(); ++i) {
+        file.effects.declare(kAllEffects[i]);
     }
-    const std::string mantissa = word.substr(0, i);
-    if (digits == 0 || std::count(mantissa.begin(), mantissa.end(), '.') > 1) {
-        return false;
-    }
-    if (i < word.size() && (word[i] == 'e' || word[i] == 'E')) {
-        i += i + 1 < word.size() && (word[i + 1] == '-' || word[i + 1] == '+') ? 2 : 1;
-        const std::size_t exponent = i;
-        while (i < word.size() && std::isdigit(static_cast<unsigned char>(word[i]))) {
-            ++i;
-        }
-        return i == word.size() && i > exponent;
-    }
-    return i == word.size();
-}
-
-Line readLine(const std::string& text) {
-    Line line;
-    if (!text.empty() && text[0] == '#') {
-        return line;
-    }
-    std::string blanks = text;
-    for (char& letter : blanks) {
-        letter = letter == '\t' || letter == '\r' ? ' ' : letter;
-    }
-    std::size_t count = 0;
-    for (std::size_t at = blanks.find_first_not_of(' '); at != std::string::npos;) {
-        const std::size_t end = std::min(blanks.find(' ', at), blanks.size());
-        const std::string word = blanks.substr(at, end - at);
-        at = blanks.find_first_not_of(' ', end);
-        if (word.find('\0') != std::string::npos || !looksLikeNumber(word) || count == 6) {
-            line.isFaulty = true;
-            return line;
-        }
-        const float number = std::strtof(word.c_str(), nullptr);
-        line.isUndecided = line.isUndecided || std::abs(number) < 2e-38F || word.size() > 60;
-        line.isFaulty = line.isFaulty || !(std::abs(number) <= 1e30F);
-        line.numbers[count++] = number;
-    }
-    line.isBox = count > 0;
-    for (std::size_t axis = 0; axis < 3 && count == 6; ++axis) {
-        line.isFaulty = line.isFaulty || line.numbers[axis + 3] < line.numbers[axis];
-    }
-    line.isFaulty = line.isFaulty || (count > 0 && count < 6);
-    return line;
+    return demos::effectsFileText(file);
 }
 
 class FilePlay {
 public:
-    FilePlay(const Operation& first, Story& story) : story_(story), reader_(first.kind % 3) {
+    FilePlay(const Operation& first, Story& story) : story_(story), reader_(first.kind % 4) {
         Arguments arguments(first);
         const std::uint32_t size = arguments.below(4);
         if (reader_ == 1) {
@@ -147,6 +96,8 @@ public:
             bytes_ = recording(static_cast<std::int32_t>(size), static_cast<std::int32_t>(frames));
         } else if (reader_ == 2) {
             bytes_ = demos::serialisedWorld(static_cast<int>(size));
+        } else if (reader_ == 3) {
+            bytes_ = sceneOfEffects(5 * size);
         }
         story_.tell("reader ", reader_, " of ", size);
         read();
@@ -156,6 +107,8 @@ public:
         Arguments arguments(operation);
         if (reader_ == 0) {
             write(operation.kind, arguments);
+        } else if (reader_ == 3) {
+            replace(operation.kind, arguments);
         } else {
             damage(operation.kind, arguments);
         }
@@ -180,6 +133,26 @@ private:
         }
         story_.tell("write ", text.size(), " letters");
         bytes_ += text;
+    }
+
+    // A name or a value by another one, or any letters by it.
+    void replace(std::uint8_t kind, Arguments& arguments) {
+        static const std::array<std::string, 24> words{
+            "0",          "1",         "-1",        "1.5",       "1e999",    "4294967296",
+            "\"none\"",   "\"title\"", "\"scene\"", "\"sweep\"", "\"mode\"", "\"bounds\"",
+            "\"xyz\"",    "true",      "false",     "null",      "{}",       "[1, 2, 3]",
+            "{\"up\":1}", "{",         "]",         ",",         "\"",       "\xff"};
+        const std::string& word = words[arguments.below(words.size())];
+        std::size_t begin = arguments.byte() + 256U * arguments.byte();
+        begin %= bytes_.size() + 1;
+        std::size_t length = arguments.below(4);
+        if (kind % 4 != 3) {
+            constexpr const char* kBetween = " ,:[]{}\n";
+            begin = std::min(bytes_.find_first_not_of(kBetween, begin), bytes_.size());
+            length = std::min(bytes_.find_first_of(kBetween, begin), bytes_.size()) - begin;
+        }
+        story_.tell("write ", word, " at ", begin, " for ", length, " letters");
+        bytes_.replace(begin, length, word);
     }
 
     // Numbers where counts and lengths are, or anywhere; a file cut short or drawn out.
@@ -218,8 +191,10 @@ private:
             readText();
         } else if (reader_ == 1) {
             readRecording();
-        } else {
+        } else if (reader_ == 2) {
             readBulletFile();
+        } else {
+            readSceneOfEffects();
         }
     }
 
@@ -228,7 +203,7 @@ private:
         bool isFaulty = false;
         std::istringstream lines(bytes_);
         for (std::string text; !isFaulty && std::getline(lines, text);) {
-            const Line line = readLine(text);
+            const TextLine line = readTextLine(text);
             if (line.isUndecided) {
                 return;
             }
@@ -304,6 +279,20 @@ private:
         for (const std::size_t length :
              {std::size_t{0}, std::size_t{11}, bytes_.size() / 2, table}) {
             EXPECT_NE(demos::bulletFileFault(bytes_.substr(0, length)), "") << length;
+        }
+    }
+
+    // What is read is right, and read again as it is written.
+    void readSceneOfEffects() {
+        try {
+            const demos::EffectsFile file = demos::parseEffectsFile(bytes_, "scene");
+            EXPECT_EQ(effectsError(file.effects), "");
+            const std::string written = demos::effectsFileText(file);
+            EXPECT_EQ(demos::effectsFileText(demos::parseEffectsFile(written, "again")), written);
+        } catch (const InputError& error) {
+            const std::string sentence = error.what();
+            EXPECT_EQ(sentence.rfind("scene", 0), 0U) << sentence;
+            EXPECT_TRUE(sentence.back() == '.' || sentence.back() == '?') << sentence;
         }
     }
 
