@@ -3,8 +3,10 @@
 // hashphase: what the spatial hash does, shown and measured. Each subcommand is a folder here.
 
 #include <demos/accuracy/accuracy_command.hpp>
+#include <demos/allocation_count.hpp>
 #include <demos/compare/compare_command.hpp>
 #include <demos/console/program.hpp>
+#include <demos/effects/effects_command.hpp>
 #include <demos/stability/stability_command.hpp>
 
 #include <array>
@@ -21,6 +23,11 @@ int main(int argc, char** argv) {
     for (const std::string& argument : arguments) {
         console.commandLine += " " + argument;
     }
-    const std::array subcommands{compareCommand(), accuracyCommand(), stabilityCommand()};
+#if HASHPHASE_COUNTS_ALLOCATIONS
+    const Subcommand effects = effectsCommand(allocationCount);
+#else
+    const Subcommand effects = effectsCommand();
+#endif
+    const std::array subcommands{compareCommand(), accuracyCommand(), stabilityCommand(), effects};
     return runProgram(arguments, subcommands, console);
 }

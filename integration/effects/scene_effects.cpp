@@ -187,6 +187,17 @@ void SceneEffects::remove(Effect effect) {
     });
 }
 
+EffectSet needsOf(Effect effect) noexcept {
+    EffectSet needs;
+    for (const Need& need : kNeeds) {
+        if (need.effect == effect) {
+            needs.insert(need.needed);
+            needs = needs | needsOf(need.needed);
+        }
+    }
+    return needs;
+}
+
 std::string effectsError(const SceneEffects& effects) {
     std::string error = missingNeed(effects.set());
     if (error.empty()) {

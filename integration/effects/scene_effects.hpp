@@ -128,6 +128,9 @@ struct SceneEffects {
     void remove(Effect effect);
 };
 
+/// The effects without which that one cannot be declared, those that these need included.
+[[nodiscard]] EffectSet needsOf(Effect effect) noexcept;
+
 /// Says in a sentence how the declaration contradicts itself: which effect, or which setting, is wrong,
 /// and what to declare instead; empty when all is well. Who runs a declaration throws
 /// std::invalid_argument with this sentence.

@@ -273,6 +273,12 @@ const PairChanges& Simulation<Scalar>::pairChanges() const {
 }
 
 template <class Scalar>
+std::size_t Simulation<Scalar>::pairCount() const {
+    require(Effect::pairs, "pairCount()");
+    return pairing_ ? pairing_->pairs.count() : 0;
+}
+
+template <class Scalar>
 std::vector<std::string_view> Simulation<Scalar>::phases() const {
     std::vector<std::string_view> names;
     for (const Phase& phase : phases_) {

@@ -142,6 +142,9 @@ public:
     /// Pairs that were born and died in the last frame. Valid until the next one. Needs pairs.
     [[nodiscard]] const PairChanges& pairChanges() const;
 
+    /// How many pairs there are since the last frame. Needs pairs.
+    [[nodiscard]] std::size_t pairCount() const;
+
     // --- When it is asked for --------------------------------------------------------------------
 
     /// As those of Observers.

@@ -63,6 +63,23 @@ TEST(SceneEffects, TellsWhatIsDeclared) {
     EXPECT_EQ(effectsError({}), "");
 }
 
+TEST(SceneEffects, TellsWhatEachNeeds) {
+    EXPECT_EQ(needsOf(Effect::friction),
+              (EffectSet{Effect::response, Effect::pairs, Effect::motion}));
+    EXPECT_TRUE(needsOf(Effect::culling).isEmpty());
+    for (const Effect effect : kAllEffects) {
+        SceneEffects effects;
+        effects.declare(effect);
+        EXPECT_EQ(effectsError(effects).empty(), needsOf(effect).isEmpty()) << nameOf(effect);
+        for (const Effect needed : kAllEffects) {
+            if (needsOf(effect).contains(needed)) {
+                effects.declare(needed);
+            }
+        }
+        EXPECT_EQ(effectsError(effects), "");
+    }
+}
+
 TEST(SceneEffects, NamesWhatContradictsItself) {
     const auto errorWithout = [](Effect effect) {
         SceneEffects effects = everything();

@@ -342,6 +342,7 @@ TEST(SimulationMisuse, NamesWhatIsToBeDeclared) {
     EXPECT_THROW(static_cast<void>(simulation.ground()), UndeclaredEffect);
     EXPECT_THROW(static_cast<void>(simulation.grid()), UndeclaredEffect);
     EXPECT_THROW(static_cast<void>(simulation.pairChanges()), UndeclaredEffect);
+    EXPECT_THROW(static_cast<void>(simulation.pairCount()), UndeclaredEffect);
     EXPECT_THROW(simulation.select(smallSceneView(), {0, 0}, {1, 1}, selected), UndeclaredEffect);
     EXPECT_THROW(static_cast<void>(simulation.observers().culler()), UndeclaredEffect);
     EXPECT_THROW(static_cast<void>(simulation.observers().colours()), UndeclaredEffect);

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Zlib
+//
+// A `new` that counts, for the program alone: a test program has one of its own.
+
+#include <demos/allocation_count.hpp>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+namespace hashphase::demos {
+namespace {
+
+std::atomic<std::size_t> count{0};
+
+}  // namespace
+
+std::size_t allocationCount() noexcept {
+    return count.load(std::memory_order_relaxed);
+}
+
+}  // namespace hashphase::demos
+
+// Not inlined: compilers take free() for a mismatch where they see only one half of the pair.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+    hashphase::demos::count.fetch_add(1, std::memory_order_relaxed);
+    if (void* memory = std::malloc(size == 0 ? 1 : size)) {
+        return memory;
+    }
+    throw std::bad_alloc();
+}
+[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
+    hashphase::demos::count.fetch_add(1, std::memory_order_relaxed);
+    const auto step = static_cast<std::size_t>(alignment);
+    if (void* memory = std::aligned_alloc(step, (size + step - 1) / step * step)) {
+        return memory;
+    }
+    throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
+    std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
+    std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+    std::free(memory);
+}

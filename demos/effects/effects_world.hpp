@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// A scene file come to life: bodies, ground, zones, a camera that looks about, and somebody who clicks.
+
+#include <demos/scenes/effects_file.hpp>
+#include <demos/scenes/random.hpp>
+#include <demos/scenes/terrain.hpp>
+
+#include <integration/effects/simulation.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace hashphase::demos {
+
+/// The ground of a scene file, as triangles; none where it has none.
+[[nodiscard]] std::vector<Vector3<float>> groundOf(const EffectsScene& scene);
+
+/// A simulation of the scene, with the effects that are given in place of the file's own. The same
+/// scene has the same bodies, whatever is declared.
+class EffectsWorld {
+public:
+    EffectsWorld(const EffectsScene& scene, const SceneEffects& effects);
+
+    /// Turns the camera, which is not timed.
+    void beginFrame(std::uint32_t frame);
+
+    /// Clicks, drags, and simulates a frame.
+    void runFrame();
+
+    [[nodiscard]] const Simulation<float>& simulation() const noexcept { return simulation_; }
+    [[nodiscard]] Simulation<float>& simulation() noexcept { return simulation_; }
+
+    /// All that was found in the last frame, and where bodies are, as one number for each effect that
+    /// looks: equal where the results are.
+    [[nodiscard]] std::uint64_t resultOf(Effect effect) const;
+    [[nodiscard]] std::uint64_t placesResult() const;
+
+    /// Bodies are numbered from 0 in the order of the scene.
+    [[nodiscard]] BodyId body(std::uint32_t number) const { return bodies_[number]; }
+
+    static constexpr int kPicks = 20;  // a frame
+    static constexpr int kSelections = 2;
+
+private:
+    void addBodies(Random& random);
+    void addZones(Random& random);
+
+    EffectsScene scene_;
+    EffectSet declared_;
+    Terrain hills_;
+    Simulation<float> simulation_;
+    std::vector<BodyId> bodies_;
+    View<float> view_;
+    std::vector<Pixel> clicks_;         // of the frame
+    std::vector<ProxyId> picked_;       // by them
+    std::vector<ProxyId> selected_;     // by the last rectangle
+    std::vector<ProxyId> allSelected_;  // by all of the frame
+};
+
+}  // namespace hashphase::demos
