@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Zlib
+#include <integration/bullet/world_effects.hpp>
+
+#include <broadphase/diagnostics.hpp>
+#include <integration/bullet/spatial_hash_broadphase.hpp>
+#include <integration/bullet/world_cost.hpp>
+
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include <optional>
+
+namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+namespace {
+
+template <class Visit>
+void forEachObject(btCollisionWorld& world, const Visit& visit) {
+    btCollisionObjectArray& objects = world.getCollisionObjectArray();
+    for (int i = 0; i < objects.size(); ++i) {
+        visit(*objects[i]);
+    }
+}
+
+bool isDynamic(const btRigidBody* body) {
+    return body != nullptr && !body->isStaticOrKinematicObject();
+}
+
+// Bullet files an object that is added without the margin that it adds in updateSingleAabb(), and does
+// not come back to it where boxes are not forced.
+void fileResting(btCollisionWorld& world, btCollisionObject& object) {
+    if (!object.isActive()) {
+        world.updateSingleAabb(&object);
+    }
+}
+
+// Bullet itself combines them where a point is found anew: those that merely last keep what they had.
+void combineMaterials(btPersistentManifold& manifold) {
+    const btCollisionObject* const a = manifold.getBody0();
+    const btCollisionObject* const b = manifold.getBody1();
+    constexpr int ownMaterial = btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK;
+    if (((a->getCollisionFlags() | b->getCollisionFlags()) & ownMaterial) != 0) {
+        return;
+    }
+    for (int k = 0; k < manifold.getNumContacts(); ++k) {
+        btManifoldPoint& point = manifold.getContactPoint(k);
+        point.m_combinedFriction = gCalculateCombinedFrictionCallback(a, b);
+        point.m_combinedRollingFriction = gCalculateCombinedRollingFrictionCallback(a, b);
+        point.m_combinedSpinningFriction = gCalculateCombinedSpinningFrictionCallback(a, b);
+        point.m_combinedRestitution = gCalculateCombinedRestitutionCallback(a, b);
+    }
+}
+
+}  // namespace
+
+WorldConfigurator::WorldConfigurator(btDiscreteDynamicsWorld& world)
+    : world_(&world), hadForcedBoxes_(world.getForceUpdateAllAabbs()) {
+    world.setForceUpdateAllAabbs(false);
+    forEachObject(world, [&](btCollisionObject& object) { fileResting(world, object); });
+}
+
+WorldConfigurator::~WorldConfigurator() {
+    apply({});
+    world_->setForceUpdateAllAabbs(hadForcedBoxes_);
+}
+
+void WorldConfigurator::apply(const WorldEffects& effects) {
+    const bool hadPairs = effects_.pairs;
+    const bool hadMasks = static_cast<bool>(effects_.effectsOf);
+    effects_ = effects;
+    ++applyCount_;
+    bool isChanged = configurePairs(hadPairs, hadMasks);
+    configureWorld();
+    forEachObject(*world_, [&](btCollisionObject& object) {
+        const bool isObjectChanged = configure(object, effectsOf(object), effects_);
+        isChanged = isChanged || isObjectChanged;
+    });
+    std::erase_if(kept_, [&](const auto& entry) { return entry.second.lastSeen != applyCount_; });
+    if (isChanged) {
+        renewContacts();
+        wakeAll();
+    }
+}
+
+void WorldConfigurator::prepare(btCollisionObject& object) {
+    HASHPHASE_ASSERT(object.getWorldArrayIndex() >= 0, "The object is in the world.");
+    fileResting(*world_, object);
+    if (configure(object, effectsOf(object), effects_)) {
+        object.activate();
+    }
+}
+
+void WorldConfigurator::release(btCollisionObject& object) {
+    configure(object, {}, {});
+}
+
+int WorldConfigurator::beforeStep(btScalar timeStep) {
+    int sweptCount = 0;
+    if (effects_.sweep && effects_.pairs && effects_.response) {
+        forEachObject(*world_, [&](btCollisionObject& object) {
+            if (const btRigidBody* const body = btRigidBody::upcast(&object)) {
+                const btScalar gain =
+                    (body->getGravity() + body->getTotalForce() * body->getInvMass()).length() *
+                    timeStep;
+                sweptCount +=
+                    isSwept(*body, (body->getLinearVelocity().length() + gain) * timeStep);
+            }
+        });
+    }
+    configureWorld();
+    bool& useContinuous = world_->getDispatchInfo().m_useContinuous;
+    if (effects_.fastFrom && sweptCount == 0) {
+        useContinuous = useContinuous_.next(useContinuous, false);
+    }
+    return useContinuous ? sweptCount : 0;
+}
+
+void WorldConfigurator::step(btScalar timeStep) {
+    if (effects_.motion) {
+        beforeStep(timeStep);
+        world_->stepSimulation(timeStep, 0);
+    } else if (effects_.pairs) {
+        world_->performDiscreteCollisionDetection();
+    }
+}
+
+BodyEffects WorldConfigurator::effectsOf(const btCollisionObject& object) const {
+    BodyEffects effects{effects_.pairs,    effects_.response, effects_.sweep,
+                        effects_.sleeping, effects_.rotation, effects_.friction};
+    if (effects_.effectsOf) {
+        const BodyEffects own = effects_.effectsOf(object);
+        effects.pairs = effects.pairs && own.pairs;
+        effects.response = effects.response && own.response;
+        effects.sweep = effects.sweep && own.sweep;
+        effects.sleeping = effects.sleeping && own.sleeping;
+        effects.rotation = effects.rotation && own.rotation;
+        effects.friction = effects.friction && own.friction;
+    }
+    effects.response = effects.response && effects.pairs;
+    effects.sweep = effects.sweep && effects.response;
+    effects.friction = effects.friction && effects.response;
+    return effects;
+}
+
+bool WorldConfigurator::Filter::needBroadphaseCollision(btBroadphaseProxy* a,
+                                                        btBroadphaseProxy* b) const {
+    const auto isAccepted = [&](const btBroadphaseProxy& proxy) {
+        const auto* const object = static_cast<const btCollisionObject*>(proxy.m_clientObject);
+        return object == nullptr || owner_->effectsOf(*object).pairs;
+    };
+    if (!owner_->effects_.pairs ||
+        (owner_->effects_.effectsOf && !(isAccepted(*a) && isAccepted(*b)))) {
+        return false;
+    }
+    if (former != nullptr) {
+        return former->needBroadphaseCollision(a, b);
+    }
+    return (a->m_collisionFilterGroup & b->m_collisionFilterMask) != 0 &&
+           (b->m_collisionFilterGroup & a->m_collisionFilterMask) != 0;
+}
+
+bool WorldConfigurator::configurePairs(bool hadPairs, bool hadMasks) {
+    const bool hasMasks = static_cast<bool>(effects_.effectsOf);
+    btOverlappingPairCache& cache = *world_->getPairCache();
+    const bool isOurs = cache.getOverlapFilterCallback() == &filter_;
+    const bool isNeeded = !effects_.pairs || hasMasks;
+    if (isNeeded && !isOurs) {
+        filter_.former = cache.getOverlapFilterCallback();
+        cache.setOverlapFilterCallback(&filter_);
+    } else if (isOurs && !isNeeded) {
+        cache.setOverlapFilterCallback(filter_.former);
+    }
+    if (hadPairs == effects_.pairs && !hadMasks && !hasMasks) {
+        return false;
+    }
+    // Every couple is asked about again.
+    auto* const hash = dynamic_cast<SpatialHashBroadphase*>(world_->getBroadphase());
+    forEachObject(*world_, [&](btCollisionObject& object) {
+        if (hash != nullptr) {
+            hash->refilter(object.getBroadphaseHandle(), world_->getDispatcher());
+        } else {
+            world_->refreshBroadphaseProxy(&object);
+            fileResting(*world_, object);
+        }
+    });
+    return true;
+}
+
+void WorldConfigurator::configureWorld() {
+    btDispatcherInfo& info = world_->getDispatchInfo();
+    const bool isWithoutSweep = !effects_.sweep || !effects_.pairs || !effects_.response;
+    std::optional<bool> useContinuous;
+    if (isWithoutSweep || effects_.fastFrom) {
+        useContinuous = !isWithoutSweep;
+    }
+    info.m_useContinuous = useContinuous_.next(info.m_useContinuous, useContinuous);
+
+    const bool isWithoutFriction = !effects_.friction || !effects_.response || !effects_.pairs;
+    int& mode = world_->getSolverInfo().m_solverMode;
+    constexpr int second = SOLVER_USE_2_FRICTION_DIRECTIONS;
+    mode =
+        (mode & ~second) | frictionDirections_.next(
+                               mode & second, isWithoutFriction ? std::optional(0) : std::nullopt);
+}
+
+void WorldConfigurator::renewContacts() {
+    btDispatcher& dispatcher = *world_->getDispatcher();
+    for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+        combineMaterials(*dispatcher.getManifoldByIndexInternal(i));
+    }
+}
+
+void WorldConfigurator::wakeAll() {
+    forEachObject(*world_, [](btCollisionObject& object) {
+        if (isDynamic(btRigidBody::upcast(&object))) {
+            object.activate();
+        }
+    });
+}
+
+}  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Lets Bullet compute only what a scene calls for. Everything is declared by default, and then nothing
+// is changed but for the boxes of what rests.
+//
+//     WorldConfigurator configurator(world);
+//     configurator.apply({.rotation = false, .friction = false});
+//
+// effect     without it                                       what is lost
+// (always)   setForceUpdateAllAabbs(false)                    who moves a body that is static or asleep by
+//                                                             hand calls updateSingleAabb()
+// pairs      an overlap filter that refuses every pair        contacts, ghost objects' lists, response,
+//                                                             sweep; rays and sweeps by hand are not
+// response   CF_NO_CONTACT_RESPONSE on every object           bodies fall through each other; contacts are
+//                                                             found and told all the same
+// sweep      m_useContinuous and all CCD thresholds off       bodies that move by more than half their
+//                                                             width in a step may pass what is thin
+// sleeping   DISABLE_DEACTIVATION on dynamic bodies           nothing is saved on what rests; heaps creep
+// rotation   angular factor and velocity 0, no gyroscopic     bodies keep their orientation: nothing tips
+//            forces                                           over, rolls, or swings about a joint
+// friction   friction, rolling and spinning friction 0,       bodies slide for ever, down the least slope;
+//            one friction direction                           heaps fall apart
+//
+// response and sweep need pairs, friction and sweep need response: without it they are off, too.
+//
+// A frame   apply() when the declaration changes, prepare() for each body that is added to the world,
+//           release() for each before it is removed; beforeStep() or step(). All between two steps.
+// Settings  What a body or the world had before is given back when the effect is declared again and by
+//           the destructor. Who changes a setting meanwhile is believed: that is given back.
+//           Angular velocities are not given back, nor what happened meanwhile.
+// Lifetime  The world, its broadphase, the pair cache and its former filter outlive the configurator, and
+//           nobody wraps the filter that it sets. Only objects that are in the world are touched. One that
+//           is removed without release() keeps what is set, and is forgotten in the next apply(); a new
+//           object made at its address before that may be taken for it.
+// Other     Soft bodies and multibodies solve contacts of their own, and are left alone but for pairs.
+// Memory    Nothing is held for an object whose settings are its own. Where memory runs out,
+//           std::bad_alloc is passed on, and the call may be repeated.
+
+#include <integration/bullet/kept_setting.hpp>
+#include <integration/bullet/precision.hpp>
+
+#include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <unordered_map>
+
+namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+
+/// What is declared for one body.
+struct BodyEffects {
+    bool pairs = true;
+    bool response = true;
+    bool sweep = true;
+    bool sleeping = true;
+    bool rotation = true;
+    bool friction = true;
+};
+
+/// What is declared for a world.
+struct WorldEffects {
+    bool motion = true;  ///< heeded by WorldConfigurator::step() alone
+    bool pairs = true;
+    bool response = true;
+    bool sweep = true;
+    bool sleeping = true;
+    bool rotation = true;
+    bool friction = true;
+
+    /// Of every contact, between 0 and 1; without it each body has its own.
+    std::optional<btScalar> restitution{};
+
+    /// Convex bodies that move by more than this share of the smallest edge of their shape's box in a step
+    /// are swept; without it those with CCD thresholds of their own. Up to 0.5 nothing is pushed out on the
+    /// far side of what is thin. Cost: a cast for each of them, twice a step.
+    std::optional<btScalar> fastFrom{};
+
+    /// Bodies slower than this may fall asleep [m/s]; without it each has its own threshold.
+    std::optional<btScalar> slowBelow{};
+
+    /// Takes effects away from single objects; empty for none. Both of a pair must be accepted.
+    /// Called from where Bullet asks for overlap filters as well, in any thread that does.
+    std::function<BodyEffects(const btCollisionObject&)> effectsOf{};
+};
+
+class WorldConfigurator {
+public:
+    explicit WorldConfigurator(btDiscreteDynamicsWorld& world);
+    /// Gives back all settings. Pairs that come back take memory: where that may run out, apply({})
+    /// before.
+    ~WorldConfigurator();
+    WorldConfigurator(const WorldConfigurator&) = delete;
+    WorldConfigurator& operator=(const WorldConfigurator&) = delete;
+
+    /// Sets what Bullet computes from the next step on. When that changes what bodies do, all are woken.
+    /// Where pairs change, they change at once; under a broadphase other than SpatialHashBroadphase each
+    /// object gets a new proxy for that. Cost: a look at each object, and at each contact and pair where
+    /// they change.
+    void apply(const WorldEffects& effects);
+    [[nodiscard]] const WorldEffects& effects() const noexcept { return effects_; }
+
+    /// Treats an object that has been added to the world (asserted) as apply() would have. Cost: O(1).
+    void prepare(btCollisionObject& object);
+
+    /// Gives an object its own settings back and forgets it, before it is removed from the world or
+    /// deleted. Cost: O(1).
+    void release(btCollisionObject& object);
+
+    /// Counts the bodies that are about to be swept in a step of this length [s]. With fastFrom, Bullet
+    /// boxes and sweeps the ways of bodies in this step only if there are any: a body that is made fast
+    /// within a step in which nobody else is, is swept from the next one on. Call it before each step, or
+    /// never. Cost: a look at each object.
+    int beforeStep(btScalar timeStep);
+
+    /// A step of what is declared: with motion beforeStep() and stepSimulation(timeStep, 0); without it the
+    /// pairs and contacts of bodies as they stand, where pairs are declared; else nothing.
+    void step(btScalar timeStep);
+
+    /// Objects whose settings are overridden.
+    [[nodiscard]] std::size_t heldCount() const noexcept { return kept_.size(); }
+
+private:
+    struct KeptBody {
+        KeptSetting<int> noResponse;
+        KeptSetting<btScalar> friction;
+        KeptSetting<btScalar> rollingFriction;
+        KeptSetting<btScalar> spinningFriction;
+        KeptSetting<btScalar> restitution;
+        KeptSetting<btVector3> angularFactor;
+        KeptSetting<int> gyroscopicFlags;
+        KeptSetting<btScalar> ccdThreshold;
+        KeptSetting<btScalar> ccdRadius;
+        KeptSetting<btScalar> slowBelow;
+        bool isKeptAwake = false;
+        std::uint64_t lastSeen = 0;
+
+        [[nodiscard]] bool isHeld() const noexcept;
+    };
+
+    /// Refuses what is not declared, and asks the former filter for the rest.
+    class Filter final : public btOverlapFilterCallback {
+    public:
+        explicit Filter(const WorldConfigurator& owner) : owner_(&owner) {}
+        bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override;
+
+        btOverlapFilterCallback* former = nullptr;
+
+    private:
+        const WorldConfigurator* owner_;
+    };
+
+    [[nodiscard]] BodyEffects effectsOf(const btCollisionObject& object) const;
+    bool configure(btCollisionObject& object, const BodyEffects& effects,
+                   const WorldEffects& ofWorld);
+    bool configurePairs(bool hadPairs, bool hadMasks);
+    void configureWorld();
+    void renewContacts();
+    void wakeAll();
+
+    static bool setContacts(btCollisionObject& object, KeptBody& kept, const BodyEffects& effects,
+                            const WorldEffects& ofWorld);
+    static bool setRotation(btRigidBody& body, KeptBody& kept, bool isWithout);
+    static void setSweep(btRigidBody& body, KeptBody& kept, const BodyEffects& effects,
+                         const WorldEffects& ofWorld);
+    static void setSleeping(btRigidBody& body, KeptBody& kept, const BodyEffects& effects,
+                            const WorldEffects& ofWorld);
+
+    btDiscreteDynamicsWorld* world_;
+    WorldEffects effects_;
+    Filter filter_{*this};
+    bool hadForcedBoxes_;
+    KeptSetting<bool> useContinuous_;
+    KeptSetting<int> frictionDirections_;
+    std::unordered_map<const btCollisionObject*, KeptBody> kept_;  // of those that are overridden
+    std::uint64_t applyCount_ = 0;
+};
+
+}  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Bullet's frame of a declaration: what the effects of a scene (scene_effects.hpp) are to a Bullet world.
+// What is not declared, Bullet does not compute.
+//
+//     hashphase::WorldConfigurator configurator(world);      // integration/bullet/world_effects.hpp
+//     configurator.apply(hashphase::worldEffectsOf(scene));
+//     configurator.step(timeStep);                           // or world.stepSimulation()
+//
+// effect       what is set in Bullet                   what is lost without it
+// motion       nothing: step() steps the world         everything moves: step() finds the pairs of bodies as
+//                                                      they stand, if they are declared; do not call
+//                                                      stepSimulation(), which moves whatever has a
+//                                                      velocity
+// terrain      nothing: the ground is a static body    the ground: do not add it
+//              of yours (static_triangles.hpp)
+// pairs        the world's filter for overlaps         contacts, ghosts' lists, response and sweep
+// response     every object's answer to contacts,      bodies fall through each other, contacts are still
+//              and its restitution                     told
+// sweep        m_useContinuous; CCD thresholds for     bodies that move by more than half their width in
+//              who is fast for its size                a step may pass what is thin
+// sleeping     deactivation, linear thresholds         nothing: bodies that rest go on being computed
+// rotation     angular factors                         bodies keep their orientation
+// friction     all frictions                           bodies slide for ever
+// picking,     nothing: they ask the grid of           nothing in Bullet; none is made for them either
+// boxSelection, SpatialHashBroadphase::grid()
+// culling, proximity, zones, radar
+//
+// Of the settings, Bullet has none for SweepEffect::mode (see SpatialHashConfig::sweep), which is for the
+// broadphase to say, and for SleepingEffect::framesBeforeSleep (bodies fall asleep after gDeactivationTime,
+// 2 s), and heeds neither. motion.bounds and sleeping.interestRadius, where they are finite, are errors:
+// put static planes at the bounds, and deactivate what is far.
+
+#include <integration/bullet/world_effects.hpp>
+#include <integration/effects/scene_effects.hpp>
+
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+
+/// Says in a sentence why Bullet cannot run the declaration; empty when it can.
+[[nodiscard]] inline std::string bulletEffectsError(const SceneEffects& effects) {
+    const std::string error = effectsError(effects);
+    if (!error.empty()) {
+        return error;
+    }
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    if (effects.motion && !(effects.motion->bounds.min().maxCoeff() == -infinity &&
+                            effects.motion->bounds.max().minCoeff() == infinity)) {
+        return "motion.bounds is not for Bullet: leave it out, and put static planes there.";
+    }
+    if (effects.sleeping && effects.sleeping->interestRadius < infinity) {
+        return "sleeping.interestRadius is not for Bullet: leave it out, and deactivate what is "
+               "far.";
+    }
+    return {};
+}
+
+/// The declaration in Bullet's terms. Bodies get the restitution and the sweeps that are declared; those
+/// who are to have their own reset() `restitution`, `fastFrom` or `slowBelow` of what is returned. With
+/// SleepingEffect::slowBelow 0 they have their own anyway. Throws std::invalid_argument with
+/// bulletEffectsError().
+[[nodiscard]] inline WorldEffects worldEffectsOf(const SceneEffects& effects) {
+    if (const std::string error = bulletEffectsError(effects); !error.empty()) {
+        throw std::invalid_argument(error);
+    }
+    WorldEffects ofWorld;
+    ofWorld.motion = effects.motion.has_value();
+    ofWorld.pairs = effects.pairs.has_value();
+    ofWorld.response = effects.response.has_value();
+    ofWorld.sweep = effects.sweep.has_value();
+    ofWorld.sleeping = effects.sleeping.has_value();
+    ofWorld.rotation = effects.rotation.has_value();
+    ofWorld.friction = effects.friction.has_value();
+    if (effects.response) {
+        ofWorld.restitution = static_cast<btScalar>(effects.response->restitution);
+    }
+    if (effects.sweep) {
+        ofWorld.fastFrom = static_cast<btScalar>(effects.sweep->fastFrom);
+    }
+    if (effects.sleeping && effects.sleeping->slowBelow > 0) {
+        ofWorld.slowBelow = static_cast<btScalar>(effects.sleeping->slowBelow);
+    }
+    return ofWorld;
+}
+
+}  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE
