@@ -25,6 +25,12 @@ bool isDynamic(const btRigidBody* body) {
     return body != nullptr && !body->isStaticOrKinematicObject();
 }
 
+/// What a body may move by in a step, if nothing but forces makes it faster [m].
+btScalar longestWay(const btRigidBody& body, btScalar timeStep) {
+    const btVector3 acceleration = body.getGravity() + body.getTotalForce() * body.getInvMass();
+    return (body.getLinearVelocity().length() + acceleration.length() * timeStep) * timeStep;
+}
+
 // Bullet files an object that is added without the margin that it adds in updateSingleAabb(), and does
 // not come back to it where boxes are not forced.
 void fileResting(btCollisionWorld& world, btCollisionObject& object) {
@@ -94,29 +100,29 @@ void WorldConfigurator::release(btCollisionObject& object) {
 }
 
 int WorldConfigurator::beforeStep(btScalar timeStep) {
-    int sweptCount = 0;
-    if (effects_.sweep && effects_.pairs && effects_.response) {
-        forEachObject(*world_, [&](btCollisionObject& object) {
-            if (const btRigidBody* const body = btRigidBody::upcast(&object)) {
-                const btScalar gain =
-                    (body->getGravity() + body->getTotalForce() * body->getInvMass()).length() *
-                    timeStep;
-                sweptCount +=
-                    isSwept(*body, (body->getLinearVelocity().length() + gain) * timeStep);
-            }
-        });
-    }
     configureWorld();
     bool& useContinuous = world_->getDispatchInfo().m_useContinuous;
+    if (!useContinuous) {
+        return 0;
+    }
+    int sweptCount = 0;
+    forEachObject(*world_, [&](const btCollisionObject& object) {
+        const btRigidBody* const body = btRigidBody::upcast(&object);
+        if (body != nullptr && body->getCcdMotionThreshold() != 0) {
+            sweptCount += isSwept(*body, longestWay(*body, timeStep));
+        }
+    });
     if (effects_.fastFrom && sweptCount == 0) {
         useContinuous = useContinuous_.next(useContinuous, false);
     }
-    return useContinuous ? sweptCount : 0;
+    return sweptCount;
 }
 
 void WorldConfigurator::step(btScalar timeStep) {
     if (effects_.motion) {
-        beforeStep(timeStep);
+        if (effects_.fastFrom) {
+            beforeStep(timeStep);
+        }
         world_->stepSimulation(timeStep, 0);
     } else if (effects_.pairs) {
         world_->performDiscreteCollisionDetection();

@@ -115,8 +115,9 @@ public:
     /// never. Cost: a look at each object.
     int beforeStep(btScalar timeStep);
 
-    /// A step of what is declared: with motion beforeStep() and stepSimulation(timeStep, 0); without it the
-    /// pairs and contacts of bodies as they stand, where pairs are declared; else nothing.
+    /// A step of what is declared: with motion stepSimulation(timeStep, 0), with fastFrom after beforeStep();
+    /// without motion the pairs and contacts of bodies as they stand, where pairs are declared; else
+    /// nothing.
     void step(btScalar timeStep);
 
     /// Objects whose settings are overridden.

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Zlib
+
+// What is set on a world and its bodies, what is given back, and to whom.
+
+#include <tests/integration/bullet/effects_room.hpp>
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <new>
+#include <vector>
+
+extern int gNumClampedCcdMotions;  // Bullet's own count of sweeps
+
+namespace hashphase::test {
+namespace {
+
+/// The subset of the six effects that a number between 0 and 63 stands for.
+WorldEffects subset(int number) {
+    WorldEffects effects;
+    int bit = 1;
+    for (bool* const effect : {&effects.pairs, &effects.response, &effects.sweep, &effects.sleeping,
+                               &effects.rotation, &effects.friction}) {
+        *effect = (number & bit) != 0;
+        bit *= 2;
+    }
+    effects.fastFrom = btScalar(0.5);
+    return effects;
+}
+
+/// Everything of a body that may be overridden, and of its world.
+std::vector<btScalar> settingsOf(DynamicsWorld& scene) {
+    std::vector<btScalar> settings;
+    const auto note = [&](auto value) { settings.push_back(static_cast<btScalar>(value)); };
+    for (int i = 0; i < scene.bodyCount(); ++i) {
+        const btRigidBody& body = scene.body(i);
+        note(body.getCollisionFlags());
+        note(body.getFlags());
+        for (int axis = 0; axis < 3; ++axis) {
+            note(body.getAngularFactor()[axis]);
+        }
+        for (const btScalar value :
+             {body.getFriction(), body.getRollingFriction(), body.getSpinningFriction(),
+              body.getRestitution(), body.getCcdMotionThreshold(), body.getCcdSweptSphereRadius(),
+              body.getLinearSleepingThreshold(), body.getAngularSleepingThreshold()}) {
+            note(value);
+        }
+        note(body.getActivationState() == DISABLE_DEACTIVATION);
+    }
+    note(scene.world().getDispatchInfo().m_useContinuous);
+    note(scene.world().getSolverInfo().m_solverMode);
+    note(scene.world().getPairCache()->getOverlapFilterCallback() != nullptr);
+    return settings;
+}
+
+/// Cubes in heaps, a fast ball, and settings unlike each other's.
+void fillWithSettings(EffectsRoom& room) {
+    for (int i = 0; i < 8; ++i) {
+        btRigidBody& cube = room.addCube({btScalar(i / 4) * 3, btScalar(i % 4) + btScalar(0.5), 0});
+        cube.setFriction(btScalar(0.3) + btScalar(i) / 10);
+        cube.setRollingFriction(btScalar(i) / 100);
+        cube.setRestitution(btScalar(i) / 10);
+        cube.setCcdMotionThreshold(btScalar(i % 2));
+        cube.setAngularFactor({1, btScalar(i % 2), 1});
+        cube.setFlags(i % 3 == 0 ? 0 : BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_WORLD);
+        cube.setSleepingThresholds(btScalar(0.1) * btScalar(i), 1);
+        if (i % 5 == 0) {
+            cube.setActivationState(DISABLE_DEACTIVATION);
+        }
+    }
+    room.addBall({-6, 2, 0}, {200, 0, 0})
+        .setCollisionFlags(btCollisionObject::CF_NO_CONTACT_RESPONSE);
+    room.world().getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
+}
+
+TEST(WorldConfigurator, CostNothingWhereUndeclaredAndGiveBackAllSettingsInAllSubsets) {
+    EffectsRoom room;
+    fillWithSettings(room);
+    const std::vector<btScalar> own = settingsOf(*room.scene);
+    for (int number = 0; number < 64; ++number) {
+        WorldConfigurator configurator(room.world());
+        const WorldEffects effects = subset(number);
+        configurator.apply(effects);
+        for (int step = 0; step < 20; ++step) {
+            const int sweepsBefore = gNumClampedCcdMotions;
+            configurator.step(kSixtieth);
+            const WorldCost cost = room.cost();
+            const bool answers = effects.pairs && effects.response;
+            EXPECT_TRUE(effects.pairs ||
+                        (cost.pairCount == 0 && cost.manifoldCount == 0 && cost.contactCount == 0));
+            EXPECT_TRUE(answers || cost.answeredContactCount == 0) << number;
+            EXPECT_TRUE((answers && effects.friction) || cost.rubbingContactCount == 0) << number;
+            EXPECT_TRUE((answers && effects.sweep) ||
+                        (cost.sweptCount == 0 && gNumClampedCcdMotions == sweepsBefore));
+            EXPECT_TRUE(effects.sleeping || cost.sleepingCount == 0) << number;
+            EXPECT_TRUE(effects.rotation || cost.turningCount == 0) << number;
+        }
+        configurator.apply({});
+        EXPECT_EQ(settingsOf(*room.scene), own) << number;
+        EXPECT_EQ(configurator.heldCount(), 0U);
+        configurator.apply(effects);
+    }
+    EXPECT_EQ(settingsOf(*room.scene), own) << "given back by the destructor";
+    EXPECT_TRUE(room.world().getForceUpdateAllAabbs());
+}
+
+TEST(WorldConfigurator, BelieveWhoChangesASettingMeanwhile) {
+    EffectsRoom room;
+    btRigidBody& cube = room.addCube({0, 2, 0});
+    WorldConfigurator configurator(room.world());
+    configurator.apply({.friction = false});
+    cube.setFriction(btScalar(0.9));
+    configurator.apply({.friction = false});
+    EXPECT_EQ(cube.getFriction(), 0);
+    configurator.apply({});
+    EXPECT_EQ(cube.getFriction(), btScalar(0.9));
+}
+
+TEST(WorldConfigurator, FollowBodiesThatComeAndGo) {
+    EffectsRoom room;
+    btRigidBody& first = room.addCube({0, 2, 0});
+    WorldConfigurator configurator(room.world());
+    configurator.apply({.rotation = false});
+    btRigidBody& second = room.addCube({5, 2, 0});
+    EXPECT_EQ(second.getAngularFactor(), btVector3(1, 1, 1));
+    configurator.prepare(second);
+    EXPECT_EQ(second.getAngularFactor(), btVector3(0, 0, 0));
+    EXPECT_EQ(configurator.heldCount(), 2U);
+    configurator.release(second);
+    EXPECT_EQ(second.getAngularFactor(), btVector3(1, 1, 1));
+    // Without being released: it is not touched any more.
+    room.world().removeRigidBody(&first);
+    configurator.apply({});
+    EXPECT_EQ(first.getAngularFactor(), btVector3(0, 0, 0));
+    EXPECT_EQ(configurator.heldCount(), 0U);
+    room.world().addRigidBody(&first);
+}
+
+TEST(WorldConfigurator, TakeABodyMadeWhereAnotherWasForWhatItIs) {
+    EffectsRoom room;
+    btSphereShape shape(1);
+    alignas(btRigidBody) std::array<std::byte, sizeof(btRigidBody)> memory;
+    WorldConfigurator configurator(room.world());
+    WorldEffects effects{.friction = false};
+    for (const auto friction : {btScalar(0.7), btScalar(0.2)}) {
+        auto* const body = new (memory.data()) btRigidBody(1, nullptr, &shape, {1, 1, 1});
+        body->setFriction(friction);
+        room.world().addRigidBody(body);
+        configurator.apply(effects);
+        EXPECT_EQ(body->getFriction(), 0);
+        if (friction < btScalar(0.5)) {
+            configurator.apply({});
+            EXPECT_EQ(body->getFriction(), friction);
+        }
+        room.world().removeRigidBody(body);
+        body->~btRigidBody();
+    }
+}
+
+TEST(WorldConfigurator, LeaveSoftBodiesAlone) {
+    struct Soft : btCollisionObject {
+        Soft() { m_internalType = CO_SOFT_BODY; }
+    } soft;
+    btSphereShape shape(1);
+    soft.setCollisionShape(&shape);
+    EffectsRoom room;
+    room.world().addCollisionObject(&soft);
+    const int flags = soft.getCollisionFlags();
+    {
+        WorldConfigurator configurator(room.world());
+        configurator.apply({.response = false, .rotation = false, .friction = false});
+        EXPECT_EQ(soft.getCollisionFlags(), flags);
+    }
+    room.world().removeCollisionObject(&soft);
+}
+
+TEST(WorldConfigurator, FileBodiesThatRestOnce) {
+    EffectsRoom room;
+    btRigidBody& floor = room.scene->body(0);
+    WorldConfigurator configurator(room.world());
+    const auto top = [&] { return floor.getBroadphaseProxy()->m_aabbMax.y(); };
+    EXPECT_EQ(top(), gContactBreakingThreshold) << "with the margin that Bullet adds in a step";
+    floor.setWorldTransform(upAt({0, 4, 0}));
+    run(configurator, 1);
+    EXPECT_EQ(top(), gContactBreakingThreshold);
+    room.world().updateSingleAabb(&floor);
+    EXPECT_GT(top(), 5);
+}
+
+TEST(WorldConfigurator, KeepTheFilterThatTheWorldHad) {
+    struct Nobody : btOverlapFilterCallback {
+        bool needBroadphaseCollision(btBroadphaseProxy*, btBroadphaseProxy*) const override {
+            return false;
+        }
+    } nobody;
+    EffectsRoom room;
+    room.addCube({0, btScalar(0.5), 0});
+    room.world().getPairCache()->setOverlapFilterCallback(&nobody);
+    WorldConfigurator configurator(room.world());
+    configurator.apply({.effectsOf = [](const btCollisionObject&) { return BodyEffects(); }});
+    run(configurator, 2);
+    EXPECT_EQ(room.cost().pairCount, 0);
+    configurator.apply({});
+    EXPECT_EQ(room.world().getPairCache()->getOverlapFilterCallback(), &nobody);
+    room.world().getPairCache()->setOverlapFilterCallback(nullptr);
+}
+
+}  // namespace
+}  // namespace hashphase::test
