@@ -9,8 +9,8 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// Each is exactly zero when the effect that is named is not declared (world_effects.hpp), whatever is in
-/// the world.
+/// Each is exactly zero while the effect that is named is not declared (world_effects.hpp), whatever is
+/// in the world, unless the program sets by hand what is overridden.
 struct WorldCost {
     int pairCount = 0;             ///< pairs: boxes that overlap
     int manifoldCount = 0;         ///< pairs: of those, how many the narrow phase follows

@@ -9,6 +9,7 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <optional>
+#include <utility>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 namespace {
@@ -70,20 +71,27 @@ WorldConfigurator::~WorldConfigurator() {
 }
 
 void WorldConfigurator::apply(const WorldEffects& effects) {
-    const bool hadPairs = effects_.pairs;
-    const bool hadMasks = static_cast<bool>(effects_.effectsOf);
-    effects_ = effects;
+    const bool haveMasks = effects.effectsOf || effects_.effectsOf;
+    arePairsOld_ = arePairsOld_ || haveMasks || effects.pairs != effects_.pairs;
+    WorldEffects copy = effects;  // takes memory
+    effects_ = std::move(copy);
     ++applyCount_;
-    bool isChanged = configurePairs(hadPairs, hadMasks);
+    setFilter();
     configureWorld();
+    if (arePairsOld_) {
+        areBodiesChanged_ = true;
+        askAboutPairsAgain();
+        arePairsOld_ = false;
+    }
     forEachObject(*world_, [&](btCollisionObject& object) {
-        const bool isObjectChanged = configure(object, effectsOf(object), effects_);
-        isChanged = isChanged || isObjectChanged;
+        const bool isChanged = configure(object, effectsOf(object), effects_);
+        areBodiesChanged_ = areBodiesChanged_ || isChanged;
     });
     std::erase_if(kept_, [&](const auto& entry) { return entry.second.lastSeen != applyCount_; });
-    if (isChanged) {
+    if (areBodiesChanged_) {
         renewContacts();
         wakeAll();
+        areBodiesChanged_ = false;
     }
 }
 
@@ -164,21 +172,19 @@ bool WorldConfigurator::Filter::needBroadphaseCollision(btBroadphaseProxy* a,
            (b->m_collisionFilterGroup & a->m_collisionFilterMask) != 0;
 }
 
-bool WorldConfigurator::configurePairs(bool hadPairs, bool hadMasks) {
-    const bool hasMasks = static_cast<bool>(effects_.effectsOf);
+void WorldConfigurator::setFilter() {
     btOverlappingPairCache& cache = *world_->getPairCache();
     const bool isOurs = cache.getOverlapFilterCallback() == &filter_;
-    const bool isNeeded = !effects_.pairs || hasMasks;
+    const bool isNeeded = !effects_.pairs || effects_.effectsOf;
     if (isNeeded && !isOurs) {
         filter_.former = cache.getOverlapFilterCallback();
         cache.setOverlapFilterCallback(&filter_);
     } else if (isOurs && !isNeeded) {
         cache.setOverlapFilterCallback(filter_.former);
     }
-    if (hadPairs == effects_.pairs && !hadMasks && !hasMasks) {
-        return false;
-    }
-    // Every couple is asked about again.
+}
+
+void WorldConfigurator::askAboutPairsAgain() {
     auto* const hash = dynamic_cast<SpatialHashBroadphase*>(world_->getBroadphase());
     forEachObject(*world_, [&](btCollisionObject& object) {
         if (hash != nullptr) {
@@ -188,7 +194,6 @@ bool WorldConfigurator::configurePairs(bool hadPairs, bool hadMasks) {
             fileResting(*world_, object);
         }
     });
-    return true;
 }
 
 void WorldConfigurator::configureWorld() {

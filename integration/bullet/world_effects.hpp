@@ -22,6 +22,10 @@
 // friction   friction, rolling and spinning friction 0,       bodies slide for ever, down the least slope;
 //            one friction direction                           heaps fall apart
 //
+// In instructions per step, a heap of 250 bodies saves 76 % without pairs, 58 % without response, 16 %
+// without rotation, and 2 % without friction, for which Bullet has a row in its solver all the same; one
+// that has come to rest costs twice as much without sleeping. 2000 static bodies cost a fifteenth less.
+//
 // response and sweep need pairs, friction and sweep need response: without it they are off, too.
 //
 // A frame   apply() when the declaration changes, prepare() for each body that is added to the world,
@@ -35,7 +39,8 @@
 //           object made at its address before that may be taken for it.
 // Other     Soft bodies and multibodies solve contacts of their own, and are left alone but for pairs.
 // Memory    Nothing is held for an object whose settings are its own. Where memory runs out,
-//           std::bad_alloc is passed on, and the call may be repeated.
+//           std::bad_alloc is passed on, and the call may be repeated; pairs are complete in the next step
+//           that returns.
 
 #include <integration/bullet/kept_setting.hpp>
 #include <integration/bullet/precision.hpp>
@@ -74,8 +79,9 @@ struct WorldEffects {
     std::optional<btScalar> restitution{};
 
     /// Convex bodies that move by more than this share of the smallest edge of their shape's box in a step
-    /// are swept; without it those with CCD thresholds of their own. Up to 0.5 nothing is pushed out on the
-    /// far side of what is thin. Cost: a cast for each of them, twice a step.
+    /// are swept; without it those with CCD thresholds of their own. Up to 0.5 nothing passes a thin
+    /// wall; from there on who moves by more than half its width, and is not swept, may have its
+    /// middle beyond the wall when Bullet sees it, and is pushed out on the far side. Cost: a cast for each of them, twice a step.
     std::optional<btScalar> fastFrom{};
 
     /// Bodies slower than this may fall asleep [m/s]; without it each has its own threshold.
@@ -156,7 +162,8 @@ private:
     [[nodiscard]] BodyEffects effectsOf(const btCollisionObject& object) const;
     bool configure(btCollisionObject& object, const BodyEffects& effects,
                    const WorldEffects& ofWorld);
-    bool configurePairs(bool hadPairs, bool hadMasks);
+    void setFilter();
+    void askAboutPairsAgain();
     void configureWorld();
     void renewContacts();
     void wakeAll();
@@ -177,6 +184,8 @@ private:
     KeptSetting<int> frictionDirections_;
     std::unordered_map<const btCollisionObject*, KeptBody> kept_;  // of those that are overridden
     std::uint64_t applyCount_ = 0;
+    bool arePairsOld_ = false;       // until every couple has been asked about again
+    bool areBodiesChanged_ = false;  // until all have been woken
 };
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

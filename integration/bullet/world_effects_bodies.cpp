@@ -45,6 +45,11 @@ bool solvesContactsOfItsOwn(const btCollisionObject& object) {
     return (object.getInternalType() & kinds) != 0;
 }
 
+bool areAllItsOwn(const BodyEffects& effects, const WorldEffects& ofWorld) {
+    return effects.response && effects.sweep && effects.sleeping && effects.rotation &&
+           effects.friction && !ofWorld.restitution && !ofWorld.fastFrom && !ofWorld.slowBelow;
+}
+
 btScalar smallestEdge(const btCollisionShape& shape) {
     btVector3 low;
     btVector3 high;
@@ -67,8 +72,14 @@ bool WorldConfigurator::configure(btCollisionObject& object, const BodyEffects& 
     if (solvesContactsOfItsOwn(object)) {
         return false;
     }
-    const auto found = kept_.find(&object);
-    KeptBody kept = found != kept_.end() ? found->second : KeptBody();
+    auto found = kept_.find(&object);
+    if (found == kept_.end()) {
+        if (areAllItsOwn(effects, ofWorld)) {
+            return false;
+        }
+        found = kept_.try_emplace(&object).first;  // before anything is written: it takes memory
+    }
+    KeptBody& kept = found->second;
     kept.lastSeen = applyCount_;
     bool isChanged = setContacts(object, kept, effects, ofWorld);
     if (btRigidBody* const body = btRigidBody::upcast(&object)) {
@@ -78,9 +89,7 @@ bool WorldConfigurator::configure(btCollisionObject& object, const BodyEffects& 
         setSweep(*body, kept, effects, ofWorld);
         setSleeping(*body, kept, effects, ofWorld);
     }
-    if (kept.isHeld()) {
-        kept_.insert_or_assign(&object, kept);
-    } else if (found != kept_.end()) {
+    if (!kept.isHeld()) {
         kept_.erase(found);
     }
     return isChanged;

@@ -3,6 +3,7 @@
 // What is set on a world and its bodies, what is given back, and to whom.
 
 #include <tests/integration/bullet/effects_room.hpp>
+#include <tests/support/out_of_memory.hpp>
 
 #include <gtest/gtest.h>
 
@@ -205,6 +206,43 @@ TEST(WorldConfigurator, KeepTheFilterThatTheWorldHad) {
     configurator.apply({});
     EXPECT_EQ(room.world().getPairCache()->getOverlapFilterCallback(), &nobody);
     room.world().getPairCache()->setOverlapFilterCallback(nullptr);
+}
+
+/// A room that has no pairs, and is then to have them without rotation and friction.
+struct AppliedOutOfMemory {
+    AppliedOutOfMemory() {
+        fillWithSettings(room);
+        own = settingsOf(*room.scene);
+        configurator.apply({.pairs = false});
+        room.world().computeOverlappingPairs();
+    }
+    void apply() { configurator.apply({.rotation = false, .friction = false}); }
+
+    EffectsRoom room;
+    std::vector<btScalar> own;
+    WorldConfigurator configurator{room.world()};
+};
+
+TEST(WorldConfigurator, AppliesAgainWhatItHadNoMemoryFor) {
+    if (!kCountsAllocations) {
+        GTEST_SKIP() << "this program has another `new`";
+    }
+    AppliedOutOfMemory whole;
+    whole.apply();
+    whole.room.world().computeOverlappingPairs();
+    const std::size_t failureCount =
+        runOutOfMemory([] { return std::make_unique<AppliedOutOfMemory>(); },
+                       [](AppliedOutOfMemory& world) { world.apply(); },
+                       [&](AppliedOutOfMemory& world, std::size_t) {
+                           world.apply();
+                           // Brings the cache up to date.
+                           world.room.world().computeOverlappingPairs();
+                           EXPECT_EQ(settingsOf(*world.room.scene), settingsOf(*whole.room.scene));
+                           EXPECT_EQ(world.room.cost().pairCount, whole.room.cost().pairCount);
+                           world.configurator.apply({});
+                           EXPECT_EQ(settingsOf(*world.room.scene), world.own);
+                       });
+    EXPECT_GE(failureCount, 5U);
 }
 
 }  // namespace

@@ -62,6 +62,8 @@ TEST(WorldEffects, WithoutPairsHaveNoneUnderAnyBroadphase) {
         configurator.apply({});
         run(configurator, 1);
         EXPECT_EQ(room.cost().pairCount, 1) << kind;
+        EXPECT_EQ(room.scene->body(0).getBroadphaseProxy()->m_aabbMax.y(),
+                  gContactBreakingThreshold);
         EXPECT_GT(room.cost().contactCount, 0);
     }
 }
@@ -117,6 +119,28 @@ TEST(WorldEffects, WithSweepStopAtAThinWallAndWithoutPassIt) {
         slow.setLinearVelocity({0, 240, 0});
         EXPECT_EQ(configurator.beforeStep(kSixtieth), isDeclared ? 1 : 0);
         EXPECT_EQ(room.world().getDispatchInfo().m_useContinuous, isDeclared);
+    }
+}
+
+// A ball 20 cm wide, a wall 1 cm thick, and twelve moments of a step at which they may meet.
+TEST(WorldEffects, PassNoThinWallWhenSweptFromHalfTheirWidthOnAndSomeFromMore) {
+    for (const auto fastFrom : {btScalar(0.5), btScalar(1)}) {
+        int passedCount = 0;
+        for (const auto share : {btScalar(0.45), btScalar(0.9), btScalar(3)}) {
+            for (int i = 0; i < 12; ++i) {
+                EffectsRoom room;
+                room.world().setGravity({0, 0, 0});
+                room.add({btScalar(0.005), 5, 5}, 0, upAt({0, 5, 0}));
+                const btScalar way = share * btScalar(0.2);
+                btRigidBody& ball =
+                    room.addBall({-1 - way * btScalar(i) / 12, 5, 0}, {way / kSixtieth, 0, 0});
+                WorldConfigurator configurator(room.world());
+                configurator.apply({.fastFrom = fastFrom});
+                run(configurator, static_cast<int>(2 / way));
+                passedCount += whereIs(ball).x() > 0;
+            }
+        }
+        EXPECT_EQ(passedCount > 0, fastFrom > btScalar(0.5));
     }
 }
 
@@ -234,11 +258,13 @@ TEST(WorldEffects, AreNarrowedForSingleBodies) {
         return BodyEffects{.pairs = &object != &ghostly, .response = &object != &sensor};
     };
     effects.fastFrom = 1;
+    run(configurator, 20);
+    EXPECT_EQ(room.cost().pairCount, 3);
     configurator.apply(effects);
     EXPECT_EQ(sensor.getCcdMotionThreshold(), 0) << "it would be swept in vain";
     EXPECT_EQ(other.getCcdMotionThreshold(), 1);
+    EXPECT_EQ(room.cost().pairCount, 2) << "at once";
     run(configurator, 40);
-    EXPECT_EQ(room.cost().pairCount, 2);
     EXPECT_LT(whereIs(ghostly).y(), 0);
     EXPECT_LT(whereIs(sensor).y(), 0);
     EXPECT_GT(whereIs(other).y(), btScalar(0.4));
