@@ -16,8 +16,8 @@
 // terrain      nothing: the ground is a static body    the ground: do not add it
 //              of yours (static_triangles.hpp)
 // pairs        the world's filter for overlaps         contacts, ghosts' lists, response and sweep
-// response     every object's answer to contacts,      bodies fall through each other, contacts are still
-//              and its restitution                     told
+// response     every object's answer to contacts       bodies fall through each other, contacts are still
+//                                                      told
 // sweep        m_useContinuous; CCD thresholds for     bodies that move by more than half their width in
 //              who is fast for its size                a step may pass what is thin; with fastFrom above 0.5,
 //                                                      which is the default, those between still may
@@ -28,9 +28,10 @@
 // boxSelection, SpatialHashBroadphase::grid()
 // culling, proximity, zones, radar
 //
-// Of the settings, Bullet has none for SweepEffect::mode (see SpatialHashConfig::sweep), which is for the
-// broadphase to say, and for SleepingEffect::framesBeforeSleep (bodies fall asleep after gDeactivationTime,
-// 2 s), and heeds neither. motion.bounds and sleeping.interestRadius, where they are finite, are errors:
+// Of the settings, Bullet heeds neither ResponseEffect::restitution, as each of its bodies has its own
+// (WorldEffects::restitution sets that of all), nor SweepEffect::mode, which is for the broadphase to say
+// (SpatialHashConfig::sweep), nor SleepingEffect::framesBeforeSleep: bodies fall asleep after
+// gDeactivationTime, 2 s. motion.bounds and sleeping.interestRadius, where they are finite, are errors:
 // put static planes at the bounds, and deactivate what is far.
 
 #include <integration/bullet/world_effects.hpp>
@@ -60,10 +61,9 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
     return {};
 }
 
-/// The declaration in Bullet's terms. Bodies get the restitution and the sweeps that are declared; those
-/// who are to have their own reset() `restitution`, `fastFrom` or `slowBelow` of what is returned. With
-/// SleepingEffect::slowBelow 0 they have their own anyway. Throws std::invalid_argument with
-/// bulletEffectsError().
+/// The declaration in Bullet's terms. Bodies are swept as is declared; where they are to have CCD
+/// thresholds of their own, reset() `fastFrom` of what is returned. With SleepingEffect::slowBelow 0
+/// they have sleeping thresholds of their own. Throws std::invalid_argument with bulletEffectsError().
 [[nodiscard]] inline WorldEffects worldEffectsOf(const SceneEffects& effects) {
     if (const std::string error = bulletEffectsError(effects); !error.empty()) {
         throw std::invalid_argument(error);
@@ -76,9 +76,6 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
     ofWorld.sleeping = effects.sleeping.has_value();
     ofWorld.rotation = effects.rotation.has_value();
     ofWorld.friction = effects.friction.has_value();
-    if (effects.response) {
-        ofWorld.restitution = static_cast<btScalar>(effects.response->restitution);
-    }
     if (effects.sweep) {
         ofWorld.fastFrom = static_cast<btScalar>(effects.sweep->fastFrom);
     }

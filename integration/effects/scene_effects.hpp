@@ -50,7 +50,8 @@ struct ResponseEffect {
 /// response bounce off the first of it. Needs pairs and motion.
 struct SweepEffect {
     Sweep mode = Sweep::automatic;  ///< not Sweep::none
-    double fastFrom = 1;            ///< that share
+    /// That share. Above 0.5, those between may pass what is thinner than they are.
+    double fastFrom = 0.5;
 };
 
 /// Bodies that would move stand still where nobody looks, or when they are slow. Needs motion.

@@ -52,7 +52,9 @@ TEST(Simulation, FilesExactlyWhatMoves) {
 }
 
 TEST(Simulation, SweepsExactlyWhatIsFastForItsSize) {
-    Simulation<float> simulation(declared({Effect::motion, Effect::pairs, Effect::sweep}));
+    SceneEffects effects = declared({Effect::motion, Effect::pairs, Effect::sweep});
+    effects.sweep->fastFrom = 1;
+    Simulation<float> simulation(effects);
     for (int i = 0; i < 300; ++i) {
         const bool isFast = i % 30 == 0;
         simulation.add({.position = {3.0F * static_cast<float>(i), 0, 0},
