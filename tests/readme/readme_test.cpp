@@ -17,10 +17,14 @@
 #include <integration/bullet/group_filter.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 #include <integration/culling/culler.hpp>
+#include <integration/effects/bullet_frame.hpp>
+#include <integration/effects/observers.hpp>
+#include <integration/effects/simulation.hpp>
 #include <integration/picking/drag_selection.hpp>
 #include <integration/picking/pick.hpp>
 #include <integration/terrain/terrain.hpp>
 
+#include <btBulletDynamicsCommon.h>
 #include <gtest/gtest.h>
 
 #include <span>
@@ -158,6 +162,35 @@ TEST(ReadmeTerrain, GroundLiesBelow) {
     EXPECT_FLOAT_EQ(terrain.surfaceBelow(point)->height, 5);
     ASSERT_TRUE(found[0]);
     EXPECT_GT(found[0]->height, 6);
+}
+
+TEST(ReadmeEffects, RunJustWhatIsDeclared) {
+    const Point player(0, 0, 0);
+    const float timeStep = 1.0F / 60;
+#include <readme_10.inl>
+    EXPECT_EQ(late, 0U);
+    EXPECT_EQ(cost[SceneCounter::bodiesMoved], 1U);
+}
+
+TEST(ReadmeEffects, TellBulletWhatToCompute) {
+    const btScalar timeStep = btScalar(1) / 60;
+    SceneEffects effects;
+    effects.motion.emplace();
+    effects.culling.emplace();
+    SpatialHashBroadphase broadphase;
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher(&configuration);
+    btSequentialImpulseConstraintSolver solver;
+    btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
+    btSphereShape shape(1);
+    btRigidBody body(btRigidBody::btRigidBodyConstructionInfo(1, nullptr, &shape));
+    world.addRigidBody(&body);
+    {
+#include <readme_11.inl>
+        EXPECT_EQ(observers.culler().count(), 1U);
+        EXPECT_FALSE(configurator.effects().rotation);
+    }
+    world.removeRigidBody(&body);
 }
 
 }  // namespace

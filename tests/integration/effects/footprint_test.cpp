@@ -14,6 +14,8 @@
 namespace hashphase::test {
 namespace {
 
+using Point = Vector3<float>;
+
 /// Bodies that go side by side on a plain: boxes overlap, spheres do not touch. So they go the same
 /// way whatever is declared.
 void fillCalmly(Simulation<float>& simulation) {
@@ -26,7 +28,6 @@ void fillCalmly(Simulation<float>& simulation) {
         }
     }
     if (declared.contains(Effect::terrain)) {
-        using Point = Vector3<float>;
         const std::vector<Point> corners{Point(-99, 0, -99), Point(99, 0, -99), Point(-99, 0, 99),
                                          Point(99, 0, -99),  Point(99, 0, 99),  Point(-99, 0, 99)};
         simulation.ground().add(corners);

@@ -16,6 +16,8 @@
 namespace hashphase::test {
 namespace {
 
+using Point = Vector3<float>;
+
 SceneEffects declared(std::initializer_list<Effect> effects) {
     SceneEffects all;
     for (const Effect effect : effects) {
@@ -198,7 +200,6 @@ TEST(Simulation, StopsBulletsWhereTheySweepAndLosesThemWhereNot) {
 
 TEST(Simulation, StandsOnTheGround) {
     Simulation<float> simulation(declared({Effect::motion, Effect::terrain}));
-    using Point = Vector3<float>;
     const std::vector<Point> slope{Point(0, 0, -50),    Point(100, 50, -50), Point(0, 0, 50),
                                    Point(100, 50, -50), Point(100, 50, 50),  Point(0, 0, 50)};
     simulation.ground().add(slope);

@@ -67,9 +67,8 @@ inline void fill(Simulation<float>& simulation, int bodyCount = 40) {
                         .group = static_cast<std::uint32_t>(i % 2)});
     }
     if (declared.contains(Effect::terrain)) {
-        using Point = Vector3<float>;
-        const std::vector<Point> corners{Point(-5, 0, -5), Point(30, 1, -5), Point(-5, 2, 30),
-                                         Point(30, 1, -5), Point(30, 0, 30), Point(-5, 2, 30)};
+        const std::vector<Vector3<float>> corners{{-5, 0, -5}, {30, 1, -5}, {-5, 2, 30},
+                                                  {30, 1, -5}, {30, 0, 30}, {-5, 2, 30}};
         simulation.ground().add(corners);
     }
     Observers<float>& observers = simulation.observers();
