@@ -12,6 +12,7 @@
 #include <integration/ai/sight.hpp>
 #include <integration/ai/zones.hpp>
 #include <integration/culling/culler.hpp>
+#include <integration/effects/simulation.hpp>
 #include <integration/picking/drag_selection.hpp>
 #include <integration/picking/pick.hpp>
 #include <integration/terrain/terrain.hpp>
@@ -105,6 +106,14 @@ int main() {
     const auto below = terrain.surfaceBelow({0, 50, -50});
     const auto rest = terrain.restingHeight({0, 50, -50}, 1);
     check(below && below->height == 5 && rest && rest->height > 6, "terrain");
+
+    // All of them in a frame that runs just what is declared.
+    SceneEffects effects;
+    effects.motion.emplace();
+    effects.culling.emplace();
+    Simulation<float> simulation(effects);
+    simulation.add({.velocity = {1, 0, 0}});
+    check(simulation.advance(1)[SceneCounter::bodiesMoved] == 1, "effects");
 
     std::printf("pairs: %d\n", static_cast<int>(pairs.count()));
 }
