@@ -4,6 +4,7 @@
 #include <broadphase/position_region.hpp>
 #include <integration/ai/radar.hpp>
 #include <integration/ai/rarest_colour.hpp>
+#include <integration/effects/detail/parts.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -73,34 +74,24 @@ Observers<Scalar>::Observers(const SceneEffects& effects) {
 template <class Scalar>
 Observers<Scalar>::~Observers() = default;
 
-// Makes what is missing first, so that nothing has changed should memory run out.
 template <class Scalar>
 void Observers<Scalar>::declare(const SceneEffects& effects) {
     if (const std::string error = effectsError(effects); !error.empty()) {
         throw std::invalid_argument(error);
     }
-    std::unique_ptr<Culling> culling;
-    if (effects.culling) {
-        culling = std::make_unique<Culling>(static_cast<Scalar>(effects.culling->margin));
-        culling->view = culling_ ? culling_->view : culling->view;
+    const bool hasCuller = effects_.culling && culling_;
+    if (effects.culling && !(hasCuller && effects_.culling->margin == effects.culling->margin)) {
+        auto culling = std::make_unique<Culling>(static_cast<Scalar>(effects.culling->margin));
+        culling->view = hasCuller ? culling_->view : culling->view;
+        culling_ = std::move(culling);
     }
-    const auto made = [](bool isDeclared, auto& part) {
-        using Part = typename std::remove_reference_t<decltype(part)>::element_type;
-        return isDeclared && !part ? std::make_unique<Part>() : nullptr;
-    };
-    auto proximity = made(effects.proximity.has_value(), proximity_);
-    auto zones = made(effects.zones.has_value(), zones_);
-    auto radar = made(effects.radar.has_value(), radar_);
-
-    const auto replace = [](bool isDeclared, auto& part, auto& fresh) {
-        if (!isDeclared || fresh) {
-            part = std::move(fresh);
-        }
-    };
-    culling_ = std::move(culling);
-    replace(effects.proximity.has_value(), proximity_, proximity);
-    replace(effects.zones.has_value(), zones_, zones);
-    replace(effects.radar.has_value(), radar_, radar);
+    detail::makeIf(effects.proximity.has_value(), proximity_);
+    detail::makeIf(effects.zones.has_value(), zones_);
+    detail::makeIf(effects.radar.has_value(), radar_);
+    detail::dropUnless(effects.culling.has_value(), culling_);
+    detail::dropUnless(effects.proximity.has_value(), proximity_);
+    detail::dropUnless(effects.zones.has_value(), zones_);
+    detail::dropUnless(effects.radar.has_value(), radar_);
     effects_ = effects;
     compile();
 }
@@ -116,6 +107,9 @@ void Observers<Scalar>::compile() {
         if (declared.contains(phase.effect)) {
             static_cast<void>(phases_.push(phase));
         }
+    }
+    if (culling_) {
+        culling_->hasMoved = true;  // nobody knows what has happened since
     }
     presentBefore_ = EffectSet::all();
     frame_ = 0;
@@ -327,7 +321,7 @@ template <class Scalar>
 Picked<Scalar> Observers<Scalar>::pick(const Scene& scene, const RayRegion<Scalar>& ray) {
     require(Effect::picking, "pick()");
     QueryCost cost;
-    const Picked<Scalar> picked = askFor(scene, Effect::picking, [&](ProxyFilter filter) {
+    Picked<Scalar> picked = askFor(scene, Effect::picking, [&](ProxyFilter filter) {
         return pickNearest(scene.grid, ray, filter, &cost);
     });
     ++asked_[SceneCounter::picks];
@@ -340,7 +334,7 @@ Picked<Scalar> Observers<Scalar>::pick(const Scene& scene, const RayRegion<Scala
                                        ExactTest<Scalar> test) {
     require(Effect::picking, "pick()");
     QueryCost cost;
-    const Picked<Scalar> picked = askFor(scene, Effect::picking, [&](ProxyFilter filter) {
+    Picked<Scalar> picked = askFor(scene, Effect::picking, [&](ProxyFilter filter) {
         return pickNearest(scene.grid, ray, test, filter, &cost);
     });
     ++asked_[SceneCounter::picks];

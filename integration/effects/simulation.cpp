@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Zlib
+#include <broadphase/detail/ensure_capacity.hpp>
+#include <integration/effects/detail/parts.hpp>
 #include <integration/effects/detail/simulation_parts.hpp>
 #include <integration/effects/simulation.hpp>
 
@@ -36,53 +38,53 @@ void Simulation<Scalar>::declare(const SceneEffects& effects) {
         throw std::invalid_argument(error);
     }
     const EffectSet now = effects.set();
-    const std::size_t count = positions_.size();
-
-    // What is missing is made first, so that nothing has changed should memory run out.
-    auto motion = now.contains(Effect::motion) && !motion_ ? std::make_unique<Motion>() : nullptr;
-    if (motion) {
-        motion->velocities.resize(count, Point::Zero());
-    }
-    auto walkers = effects.terrain && (!walkers_ || effects_.terrain->up != effects.terrain->up)
-                       ? std::make_unique<Walkers>(effects.terrain->up)
-                       : nullptr;
-    auto sleep = now.contains(Effect::sleeping) && !sleep_ ? std::make_unique<Sleep>() : nullptr;
-    if (sleep) {
-        sleep->states.resize(count, Sleep::State::awake);
-        sleep->slowFrames.resize(count, 0);
-    }
-    auto contacts =
-        now.contains(Effect::response) && !contacts_ ? std::make_unique<Contacts>() : nullptr;
-    auto sweepers =
-        now.contains(Effect::sweep) && !sweepers_ ? std::make_unique<Sweepers>() : nullptr;
-    if (sweepers) {
-        sweepers->ofBody.resize(count, Sweepers::kNone);
-    }
-    if (now.contains(Effect::radar)) {
-        groups_.resize(count, 0);
-    }
     observers_.declare(effects);
-
-    const auto replace = [](bool isDeclared, auto& part, auto& fresh) {
-        if (!isDeclared || fresh) {
-            part = std::move(fresh);
-        }
-    };
-    replace(now.contains(Effect::motion), motion_, motion);
-    replace(now.contains(Effect::terrain), walkers_, walkers);
-    replace(now.contains(Effect::sleeping), sleep_, sleep);
-    if (contacts) {
-        pairing_ = nullptr;  // so that it begins with the present pairs
-    }
-    replace(now.contains(Effect::response), contacts_, contacts);
-    replace(now.contains(Effect::sweep), sweepers_, sweepers);
+    stockIsStale_ = true;
+    changedOutside_ = true;
+    makeParts(effects);
+    detail::dropUnless(now.contains(Effect::motion), motion_);
+    detail::dropUnless(now.contains(Effect::terrain), walkers_);
+    detail::dropUnless(now.contains(Effect::sleeping), sleep_);
+    detail::dropUnless(now.contains(Effect::response), contacts_);
+    detail::dropUnless(now.contains(Effect::sweep), sweepers_);
     if (!now.contains(Effect::radar)) {
         std::vector<std::uint32_t>().swap(groups_);
     }
     effects_ = effects;
-    stockIsStale_ = true;
-    changedOutside_ = true;
     takeStock();
+}
+
+// What is declared and not there yet, with columns of all bodies.
+template <class Scalar>
+void Simulation<Scalar>::makeParts(const SceneEffects& effects) {
+    const std::size_t count = positions_.size();
+    if (effects.motion && !motion_) {
+        auto motion = std::make_unique<Motion>();
+        motion->velocities.resize(count, Point::Zero());
+        motion_ = std::move(motion);
+    }
+    if (effects.terrain &&
+        (!walkers_ || walkers_->up != static_cast<Eigen::Index>(effects.terrain->up))) {
+        walkers_ = std::make_unique<Walkers>(effects.terrain->up);
+    }
+    if (effects.sleeping && !sleep_) {
+        auto sleep = std::make_unique<Sleep>();
+        sleep->states.resize(count, Sleep::State::awake);
+        sleep->slowFrames.resize(count, 0);
+        sleep_ = std::move(sleep);
+    }
+    if (effects.response && !contacts_) {
+        contacts_ = std::make_unique<Contacts>();
+        pairing_ = nullptr;  // so that it begins with the present pairs
+    }
+    if (effects.sweep && !sweepers_) {
+        auto sweepers = std::make_unique<Sweepers>();
+        sweepers->ofBody.resize(count, Sweepers::kNone);
+        sweepers_ = std::move(sweepers);
+    }
+    if (effects.radar) {
+        groups_.resize(count, 0);
+    }
 }
 
 template <class Scalar>
@@ -100,13 +102,36 @@ Aabb<Scalar> Simulation<Scalar>::boxOf(std::size_t body) const {
     return {positions_[body] - half, positions_[body] + half};
 }
 
+// Calls visit(column, value) for all that is kept of each body, but for generations and proxies.
+template <class Scalar>
+template <class Visit>
+void Simulation<Scalar>::forEachColumn(const Body<Scalar>& body, const Visit& visit) {
+    visit(positions_, body.position);
+    visit(radii_, body.radius);
+    visit(effectsOf_, body.effects);
+    if (effects_.radar) {
+        visit(groups_, body.group);
+    }
+    if (motion_) {
+        visit(motion_->velocities, body.velocity);
+    }
+    if (sleep_) {
+        visit(sleep_->states, body.isAsleep ? Sleep::State::slow : Sleep::State::awake);
+        visit(sleep_->slowFrames, std::uint32_t{0});
+    }
+    if (sweepers_) {
+        visit(sweepers_->ofBody, Sweepers::kNone);
+    }
+}
+
 // The grid gives out indices; where there is none, the last one that became vacant.
 template <class Scalar>
 std::uint32_t Simulation<Scalar>::takeIndex(const Aabb<Scalar>& box, Mobility mobility) {
     if (index_) {
+        detail::ensureCapacity(index_->proxies, index_->proxies.size() + 1);
         const ProxyId proxy = index_->grid.add(box, mobility);
-        if (proxy.index >= index_->proxies.size()) {
-            index_->proxies.resize(std::size_t{proxy.index} + 1);
+        if (proxy.index == index_->proxies.size()) {
+            index_->proxies.emplace_back();
         }
         index_->proxies[proxy.index] = proxy;
         return proxy.index;
@@ -119,38 +144,29 @@ std::uint32_t Simulation<Scalar>::takeIndex(const Aabb<Scalar>& box, Mobility mo
     return index;
 }
 
+// There is room for all before the grid has the body, so that a body is there wholly or not at all.
 template <class Scalar>
 BodyId Simulation<Scalar>::add(const Body<Scalar>& body) {
-    const auto half = Point::Constant(body.radius);
+    const std::size_t limit = positions_.size();
+    detail::ensureCapacity(generations_, limit + 1);
+    forEachColumn(body, [limit](auto& column, const auto& /*value*/) {
+        detail::ensureCapacity(column, limit + 1);
+    });
     const bool isAtRest =
         !motion_ || !body.effects.contains(Effect::motion) || (sleep_ && body.isAsleep);
+    const auto half = Point::Constant(body.radius);
     const std::uint32_t index = takeIndex({body.position - half, body.position + half},
                                           isAtRest ? Mobility::resting : Mobility::mobile);
-    const auto set = [index](auto& column, const auto& value) {
-        if (index >= column.size()) {
-            column.resize(std::size_t{index} + 1);
+    if (index == limit) {
+        generations_.push_back(0);
+    }
+    forEachColumn(body, [&](auto& column, const auto& value) {
+        if (index == limit) {
+            column.push_back(value);
+        } else {
+            column[index] = value;
         }
-        column[index] = value;
-    };
-    set(positions_, body.position);
-    set(radii_, body.radius);
-    set(effectsOf_, body.effects);
-    if (index >= generations_.size()) {
-        generations_.resize(std::size_t{index} + 1, 0);
-    }
-    if (effects_.radar) {
-        set(groups_, body.group);
-    }
-    if (motion_) {
-        set(motion_->velocities, body.velocity);
-    }
-    if (sleep_) {
-        set(sleep_->states, body.isAsleep ? Sleep::State::slow : Sleep::State::awake);
-        set(sleep_->slowFrames, 0U);
-    }
-    if (sweepers_) {
-        set(sweepers_->ofBody, Sweepers::kNone);
-    }
+    });
     ++size_;
     stockIsStale_ = true;
     changedOutside_ = true;

@@ -22,7 +22,8 @@
 //             does not take part in motion stands for ever, and others bounce off it; one that does
 //             not take part in response is a sensor.
 // Threads     Everything needs the simulation for itself, but const members do not from each other.
-// Failure     Where memory runs out in advance(), some bodies may have moved; the next frame goes on.
+// Failure     Where memory runs out in advance(), some bodies may have moved; the next frame goes on, and
+//             tells all pairs as born. add() has added nothing then, and remove() has removed nothing.
 // Units       metres, seconds
 // Misuse      An id of no body and a time step that is negative or not finite are asserted.
 
@@ -191,10 +192,14 @@ private:
     [[nodiscard]] ObservedScene<Scalar> observed() const;
     void require(Effect effect, const char* call) const;
 
+    template <class Visit>
+    void forEachColumn(const Body<Scalar>& body, const Visit& visit);
     [[nodiscard]] std::uint32_t takeIndex(const Aabb<Scalar>& box, Mobility mobility);
+    void makeParts(const SceneEffects& effects);
     void takeStock();
     void fileAnew();
     void compile();
+    void recover() noexcept;
     template <bool isBounded>
     void moveBodies();
     template <bool measures>

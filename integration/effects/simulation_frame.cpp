@@ -19,11 +19,31 @@ const SceneCost& Simulation<Scalar>::advance(Scalar seconds, ParallelFor paralle
     parallelFor_ = &parallelFor;
     farthestMove_ = 0;
     cost_ = {};
-    for (const Phase& phase : phases_) {
-        (this->*phase.run)();
+    try {
+        for (const Phase& phase : phases_) {
+            (this->*phase.run)();
+        }
+    } catch (...) {
+        recover();
+        throw;
     }
     changedOutside_ = false;
     return cost_;
+}
+
+// Where a frame has failed, pairs may have been told that nobody has heard of: they begin anew.
+template <class Scalar>
+void Simulation<Scalar>::recover() noexcept {
+    pairing_ = nullptr;
+    if (contacts_) {
+        contacts_->present.clear();
+    }
+    if (sweepers_) {
+        sweepers_->list.clear();
+        std::fill(sweepers_->ofBody.begin(), sweepers_->ofBody.end(), Sweepers::kNone);
+    }
+    stockIsStale_ = true;
+    changedOutside_ = true;
 }
 
 // --- Where bodies are ----------------------------------------------------------------------------
