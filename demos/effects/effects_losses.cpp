@@ -37,6 +37,11 @@ std::string lateText(double late, const char* what) {
     return late > 0 ? "; " + amount(late) + " " + what : std::string();
 }
 
+std::string lateFramesText(double share) {
+    return share > 0 ? "; late in " + fixed(100 * share, 0) + " % of frames with it"
+                     : std::string();
+}
+
 std::string lossOfLooking(const EffectPrices& prices, Effect effect, const PerFrame& whole) {
     const auto objects = static_cast<double>(prices.file.scene.objects);
     switch (effect) {
@@ -46,7 +51,7 @@ std::string lossOfLooking(const EffectPrices& prices, Effect effect, const PerFr
             return whole.text(SceneCounter::selections, "rectangles without an answer");
         case Effect::culling:
             return amount(objects - prices.whole().visible) + " bodies drawn in vain" +
-                   lateText(whole(SceneCounter::framesCulledLate), "of a frame is late with it");
+                   lateFramesText(whole(SceneCounter::framesCulledLate));
         case Effect::proximity:
             return amount(objects) + " agents that see nobody" +
                    lateText(whole(SceneCounter::agentsLate), "are late with it");
@@ -54,8 +59,7 @@ std::string lossOfLooking(const EffectPrices& prices, Effect effect, const PerFr
             return whole.text(SceneCounter::zonesTested, "zones that tell nothing") +
                    lateText(whole(SceneCounter::zonesLate), "are late with it");
         case Effect::radar:
-            return "no radar" +
-                   lateText(whole(SceneCounter::radarsLate), "of a frame is late with it");
+            return "no radar" + lateFramesText(whole(SceneCounter::radarsLate));
         default:
             return {};
     }

@@ -205,7 +205,7 @@ TEST(EffectsFile, TakesAWholeNumberHoweverItIsSpelled) {
 }
 
 TEST(EffectsFile, OfTheExamplesIsReadAndWritten) {
-    for (const char* name : {"paper", "projectiles", "lookers"}) {
+    for (const char* name : {"paper", "projectiles", "lookers", "budget"}) {
         SCOPED_TRACE(name);
         const EffectsFile file =
             readEffectsFile(std::string(HASHPHASE_SCENE_EXAMPLES "/") + name + ".json");

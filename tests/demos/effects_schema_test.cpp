@@ -103,7 +103,7 @@ TEST(EffectsSchema, DescribesEveryField) {
 
 TEST(EffectsSchema, HoldsForTheExamplesAndForWhatIsWritten) {
     const json schema = schemaOfFiles();
-    for (const char* name : {"paper", "projectiles", "lookers"}) {
+    for (const char* name : {"paper", "projectiles", "lookers", "budget"}) {
         const std::string text =
             readFile(std::string(HASHPHASE_SCENE_EXAMPLES "/") + name + ".json");
         EXPECT_TRUE(isValid(json::parse(text), schema)) << name;

@@ -140,5 +140,20 @@ TEST(EffectPrices, FindWhatIsWrongWithoutAnEffect) {
               0.7 * prices.variant(withoutResponse).interpenetrating);
 }
 
+TEST(EffectPrices, TellWhatIsLateByDeclaration) {
+    EffectsFile file = smallExample("budget");
+    file.scene.domain = 500;
+    const EffectPrices prices = pricesOf(file, 45);
+    for (const SceneCounter counter : {SceneCounter::agentsLate, SceneCounter::zonesLate,
+                                       SceneCounter::radarsLate, SceneCounter::framesCulledLate}) {
+        EXPECT_GT(prices.whole().cost[counter], 0U)
+            << sceneCounters()[static_cast<std::size_t>(counter)].name;
+    }
+    EffectSet withoutSleep = file.effects.set();
+    withoutSleep.erase(Effect::sleeping);
+    EXPECT_LT(prices.whole().cost[SceneCounter::bodiesMoved],
+              prices.variant(withoutSleep).cost[SceneCounter::bodiesMoved]);
+}
+
 }  // namespace
 }  // namespace hashphase::demos
