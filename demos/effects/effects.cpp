@@ -38,6 +38,23 @@ void printList(std::ostream& out) {
     }
 }
 
+EffectPrices measure(const EffectsFile& file, const EffectsOptions& options, Console& console,
+                     std::size_t (*allocationCount)()) {
+    PricingSettings settings;
+    settings.frames = file.scene.frames;
+    settings.allocationCount = allocationCount;
+    const Stopwatch watch;
+    settings.isTimeUp = [&] {
+        return options.timeLimit && watch.milliseconds() > 1000 * *options.timeLimit;
+    };
+    Progress progress(console.err, progressStyle(console, options.quiet), "effects",
+                      pricingSteps(file, settings));
+    settings.tellProgress = [&](std::size_t done, std::string_view what) {
+        progress.update(done, what);
+    };
+    return priceEffects(file, settings);
+}
+
 }  // namespace
 
 int runEffects(const EffectsOptions& options, Console& console, std::size_t (*allocationCount)()) {
@@ -68,21 +85,7 @@ int runEffects(const EffectsOptions& options, Console& console, std::size_t (*al
     EffectsReport report;
     report.name = options.file.empty() ? options.scene : options.file;
     report.provenance = gatherProvenance(console.commandLine);
-    PricingSettings settings;
-    settings.frames = file.scene.frames;
-    settings.allocationCount = allocationCount;
-    const Stopwatch watch;
-    settings.isTimeUp = [&] {
-        return options.timeLimit && watch.milliseconds() > 1000 * *options.timeLimit;
-    };
-    {
-        Progress progress(console.err, progressStyle(console, options.quiet), "effects",
-                          pricingSteps(file, settings));
-        settings.tellProgress = [&](std::size_t done, std::string_view what) {
-            progress.update(done, what);
-        };
-        report.prices = priceEffects(file, settings);
-    }
+    report.prices = measure(file, options, console, allocationCount);
     printReport(report, console.out);
     json.write([&report](std::ostream& out) { writeJson(report, out); });
     csv.write([&report](std::ostream& out) { writeCsv(report, out); });

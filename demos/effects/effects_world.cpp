@@ -31,6 +31,22 @@ public:
             add(std::bit_cast<std::uint32_t>(vector[axis]));
         }
     }
+    void add(ProxyId id) { add(std::uint64_t{id.index}); }
+    void add(const ZoneEvent& event) {
+        add(event.zone.index);
+        add(event.proxy);
+    }
+    void add(const ProxyPair& pair) {
+        add(pair.first);
+        add(pair.second);
+    }
+    template <class List>
+    void addAll(const List& list) {
+        for (const auto& item : list) {
+            add(item);
+        }
+        add(list.size());
+    }
     [[nodiscard]] std::uint64_t value() const { return value_; }
 
 private:
@@ -181,51 +197,30 @@ std::uint64_t EffectsWorld::placesResult() const {
 std::uint64_t EffectsWorld::resultOf(Effect effect) const {
     ResultHash hash;
     const Observers<float>& observers = simulation_.observers();
-    const auto addEvents = [&hash](std::span<const ZoneEvent> events) {
-        for (const ZoneEvent& event : events) {
-            hash.add(std::uint64_t{event.zone.index} << 32 | event.proxy.index);
-        }
-        hash.add(events.size());
-    };
-    const auto addPairs = [&hash](std::span<const ProxyPair> pairs) {
-        for (const ProxyPair& pair : pairs) {
-            hash.add(std::uint64_t{pair.first.index} << 32 | pair.second.index);
-        }
-        hash.add(pairs.size());
-    };
-    const auto addAll = [&hash](const auto& numbers) {
-        for (const auto& number : numbers) {
-            hash.add(number);
-        }
-    };
     switch (effect) {
         case Effect::pairs:
-            addPairs(simulation_.pairChanges().born);
-            addPairs(simulation_.pairChanges().died);
+            hash.addAll(simulation_.pairChanges().born);
+            hash.addAll(simulation_.pairChanges().died);
             break;
         case Effect::picking:
-            for (const ProxyId id : picked_) {
-                hash.add(id.index);
-            }
+            hash.addAll(picked_);
             break;
         case Effect::boxSelection:
-            for (const ProxyId id : allSelected_) {
-                hash.add(id.index);
-            }
+            hash.addAll(allSelected_);
             break;
         case Effect::culling:
-            observers.culler().forEach([&](std::uint32_t index) { hash.add(index); });
+            hash.addAll(observers.culler().bits());
             break;
         case Effect::proximity:
-            addAll(observers.colours());
+            hash.addAll(observers.colours());
             break;
         case Effect::zones:
-            addEvents(observers.zoneEvents().entered);
-            addEvents(observers.zoneEvents().stayed);
-            addEvents(observers.zoneEvents().left);
+            hash.addAll(observers.zoneEvents().entered);
+            hash.addAll(observers.zoneEvents().stayed);
+            hash.addAll(observers.zoneEvents().left);
             break;
         case Effect::radar:
-            addAll(observers.radarCounts());
+            hash.addAll(observers.radarCounts());
             break;
         default:
             return placesResult();

@@ -92,8 +92,7 @@ private:
 };
 
 // Each test is phrased so that NaN fails it.
-std::string badSetting(const SceneEffects& effects) {
-    Settings settings;
+void requireOfMovers(const SceneEffects& effects, Settings& settings) {
     if (effects.motion) {
         const Aabb<double>& bounds = effects.motion->bounds;
         for (int axis = 0; axis < 3; ++axis) {
@@ -123,6 +122,9 @@ std::string badSetting(const SceneEffects& effects) {
             sleeping.framesBeforeSleep >= 1 && sleeping.framesBeforeSleep <= Settings::kMostFrames,
             "sleeping.framesBeforeSleep", sleeping.framesBeforeSleep, "from 1 to 1000000");
     }
+}
+
+void requireOfLookers(const SceneEffects& effects, Settings& settings) {
     if (effects.culling) {
         const CullingEffect& culling = *effects.culling;
         settings.require(culling.margin >= 0 && culling.margin < Settings::kInfinity,
@@ -156,7 +158,6 @@ std::string badSetting(const SceneEffects& effects) {
         settings.require(radar.frames >= 1 && radar.frames <= Settings::kMostFrames, "radar.frames",
                          radar.frames, "from 1 to 1000000");
     }
-    return settings.error();
 }
 
 }  // namespace
@@ -199,11 +200,13 @@ EffectSet needsOf(Effect effect) noexcept {
 }
 
 std::string effectsError(const SceneEffects& effects) {
-    std::string error = missingNeed(effects.set());
-    if (error.empty()) {
-        error = badSetting(effects);
+    if (const std::string error = missingNeed(effects.set()); !error.empty()) {
+        return error;
     }
-    return error.empty() ? configError(effects.grid) : error;
+    Settings settings;
+    requireOfMovers(effects, settings);
+    requireOfLookers(effects, settings);
+    return settings.error().empty() ? configError(effects.grid) : settings.error();
 }
 
 }  // namespace hashphase
