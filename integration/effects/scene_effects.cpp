@@ -200,7 +200,7 @@ EffectSet needsOf(Effect effect) noexcept {
 }
 
 std::string effectsError(const SceneEffects& effects) {
-    if (const std::string error = missingNeed(effects.set()); !error.empty()) {
+    if (std::string error = missingNeed(effects.set()); !error.empty()) {
         return error;
     }
     Settings settings;
