@@ -18,7 +18,7 @@ namespace {
 /// faster, where nobody is left out.
 template <class Scalar, class Query>
 decltype(auto) askFor(const ObservedScene<Scalar>& scene, Effect effect, const Query& query) {
-    if (scene.effects.empty()) {
+    if (scene.allTakePartIn(effect)) {
         return query(ProxyFilter(acceptAll));
     }
     const auto takesPart = [&scene, effect](ProxyId id) {
@@ -152,7 +152,7 @@ void Observers<Scalar>::cull(const Scene& scene, Scalar moved, ParallelFor /*par
     const Scalar movedSince =
         culling.framesKept == 0 ? moved : std::numeric_limits<Scalar>::infinity();
     const QueryCost cost = askFor(scene, Effect::culling, [&](ProxyFilter filter) {
-        return scene.effects.empty()
+        return scene.allTakePartIn(Effect::culling)
                    ? culling.culler.look(scene.grid, culling.view, movedSince)
                    : culling.culler.look(scene.grid, culling.view, filter, movedSince);
     });
@@ -254,8 +254,10 @@ void Observers<Scalar>::scanRadar(const Scene& scene, Scalar /*moved*/,
                                      .columns = effect.columns,
                                      .rows = effect.rows,
                                      .up = effect.up};
+    const bool allTakePart = scene.allTakePartIn(Effect::radar);
     const auto groupOf = [&](ProxyId id) -> std::uint32_t {
-        if (id.index < scene.effects.size() && !scene.effects[id.index].contains(Effect::radar)) {
+        if (!allTakePart && id.index < scene.effects.size() &&
+            !scene.effects[id.index].contains(Effect::radar)) {
             return effect.groupCount;  // which is counted nowhere
         }
         return id.index < scene.groups.size() ? scene.groups[id.index] : 0;

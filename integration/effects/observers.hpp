@@ -54,6 +54,13 @@ struct ObservedScene {
 
     /// Effects that some proxy takes part in. What nobody does is not looked for.
     EffectSet present = EffectSet::all();
+
+    /// Effects that every proxy is known to take part in. For these nobody is asked one by one.
+    EffectSet common = {};
+
+    [[nodiscard]] bool allTakePartIn(Effect effect) const noexcept {
+        return effects.empty() || common.contains(effect);
+    }
 };
 
 template <class Scalar>

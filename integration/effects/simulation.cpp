@@ -75,7 +75,7 @@ void Simulation<Scalar>::makeParts(const SceneEffects& effects) {
     }
     if (effects.response && !contacts_) {
         contacts_ = std::make_unique<Contacts>();
-        pairing_ = nullptr;  // so that it begins with the present pairs
+        contacts_->isCurrent = false;
     }
     if (effects.sweep && !sweepers_) {
         auto sweepers = std::make_unique<Sweepers>();
@@ -95,12 +95,6 @@ void Simulation<Scalar>::require(Effect effect, const char* call) const {
 }
 
 // --- Bodies --------------------------------------------------------------------------------------
-
-template <class Scalar>
-Aabb<Scalar> Simulation<Scalar>::boxOf(std::size_t body) const {
-    const auto half = Point::Constant(radii_[body]);
-    return {positions_[body] - half, positions_[body] + half};
-}
 
 // Calls visit(column, value) for all that is kept of each body, but for generations and proxies.
 template <class Scalar>
@@ -305,13 +299,11 @@ std::vector<std::string_view> Simulation<Scalar>::phases() const {
 
 template <class Scalar>
 ObservedScene<Scalar> Simulation<Scalar>::observed() const {
-    ObservedScene<Scalar> scene{index_->grid};
-    if (!allTakePartInAll_) {
-        scene.effects = effectsOf_;
-    }
-    scene.groups = groups_;
-    scene.present = present_;
-    return scene;
+    return {.grid = index_->grid,
+            .effects = effectsOf_,
+            .groups = groups_,
+            .present = present_,
+            .common = common_};
 }
 
 template <class Scalar>

@@ -80,9 +80,9 @@ public:
 
     /// Goes on with another declaration: tables of what is new appear, those of what is not declared
     /// any more are gone; bodies are where they are, without velocity if motion is new. Where pairs or
-    /// sweep come or go, response comes, or GridConfig is another one, all bodies are filed anew: pairs
-    /// are told again, and who is in a zone enters it again. Throws as above, and then nothing has
-    /// changed. Cost: up to that of adding all bodies.
+    /// sweep come or go, or GridConfig is another one, all bodies are filed anew: pairs are told again, and
+    /// who is in a zone enters it again. Throws as above, and then nothing has changed. Cost: up to that
+    /// of adding all bodies.
     void declare(const SceneEffects& effects);
 
     [[nodiscard]] const SceneEffects& declared() const noexcept { return effects_; }
@@ -161,7 +161,7 @@ public:
     /// Says which invariant is broken, in a sentence; empty when all hold (ask after advance()):
     /// - Those of the grid and the sweeps, and of the pairs in a frame in which nobody swept.
     /// - Each body's proxy has the body's index and box.
-    /// - Contacts are the present pairs.
+    /// - Contacts are the present pairs, where some body responds.
     [[nodiscard]] std::string validate() const;
 
 private:
@@ -183,7 +183,13 @@ private:
     [[nodiscard]] bool isAlive(std::size_t body) const noexcept {
         return (generations_[body] & 1) != 0;
     }
-    [[nodiscard]] Aabb<Scalar> boxOf(std::size_t body) const;
+    [[nodiscard]] static Aabb<Scalar> boxAt(const Point& position, Scalar radius) {
+        const auto half = Point::Constant(radius);
+        return {position - half, position + half};
+    }
+    [[nodiscard]] Aabb<Scalar> boxOf(std::size_t body) const {
+        return boxAt(positions_[body], radii_[body]);
+    }
     /// Whether anything can change its velocity.
     [[nodiscard]] bool isMovable(std::size_t body) const noexcept {
         return motion_ != nullptr && effectsOf_[body].contains(Effect::motion);
@@ -200,17 +206,25 @@ private:
     void fileAnew();
     void compile();
     void recover() noexcept;
-    template <bool isBounded>
+    enum class Filing { none, plain, measured };
+    template <bool isBounded, Filing filing>
     void moveBodies();
-    template <bool measures>
+    template <Filing filing>
     void fileBodies();
+    template <Filing filing>
+    class BodyFiler;
+    template <Filing filing>
+    void note(const BodyFiler<filing>& filer);
+    [[nodiscard]] static Phase movePhase(bool isBounded, Filing filing);
+    void wakeUp(std::size_t body);
+    template <bool areAwake>
     [[nodiscard]] bool bounce(std::size_t a, std::size_t b, const Point& apart);
+    template <bool allRespond>
+    void respondTo();
 
     // The phases.
     void wake();
     void aim();
-    void move();
-    void moveWithinBounds();
     void stand();
     void file();
     void fileAndMeasure();
@@ -237,7 +251,7 @@ private:
     std::vector<std::uint32_t> groups_;  // where radar is declared
     std::size_t size_ = 0;
     EffectSet present_;  // what some body takes part in
-    bool allTakePartInAll_ = true;
+    EffectSet common_;   // what every body takes part in
 
     // Tables of effects.
     std::unique_ptr<Motion> motion_;

@@ -33,18 +33,27 @@ double timeOfContact(const Vector3<Scalar>& apart, const Vector3<Scalar>& way, S
 
 }  // namespace
 
-// The present pairs, from those of the last frame and what has changed; all three are sorted.
+// The present pairs, from those of the last frame and what has changed; all three are sorted. Where
+// nobody responded in the last frame, all are asked for.
 template <class Scalar>
 void Simulation<Scalar>::gather() {
-    const auto& [born, died] = pairing_->changes;
-    if (born.empty() && died.empty()) {
-        return;
-    }
     using Couple = typename Contacts::Couple;
     const auto coupleOf = [](const ProxyPair& pair) {
         return Couple{pair.first.index, pair.second.index};
     };
     std::vector<Couple>& present = contacts_->present;
+    if (!contacts_->isCurrent) {
+        std::vector<ProxyPair> pairs;
+        pairing_->pairs.collect(pairs);
+        present.resize(pairs.size());
+        std::transform(pairs.begin(), pairs.end(), present.begin(), coupleOf);
+        contacts_->isCurrent = true;
+        return;
+    }
+    const auto [born, died] = pairing_->changes;
+    if (born.empty() && died.empty()) {
+        return;
+    }
     std::vector<Couple>& next = contacts_->next;
     next.clear();
     auto fresh = born.begin();
@@ -65,16 +74,30 @@ void Simulation<Scalar>::gather() {
     present.swap(next);
 }
 
-// Exchanges what two bodies of the same mass have of their velocities along `apart`, from a to b, if they
-// approach each other; one that does not move has all the mass of the world.
 template <class Scalar>
-bool Simulation<Scalar>::bounce(std::size_t a, std::size_t b, const Point& apart) {
+void Simulation<Scalar>::wakeUp(std::size_t body) {
+    if (!sleep_ || !isMovable(body) || sleep_->states[body] == Sleep::State::awake) {
+        return;
+    }
+    sleep_->farCount -= sleep_->states[body] == Sleep::State::far ? 1 : 0;
+    sleep_->states[body] = Sleep::State::awake;
+    sleep_->slowFrames[body] = 0;
+    ++cost_[SceneCounter::wokeUp];
+    stockIsStale_ = true;
+}
+
+// Exchanges what two bodies of the same mass have of their velocities along `apart`, from a to b, if
+// they approach each other, and says whether they do; one that does not move has all the mass of the
+// world.
+template <class Scalar>
+template <bool areAwake>
+inline bool Simulation<Scalar>::bounce(std::size_t a, std::size_t b, const Point& apart) {
     const Scalar distance = apart.norm();
     const Point normal = distance > 0 ? Point(apart / distance) : Point(Point::UnitX());
     Point& velocityA = motion_->velocities[a];
     Point& velocityB = motion_->velocities[b];
-    const bool movesA = isMovable(a);
-    const bool movesB = isMovable(b);
+    const bool movesA = areAwake || isMovable(a);
+    const bool movesB = areAwake || isMovable(b);
     const Scalar approach =
         (movesA ? velocityA.dot(normal) : Scalar(0)) - (movesB ? velocityB.dot(normal) : Scalar(0));
     if (!(approach > 0)) {
@@ -82,45 +105,56 @@ bool Simulation<Scalar>::bounce(std::size_t a, std::size_t b, const Point& apart
     }
     const auto bounciness = static_cast<Scalar>(1 + effects_.response->restitution);
     const Point change = normal * (approach * bounciness / (movesA && movesB ? 2 : 1));
-    for (const auto& [body, velocity, push] :
-         {std::tuple<std::size_t, Point&, Point>{a, velocityA, -change}, {b, velocityB, change}}) {
-        if (!isMovable(body)) {
-            continue;
-        }
-        velocity += push;
-        if (sleep_ && sleep_->states[body] != Sleep::State::awake) {
-            sleep_->farCount -= sleep_->states[body] == Sleep::State::far ? 1 : 0;
-            sleep_->states[body] = Sleep::State::awake;
-            sleep_->slowFrames[body] = 0;
-            ++cost_[SceneCounter::wokeUp];
-            stockIsStale_ = true;
-        }
+    if (movesA) {
+        velocityA -= change;
     }
-    ++cost_[SceneCounter::contactsSolved];
+    if (movesB) {
+        velocityB += change;
+    }
+    if constexpr (!areAwake) {
+        wakeUp(a);
+        wakeUp(b);
+    }
     return true;
 }
 
+// Where all take part and are awake, nobody is asked whether they do.
 template <class Scalar>
 void Simulation<Scalar>::respond() {
-    if (motion_->movers.empty()) {
-        return;
+    const bool someSweep = sweepers_ && !sweepers_->list.empty();
+    const bool allAreAwake = motion_->movers.size() == size_;
+    if (allAreAwake && !someSweep && common_.contains(Effect::response)) {
+        respondTo<true>();
+    } else if (!motion_->movers.empty()) {
+        respondTo<false>();
     }
+}
+
+template <class Scalar>
+template <bool allRespond>
+void Simulation<Scalar>::respondTo() {
     const auto sweeps = [this](std::uint32_t body) {
         return sweepers_ && sweepers_->ofBody[body] != Sweepers::kNone;
     };
+    std::uint64_t tested = 0;
+    std::uint64_t solved = 0;
     for (const auto& [a, b] : contacts_->present) {
-        const EffectSet both = effectsOf_[a] & effectsOf_[b];
-        if (!both.contains(Effect::response) || !(isAwake(a) || isAwake(b)) || sweeps(a) ||
-            sweeps(b)) {
-            continue;
+        if constexpr (!allRespond) {
+            const EffectSet both = effectsOf_[a] & effectsOf_[b];
+            if (!both.contains(Effect::response) || !(isAwake(a) || isAwake(b)) || sweeps(a) ||
+                sweeps(b)) {
+                continue;
+            }
         }
-        ++cost_[SceneCounter::contactsTested];
+        ++tested;
         const Point apart = positions_[b] - positions_[a];
         const Scalar radii = radii_[a] + radii_[b];
         if (apart.squaredNorm() <= radii * radii) {
-            static_cast<void>(bounce(a, b, apart));
+            solved += bounce<allRespond>(a, b, apart) ? 1 : 0;
         }
     }
+    cost_[SceneCounter::contactsTested] += tested;
+    cost_[SceneCounter::contactsSolved] += solved;
 }
 
 // Whom each sweeper meets first, and when.
@@ -171,7 +205,8 @@ void Simulation<Scalar>::land() {
     }
     for (const auto& [body, hit, start, way, time] : sweepers_->list) {
         if (hit != Sweepers::kNone) {
-            static_cast<void>(bounce(body, hit, positions_[hit] - positions_[body]));
+            const Point apart = positions_[hit] - positions_[body];
+            cost_[SceneCounter::contactsSolved] += bounce<false>(body, hit, apart) ? 1 : 0;
         }
     }
 }

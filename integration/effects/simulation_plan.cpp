@@ -18,7 +18,7 @@ void Simulation<Scalar>::takeStock() {
         return;
     }
     present_ = {};
-    EffectSet common = EffectSet::all();
+    common_ = EffectSet::all();
     if (motion_) {
         motion_->movers.clear();
     }
@@ -27,13 +27,12 @@ void Simulation<Scalar>::takeStock() {
             continue;
         }
         present_ = present_ | effectsOf_[body];
-        common = common & effectsOf_[body];
+        common_ = common_ & effectsOf_[body];
         if (isAwake(body)) {
             motion_->movers.push_back(static_cast<std::uint32_t>(body));
         }
     }
     const EffectSet declared = effects_.set();
-    allTakePartInAll_ = (declared - common).isEmpty();
 
     const bool wantsIndex = declared.containsAny(kGridEffects);
     const bool wantsPairs =
@@ -83,6 +82,7 @@ void Simulation<Scalar>::fileAnew() {
     }
     if (contacts_) {
         contacts_->present.clear();
+        contacts_->isCurrent = true;
     }
     pairing_ = std::move(pairing);  // before the grid that it refers to
     index_ = std::move(index);
@@ -94,7 +94,7 @@ void Simulation<Scalar>::compile() {
     const EffectSet running = effects_.set() & present_;
     const auto runs = [running](Effect effect) { return running.contains(effect); };
     phases_.clear();
-    const auto add = [this](bool isWanted, const char* name, void (Simulation::*run)()) {
+    const auto add = [this](bool isWanted, std::string_view name, void (Simulation::*run)()) {
         if (isWanted) {
             static_cast<void>(phases_.push({name, run}));
         }
@@ -105,7 +105,12 @@ void Simulation<Scalar>::compile() {
     const bool isBounded = moves && !((effects_.motion->bounds.min().array() == -infinity).all() &&
                                       (effects_.motion->bounds.max().array() == infinity).all());
     const bool isFiling = index_ && running.containsAny(kGridEffects);
-    const bool measures = effects_.culling && effects_.culling->margin > 0;
+    const bool measures = runs(Effect::culling) && effects_.culling->margin > 0;
+    const bool responds = pairing_ && runs(Effect::response);
+    if (contacts_ && !responds) {
+        contacts_->present.clear();
+        contacts_->isCurrent = false;
+    }
     if (isFiling && !index_->isFiling) {  // nobody looked, so nobody was filed
         for (std::size_t body = 0; body < positions_.size(); ++body) {
             if (isAlive(body)) {
@@ -120,15 +125,18 @@ void Simulation<Scalar>::compile() {
 
     add(moves && runs(Effect::sleeping), "wake", &Simulation::wake);
     add(sweeps, "aim", &Simulation::aim);
-    add(moves, "move", isBounded ? &Simulation::moveWithinBounds : &Simulation::move);
-    add(moves && runs(Effect::terrain), "stand", &Simulation::stand);
-    add(moves && isFiling, "file", measures ? &Simulation::fileAndMeasure : &Simulation::file);
+    const bool stands = moves && runs(Effect::terrain);
+    const Filing filing = measures ? Filing::measured : Filing::plain;
+    const Phase move = movePhase(isBounded, isFiling && !stands ? filing : Filing::none);
+    add(moves, move.name, move.run);
+    add(stands, "stand", &Simulation::stand);
+    add(stands && isFiling, "file", measures ? &Simulation::fileAndMeasure : &Simulation::file);
     add(sweeps, "sweep", &Simulation::sweep);
     add(pairing_ != nullptr, "pair", &Simulation::pair);
-    add(pairing_ && contacts_, "gather", &Simulation::gather);
+    add(responds, "gather", &Simulation::gather);
     add(!pairing_ && isFiling, "update", &Simulation::updateGrid);
-    add(moves && pairing_ && runs(Effect::response), "respond", &Simulation::respond);
-    add(sweeps && contacts_, "meet", &Simulation::meet);
+    add(moves && responds, "respond", &Simulation::respond);
+    add(sweeps && responds, "meet", &Simulation::meet);
     add(sweeps, "land", &Simulation::land);
     add(moves && runs(Effect::sleeping), "rest", &Simulation::rest);
     add(effects_.set().containsAny(kGridEffects - EffectSet{Effect::pairs}), "observe",
@@ -209,9 +217,9 @@ std::string Simulation<Scalar>::validate() const {
                                            : proxy.isNull();
         error = isRight ? "" : "Each body's proxy has the body's index and box: broken.";
     }
-    if (error.empty() && contacts_ && pairing_ &&
+    if (error.empty() && contacts_ && contacts_->isCurrent && pairing_ &&
         contacts_->present.size() != pairing_->pairs.count()) {
-        error = "Contacts are the present pairs: broken.";
+        error = "Contacts are the present pairs, where some body responds: broken.";
     }
     return error;
 }

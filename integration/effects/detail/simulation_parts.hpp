@@ -72,6 +72,7 @@ struct Simulation<Scalar>::Contacts {
 
     std::vector<Couple> present;  // sorted
     std::vector<Couple> next;
+    bool isCurrent = true;  // else nobody responded, and nobody kept them
 };
 
 template <class Scalar>

@@ -303,6 +303,24 @@ TEST(Simulation, TakesUpPairsLater) {
     EXPECT_EQ(simulation.bodyOf(simulation.pairChanges().born[0].second), b);
 }
 
+TEST(Simulation, KeepsContactsFromWhenTheFirstThatRespondsHasCome) {
+    Simulation<float> simulation(declared({Effect::motion, Effect::pairs, Effect::response}));
+    const EffectSet sensor{Effect::motion, Effect::pairs};
+    simulation.add({.effects = sensor});
+    simulation.add({.position = {1, 0, 0}, .effects = sensor});
+    simulation.advance(kStep);
+    EXPECT_EQ(simulation.pairChanges().born.size(), 1U);
+    EXPECT_EQ(simulation.cost()[SceneCounter::contactsTested], 0U);
+    const BodyId a = simulation.add({.position = {10, 0, 0}, .velocity = {1, 0, 0}});
+    const BodyId b = simulation.add({.position = {11.5F, 0, 0}, .velocity = {-1, 0, 0}});
+    simulation.advance(0);
+    EXPECT_EQ(simulation.pairChanges().born.size(), 1U);
+    EXPECT_EQ(simulation.cost()[SceneCounter::contactsTested], 1U);
+    EXPECT_EQ(simulation.velocity(a), Vector3<float>(-1, 0, 0));
+    EXPECT_EQ(simulation.velocity(b), Vector3<float>(1, 0, 0));
+    EXPECT_EQ(simulation.validate(), "");
+}
+
 TEST(Simulation, GivesTheSameOnAnyNumberOfThreads) {
     Simulation<float> one(smallSceneEffects(kSimulated));
     Simulation<float> many(smallSceneEffects(kSimulated));
