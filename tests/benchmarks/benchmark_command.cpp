@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Zlib
 #include <tests/benchmarks/benchmark_command.hpp>
 
-#include <demos/report/stopwatch.hpp>
 #include <demos/console/option_checks.hpp>
 #include <demos/console/progress.hpp>
 #include <demos/console/result_file.hpp>
+#include <demos/report/stopwatch.hpp>
 #include <tests/benchmarks/report.hpp>
 
 #include <memory>
@@ -37,7 +37,8 @@ void declare(CLI::App& app, BenchmarkOptions& options) {
     app.add_option("--contestants", options.contestants,
                    "who takes part, separated by commas (see --list); without dbvt no ratios")
         ->delimiter(',');
-    app.add_option("--frames", options.frames, "measured frames a case (default: 60)")
+    app.add_option("--frames", options.frames,
+                   "measured frames a case (default: 60; of effects: 1000)")
         ->check(CLI::Range(1, 1'000'000));
     app.add_option("--seed", options.seed, "seed of all scenes")
         ->check(CLI::NonNegativeNumber)
@@ -68,6 +69,13 @@ void printLists(const std::vector<Benchmark>& benchmarks, const std::vector<Cont
     }
 }
 
+// As many as were asked for, else as the case needs.
+int framesOf(const Case& toRun, const BenchmarkReport& report) {
+    const bool areAskedFor = report.options.frames || report.options.quick;
+    const int needed = toRun.benchmark->frames;
+    return areAskedFor || needed == 0 ? report.settings.frames : needed;
+}
+
 // What a frame of the case roughly costs, for foretelling how long all will take.
 std::size_t weightOf(const Case& toRun) {
     return toRun.objects * toRun.contestants.size() + 1;
@@ -78,17 +86,20 @@ void runCases(const std::vector<Case>& cases, BenchmarkReport& report, demos::Co
     const auto isTimeUp = [&watch, limit = report.options.timeLimit] {
         return limit && watch.milliseconds() > *limit * 1000;
     };
-    const auto frames =
-        static_cast<std::size_t>(report.settings.frames + report.settings.warmUpFrames);
+    const auto allFramesOf = [&report](const Case& toRun) {
+        return static_cast<std::size_t>(framesOf(toRun, report) + report.settings.warmUpFrames);
+    };
     std::size_t total = 0;
     for (const Case& toRun : cases) {
-        total += weightOf(toRun) * frames;
+        total += weightOf(toRun) * allFramesOf(toRun);
     }
     demos::Progress progress(console.err, demos::progressStyle(console, report.options.quiet),
                              "benchmarks", total);
     std::size_t done = 0;
     for (std::size_t i = 0; i < cases.size() && !isTimeUp(); ++i) {
+        const std::size_t frames = allFramesOf(cases[i]);
         MeasurementSettings settings = report.settings;
+        settings.frames = framesOf(cases[i], report);
         settings.isTimeUp = isTimeUp;
         settings.tellProgress = [&](int framesDone) {
             progress.update(done + weightOf(cases[i]) * static_cast<std::size_t>(framesDone),

@@ -80,6 +80,11 @@ TEST(Benchmarks, MeasureAndCheckEveryCaseAndWriteItDown) {
             EXPECT_TRUE(result["cellSizeRegret"]["regret"].is_number()) << name;
         } else if (result["group"] == "far") {
             EXPECT_EQ(result["contestants"][0]["name"], "home") << name;
+        } else if (result["group"] == "effects") {
+            EXPECT_EQ(result["contestants"][0]["name"], "by-hand") << name;
+            EXPECT_EQ(result["effectsOverheads"].size(), 3U) << name;
+            EXPECT_GT(result["effectsOverheads"][0]["ratio"]["median"], 0) << name;
+            EXPECT_EQ(result["effectsOverheads"][0]["bound"], 1.01) << name;
         } else {
             EXPECT_EQ(result["contestants"][0]["name"], "hash") << name;
             EXPECT_GT(result["contestants"][0]["speedAgainstDbvt"], 0) << name;
@@ -114,6 +119,12 @@ TEST(Benchmarks, RunWhatIsOnRequestOnlyWhenItIsNamed) {
     EXPECT_NE(outcome.out.find("\nremoval/300 "), std::string::npos) << outcome.out;
     EXPECT_EQ(run({"--list"}).out.find("S7"), std::string::npos);
     EXPECT_EQ(run({"--quick", "--quiet"}).out.find("cells-auto"), std::string::npos);
+}
+
+TEST(Benchmarks, TellWhatDeclaredEffectsTakeOfAFrameByHand) {
+    const Outcome outcome = run({"--only", "effects-pairs", "--sizes", "200", "--frames", "45"});
+    EXPECT_EQ(outcome.exitCode, demos::kExitOk) << outcome.out;
+    EXPECT_NE(outcome.out.find("\neffects-pairs/200  nobody "), std::string::npos) << outcome.out;
 }
 
 TEST(Benchmarks, TakeSizesSeedFramesAndContestants) {

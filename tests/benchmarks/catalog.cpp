@@ -183,10 +183,10 @@ std::vector<Benchmark> populationBenchmarks() {
 
 std::vector<Benchmark> catalog(std::uint64_t seed) {
     std::vector<Benchmark> all;
-    for (std::vector<Benchmark>& part :
-         std::array{pairBenchmarks(), randomBenchmarks(seed), populationBenchmarks(),
-                    queryBenchmarks(), crowdBenchmarks(), cullingBenchmarks(), sweepBenchmarks(),
-                    terrainBenchmarks(), cellSizeBenchmarks(), farBenchmarks()}) {
+    for (std::vector<Benchmark>& part : std::array{
+             pairBenchmarks(), randomBenchmarks(seed), populationBenchmarks(), queryBenchmarks(),
+             crowdBenchmarks(), cullingBenchmarks(), sweepBenchmarks(), terrainBenchmarks(),
+             cellSizeBenchmarks(), farBenchmarks(), effectsBenchmarks()}) {
         std::move(part.begin(), part.end(), std::back_inserter(all));
     }
     return all;

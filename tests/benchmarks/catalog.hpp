@@ -24,6 +24,9 @@ struct Benchmark {
     bool takesOtherSizes = true;     // --sizes replaces them
     std::size_t largest = 1'000'000;
 
+    /// Measured, unless asked otherwise; 0: as many as of others.
+    int frames = 0;
+
     /// Only measured when it is asked for by name.
     bool onRequest = false;
 
@@ -52,6 +55,7 @@ struct Benchmark {
 [[nodiscard]] std::vector<Benchmark> terrainBenchmarks();
 [[nodiscard]] std::vector<Benchmark> cellSizeBenchmarks();
 [[nodiscard]] std::vector<Benchmark> farBenchmarks();
+[[nodiscard]] std::vector<Benchmark> effectsBenchmarks();
 
 /// True for contestants that are not too slow for so many objects.
 [[nodiscard]] bool isFastEnough(const ContestantKind& kind, std::size_t objects);

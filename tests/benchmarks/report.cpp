@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Zlib
 #include <tests/benchmarks/report.hpp>
 
-#include <demos/report/report_text.hpp>
 #include <demos/console/format.hpp>
 #include <demos/console/table.hpp>
+#include <demos/report/report_text.hpp>
 #include <tests/benchmarks/cell_size.hpp>
+#include <tests/benchmarks/effects_overhead.hpp>
+#include <tests/benchmarks/effects_workload.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -84,7 +86,8 @@ void printOverview(const BenchmarkReport& report, std::ostream& out) {
         const ContestantResult* other = fastestOther(result);
         // Among the sweeps, `hash` is told nothing of the motions.
         const bool missesByDesign = hash != nullptr && !hash->kind.ours;
-        if (result.group == kCellSizeGroup || missesByDesign) {
+        const bool hasItsOwnTable = result.group == kCellSizeGroup || result.group == kEffectsGroup;
+        if (hasItsOwnTable || missesByDesign) {
             continue;
         }
         const auto speed = [](const ContestantResult* than, const ContestantResult* own) {
@@ -148,6 +151,30 @@ void printRegrets(const BenchmarkReport& report, std::ostream& out) {
         << regrets.size() << " cases.\n\n";
 }
 
+void printEffectsOverheads(const BenchmarkReport& report, std::ostream& out) {
+    Table table({"case", "contestant", "frames", "/ by-hand", "5 %", "95 %", "bound", "holds"});
+    bool isEmpty = true;
+    for (const CaseResult& result : report.cases) {
+        for (const EffectsOverhead& overhead : effectsOverheads(result)) {
+            isEmpty = false;
+            const demos::Spread& ratio = overhead.ratio;
+            table.addRow({result.name, overhead.contestant, std::to_string(result.framesDone),
+                          fixed(ratio.median, 4), fixed(ratio.low, 4), fixed(ratio.high, 4),
+                          overhead.bound ? fixed(*overhead.bound, 2) : "-",
+                          !overhead.bound    ? "-"
+                          : overhead.holds() ? "yes"
+                                             : "NO"});
+        }
+    }
+    if (isEmpty) {
+        return;
+    }
+    out << "Effects: how many times as long as by hand the same frame took, the median over the "
+           "frames and the 5th and 95th percentile.\n\n";
+    table.print(out);
+    out << '\n';
+}
+
 }  // namespace
 
 void printSetting(const BenchmarkReport& report, const std::vector<ContestantKind>& kinds,
@@ -198,6 +225,7 @@ void printSummary(const BenchmarkReport& report, std::ostream& out) {
     printOverview(report, out);
     printRandomSpread(report, out);
     printRegrets(report, out);
+    printEffectsOverheads(report, out);
     if (report.cases.size() < report.casesAsked) {
         out << "The time limit left out " << report.casesAsked - report.cases.size() << " of "
             << report.casesAsked << " cases.\n";

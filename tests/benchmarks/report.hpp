@@ -26,7 +26,8 @@ void printSetting(const BenchmarkReport& report, const std::vector<ContestantKin
 /// One case, as soon as it is done.
 void printCase(const CaseResult& result, std::ostream& out);
 
-/// All cases in a table, the spread of the random scenes, the regret of the cell sizes, the verdict.
+/// All cases in a table, the spread of the random scenes, the regret of the cell sizes, what
+/// declared effects cost, the verdict.
 void printSummary(const BenchmarkReport& report, std::ostream& out);
 
 /// True when no checked answer of ours was wrong in any case.

@@ -3,6 +3,7 @@
 
 #include <demos/report/json_values.hpp>
 #include <tests/benchmarks/cell_size.hpp>
+#include <tests/benchmarks/effects_overhead.hpp>
 
 #include <ostream>
 
@@ -56,6 +57,17 @@ Json regretJson(const CaseResult& result) {
     return {{"regret", regret->regret}, {"bestFixed", regret->bestFixed}};
 }
 
+Json overheadsJson(const CaseResult& result) {
+    Json json = Json::array();
+    for (const EffectsOverhead& overhead : effectsOverheads(result)) {
+        json.push_back({{"contestant", overhead.contestant},
+                        {"ratio", demos::spreadJson(overhead.ratio)},
+                        {"bound", orNull(overhead.bound)},
+                        {"holds", overhead.holds()}});
+    }
+    return json;
+}
+
 Json caseJson(const CaseResult& result) {
     Json json{{"name", result.name},
               {"group", result.group},
@@ -68,6 +80,7 @@ Json caseJson(const CaseResult& result) {
               {"timeLimitHit", result.timeLimitHit},
               {"oursExact", result.oursWereExact()},
               {"cellSizeRegret", regretJson(result)},
+              {"effectsOverheads", overheadsJson(result)},
               {"contestants", Json::array()}};
     for (const ContestantResult& contestant : result.contestants) {
         json["contestants"].push_back(contestantJson(result, contestant));
