@@ -218,7 +218,10 @@ private:
     [[nodiscard]] static Phase movePhase(bool isBounded, Filing filing);
     void wakeUp(std::size_t body);
     template <bool areAwake>
-    [[nodiscard]] bool bounce(std::size_t a, std::size_t b, const Point& apart);
+    [[nodiscard]] bool bounce(std::size_t a, std::size_t b, const Point& apart, Scalar bounciness);
+    [[nodiscard]] static Scalar bouncinessOf(const ResponseEffect& effect) {
+        return static_cast<Scalar>(1 + effect.restitution);
+    }
     template <bool allRespond>
     void respondTo();
 

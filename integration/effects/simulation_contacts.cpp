@@ -91,7 +91,8 @@ void Simulation<Scalar>::wakeUp(std::size_t body) {
 // world.
 template <class Scalar>
 template <bool areAwake>
-inline bool Simulation<Scalar>::bounce(std::size_t a, std::size_t b, const Point& apart) {
+inline bool Simulation<Scalar>::bounce(std::size_t a, std::size_t b, const Point& apart,
+                                       Scalar bounciness) {
     const Scalar distance = apart.norm();
     const Point normal = distance > 0 ? Point(apart / distance) : Point(Point::UnitX());
     Point& velocityA = motion_->velocities[a];
@@ -103,7 +104,6 @@ inline bool Simulation<Scalar>::bounce(std::size_t a, std::size_t b, const Point
     if (!(approach > 0)) {
         return false;
     }
-    const auto bounciness = static_cast<Scalar>(1 + effects_.response->restitution);
     const Point change = normal * (approach * bounciness / (movesA && movesB ? 2 : 1));
     if (movesA) {
         velocityA -= change;
@@ -136,6 +136,9 @@ void Simulation<Scalar>::respondTo() {
     const auto sweeps = [this](std::uint32_t body) {
         return sweepers_ && sweepers_->ofBody[body] != Sweepers::kNone;
     };
+    const std::span<const Point> positions = positions_;
+    const std::span<const Scalar> radii = radii_;
+    const Scalar bounciness = bouncinessOf(*effects_.response);
     std::uint64_t tested = 0;
     std::uint64_t solved = 0;
     for (const auto& [a, b] : contacts_->present) {
@@ -147,10 +150,10 @@ void Simulation<Scalar>::respondTo() {
             }
         }
         ++tested;
-        const Point apart = positions_[b] - positions_[a];
-        const Scalar radii = radii_[a] + radii_[b];
-        if (apart.squaredNorm() <= radii * radii) {
-            solved += bounce<allRespond>(a, b, apart) ? 1 : 0;
+        const Point apart = positions[b] - positions[a];
+        const Scalar reach = radii[a] + radii[b];
+        if (apart.squaredNorm() <= reach * reach) {
+            solved += bounce<allRespond>(a, b, apart, bounciness) ? 1 : 0;
         }
     }
     cost_[SceneCounter::contactsTested] += tested;
@@ -206,7 +209,9 @@ void Simulation<Scalar>::land() {
     for (const auto& [body, hit, start, way, time] : sweepers_->list) {
         if (hit != Sweepers::kNone) {
             const Point apart = positions_[hit] - positions_[body];
-            cost_[SceneCounter::contactsSolved] += bounce<false>(body, hit, apart) ? 1 : 0;
+            const Scalar bounciness = bouncinessOf(*effects_.response);
+            cost_[SceneCounter::contactsSolved] +=
+                bounce<false>(body, hit, apart, bounciness) ? 1 : 0;
         }
     }
 }
