@@ -204,6 +204,7 @@ private:
     void makeParts(const SceneEffects& effects);
     void takeStock();
     void fileAnew();
+    void setFiling(bool isFiling);
     void compile();
     void recover() noexcept;
     enum class Filing { none, plain, measured };

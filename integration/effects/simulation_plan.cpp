@@ -89,6 +89,18 @@ void Simulation<Scalar>::fileAnew() {
     changedOutside_ = true;
 }
 
+// While nobody looks, nobody is filed; the first who does finds all where they are.
+template <class Scalar>
+void Simulation<Scalar>::setFiling(bool isFiling) {
+    for (std::size_t body = 0; isFiling && !index_->isFiling && body < positions_.size(); ++body) {
+        if (isAlive(body)) {
+            index_->grid.move(index_->proxies[body], boxOf(body));
+            changedOutside_ = true;
+        }
+    }
+    index_->isFiling = isFiling;
+}
+
 template <class Scalar>
 void Simulation<Scalar>::compile() {
     const EffectSet running = effects_.set() & present_;
@@ -111,16 +123,8 @@ void Simulation<Scalar>::compile() {
         contacts_->present.clear();
         contacts_->isCurrent = false;
     }
-    if (isFiling && !index_->isFiling) {  // nobody looked, so nobody was filed
-        for (std::size_t body = 0; body < positions_.size(); ++body) {
-            if (isAlive(body)) {
-                index_->grid.move(index_->proxies[body], boxOf(body));
-            }
-        }
-        changedOutside_ = true;
-    }
     if (index_) {
-        index_->isFiling = isFiling;
+        setFiling(isFiling);
     }
 
     add(moves && runs(Effect::sleeping), "wake", &Simulation::wake);

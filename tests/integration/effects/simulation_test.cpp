@@ -53,6 +53,25 @@ TEST(Simulation, FilesExactlyWhatMoves) {
     }
 }
 
+TEST(Simulation, FilesNobodyWhileNobodyLooks) {
+    Simulation<float> simulation(declared({Effect::motion, Effect::culling, Effect::zones}));
+    for (int i = 0; i < 50; ++i) {
+        simulation.add({.position = {3.0F * static_cast<float>(i), 0, 0},
+                        .velocity = {0, 1, 0},
+                        .effects = {Effect::motion}});
+    }
+    for (int frame = 0; frame < 5; ++frame) {
+        const SceneCost& cost = simulation.advance(kStep);
+        EXPECT_EQ(cost[SceneCounter::bodiesMoved], 50U);
+        EXPECT_EQ(cost[SceneCounter::proxiesHashed], 0U);
+        EXPECT_EQ(cost[SceneCounter::entriesFiled], 0U);
+    }
+    simulation.add({});
+    EXPECT_EQ(simulation.advance(kStep)[SceneCounter::proxiesHashed], 51U);
+    EXPECT_EQ(simulation.validate(), "");
+    EXPECT_EQ(simulation.observers().culler().count(), 1U);
+}
+
 TEST(Simulation, SweepsExactlyWhatIsFastForItsSize) {
     SceneEffects effects = declared({Effect::motion, Effect::pairs, Effect::sweep});
     effects.sweep->fastFrom = 1;
