@@ -19,8 +19,7 @@
 // response     every object's answer to contacts       bodies fall through each other, contacts are still
 //                                                      told
 // sweep        m_useContinuous; CCD thresholds for     bodies that move by more than half their width in
-//              who is fast for its size                a step may pass what is thin; with fastFrom above 0.5,
-//                                                      which is the default, those between still may
+//              who is fast for its size                a step may pass what is thin
 // sleeping     deactivation, linear thresholds         nothing: bodies that rest go on being computed
 // rotation     angular factors                         bodies keep their orientation
 // friction     all frictions                           bodies slide for ever
