@@ -160,6 +160,7 @@ void Observers<Scalar>::cull(const Scene& scene, Scalar moved, ParallelFor /*par
     culling.framesKept = 0;
     cost_[SceneCounter::viewsFound] = cost.rowsVisited + cost.boxesTested > 0 ? 1 : 0;
     cost_[SceneCounter::cellRowsCulled] = cost.rowsVisited;
+    cost_[SceneCounter::cellRowsVisited] += cost.rowsVisited;
     cost_[SceneCounter::cullingBoxesTested] = cost.boxesTested;
 }
 
@@ -237,6 +238,7 @@ void Observers<Scalar>::watchZones(const Scene& scene, Scalar /*moved*/, Paralle
         watch.events = watch.zones.update(scene.grid, counts, parallelFor, isDueZone);
     });
     cost_[SceneCounter::zonesTested] = watch.zones.size() - lateCount;
+    cost_[SceneCounter::cellRowsVisited] += watch.zones.lastCost().rowsVisited;
     cost_[SceneCounter::zoneBoxesTested] = watch.zones.lastCost().boxesTested;
     cost_[SceneCounter::zonesLate] = lateCount;
 }
@@ -265,6 +267,7 @@ void Observers<Scalar>::scanRadar(const Scene& scene, Scalar /*moved*/,
     RadarWatch& watch = *radar_;
     watch.counts = watch.radar.scan(scene.grid, window, effect.groupCount, groupOf);
     cost_[SceneCounter::radarScans] = 1;
+    cost_[SceneCounter::cellRowsVisited] += watch.radar.lastCost().rowsVisited;
     cost_[SceneCounter::radarBoxesTested] = watch.radar.lastCost().boxesTested;
 }
 
@@ -320,14 +323,21 @@ std::span<const std::uint32_t> Observers<Scalar>::radarCounts() const {
 // --- When it is asked for ------------------------------------------------------------------------
 
 template <class Scalar>
+void Observers<Scalar>::noteAsked(SceneCounter count, SceneCounter boxesTested,
+                                  const QueryCost& cost) {
+    ++asked_[count];
+    asked_[boxesTested] += cost.boxesTested;
+    asked_[SceneCounter::cellRowsVisited] += cost.rowsVisited;
+}
+
+template <class Scalar>
 Picked<Scalar> Observers<Scalar>::pick(const Scene& scene, const RayRegion<Scalar>& ray) {
     require(Effect::picking, "pick()");
     QueryCost cost;
     Picked<Scalar> picked = askFor(scene, Effect::picking, [&](ProxyFilter filter) {
         return pickNearest(scene.grid, ray, filter, &cost);
     });
-    ++asked_[SceneCounter::picks];
-    asked_[SceneCounter::pickBoxesTested] += cost.boxesTested;
+    noteAsked(SceneCounter::picks, SceneCounter::pickBoxesTested, cost);
     return picked;
 }
 
@@ -339,8 +349,7 @@ Picked<Scalar> Observers<Scalar>::pick(const Scene& scene, const RayRegion<Scala
     Picked<Scalar> picked = askFor(scene, Effect::picking, [&](ProxyFilter filter) {
         return pickNearest(scene.grid, ray, test, filter, &cost);
     });
-    ++asked_[SceneCounter::picks];
-    asked_[SceneCounter::pickBoxesTested] += cost.boxesTested;
+    noteAsked(SceneCounter::picks, SceneCounter::pickBoxesTested, cost);
     return picked;
 }
 
@@ -354,8 +363,7 @@ std::span<const ProxyId> Observers<Scalar>::select(const Scene& scene, const Vie
     askFor(scene, Effect::boxSelection, [&](ProxyFilter filter) {
         return hashphase::select(scene.grid, view, a, b, selected, containment, filter, &cost);
     });
-    ++asked_[SceneCounter::selections];
-    asked_[SceneCounter::selectionBoxesTested] += cost.boxesTested;
+    noteAsked(SceneCounter::selections, SceneCounter::selectionBoxesTested, cost);
     return selected;
 }
 

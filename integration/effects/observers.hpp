@@ -169,6 +169,7 @@ private:
         return *part;
     }
     void require(Effect effect, const char* call) const;
+    void noteAsked(SceneCounter count, SceneCounter boxesTested, const QueryCost& cost);
 
     SceneEffects effects_;
     detail::FixedList<Phase, 4> phases_;

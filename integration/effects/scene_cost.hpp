@@ -28,6 +28,7 @@ enum class SceneCounter : std::uint8_t {
     trianglesTested,
     proxiesHashed,
     entriesFiled,
+    cellRowsVisited,
     boxesTested,
     couplesWatched,
     pairsBorn,
@@ -84,7 +85,7 @@ struct SceneItem {
     std::string_view description;
 };
 
-inline constexpr std::size_t kSceneCounterCount = 34;
+inline constexpr std::size_t kSceneCounterCount = 35;
 inline constexpr std::size_t kSceneTableCount = 18;
 
 /// In the order of SceneCounter, and of SceneTable.
