@@ -36,6 +36,7 @@ struct Observers<Scalar>::Culling {
     Culler<Scalar> culler;
     ConvexRegion<Scalar> view;
     bool hasMoved = true;          // the view, since the set was found
+    bool hasMissed = false;        // a frame in which boxes may have moved
     std::uint32_t framesKept = 0;  // since then, by declaration
 };
 
@@ -129,8 +130,15 @@ const SceneCost& Observers<Scalar>::observe(const Scene& scene, Scalar moved,
                                             ParallelFor parallelFor) {
     cost_ = asked_;
     asked_ = {};
-    // Whoever took part the last time and does not any more has to be forgotten.
+    if (zones_) {
+        zones_->events = {};
+    }
+    // Whoever took part the last time and does not any more has to be forgotten, and not late.
     const EffectSet wanted = scene.present | presentBefore_;
+    farewell_ = presentBefore_ - scene.present;
+    if (culling_ && !wanted.contains(Effect::culling)) {
+        culling_->hasMissed = true;
+    }
     for (const Phase& phase : phases_) {
         if (wanted.contains(phase.effect)) {
             (this->*phase.run)(scene, moved, parallelFor);
@@ -144,19 +152,22 @@ const SceneCost& Observers<Scalar>::observe(const Scene& scene, Scalar moved,
 template <class Scalar>
 void Observers<Scalar>::cull(const Scene& scene, Scalar moved, ParallelFor /*parallelFor*/) {
     Culling& culling = *culling_;
-    if (!culling.hasMoved && culling.framesKept + 1 < effects_.culling->restingCameraFrames) {
+    if (!culling.hasMoved && !farewell_.contains(Effect::culling) &&
+        culling.framesKept + 1 < effects_.culling->restingCameraFrames) {
         ++culling.framesKept;
         cost_[SceneCounter::framesCulledLate] = 1;
         return;
     }
-    const Scalar movedSince =
-        culling.framesKept == 0 ? moved : std::numeric_limits<Scalar>::infinity();
+    const bool isKnown = culling.framesKept == 0 && !culling.hasMissed;
+    const Scalar movedSince = isKnown ? moved : std::numeric_limits<Scalar>::infinity();
+    culling.hasMissed = true;  // should the query throw
     const QueryCost cost = askFor(scene, Effect::culling, [&](ProxyFilter filter) {
         return scene.allTakePartIn(Effect::culling)
                    ? culling.culler.look(scene.grid, culling.view, movedSince)
                    : culling.culler.look(scene.grid, culling.view, filter, movedSince);
     });
     culling.hasMoved = false;
+    culling.hasMissed = false;
     culling.framesKept = 0;
     cost_[SceneCounter::viewsFound] = cost.rowsVisited + cost.boxesTested > 0 ? 1 : 0;
     cost_[SceneCounter::cellRowsCulled] = cost.rowsVisited;
@@ -170,7 +181,7 @@ void Observers<Scalar>::lookAround(const Scene& scene, Scalar /*moved*/, Paralle
     const ProximityEffect& effect = *effects_.proximity;
     Proximity& proximity = *proximity_;
     proximity.makeRoom(scene.grid.indexLimit());
-    const bool allLook = !interest_ || isDue(effect.farFrames);
+    const bool allLook = !interest_ || isDue(Effect::proximity, effect.farFrames);
     const auto isWithin = [&](ProxyId id, double distance) {
         const Vector3<double> offset =
             (positionOf(scene.grid.box(id)) - *interest_).template cast<double>();
@@ -211,7 +222,7 @@ template <class Scalar>
 void Observers<Scalar>::watchZones(const Scene& scene, Scalar /*moved*/, ParallelFor parallelFor) {
     const ZonesEffect& effect = *effects_.zones;
     ZoneWatch& watch = *zones_;
-    const bool allAreDue = !interest_ || isDue(effect.farFrames);
+    const bool allAreDue = !interest_ || isDue(Effect::zones, effect.farFrames);
     Aabb<Scalar> near;
     if (!allAreDue) {
         const auto half = Point::Constant(static_cast<Scalar>(effect.interestRadius)).eval();
@@ -247,7 +258,7 @@ template <class Scalar>
 void Observers<Scalar>::scanRadar(const Scene& scene, Scalar /*moved*/,
                                   ParallelFor /*parallelFor*/) {
     const RadarEffect& effect = *effects_.radar;
-    if (!isDue(effect.frames)) {
+    if (!isDue(Effect::radar, effect.frames)) {
         cost_[SceneCounter::radarsLate] = 1;
         return;
     }

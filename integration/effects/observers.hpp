@@ -158,8 +158,8 @@ private:
     void watchZones(const Scene& scene, Scalar moved, ParallelFor parallelFor);
     void scanRadar(const Scene& scene, Scalar moved, ParallelFor parallelFor);
     void compile();
-    [[nodiscard]] bool isDue(std::uint32_t everyFrames) const noexcept {
-        return frame_ % everyFrames == 0;
+    [[nodiscard]] bool isDue(Effect effect, std::uint32_t everyFrames) const noexcept {
+        return frame_ % everyFrames == 0 || farewell_.contains(effect);
     }
     template <class Part>
     static Part& partOf(const std::unique_ptr<Part>& part, Effect effect, const char* call) {
@@ -175,6 +175,8 @@ private:
     detail::FixedList<Phase, 4> phases_;
     std::uint64_t frame_ = 0;
     EffectSet presentBefore_;
+    EffectSet
+        farewell_;  // what somebody took part in in the last frame, and nobody does in this one
     std::optional<Point> interest_;
     SceneCost cost_;   // of the last frame
     SceneCost asked_;  // of picks and selections since

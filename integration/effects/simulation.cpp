@@ -50,6 +50,10 @@ void Simulation<Scalar>::declare(const SceneEffects& effects) {
     if (!now.contains(Effect::radar)) {
         std::vector<std::uint32_t>().swap(groups_);
     }
+    if (sleep_ && effects_.sleeping &&
+        effects_.sleeping->interestRadius != effects.sleeping->interestRadius) {
+        sleep_->mustLook = true;
+    }
     effects_ = effects;
     takeStock();
 }
@@ -223,11 +227,7 @@ void Simulation<Scalar>::setVelocity(BodyId id, const Point& velocity) {
     require(Effect::motion, "setVelocity()");
     const std::size_t body = indexOf(id);
     motion_->velocities[body] = velocity;
-    if (sleep_ && sleep_->states[body] == Sleep::State::slow) {
-        sleep_->states[body] = Sleep::State::awake;
-        sleep_->slowFrames[body] = 0;
-        stockIsStale_ = true;
-    }
+    wakeUp(body);
 }
 
 template <class Scalar>
@@ -246,6 +246,7 @@ template <class Scalar>
 void Simulation<Scalar>::setPosition(BodyId id, const Point& position) {
     const std::size_t body = indexOf(id);
     positions_[body] = position;
+    wakeUp(body);
     if (index_) {
         index_->grid.move(index_->proxies[body], boxOf(body));
     }

@@ -99,10 +99,19 @@ inline bool Simulation<Scalar>::bounce(std::size_t a, std::size_t b, const Point
     Point& velocityB = motion_->velocities[b];
     const bool movesA = areAwake || isMovable(a);
     const bool movesB = areAwake || isMovable(b);
-    const Scalar approach =
-        (movesA ? velocityA.dot(normal) : Scalar(0)) - (movesB ? velocityB.dot(normal) : Scalar(0));
+    // Who sleeps stands still, whatever its velocity will be.
+    const Scalar approach = (areAwake || isAwake(a) ? velocityA.dot(normal) : Scalar(0)) -
+                            (areAwake || isAwake(b) ? velocityB.dot(normal) : Scalar(0));
     if (!(approach > 0)) {
         return false;
+    }
+    if constexpr (!areAwake) {
+        for (const std::size_t body : {a, b}) {
+            if (isMovable(body) && !isAwake(body)) {
+                motion_->velocities[body].setZero();
+                wakeUp(body);
+            }
+        }
     }
     const Point change = normal * (approach * bounciness / (movesA && movesB ? 2 : 1));
     if (movesA) {
@@ -110,10 +119,6 @@ inline bool Simulation<Scalar>::bounce(std::size_t a, std::size_t b, const Point
     }
     if (movesB) {
         velocityB += change;
-    }
-    if constexpr (!areAwake) {
-        wakeUp(a);
-        wakeUp(b);
     }
     return true;
 }
@@ -187,7 +192,7 @@ void Simulation<Scalar>::meet() {
             }
         }
     }
-    for (const auto& [body, hit, start, way, time] : list) {
+    for (const auto& [body, hit, start, velocity, way, time] : list) {
         if (hit != Sweepers::kNone) {
             const Scalar radii = radii_[hit] + radii_[body];
             const Point apartInTheEnd = positions_[hit] + wayOf(hit) - start - way;
@@ -200,13 +205,16 @@ void Simulation<Scalar>::meet() {
 // Sweepers go as far as what they meet first, and bounce off it. What is left of the frame is lost.
 template <class Scalar>
 void Simulation<Scalar>::land() {
-    for (const auto& [body, hit, start, way, time] : sweepers_->list) {
+    for (const auto& [body, hit, start, velocity, way, time] : sweepers_->list) {
         positions_[body] = start + way * static_cast<Scalar>(time);
         index_->grid.move(index_->proxies[body], boxOf(body));
         pairing_->sweeps->set(index_->proxies[body], Point::Zero());
         sweepers_->ofBody[body] = Sweepers::kNone;
+        if (hit != Sweepers::kNone) {
+            motion_->velocities[body] = velocity;
+        }
     }
-    for (const auto& [body, hit, start, way, time] : sweepers_->list) {
+    for (const auto& [body, hit, start, velocity, way, time] : sweepers_->list) {
         if (hit != Sweepers::kNone) {
             const Point apart = positions_[hit] - positions_[body];
             const Scalar bounciness = bouncinessOf(*effects_.response);

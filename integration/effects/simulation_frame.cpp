@@ -73,10 +73,11 @@ template <class Scalar>
 void Simulation<Scalar>::wake() {
     Sleep& sleep = *sleep_;
     const std::optional<Point>& interest = observers_.interest();
-    if (sleep.farCount == 0 || sleep.interest == interest) {
+    if (sleep.farCount == 0 || (sleep.interest == interest && !sleep.mustLook)) {
         return;
     }
     sleep.interest = interest;
+    sleep.mustLook = false;
     const auto radius = static_cast<Scalar>(effects_.sleeping->interestRadius);
     for (std::size_t body = 0; body < positions_.size(); ++body) {
         if (!isAlive(body) || sleep.states[body] != Sleep::State::far) {
@@ -103,7 +104,8 @@ void Simulation<Scalar>::aim() {
         const Scalar distance = motion_->velocities[body].norm() * seconds_;
         if (effectsOf_[body].contains(Effect::sweep) && distance > 0 &&
             distance >= fastFrom * 2 * radii_[body]) {
-            sweepers.list.push_back({.body = body, .start = positions_[body]});
+            sweepers.list.push_back(
+                {.body = body, .start = positions_[body], .velocity = motion_->velocities[body]});
         }
     }
 }
@@ -146,7 +148,12 @@ private:
 template <class Scalar>
 template <typename Simulation<Scalar>::Filing filing>
 void Simulation<Scalar>::note(const BodyFiler<filing>& filer) {
-    farthestMove_ = filer.farthest();
+    if constexpr (filing == Filing::measured) {
+        farthestMove_ = filer.farthest();
+    } else if constexpr (filing == Filing::plain) {
+        // Nobody knows how far.
+        farthestMove_ = motion_->movers.empty() ? 0 : std::numeric_limits<Scalar>::infinity();
+    }
     cost_[SceneCounter::proxiesHashed] += filing == Filing::none ? 0 : motion_->movers.size();
 }
 

@@ -138,7 +138,7 @@ void Simulation<Scalar>::compile() {
     add(sweeps, "sweep", &Simulation::sweep);
     add(pairing_ != nullptr, "pair", &Simulation::pair);
     add(responds, "gather", &Simulation::gather);
-    add(!pairing_ && isFiling, "update", &Simulation::updateGrid);
+    add(index_ && !pairing_, "update", &Simulation::updateGrid);
     add(moves && responds, "respond", &Simulation::respond);
     add(sweeps && responds, "meet", &Simulation::meet);
     add(sweeps, "land", &Simulation::land);

@@ -38,6 +38,7 @@ struct Simulation<Scalar>::Sleep {
     std::vector<std::uint32_t> slowFrames;  // how many in a row, until now
     std::size_t farCount = 0;
     std::optional<Point> interest;  // of the last look at who is far
+    bool mustLook = false;          // again, though it is the same
 };
 
 template <class Scalar>
@@ -83,6 +84,7 @@ struct Simulation<Scalar>::Sweepers {
         std::uint32_t body;
         std::uint32_t hit = kNone;  // whom it meets first
         Point start;
+        Point velocity;  // there; a wall behind what it meets has not turned it back
         Point way = Point::Zero();
         double time = 1;  // when, as a share of the frame
     };

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -60,6 +61,7 @@ TEST(Simulation, FilesNobodyWhileNobodyLooks) {
                         .velocity = {0, 1, 0},
                         .effects = {Effect::motion}});
     }
+    simulation.advance(kStep);  // all are new
     for (int frame = 0; frame < 5; ++frame) {
         const SceneCost& cost = simulation.advance(kStep);
         EXPECT_EQ(cost[SceneCounter::bodiesMoved], 50U);
@@ -272,6 +274,86 @@ TEST(Simulation, PutsTheSlowToSleepUntilSomebodyHitsThem) {
     EXPECT_FALSE(simulation.isAsleep(slow));
     EXPECT_EQ(sum[SceneCounter::wokeUp], 1U);
     EXPECT_GT(simulation.position(slow).x(), 1);
+}
+
+// --- What is easily missed -------------------------------------------------------------------------
+
+TEST(Simulation, SeesWhoFliesIntoAViewFromTheOrigin) {
+    Simulation<float> simulation(declared({Effect::motion, Effect::culling}));
+    using Plane = Eigen::Hyperplane<float, 3>;
+    const std::array planes{Plane(Point(1, 0, 1), 0), Plane(Point(-1, 0, 1), 0),
+                            Plane(Point(0, 1, 1), 0), Plane(Point(0, -1, 1), 0)};
+    simulation.observers().setView(ConvexRegion<float>(planes));
+    simulation.add({.position = {0, 0, -50}, .velocity = {0, 0, 10}});
+    for (int frame = 0; frame < 12; ++frame) {
+        simulation.advance(1);
+    }
+    EXPECT_EQ(simulation.observers().culler().count(), 1U);
+}
+
+TEST(Simulation, TellsOnceThatTheLastOneHasLeft) {
+    SceneEffects effects =
+        declared({Effect::motion, Effect::zones, Effect::radar, Effect::culling});
+    effects.zones = ZonesEffect{.interestRadius = 10, .farFrames = 4};
+    effects.radar->frames = 4;
+    effects.culling->restingCameraFrames = 4;
+    Simulation<float> simulation(effects);
+    simulation.observers().setInterest(Point(0, 0, 0));
+    static_cast<void>(simulation.observers().zones().add({SphereRegion<float>({100, 0, 0}, 5)}));
+    const BodyId body = simulation.add({.position = {100, 0, 0}});
+    simulation.advance(kStep);
+    EXPECT_EQ(simulation.observers().zoneEvents().entered.size(), 1U);
+    simulation.remove(body);
+    simulation.advance(kStep);
+    EXPECT_EQ(simulation.observers().zoneEvents().left.size(), 1U);
+    EXPECT_EQ(simulation.observers().culler().count(), 0U);
+    for (const std::uint32_t count : simulation.observers().radarCounts()) {
+        ASSERT_EQ(count, 0U);
+    }
+    simulation.advance(kStep);
+    EXPECT_TRUE(simulation.observers().zoneEvents().left.empty());
+}
+
+TEST(Simulation, WakesWhoIsPutElsewhere) {
+    SceneEffects effects = declared({Effect::motion, Effect::sleeping});
+    effects.sleeping->interestRadius = 10;
+    Simulation<float> simulation(effects);
+    const BodyId body = simulation.add({.position = {50, 0, 0}, .velocity = {0, 1, 0}});
+    const BodyId other = simulation.add({.position = {60, 0, 0}, .velocity = {0, 1, 0}});
+    simulation.observers().setInterest(Point(0, 0, 0));
+    simulation.advance(kStep);
+    EXPECT_TRUE(simulation.isAsleep(body));
+    simulation.setPosition(body, {1, 0, 0});
+    simulation.advance(kStep);
+    EXPECT_FALSE(simulation.isAsleep(body));
+    EXPECT_TRUE(simulation.isAsleep(other));
+    effects.sleeping->interestRadius = 100;
+    simulation.declare(effects);
+    simulation.advance(kStep);
+    EXPECT_FALSE(simulation.isAsleep(other));
+}
+
+TEST(Simulation, HitsWhatStandsBeforeAWall) {
+    SceneEffects effects =
+        declared({Effect::motion, Effect::pairs, Effect::response, Effect::sweep});
+    effects.motion->bounds = {Vector3<double>(-100, -100, -100), Vector3<double>(10, 100, 100)};
+    Simulation<float> simulation(effects);
+    const BodyId bullet = simulation.add({.radius = 0.5F, .velocity = {20, 0, 0}});
+    const BodyId ball = simulation.add({.position = {5, 0, 0}, .radius = 0.5F});
+    simulation.advance(1);
+    EXPECT_NEAR(simulation.position(bullet).x(), 4, 1e-5F);
+    EXPECT_EQ(simulation.velocity(bullet), Point(0, 0, 0));
+    EXPECT_EQ(simulation.velocity(ball), Point(20, 0, 0));
+}
+
+TEST(Simulation, UsesIndicesAgainThoughNobodyLooks) {
+    Simulation<float> simulation(declared({Effect::motion, Effect::culling}));
+    for (int i = 0; i < 200; ++i) {
+        const BodyId body = simulation.add({.effects = {Effect::motion}});
+        simulation.advance(kStep);
+        simulation.remove(body);
+    }
+    EXPECT_LT(simulation.grid().indexLimit(), 20U);
 }
 
 // --- Changes -------------------------------------------------------------------------------------
