@@ -222,6 +222,16 @@ std::size_t Grid<Scalar>::rayMemoryBytes() const noexcept {
 }
 
 template <class Scalar>
+void Grid<Scalar>::releaseRayMemory() noexcept {
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
+                     "What rays read is not freed within a query.");
+    for (TableTree* table : {&mobileTree_, &restingTree_}) {
+        table->tree = {};
+        table->isStale.store(true, std::memory_order_relaxed);
+    }
+}
+
+template <class Scalar>
 std::string Grid<Scalar>::validate() const {
     if (!fileIfMany()) {
         return {};  // within a query that has changed the grid nothing of the kind holds

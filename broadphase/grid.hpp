@@ -208,6 +208,9 @@ public:
     /// Those of them that only rays read; 0 before the first one.
     [[nodiscard]] std::size_t rayMemoryBytes() const noexcept;
 
+    /// Frees these; the next ray makes them anew.
+    void releaseRayMemory() noexcept;
+
     /// Says which invariant is broken, in a sentence; empty when all hold:
     /// - Every proxy alive is filed in exactly one table, or waits in the list of changes, or is NaN.
     /// - A filed proxy's entry has the proxy's box.
@@ -312,6 +315,8 @@ private:
 
     // What is left where memory ran out, and Pairs can go on from: everything is mobile.
     void wakeAll() noexcept;
+    // What Pairs begin with: as if all had been added since the last update.
+    void forgetLastUpdate() noexcept;
 
     /// Returns false where that is impossible: from within a query, which reads the tables.
     [[nodiscard]] bool fileIfMany() const;

@@ -180,6 +180,18 @@ UpdateCost Grid<Scalar>::update(ParallelFor parallelFor) {
     return endUpdate();
 }
 
+template <class Scalar>
+void Grid<Scalar>::forgetLastUpdate() noexcept {
+    for (std::uint32_t slot = 0; slot < records_.size(); ++slot) {
+        if (isAlive(slot)) {
+            noteChange(slot);
+        }
+        records_[slot].before = nanBox();
+    }
+    boxesAtUpdate_.clear();
+    isTorn_ = false;
+}
+
 // Whoever has been put to rest by now is still listed among the mobile ones; who rested before is not.
 template <class Scalar>
 void Grid<Scalar>::wakeAll() noexcept {
@@ -249,6 +261,7 @@ template UpdateCost Grid<float>::endUpdate() noexcept;
 template void Grid<float>::countUpdatesAnew() noexcept;
 template UpdateCost Grid<float>::update(ParallelFor);
 template void Grid<float>::wakeAll() noexcept;
+template void Grid<float>::forgetLastUpdate() noexcept;
 template bool Grid<float>::fileIfMany() const;
 template void Grid<float>::growTrees() const;
 template void Grid<double>::stage(ParallelFor);
@@ -261,6 +274,7 @@ template UpdateCost Grid<double>::endUpdate() noexcept;
 template void Grid<double>::countUpdatesAnew() noexcept;
 template UpdateCost Grid<double>::update(ParallelFor);
 template void Grid<double>::wakeAll() noexcept;
+template void Grid<double>::forgetLastUpdate() noexcept;
 template bool Grid<double>::fileIfMany() const;
 template void Grid<double>::growTrees() const;
 

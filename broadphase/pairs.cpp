@@ -17,7 +17,7 @@ Pairs<Scalar>::Pairs(Grid<Scalar>& grid, Sweeps<Scalar>* sweeps) : grid_(grid), 
     HASHPHASE_ASSERT(sweeps_ == nullptr || &sweeps_->grid_ == &grid_,
                      "Sweeps and Pairs are of the same grid.");
     HASHPHASE_ASSERT(!grid_.hasPairs_, "A grid has at most one Pairs.");
-    HASHPHASE_ASSERT(grid_.records_.empty(), "Pairs are created before the grid's first proxy.");
+    grid_.forgetLastUpdate();
     grid_.hasPairs_ = true;
 }
 

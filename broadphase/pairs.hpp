@@ -13,8 +13,9 @@
 // Failure   An exception, of the filter or for want of memory, is passed on. After one from announce()
 //           or refilter() nothing has happened; one from update() has ended nothing: the frame goes
 //           on, and the next update() tells all that has changed since the last one that returned.
-// Misuse    one Pairs per grid, created before the grid's first proxy; and no call from within the
-//           filter; asserted.
+// Late      created over a grid that has proxies already, they begin as if these were all new; they may
+//           go, and others come, between two updates.
+// Misuse    one Pairs per grid at a time; and no call from within the filter; asserted.
 
 #include <broadphase/detail/box_columns.hpp>
 #include <broadphase/detail/flat_set.hpp>
@@ -87,7 +88,8 @@ template <class Scalar>
 class Pairs {
 public:
     /// Keeps a reference to the grid, and to the sweeps over it if there are any, which must outlive
-    /// this object. They are of the same grid, which has no proxy yet and no other Pairs (asserted).
+    /// this object. They are of the same grid, which has no other Pairs (asserted). The first update()
+    /// tells all pairs as born. Cost: O(proxies), and all that rested wakes.
     explicit Pairs(Grid<Scalar>& grid, Sweeps<Scalar>* sweeps = nullptr);
     ~Pairs();
 

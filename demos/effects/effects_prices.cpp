@@ -14,10 +14,6 @@
 namespace hashphase::demos {
 namespace {
 
-/// Those that change where bodies are: with others the same, so are all results.
-constexpr EffectSet kDynamics{Effect::motion, Effect::terrain, Effect::response, Effect::sweep,
-                              Effect::sleeping};
-
 constexpr std::uint32_t kProbedFrames = 20;  // one in so many
 
 /// What of an effect's price is taken from what.
@@ -138,12 +134,12 @@ private:
     void compareResults() {
         for (std::size_t i = 0; i < worlds_.size(); ++i) {
             const EffectSet effects = prices_.variants[i].effects;
-            if ((effects & kDynamics) != (prices_.whole().effects & kDynamics)) {
+            if ((effects & kMovingEffects) != (prices_.whole().effects & kMovingEffects)) {
                 continue;
             }
             differences_ += worlds_[i]->placesResult() != worlds_[0]->placesResult() ? 1 : 0;
             for (const Effect effect : kAllEffects) {
-                if (effects.contains(effect) && !kDynamics.contains(effect)) {
+                if (effects.contains(effect) && !kMovingEffects.contains(effect)) {
                     ++comparisons_;
                     differences_ +=
                         worlds_[i]->resultOf(effect) != worlds_[0]->resultOf(effect) ? 1 : 0;

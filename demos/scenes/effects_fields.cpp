@@ -13,9 +13,8 @@ namespace hashphase::demos {
 namespace {
 
 constexpr std::uint32_t kMostWhole = std::numeric_limits<std::uint32_t>::max();
-constexpr std::uint32_t kMostFrames = 1'000'000;
+constexpr std::uint32_t kMostFrames = kMostEffectFrames;
 constexpr std::uint32_t kMostCounts = static_cast<std::uint32_t>(Radar<float>::kMostCounts);
-constexpr double kFinite = NumberField::kFinite;
 constexpr double kInfinite = NumberField::kInfinite;
 
 constexpr std::array kSweeps{
@@ -144,9 +143,10 @@ constexpr std::array kFields{
     EffectsField{"effects", "boxSelection", "what is in a rectangle that is dragged", "",
                  EffectField{Effect::boxSelection}},
     EffectsField{"effects", "culling", "what a camera sees", "", EffectField{Effect::culling}},
-    EffectsField{"effects.culling", "margin",
-                 "the set is kept while it is known to have all that is seen", "m",
-                 NumberField{0, kFinite, setting<&SceneEffects::culling, &CullingEffect::margin>}},
+    EffectsField{
+        "effects.culling", "margin", "the set is kept while it is known to have all that is seen",
+        "m",
+        NumberField{0, kMostEffectLength, setting<&SceneEffects::culling, &CullingEffect::margin>}},
     EffectsField{"effects.culling", "restingCameraFrames",
                  "while the camera rests, the set is found in every n-th frame", "",
                  WholeField{1, kMostFrames,
@@ -174,9 +174,9 @@ constexpr std::array kFields{
         "effects.zones", "farFrames", "who is in far zones is found in every n-th frame", "",
         WholeField{1, kMostFrames, setting<&SceneEffects::zones, &ZonesEffect::farFrames>}},
     EffectsField{"effects", "radar", "counts by coarse cells", "", EffectField{Effect::radar}},
-    EffectsField{
-        "effects.radar", "cellSize", "edge of a cell", "m",
-        NumberField{0, kFinite, setting<&SceneEffects::radar, &RadarEffect::cellSize>, true}},
+    EffectsField{"effects.radar", "cellSize", "edge of a cell", "m",
+                 NumberField{1 / kMostEffectLength, kMostEffectLength,
+                             setting<&SceneEffects::radar, &RadarEffect::cellSize>}},
     EffectsField{"effects.radar", "columns", "across; columns * rows * groupCount is limited, too",
                  "",
                  WholeField{1, kMostCounts, setting<&SceneEffects::radar, &RadarEffect::columns>}},
@@ -212,13 +212,8 @@ std::string textOf(double number) {
 
 std::string requirementOf(const NumberField& field) {
     const std::string bound = textOf(field.least);
-    if (field.most < kFinite) {
-        return "a number from " + bound + " to " + textOf(field.most);
-    }
-    if (field.isAboveLeast) {
-        return "a number above " + bound;
-    }
-    return "a number, " + bound + " or more" + (field.most > kFinite ? ", or 'none'" : "");
+    return field.most < kInfinite ? "a number from " + bound + " to " + textOf(field.most)
+                                  : "a number, " + bound + " or more, or 'none'";
 }
 
 std::string requirementOf(const ChoiceField& field) {

@@ -36,13 +36,11 @@ struct WholeField {
 };
 
 struct NumberField {
-    static constexpr double kFinite = std::numeric_limits<double>::max();
     static constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
     double least;
     double most;  // kInfinite: there may be no bound
     double& (*place)(EffectsFile&);
-    bool isAboveLeast = false;  // or equal to it
 };
 
 struct NamedValue {

@@ -56,9 +56,7 @@ bool assign(const NumberField& field, const JsonValue& value, EffectsFile& file)
         return true;
     }
     field.place(file) = value.number;
-    const bool isHighEnough =
-        field.isAboveLeast ? value.number > field.least : value.number >= field.least;
-    return value.kind == Kind::number && isHighEnough && value.number <= field.most;
+    return value.kind == Kind::number && value.number >= field.least && value.number <= field.most;
 }
 
 bool assign(const ChoiceField& field, const JsonValue& value, EffectsFile& file) {

@@ -78,11 +78,10 @@ Json ruleOf(const WholeField& field, const Subject& of) {
 }
 Json ruleOf(const NumberField& field, const Subject& of) {
     Json rule{{"type", "number"}};
-    rule[field.isAboveLeast ? "exclusiveMinimum" : "minimum"] = numberJson(field.least);
-    if (field.most < NumberField::kFinite) {
+    rule["minimum"] = numberJson(field.least);
+    if (field.most < NumberField::kInfinite) {
         rule["maximum"] = numberJson(field.most);
-    }
-    if (field.most == NumberField::kInfinite) {
+    } else {
         rule = {{"anyOf", {rule, {{"const", kNoBound}}}}};
     }
     rule["default"] = valueOf(field, of);

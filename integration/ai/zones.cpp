@@ -80,6 +80,14 @@ void Zones<Scalar>::remove(ZoneId id) {
 }
 
 template <class Scalar>
+void Zones<Scalar>::forgetOccupants() noexcept {
+    for (Slot& slot : slots_) {
+        slot.occupants.clear();
+    }
+    abandoned_.clear();
+}
+
+template <class Scalar>
 bool Zones<Scalar>::contains(ZoneId id) const noexcept {
     return id.index < slots_.size() && slots_[id.index].generation == id.generation &&
            isAlive(slots_[id.index]);

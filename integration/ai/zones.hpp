@@ -6,9 +6,9 @@
 //
 // A frame   move bodies and zones, then update() once: every proxy and zone that have to do with
 //           each other are in one event.
-// Grid      holds the bodies; zones are not filed in it. update() is always given the same one. After a
-//           Grid::shiftOrigin() every zone has to be set() where it is now, before the next update():
-//           who was in it then stays.
+// Grid      holds the bodies; zones are not filed in it. update() is always given the same one, or after
+//           forgetOccupants() another one. After a Grid::shiftOrigin() every zone has to be set() where
+//           it is now, before the next update(): who was in it then stays.
 // Threads   update() reads the grid, as queries do, and needs this object for itself, as add(), set()
 //           and remove() do. All else is const and may be called from any number of threads.
 // Failure   Where memory runs out, or a filter throws, nothing has happened: what update() would have
@@ -103,6 +103,9 @@ public:
     [[nodiscard]] bool contains(ZoneId id) const noexcept;
     [[nodiscard]] const Zone<Scalar>& zone(ZoneId id) const;
     [[nodiscard]] std::size_t size() const noexcept { return slots_.size() - freeSlots_.size(); }
+
+    /// Empties all zones, and nobody is told: for the grid to be replaced by another one.
+    void forgetOccupants() noexcept;
 
     // --- Frame -----------------------------------------------------------------------------------
 

@@ -31,7 +31,8 @@
 // A frame   apply() when the declaration changes, prepare() for each body that is added to the world,
 //           release() for each before it is removed; beforeStep() or step(). All between two steps.
 // Settings  What a body or the world had before is given back when the effect is declared again and by
-//           the destructor. Who changes a setting meanwhile is believed: that is given back.
+//           the destructor. Who changes a setting meanwhile is believed: that is given back. (But for a
+//           body that is given DISABLE_DEACTIVATION while sleeping is not declared, as it has that then.)
 //           Angular velocities are not given back, nor what happened meanwhile.
 // Lifetime  The world, its broadphase, the pair cache and its former filter outlive the configurator, and
 //           nobody wraps the filter that it sets. Only objects that are in the world are touched. One that

@@ -42,16 +42,20 @@ Culler<Scalar>::Culler(Scalar margin)
       view_(nothing<Scalar>()),
       grown_(view_) {}
 
-// Whoever touches the view now touched what was looked through before, if since then nobody has moved
-// farther than the view lies inside of that.
 template <class Scalar>
-bool Culler<Scalar>::keepsSet(Scalar moved) {
+void Culler<Scalar>::noteMoves(Scalar moved) noexcept {
     constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
     const Scalar step = moved >= 0 ? moved : infinity;
     const Scalar sum = moved_ + step;
     // Never rounded down: of many small steps each would be lost.
     const bool isShort = sum - std::max(moved_, step) < std::min(moved_, step);
     moved_ = isShort ? std::nextafter(sum, infinity) : sum;
+}
+
+// Whoever touches the view now touched what was looked through before, if since then nobody has moved
+// farther than the view lies inside of that.
+template <class Scalar>
+bool Culler<Scalar>::keepsSet() const {
     return moved_ <= margin_ && view_.isEmpty() == grown_.isEmpty() && !view_.volume().isInside &&
            !grown_.volume().isInside && grown_.contains(view_, moved_);
 }
@@ -65,9 +69,11 @@ bool Culler<Scalar>::begin(const View& view, Scalar moved) {
     if (!isFrozen_) {
         view_ = view;
     }
-    if (keepsSet(moved)) {
+    noteMoves(moved);
+    if (keepsSet()) {
         return false;
     }
+    ++findCount_;
     grown_ = margin_ > 0 ? view_.grownBy(margin_) : view_;
     moved_ = std::numeric_limits<Scalar>::infinity();
     std::fill(bits_.begin(), bits_.end(), 0);

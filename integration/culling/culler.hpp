@@ -62,6 +62,19 @@ public:
     QueryCost look(const Grid<Scalar>& grid, const View& view, ProxyFilter filter,
                    Scalar moved = std::numeric_limits<Scalar>::infinity());
 
+    /// Says that corners of boxes may have moved so far [m] in a frame without a look().
+    void noteMoves(Scalar moved) noexcept;
+
+    /// Takes the proxy with that index out of the set, because it is removed.
+    void forget(std::uint32_t index) noexcept {
+        if (index / 64 < bits_.size()) {
+            bits_[index / 64] &= ~(std::uint64_t{1} << index % 64);
+        }
+    }
+
+    /// How often the set has been found anew.
+    [[nodiscard]] std::uint64_t findCount() const noexcept { return findCount_; }
+
     /// Goes on with the volume of the last look() while the camera moves, to look at the set from
     /// outside, until it is called with false. Boxes that move are still found.
     void freeze(bool isFrozen) noexcept { isFrozen_ = isFrozen; }
@@ -70,7 +83,7 @@ public:
     // --- The visible set -------------------------------------------------------------------------
 
     /// True when the proxy is in the set. A proxy that was removed since stays in until the next one is
-    /// found, and whoever has got its index is taken for it.
+    /// found, unless it is forgotten, and whoever has got its index is taken for it.
     [[nodiscard]] bool isVisible(ProxyId id) const noexcept {
         return id.index / 64 < bits_.size() && (bits_[id.index / 64] >> (id.index % 64) & 1) != 0;
     }
@@ -106,13 +119,14 @@ public:
 
 private:
     [[nodiscard]] bool begin(const View& view, Scalar moved);
-    [[nodiscard]] bool keepsSet(Scalar moved);
+    [[nodiscard]] bool keepsSet() const;
 
     Scalar margin_;
     Scalar moved_;  // since the set was found
     View view_;
     View grown_;  // in which the set was found
     bool isFrozen_ = false;
+    std::uint64_t findCount_ = 0;
     std::vector<std::uint64_t> bits_;
 };
 

@@ -10,9 +10,10 @@
 //
 // effect       what is set in Bullet                   what is lost without it
 // motion       nothing: step() steps the world         everything moves: step() finds the pairs of bodies as
-//                                                      they stand, if they are declared; do not call
-//                                                      stepSimulation(), which moves whatever has a
-//                                                      velocity
+//                                                      they stand, if they are declared, and else does
+//                                                      nothing (call updateAabbs() for what you move); do
+//                                                      not call stepSimulation(), which moves whatever
+//                                                      has a velocity
 // terrain      nothing: the ground is a static body    the ground: do not add it
 //              of yours (static_triangles.hpp)
 // pairs        the world's filter for overlaps         contacts, ghosts' lists, response and sweep
@@ -26,6 +27,10 @@
 // picking,     nothing: they ask the grid of           nothing in Bullet; none is made for them either
 // boxSelection, SpatialHashBroadphase::grid()
 // culling, proximity, zones, radar
+//
+// Observers over that grid know objects by ProxyId: what they keep by index (colours, a visible set that
+// is late) is for you to forget() when an object is removed, as its index is given to another one; and
+// after an origin shift, zones, view and interest are yours to move.
 //
 // Of the settings, Bullet heeds neither ResponseEffect::restitution, as each of its bodies has its own
 // (WorldEffects::restitution sets that of all), nor SweepEffect::mode, which is for the broadphase to say

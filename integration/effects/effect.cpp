@@ -3,6 +3,8 @@
 
 #include <integration/effects/undeclared_effect.hpp>
 
+#include <algorithm>
+
 namespace hashphase {
 
 std::string_view nameOf(Effect effect) noexcept {
@@ -55,5 +57,12 @@ UndeclaredEffect::UndeclaredEffect(Effect effect, std::string_view call)
                        ", which the scene does not declare: set SceneEffects::" +
                        std::string(nameOf(effect)) + '.'),
       effect_(effect) {}
+
+UndeclaredEffect::UndeclaredEffect(EffectSet oneOf, std::string_view call)
+    : std::logic_error(std::string(call) +
+                       " needs one of these, of which the scene declares none: " + namesOf(oneOf) +
+                       '.'),
+      effect_(*std::find_if(kAllEffects.begin(), kAllEffects.end(),
+                            [oneOf](Effect effect) { return oneOf.contains(effect); })) {}
 
 }  // namespace hashphase

@@ -92,4 +92,8 @@ private:
 /// Their names with commas between them; "nothing" for none.
 [[nodiscard]] std::string namesOf(EffectSet effects);
 
+/// Those that decide where the bodies of a Simulation are.
+inline constexpr EffectSet kMovingEffects{Effect::motion, Effect::terrain, Effect::response,
+                                          Effect::sweep, Effect::sleeping};
+
 }  // namespace hashphase

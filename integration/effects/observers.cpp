@@ -21,10 +21,21 @@ decltype(auto) askFor(const ObservedScene<Scalar>& scene, Effect effect, const Q
     if (scene.allTakePartIn(effect)) {
         return query(ProxyFilter(acceptAll));
     }
-    const auto takesPart = [&scene, effect](ProxyId id) {
-        return id.index >= scene.effects.size() || scene.effects[id.index].contains(effect);
-    };
+    const auto takesPart = [&scene, effect](ProxyId id) { return scene.takesPart(id, effect); };
     return query(ProxyFilter(takesPart));
+}
+
+/// How many proxies that are somewhere take part in an effect.
+template <class Scalar>
+std::size_t countOf(const ObservedScene<Scalar>& scene, Effect effect) {
+    if (scene.allTakePartIn(effect)) {
+        return scene.grid.size() - scene.grid.nanCount();
+    }
+    std::size_t count = 0;
+    scene.grid.forEach([&](ProxyId id, const Aabb<Scalar>& box) {
+        count += scene.takesPart(id, effect) && !hasNan(box) ? 1 : 0;
+    });
+    return count;
 }
 
 }  // namespace
@@ -35,8 +46,7 @@ struct Observers<Scalar>::Culling {
 
     Culler<Scalar> culler;
     ConvexRegion<Scalar> view;
-    bool hasMoved = true;          // the view, since the set was found
-    bool hasMissed = false;        // a frame in which boxes may have moved
+    bool hasMoved = true;          // the view, since the last look
     std::uint32_t framesKept = 0;  // since then, by declaration
 };
 
@@ -50,7 +60,6 @@ struct Observers<Scalar>::Proximity {
 
     RarestColour<Scalar> rarest;
     std::vector<std::uint32_t> colours;
-    std::uint32_t agentCount = 0;  // when all looked around
 };
 
 template <class Scalar>
@@ -80,21 +89,34 @@ void Observers<Scalar>::declare(const SceneEffects& effects) {
     if (const std::string error = effectsError(effects); !error.empty()) {
         throw std::invalid_argument(error);
     }
+    std::unique_ptr<Culling> culling;
     const bool hasCuller = effects_.culling && culling_;
     if (effects.culling && !(hasCuller && effects_.culling->margin == effects.culling->margin)) {
-        auto culling = std::make_unique<Culling>(static_cast<Scalar>(effects.culling->margin));
+        culling = std::make_unique<Culling>(static_cast<Scalar>(effects.culling->margin));
         culling->view = hasCuller ? culling_->view : culling->view;
+    }
+    try {
+        detail::makeIf(effects.proximity.has_value(), proximity_);
+        detail::makeIf(effects.zones.has_value(), zones_);
+        detail::makeIf(effects.radar.has_value(), radar_);
+    } catch (...) {
+        dropUndeclared();
+        throw;
+    }
+    if (culling) {
         culling_ = std::move(culling);
     }
-    detail::makeIf(effects.proximity.has_value(), proximity_);
-    detail::makeIf(effects.zones.has_value(), zones_);
-    detail::makeIf(effects.radar.has_value(), radar_);
-    detail::dropUnless(effects.culling.has_value(), culling_);
-    detail::dropUnless(effects.proximity.has_value(), proximity_);
-    detail::dropUnless(effects.zones.has_value(), zones_);
-    detail::dropUnless(effects.radar.has_value(), radar_);
     effects_ = effects;
+    dropUndeclared();
     compile();
+}
+
+template <class Scalar>
+void Observers<Scalar>::dropUndeclared() noexcept {
+    detail::dropUnless(effects_.culling.has_value(), culling_);
+    detail::dropUnless(effects_.proximity.has_value(), proximity_);
+    detail::dropUnless(effects_.zones.has_value(), zones_);
+    detail::dropUnless(effects_.radar.has_value(), radar_);
 }
 
 template <class Scalar>
@@ -137,7 +159,7 @@ const SceneCost& Observers<Scalar>::observe(const Scene& scene, Scalar moved,
     const EffectSet wanted = scene.present | presentBefore_;
     farewell_ = presentBefore_ - scene.present;
     if (culling_ && !wanted.contains(Effect::culling)) {
-        culling_->hasMissed = true;
+        culling_->culler.noteMoves(std::numeric_limits<Scalar>::infinity());
     }
     for (const Phase& phase : phases_) {
         if (wanted.contains(phase.effect)) {
@@ -155,21 +177,19 @@ void Observers<Scalar>::cull(const Scene& scene, Scalar moved, ParallelFor /*par
     if (!culling.hasMoved && !farewell_.contains(Effect::culling) &&
         culling.framesKept + 1 < effects_.culling->restingCameraFrames) {
         ++culling.framesKept;
+        culling.culler.noteMoves(moved);
         cost_[SceneCounter::framesCulledLate] = 1;
         return;
     }
-    const bool isKnown = culling.framesKept == 0 && !culling.hasMissed;
-    const Scalar movedSince = isKnown ? moved : std::numeric_limits<Scalar>::infinity();
-    culling.hasMissed = true;  // should the query throw
+    const std::uint64_t foundBefore = culling.culler.findCount();
     const QueryCost cost = askFor(scene, Effect::culling, [&](ProxyFilter filter) {
         return scene.allTakePartIn(Effect::culling)
-                   ? culling.culler.look(scene.grid, culling.view, movedSince)
-                   : culling.culler.look(scene.grid, culling.view, filter, movedSince);
+                   ? culling.culler.look(scene.grid, culling.view, moved)
+                   : culling.culler.look(scene.grid, culling.view, filter, moved);
     });
     culling.hasMoved = false;
-    culling.hasMissed = false;
     culling.framesKept = 0;
-    cost_[SceneCounter::viewsFound] = cost.rowsVisited + cost.boxesTested > 0 ? 1 : 0;
+    cost_[SceneCounter::viewsFound] = culling.culler.findCount() - foundBefore;
     cost_[SceneCounter::cellRowsCulled] = cost.rowsVisited;
     cost_[SceneCounter::cellRowsVisited] += cost.rowsVisited;
     cost_[SceneCounter::cullingBoxesTested] = cost.boxesTested;
@@ -207,15 +227,10 @@ void Observers<Scalar>::lookAround(const Scene& scene, Scalar /*moved*/, Paralle
         };
         return update(counts, looks);
     });
-    const std::uint32_t agentCount = proximity.rarest.crowd().size();
-    if (allLook) {
-        proximity.agentCount = agentCount;
-        lookingCount = agentCount;
-    }
-    cost_[SceneCounter::agentsScanned] = agentCount;
+    cost_[SceneCounter::agentsScanned] = proximity.rarest.crowd().size();
     cost_[SceneCounter::neighboursTested] = cost.boxesTested;
     cost_[SceneCounter::agentsLate] =
-        proximity.agentCount - std::min<std::uint32_t>(lookingCount, proximity.agentCount);
+        allLook ? 0 : countOf(scene, Effect::proximity) - lookingCount.load();
 }
 
 template <class Scalar>
@@ -269,8 +284,7 @@ void Observers<Scalar>::scanRadar(const Scene& scene, Scalar /*moved*/,
                                      .up = effect.up};
     const bool allTakePart = scene.allTakePartIn(Effect::radar);
     const auto groupOf = [&](ProxyId id) -> std::uint32_t {
-        if (!allTakePart && id.index < scene.effects.size() &&
-            !scene.effects[id.index].contains(Effect::radar)) {
+        if (!allTakePart && !scene.takesPart(id, Effect::radar)) {
             return effect.groupCount;  // which is counted nowhere
         }
         return id.index < scene.groups.size() ? scene.groups[id.index] : 0;
@@ -297,10 +311,20 @@ Zones<Scalar>& Observers<Scalar>::zones() {
 }
 
 template <class Scalar>
-void Observers<Scalar>::forgetProxies(const Grid<Scalar>& grid) {
+void Observers<Scalar>::forgetProxies() noexcept {
     if (zones_) {
-        zones_->zones.update(grid, [](ZoneId, ProxyId) { return false; });
+        zones_->zones.forgetOccupants();
         zones_->events = {};
+    }
+}
+
+template <class Scalar>
+void Observers<Scalar>::forget(std::uint32_t index) noexcept {
+    if (culling_) {
+        culling_->culler.forget(index);
+    }
+    if (proximity_ && index < proximity_->colours.size()) {
+        proximity_->colours[index] = 0;
     }
 }
 

@@ -18,6 +18,7 @@
 // Late        where a declaration says that something is looked at in every n-th frame only, in frames
 //             between the answer is that of an earlier one: cost() counts these.
 // Threads     everything reads the grid, as queries do, and needs this object for itself.
+// Removed     Call forget() for a proxy that is removed. (A Simulation does.)
 // Failure     Where memory runs out, frames go on after it; the one under way has not all answers.
 
 #include <broadphase/convex_region.hpp>
@@ -61,6 +62,9 @@ struct ObservedScene {
     [[nodiscard]] bool allTakePartIn(Effect effect) const noexcept {
         return effects.empty() || common.contains(effect);
     }
+    [[nodiscard]] bool takesPart(ProxyId id, Effect effect) const noexcept {
+        return id.index >= effects.size() || effects[id.index].contains(effect);
+    }
 };
 
 template <class Scalar>
@@ -76,8 +80,8 @@ public:
     Observers& operator=(const Observers&) = delete;
 
     /// Goes on with another declaration. Tables of effects that are not declared any more are gone; the
-    /// zones, colours and view of those that still are stay. Throws as above, and then nothing has
-    /// changed.
+    /// zones, colours and view of those that still are stay. What is late begins with a frame in which
+    /// nothing is. Throws as above or std::bad_alloc, and then nothing has changed.
     void declare(const SceneEffects& effects);
 
     [[nodiscard]] const SceneEffects& declared() const noexcept { return effects_; }
@@ -95,7 +99,8 @@ public:
     /// Zones are added, set and removed here; Zones::update() is observe()'s. Needs zones.
     [[nodiscard]] Zones<Scalar>& zones();
 
-    /// Gives the proxy with that index a colour, 0 until it is set. Needs proximity.
+    /// Gives the proxy with that index a colour, 0 until it is set. Needs proximity. Cost: O(1), and
+    /// memory for all lower indices.
     void setColour(std::uint32_t index, std::uint32_t colour);
 
     /// Runs one frame of what is declared. `moved` [m] is how far any corner of a box may have moved
@@ -105,16 +110,21 @@ public:
                              Scalar moved = std::numeric_limits<Scalar>::infinity(),
                              ParallelFor parallelFor = serialFor);
 
+    /// To be called when the proxy with that index is removed: whoever takes the index after it is not
+    /// visible for having been, and has colour 0.
+    void forget(std::uint32_t index) noexcept;
+
     /// To be called before the grid is replaced by another one, in which indices mean the same and
-    /// generations do not: whoever is in a zone enters it again. `grid` is the one so far.
-    void forgetProxies(const Grid<Scalar>& grid);
+    /// generations do not: whoever is in a zone enters it again, without having left.
+    void forgetProxies() noexcept;
 
     // --- What was found in the last frame --------------------------------------------------------
 
     /// Who is visible. Needs culling.
     [[nodiscard]] const Culler<Scalar>& culler() const;
 
-    /// By ProxyId::index: which colour each agent has taken. Valid until the next frame. Needs proximity.
+    /// By ProxyId::index: which colour each agent has taken; beyond the end, 0. Valid until the next
+    /// frame. Needs proximity.
     [[nodiscard]] std::span<const std::uint32_t> colours() const;
 
     /// Who entered, stayed in and left zones. Valid until the next frame. Needs zones.
@@ -157,6 +167,7 @@ private:
     void lookAround(const Scene& scene, Scalar moved, ParallelFor parallelFor);
     void watchZones(const Scene& scene, Scalar moved, ParallelFor parallelFor);
     void scanRadar(const Scene& scene, Scalar moved, ParallelFor parallelFor);
+    void dropUndeclared() noexcept;
     void compile();
     [[nodiscard]] bool isDue(Effect effect, std::uint32_t everyFrames) const noexcept {
         return frame_ % everyFrames == 0 || farewell_.contains(effect);

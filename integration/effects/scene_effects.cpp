@@ -73,8 +73,8 @@ public:
     void requireSomeFar(std::string_view effect, double interestRadius, std::uint32_t frames) {
         require(interestRadius >= 0, std::string(effect) + ".interestRadius", interestRadius,
                 "0 or more [m]");
-        require(frames >= 1 && frames <= kMostFrames, std::string(effect) + ".farFrames", frames,
-                "from 1 to 1000000");
+        require(frames >= 1 && frames <= kMostEffectFrames, std::string(effect) + ".farFrames",
+                frames, "from 1 to 1000000");
         if (error_.empty() && frames > 1 && !(interestRadius < kInfinity)) {
             std::ostringstream sentence;
             sentence << effect << ".farFrames is " << frames << ", but nothing is far: set "
@@ -84,7 +84,6 @@ public:
     }
     [[nodiscard]] const std::string& error() const noexcept { return error_; }
 
-    static constexpr std::uint32_t kMostFrames = 1'000'000;
     static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 private:
@@ -96,9 +95,14 @@ void requireOfMovers(const SceneEffects& effects, Settings& settings) {
     if (effects.motion) {
         const Aabb<double>& bounds = effects.motion->bounds;
         for (int axis = 0; axis < 3; ++axis) {
-            settings.require(bounds.min()[axis] <= bounds.max()[axis], "motion.bounds",
-                             bounds.min()[axis],
+            const double low = bounds.min()[axis];
+            const double high = bounds.max()[axis];
+            settings.require(low <= high, "motion.bounds", low,
                              "a box whose lower corner is not above its upper one");
+            settings.require(low <= kMostEffectLength, "motion.bounds: the lower corner", low,
+                             "at most 1e30 [m]");
+            settings.require(high >= -kMostEffectLength, "motion.bounds: the upper corner", high,
+                             "at least -1e30 [m]");
         }
     }
     if (effects.response) {
@@ -119,7 +123,7 @@ void requireOfMovers(const SceneEffects& effects, Settings& settings) {
         settings.require(sleeping.slowBelow >= 0, "sleeping.slowBelow", sleeping.slowBelow,
                          "0 or more [m/s]");
         settings.require(
-            sleeping.framesBeforeSleep >= 1 && sleeping.framesBeforeSleep <= Settings::kMostFrames,
+            sleeping.framesBeforeSleep >= 1 && sleeping.framesBeforeSleep <= kMostEffectFrames,
             "sleeping.framesBeforeSleep", sleeping.framesBeforeSleep, "from 1 to 1000000");
     }
 }
@@ -127,12 +131,11 @@ void requireOfMovers(const SceneEffects& effects, Settings& settings) {
 void requireOfLookers(const SceneEffects& effects, Settings& settings) {
     if (effects.culling) {
         const CullingEffect& culling = *effects.culling;
-        settings.require(culling.margin >= 0 && culling.margin < Settings::kInfinity,
-                         "culling.margin", culling.margin, "0 or more, and finite [m]");
-        settings.require(culling.restingCameraFrames >= 1 &&
-                             culling.restingCameraFrames <= Settings::kMostFrames,
-                         "culling.restingCameraFrames", culling.restingCameraFrames,
-                         "from 1 to 1000000");
+        settings.require(culling.margin >= 0 && culling.margin <= kMostEffectLength,
+                         "culling.margin", culling.margin, "from 0 to 1e30 [m]");
+        settings.require(
+            culling.restingCameraFrames >= 1 && culling.restingCameraFrames <= kMostEffectFrames,
+            "culling.restingCameraFrames", culling.restingCameraFrames, "from 1 to 1000000");
     }
     if (effects.proximity) {
         const ProximityEffect& proximity = *effects.proximity;
@@ -149,13 +152,14 @@ void requireOfLookers(const SceneEffects& effects, Settings& settings) {
     }
     if (effects.radar) {
         const RadarEffect& radar = *effects.radar;
-        settings.require(radar.cellSize > 0 && radar.cellSize < Settings::kInfinity,
-                         "radar.cellSize", radar.cellSize, "above 0, and finite [m]");
+        settings.require(
+            radar.cellSize >= 1 / kMostEffectLength && radar.cellSize <= kMostEffectLength,
+            "radar.cellSize", radar.cellSize, "from 1e-30 to 1e30 [m]");
         const double counts = double{1} * radar.columns * radar.rows * radar.groupCount;
         settings.require(counts >= 1 && counts <= static_cast<double>(Radar<float>::kMostCounts),
                          "radar: columns * rows * groupCount", counts,
                          "from 1 to " + std::to_string(Radar<float>::kMostCounts));
-        settings.require(radar.frames >= 1 && radar.frames <= Settings::kMostFrames, "radar.frames",
+        settings.require(radar.frames >= 1 && radar.frames <= kMostEffectFrames, "radar.frames",
                          radar.frames, "from 1 to 1000000");
     }
 }

@@ -26,16 +26,22 @@
 
 namespace hashphase {
 
+/// Settings that count frames go up to this; lengths that must be finite, up to that [m].
+inline constexpr std::uint32_t kMostEffectFrames = 1'000'000;
+inline constexpr double kMostEffectLength = 1e30;
+
 /// Bodies move by velocity * time step.
 struct MotionEffect {
-    /// Who would leave this box with its centre turns back at its face [m]; by default it has none.
+    /// Who would leave this box with its centre turns back at its face [m]; by default it has none. Its
+    /// lower corner is at most kMostEffectLength, its upper one at least as far below 0.
     Aabb<double> bounds{Vector3<double>::Constant(-std::numeric_limits<double>::infinity()),
                         Vector3<double>::Constant(std::numeric_limits<double>::infinity())};
 };
 
 /// Bodies that have moved are put on the ground, where there is any below them. Needs motion.
 struct TerrainEffect {
-    UpAxis up = UpAxis::y;  ///< who declares another one has a ground without triangles
+    UpAxis up =
+        UpAxis::y;  ///< if it is declared anew with another one, the ground has no triangles
 };
 
 struct PairsEffect {};
@@ -73,9 +79,10 @@ struct BoxSelectionEffect {};
 
 struct CullingEffect {
     /// The set is kept while it is known to have all that is seen: see Culler [m].
-    double margin = 0;
+    double margin = 0;  ///< 0 to kMostEffectLength
     /// While the camera rests, the set is found anew in every n-th frame only. Above 1, what moves into
-    /// view is seen so many frames late, less one; SceneCounter::framesCulledLate counts them.
+    /// view, or is added there, is seen so many frames late, less one; SceneCounter::framesCulledLate
+    /// counts them. What is removed is gone at once.
     std::uint32_t restingCameraFrames = 1;
 };
 
@@ -95,7 +102,7 @@ struct ZonesEffect {
 };
 
 struct RadarEffect {
-    double cellSize = 10;  ///< [m]
+    double cellSize = 10;  ///< [m], 1 / kMostEffectLength to kMostEffectLength
     std::uint32_t columns = 32;
     std::uint32_t rows = 32;
     std::uint32_t groupCount = 1;

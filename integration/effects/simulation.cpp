@@ -37,25 +37,62 @@ void Simulation<Scalar>::declare(const SceneEffects& effects) {
     if (const std::string error = simulationError(effects); !error.empty()) {
         throw std::invalid_argument(error);
     }
-    const EffectSet now = effects.set();
-    observers_.declare(effects);
-    stockIsStale_ = true;
-    changedOutside_ = true;
-    makeParts(effects);
-    detail::dropUnless(now.contains(Effect::motion), motion_);
-    detail::dropUnless(now.contains(Effect::terrain), walkers_);
-    detail::dropUnless(now.contains(Effect::sleeping), sleep_);
-    detail::dropUnless(now.contains(Effect::response), contacts_);
-    detail::dropUnless(now.contains(Effect::sweep), sweepers_);
-    if (!now.contains(Effect::radar)) {
-        std::vector<std::uint32_t>().swap(groups_);
+    const bool hasIndex = effects.set().containsAny(kGridEffects);
+    const bool keepsIndex = hasIndex && index_ && index_->config == effects.grid;
+    std::unique_ptr<Index> index;
+    std::unique_ptr<Walkers> walkers;
+    std::vector<std::uint32_t> vacant;
+    try {
+        makeParts(effects);
+        if (effects.terrain && walkers_->up != static_cast<Eigen::Index>(effects.terrain->up)) {
+            walkers = std::make_unique<Walkers>(effects.terrain->up);
+        }
+        if (hasIndex && !keepsIndex) {
+            index = makeIndex(effects.grid);
+        }
+        for (std::size_t body = positions_.size(); !hasIndex && body-- > 0;) {
+            if (!isAlive(body)) {
+                vacant.push_back(static_cast<std::uint32_t>(body));
+            }
+        }
+        observers_.declare(effects);
+    } catch (...) {
+        dropUndeclared();
+        throw;
     }
-    if (sleep_ && effects_.sleeping &&
+    if (effects_.sleeping && effects.sleeping &&
         effects_.sleeping->interestRadius != effects.sleeping->interestRadius) {
         sleep_->mustLook = true;
     }
     effects_ = effects;
+    if (walkers) {
+        walkers_ = std::move(walkers);
+    }
+    if (!keepsIndex) {
+        observers_.forgetProxies();
+        pairing_ = nullptr;  // before the grid that it refers to
+        index_ = std::move(index);
+    }
+    vacant_ = std::move(vacant);
+    dropUndeclared();
+    stockIsStale_ = true;
+    changedOutside_ = true;
     takeStock();
+}
+
+template <class Scalar>
+void Simulation<Scalar>::dropUndeclared() noexcept {
+    detail::dropUnless(effects_.motion.has_value(), motion_);
+    detail::dropUnless(effects_.terrain.has_value(), walkers_);
+    detail::dropUnless(effects_.sleeping.has_value(), sleep_);
+    detail::dropUnless(effects_.response.has_value(), contacts_);
+    detail::dropUnless(effects_.sweep.has_value(), sweepers_);
+    if (!effects_.radar) {
+        std::vector<std::uint32_t>().swap(groups_);
+    }
+    if (index_ && !effects_.picking) {
+        index_->grid.releaseRayMemory();
+    }
 }
 
 // What is declared and not there yet, with columns of all bodies.
@@ -67,8 +104,7 @@ void Simulation<Scalar>::makeParts(const SceneEffects& effects) {
         motion->velocities.resize(count, Point::Zero());
         motion_ = std::move(motion);
     }
-    if (effects.terrain &&
-        (!walkers_ || walkers_->up != static_cast<Eigen::Index>(effects.terrain->up))) {
+    if (effects.terrain && !walkers_) {
         walkers_ = std::make_unique<Walkers>(effects.terrain->up);
     }
     if (effects.sleeping && !sleep_) {
@@ -152,8 +188,7 @@ BodyId Simulation<Scalar>::add(const Body<Scalar>& body) {
     });
     const bool isAtRest =
         !motion_ || !body.effects.contains(Effect::motion) || (sleep_ && body.isAsleep);
-    const auto half = Point::Constant(body.radius);
-    const std::uint32_t index = takeIndex({body.position - half, body.position + half},
+    const std::uint32_t index = takeIndex(boxAt(body.position, body.radius),
                                           isAtRest ? Mobility::resting : Mobility::mobile);
     if (index == limit) {
         generations_.push_back(0);
@@ -183,6 +218,7 @@ void Simulation<Scalar>::remove(BodyId id) {
     if (sleep_ && sleep_->states[body] == Sleep::State::far) {
         --sleep_->farCount;
     }
+    observers_.forget(id.index);
     ++generations_[body];
     --size_;
     stockIsStale_ = true;
@@ -227,7 +263,7 @@ void Simulation<Scalar>::setVelocity(BodyId id, const Point& velocity) {
     require(Effect::motion, "setVelocity()");
     const std::size_t body = indexOf(id);
     motion_->velocities[body] = velocity;
-    wakeUp(body);
+    between_[SceneCounter::wokeUp] += wakeUp(body) ? 1 : 0;
 }
 
 template <class Scalar>
@@ -246,9 +282,10 @@ template <class Scalar>
 void Simulation<Scalar>::setPosition(BodyId id, const Point& position) {
     const std::size_t body = indexOf(id);
     positions_[body] = position;
-    wakeUp(body);
+    between_[SceneCounter::wokeUp] += wakeUp(body) ? 1 : 0;
     if (index_) {
         index_->grid.move(index_->proxies[body], boxOf(body));
+        ++between_[SceneCounter::proxiesHashed];
     }
     changedOutside_ = true;
 }
@@ -271,7 +308,7 @@ Terrain<Scalar>& Simulation<Scalar>::ground() {
 template <class Scalar>
 const Grid<Scalar>& Simulation<Scalar>::grid() const {
     if (!index_) {
-        throw UndeclaredEffect(Effect::pairs, "grid()");
+        throw UndeclaredEffect(kGridEffects, "grid()");
     }
     return index_->grid;
 }

@@ -61,10 +61,10 @@ template <class Scalar>
 struct Body {
     Vector3<Scalar> position = Vector3<Scalar>::Zero();  // of the centre [m]
     Scalar radius = 1;                                   // [m]
-    Vector3<Scalar> velocity = Vector3<Scalar>::Zero();  // [m/s]; kept where motion is declared
+    Vector3<Scalar> velocity = Vector3<Scalar>::Zero();  // [m/s]; kept if motion is declared
     EffectSet effects = EffectSet::all();                // what it takes part in
-    std::uint32_t group = 0;                             // in which the radar counts it
-    bool isAsleep = false;  // to begin with; where sleeping is declared
+    std::uint32_t group = 0;  // in which it is counted; kept if the radar is declared
+    bool isAsleep = false;    // to begin with; kept if sleeping is declared
 };
 
 template <class Scalar>
@@ -79,10 +79,13 @@ public:
     Simulation& operator=(const Simulation&) = delete;
 
     /// Goes on with another declaration: tables of what is new appear, those of what is not declared
-    /// any more are gone; bodies are where they are, without velocity if motion is new. Where pairs or
-    /// sweep come or go, or GridConfig is another one, all bodies are filed anew: pairs are told again, and
-    /// who is in a zone enters it again. Throws as above, and then nothing has changed. Cost: up to that
-    /// of adding all bodies.
+    /// any more are gone. Bodies are where they are; if motion is new they stand still, if sleeping is they
+    /// are awake, if the radar is they are in group 0, and on an axis TerrainEffect::up that is another one
+    /// there are no triangles. Where pairs are new, or sweep comes or goes, all pairs are told as born.
+    /// Where there was no grid, or one with another GridConfig, all bodies are filed anew: ProxyIds of
+    /// before name nobody, pairs are told as born, and who is in a zone enters it again. Throws as above,
+    /// and then nothing has changed; std::bad_alloc, and then nothing has changed, or the next call makes
+    /// what is missing. Cost: up to that of adding all bodies.
     void declare(const SceneEffects& effects);
 
     [[nodiscard]] const SceneEffects& declared() const noexcept { return effects_; }
@@ -125,7 +128,8 @@ public:
     [[nodiscard]] Observers<Scalar>& observers() noexcept { return observers_; }
     [[nodiscard]] const Observers<Scalar>& observers() const noexcept { return observers_; }
 
-    /// The grid of all bodies. Needs one of kGridEffects.
+    /// The grid of all bodies, as of the last frame; while no body takes part in one of kGridEffects, it
+    /// has the boxes of when one did. Needs one of kGridEffects.
     [[nodiscard]] const Grid<Scalar>& grid() const;
 
     // --- Frame -----------------------------------------------------------------------------------
@@ -134,7 +138,7 @@ public:
     /// cost.
     const SceneCost& advance(Scalar seconds, ParallelFor parallelFor = serialFor);
 
-    /// What the last frame cost, and picks and selections before it.
+    /// What the last frame cost, and what was asked, woken and moved before it.
     [[nodiscard]] const SceneCost& cost() const noexcept { return cost_; }
 
     /// The phases of a frame, in their order.
@@ -202,8 +206,10 @@ private:
     void forEachColumn(const Body<Scalar>& body, const Visit& visit);
     [[nodiscard]] std::uint32_t takeIndex(const Aabb<Scalar>& box, Mobility mobility);
     void makeParts(const SceneEffects& effects);
+    void dropUndeclared() noexcept;
+    [[nodiscard]] std::unique_ptr<Index> makeIndex(const GridConfig& config) const;
     void takeStock();
-    void fileAnew();
+    void setPairing(bool isWanted);
     void setFiling(bool isFiling);
     void compile();
     void recover() noexcept;
@@ -217,7 +223,7 @@ private:
     template <Filing filing>
     void note(const BodyFiler<filing>& filer);
     [[nodiscard]] static Phase movePhase(bool isBounded, Filing filing);
-    void wakeUp(std::size_t body);
+    [[nodiscard]] bool wakeUp(std::size_t body);
     template <bool areAwake>
     [[nodiscard]] bool bounce(std::size_t a, std::size_t b, const Point& apart, Scalar bounciness);
     [[nodiscard]] static Scalar bouncinessOf(const ResponseEffect& effect) {
@@ -225,6 +231,8 @@ private:
     }
     template <bool allRespond>
     void respondTo();
+    void addWalker(std::uint32_t body, Scalar moved);
+    void putWalkersOnGround();
 
     // The phases.
     void wake();
@@ -273,6 +281,7 @@ private:
     Scalar farthestMove_ = 0;     // of a corner of a box
     bool changedOutside_ = true;  // since the last frame, by other than advance()
     SceneCost cost_;
+    SceneCost between_;  // what happened since, which the next frame's has as well
 };
 
 /// effectsError(), and what a Simulation cannot run.

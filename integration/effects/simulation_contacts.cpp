@@ -75,15 +75,15 @@ void Simulation<Scalar>::gather() {
 }
 
 template <class Scalar>
-void Simulation<Scalar>::wakeUp(std::size_t body) {
+bool Simulation<Scalar>::wakeUp(std::size_t body) {
     if (!sleep_ || !isMovable(body) || sleep_->states[body] == Sleep::State::awake) {
-        return;
+        return false;
     }
     sleep_->farCount -= sleep_->states[body] == Sleep::State::far ? 1 : 0;
     sleep_->states[body] = Sleep::State::awake;
     sleep_->slowFrames[body] = 0;
-    ++cost_[SceneCounter::wokeUp];
     stockIsStale_ = true;
+    return true;
 }
 
 // Exchanges what two bodies of the same mass have of their velocities along `apart`, from a to b, if
@@ -109,7 +109,7 @@ inline bool Simulation<Scalar>::bounce(std::size_t a, std::size_t b, const Point
         for (const std::size_t body : {a, b}) {
             if (isMovable(body) && !isAwake(body)) {
                 motion_->velocities[body].setZero();
-                wakeUp(body);
+                cost_[SceneCounter::wokeUp] += wakeUp(body) ? 1 : 0;
             }
         }
     }
@@ -205,16 +205,26 @@ void Simulation<Scalar>::meet() {
 // Sweepers go as far as what they meet first, and bounce off it. What is left of the frame is lost.
 template <class Scalar>
 void Simulation<Scalar>::land() {
-    for (const auto& [body, hit, start, velocity, way, time] : sweepers_->list) {
+    const std::span<const typename Sweepers::Sweeper> list = sweepers_->list;
+    for (const auto& [body, hit, start, velocity, way, time] : list) {
         positions_[body] = start + way * static_cast<Scalar>(time);
-        index_->grid.move(index_->proxies[body], boxOf(body));
-        pairing_->sweeps->set(index_->proxies[body], Point::Zero());
-        sweepers_->ofBody[body] = Sweepers::kNone;
         if (hit != Sweepers::kNone) {
             motion_->velocities[body] = velocity;
+            if (walkers_ && effectsOf_[body].contains(Effect::terrain)) {
+                addWalker(body, way.norm() * static_cast<Scalar>(time));
+            }
         }
     }
-    for (const auto& [body, hit, start, velocity, way, time] : sweepers_->list) {
+    if (walkers_) {
+        putWalkersOnGround();  // between where they started and where they would have ended
+    }
+    for (const auto& sweeper : list) {
+        index_->grid.move(index_->proxies[sweeper.body], boxOf(sweeper.body));
+        pairing_->sweeps->set(index_->proxies[sweeper.body], Point::Zero());
+        sweepers_->ofBody[sweeper.body] = Sweepers::kNone;
+    }
+    cost_[SceneCounter::proxiesHashed] += list.size();
+    for (const auto& [body, hit, start, velocity, way, time] : list) {
         if (hit != Sweepers::kNone) {
             const Point apart = positions_[hit] - positions_[body];
             const Scalar bounciness = bouncinessOf(*effects_.response);

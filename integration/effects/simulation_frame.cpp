@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hashphase {
 namespace {
@@ -34,11 +35,15 @@ template <class Scalar>
 const SceneCost& Simulation<Scalar>::advance(Scalar seconds, ParallelFor parallelFor) {
     HASHPHASE_ASSERT(seconds >= 0 && std::isfinite(seconds),
                      "A time step is finite and not negative [s].");
+    if (pairing_ && pairing_->isSpent) {
+        pairing_ = nullptr;
+        stockIsStale_ = true;
+    }
     takeStock();
     seconds_ = seconds;
     parallelFor_ = &parallelFor;
     farthestMove_ = 0;
-    cost_ = {};
+    cost_ = std::exchange(between_, {});
     try {
         for (const Phase& phase : phases_) {
             (this->*phase.run)();
@@ -51,7 +56,8 @@ const SceneCost& Simulation<Scalar>::advance(Scalar seconds, ParallelFor paralle
     return cost_;
 }
 
-// Where a frame has failed, pairs may have been told that nobody has heard of: they begin anew.
+// Where a frame has failed, pairs may have been told that nobody has heard of: they begin anew. Who has
+// moved may not be filed.
 template <class Scalar>
 void Simulation<Scalar>::recover() noexcept {
     pairing_ = nullptr;
@@ -61,6 +67,12 @@ void Simulation<Scalar>::recover() noexcept {
     if (sweepers_) {
         sweepers_->list.clear();
         std::fill(sweepers_->ofBody.begin(), sweepers_->ofBody.end(), Sweepers::kNone);
+    }
+    if (walkers_) {
+        walkers_->clear();
+    }
+    if (index_) {
+        index_->isFiling = false;
     }
     stockIsStale_ = true;
     changedOutside_ = true;
@@ -204,22 +216,31 @@ typename Simulation<Scalar>::Phase Simulation<Scalar>::movePhase(bool isBounded,
                                        : &Simulation::moveBodies<false, Filing::measured>};
 }
 
-// Asked from as much higher as the body has moved, so that it climbs what is no steeper than 45 degrees.
 template <class Scalar>
 void Simulation<Scalar>::stand() {
-    Walkers& walkers = *walkers_;
-    walkers.bodies.clear();
-    walkers.centers.clear();
-    walkers.radii.clear();
     for (const std::uint32_t body : motion_->movers) {
         if (effectsOf_[body].contains(Effect::terrain)) {
-            Point center = positions_[body];
-            center[walkers.up] += motion_->velocities[body].norm() * seconds_;
-            walkers.bodies.push_back(body);
-            walkers.centers.push_back(center);
-            walkers.radii.push_back(radii_[body]);
+            addWalker(body, motion_->velocities[body].norm() * seconds_);
         }
     }
+    putWalkersOnGround();
+}
+
+// The ground is asked for from as much higher as the body has moved, so that it climbs what is no
+// steeper than 45 degrees.
+template <class Scalar>
+void Simulation<Scalar>::addWalker(std::uint32_t body, Scalar moved) {
+    Walkers& walkers = *walkers_;
+    Point center = positions_[body];
+    center[walkers.up] += moved;
+    walkers.bodies.push_back(body);
+    walkers.centers.push_back(center);
+    walkers.radii.push_back(radii_[body]);
+}
+
+template <class Scalar>
+void Simulation<Scalar>::putWalkersOnGround() {
+    Walkers& walkers = *walkers_;
     walkers.found.resize(walkers.bodies.size());
     const QueryCost cost = walkers.terrain.restingHeights(walkers.centers, walkers.radii,
                                                           walkers.found, *parallelFor_);
@@ -230,6 +251,7 @@ void Simulation<Scalar>::stand() {
     }
     cost_[SceneCounter::groundsAsked] += walkers.bodies.size();
     cost_[SceneCounter::trianglesTested] += cost.boxesTested;
+    walkers.clear();
 }
 
 // --- Where the grid has them ---------------------------------------------------------------------
@@ -269,6 +291,7 @@ void Simulation<Scalar>::sweep() {
         pairing_->sweeps->set(proxy, sweeper.way, effects_.sweep->mode);
     }
     cost_[SceneCounter::sweepsSolved] += sweepers.list.size();
+    cost_[SceneCounter::proxiesHashed] += sweepers.list.size();
 }
 
 template <class Scalar>
@@ -285,6 +308,7 @@ void Simulation<Scalar>::pair() {
         };
         pairing_->changes = pairs.update(takePart, *parallelFor_);
     }
+    pairing_->isSpent = pairs.count() == 0 && !present_.contains(Effect::pairs);
     const PairCost& cost = pairs.lastCost();
     cost_[SceneCounter::entriesFiled] += cost.grid.filed;
     cost_[SceneCounter::boxesTested] += cost.boxesTested;

@@ -32,61 +32,45 @@ void Simulation<Scalar>::takeStock() {
             motion_->movers.push_back(static_cast<std::uint32_t>(body));
         }
     }
-    const EffectSet declared = effects_.set();
-
-    const bool wantsIndex = declared.containsAny(kGridEffects);
-    const bool wantsPairs =
-        declared.contains(Effect::pairs) && (pairing_ || present_.contains(Effect::pairs));
-    const bool wantsSweeps = wantsPairs && declared.contains(Effect::sweep);
-    const bool hasSweeps = pairing_ && pairing_->sweeps;
-    if (wantsIndex != (index_ != nullptr) || wantsPairs != (pairing_ != nullptr) ||
-        wantsSweeps != hasSweeps || (index_ && index_->config != effects_.grid)) {
-        fileAnew();
-    }
+    setPairing(effects_.pairs && (pairing_ || present_.contains(Effect::pairs)));
     compile();
     stockIsStale_ = false;
 }
 
-// A grid with pairs and sweeps, or without, in which each proxy has the index of its body; or none.
+// Each proxy has the index of its body.
 template <class Scalar>
-void Simulation<Scalar>::fileAnew() {
-    const EffectSet declared = effects_.set();
-    std::unique_ptr<Index> index;
-    std::unique_ptr<Pairing> pairing;
-    if (declared.containsAny(kGridEffects)) {
-        index = std::make_unique<Index>(effects_.grid);
-        if (declared.contains(Effect::pairs) && present_.contains(Effect::pairs)) {
-            pairing = std::make_unique<Pairing>(index->grid, declared.contains(Effect::sweep));
-        }
-        index->proxies.reserve(positions_.capacity());
-        for (std::size_t body = 0; body < positions_.size(); ++body) {
-            const bool isMobile = isAlive(body) && isAwake(body);
-            index->proxies.push_back(
-                index->grid.add(boxOf(body), isMobile ? Mobility::mobile : Mobility::resting));
-        }
-        for (std::size_t body = 0; body < positions_.size(); ++body) {
-            if (!isAlive(body)) {
-                index->grid.remove(index->proxies[body]);
-                index->proxies[body] = {};
-            }
-        }
+std::unique_ptr<typename Simulation<Scalar>::Index> Simulation<Scalar>::makeIndex(
+    const GridConfig& config) const {
+    auto index = std::make_unique<Index>(config);
+    index->proxies.reserve(positions_.capacity());
+    for (std::size_t body = 0; body < positions_.size(); ++body) {
+        const bool isMobile = isAlive(body) && isAwake(body);
+        index->proxies.push_back(
+            index->grid.add(boxOf(body), isMobile ? Mobility::mobile : Mobility::resting));
     }
-    vacant_.clear();
-    for (std::size_t body = positions_.size(); !index && body-- > 0;) {
+    for (std::size_t body = 0; body < positions_.size(); ++body) {
         if (!isAlive(body)) {
-            vacant_.push_back(static_cast<std::uint32_t>(body));
+            index->grid.remove(index->proxies[body]);
+            index->proxies[body] = {};
         }
     }
-    if (index_) {
-        observers_.forgetProxies(index_->grid);
+    return index;
+}
+
+// For new ones, everybody is new.
+template <class Scalar>
+void Simulation<Scalar>::setPairing(bool isWanted) {
+    const bool withSweeps = effects_.sweep.has_value();
+    if (pairing_ && !(isWanted && (pairing_->sweeps != nullptr) == withSweeps)) {
+        pairing_ = nullptr;
     }
-    if (contacts_) {
-        contacts_->present.clear();
-        contacts_->isCurrent = true;
+    if (isWanted && !pairing_) {
+        pairing_ = std::make_unique<Pairing>(index_->grid, withSweeps);
+        if (contacts_) {
+            contacts_->present.clear();
+            contacts_->isCurrent = true;
+        }
     }
-    pairing_ = std::move(pairing);  // before the grid that it refers to
-    index_ = std::move(index);
-    changedOutside_ = true;
 }
 
 // While nobody looks, nobody is filed; the first who does finds all where they are.
@@ -95,6 +79,7 @@ void Simulation<Scalar>::setFiling(bool isFiling) {
     for (std::size_t body = 0; isFiling && !index_->isFiling && body < positions_.size(); ++body) {
         if (isAlive(body)) {
             index_->grid.move(index_->proxies[body], boxOf(body));
+            ++between_[SceneCounter::proxiesHashed];
             changedOutside_ = true;
         }
     }

@@ -13,6 +13,9 @@ public:
     /// `call` is what was asked for: "colours()".
     UndeclaredEffect(Effect effect, std::string_view call);
 
+    /// Of a call that any one of these would do for; effect() is the first of them.
+    UndeclaredEffect(EffectSet oneOf, std::string_view call);
+
     [[nodiscard]] Effect effect() const noexcept { return effect_; }
 
 private:

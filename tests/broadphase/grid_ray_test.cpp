@@ -194,6 +194,25 @@ TYPED_TEST(RayQuery, MeetsBoxesAllAlongAVeryLongWay) {
 
 // --- Numbers at the ends of what there is --------------------------------------------------------
 
+TYPED_TEST(RayQuery, MakesAnewWhatWasFreed) {
+    Grid<TypeParam> grid;
+    const ProxyId id = grid.add({this->point(0, 0, 0), this->point(1, 1, 1)});
+    grid.update();
+    for (int round = 0; round < 3; ++round) {
+        CollectCount hits;
+        grid.visit(RayRegion<TypeParam>(this->point(-1, 0, 0), this->point(2, 0, 0)), hits);
+        EXPECT_EQ(hits.count(), 1U);
+        EXPECT_GT(grid.rayMemoryBytes(), 0U);
+        grid.releaseRayMemory();
+        EXPECT_EQ(grid.rayMemoryBytes(), 0U);
+        EXPECT_EQ(grid.validate(), "");
+        if (round == 1) {
+            grid.move(id, {this->point(0, -1, -1), this->point(1, 1, 1)});
+            grid.update();
+        }
+    }
+}
+
 TYPED_TEST(RayQuery, WithADirectionTooSmallToInvertMeetsWhatItTouches) {
     using Limits = std::numeric_limits<TypeParam>;
     for (const TypeParam tiny : {Limits::denorm_min(), Limits::min(), -Limits::denorm_min()}) {

@@ -131,6 +131,31 @@ TYPED_TEST(PairsInScripts, AreNotDisturbedByQueriesAndAnnouncementsInBetween) {
     }
 }
 
+TYPED_TEST(PairsInScripts, EqualBruteForceWhenTheyComeLateAndGo) {
+    ScriptRates rates;
+    rates.recolour = 0.004;
+    GridConfig config;
+    config.updatesBeforeRest = 1;
+    for (const BoxScene<TypeParam>& scene : allBoxScenes<TypeParam>()) {
+        std::size_t born = 0;
+        play(scene, config, 0x5eed0007, rates, 2 * Script<TypeParam>::kPeriod,
+             [&born](auto& script, auto& world) {
+                 if (script.random().chance(0.2)) {
+                     world.renewPairs(script.random().chance(0.5));
+                 }
+                 if (script.random().chance(0.1) && !script.proxies().empty()) {
+                     world.announce(script.proxies().front().id);
+                 }
+                 born += world.update().born.size();
+                 world.checkThoroughly(script.proxies());
+             });
+        EXPECT_GT(born, 0U) << scene.name;
+        if (this->HasFatalFailure()) {
+            return;
+        }
+    }
+}
+
 TYPED_TEST(PairsInScripts, EqualBruteForceInACrowd) {
     BoxScene<TypeParam> scene = spreadScene<TypeParam>("crowd", 2, 100);
     scene.count = 2000;

@@ -265,10 +265,6 @@ TEST(Pairs, MisuseIsAsserted) {
     EXPECT_THROW(world.pairs.announce(id, all), BrokenAssert);
     EXPECT_THROW(world.pairs.refilter(id, all), BrokenAssert);
     EXPECT_THROW(world.pairs.announce({}, all), BrokenAssert);
-
-    Grid<float> used;
-    static_cast<void>(used.add(cubeAt(0)));
-    EXPECT_THROW(Pairs<float> tooLate(used), BrokenAssert);
 }
 #endif
 

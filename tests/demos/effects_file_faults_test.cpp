@@ -94,7 +94,7 @@ TEST(EffectsFileFaults, NameANumberOutOfItsRange) {
         {R"({"effects": {"sleeping": {"slowBelow": -1}}})",
          ":1: effects.sleeping.slowBelow is -1, but must be a number, 0 or more, or 'none' [m/s]."},
         {R"({"effects": {"radar": {"cellSize": 0}}})",
-         ":1: effects.radar.cellSize is 0, but must be a number above 0 [m]."},
+         ":1: effects.radar.cellSize is 0, but must be a number from 1e-30 to 1e+30 [m]."},
     });
 }
 

@@ -40,8 +40,7 @@ bool hasType(const json& value, const json& rule) {
 }
 
 bool isInRange(const json& number, const json& rule) {
-    return number >= rule.value("minimum", number) && number <= rule.value("maximum", number) &&
-           (!rule.contains("exclusiveMinimum") || number > rule["exclusiveMinimum"]);
+    return number >= rule.value("minimum", number) && number <= rule.value("maximum", number);
 }
 
 bool isValid(const json& value, const json& rule);

@@ -16,6 +16,7 @@
 #include <functional>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <set>
 #include <span>
 #include <string>
@@ -69,6 +70,19 @@ public:
             }
         });
         ASSERT_EQ(grid.shiftOrigin(shift), count);
+    }
+
+    /// Gives the grid other pairs, for which everybody is new; before that it may have none for an update.
+    void renewPairs(bool withUpdateBetween) {
+        std::destroy_at(&pairs);
+        if (withUpdateBetween) {
+            grid.update();
+        }
+        std::construct_at(&pairs, grid, &sweeps);
+        for (std::set<ProxyPair>* of : {&set_, &met_, &refused_, &decided_}) {
+            of->clear();
+        }
+        grid.forEach([this](ProxyId id, const Aabb<Scalar>& /*box*/) { changed_.insert(id); });
     }
 
     void refilter(ProxyId id) {

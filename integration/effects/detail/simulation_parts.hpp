@@ -21,10 +21,16 @@ template <class Scalar>
 struct Simulation<Scalar>::Walkers {
     explicit Walkers(UpAxis axis) : up(static_cast<Eigen::Index>(axis)), terrain(grid, axis) {}
 
+    void clear() noexcept {
+        bodies.clear();
+        centers.clear();
+        radii.clear();
+    }
+
     Eigen::Index up;
     Grid<Scalar> grid;  // of the triangles
     Terrain<Scalar> terrain;
-    std::vector<std::uint32_t> bodies;  // whose height is asked for in this frame
+    std::vector<std::uint32_t> bodies;  // whose height is to be asked for
     std::vector<Point> centers;
     std::vector<Scalar> radii;
     std::vector<std::optional<Ground<Scalar>>> found;
@@ -60,6 +66,7 @@ struct Simulation<Scalar>::Pairing {
     std::unique_ptr<Sweeps<Scalar>> sweeps;
     Pairs<Scalar> pairs;
     PairChanges changes;
+    bool isSpent = false;  // nobody takes part any more, and that has been told
 };
 
 template <class Scalar>

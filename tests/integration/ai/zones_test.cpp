@@ -238,6 +238,27 @@ TYPED_TEST(ZonesTest, ThatAreRemovedAreLeftByAll) {
     EXPECT_EQ(this->list(events.stayed), (Events{{young, body}}));
 }
 
+TYPED_TEST(ZonesTest, GoOnWithAnotherGridOnceTheyForget) {
+    using Point = Vector3<TypeParam>;
+    Zones<TypeParam> zones;
+    const Zone<TypeParam> here{SphereRegion<TypeParam>(Point::Zero(), 5)};
+    const ZoneId kept = zones.add(here);
+    const ZoneId removed = zones.add(here);
+    for (int round = 0; round < 2; ++round) {
+        Grid<TypeParam> grid;
+        const ProxyId id = grid.add({Point(0, 0, 0), Point(1, 1, 1)});
+        const ZoneEvents events = zones.update(grid);
+        ASSERT_EQ(events.entered.size(), round == 0 ? 2U : 1U);
+        EXPECT_EQ(events.entered[0], (ZoneEvent{kept, id}));
+        EXPECT_TRUE(events.stayed.empty() && events.left.empty());
+        if (round == 0) {
+            zones.remove(removed);
+        }
+        zones.forgetOccupants();
+        EXPECT_TRUE(zones.occupants(kept).empty());
+    }
+}
+
 TYPED_TEST(ZonesTest, WithBadShapesHoldNobody) {
     Grid<TypeParam> grid;
     Zones<TypeParam> zones;

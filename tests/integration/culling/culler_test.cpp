@@ -177,6 +177,28 @@ TYPED_TEST(CullerTest, KeepsItsSetWithAnInfiniteFarPlaneAndGivesItUpForABadCamer
     EXPECT_GE(kept, sizeof(TypeParam) == sizeof(float) ? 95 : 100);
 }
 
+TYPED_TEST(CullerTest, AddsUpWhatMovesInFramesWithoutALook) {
+    using Point = Vector3<TypeParam>;
+    Grid<TypeParam> grid;
+    const ProxyId id = grid.add({Point(0, 0, 0), Point(1, 1, 1)});
+    Culler<TypeParam> culler(1);
+    const ConvexRegion<TypeParam> everywhere({});
+    culler.look(grid, everywhere);
+    EXPECT_EQ(culler.findCount(), 1U);
+    culler.noteMoves(TypeParam(0.5));
+    culler.look(grid, everywhere, TypeParam(0.5));
+    EXPECT_EQ(culler.findCount(), 1U);
+    culler.noteMoves(TypeParam(0.25));
+    culler.look(grid, everywhere, 0);
+    EXPECT_EQ(culler.findCount(), 2U);
+    EXPECT_TRUE(culler.isVisible(id));
+    culler.forget(id.index);
+    EXPECT_EQ(culler.count(), 0U);
+    culler.forget(1'000'000);
+    culler.look(grid, everywhere, 0);
+    EXPECT_EQ(culler.count(), 0U) << "until the next set is found";
+}
+
 TYPED_TEST(CullerTest, StaysWithAFrozenViewAndStillSeesWhatMoves) {
     Grid<TypeParam> grid;
     this->addBoxes(grid, 500, 10);

@@ -163,7 +163,7 @@ TEST(EffectSubsets, CostNothingThatIsNotDeclaredAndChangeNoResultThatIs) {
         const std::string names = namesOf(declared);
         ASSERT_EQ(strayOf(declared, run), "") << "declared: " << names;
         ASSERT_EQ(run.broken, "") << "declared: " << names;
-        const std::string dynamics = namesOf(declared & kDynamics);
+        const std::string dynamics = namesOf(declared & kMovingEffects);
         const auto [places, isNew] = placesOf.emplace(dynamics, run.places);
         ASSERT_TRUE(isNew || places->second == run.places)
             << "bodies went elsewhere because of " << names;

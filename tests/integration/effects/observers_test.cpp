@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <set>
 #include <vector>
 
@@ -147,18 +148,19 @@ TEST(Observers, FindTheViewAnewWhenTheCameraMovesOrItIsTime) {
 
 TEST(Observers, ScanTheRadarEachNthFrame) {
     SceneEffects effects;
-    effects.radar = RadarEffect{.frames = 3};
+    effects.radar = RadarEffect{.cellSize = 3, .frames = 3};
     Observers<float> observers(effects);
     Walk walk(0x5eed0ff2);
     std::uint64_t late = 0;
+    std::vector<std::uint32_t> before;
     for (int frame = 0; frame < 9; ++frame) {
         walk.step();
         late += observers.observe({walk.grid})[SceneCounter::radarsLate];
-        std::uint64_t counted = 0;
-        for (const std::uint32_t count : observers.radarCounts()) {
-            counted += count;
-        }
-        EXPECT_GT(counted, 0U);
+        const auto now = observers.radarCounts();
+        const std::vector<std::uint32_t> counts(now.begin(), now.end());
+        EXPECT_GT(std::accumulate(counts.begin(), counts.end(), 0U), 0U);
+        EXPECT_EQ(counts == before, frame % 3 != 0) << "frame " << frame;
+        before = counts;
     }
     EXPECT_EQ(late, 6U);
 }

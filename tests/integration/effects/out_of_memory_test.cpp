@@ -75,7 +75,17 @@ TEST(SimulationOutOfMemory, GoesOnAfterADeclarationThatFailed) {
             return simulation;
         },
         [](Simulation<float>& simulation) { simulation.declare(smallSceneEffects(kSimulated)); },
-        [](Simulation<float>& simulation, std::size_t) {
+        [&](Simulation<float>& simulation, std::size_t) {
+            EXPECT_EQ(simulation.observers().declared().set(), simulation.declared().set());
+            if (simulation.declared().set() == few) {
+                const SceneFootprint bytes = simulation.footprint();
+                for (const SceneTable of : {SceneTable::sleepers, SceneTable::walkers,
+                                            SceneTable::pairs, SceneTable::zones}) {
+                    EXPECT_EQ(bytes[of], 0U) << "nothing has changed";
+                }
+            } else {
+                EXPECT_EQ(simulation.declared().set(), kSimulated) << "the rest is made later";
+            }
             simulation.advance(kShortStep);
             EXPECT_EQ(simulation.validate(), "");
             simulation.declare(smallSceneEffects(kSimulated));

@@ -14,6 +14,7 @@ namespace hashphase::test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 SceneEffects everything() {
     SceneEffects effects;
@@ -143,13 +144,17 @@ TEST(SceneEffects, AcceptsNoSettingOutOfItsRange) {
         [](SceneEffects& e) { e.sleeping->interestRadius = kNan; },
         [](SceneEffects& e) { e.sleeping->slowBelow = -1; },
         [](SceneEffects& e) { e.sleeping->framesBeforeSleep = 0; },
-        [](SceneEffects& e) { e.culling->margin = std::numeric_limits<double>::infinity(); },
+        [](SceneEffects& e) { e.culling->margin = kInfinity; },
         [](SceneEffects& e) { e.culling->restingCameraFrames = 0; },
         [](SceneEffects& e) { e.proximity->radius = -1; },
         [](SceneEffects& e) { e.proximity->colourCount = 0; },
         [](SceneEffects& e) { e.proximity->interestRadius = -1; },
         [](SceneEffects& e) { e.zones->interestRadius = kNan; },
         [](SceneEffects& e) { e.radar->cellSize = 0; },
+        [](SceneEffects& e) { e.radar->cellSize = 1e-300; },
+        [](SceneEffects& e) { e.culling->margin = 1e300; },
+        [](SceneEffects& e) { e.motion->bounds.min().x() = kInfinity; },
+        [](SceneEffects& e) { e.motion->bounds.max().z() = -1e300; },
         [](SceneEffects& e) { e.radar->groupCount = 0; },
         [](SceneEffects& e) { e.radar->frames = 0; },
     };

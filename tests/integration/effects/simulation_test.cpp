@@ -19,16 +19,6 @@ namespace {
 
 using Point = Vector3<float>;
 
-SceneEffects declared(std::initializer_list<Effect> effects) {
-    SceneEffects all;
-    for (const Effect effect : effects) {
-        all.declare(effect);
-    }
-    return all;
-}
-
-constexpr float kStep = 1.0F / 64;
-
 // --- What is counted -----------------------------------------------------------------------------
 
 TEST(Simulation, FilesExactlyWhatMoves) {
@@ -69,7 +59,8 @@ TEST(Simulation, FilesNobodyWhileNobodyLooks) {
         EXPECT_EQ(cost[SceneCounter::entriesFiled], 0U);
     }
     simulation.add({});
-    EXPECT_EQ(simulation.advance(kStep)[SceneCounter::proxiesHashed], 51U);
+    // All are filed where they are, then all move.
+    EXPECT_EQ(simulation.advance(kStep)[SceneCounter::proxiesHashed], 51U + 51U);
     EXPECT_EQ(simulation.validate(), "");
     EXPECT_EQ(simulation.observers().culler().count(), 1U);
 }
@@ -109,6 +100,9 @@ TEST(Simulation, TouchesNothingWhileAllSleep) {
              .velocity = {5, 0, 5},
              .isAsleep = true});
     }
+    const BodyId last =
+        simulation.add({.position = {9, 1, 9}, .velocity = {5, 0, 5}, .isAsleep = true});
+    EXPECT_TRUE(simulation.isAsleep(last));
     simulation.advance(kStep);
     for (int frame = 0; frame < 20; ++frame) {
         const SceneCost& cost = simulation.advance(kStep);
@@ -122,6 +116,8 @@ TEST(Simulation, TouchesNothingWhileAllSleep) {
                 << sceneCounters()[static_cast<std::size_t>(counter)].name << ", frame " << frame;
         }
     }
+    EXPECT_TRUE(simulation.isAsleep(last));
+    EXPECT_EQ(simulation.position(last), Point(9, 1, 9));
 }
 
 // --- What bodies do ------------------------------------------------------------------------------
@@ -346,6 +342,69 @@ TEST(Simulation, HitsWhatStandsBeforeAWall) {
     EXPECT_EQ(simulation.velocity(ball), Point(20, 0, 0));
 }
 
+TEST(Simulation, StandsOnTheGroundWhereItIsStopped) {
+    SceneEffects effects =
+        declared({Effect::motion, Effect::terrain, Effect::pairs, Effect::response, Effect::sweep});
+    Simulation<float> simulation(effects);
+    // A ridge: the way from one foot of it to the other leads through.
+    const std::vector<Point> ridge{{-50, 0, -50}, {0, 25, -50}, {-50, 0, 50}, {0, 25, -50},
+                                   {0, 25, 50},   {-50, 0, 50}, {0, 25, -50}, {50, 0, -50},
+                                   {0, 25, 50},   {50, 0, -50}, {50, 0, 50},  {0, 25, 50}};
+    simulation.ground().add(ridge);
+    EffectSet standing = EffectSet::all();
+    standing.erase(Effect::motion);
+    const auto onRidge = [](float x) { return 25 - std::abs(x) / 2 + std::sqrt(1.25F); };
+    const BodyId bullet =
+        simulation.add({.position = {-20, onRidge(-20), 0}, .velocity = {40, 0, 0}});
+    // So wide that it is met at half way.
+    simulation.add({.position = {10, 12, 0}, .radius = 9, .effects = standing});
+    EXPECT_EQ(simulation.advance(1)[SceneCounter::sweepersStopped], 1U);
+    const Point position = simulation.position(bullet);
+    EXPECT_LT(std::abs(position.x()), 10);
+    EXPECT_NEAR(position.y(), onRidge(position.x()), 1.5F);
+    EXPECT_EQ(simulation.validate(), "");
+}
+
+TEST(Simulation, CountsWhatIsWokenAndMovedBetweenFrames) {
+    SceneEffects effects = declared({Effect::motion, Effect::sleeping, Effect::culling});
+    Simulation<float> simulation(effects);
+    const BodyId body = simulation.add({.isAsleep = true});
+    simulation.advance(kStep);
+    simulation.setVelocity(body, {1, 0, 0});
+    simulation.setPosition(body, {5, 0, 0});
+    const SceneCost& cost = simulation.advance(kStep);
+    EXPECT_EQ(cost[SceneCounter::wokeUp], 1U);
+    EXPECT_EQ(cost[SceneCounter::proxiesHashed], 2U);
+    EXPECT_EQ(simulation.advance(kStep)[SceneCounter::wokeUp], 0U);
+}
+
+TEST(Simulation, ShowsNobodyForHavingTheIndexOfOneThatWasVisible) {
+    SceneEffects effects = declared({Effect::motion, Effect::culling, Effect::proximity});
+    effects.culling->restingCameraFrames = 10;
+    Simulation<float> simulation(effects);
+    const BodyId body = simulation.add({});
+    simulation.observers().setColour(body.index, 3);
+    simulation.advance(kStep);
+    EXPECT_EQ(simulation.observers().culler().count(), 1U);
+    simulation.remove(body);
+    EXPECT_EQ(simulation.observers().culler().count(), 0U);
+    EXPECT_EQ(simulation.observers().colours()[body.index], 0U);
+}
+
+TEST(Simulation, KeepsASetByMarginThoughTheCameraRests) {
+    SceneEffects effects = declared({Effect::motion, Effect::culling});
+    effects.culling = CullingEffect{.margin = 1, .restingCameraFrames = 2};
+    Simulation<float> simulation(effects);
+    simulation.add({.velocity = {0.125F / kStep, 0, 0}});
+    std::uint64_t found = 0;
+    for (int frame = 0; frame < 33; ++frame) {
+        found += simulation.advance(kStep)[SceneCounter::viewsFound];
+    }
+    // At first, and whenever it may have moved by more than the margin.
+    EXPECT_GE(found, 4U);
+    EXPECT_LE(found, 5U);
+}
+
 TEST(Simulation, UsesIndicesAgainThoughNobodyLooks) {
     Simulation<float> simulation(declared({Effect::motion, Effect::culling}));
     for (int i = 0; i < 200; ++i) {
@@ -354,164 +413,6 @@ TEST(Simulation, UsesIndicesAgainThoughNobodyLooks) {
         simulation.remove(body);
     }
     EXPECT_LT(simulation.grid().indexLimit(), 20U);
-}
-
-// --- Changes -------------------------------------------------------------------------------------
-
-TEST(Simulation, GoesOnAfterAnotherDeclaration) {
-    Random random(0x5eed0fed);
-    Simulation<float> simulation(smallSceneEffects(kSimulated));
-    fill(simulation);
-    std::vector<BodyId> added;
-    for (int round = 0; round < 60; ++round) {
-        EffectSet some = kSimulated;
-        for (const Effect effect : kAllEffects) {
-            if (random.chance(0.4)) {
-                some.erase(effect);
-            }
-        }
-        const SceneEffects effects = smallSceneEffects(some);
-        if (effectsError(effects).empty()) {
-            simulation.declare(effects);
-        } else {
-            EXPECT_THROW(simulation.declare(effects), std::invalid_argument);
-        }
-        if (!added.empty() && random.chance(0.6)) {
-            const std::size_t chosen = random.below(static_cast<std::uint32_t>(added.size()));
-            simulation.remove(added[chosen]);
-            EXPECT_FALSE(simulation.contains(added[chosen]));
-            added.erase(added.begin() + static_cast<std::ptrdiff_t>(chosen));
-        }
-        for (int i = 0; i < 2; ++i) {
-            added.push_back(
-                simulation.add({.position = random.pointIn({0, 1, 0}, {20, 3, 20}).cast<float>()}));
-        }
-        simulation.advance(kStep);
-        ASSERT_EQ(simulation.validate(), "") << "round " << round << ", " << namesOf(some);
-        ASSERT_EQ(simulation.size(), 40 + added.size());
-    }
-}
-
-TEST(Simulation, TakesUpPairsLater) {
-    Simulation<float> simulation(declared({Effect::motion, Effect::culling}));
-    const BodyId a = simulation.add({});
-    const BodyId b = simulation.add({.position = {1, 0, 0}});
-    simulation.advance(kStep);
-    simulation.declare(declared({Effect::motion, Effect::culling, Effect::pairs}));
-    simulation.advance(kStep);
-    ASSERT_EQ(simulation.pairChanges().born.size(), 1U);
-    EXPECT_EQ(simulation.bodyOf(simulation.pairChanges().born[0].first), a);
-    EXPECT_EQ(simulation.bodyOf(simulation.pairChanges().born[0].second), b);
-}
-
-TEST(Simulation, KeepsContactsFromWhenTheFirstThatRespondsHasCome) {
-    Simulation<float> simulation(declared({Effect::motion, Effect::pairs, Effect::response}));
-    const EffectSet sensor{Effect::motion, Effect::pairs};
-    simulation.add({.effects = sensor});
-    simulation.add({.position = {1, 0, 0}, .effects = sensor});
-    simulation.advance(kStep);
-    EXPECT_EQ(simulation.pairChanges().born.size(), 1U);
-    EXPECT_EQ(simulation.cost()[SceneCounter::contactsTested], 0U);
-    const BodyId a = simulation.add({.position = {10, 0, 0}, .velocity = {1, 0, 0}});
-    const BodyId b = simulation.add({.position = {11.5F, 0, 0}, .velocity = {-1, 0, 0}});
-    simulation.advance(0);
-    EXPECT_EQ(simulation.pairChanges().born.size(), 1U);
-    EXPECT_EQ(simulation.cost()[SceneCounter::contactsTested], 1U);
-    EXPECT_EQ(simulation.velocity(a), Vector3<float>(-1, 0, 0));
-    EXPECT_EQ(simulation.velocity(b), Vector3<float>(1, 0, 0));
-    EXPECT_EQ(simulation.validate(), "");
-}
-
-TEST(Simulation, GivesTheSameOnAnyNumberOfThreads) {
-    Simulation<float> one(smallSceneEffects(kSimulated));
-    Simulation<float> many(smallSceneEffects(kSimulated));
-    fill(one, 3000);
-    fill(many, 3000);
-    ThreadedFor threads(4, 0x5eed0fee);
-    for (int frame = 0; frame < 5; ++frame) {
-        EXPECT_EQ(one.advance(kStep), many.advance(kStep, threads));
-    }
-    for (std::uint32_t body = 0; body < 3000; ++body) {
-        ASSERT_EQ(one.position({body, 1}), many.position({body, 1})) << body;
-    }
-}
-
-// --- Misuse --------------------------------------------------------------------------------------
-
-template <class Call>
-std::string undeclared(const Call& call) {
-    try {
-        call();
-    } catch (const UndeclaredEffect& error) {
-        return error.what();
-    }
-    return "nothing was thrown";
-}
-
-TEST(SimulationMisuse, NamesWhatIsToBeDeclared) {
-    Simulation<float> simulation;
-    const BodyId body = simulation.add({});
-    std::vector<ProxyId> selected;
-    EXPECT_EQ(
-        undeclared([&] { static_cast<void>(simulation.velocity(body)); }),
-        "velocity() needs motion, which the scene does not declare: set SceneEffects::motion.");
-    EXPECT_EQ(undeclared([&] {
-                  static_cast<void>(simulation.pick({{0, 0, 0}, {1, 1, 1}}));
-              }),
-              "pick() needs picking, which the scene does not declare: set SceneEffects::picking.");
-    EXPECT_THROW(simulation.setVelocity(body, {1, 0, 0}), UndeclaredEffect);
-    EXPECT_THROW(static_cast<void>(simulation.isAsleep(body)), UndeclaredEffect);
-    EXPECT_THROW(static_cast<void>(simulation.ground()), UndeclaredEffect);
-    EXPECT_THROW(static_cast<void>(simulation.grid()), UndeclaredEffect);
-    EXPECT_THROW(static_cast<void>(simulation.pairChanges()), UndeclaredEffect);
-    EXPECT_THROW(static_cast<void>(simulation.pairCount()), UndeclaredEffect);
-    EXPECT_THROW(simulation.select(smallSceneView(), {0, 0}, {1, 1}, selected), UndeclaredEffect);
-    EXPECT_THROW(static_cast<void>(simulation.observers().culler()), UndeclaredEffect);
-    EXPECT_THROW(static_cast<void>(simulation.observers().colours()), UndeclaredEffect);
-    EXPECT_THROW(static_cast<void>(simulation.observers().zones()), UndeclaredEffect);
-    EXPECT_THROW(static_cast<void>(simulation.observers().zoneEvents()), UndeclaredEffect);
-    EXPECT_THROW(static_cast<void>(simulation.observers().radarCounts()), UndeclaredEffect);
-    EXPECT_THROW(simulation.observers().setColour(0, 1), UndeclaredEffect);
-}
-
-TEST(SimulationMisuse, LeavesToBulletWhatIsBullets) {
-    try {
-        Simulation<float> simulation(declared({Effect::motion, Effect::rotation}));
-        ADD_FAILURE() << "nothing was thrown";
-    } catch (const std::invalid_argument& error) {
-        EXPECT_STREQ(error.what(),
-                     "rotation is declared, but Bullet alone simulates it: declare it for a Bullet "
-                     "world, or leave it out.");
-    }
-}
-
-TEST(SimulationMisuse, AssertsLivingBodiesAndOrdinarySteps) {
-    if (HASHPHASE_ENABLE_ASSERTS == 0) {
-        GTEST_SKIP() << "assertions are compiled out";
-    }
-    ThrowingAsserts asserts;
-    Simulation<float> simulation(declared({Effect::motion}));
-    const BodyId body = simulation.add({});
-    simulation.remove(body);
-    EXPECT_THROW(static_cast<void>(simulation.position(body)), BrokenAssert);
-    EXPECT_THROW(simulation.advance(-1), BrokenAssert);
-    EXPECT_THROW(simulation.advance(std::numeric_limits<float>::quiet_NaN()), BrokenAssert);
-}
-
-TEST(SimulationMisuse, BearsBodiesThatAreNowhere) {
-    const CaughtMessages messages;
-    Simulation<float> simulation(smallSceneEffects(kSimulated));
-    fill(simulation);
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    const float infinity = std::numeric_limits<float>::infinity();
-    simulation.add({.position = {nan, 0, 0}, .velocity = {1, 0, 0}});
-    simulation.add({.position = {5, 1, 5}, .velocity = {nan, infinity, 0}});
-    simulation.add({.position = {infinity, 1, 5}, .radius = -1});
-    simulation.add({.position = {5, 1, 5}, .radius = nan});
-    for (int frame = 0; frame < 5; ++frame) {
-        simulation.advance(kStep);
-    }
-    EXPECT_EQ(simulation.size(), 44U);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <tests/support/random.hpp>
 
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <vector>
 
@@ -17,9 +18,17 @@ namespace hashphase::test {
 inline constexpr EffectSet kSimulated =
     EffectSet::all() - EffectSet{Effect::rotation, Effect::friction};
 
-/// Those of them that change where bodies are.
-inline constexpr EffectSet kDynamics{Effect::motion, Effect::terrain, Effect::response,
-                                     Effect::sweep, Effect::sleeping};
+/// A frame [s].
+inline constexpr float kStep = 1.0F / 64;
+
+/// These effects, with default settings.
+[[nodiscard]] inline SceneEffects declared(std::initializer_list<Effect> effects) {
+    SceneEffects all;
+    for (const Effect effect : effects) {
+        all.declare(effect);
+    }
+    return all;
+}
 
 /// The effects with settings under which each has something to do in the small scene.
 [[nodiscard]] inline SceneEffects smallSceneEffects(EffectSet declared) {

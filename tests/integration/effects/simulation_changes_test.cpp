@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Zlib
+//
+// Simulations that are declared anew, on threads, and used wrongly.
+
+#include <integration/effects/simulation.hpp>
+#include <tests/integration/effects/small_scene.hpp>
+#include <tests/support/handlers.hpp>
+#include <tests/support/threaded_for.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace hashphase::test {
+namespace {
+
+using Point = Vector3<float>;
+
+// --- Changes -------------------------------------------------------------------------------------
+
+TEST(Simulation, GoesOnAfterAnotherDeclaration) {
+    Random random(0x5eed0fed);
+    Simulation<float> simulation(smallSceneEffects(kSimulated));
+    fill(simulation);
+    std::vector<BodyId> added;
+    for (int round = 0; round < 60; ++round) {
+        EffectSet some = kSimulated;
+        for (const Effect effect : kAllEffects) {
+            if (random.chance(0.4)) {
+                some.erase(effect);
+            }
+        }
+        const SceneEffects effects = smallSceneEffects(some);
+        if (effectsError(effects).empty()) {
+            simulation.declare(effects);
+        } else {
+            EXPECT_THROW(simulation.declare(effects), std::invalid_argument);
+        }
+        if (!added.empty() && random.chance(0.6)) {
+            const std::size_t chosen = random.below(static_cast<std::uint32_t>(added.size()));
+            simulation.remove(added[chosen]);
+            EXPECT_FALSE(simulation.contains(added[chosen]));
+            added.erase(added.begin() + static_cast<std::ptrdiff_t>(chosen));
+        }
+        for (int i = 0; i < 2; ++i) {
+            added.push_back(
+                simulation.add({.position = random.pointIn({0, 1, 0}, {20, 3, 20}).cast<float>()}));
+        }
+        simulation.advance(kStep);
+        ASSERT_EQ(simulation.validate(), "") << "round " << round << ", " << namesOf(some);
+        ASSERT_EQ(simulation.size(), 40 + added.size());
+    }
+}
+
+TEST(Simulation, TakesUpPairsLater) {
+    Simulation<float> simulation(declared({Effect::motion, Effect::culling}));
+    const BodyId a = simulation.add({});
+    const BodyId b = simulation.add({.position = {1, 0, 0}});
+    simulation.advance(kStep);
+    simulation.declare(declared({Effect::motion, Effect::culling, Effect::pairs}));
+    simulation.advance(kStep);
+    ASSERT_EQ(simulation.pairChanges().born.size(), 1U);
+    EXPECT_EQ(simulation.bodyOf(simulation.pairChanges().born[0].first), a);
+    EXPECT_EQ(simulation.bodyOf(simulation.pairChanges().born[0].second), b);
+}
+
+TEST(Simulation, KeepsItsProxiesWhenPairsAndSweepComeAndGo) {
+    SceneEffects effects = declared({Effect::motion, Effect::zones, Effect::picking});
+    Simulation<float> simulation(effects);
+    const ZoneId zone = simulation.observers().zones().add({SphereRegion<float>({0, 0, 0}, 9)});
+    simulation.add({.position = {0, 0, 0}});
+    simulation.add({.position = {1, 0, 0}});
+    const RayRegion<float> ray({-9, 0, 0}, {9, 0, 0});
+    simulation.advance(kStep);
+    const ProxyId hit = simulation.pick(ray).id;
+    EXPECT_EQ(simulation.observers().zones().occupants(zone).size(), 2U);
+    for (const std::size_t pairs : {1U, 0U, 1U, 1U}) {
+        effects.pairs.reset();
+        if (pairs > 0) {
+            effects.pairs.emplace();
+        }
+        effects.sweep.reset();
+        if (pairs > 0 && simulation.declared().pairs) {
+            effects.sweep.emplace();  // in the last round
+        }
+        simulation.declare(effects);
+        simulation.advance(kStep);
+        EXPECT_EQ(simulation.pick(ray).id, hit);
+        EXPECT_TRUE(simulation.observers().zoneEvents().entered.empty());
+        EXPECT_EQ(simulation.observers().zoneEvents().stayed.size(), 2U);
+        if (pairs > 0) {
+            EXPECT_EQ(simulation.pairChanges().born.size(), pairs);
+        }
+    }
+}
+
+TEST(Simulation, LooksForPairsWhileSomebodyTakesPart) {
+    Simulation<float> simulation(declared({Effect::motion, Effect::pairs, Effect::culling}));
+    const auto looks = [&] {
+        const std::vector<std::string_view> phases = simulation.phases();
+        return std::find(phases.begin(), phases.end(), "pair") != phases.end();
+    };
+    const EffectSet others = EffectSet::all() - EffectSet{Effect::pairs};
+    simulation.add({.effects = others});
+    simulation.advance(kStep);
+    EXPECT_FALSE(looks());
+    const BodyId a = simulation.add({});
+    const BodyId b = simulation.add({});
+    simulation.advance(kStep);
+    EXPECT_TRUE(looks());
+    EXPECT_EQ(simulation.pairChanges().born.size(), 1U);
+    simulation.remove(a);
+    simulation.remove(b);
+    simulation.advance(kStep);
+    EXPECT_EQ(simulation.pairChanges().died.size(), 1U);
+    simulation.advance(kStep);
+    EXPECT_FALSE(looks());
+    EXPECT_TRUE(simulation.pairChanges().died.empty());
+    EXPECT_EQ(simulation.validate(), "");
+}
+
+TEST(Simulation, KeepsContactsFromWhenTheFirstThatRespondsHasCome) {
+    Simulation<float> simulation(declared({Effect::motion, Effect::pairs, Effect::response}));
+    const EffectSet sensor{Effect::motion, Effect::pairs};
+    simulation.add({.effects = sensor});
+    simulation.add({.position = {1, 0, 0}, .effects = sensor});
+    simulation.advance(kStep);
+    EXPECT_EQ(simulation.pairChanges().born.size(), 1U);
+    EXPECT_EQ(simulation.cost()[SceneCounter::contactsTested], 0U);
+    const BodyId a = simulation.add({.position = {10, 0, 0}, .velocity = {1, 0, 0}});
+    const BodyId b = simulation.add({.position = {11.5F, 0, 0}, .velocity = {-1, 0, 0}});
+    simulation.advance(0);
+    EXPECT_EQ(simulation.pairChanges().born.size(), 1U);
+    EXPECT_EQ(simulation.cost()[SceneCounter::contactsTested], 1U);
+    EXPECT_EQ(simulation.velocity(a), Vector3<float>(-1, 0, 0));
+    EXPECT_EQ(simulation.velocity(b), Vector3<float>(1, 0, 0));
+    EXPECT_EQ(simulation.validate(), "");
+}
+
+TEST(Simulation, GivesTheSameOnAnyNumberOfThreads) {
+    Simulation<float> one(smallSceneEffects(kSimulated));
+    Simulation<float> many(smallSceneEffects(kSimulated));
+    fill(one, 3000);
+    fill(many, 3000);
+    ThreadedFor threads(4, 0x5eed0fee);
+    for (int frame = 0; frame < 5; ++frame) {
+        EXPECT_EQ(one.advance(kStep), many.advance(kStep, threads));
+    }
+    for (std::uint32_t body = 0; body < 3000; ++body) {
+        ASSERT_EQ(one.position({body, 1}), many.position({body, 1})) << body;
+    }
+}
+
+// --- Misuse --------------------------------------------------------------------------------------
+
+template <class Call>
+std::string undeclared(const Call& call) {
+    try {
+        call();
+    } catch (const UndeclaredEffect& error) {
+        return error.what();
+    }
+    return "nothing was thrown";
+}
+
+TEST(SimulationMisuse, NamesWhatIsToBeDeclared) {
+    Simulation<float> simulation;
+    const BodyId body = simulation.add({});
+    std::vector<ProxyId> selected;
+    EXPECT_EQ(
+        undeclared([&] { static_cast<void>(simulation.velocity(body)); }),
+        "velocity() needs motion, which the scene does not declare: set SceneEffects::motion.");
+    EXPECT_EQ(undeclared([&] {
+                  static_cast<void>(simulation.pick({{0, 0, 0}, {1, 1, 1}}));
+              }),
+              "pick() needs picking, which the scene does not declare: set SceneEffects::picking.");
+    EXPECT_THROW(simulation.setVelocity(body, {1, 0, 0}), UndeclaredEffect);
+    EXPECT_THROW(static_cast<void>(simulation.isAsleep(body)), UndeclaredEffect);
+    EXPECT_THROW(static_cast<void>(simulation.ground()), UndeclaredEffect);
+    EXPECT_EQ(undeclared([&] { static_cast<void>(simulation.grid()); }),
+              "grid() needs one of these, of which the scene declares none: pairs, picking, "
+              "boxSelection, culling, proximity, zones, radar.");
+    EXPECT_THROW(static_cast<void>(simulation.pairChanges()), UndeclaredEffect);
+    EXPECT_THROW(static_cast<void>(simulation.pairCount()), UndeclaredEffect);
+    EXPECT_THROW(simulation.select(smallSceneView(), {0, 0}, {1, 1}, selected), UndeclaredEffect);
+    EXPECT_THROW(static_cast<void>(simulation.observers().culler()), UndeclaredEffect);
+    EXPECT_THROW(static_cast<void>(simulation.observers().colours()), UndeclaredEffect);
+    EXPECT_THROW(static_cast<void>(simulation.observers().zones()), UndeclaredEffect);
+    EXPECT_THROW(static_cast<void>(simulation.observers().zoneEvents()), UndeclaredEffect);
+    EXPECT_THROW(static_cast<void>(simulation.observers().radarCounts()), UndeclaredEffect);
+    EXPECT_THROW(simulation.observers().setColour(0, 1), UndeclaredEffect);
+}
+
+TEST(SimulationMisuse, LeavesToBulletWhatIsBullets) {
+    try {
+        Simulation<float> simulation(declared({Effect::motion, Effect::rotation}));
+        ADD_FAILURE() << "nothing was thrown";
+    } catch (const std::invalid_argument& error) {
+        EXPECT_STREQ(error.what(),
+                     "rotation is declared, but Bullet alone simulates it: declare it for a Bullet "
+                     "world, or leave it out.");
+    }
+}
+
+TEST(SimulationMisuse, AssertsLivingBodiesAndOrdinarySteps) {
+    if (HASHPHASE_ENABLE_ASSERTS == 0) {
+        GTEST_SKIP() << "assertions are compiled out";
+    }
+    ThrowingAsserts asserts;
+    Simulation<float> simulation(declared({Effect::motion}));
+    const BodyId body = simulation.add({});
+    simulation.remove(body);
+    EXPECT_THROW(static_cast<void>(simulation.position(body)), BrokenAssert);
+    EXPECT_THROW(simulation.advance(-1), BrokenAssert);
+    EXPECT_THROW(simulation.advance(std::numeric_limits<float>::quiet_NaN()), BrokenAssert);
+}
+
+TEST(SimulationMisuse, BearsBodiesThatAreNowhere) {
+    const CaughtMessages messages;
+    Simulation<float> simulation(smallSceneEffects(kSimulated));
+    fill(simulation);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float infinity = std::numeric_limits<float>::infinity();
+    simulation.add({.position = {nan, 0, 0}, .velocity = {1, 0, 0}});
+    simulation.add({.position = {5, 1, 5}, .velocity = {nan, infinity, 0}});
+    simulation.add({.position = {infinity, 1, 5}, .radius = -1});
+    simulation.add({.position = {5, 1, 5}, .radius = nan});
+    for (int frame = 0; frame < 5; ++frame) {
+        simulation.advance(kStep);
+    }
+    EXPECT_EQ(simulation.size(), 44U);
+    EXPECT_EQ(simulation.validate(), "");
+}
+
+}  // namespace
+}  // namespace hashphase::test
