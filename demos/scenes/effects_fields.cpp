@@ -175,7 +175,7 @@ constexpr std::array kFields{
         WholeField{1, kMostFrames, setting<&SceneEffects::zones, &ZonesEffect::farFrames>}},
     EffectsField{"effects", "radar", "counts by coarse cells", "", EffectField{Effect::radar}},
     EffectsField{"effects.radar", "cellSize", "edge of a cell", "m",
-                 NumberField{1 / kMostEffectLength, kMostEffectLength,
+                 NumberField{kLeastEffectLength, kMostEffectLength,
                              setting<&SceneEffects::radar, &RadarEffect::cellSize>}},
     EffectsField{"effects.radar", "columns", "across; columns * rows * groupCount is limited, too",
                  "",

@@ -153,7 +153,7 @@ void requireOfLookers(const SceneEffects& effects, Settings& settings) {
     if (effects.radar) {
         const RadarEffect& radar = *effects.radar;
         settings.require(
-            radar.cellSize >= 1 / kMostEffectLength && radar.cellSize <= kMostEffectLength,
+            radar.cellSize >= kLeastEffectLength && radar.cellSize <= kMostEffectLength,
             "radar.cellSize", radar.cellSize, "from 1e-30 to 1e30 [m]");
         const double counts = double{1} * radar.columns * radar.rows * radar.groupCount;
         settings.require(counts >= 1 && counts <= static_cast<double>(Radar<float>::kMostCounts),

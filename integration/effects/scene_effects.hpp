@@ -26,9 +26,12 @@
 
 namespace hashphase {
 
-/// Settings that count frames go up to this; lengths that must be finite, up to that [m].
+/// Settings that count frames go up to this.
 inline constexpr std::uint32_t kMostEffectFrames = 1'000'000;
+
+/// Between these are lengths that must be finite, and those that must not vanish [m].
 inline constexpr double kMostEffectLength = 1e30;
+inline constexpr double kLeastEffectLength = 1e-30;
 
 /// Bodies move by velocity * time step.
 struct MotionEffect {
@@ -102,7 +105,7 @@ struct ZonesEffect {
 };
 
 struct RadarEffect {
-    double cellSize = 10;  ///< [m], 1 / kMostEffectLength to kMostEffectLength
+    double cellSize = 10;  ///< [m], kLeastEffectLength to kMostEffectLength
     std::uint32_t columns = 32;
     std::uint32_t rows = 32;
     std::uint32_t groupCount = 1;

@@ -30,14 +30,22 @@ function(hashphase_calm_warnings target)
     endif()
 endfunction()
 
-# hashphase_precompile_headers(<target>): in a quick build, compiles what most sources include once for
-# the target. It takes as long as five sources save.
+# hashphase_precompile_headers(<target> [AS <owner>] [ALSO <header>...]): in a quick build, compiles what
+# most sources include once for the target, which takes as long as three sources save; or takes what was
+# compiled for another one, whose code is as independent of its position and as optimised. (Clang wants
+# all definitions to be the same as well.)
 function(hashphase_precompile_headers target)
-    if(HASHPHASE_QUICK_BUILD)
-        target_precompile_headers(
-            ${target} PRIVATE <Eigen/Geometry> <algorithm> <memory> <span> <vector>)
-        hashphase_calm_warnings(${target})
+    cmake_parse_arguments(PARSE_ARGV 1 arg "" "AS" "ALSO")
+    if(NOT HASHPHASE_QUICK_BUILD)
+        return()
     endif()
+    if(NOT arg_AS)
+        target_precompile_headers(
+            ${target} PRIVATE <Eigen/Geometry> <algorithm> <memory> <span> <vector> ${arg_ALSO})
+    elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+        target_precompile_headers(${target} REUSE_FROM ${arg_AS})
+    endif()
+    hashphase_calm_warnings(${target})
 endfunction()
 
 # hashphase_compile_together(<target> <number>): in a quick build, compiles so many sources at a time as
@@ -70,6 +78,9 @@ function(hashphase_add_library component)
                    VERSION ${PROJECT_VERSION}
                    SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
                    WINDOWS_EXPORT_ALL_SYMBOLS ON)
+    if(TARGET hashphase_broadphase AND NOT component STREQUAL "broadphase")
+        hashphase_precompile_headers(${target} AS hashphase_broadphase)
+    endif()
     install(TARGETS ${target} EXPORT hashphase-${component}-targets)
     set_property(GLOBAL APPEND PROPERTY HASHPHASE_COMPONENTS ${component})
 endfunction()

@@ -64,7 +64,7 @@ TEST(EffectsFileFaults, NameAFieldOfTheWrongKind) {
         {R"({"effects": {"radar": {"up": 1}}})",
          ":1: effects.radar.up is 1, but must be 'x', 'y' or 'z'."},
         {R"({"effects": {"culling": {"margin": "none"}}})",
-         ":1: effects.culling.margin is 'none', but must be a number, 0 or more [m]."},
+         ":1: effects.culling.margin is 'none', but must be a number from 0 to 1e+30 [m]."},
         {R"({"effects": {"motion": {"bounds": {"min": [1, 2]}}}})",
          ":1: effects.motion.bounds.min is [1, 2], but must be an array of three numbers, each of "
          "which may be 'none' [m]."},

@@ -8,7 +8,7 @@ cmake_minimum_required(VERSION 3.22)
 file(REMOVE_RECURSE ${BINARY})
 execute_process(
     COMMAND ${CMAKE_COMMAND} -S ${FOLDER} -B ${BINARY} -G ${GENERATOR} -DCMAKE_BUILD_TYPE=Debug
-            -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_PREFIX_PATH=${PREFIX} ${VARIABLES}
+            -DCMAKE_CXX_FLAGS_DEBUG= -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_PREFIX_PATH=${PREFIX} ${VARIABLES}
     RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
 if(NOT status EQUAL 0)
     message(FATAL_ERROR "The consumer cannot be configured:\n${output}")
