@@ -220,8 +220,7 @@ private:
     void fileBodies();
     template <Filing filing>
     class BodyFiler;
-    template <Filing filing>
-    void note(const BodyFiler<filing>& filer);
+    void note(Filing filing, Scalar farthest);
     [[nodiscard]] static Phase movePhase(bool isBounded, Filing filing);
     [[nodiscard]] bool wakeUp(std::size_t body);
     template <bool areAwake>

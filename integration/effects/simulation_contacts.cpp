@@ -15,9 +15,9 @@ namespace {
 /// other. By the quadratic formula that does not cancel.
 template <class Scalar>
 double timeOfContact(const Vector3<Scalar>& apart, const Vector3<Scalar>& way, Scalar radii) {
-    const Vector3<double> p = apart.template cast<double>();
-    const Vector3<double> d = way.template cast<double>();
-    const double r = static_cast<double>(radii);
+    const Vector3<double> p(apart.template cast<double>());
+    const Vector3<double> d(way.template cast<double>());
+    const auto r = static_cast<double>(radii);
     constexpr double never = 2;
     const double closing = p.dot(d);
     if (!(closing > 0)) {
@@ -168,7 +168,8 @@ void Simulation<Scalar>::respondTo() {
 // Whom each sweeper meets first, and when.
 template <class Scalar>
 void Simulation<Scalar>::meet() {
-    auto& [list, ofBody] = *sweepers_;
+    std::vector<typename Sweepers::Sweeper>& list = sweepers_->list;
+    const std::vector<std::uint32_t>& ofBody = sweepers_->ofBody;
     if (list.empty()) {
         return;
     }

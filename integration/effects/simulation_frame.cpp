@@ -157,16 +157,16 @@ private:
     Scalar farthestSquared_ = 0;
 };
 
+// Unless it is measured, nobody knows how far somebody has moved.
 template <class Scalar>
-template <typename Simulation<Scalar>::Filing filing>
-void Simulation<Scalar>::note(const BodyFiler<filing>& filer) {
-    if constexpr (filing == Filing::measured) {
-        farthestMove_ = filer.farthest();
-    } else if constexpr (filing == Filing::plain) {
-        // Nobody knows how far.
-        farthestMove_ = motion_->movers.empty() ? 0 : std::numeric_limits<Scalar>::infinity();
+void Simulation<Scalar>::note(Filing filing, Scalar farthest) {
+    if (filing == Filing::none) {
+        return;
     }
-    cost_[SceneCounter::proxiesHashed] += filing == Filing::none ? 0 : motion_->movers.size();
+    constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
+    const std::size_t count = motion_->movers.size();
+    farthestMove_ = filing == Filing::measured ? farthest : count == 0 ? 0 : infinity;
+    cost_[SceneCounter::proxiesHashed] += count;
 }
 
 // Where nothing comes between, bodies are filed in the same pass.
@@ -197,7 +197,7 @@ void Simulation<Scalar>::moveBodies() {
         std::for_each(movers.begin(), movers.end(), move);
     }
     cost_[SceneCounter::bodiesMoved] += movers.size();
-    note(filer);
+    note(filing, filer.farthest());
 }
 
 template <class Scalar>
@@ -263,7 +263,7 @@ void Simulation<Scalar>::fileBodies() {
     for (const std::uint32_t body : motion_->movers) {
         filer.file(body, positions_[body], radii_[body]);
     }
-    note(filer);
+    note(filing, filer.farthest());
 }
 
 template <class Scalar>
