@@ -15,8 +15,8 @@ namespace {
 /// other. By the quadratic formula that does not cancel.
 template <class Scalar>
 double timeOfContact(const Vector3<Scalar>& apart, const Vector3<Scalar>& way, Scalar radii) {
-    const Vector3<double> p(apart.template cast<double>());
-    const Vector3<double> d(way.template cast<double>());
+    const Vector3<double>& p = apart.template cast<double>();
+    const Vector3<double>& d = way.template cast<double>();
     const auto r = static_cast<double>(radii);
     constexpr double never = 2;
     const double closing = p.dot(d);

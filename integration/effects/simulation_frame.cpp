@@ -52,6 +52,7 @@ const SceneCost& Simulation<Scalar>::advance(Scalar seconds, ParallelFor paralle
         recover();
         throw;
     }
+    parallelFor_ = nullptr;
     changedOutside_ = false;
     return cost_;
 }
@@ -60,6 +61,7 @@ const SceneCost& Simulation<Scalar>::advance(Scalar seconds, ParallelFor paralle
 // moved may not be filed.
 template <class Scalar>
 void Simulation<Scalar>::recover() noexcept {
+    parallelFor_ = nullptr;
     pairing_ = nullptr;
     if (contacts_) {
         contacts_->present.clear();

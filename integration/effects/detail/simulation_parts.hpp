@@ -19,7 +19,7 @@ struct Simulation<Scalar>::Motion {
 
 template <class Scalar>
 struct Simulation<Scalar>::Walkers {
-    explicit Walkers(UpAxis axis) : up(static_cast<Eigen::Index>(axis)), terrain(grid, axis) {}
+    explicit Walkers(UpAxis axis) : up(static_cast<Eigen::Index>(axis)), grid(), terrain(grid, axis) {}
 
     void clear() noexcept {
         bodies.clear();
