@@ -218,8 +218,8 @@ void Pricing::addChecks() {
 }  // namespace
 
 std::size_t pricingSteps(const EffectsFile& file, const PricingSettings& settings) {
-    return setsToRun(file.effects.set()).size() *
-           (std::size_t{settings.frames} + settings.warmUpFrames);
+    const std::size_t framesOfEach = std::size_t{settings.frames} + settings.warmUpFrames;
+    return framesOfEach * setsToRun(file.effects.set()).size();
 }
 
 SceneEffects onlyThese(const SceneEffects& effects, EffectSet these) {
