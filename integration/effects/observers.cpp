@@ -164,6 +164,9 @@ const SceneCost& Observers<Scalar>::observe(const Scene& scene, Scalar moved,
     for (const Phase& phase : phases_) {
         if (wanted.contains(phase.effect)) {
             (this->*phase.run)(scene, moved, parallelFor);
+            if (watch_) {
+                watch_(nameOf(phase.effect));
+            }
         }
     }
     presentBefore_ = scene.present;

@@ -34,10 +34,13 @@
 #include <integration/picking/pick.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace hashphase {
@@ -118,6 +121,9 @@ public:
     /// generations do not: whoever is in a zone enters it again, without having left.
     void forgetProxies() noexcept;
 
+    /// Calls it after each phase with its effect's name, for a profiler. Null: calls nobody.
+    void watchPhases(std::function<void(std::string_view)> watch) { watch_ = std::move(watch); }
+
     // --- What was found in the last frame --------------------------------------------------------
 
     /// Who is visible. Needs culling.
@@ -191,6 +197,7 @@ private:
     std::optional<Point> interest_;
     SceneCost cost_;   // of the last frame
     SceneCost asked_;  // of picks and selections since
+    std::function<void(std::string_view)> watch_;
 
     std::unique_ptr<Culling> culling_;
     std::unique_ptr<Proximity> proximity_;

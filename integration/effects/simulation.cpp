@@ -291,6 +291,12 @@ void Simulation<Scalar>::setPosition(BodyId id, const Point& position) {
 }
 
 template <class Scalar>
+void Simulation<Scalar>::watchPhases(std::function<void(std::string_view)> watch) {
+    observers_.watchPhases(watch);
+    watch_ = std::move(watch);
+}
+
+template <class Scalar>
 BodyId Simulation<Scalar>::bodyOf(ProxyId id) const {
     const bool isPresent =
         index_ && id.index < index_->proxies.size() && index_->proxies[id.index] == id;

@@ -38,6 +38,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -144,6 +145,17 @@ public:
     /// The phases of a frame, in their order.
     [[nodiscard]] std::vector<std::string_view> phases() const;
 
+    /// Calls it after each phase with the phase's name, for a profiler: also, by their effects' names, after
+    /// each of the parts of "observe", which then is what remains. Null: calls nobody.
+    void watchPhases(std::function<void(std::string_view)> watch);
+
+    /// Lets two bodies bounce off each other if they touch and approach, as the frame does with its own
+    /// pairs: for pairs that another broadphase has found. Returns whether they did; bodies that do not
+    /// take part in response do not. Called for all pairs that touch, sorted by the bodies' indices, after
+    /// advance() without response, it moves bodies as the same frame with response does, to the
+    /// last bit. `restitution` is as that of ResponseEffect. Needs motion. Cost: O(1).
+    bool collide(BodyId first, BodyId second, double restitution = 1);
+
     /// Pairs that were born and died in the last frame. Valid until the next one. Needs pairs.
     [[nodiscard]] const PairChanges& pairChanges() const;
 
@@ -224,9 +236,10 @@ private:
     [[nodiscard]] static Phase movePhase(bool isBounded, Filing filing);
     [[nodiscard]] bool wakeUp(std::size_t body);
     template <bool areAwake>
-    [[nodiscard]] bool bounce(std::size_t a, std::size_t b, const Point& apart, Scalar bounciness);
-    [[nodiscard]] static Scalar bouncinessOf(const ResponseEffect& effect) {
-        return static_cast<Scalar>(1 + effect.restitution);
+    [[nodiscard]] bool bounce(std::size_t a, std::size_t b, const Point& apart, Scalar bounciness,
+                              SceneCost& cost);
+    [[nodiscard]] static Scalar bouncinessOf(double restitution) {
+        return static_cast<Scalar>(1 + restitution);
     }
     template <bool allRespond>
     void respondTo();
@@ -281,6 +294,7 @@ private:
     bool changedOutside_ = true;  // since the last frame, by other than advance()
     SceneCost cost_;
     SceneCost between_;  // what happened since, which the next frame's has as well
+    std::function<void(std::string_view)> watch_;
 };
 
 /// effectsError(), and what a Simulation cannot run.

@@ -92,7 +92,7 @@ bool Simulation<Scalar>::wakeUp(std::size_t body) {
 template <class Scalar>
 template <bool areAwake>
 inline bool Simulation<Scalar>::bounce(std::size_t a, std::size_t b, const Point& apart,
-                                       Scalar bounciness) {
+                                       Scalar bounciness, SceneCost& cost) {
     const Scalar distance = apart.norm();
     const Point normal = distance > 0 ? Point(apart / distance) : Point(Point::UnitX());
     Point& velocityA = motion_->velocities[a];
@@ -109,7 +109,7 @@ inline bool Simulation<Scalar>::bounce(std::size_t a, std::size_t b, const Point
         for (const std::size_t body : {a, b}) {
             if (isMovable(body) && !isAwake(body)) {
                 motion_->velocities[body].setZero();
-                cost_[SceneCounter::wokeUp] += wakeUp(body) ? 1 : 0;
+                cost[SceneCounter::wokeUp] += wakeUp(body) ? 1 : 0;
             }
         }
     }
@@ -143,7 +143,7 @@ void Simulation<Scalar>::respondTo() {
     };
     const std::span<const Point> positions = positions_;
     const std::span<const Scalar> radii = radii_;
-    const Scalar bounciness = bouncinessOf(*effects_.response);
+    const Scalar bounciness = bouncinessOf(effects_.response->restitution);
     std::uint64_t tested = 0;
     std::uint64_t solved = 0;
     for (const auto& [a, b] : contacts_->present) {
@@ -158,7 +158,7 @@ void Simulation<Scalar>::respondTo() {
         const Point apart = positions[b] - positions[a];
         const Scalar reach = radii[a] + radii[b];
         if (apart.squaredNorm() <= reach * reach) {
-            solved += bounce<allRespond>(a, b, apart, bounciness) ? 1 : 0;
+            solved += bounce<allRespond>(a, b, apart, bounciness, cost_) ? 1 : 0;
         }
     }
     cost_[SceneCounter::contactsTested] += tested;
@@ -228,11 +228,24 @@ void Simulation<Scalar>::land() {
     for (const auto& [body, hit, start, velocity, way, time] : list) {
         if (hit != Sweepers::kNone) {
             const Point apart = positions_[hit] - positions_[body];
-            const Scalar bounciness = bouncinessOf(*effects_.response);
+            const Scalar bounciness = bouncinessOf(effects_.response->restitution);
             cost_[SceneCounter::contactsSolved] +=
-                bounce<false>(body, hit, apart, bounciness) ? 1 : 0;
+                bounce<false>(body, hit, apart, bounciness, cost_) ? 1 : 0;
         }
     }
+}
+
+template <class Scalar>
+bool Simulation<Scalar>::collide(BodyId first, BodyId second, double restitution) {
+    require(Effect::motion, "collide()");
+    const std::size_t a = indexOf(std::min(first, second));
+    const std::size_t b = indexOf(std::max(first, second));
+    HASHPHASE_ASSERT(a != b, "A body collides with another one.");
+    const Point apart = positions_[b] - positions_[a];
+    const Scalar reach = radii_[a] + radii_[b];
+    return (effectsOf_[a] & effectsOf_[b]).contains(Effect::response) &&
+           apart.squaredNorm() <= reach * reach &&
+           bounce<false>(a, b, apart, bouncinessOf(restitution), between_);
 }
 
 template class Simulation<float>;

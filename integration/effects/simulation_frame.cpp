@@ -47,6 +47,9 @@ const SceneCost& Simulation<Scalar>::advance(Scalar seconds, ParallelFor paralle
     try {
         for (const Phase& phase : phases_) {
             (this->*phase.run)();
+            if (watch_) {
+                watch_(phase.name);
+            }
         }
     } catch (...) {
         recover();
