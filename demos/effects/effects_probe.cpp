@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/effects/effects_probe.hpp>
 
+#include <demos/scenes/simulation_scene.hpp>
+#include <demos/scenes/terrain.hpp>
+
 #include <broadphase/neighbours.hpp>
 
 #include <cmath>

@@ -4,8 +4,6 @@
 // A scene file come to life: bodies, ground, zones, a camera that looks about, and somebody who clicks.
 
 #include <demos/scenes/effects_file.hpp>
-#include <demos/scenes/random.hpp>
-#include <demos/scenes/terrain.hpp>
 
 #include <integration/effects/simulation.hpp>
 
@@ -13,9 +11,6 @@
 #include <vector>
 
 namespace hashphase::demos {
-
-/// The ground of a scene file, as triangles; none where it has none.
-[[nodiscard]] std::vector<Vector3<float>> groundOf(const EffectsScene& scene);
 
 /// A simulation of the scene, with the effects that are given in place of the file's own. The same
 /// scene has the same bodies, whatever is declared.
@@ -44,12 +39,8 @@ public:
     static constexpr int kSelections = 2;
 
 private:
-    void addBodies(Random& random);
-    void addZones(Random& random);
-
     EffectsScene scene_;
     EffectSet declared_;
-    Terrain hills_;
     Simulation<float> simulation_;
     std::vector<BodyId> bodies_;
     View<float> view_;

@@ -120,6 +120,37 @@ void fillStaticCity(WorldContents& contents, std::size_t objects, std::uint64_t 
     }
 }
 
+// Bullets without weight that fly to and fro between thin walls, in lanes: each step takes them by
+// thirty walls' thickness.
+void fillBulletStorm(WorldContents& contents, std::size_t objects, std::uint64_t seed) {
+    constexpr btScalar kSpeed = 180;  // [m/s]
+    constexpr btScalar kApart = 12;   // from wall to wall [m]
+    constexpr btScalar kHalfThickness = 0.05F;
+    constexpr std::size_t kWalls = 6;
+    Random random(seed);
+    const btScalar halfWidth = 1 + std::sqrt(static_cast<btScalar>(objects));
+    addFloor(contents, kApart * kWalls + halfWidth);
+    auto& wall = contents.addShape<btBoxShape>(btVector3(kHalfThickness, 4, halfWidth));
+    for (std::size_t i = 0; i < kWalls; ++i) {
+        btRigidBody& body =
+            contents.addBody(wall, 0, btVector3(kApart * static_cast<btScalar>(i), 4, 0));
+        body.setRestitution(1);
+    }
+    auto& bullet = contents.addShape<btSphereShape>(btScalar(0.15));
+    for (std::size_t i = 0; i < objects; ++i) {
+        const auto lane = static_cast<btScalar>(i % (kWalls - 1));
+        const btScalar x = kApart * (lane + 0.5F) + random.between(-3, 3);
+        const btScalar y = random.between(0.5F, 7.5F);
+        const btScalar z = random.between(0.5F - halfWidth, halfWidth - 0.5F);
+        btRigidBody& body = contents.addBody(bullet, 1, btVector3(x, y, z));
+        body.setGravity(btVector3(0, 0, 0));
+        body.setRestitution(1);
+        body.setFriction(0);
+        body.setActivationState(DISABLE_DEACTIVATION);
+        body.setLinearVelocity(btVector3(random.unit() < 0.5F ? kSpeed : -kSpeed, 0, 0));
+    }
+}
+
 constexpr std::array kKinds{
     WorldSceneKind{"pile", "Bullet dynamics: boxes, spheres and capsules dropped in a heap", 1'000,
                    fillPile},
@@ -129,6 +160,9 @@ constexpr std::array kKinds{
     WorldSceneKind{"static-city",
                    "Bullet dynamics: static houses on a plane, and a ball for every 40 of them",
                    20'000, fillStaticCity},
+    WorldSceneKind{"bullet-storm",
+                   "Bullet dynamics: bullets between thin walls, without continuous collision", 500,
+                   fillBulletStorm},
 };
 
 }  // namespace

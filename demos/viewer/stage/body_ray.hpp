@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+#include <demos/viewer/stage/stage.hpp>
+
+#include <optional>
+
+namespace hashphase::demos {
+
+/// Where the way from a point first meets the body, as a share of the way: 0 where it begins inside, nothing
+/// where it does not. A capsule is taken for the box around it.
+[[nodiscard]] std::optional<float> meets(const StageBody& body, const Vector3<float>& from,
+                                         const Vector3<float>& way);
+
+}  // namespace hashphase::demos

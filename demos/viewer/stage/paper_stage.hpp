@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// The paper's simulation on stage: spheres that roam a terrain, by the library's own Simulation. Where one
+// of Bullet's broadphases finds the pairs, the bodies move as they do with the grid's, to the last bit.
+
+#include <demos/scenes/effects_file.hpp>
+#include <demos/viewer/stage/rival_pairs.hpp>
+#include <demos/viewer/stage/stage.hpp>
+
+#include <integration/effects/simulation.hpp>
+
+#include <memory>
+#include <vector>
+
+namespace hashphase::demos {
+
+class PaperStage final : public Stage {
+public:
+    explicit PaperStage(const EffectsFile& file);
+
+    void step() override;
+
+    [[nodiscard]] std::size_t size() const override { return simulation_.size(); }
+    [[nodiscard]] StageBody body(std::uint32_t index) const override;
+    bool remove(std::uint32_t index) override;
+    bool push(std::uint32_t index, const Vector3<float>& velocity) override;
+    [[nodiscard]] std::span<const Vector3<float>> ground() const override;
+    [[nodiscard]] Aabb<float> bounds() const override;
+    [[nodiscard]] float heightAt(float x, float z) const override;
+    [[nodiscard]] std::uint64_t placesHash() const override;
+
+    [[nodiscard]] const SceneEffects& effects() const override { return effects_; }
+    void declare(const SceneEffects& effects) override;
+    [[nodiscard]] EffectSet possibleEffects() const override;
+    void setBroadphase(const BroadphaseKind& kind) override;
+    [[nodiscard]] const BroadphaseKind& broadphase() const override { return *kind_; }
+    void listPairs(std::vector<PairKey>& pairs) const override;
+    void listBoxes(std::vector<Aabb<float>>& boxes,
+                   std::vector<CollisionFilter>& filters) const override;
+    [[nodiscard]] const Grid<float>* grid() const override;
+    [[nodiscard]] Observers<float>& observers() override { return simulation_.observers(); }
+    [[nodiscard]] std::uint64_t memoryBytes() const override;
+
+private:
+    [[nodiscard]] static SceneEffects withoutPairs(SceneEffects effects);
+    void declareToSimulation();
+    void takeChanges();
+    void collideRivals();
+
+    EffectsScene scene_;
+    SceneEffects effects_;  // as declared; the simulation's has no pairs where a rival finds them
+    std::vector<Vector3<float>> ground_;
+    Simulation<float> simulation_;
+    std::vector<BodyId> bodies_;  // by index; null where nobody is
+    const BroadphaseKind* kind_;
+    std::unique_ptr<RivalPairs> rival_;  // none: the grid finds the pairs
+    std::vector<PairKey> pairs_;         // the grid's
+    std::vector<PairKey> nextPairs_;     // scratch
+    std::vector<Aabb<float>> boxes_;     // the same
+    std::vector<CollisionFilter> noFilters_;
+};
+
+}  // namespace hashphase::demos

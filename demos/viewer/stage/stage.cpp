@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/viewer/stage/stage.hpp>
+
+#include <demos/viewer/stage/body_ray.hpp>
+
+namespace hashphase::demos {
+
+Picked<float> Stage::pick(const RayRegion<float>& ray) {
+    const auto exactly = [this](ProxyId id, const RayRegion<float>& along,
+                                float limit) -> std::optional<float> {
+        const std::optional<float> share = meets(body(id.index), along.from(), along.direction());
+        return share && *share <= limit ? share : std::nullopt;
+    };
+    return grid() != nullptr ? observers().pick({*grid()}, ray, exactly) : Picked<float>{};
+}
+
+}  // namespace hashphase::demos

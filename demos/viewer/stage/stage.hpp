@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// A scene that runs and can be looked at: bodies that move, the grid that knows where they are, whoever
+// finds their pairs, and what looks at them (culling, picking, proximity). The viewer knows all scenes by
+// this, whoever moves the bodies: the library's own simulation, Bullet, or a recording.
+//
+// Bodies   are named by an index, that of their proxy in the grid; indices of who was removed are used again.
+// Frames   of 1/60 s; what happens depends on the scene, the seed and the calls alone.
+// Errors   A declaration that cannot be run throws std::invalid_argument with a sentence.
+// Threads  one at a time
+// Units    metres, seconds
+
+#include <demos/compare/broadphase_kind.hpp>
+#include <demos/compare/reference_pairs.hpp>
+#include <demos/viewer/stage/phase_clock.hpp>
+
+#include <integration/effects/observers.hpp>
+
+#include <Eigen/Geometry>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace hashphase::demos {
+
+inline constexpr float kFrameSeconds = 1.0F / 60;
+
+/// What a body looks like, and what it does.
+struct StageBody {
+    enum class Shape : std::uint8_t { none, sphere, box, capsule };  // none: nobody, or not drawn
+
+    Shape shape = Shape::none;
+    Vector3<float> centre = Vector3<float>::Zero();
+    Eigen::Quaternionf orientation = Eigen::Quaternionf::Identity();
+    /// Of a box its half extents; of a sphere its radius, in x; of a capsule its radius in x and, from
+    /// the middle to the centre of an end, in y.
+    Vector3<float> size = Vector3<float>::Zero();
+    float speed = 0;
+    bool isStatic = false;
+    bool isAsleep = false;
+};
+
+/// A place where something fast has passed through a wall.
+struct TunnelMark {
+    Vector3<float> from;
+    Vector3<float> to;
+};
+
+class Stage {
+public:
+    virtual ~Stage() = default;
+
+    /// Simulates one frame of what is declared.
+    virtual void step() = 0;
+
+    // --- Who is there ----------------------------------------------------------------------------
+
+    [[nodiscard]] virtual std::size_t size() const = 0;
+    [[nodiscard]] virtual StageBody body(std::uint32_t index) const = 0;
+    [[nodiscard]] bool contains(std::uint32_t index) const {
+        return body(index).shape != StageBody::Shape::none;
+    }
+
+    /// Takes the body out, or gives it another velocity as well as its own. False where that cannot be: of a
+    /// recording, or of nobody.
+    virtual bool remove(std::uint32_t index) = 0;
+    virtual bool push(std::uint32_t index, const Vector3<float>& velocity) = 0;
+
+    /// Corners of triangles, three each; valid while the stage lives.
+    [[nodiscard]] virtual std::span<const Vector3<float>> ground() const { return {}; }
+
+    /// Where bodies are to begin with, or may be; and how high the camera stands on the ground.
+    [[nodiscard]] virtual Aabb<float> bounds() const = 0;
+    [[nodiscard]] virtual float heightAt(float /*x*/, float /*z*/) const { return 0; }
+
+    [[nodiscard]] virtual std::span<const TunnelMark> tunnelMarks() const { return {}; }
+
+    /// The same number where all bodies are at the same places, to the last bit.
+    [[nodiscard]] virtual std::uint64_t placesHash() const = 0;
+
+    // --- What runs -------------------------------------------------------------------------------
+
+    [[nodiscard]] virtual const SceneEffects& effects() const = 0;
+    virtual void declare(const SceneEffects& effects) = 0;
+
+    /// The effects that this scene can run.
+    [[nodiscard]] virtual EffectSet possibleEffects() const = 0;
+
+    /// Who finds the pairs from the next frame on.
+    virtual void setBroadphase(const BroadphaseKind& kind) = 0;
+    [[nodiscard]] virtual const BroadphaseKind& broadphase() const = 0;
+
+    /// As the broadphase has found them in the last frame, by indices, sorted; none while they are not declared.
+    virtual void listPairs(std::vector<PairKey>& pairs) const = 0;
+
+    /// What it was given: by index; NaN for who is not there. `filters` stays empty where all may pair.
+    virtual void listBoxes(std::vector<Aabb<float>>& boxes,
+                           std::vector<CollisionFilter>& filters) const = 0;
+
+    /// The grid of all bodies; null while no effect asks one.
+    [[nodiscard]] virtual const Grid<float>* grid() const = 0;
+    [[nodiscard]] virtual Observers<float>& observers() = 0;
+
+    /// The nearest body that the ray meets, exactly. Needs picking.
+    [[nodiscard]] Picked<float> pick(const RayRegion<float>& ray);
+
+    // --- What it took ----------------------------------------------------------------------------
+
+    /// The phases of the last frame.
+    [[nodiscard]] std::span<const PhaseTime> times() const noexcept { return clock_.times(); }
+
+    /// Bullet's own profile zones of the last frame, outer ones before inner ones; none where Bullet does
+    /// not run.
+    struct Zone {
+        std::string_view name;
+        int depth = 0;
+        double milliseconds = 0;
+        std::uint32_t calls = 0;
+    };
+    [[nodiscard]] virtual std::span<const Zone> zones() const { return {}; }
+
+    /// Of all tables.
+    [[nodiscard]] virtual std::uint64_t memoryBytes() const = 0;
+
+protected:
+    PhaseClock clock_;
+};
+
+}  // namespace hashphase::demos
