@@ -25,6 +25,12 @@ std::string fixed(double number, int digits) {
     return text.data();
 }
 
+std::string plain(double number) {
+    std::array<char, 40> text{};
+    std::snprintf(text.data(), text.size(), "%.15g", number);
+    return text.data();
+}
+
 std::string milliseconds(double number) {
     const double size = std::abs(number);
     if (size >= 99.95) {

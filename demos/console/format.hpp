@@ -17,6 +17,9 @@ namespace hashphase::demos {
 /// Milliseconds with three significant digits: "0.0123", "1.23", "12.3", "123".
 [[nodiscard]] std::string milliseconds(double number);
 
+/// A number with all its digits, up to 15, and no more: "0.1", "30000", "1e+20".
+[[nodiscard]] std::string plain(double number);
+
 /// Bytes as "123 B", "12.3 KiB", "4.56 MiB", "7.89 GiB"; may be negative.
 [[nodiscard]] std::string byteSize(std::int64_t bytes);
 

@@ -6,14 +6,12 @@
 namespace hashphase::demos {
 namespace {
 
-constexpr double kAspect = 16.0 / 9;
-
 // Eye space looks along -z; its depths become 0 at the near plane and 1 at the far one.
-Eigen::Matrix4d projection(double fieldOfView, double farPlane) {
+Eigen::Matrix4d projection(double fieldOfView, double farPlane, double aspect) {
     const double scale = 1 / std::tan(fieldOfView / 2);
     const double slope = farPlane / (double{kNearPlane} - farPlane);
     Eigen::Matrix4d matrix = Eigen::Matrix4d::Zero();
-    matrix(0, 0) = scale / kAspect;
+    matrix(0, 0) = scale / aspect;
     matrix(1, 1) = scale;
     matrix(2, 2) = slope;
     matrix(2, 3) = slope * kNearPlane;
@@ -31,7 +29,8 @@ CameraView cameraView(const CameraPose& pose) {
     toEye.topLeftCorner<3, 3>() = turn.transpose();
     toEye.topRightCorner<3, 1>() = -turn.transpose() * pose.eye.cast<double>();
     CameraView view;
-    view.viewProjection = (projection(pose.fieldOfView, pose.farPlane) * toEye).cast<float>();
+    view.viewProjection =
+        (projection(pose.fieldOfView, pose.farPlane, pose.aspect) * toEye).cast<float>();
     view.planes = frustumPlanes<float>(view.viewProjection, kDepthRange);
     return view;
 }

@@ -20,6 +20,7 @@ struct CameraPose {
     float pitch = 0;        // -pi / 2 looks straight down [rad]
     float fieldOfView = 1;  // vertical [rad]
     float farPlane = kFarPlane;
+    double aspect = 16.0 / 9;  // of the screen: width by height
 };
 
 /// What is seen: the same as a matrix and as planes that face inwards.
@@ -28,7 +29,6 @@ struct CameraView {
     std::array<Eigen::Hyperplane<float, 3>, 6> planes;
 };
 
-/// On a screen of 16 to 9.
 [[nodiscard]] CameraView cameraView(const CameraPose& pose);
 
 }  // namespace hashphase::demos

@@ -104,6 +104,9 @@ public:
     /// The grid of all bodies; null while no effect asks one.
     [[nodiscard]] virtual const Grid<float>* grid() const = 0;
     [[nodiscard]] virtual Observers<float>& observers() = 0;
+    [[nodiscard]] const Observers<float>& observers() const {
+        return const_cast<Stage*>(this)->observers();  // NOLINT: it is read alone
+    }
 
     /// The nearest body that the ray meets, exactly. Needs picking.
     [[nodiscard]] Picked<float> pick(const RayRegion<float>& ray);

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/viewer/session/arguments.hpp>
+
+#include <demos/console/format.hpp>
+#include <demos/console/nearest_name.hpp>
+#include <demos/console/quoted_word.hpp>
+#include <demos/scenes/input_error.hpp>
+
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+namespace hashphase::demos {
+namespace {
+
+template <class Number>
+bool isNumber(const std::string& word, Number& number) {
+    const char* const end = word.data() + word.size();
+    return std::from_chars(word.data(), end, number) == std::from_chars_result{end, std::errc()};
+}
+
+}  // namespace
+
+std::string_view firstWord(std::string_view line) {
+    line = line.substr(0, line.find('#'));
+    const std::size_t begin = line.find_first_not_of(" \t\r");
+    if (begin == std::string_view::npos) {
+        return {};
+    }
+    line.remove_prefix(begin);
+    return line.substr(0, line.find_first_of(" \t\r"));
+}
+
+Arguments::Arguments(std::string_view line, std::string_view usage) : usage_(usage) {
+    std::istringstream words{std::string(line.substr(0, line.find('#')))};
+    for (std::string word; words >> word;) {
+        words_.push_back(word);
+    }
+}
+
+void Arguments::fail(const std::string& fault) const {
+    throw InputError(fault + " The command is: " + usage_);
+}
+
+const std::string& Arguments::take(std::string_view name) {
+    if (isEmpty()) {
+        fail(std::string(name) + " is missing.");
+    }
+    return words_[next_++];
+}
+
+double Arguments::number(std::string_view name, double low, double high) {
+    const std::string& word = take(name);
+    double number = 0;
+    if (!isNumber(word, number) || !(number >= low && number <= high)) {
+        fail(std::string(name) + " is a number from " + plain(low) + " to " + plain(high) +
+             ", not " + quotedWord(word) + ".");
+    }
+    return number;
+}
+
+double Arguments::numberOr(std::string_view name, double low, double high, double otherwise) {
+    return isEmpty() ? otherwise : number(name, low, high);
+}
+
+long long Arguments::whole(std::string_view name, long long low, long long high) {
+    const std::string& word = take(name);
+    long long number = 0;
+    if (!isNumber(word, number) || number < low || number > high) {
+        fail(std::string(name) + " is a whole number from " + std::to_string(low) + " to " +
+             std::to_string(high) + ", not " + quotedWord(word) + ".");
+    }
+    return number;
+}
+
+long long Arguments::wholeOr(std::string_view name, long long low, long long high,
+                             long long otherwise) {
+    return isEmpty() ? otherwise : whole(name, low, high);
+}
+
+std::size_t Arguments::choice(std::string_view name, std::span<const std::string_view> known) {
+    const std::string& word = take(name);
+    for (std::size_t i = 0; i < known.size(); ++i) {
+        if (known[i] == word) {
+            return i;
+        }
+    }
+    const std::vector<std::string> names(known.begin(), known.end());
+    throw InputError(unknownNameSentence(name, word, names));
+}
+
+bool Arguments::onOff(bool now) {
+    if (isEmpty()) {
+        return !now;
+    }
+    const std::string& word = take("on or off");
+    if (word != "on" && word != "off") {
+        fail(quotedWord(word) + " is neither on nor off.");
+    }
+    return word == "on";
+}
+
+std::string Arguments::word(std::string_view name) {
+    return take(name);
+}
+
+void Arguments::end() const {
+    if (!isEmpty()) {
+        fail(quotedWord(words_[next_]) + " is one word too many.");
+    }
+}
+
+}  // namespace hashphase::demos

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/viewer/session/command_log.hpp>
+
+#include <demos/scenes/input_error.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <charconv>
+
+namespace hashphase::demos {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kVersion = 1;
+
+// Numbers in JSON are doubles to many readers.
+std::string hexadecimal(std::uint64_t number) {
+    std::array<char, 16> digits{};
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number, 16).ptr;
+    return "0x" + std::string(digits.data(), end);
+}
+
+std::uint64_t fromHexadecimal(const std::string& text) {
+    std::uint64_t number = 0;
+    const char* const end = text.data() + text.size();
+    if (!text.starts_with("0x") ||
+        std::from_chars(text.data() + 2, end, number, 16) != std::from_chars_result{end, {}}) {
+        throw InputError("'" + text + "' is no hash, which is 0x and up to 16 digits");
+    }
+    return number;
+}
+
+}  // namespace
+
+void CommandLog::begin(const SceneChoice& choice) {
+    *this = {};
+    choice_ = choice;
+}
+
+void CommandLog::note(std::uint64_t frame, std::uint64_t result) {
+    // FNV-1a, by Fowler, Noll and Vo.
+    hash_ = (hash_ ^ result) * 0x100000001b3U;
+    frames_ = frame;
+    if (frame % kHashEvery == 0) {
+        hashes_.push_back(hash_);
+    }
+}
+
+std::uint64_t CommandLog::sameUntil(const CommandLog& other) const {
+    const auto [mine, theirs] =
+        std::mismatch(hashes_.begin(), hashes_.end(), other.hashes_.begin(), other.hashes_.end());
+    const std::uint64_t shorter = std::min(frames_, other.frames_);
+    if ((mine != hashes_.end() && theirs != other.hashes_.end()) ||
+        (frames_ == other.frames_ && hash_ != other.hash_)) {
+        return kHashEvery * static_cast<std::uint64_t>(mine - hashes_.begin());
+    }
+    return shorter;
+}
+
+std::string CommandLog::text() const {
+    Json json;
+    json["schema"] = "hashphase/wander-recording";
+    json["version"] = kVersion;
+    json["scene"] = choice_.name;
+    json["file"] = choice_.file;
+    json["objects"] = choice_.objects ? Json(*choice_.objects) : Json(nullptr);
+    json["seed"] = choice_.seed;
+    json["frames"] = frames_;
+    json["hash"] = hexadecimal(hash_);
+    json["hashEvery"] = kHashEvery;
+    Json& hashes = json["hashes"] = Json::array();
+    for (const std::uint64_t hash : hashes_) {
+        hashes.push_back(hexadecimal(hash));
+    }
+    Json& commands = json["commands"] = Json::array();
+    for (const LoggedCommand& command : commands_) {
+        commands.push_back({{"frame", command.frame}, {"command", command.line}});
+    }
+    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+CommandLog CommandLog::parse(std::string_view text, const std::string& name) {
+    try {
+        const Json json = Json::parse(text);
+        if (json.at("schema") != "hashphase/wander-recording" || json.at("version") != kVersion) {
+            throw InputError("it is no recording of hashphase wander, version 1");
+        }
+        CommandLog log;
+        log.choice_.name = json.at("scene").get<std::string>();
+        log.choice_.file = json.at("file").get<std::string>();
+        if (!json.at("objects").is_null()) {
+            log.choice_.objects = json.at("objects").get<std::size_t>();
+        }
+        log.choice_.seed = json.at("seed").get<std::uint64_t>();
+        log.frames_ = json.at("frames").get<std::uint64_t>();
+        log.hash_ = fromHexadecimal(json.at("hash").get<std::string>());
+        for (const Json& hash : json.at("hashes")) {
+            log.hashes_.push_back(fromHexadecimal(hash.get<std::string>()));
+        }
+        for (const Json& command : json.at("commands")) {
+            log.commands_.push_back({command.at("frame").get<std::uint64_t>(),
+                                     command.at("command").get<std::string>()});
+        }
+        const auto comesLater = [](const LoggedCommand& a, const LoggedCommand& b) {
+            return a.frame < b.frame;
+        };
+        if (!std::is_sorted(log.commands_.begin(), log.commands_.end(), comesLater) ||
+            log.hashes_.size() != log.frames_ / kHashEvery) {
+            throw InputError("its frames are out of order, or hashes are missing");
+        }
+        return log;
+    } catch (const Json::exception& error) {
+        throw InputError(name + " cannot be read as a recording: " + error.what());
+    } catch (const InputError& error) {
+        throw InputError(name + " cannot be read as a recording: " + error.what() + ".");
+    }
+}
+
+}  // namespace hashphase::demos

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// How long each phase has taken in the last frames, for a table and a stacked graph.
+
+#include <demos/viewer/stage/phase_clock.hpp>
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace hashphase::demos {
+
+class PhaseHistory {
+public:
+    static constexpr std::size_t kFrames = 240;
+
+    struct Row {
+        std::string_view name;
+        double smoothed = 0;                  // lately [ms]
+        std::array<float, kFrames> frames{};  // a ring; 0 in frames without the phase [ms]
+        bool isPresent = false;               // in the last frame
+    };
+
+    /// Phases of a frame. Phases that have not been there for as long as the history reaches are gone.
+    void add(std::span<const PhaseTime> times);
+    void clear();
+
+    /// In the order in which they first came.
+    [[nodiscard]] std::span<const Row> rows() const noexcept { return rows_; }
+
+    /// Frames that are known, at most kFrames; frame 0 is the oldest.
+    [[nodiscard]] std::size_t frameCount() const noexcept { return count_; }
+    [[nodiscard]] float at(const Row& row, std::size_t frame) const noexcept {
+        return row.frames[(next_ + kFrames - count_ + frame) % kFrames];
+    }
+
+    /// Of the known frames, the time that one in twenty exceeds [ms].
+    [[nodiscard]] double p95(const Row& row) const;
+
+    /// All phases together [ms].
+    [[nodiscard]] double smoothedTotal() const;
+    [[nodiscard]] double p95Total() const;
+
+private:
+    std::vector<Row> rows_;
+    std::size_t next_ = 0;  // where the next frame goes
+    std::size_t count_ = 0;
+};
+
+}  // namespace hashphase::demos

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/viewer/session/scene_choice.hpp>
+
+#include <demos/console/format.hpp>
+#include <demos/console/nearest_name.hpp>
+#include <demos/scenes/input_error.hpp>
+#include <demos/viewer/stage/bullet_stage.hpp>
+#include <demos/viewer/stage/paper_stage.hpp>
+#include <demos/viewer/stage/recording_stage.hpp>
+
+#include <filesystem>
+
+namespace hashphase::demos {
+namespace {
+
+constexpr std::size_t kMostObjects = 1'000'000;
+constexpr std::size_t kWanderers = 30'000;
+
+// The paper's test bed, with all that its authors showed.
+EffectsFile wanderers() {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    constexpr double kDomain = 400;
+    EffectsFile file;
+    file.scene.objects = kWanderers;
+    file.scene.domain = kDomain;
+    file.scene.terrain = 160;
+    file.scene.zones = 20;
+    for (const Effect effect :
+         {Effect::motion, Effect::terrain, Effect::pairs, Effect::response, Effect::picking,
+          Effect::boxSelection, Effect::culling, Effect::proximity}) {
+        file.effects.declare(effect);
+    }
+    file.effects.motion->bounds = {Vector3<double>(1, -infinity, 1),
+                                   Vector3<double>(kDomain - 1, infinity, kDomain - 1)};
+    file.effects.response->restitution = 0.9;
+    file.effects.proximity->radius = 5;
+    return file;
+}
+
+// What Bullet does by itself, and what the viewer asks.
+SceneEffects bulletEffects() {
+    SceneEffects effects;
+    for (const Effect effect :
+         {Effect::motion, Effect::pairs, Effect::response, Effect::sleeping, Effect::rotation,
+          Effect::friction, Effect::picking, Effect::boxSelection, Effect::culling}) {
+        effects.declare(effect);
+    }
+    return effects;
+}
+
+std::unique_ptr<Stage> makePaperStage(EffectsFile file, const SceneChoice& choice) {
+    if (choice.objects) {
+        file.scene.objects = static_cast<std::uint32_t>(*choice.objects);
+    }
+    file.scene.seed = static_cast<std::uint32_t>(choice.seed);
+    return std::make_unique<PaperStage>(file);
+}
+
+std::unique_ptr<Stage> openFile(const SceneChoice& choice) {
+    const std::string extension = std::filesystem::path(choice.file).extension().string();
+    if (extension == ".aabbs") {
+        return std::make_unique<RecordingStage>(choice.file, choice.objects.value_or(0));
+    }
+    if (extension == ".json") {
+        EffectsFile file = readEffectsFile(choice.file);
+        const SceneChoice sized{.name = {},
+                                .file = choice.file,
+                                .objects = choice.objects,
+                                .seed = choice.seed == 1 ? file.scene.seed : choice.seed};
+        return makePaperStage(std::move(file), sized);
+    }
+    throw InputError(choice.file +
+                     " is neither a scene file (.json) nor a recording of boxes (.aabbs).");
+}
+
+}  // namespace
+
+std::span<const ViewerScene> viewerScenes() {
+    static const std::vector<ViewerScene> scenes = [] {
+        std::vector<ViewerScene> all{
+            {"wander", "the paper's test bed: spheres that roam a random terrain", kWanderers}};
+        for (const WorldSceneKind& kind : worldSceneKinds()) {
+            all.push_back(
+                {std::string(kind.name), std::string(kind.description), kind.defaultObjects});
+        }
+        return all;
+    }();
+    return scenes;
+}
+
+std::unique_ptr<Stage> makeStage(const SceneChoice& choice) {
+    if (choice.objects && (*choice.objects < 1 || *choice.objects > kMostObjects)) {
+        throw InputError("A scene has 1 to " + withThousands(kMostObjects) + " objects, not " +
+                         withThousands(*choice.objects) + ".");
+    }
+    if (!choice.file.empty()) {
+        return openFile(choice);
+    }
+    if (choice.name == viewerScenes().front().name) {
+        return makePaperStage(wanderers(), choice);
+    }
+    for (const WorldSceneKind& kind : worldSceneKinds()) {
+        if (kind.name == choice.name) {
+            return std::make_unique<BulletStage>(kind, choice.objects.value_or(kind.defaultObjects),
+                                                 choice.seed, bulletEffects());
+        }
+    }
+    std::vector<std::string> names;
+    for (const ViewerScene& scene : viewerScenes()) {
+        names.push_back(scene.name);
+    }
+    throw InputError(unknownNameSentence("scene", choice.name, names));
+}
+
+}  // namespace hashphase::demos

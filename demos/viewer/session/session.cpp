@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/viewer/session/session.hpp>
+
+#include <demos/scenes/input_error.hpp>
+#include <demos/viewer/session/commands.hpp>
+
+#include <algorithm>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+namespace hashphase::demos {
+
+Session::Session(const SceneChoice& choice, int width, int height)
+    : choice_(choice), stage_(makeStage(choice)), width_(width), height_(height) {
+    beginAnew(true);
+}
+
+void Session::run(std::string_view line) {
+    const CommandKind* kind = findCommand(line);
+    if (kind == nullptr) {
+        return;
+    }
+    Arguments arguments(line, kind->usage);
+    const std::uint64_t frame = frame_;
+    kind->run(*this, arguments);
+    if (kind->isLogged) {
+        log_.add(frame, line);
+    }
+}
+
+// --- Frame ---------------------------------------------------------------------------------------
+
+void Session::advance() {
+    const bool steps = isPlaying_ || stepsWaiting_ > 0;
+    stepsWaiting_ -= stepsWaiting_ > 0 ? 1 : 0;
+    setView();
+    if (steps) {
+        stage_->step();
+        ++frame_;
+        history_.add(stage_->times());
+        log_.note(frame_, stage_->placesHash());
+        if (picked_ && camera_.mode() == CameraMode::follow) {
+            camera_.setTarget(stage_->body(*picked_).centre);
+        }
+    }
+    isResting_ = !steps;
+    look();
+}
+
+void Session::setView() {
+    if (stage_->effects().culling && !frozen_) {
+        const ConvexRegion<float> frustum(cameraView(pose()).planes, Containment::touching,
+                                          Touch::byPlanes);
+        stage_->observers().setView(frustum);
+    }
+    stage_->observers().setInterest(pose().eye);
+}
+
+// What is asked about a frame, whether the scene has moved or not.
+void Session::look() {
+    const Grid<float>* grid = stage_->grid();
+    if (stage_->effects().culling && isResting_ && grid != nullptr) {
+        const CameraPose seen = frozen_.value_or(pose());
+        restingCuller_.look(*grid, ConvexRegion<float>(cameraView(seen).planes,
+                                                       Containment::touching, Touch::byPlanes));
+    }
+    if (picked_ && !stage_->contains(*picked_)) {
+        picked_.reset();
+    }
+    card_.reset();
+    if (picked_ && grid != nullptr) {
+        const auto& proximity = stage_->effects().proximity;
+        const float radius = proximity ? static_cast<float>(proximity->radius) : 5.0F;
+        card_ = infoCard(*stage_, *grid, *picked_, radius);
+    }
+    const bool countsLoads = options_.has(Overlay::heat) || options_.colouring == Colouring::load;
+    if (countsLoads && grid != nullptr) {
+        loads_.count(*grid, stage_->bounds());
+    }
+    stage_->listPairs(pairs_);
+    if (isChecking_) {
+        check_.look(*stage_);
+    }
+}
+
+// --- Scene ---------------------------------------------------------------------------------------
+
+void Session::choose(const SceneChoice& choice) {
+    std::unique_ptr<Stage> next = makeStage(choice);
+    const bool isOther = choice.name != choice_.name || choice.file != choice_.file;
+    stage_ = std::move(next);
+    choice_ = choice;
+    beginAnew(isOther);
+}
+
+void Session::beginAnew(bool goesHome) {
+    frame_ = 0;
+    stepsWaiting_ = 0;
+    frozen_.reset();
+    restingCuller_ = Culler<float>();
+    isResting_ = true;
+    forgetSelection();
+    recoloured_.clear();
+    history_.clear();
+    pairs_.clear();
+    check_ = {};
+    if (goesHome) {
+        goHome();
+    }
+    log_.begin(choice_);
+    logSetting(*this, log_);
+    look();
+}
+
+void Session::goHome() {
+    camera_.goHome(stage_->bounds());
+}
+
+void Session::askForSteps(std::uint64_t count) {
+    isPlaying_ = false;
+    stepsWaiting_ += count;
+}
+
+void Session::declare(const SceneEffects& effects) {
+    try {
+        stage_->declare(effects);
+    } catch (const std::invalid_argument& error) {
+        throw InputError(error.what());
+    }
+    if (!effects.culling) {
+        frozen_.reset();
+    }
+}
+
+void Session::setBroadphase(const BroadphaseKind& kind) {
+    try {
+        stage_->setBroadphase(kind);
+    } catch (const std::invalid_argument& error) {
+        throw InputError(error.what());
+    }
+}
+
+void Session::setChecking(bool isChecking) {
+    isChecking_ = isChecking;
+    check_ = {};
+}
+
+void Session::freeze(bool isFrozen) {
+    if (isFrozen && !stage_->effects().culling) {
+        throw InputError(
+            "Without culling there is no frustum to freeze: run \"effect culling on\".");
+    }
+    frozen_ = isFrozen ? std::optional(frozen_.value_or(pose())) : std::nullopt;
+}
+
+void Session::resize(int width, int height) {
+    width_ = width;
+    height_ = height;
+}
+
+CameraPose Session::pose() const {
+    return camera_.pose(double{static_cast<double>(width_)} / height_);
+}
+
+View<float> Session::view() const {
+    return {cameraView(pose()).viewProjection,
+            kDepthRange,
+            {0, 0, static_cast<double>(width_), static_cast<double>(height_)}};
+}
+
+// --- Selection -----------------------------------------------------------------------------------
+
+void Session::pick(const Pixel& pixel) {
+    if (!stage_->effects().picking) {
+        throw InputError("Picking is not declared: run \"effect picking on\".");
+    }
+    const Picked<float> found = stage_->pick(view().rayThrough(pixel));
+    forgetSelection();
+    if (!found.id.isNull()) {
+        picked_ = found.id.index;
+        selected_ = {found.id.index};
+        camera_.setTarget(stage_->body(*picked_).centre);
+    }
+    look();
+}
+
+void Session::selectBetween(const Pixel& a, const Pixel& b) {
+    if (!stage_->effects().boxSelection || stage_->grid() == nullptr) {
+        throw InputError("Box selection is not declared: run \"effect boxSelection on\".");
+    }
+    std::vector<ProxyId> found;
+    stage_->observers().select({*stage_->grid()}, view(), a, b, found);
+    forgetSelection();
+    for (const ProxyId id : found) {
+        if (stage_->contains(id.index)) {
+            selected_.push_back(id.index);
+        }
+    }
+    std::sort(selected_.begin(), selected_.end());
+    look();
+}
+
+void Session::forgetSelection() {
+    selected_.clear();
+    picked_.reset();
+    card_.reset();
+}
+
+std::size_t Session::pushSelected(const Vector3<float>& velocity) {
+    return static_cast<std::size_t>(
+        std::count_if(selected_.begin(), selected_.end(),
+                      [&](std::uint32_t index) { return stage_->push(index, velocity); }));
+}
+
+std::size_t Session::removeSelected() {
+    const auto count = static_cast<std::size_t>(
+        std::count_if(selected_.begin(), selected_.end(),
+                      [&](std::uint32_t index) { return stage_->remove(index); }));
+    forgetSelection();
+    look();
+    return count;
+}
+
+std::size_t Session::recolourSelected() {
+    std::vector<std::uint32_t> all;
+    std::set_union(recoloured_.begin(), recoloured_.end(), selected_.begin(), selected_.end(),
+                   std::back_inserter(all));
+    recoloured_.swap(all);
+    return selected_.size();
+}
+
+void Session::noteFailure(const std::string& message) {
+    ++failureCount_;
+    say(message);
+}
+
+// --- What is to be seen --------------------------------------------------------------------------
+
+bool Session::isVisible(std::uint32_t index) const {
+    if (!stage_->effects().culling) {
+        return true;
+    }
+    const Culler<float>& culler = isResting_ ? restingCuller_ : stage_->observers().culler();
+    return culler.isVisible({index, 1});
+}
+
+std::size_t Session::visibleCount() const {
+    if (!stage_->effects().culling) {
+        return stage_->size();
+    }
+    return (isResting_ ? restingCuller_ : stage_->observers().culler()).count();
+}
+
+bool Session::isSelected(std::uint32_t index) const {
+    return std::binary_search(selected_.begin(), selected_.end(), index);
+}
+
+bool Session::isRecoloured(std::uint32_t index) const {
+    return std::binary_search(recoloured_.begin(), recoloured_.end(), index);
+}
+
+const PairCheck* Session::check() const {
+    const SceneEffects& effects = stage_->effects();
+    return isChecking_ && frame_ > 0 && effects.pairs && !effects.sweep ? &check_ : nullptr;
+}
+
+std::vector<std::string> Session::takeScreenshots() {
+    return std::exchange(screenshots_, {});
+}
+
+std::vector<std::string> Session::takeMessages() {
+    return std::exchange(messages_, {});
+}
+
+}  // namespace hashphase::demos

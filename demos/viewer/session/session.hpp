@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What the viewer shows and how it is played with, without a window: a scene on stage, a camera, what is
+// selected, what is laid over it. A window, a script and a replay steer it by the same commands, one line
+// each (commands.hpp), and all that can be seen can be read as numbers.
+//
+//     Session session({.name = "wander", .objects = 1000});
+//     session.run("step 10");
+//     session.advance();                     // until isWaiting()
+//     session.run("pick 640 400");
+//     session.reading("neighbours");
+//
+// Errors   A command that cannot be done throws InputError with a sentence, and nothing has changed.
+// Threads  one at a time
+// Units    metres, seconds; on the screen pixels, from the upper left corner
+
+#include <demos/viewer/draw/picture.hpp>
+#include <demos/viewer/session/camera.hpp>
+#include <demos/viewer/session/cell_loads.hpp>
+#include <demos/viewer/session/command_log.hpp>
+#include <demos/viewer/session/info_card.hpp>
+#include <demos/viewer/session/pair_check.hpp>
+#include <demos/viewer/session/phase_history.hpp>
+#include <demos/viewer/session/scene_choice.hpp>
+#include <demos/viewer/stage/stage.hpp>
+
+#include <integration/culling/culler.hpp>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hashphase::demos {
+
+/// What the colour of a body tells.
+enum class Colouring : std::uint8_t { agents, cells, load, speed, pairs, rest };
+
+inline constexpr std::array<std::string_view, 6> kColourings{"agents", "cells", "load",
+                                                             "speed",  "pairs", "rest"};
+
+/// What is laid over the scene.
+enum class Overlay : std::uint8_t { grid, heat, boxes, pairs, zones };
+
+inline constexpr std::array<std::string_view, 5> kOverlays{"grid", "heat", "boxes", "pairs",
+                                                           "zones"};
+
+/// How it is shown; none of it changes what happens.
+struct ViewOptions {
+    Colouring colouring = Colouring::agents;
+    std::array<bool, kOverlays.size()> overlays{true};
+    float dots = 1.2F;  // bodies are drawn at least with this radius [pixels]
+    Theme theme = Theme::light;
+    bool panel = true;
+    bool help = false;
+
+    [[nodiscard]] bool has(Overlay overlay) const {
+        return overlays[static_cast<std::size_t>(overlay)];
+    }
+};
+
+class Session {
+public:
+    /// Throws InputError as makeStage() does.
+    explicit Session(const SceneChoice& choice, int width = 1280, int height = 800);
+
+    /// Does what the line says. Lines that are empty or comments do nothing.
+    void run(std::string_view line);
+
+    /// A frame of the viewer: simulates one of the scene, if it plays or steps are waited for, and looks.
+    void advance();
+
+    /// Whether steps that were asked for have not been simulated.
+    [[nodiscard]] bool isWaiting() const noexcept { return stepsWaiting_ > 0; }
+    [[nodiscard]] bool isPlaying() const noexcept { return isPlaying_; }
+
+    // --- What commands do ------------------------------------------------------------------------
+
+    /// Puts a scene on stage from its beginning; the camera goes home where it is another scene.
+    void choose(const SceneChoice& choice);
+    void setPlaying(bool isPlaying) noexcept { isPlaying_ = isPlaying; }
+    void askForSteps(std::uint64_t count);
+    void declare(const SceneEffects& effects);
+    void setBroadphase(const BroadphaseKind& kind);
+    void setChecking(bool isChecking);
+    void freeze(bool isFrozen);
+    void resize(int width, int height);
+    void goHome();
+
+    /// Picks what is at the pixel, or nobody; what was selected is not any more.
+    void pick(const Pixel& pixel);
+    /// Selects what is between two pixels.
+    void selectBetween(const Pixel& a, const Pixel& b);
+    void setRectangle(const std::optional<DrawnRectangle>& rectangle) { rectangle_ = rectangle; }
+    void forgetSelection();
+    /// Of the selected bodies, or of the picked one; returns how many it was done to.
+    std::size_t pushSelected(const Vector3<float>& velocity);
+    std::size_t removeSelected();
+    std::size_t recolourSelected();
+
+    void askForScreenshot(const std::string& path) { screenshots_.push_back(path); }
+    void say(const std::string& message) { messages_.push_back(message); }
+    void noteFailure(const std::string& message);
+
+    // --- What is to be seen ----------------------------------------------------------------------
+
+    [[nodiscard]] const SceneChoice& choice() const noexcept { return choice_; }
+    [[nodiscard]] Stage& stage() noexcept { return *stage_; }
+    [[nodiscard]] const Stage& stage() const noexcept { return *stage_; }
+    [[nodiscard]] Camera& camera() noexcept { return camera_; }
+    [[nodiscard]] ViewOptions& options() noexcept { return options_; }
+    [[nodiscard]] const ViewOptions& options() const noexcept { return options_; }
+    [[nodiscard]] CameraPose pose() const;
+    [[nodiscard]] View<float> view() const;
+    [[nodiscard]] int width() const noexcept { return width_; }
+    [[nodiscard]] int height() const noexcept { return height_; }
+    [[nodiscard]] std::uint64_t frame() const noexcept { return frame_; }
+
+    /// The camera whose view decides what is visible, where it was frozen.
+    [[nodiscard]] const std::optional<CameraPose>& frozenPose() const noexcept { return frozen_; }
+    [[nodiscard]] bool isVisible(std::uint32_t index) const;
+    [[nodiscard]] std::size_t visibleCount() const;
+
+    [[nodiscard]] const std::vector<std::uint32_t>& selected() const noexcept { return selected_; }
+    [[nodiscard]] bool isSelected(std::uint32_t index) const;
+    [[nodiscard]] bool isRecoloured(std::uint32_t index) const;
+    [[nodiscard]] const std::vector<std::uint32_t>& recoloured() const noexcept {
+        return recoloured_;
+    }
+    [[nodiscard]] const std::optional<InfoCard>& card() const noexcept { return card_; }
+    [[nodiscard]] const std::optional<DrawnRectangle>& rectangle() const noexcept {
+        return rectangle_;
+    }
+
+    /// Of the last frame; none while it is not checked, or cannot be, because pairs are swept.
+    [[nodiscard]] const PairCheck* check() const;
+    [[nodiscard]] bool isChecking() const noexcept { return isChecking_; }
+    [[nodiscard]] const CellLoads& loads() const noexcept { return loads_; }
+    [[nodiscard]] const std::vector<PairKey>& pairs() const noexcept { return pairs_; }
+    [[nodiscard]] const PhaseHistory& history() const noexcept { return history_; }
+
+    /// A number that can be seen, by its name: see readingNames(). Throws InputError for others, and for
+    /// what there is not, such as the neighbours of nobody.
+    [[nodiscard]] double reading(std::string_view name) const;
+    [[nodiscard]] static std::span<const std::string_view> readingNames();
+
+    /// The same where all that has happened since the scene began is the same, to the last bit.
+    [[nodiscard]] std::uint64_t hash() const noexcept { return log_.hash(); }
+    [[nodiscard]] const CommandLog& log() const noexcept { return log_; }
+
+    // --- For who shows it ------------------------------------------------------------------------
+
+    /// Files that a picture of this moment is to be written to.
+    [[nodiscard]] std::vector<std::string> takeScreenshots();
+    /// What is to be said, and how many expectations have failed.
+    [[nodiscard]] std::vector<std::string> takeMessages();
+    [[nodiscard]] int failureCount() const noexcept { return failureCount_; }
+
+private:
+    void beginAnew(bool goesHome);
+    void setView();
+    void look();
+
+    SceneChoice choice_;
+    std::unique_ptr<Stage> stage_;
+    Camera camera_;
+    ViewOptions options_;
+    int width_;
+    int height_;
+    bool isPlaying_ = true;
+    std::uint64_t stepsWaiting_ = 0;
+    std::uint64_t frame_ = 0;
+
+    std::optional<CameraPose> frozen_;
+    Culler<float> restingCuller_;  // while the scene rests, and the camera does not
+    bool isResting_ = false;
+
+    std::vector<std::uint32_t> selected_;    // sorted
+    std::vector<std::uint32_t> recoloured_;  // sorted
+    std::optional<std::uint32_t> picked_;
+    std::optional<InfoCard> card_;
+    std::optional<DrawnRectangle> rectangle_;
+
+    bool isChecking_ = false;
+    PairCheck check_;
+    CellLoads loads_;
+    std::vector<PairKey> pairs_;
+    PhaseHistory history_;
+
+    CommandLog log_;
+    std::vector<std::string> screenshots_;
+    std::vector<std::string> messages_;
+    int failureCount_ = 0;
+};
+
+}  // namespace hashphase::demos

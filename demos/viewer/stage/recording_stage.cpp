@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/viewer/stage/recording_stage.hpp>
+
+#include <demos/scenes/result_hash.hpp>
+
+#include <stdexcept>
+
+namespace hashphase::demos {
+namespace {
+
+SceneEffects lookingEffects() {
+    SceneEffects effects;
+    for (const Effect effect :
+         {Effect::pairs, Effect::picking, Effect::boxSelection, Effect::culling}) {
+        effects.declare(effect);
+    }
+    return effects;
+}
+
+}  // namespace
+
+RecordingStage::RecordingStage(const std::filesystem::path& path, std::size_t objects)
+    : path_(path),
+      objects_(objects),
+      scene_(std::make_unique<RecordingScene>(path, objects)),
+      effects_(lookingEffects()),
+      observers_(effects_),
+      kind_(&broadphaseKinds().front()) {
+    makeGrid();
+}
+
+void RecordingStage::makeGrid() {
+    pairs_ = nullptr;
+    grid_ = std::make_unique<Grid<float>>(effects_.grid);
+    observers_.forgetProxies();
+    proxies_.clear();
+    for (const Aabb<float>& box : scene_->boxes()) {
+        proxies_.push_back(grid_->add(box));
+    }
+}
+
+void RecordingStage::step() {
+    if (++frame_ == scene_->frameLimit()) {
+        scene_ = std::make_unique<RecordingScene>(path_, objects_);
+        frame_ = 0;
+    } else {
+        scene_->advance();
+    }
+    clock_.begin();
+    for (std::size_t i = 0; i < proxies_.size(); ++i) {
+        grid_->move(proxies_[i], scene_->boxes()[i]);
+    }
+    clock_.end("set boxes");
+    if (effects_.pairs && rival_ == nullptr) {
+        if (pairs_ == nullptr) {
+            pairs_ = std::make_unique<Pairs<float>>(*grid_);
+        }
+        pairs_->update([](ProxyId, ProxyId) { return true; });
+        clock_.end("find pairs");
+    } else {
+        pairs_ = nullptr;
+        grid_->update();
+        clock_.end("update");
+    }
+    if (effects_.pairs && rival_ != nullptr) {
+        rival_->update(scene_->boxes(), scene_->filters(), clock_);
+    }
+    observers_.watchPhases([this](std::string_view phase) { clock_.end(phase); });
+    observers_.observe({*grid_});
+}
+
+StageBody RecordingStage::body(std::uint32_t index) const {
+    StageBody body;
+    if (index < proxies_.size()) {
+        const Aabb<float>& box = scene_->boxes()[index];
+        body.shape = StageBody::Shape::box;
+        body.centre = box.center();
+        body.size = box.sizes() / 2;
+    }
+    return body;
+}
+
+std::uint64_t RecordingStage::placesHash() const {
+    ResultHash hash;
+    for (const Aabb<float>& box : scene_->boxes()) {
+        hash.add(box.min());
+        hash.add(box.max());
+    }
+    return hash.value();
+}
+
+EffectSet RecordingStage::possibleEffects() const {
+    return {Effect::pairs,   Effect::picking,   Effect::boxSelection,
+            Effect::culling, Effect::proximity, Effect::radar};
+}
+
+void RecordingStage::declare(const SceneEffects& effects) {
+    if (const EffectSet others = effects.set() - possibleEffects(); !others.isEmpty()) {
+        throw std::invalid_argument("A recording has no " + namesOf(others) + ".");
+    }
+    const bool isOtherGrid = effects.grid != effects_.grid;
+    observers_.declare(effects);
+    effects_ = effects;
+    if (isOtherGrid) {
+        makeGrid();
+    }
+}
+
+void RecordingStage::setBroadphase(const BroadphaseKind& kind) {
+    if (&kind != kind_) {
+        rival_ = kind.ours ? nullptr
+                           : std::make_unique<RivalPairs>(kind, scene_->bounds(), proxies_.size());
+        kind_ = &kind;
+    }
+}
+
+void RecordingStage::listPairs(std::vector<PairKey>& pairs) const {
+    pairs.clear();
+    if (rival_ != nullptr) {
+        pairs = rival_->pairs();
+    } else if (pairs_ != nullptr) {
+        std::vector<ProxyPair> found;
+        pairs_->collect(found);
+        for (const ProxyPair& pair : found) {
+            pairs.push_back(pairKey(pair.first.index, pair.second.index));
+        }
+    }
+}
+
+void RecordingStage::listBoxes(std::vector<Aabb<float>>& boxes,
+                               std::vector<CollisionFilter>& filters) const {
+    boxes = scene_->boxes();
+    filters = scene_->filters();
+}
+
+std::uint64_t RecordingStage::memoryBytes() const {
+    return grid_->memoryBytes() + (pairs_ ? pairs_->memoryBytes() : 0) +
+           (rival_ ? rival_->memoryBytes() : 0);
+}
+
+}  // namespace hashphase::demos

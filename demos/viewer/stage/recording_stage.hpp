@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// A recording of boxes on stage (Broadmark's `.aabbs`): it moves as it was recorded, and begins again
+// after its last frame.
+
+#include <demos/scenes/recording_scene.hpp>
+#include <demos/viewer/stage/rival_pairs.hpp>
+#include <demos/viewer/stage/stage.hpp>
+
+#include <broadphase/pairs.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+namespace hashphase::demos {
+
+class RecordingStage final : public Stage {
+public:
+    /// As RecordingScene, and throws as it does.
+    RecordingStage(const std::filesystem::path& path, std::size_t objects);
+
+    void step() override;
+
+    [[nodiscard]] std::size_t size() const override { return proxies_.size(); }
+    [[nodiscard]] StageBody body(std::uint32_t index) const override;
+    bool remove(std::uint32_t /*index*/) override { return false; }
+    bool push(std::uint32_t /*index*/, const Vector3<float>& /*velocity*/) override {
+        return false;
+    }
+    [[nodiscard]] Aabb<float> bounds() const override { return scene_->bounds(); }
+    [[nodiscard]] std::uint64_t placesHash() const override;
+
+    [[nodiscard]] const SceneEffects& effects() const override { return effects_; }
+    void declare(const SceneEffects& effects) override;
+    [[nodiscard]] EffectSet possibleEffects() const override;
+    void setBroadphase(const BroadphaseKind& kind) override;
+    [[nodiscard]] const BroadphaseKind& broadphase() const override { return *kind_; }
+    void listPairs(std::vector<PairKey>& pairs) const override;
+    void listBoxes(std::vector<Aabb<float>>& boxes,
+                   std::vector<CollisionFilter>& filters) const override;
+    [[nodiscard]] const Grid<float>* grid() const override { return grid_.get(); }
+    [[nodiscard]] Observers<float>& observers() override { return observers_; }
+    [[nodiscard]] std::uint64_t memoryBytes() const override;
+
+private:
+    void makeGrid();
+
+    std::filesystem::path path_;
+    std::size_t objects_;
+    std::unique_ptr<RecordingScene> scene_;
+    int frame_ = 0;
+    SceneEffects effects_;
+    std::unique_ptr<Grid<float>> grid_;
+    std::vector<ProxyId> proxies_;  // by object, which is their index
+    std::unique_ptr<Pairs<float>> pairs_;
+    Observers<float> observers_;
+    const BroadphaseKind* kind_;
+    std::unique_ptr<RivalPairs> rival_;
+};
+
+}  // namespace hashphase::demos
