@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Colours that people can tell apart whatever they see of red and green.
+//
+// The qualitative colours follow M. Okabe and K. Ito, "Color Universal Design", 2008, and the sequential
+// ramp follows J. R. Nuñez, C. R. Anderton and R. S. Renslow, "Optimizing colormaps with consideration
+// for color vision deficiency", 2018 (cividis): its lightness grows evenly.
+
+#include <demos/viewer/draw/picture.hpp>
+
+#include <array>
+
+namespace hashphase::demos {
+
+/// To tell kinds of things apart; on the theme's ground and sky.
+struct Palette {
+    Colour calm;       // what is as it always is: the many
+    Colour awake;      // the same, in motion
+    Colour selected;   // by the user
+    Colour picked;     // the one under the pointer
+    Colour neighbour;  // of the picked one
+    Colour accent;     // a further kind
+    Colour faint;      // scaffolding: boxes, frustums
+    Colour line;       // thin lines that must be seen
+    Colour alert;      // what is wrong
+    Colour warning;    // what may be wrong
+    Colour confirmed;  // what was checked and is right
+};
+
+[[nodiscard]] const Palette& palette(Theme theme);
+
+/// Eight kinds, in the order in which they are best taken.
+[[nodiscard]] const std::array<Colour, 8>& qualitativeColours(Theme theme);
+
+/// From dark blue for 0 to yellow for 1; what lies outside is as what is nearest.
+[[nodiscard]] Colour sequentialColour(float share);
+
+}  // namespace hashphase::demos

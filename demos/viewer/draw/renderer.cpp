@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/viewer/draw/renderer.hpp>
+
+#include <demos/viewer/draw/draw_error.hpp>
+#include <demos/viewer/draw/frame_target.hpp>
+#include <demos/viewer/draw/ground_layer.hpp>
+#include <demos/viewer/draw/quad_indices.hpp>
+#include <demos/viewer/draw/sky_layer.hpp>
+#include <demos/viewer/draw/sphere_layer.hpp>
+
+#include <algorithm>
+#include <string>
+
+namespace hashphase::demos {
+
+namespace {
+
+constexpr float kReachOfGround = 1.4F;   // haze is complete so many diagonals of the ground away
+constexpr float kReachOfNothing = 1000;  // and so far away where there is none [m]
+
+}  // namespace
+
+struct Renderer::Layers {
+    Layers(int width, int height) : target(width, height) {}
+
+    void drawFrame(const Picture& picture);
+    void uploadFrame(const Picture& picture, const View& view) const;
+
+    FrameTarget target;
+    GlBuffer frame;
+    QuadIndices quads;
+    SkyLayer sky;
+    GroundLayer ground;
+    SphereLayer spheres;
+};
+
+void Renderer::Layers::uploadFrame(const Picture& picture, const View& view) const {
+    const float reach = ground.mesh().vertices.empty()
+                            ? kReachOfNothing
+                            : kReachOfGround * ground.mesh().bounds.diagonal().norm();
+    const FrameUniforms uniforms =
+        frameUniforms(view, themeColours(picture.theme), picture.leastRadius, reach);
+    glBindBufferBase(GL_UNIFORM_BUFFER, kFrameBinding, frame.name());
+    glBufferData(GL_UNIFORM_BUFFER, sizeof(uniforms), &uniforms, GL_STREAM_DRAW);
+}
+
+void Renderer::Layers::drawFrame(const Picture& picture) {
+    const View view(picture.camera,
+                    {static_cast<float>(target.width()), static_cast<float>(target.height())});
+    ground.update(picture.ground);
+    uploadFrame(picture, view);
+
+    target.bind();
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_BLEND);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
+    glDepthMask(GL_TRUE);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    // The picture stays opaque, whatever is blended into it.
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    glClear(GL_DEPTH_BUFFER_BIT);
+
+    ground.draw(picture);
+    sky.draw();
+    spheres.draw(picture.spheres, view, quads);
+}
+
+Renderer::Renderer(int width, int height) : layers_(std::make_unique<Layers>(width, height)) {}
+Renderer::~Renderer() = default;
+
+void Renderer::resize(int width, int height) {
+    if (width != layers_->target.width() || height != layers_->target.height()) {
+        layers_->target = FrameTarget(width, height);
+    }
+}
+
+int Renderer::width() const {
+    return layers_->target.width();
+}
+
+int Renderer::height() const {
+    return layers_->target.height();
+}
+
+unsigned Renderer::framebuffer() const {
+    return layers_->target.name();
+}
+
+Image Renderer::read() const {
+    return layers_->target.read();
+}
+
+void Renderer::draw(const Picture& picture) {
+    layers_->drawFrame(picture);
+    if (const GLenum fault = glGetError(); fault != GL_NO_ERROR) {
+        throw DrawError("OpenGL refused a part of the picture (error " + std::to_string(fault) +
+                        ").");
+    }
+}
+
+}  // namespace hashphase::demos
