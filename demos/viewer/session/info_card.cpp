@@ -1,22 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/viewer/session/info_card.hpp>
 
+#include <demos/viewer/stage/body_shape.hpp>
+
 namespace hashphase::demos {
-namespace {
-
-Aabb<float> boxAround(const StageBody& body) {
-    Vector3<float> half = body.size;
-    if (body.shape == StageBody::Shape::capsule) {
-        half = {body.size.x(), body.size.x() + body.size.y(), body.size.x()};
-    }
-    if (body.shape != StageBody::Shape::sphere) {
-        half = body.orientation.toRotationMatrix().cwiseAbs() * half;
-    }
-    return {body.centre - half, body.centre + half};
-}
-
-}  // namespace
-
 InfoCard infoCard(const Stage& stage, const Grid<float>& grid, std::uint32_t index, float radius) {
     InfoCard card;
     card.index = index;

@@ -96,6 +96,7 @@ void Session::choose(const SceneChoice& choice) {
 
 void Session::beginAnew(bool goesHome) {
     frame_ = 0;
+    ++sceneCount_;
     stepsWaiting_ = 0;
     frozen_.reset();
     restingCuller_ = Culler<float>();

@@ -44,10 +44,9 @@ inline constexpr std::array<std::string_view, 6> kColourings{"agents", "cells", 
                                                              "speed",  "pairs", "rest"};
 
 /// What is laid over the scene.
-enum class Overlay : std::uint8_t { grid, heat, boxes, pairs, zones };
+enum class Overlay : std::uint8_t { grid, heat, boxes, pairs };
 
-inline constexpr std::array<std::string_view, 5> kOverlays{"grid", "heat", "boxes", "pairs",
-                                                           "zones"};
+inline constexpr std::array<std::string_view, 4> kOverlays{"grid", "heat", "boxes", "pairs"};
 
 /// How it is shown; none of it changes what happens.
 struct ViewOptions {
@@ -119,6 +118,8 @@ public:
     [[nodiscard]] int width() const noexcept { return width_; }
     [[nodiscard]] int height() const noexcept { return height_; }
     [[nodiscard]] std::uint64_t frame() const noexcept { return frame_; }
+    /// How many scenes have been put on stage.
+    [[nodiscard]] std::uint64_t sceneCount() const noexcept { return sceneCount_; }
 
     /// The camera whose view decides what is visible, where it was frozen.
     [[nodiscard]] const std::optional<CameraPose>& frozenPose() const noexcept { return frozen_; }
@@ -156,6 +157,7 @@ public:
 
     /// Files that a picture of this moment is to be written to.
     [[nodiscard]] std::vector<std::string> takeScreenshots();
+    [[nodiscard]] bool wantsScreenshot() const noexcept { return !screenshots_.empty(); }
     /// What is to be said, and how many expectations have failed.
     [[nodiscard]] std::vector<std::string> takeMessages();
     [[nodiscard]] int failureCount() const noexcept { return failureCount_; }
@@ -174,6 +176,7 @@ private:
     bool isPlaying_ = true;
     std::uint64_t stepsWaiting_ = 0;
     std::uint64_t frame_ = 0;
+    std::uint64_t sceneCount_ = 0;
 
     std::optional<CameraPose> frozen_;
     Culler<float> restingCuller_;  // while the scene rests, and the camera does not

@@ -3,7 +3,7 @@
 
 #include <demos/compare/observed_world.hpp>
 #include <demos/scenes/result_hash.hpp>
-#include <demos/viewer/stage/body_ray.hpp>
+#include <demos/viewer/stage/body_shape.hpp>
 #include <demos/viewer/stage/bullet_zones.hpp>
 
 #include <integration/picking/pick.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/viewer/stage/stage.hpp>
 
-#include <demos/viewer/stage/body_ray.hpp>
+#include <demos/viewer/stage/body_shape.hpp>
 
 namespace hashphase::demos {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/viewer/stage/body_ray.hpp>
+#include <demos/viewer/stage/body_shape.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -44,6 +44,17 @@ std::optional<float> meetsBox(const Vector3<float>& from, const Vector3<float>& 
 }
 
 }  // namespace
+
+Aabb<float> boxAround(const StageBody& body) {
+    Vector3<float> half = body.size;
+    if (body.shape == StageBody::Shape::capsule) {
+        half = {body.size.x(), body.size.x() + body.size.y(), body.size.x()};
+    }
+    if (body.shape != StageBody::Shape::sphere) {
+        half = body.orientation.toRotationMatrix().cwiseAbs() * half;
+    }
+    return {body.centre - half, body.centre + half};
+}
 
 std::optional<float> meets(const StageBody& body, const Vector3<float>& from,
                            const Vector3<float>& way) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
+// Where a body is, by its shape.
+
 #include <demos/viewer/stage/stage.hpp>
 
 #include <optional>
@@ -11,5 +13,8 @@ namespace hashphase::demos {
 /// where it does not. A capsule is taken for the box around it.
 [[nodiscard]] std::optional<float> meets(const StageBody& body, const Vector3<float>& from,
                                          const Vector3<float>& way);
+
+/// The box around it.
+[[nodiscard]] Aabb<float> boxAround(const StageBody& body);
 
 }  // namespace hashphase::demos

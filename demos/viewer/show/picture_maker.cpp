@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/viewer/show/picture_maker.hpp>
+
+#include <demos/viewer/stage/body_shape.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace hashphase::demos {
+namespace {
+
+constexpr std::size_t kMostLinks = 20'000;
+
+// The corners of what a camera sees: bit 0 of their number is right, bit 1 up, bit 2 far.
+std::array<Vector3<float>, 8> frustumCorners(const CameraPose& pose) {
+    const Eigen::Matrix4d inverse = cameraView(pose).viewProjection.cast<double>().inverse();
+    std::array<Vector3<float>, 8> corners;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const Eigen::Vector4d device((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1,
+                                     (i & 4) != 0 ? 1 : 0, 1);
+        const Eigen::Vector4d corner = inverse * device;
+        corners[i] = (corner.head<3>() / corner.w()).cast<float>();
+    }
+    return corners;
+}
+
+// Edges between corners whose numbers differ in one bit.
+template <class Corners>
+void addEdges(const Corners& corners, Colour colour, bool isOnTop, std::vector<DrawnLine>& lines) {
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        for (const std::size_t bit : {1U, 2U, 4U}) {
+            if ((i & bit) == 0) {
+                lines.push_back({corners[i], corners[i | bit], colour, isOnTop});
+            }
+        }
+    }
+}
+
+}  // namespace
+
+const Picture& PictureMaker::make(const Session& session) {
+    const ViewOptions& options = session.options();
+    palette_ = palette(options.theme);
+    spheres_.clear();
+    boxes_.clear();
+    capsules_.clear();
+    lines_.clear();
+    if (options.colouring == Colouring::pairs) {
+        countPairs(session);
+    }
+    addBodies(session);
+    if (session.frozenPose()) {
+        addFrustum(*session.frozenPose());
+    }
+    addPairs(session);
+    addMarks(session);
+
+    picture_.camera = {cameraView(session.pose()).viewProjection, session.pose().eye};
+    picture_.theme = options.theme;
+    picture_.spheres = spheres_;
+    picture_.boxes = boxes_;
+    picture_.capsules = capsules_;
+    picture_.lines = lines_;
+    picture_.rectangle = session.rectangle();
+    picture_.leastRadius = options.dots;
+    setGround(session);
+    return picture_;
+}
+
+void PictureMaker::setGround(const Session& session) {
+    const std::span<const Vector3<float>> ground = session.stage().ground();
+    picture_.ground = {ground, 2 * session.sceneCount() + (ground.empty() ? 0 : 1)};
+    picture_.gridLines.reset();
+    picture_.heatMap.reset();
+    const Grid<float>* grid = session.stage().grid();
+    if (session.options().has(Overlay::grid) && grid != nullptr) {
+        picture_.gridLines = GroundCells{Eigen::Vector2f::Zero(), grid->cellSize()};
+    }
+    if (session.options().has(Overlay::heat)) {
+        const CellLoads& loads = session.loads();
+        picture_.heatMap = HeatMap{
+            {loads.corner(), loads.cellSize()}, loads.columns(), loads.rows(), loads.shades()};
+    }
+}
+
+// --- Bodies --------------------------------------------------------------------------------------
+
+void PictureMaker::addBodies(const Session& session) {
+    const Grid<float>* grid = session.stage().grid();
+    const std::uint32_t limit = grid != nullptr ? grid->indexLimit() : 0;
+    float fastest = 0;
+    for (std::uint32_t index = 0; index < limit; ++index) {
+        if (!session.isVisible(index)) {
+            continue;
+        }
+        const StageBody body = session.stage().body(index);
+        fastest = std::max(fastest, body.speed);
+        addBody(body, highlightOf(session, index, colourOf(session, index, body)));
+    }
+    fastest_ = std::max({1.0F, fastest, 0.98F * fastest_});
+}
+
+void PictureMaker::addBody(const StageBody& body, Colour colour) {
+    switch (body.shape) {
+        case StageBody::Shape::none:
+            break;
+        case StageBody::Shape::sphere:
+            spheres_.push_back({body.centre, body.size.x(), colour});
+            break;
+        case StageBody::Shape::box:
+            boxes_.push_back({body.centre, body.size, body.orientation.coeffs(), colour});
+            break;
+        case StageBody::Shape::capsule: {
+            const Vector3<float> half = body.orientation * Vector3<float>(0, body.size.y(), 0);
+            capsules_.push_back({body.centre - half, body.centre + half, body.size.x(), colour});
+            break;
+        }
+    }
+}
+
+Colour PictureMaker::colourOf(const Session& session, std::uint32_t index,
+                              const StageBody& body) const {
+    const auto& kinds = qualitativeColours(session.options().theme);
+    switch (session.options().colouring) {
+        case Colouring::agents: {
+            if (!session.stage().effects().proximity) {
+                return body.isStatic ? palette_.faint : kinds[index % kinds.size()];
+            }
+            const auto colours = session.stage().observers().colours();
+            return kinds[index < colours.size() ? colours[index] % kinds.size() : 0];
+        }
+        case Colouring::cells: {
+            const auto cell = session.stage().grid()->cellAt(body.centre);
+            // Neighbouring cells differ, as on a map.
+            const auto kind = static_cast<std::uint64_t>(cell[0] + 3 * cell[2] + 5 * cell[1]);
+            return kinds[kind % kinds.size()];
+        }
+        case Colouring::load: {
+            const CellLoads& loads = session.loads();
+            const auto full = static_cast<float>(std::max(loads.largest(), 8U));
+            const auto load = static_cast<float>(loads.at(body.centre.x(), body.centre.z()));
+            return sequentialColour(load / full);
+        }
+        case Colouring::speed:
+            return sequentialColour(body.speed / fastest_);
+        case Colouring::pairs:
+            return sequentialColour(
+                static_cast<float>(index < pairCounts_.size() ? pairCounts_[index] : 0) / 8);
+        case Colouring::rest:
+            return body.isStatic ? palette_.faint : body.isAsleep ? palette_.calm : palette_.awake;
+    }
+    return palette_.calm;
+}
+
+Colour PictureMaker::highlightOf(const Session& session, std::uint32_t index,
+                                 Colour otherwise) const {
+    if (session.card() && session.card()->index == index) {
+        return palette_.picked;
+    }
+    if (session.isSelected(index)) {
+        return palette_.selected;
+    }
+    return session.isRecoloured(index) ? palette_.accent : otherwise;
+}
+
+void PictureMaker::countPairs(const Session& session) {
+    const Grid<float>* grid = session.stage().grid();
+    pairCounts_.assign(grid != nullptr ? grid->indexLimit() : 0, 0);
+    for (const PairKey pair : session.pairs()) {
+        if (secondOf(pair) < pairCounts_.size()) {
+            ++pairCounts_[firstOf(pair)];
+            ++pairCounts_[secondOf(pair)];
+        }
+    }
+}
+
+// --- Lines ---------------------------------------------------------------------------------------
+
+void PictureMaker::addFrustum(const CameraPose& pose) {
+    addEdges(frustumCorners(pose), palette_.line, true, lines_);
+}
+
+void PictureMaker::addLink(const Session& session, PairKey pair, Colour colour, bool isOnTop) {
+    const bool isSeen = session.isVisible(firstOf(pair)) && session.isVisible(secondOf(pair));
+    const StageBody first = session.stage().body(firstOf(pair));
+    const StageBody second = session.stage().body(secondOf(pair));
+    const bool areThere =
+        first.shape != StageBody::Shape::none && second.shape != StageBody::Shape::none;
+    if (isSeen && areThere && lines_.size() < kMostLinks) {
+        lines_.push_back({first.centre, second.centre, colour, isOnTop});
+    }
+}
+
+// Wrong pairs first: these must be seen.
+void PictureMaker::addPairs(const Session& session) {
+    if (const PairCheck* check = session.check()) {
+        for (const PairKey pair : check->missing()) {
+            addLink(session, pair, palette_.alert, true);
+        }
+        for (const PairKey pair : check->extra()) {
+            addLink(session, pair, palette_.warning, true);
+        }
+    }
+    for (const PairKey pair : session.pairs()) {
+        const bool isOfPicked = session.card() && (firstOf(pair) == session.card()->index ||
+                                                   secondOf(pair) == session.card()->index);
+        if (isOfPicked || session.options().has(Overlay::pairs)) {
+            addLink(session, pair, palette_.line, true);
+        }
+    }
+}
+
+void PictureMaker::addWireBox(const StageBody& body, Colour colour) {
+    if (body.shape == StageBody::Shape::none) {
+        return;
+    }
+    const Aabb<float> box = boxAround(body);
+    std::array<Vector3<float>, 8> corners;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        for (int axis = 0; axis < 3; ++axis) {
+            corners[i][axis] = (i >> axis & 1) != 0 ? box.max()[axis] : box.min()[axis];
+        }
+    }
+    addEdges(corners, colour, false, lines_);
+}
+
+void PictureMaker::addMarks(const Session& session) {
+    for (const TunnelMark& mark : session.stage().tunnelMarks()) {
+        lines_.push_back({mark.from, mark.to, palette_.alert, true});
+    }
+    if (session.options().has(Overlay::boxes)) {
+        for (const std::uint32_t index : session.selected()) {
+            addWireBox(session.stage().body(index), palette_.selected);
+        }
+    } else if (session.card()) {
+        addWireBox(session.card()->body, palette_.picked);
+    }
+}
+
+}  // namespace hashphase::demos

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// A session with a picture: draws it, with the panel over it, and writes the pictures that were asked for. The
+// same in a window and without one.
+
+#include <demos/viewer/draw/renderer.hpp>
+#include <demos/viewer/session/session.hpp>
+#include <demos/viewer/show/panel.hpp>
+#include <demos/viewer/show/picture_maker.hpp>
+
+namespace hashphase::demos {
+
+class Viewer {
+public:
+    /// Needs an OpenGL context, for as long as it lives.
+    Viewer(int width, int height) : renderer_(width, height) {}
+
+    /// Draws the session as it is. Throws InputError where a picture that was asked for cannot be written.
+    void show(Session& session, const Panel::Pointer& pointer, double seconds);
+
+    [[nodiscard]] Panel& panel() noexcept { return panel_; }
+    [[nodiscard]] const Renderer& renderer() const noexcept { return renderer_; }
+
+private:
+    Renderer renderer_;
+    Panel panel_;
+    PictureMaker maker_;
+};
+
+}  // namespace hashphase::demos

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/viewer/show/wander.hpp>
+
+#include <demos/console/format.hpp>
+#include <demos/console/progress.hpp>
+#include <demos/console/result_file.hpp>
+#include <demos/console/table.hpp>
+#include <demos/report/stopwatch.hpp>
+#include <demos/scenes/file_bytes.hpp>
+#include <demos/scenes/input_error.hpp>
+#include <demos/viewer/draw/draw_error.hpp>
+#include <demos/viewer/draw/headless_context.hpp>
+#include <demos/viewer/session/commands.hpp>
+#include <demos/viewer/session/script.hpp>
+#include <demos/viewer/show/viewer.hpp>
+#include <demos/viewer/show/window.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <charconv>
+#include <iomanip>
+#include <memory>
+#include <ostream>
+
+namespace hashphase::demos {
+namespace {
+
+constexpr std::uint64_t kHeadlessFrames = 300;
+
+void listAll(std::ostream& out) {
+    out << "scenes\n";
+    for (const ViewerScene& scene : viewerScenes()) {
+        out << "  " << std::left << std::setw(14) << scene.name << scene.description << " ("
+            << withThousands(scene.objects) << ")\n";
+    }
+    out << "\nkeys\n";
+    for (const KeyBinding& binding : keyBindings()) {
+        out << "  " << std::left << std::setw(8) << binding.key << std::setw(18) << binding.command
+            << binding.help << '\n';
+    }
+    out << "\ncommands of scripts, one a line\n";
+    for (const CommandKind& kind : commandKinds()) {
+        out << "  " << std::left << std::setw(54) << kind.usage << kind.help << '\n';
+    }
+    out << "\nreadings, for print and expect\n  ";
+    for (const std::string_view name : Session::readingNames()) {
+        out << name << ' ';
+    }
+    out << '\n';
+}
+
+std::pair<int, int> parseSize(const std::string& text) {
+    int width = 0;
+    int height = 0;
+    const char* const end = text.data() + text.size();
+    const auto first = std::from_chars(text.data(), end, width);
+    const bool isPair = first.ec == std::errc() && first.ptr != end && *first.ptr == 'x' &&
+                        std::from_chars(first.ptr + 1, end, height).ptr == end;
+    if (!isPair || width < 16 || height < 16 || width > 16'384 || height > 16'384) {
+        throw InputError(
+            "--size is a width and a height of 16 to 16,384 pixels, as in 1280x800, not '" + text +
+            "'.");
+    }
+    return {width, height};
+}
+
+/// OpenGL without a window, from the first picture on.
+class HeadlessViewer {
+public:
+    void show(Session& session) {
+        try {
+            if (!viewer_) {
+                context_ = std::make_unique<HeadlessContext>();
+                viewer_ = std::make_unique<Viewer>(session.width(), session.height());
+            }
+            // The panel lays itself out in its first frame.
+            viewer_->show(session, {}, kFrameSeconds);
+        } catch (const DrawError& error) {
+            throw InputError(error.what());
+        }
+    }
+
+private:
+    std::unique_ptr<HeadlessContext> context_;
+    std::unique_ptr<Viewer> viewer_;
+};
+
+/// What is run and written, whoever shows it.
+class Run {
+public:
+    Run(const WanderOptions& options, Console& console) : options_(options), console_(console) {
+        if (!options.replayFile.empty()) {
+            playback_.emplace(CommandLog::parse(readFile(options.replayFile), options.replayFile));
+        }
+        if (!options.scriptFile.empty()) {
+            script_.emplace(readFile(options.scriptFile), options.scriptFile);
+        }
+        const auto [width, height] = parseSize(options.size);
+        session_ = std::make_unique<Session>(playback_ ? playback_->log().choice() : options.scene,
+                                             width, height);
+        session_->options().panel = !options.isHeadless;
+        for (const std::string& command : options.commands) {
+            session_->run(command);
+        }
+    }
+
+    int headless();
+    int inWindow();
+
+private:
+    [[nodiscard]] bool isDone() const;
+    void feed();
+    void tellMessages();
+    int end();
+    void writeJson() const;
+    void tellPhases() const;
+
+    const WanderOptions& options_;
+    Console& console_;
+    std::unique_ptr<Session> session_;
+    std::optional<Script> script_;
+    std::optional<Playback> playback_;
+    bool drewPictures_ = false;
+    Stopwatch watch_;
+};
+
+void Run::tellMessages() {
+    for (const std::string& message : session_->takeMessages()) {
+        console_.out << message << '\n';
+    }
+}
+
+void Run::feed() {
+    if (playback_) {
+        playback_->feed(*session_);
+    } else if (script_) {
+        script_->feed(*session_);
+    }
+}
+
+bool Run::isDone() const {
+    if (options_.timeLimit && watch_.milliseconds() > 1000 * *options_.timeLimit) {
+        return true;
+    }
+    if (session_->wantsScreenshot() || session_->isWaiting()) {
+        return false;
+    }
+    if (playback_) {
+        return playback_->isDone(*session_);
+    }
+    if (script_) {
+        return script_->isDone();
+    }
+    return session_->frame() >= options_.frames.value_or(kHeadlessFrames);
+}
+
+int Run::headless() {
+    HeadlessViewer viewer;
+    const std::uint64_t total =
+        playback_ ? playback_->log().frameCount() : options_.frames.value_or(kHeadlessFrames);
+    Progress progress(console_.err, progressStyle(console_, options_.quiet || script_),
+                      session_->choice().name, total);
+    if (playback_ || script_) {
+        session_->setPlaying(false);
+    }
+    for (feed(); !isDone(); feed()) {
+        session_->advance();
+        if (session_->wantsScreenshot()) {
+            viewer.show(*session_);
+            drewPictures_ = true;
+        }
+        tellMessages();
+        progress.update(std::min(session_->frame(), total));
+    }
+    progress.clear();
+    if (!options_.screenshotFile.empty()) {
+        session_->askForScreenshot(options_.screenshotFile);
+        viewer.show(*session_);
+    }
+    return end();
+}
+
+int Run::inWindow() {
+    if (!options_.screenshotFile.empty()) {
+        throw InputError("--screenshot is for --headless; in a window press F12.");
+    }
+    Window window(session_->width(), session_->height());
+    window.run(*session_, options_.frames.value_or(0), [this] {
+        feed();
+        return (playback_ || options_.timeLimit) && isDone();
+    });
+    drewPictures_ = true;
+    return end();
+}
+
+int Run::end() {
+    tellMessages();
+    if (!playback_ && !script_) {
+        tellPhases();
+    }
+    if (!options_.recordFile.empty()) {
+        ResultFile file(options_.recordFile);
+        file.write([this](std::ostream& out) { out << session_->log().text(); });
+    }
+    writeJson();
+    bool isSame = true;
+    if (playback_ && playback_->isDone(*session_)) {
+        console_.out << playback_->verdict(*session_, isSame) << '\n';
+    }
+    if (script_ && session_->failureCount() == 0) {
+        console_.out << "script: all expectations hold\n";
+    }
+    return isSame && session_->failureCount() == 0 ? kExitOk : kExitCheckFailed;
+}
+
+void Run::tellPhases() const {
+    const PhaseHistory& history = session_->history();
+    std::ostream& out = console_.out;
+    for (const PhaseHistory::Row& row : history.rows()) {
+        out << std::left << std::setw(20) << row.name << std::right << std::setw(9)
+            << milliseconds(row.smoothed) << " ms   p95 " << std::setw(8)
+            << milliseconds(history.p95(row)) << '\n';
+    }
+    out << std::left << std::setw(20) << "together" << std::right << std::setw(9)
+        << milliseconds(history.smoothedTotal()) << " ms   p95 " << std::setw(8)
+        << milliseconds(history.p95Total()) << '\n'
+        << withThousands(session_->stage().size()) << " bodies, "
+        << withThousands(session_->visibleCount()) << " visible, "
+        << withThousands(session_->pairs().size()) << " pairs after "
+        << withThousands(session_->frame()) << " frames"
+        << (drewPictures_ ? "; these times are of a run that drew pictures as well" : "") << '\n';
+}
+
+void Run::writeJson() const {
+    ResultFile file(options_.jsonFile);
+    nlohmann::ordered_json json;
+    json["schema"] = "hashphase/wander";
+    json["version"] = 1;
+    json["scene"] = session_->choice().name;
+    for (const std::string_view name : Session::readingNames()) {
+        try {
+            json["readings"][std::string(name)] = session_->reading(name);
+        } catch (const InputError&) {
+            json["readings"][std::string(name)] = nullptr;
+        }
+    }
+    for (const PhaseHistory::Row& row : session_->history().rows()) {
+        json["phases"][std::string(row.name)] = {{"milliseconds", row.smoothed},
+                                                 {"p95", session_->history().p95(row)}};
+    }
+    file.write([&json](std::ostream& out) { out << json.dump(2) << '\n'; });
+}
+
+}  // namespace
+
+int runWander(const WanderOptions& options, Console& console) {
+    if (options.list) {
+        listAll(console.out);
+        return kExitOk;
+    }
+    Run run(options, console);
+    return options.isHeadless ? run.headless() : run.inWindow();
+}
+
+}  // namespace hashphase::demos

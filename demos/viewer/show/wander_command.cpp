@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/console/option_checks.hpp>
+#include <demos/viewer/show/wander.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <memory>
+
+namespace hashphase::demos {
+namespace {
+
+void declareWander(CLI::App& app, WanderOptions& options) {
+    CLI::Option* scene =
+        app.add_option("--scene", options.scene.name, "scene (see --list)")->capture_default_str();
+    CLI::Option* file =
+        app.add_option("--file", options.scene.file,
+                       "instead of a scene: a scene file (.json), or a recording of boxes (.aabbs)")
+            ->excludes(scene);
+    app.add_option("--objects", options.scene.objects, "number of bodies (default: the scene's)")
+        ->check(CLI::Range(1, 1'000'000));
+    app.add_option("--seed", options.scene.seed, "seed of the scene")
+        ->check(CLI::Range(std::int64_t{0}, std::int64_t{4'294'967'295}))
+        ->capture_default_str();
+    app.add_option("--size", options.size, "of the picture in pixels")->capture_default_str();
+    app.add_flag("--headless", options.isHeadless,
+                 "without a window: pictures by screenshots only");
+    app.add_option("--do", options.commands, "run a command at the start; may be given again")
+        ->allow_extra_args(false);
+    app.add_option("--script", options.scriptFile, "then run the commands of this file");
+    app.add_option("--replay", options.replayFile,
+                   "play back a recording, and compare what comes out")
+        ->excludes(scene)
+        ->excludes(file);
+    app.add_option("--record", options.recordFile, "write a recording at the end");
+    app.add_option("--screenshot", options.screenshotFile, "write a picture at the end (PNG)");
+    app.add_option("--json", options.jsonFile, "write all numbers at the end to this file");
+    app.add_option("--frames", options.frames,
+                   "so many frames (default: until the window is closed; 300 without a window)")
+        ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000}));
+    app.add_option("--time-limit", options.timeLimit, "stop after so many seconds")
+        ->check(positiveSecondsFault);
+    app.add_flag("--quiet", options.quiet, "no progress on stderr");
+    app.add_flag("--list", options.list, "say which scenes, commands, keys and readings there are");
+}
+
+}  // namespace
+
+Subcommand wanderCommand() {
+    auto options = std::make_shared<WanderOptions>();
+    Subcommand command;
+    command.name = "hashphase wander";
+    command.description = "The paper's simulation to watch and play with, and Bullet's beside it";
+    command.declareOptions = [options](CLI::App& app) { declareWander(app, *options); };
+    command.run = [options](Console& console) { return runWander(*options, console); };
+    return command;
+}
+
+}  // namespace hashphase::demos

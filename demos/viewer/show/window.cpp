@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/viewer/show/window.hpp>
+
+#include <demos/console/format.hpp>
+#include <demos/scenes/input_error.hpp>
+#include <demos/viewer/session/commands.hpp>
+#include <demos/viewer/show/viewer.hpp>
+
+#include <epoxy/gl.h>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+namespace hashphase::demos {
+namespace {
+
+constexpr double kClickReach = 4;      // a drag begins beyond it [pixels]
+constexpr double kTurnPerPixel = 0.2;  // [degrees]
+
+struct NamedKey {
+    std::string_view name;
+    int key;
+};
+
+// Those that have no character of their own.
+constexpr std::array kNamedKeys{
+    NamedKey{"Home", GLFW_KEY_HOME},     NamedKey{"Delete", GLFW_KEY_DELETE},
+    NamedKey{"Escape", GLFW_KEY_ESCAPE}, NamedKey{"Tab", GLFW_KEY_TAB},
+    NamedKey{"F1", GLFW_KEY_F1},         NamedKey{"F5", GLFW_KEY_F5},
+    NamedKey{"F12", GLFW_KEY_F12},
+};
+
+int keyOf(std::string_view name) {
+    const auto named = std::find_if(kNamedKeys.begin(), kNamedKeys.end(),
+                                    [name](const NamedKey& key) { return key.name == name; });
+    return named != kNamedKeys.end() ? named->key : name.front();  // GLFW's codes are ASCII's
+}
+
+std::string line(std::string_view command, std::initializer_list<double> numbers) {
+    std::string text(command);
+    for (const double number : numbers) {
+        text += " " + plain(number);
+    }
+    return text;
+}
+
+[[noreturn]] void refuse() {
+    const char* reason = nullptr;
+    glfwGetError(&reason);
+    throw InputError(std::string("No window can be opened: ") +
+                     (reason != nullptr ? reason : "there is no OpenGL 3.3") +
+                     ". Without a display use --headless, or xvfb-run -s \"-screen 0 1280x800x24\" "
+                     "before the command.");
+}
+
+}  // namespace
+
+/// What comes from the keyboard and the mouse until the next frame.
+struct Window::Input {
+    GLFWwindow* window = nullptr;
+    std::vector<std::string> commands;
+    Panel::Pointer pointer;
+    bool overPanel = false;
+    std::optional<Pixel> pressedAt;  // the left button, on the scene
+    bool isDragging = false;
+    Pixel lastAt{0, 0};
+
+    static Input& of(GLFWwindow* window) {
+        return *static_cast<Input*>(glfwGetWindowUserPointer(window));
+    }
+    void listen();
+    void onKey(int key);
+    void onButton(int button, bool isDown);
+    void onMove(double x, double y);
+    void steer(const Session& session, double seconds);
+    [[nodiscard]] bool isDown(int key) const { return glfwGetKey(window, key) == GLFW_PRESS; }
+};
+
+void Window::Input::listen() {
+    glfwSetWindowUserPointer(window, this);
+    glfwSetKeyCallback(window, [](GLFWwindow* from, int key, int, int action, int) {
+        if (action == GLFW_PRESS) {
+            of(from).onKey(key);
+        }
+    });
+    glfwSetMouseButtonCallback(window, [](GLFWwindow* from, int button, int action, int) {
+        of(from).onButton(button, action == GLFW_PRESS);
+    });
+    glfwSetCursorPosCallback(window,
+                             [](GLFWwindow* from, double x, double y) { of(from).onMove(x, y); });
+    glfwSetScrollCallback(window, [](GLFWwindow* from, double, double steps) {
+        Input& input = of(from);
+        input.pointer.wheel += static_cast<float>(steps);
+        if (!input.overPanel) {
+            input.commands.push_back(line("zoom", {std::pow(1.15, steps)}));
+        }
+    });
+    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* from, int width, int height) {
+        if (width >= 16 && height >= 16) {
+            of(from).commands.push_back(line("size", {double(width), double(height)}));
+        }
+    });
+}
+
+void Window::Input::onKey(int key) {
+    for (const KeyBinding& binding : keyBindings()) {
+        if (keyOf(binding.key) == key) {
+            commands.emplace_back(binding.command);
+        }
+    }
+}
+
+void Window::Input::onButton(int button, bool isDown) {
+    if (button == GLFW_MOUSE_BUTTON_RIGHT) {
+        pointer.right = isDown;
+    }
+    if (button != GLFW_MOUSE_BUTTON_LEFT) {
+        return;
+    }
+    pointer.left = isDown;
+    if (isDown && !overPanel) {
+        pressedAt = lastAt;
+    } else if (!isDown && pressedAt) {
+        const Pixel from = *std::exchange(pressedAt, std::nullopt);
+        commands.push_back(std::exchange(isDragging, false)
+                               ? line("box", {from.x(), from.y(), lastAt.x(), lastAt.y()})
+                               : line("pick", {from.x(), from.y()}));
+    }
+}
+
+void Window::Input::onMove(double x, double y) {
+    const Pixel way = Pixel(x, y) - lastAt;
+    lastAt = {x, y};
+    pointer.x = static_cast<float>(x);
+    pointer.y = static_cast<float>(y);
+    if (pressedAt && (lastAt - *pressedAt).norm() > kClickReach) {
+        isDragging = true;
+    }
+    if (isDragging) {
+        commands.push_back(line("drag", {pressedAt->x(), pressedAt->y(), x, y}));
+    }
+    if (pointer.right && !overPanel) {
+        commands.push_back(line("turn", {-kTurnPerPixel * way.x(), -kTurnPerPixel * way.y()}));
+    }
+}
+
+// While keys are held down.
+void Window::Input::steer(const Session& session, double seconds) {
+    const auto held = [this](int plus, int minus) {
+        return (isDown(plus) ? 1.0 : 0.0) - (isDown(minus) ? 1.0 : 0.0);
+    };
+    const double pace = 0.15 * double{session.stage().bounds().sizes().norm()} * seconds;
+    const double right = pace * held(GLFW_KEY_D, GLFW_KEY_A);
+    const double up = pace * held(GLFW_KEY_E, GLFW_KEY_Q);
+    const double forward = pace * held(GLFW_KEY_W, GLFW_KEY_S);
+    if (right != 0 || up != 0 || forward != 0) {
+        commands.push_back(line("move", {right, up, forward}));
+    }
+    const double left = 60 * seconds * held(GLFW_KEY_LEFT, GLFW_KEY_RIGHT);
+    const double higher = 60 * seconds * held(GLFW_KEY_UP, GLFW_KEY_DOWN);
+    if (left != 0 || higher != 0) {
+        commands.push_back(line("turn", {left, higher}));
+    }
+}
+
+Window::Window(int width, int height) : input_(std::make_unique<Input>()) {
+    if (glfwInit() != GLFW_TRUE) {
+        refuse();
+    }
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    input_->window = glfwCreateWindow(width, height, "hashphase wander", nullptr, nullptr);
+    if (input_->window == nullptr) {
+        glfwTerminate();
+        refuse();
+    }
+    glfwMakeContextCurrent(input_->window);
+    glfwSwapInterval(1);
+    input_->listen();
+}
+
+Window::~Window() {
+    glfwDestroyWindow(input_->window);
+    glfwTerminate();
+}
+
+void Window::run(Session& session, std::uint64_t frames, const std::function<bool()>& isDone) {
+    using Clock = std::chrono::steady_clock;
+    Viewer viewer(session.width(), session.height());
+    Clock::time_point before = Clock::now();
+    while (glfwWindowShouldClose(input_->window) == GLFW_FALSE &&
+           (frames == 0 || session.frame() < frames) && !isDone()) {
+        const Clock::time_point now = Clock::now();
+        const double seconds = std::chrono::duration<double>(now - before).count();
+        before = now;
+        input_->pointer.wheel = 0;
+        glfwPollEvents();
+        input_->steer(session, std::min(seconds, 0.1));
+        for (const std::string& command : std::exchange(input_->commands, {})) {
+            viewer.panel().run(session, command);
+        }
+        session.advance();
+        viewer.show(session, input_->pointer, seconds);
+        for (const std::string& message : session.takeMessages()) {
+            viewer.panel().say(message);
+        }
+        input_->overPanel = viewer.panel().hasPointer();
+        int width = 0;
+        int height = 0;
+        glfwGetFramebufferSize(input_->window, &width, &height);
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, viewer.renderer().framebuffer());
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+        glBlitFramebuffer(0, 0, session.width(), session.height(), 0, 0, width, height,
+                          GL_COLOR_BUFFER_BIT, GL_NEAREST);
+        glfwSwapBuffers(input_->window);
+    }
+}
+
+}  // namespace hashphase::demos

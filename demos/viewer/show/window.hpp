@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// The viewer in a window, by GLFW: keys and the mouse become commands of the session.
+
+#include <demos/viewer/session/session.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+namespace hashphase::demos {
+
+class Window {
+public:
+    /// Opens the window, with an OpenGL context that is current while it lives. Throws InputError, which says
+    /// what to do, where there is no display or no OpenGL 3.3.
+    Window(int width, int height);
+    ~Window();
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+
+    /// Shows the session until the window is closed, `frames` of the scene have been simulated, if that is
+    /// not 0, or `isDone`, which is asked before each frame and may run commands, says so.
+    void run(Session& session, std::uint64_t frames, const std::function<bool()>& isDone);
+
+private:
+    struct Input;
+    std::unique_ptr<Input> input_;
+};
+
+}  // namespace hashphase::demos
