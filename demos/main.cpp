@@ -8,6 +8,7 @@
 #include <demos/console/program.hpp>
 #include <demos/effects/effects_command.hpp>
 #include <demos/stability/stability_command.hpp>
+#include <demos/viewer/viewer_program.hpp>
 
 #include <array>
 #include <iostream>
@@ -28,6 +29,10 @@ int main(int argc, char** argv) {
 #else
     const Subcommand effects = effectsCommand();
 #endif
-    const std::array subcommands{compareCommand(), accuracyCommand(), stabilityCommand(), effects};
+    if (!arguments.empty() && arguments.front() == kViewerCommand) {
+        return runViewerProgram(arguments, console);
+    }
+    const std::array subcommands{compareCommand(), accuracyCommand(), stabilityCommand(), effects,
+                                 viewerCommand()};
     return runProgram(arguments, subcommands, console);
 }

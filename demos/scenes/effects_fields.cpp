@@ -165,6 +165,9 @@ constexpr std::array kFields{
     EffectsField{
         "effects.proximity", "farFrames", "far agents look around in every n-th frame", "",
         WholeField{1, kMostFrames, setting<&SceneEffects::proximity, &ProximityEffect::farFrames>}},
+    EffectsField{
+        "effects.proximity", "turns", "agents look around by turns, each in every n-th frame", "",
+        WholeField{1, kMostFrames, setting<&SceneEffects::proximity, &ProximityEffect::turns>}},
     EffectsField{"effects", "zones", "who is in which zone of interest", "",
                  EffectField{Effect::zones}},
     EffectsField{

@@ -198,7 +198,8 @@ void Observers<Scalar>::cull(const Scene& scene, Scalar moved, ParallelFor /*par
     cost_[SceneCounter::cullingBoxesTested] = cost.boxesTested;
 }
 
-// Between the frames in which all look around, those near the player do, and see who is near them.
+// Between the frames in which all look around, those near the player do, and see who is near them; where
+// they do by turns, those whose turn it is.
 template <class Scalar>
 void Observers<Scalar>::lookAround(const Scene& scene, Scalar /*moved*/, ParallelFor parallelFor) {
     const ProximityEffect& effect = *effects_.proximity;
@@ -210,6 +211,9 @@ void Observers<Scalar>::lookAround(const Scene& scene, Scalar /*moved*/, Paralle
             (positionOf(scene.grid.box(id)) - *interest_).template cast<double>();
         return offset.squaredNorm() <= distance * distance;
     };
+    const auto isTurnOf = [&](ProxyId id) {
+        return id.index % effect.turns == frame_ % effect.turns;
+    };
     // Rounding must not leave out a neighbour.
     const double reach = (effect.interestRadius + effect.radius) * (1 + 1e-5);
     std::atomic<std::uint32_t> lookingCount{0};
@@ -219,21 +223,23 @@ void Observers<Scalar>::lookAround(const Scene& scene, Scalar /*moved*/, Paralle
                                            effect.colourCount, proximity.colours, counts,
                                            parallelFor, looks);
         };
+        const auto counted = [&](bool looks) {
+            lookingCount.fetch_add(looks ? 1 : 0, std::memory_order_relaxed);
+            return looks;
+        };
+        if (effect.turns > 1) {
+            return update(filter, [&](ProxyId id) { return counted(isTurnOf(id)); });
+        }
         if (allLook) {
             return update(filter, acceptAll);
         }
-        const auto counts = [&](ProxyId id) { return filter(id) && isWithin(id, reach); };
-        const auto looks = [&](ProxyId id) {
-            const bool isNear = isWithin(id, effect.interestRadius);
-            lookingCount.fetch_add(isNear ? 1 : 0, std::memory_order_relaxed);
-            return isNear;
-        };
-        return update(counts, looks);
+        return update([&](ProxyId id) { return filter(id) && isWithin(id, reach); },
+                      [&](ProxyId id) { return counted(isWithin(id, effect.interestRadius)); });
     });
     cost_[SceneCounter::agentsScanned] = proximity.rarest.crowd().size();
     cost_[SceneCounter::neighboursTested] = cost.boxesTested;
     cost_[SceneCounter::agentsLate] =
-        allLook ? 0 : countOf(scene, Effect::proximity) - lookingCount.load();
+        allLook && effect.turns == 1 ? 0 : countOf(scene, Effect::proximity) - lookingCount.load();
 }
 
 template <class Scalar>

@@ -13,9 +13,10 @@ libraries=(libbullet-dev libbullet-extras-dev libeigen3-dev libcli11-dev nlohman
     libgtest-dev libtbb-dev libgmp-dev)
 
 # What may be missing: npm brings what draws the charts of reports, rapidcheck makes up operations
-# for tests.
+# for tests, and the others draw `hashphase wander`, on the processor where there is no GPU.
 optional_tools=(npm:npm)
-optional_libraries=(librapidcheck-dev)
+optional_libraries=(librapidcheck-dev libglfw3-dev libimgui-dev libepoxy-dev libstb-dev libegl1
+    libegl-mesa0 libgl1-mesa-dri)
 
 say() {
     printf '%s: %s\n' "${script:-setup}" "$*" >&2

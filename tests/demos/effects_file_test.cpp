@@ -89,7 +89,8 @@ const std::string kEveryField = R"({
       "radius": "none",
       "colourCount": 32,
       "interestRadius": 50,
-      "farFrames": 4
+      "farFrames": 4,
+      "turns": 1
     },
     "zones": {
       "interestRadius": 60,

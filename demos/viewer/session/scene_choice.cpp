@@ -23,7 +23,7 @@ EffectsFile wanderers() {
     EffectsFile file;
     file.scene.objects = kWanderers;
     file.scene.domain = kDomain;
-    file.scene.terrain = 160;
+    file.scene.terrain = 100;
     file.scene.zones = 20;
     for (const Effect effect :
          {Effect::motion, Effect::terrain, Effect::pairs, Effect::response, Effect::picking,
@@ -34,6 +34,7 @@ EffectsFile wanderers() {
                                    Vector3<double>(kDomain - 1, infinity, kDomain - 1)};
     file.effects.response->restitution = 0.9;
     file.effects.proximity->radius = 5;
+    file.effects.proximity->turns = 30;  // else whole regions would flicker
     return file;
 }
 

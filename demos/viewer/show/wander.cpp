@@ -14,6 +14,7 @@
 #include <demos/viewer/session/script.hpp>
 #include <demos/viewer/show/viewer.hpp>
 #include <demos/viewer/show/window.hpp>
+#include <demos/viewer/stage/threads.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -258,6 +259,7 @@ int runWander(const WanderOptions& options, Console& console) {
         listAll(console.out);
         return kExitOk;
     }
+    const ThreadLimit threads(options.threads.value_or(threadCount()));
     Run run(options, console);
     return options.isHeadless ? run.headless() : run.inWindow();
 }

@@ -25,6 +25,7 @@ struct WanderOptions {
     std::string jsonFile;                 // the same
     std::optional<std::uint64_t> frames;  // to be simulated
     std::optional<double> timeLimit;      // [s]
+    std::optional<std::size_t> threads;   // at most; all that there are otherwise
     bool quiet = false;
     bool list = false;
 };

@@ -39,6 +39,9 @@ void declareWander(CLI::App& app, WanderOptions& options) {
         ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000}));
     app.add_option("--time-limit", options.timeLimit, "stop after so many seconds")
         ->check(positiveSecondsFault);
+    app.add_option("--threads", options.threads,
+                   "simulate on so many threads at most (default: all; Bullet's scenes on one)")
+        ->check(CLI::Range(1, 1024));
     app.add_flag("--quiet", options.quiet, "no progress on stderr");
     app.add_flag("--list", options.list, "say which scenes, commands, keys and readings there are");
 }

@@ -4,6 +4,7 @@
 #include <demos/scenes/result_hash.hpp>
 #include <demos/scenes/simulation_scene.hpp>
 #include <demos/scenes/terrain.hpp>
+#include <demos/viewer/stage/threads.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -32,7 +33,7 @@ PaperStage::PaperStage(const EffectsFile& file)
 
 void PaperStage::step() {
     clock_.begin();
-    simulation_.advance(kFrameSeconds);
+    simulation_.advance(kFrameSeconds, stageFor);
     if (!effects_.pairs) {
         return;
     }

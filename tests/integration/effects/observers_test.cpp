@@ -87,6 +87,35 @@ TEST(Observers, LetFarAgentsLookEachNthFrameAndNearOnesAlways) {
     }
 }
 
+TEST(Observers, LetAgentsLookByTurns) {
+    constexpr std::uint32_t kTurns = 4;
+    SceneEffects effects;
+    effects.proximity = ProximityEffect{.radius = 5};
+    Observers<float> all(effects);
+    effects.proximity->turns = kTurns;
+    Observers<float> some(effects);
+    Walk walk(0x5eed0fef);
+    for (std::uint32_t frame = 0; frame < 3 * kTurns; ++frame) {
+        walk.step();
+        const auto agents = static_cast<std::uint32_t>(walk.places().size());
+        std::vector<std::uint32_t> before(agents);
+        for (std::uint32_t i = 0; i < agents; ++i) {
+            before[i] = (i + frame) % 4;
+            all.setColour(i, before[i]);
+            some.setColour(i, before[i]);
+        }
+        all.observe({walk.grid});
+        const SceneCost& cost = some.observe({walk.grid});
+        std::uint64_t looking = 0;
+        for (std::uint32_t i = 0; i < agents; ++i) {
+            const bool looks = i % kTurns == frame % kTurns;
+            looking += looks ? 1 : 0;
+            ASSERT_EQ(some.colours()[i], looks ? all.colours()[i] : before[i]) << "frame " << frame;
+        }
+        EXPECT_EQ(cost[SceneCounter::agentsLate], agents - looking);
+    }
+}
+
 TEST(Observers, LookIntoFarZonesEachNthFrameAndTellAllThen) {
     SceneEffects effects;
     effects.zones = ZonesEffect{};
