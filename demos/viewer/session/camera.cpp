@@ -28,10 +28,15 @@ void Camera::goHome(const Aabb<float>& bounds) {
     const float extent = std::max(sizes.x(), sizes.z());
     height_ = 0.53F * extent / std::tan(kFieldOfView / 2);
     topYaw_ = 0;
-    // Over a corner, towards the middle.
-    eye_ = {centre_.x(), bounds.max().y() + 0.14F * extent, bounds.max().z() + 0.08F * extent};
     yaw_ = 0;
-    pitch_ = -0.42F;
+    const bool isFlat = sizes.y() < extent / 8;
+    if (isFlat) {  // over the edge, so that near ones are large
+        pitch_ = -0.42F;
+        eye_ = {centre_.x(), bounds.max().y() + 0.14F * extent, bounds.max().z() + 0.08F * extent};
+    } else {
+        pitch_ = -0.3F;
+        eye_ = centre_ - sizes.norm() * direction(yaw_, pitch_);
+    }
     target_ = centre_;
     distance_ = std::max(12.0F, 0.04F * extent);
     followYaw_ = 0;

@@ -89,6 +89,10 @@ void Session::look() {
 void Session::choose(const SceneChoice& choice) {
     std::unique_ptr<Stage> next = makeStage(choice);
     const bool isOther = choice.name != choice_.name || choice.file != choice_.file;
+    if (!isOther) {
+        next->declare(stage_->effects());
+        next->setBroadphase(stage_->broadphase());
+    }
     stage_ = std::move(next);
     choice_ = choice;
     beginAnew(isOther);

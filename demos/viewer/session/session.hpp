@@ -43,15 +43,16 @@ enum class Colouring : std::uint8_t { agents, cells, load, speed, pairs, rest };
 inline constexpr std::array<std::string_view, 6> kColourings{"agents", "cells", "load",
                                                              "speed",  "pairs", "rest"};
 
-/// What is laid over the scene.
-enum class Overlay : std::uint8_t { grid, heat, boxes, pairs };
+/// What is shown of the scene, and laid over it.
+enum class Overlay : std::uint8_t { bodies, grid, heat, boxes, pairs };
 
-inline constexpr std::array<std::string_view, 4> kOverlays{"grid", "heat", "boxes", "pairs"};
+inline constexpr std::array<std::string_view, 5> kOverlays{"bodies", "grid", "heat", "boxes",
+                                                           "pairs"};
 
 /// How it is shown; none of it changes what happens.
 struct ViewOptions {
     Colouring colouring = Colouring::agents;
-    std::array<bool, kOverlays.size()> overlays{true};
+    std::array<bool, kOverlays.size()> overlays{true, true};  // bodies and grid
     float dots = 1.2F;  // bodies are drawn at least with this radius [pixels]
     Theme theme = Theme::light;
     bool panel = true;
@@ -79,7 +80,8 @@ public:
 
     // --- What commands do ------------------------------------------------------------------------
 
-    /// Puts a scene on stage from its beginning; the camera goes home where it is another scene.
+    /// Puts a scene on stage from its beginning. Where it is another one, it is declared as it is by itself,
+    /// and the camera goes home; else all that is declared, the broadphase and the camera stay.
     void choose(const SceneChoice& choice);
     void setPlaying(bool isPlaying) noexcept { isPlaying_ = isPlaying; }
     void askForSteps(std::uint64_t count);

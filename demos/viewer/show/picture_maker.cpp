@@ -49,7 +49,9 @@ const Picture& PictureMaker::make(const Session& session) {
     if (options.colouring == Colouring::pairs) {
         countPairs(session);
     }
-    addBodies(session);
+    if (options.has(Overlay::bodies)) {
+        addBodies(session);
+    }
     if (session.frozenPose()) {
         addFrustum(*session.frozenPose());
     }

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Zlib
+
+#include <demos/scenes/file_bytes.hpp>
+#include <demos/scenes/input_error.hpp>
+#include <demos/viewer/session/commands.hpp>
+#include <demos/viewer/session/script.hpp>
+#include <demos/viewer/session/session.hpp>
+#include <tests/viewer/session/steps.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace hashphase::demos {
+namespace {
+
+Session smallSession() {
+    return Session({.name = "wander", .file = {}, .objects = 200, .seed = 1}, 800, 600);
+}
+
+std::string faultOf(Session& session, const std::string& line) {
+    try {
+        session.run(line);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "none";
+}
+
+/// Runs a script to its end and returns what was said.
+std::vector<std::string> runScript(Session& session, const std::string& text) {
+    std::vector<std::string> said;
+    Script script(text, "script");
+    session.setPlaying(false);
+    while (!script.isDone() || session.isWaiting()) {
+        script.feed(session);
+        session.advance();
+        for (const std::string& message : session.takeMessages()) {
+            said.push_back(message);
+        }
+        static_cast<void>(session.takeScreenshots());
+    }
+    return said;
+}
+
+TEST(ViewerScript, DrivesEachFeatureAndFindsWhatItExpects) {
+    Session session = smallSession();
+    const std::vector<std::string> said = runScript(session, readFile(HASHPHASE_FEATURES_SCRIPT));
+    std::string all;
+    for (const std::string& line : said) {
+        all += line + '\n';
+    }
+    EXPECT_EQ(session.failureCount(), 0) << all;
+}
+
+TEST(ViewerScript, HasEachCommandThatWritesNoFile) {
+    std::set<std::string> used;
+    std::istringstream lines(readFile(HASHPHASE_FEATURES_SCRIPT));
+    for (std::string line; std::getline(lines, line);) {
+        used.emplace(firstWord(line));
+    }
+    for (const CommandKind& kind : commandKinds()) {
+        const std::string name(kind.name);
+        if (name != "screenshot" && name != "save" && name != "capture") {
+            EXPECT_TRUE(used.contains(name)) << name;
+        }
+    }
+}
+
+TEST(ViewerScript, ComplainsOfWhatIsNotSo) {
+    Session session = smallSession();
+    const auto said = runScript(session, "step 2\nexpect frame = 3\nexpect bodies > 199\n");
+    ASSERT_EQ(said.size(), 1U);
+    EXPECT_EQ(said.front(), "frame 2: frame is 2, but was to be = 3");
+    EXPECT_EQ(session.failureCount(), 1);
+}
+
+TEST(ViewerScript, NamesTheLineOfAFault) {
+    Session session = smallSession();
+    try {
+        runScript(session, "# a comment\n\nstep 1\npik 3 4\n");
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_EQ(std::string(error.what()).substr(0, 49),
+                  "script:4: There is no command 'pik'; did you mean");
+    }
+}
+
+TEST(Commands, SayWhatIsWrongAndWhatWouldBeRight) {
+    Session session = smallSession();
+    EXPECT_EQ(faultOf(session, "pick 3"), "Y is missing. The command is: pick X Y");
+    EXPECT_EQ(faultOf(session, "pick 3 x"),
+              "Y is a number from -1000000 to 1000000, not 'x'. The command is: pick X Y");
+    EXPECT_EQ(faultOf(session, "pick 3 nan"),
+              "Y is a number from -1000000 to 1000000, not 'nan'. The command is: pick X Y");
+    EXPECT_EQ(faultOf(session, "pick 3 4 5"), "'5' is one word too many. The command is: pick X Y");
+    EXPECT_EQ(faultOf(session, "objects 0"),
+              "N is a whole number from 1 to 1000000, not '0'. The command is: objects N");
+    EXPECT_EQ(faultOf(session, "pause maybe"),
+              "'maybe' is neither on nor off. The command is: pause [on|off]");
+    EXPECT_EQ(faultOf(session, "camera follow"),
+              "Nobody is picked to be followed: click on a body, or run \"pick X Y\".");
+    EXPECT_EQ(faultOf(session, "effect rotation on"),
+              "This scene cannot have rotation; it can have motion, terrain, pairs, response, "
+              "sweep, sleeping, picking, boxSelection, culling, proximity, zones, radar.");
+    EXPECT_EQ(faultOf(session, "expect missing = 0"),
+              "Pairs are not verified: run \"check on\" and a step, without sweep.");
+    EXPECT_EQ(faultOf(session, "cell 1001"),
+              "SIZE is a number from 0 to 1000, not '1001'. The command is: cell SIZE");
+    EXPECT_EQ(faultOf(session, "  # nothing"), "none");
+    session.run("effect culling off");
+    EXPECT_EQ(faultOf(session, "freeze on"),
+              "Without culling there is no frustum to freeze: run \"effect culling on\".");
+}
+
+TEST(Commands, ChangeNothingWhereTheyFail) {
+    Session session = smallSession();
+    step(session, 3);
+    const std::size_t logged = session.log().commands().size();
+    EXPECT_NE(faultOf(session, "scene nowhere"), "none");
+    EXPECT_NE(faultOf(session, "effect culling perhaps"), "none");
+    EXPECT_EQ(session.frame(), 3U);
+    EXPECT_TRUE(session.stage().effects().culling.has_value());
+    EXPECT_EQ(session.log().commands().size(), logged);
+}
+
+TEST(Commands, DeclareWhatAnEffectNeedsAndTakeBackWhatNeedsIt) {
+    Session session = smallSession();
+    session.run("effect pairs off");
+    EXPECT_FALSE(session.stage().effects().response);
+    session.run("effect response on");
+    EXPECT_TRUE(session.stage().effects().pairs.has_value());
+}
+
+TEST(Commands, KeepWhatIsDeclaredThroughARestart) {
+    Session session = smallSession();
+    session.run("effect culling off");
+    session.run("broadphase dbvt");
+    session.run("cell 7");
+    step(session, 2);
+    session.run("restart");
+    EXPECT_EQ(session.frame(), 0U);
+    EXPECT_FALSE(session.stage().effects().culling);
+    EXPECT_EQ(session.stage().effects().grid.cellSize, 7);
+    EXPECT_EQ(session.stage().broadphase().name, "dbvt");
+}
+
+TEST(Commands, AreBoundToKeysOnceEach) {
+    std::set<std::string_view> keys;
+    for (const KeyBinding& binding : keyBindings()) {
+        EXPECT_TRUE(keys.insert(binding.key).second) << binding.key;
+        EXPECT_NE(findCommand(binding.command), nullptr) << binding.command;
+    }
+}
+
+// --- What is found -------------------------------------------------------------------------------
+
+/// The body that is nearest to the camera under the pixel, asked one by one.
+std::optional<std::uint32_t> bruteForcePick(Session& session, const Pixel& pixel) {
+    const RayRegion<float> ray = session.view().rayThrough(pixel);
+    std::optional<std::uint32_t> nearest;
+    double best = 2;
+    for (std::uint32_t index = 0; index < session.stage().grid()->indexLimit(); ++index) {
+        const StageBody body = session.stage().body(index);
+        const Vector3<double> way = ray.direction().cast<double>();
+        const Vector3<double> apart = (body.centre - ray.from()).cast<double>();
+        const double along = apart.dot(way) / way.squaredNorm();
+        const double aside = (apart - along * way).norm();
+        if (aside < double{body.size.x()} * 0.999 && along > 0 && along < best) {
+            best = along;
+            nearest = index;
+        }
+    }
+    return nearest;
+}
+
+TEST(Picking, FindsWhoIsUnderThePixel) {
+    Session session = smallSession();
+    session.run("pose top 200 7 200 120 0 0 0 0 0 0 0 0 0 20 0 0");
+    step(session, 5);
+    int found = 0;
+    for (int x = 10; x < 800; x += 10) {
+        for (int y = 15; y < 600; y += 30) {
+            const Pixel pixel(x, y);
+            if (const auto expected = bruteForcePick(session, pixel)) {
+                session.pick(pixel);
+                ASSERT_TRUE(session.card()) << x << ' ' << y;
+                // Spheres that overlap on the screen may be met in another order than their middles.
+                found += session.card()->index == *expected ? 1 : 0;
+            }
+        }
+    }
+    EXPECT_GT(found, 5);
+}
+
+TEST(Picking, TellsWhoIsNear) {
+    Session session({.name = "wander", .file = {}, .objects = 30'000, .seed = 1}, 800, 600);
+    session.run("pose top 200 7 200 40 0 0 0 0 0 0 0 0 0 20 0 0");
+    step(session, 3);
+    session.run("pick 400 300");
+    if (!session.card()) {
+        session.run("pick 420 300");
+    }
+    ASSERT_TRUE(session.card());
+    const InfoCard card = *session.card();
+    std::uint64_t near = 0;
+    std::uint64_t touching = 0;
+    for (std::uint32_t index = 0; index < 30'000; ++index) {
+        const StageBody body = session.stage().body(index);
+        const Vector3<float> apart = (body.centre - card.body.centre).cwiseAbs();
+        const Vector3<float> fromBox = (apart - body.size).cwiseMax(0);
+        near += index != card.index && fromBox.norm() <= card.radius ? 1 : 0;
+        touching += index != card.index && apart.maxCoeff() <= 2 ? 1 : 0;
+    }
+    EXPECT_EQ(card.neighbours, near);
+    EXPECT_EQ(card.candidates, touching);
+    EXPECT_GT(near, 5U);
+}
+
+TEST(PhaseHistory, KnowsTheMedianAndTheSlowestTwentieth) {
+    PhaseHistory history;
+    for (int frame = 0; frame < 1000; ++frame) {
+        const std::vector<PhaseTime> times{{"even", 2}, {"spiky", frame % 10 == 0 ? 9.0 : 1.0}};
+        history.add(times);
+    }
+    ASSERT_EQ(history.rows().size(), 2U);
+    EXPECT_EQ(history.frameCount(), PhaseHistory::kFrames);
+    EXPECT_NEAR(history.rows()[0].smoothed, 2, 1e-9);
+    EXPECT_NEAR(history.p95(history.rows()[1]), 9, 1e-6);
+    EXPECT_NEAR(history.p95Total(), 11, 1e-6);
+    for (std::size_t frame = 0; frame < PhaseHistory::kFrames; ++frame) {
+        history.add(std::vector<PhaseTime>{{"even", 2}});
+    }
+    EXPECT_EQ(history.rows().size(), 1U);
+}
+
+}  // namespace
+}  // namespace hashphase::demos

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Zlib
+
+#include <demos/scenes/input_error.hpp>
+#include <demos/viewer/session/script.hpp>
+#include <demos/viewer/session/session.hpp>
+#include <tests/viewer/session/steps.hpp>
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+
+namespace hashphase::demos {
+namespace {
+
+/// Somebody plays: the camera moves, bodies are selected, pushed and removed, effects come and go.
+void play(Session& session) {
+    session.run("turn 10 0");
+    step(session, 20);
+    session.run("pose top 200 7 200 60 0.25 0 0 0 0 0 0 0 0 20 0 0");
+    session.run("box 100 100 700 500");
+    session.run("push 1 0 2");
+    step(session, 31);
+    session.run("delete");
+    session.run("effect response off");
+    step(session, 15);
+    session.run("broadphase dbvt");
+    session.run("effect response on");
+    session.run("camera free");
+    session.run("pick 400 400");
+    step(session, 64);
+}
+
+Session playBack(const CommandLog& log) {
+    Playback playback(log);
+    Session session(log.choice());
+    session.setPlaying(false);
+    for (playback.feed(session); !playback.isDone(session); playback.feed(session)) {
+        session.advance();
+    }
+    while (session.isWaiting()) {
+        session.advance();
+    }
+    return session;
+}
+
+class Replay : public testing::TestWithParam<const char*> {};
+
+TEST_P(Replay, GivesTheSameHash) {
+    Session session({.name = GetParam(), .file = {}, .objects = 400, .seed = 5}, 800, 600);
+    play(session);
+    const CommandLog log = CommandLog::parse(session.log().text(), "recording");
+    const Session again = playBack(log);
+    EXPECT_EQ(again.hash(), session.hash());
+    EXPECT_EQ(again.frame(), 130U);
+    EXPECT_EQ(again.stage().size(), session.stage().size());
+    EXPECT_LT(session.stage().size(), 402U);
+    bool isSame = false;
+    EXPECT_EQ(Playback(log).verdict(again, isSame),
+              "replay: all 130 frames are the same, to the last bit");
+    EXPECT_TRUE(isSame);
+}
+
+TEST_P(Replay, GivesTheSameHashAfterARestartWithOtherSettings) {
+    Session session({.name = GetParam(), .file = {}, .objects = 300, .seed = 5}, 800, 600);
+    session.run("effect pairs off");
+    session.run("broadphase axis-sweep");
+    session.run("zoom 2");
+    step(session, 7);
+    session.run("restart");
+    play(session);
+    EXPECT_EQ(playBack(CommandLog::parse(session.log().text(), "recording")).hash(),
+              session.hash());
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Replay, testing::Values("wander", "pile"),
+                         [](const auto& scene) { return std::string(scene.param); });
+
+TEST(Playback, SaysWhereItIsNotTheSame) {
+    Session session({.name = "wander", .file = {}, .objects = 100, .seed = 5});
+    step(session, 70);
+    session.run("pose top 200 7 200 439 0 0 0 0 0 0 0 0 0 20 0 0");
+    session.run("box 0 0 1280 800");
+    session.run("push 3 0 0");
+    step(session, 60);
+    std::string text = session.log().text();
+    const std::size_t push = text.find("push 3 0 0");
+    ASSERT_NE(push, std::string::npos);
+    text.replace(push, 10, "push 3 0 1");
+    const CommandLog log = CommandLog::parse(text, "recording");
+    bool isSame = true;
+    EXPECT_EQ(Playback(log).verdict(playBack(log), isSame),
+              "replay: not the same after frame 60 of 130");
+    EXPECT_FALSE(isSame);
+}
+
+TEST(CommandLog, RefusesWhatIsNoRecording) {
+    const auto faultOf = [](const std::string& text) -> std::string {
+        try {
+            static_cast<void>(CommandLog::parse(text, "file"));
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "none";
+    };
+    EXPECT_EQ(faultOf("{}").substr(0, 37), "file cannot be read as a recording: [");
+    EXPECT_NE(faultOf("nonsense"), "none");
+    Session session({.name = "wander", .file = {}, .objects = 10, .seed = 5});
+    step(session, 61);
+    std::string text = session.log().text();
+    EXPECT_EQ(faultOf(text), "none");
+    const std::size_t frames = text.find("\"frames\": 61");
+    ASSERT_NE(frames, std::string::npos);
+    text.replace(frames, 12, "\"frames\": 600");
+    EXPECT_EQ(faultOf(text),
+              "file cannot be read as a recording: its frames are out of order, or hashes are "
+              "missing.");
+}
+
+}  // namespace
+}  // namespace hashphase::demos

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: Zlib
+
+#include <demos/scenes/result_hash.hpp>
+#include <demos/viewer/session/box_recorder.hpp>
+#include <demos/viewer/session/pair_check.hpp>
+#include <demos/viewer/session/session.hpp>
+#include <demos/viewer/stage/body_shape.hpp>
+#include <demos/viewer/stage/bullet_stage.hpp>
+#include <demos/viewer/stage/paper_stage.hpp>
+#include <demos/viewer/stage/recording_stage.hpp>
+
+#include <gtest/gtest.h>
+
+#include <BulletCollision/BroadphaseCollision/btSimpleBroadphase.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace hashphase::demos {
+namespace {
+
+const BroadphaseKind& kindNamed(std::string_view name) {
+    const auto kinds = broadphaseKinds();
+    return *std::find_if(kinds.begin(), kinds.end(),
+                         [name](const BroadphaseKind& kind) { return kind.name == name; });
+}
+
+/// Spheres so close together that many touch in each frame.
+EffectsFile throng() {
+    EffectsFile file;
+    file.scene.objects = 300;
+    file.scene.domain = 40;
+    file.scene.terrain = 10;
+    for (const Effect effect :
+         {Effect::motion, Effect::terrain, Effect::pairs, Effect::response, Effect::picking,
+          Effect::boxSelection, Effect::culling, Effect::proximity}) {
+        file.effects.declare(effect);
+    }
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    file.effects.motion->bounds = {Vector3<double>(1, -infinity, 1),
+                                   Vector3<double>(39, infinity, 39)};
+    return file;
+}
+
+SceneEffects worldEffects() {
+    SceneEffects effects;
+    for (const Effect effect :
+         {Effect::motion, Effect::pairs, Effect::response, Effect::sleeping, Effect::rotation,
+          Effect::friction, Effect::picking, Effect::boxSelection, Effect::culling}) {
+        effects.declare(effect);
+    }
+    return effects;
+}
+
+const WorldSceneKind& worldNamed(std::string_view name) {
+    const auto kinds = worldSceneKinds();
+    return *std::find_if(kinds.begin(), kinds.end(),
+                         [name](const WorldSceneKind& kind) { return kind.name == name; });
+}
+
+void expectPairs(const Stage& stage, bool exact, const std::string& when) {
+    PairCheck check;
+    check.look(stage);
+    EXPECT_TRUE(check.missing().empty()) << when;
+    EXPECT_TRUE(!exact || check.extra().empty()) << when;
+}
+
+TEST(PaperStage, MovesBodiesInTheSameWayWhoeverFindsThePairs) {
+    std::vector<std::unique_ptr<PaperStage>> stages;
+    for (const BroadphaseKind& kind : broadphaseKinds()) {
+        stages.push_back(std::make_unique<PaperStage>(throng()));
+        stages.back()->setBroadphase(kind);
+    }
+    // The last one goes from one to the next.
+    stages.push_back(std::make_unique<PaperStage>(throng()));
+    std::size_t pairs = 0;
+    for (std::size_t frame = 0; frame < 60; ++frame) {
+        stages.back()->setBroadphase(broadphaseKinds()[frame / 4 % broadphaseKinds().size()]);
+        for (const auto& stage : stages) {
+            stage->step();
+            ASSERT_EQ(stage->placesHash(), stages.front()->placesHash())
+                << stage->broadphase().name << " in frame " << frame;
+            expectPairs(*stage, stage->broadphase().ours || stage->broadphase().name == "simple",
+                        std::string(stage->broadphase().name));
+        }
+        std::vector<PairKey> found;
+        stages.front()->listPairs(found);
+        pairs += found.size();
+    }
+    EXPECT_GT(pairs, 60U * 100);
+}
+
+TEST(PaperStage, RunsWhatIsDeclaredAlone) {
+    PaperStage stage(throng());
+    const auto has = [&stage](std::string_view phase) {
+        return std::any_of(stage.times().begin(), stage.times().end(),
+                           [phase](const PhaseTime& time) { return time.name == phase; });
+    };
+    stage.step();
+    for (const char* phase : {"stand", "pair", "respond", "culling", "proximity"}) {
+        EXPECT_TRUE(has(phase)) << phase;
+    }
+    SceneEffects effects = stage.effects();
+    for (const Effect effect :
+         {Effect::terrain, Effect::response, Effect::pairs, Effect::culling, Effect::proximity}) {
+        effects.remove(effect);
+    }
+    stage.declare(effects);
+    stage.step();
+    for (const char* phase : {"stand", "pair", "respond", "culling", "proximity"}) {
+        EXPECT_FALSE(has(phase)) << phase;
+    }
+    EXPECT_TRUE(stage.ground().empty());
+}
+
+TEST(PaperStage, GoesOnWithPairsThatWereTakenBackAndWithoutBodiesThatWereRemoved) {
+    PaperStage stage(throng());
+    SceneEffects all = stage.effects();
+    SceneEffects without = all;
+    without.remove(Effect::response);
+    without.remove(Effect::pairs);
+    for (std::uint32_t frame = 0; frame < 40; ++frame) {
+        if (frame % 10 == 0) {
+            stage.declare(without);
+        } else if (frame % 10 == 5) {
+            stage.declare(all);
+        }
+        stage.setBroadphase(kindNamed(frame % 3 == 0 ? "dbvt" : "hash"));
+        EXPECT_TRUE(stage.remove(frame));
+        EXPECT_FALSE(stage.remove(frame));
+        stage.step();
+        if (stage.effects().pairs) {
+            expectPairs(stage, frame % 3 != 0, "frame " + std::to_string(frame));
+        }
+    }
+    EXPECT_EQ(stage.size(), 260U);
+}
+
+TEST(PaperStage, RefusesToSweepWithPairsOfAnother) {
+    PaperStage stage(throng());
+    SceneEffects effects = stage.effects();
+    effects.declare(Effect::sweep);
+    stage.declare(effects);
+    EXPECT_THROW(stage.setBroadphase(kindNamed("dbvt")), std::invalid_argument);
+    effects.remove(Effect::sweep);
+    stage.declare(effects);
+    stage.setBroadphase(kindNamed("dbvt"));
+    effects.declare(Effect::sweep);
+    EXPECT_THROW(stage.declare(effects), std::invalid_argument);
+}
+
+// --- The check itself ----------------------------------------------------------------------------
+
+/// Brute force that does not see pairs of a body with index 3.
+class BlindBroadphase : public btSimpleBroadphase {
+public:
+    explicit BlindBroadphase(int size) : btSimpleBroadphase(size) {
+        getOverlappingPairCache()->setOverlapFilterCallback(&filter_);
+    }
+
+private:
+    struct Filter : btOverlapFilterCallback {
+        bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override {
+            return FilledBroadphase::objectOf(*a) != 3 && FilledBroadphase::objectOf(*b) != 3;
+        }
+    };
+    Filter filter_;
+};
+
+TEST(PairCheck, SeesThatPairsAreMissing) {
+    constexpr BroadphaseKind kBlind{
+        "blind",
+        "blind",
+        "blind to one body",
+        false,
+        0,
+        true,
+        [](const BroadphaseNeeds& needs) -> std::unique_ptr<btBroadphaseInterface> {
+            return std::make_unique<BlindBroadphase>(static_cast<int>(needs.objects) + 16);
+        }};
+    PaperStage stage(throng());
+    stage.setBroadphase(kBlind);
+    PairCheck check;
+    std::size_t missing = 0;
+    for (int frame = 0; frame < 30; ++frame) {
+        stage.step();
+        check.look(stage);
+        for (const PairKey pair : check.missing()) {
+            EXPECT_TRUE(firstOf(pair) == 3 || secondOf(pair) == 3);
+        }
+        missing += check.missing().size();
+    }
+    EXPECT_GT(missing, 0U);
+}
+
+// --- Bullet's scenes -----------------------------------------------------------------------------
+
+TEST(BulletStage, KeepsIndicesAndPairsWhenTheBroadphaseIsSwapped) {
+    BulletStage stage(worldNamed("pile"), 150, 1, worldEffects());
+    EXPECT_TRUE(stage.remove(7));
+    EXPECT_FALSE(stage.remove(0));  // the floor
+    std::size_t frame = 0;
+    for (const char* name : {"dbvt", "hash", "simple", "axis-sweep", "dbvt-deferred", "hash"}) {
+        const Vector3<float> before = stage.body(100).centre;
+        stage.setBroadphase(kindNamed(name));
+        EXPECT_EQ(stage.body(100).centre, before);
+        EXPECT_FALSE(stage.contains(7));
+        for (int step = 0; step < 20; ++step) {
+            stage.step();
+            expectPairs(stage, stage.broadphase().ours, name);
+            // Whatever the grid is, it knows bodies by their indices.
+            const Picked<float> picked = stage.pick(
+                {stage.body(100).centre + Vector3<float>(0, 1e-3F, 0), stage.body(100).centre});
+            EXPECT_EQ(picked.id.index, 100U) << name;
+        }
+        frame += 20;
+    }
+    EXPECT_EQ(stage.size(), 150U);
+    EXPECT_GT(frame, 0U);
+}
+
+TEST(BulletStage, HearsBulletsOwnZones) {
+    BulletStage stage(worldNamed("pile"), 50, 1, worldEffects());
+    stage.step();
+    const auto zones = stage.zones();
+    ASSERT_FALSE(zones.empty());
+    EXPECT_EQ(zones.front().depth, 0);
+    const auto isThere = [&](std::string_view name) {
+        return std::any_of(zones.begin(), zones.end(),
+                           [name](const Stage::Zone& zone) { return zone.name == name; });
+    };
+    for (const char* name : {"updateAabbs", "calculateOverlappingPairs",
+                             "dispatchAllCollisionPairs", "solveConstraints"}) {
+        EXPECT_TRUE(isThere(name)) << name;
+    }
+    for (std::size_t i = 1; i < zones.size(); ++i) {
+        EXPECT_LE(zones[i].depth, zones[i - 1].depth + 1);
+        EXPECT_GT(zones[i].calls, 0U);
+    }
+}
+
+TEST(BulletStage, MarksWhatPassesThroughWallsUnlessItIsSwept) {
+    SceneEffects effects = worldEffects();
+    BulletStage discrete(worldNamed("bullet-storm"), 60, 1, effects);
+    effects.declare(Effect::sweep);
+    BulletStage swept(worldNamed("bullet-storm"), 60, 1, effects);
+    for (int frame = 0; frame < 60; ++frame) {
+        discrete.step();
+        swept.step();
+    }
+    EXPECT_GT(discrete.tunnelMarks().size(), 60U);
+    EXPECT_EQ(swept.tunnelMarks().size(), 0U);
+    for (const TunnelMark& mark : discrete.tunnelMarks()) {
+        EXPECT_GT((mark.to - mark.from).norm(), 1);
+    }
+}
+
+// --- Recordings ----------------------------------------------------------------------------------
+
+TEST(RecordingStage, PlaysWhatWasCapturedAndBeginsAgain) {
+    const std::filesystem::path path =
+        std::filesystem::temp_directory_path() / "hashphase_stage_test.aabbs";
+    Session session({.name = "wander", .file = {}, .objects = 200, .seed = 3});
+    std::vector<Aabb<float>> before;
+    std::vector<CollisionFilter> filters;
+    session.stage().listBoxes(before, filters);
+    recordBoxes(session, path, 5);
+    std::vector<Aabb<float>> after;
+    session.stage().listBoxes(after, filters);
+    RecordingStage stage(path, 0);
+    const auto expectBoxes = [&](const std::vector<Aabb<float>>& boxes) {
+        std::vector<Aabb<float>> played;
+        stage.listBoxes(played, filters);
+        ASSERT_EQ(played.size(), boxes.size());
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            ASSERT_EQ(played[i].min(), boxes[i].min());
+            ASSERT_EQ(played[i].max(), boxes[i].max());
+        }
+    };
+    expectBoxes(before);
+    for (int frame = 0; frame < 5; ++frame) {
+        stage.step();
+        expectPairs(stage, true, "played");
+        stage.setBroadphase(kindNamed(frame % 2 == 0 ? "dbvt" : "hash"));
+    }
+    expectBoxes(after);
+    stage.step();
+    expectBoxes(before);
+    std::filesystem::remove(path);
+}
+
+// --- Shapes --------------------------------------------------------------------------------------
+
+TEST(BodyShape, IsMetWhereItsSurfaceIs) {
+    StageBody body;
+    body.shape = StageBody::Shape::sphere;
+    body.centre = {10, 0, 0};
+    body.size.setConstant(2);
+    EXPECT_FLOAT_EQ(*meets(body, {0, 0, 0}, {16, 0, 0}), 0.5F);
+    EXPECT_FLOAT_EQ(*meets(body, {10, 1, 0}, {1, 0, 0}), 0);
+    EXPECT_FALSE(meets(body, {0, 3, 0}, {20, 0, 0}));
+    EXPECT_FALSE(meets(body, {0, 0, 0}, {7, 0, 0}));
+    EXPECT_FALSE(meets(body, {0, 0, 0}, {-20, 0, 0}));
+    body.shape = StageBody::Shape::box;
+    body.size = {1, 2, 3};
+    body.orientation = Eigen::AngleAxisf(std::numbers::pi_v<float> / 2, Vector3<float>::UnitZ());
+    EXPECT_FLOAT_EQ(*meets(body, {0, 0, 0}, {16, 0, 0}), 0.5F);
+    EXPECT_FALSE(meets(body, {0, 1.5F, 0}, {16, 0, 0}));
+    EXPECT_LT((boxAround(body).min() - Vector3<float>(8, -1, -3)).norm(), 1e-5F);
+}
+
+}  // namespace
+}  // namespace hashphase::demos
