@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/viewer/draw/renderer.hpp>
 
+#include <demos/viewer/draw/box_layer.hpp>
+#include <demos/viewer/draw/capsule_layer.hpp>
+#include <demos/viewer/draw/contact_layer.hpp>
 #include <demos/viewer/draw/draw_error.hpp>
 #include <demos/viewer/draw/frame_target.hpp>
 #include <demos/viewer/draw/ground_layer.hpp>
+#include <demos/viewer/draw/line_layer.hpp>
 #include <demos/viewer/draw/quad_indices.hpp>
+#include <demos/viewer/draw/rectangle_layer.hpp>
 #include <demos/viewer/draw/sky_layer.hpp>
 #include <demos/viewer/draw/sphere_layer.hpp>
 
@@ -31,7 +36,12 @@ struct Renderer::Layers {
     QuadIndices quads;
     SkyLayer sky;
     GroundLayer ground;
+    ContactLayer contacts;
+    BoxLayer boxes;
+    CapsuleLayer capsules;
     SphereLayer spheres;
+    LineLayer lines;
+    RectangleLayer rectangle;
 };
 
 void Renderer::Layers::uploadFrame(const Picture& picture, const View& view) const {
@@ -47,7 +57,9 @@ void Renderer::Layers::uploadFrame(const Picture& picture, const View& view) con
 void Renderer::Layers::drawFrame(const Picture& picture) {
     const View view(picture.camera,
                     {static_cast<float>(target.width()), static_cast<float>(target.height())});
-    ground.update(picture.ground);
+    if (ground.update(picture.ground)) {
+        contacts.setGround(ground.mesh());
+    }
     uploadFrame(picture, view);
 
     target.bind();
@@ -64,7 +76,16 @@ void Renderer::Layers::drawFrame(const Picture& picture) {
 
     ground.draw(picture);
     sky.draw();
+    if (picture.hasContactShade) {
+        contacts.draw(picture.spheres, view, quads);
+    }
+    boxes.draw(picture.boxes, view);
+    capsules.draw(picture.capsules, view);
     spheres.draw(picture.spheres, view, quads);
+    lines.draw(picture.lines, quads);
+    if (picture.rectangle) {
+        rectangle.draw(*picture.rectangle, picture.theme);
+    }
 }
 
 Renderer::Renderer(int width, int height) : layers_(std::make_unique<Layers>(width, height)) {}

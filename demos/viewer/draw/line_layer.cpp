@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/viewer/draw/line_layer.hpp>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace hashphase::demos {
+
+namespace {
+
+// What lies behind the near plane is cut off first, because it has no place on the screen. A line comes
+// a little nearer, so that it is seen on the surface it lies in.
+constexpr const char* kVertexShader = R"glsl(
+layout(location = 0) in vec3 from;
+layout(location = 1) in vec3 to;
+layout(location = 2) in vec4 colourOfLine;
+
+const float kHalfWidth = 0.8;  // [pixels]
+
+noperspective out float across;  // the middle of the line [pixels]
+flat out vec4 tint;
+
+vec4 cut(vec4 end, vec4 other) {
+    float before = end.z + end.w;
+    float beyond = other.z + other.w;
+    return before < 0.0 && beyond > 0.0 ? mix(end, other, before / (before - beyond)) : end;
+}
+
+void main() {
+    vec4 a = clipFromWorld * vec4(from, 1.0);
+    vec4 b = clipFromWorld * vec4(to, 1.0);
+    vec4 start = cut(a, b);
+    vec4 end = cut(b, a);
+    vec2 way = (end.xy / end.w - start.xy / start.w) * screen.xy;
+    vec2 aside = normalize(dot(way, way) > 0.0 ? vec2(-way.y, way.x) : vec2(1.0, 0.0));
+    float side = float(gl_VertexID & 1) * 2.0 - 1.0;
+    vec4 place = (gl_VertexID & 2) == 0 ? start : end;
+    across = side * (kHalfWidth + 0.5);
+    place.xy += 2.0 * across * aside / screen.xy * place.w;
+    place.z -= 1e-4 * place.w;
+    gl_Position = place;
+    tint = colourOfLine;
+}
+)glsl";
+
+constexpr const char* kFragmentShader = R"glsl(
+noperspective in float across;
+flat in vec4 tint;
+
+uniform float opacity;
+
+out vec4 colour;
+
+void main() {
+    float coverage = clamp(1.3 - abs(across), 0.0, 1.0);
+    colour = vec4(tint.rgb, tint.a * coverage * opacity);
+}
+)glsl";
+
+constexpr std::size_t kCorners = 4;
+constexpr float kHiddenOpacity = 0.3F;  // of lines on top, behind what hides them
+
+}  // namespace
+
+LineLayer::LineLayer() : program_("lines", kVertexShader, kFragmentShader) {
+    glBindVertexArray(vertexArray_.name());
+    vertices_.bind();
+    const std::size_t stride = sizeof(DrawnLine);
+    describeVertexField({0, 3, GL_FLOAT, false, offsetof(DrawnLine, from)}, stride);
+    describeVertexField({1, 3, GL_FLOAT, false, offsetof(DrawnLine, to)}, stride);
+    describeVertexField({2, 4, GL_UNSIGNED_BYTE, true, offsetof(DrawnLine, colour)}, stride);
+}
+
+void LineLayer::draw(std::span<const DrawnLine> lines, QuadIndices& quads) {
+    if (lines.empty()) {
+        return;
+    }
+    // Those on top come last, so that they can be drawn once more on their own.
+    std::size_t ordinaryCount = 0;
+    vertices_.fill<DrawnLine>(kCorners * lines.size(), [&](std::span<DrawnLine> vertices) {
+        auto next = vertices.begin();
+        for (const bool isOnTop : {false, true}) {
+            for (const DrawnLine& line : lines) {
+                if (line.isOnTop == isOnTop) {
+                    next = std::fill_n(next, kCorners, line);
+                    ordinaryCount += isOnTop ? 0 : 1;
+                }
+            }
+        }
+    });
+    program_.use();
+    glBindVertexArray(vertexArray_.name());
+    glEnable(GL_BLEND);
+    glDepthMask(GL_FALSE);
+    glUniform1f(program_.uniform("opacity"), 1);
+    quads.draw(0, lines.size());
+    if (ordinaryCount < lines.size()) {
+        glUniform1f(program_.uniform("opacity"), kHiddenOpacity);
+        glDepthFunc(GL_GEQUAL);
+        quads.draw(ordinaryCount, lines.size() - ordinaryCount);
+        glDepthFunc(GL_LESS);
+    }
+    glDepthMask(GL_TRUE);
+    glDisable(GL_BLEND);
+}
+
+}  // namespace hashphase::demos
