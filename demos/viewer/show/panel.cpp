@@ -52,7 +52,9 @@ void Panel::build(Session& session, const Pointer& pointer, double seconds) {
     io.MouseDown[0] = pointer.left;
     io.MouseDown[1] = pointer.right;
     io.MouseWheel = pointer.wheel;
-    frameSeconds_ = frameSeconds_ == 0 ? seconds : 0.9 * frameSeconds_ + 0.1 * seconds;
+    if (seconds > 0) {
+        frameSeconds_ = frameSeconds_ == 0 ? seconds : 0.9 * frameSeconds_ + 0.1 * seconds;
+    }
     messageSeconds_ -= seconds;
     if (session.options().theme == Theme::dark) {
         ImGui::StyleColorsDark();
@@ -93,7 +95,9 @@ void Panel::draw() {
 void Panel::showScene(Session& session) {
     ImGui::TextUnformatted(session.choice().file.empty() ? session.choice().name.c_str()
                                                          : session.choice().file.c_str());
-    alignRight(fixed(frameSeconds_ > 0 ? 1 / frameSeconds_ : 0, 0) + " pictures a second");
+    if (frameSeconds_ > 0) {
+        alignRight(fixed(1 / frameSeconds_, 0) + " pictures a second");
+    }
     numberRow("bodies", withThousands(session.stage().size()));
     numberRow("visible", withThousands(session.visibleCount()));
     numberRow("pairs", withThousands(session.pairs().size()));

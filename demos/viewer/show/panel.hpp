@@ -29,7 +29,8 @@ public:
         float wheel = 0;
     };
 
-    /// Lays out a frame and runs what was switched. `seconds` have passed since the last one.
+    /// Lays out a frame and runs what was switched. `seconds` have passed since the last one; 0 where nobody
+    /// looks on.
     void build(Session& session, const Pointer& pointer, double seconds);
 
     /// Draws it into the framebuffer that is bound, of the size of the session's picture.

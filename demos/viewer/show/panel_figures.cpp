@@ -48,7 +48,8 @@ void drawStack(const Session& session) {
     }
     const float limit = bottom - heightOf(8);
     list.AddLine({corner.x, limit}, {corner.x + width, limit}, ImGui::GetColorU32(ImGuiCol_Text));
-    list.AddText({corner.x + 2, limit - ImGui::GetTextLineHeight()},
+    const float above = limit - ImGui::GetTextLineHeight();
+    list.AddText({corner.x + 2, above < corner.y ? limit : above},
                  ImGui::GetColorU32(ImGuiCol_Text), "8 ms");
 }
 

@@ -16,6 +16,9 @@ public:
     /// Needs an OpenGL context, for as long as it lives.
     Viewer(int width, int height) : renderer_(width, height) {}
 
+    /// Lays out the panel, without drawing it: new parts of it find their size before they are shown.
+    void layOut(Session& session) { panel_.build(session, {}, 0); }
+
     /// Draws the session as it is. Throws InputError where a picture that was asked for cannot be written.
     void show(Session& session, const Panel::Pointer& pointer, double seconds);
 

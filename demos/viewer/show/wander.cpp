@@ -74,8 +74,8 @@ public:
                 context_ = std::make_unique<HeadlessContext>();
                 viewer_ = std::make_unique<Viewer>(session.width(), session.height());
             }
-            // The panel lays itself out in its first frame.
-            viewer_->show(session, {}, kFrameSeconds);
+            viewer_->layOut(session);
+            viewer_->show(session, {}, 0);
         } catch (const DrawError& error) {
             throw InputError(error.what());
         }
