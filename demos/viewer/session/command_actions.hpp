@@ -51,6 +51,7 @@ void screenshot(Session& session, Arguments& words);
 void save(Session& session, Arguments& words);
 void capture(Session& session, Arguments& words);
 void print(Session& session, Arguments& words);
+void quit(Session& session, Arguments& words);
 void expect(Session& session, Arguments& words);
 
 }  // namespace hashphase::demos::actions

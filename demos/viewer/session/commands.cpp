@@ -65,6 +65,7 @@ constexpr std::array kCommands{
                 false},
     CommandKind{"capture", "capture FILE [FRAMES]",
                 "simulate so many frames, and write their boxes (.aabbs)", actions::capture, false},
+    CommandKind{"quit", "quit", "end the program", actions::quit, false},
     CommandKind{"print", "print READING...", "say numbers", actions::print, false},
     CommandKind{"expect", "expect READING =|!=|<|<=|>|>= NUMBER", "complain unless it is so",
                 actions::expect, false},
@@ -97,6 +98,7 @@ constexpr std::array kKeys{
     KeyBinding{"Tab", "panel", "hide or show the panel"},
     KeyBinding{"F1", "help", "this help"},
     KeyBinding{"F5", "save", "save a recording"},
+    KeyBinding{"F10", "quit", "end"},
     KeyBinding{"F12", "screenshot", "write a picture"},
 };
 

@@ -34,6 +34,11 @@ void capture(Session& session, Arguments& words) {
                 " frames to " + path);
 }
 
+void quit(Session& session, Arguments& words) {
+    words.end();
+    session.end();
+}
+
 void print(Session& session, Arguments& words) {
     std::string line;
     do {

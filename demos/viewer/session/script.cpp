@@ -17,7 +17,7 @@ Script::Script(std::string_view text, std::string name) : name_(std::move(name))
 }
 
 void Script::feed(Session& session) {
-    while (!isDone() && !session.isWaiting() && !session.wantsScreenshot()) {
+    while (!isDone() && !session.isWaiting() && !session.wantsScreenshot() && !session.isOver()) {
         const std::size_t line = next_++;
         try {
             session.run(lines_[line]);

@@ -106,6 +106,7 @@ public:
     void askForScreenshot(const std::string& path) { screenshots_.push_back(path); }
     void say(const std::string& message) { messages_.push_back(message); }
     void noteFailure(const std::string& message);
+    void end() noexcept { isOver_ = true; }
 
     // --- What is to be seen ----------------------------------------------------------------------
 
@@ -163,6 +164,8 @@ public:
     /// What is to be said, and how many expectations have failed.
     [[nodiscard]] std::vector<std::string> takeMessages();
     [[nodiscard]] int failureCount() const noexcept { return failureCount_; }
+    /// Whether it was ended by a command.
+    [[nodiscard]] bool isOver() const noexcept { return isOver_; }
 
 private:
     void beginAnew(bool goesHome);
@@ -200,6 +203,7 @@ private:
     std::vector<std::string> screenshots_;
     std::vector<std::string> messages_;
     int failureCount_ = 0;
+    bool isOver_ = false;
 };
 
 }  // namespace hashphase::demos

@@ -143,6 +143,9 @@ bool Run::isDone() const {
     if (options_.timeLimit && watch_.milliseconds() > 1000 * *options_.timeLimit) {
         return true;
     }
+    if (session_->isOver()) {
+        return true;
+    }
     if (session_->wantsScreenshot() || session_->isWaiting()) {
         return false;
     }

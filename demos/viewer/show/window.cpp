@@ -35,7 +35,7 @@ constexpr std::array kNamedKeys{
     NamedKey{"Home", GLFW_KEY_HOME},     NamedKey{"Delete", GLFW_KEY_DELETE},
     NamedKey{"Escape", GLFW_KEY_ESCAPE}, NamedKey{"Tab", GLFW_KEY_TAB},
     NamedKey{"F1", GLFW_KEY_F1},         NamedKey{"F5", GLFW_KEY_F5},
-    NamedKey{"F12", GLFW_KEY_F12},
+    NamedKey{"F10", GLFW_KEY_F10},       NamedKey{"F12", GLFW_KEY_F12},
 };
 
 int keyOf(std::string_view name) {
@@ -198,7 +198,7 @@ void Window::run(Session& session, std::uint64_t frames, const std::function<boo
     Viewer viewer(session.width(), session.height());
     Clock::time_point before = Clock::now();
     while (glfwWindowShouldClose(input_->window) == GLFW_FALSE &&
-           (frames == 0 || session.frame() < frames) && !isDone()) {
+           (frames == 0 || session.frame() < frames) && !isDone() && !session.isOver()) {
         const Clock::time_point now = Clock::now();
         const double seconds = std::chrono::duration<double>(now - before).count();
         before = now;
