@@ -15,6 +15,7 @@ namespace hashphase::demos {
 class DepthOrder {
 public:
     void clear() { entries_.clear(); }
+    [[nodiscard]] std::size_t size() const { return entries_.size(); }
 
     /// Something so far in front of the eye; its `depth` is positive, its `index` the caller's.
     void add(float depth, std::uint32_t index);

@@ -5,30 +5,41 @@ namespace hashphase::demos {
 
 namespace {
 
-// One triangle that covers the screen.
+// The screen in strips from the left to the right, whose vertices are coloured: the gradient is smooth
+// enough for that, and a pixel costs half.
 constexpr const char* kVertexShader = R"glsl(
-out vec3 direction;
+uniform ivec2 squares;
+
+out vec3 seen;
 
 void main() {
-    vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
-    direction = cameraForward.xyz + corner.x * cameraRight.w * cameraRight.xyz +
-                corner.y * cameraUp.w * cameraUp.xyz;
-    gl_Position = vec4(corner, 1.0, 1.0);
+    int square = gl_VertexID / 6;
+    int corner = gl_VertexID % 6;
+    bool isRight = corner == 1 || corner == 4 || corner == 5;
+    bool isAbove = corner == 2 || corner == 3 || corner == 5;
+    ivec2 place = ivec2(square % squares.x, square / squares.x) + ivec2(isRight, isAbove);
+    vec2 onScreen = 2.0 * vec2(place) / vec2(squares) - 1.0;
+    vec3 direction = normalize(cameraForward.xyz + onScreen.x * cameraRight.w * cameraRight.xyz +
+                               onScreen.y * cameraUp.w * cameraUp.xyz);
+    float above = max(direction.y, 0.0);
+    float below = max(-direction.y, 0.0);
+    vec3 sky = mix(horizon.rgb, skyAbove.rgb, above * (2.0 - above));
+    seen = mix(sky, skyBelow.rgb, min(4.0 * below, 1.0));
+    gl_Position = vec4(onScreen, 1.0, 1.0);
 }
 )glsl";
 
 constexpr const char* kFragmentShader = R"glsl(
-in vec3 direction;
+in vec3 seen;
 out vec4 colour;
 
 void main() {
-    float height = direction.y * inversesqrt(dot(direction, direction));
-    float above = max(height, 0.0);
-    float below = max(-height, 0.0);
-    vec3 sky = mix(horizon.rgb, skyAbove.rgb, above * (2.0 - above));
-    colour = vec4(mix(sky, skyBelow.rgb, min(4.0 * below, 1.0)), 1.0);
+    colour = vec4(seen, 1.0);
 }
 )glsl";
+
+constexpr GLsizei kColumns = 8;
+constexpr GLsizei kRows = 40;
 
 }  // namespace
 
@@ -36,10 +47,11 @@ SkyLayer::SkyLayer() : program_("the sky", kVertexShader, kFragmentShader) {}
 
 void SkyLayer::draw() const {
     program_.use();
+    glUniform2i(program_.uniform("squares"), kColumns, kRows);
     glBindVertexArray(vertices_.name());
     glDepthFunc(GL_LEQUAL);
     glDepthMask(GL_FALSE);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDrawArrays(GL_TRIANGLES, 0, 6 * kColumns * kRows);
     glDepthMask(GL_TRUE);
     glDepthFunc(GL_LESS);
 }

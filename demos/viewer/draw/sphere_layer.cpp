@@ -2,6 +2,7 @@
 #include <demos/viewer/draw/sphere_layer.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace hashphase::demos {
@@ -16,48 +17,76 @@ namespace {
 // h = sqrt(1 - |offset|^2). With the axis towards the eye, the normal there is
 // (c * offset, s + h) / (1 + s * h), and the depth is what the plane's is, and s * h times the eye's
 // depth before the division by w, divided by the plane's w.
-constexpr const char* kVertexShader = R"glsl(
+//
+// A small sphere is a point, whose square is a primitive instead of two and a vertex instead of four,
+// which is what costs. There s is next to nothing, and offset a linear function of the pixel.
+constexpr const char* kSphereOfVertex = R"glsl(
 layout(location = 0) in vec4 sphere;
 layout(location = 1) in vec4 colourOfSphere;
 
-out vec2 offset;
 flat out vec4 tint;
 flat out vec4 lightInQuad;  // towards the light, in the axes of the quad; and the share of haze
 flat out vec4 shape;        // s, c, the radius on the screen [pixels], the eye's depth times s
 
-void main() {
-    vec3 fromEye = sphere.xyz - eye.xyz;
-    float depth = dot(fromEye, cameraForward.xyz);
-    float radius = max(sphere.w, screen.w * depth / screen.z);
-    float distance = length(fromEye);
-    vec3 axis = fromEye / distance;
-    vec3 right = normalize(cross(axis, cameraUp.xyz));
-    vec3 up = cross(right, axis);
-    float s = radius / distance;
-    float c = sqrt(1.0 - s * s);
-    float pixels = screen.z * radius / depth;
+vec3 axis;   // from the eye
+vec3 right;  // of the quad
+vec3 up;
+float distance;
+float depth;
+float radius;
 
-    vec2 corner = vec2(gl_VertexID & 1, (gl_VertexID >> 1) & 1) * 2.0 - 1.0;
-    offset = corner * (1.0 + 0.5 / pixels);
-    vec3 place = eye.xyz + axis * (distance - radius * s) +
-                 radius * c * (right * offset.x + up * offset.y);
-    gl_Position = clipFromWorld * vec4(place, 1.0);
+void placeSphere() {
+    vec3 fromEye = sphere.xyz - eye.xyz;
+    depth = dot(fromEye, cameraForward.xyz);
+    radius = max(sphere.w, screen.w * depth / screen.z);
+    distance = length(fromEye);
+    axis = fromEye / distance;
+    right = normalize(cross(axis, cameraUp.xyz));
+    up = cross(right, axis);
+    float s = min(radius / distance, 0.999);
     tint = colourOfSphere;
     lightInQuad = vec4(dot(right, light.xyz), dot(up, light.xyz), -dot(axis, light.xyz),
                        haze(fromEye));
-    shape = vec4(s, c, pixels, eye.w * s);
+    shape = vec4(s, sqrt(1.0 - s * s), screen.z * radius / depth, eye.w * s);
 }
 )glsl";
 
-constexpr const char* kFragmentShader = R"glsl(
-in vec2 offset;
+constexpr const char* kQuadOfVertex = R"glsl(
+out vec2 offset;
+
+void main() {
+    placeSphere();
+    vec2 corner = vec2(gl_VertexID & 1, (gl_VertexID >> 1) & 1) * 2.0 - 1.0;
+    offset = corner * (1.0 + 0.5 / shape.z);
+    vec3 place = eye.xyz + axis * (distance - radius * shape.x) +
+                 radius * shape.y * (right * offset.x + up * offset.y);
+    gl_Position = clipFromWorld * vec4(place, 1.0);
+}
+)glsl";
+
+constexpr const char* kPointOfVertex = R"glsl(
+flat out vec4 offsetOfPlace;  // a matrix, column by column
+
+void main() {
+    placeSphere();
+    // Away from the middle of the screen, spheres are drawn out by one over the cosine.
+    float size = 2.0 * shape.z * distance / depth + 1.0;
+    vec2 scale = vec2(size, -size) / shape.z;
+    offsetOfPlace = vec4(dot(cameraRight.xyz, right) * scale.x, dot(cameraRight.xyz, up) * scale.x,
+                         dot(cameraUp.xyz, right) * scale.y, dot(cameraUp.xyz, up) * scale.y);
+    gl_PointSize = size;
+    gl_Position = clipFromWorld * vec4(sphere.xyz, 1.0);
+}
+)glsl";
+
+constexpr const char* kSphereOfFragment = R"glsl(
 flat in vec4 tint;
 flat in vec4 lightInQuad;
 flat in vec4 shape;
 
 out vec4 colour;
 
-void main() {
+void paintSphere(vec2 offset) {
     float squared = dot(offset, offset);
     float coverage = min((1.0 - sqrt(squared)) * shape.z + 0.5, 1.0);
     if (coverage <= 0.0) {
@@ -74,45 +103,98 @@ void main() {
 }
 )glsl";
 
-constexpr std::size_t kCorners = 4;
+constexpr const char* kQuadOfFragment = R"glsl(
+in vec2 offset;
 
-}  // namespace
+void main() {
+    paintSphere(offset);
+}
+)glsl";
 
-SphereLayer::SphereLayer() : program_("spheres", kVertexShader, kFragmentShader) {
-    glBindVertexArray(vertexArray_.name());
-    vertices_.bind();
+constexpr const char* kPointOfFragment = R"glsl(
+flat in vec4 offsetOfPlace;
+
+void main() {
+    vec2 place = gl_PointCoord - 0.5;
+    paintSphere(place.x * offsetOfPlace.xy + place.y * offsetOfPlace.zw);
+}
+)glsl";
+
+/// The sphere that is copied to each vertex of what it is drawn by.
+void describeSphere(const StreamBuffer& vertices) {
+    vertices.bind();
     describeVertexField({0, 4, GL_FLOAT, false, offsetof(DrawnSphere, centre)},
                         sizeof(DrawnSphere));
     describeVertexField({1, 4, GL_UNSIGNED_BYTE, true, offsetof(DrawnSphere, colour)},
                         sizeof(DrawnSphere));
 }
 
-void SphereLayer::draw(std::span<const DrawnSphere> spheres, const View& view, QuadIndices& quads) {
+constexpr std::size_t kCorners = 4;
+constexpr float kLargestPoint = 16;  // radius [pixels]
+
+/// Whether the sphere is so small that a point will do. OpenGL drops points whose middle is not on the
+/// screen, so those at its edge are none.
+bool isPoint(const Vector3<float>& fromEye, float depth, float radius, const View& view) {
+    if (view.pixels(radius, depth) > kLargestPoint) {
+        return false;
+    }
+    const Eigen::Vector2f place(view.right.dot(fromEye) / view.tangents.x(),
+                                view.up.dot(fromEye) / view.tangents.y());
+    const Eigen::Vector2f limit = (1 - 4 * kLargestPoint / view.size.array()) * depth;
+    return std::abs(place.x()) < limit.x() && std::abs(place.y()) < limit.y();
+}
+
+}  // namespace
+
+SphereLayer::Batch::Batch(std::string_view name, const std::string& vertexShader,
+                          const std::string& fragmentShader)
+    : program(name, vertexShader, fragmentShader) {
+    glBindVertexArray(vertexArray.name());
+    describeSphere(vertices);
+}
+
+void SphereLayer::Batch::fill(std::span<const DrawnSphere> spheres, std::size_t copies) {
+    const auto farthestFirst = order.sort();
+    vertices.fill<DrawnSphere>(copies * farthestFirst.size(), [&](std::span<DrawnSphere> filled) {
+        auto next = filled.begin();
+        for (const DepthOrder::Entry& entry : farthestFirst) {
+            next = std::fill_n(next, copies, spheres[entry.index]);
+        }
+    });
+    program.use();
+    glBindVertexArray(vertexArray.name());
+}
+
+SphereLayer::SphereLayer()
+    : points_("small spheres", std::string(kSphereOfVertex) + kPointOfVertex,
+              std::string(kSphereOfFragment) + kPointOfFragment),
+      quads_("spheres", std::string(kSphereOfVertex) + kQuadOfVertex,
+             std::string(kSphereOfFragment) + kQuadOfFragment) {}
+
+void SphereLayer::draw(std::span<const DrawnSphere> spheres, const View& view,
+                       QuadIndices& indices) {
     // Spheres that the eye is in, or that lie behind it, cannot be seen.
-    order_.clear();
+    points_.order.clear();
+    quads_.order.clear();
     for (std::uint32_t i = 0; i < spheres.size(); ++i) {
         const Vector3<float> fromEye = spheres[i].centre - view.eye;
         const float depth = view.forward.dot(fromEye);
         const float radius = spheres[i].radius;
         if (depth > 0 && fromEye.squaredNorm() > radius * radius) {
-            order_.add(depth, i);
+            (isPoint(fromEye, depth, radius, view) ? points_ : quads_).order.add(depth, i);
         }
     }
-    const auto farthestFirst = order_.sort();
-    if (farthestFirst.empty()) {
-        return;
-    }
-    vertices_.fill<DrawnSphere>(kCorners * farthestFirst.size(),
-                                [&](std::span<DrawnSphere> vertices) {
-                                    auto next = vertices.begin();
-                                    for (const DepthOrder::Entry& entry : farthestFirst) {
-                                        next = std::fill_n(next, kCorners, spheres[entry.index]);
-                                    }
-                                });
-    program_.use();
-    glBindVertexArray(vertexArray_.name());
     glEnable(GL_BLEND);
-    quads.draw(0, farthestFirst.size());
+    glEnable(GL_PROGRAM_POINT_SIZE);
+    if (points_.order.size() > 0) {
+        points_.fill(spheres, 1);
+        glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(points_.order.size()));
+    }
+    if (quads_.order.size() > 0) {
+        quads_.fill(spheres, kCorners);
+        indices.draw(0, quads_.order.size());
+    }
+    glDisable(GL_PROGRAM_POINT_SIZE);
     glDisable(GL_BLEND);
 }
 
