@@ -7,6 +7,7 @@
 #include <demos/compare/compare_command.hpp>
 #include <demos/console/program.hpp>
 #include <demos/effects/effects_command.hpp>
+#include <demos/paper/paper_command.hpp>
 #include <demos/stability/stability_command.hpp>
 #include <demos/viewer/viewer_program.hpp>
 
@@ -32,7 +33,7 @@ int main(int argc, char** argv) {
     if (!arguments.empty() && arguments.front() == kViewerCommand) {
         return runViewerProgram(arguments, console);
     }
-    const std::array subcommands{compareCommand(), accuracyCommand(), stabilityCommand(), effects,
-                                 viewerCommand()};
+    const std::array subcommands{compareCommand(), paperCommand(), accuracyCommand(),
+                                 stabilityCommand(), effects, viewerCommand()};
     return runProgram(arguments, subcommands, console);
 }

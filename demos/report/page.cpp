@@ -99,6 +99,9 @@ void PageWriter::writeSection(const PageSection& section, std::size_t number) co
         writeParagraph(sentence);
     }
     writeList(section.conclusions);
+    for (const GradedTable& table : section.graded) {
+        writeGradedTable(table, out_);
+    }
     writeChecks(section.checks);
     for (const Chart& chart : section.charts) {
         writeChart(chart);

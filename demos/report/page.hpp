@@ -9,6 +9,7 @@
 
 #include <demos/report/chart.hpp>
 #include <demos/report/check.hpp>
+#include <demos/report/graded_table.hpp>
 #include <demos/report/provenance.hpp>
 #include <demos/report/series_looks.hpp>
 
@@ -18,7 +19,7 @@
 
 namespace hashphase::demos {
 
-/// Written in the order of the members; what is empty is left out.
+/// Written in the order of the members, graded tables after the conclusions; what is empty is left out.
 struct PageSection {
     std::string heading;
     std::vector<std::string> sentences;  // a paragraph each
@@ -27,6 +28,7 @@ struct PageSection {
     std::vector<Chart> charts;
     std::vector<DataTable> tables;
     std::vector<std::string> settings;  // how it was measured
+    std::vector<GradedTable> graded = {};
 };
 
 struct Page {

@@ -55,6 +55,13 @@ th, td { text-align: left; vertical-align: top; padding: .3rem .75rem .3rem 0; }
 th { vertical-align: bottom; border-bottom: 1px solid var(--quiet); font-weight: 600; }
 td { border-bottom: 1px solid var(--faint); font-variant-numeric: tabular-nums; }
 .number { text-align: right; }
+caption { text-align: left; padding-bottom: .5rem; color: var(--quiet); }
+.graded td { padding: .2rem .5rem; }
+.good, .fair, .poor { color: var(--ink); print-color-adjust: exact; }
+.good { background: #0072b230; }
+.fair { background: #f0e44260; }
+.poor { background: #d55e0070; font-weight: 600; }
+caption span { padding: .1rem .5rem; }
 code { overflow-wrap: anywhere; }
 #vg-tooltip-element {
   position: fixed; visibility: hidden; z-index: 1; padding: .4rem .6rem; pointer-events: none;

@@ -14,12 +14,13 @@ namespace hashphase::demos {
 /// own between 5 and 15 m/s, turns a little in every frame and bounces off the borders.
 class PaperScene : public BoxScene {
 public:
-    PaperScene(std::size_t objects, std::uint64_t seed);
+    /// On a square of `side` [m].
+    PaperScene(std::size_t objects, std::uint64_t seed, float side = kSide);
 
     void advance() override;
     [[nodiscard]] Aabb<float> bounds() const override;
 
-    static constexpr float kSide = 400;  // of the domain, which begins at (0, 0) [m]
+    static constexpr float kSide = 400;  // of the paper's domain, which begins at (0, 0) [m]
     static constexpr float kRadius = 1;  // [m]
 
 private:
@@ -33,6 +34,7 @@ private:
     void walk(Walker& walker);
     [[nodiscard]] Aabb<float> boxOf(const Walker& walker) const;
 
+    float side_;
     Terrain terrain_;
     Random random_;
     std::vector<Walker> walkers_;

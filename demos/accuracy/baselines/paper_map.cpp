@@ -24,11 +24,15 @@ int cellIn(float distance, float cellSize, int count) {
 }  // namespace
 
 PaperMap::PaperMap(std::span<const Aabb<float>> boxes, float cellSize) : cellSize_(cellSize) {
+    refile(boxes);
+}
+
+void PaperMap::refile(std::span<const Aabb<float>> boxes) {
     const Aabb<float> bounds = boundsOf(boxes);
     lowX_ = bounds.min().x();
     lowZ_ = bounds.min().z();
-    width_ = 1 + static_cast<int>(bounds.sizes().x() / cellSize);
-    depth_ = 1 + static_cast<int>(bounds.sizes().z() / cellSize);
+    width_ = 1 + static_cast<int>(bounds.sizes().x() / cellSize_);
+    depth_ = 1 + static_cast<int>(bounds.sizes().z() / cellSize_);
     const auto forEachEntry = [&](const auto& visit) {
         for (std::uint32_t i = 0; i < boxes.size(); ++i) {
             const Range cells = range(boxes[i].min().x(), boxes[i].min().z(), boxes[i].max().x(),
@@ -45,9 +49,9 @@ PaperMap::PaperMap(std::span<const Aabb<float>> boxes, float cellSize) : cellSiz
     forEachEntry([&](std::size_t bucket, std::uint32_t) { ++begin_[bucket + 1]; });
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
     objects_.resize(begin_.back());
-    std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
+    next_.assign(begin_.begin(), begin_.end() - 1);
     forEachEntry(
-        [&](std::size_t bucket, std::uint32_t object) { objects_[next[bucket]++] = object; });
+        [&](std::size_t bucket, std::uint32_t object) { objects_[next_[bucket]++] = object; });
 }
 
 PaperMap::Range PaperMap::range(float lowX, float lowZ, float highX, float highZ) const {

@@ -26,6 +26,9 @@ public:
     /// Files all boxes by x and z; objects have their numbers.
     PaperMap(std::span<const Aabb<float>> boxes, float cellSize);
 
+    /// Wipes all buckets and files these boxes, as the paper does in every frame. Keeps its memory.
+    void refile(std::span<const Aabb<float>> boxes);
+
     /// The cells that a rectangle of the map touches, no farther than the map goes.
     [[nodiscard]] Range range(float lowX, float lowZ, float highX, float highZ) const;
     [[nodiscard]] Range all() const { return {0, 0, width_ - 1, depth_ - 1}; }
@@ -38,6 +41,12 @@ public:
     /// The cell on the plane at height 0.
     [[nodiscard]] Aabb<float> square(int x, int z) const;
 
+    /// Bytes held, capacity included.
+    [[nodiscard]] std::size_t memoryBytes() const noexcept {
+        return sizeof(*this) + (begin_.capacity() + next_.capacity()) * sizeof(std::size_t) +
+               objects_.capacity() * sizeof(std::uint32_t);
+    }
+
 private:
     [[nodiscard]] std::size_t bucketOf(int x, int z) const {
         return static_cast<std::size_t>(z) * static_cast<std::size_t>(width_) +
@@ -45,11 +54,12 @@ private:
     }
 
     float cellSize_;
-    float lowX_;
-    float lowZ_;
-    int width_;
-    int depth_;
+    float lowX_ = 0;
+    float lowZ_ = 0;
+    int width_ = 0;
+    int depth_ = 0;
     std::vector<std::size_t> begin_;      // of each bucket, and the end
+    std::vector<std::size_t> next_;       // scratch of refile()
     std::vector<std::uint32_t> objects_;  // bucket by bucket
 };
 

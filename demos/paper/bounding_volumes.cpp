@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/paper/bounding_volumes.hpp>
+
+#include <broadphase/neighbours.hpp>
+#include <demos/console/format.hpp>
+#include <demos/report/frame_clock.hpp>
+
+#include <algorithm>
+#include <memory>
+
+namespace hashphase::demos {
+namespace {
+
+constexpr std::array kVolumeKinds{VolumeKind::sphere, VolumeKind::aabb, VolumeKind::obb};
+
+using Couple = std::array<std::uint32_t, 2>;
+
+class VolumePass {
+public:
+    VolumePass(VolumeKind kind, std::span<const Stick> sticks) : kind_(kind) {
+        for (const Stick& stick : sticks) {
+            ids_.push_back(grid_.add(boxOf(kind, stick)));
+        }
+    }
+
+    void findCandidates(std::span<const Stick> sticks) {
+        for (std::size_t i = 0; i < sticks.size(); ++i) {
+            grid_.move(ids_[i], boxOf(kind_, sticks[i]));
+        }
+        grid_.update();
+        passed_.clear();
+        const std::span<const ProxyPair> candidates = neighbours_.find(grid_, 0);
+        candidates_ = candidates.size();
+        for (const auto& [a, b] : candidates) {
+            if (volumesOverlap(kind_, sticks[a.index], sticks[b.index])) {
+                passed_.push_back({a.index, b.index});
+            }
+        }
+    }
+
+    void testExactly(std::span<const Stick> sticks) {
+        touching_.clear();
+        for (const Couple& couple : passed_) {
+            if (sticksTouch(sticks[couple[0]], sticks[couple[1]])) {
+                touching_.push_back(couple);
+            }
+        }
+    }
+
+    [[nodiscard]] std::size_t candidates() const { return candidates_; }
+    [[nodiscard]] std::size_t passed() const { return passed_.size(); }
+    [[nodiscard]] std::vector<Couple> touching() const {
+        std::vector<Couple> sorted = touching_;
+        std::sort(sorted.begin(), sorted.end());
+        return sorted;
+    }
+
+private:
+    VolumeKind kind_;
+    Grid<float> grid_;
+    Neighbours<float> neighbours_;
+    std::vector<ProxyId> ids_;
+    std::size_t candidates_ = 0;
+    std::vector<Couple> passed_;
+    std::vector<Couple> touching_;
+};
+
+std::vector<Couple> touchingByBruteForce(std::span<const Stick> sticks) {
+    std::vector<Couple> couples;
+    for (std::uint32_t a = 0; a < sticks.size(); ++a) {
+        for (std::uint32_t b = a + 1; b < sticks.size(); ++b) {
+            if (volumesOverlap(VolumeKind::sphere, sticks[a], sticks[b]) &&
+                sticksTouch(sticks[a], sticks[b])) {
+                couples.push_back({a, b});
+            }
+        }
+    }
+    return couples;
+}
+
+void runVolumeFrame(VolumePass& pass, std::span<const Stick> sticks, VolumeResult& result) {
+    const FrameClock firstPass;
+    pass.findCandidates(sticks);
+    result.firstPassMs.push_back(firstPass.milliseconds());
+    const FrameClock exact;
+    pass.testExactly(sticks);
+    result.exactMs.push_back(exact.milliseconds());
+    result.candidates += static_cast<double>(pass.candidates());
+    result.passed += static_cast<double>(pass.passed());
+    result.touching += static_cast<double>(pass.touching().size());
+}
+
+}  // namespace
+
+std::string_view nameOf(VolumeKind kind) {
+    constexpr std::array<std::string_view, 3> kNames{"sphere", "AABB", "OBB"};
+    return kNames[static_cast<std::size_t>(kind)];
+}
+
+VolumeResults measureVolumes(std::uint32_t sticks, std::uint32_t frames, std::uint64_t seed) {
+    StickScene scene(sticks, seed);
+    VolumeResults results{sticks, {}, {}};
+    std::vector<std::unique_ptr<VolumePass>> passes;
+    const std::vector<Couple> right = touchingByBruteForce(scene.sticks());
+    std::string faults;
+    for (const VolumeKind kind : kVolumeKinds) {
+        passes.push_back(std::make_unique<VolumePass>(kind, scene.sticks()));
+        passes.back()->findCandidates(scene.sticks());
+        passes.back()->testExactly(scene.sticks());
+        if (passes.back()->touching() != right) {
+            faults += " " + std::string(nameOf(kind));
+        }
+        results.volumes.push_back({kind, {}, {}, 0, 0, 0});
+    }
+    for (std::uint32_t frame = 0; frame < frames; ++frame) {
+        scene.advance();
+        for (std::size_t turn = 0; turn < passes.size(); ++turn) {
+            const std::size_t i = (turn + frame) % passes.size();
+            runVolumeFrame(*passes[i], scene.sticks(), results.volumes[i]);
+        }
+    }
+    for (VolumeResult& each : results.volumes) {
+        each.candidates /= frames;
+        each.passed /= frames;
+        each.touching /= frames;
+    }
+    results.checks.push_back(
+        {"Whatever the bounding volume, the same sticks touch", faults.empty(),
+         faults.empty() ? withThousands(right.size()) + " couples touch" : "wrong with" + faults});
+    return results;
+}
+
+}  // namespace hashphase::demos

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/paper/paper_command.hpp>
+
+#include <demos/console/option_checks.hpp>
+#include <demos/paper/paper.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <memory>
+
+namespace hashphase::demos {
+namespace {
+
+void declarePaper(CLI::App& app, PaperOptions& options) {
+    app.add_flag("--quick", options.quick,
+                 "measure less: some 15 seconds, in place of two minutes");
+    app.add_option("--objects", options.objects,
+                   "numbers of objects, separated by commas (default: the paper's, 500 to 50,000; "
+                   "the domain of more than 50,000 grows so that they stay as dense)")
+        ->delimiter(',')
+        ->check(CLI::Range(2, 1'000'000));
+    app.add_option("--frames", options.frames,
+                   "most frames of each method (default: 60, with --quick 10)")
+        ->check(CLI::Range(1, 100'000));
+    app.add_option("--radius", options.aiRadius,
+                   "within which AI counts colours, in metres; the paper does not give it")
+        ->check(CLI::Range(0.0, 1000.0))
+        ->capture_default_str();
+    app.add_option("--seed", options.seed, "seed of all random numbers")
+        ->check(seedFault)
+        ->capture_default_str();
+    app.add_option("--json", options.jsonFile, "write everything measured to this file");
+    app.add_option("--csv", options.csvFile, "write a row for each measurement to this file");
+    app.add_option("--html", options.htmlFile, "write a page with tables and charts to this file");
+    app.add_option("--time-limit", options.timeLimit,
+                   "after so many seconds leave out what is not measured yet")
+        ->check(positiveSecondsFault);
+    app.add_flag("--ms", options.showMilliseconds,
+                 "print milliseconds a frame, in place of frames a second");
+    app.add_flag("--quiet", options.quiet, "no progress on stderr");
+}
+
+}  // namespace
+
+Subcommand paperCommand() {
+    auto options = std::make_shared<PaperOptions>();
+    Subcommand command;
+    command.name = "paper";
+    command.description = "Reproduce the paper's figures 13 to 15: its numbers beside today's";
+    command.declareOptions = [options](CLI::App& app) { declarePaper(app, *options); };
+    command.run = [options](Console& console) { return runPaper(*options, console); };
+    return command;
+}
+
+}  // namespace hashphase::demos

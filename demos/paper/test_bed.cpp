@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/paper/test_bed.hpp>
+
+#include <broadphase/position_region.hpp>
+
+#include <cmath>
+
+namespace hashphase::demos {
+namespace {
+
+constexpr float kFramesPerSecond = 60;
+constexpr float kEyeHeight = 45;  // [m]
+constexpr float kPitch = -0.3F;   // [rad]
+constexpr float kTurn = 0.01F;    // [rad] a frame
+
+TriangleGround triangleGround(const Terrain& terrain, float side) {
+    TriangleGround ground;
+    const auto quads = static_cast<std::uint32_t>(std::ceil(side / TriangleGround::kEdge));
+    for (std::uint32_t k = 0; k <= quads; ++k) {
+        for (std::uint32_t i = 0; i <= quads; ++i) {
+            const float x = TriangleGround::kEdge * static_cast<float>(i);
+            const float z = TriangleGround::kEdge * static_cast<float>(k);
+            ground.vertices.emplace_back(x, terrain.height(x, z), z);
+        }
+    }
+    for (std::uint32_t k = 0; k < quads; ++k) {
+        for (std::uint32_t i = 0; i < quads; ++i) {
+            const std::uint32_t corner = k * (quads + 1) + i;
+            const std::uint32_t next = corner + quads + 1;
+            for (const std::uint32_t vertex :
+                 {corner, next, corner + 1, corner + 1, next, next + 1}) {
+                ground.indices.push_back(vertex);
+            }
+        }
+    }
+    ground.boxes.resize(ground.indices.size() / 3);
+    for (std::size_t i = 0; i < ground.boxes.size(); ++i) {
+        for (const Vector3<float>& corner : ground.corners(i)) {
+            ground.boxes[i].extend(corner);
+        }
+    }
+    return ground;
+}
+
+}  // namespace
+
+float TestBed::sideFor(std::uint32_t objects) {
+    const float share = static_cast<float>(objects) / static_cast<float>(kMostInDomain);
+    return PaperScene::kSide * std::sqrt(std::max(share, 1.0F));
+}
+
+TestBed::TestBed(std::uint32_t objects, std::uint64_t seed)
+    : side_(sideFor(objects)),
+      scene_(objects, seed, side_),
+      ground_(triangleGround(Terrain(seed), side_)),
+      centres_(objects),
+      velocities_(objects),
+      colours_(objects) {
+    Random random(seed + 1);
+    for (std::uint32_t& colour : colours_) {
+        colour = static_cast<std::uint32_t>(random.between(0, kColours)) % kColours;
+    }
+    for (std::size_t i = 0; i < objects; ++i) {
+        centres_[i] = positionOf(boxes()[i]);
+    }
+    advance();
+}
+
+void TestBed::advance() {
+    scene_.advance();
+    for (std::size_t i = 0; i < centres_.size(); ++i) {
+        const Vector3<float> centre = positionOf(boxes()[i]);
+        velocities_[i] = kFramesPerSecond * (centre - centres_[i]);
+        centres_[i] = centre;
+    }
+    ++frame_;
+    placeCamera();
+}
+
+void TestBed::placeCamera() {
+    CameraPose pose;
+    pose.eye = {side_ / 2, kEyeHeight, side_ / 2};
+    pose.yaw = kTurn * static_cast<float>(frame_);
+    pose.pitch = kPitch;
+    view_ = cameraView(pose);
+}
+
+}  // namespace hashphase::demos

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// The test bed of the paper, frame by frame: its spheres, its terrain as triangles, a camera over it,
+// and colours. All methods see the same frame; none changes it.
+//
+// Domain      400 x 400 up to 50,000 objects; beyond, as much larger as keeps their density.
+// Repeatable  Frame n depends on the number of objects, the seed and n alone.
+// Units       metres, seconds
+
+#include <demos/scenes/camera_view.hpp>
+#include <demos/scenes/paper_scene.hpp>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace hashphase::demos {
+
+/// The ground as triangles, quads of kEdge cut along a diagonal.
+struct TriangleGround {
+    static constexpr float kEdge = 10;  // [m]
+
+    std::vector<Vector3<float>> vertices;
+    std::vector<std::uint32_t> indices;  // three a triangle
+    std::vector<Aabb<float>> boxes;      // of the triangles
+
+    [[nodiscard]] std::array<Vector3<float>, 3> corners(std::size_t triangle) const {
+        return {vertices[indices[3 * triangle]], vertices[indices[3 * triangle + 1]],
+                vertices[indices[3 * triangle + 2]]};
+    }
+};
+
+class TestBed {
+public:
+    static constexpr std::uint32_t kColours = 6;
+    static constexpr std::uint32_t kMostInDomain = 50'000;  // of the paper's size
+
+    TestBed(std::uint32_t objects, std::uint64_t seed);
+
+    /// The side of the domain of so many objects [m].
+    [[nodiscard]] static float sideFor(std::uint32_t objects);
+
+    /// Moves to the next frame.
+    void advance();
+
+    [[nodiscard]] std::uint32_t objects() const {
+        return static_cast<std::uint32_t>(scene_.boxes().size());
+    }
+    [[nodiscard]] const std::vector<Aabb<float>>& boxes() const { return scene_.boxes(); }
+    [[nodiscard]] std::span<const Vector3<float>> centres() const { return centres_; }
+    [[nodiscard]] std::span<const Vector3<float>> velocities() const { return velocities_; }
+
+    /// With which the AI of every frame begins.
+    [[nodiscard]] std::span<const std::uint32_t> colours() const { return colours_; }
+
+    /// Of a camera in the middle of the domain that turns on the spot.
+    [[nodiscard]] const CameraView& view() const { return view_; }
+    [[nodiscard]] const TriangleGround& ground() const { return ground_; }
+
+private:
+    void placeCamera();
+
+    float side_;
+    PaperScene scene_;
+    TriangleGround ground_;
+    std::vector<Vector3<float>> centres_;
+    std::vector<Vector3<float>> velocities_;
+    std::vector<std::uint32_t> colours_;
+    CameraView view_;
+    std::uint32_t frame_ = 0;
+};
+
+}  // namespace hashphase::demos
