@@ -62,12 +62,15 @@ public:
     PaperAi(const TestBed& bed, float cellSize, float radius)
         : map_(bed.boxes(), cellSize), radius_(radius) {}
 
-    void run(const TestBed& bed) override {
+    void hash(const TestBed& bed) override {
         points_.clear();
         for (const Vector3<float>& centre : bed.centres()) {
             points_.emplace_back(centre, centre);
         }
         map_.refile(points_);
+    }
+
+    void run(const TestBed& bed) override {
         colours_.resize(bed.objects());
         for (std::uint32_t agent = 0; agent < bed.objects(); ++agent) {
             colours_[agent] = rarestOf(countsAround(agent, bed));

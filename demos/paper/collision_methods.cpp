@@ -60,10 +60,11 @@ public:
     PaperCollision(const TestBed& bed, float cellSize)
         : spheres_(bed.boxes(), cellSize), triangles_(bed.ground().boxes, cellSize) {}
 
+    void hash(const TestBed& bed) override { spheres_.refile(bed.boxes()); }
+
     void run(const TestBed& bed) override {
         states_.begin(bed);
         couples_.clear();
-        spheres_.refile(bed.boxes());
         const PaperMap::Range all = spheres_.all();
         for (int z = all.lowZ; z <= all.highZ; ++z) {
             for (int x = all.lowX; x <= all.highX; ++x) {

@@ -36,7 +36,7 @@ private:
     std::vector<ProxyId> ids_;
 };
 
-/// Pairs keep track from frame to frame; the terrain is asked for all at once.
+/// Pairs keep track from frame to frame, and file what has moved; the terrain is asked for all at once.
 class HashCollision final : public PhaseMethod {
 public:
     HashCollision(const TestBed& bed, double cellSize)
@@ -108,9 +108,12 @@ class HashVisibility final : public PhaseMethod {
 public:
     HashVisibility(const TestBed& bed, double cellSize) : spheres_(bed, cellSize) {}
 
-    void run(const TestBed& bed) override {
+    void hash(const TestBed& bed) override {
         spheres_.moveAll(bed);
         spheres_.grid().update();
+    }
+
+    void run(const TestBed& bed) override {
         culler_.look(spheres_.grid(), frustumRegion<float>(bed.view().viewProjection, kDepthRange));
         visible_.clear();
         culler_.forEach([this](std::uint32_t object) { visible_.push_back(object); });
@@ -136,9 +139,12 @@ public:
     HashAi(const TestBed& bed, double cellSize, float radius)
         : spheres_(bed, cellSize), radius_(radius) {}
 
-    void run(const TestBed& bed) override {
+    void hash(const TestBed& bed) override {
         spheres_.moveAll(bed);
         spheres_.grid().update();
+    }
+
+    void run(const TestBed& bed) override {
         colours_.assign(bed.colours().begin(), bed.colours().end());
         rarest_.update(spheres_.grid(), radius_, TestBed::kColours, colours_);
     }

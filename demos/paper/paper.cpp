@@ -63,7 +63,11 @@ int runPaper(const PaperOptions& options, Console& console) {
     json.write([&report](std::ostream& out) { writeJson(report, out); });
     csv.write([&report](std::ostream& out) { writeCsv(report, out); });
     html.write([&report](std::ostream& out) { writeHtml(report, out); });
-    return report.results.allHold() ? kExitOk : kExitCheckFailed;
+    return exitCodeOf(report.results);
+}
+
+int exitCodeOf(const PaperResults& results) {
+    return results.allHold() ? kExitOk : kExitCheckFailed;
 }
 
 }  // namespace hashphase::demos

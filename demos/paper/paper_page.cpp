@@ -165,6 +165,7 @@ PageSection checkSection(const PaperResults& results) {
         "What every method found, couples, bounces and heights, visible objects, colours, is "
         "compared with brute force in the same frame."};
     section.checks = results.checks;
+    section.conclusions = observations(results);
     for (const std::string& each : results.leftOut) {
         section.conclusions.push_back("Left out for want of time: " + each + ".");
     }

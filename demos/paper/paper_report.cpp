@@ -89,6 +89,38 @@ std::string verdictLine(const PaperResults& results) {
            (results.allHold() ? "yes" : "NO, see above");
 }
 
+std::vector<std::string> observations(const PaperResults& results) {
+    std::vector<std::string> sentences;
+    const PhaseResult* most = results.plan.objects.empty()
+                                  ? nullptr
+                                  : results.figure(Phase::visibility, results.plan.objects.back());
+    if (most != nullptr) {
+        std::string sentence =
+            "Hashing, which a whole frame does once, counts in each phase. Without it, "
+            "visibility of " +
+            withThousands(most->task.objects) + " takes";
+        for (const MethodResult& method : most->methods) {
+            const bool isShown = method.kind == MethodKind::unoptimized ||
+                                 method.cellSize == kPrintedCellSizes[1] || !method.cellSize;
+            if (isShown && method.isMeasured()) {
+                sentence += " " + describe(method) + " " +
+                            milliseconds(spreadOf(method.lookMs()).median) + " ms;";
+            }
+        }
+        sentence.back() = '.';
+        sentences.push_back(std::move(sentence));
+    }
+    const LossTally losses = tallyLosses(results);
+    if (losses.lost > 0) {
+        sentences.push_back("Hashphase loses in " + tallyText(losses.lost, losses.compared) +
+                            " cells, where the paper's grid is faster at the same cell size; most "
+                            "in " +
+                            losses.worst + ", which takes hashphase " +
+                            fixed(losses.worstRatio, 1) + " times as long.");
+    }
+    return sentences;
+}
+
 std::vector<std::string> howItWasMeasured(const PaperResults& results) {
     const PaperPlan& plan = results.plan;
     std::vector<std::string> sentences{
@@ -134,6 +166,10 @@ void printReport(const PaperReport& report, bool showMilliseconds, std::ostream&
     printData("Collision of " + objects + " by cell size", cellSizeTable(results), out);
     printData(withThousands(results.plan.sticks) + " sticks that turn, by bounding volume",
               volumeTable(results), out);
+    for (const std::string& sentence : observations(results)) {
+        out << sentence << '\n';
+    }
+    out << '\n';
     for (const std::string& sentence : howItWasMeasured(results)) {
         out << sentence << '\n';
     }

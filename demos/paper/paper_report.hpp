@@ -30,6 +30,9 @@ void writeHtml(const PaperReport& report, std::ostream& out);
 /// How many of the paper's cells that are too slow are real-time today, and whether all is right.
 [[nodiscard]] std::string verdictLine(const PaperResults& results);
 
+/// What of visibility is hashing, and where the paper's grid is faster than hashphase.
+[[nodiscard]] std::vector<std::string> observations(const PaperResults& results);
+
 /// How it was measured, a sentence each.
 [[nodiscard]] std::vector<std::string> howItWasMeasured(const PaperResults& results);
 

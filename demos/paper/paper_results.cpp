@@ -155,6 +155,30 @@ RealTimeTally tallyRealTime(const PaperResults& results) {
     return tally;
 }
 
+LossTally tallyLosses(const PaperResults& results) {
+    LossTally tally;
+    for (const PhaseResult& result : results.figures) {
+        for (const double cellSize : kPrintedCellSizes) {
+            const MethodResult* paper = result.find(MethodKind::paperGrid, cellSize);
+            const MethodResult* ours = result.find(MethodKind::hashphase, cellSize);
+            if (paper == nullptr || ours == nullptr || !paper->isMeasured() ||
+                !ours->isMeasured()) {
+                continue;
+            }
+            const double ratio = ours->time().median / paper->time().median;
+            ++tally.compared;
+            tally.lost += ratio > 1 ? 1 : 0;
+            if (ratio > tally.worstRatio) {
+                tally.worstRatio = ratio;
+                tally.worst = std::string(nameOf(result.task.phase)) + " of " +
+                              withThousands(result.task.objects) + ", cells of " +
+                              fixed(cellSize, 0) + " m";
+            }
+        }
+    }
+    return tally;
+}
+
 PaperResults measurePaper(const PaperPlan& plan, const PaperWatch& watch) {
     PaperResults results;
     results.plan = plan;

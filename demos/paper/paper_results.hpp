@@ -56,6 +56,15 @@ struct RealTimeTally {
 };
 [[nodiscard]] RealTimeTally tallyRealTime(const PaperResults& results);
 
+/// Where the paper's grid is faster today than hashphase at the same cell size.
+struct LossTally {
+    std::size_t compared = 0;
+    std::size_t lost = 0;
+    double worstRatio = 1;  // of the times, where most is lost
+    std::string worst;      // "visibility of 5,000, cells of 100 m"
+};
+[[nodiscard]] LossTally tallyLosses(const PaperResults& results);
+
 [[nodiscard]] PaperResults measurePaper(const PaperPlan& plan, const PaperWatch& watch = {});
 
 /// How many steps it tells of.

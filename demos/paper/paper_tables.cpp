@@ -66,12 +66,16 @@ void addMeasurementRows(const std::string& part, const PhaseResult& result, Data
         const auto timed = [&](double number) {
             return method.isMeasured() ? Value(number) : Value();
         };
+        // Pairs file and find at once.
+        const bool isApart = method.isMeasured() &&
+                             (phase != Phase::collision || method.kind != MethodKind::hashphase);
+        const Value hashing = isApart ? Value(spreadOf(method.hashMs).median) : Value();
         table.add({part, static_cast<double>(figureNumber(phase)), std::string(nameOf(phase)),
                    static_cast<double>(objects), std::string(nameOf(method.kind)),
                    valueOfNumber(method.cellSize),
                    phase == Phase::ai ? Value(static_cast<double>(radius)) : Value(),
                    printed.empty() ? Value() : Value(std::string(printed)), timed(time.median),
-                   timed(time.low), timed(time.high), valueOfNumber(method.rate()),
+                   timed(time.low), timed(time.high), hashing, valueOfNumber(method.rate()),
                    static_cast<double>(method.frameMs.size()),
                    static_cast<double>(method.checkedFrames), static_cast<double>(result.subjects),
                    static_cast<double>(method.wrongFrames), static_cast<double>(method.bytes)});
@@ -141,6 +145,7 @@ DataTable measurementRows(const PaperResults& results) {
                      {"frame_ms", "frame [ms]"},
                      {"p5_ms", "5th percentile"},
                      {"p95_ms", "95th percentile"},
+                     {"hashing_ms", "of which hashing [ms]"},
                      {"frames_per_second", "frames/s"},
                      {"frames", "frames timed"},
                      {"checked_frames", "frames checked"},

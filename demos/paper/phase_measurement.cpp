@@ -106,8 +106,10 @@ private:
             const std::size_t i = (turn + frame) % methods_.size();
             if (frame <= lastFrame_[i]) {
                 const FrameClock clock;
+                methods_[i]->hash(bed_);
+                const double hashed = clock.milliseconds();
                 methods_[i]->run(bed_);
-                note(i, frame, clock.milliseconds());
+                note(i, frame, hashed, clock.milliseconds());
                 ran.push_back(i);
             }
         }
@@ -115,10 +117,11 @@ private:
         return !ran.empty() && !isTimeUp_();
     }
 
-    void note(std::size_t i, std::uint32_t frame, double milliseconds) {
+    void note(std::size_t i, std::uint32_t frame, double hashed, double milliseconds) {
         MethodResult& method = result_.methods[i];
         if (frame > 0 || milliseconds > effort_.methodMilliseconds) {
             method.frameMs.push_back(milliseconds);
+            method.hashMs.push_back(hashed);
         }
         if (frame == 0) {
             const double frames = effort_.methodMilliseconds / std::max(milliseconds, 1e-6);
@@ -170,6 +173,13 @@ private:
 };
 
 }  // namespace
+
+std::vector<double> MethodResult::lookMs() const {
+    std::vector<double> differences;
+    std::transform(frameMs.begin(), frameMs.end(), hashMs.begin(), std::back_inserter(differences),
+                   std::minus<>());
+    return differences;
+}
 
 std::optional<double> MethodResult::rate() const {
     constexpr double kSecond = 1000;  // [ms]

@@ -42,12 +42,15 @@ struct MethodResult {
     MethodKind kind = MethodKind::hashphase;
     std::optional<double> cellSize;  // [m]
     std::vector<double> frameMs;     // empty: the time was up before
+    std::vector<double> hashMs;      // of these, what PhaseMethod::hash() took
     std::uint32_t checkedFrames = 0;
     std::uint32_t wrongFrames = 0;
     std::string fault;  // of the first of these: "3 of 5,000 are missing, 0 are extra"
     std::size_t bytes = 0;
 
     [[nodiscard]] bool isMeasured() const { return !frameMs.empty(); }
+    /// The frames less their hashing [ms].
+    [[nodiscard]] std::vector<double> lookMs() const;
     /// [ms]; only of what is measured.
     [[nodiscard]] Spread time() const { return spreadOf(frameMs); }
     /// [frames/s], of the median; nothing where nothing is measured.

@@ -53,7 +53,10 @@ public:
     PhaseMethod& operator=(const PhaseMethod&) = delete;
     virtual ~PhaseMethod() = default;
 
-    /// Computes the phase for the bed's present frame; this is what is timed.
+    /// Files all objects anew, as they are in the bed's present frame, where that is a step of its own.
+    virtual void hash(const TestBed& /*bed*/) {}
+
+    /// Computes the phase for the frame, after hash() for it. Both are timed.
     virtual void run(const TestBed& bed) = 0;
 
     /// What the last run() found. Collision: pairs with a subject, for subjects only if there are any.

@@ -45,9 +45,10 @@ class PaperVisibility final : public PhaseMethod {
 public:
     PaperVisibility(const TestBed& bed, float cellSize) : map_(bed.boxes(), cellSize) {}
 
+    void hash(const TestBed& bed) override { map_.refile(bed.boxes()); }
+
     void run(const TestBed& bed) override {
         const ConvexRegion<float> frustum = frustumOf(bed);
-        map_.refile(bed.boxes());
         visible_.clear();
         isListed_.assign(bed.objects(), 0);
         const PaperMap::Range all = map_.all();
