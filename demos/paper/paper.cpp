@@ -19,9 +19,9 @@ PaperPlan planOf(const PaperOptions& options) {
     if (options.quick) {
         plan.sweepObjects = 5'000;
         plan.sticks = 2'000;
-        plan.effort.frames = 10;
+        plan.effort.frames = 8;
         plan.effort.fewestFrames = 1;
-        plan.effort.methodMilliseconds = 60;
+        plan.effort.methodMilliseconds = 50;
     }
     if (!options.objects.empty()) {
         plan.objects = options.objects;

@@ -29,7 +29,7 @@ void addFigureRows(const PhaseResult& result, bool showMilliseconds, GradedTable
         {first}, {"paper, 2005"}, gradedPrint(printedRate(phase, objects, std::nullopt))};
     std::vector<GradedText> today{
         {first},
-        {"its methods today"},
+        {"paper, today"},
         gradedRate(result.find(MethodKind::unoptimized, std::nullopt), showMilliseconds)};
     std::vector<GradedText> ours{{first}, {"hashphase"}, {"", Grade::kNone}};
     for (const double cellSize : kPrintedCellSizes) {

@@ -61,6 +61,8 @@ std::size_t countOfDifferent(const std::vector<std::uint64_t>& a,
     return count;
 }
 
+constexpr double kSlowFrame = 250;  // [ms]; that memory was new then matters little
+
 class PhaseRun {
 public:
     PhaseRun(const PhaseTask& task, std::span<const MethodSpec> specs, const PhaseEffort& effort,
@@ -119,7 +121,7 @@ private:
 
     void note(std::size_t i, std::uint32_t frame, double hashed, double milliseconds) {
         MethodResult& method = result_.methods[i];
-        if (frame > 0 || milliseconds > effort_.methodMilliseconds) {
+        if (frame > 0 || (milliseconds > kSlowFrame && method.kind != MethodKind::hashphase)) {
             method.frameMs.push_back(milliseconds);
             method.hashMs.push_back(hashed);
         }
@@ -197,6 +199,8 @@ std::string describe(const MethodResult& method) {
     std::string text(nameOf(method.kind));
     if (method.cellSize) {
         text += ", cells of " + fixed(*method.cellSize, 0) + " m";
+    } else if (method.kind == MethodKind::hashphase) {
+        text += ", automatic cells";
     }
     return text;
 }

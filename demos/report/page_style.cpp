@@ -56,7 +56,7 @@ th { vertical-align: bottom; border-bottom: 1px solid var(--quiet); font-weight:
 td { border-bottom: 1px solid var(--faint); font-variant-numeric: tabular-nums; }
 .number { text-align: right; }
 caption { text-align: left; padding-bottom: .5rem; color: var(--quiet); }
-.graded td, .graded th { padding: .2rem .5rem; white-space: nowrap; }
+.graded td, .graded th { padding: .2rem .4rem; white-space: nowrap; }
 .graded tbody th { vertical-align: top; border-bottom-color: var(--faint); }
 .good, .fair, .poor { color: var(--ink); print-color-adjust: exact; }
 .good { background: #0072b230; }

@@ -8,7 +8,7 @@
 namespace hashphase::demos {
 namespace {
 
-std::string faultIn(const std::string& text) {
+std::string faultInText(const std::string& text) {
     return messageOf<InputError>([&text] { static_cast<void>(parseTextBoxes(text)); });
 }
 
@@ -25,35 +25,35 @@ TEST(TextBoxes, SkipsEmptyLinesAndCommentsAndAcceptsTabsAndCarriageReturns) {
 }
 
 TEST(TextBoxes, NamesLineAndColumnOfWhatIsNoNumber) {
-    EXPECT_EQ(faultIn("0 0 0 1 1 1\n0 0 zero 1 1 1\n"),
+    EXPECT_EQ(faultInText("0 0 0 1 1 1\n0 0 zero 1 1 1\n"),
               "line 2, column 5: expected a number, found 'zero'.");
-    EXPECT_EQ(faultIn("0 0 0 1 1 1x\n"), "line 1, column 11: expected a number, found '1x'.");
+    EXPECT_EQ(faultInText("0 0 0 1 1 1x\n"), "line 1, column 11: expected a number, found '1x'.");
 }
 
 TEST(TextBoxes, RefusesTooFewAndTooManyNumbers) {
-    EXPECT_EQ(faultIn("0 0 0 1 1\n"),
+    EXPECT_EQ(faultInText("0 0 0 1 1\n"),
               "line 1, column 10: the line ends, but six numbers are needed: min x y z max x y z.");
-    EXPECT_EQ(faultIn("0 0 0 1 1 1 7\n"), "line 1, column 13: the line goes on after six numbers.");
+    EXPECT_EQ(faultInText("0 0 0 1 1 1 7\n"), "line 1, column 13: the line goes on after six numbers.");
 }
 
 TEST(TextBoxes, RefusesWhatIsNotFinite) {
-    EXPECT_EQ(faultIn("0 0 nan 1 1 1"), "line 1, column 5: 'nan' is not a finite number.");
-    EXPECT_EQ(faultIn("0 0 0 1 inf 1"), "line 1, column 9: 'inf' is not a finite number.");
-    EXPECT_EQ(faultIn("0 0 0 1 1 1e60"),
+    EXPECT_EQ(faultInText("0 0 nan 1 1 1"), "line 1, column 5: 'nan' is not a finite number.");
+    EXPECT_EQ(faultInText("0 0 0 1 inf 1"), "line 1, column 9: 'inf' is not a finite number.");
+    EXPECT_EQ(faultInText("0 0 0 1 1 1e60"),
               "line 1, column 11: '1e60' does not fit a single-precision number.");
-    EXPECT_EQ(faultIn("0 0 0 1 1 1e35"),
+    EXPECT_EQ(faultInText("0 0 0 1 1 1e35"),
               "line 1, column 11: '1e35' is beyond the largest coordinate, 1e30.");
 }
 
 TEST(TextBoxes, RefusesInvertedBoxesAndNamesTheAxis) {
-    EXPECT_EQ(faultIn("0 0 0 1 1 1\n0 0 0 1 -1 1\n"),
+    EXPECT_EQ(faultInText("0 0 0 1 1 1\n0 0 0 1 -1 1\n"),
               "line 2, column 9: the box is inverted: its max y is below its min.");
 }
 
 TEST(TextBoxes, RefusesATextWithoutBoxes) {
     const std::string expected = "no boxes found; each line should be: min x y z max x y z.";
-    EXPECT_EQ(faultIn(""), expected);
-    EXPECT_EQ(faultIn("\n# nothing\n"), expected);
+    EXPECT_EQ(faultInText(""), expected);
+    EXPECT_EQ(faultInText("\n# nothing\n"), expected);
 }
 
 TEST(TextBoxes, RefusesEveryTruncationThatLosesANumber) {
