@@ -55,7 +55,7 @@ private:
     std::vector<std::uint32_t> colours_;  // by subject
 };
 
-/// The paper's: agents filed by position, so that none is in two cells, and for each agent all cells
+/// The paper's: agents filed by position, so that none is in two cells, and for each one all cells
 /// that its radius touches.
 class PaperAi final : public PhaseMethod {
 public:

@@ -30,8 +30,8 @@ struct VolumeResults {
 
 [[nodiscard]] std::string_view nameOf(VolumeKind kind);
 
-/// All kinds in turn in each frame. In the first one, which is not timed, they are compared with the
-/// exact test of all couples.
+/// All kinds in turn in each frame. In the first one, which is not timed, they are compared with
+/// the exact test of all couples.
 [[nodiscard]] VolumeResults measureVolumes(std::uint32_t sticks, std::uint32_t frames,
                                            std::uint64_t seed);
 

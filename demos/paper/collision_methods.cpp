@@ -105,7 +105,7 @@ private:
         }
     }
 
-    /// Of the cells that the two share, the one where their overlap begins: each couple counts once.
+    /// Of the cells that the two share, the one where their overlap begins: a couple counts once.
     [[nodiscard]] bool isHome(int x, int z, const Aabb<float>& a, const Aabb<float>& b) const {
         const float lowX = std::max(a.min().x(), b.min().x());
         const float lowZ = std::max(a.min().z(), b.min().z());

@@ -36,7 +36,8 @@ private:
     std::vector<ProxyId> ids_;
 };
 
-/// Pairs keep track from frame to frame, and file what has moved; the terrain is asked for all at once.
+/// Pairs keep track from frame to frame, and file what has moved; the terrain is asked for all at
+/// once.
 class HashCollision final : public PhaseMethod {
 public:
     HashCollision(const TestBed& bed, double cellSize)

@@ -27,8 +27,8 @@ struct PaperOptions {
     bool quiet = false;
 };
 
-/// Measures, writes the figures, and returns exitCodeOf() them. Throws InputError for files that cannot
-/// be written.
+/// Measures, writes the figures, and returns exitCodeOf() them. Throws InputError for files that
+/// cannot be written.
 int runPaper(const PaperOptions& options, Console& console);
 
 /// kExitCheckFailed when a method found something else than brute force. Times do not matter.

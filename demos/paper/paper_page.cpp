@@ -158,6 +158,15 @@ PageSection volumeSection(const PaperResults& results) {
     return section;
 }
 
+PageSection fewFramesSection(const PaperResults& results) {
+    PageSection section;
+    section.heading = "What was timed in fewer frames";
+    section.sentences = {"Everything else was timed in " +
+                         withThousands(results.plan.effort.frames) + " different frames."};
+    section.tables = {fewFramesTable(results)};
+    return section;
+}
+
 PageSection checkSection(const PaperResults& results) {
     PageSection section;
     section.heading = "Whether it is right";
@@ -194,6 +203,9 @@ void writeHtml(const PaperReport& report, std::ostream& out) {
     }
     if (!results.volumes.volumes.empty()) {
         page.sections.push_back(volumeSection(results));
+    }
+    if (!fewFramesTable(results).rows.empty()) {
+        page.sections.push_back(fewFramesSection(results));
     }
     writePage(page, out);
 }

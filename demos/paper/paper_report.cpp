@@ -110,6 +110,12 @@ std::vector<std::string> observations(const PaperResults& results) {
         sentence.back() = '.';
         sentences.push_back(std::move(sentence));
     }
+    const std::size_t slow = fewFramesTable(results).rows.size();
+    if (slow > 0) {
+        sentences.push_back(withThousands(slow) + " of the figures' values are of fewer than " +
+                            std::to_string(results.plan.effort.frames) +
+                            " frames, because they take long; the page and the CSV say which.");
+    }
     const LossTally losses = tallyLosses(results);
     if (losses.lost > 0) {
         sentences.push_back("Hashphase loses in " + tallyText(losses.lost, losses.compared) +

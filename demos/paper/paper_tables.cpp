@@ -163,6 +163,24 @@ DataTable measurementRows(const PaperResults& results) {
     return table;
 }
 
+DataTable fewFramesTable(const PaperResults& results) {
+    DataTable table{{{"phase", "phase"},
+                     {"objects", "objects"},
+                     {"method", "method"},
+                     {"frames", "frames timed"}},
+                    {}};
+    for (const PhaseResult& result : results.figures) {
+        for (const MethodResult& method : result.methods) {
+            if (method.isMeasured() && method.frameMs.size() < results.plan.effort.frames) {
+                table.add({std::string(nameOf(result.task.phase)),
+                           withThousands(result.task.objects), describe(method),
+                           static_cast<double>(method.frameMs.size())});
+            }
+        }
+    }
+    return table;
+}
+
 DataTable radiusTable(const PaperResults& results) {
     DataTable table{{{"radius", "radius [m]"}, {"neighbours", "neighbours of an agent"}}, {}};
     for (std::size_t i = 0; i < results.radii.size(); ++i) {

@@ -29,6 +29,9 @@ namespace hashphase::demos {
 /// Everything that was timed but the bounding volumes, a row for each method of each part.
 [[nodiscard]] DataTable measurementRows(const PaperResults& results);
 
+/// What of the figures was timed in fewer frames than the plan's, because it takes long.
+[[nodiscard]] DataTable fewFramesTable(const PaperResults& results);
+
 [[nodiscard]] DataTable radiusTable(const PaperResults& results);
 [[nodiscard]] DataTable cellSizeTable(const PaperResults& results);
 [[nodiscard]] DataTable volumeTable(const PaperResults& results);

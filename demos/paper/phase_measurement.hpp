@@ -4,10 +4,10 @@
 // Times the methods of a phase against each other, frame by frame in turn, and compares what they
 // found with brute force.
 //
-// Frames    The first one is not counted, but for methods that take a quarter of a second for it, and
-//           keep nothing from frame to frame, as hashphase does. Each method runs for the first
-//           frames, as many as it may take time for, and at least a few: what is slow has fewer, and
-//           says how many.
+// Frames    The first one is not counted, but for methods that take a quarter of a second for it,
+//           and keep nothing from frame to frame, as hashphase does. Each method runs for the first
+//           frames, as many as it may take time for, and at least a few: what is slow has fewer,
+//           and says how many.
 // Checked   In every frame that the un-optimized method runs; without it in the first one and the
 //           last that all methods run, where there are many objects for some drawn at random.
 

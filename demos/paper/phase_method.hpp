@@ -16,8 +16,8 @@ namespace hashphase::demos {
 
 /// What a phase found, for comparison with what another method found.
 struct PhaseAnswer {
-    /// Collision: the overlapping couples, pairKeyOf() each, sorted. Visibility: the objects, sorted.
-    /// AI: the new colour of each object.
+    /// Collision: the overlapping couples, pairKeyOf() each, sorted. Visibility: the objects,
+    /// sorted. AI: the new colour of each object.
     std::vector<std::uint64_t> found;
 
     /// Collision: of each object, the height at which it stands and its velocity, four numbers.
@@ -53,13 +53,13 @@ public:
     PhaseMethod& operator=(const PhaseMethod&) = delete;
     virtual ~PhaseMethod() = default;
 
-    /// Files all objects anew, as they are in the bed's present frame, where that is a step of its own.
+    /// Files all objects anew, as they are in the bed's present frame, where that is a step apart.
     virtual void hash(const TestBed& /*bed*/) {}
 
     /// Computes the phase for the frame, after hash() for it. Both are timed.
     virtual void run(const TestBed& bed) = 0;
 
-    /// What the last run() found. Collision: pairs with a subject, for subjects only if there are any.
+    /// What the last run() found: for all objects, or for the subjects of brute force.
     [[nodiscard]] virtual PhaseAnswer answer() const = 0;
 
     /// Bytes held for all frames, those of spheres and triangles as they are handed in left out.

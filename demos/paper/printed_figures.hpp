@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Figures 13, 14 and 15 of Hastings, Mesit, Guha, "Optimization of Large-Scale, Real-Time Simulations
-// by Spatial Hashing", as they are printed: frames a second on a Pentium 4 of 3.2 GHz.
+// Figures 13, 14 and 15 of Hastings, Mesit, Guha, "Optimization of Large-Scale, Real-Time
+// Simulations by Spatial Hashing", as they are printed: frames a second on a Pentium 4, 3.2 GHz.
 //
-// Censored  `60+` means at least 60, `<1` below 1. What was measured is not known, so these are texts
-//           and never become numbers.
+// Censored  `60+` means at least 60, `<1` below 1. What was measured is not known, so these are
+//           texts and never become numbers.
 
 #include <array>
 #include <cstdint>

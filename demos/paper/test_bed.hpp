@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The test bed of the paper, frame by frame: its spheres, its terrain as triangles, a camera over it,
-// and colours. All methods see the same frame; none changes it.
+// The test bed of the paper, frame by frame: its spheres, its terrain as triangles, a camera over
+// it, and colours. All methods see the same frame; none changes it.
 //
 // Domain      400 x 400 up to 50,000 objects; beyond, as much larger as keeps their density.
 // Repeatable  Frame n depends on the number of objects, the seed and n alone.

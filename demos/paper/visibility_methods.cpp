@@ -39,7 +39,7 @@ private:
     std::vector<std::uint32_t> visible_;
 };
 
-/// The paper's free camera: every cell against the frustum, and of those that touch it every object.
+/// The paper's free camera: every cell against the frustum, and all objects of those that touch it.
 /// Cells are as high as what stands in them, and an object in several is listed once.
 class PaperVisibility final : public PhaseMethod {
 public:
