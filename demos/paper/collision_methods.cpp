@@ -24,7 +24,7 @@ public:
         couples_.clear();
         const std::vector<Aabb<float>>& boxes = bed.boxes();
         for (const std::uint32_t a : subjects_.list()) {
-            const Aabb<float> box = boxes[a];
+            const Aabb<float>& box = boxes[a];
             for (std::uint32_t b = subjects_.areAll() ? a + 1 : 0; b < boxes.size(); ++b) {
                 // Of two subjects, the first one has seen the couple.
                 if (overlaps(box, boxes[b]) && (b > a || !subjects_.contains(b))) {
@@ -95,7 +95,7 @@ private:
     void collide(int x, int z, std::span<const Aabb<float>> boxes) {
         const std::span<const std::uint32_t> bucket = spheres_.objects(x, z);
         for (std::size_t i = 0; i < bucket.size(); ++i) {
-            const Aabb<float> a = boxes[bucket[i]];
+            const Aabb<float>& a = boxes[bucket[i]];
             for (const std::uint32_t other : bucket.subspan(i + 1)) {
                 if (overlaps(a, boxes[other]) && isHome(x, z, a, boxes[other])) {
                     couples_.push_back(pairKeyOf(bucket[i], other));

@@ -12,6 +12,20 @@
 namespace hashphase::demos {
 namespace {
 
+constexpr const char* kDomain =
+    "Spheres of radius 1 roam a random terrain of 400 x 400 m, of 3,200 triangles; the domain of "
+    "more than 50,000 grows so that they stay as dense.";
+constexpr const char* kTiming =
+    "Every phase is timed on its own, and hashing all objects anew counts in each of them, on one "
+    "thread; drawing counts in none. Triangles are hashed once.";
+constexpr const char* kFrames =
+    "All methods see the same frames: the bounces and colours that they find are compared, and the "
+    "next frame does not depend on them.";
+constexpr const char* kMethods =
+    "Un-optimized compares everything with everything. The paper's grid is a map of square cells, "
+    "wiped and filled in every frame, its errors corrected: all cells that a box touches, each "
+    "couple once, cells as high as what stands in them.";
+
 void printGraded(const GradedTable& table, std::ostream& out) {
     std::vector<std::string> header{table.header[0]};
     header.insert(header.end(), table.header.begin() + 2, table.header.end());
@@ -38,12 +52,14 @@ void printData(const std::string& caption, const DataTable& data, std::ostream& 
         return;
     }
     std::vector<std::string> header;
+    header.reserve(data.columns.size());
     for (const DataColumn& column : data.columns) {
         header.push_back(titleOf(column));
     }
     Table text(header);
     for (const std::vector<Value>& row : data.rows) {
         std::vector<std::string> cells;
+        cells.reserve(row.size());
         for (const Value& value : row) {
             cells.push_back(valueText(value));
         }
@@ -129,24 +145,17 @@ std::vector<std::string> observations(const PaperResults& results) {
 
 std::vector<std::string> howItWasMeasured(const PaperResults& results) {
     const PaperPlan& plan = results.plan;
-    std::vector<std::string> sentences{
-        "Spheres of radius 1 roam a random terrain of 400 x 400 m, of 3,200 triangles; "
-        "the domain of more than 50,000 grows so that they stay as dense.",
-        "Every phase is timed on its own, and hashing all objects anew counts in each of them, on "
-        "one thread; drawing counts in none. Triangles are hashed once.",
-        "All methods see the same frames: the bounces and colours that they find are compared, and "
-        "the next frame does not depend on them.",
-        "Un-optimized compares everything with everything. The paper's grid is a map of square "
-        "cells, wiped and filled in every frame, its errors corrected: all cells that a box "
-        "touches, each couple once, cells as high as what stands in them.",
-        "AI counts " + std::to_string(TestBed::kColours) + " colours within " +
-            fixed(static_cast<double>(plan.aiRadius), 1) +
-            " m, from centre to centre; the paper does not give its radius. The cells of "
-            "hashphase's AI follow the radius: a fixed cell size only matters for refiling.",
-        "Medians of up to " + withThousands(plan.effort.frames) +
-            " different frames, all methods in turn in each; of what takes longer fewer, but at "
-            "least " +
-            std::to_string(plan.effort.fewestFrames) + ". Seed " + std::to_string(plan.seed) + "."};
+    std::vector<std::string> sentences{kDomain, kTiming, kFrames, kMethods};
+    sentences.push_back("AI counts " + std::to_string(TestBed::kColours) + " colours within " +
+                        fixed(static_cast<double>(plan.aiRadius), 1) +
+                        " m, from centre to centre; the paper does not give its radius. The cells "
+                        "of hashphase's AI follow the radius: a fixed cell size only matters for "
+                        "refiling.");
+    sentences.push_back("Medians of up to " + withThousands(plan.effort.frames) +
+                        " different frames, all methods in turn in each; of what takes longer "
+                        "fewer, but at least " +
+                        std::to_string(plan.effort.fewestFrames) + ". Seed " +
+                        std::to_string(plan.seed) + ".");
     if (!plan.objects.empty() && plan.objects.back() > kMostBruteForced) {
         sentences.push_back("Of more than " + withThousands(kMostBruteForced) +
                             " objects nothing un-optimized is timed, and the results of " +

@@ -69,7 +69,7 @@ void addRadii(const PaperPlan& plan, std::vector<Step>& steps) {
 
 void addCellSizes(const PaperPlan& plan, std::vector<Step>& steps) {
     steps.push_back(
-        {"cell sizes", 2 * plan.sweepObjects,
+        {"cell sizes", std::size_t{2} * plan.sweepObjects,
          [&plan](PaperResults& results, const IsTimeUp& isTimeUp) {
              const float radius = plan.aiRadius;
              std::vector<MethodSpec> specs;

@@ -27,8 +27,9 @@ PhaseAnswer restricted(Phase phase, const PhaseAnswer& answer, const Subjects& s
         }
     }
     for (const std::uint32_t object : subjects.list()) {
-        for (std::size_t i = 0; 4 * object + i < answer.numbers.size() && i < 4; ++i) {
-            some.numbers.push_back(answer.numbers[4 * object + i]);
+        const std::size_t first = std::size_t{4} * object;
+        for (std::size_t i = first; i < std::min(first + 4, answer.numbers.size()); ++i) {
+            some.numbers.push_back(answer.numbers[i]);
         }
     }
     return some;

@@ -80,10 +80,10 @@ std::string_view paperScope(Phase phase) {
 }
 
 std::string_view printedRate(Phase phase, std::uint32_t objects, std::optional<double> cellSize) {
-    const auto row = std::find(kPrintedObjects.begin(), kPrintedObjects.end(), objects);
-    const auto cell = cellSize
-                          ? std::find(kPrintedCellSizes.begin(), kPrintedCellSizes.end(), *cellSize)
-                          : kPrintedCellSizes.end();
+    const auto* const row = std::find(kPrintedObjects.begin(), kPrintedObjects.end(), objects);
+    const auto* const cell =
+        cellSize ? std::find(kPrintedCellSizes.begin(), kPrintedCellSizes.end(), *cellSize)
+                 : kPrintedCellSizes.end();
     if (row == kPrintedObjects.end() || (cellSize && cell == kPrintedCellSizes.end())) {
         return {};
     }
