@@ -17,11 +17,11 @@ PaperPlan planOf(const PaperOptions& options) {
     plan.seed = options.seed;
     plan.aiRadius = options.aiRadius;
     if (options.quick) {
-        plan.sweepObjects = 5'000;
+        plan.sweepObjects = 2'500;
         plan.sticks = 2'000;
-        plan.effort.frames = 8;
+        plan.effort.frames = 6;
         plan.effort.fewestFrames = 1;
-        plan.effort.methodMilliseconds = 50;
+        plan.effort.methodMilliseconds = 30;
     }
     if (!options.objects.empty()) {
         plan.objects = options.objects;

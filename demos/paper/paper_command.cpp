@@ -29,7 +29,7 @@ void declarePaper(CLI::App& app, PaperOptions& options) {
         ->delimiter(',')
         ->check(CLI::Range(2, 1'000'000));
     app.add_option("--frames", options.frames,
-                   "most frames of each method (default: 60, with --quick 8)")
+                   "most frames of each method (default: 60, with --quick 6)")
         ->check(CLI::Range(1, 100'000));
     app.add_option("--radius", options.aiRadius,
                    "within which AI counts colours, in metres; the paper does not give it")

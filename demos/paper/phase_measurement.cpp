@@ -62,7 +62,8 @@ std::size_t countOfDifferent(const std::vector<std::uint64_t>& a,
     return count;
 }
 
-constexpr double kSlowFrame = 250;  // [ms]; that memory was new then matters little
+constexpr double kSlowFrame = 250;           // [ms]; that memory was new then matters little
+constexpr std::uint32_t kFewestOfQuick = 2;  // frames of what is not as slow
 
 class PhaseRun {
 public:
@@ -128,7 +129,9 @@ private:
         }
         if (frame == 0) {
             const double frames = effort_.methodMilliseconds / std::max(milliseconds, 1e-6);
-            const std::uint32_t fewest = effort_.fewestFrames - (method.isMeasured() ? 1 : 0);
+            const std::uint32_t fewest = milliseconds > kSlowFrame
+                                             ? effort_.fewestFrames - (method.isMeasured() ? 1 : 0)
+                                             : std::max(effort_.fewestFrames, kFewestOfQuick);
             lastFrame_[i] = frames > effort_.frames
                                 ? effort_.frames
                                 : std::max(static_cast<std::uint32_t>(frames), fewest);

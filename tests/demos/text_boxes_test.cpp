@@ -33,7 +33,8 @@ TEST(TextBoxes, NamesLineAndColumnOfWhatIsNoNumber) {
 TEST(TextBoxes, RefusesTooFewAndTooManyNumbers) {
     EXPECT_EQ(faultInText("0 0 0 1 1\n"),
               "line 1, column 10: the line ends, but six numbers are needed: min x y z max x y z.");
-    EXPECT_EQ(faultInText("0 0 0 1 1 1 7\n"), "line 1, column 13: the line goes on after six numbers.");
+    EXPECT_EQ(faultInText("0 0 0 1 1 1 7\n"),
+              "line 1, column 13: the line goes on after six numbers.");
 }
 
 TEST(TextBoxes, RefusesWhatIsNotFinite) {
