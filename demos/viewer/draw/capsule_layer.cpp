@@ -110,7 +110,7 @@ void main() {
     t = t < 1e29 ? t : middle;
     vec3 place = direction * t;
     vec3 normal = normalize(place - start - along * axisShare(place));
-    vec3 lit = shade(tint.rgb, dot(normal, light.xyz));
+    vec3 lit = shadeRound(tint.rgb, dot(normal, light.xyz));
     colour = vec4(mix(lit, horizon.rgb, radiusAndHaze.y), tint.a * coverage);
     vec4 clip = clipFromWorld * vec4(eye.xyz + place, 1.0);
     gl_FragDepth = 0.5 + 0.5 * clip.z / clip.w;

@@ -29,7 +29,9 @@ void main() {
     float level = clamp((position.y - heights.x) * heights.y, 0.0, 1.0);
     float steepness = smoothstep(0.04, 0.3, 1.0 - normal.y);
     vec3 base = mix(mix(meadow, summit, level), slope, steepness);
-    ground = vec4(shade(base, dot(normal, light.xyz)), haze(position - eye.xyz));
+    // Hills are drawn twice as steep as they are, or one would not see them.
+    float towardsLight = light.y + 2.0 * (dot(normal, light.xyz) - light.y);
+    ground = vec4(shade(base, min(towardsLight, 1.0)), haze(position - eye.xyz));
     cells = vec4((position.xz - lineCells.xy) * lineCells.z, position.xz - heatCells.xy);
     gl_Position = clipFromWorld * vec4(position, 1.0);
 }

@@ -9,7 +9,8 @@ namespace hashphase::demos {
 namespace {
 
 // What lies behind the near plane is cut off first, because it has no place on the screen. A line comes
-// a little nearer, so that it is seen on the surface it lies in.
+// a little nearer, so that it is seen on the surface it lies in. (`noperspective` would say in a word
+// what acrossTimesW says, but Mesa 22's software rendering drops lines that use it and are clipped.)
 constexpr const char* kVertexShader = R"glsl(
 layout(location = 0) in vec3 from;
 layout(location = 1) in vec3 to;
@@ -17,7 +18,7 @@ layout(location = 2) in vec4 colourOfLine;
 
 const float kHalfWidth = 0.8;  // [pixels]
 
-noperspective out float across;  // the middle of the line [pixels]
+out float acrossTimesW;  // from the middle of the line [pixels]; so divided by w, it is linear
 flat out vec4 tint;
 
 vec4 cut(vec4 end, vec4 other) {
@@ -35,16 +36,17 @@ void main() {
     vec2 aside = normalize(dot(way, way) > 0.0 ? vec2(-way.y, way.x) : vec2(1.0, 0.0));
     float side = float(gl_VertexID & 1) * 2.0 - 1.0;
     vec4 place = (gl_VertexID & 2) == 0 ? start : end;
-    across = side * (kHalfWidth + 0.5);
+    float across = side * (kHalfWidth + 0.5);
     place.xy += 2.0 * across * aside / screen.xy * place.w;
     place.z -= 1e-4 * place.w;
+    acrossTimesW = across * place.w;
     gl_Position = place;
     tint = colourOfLine;
 }
 )glsl";
 
 constexpr const char* kFragmentShader = R"glsl(
-noperspective in float across;
+in float acrossTimesW;
 flat in vec4 tint;
 
 uniform float opacity;
@@ -52,6 +54,7 @@ uniform float opacity;
 out vec4 colour;
 
 void main() {
+    float across = acrossTimesW * gl_FragCoord.w;
     float coverage = clamp(1.3 - abs(across), 0.0, 1.0);
     colour = vec4(tint.rgb, tint.a * coverage * opacity);
 }

@@ -36,7 +36,15 @@ layout(std140) uniform Frame {
 vec3 shade(vec3 colour, float towardsLight) {
     float brightness = 0.5 + 0.5 * towardsLight;
     brightness *= brightness;
-    return mix(colour * shadow.rgb, colour, min(brightness * 1.25, 1.0));
+    return mix(colour * shadow.rgb, colour, min(brightness * 1.1, 1.0));
+}
+
+// What is round shows the source of the light.
+vec3 shadeRound(vec3 colour, float towardsLight) {
+    float gleam = max(towardsLight, 0.0);
+    gleam *= gleam;
+    gleam *= gleam;
+    return mix(shade(colour, towardsLight), vec3(1.0), 0.2 * gleam);
 }
 
 // Share of haze before what is so far from the eye. Who looks down looks through little of it.

@@ -45,7 +45,7 @@ struct FrameUniforms {
 
 inline constexpr GLuint kFrameBinding = 0;
 
-/// GLSL: the block, and the functions shade() and haze().
+/// GLSL: the block, and the functions shade(), shadeRound() and haze().
 extern const std::string_view kFrameBlock;
 
 }  // namespace hashphase::demos

@@ -95,7 +95,7 @@ void paintSphere(vec2 offset) {
     float h = sqrt(max(1.0 - squared, 0.0));
     float s = shape.x;
     vec3 normal = vec3(shape.y * offset, s + h) / (1.0 + s * h);
-    vec3 lit = shade(tint.rgb, dot(normal, lightInQuad.xyz));
+    vec3 lit = shadeRound(tint.rgb, dot(normal, lightInQuad.xyz));
     float rim = (1.0 - h) * (1.0 - h);
     lit += 0.12 * rim * horizon.rgb;
     colour = vec4(mix(lit, horizon.rgb, lightInQuad.w), tint.a * coverage);
