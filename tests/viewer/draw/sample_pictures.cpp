@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <tests/viewer/sample_pictures.hpp>
+#include <tests/viewer/draw/sample_pictures.hpp>
 
 #include <demos/viewer/draw/headless_context.hpp>
 #include <demos/viewer/draw/palette.hpp>

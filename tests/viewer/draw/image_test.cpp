@@ -2,7 +2,7 @@
 #include <demos/viewer/draw/draw_error.hpp>
 #include <demos/viewer/draw/image_difference.hpp>
 #include <demos/viewer/draw/png.hpp>
-#include <tests/viewer/sample_pictures.hpp>
+#include <tests/viewer/draw/sample_pictures.hpp>
 
 #include <gtest/gtest.h>
 

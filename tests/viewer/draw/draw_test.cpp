@@ -3,7 +3,7 @@
 // What can be said of a picture in numbers.
 
 #include <demos/viewer/draw/draw_error.hpp>
-#include <tests/viewer/sample_pictures.hpp>
+#include <tests/viewer/draw/sample_pictures.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Zlib
+//
+// What the viewer shows of its scenes, against pictures that were looked at; and the panel over it.
+
+#include <demos/viewer/draw/headless_context.hpp>
+#include <demos/viewer/draw/renderer.hpp>
+#include <demos/viewer/session/session.hpp>
+#include <demos/viewer/show/picture_maker.hpp>
+#include <demos/viewer/show/viewer.hpp>
+#include <tests/viewer/expect_golden.hpp>
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <initializer_list>
+#include <string>
+
+namespace hashphase::demos {
+namespace {
+
+constexpr int kWidth = 240;
+constexpr int kHeight = 150;
+
+/// Draws for all tests.
+class Eye {
+public:
+    static Image see(const Session& session) {
+        static Eye eye;
+        PictureMaker maker;
+        eye.renderer_.draw(maker.make(session));
+        return eye.renderer_.read();
+    }
+
+private:
+    HeadlessContext context_;
+    Renderer renderer_{kWidth, kHeight};
+};
+
+/// The picture after these commands, of which steps are simulated at once.
+Image after(const SceneChoice& choice, std::initializer_list<const char*> commands) {
+    Session session(choice, kWidth, kHeight);
+    session.setPlaying(false);
+    for (const char* command : commands) {
+        session.run(command);
+        do {
+            session.advance();
+        } while (session.isWaiting());
+    }
+    return Eye::see(session);
+}
+
+const SceneChoice kWander{.name = "wander", .file = {}, .objects = 4000, .seed = 1};
+
+TEST(GoldenViews, CameraAbove) {
+    expectGolden("camera_above", after(kWander, {"step 20", "camera top"}));
+}
+
+TEST(GoldenViews, CameraFree) {
+    expectGolden("camera_free", after(kWander, {"step 20", "eye 200 30 400 10 -15"}));
+}
+
+TEST(GoldenViews, CameraThatFollows) {
+    Session session(kWander, kWidth, kHeight);
+    session.run("pose top 200 7 200 40 0 0 0 0 0 0 0 0 0 20 0 -0.4");
+    for (int x = 10; x < kWidth && !session.card(); x += 3) {
+        session.pick({x, kHeight / 2});
+    }
+    session.run("camera follow");
+    session.askForSteps(20);
+    while (session.isWaiting()) {
+        session.advance();
+    }
+    expectGolden("camera_that_follows", Eye::see(session));
+}
+
+TEST(GoldenViews, FrozenFrustumFromOutside) {
+    expectGolden("frozen_frustum_from_outside",
+                 after(kWander, {"step 20", "eye 120 30 300 -40 -14", "freeze on",
+                                 "eye 220 170 520 0 -32", "step 1"}));
+}
+
+TEST(GoldenViews, PickedAndItsPairs) {
+    expectGolden("picked_and_its_pairs",
+                 after({.name = "pile", .file = {}, .objects = 300, .seed = 1},
+                       {"step 40", "camera free", "pick 120 90", "overlay boxes on"}));
+}
+
+TEST(GoldenViews, SelectedInARectangle) {
+    expectGolden("selected_in_a_rectangle",
+                 after(kWander, {"step 20", "box 45 40 150 110", "drag 45 40 150 110"}));
+}
+
+TEST(GoldenViews, BucketLoads) {
+    expectGolden("bucket_loads", after(kWander, {"cell 16", "step 20", "overlay bodies off",
+                                                 "overlay heat on", "eye 200 150 510 0 -34"}));
+}
+
+TEST(GoldenViews, DiscreteMissesInTheDark) {
+    expectGolden("discrete_misses_in_the_dark",
+                 after({.name = "bullet-storm", .file = {}, .objects = 100, .seed = 1},
+                       {"theme dark", "camera free", "step 12"}));
+}
+
+TEST(GoldenViews, AreOthersAfterAStep) {
+    const Image before = after(kWander, {"step 20", "eye 200 30 400 10 -15"});
+    const Image later = after(kWander, {"step 50", "eye 200 30 400 10 -15"});
+    EXPECT_FALSE(looksTheSame(imageDifference(before, later)));
+}
+
+// --- The panel -----------------------------------------------------------------------------------
+
+TEST(Panel, IsDrawnOverEachSceneInBothThemes) {
+    const HeadlessContext context;
+    Viewer viewer(900, 700);
+    const std::filesystem::path path =
+        std::filesystem::temp_directory_path() / "hashphase_panel_test.png";
+    for (const char* scene : {"wander", "pile", "bullet-storm"}) {
+        for (const char* theme : {"theme light", "theme dark"}) {
+            Session session({.name = scene, .file = {}, .objects = 200, .seed = 1}, 900, 700);
+            const auto picture = [&](std::initializer_list<const char*> commands) {
+                for (const char* command : commands) {
+                    session.run(command);
+                    session.advance();
+                }
+                session.setPlaying(false);
+                viewer.layOut(session);
+                session.askForScreenshot(path.string());
+                viewer.show(session, {}, 0);
+                return readPng(path);
+            };
+            const Image without = picture({"pause off", theme, "panel off"});
+            const Image with = picture({"panel on"});
+            const Image checked = picture({"check on", "step 1", "help on"});
+            EXPECT_FALSE(looksTheSame(imageDifference(without, with)));
+            EXPECT_FALSE(looksTheSame(imageDifference(with, checked)));
+            // The panel is to the left, the scene to the right is as it was.
+            Image right = with;
+            Image rightWithout = without;
+            for (Image* image : {&right, &rightWithout}) {
+                for (int y = 0; y < image->height; ++y) {
+                    for (int x = 0; x < 360; ++x) {
+                        std::fill_n(image->pixels.begin() + 4 * (y * image->width + x), 4, 0);
+                    }
+                }
+            }
+            EXPECT_TRUE(looksTheSame(imageDifference(right, rightWithout))) << scene << theme;
+        }
+    }
+    std::filesystem::remove(path);
+}
+
+}  // namespace
+}  // namespace hashphase::demos

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Zlib
+//
+// `hashphase wander` as it is typed, without a window.
+
+#include <demos/viewer/show/wander.hpp>
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace hashphase::demos {
+namespace {
+
+struct Outcome {
+    int code;
+    std::string out;
+    std::string err;
+};
+
+Outcome typed(const std::vector<std::string>& arguments) {
+    std::ostringstream out;
+    std::ostringstream err;
+    const int code = runSingleCommand(arguments, wanderCommand(), {out, err, false, "wander"});
+    return {code, out.str(), err.str()};
+}
+
+class Wander : public testing::Test {
+protected:
+    Wander() : folder_(std::filesystem::temp_directory_path() / "hashphase_wander_test") {
+        std::filesystem::create_directories(folder_);
+    }
+    ~Wander() override { std::filesystem::remove_all(folder_); }
+
+    [[nodiscard]] std::string file(const std::string& name, const std::string& text = {}) const {
+        const std::string path = (folder_ / name).string();
+        if (!text.empty()) {
+            std::ofstream(path) << text;
+        }
+        return path;
+    }
+
+private:
+    std::filesystem::path folder_;
+};
+
+TEST_F(Wander, TellsThePhasesOfAFrame) {
+    const Outcome run = typed({"--headless", "--objects", "300", "--frames", "20", "--quiet"});
+    EXPECT_EQ(run.code, kExitOk) << run.err;
+    for (const char* word : {"stand", "pair", "culling", "together", "300 bodies", "20 frames"}) {
+        EXPECT_NE(run.out.find(word), std::string::npos) << word << '\n' << run.out;
+    }
+}
+
+TEST_F(Wander, ListsScenesKeysAndCommands) {
+    const Outcome run = typed({"--list"});
+    EXPECT_EQ(run.code, kExitOk);
+    for (const char* word : {"wander", "bullet-storm", "F12", "pick X Y", "tunnelled"}) {
+        EXPECT_NE(run.out.find(word), std::string::npos) << word;
+    }
+}
+
+TEST_F(Wander, FailsWhereAScriptExpectsWhatIsNotSo) {
+    const std::string right = file("right", "step 3\nexpect frame = 3\n");
+    const std::string wrong = file("wrong", "step 3\nexpect frame = 4\n");
+    const std::string broken = file("broken", "step 3\nexpct frame = 4\n");
+    EXPECT_EQ(typed({"--headless", "--objects", "50", "--script", right}).code, kExitOk);
+    const Outcome failed = typed({"--headless", "--objects", "50", "--script", wrong});
+    EXPECT_EQ(failed.code, kExitCheckFailed);
+    EXPECT_EQ(failed.out, "frame 3: frame is 3, but was to be = 4\n");
+    const Outcome refused = typed({"--headless", "--objects", "50", "--script", broken});
+    EXPECT_EQ(refused.code, kExitUsage);
+    EXPECT_NE(refused.err.find("broken:2: There is no command 'expct'"), std::string::npos)
+        << refused.err;
+}
+
+TEST_F(Wander, WritesPicturesRecordingsAndNumbers) {
+    const std::string picture = file("a.png");
+    const std::string recording = file("a.json");
+    const std::string numbers = file("n.json");
+    const Outcome run =
+        typed({"--headless", "--objects", "100", "--frames", "30", "--size", "200x100", "--do",
+               "camera free", "--do", "effect zones on", "--screenshot", picture, "--record",
+               recording, "--json", numbers, "--threads", "2"});
+    EXPECT_EQ(run.code, kExitOk) << run.err;
+    EXPECT_GT(std::filesystem::file_size(picture), 1000U);
+    const auto json = nlohmann::json::parse(std::ifstream(numbers));
+    EXPECT_EQ(json["readings"]["frame"], 30);
+    EXPECT_EQ(json["readings"]["bodies"], 100);
+    EXPECT_TRUE(json["readings"]["neighbours"].is_null());
+    EXPECT_TRUE(json["phases"].contains("stand"));
+    const Outcome again = typed({"--headless", "--quiet", "--replay", recording});
+    EXPECT_EQ(again.code, kExitOk);
+    EXPECT_EQ(again.out, "replay: all 30 frames are the same, to the last bit\n");
+}
+
+TEST_F(Wander, SaysWhatIsWrong) {
+    const auto faultOf = [](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), "--headless");
+        const Outcome run = typed(arguments);
+        EXPECT_EQ(run.code, kExitUsage);
+        return run.err;
+    };
+    EXPECT_EQ(faultOf({"--size", "10x10"}),
+              "hashphase: --size is a width and a height of 16 to 16,384 pixels, as in 1280x800, "
+              "not '10x10'.\n");
+    EXPECT_EQ(faultOf({"--scene", "wandr"}).substr(0, 46),
+              "hashphase: There is no scene 'wandr'; did you ");
+    EXPECT_EQ(faultOf({"--file", "a.txt"}),
+              "hashphase: a.txt is neither a scene file (.json) nor a recording of boxes "
+              "(.aabbs).\n");
+    EXPECT_NE(faultOf({"--replay", file("empty", "{}")}).find("cannot be read as a recording"),
+              std::string::npos);
+    EXPECT_NE(faultOf({"--objects", "10", "--frames", "1", "--screenshot", "/nowhere/a.png"})
+                  .find("/nowhere/a.png"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace hashphase::demos
