@@ -19,8 +19,7 @@ struct Palette {
     Colour awake;      // the same, in motion
     Colour selected;   // by the user
     Colour picked;     // the one under the pointer
-    Colour neighbour;  // of the picked one
-    Colour accent;     // a further kind
+    Colour accent;     // what the user has marked
     Colour faint;      // scaffolding: boxes, frustums
     Colour line;       // thin lines that must be seen
     Colour alert;      // what is wrong
