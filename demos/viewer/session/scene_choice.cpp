@@ -23,7 +23,7 @@ EffectsFile wanderers() {
     EffectsFile file;
     file.scene.objects = kWanderers;
     file.scene.domain = kDomain;
-    file.scene.terrain = 100;
+    file.scene.terrain = 64;
     file.scene.zones = 20;
     for (const Effect effect :
          {Effect::motion, Effect::terrain, Effect::pairs, Effect::response, Effect::picking,
