@@ -3,6 +3,7 @@
 
 #include <demos/viewer/draw/palette.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 
@@ -105,7 +106,7 @@ GroundLayer::GroundLayer()
                 Variant(true, true)} {
     glBindVertexArray(vertexArray_.name());
     glBindBuffer(GL_ARRAY_BUFFER, vertexBuffer_.name());
-    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indexBuffer_.name());
+    indexBuffer_.bind(GL_ELEMENT_ARRAY_BUFFER);
     describeVertexField({0, 3, GL_FLOAT, false, offsetof(GroundVertex, position)},
                         sizeof(GroundVertex));
     describeVertexField({1, 3, GL_FLOAT, false, offsetof(GroundVertex, normal)},
@@ -134,16 +135,22 @@ bool GroundLayer::update(const DrawnGround& ground) {
     glBufferData(GL_ARRAY_BUFFER,
                  static_cast<GLsizeiptr>(mesh_.vertices.size() * sizeof(GroundVertex)),
                  mesh_.vertices.data(), GL_STATIC_DRAW);
-    glBufferData(GL_ELEMENT_ARRAY_BUFFER,
-                 static_cast<GLsizeiptr>(mesh_.indices.size() * sizeof(std::uint32_t)),
-                 mesh_.indices.data(), GL_STATIC_DRAW);
+    levels_ = GroundLevels(mesh_);
+    indices_ = mesh_.indices;
+    indices_.reserve(2 * mesh_.indices.size());
     return true;
 }
 
-void GroundLayer::draw(const Picture& picture) {
-    if (mesh_.indices.empty()) {
+void GroundLayer::draw(const Picture& picture, const View& view) {
+    if (levels_.hasLevels()) {
+        levels_.choose(view, indices_);
+    }
+    if (indices_.empty()) {
         return;
     }
+    indexBuffer_.fill<std::uint32_t>(indices_.size(), [this](std::span<std::uint32_t> memory) {
+        std::ranges::copy(indices_, memory.begin());
+    });
     const bool hasHeat = picture.heatMap.has_value() && !picture.heatMap->loads.empty();
     const std::size_t variant = (picture.gridLines ? 1U : 0U) + (hasHeat ? 2U : 0U);
     const ShaderProgram& program = variants_[variant].program;
@@ -153,8 +160,7 @@ void GroundLayer::draw(const Picture& picture) {
         uploadHeat(*picture.heatMap);
     }
     glBindVertexArray(vertexArray_.name());
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(mesh_.indices.size()), GL_UNSIGNED_INT,
-                   nullptr);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(indices_.size()), GL_UNSIGNED_INT, nullptr);
 }
 
 void GroundLayer::setUniforms(const ShaderProgram& program, const Picture& picture) {

@@ -4,9 +4,11 @@
 // The ground, with the lines of a grid and a map of how full its cells are.
 
 #include <demos/viewer/draw/gl_objects.hpp>
+#include <demos/viewer/draw/ground_levels.hpp>
 #include <demos/viewer/draw/ground_mesh.hpp>
 #include <demos/viewer/draw/shader_program.hpp>
 #include <demos/viewer/draw/shading.hpp>
+#include <demos/viewer/draw/stream_buffer.hpp>
 
 #include <array>
 #include <optional>
@@ -24,7 +26,7 @@ public:
     /// As of the last update().
     [[nodiscard]] const GroundMesh& mesh() const { return mesh_; }
 
-    void draw(const Picture& picture);
+    void draw(const Picture& picture, const View& view);
 
 private:
     /// What is drawn on the ground; a program for each, so that nobody pays for what is not shown.
@@ -39,10 +41,12 @@ private:
     std::array<Variant, 4> variants_;
     GlVertexArray vertexArray_;
     GlBuffer vertexBuffer_;
-    GlBuffer indexBuffer_;
+    StreamBuffer indexBuffer_;
     GlTexture loads_;
     GlTexture ramp_;
     GroundMesh mesh_;
+    GroundLevels levels_;
+    std::vector<std::uint32_t> indices_;  // what is drawn
     std::optional<std::uint64_t> version_;
 };
 

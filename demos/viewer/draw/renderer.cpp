@@ -74,7 +74,7 @@ void Renderer::Layers::drawFrame(const Picture& picture) {
     glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     glClear(GL_DEPTH_BUFFER_BIT);
 
-    ground.draw(picture);
+    ground.draw(picture, view);
     sky.draw();
     if (picture.hasContactShade) {
         contacts.draw(picture.spheres, view, quads);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Vertices that are others in each frame.
+// Vertices, or indices, that are others in each frame.
 
 #include <demos/viewer/draw/gl_objects.hpp>
 
@@ -14,7 +14,7 @@ namespace hashphase::demos {
 /// into memory that no earlier frame is still drawn from.
 class StreamBuffer {
 public:
-    void bind() const { glBindBuffer(GL_ARRAY_BUFFER, buffer_.name()); }
+    void bind(GLenum target = GL_ARRAY_BUFFER) const { glBindBuffer(target, buffer_.name()); }
 
     /// Has `write` fill `count` (at least one) vertices: write(std::span<Vertex>), which must not read
     /// them.
