@@ -8,9 +8,10 @@ namespace hashphase::demos {
 
 namespace {
 
-// What lies behind the near plane is cut off first, because it has no place on the screen. A line comes
-// a little nearer, so that it is seen on the surface it lies in. (`noperspective` would say in a word
-// what acrossTimesW says, but Mesa 22's software rendering drops lines that use it and are clipped.)
+// A line comes a little nearer, so that it is seen on the surface it lies in. Its direction on the screen
+// is found without a division, because an end may lie beside the eye or behind it. (`noperspective`
+// would say in a word what acrossTimesW says, but Mesa 22's software rendering drops lines that use it
+// and are clipped.)
 constexpr const char* kVertexShader = R"glsl(
 layout(location = 0) in vec3 from;
 layout(location = 1) in vec3 to;
@@ -21,18 +22,10 @@ const float kHalfWidth = 0.8;  // [pixels]
 out float acrossTimesW;  // from the middle of the line [pixels]; so divided by w, it is linear
 flat out vec4 tint;
 
-vec4 cut(vec4 end, vec4 other) {
-    float before = end.z + end.w;
-    float beyond = other.z + other.w;
-    return before < 0.0 && beyond > 0.0 ? mix(end, other, before / (before - beyond)) : end;
-}
-
 void main() {
-    vec4 a = clipFromWorld * vec4(from, 1.0);
-    vec4 b = clipFromWorld * vec4(to, 1.0);
-    vec4 start = cut(a, b);
-    vec4 end = cut(b, a);
-    vec2 way = (end.xy / end.w - start.xy / start.w) * screen.xy;
+    vec4 start = clipFromWorld * vec4(from, 1.0);
+    vec4 end = clipFromWorld * vec4(to, 1.0);
+    vec2 way = (end.xy * start.w - start.xy * end.w) * screen.xy;
     vec2 aside = normalize(dot(way, way) > 0.0 ? vec2(-way.y, way.x) : vec2(1.0, 0.0));
     float side = float(gl_VertexID & 1) * 2.0 - 1.0;
     vec4 place = (gl_VertexID & 2) == 0 ? start : end;

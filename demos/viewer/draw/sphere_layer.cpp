@@ -65,15 +65,15 @@ void main() {
 )glsl";
 
 constexpr const char* kPointOfVertex = R"glsl(
-flat out vec4 offsetOfPlace;  // a matrix, column by column
+flat out vec3 offsetOfPlace;  // x by x, y by x, y by y; x does not depend on y
 
 void main() {
     placeSphere();
     // Away from the middle of the screen, spheres are drawn out by one over the cosine.
     float size = 2.0 * shape.z * distance / depth + 1.0;
     vec2 scale = vec2(size, -size) / shape.z;
-    offsetOfPlace = vec4(dot(cameraRight.xyz, right) * scale.x, dot(cameraRight.xyz, up) * scale.x,
-                         dot(cameraUp.xyz, right) * scale.y, dot(cameraUp.xyz, up) * scale.y);
+    offsetOfPlace = vec3(dot(cameraRight.xyz, right) * scale.x, dot(cameraRight.xyz, up) * scale.x,
+                         dot(cameraUp.xyz, up) * scale.y);
     gl_PointSize = size;
     gl_Position = clipFromWorld * vec4(sphere.xyz, 1.0);
 }
@@ -112,11 +112,11 @@ void main() {
 )glsl";
 
 constexpr const char* kPointOfFragment = R"glsl(
-flat in vec4 offsetOfPlace;
+flat in vec3 offsetOfPlace;
 
 void main() {
     vec2 place = gl_PointCoord - 0.5;
-    paintSphere(place.x * offsetOfPlace.xy + place.y * offsetOfPlace.zw);
+    paintSphere(place.x * offsetOfPlace.xy + vec2(0.0, place.y * offsetOfPlace.z));
 }
 )glsl";
 
