@@ -45,8 +45,8 @@ void main() {
 }
 )glsl";
 
-// How near the ray comes to the axis says how much of the pixel is covered; where the ray first is a
-// radius away from the axis, it meets the capsule.
+// How near the ray comes to the axis says how much of the pixel is covered; where the ray first is
+// a radius away from the axis, it meets the capsule.
 constexpr const char* kFragmentShader = R"glsl(
 in vec3 ray;
 flat in vec3 start;

@@ -8,8 +8,8 @@ namespace hashphase::demos {
 
 namespace {
 
-// A square in the plane of the ground. It comes nearer to the eye by a part of its radius, which moves
-// nothing on the screen, and so it is not swallowed by ground that bulges.
+// A square in the plane of the ground. It comes nearer to the eye by a part of its radius, which
+// moves nothing on the screen, and so it is not swallowed by ground that bulges.
 constexpr const char* kVertexShader = R"glsl(
 layout(location = 0) in vec4 spot;
 layout(location = 1) in vec4 ground;

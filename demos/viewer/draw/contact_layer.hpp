@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Contact shade: a soft dark spot on the ground below each sphere that is near it, which is what makes a
-// sphere stand on the ground in the eye of who looks.
+// Contact shade: a soft dark spot on the ground below each sphere that is near it, which is what
+// makes a sphere stand on the ground in the eye of who looks.
 
 #include <demos/viewer/draw/gl_objects.hpp>
 #include <demos/viewer/draw/ground_heights.hpp>

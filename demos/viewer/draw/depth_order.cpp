@@ -35,7 +35,8 @@ void sortByDigit(std::span<const DepthOrder::Entry> from, std::span<DepthOrder::
 }  // namespace
 
 void DepthOrder::add(float depth, std::uint32_t index) {
-    // The bits of positive floats are in the order of the floats; inverted, the farthest come first.
+    // The bits of positive floats are in the order of the floats; inverted, the farthest come
+    // first.
     entries_.push_back({~std::bit_cast<std::uint32_t>(depth) >> kDroppedBits, index});
 }
 

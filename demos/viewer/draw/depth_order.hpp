@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Things by their distance, the farthest first: what has soft edges is painted over what lies behind it.
+// Things by their distance, the farthest first: what has soft edges is painted over what lies
+// behind it.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,8 +11,8 @@
 
 namespace hashphase::demos {
 
-/// A radix sort that keeps its memory from frame to frame. Depths that differ by less than one part in
-/// 8,000 count as equal; equal ones stay in the order in which they came.
+/// A radix sort that keeps its memory from frame to frame. Depths that differ by less than one part
+/// in 8,000 count as equal; equal ones stay in the order in which they came.
 class DepthOrder {
 public:
     void clear() { entries_.clear(); }
@@ -20,7 +21,8 @@ public:
     /// Something so far in front of the eye; its `depth` is positive, its `index` the caller's.
     void add(float depth, std::uint32_t index);
 
-    /// The indices of all that were added since clear(), the farthest first. Valid until the next call.
+    /// The indices of all that were added since clear(), the farthest first. Valid until the next
+    /// call.
     struct Entry {
         std::uint32_t key;
         std::uint32_t index;

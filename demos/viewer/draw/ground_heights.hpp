@@ -14,8 +14,8 @@ public:
     /// Of no ground.
     GroundHeights() = default;
 
-    /// Samples the highest triangle at the points of a lattice, two a triangle's edge, at most 1,024
-    /// each way.
+    /// Samples the highest triangle at the points of a lattice, two a triangle's edge, at most
+    /// 1,024 each way.
     explicit GroundHeights(const GroundMesh& mesh);
 
     struct Place {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/viewer/draw/ground_layer.hpp>
 
+#include <demos/viewer/draw/draw_error.hpp>
 #include <demos/viewer/draw/palette.hpp>
 
 #include <algorithm>
@@ -151,7 +152,7 @@ void GroundLayer::draw(const Picture& picture, const View& view) {
     indexBuffer_.fill<std::uint32_t>(indices_.size(), [this](std::span<std::uint32_t> memory) {
         std::ranges::copy(indices_, memory.begin());
     });
-    const bool hasHeat = picture.heatMap.has_value() && !picture.heatMap->loads.empty();
+    const bool hasHeat = picture.heatMap && !picture.heatMap->loads.empty();
     const std::size_t variant = (picture.gridLines ? 1U : 0U) + (hasHeat ? 2U : 0U);
     const ShaderProgram& program = variants_[variant].program;
     program.use();
@@ -191,12 +192,23 @@ void GroundLayer::setUniforms(const ShaderProgram& program, const Picture& pictu
 }
 
 void GroundLayer::uploadHeat(const HeatMap& heatMap) {
+    if (heatMap.loads.size() != std::size_t{heatMap.columns} * heatMap.rows) {
+        throw DrawError("A heat map of " + std::to_string(heatMap.columns) + " x " +
+                        std::to_string(heatMap.rows) + " cells has " +
+                        std::to_string(heatMap.loads.size()) + " loads.");
+    }
     bindTexture(kRampUnit, ramp_);
     bindTexture(kLoadsUnit, loads_);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, static_cast<GLsizei>(heatMap.columns),
-                 static_cast<GLsizei>(heatMap.rows), 0, GL_RED, GL_UNSIGNED_BYTE,
-                 heatMap.loads.data());
+    const auto width = static_cast<GLsizei>(heatMap.columns);
+    const auto height = static_cast<GLsizei>(heatMap.rows);
+    if (width != loadsWidth_ || height != loadsHeight_) {
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, width, height, 0, GL_RED, GL_UNSIGNED_BYTE, nullptr);
+        loadsWidth_ = width;
+        loadsHeight_ = height;
+    }
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, height, GL_RED, GL_UNSIGNED_BYTE,
+                    heatMap.loads.data());
 }
 
 }  // namespace hashphase::demos

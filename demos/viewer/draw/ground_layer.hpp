@@ -43,6 +43,8 @@ private:
     GlBuffer vertexBuffer_;
     StreamBuffer indexBuffer_;
     GlTexture loads_;
+    GLsizei loadsWidth_ = 0;
+    GLsizei loadsHeight_ = 0;
     GlTexture ramp_;
     GroundMesh mesh_;
     GroundLevels levels_;

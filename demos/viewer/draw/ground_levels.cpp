@@ -28,7 +28,8 @@ int placeOf(float value, const std::vector<float>& sorted) {
     return static_cast<int>(std::ranges::lower_bound(sorted, value) - sorted.begin());
 }
 
-/// Whether some of the box may be on the screen. Some boxes beside a corner of the screen count too.
+/// Whether some of the box may be on the screen. Some boxes beside a corner of the screen count
+/// too.
 bool isOnScreen(const Eigen::AlignedBox3f& box, const View& view) {
     const Vector3<float> centre = box.center() - view.eye;
     const Vector3<float> halfSizes = box.sizes() / 2;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Which triangles of the ground a camera needs: those on the screen, and larger ones where it sees no
-// difference. Software rendering takes as long for a triangle of a pixel as for one of fifty.
+// Which triangles of the ground a camera needs: those on the screen, and larger ones where it sees
+// no difference. Software rendering takes as long for a triangle of a pixel as for one of fifty.
 
 #include <demos/viewer/draw/ground_mesh.hpp>
 #include <demos/viewer/draw/view.hpp>
@@ -11,9 +11,9 @@
 
 namespace hashphase::demos {
 
-/// Levels of detail of ground whose corners are a lattice over x and z, as terrain mostly is; any other
-/// ground has none, and is drawn as it is. All levels share the vertices of the mesh. Where levels meet,
-/// the finer one bends its border to the coarser one's, so there are no cracks.
+/// Levels of detail of ground whose corners are a lattice over x and z, as terrain mostly is; any
+/// other ground has none, and is drawn as it is. All levels share the vertices of the mesh. Where
+/// levels meet, the finer one bends its border to the coarser one's, so there are no cracks.
 class GroundLevels {
 public:
     /// Of no ground.

@@ -21,7 +21,8 @@ struct GroundMesh {
 };
 
 /// Of triangles, three corners each; their order around the triangle does not matter. A corner's
-/// normal is the mean of its triangles', by area. Cost: one look-up in a hash table for each corner.
+/// normal is the mean of its triangles', by area. Cost: one look-up in a hash table for each
+/// corner.
 [[nodiscard]] GroundMesh makeGroundMesh(std::span<const Vector3<float>> corners);
 
 }  // namespace hashphase::demos

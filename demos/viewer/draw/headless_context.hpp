@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// OpenGL without a window, a display or a GPU: for tests, and for pictures made where nobody looks on.
+// OpenGL without a window, a display or a GPU: for tests, and for pictures made where nobody looks
+// on.
 
 #include <string>
 
 namespace hashphase::demos {
 
-/// An OpenGL 3.3 context of the calling thread, current from its creation to its end. Draws nowhere:
-/// whoever uses it brings a framebuffer.
+/// An OpenGL 3.3 context of the calling thread, current from its creation to its end. Draws
+/// nowhere: whoever uses it brings a framebuffer.
 class HeadlessContext {
 public:
     /// Tries EGL's devices, then a display without surfaces. Throws DrawError, which says what is

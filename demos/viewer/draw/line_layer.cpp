@@ -8,10 +8,10 @@ namespace hashphase::demos {
 
 namespace {
 
-// A line comes a little nearer, so that it is seen on the surface it lies in. Its direction on the screen
-// is found without a division, because an end may lie beside the eye or behind it. (`noperspective`
-// would say in a word what acrossTimesW says, but Mesa 22's software rendering drops lines that use it
-// and are clipped.)
+// A line comes a little nearer, so that it is seen on the surface it lies in. Its direction on the
+// screen is found without a division, because an end may lie beside the eye or behind it.
+// (`noperspective` would say in a word what acrossTimesW says, but Mesa 22's software rendering
+// drops lines that use it and are clipped.)
 constexpr const char* kVertexShader = R"glsl(
 layout(location = 0) in vec3 from;
 layout(location = 1) in vec3 to;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Quads of four vertices each, drawn as two triangles. Four copies of what a sphere is, told apart by
-// gl_VertexID, are drawn faster than an instance for each: software rendering begins anew for each
-// instance.
+// Quads of four vertices each, drawn as two triangles. Four copies of what a sphere is, told apart
+// by gl_VertexID, are drawn faster than an instance for each: software rendering begins anew for
+// each instance.
 
 #include <demos/viewer/draw/gl_objects.hpp>
 

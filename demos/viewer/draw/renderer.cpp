@@ -65,6 +65,8 @@ void Renderer::Layers::drawFrame(const Picture& picture) {
     target.bind();
     glDisable(GL_SCISSOR_TEST);
     glDisable(GL_CULL_FACE);
+    glCullFace(GL_BACK);
+    glFrontFace(GL_CCW);
     glDisable(GL_BLEND);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);

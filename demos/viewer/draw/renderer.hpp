@@ -5,8 +5,8 @@
 // window and without one.
 //
 // A frame  draw(), then read() the pixels, or blit framebuffer() to a window's
-// Context  current in every call, from the constructor to the destructor; whatever state a draw() needs
-//          it sets, and it may leave any state behind
+// Context  current in every call, from the constructor to the destructor; whatever state a draw()
+//          needs it sets, and it may leave any state behind
 // Memory   grows to the largest picture so far; from then on a draw() allocates nothing
 // Misuse   DrawError where OpenGL refuses: what() says what
 

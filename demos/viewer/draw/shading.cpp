@@ -15,8 +15,8 @@ constexpr float kHazeOfFarPlane = 0.98F;  // haze is complete just before the wo
 
 }  // namespace
 
-// shade() is light from a wide, soft source: the darkest point is the one that looks straight away from
-// it, not half of the body.
+// shade() is light from a wide, soft source: the darkest point is the one that looks straight away
+// from it, not half of the body.
 const std::string_view kFrameBlock = R"glsl(
 layout(std140) uniform Frame {
     mat4 clipFromWorld;

@@ -5,8 +5,8 @@ namespace hashphase::demos {
 
 namespace {
 
-// The screen in strips from the left to the right, whose vertices are coloured: the gradient is smooth
-// enough for that, and a pixel costs half.
+// The screen in strips from the left to the right, whose vertices are coloured: the gradient is
+// smooth enough for that, and a pixel costs half.
 constexpr const char* kVertexShader = R"glsl(
 uniform ivec2 squares;
 

@@ -9,17 +9,18 @@ namespace hashphase::demos {
 
 namespace {
 
-// From the eye, a sphere of radius 1 at distance D = 1 / s is the cone around the circle in which rays
-// touch it: radius c = sqrt(1 - s^2), s nearer to the eye than the centre. The quad lies in the plane of
-// that circle, so its edge is exactly the sphere's in any perspective: |offset| = 1 there.
+// From the eye, a sphere of radius 1 at distance D = 1 / s is the cone around the circle in which
+// rays touch it: radius c = sqrt(1 - s^2), s nearer to the eye than the centre. The quad lies in
+// the plane of that circle, so its edge is exactly the sphere's in any perspective: |offset| = 1
+// there.
 //
-// The ray through c * offset on that plane meets the sphere at D / (D + h) of the way to the plane, where
-// h = sqrt(1 - |offset|^2). With the axis towards the eye, the normal there is
-// (c * offset, s + h) / (1 + s * h), and the depth is what the plane's is, and s * h times the eye's
-// depth before the division by w, divided by the plane's w.
+// The ray through c * offset on that plane meets the sphere at D / (D + h) of the way to the plane,
+// where h = sqrt(1 - |offset|^2). With the axis towards the eye, the normal there is (c * offset, s
+// + h) / (1 + s * h), and the depth is what the plane's is, and s * h times the eye's depth before
+// the division by w, divided by the plane's w.
 //
-// A small sphere is a point, whose square is a primitive instead of two and a vertex instead of four,
-// which is what costs. There s is next to nothing, and offset a linear function of the pixel.
+// A small sphere is a point, whose square is a primitive instead of two and a vertex instead of
+// four, which is what costs. There s is next to nothing, and offset a linear function of the pixel.
 constexpr const char* kSphereOfVertex = R"glsl(
 layout(location = 0) in vec4 sphere;
 layout(location = 1) in vec4 colourOfSphere;
@@ -132,8 +133,8 @@ void describeSphere(const StreamBuffer& vertices) {
 constexpr std::size_t kCorners = 4;
 constexpr float kLargestPoint = 16;  // radius [pixels]
 
-/// Whether the sphere is so small that a point will do. OpenGL drops points whose middle is not on the
-/// screen, so those at its edge are none.
+/// Whether the sphere is so small that a point will do. OpenGL drops points whose middle is not on
+/// the screen, so those at its edge are none.
 bool isPoint(const Vector3<float>& fromEye, float depth, float radius, const View& view) {
     if (view.pixels(radius, depth) > kLargestPoint) {
         return false;

@@ -19,8 +19,8 @@ class SphereLayer {
 public:
     SphereLayer();
 
-    /// After all that is solid. The edges are smooth, and so the farthest are painted first; but what
-    /// is small on the screen before what is not.
+    /// After all that is solid. The edges are smooth, and so the farthest are painted first; but
+    /// what is small on the screen before what is not.
     void draw(std::span<const DrawnSphere> spheres, const View& view, QuadIndices& indices);
 
 private:

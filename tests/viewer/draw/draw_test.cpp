@@ -123,8 +123,8 @@ TEST(SpheresOnScreen, NearOnesHideFarOnesInAnyOrder) {
 }
 
 TEST(SpheresOnScreen, InterpenetrateWhereTheirSurfacesMeet) {
-    // Of equal size and height, one to the right and a little behind: the boundary is not the nearer
-    // one's outline.
+    // Of equal size and height, one to the right and a little behind: the boundary is not the
+    // nearer one's outline.
     const DrawnSphere left{{-0.5F, 0, -6}, 1, kRed}, right{{0.5F, 0, -6}, 1, kGreen};
     const Image image = drawn(pictureOf(std::array{left, right}));
     const int middle = kSampleWidth / 2;
@@ -257,6 +257,14 @@ TEST(Renderer, DrawsContactShadeOnlyBelowWhatIsNearTheGround) {
     EXPECT_TRUE(differs());
     sphere.centre.y() += 8;
     EXPECT_FALSE(differs());
+}
+
+TEST(Renderer, RefusesAHeatMapThatLacksCells) {
+    const SampleWorld world;
+    Picture picture = world.picture();
+    picture.heatMap = world.heatMap();
+    picture.heatMap->loads = picture.heatMap->loads.first(7);
+    EXPECT_THROW((void)drawn(picture), DrawError);
 }
 
 TEST(Renderer, ChangesItsSize) {

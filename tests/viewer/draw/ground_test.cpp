@@ -75,7 +75,8 @@ TEST(GroundLevels, AreTheTrianglesThemselvesWhereTheEyeIsNear) {
 TEST(GroundLevels, HaveNoCracksWhereTheyMeet) {
     const GroundMesh mesh = hills();
     for (const float height : {20.0F, 60.0F, 150.0F}) {
-        // Not above the middle, so that patches lie at different distances, and with all on the screen.
+        // Not above the middle, so that patches lie at different distances, and with all on the
+        // screen.
         View view = viewFrom({60, height, 60}, {60, 0, 60});
         view.tangents = {100, 100};
         const auto indices = chosen(mesh, view);

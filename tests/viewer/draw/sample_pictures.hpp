@@ -14,7 +14,8 @@ inline constexpr int kSampleHeight = 180;
 inline constexpr float kSampleNear = 0.5F;  // [m]
 inline constexpr float kSampleFar = 400;    // [m]
 
-/// A camera at `eye` that looks at `target`, one radian high. Straight down, up on the screen is -z.
+/// A camera at `eye` that looks at `target`, one radian high. Straight down, up on the screen is
+/// -z.
 [[nodiscard]] DrawnCamera sampleCamera(const Vector3<float>& eye, const Vector3<float>& target);
 
 /// Where the camera sees the point: x, y in pixels from the upper left corner.
