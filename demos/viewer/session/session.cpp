@@ -78,7 +78,10 @@ void Session::look() {
     if (countsLoads && grid != nullptr) {
         loads_.count(*grid, stage_->bounds());
     }
-    stage_->listPairs(pairs_);
+    pairs_.clear();
+    if (card_ || options_.has(Overlay::pairs) || options_.colouring == Colouring::pairs) {
+        stage_->listPairs(pairs_);
+    }
     if (isChecking_) {
         check_.look(*stage_);
     }

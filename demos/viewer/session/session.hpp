@@ -144,6 +144,7 @@ public:
     [[nodiscard]] const PairCheck* check() const;
     [[nodiscard]] bool isChecking() const noexcept { return isChecking_; }
     [[nodiscard]] const CellLoads& loads() const noexcept { return loads_; }
+    /// Those that the broadphase has found, sorted; none while nobody shows them.
     [[nodiscard]] const std::vector<PairKey>& pairs() const noexcept { return pairs_; }
     [[nodiscard]] const PhaseHistory& history() const noexcept { return history_; }
 

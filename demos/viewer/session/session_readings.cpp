@@ -80,7 +80,7 @@ constexpr std::array kReadings{
     Reading{"y", [](const Session& s) { return number(cardOf(s).body.centre.y()); }},
     Reading{"z", [](const Session& s) { return number(cardOf(s).body.centre.z()); }},
     Reading{"speed", [](const Session& s) { return number(cardOf(s).body.speed); }},
-    Reading{"pairs", [](const Session& s) { return number(s.pairs().size()); }},
+    Reading{"pairs", [](const Session& s) { return number(s.stage().pairCount()); }},
     Reading{"exact", [](const Session& s) { return number(checkOf(s).exactCount()); }},
     Reading{"missing", [](const Session& s) { return number(checkOf(s).missing().size()); }},
     Reading{"extra", [](const Session& s) { return number(checkOf(s).extra().size()); }},

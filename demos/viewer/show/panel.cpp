@@ -100,7 +100,7 @@ void Panel::showScene(Session& session) {
     }
     numberRow("bodies", withThousands(session.stage().size()));
     numberRow("visible", withThousands(session.visibleCount()));
-    numberRow("pairs", withThousands(session.pairs().size()));
+    numberRow("pairs", withThousands(session.stage().pairCount()));
     numberRow("selected", withThousands(session.selected().size()));
     if (!session.stage().tunnelMarks().empty()) {
         numberRow("passed through walls", withThousands(session.stage().tunnelMarks().size()));

@@ -230,7 +230,7 @@ void Run::tellPhases() const {
         << milliseconds(history.p95Total()) << '\n'
         << withThousands(session_->stage().size()) << " bodies, "
         << withThousands(session_->visibleCount()) << " visible, "
-        << withThousands(session_->pairs().size()) << " pairs after "
+        << withThousands(session_->stage().pairCount()) << " pairs after "
         << withThousands(session_->frame()) << " frames"
         << (drewPictures_ ? "; these times are of a run that drew pictures as well" : "") << '\n';
 }

@@ -390,6 +390,11 @@ void BulletStage::listPairs(std::vector<PairKey>& pairs) const {
         pairs);
 }
 
+std::size_t BulletStage::pairCount() const {
+    return static_cast<std::size_t>(
+        world_->broadphase().getOverlappingPairCache()->getNumOverlappingPairs());
+}
+
 void BulletStage::listBoxes(std::vector<Aabb<float>>& boxes,
                             std::vector<CollisionFilter>& filters) const {
     boxes.clear();

@@ -210,11 +210,8 @@ void PaperStage::setBroadphase(const BroadphaseKind& kind) {
     declareToSimulation();
 }
 
-void PaperStage::listPairs(std::vector<PairKey>& pairs) const {
-    pairs = rival_ ? rival_->pairs() : pairs_;
-    if (!effects_.pairs) {
-        pairs.clear();
-    }
+const std::vector<PairKey>& PaperStage::presentPairs() const {
+    return rival_ && effects_.pairs ? rival_->pairs() : pairs_;
 }
 
 void PaperStage::listBoxes(std::vector<Aabb<float>>& boxes,

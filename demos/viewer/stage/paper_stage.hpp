@@ -35,15 +35,20 @@ public:
     [[nodiscard]] EffectSet possibleEffects() const override;
     void setBroadphase(const BroadphaseKind& kind) override;
     [[nodiscard]] const BroadphaseKind& broadphase() const override { return *kind_; }
-    void listPairs(std::vector<PairKey>& pairs) const override;
+    void listPairs(std::vector<PairKey>& pairs) const override { pairs = presentPairs(); }
+    [[nodiscard]] std::size_t pairCount() const override { return presentPairs().size(); }
     void listBoxes(std::vector<Aabb<float>>& boxes,
                    std::vector<CollisionFilter>& filters) const override;
     [[nodiscard]] const Grid<float>* grid() const override;
     [[nodiscard]] Observers<float>& observers() override { return simulation_.observers(); }
+    [[nodiscard]] const Observers<float>& observers() const override {
+        return simulation_.observers();
+    }
     [[nodiscard]] std::uint64_t memoryBytes() const override;
 
 private:
     [[nodiscard]] static SceneEffects withoutPairs(SceneEffects effects);
+    [[nodiscard]] const std::vector<PairKey>& presentPairs() const;
     void declareToSimulation();
     void takeChanges();
     void collideRivals();

@@ -127,6 +127,10 @@ void RecordingStage::listPairs(std::vector<PairKey>& pairs) const {
     }
 }
 
+std::size_t RecordingStage::pairCount() const {
+    return rival_ ? rival_->pairs().size() : pairs_ ? pairs_->count() : 0;
+}
+
 void RecordingStage::listBoxes(std::vector<Aabb<float>>& boxes,
                                std::vector<CollisionFilter>& filters) const {
     boxes = scene_->boxes();

@@ -38,10 +38,12 @@ public:
     void setBroadphase(const BroadphaseKind& kind) override;
     [[nodiscard]] const BroadphaseKind& broadphase() const override { return *kind_; }
     void listPairs(std::vector<PairKey>& pairs) const override;
+    [[nodiscard]] std::size_t pairCount() const override;
     void listBoxes(std::vector<Aabb<float>>& boxes,
                    std::vector<CollisionFilter>& filters) const override;
     [[nodiscard]] const Grid<float>* grid() const override { return grid_.get(); }
     [[nodiscard]] Observers<float>& observers() override { return observers_; }
+    [[nodiscard]] const Observers<float>& observers() const override { return observers_; }
     [[nodiscard]] std::uint64_t memoryBytes() const override;
 
 private:

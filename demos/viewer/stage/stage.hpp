@@ -96,6 +96,8 @@ public:
 
     /// As the broadphase has found them in the last frame, by indices, sorted; none while they are not declared.
     virtual void listPairs(std::vector<PairKey>& pairs) const = 0;
+    /// How many these are. Cost: O(1).
+    [[nodiscard]] virtual std::size_t pairCount() const = 0;
 
     /// What it was given: by index; NaN for who is not there. `filters` stays empty where all may pair.
     virtual void listBoxes(std::vector<Aabb<float>>& boxes,
@@ -104,9 +106,7 @@ public:
     /// The grid of all bodies; null while no effect asks one.
     [[nodiscard]] virtual const Grid<float>* grid() const = 0;
     [[nodiscard]] virtual Observers<float>& observers() = 0;
-    [[nodiscard]] const Observers<float>& observers() const {
-        return const_cast<Stage*>(this)->observers();  // NOLINT: it is read alone
-    }
+    [[nodiscard]] virtual const Observers<float>& observers() const = 0;
 
     /// The nearest body that the ray meets, exactly. Needs picking.
     [[nodiscard]] Picked<float> pick(const RayRegion<float>& ray);
