@@ -30,8 +30,7 @@ const PairCheck& checkOf(const Session& session) {
 
 template <class Holds>
 double countBodies(const Session& session, const Holds& holds) {
-    const Grid<float>* grid = session.stage().grid();
-    const std::uint32_t limit = grid != nullptr ? grid->indexLimit() : 0;
+    const std::uint32_t limit = session.stage().indexLimit();
     double count = 0;
     for (std::uint32_t index = 0; index < limit; ++index) {
         const StageBody body = session.stage().body(index);

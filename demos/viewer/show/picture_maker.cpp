@@ -89,8 +89,7 @@ void PictureMaker::setGround(const Session& session) {
 // --- Bodies --------------------------------------------------------------------------------------
 
 void PictureMaker::addBodies(const Session& session) {
-    const Grid<float>* grid = session.stage().grid();
-    const std::uint32_t limit = grid != nullptr ? grid->indexLimit() : 0;
+    const std::uint32_t limit = session.stage().indexLimit();
     float fastest = 0;
     for (std::uint32_t index = 0; index < limit; ++index) {
         if (!session.isVisible(index)) {
@@ -133,7 +132,11 @@ Colour PictureMaker::colourOf(const Session& session, std::uint32_t index,
             return kinds[index < colours.size() ? colours[index] % kinds.size() : 0];
         }
         case Colouring::cells: {
-            const auto cell = session.stage().grid()->cellAt(body.centre);
+            const Grid<float>* grid = session.stage().grid();
+            if (grid == nullptr) {
+                return palette_.calm;
+            }
+            const auto cell = grid->cellAt(body.centre);
             // Neighbouring cells differ, as on a map.
             const auto kind = static_cast<std::uint64_t>(cell[0] + 3 * cell[2] + 5 * cell[1]);
             return kinds[kind % kinds.size()];
@@ -167,8 +170,7 @@ Colour PictureMaker::highlightOf(const Session& session, std::uint32_t index,
 }
 
 void PictureMaker::countPairs(const Session& session) {
-    const Grid<float>* grid = session.stage().grid();
-    pairCounts_.assign(grid != nullptr ? grid->indexLimit() : 0, 0);
+    pairCounts_.assign(session.stage().indexLimit(), 0);
     for (const PairKey pair : session.pairs()) {
         if (secondOf(pair) < pairCounts_.size()) {
             ++pairCounts_[firstOf(pair)];

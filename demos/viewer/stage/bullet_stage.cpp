@@ -261,6 +261,10 @@ btRigidBody* BulletStage::bodyAt(std::uint32_t index) const {
     return isThere ? bodies[index].get() : nullptr;
 }
 
+std::uint32_t BulletStage::indexLimit() const {
+    return static_cast<std::uint32_t>(world_->contents().bodies().size());
+}
+
 StageBody BulletStage::body(std::uint32_t index) const {
     StageBody seen;
     const btRigidBody* body = bodyAt(index);

@@ -29,6 +29,7 @@ public:
     void step() override;
 
     [[nodiscard]] std::size_t size() const override { return size_; }
+    [[nodiscard]] std::uint32_t indexLimit() const override;
     [[nodiscard]] StageBody body(std::uint32_t index) const override;
     bool remove(std::uint32_t index) override;
     bool push(std::uint32_t index, const Vector3<float>& velocity) override;

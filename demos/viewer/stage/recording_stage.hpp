@@ -24,6 +24,9 @@ public:
     void step() override;
 
     [[nodiscard]] std::size_t size() const override { return proxies_.size(); }
+    [[nodiscard]] std::uint32_t indexLimit() const override {
+        return static_cast<std::uint32_t>(proxies_.size());
+    }
     [[nodiscard]] StageBody body(std::uint32_t index) const override;
     bool remove(std::uint32_t /*index*/) override { return false; }
     bool push(std::uint32_t /*index*/, const Vector3<float>& /*velocity*/) override {

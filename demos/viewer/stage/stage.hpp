@@ -60,6 +60,8 @@ public:
     // --- Who is there ----------------------------------------------------------------------------
 
     [[nodiscard]] virtual std::size_t size() const = 0;
+    /// Every body's index is below it.
+    [[nodiscard]] virtual std::uint32_t indexLimit() const = 0;
     [[nodiscard]] virtual StageBody body(std::uint32_t index) const = 0;
     [[nodiscard]] bool contains(std::uint32_t index) const {
         return body(index).shape != StageBody::Shape::none;
