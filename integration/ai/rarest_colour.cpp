@@ -2,11 +2,71 @@
 #include <integration/ai/rarest_colour.hpp>
 
 #include <broadphase/diagnostics.hpp>
+#include <broadphase/grid.hpp>
+#include <broadphase/position_region.hpp>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <iterator>
+#include <limits>
+#include <utility>
 
 namespace hashphase {
+namespace {
+
+constexpr std::size_t kAtOnce = 16;
+
+/// Counts the colours of those who are near one agent.
+struct ColourCount {
+    ProxyId agent;
+    const ProxyFilter* filter = nullptr;
+    std::span<const std::uint32_t> colours;
+    std::uint32_t colourCount = 0;
+    std::array<std::uint32_t, Crowd<float>::kMostGroups> counts{};
+
+    template <class Scalar>
+    void add(ProxyId id, Scalar /*key*/) {
+        const std::uint32_t colour = colours[id.index];
+        if (id != agent && colour < colourCount && (*filter)(id)) {
+            ++counts[colour];
+        }
+    }
+    [[nodiscard]] static constexpr double limit() noexcept {
+        return std::numeric_limits<double>::infinity();
+    }
+};
+
+/// The rarest colour around each of 1 to kAtOnce agents; colourCount for who is nowhere.
+template <class Scalar>
+QueryCost countAround(const Grid<Scalar>& grid, Scalar radius, std::uint32_t colourCount,
+                      std::span<const std::uint32_t> colours, std::span<const ProxyId> agents,
+                      const ProxyFilter& filter, std::span<std::uint32_t> rarest) {
+    const auto regionOf = [&](std::size_t i) {
+        const ProxyId agent = agents[std::min(i, agents.size() - 1)];
+        return PositionRegion<Scalar>(positionOf(grid.box(agent)), radius);
+    };
+    const auto around = [&]<std::size_t... i>(std::index_sequence<i...>) {
+        return std::array{regionOf(i)...};
+    }
+    (std::make_index_sequence<kAtOnce>());
+    std::array<ColourCount, kAtOnce> found;
+    for (std::size_t i = 0; i < agents.size(); ++i) {
+        found[i] = {agents[i], &filter, colours, colourCount, {}};
+    }
+    const QueryCost cost = grid.visitEach(std::span(around).first(agents.size()),
+                                          std::span(found).first(agents.size()));
+    for (std::size_t i = 0; i < agents.size(); ++i) {
+        const auto* const counts = found[i].counts.data();
+        const bool isSomewhere = around[i].center().allFinite();
+        rarest[i] = isSomewhere ? static_cast<std::uint32_t>(
+                                      std::min_element(counts, counts + colourCount) - counts)
+                                : colourCount;
+    }
+    return cost;
+}
+
+}  // namespace
 
 template <class Scalar>
 QueryCost RarestColour<Scalar>::update(const Grid<Scalar>& grid, Scalar radius,
@@ -42,9 +102,46 @@ QueryCost RarestColour<Scalar>::update(const Grid<Scalar>& grid, Scalar radius,
 }
 
 template <class Scalar>
+QueryCost RarestColour<Scalar>::updateSome(const Grid<Scalar>& grid, Scalar radius,
+                                           std::uint32_t colourCount,
+                                           std::span<std::uint32_t> colours,
+                                           std::span<const ProxyId> agents, ProxyFilter filter,
+                                           ParallelFor parallelFor) {
+    HASHPHASE_ASSERT(colourCount > 0 && colourCount <= Crowd<Scalar>::kMostGroups,
+                     "There are 1 to kMostGroups colours.");
+    HASHPHASE_ASSERT(grid.indexLimit() <= colours.size(),
+                     "There is a colour for each agent, by ProxyId::index.");
+    // All read ...
+    rarest_.resize(agents.size());
+    constexpr std::size_t kGrain = 64;
+    std::atomic<std::uint64_t> rowsVisited{0};
+    std::atomic<std::uint64_t> boxesTested{0};
+    std::atomic<std::uint64_t> hits{0};
+    parallelFor(agents.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        QueryCost cost;
+        for (std::size_t first = begin; first < end; first += kAtOnce) {
+            const std::size_t count = std::min(kAtOnce, end - first);
+            cost += countAround<Scalar>(grid, radius, colourCount, colours,
+                                        agents.subspan(first, count), filter,
+                                        std::span(rarest_).subspan(first, count));
+        }
+        rowsVisited += cost.rowsVisited;
+        boxesTested += cost.boxesTested;
+        hits += cost.hits;
+    });
+    // ... then all change.
+    for (std::size_t i = 0; i < agents.size(); ++i) {
+        if (rarest_[i] < colourCount) {
+            colours[agents[i].index] = rarest_[i];
+        }
+    }
+    return {rowsVisited, boxesTested, hits};
+}
+
+template <class Scalar>
 std::size_t RarestColour<Scalar>::memoryBytes() const noexcept {
     return sizeof(*this) - sizeof(crowd_) + crowd_.memoryBytes() +
-           counts_.capacity() * sizeof(std::uint32_t);
+           (counts_.capacity() + rarest_.capacity()) * sizeof(std::uint32_t);
 }
 
 template class RarestColour<float>;

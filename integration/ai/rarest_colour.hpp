@@ -35,6 +35,12 @@ public:
                      std::span<std::uint32_t> colours, ProxyFilter filter = acceptAll,
                      ParallelFor parallelFor = serialFor, ProxyFilter changes = acceptAll);
 
+    /// The same for these agents alone, each named once and alive (asserted). Who has no position keeps
+    /// its colour. Cost: a query for each of them (Grid::visitEach()); less than update() where they are few.
+    QueryCost updateSome(const Grid<Scalar>& grid, Scalar radius, std::uint32_t colourCount,
+                         std::span<std::uint32_t> colours, std::span<const ProxyId> agents,
+                         ProxyFilter filter = acceptAll, ParallelFor parallelFor = serialFor);
+
     /// The agents of the last update().
     [[nodiscard]] const Crowd<Scalar>& crowd() const noexcept { return crowd_; }
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
@@ -42,6 +48,7 @@ public:
 private:
     Crowd<Scalar> crowd_;
     std::vector<std::uint32_t> counts_;  // by agent, then by colour
+    std::vector<std::uint32_t> rarest_;  // of updateSome(), by agent
 };
 
 extern template class RarestColour<float>;

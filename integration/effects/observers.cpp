@@ -60,6 +60,7 @@ struct Observers<Scalar>::Proximity {
 
     RarestColour<Scalar> rarest;
     std::vector<std::uint32_t> colours;
+    std::vector<ProxyId> looking;  // in this frame, where they look by turns
 };
 
 template <class Scalar>
@@ -198,21 +199,21 @@ void Observers<Scalar>::cull(const Scene& scene, Scalar moved, ParallelFor /*par
     cost_[SceneCounter::cullingBoxesTested] = cost.boxesTested;
 }
 
-// Between the frames in which all look around, those near the player do, and see who is near them; where
-// they do by turns, those whose turn it is.
+// Between the frames in which all look around, those near the player do, and see who is near them.
 template <class Scalar>
 void Observers<Scalar>::lookAround(const Scene& scene, Scalar /*moved*/, ParallelFor parallelFor) {
     const ProximityEffect& effect = *effects_.proximity;
     Proximity& proximity = *proximity_;
     proximity.makeRoom(scene.grid.indexLimit());
+    if (effect.turns > 1) {
+        lookByTurns(scene, parallelFor);
+        return;
+    }
     const bool allLook = !interest_ || isDue(Effect::proximity, effect.farFrames);
     const auto isWithin = [&](ProxyId id, double distance) {
         const Vector3<double> offset =
             (positionOf(scene.grid.box(id)) - *interest_).template cast<double>();
         return offset.squaredNorm() <= distance * distance;
-    };
-    const auto isTurnOf = [&](ProxyId id) {
-        return id.index % effect.turns == frame_ % effect.turns;
     };
     // Rounding must not leave out a neighbour.
     const double reach = (effect.interestRadius + effect.radius) * (1 + 1e-5);
@@ -223,23 +224,49 @@ void Observers<Scalar>::lookAround(const Scene& scene, Scalar /*moved*/, Paralle
                                            effect.colourCount, proximity.colours, counts,
                                            parallelFor, looks);
         };
-        const auto counted = [&](bool looks) {
-            lookingCount.fetch_add(looks ? 1 : 0, std::memory_order_relaxed);
-            return looks;
-        };
-        if (effect.turns > 1) {
-            return update(filter, [&](ProxyId id) { return counted(isTurnOf(id)); });
-        }
         if (allLook) {
             return update(filter, acceptAll);
         }
-        return update([&](ProxyId id) { return filter(id) && isWithin(id, reach); },
-                      [&](ProxyId id) { return counted(isWithin(id, effect.interestRadius)); });
+        const auto counts = [&](ProxyId id) { return filter(id) && isWithin(id, reach); };
+        const auto looks = [&](ProxyId id) {
+            const bool isNear = isWithin(id, effect.interestRadius);
+            lookingCount.fetch_add(isNear ? 1 : 0, std::memory_order_relaxed);
+            return isNear;
+        };
+        return update(counts, looks);
     });
     cost_[SceneCounter::agentsScanned] = proximity.rarest.crowd().size();
     cost_[SceneCounter::neighboursTested] = cost.boxesTested;
     cost_[SceneCounter::agentsLate] =
-        allLook && effect.turns == 1 ? 0 : countOf(scene, Effect::proximity) - lookingCount.load();
+        allLook ? 0 : countOf(scene, Effect::proximity) - lookingCount.load();
+}
+
+// Who looks is known beforehand, and few: a query for each is less than counting for all.
+template <class Scalar>
+void Observers<Scalar>::lookByTurns(const Scene& scene, ParallelFor parallelFor) {
+    const ProximityEffect& effect = *effects_.proximity;
+    Proximity& proximity = *proximity_;
+    const auto turn = static_cast<std::uint32_t>(frame_ % effect.turns);
+    std::size_t late = 0;
+    proximity.looking.clear();
+    scene.grid.forEach([&](ProxyId id, const Aabb<Scalar>& box) {
+        if (!scene.takesPart(id, Effect::proximity) || hasNan(box)) {
+            return;
+        }
+        if (id.index % effect.turns == turn) {
+            proximity.looking.push_back(id);
+        } else {
+            ++late;
+        }
+    });
+    const QueryCost cost = askFor(scene, Effect::proximity, [&](ProxyFilter filter) {
+        return proximity.rarest.updateSome(scene.grid, static_cast<Scalar>(effect.radius),
+                                           effect.colourCount, proximity.colours, proximity.looking,
+                                           filter, parallelFor);
+    });
+    cost_[SceneCounter::agentsScanned] = proximity.looking.size();
+    cost_[SceneCounter::neighboursTested] = cost.boxesTested;
+    cost_[SceneCounter::agentsLate] = late;
 }
 
 template <class Scalar>
@@ -420,7 +447,8 @@ void Observers<Scalar>::addFootprint(SceneFootprint& footprint) const {
     if (proximity_) {
         footprint[SceneTable::agents] += sizeof(Proximity) - sizeof(proximity_->rarest) +
                                          proximity_->rarest.memoryBytes() +
-                                         proximity_->colours.capacity() * sizeof(std::uint32_t);
+                                         proximity_->colours.capacity() * sizeof(std::uint32_t) +
+                                         proximity_->looking.capacity() * sizeof(ProxyId);
     }
     if (zones_) {
         footprint[SceneTable::zones] +=

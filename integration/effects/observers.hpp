@@ -171,6 +171,7 @@ private:
 
     void cull(const Scene& scene, Scalar moved, ParallelFor parallelFor);
     void lookAround(const Scene& scene, Scalar moved, ParallelFor parallelFor);
+    void lookByTurns(const Scene& scene, ParallelFor parallelFor);
     void watchZones(const Scene& scene, Scalar moved, ParallelFor parallelFor);
     void scanRadar(const Scene& scene, Scalar moved, ParallelFor parallelFor);
     void dropUndeclared() noexcept;

@@ -77,6 +77,46 @@ TYPED_TEST(RarestColourTest, IsThatOfBruteForceFrameByFrameInEveryScene) {
     }
 }
 
+TYPED_TEST(RarestColourTest, ChangesSomeAsIfAllHadLookedAndTheyAloneHadChanged) {
+    for (const BoxScene<TypeParam>& scene : allBoxScenes<TypeParam>()) {
+        GridWorld<TypeParam> world;
+        Script<TypeParam> script(scene, 0x5eed0f07);
+        script.begin(world);
+        Colours colours = this->drawColours(script.random(), 4096, 9);  // one too many
+        std::size_t changes = 0;
+        for (int frame = 0; frame < 6; ++frame) {
+            SCOPED_TRACE(testing::Message() << scene.name << ", frame " << frame);
+            const auto proxies = script.proxies();
+            const Vector3<TypeParam> way =
+                agentPosition(proxies[0].box) - agentPosition(proxies[1].box);
+            const TypeParam radius = way.cwiseAbs().maxCoeff() / 2;
+            const auto counts = [](ProxyId id) { return id.index % 7 != 0; };
+            std::vector<ProxyId> some;
+            for (const Placed<TypeParam>& proxy : proxies) {
+                if (counts(proxy.id) && script.random().chance(0.3)) {
+                    some.push_back(proxy.id);
+                }
+            }
+            Colours all = colours;
+            this->rarest_.update(world.grid, radius, 8, all, counts);
+            Colours expected = colours;
+            for (const ProxyId id : some) {
+                expected[id.index] = all[id.index];
+            }
+            changes += expected != colours ? 1 : 0;
+            Colours onThreads = colours;
+            ThreadedFor threadedFor(3, 3);
+            this->rarest_.updateSome(world.grid, radius, 8, onThreads, some, counts, threadedFor);
+            ASSERT_EQ(onThreads, expected);
+            this->rarest_.updateSome(world.grid, radius, 8, colours, some, counts);
+            ASSERT_EQ(colours, expected);
+            world.grid.update();
+            script.playFrame(world);
+        }
+        EXPECT_GT(changes, 3U) << scene.name;
+    }
+}
+
 TYPED_TEST(RarestColourTest, DoesNotCountTheAgentItselfAndPrefersTheLowestColour) {
     Grid<TypeParam> grid;
     const auto add = [&grid](double x) {
