@@ -246,14 +246,22 @@ template <class Scalar>
 void Observers<Scalar>::lookByTurns(const Scene& scene, ParallelFor parallelFor) {
     const ProximityEffect& effect = *effects_.proximity;
     Proximity& proximity = *proximity_;
-    const auto turn = static_cast<std::uint32_t>(frame_ % effect.turns);
     std::size_t late = 0;
+    const auto isTurnOf = [&](ProxyId id, const Aabb<Scalar>& box) {
+        std::uint64_t turns = effect.turns;
+        if (effect.farFrames > 1 && interest_) {
+            const Vector3<double> offset = (positionOf(box) - *interest_).template cast<double>();
+            const bool isFar = offset.squaredNorm() > effect.interestRadius * effect.interestRadius;
+            turns *= isFar ? effect.farFrames : 1;
+        }
+        return id.index % turns == frame_ % turns;
+    };
     proximity.looking.clear();
     scene.grid.forEach([&](ProxyId id, const Aabb<Scalar>& box) {
         if (!scene.takesPart(id, Effect::proximity) || hasNan(box)) {
             return;
         }
-        if (id.index % effect.turns == turn) {
+        if (isTurnOf(id, box)) {
             proximity.looking.push_back(id);
         } else {
             ++late;

@@ -148,8 +148,6 @@ void requireOfLookers(const SceneEffects& effects, Settings& settings) {
         settings.requireSomeFar("proximity", proximity.interestRadius, proximity.farFrames);
         settings.require(proximity.turns >= 1 && proximity.turns <= kMostEffectFrames,
                          "proximity.turns", proximity.turns, "from 1 to 1000000");
-        settings.require(proximity.turns == 1 || proximity.farFrames == 1, "proximity.turns",
-                         proximity.turns, "1 where proximity.farFrames is more than 1");
     }
     if (effects.zones) {
         settings.requireSomeFar("zones", effects.zones->interestRadius, effects.zones->farFrames);

@@ -97,7 +97,8 @@ struct ProximityEffect {
         std::numeric_limits<double>::infinity();  ///< agents beyond it are far [m]
     std::uint32_t farFrames = 1;  ///< far agents look around in every n-th frame only
     /// Agents look around by turns, each in every n-th frame, an n-th of them in each. Those around do not
-    /// all change at once then, which they else may do in every frame, to and fro. Not with farFrames.
+    /// all change at once then, which they else may do in every frame, to and fro. Far ones, with farFrames,
+    /// look in every so many of their turns.
     std::uint32_t turns = 1;
 };
 

@@ -90,7 +90,7 @@ const std::string kEveryField = R"({
       "colourCount": 32,
       "interestRadius": 50,
       "farFrames": 4,
-      "turns": 1
+      "turns": 8
     },
     "zones": {
       "interestRadius": 60,
@@ -170,6 +170,7 @@ TEST(EffectsFile, HasTheSettingsInTheirMembers) {
     EXPECT_EQ(effects.proximity->colourCount, 32U);
     EXPECT_EQ(effects.proximity->interestRadius, 50);
     EXPECT_EQ(effects.proximity->farFrames, 4U);
+    EXPECT_EQ(effects.proximity->turns, 8U);
     EXPECT_EQ(effects.zones->interestRadius, 60);
     EXPECT_EQ(effects.zones->farFrames, 5U);
     EXPECT_EQ(effects.radar->cellSize, 0.5);

@@ -116,6 +116,30 @@ TEST(Observers, LetAgentsLookByTurns) {
     }
 }
 
+TEST(Observers, LetFarAgentsLookInEachNthOfTheirTurns) {
+    constexpr std::uint64_t kTurns = 3;
+    constexpr std::uint64_t kEvery = 2;
+    SceneEffects effects;
+    effects.proximity =
+        ProximityEffect{.radius = 5, .interestRadius = 15, .farFrames = kEvery, .turns = kTurns};
+    Observers<float> observers(effects);
+    const Point player(30, 1, 30);
+    observers.setInterest(player);
+    Walk walk(0x5eed0fee);
+    for (std::uint64_t frame = 0; frame < 4 * kTurns * kEvery; ++frame) {
+        walk.step();
+        std::uint64_t looking = 0;
+        for (std::uint32_t i = 0; i < walk.places().size(); ++i) {
+            const bool isFar = (walk.places()[i] - player).norm() > 15;
+            const std::uint64_t turns = isFar ? kTurns * kEvery : kTurns;
+            looking += i % turns == frame % turns ? 1 : 0;
+        }
+        const SceneCost& cost = observers.observe({walk.grid});
+        EXPECT_EQ(cost[SceneCounter::agentsScanned], looking);
+        EXPECT_EQ(cost[SceneCounter::agentsLate], walk.places().size() - looking);
+    }
+}
+
 TEST(Observers, LookIntoFarZonesEachNthFrameAndTellAllThen) {
     SceneEffects effects;
     effects.zones = ZonesEffect{};

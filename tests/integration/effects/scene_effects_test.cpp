@@ -123,12 +123,6 @@ TEST(SceneEffects, NamesTheSettingThatIsWrong) {
               "[m].");
     EXPECT_EQ(errorAfter([](SceneEffects& e) { e.proximity->turns = 0; }),
               "proximity.turns is 0, but must be from 1 to 1000000.");
-    EXPECT_EQ(errorAfter([](SceneEffects& e) {
-                  e.proximity->interestRadius = 9;
-                  e.proximity->farFrames = 4;
-                  e.proximity->turns = 2;
-              }),
-              "proximity.turns is 2, but must be 1 where proximity.farFrames is more than 1.");
     EXPECT_EQ(errorAfter([](SceneEffects& e) { e.proximity->colourCount = 33; }),
               "proximity.colourCount is 33, but must be from 1 to 32.");
     EXPECT_EQ(errorAfter([](SceneEffects& e) { e.zones->farFrames = 0; }),
