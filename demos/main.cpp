@@ -8,6 +8,7 @@
 #include <demos/console/program.hpp>
 #include <demos/effects/effects_command.hpp>
 #include <demos/paper/paper_command.hpp>
+#include <demos/report/report_command.hpp>
 #include <demos/stability/stability_command.hpp>
 #include <demos/viewer/viewer_program.hpp>
 
@@ -26,14 +27,25 @@ int main(int argc, char** argv) {
         console.commandLine += " " + argument;
     }
 #if HASHPHASE_COUNTS_ALLOCATIONS
-    const Subcommand effects = effectsCommand(allocationCount);
+    const auto countAllocations = allocationCount;
 #else
-    const Subcommand effects = effectsCommand();
+    constexpr std::size_t (*countAllocations)() = nullptr;
 #endif
     if (!arguments.empty() && arguments.front() == kViewerCommand) {
         return runViewerProgram(arguments, console);
     }
-    const std::array subcommands{compareCommand(), paperCommand(), accuracyCommand(),
-                                 stabilityCommand(), effects, viewerCommand()};
+    const Subcommand report = reportCommand(
+        {{compareCommand(), {"--objects", "10000", "--frames", "60"}, 8, 35},
+         {paperCommand(), {"--quick"}, 20, 90},
+         {accuracyCommand(), {"--quick"}, 50, 660},
+         {effectsCommand(countAllocations), {"--objects", "2000", "--frames", "60"}, 5, 60},
+         {stabilityCommand(), {"--quick"}, 10, 60}});
+    const std::array subcommands{compareCommand(),
+                                 paperCommand(),
+                                 accuracyCommand(),
+                                 stabilityCommand(),
+                                 effectsCommand(countAllocations),
+                                 report,
+                                 viewerCommand()};
     return runProgram(arguments, subcommands, console);
 }

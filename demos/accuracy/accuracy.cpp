@@ -7,6 +7,7 @@
 #include <demos/console/nearest_name.hpp>
 #include <demos/console/progress.hpp>
 #include <demos/console/result_file.hpp>
+#include <demos/report/report_text.hpp>
 #include <demos/report/stopwatch.hpp>
 #include <demos/scenes/input_error.hpp>
 
@@ -90,20 +91,23 @@ Findings findingsOf(const Experiment& experiment, const Effort& effort, const Te
     }
 }
 
-std::vector<Outcome> run(std::span<const Experiment* const> chosen, const AccuracyOptions& options,
-                         Console& console) {
+void run(std::span<const Experiment* const> chosen, const AccuracyOptions& options,
+         AccuracyReport& report, Console& console) {
     OverallProgress progress(chosen, options, console);
-    std::vector<Outcome> outcomes;
+    const Stopwatch sinceBegin;
     for (const Experiment* each : chosen) {
+        if (options.timeLimit && sinceBegin.milliseconds() > 1000 * *options.timeLimit) {
+            report.leftOut.emplace_back(each->id);
+            continue;
+        }
         progress.begin(*each);
         const Stopwatch stopwatch;
         Findings findings = findingsOf(
             *each, options.effort,
             [&](double share, std::string_view what) { progress.tell(*each, share, what); });
         progress.end(*each);
-        outcomes.push_back({each, std::move(findings), stopwatch.milliseconds() / 1000});
+        report.outcomes.push_back({each, std::move(findings), stopwatch.milliseconds() / 1000});
     }
-    return outcomes;
 }
 
 }  // namespace
@@ -140,7 +144,8 @@ std::string verdictLine(const AccuracyReport& report) {
         return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
     };
     return counted(report.outcomes.size(), "experiment") + ", " + counted(checks, "check") + ": " +
-           (broken == 0 ? "all hold" : std::to_string(broken) + " BROKEN");
+           (broken == 0 ? "all hold" : std::to_string(broken) + " BROKEN") +
+           leftOutText(report.leftOut);
 }
 
 int runAccuracy(const AccuracyOptions& options, std::span<const Experiment> experiments,
@@ -162,13 +167,13 @@ int runAccuracy(const AccuracyOptions& options, std::span<const Experiment> expe
     AccuracyReport report;
     report.effort = options.effort;
     report.provenance = gatherProvenance(console.commandLine);
-    report.outcomes = run(chosen, options, console);
+    run(chosen, options, report, console);
 
     printReport(report, console.out);
     if (!options.folder.empty()) {
         writeReport(report, options.folder);
-        page.write([&report](std::ostream& file) { writePage(pageOf(report), file); });
     }
+    deliverPage(pageOf(report), page, console);
     return brokenChecks(report).empty() ? kExitOk : kExitCheckFailed;
 }
 

@@ -7,6 +7,7 @@
 #include <demos/console/program.hpp>
 #include <demos/report/provenance.hpp>
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,7 +17,8 @@ namespace hashphase::demos {
 struct AccuracyOptions {
     std::vector<std::string> only;  // ids; empty: all
     Effort effort;
-    std::string folder;  // for the report and its data; empty: none is written
+    std::string folder;               // for the report and its data; empty: none is written
+    std::optional<double> timeLimit;  // [s], after which no experiment begins
     bool quiet = false;
     bool list = false;
 };
@@ -31,6 +33,7 @@ struct Outcome {
 struct AccuracyReport {
     Effort effort;
     std::vector<Outcome> outcomes;
+    std::vector<std::string> leftOut;  // ids, for want of time
     Provenance provenance;
 };
 
@@ -49,7 +52,7 @@ int runAccuracy(const AccuracyOptions& options, std::span<const Experiment> expe
 /// The choices of all experiments, in their order.
 [[nodiscard]] std::vector<Choice> allChoices(const AccuracyReport& report);
 
-/// One sentence: how many experiments and checks, and whether all hold.
+/// One sentence: how many experiments and checks, whether all hold, and what was left out.
 [[nodiscard]] std::string verdictLine(const AccuracyReport& report);
 
 }  // namespace hashphase::demos

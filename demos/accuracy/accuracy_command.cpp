@@ -21,6 +21,9 @@ void declare(CLI::App& app, AccuracyOptions& options) {
     app.add_option("--seed", options.effort.seed, "seed of all random numbers")
         ->check(seedFault)
         ->capture_default_str();
+    app.add_option("--time-limit", options.timeLimit,
+                   "after so many seconds begin no other experiment")
+        ->check(positiveSecondsFault);
     app.add_flag("--quiet", options.quiet, "no progress on stderr");
     app.add_flag("--list", options.list, "say which experiments there are");
 }

@@ -112,7 +112,7 @@ int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> ki
     printReport(report, console.out);
     json.write([&report](std::ostream& file) { writeJson(report, file); });
     csv.write([&report](std::ostream& file) { writeCsv(report, file); });
-    html.write([&report](std::ostream& file) { writeHtml(report, file); });
+    deliverPage(pageOf(report), html, console);
     return oursWereExact(report) == false && report.comparison.framesDone > 0 ? kExitCheckFailed
                                                                               : kExitOk;
 }

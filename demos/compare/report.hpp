@@ -5,7 +5,7 @@
 
 #include <demos/compare/compare.hpp>
 #include <demos/compare/comparison.hpp>
-#include <demos/report/provenance.hpp>
+#include <demos/report/page.hpp>
 
 #include <iosfwd>
 #include <string>
@@ -40,8 +40,8 @@ void printReport(const Report& report, std::ostream& out);
 /// Schema "hashphase-compare"; what was not measured is null, never NaN.
 void writeJson(const Report& report, std::ostream& out);
 
-/// A page with charts; see demos/report/page.hpp.
-void writeHtml(const Report& report, std::ostream& out);
+/// All of it as a page with charts.
+[[nodiscard]] Page pageOf(const Report& report);
 
 /// A header line, then a line for each frame of each broadphase.
 void writeCsv(const Report& report, std::ostream& out);

@@ -188,7 +188,7 @@ PageSection drawnTimes(const Report& report) {
 
 }  // namespace
 
-void writeHtml(const Report& report, std::ostream& out) {
+Page pageOf(const Report& report) {
     Page page{"hashphase compare: " + report.scene,
               kIntroduction,
               verdictLine(report) + ".",
@@ -205,7 +205,7 @@ void writeHtml(const Report& report, std::ostream& out) {
                         std::to_string(report.comparison.framesDone) + " of " +
                         std::to_string(report.framesAsked) + " frames.";
     }
-    writePage(page, out);
+    return page;
 }
 
 }  // namespace hashphase::demos

@@ -18,6 +18,8 @@ class App;
 
 namespace hashphase::demos {
 
+struct Page;
+
 inline constexpr int kExitOk = 0;
 inline constexpr int kExitCheckFailed = 1;
 inline constexpr int kExitUsage = 2;
@@ -28,6 +30,9 @@ struct Console {
     std::ostream& err;
     bool errIsTerminal = false;
     std::string commandLine;  // as typed, for the record
+
+    /// Takes the page of a report, whether or not it goes to a file; empty: nobody does.
+    std::function<void(const Page&)> takePage = {};
 };
 
 struct Subcommand {

@@ -89,7 +89,7 @@ int runEffects(const EffectsOptions& options, Console& console, std::size_t (*al
     printReport(report, console.out);
     json.write([&report](std::ostream& out) { writeJson(report, out); });
     csv.write([&report](std::ostream& out) { writeCsv(report, out); });
-    html.write([&report](std::ostream& out) { writeHtml(report, out); });
+    deliverPage(pageOf(report), html, console);
     return allHold(report) ? kExitOk : kExitCheckFailed;
 }
 

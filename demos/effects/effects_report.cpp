@@ -221,7 +221,7 @@ void writeCsv(const EffectsReport& report, std::ostream& out) {
     writeCsv(variantRows(report), out);
 }
 
-void writeHtml(const EffectsReport& report, std::ostream& out) {
+Page pageOf(const EffectsReport& report) {
     PageSection prices;
     prices.heading = "The price list";
     prices.sentences = {
@@ -232,14 +232,13 @@ void writeHtml(const EffectsReport& report, std::ostream& out) {
     prices.checks = report.prices.checks;
     prices.charts = {priceChart(report, false), priceChart(report, true)};
     prices.tables = {priceRows(report)};
+    if (report.prices.timeLimitHit) {
+        prices.conclusions = {"The time limit was reached after " +
+                              withThousands(report.prices.frames) + " frames."};
+    }
     prices.settings = {sceneLine(report) + "."};
-    writePage({"What each effect costs",
-               kIntroduction,
-               verdictLine(report) + ".",
-               allHold(report),
-               {prices},
-               report.provenance},
-              out);
+    return {"What each effect costs", kIntroduction, verdictLine(report) + ".",
+            allHold(report),          {prices},      report.provenance};
 }
 
 }  // namespace hashphase::demos

@@ -4,7 +4,7 @@
 // The price list as text, JSON, CSV and a page with charts.
 
 #include <demos/effects/effects_prices.hpp>
-#include <demos/report/provenance.hpp>
+#include <demos/report/page.hpp>
 
 #include <iosfwd>
 
@@ -24,7 +24,8 @@ void writeJson(const EffectsReport& report, std::ostream& out);
 /// A row for each variant: times, counters a frame, bytes.
 void writeCsv(const EffectsReport& report, std::ostream& out);
 
-void writeHtml(const EffectsReport& report, std::ostream& out);
+/// The price list as a page with charts.
+[[nodiscard]] Page pageOf(const EffectsReport& report);
 
 /// Whether all checks hold.
 [[nodiscard]] bool allHold(const EffectsReport& report);

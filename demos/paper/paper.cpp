@@ -62,7 +62,7 @@ int runPaper(const PaperOptions& options, Console& console) {
     printReport(report, options.showMilliseconds, console.out);
     json.write([&report](std::ostream& out) { writeJson(report, out); });
     csv.write([&report](std::ostream& out) { writeCsv(report, out); });
-    html.write([&report](std::ostream& out) { writeHtml(report, out); });
+    deliverPage(pageOf(report), html, console);
     return exitCodeOf(report.results);
 }
 

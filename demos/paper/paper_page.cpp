@@ -184,7 +184,7 @@ PageSection checkSection(const PaperResults& results) {
 
 }  // namespace
 
-void writeHtml(const PaperReport& report, std::ostream& out) {
+Page pageOf(const PaperReport& report) {
     const PaperResults& results = report.results;
     Page page{"The paper's figures, then and today",
               kPaperIntroduction,
@@ -207,7 +207,7 @@ void writeHtml(const PaperReport& report, std::ostream& out) {
     if (!fewFramesTable(results).rows.empty()) {
         page.sections.push_back(fewFramesSection(results));
     }
-    writePage(page, out);
+    return page;
 }
 
 }  // namespace hashphase::demos

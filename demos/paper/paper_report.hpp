@@ -4,7 +4,7 @@
 // The paper's figures then and today, as text, JSON, CSV and a page with charts.
 
 #include <demos/paper/paper_results.hpp>
-#include <demos/report/provenance.hpp>
+#include <demos/report/page.hpp>
 
 #include <iosfwd>
 #include <string>
@@ -25,7 +25,8 @@ void writeJson(const PaperReport& report, std::ostream& out);
 /// A row for each method of each part.
 void writeCsv(const PaperReport& report, std::ostream& out);
 
-void writeHtml(const PaperReport& report, std::ostream& out);
+/// All of it as a page with charts.
+[[nodiscard]] Page pageOf(const PaperReport& report);
 
 /// How many of the paper's cells that are too slow are real-time today, and whether all is right.
 [[nodiscard]] std::string verdictLine(const PaperResults& results);

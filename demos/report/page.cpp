@@ -14,7 +14,30 @@ namespace {
 
 constexpr const char* kProvenanceHeading = "Where this was measured";
 
-/// Writes one page, part by part.
+/// Where in the document something stands.
+struct Place {
+    std::string idPrefix;  // keeps the ids of parts apart
+    int headingLevel = 2;  // of sections; their charts are one below
+};
+
+std::string idOfPart(std::size_t index) {
+    return "part-" + std::to_string(index + 1);
+}
+
+Place placeOfPart(std::size_t index) {
+    return {idOfPart(index) + "-", 3};
+}
+
+std::string idOfSection(const Place& place, std::size_t index) {
+    return place.idPrefix + "section-" + std::to_string(index);
+}
+
+std::string heading(int level, const std::string& text) {
+    const std::string tag = "h" + std::to_string(level) + ">";
+    return "<" + tag + escaped(text) + "</" + tag;
+}
+
+/// Writes one page, piece by piece.
 class PageWriter {
 public:
     PageWriter(const Page& page, std::ostream& out)
@@ -25,8 +48,9 @@ public:
         out_ << "<body>\n<main>\n";
         writeTop();
         writeContents();
-        for (std::size_t i = 0; i < page_.sections.size(); ++i) {
-            writeSection(page_.sections[i], i);
+        writeSections(page_, {});
+        for (std::size_t i = 0; i < page_.parts.size(); ++i) {
+            writePart(i);
         }
         writeProvenance();
         out_ << "</main>\n";
@@ -39,10 +63,14 @@ public:
 private:
     void writeHead() const;
     void writeTop() const;
+    void writeVerdict(const Page& page) const;
     void writeContents() const;
-    void writeSection(const PageSection& section, std::size_t number) const;
+    void writeLinks(const Page& page, const Place& place) const;
+    void writePart(std::size_t index) const;
+    void writeSections(const Page& page, const Place& place) const;
+    void writeSection(const PageSection& section, const Place& place) const;
     void writeChecks(const std::vector<Check>& checks) const;
-    void writeChart(const Chart& chart) const;
+    void writeChart(const Chart& chart, const Place& place) const;
     void writeProvenance() const;
     void writeParagraph(const std::string& text) const {
         out_ << "<p>" << escaped(text) << "</p>\n";
@@ -71,8 +99,7 @@ void PageWriter::writeHead() const {
 void PageWriter::writeTop() const {
     out_ << "<header>\n<h1>" << escaped(page_.title) << "</h1>\n";
     writeParagraph(page_.introduction);
-    out_ << "<p class=\"verdict" << (page_.isGood ? "" : " bad") << "\">" << escaped(page_.verdict)
-         << "</p>\n";
+    writeVerdict(page_);
     if (scripts_.code.empty()) {
         out_ << "<p class=\"quiet\">" << escaped(scripts_.whyNone)
              << " This page has the numbers of all charts as tables.</p>\n";
@@ -83,18 +110,61 @@ void PageWriter::writeTop() const {
     out_ << "</header>\n";
 }
 
+void PageWriter::writeVerdict(const Page& page) const {
+    out_ << "<p class=\"verdict" << (page.isGood ? "" : " bad") << "\">" << escaped(page.verdict)
+         << "</p>\n";
+}
+
+void PageWriter::writeLinks(const Page& page, const Place& place) const {
+    for (std::size_t i = 0; i < page.sections.size(); ++i) {
+        out_ << "<li><a href=\"#" << idOfSection(place, i) << "\">"
+             << escaped(page.sections[i].heading) << "</a></li>\n";
+    }
+}
+
+// The sections of a part are folded up, so that the parts can be seen at a glance.
 void PageWriter::writeContents() const {
     out_ << "<nav class=\"contents\" aria-label=\"Contents\"><ul>\n";
-    for (std::size_t i = 0; i < page_.sections.size(); ++i) {
-        out_ << "<li><a href=\"#section-" << i << "\">" << escaped(page_.sections[i].heading)
-             << "</a></li>\n";
+    writeLinks(page_, {});
+    for (std::size_t i = 0; i < page_.parts.size(); ++i) {
+        const Page& part = page_.parts[i];
+        out_ << "<li><a href=\"#" << idOfPart(i) << "\">" << escaped(part.title) << "</a>";
+        if (!part.sections.empty()) {
+            out_ << "\n<details><summary>Its sections: " << part.sections.size()
+                 << "</summary><ul>\n";
+            writeLinks(part, placeOfPart(i));
+            out_ << "</ul></details>";
+        }
+        out_ << "</li>\n";
     }
     out_ << "<li><a href=\"#provenance\">" << kProvenanceHeading << "</a></li>\n</ul></nav>\n";
 }
 
-void PageWriter::writeSection(const PageSection& section, std::size_t number) const {
-    out_ << "<section id=\"section-" << number << "\">\n<h2>" << escaped(section.heading)
-         << "</h2>\n";
+void PageWriter::writePart(std::size_t index) const {
+    const Page& part = page_.parts[index];
+    out_ << "<article class=\"part\" id=\"" << idOfPart(index) << "\">\n"
+         << heading(2, part.title) << '\n';
+    writeParagraph(part.introduction);
+    writeVerdict(part);
+    if (!part.provenance.commandLine.empty()) {
+        out_ << "<p class=\"quiet\">This part alone: <code>" << escaped(part.provenance.commandLine)
+             << "</code></p>\n";
+    }
+    writeSections(part, placeOfPart(index));
+    out_ << "</article>\n";
+}
+
+void PageWriter::writeSections(const Page& page, const Place& place) const {
+    for (std::size_t i = 0; i < page.sections.size(); ++i) {
+        const PageSection& section = page.sections[i];
+        out_ << "<section id=\"" << idOfSection(place, i) << "\">\n"
+             << heading(place.headingLevel, section.heading) << '\n';
+        writeSection(section, place);
+        out_ << "</section>\n";
+    }
+}
+
+void PageWriter::writeSection(const PageSection& section, const Place& place) const {
     for (const std::string& sentence : section.sentences) {
         writeParagraph(sentence);
     }
@@ -104,7 +174,7 @@ void PageWriter::writeSection(const PageSection& section, std::size_t number) co
     }
     writeChecks(section.checks);
     for (const Chart& chart : section.charts) {
-        writeChart(chart);
+        writeChart(chart, place);
     }
     for (const DataTable& table : section.tables) {
         writeTable(table, out_);
@@ -114,7 +184,6 @@ void PageWriter::writeSection(const PageSection& section, std::size_t number) co
         writeList(section.settings);
         out_ << "</details>\n";
     }
-    out_ << "</section>\n";
 }
 
 void PageWriter::writeList(const std::vector<std::string>& sentences) const {
@@ -143,10 +212,11 @@ void PageWriter::writeChecks(const std::vector<Check>& checks) const {
     out_ << "</ul>\n";
 }
 
-void PageWriter::writeChart(const Chart& chart) const {
+void PageWriter::writeChart(const Chart& chart, const Place& place) const {
     const bool isDrawn = !scripts_.code.empty();
-    out_ << "<figure" << (isDrawn ? " class=\"chart\"" : "") << " id=\"" << escaped(chart.name)
-         << "\">\n<figcaption><h3>" << escaped(chart.title) << "</h3><p>" << escaped(chart.settings)
+    out_ << "<figure" << (isDrawn ? " class=\"chart\"" : "") << " id=\""
+         << escaped(place.idPrefix + chart.name) << "\">\n<figcaption>"
+         << heading(place.headingLevel + 1, chart.title) << "<p>" << escaped(chart.settings)
          << "</p></figcaption>\n";
     if (isDrawn) {
         out_ << "<div class=\"drawing\"></div>\n<script type=\"application/json\">"
@@ -181,19 +251,33 @@ void PageWriter::writeProvenance() const {
     out_ << "</section>\n";
 }
 
+void addCharts(const Page& page, std::vector<const Chart*>& charts) {
+    for (const PageSection& section : page.sections) {
+        for (const Chart& chart : section.charts) {
+            charts.push_back(&chart);
+        }
+    }
+    for (const Page& part : page.parts) {
+        addCharts(part, charts);
+    }
+}
+
 }  // namespace
 
 void writePage(const Page& page, std::ostream& out) {
     PageWriter(page, out).write();
 }
 
+void deliverPage(const Page& page, ResultFile& file, const Console& console) {
+    file.write([&page](std::ostream& out) { writePage(page, out); });
+    if (console.takePage) {
+        console.takePage(page);
+    }
+}
+
 SeriesLooks seriesLooks(const Page& page) {
     std::vector<const Chart*> charts;
-    for (const PageSection& section : page.sections) {
-        for (const Chart& chart : section.charts) {
-            charts.push_back(&chart);
-        }
-    }
+    addCharts(page, charts);
     return seriesLooks(charts);
 }
 

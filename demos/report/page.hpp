@@ -6,7 +6,10 @@
 // Readable  with JavaScript off: every chart has its numbers as a table.
 // Safe      under a strict content-security policy, which it brings along: only its own scripts run.
 // Paper     prints with all tables, in the colours of paper.
+// Joined    pages can be the parts of one, with one list of contents and one colour a method.
 
+#include <demos/console/program.hpp>
+#include <demos/console/result_file.hpp>
 #include <demos/report/chart.hpp>
 #include <demos/report/check.hpp>
 #include <demos/report/graded_table.hpp>
@@ -38,11 +41,18 @@ struct Page {
     bool isGood = false;
     std::vector<PageSection> sections;
     Provenance provenance;
+
+    /// Pages that follow the sections, each with its verdict. They have no parts of their own, and of
+    /// their provenance only the command is written.
+    std::vector<Page> parts = {};
 };
 
 void writePage(const Page& page, std::ostream& out);
 
-/// The looks of the series of all charts of a page.
+/// Writes the page to the file, where there is one, and hands it to whom the console names.
+void deliverPage(const Page& page, ResultFile& file, const Console& console);
+
+/// The looks of the series of all charts of a page and its parts.
 [[nodiscard]] SeriesLooks seriesLooks(const Page& page);
 
 }  // namespace hashphase::demos

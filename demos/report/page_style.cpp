@@ -29,6 +29,10 @@ main { max-width: 46rem; margin: 0 auto; padding: 1.5rem 1rem 4rem; }
 h1 { font-size: 1.7rem; line-height: 1.2; margin: 0 0 .5rem; }
 h2 { font-size: 1.3rem; line-height: 1.3; margin: 3rem 0 .5rem; }
 h3 { font-size: 1.05rem; line-height: 1.35; margin: 0; }
+.part { margin-top: 4rem; padding-top: 1rem; border-top: 2px solid var(--faint); }
+.part > h2 { font-size: 1.5rem; margin-top: 0; }
+.part section > h3 { font-size: 1.3rem; line-height: 1.3; margin: 3rem 0 .5rem; }
+h4 { font-size: 1.05rem; line-height: 1.35; margin: 0; }
 p, ul { margin: .5rem 0; }
 ul { padding-left: 1.3rem; }
 a { color: var(--link); }
@@ -44,6 +48,8 @@ ul.checks { list-style: none; padding: 0; }
 ul.checks li { display: flex; }
 ul.checks .holds, ul.checks .broken { flex: 0 0 5rem; }
 .contents ul { padding: 0; list-style: none; columns: 17rem; }
+.contents ul ul { padding-left: 1rem; columns: auto; }
+.contents details { margin: 0; }
 figure { margin: 2rem 0; }
 figcaption p { margin: .15rem 0 .6rem; }
 .drawing svg { max-width: 100%; height: auto; }
@@ -82,7 +88,8 @@ code { overflow-wrap: anywhere; }
 @media print {
   main { max-width: none; padding: 0; }
   .contents, summary { display: none; }
-  h2, h3 { break-after: avoid; }
+  h2, h3, h4 { break-after: avoid; }
+  .part { break-before: page; border: 0; margin: 0; padding: 0; }
   figcaption, .drawing, tr, li { break-inside: avoid; }
   figcaption { break-after: avoid; }
   body { font-size: 10pt; }

@@ -19,6 +19,14 @@ std::string ratioText(const std::optional<double>& ratio) {
     return ratio ? fixed(*ratio, *ratio < 10 ? 2 : 1) + "x" : "-";
 }
 
+std::string leftOutText(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) {
+        text += (text.empty() ? "; left out for want of time: " : ", ") + name;
+    }
+    return text;
+}
+
 void printProvenance(const Provenance& provenance, std::ostream& out) {
     out << "hashphase " << provenance.hashphaseVersion << ", Bullet " << provenance.bulletVersion
         << " (" << provenance.precision << " precision), " << provenance.compiler << ", "

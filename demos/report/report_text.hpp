@@ -9,6 +9,7 @@
 #include <iosfwd>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace hashphase::demos {
 
@@ -17,6 +18,9 @@ namespace hashphase::demos {
 
 /// "3.14x", "16.4x"; "-" for none.
 [[nodiscard]] std::string ratioText(const std::optional<double>& ratio);
+
+/// "; left out for want of time: P9, P10"; empty for none.
+[[nodiscard]] std::string leftOutText(const std::vector<std::string>& names);
 
 /// A line with versions, compiler and processor, and a warning when the processor was busy.
 void printProvenance(const Provenance& provenance, std::ostream& out);

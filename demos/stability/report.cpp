@@ -240,13 +240,13 @@ void writeCsv(const StabilityReport& report, std::ostream& out) {
     writeCsv(rowsOf(report), out);
 }
 
-void writeHtml(const StabilityReport& report, std::ostream& out) {
+Page pageOf(const StabilityReport& report) {
     Page page{"Hard cases",    kIntroduction,          verdictLine(report) + ".",
               allHold(report), {tableSection(report)}, report.provenance};
     for (const CaseResult& result : report.results) {
         page.sections.push_back(caseSection(report, result));
     }
-    writePage(page, out);
+    return page;
 }
 
 }  // namespace hashphase::demos

@@ -4,6 +4,7 @@
 // What the broadphases do in hard cases, as text for people, JSON for programs, CSV for spreadsheets, a
 // page for browsers.
 
+#include <demos/report/page.hpp>
 #include <demos/stability/stability.hpp>
 
 #include <iosfwd>
@@ -20,6 +21,7 @@ void writeJson(const StabilityReport& report, std::ostream& out);
 /// A row for each case and broadphase.
 void writeCsv(const StabilityReport& report, std::ostream& out);
 
-void writeHtml(const StabilityReport& report, std::ostream& out);
+/// The table, and all about each case, as a page.
+[[nodiscard]] Page pageOf(const StabilityReport& report);
 
 }  // namespace hashphase::demos

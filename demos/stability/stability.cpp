@@ -4,6 +4,7 @@
 #include <demos/console/nearest_name.hpp>
 #include <demos/console/progress.hpp>
 #include <demos/console/result_file.hpp>
+#include <demos/report/report_text.hpp>
 #include <demos/report/stopwatch.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <demos/stability/isolation.hpp>
@@ -60,7 +61,12 @@ void runCases(std::span<const HardCase* const> chosen, StabilityReport& report, 
     Progress progress(console.err, progressStyle(console, options.quiet), "hard cases",
                       chosen.size() * report.kinds.size());
     std::size_t done = 0;
+    const Stopwatch sinceBegin;
     for (const HardCase* hardCase : chosen) {
+        if (options.timeLimit && sinceBegin.milliseconds() > 1000 * *options.timeLimit) {
+            report.leftOut.emplace_back(hardCase->id);
+            continue;
+        }
         const Stopwatch watch;
         CaseResult result{hardCase, {}, 0};
         for (const BroadphaseKind* kind : report.kinds) {
@@ -128,7 +134,7 @@ std::string verdictLine(const StabilityReport& report) {
     if (!others.empty()) {
         line += "; Bullet's broadphases do not: " + others;
     }
-    return line;
+    return line + leftOutText(report.leftOut);
 }
 
 int runStability(const StabilityOptions& options, std::span<const BroadphaseKind> kinds,
@@ -154,7 +160,7 @@ int runStability(const StabilityOptions& options, std::span<const BroadphaseKind
     printReport(report, console.out);
     json.write([&report](std::ostream& file) { writeJson(report, file); });
     csv.write([&report](std::ostream& file) { writeCsv(report, file); });
-    html.write([&report](std::ostream& file) { writeHtml(report, file); });
+    deliverPage(pageOf(report), html, console);
     return allHold(report) ? kExitOk : kExitCheckFailed;
 }
 

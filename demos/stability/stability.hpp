@@ -24,7 +24,8 @@ struct StabilityOptions {
     std::uint64_t seed = 1;
     double caseSeconds =
         2;  // of processor time that a broadphase has for a case; ours ten times that
-    std::string jsonFile;  // empty: none is written
+    std::optional<double> timeLimit;  // [s] of wall time, after which no case begins
+    std::string jsonFile;             // empty: none is written
     std::string csvFile;
     std::string htmlFile;
     bool quiet = false;
@@ -42,6 +43,7 @@ struct StabilityReport {
     StabilityOptions options;
     std::vector<const BroadphaseKind*> kinds;
     std::vector<CaseResult> results;
+    std::vector<std::string> leftOut;  // ids, for want of time
     Provenance provenance;
     double seconds = 0;
 };

@@ -28,6 +28,8 @@ void declareStability(CLI::App& app, StabilityOptions& options) {
                    "that)")
         ->check(positiveSecondsFault)
         ->capture_default_str();
+    app.add_option("--time-limit", options.timeLimit, "after so many seconds begin no other case")
+        ->check(positiveSecondsFault);
     app.add_option("--json", options.jsonFile, "write everything found to this file");
     app.add_option("--csv", options.csvFile,
                    "write a row for each case and broadphase to this file");

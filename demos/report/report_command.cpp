@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/report/report_command.hpp>
+
+#include <demos/console/format.hpp>
+#include <demos/console/nearest_name.hpp>
+#include <demos/console/option_checks.hpp>
+#include <demos/report/page.hpp>
+#include <demos/report/report_text.hpp>
+#include <demos/report/stopwatch.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <ostream>
+
+namespace hashphase::demos {
+namespace {
+
+constexpr const char* kReportIntroduction =
+    "hashphase is a spatial hash that replaces the broadphase of the Bullet physics engine: it "
+    "finds the pairs of bodies whose bounding boxes overlap, and answers rays, culling, AI and "
+    "terrain from the same grid. This page is all that the program measures about itself, part by "
+    "part, bad news included. Each part can be had alone, too.";
+
+struct ReportOptions {
+    bool isQuick = false;
+    std::vector<std::string> only;  // names; empty: all
+    std::uint32_t seed = 1;
+    std::string htmlFile = "hashphase-report.html";
+    std::optional<double> timeLimit;  // [s]
+    bool quiet = false;
+};
+
+void declareReport(CLI::App& app, ReportOptions& options) {
+    app.add_flag("--quick", options.isQuick,
+                 "measure less: a minute and a half, in place of a quarter of an hour");
+    app.add_option("--only", options.only, "join these parts, separated by commas")->delimiter(',');
+    app.add_option("--html", options.htmlFile, "write the page to this file")
+        ->capture_default_str();
+    app.add_option("--seed", options.seed, "seed of all random numbers")
+        ->check(
+            CLI::Range(std::int64_t{0}, std::int64_t{std::numeric_limits<std::uint32_t>::max()}))
+        ->capture_default_str();
+    app.add_option("--time-limit", options.timeLimit,
+                   "so many seconds for all parts; the page says what was left out")
+        ->check(positiveSecondsFault);
+    app.add_flag("--quiet", options.quiet, "no progress on stderr");
+}
+
+std::vector<const ReportPart*> chosenParts(const std::vector<ReportPart>& parts,
+                                           const std::vector<std::string>& names) {
+    std::vector<std::string> known;
+    for (const ReportPart& part : parts) {
+        known.push_back(part.command.name);
+    }
+    for (const std::string& name : names) {
+        if (std::find(known.begin(), known.end(), name) == known.end()) {
+            throw InputError(unknownNameSentence("part", name, known));
+        }
+    }
+    std::vector<const ReportPart*> chosen;
+    for (const ReportPart& part : parts) {
+        const auto found = std::find(names.begin(), names.end(), part.command.name);
+        if (names.empty() || found != names.end()) {
+            chosen.push_back(&part);
+        }
+    }
+    return chosen;
+}
+
+/// Runs the parts, and joins what they hand in.
+class ReportRun {
+public:
+    ReportRun(std::vector<const ReportPart*> parts, const ReportOptions& options, Console& console)
+        : parts_(std::move(parts)), options_(options), console_(console) {}
+
+    [[nodiscard]] Page run() {
+        page_.title = "hashphase, measured";
+        page_.introduction = kReportIntroduction;
+        page_.provenance = gatherProvenance(console_.commandLine);
+        for (std::size_t i = 0; i < parts_.size(); ++i) {
+            runPart(i);
+        }
+        conclude();
+        return std::move(page_);
+    }
+
+private:
+    void runPart(std::size_t index);
+    [[nodiscard]] Page pageOfPart(const ReportPart& part, const std::vector<std::string>& options);
+    [[nodiscard]] std::optional<double> secondsFor(std::size_t index) const;
+    [[nodiscard]] double expectedSeconds(const ReportPart& part) const {
+        return options_.isQuick ? part.quickSeconds : part.fullSeconds;
+    }
+    void conclude();
+
+    std::vector<const ReportPart*> parts_;
+    const ReportOptions& options_;
+    Console& console_;
+    Stopwatch watch_;
+    Page page_;
+    std::vector<Check> verdicts_;       // of each part
+    std::vector<std::string> leftOut_;  // for want of time
+};
+
+/// Of what is left, the part's share of the expected time of all that are to come.
+std::optional<double> ReportRun::secondsFor(std::size_t index) const {
+    if (!options_.timeLimit) {
+        return std::nullopt;
+    }
+    double toCome = 0;
+    for (std::size_t i = index; i < parts_.size(); ++i) {
+        toCome += expectedSeconds(*parts_[i]);
+    }
+    const double left = *options_.timeLimit - watch_.milliseconds() / 1000;
+    return left * expectedSeconds(*parts_[index]) / toCome;
+}
+
+void ReportRun::runPart(std::size_t index) {
+    const ReportPart& part = *parts_[index];
+    const std::string& name = part.command.name;
+    const std::optional<double> seconds = secondsFor(index);
+    if (seconds && *seconds <= 0) {
+        leftOut_.push_back(name);
+        return;
+    }
+    if (!options_.quiet) {
+        console_.err << "part " << index + 1 << " of " << parts_.size() << ": " << name << '\n';
+    }
+    std::vector<std::string> arguments;
+    if (options_.isQuick) {
+        arguments = part.quickOptions;
+    }
+    arguments.insert(arguments.end(), {"--seed", std::to_string(options_.seed)});
+    if (seconds) {
+        arguments.insert(arguments.end(), {"--time-limit", fixed(std::max(*seconds, 0.1), 1)});
+    }
+    const Stopwatch watch;
+    page_.parts.push_back(pageOfPart(part, arguments));
+    const Page& done = page_.parts.back();
+    verdicts_.push_back(
+        {done.title, done.isGood, fixed(watch.milliseconds() / 1000, 0) + " s: " + done.verdict});
+    console_.out << name << ": " << done.verdict << '\n' << std::flush;
+}
+
+// A part that cannot go on has not shown what it was to show.
+Page ReportRun::pageOfPart(const ReportPart& part, const std::vector<std::string>& options) {
+    std::ostream nowhere(nullptr);
+    Page page{part.command.name, "", "It handed in no page.", false, {}, {}};
+    Console console{nowhere, console_.err, console_.errIsTerminal,
+                    "hashphase " + part.command.name};
+    for (const std::string& option : options) {
+        console.commandLine += " " + option;
+    }
+    console.takePage = [&page](const Page& taken) { page = taken; };
+    page.provenance.commandLine = console.commandLine;
+    CLI::App app;
+    part.command.declareOptions(app);
+    std::vector<std::string> arguments(options.rbegin(), options.rend());  // as CLI11 takes them
+    if (options_.quiet) {
+        arguments.insert(arguments.begin(), "--quiet");
+    }
+    try {
+        app.parse(std::move(arguments));
+        page.isGood = part.command.run(console) == kExitOk && page.isGood;
+    } catch (const std::exception& error) {
+        page.isGood = false;
+        page.verdict = std::string("It did not come to its end: ") + error.what();
+    }
+    return page;
+}
+
+void ReportRun::conclude() {
+    const auto broken = std::count_if(verdicts_.begin(), verdicts_.end(),
+                                      [](const Check& check) { return !check.holds; });
+    const std::size_t parts = page_.parts.size();
+    page_.isGood = broken == 0;
+    page_.verdict =
+        std::to_string(parts) + (parts == 1 ? " part: " : " parts: ") +
+        (broken == 0 ? "all checks hold" : "checks of " + std::to_string(broken) + " are BROKEN") +
+        leftOutText(leftOut_) + ".";
+    PageSection section;
+    section.heading = "In short";
+    section.checks = std::move(verdicts_);
+    if (options_.isQuick) {
+        section.sentences = {"Measured with --quick: fewer objects, fewer frames."};
+    }
+    page_.sections = {std::move(section)};
+}
+
+int runReport(const std::vector<ReportPart>& parts, const ReportOptions& options,
+              Console& console) {
+    std::vector<const ReportPart*> chosen = chosenParts(parts, options.only);
+    ResultFile file(options.htmlFile);
+    const Page page = ReportRun(std::move(chosen), options, console).run();
+    deliverPage(page, file, console);
+    console.out << page.verdict << " The page is " << options.htmlFile << ".\n";
+    return page.isGood ? kExitOk : kExitCheckFailed;
+}
+
+}  // namespace
+
+Subcommand reportCommand(std::vector<ReportPart> parts) {
+    auto options = std::make_shared<ReportOptions>();
+    std::string names;
+    for (const ReportPart& part : parts) {
+        names += (names.empty() ? "" : ", ") + part.command.name;
+    }
+    Subcommand command;
+    command.name = "report";
+    command.description = "Join in one page what these find: " + names;
+    command.declareOptions = [options](CLI::App& app) { declareReport(app, *options); };
+    command.run = [options, parts = std::move(parts)](Console& console) {
+        return runReport(parts, *options, console);
+    };
+    return command;
+}
+
+}  // namespace hashphase::demos

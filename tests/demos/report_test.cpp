@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/report/chart_scripts.hpp>
+#include <demos/report/page.hpp>
+#include <demos/report/report_command.hpp>
+#include <tests/demos/sample_experiments.hpp>
+#include <tests/demos/temporary_folder.hpp>
+
+#include <gtest/gtest.h>
+#include <CLI/CLI.hpp>
+
+#include <array>
+#include <chrono>
+#include <fstream>
+#include <memory>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+namespace hashphase::demos {
+namespace {
+
+/// What a part was run with.
+struct PartCall {
+    std::size_t size = 10;
+    std::uint64_t seed = 0;
+    double timeLimit = 0;
+    bool quiet = false;
+    int count = 0;
+};
+
+ReportPart samplePart(const std::string& name, bool isGood, std::shared_ptr<PartCall> call) {
+    ReportPart part;
+    part.command.name = name;
+    part.command.description = "A sample";
+    part.command.declareOptions = [call](CLI::App& app) {
+        app.add_option("--size", call->size);
+        app.add_option("--seed", call->seed);
+        app.add_option("--time-limit", call->timeLimit);
+        app.add_flag("--quiet", call->quiet);
+    };
+    part.command.run = [=](Console& console) {
+        ++call->count;
+        console.out << "what " << name << " prints\n";
+        Page page{"Page of " + name, "Introduction.", "Verdict of " + name + ".", isGood, {}, {}};
+        page.provenance.commandLine = console.commandLine;
+        page.sections.push_back({"First", {"Sentence"}, {}, {}, sampleCharts(), {}, {}});
+        page.sections.push_back({"Second", {"Sentence"}, {}, {}, {}, {}, {}});
+        ResultFile none("");
+        deliverPage(page, none, console);
+        return isGood ? kExitOk : kExitCheckFailed;
+    };
+    part.quickOptions = {"--size", "3"};
+    return part;
+}
+
+struct ReportSeen {
+    int code = 0;
+    std::string out;
+    std::string err;
+    std::string html;  // without the scripts that the page brings along
+};
+
+ReportSeen runReport(const std::vector<ReportPart>& parts, const std::vector<std::string>& options,
+                     const std::string& htmlFile = {}) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("page.html");
+    std::vector<std::string> arguments{"report", "--html", htmlFile.empty() ? path : htmlFile};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    std::ostringstream out;
+    std::ostringstream err;
+    const std::array subcommands{reportCommand(parts)};
+    ReportSeen seen;
+    seen.code = runProgram(arguments, subcommands, {out, err, false, "hashphase report"});
+    seen.out = out.str();
+    seen.err = err.str();
+    std::ifstream file(path);
+    seen.html.assign(std::istreambuf_iterator<char>(file), {});
+    const std::string_view code = chartScripts().code;
+    if (const std::size_t at = seen.html.find(code); !code.empty() && at != std::string::npos) {
+        seen.html.erase(at, code.size());
+    }
+    return seen;
+}
+
+/// One that holds, one that may not.
+std::vector<ReportPart> twoParts(bool isSecondGood = true) {
+    return {samplePart("alpha", true, std::make_shared<PartCall>()),
+            samplePart("beta", isSecondGood, std::make_shared<PartCall>())};
+}
+
+std::vector<std::string> matches(const std::string& text, const char* pattern) {
+    const std::regex regex(pattern);
+    std::vector<std::string> found;
+    for (std::sregex_iterator at(text.begin(), text.end(), regex), end; at != end; ++at) {
+        found.push_back((*at)[1]);
+    }
+    return found;
+}
+
+TEST(JoinedReport, HasUniqueIdsAndALinkToEachPartAndSection) {
+    const ReportSeen seen = runReport(twoParts(), {});
+    EXPECT_EQ(seen.code, kExitOk) << seen.err;
+    const std::vector<std::string> all = matches(seen.html, " id=\"([^\"]*)\"");
+    const std::set<std::string> ids(all.begin(), all.end());
+    EXPECT_EQ(ids.size(), all.size());
+    EXPECT_EQ(ids.size(), 1 + 2 * (1 + 2 + sampleCharts().size()) + 1);
+
+    const std::vector<std::string> links = matches(seen.html, " href=\"#([^\"]*)\"");
+    EXPECT_EQ(links.size(), 1 + 2 * (1 + 2) + 1U);
+    for (const std::string& link : links) {
+        EXPECT_TRUE(ids.contains(link)) << link;
+    }
+    EXPECT_EQ(links[1], "part-1");
+    EXPECT_EQ(links[4], "part-2");
+}
+
+TEST(JoinedReport, SaysWhatEachPartFoundAndHowToHaveItAlone) {
+    const ReportSeen seen = runReport(twoParts(), {"--seed", "7"});
+    EXPECT_EQ(seen.out.substr(0, seen.out.find("The page is")),
+              "alpha: Verdict of alpha.\nbeta: Verdict of beta.\n2 parts: all checks hold. ");
+    EXPECT_NE(seen.err.find("part 2 of 2: beta\n"), std::string::npos) << seen.err;
+    const std::size_t beta = seen.html.find("<h2>Page of beta</h2>");
+    ASSERT_NE(beta, std::string::npos);
+    EXPECT_NE(seen.html.find("<p class=\"verdict\">Verdict of beta.</p>", beta), std::string::npos);
+    EXPECT_NE(seen.html.find("<code>hashphase beta --seed 7</code>", beta), std::string::npos);
+    EXPECT_NE(seen.html.find("<h3>First</h3>", beta), std::string::npos);
+    EXPECT_EQ(matches(seen.html, "(Where this was measured</h2>)").size(), 1U);
+}
+
+TEST(JoinedReport, IsBadIfOneOfItsPartsIs) {
+    const ReportSeen seen = runReport(twoParts(false), {});
+    EXPECT_EQ(seen.code, kExitCheckFailed);
+    EXPECT_NE(seen.html.find("<p class=\"verdict bad\">2 parts: checks of 1 are BROKEN.</p>"),
+              std::string::npos);
+    EXPECT_NE(seen.html.find("<p class=\"verdict\">Verdict of alpha.</p>"), std::string::npos);
+    EXPECT_NE(seen.html.find("<p class=\"verdict bad\">Verdict of beta.</p>"), std::string::npos);
+}
+
+TEST(JoinedReport, GoesOnAfterAPartThatThrows) {
+    std::vector<ReportPart> parts = twoParts();
+    parts[0].command.run = [](Console&) -> int { throw std::runtime_error("no more <paper>"); };
+    const ReportSeen seen = runReport(parts, {});
+    EXPECT_EQ(seen.code, kExitCheckFailed);
+    EXPECT_NE(seen.html.find("It did not come to its end: no more &lt;paper&gt;"),
+              std::string::npos);
+    EXPECT_NE(seen.html.find("<h2>Page of beta</h2>"), std::string::npos);
+}
+
+TEST(JoinedReport, HoldsAllNumbersWithoutJavaScriptAndNeedsNothingElse) {
+    const std::string html = runReport(twoParts(), {}).html;
+    std::size_t rows = 0;
+    for (const Chart& chart : sampleCharts()) {
+        rows += chart.data.rows.size() + 1;
+    }
+    const std::string parts = html.substr(0, html.find("id=\"provenance\""));
+    EXPECT_EQ(matches(parts, "(<tr>)").size(), 2 * rows);
+    EXPECT_EQ(html.find(" src="), std::string::npos);
+    EXPECT_EQ(html.find("<link"), std::string::npos);
+}
+
+TEST(JoinedReport, DrawsASeriesInOneColourInAllParts) {
+    Chart first{"a",   "A",   "", ChartMark::kPoint, {{{"x"}, {"m"}}, {{1.0, "one"}, {2.0, "two"}}},
+                {"x"}, {"x"}, "m"};
+    Chart second = first;
+    second.data.rows = {{1.0, "three"}, {2.0, "two"}};
+    Page page{"Title", "", "", true, {}, {}};
+    for (const Chart& chart : {first, second}) {
+        Page part = page;
+        part.parts.clear();
+        part.sections.assign({PageSection{"S", {}, {}, {}, {chart}, {}, {}}});
+        page.parts.push_back(part);
+    }
+    const SeriesLooks looks = seriesLooks(page);
+    EXPECT_EQ(looks.size(), 3U);
+    EXPECT_NE(looks.at("two").colour, looks.at("one").colour);
+    EXPECT_NE(looks.at("two").colour, looks.at("three").colour);
+}
+
+TEST(JoinedReport, HandsItsOptionsToTheParts) {
+    const auto call = std::make_shared<PartCall>();
+    const auto other = std::make_shared<PartCall>();
+    const std::vector<ReportPart> parts{samplePart("alpha", true, call),
+                                        samplePart("beta", true, other)};
+    const ReportSeen seen = runReport(
+        parts, {"--quick", "--seed", "9", "--time-limit", "1000", "--quiet", "--only", "alpha"});
+    EXPECT_EQ(seen.code, kExitOk);
+    EXPECT_EQ(seen.err, "");
+    EXPECT_EQ(call->size, 3U);
+    EXPECT_EQ(call->seed, 9U);
+    EXPECT_NEAR(call->timeLimit, 1000, 5);
+    EXPECT_TRUE(call->quiet);
+    EXPECT_EQ(call->count, 1);
+    EXPECT_EQ(other->count, 0) << "not asked for";
+    EXPECT_NE(seen.out.find("1 part: all checks hold."), std::string::npos);
+}
+
+TEST(JoinedReport, SaysWhatItLeftOutForWantOfTime) {
+    std::vector<ReportPart> parts = twoParts();
+    const auto run = parts[0].command.run;
+    parts[0].command.run = [run](Console& console) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        return run(console);
+    };
+    const ReportSeen seen = runReport(parts, {"--time-limit", "0.2"});
+    EXPECT_EQ(seen.code, kExitOk);
+    EXPECT_NE(seen.html.find(">1 part: all checks hold; left out for want of time: beta.</p>"),
+              std::string::npos);
+    EXPECT_EQ(seen.html.find("Page of beta"), std::string::npos);
+}
+
+TEST(JoinedReport, RefusesWhatItDoesNotKnow) {
+    EXPECT_EQ(runReport(twoParts(), {"--only", "alpha,bta"}).err,
+              "hashphase: There is no part 'bta'; did you mean 'beta'?\n");
+    EXPECT_EQ(runReport(twoParts(), {"--only", "alpha,bta"}).code, kExitUsage);
+    EXPECT_EQ(runReport(twoParts(), {"--quik"}).code, kExitUsage);
+    EXPECT_EQ(runReport(twoParts(), {"--time-limit", "nan"}).code, kExitUsage);
+    EXPECT_EQ(runReport(twoParts(), {"--seed", "-1"}).code, kExitUsage);
+    const ReportSeen seen = runReport(twoParts(), {}, "/no/such/folder/page.html");
+    EXPECT_EQ(seen.code, kExitUsage);
+    EXPECT_EQ(seen.out, "") << "nothing was run";
+}
+
+}  // namespace
+}  // namespace hashphase::demos
