@@ -48,6 +48,7 @@ ul.checks { list-style: none; padding: 0; }
 ul.checks li { display: flex; }
 ul.checks .holds, ul.checks .broken { flex: 0 0 5rem; }
 .contents ul { padding: 0; list-style: none; columns: 17rem; }
+.contents > ul > li { break-inside: avoid; }
 .contents ul ul { padding-left: 1rem; columns: auto; }
 .contents details { margin: 0; }
 figure { margin: 2rem 0; }

@@ -143,7 +143,7 @@ void ReportRun::runPart(std::size_t index) {
     page_.parts.push_back(pageOfPart(part, arguments));
     const Page& done = page_.parts.back();
     verdicts_.push_back(
-        {done.title, done.isGood, fixed(watch.milliseconds() / 1000, 0) + " s: " + done.verdict});
+        {done.verdict, done.isGood, name + ", " + fixed(watch.milliseconds() / 1000, 0) + " s"});
     console_.out << name << ": " << done.verdict << '\n' << std::flush;
 }
 

@@ -223,6 +223,7 @@ void writeJson(const StabilityReport& report, std::ostream& out) {
                 {"caseTimeLimitSeconds", report.options.caseSeconds}}},
               {"verdict", {{"text", verdictLine(report)}, {"holds", allHold(report)}}},
               {"seconds", report.seconds},
+              {"leftOut", report.leftOut},
               {"cases", Json::array()}};
     for (const CaseResult& result : report.results) {
         json["cases"].push_back({{"id", result.hardCase->id},

@@ -50,6 +50,12 @@ bool holds(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
 }
 
+TEST(Accuracy, SaysWhatItLeftOutForWantOfTime) {
+    EXPECT_TRUE(holds(run({"--time-limit", "1e-9"}).out,
+                      "\n0 experiments, 0 checks: all hold; left out for want of time: S1, S2\n"));
+    EXPECT_EQ(run({"--time-limit", "nan"}).exitCode, kExitUsage);
+}
+
 TEST(Accuracy, EndsWithAVerdict) {
     const Ran ran = run({});
     EXPECT_EQ(ran.exitCode, kExitOk) << ran.err;

@@ -2,6 +2,7 @@
 #include <demos/accuracy/accuracy_command.hpp>
 #include <demos/compare/compare_command.hpp>
 #include <demos/report/chart_scripts.hpp>
+#include <demos/report/report_command.hpp>
 #include <tests/demos/sample_experiments.hpp>
 #include <tests/demos/temporary_folder.hpp>
 
@@ -21,7 +22,10 @@ void runProgramFor(const std::vector<std::string>& arguments) {
     std::ostringstream out;
     std::ostringstream err;
     const std::vector<Experiment> experiments = sampleExperiments();
-    const std::array subcommands{accuracyCommand(experiments), compareCommand()};
+    const std::vector<std::string> few{"--objects", "60", "--frames", "12"};
+    const std::array subcommands{
+        accuracyCommand(experiments), compareCommand(),
+        reportCommand({{accuracyCommand(experiments), {}}, {compareCommand(), few}})};
     ASSERT_EQ(runProgram(arguments, subcommands, {out, err, false, "hashphase test"}), kExitOk)
         << err.str();
 }
@@ -78,14 +82,17 @@ TEST(Browser, DrawsAllChartsUnderThePolicyOfThePage) {
     runProgramFor({"accuracy", "--output", folder.file("report")});
     runProgramFor(
         {"compare", "--objects", "60", "--frames", "12", "--html", folder.file("compare.html")});
-    const json pages =
-        browse(folder, {folder.file("report/accuracy.html"), folder.file("compare.html")});
-    ASSERT_EQ(pages.size(), 2U);
+    runProgramFor({"report", "--quick", "--html", folder.file("joined.html")});
+    const json pages = browse(folder, {folder.file("report/accuracy.html"),
+                                       folder.file("compare.html"), folder.file("joined.html")});
+    ASSERT_EQ(pages.size(), 3U);
 
-    expectSound(pages[0]);
-    expectSound(pages[1]);
+    for (const json& page : pages) {
+        expectSound(page);
+    }
     expectDrawn(pages[0]["withJavaScript"]["charts"], sampleCharts().size());
     expectDrawn(pages[1]["withJavaScript"]["charts"], 2);
+    expectDrawn(pages[2]["withJavaScript"]["charts"], sampleCharts().size() + 2);
     std::size_t rows = 0;
     for (const Chart& chart : sampleCharts()) {
         rows += chart.data.rows.size();

@@ -171,6 +171,13 @@ TEST(Stability, WritesJsonCsvAndAPage) {
     }
 }
 
+TEST(Stability, SaysWhatItLeftOutForWantOfTime) {
+    const Printed printed = run({"--quick", "--quiet", "--only", "H9,H31", "--time-limit", "1e-9"});
+    EXPECT_EQ(lastLineOf(printed.out),
+              "0 of 0 hard cases hold; left out for want of time: H9, H31\n");
+    EXPECT_EQ(run({"--time-limit", "0"}).exitCode, kExitUsage);
+}
+
 // --- What goes wrong ------------------------------------------------------------------------------
 
 // Bullet's brute force, but for the first pair, which it forgets.
