@@ -35,11 +35,11 @@ int main(int argc, char** argv) {
         return runViewerProgram(arguments, console);
     }
     const Subcommand report = reportCommand(
-        {{compareCommand(), {"--objects", "10000", "--frames", "60"}, 8, 35},
+        {{compareCommand(), {"--objects", "10000", "--frames", "60"}, 5, 60},
          {paperCommand(), {"--quick"}, 20, 90},
-         {accuracyCommand(), {"--quick"}, 50, 660},
-         {effectsCommand(countAllocations), {"--objects", "2000", "--frames", "60"}, 5, 60},
-         {stabilityCommand(), {"--quick"}, 10, 60}});
+         {accuracyCommand(), {"--quick"}, 40, 660},
+         {effectsCommand(countAllocations), {"--objects", "2000", "--frames", "60"}, 2, 40},
+         {stabilityCommand(), {"--quick"}, 20, 70}});
     const std::array subcommands{compareCommand(),
                                  paperCommand(),
                                  accuracyCommand(),

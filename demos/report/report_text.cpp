@@ -3,6 +3,7 @@
 
 #include <demos/console/format.hpp>
 
+#include <algorithm>
 #include <ostream>
 
 namespace hashphase::demos {
@@ -20,9 +21,13 @@ std::string ratioText(const std::optional<double>& ratio) {
 }
 
 std::string leftOutText(const std::vector<std::string>& names) {
+    constexpr std::size_t mostNames = 10;
     std::string text;
-    for (const std::string& name : names) {
-        text += (text.empty() ? "; left out for want of time: " : ", ") + name;
+    for (std::size_t i = 0; i < std::min(names.size(), mostNames); ++i) {
+        text += (i == 0 ? "; left out for want of time: " : ", ") + names[i];
+    }
+    if (names.size() > mostNames) {
+        text += " and " + std::to_string(names.size() - mostNames) + " more";
     }
     return text;
 }

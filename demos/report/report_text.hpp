@@ -19,7 +19,8 @@ namespace hashphase::demos {
 /// "3.14x", "16.4x"; "-" for none.
 [[nodiscard]] std::string ratioText(const std::optional<double>& ratio);
 
-/// "; left out for want of time: P9, P10"; empty for none.
+/// "; left out for want of time: P9, P10", ten of them at most and the number of the others; empty
+/// for none.
 [[nodiscard]] std::string leftOutText(const std::vector<std::string>& names);
 
 /// A line with versions, compiler and processor, and a warning when the processor was busy.

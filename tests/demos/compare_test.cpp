@@ -240,6 +240,7 @@ TEST(Compare, WritesAPageWithoutChartsWhereNothingWasTimed) {
     EXPECT_EQ(page.str().find("id=\"compare-times\""), std::string::npos);
     EXPECT_NE(page.str().find("The time limit was reached after 0 of 120 frames."),
               std::string::npos);
+    EXPECT_EQ(page.str().find("class=\"verdict bad\""), std::string::npos) << "nothing was wrong";
 }
 
 TEST(Compare, RefusesResultFilesThatCannotBeWritten) {

@@ -2,6 +2,7 @@
 #include <demos/report/chart_scripts.hpp>
 #include <demos/report/page.hpp>
 #include <demos/report/report_command.hpp>
+#include <demos/report/report_text.hpp>
 #include <tests/demos/sample_experiments.hpp>
 #include <tests/demos/temporary_folder.hpp>
 
@@ -208,6 +209,14 @@ TEST(JoinedReport, SaysWhatItLeftOutForWantOfTime) {
     EXPECT_NE(seen.html.find(">1 part: all checks hold; left out for want of time: beta.</p>"),
               std::string::npos);
     EXPECT_EQ(seen.html.find("Page of beta"), std::string::npos);
+}
+
+TEST(JoinedReport, NamesTenOfWhatWasLeftOut) {
+    EXPECT_EQ(leftOutText({}), "");
+    const std::vector<std::string> names{"a", "b", "c", "d", "e", "f",
+                                         "g", "h", "i", "j", "k", "l"};
+    EXPECT_EQ(leftOutText(names),
+              "; left out for want of time: a, b, c, d, e, f, g, h, i, j and 2 more");
 }
 
 TEST(JoinedReport, RefusesWhatItDoesNotKnow) {
