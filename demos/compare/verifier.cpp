@@ -11,33 +11,33 @@ FrameVerdict Verifier::judge(std::span<const PairKey> reported, std::span<const 
     verdict.pairs = reported.size();
     verdict.exactPairs = exact.size();
 
-    difference_.clear();
+    missing_.clear();
     std::set_difference(exact.begin(), exact.end(), reported.begin(), reported.end(),
-                        std::back_inserter(difference_));
-    verdict.missing = difference_.size();
-    if (!difference_.empty()) {
-        verdict.firstMissing = difference_.front();
+                        std::back_inserter(missing_));
+    verdict.missing = missing_.size();
+    if (!missing_.empty()) {
+        verdict.firstMissing = missing_.front();
     }
 
-    difference_.clear();
+    extra_.clear();
     std::set_difference(reported.begin(), reported.end(), exact.begin(), exact.end(),
-                        std::back_inserter(difference_));
-    verdict.extra = difference_.size();
-    if (!difference_.empty()) {
-        verdict.firstExtra = difference_.front();
+                        std::back_inserter(extra_));
+    verdict.extra = extra_.size();
+    if (!extra_.empty()) {
+        verdict.firstExtra = extra_.front();
     }
 
     known_.clear();
-    std::set_intersection(difference_.begin(), difference_.end(), onceOverlapping_.begin(),
+    std::set_intersection(extra_.begin(), extra_.end(), onceOverlapping_.begin(),
                           onceOverlapping_.end(), std::back_inserter(known_));
     verdict.stale = known_.size();
 
     // Reported now, and overlapping now or known from before.
-    difference_.clear();
+    known_.clear();
     std::set_union(exact.begin(), exact.end(), onceOverlapping_.begin(), onceOverlapping_.end(),
-                   std::back_inserter(difference_));
+                   std::back_inserter(known_));
     onceOverlapping_.clear();
-    std::set_intersection(reported.begin(), reported.end(), difference_.begin(), difference_.end(),
+    std::set_intersection(reported.begin(), reported.end(), known_.begin(), known_.end(),
                           std::back_inserter(onceOverlapping_));
     return verdict;
 }

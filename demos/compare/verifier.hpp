@@ -26,9 +26,14 @@ public:
     /// Both lists sorted. Cost: linear.
     FrameVerdict judge(std::span<const PairKey> reported, std::span<const PairKey> exact);
 
+    /// What the last verdict counts, sorted; until the next one.
+    [[nodiscard]] std::span<const PairKey> missing() const noexcept { return missing_; }
+    [[nodiscard]] std::span<const PairKey> extra() const noexcept { return extra_; }
+
 private:
     std::vector<PairKey> onceOverlapping_;  // reported since a frame in which they overlapped
-    std::vector<PairKey> difference_;
+    std::vector<PairKey> missing_;
+    std::vector<PairKey> extra_;
     std::vector<PairKey> known_;
 };
 
