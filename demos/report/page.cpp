@@ -13,6 +13,7 @@ namespace hashphase::demos {
 namespace {
 
 constexpr const char* kProvenanceHeading = "Where this was measured";
+constexpr const char* kReportTab = "report";
 
 /// Where in the document something stands.
 struct Place {
@@ -37,26 +38,34 @@ std::string heading(int level, const std::string& text) {
     return "<" + tag + escaped(text) + "</" + tag;
 }
 
+void addTabs(const Page& page, std::vector<const PageTab*>& tabs) {
+    for (const PageTab& tab : page.tabs) {
+        tabs.push_back(&tab);
+    }
+    for (const Page& part : page.parts) {
+        addTabs(part, tabs);
+    }
+}
+
 /// Writes one page, piece by piece.
 class PageWriter {
 public:
     PageWriter(const Page& page, std::ostream& out)
-        : page_(page), out_(out), looks_(seriesLooks(page)) {}
+        : page_(page), out_(out), looks_(seriesLooks(page)) {
+        addTabs(page, tabs_);
+    }
 
     void write() const {
         writeHead();
         out_ << "<body>\n<main>\n";
         writeTop();
-        writeContents();
-        writeSections(page_, {});
-        for (std::size_t i = 0; i < page_.parts.size(); ++i) {
-            writePart(i);
+        if (tabs_.empty()) {
+            writeReport();
+        } else {
+            writeTabs();
         }
-        writeProvenance();
         out_ << "</main>\n";
-        if (!scripts_.code.empty()) {
-            out_ << "<script>" << scripts_.code << "</script>\n";
-        }
+        writeScripts();
         out_ << "</body>\n</html>\n";
     }
 
@@ -64,6 +73,10 @@ private:
     void writeHead() const;
     void writeTop() const;
     void writeVerdict(const Page& page) const;
+    void writeTabs() const;
+    void writeTab(const std::string& name, const std::string& title) const;
+    void beginPanel(const std::string& name) const;
+    void writeReport() const;
     void writeContents() const;
     void writeLinks(const Page& page, const Place& place) const;
     void writePart(std::size_t index) const;
@@ -72,6 +85,8 @@ private:
     void writeChecks(const std::vector<Check>& checks) const;
     void writeChart(const Chart& chart, const Place& place) const;
     void writeProvenance() const;
+    void writeScripts() const;
+    [[nodiscard]] std::string admittedScripts() const;
     void writeParagraph(const std::string& text) const {
         out_ << "<p>" << escaped(text) << "</p>\n";
     }
@@ -80,20 +95,56 @@ private:
     const Page& page_;
     std::ostream& out_;
     SeriesLooks looks_;
+    std::vector<const PageTab*> tabs_;  // the page's own, and those of its parts
     ChartScripts scripts_ = chartScripts();
 };
 
-// Data are never code: the policy admits one script, by its hash. Vega sets styles of the elements
-// it draws.
+// Data are never code: the policy admits the scripts that the program brings along, by their hashes.
+// Vega sets styles of the elements it draws.
 void PageWriter::writeHead() const {
-    const std::string_view hash = scripts_.code.empty() ? "none" : scripts_.hash;
-    out_
-        << "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-           "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src '"
-        << hash
-        << "'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'\">\n"
-           "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>"
-        << escaped(page_.title) << "</title>\n<style>" << pageStyle() << "</style>\n</head>\n";
+    out_ << "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+            "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src "
+         << admittedScripts()
+         << "; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'\">\n"
+            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>"
+         << escaped(page_.title) << "</title>\n<style>" << pageStyle();
+    for (const PageTab* tab : tabs_) {
+        out_ << tab->style;
+    }
+    out_ << "</style>\n</head>\n";
+}
+
+std::string PageWriter::admittedScripts() const {
+    std::string hashes;
+    const auto admit = [&hashes](std::string_view hash) {
+        hashes.append(hashes.empty() ? "'" : " '").append(hash).append("'");
+    };
+    if (!scripts_.code.empty()) {
+        admit(scripts_.hash);
+    }
+    for (const PageTab* tab : tabs_) {
+        admit(policyHash(tab->script));
+    }
+    if (!tabs_.empty()) {
+        admit(policyHash(tabsScript()));
+    }
+    return hashes.empty() ? "'none'" : hashes;
+}
+
+// A tab's script is there before the one that shows a tab.
+void PageWriter::writeScripts() const {
+    const auto write = [this](std::string_view code) {
+        out_ << "<script>" << code << "</script>\n";
+    };
+    if (!scripts_.code.empty()) {
+        write(scripts_.code);
+    }
+    for (const PageTab* tab : tabs_) {
+        write(tab->script.code);
+    }
+    if (!tabs_.empty()) {
+        write(tabsScript().code);
+    }
 }
 
 void PageWriter::writeTop() const {
@@ -113,6 +164,41 @@ void PageWriter::writeTop() const {
 void PageWriter::writeVerdict(const Page& page) const {
     out_ << "<p class=\"verdict" << (page.isGood ? "" : " bad") << "\">" << escaped(page.verdict)
          << "</p>\n";
+}
+
+void PageWriter::writeTabs() const {
+    out_ << "<div class=\"tabs\" role=\"tablist\" aria-label=\"Views\" hidden>\n";
+    writeTab(kReportTab, "Report");
+    for (const PageTab* tab : tabs_) {
+        writeTab(tab->name, tab->title);
+    }
+    out_ << "</div>\n";
+    beginPanel(kReportTab);
+    writeReport();
+    out_ << "</div>\n";
+    for (const PageTab* tab : tabs_) {
+        beginPanel(tab->name);
+        out_ << tab->content << "</div>\n";
+    }
+}
+
+void PageWriter::writeTab(const std::string& name, const std::string& title) const {
+    out_ << "<button type=\"button\" role=\"tab\" id=\"tab-" << name << "\" aria-controls=\""
+         << name << "\">" << escaped(title) << "</button>\n";
+}
+
+void PageWriter::beginPanel(const std::string& name) const {
+    out_ << "<div role=\"tabpanel\" id=\"" << name << "\" aria-labelledby=\"tab-" << name
+         << "\">\n";
+}
+
+void PageWriter::writeReport() const {
+    writeContents();
+    writeSections(page_, {});
+    for (std::size_t i = 0; i < page_.parts.size(); ++i) {
+        writePart(i);
+    }
+    writeProvenance();
 }
 
 void PageWriter::writeLinks(const Page& page, const Place& place) const {

@@ -6,6 +6,7 @@
 // Readable  with JavaScript off: every chart has its numbers as a table.
 // Safe      under a strict content-security policy, which it brings along: only its own scripts run.
 // Paper     prints with all tables, in the colours of paper.
+// Tabs      beside the report there may be others; see page_tab.hpp.
 // Joined    pages can be the parts of one, with one list of contents and one colour a method.
 
 #include <demos/console/program.hpp>
@@ -13,6 +14,7 @@
 #include <demos/report/chart.hpp>
 #include <demos/report/check.hpp>
 #include <demos/report/graded_table.hpp>
+#include <demos/report/page_tab.hpp>
 #include <demos/report/provenance.hpp>
 #include <demos/report/series_looks.hpp>
 
@@ -43,8 +45,11 @@ struct Page {
     Provenance provenance;
 
     /// Pages that follow the sections, each with its verdict. They have no parts of their own, and of
-    /// their provenance only the command is written.
+    /// their provenance only the command is written. Their tabs, of other names than the page's, stand
+    /// beside its report.
     std::vector<Page> parts = {};
+
+    std::vector<PageTab> tabs = {};  // after that of the report itself
 };
 
 void writePage(const Page& page, std::ostream& out);

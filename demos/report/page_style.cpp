@@ -51,6 +51,16 @@ ul.checks .holds, ul.checks .broken { flex: 0 0 5rem; }
 .contents > ul > li { break-inside: avoid; }
 .contents ul ul { padding-left: 1rem; columns: auto; }
 .contents details { margin: 0; }
+.tabs { display: flex; gap: .25rem; margin: 1.5rem 0 1rem; border-bottom: 1px solid var(--quiet); }
+.tabs[hidden] { display: none; }
+.tabs button {
+  font: inherit; color: var(--link); background: none; padding: .5rem 1.1rem; cursor: pointer;
+  border: 1px solid transparent; border-bottom: 0; border-radius: .4rem .4rem 0 0;
+}
+.tabs button[aria-selected=true] {
+  color: var(--ink); font-weight: 600; background: var(--paper); border-color: var(--quiet);
+  margin-bottom: -1px;
+}
 figure { margin: 2rem 0; }
 figcaption p { margin: .15rem 0 .6rem; }
 .drawing svg { max-width: 100%; height: auto; }
@@ -88,7 +98,7 @@ code { overflow-wrap: anywhere; }
 }
 @media print {
   main { max-width: none; padding: 0; }
-  .contents, summary { display: none; }
+  .contents, .tabs, summary { display: none; }
   h2, h3, h4 { break-after: avoid; }
   .part { break-before: page; border: 0; margin: 0; padding: 0; }
   figcaption, .drawing, tr, li { break-inside: avoid; }

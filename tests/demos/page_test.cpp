@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Zlib
+#include <demos/report/base64.hpp>
 #include <demos/report/chart_scripts.hpp>
 #include <demos/report/html.hpp>
 #include <demos/report/page.hpp>
@@ -6,12 +7,16 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <sstream>
 
 namespace hashphase::demos {
 namespace {
 
 const std::string kHostile = "<script>alert('x')</script> & \"quoted\" <!-- ]]>";
+
+/// The hash of an empty script.
+constexpr const char* kNoCode = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855";
 
 /// All of a page but the scripts that it brings along, which anything may occur in.
 std::string withoutScripts(const Page& page) {
@@ -110,6 +115,33 @@ TEST(Page, NeedsNothingElseAndRunsNoScriptButItsOwn) {
     const std::string_view hash = chartScripts().hash;
     EXPECT_NE(html.find("script-src '" + std::string(hash.empty() ? "none" : hash) + "';"),
               std::string::npos);
+}
+
+TEST(Page, HoldsTheTabsOfItsPartsAndAdmitsTheirScripts) {
+    Page page = samplePage();
+    page.parts = {samplePage()};
+    page.parts[0].tabs = {
+        {"other", "Other <tab>", "<p>content</p>", "p { margin: 0; }", {"", kNoCode}}};
+    const std::string html = withoutScripts(page);
+    EXPECT_NE(html.find("aria-controls=\"other\">Other &lt;tab&gt;</button>"), std::string::npos);
+    EXPECT_NE(html.find("id=\"other\" aria-labelledby=\"tab-other\">\n<p>content</p></div>"),
+              std::string::npos);
+    EXPECT_NE(html.find("p { margin: 0; }</style>"), std::string::npos);
+    EXPECT_NE(html.find("'sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU='"),
+              std::string::npos);
+    EXPECT_NE(html.find("'" + policyHash(tabsScript()) + "'"), std::string::npos);
+    EXPECT_EQ(withoutScripts(samplePage()).find("role=\"tab\""), std::string::npos);
+}
+
+TEST(Base64, IsThatOfTheStandard) {
+    const std::array<std::string, 7> expected{"",         "Zg==",     "Zm8=",    "Zm9v",
+                                              "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"};
+    const std::string text = "foobar";
+    for (std::size_t length = 0; length <= text.size(); ++length) {
+        const std::vector<std::uint8_t> bytes(text.begin(),
+                                              text.begin() + static_cast<std::ptrdiff_t>(length));
+        EXPECT_EQ(base64(bytes), expected[length]);
+    }
 }
 
 TEST(ChartScripts, AreThereOrSayWhyNot) {

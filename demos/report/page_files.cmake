@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: Zlib
+#
+# Files that go into pages as they are: scripts and style sheets, as strings in C++ sources.
+
+# hashphase_bundle_script(<name> <file>...): sets <name> to the files' code, one after another within
+# a function of its own, and <name>Sha256 to its hash.
+function(hashphase_bundle_script name)
+    set(code "(() => {\n\"use strict\";\n")
+    foreach(file IN LISTS ARGN)
+        set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${file})
+        file(READ ${file} text)
+        string(APPEND code "${text}")
+    endforeach()
+    string(APPEND code "})();\n")
+    foreach(end IN ITEMS ")js\"" "</script" "<!--")
+        string(FIND "${code}" "${end}" found)
+        if(NOT found EQUAL -1)
+            message(FATAL_ERROR "${ARGN}: ${end} would end the script, or the string that it is in.")
+        endif()
+    endforeach()
+    string(SHA256 hash "${code}")
+    set(${name} "${code}" PARENT_SCOPE)
+    set(${name}Sha256 ${hash} PARENT_SCOPE)
+endfunction()
+
+hashphase_bundle_script(tabsScript report/tabs.js)
+configure_file(report/tabs_script.cpp.in tabs_script.cpp @ONLY)
+
+set(HASHPHASE_PAGE_FILES ${CMAKE_CURRENT_BINARY_DIR}/tabs_script.cpp)
