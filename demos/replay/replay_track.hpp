@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// The boxes of many frames in a few bytes each, as a page can hold and JavaScript can read them.
+//
+// Numbers  seven of 16 bits for an object in a frame: its centre and its edges along x, y, z, in steps
+//          of a 65535th of the bounds along that axis, and how many others it overlaps with.
+// Error    half a step in the centre, half a step in the edge. What leaves the bounds is cut off there;
+//          a box with a NaN has no size.
+// Stream   for the objects of a frame in order, a byte that tells which of the seven (bits 0 to 6)
+//          differ from the frame before (from 0 in the first); then those differences, modulo 2^16 as
+//          signed numbers, zigzag, in groups of seven bits (replay_bytes.hpp). After a byte of 0 comes,
+//          in such groups, how many more objects in a row have no differences.
+
+#include <demos/scenes/pair_key.hpp>
+
+#include <broadphase/aabb.hpp>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace hashphase::demos {
+
+class ReplayTrack {
+public:
+    /// The seven numbers of an object in a frame.
+    using Sample = std::array<std::uint16_t, 7>;
+
+    /// Records the boxes of those objects, by their numbers.
+    ReplayTrack(const Aabb<float>& bounds, std::vector<std::uint32_t> objects);
+
+    /// Adds a frame: the boxes and the overlapping pairs of all objects.
+    void add(std::span<const Aabb<float>> boxes, std::span<const PairKey> pairs);
+
+    /// Takes back the frame that was added last; after that, none can be added.
+    void removeLast();
+
+    /// Of each object, in order, whether it has ever left the bounds, or had a NaN: 1, else 0.
+    [[nodiscard]] const std::vector<std::uint8_t>& isCut() const noexcept { return isCut_; }
+    [[nodiscard]] const std::vector<std::uint8_t>& stream() const noexcept { return stream_; }
+
+private:
+    [[nodiscard]] Sample sampleOf(const Aabb<float>& box, std::uint32_t overlaps) const;
+    void endRun();
+
+    Aabb<float> bounds_;
+    std::vector<std::uint32_t> objects_;
+    std::vector<Sample> last_;
+    std::vector<std::uint32_t> overlaps_;  // of all objects
+    std::vector<std::uint8_t> isCut_;
+    std::vector<std::uint8_t> stream_;
+    std::size_t lastBegin_ = 0;    // in the stream, of the frame that was added last
+    std::uint32_t unchanged_ = 0;  // in a row, not yet in the stream
+};
+
+}  // namespace hashphase::demos
