@@ -22,6 +22,8 @@ public:
     std::optional<double> removeObjects(std::size_t contestant, std::size_t count) override;
     [[nodiscard]] std::optional<std::int64_t> memoryBytes(std::size_t contestant) const override;
     [[nodiscard]] std::size_t objectCount() const override { return boxes_.size(); }
+    [[nodiscard]] Aabb<float> bounds() const override { return scene_->bounds(); }
+    [[nodiscard]] bool sharesBoxes() const override { return true; }
     [[nodiscard]] std::optional<int> frameLimit() const override { return scene_->frameLimit(); }
 
 private:

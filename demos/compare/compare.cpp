@@ -78,6 +78,36 @@ int framesToRun(const CompareOptions& options, const OpenedTrial& opened) {
     return limit ? std::min(frames, *limit) : frames;
 }
 
+/// What is asked for however large it is must still fit into what a browser opens.
+constexpr std::size_t kMostReplayBytes = 200'000'000;
+
+std::optional<ReplayRecording> replayFor(const CompareOptions& options, const OpenedTrial& opened,
+                                         const std::vector<const BroadphaseKind*>& kinds,
+                                         bool isPageWanted) {
+    if (!isPageWanted || options.replayFrames == 0) {
+        return std::nullopt;
+    }
+    ReplaySettings settings;
+    settings.scene = opened.name;
+    settings.bounds = opened.trial->bounds();
+    for (const BroadphaseKind* kind : kinds) {
+        settings.broadphases.emplace_back(kind->name);
+    }
+    settings.noun = opened.noun;
+    settings.areSpheres = opened.noun == "spheres";
+    settings.sharesBoxes = opened.trial->sharesBoxes();
+    if (!settings.sharesBoxes) {
+        // Each broadphase's boxes are recorded: the first frame must fit at least.
+        settings.objects /= 4;
+        settings.pairs /= 4;
+    }
+    if (options.replayFrames) {
+        settings.frames = static_cast<std::size_t>(*options.replayFrames);
+        settings.bytes = kMostReplayBytes;
+    }
+    return ReplayRecording(std::move(settings));
+}
+
 }  // namespace
 
 int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> kinds,
@@ -104,10 +134,13 @@ int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> ki
     ResultFile csv(options.csvFile);
     ResultFile html(options.htmlFile);
 
-    report.comparison = runComparison(
-        *opened.trial, chosen,
-        {report.framesAsked, options.timeLimit, progressStyle(console, options.quiet)},
-        console.err);
+    report.replay = replayFor(options, opened, chosen,
+                              !options.htmlFile.empty() || static_cast<bool>(console.takePage));
+    report.comparison =
+        runComparison(*opened.trial, chosen,
+                      {report.framesAsked, options.timeLimit, progressStyle(console, options.quiet),
+                       report.replay ? &*report.replay : nullptr},
+                      console.err);
 
     printReport(report, console.out);
     json.write([&report](std::ostream& file) { writeJson(report, file); });

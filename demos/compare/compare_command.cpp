@@ -15,9 +15,10 @@ namespace {
 void declare(CLI::App& app, CompareOptions& options) {
     CLI::Option* scene = app.add_option("--scene", options.scene, "built-in scene (see --list)")
                              ->capture_default_str();
-    app.add_option(
-           "--file", options.file,
-           "instead of a scene: a .bullet world, a .aabbs recording, or a text file of boxes")
+    app.add_option("--file", options.file,
+                   "instead of a scene: a .bullet world, a .aabbs recording (as by 'capture' of "
+                   "hashphase wander), "
+                   "or a text file of boxes")
         ->excludes(scene);
     app.add_option("--objects", options.objects, "number of objects (default: the scene's)")
         ->check(CLI::Range(std::int64_t{1}, std::int64_t{10'000'000}));
@@ -36,7 +37,15 @@ void declare(CLI::App& app, CompareOptions& options) {
         ->type_name("sweep|brute");
     app.add_option("--json", options.jsonFile, "write everything measured to this file");
     app.add_option("--csv", options.csvFile, "write the rows of all frames to this file");
-    app.add_option("--html", options.htmlFile, "write a page with charts to this file");
+    CLI::Option* html =
+        app.add_option("--html", options.htmlFile,
+                       "write a page with charts to this file; its tab Replay plays the first "
+                       "frames in a browser with WebGL2");
+    app.add_option("--replay-frames", options.replayFrames,
+                   "so many frames to be replayed in the page, however large that makes it; 0 for "
+                   "none (default: what keeps it below 6 MB)")
+        ->needs(html)
+        ->check(CLI::Range(0, 10'000));
     app.add_option("--time-limit", options.timeLimit, "stop after so many seconds")
         ->check(positiveSecondsFault);
     app.add_flag("--quiet", options.quiet, "no progress on stderr");

@@ -69,10 +69,20 @@ Comparison runComparison(Trial& trial, const std::vector<const BroadphaseKind*>&
             break;
         }
         trial.beginFrame();
+        ReplayRecording* const replay =
+            settings.replay != nullptr && !settings.replay->isFull() ? settings.replay : nullptr;
         for (std::size_t turn = 0; turn < kinds.size(); ++turn) {
             const std::size_t i = (turn + static_cast<std::size_t>(frame)) % kinds.size();
-            record(frame, frame >= comparison.warmUpFrames, trial.runFrame(i), verifiers[i],
+            const Observation seen = trial.runFrame(i);
+            record(frame, frame >= comparison.warmUpFrames, seen, verifiers[i],
                    comparison.results[i]);
+            if (replay != nullptr) {
+                replay->add(i,
+                            {seen.boxes, seen.exact, verifiers[i].missing(), verifiers[i].extra()});
+            }
+        }
+        if (replay != nullptr) {
+            replay->finishFrame();
         }
         comparison.framesDone = frame + 1;
         progress.update(static_cast<std::size_t>(comparison.framesDone));

@@ -3,11 +3,12 @@
 
 // Runs a trial and records what each broadphase did: the measurements, before any report of them.
 
-#include <demos/report/statistics.hpp>
-#include <demos/report/stopwatch.hpp>
 #include <demos/compare/trial.hpp>
 #include <demos/compare/verifier.hpp>
 #include <demos/console/progress.hpp>
+#include <demos/replay/replay_recording.hpp>
+#include <demos/report/statistics.hpp>
+#include <demos/report/stopwatch.hpp>
 
 #include <optional>
 #include <vector>
@@ -54,6 +55,7 @@ struct ComparisonSettings {
     int frames = 0;
     std::optional<double> timeLimit;  // [s]
     ProgressStyle progress = ProgressStyle::kSilent;
+    ReplayRecording* replay = nullptr;  // gets the first frames, between what is timed; null: none
 };
 
 /// Runs all the broadphases through the frames, one after another in each frame and in an order that

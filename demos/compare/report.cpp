@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/compare/report.hpp>
 
-#include <demos/report/report_text.hpp>
 #include <demos/console/format.hpp>
 #include <demos/console/table.hpp>
+#include <demos/report/report_text.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <ostream>
-#include <sstream>
 
 namespace hashphase::demos {
 namespace {
@@ -37,14 +36,6 @@ std::string meanPairsText(const Result& result) {
     const auto total = static_cast<double>(tallyOf(result, &FrameVerdict::pairs).total);
     return withThousands(
         static_cast<std::uint64_t>(std::llround(total / static_cast<double>(result.rows.size()))));
-}
-
-std::string boxText(const Aabb<float>& box) {
-    std::ostringstream text;
-    text.precision(9);  // tells any two floats apart
-    text << '[' << box.min().x() << ' ' << box.min().y() << ' ' << box.min().z() << " to "
-         << box.max().x() << ' ' << box.max().y() << ' ' << box.max().z() << ']';
-    return text.str();
 }
 
 std::string faultText(const Result& result) {

@@ -8,6 +8,7 @@
 #include <demos/report/page.hpp>
 
 #include <iosfwd>
+#include <optional>
 #include <string>
 
 namespace hashphase::demos {
@@ -22,6 +23,7 @@ struct Report {
     int framesAsked = 0;
     Comparison comparison;
     Provenance provenance;
+    std::optional<ReplayRecording> replay;  // of the first frames
 };
 
 /// How many times faster than `dbvt` this broadphase was, by the medians of setAabb + calculate;

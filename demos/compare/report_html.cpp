@@ -2,7 +2,7 @@
 #include <demos/compare/report.hpp>
 
 #include <demos/console/format.hpp>
-#include <demos/report/page.hpp>
+#include <demos/replay/replay_tab.hpp>
 
 #include <algorithm>
 
@@ -204,6 +204,9 @@ Page pageOf(const Report& report) {
         page.verdict += " The time limit was reached after " +
                         std::to_string(report.comparison.framesDone) + " of " +
                         std::to_string(report.framesAsked) + " frames.";
+    }
+    if (report.replay) {
+        addReplayTab(*report.replay, static_cast<std::size_t>(report.comparison.framesDone), page);
     }
     return page;
 }

@@ -51,6 +51,12 @@ public:
 
     [[nodiscard]] virtual std::size_t objectCount() const = 0;
 
+    /// Where the objects are; what leaves it is rare.
+    [[nodiscard]] virtual Aabb<float> bounds() const = 0;
+
+    /// Whether all broadphases see the same boxes in a frame.
+    [[nodiscard]] virtual bool sharesBoxes() const = 0;
+
     /// How many frames there are, where that is limited.
     [[nodiscard]] virtual std::optional<int> frameLimit() const { return std::nullopt; }
 };

@@ -33,6 +33,8 @@ public:
     }
     [[nodiscard]] std::optional<std::int64_t> memoryBytes(std::size_t contestant) const override;
     [[nodiscard]] std::size_t objectCount() const override { return needs_.objects; }
+    [[nodiscard]] Aabb<float> bounds() const override { return needs_.bounds; }
+    [[nodiscard]] bool sharesBoxes() const override { return false; }
 
 private:
     struct World;

@@ -26,4 +26,12 @@ endfunction()
 hashphase_bundle_script(tabsScript report/tabs.js)
 configure_file(report/tabs_script.cpp.in tabs_script.cpp @ONLY)
 
-set(HASHPHASE_PAGE_FILES ${CMAKE_CURRENT_BINARY_DIR}/tabs_script.cpp)
+hashphase_bundle_script(replayScript replay/replay_data.js replay/replay_camera.js
+                        replay/replay_shaders.js replay/replay_drawing.js replay/replay_controls.js
+                        replay/replay.js)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
+             ${CMAKE_CURRENT_SOURCE_DIR}/replay/replay.css)
+file(READ replay/replay.css replayStyle)
+configure_file(replay/replay_files.cpp.in replay_files.cpp @ONLY)
+set(HASHPHASE_PAGE_FILES ${CMAKE_CURRENT_BINARY_DIR}/tabs_script.cpp
+                         ${CMAKE_CURRENT_BINARY_DIR}/replay_files.cpp)

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <ostream>
+#include <sstream>
 
 namespace hashphase::demos {
 
@@ -30,6 +31,14 @@ std::string leftOutText(const std::vector<std::string>& names) {
         text += " and " + std::to_string(names.size() - mostNames) + " more";
     }
     return text;
+}
+
+std::string boxText(const Aabb<float>& box) {
+    std::ostringstream text;
+    text.precision(9);
+    text << '[' << box.min().x() << ' ' << box.min().y() << ' ' << box.min().z() << " to "
+         << box.max().x() << ' ' << box.max().y() << ' ' << box.max().z() << ']';
+    return text.str();
 }
 
 void printProvenance(const Provenance& provenance, std::ostream& out) {

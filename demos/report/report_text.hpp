@@ -6,6 +6,8 @@
 #include <demos/report/provenance.hpp>
 #include <demos/report/statistics.hpp>
 
+#include <broadphase/aabb.hpp>
+
 #include <iosfwd>
 #include <optional>
 #include <string>
@@ -18,6 +20,9 @@ namespace hashphase::demos {
 
 /// "3.14x", "16.4x"; "-" for none.
 [[nodiscard]] std::string ratioText(const std::optional<double>& ratio);
+
+/// "[0 0 0 to 1 1 1]", with enough digits to tell any two floats apart.
+[[nodiscard]] std::string boxText(const Aabb<float>& box);
 
 /// "; left out for want of time: P9, P10", ten of them at most and the number of the others; empty
 /// for none.

@@ -1,0 +1,390 @@
+// SPDX-License-Identifier: Zlib
+//
+// Replays a recording in a canvas, once its tab is shown. What is shown is told by data attributes of
+// the replay's element, too: state, playing, frame, frames, pairs (that overlap), lines (that are drawn of
+// them), colouring, broadphase, missing, extra, drawn (of the wrong pairs), marks (where in the picture
+// the first of them is drawn, from its lower left), draws.
+
+const KEYS_IN_WORDS =
+    "Keys: Space plays and pauses, comma and full stop go a frame back and on, Home and End to the ends, " +
+    "W to the first wrong pair; P shows all pairs, D dims, C colours. In the picture arrows turn the " +
+    "camera, plus and minus zoom; dragging turns, with Shift it moves, the wheel zooms.";
+
+const FRAMES_A_SECOND = [
+    [60, "as recorded"],
+    [30, "at half speed"],
+    [10, "at 1/6"],
+    [3, "at 1/20"],
+];
+
+class Replay {
+    constructor(root, gl, canvas, recording) {
+        this.root = root;
+        this.canvas = canvas;
+        this.recording = recording;
+        this.frame = 0;
+        this.broadphase = recording.worst();
+        this.drawing = new Drawing(gl, recording);
+        this.outline = recording.outline(recording.numbersOf(this.broadphase, 0));
+        const { centre, radius, heights } = this.outline;
+        this.camera = new OrbitCamera(centre, radius);
+        this.look = {
+            camera: this.camera,
+            colouring: "cell",
+            cellSize: Number((recording.typicalEdge * 8).toPrecision(2)) || 1,
+            heights: [heights.low, Math.max(heights.high, heights.low + 1e-3)],
+            groundEdge: Math.max(radius, 10 * recording.typicalEdge),
+            spheres: recording.spheres,
+            pairs: false,
+            dimming: 0,
+            screen: "light",
+            pixels: 1,
+        };
+        this.draws = 0;
+        this.build();
+        this.followScreen();
+        this.show(0);
+        root.dataset.state = "ready";
+    }
+
+    build() {
+        const changed = () => this.redraw();
+        steerByPointer(this.canvas, this.camera, changed);
+        steerByKeys(this.canvas, this.camera, changed);
+        this.followKeys();
+        this.words = element("p", { class: "words", "aria-live": "polite" });
+        this.counts = element("p", { class: "counts" });
+        this.legend = element("p", { class: "legend" });
+        this.chart = new WrongChart();
+        this.root.append(
+            element("div", { class: "picture" }, this.canvas, cameraButtons(this.camera, changed)),
+            this.timeControls(),
+            this.counts,
+            this.viewControls(),
+            this.legend,
+            this.words,
+            element("p", { class: "keys" }, KEYS_IN_WORDS),
+        );
+    }
+
+    // Wherever in the tab they are pressed, but where something is typed or chosen.
+    followKeys() {
+        const keys = {
+            " ": () => this.togglePlaying(),
+            ",": () => this.step(-1),
+            ".": () => this.step(1),
+            Home: () => this.show(0),
+            End: () => this.show(this.recording.frames - 1),
+            w: () => this.showFirst(),
+            p: () => this.pairs.click(),
+            d: () => this.dimmed.click(),
+            c: () => this.chooseColouring(1 + COLOURINGS.indexOf(this.look.colouring)),
+        };
+        const typed = "input[type=number], select";
+        const own = {
+            " ": `button, input[type=checkbox], ${typed}`,
+            Home: "input, select",
+            End: "input, select",
+        };
+        this.root.closest("[role=tabpanel]").addEventListener("keydown", (event) => {
+            const { target, ctrlKey, altKey, metaKey } = event;
+            const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
+            const taken = target.closest(own[key] ?? typed);
+            if (keys[key] && !taken && !ctrlKey && !altKey && !metaKey) {
+                event.preventDefault();
+                keys[key]();
+            }
+        });
+    }
+
+    timeControls() {
+        const { frames } = this.recording;
+        this.play = button("\u25b6", "Play", () => this.togglePlaying());
+        this.slider = element("input", {
+            type: "range",
+            name: "frame",
+            min: 0,
+            max: frames - 1,
+            value: 0,
+            "aria-label": "Frame",
+            oninput: () => this.show(Number(this.slider.value)),
+        });
+        this.number = element("output", { class: "frame" });
+        const speed = choice(
+            "Speed",
+            "speed",
+            FRAMES_A_SECOND,
+            () => (this.framesASecond = Number(speed.select.value)),
+        );
+        speed.select.value = "10";
+        this.framesASecond = 10;
+        return element(
+            "div",
+            { class: "time" },
+            this.play,
+            button("\u2039", "Frame before", () => this.step(-1)),
+            button("\u203a", "Frame after", () => this.step(1)),
+            element("div", { class: "scrub" }, this.chart.canvas, this.slider),
+            this.number,
+            speed.label,
+        );
+    }
+
+    viewControls() {
+        const { recording } = this;
+        const broadphase = choice(
+            "Wrong pairs of",
+            "broadphase",
+            recording.broadphases.map(({ name }) => [name, name]),
+            () => this.judge(broadphase.select.value),
+        );
+        broadphase.select.value = this.broadphase.name;
+        this.colouring = choice(
+            "Colour by",
+            "colouring",
+            COLOURINGS.map((each) => [each, each]),
+            () => this.change({ colouring: this.colouring.select.value }),
+        );
+        const cells = element("input", {
+            type: "number",
+            name: "cellSize",
+            min: 0,
+            step: "any",
+            value: this.look.cellSize,
+            oninput: () =>
+                Number(cells.value) > 0 && this.change({ cellSize: Number(cells.value) }),
+        });
+        const box = (name, onchange) => element("input", { type: "checkbox", name, onchange });
+        this.dimmed = box("dim", () => this.change({ dimming: this.dimmed.checked ? 0.8 : 0 }));
+        this.pairs = box("pairs", () => this.change({ pairs: this.pairs.checked }));
+        return element(
+            "div",
+            { class: "view" },
+            broadphase.label,
+            button("First wrong pair", "Show the first wrong pair", () => this.showFirst()),
+            element("label", {}, this.dimmed, " dim the others"),
+            element("label", {}, this.pairs, " all pairs"),
+            this.colouring.label,
+            element("label", {}, "Cell ", cells, " m"),
+            ...(recording.spheres ? [this.shapeControl()] : []),
+        );
+    }
+
+    shapeControl() {
+        const shape = choice(
+            "Draw",
+            "shape",
+            [
+                ["spheres", "spheres"],
+                ["boxes", "boxes"],
+            ],
+            () => this.change({ spheres: shape.select.value === "spheres" }),
+        );
+        return shape.label;
+    }
+
+    // Pictures have as many pixels as the screen.
+    followScreen() {
+        const dark = matchMedia("(prefers-color-scheme: dark)");
+        const follow = () => this.change({ screen: dark.matches ? "dark" : "light" });
+        dark.addEventListener("change", follow);
+        this.look.screen = dark.matches ? "dark" : "light";
+        new ResizeObserver(() => this.redraw()).observe(this.canvas);
+    }
+
+    change(look) {
+        Object.assign(this.look, look);
+        this.setPairs();
+        this.redraw();
+    }
+
+    chooseColouring(index) {
+        const colouring = COLOURINGS[index % COLOURINGS.length];
+        this.colouring.select.value = colouring;
+        this.change({ colouring });
+    }
+
+    step(by) {
+        this.show(Math.min(this.recording.frames - 1, Math.max(0, this.frame + by)));
+    }
+
+    judge(name) {
+        this.broadphase = this.recording.broadphases.find((each) => each.name === name);
+        this.words.textContent = "";
+        this.show(this.frame);
+    }
+
+    show(frame) {
+        this.frame = frame;
+        this.numbers = this.recording.numbersOf(this.broadphase, frame);
+        this.wrong = this.recording.wrongPairs(this.broadphase, frame);
+        this.drawing.setFrame(this.numbers, this.wrong);
+        this.linesOf = undefined;
+        this.setPairs();
+        this.slider.value = String(frame);
+        this.tell();
+        this.redraw();
+    }
+
+    // Only where they are to be seen, and once a frame.
+    setPairs() {
+        if (this.look.pairs && this.numbers && this.linesOf !== this.numbers) {
+            this.linesOf = this.numbers;
+            this.drawing.setPairs(this.recording.pairsOf(this.broadphase, this.frame));
+        }
+    }
+
+    tell() {
+        const { broadphase, frame, recording } = this;
+        const pairs = recording.pairCounts(broadphase, frame);
+        const [missing, extra] = [broadphase.missing[frame], broadphase.extra[frame]];
+        this.number.textContent = `frame ${frame} of 0 to ${recording.frames - 1}`;
+        const drawn =
+            this.wrong.length < missing + extra
+                ? ` (${thousands(this.wrong.length)} of them drawn)`
+                : "";
+        const here =
+            pairs.here < pairs.inAll ? `, ${thousands(pairs.here)} of them between those drawn` : "";
+        this.counts.textContent =
+            `${thousands(pairs.inAll)} pairs overlap${here}; of ` +
+            `${broadphase.name}'s, ${thousands(missing)} are missing and ${thousands(extra)} extra${drawn}.`;
+        Object.assign(this.root.dataset, {
+            frame,
+            frames: recording.frames,
+            pairs: pairs.inAll,
+            broadphase: broadphase.name,
+            missing,
+            extra,
+            drawn: this.wrong.length,
+        });
+    }
+
+    // Once for all changes until the next picture of the screen.
+    redraw() {
+        this.asked ??= requestAnimationFrame(() => {
+            this.asked = undefined;
+            this.draw();
+        });
+    }
+
+    draw() {
+        const { canvas, look, recording } = this;
+        look.pixels = Math.min(devicePixelRatio, 2);
+        const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((each) =>
+            Math.round(each * look.pixels),
+        );
+        if (width === 0 || height === 0) {
+            return; // the tab is hidden
+        }
+        if (canvas.width !== width || canvas.height !== height) {
+            Object.assign(canvas, { width, height });
+        }
+        const { both } = this.drawing.draw(look);
+        this.chart.draw(this.broadphase, this.frame, recording.frames);
+        this.legend.replaceChildren(
+            ...wrongLegend(),
+            ...legendOf(look.colouring, look.heights, recording.low[1], look.cellSize),
+        );
+        const first = this.wrong.find((pair) => this.isShown(pair)) ?? this.wrong[0];
+        const marks =
+            first &&
+            [first.a, first.b].map((place) =>
+                placeInPicture(both, recording.box(this.numbers, place).centre, width, height),
+            );
+        Object.assign(this.root.dataset, {
+            colouring: look.colouring,
+            lines: look.pairs ? this.drawing.allLines.count : 0,
+            marks: JSON.stringify(marks ?? []),
+            draws: ++this.draws,
+        });
+    }
+
+    isShown({ a, b }) {
+        const { first } = this.broadphase;
+        return first?.frame === this.frame && first.places[0] === a && first.places[1] === b;
+    }
+
+    showFirst() {
+        const { first, name, wrong } = this.broadphase;
+        if (!first) {
+            this.words.textContent =
+                wrong > 0
+                    ? `The wrong pairs of ${name} are of others than those drawn.`
+                    : `No pair of ${name} is wrong in the recorded frames.`;
+            return;
+        }
+        this.setPlaying(false);
+        this.dimmed.checked = true;
+        this.look.dimming = 0.8;
+        this.show(first.frame);
+        const [a, b] = first.places.map((place) => this.recording.box(this.numbers, place));
+        const middle = scaled(plus(a.centre, b.centre), 0.5);
+        const small = Math.min(Math.max(...a.edges), Math.max(...b.edges));
+        const apart = Math.hypot(...minus(a.centre, b.centre));
+        this.camera.lookAt(middle, Math.min(this.outline.radius, 4 * small + 2 * apart));
+        this.words.textContent = `Frame ${first.frame}, ${name}: ${first.words}`;
+    }
+
+    togglePlaying() {
+        this.setPlaying(!this.playing);
+    }
+
+    setPlaying(playing) {
+        this.playing = playing;
+        this.play.textContent = playing ? "\u23f8" : "\u25b6";
+        this.play.setAttribute("aria-label", playing ? "Pause" : "Play");
+        this.root.dataset.playing = playing;
+        clearTimeout(this.timer);
+        if (playing) {
+            this.timer = setTimeout(() => {
+                this.show((this.frame + 1) % this.recording.frames);
+                this.setPlaying(!document.hidden && this.canvas.clientWidth > 0);
+            }, 1000 / this.framesASecond);
+        }
+    }
+}
+
+function startReplay(root) {
+    const canvas = element("canvas", {
+        class: "replay",
+        tabindex: 0,
+        role: "img",
+        "aria-label": "The recorded objects; arrow keys turn the camera, plus and minus zoom",
+    });
+    canvas.addEventListener("webglcontextlost", () => {
+        root.dataset.state = "lost";
+        root.prepend(
+            element("p", {}, "The browser has taken WebGL2 back: load the page again to go on."),
+        );
+    });
+    // Kept after it was shown, so that it can be saved, and read by whoever checks it.
+    const gl = canvas.getContext("webgl2", {
+        alpha: false,
+        antialias: true,
+        preserveDrawingBuffer: true,
+    });
+    if (!gl) {
+        root.dataset.state = "without WebGL2";
+        root.append(
+            element(
+                "p",
+                {},
+                "The recording cannot be replayed here: this browser has no WebGL2, " +
+                    "or it is turned off. What was wrong in its frames is in the table.",
+            ),
+        );
+        return;
+    }
+    try {
+        const json = JSON.parse(root.querySelector("script").textContent);
+        new Replay(root, gl, canvas, new Recording(json));
+    } catch (error) {
+        root.dataset.state = "failed";
+        root.append(element("p", {}, `The recording could not be replayed: ${error.message}`));
+    }
+}
+
+for (const root of document.querySelectorAll("div.replay")) {
+    const panel = root.closest("[role=tabpanel]");
+    panel.addEventListener("tabshown", () => startReplay(root), { once: true });
+}

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Zlib
+//
+// node read_replay.mjs <recording.json>
+//
+// Reads a recording with the script that pages read it with, and tells as JSON, frame by frame, the
+// pairs and the middles of all objects. Frames are asked for from the last to the first and with few of
+// them kept, which is harder.
+
+import { readFileSync } from "node:fs";
+
+const script = new URL("../../demos/replay/replay_data.js", import.meta.url);
+const code = readFileSync(script, "utf8").replace(/MOST_BYTES_KEPT = \S+;/, "MOST_BYTES_KEPT = 9000;");
+const { Recording } = new Function(`${code}; return { Recording };`)();
+const recording = new Recording(JSON.parse(readFileSync(process.argv[2], "utf8")));
+const [broadphase] = recording.broadphases;
+const frames = [];
+for (let frame = recording.frames - 1; frame >= 0; --frame) {
+    const numbers = recording.numbersOf(broadphase, frame);
+    const centre = (_, place) =>
+        recording.box(numbers, place).centre.map((each, axis) => each + recording.low[axis]);
+    frames.unshift({
+        pairs: [...recording.pairsOf(broadphase, frame)],
+        centres: Array.from({ length: recording.objects }, centre),
+    });
+}
+if (recording.tracks[0].every < 2) {
+    throw new Error("All frames were kept.");
+}
+console.log(JSON.stringify(frames));
