@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/accuracy_command.hpp>
 #include <demos/compare/compare_command.hpp>
+#include <demos/paper/paper_command.hpp>
 #include <demos/report/chart_scripts.hpp>
 #include <demos/report/report_command.hpp>
 #include <tests/demos/sample_experiments.hpp>
@@ -11,6 +12,7 @@
 
 #include <array>
 #include <cstdlib>
+#include <set>
 #include <sstream>
 
 namespace hashphase::demos {
@@ -24,7 +26,7 @@ void runProgramFor(const std::vector<std::string>& arguments) {
     const std::vector<Experiment> experiments = sampleExperiments();
     const std::vector<std::string> few{"--objects", "60", "--frames", "12"};
     const std::array subcommands{
-        accuracyCommand(experiments), compareCommand(),
+        accuracyCommand(experiments), compareCommand(), paperCommand(),
         reportCommand({{accuracyCommand(experiments), {}}, {compareCommand(), few}})};
     ASSERT_EQ(runProgram(arguments, subcommands, {out, err, false, "hashphase test"}), kExitOk)
         << err.str();
@@ -49,6 +51,14 @@ void expectDrawn(const json& charts, std::size_t number) {
         EXPECT_EQ(chart["broken"], 0) << chart;
         EXPECT_GT(chart["points"].get<int>() + chart["bars"].get<int>(), 0) << chart;
     }
+}
+
+std::set<std::string> namesOf(const json& charts) {
+    std::set<std::string> names;
+    for (const json& chart : charts) {
+        names.insert(chart["name"].get<std::string>());
+    }
+    return names;
 }
 
 void expectSound(const json& page) {
@@ -83,9 +93,12 @@ TEST(Browser, DrawsAllChartsUnderThePolicyOfThePage) {
     runProgramFor(
         {"compare", "--objects", "60", "--frames", "12", "--html", folder.file("compare.html")});
     runProgramFor({"report", "--quick", "--html", folder.file("joined.html")});
-    const json pages = browse(folder, {folder.file("report/accuracy.html"),
-                                       folder.file("compare.html"), folder.file("joined.html")});
-    ASSERT_EQ(pages.size(), 3U);
+    runProgramFor({"paper", "--quick", "--objects", "500", "--frames", "2", "--html",
+                   folder.file("paper.html")});
+    const json pages =
+        browse(folder, {folder.file("report/accuracy.html"), folder.file("compare.html"),
+                        folder.file("joined.html"), folder.file("paper.html")});
+    ASSERT_EQ(pages.size(), 4U);
 
     for (const json& page : pages) {
         expectSound(page);
@@ -93,6 +106,11 @@ TEST(Browser, DrawsAllChartsUnderThePolicyOfThePage) {
     expectDrawn(pages[0]["withJavaScript"]["charts"], sampleCharts().size());
     expectDrawn(pages[1]["withJavaScript"]["charts"], 2);
     expectDrawn(pages[2]["withJavaScript"]["charts"], sampleCharts().size() + 2);
+    const std::set<std::string> names = namesOf(pages[3]["withJavaScript"]["charts"]);
+    expectDrawn(pages[3]["withJavaScript"]["charts"], names.size());
+    for (const char* name : {"paper-collision", "paper-visibility", "paper-AI", "paper-radius"}) {
+        EXPECT_EQ(names.count(name), 1U) << name;
+    }
     std::size_t rows = 0;
     for (const Chart& chart : sampleCharts()) {
         rows += chart.data.rows.size();
