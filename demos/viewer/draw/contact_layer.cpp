@@ -41,7 +41,8 @@ void main() {
 )glsl";
 
 constexpr std::size_t kCorners = 4;
-constexpr float kLeastPixels = 2.5F;   // radius of a sphere whose spot is seen
+constexpr float kLeastPixels = 4;      // radius of a sphere whose spot begins to be seen
+constexpr float kFullPixels = 7;       // and of one whose spot is as dark as it gets
 constexpr float kReach = 1.5F;         // a sphere so many radii above the ground has no spot
 constexpr float kSpotRadius = 1.5F;    // in radii of the sphere
 constexpr float kMostStrength = 0.8F;  // of the spot below a sphere that touches the ground
@@ -80,7 +81,11 @@ void ContactLayer::findSpots(std::span<const DrawnSphere> spheres, const View& v
     spots_.clear();
     for (const DrawnSphere& sphere : spheres) {
         const float depth = view.depth(sphere.centre);
-        if (depth <= 0 || view.pixels(sphere.radius, depth) < kLeastPixels) {
+        if (depth <= 0) {
+            continue;
+        }
+        const float pixels = view.pixels(sphere.radius, depth);
+        if (pixels < kLeastPixels) {
             continue;
         }
         const auto ground = heights_.at(sphere.centre.x(), sphere.centre.z());
@@ -92,8 +97,10 @@ void ContactLayer::findSpots(std::span<const DrawnSphere> spheres, const View& v
         if (nearness > 0 && gap > -2 * sphere.radius) {
             Vector3<float> centre = sphere.centre;
             centre.y() = ground->height;
+            const float size =
+                std::min((pixels - kLeastPixels) / (kFullPixels - kLeastPixels), 1.0F);
             spots_.push_back({centre, kSpotRadius * sphere.radius, ground->normal,
-                              kMostStrength * nearness * nearness});
+                              kMostStrength * size * nearness * nearness});
         }
     }
 }
