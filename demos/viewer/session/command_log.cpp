@@ -2,6 +2,7 @@
 #include <demos/viewer/session/command_log.hpp>
 
 #include <demos/scenes/input_error.hpp>
+#include <demos/viewer/session/commands.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -14,6 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kVersion = 1;
+constexpr std::uint64_t kMostFrames = 1'000'000'000;
 
 // Numbers in JSON are doubles to many readers.
 std::string hexadecimal(std::uint64_t number) {
@@ -30,6 +32,24 @@ std::uint64_t fromHexadecimal(const std::string& text) {
         throw InputError("'" + text + "' is no hash, which is 0x and up to 16 digits");
     }
     return number;
+}
+
+// Throws InputError unless it is a whole number from 0 to `most`.
+std::uint64_t countIn(const Json& json, const char* name, std::uint64_t most) {
+    const Json& number = json.at(name);
+    if (!number.is_number_unsigned() || number.get<std::uint64_t>() > most) {
+        throw InputError("'" + std::string(name) + "' is a whole number from 0 to " +
+                         std::to_string(most) + ", not " + number.dump());
+    }
+    return number.get<std::uint64_t>();
+}
+
+// A recording may come from anywhere: it writes no files.
+void requireLogged(const std::string& line) {
+    const CommandKind* const kind = findCommand(line);
+    if (kind == nullptr || !kind->isLogged) {
+        throw InputError("'" + line + "' is no command of a recording");
+    }
 }
 
 }  // namespace
@@ -91,17 +111,18 @@ CommandLog CommandLog::parse(std::string_view text, const std::string& name) {
         log.choice_.name = json.at("scene").get<std::string>();
         log.choice_.file = json.at("file").get<std::string>();
         if (!json.at("objects").is_null()) {
-            log.choice_.objects = json.at("objects").get<std::size_t>();
+            log.choice_.objects = countIn(json, "objects", kMostObjects);
         }
-        log.choice_.seed = json.at("seed").get<std::uint64_t>();
-        log.frames_ = json.at("frames").get<std::uint64_t>();
+        log.choice_.seed = countIn(json, "seed", kMostSeed);
+        log.frames_ = countIn(json, "frames", kMostFrames);
         log.hash_ = fromHexadecimal(json.at("hash").get<std::string>());
         for (const Json& hash : json.at("hashes")) {
             log.hashes_.push_back(fromHexadecimal(hash.get<std::string>()));
         }
         for (const Json& command : json.at("commands")) {
-            log.commands_.push_back({command.at("frame").get<std::uint64_t>(),
-                                     command.at("command").get<std::string>()});
+            log.commands_.push_back(
+                {countIn(command, "frame", kMostFrames), command.at("command").get<std::string>()});
+            requireLogged(log.commands_.back().line);
         }
         const auto comesLater = [](const LoggedCommand& a, const LoggedCommand& b) {
             return a.frame < b.frame;
@@ -109,6 +130,9 @@ CommandLog CommandLog::parse(std::string_view text, const std::string& name) {
         if (!std::is_sorted(log.commands_.begin(), log.commands_.end(), comesLater) ||
             log.hashes_.size() != log.frames_ / kHashEvery) {
             throw InputError("its frames are out of order, or hashes are missing");
+        }
+        if (log.frames_ > 0 && log.frames_ % kHashEvery == 0 && log.hashes_.back() != log.hash_) {
+            throw InputError("its last hash is not the one of all frames");
         }
         return log;
     } catch (const Json::exception& error) {

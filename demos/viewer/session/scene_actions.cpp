@@ -32,14 +32,14 @@ void scene(Session& session, Arguments& words) {
 
 void objects(Session& session, Arguments& words) {
     SceneChoice choice = session.choice();
-    choice.objects = static_cast<std::size_t>(words.whole("N", 1, 1'000'000));
+    choice.objects = static_cast<std::size_t>(words.whole("N", 1, kMostObjects));
     words.end();
     session.choose(choice);
 }
 
 void seed(Session& session, Arguments& words) {
     SceneChoice choice = session.choice();
-    choice.seed = static_cast<std::uint64_t>(words.whole("N", 0, 4'294'967'295));
+    choice.seed = static_cast<std::uint64_t>(words.whole("N", 0, kMostSeed));
     words.end();
     session.choose(choice);
 }

@@ -13,7 +13,6 @@
 namespace hashphase::demos {
 namespace {
 
-constexpr std::size_t kMostObjects = 1'000'000;
 constexpr std::size_t kWanderers = 30'000;
 
 // The paper's test bed, with all that its authors showed.

@@ -7,6 +7,7 @@
 #include <demos/viewer/stage/stage.hpp>
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -24,6 +25,9 @@ struct ViewerScene {
 
 /// "wander" first, then Bullet's.
 [[nodiscard]] std::span<const ViewerScene> viewerScenes();
+
+inline constexpr std::size_t kMostObjects = 1'000'000;
+inline constexpr std::uint64_t kMostSeed = std::numeric_limits<std::uint32_t>::max();
 
 struct SceneChoice {
     std::string name = "wander";

@@ -94,15 +94,47 @@ TEST(Playback, SaysWhereItIsNotTheSame) {
     EXPECT_FALSE(isSame);
 }
 
+std::string faultOf(const std::string& text) {
+    try {
+        static_cast<void>(CommandLog::parse(text, "file"));
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "none";
+}
+
+// Of a recording of 60 frames in which one text is replaced by another.
+std::string faultWhereReplaced(const std::string& what, const std::string& by) {
+    Session session({.name = "wander", .file = {}, .objects = 10, .seed = 5});
+    step(session, 60);
+    std::string text = session.log().text();
+    const std::size_t at = text.find(what);
+    EXPECT_NE(at, std::string::npos) << what;
+    return faultOf(text.replace(at, what.size(), by));
+}
+
+TEST(CommandLog, RefusesCommandsThatWriteFiles) {
+    const std::string pause = "\"command\": \"size 1280 800\"";
+    for (const std::string line :
+         {"save elsewhere.json", "capture elsewhere.aabbs 5", "screenshot elsewhere.png", "quit"}) {
+        EXPECT_EQ(
+            faultWhereReplaced(pause, "\"command\": \"" + line + "\""),
+            "file cannot be read as a recording: '" + line + "' is no command of a recording.");
+    }
+}
+
+TEST(CommandLog, RefusesNumbersThatNoSessionHas) {
+    EXPECT_EQ(faultWhereReplaced("\"objects\": 10", "\"objects\": -5"),
+              "file cannot be read as a recording: 'objects' is a whole number from 0 to 1000000, "
+              "not -5.");
+    EXPECT_EQ(faultWhereReplaced("\"seed\": 5", "\"seed\": 1099511627776"),
+              "file cannot be read as a recording: 'seed' is a whole number from 0 to 4294967295, "
+              "not 1099511627776.");
+    EXPECT_EQ(faultWhereReplaced("\"hash\": \"0x", "\"hash\": \"0x1\", \"old\": \"0x"),
+              "file cannot be read as a recording: its last hash is not the one of all frames.");
+}
+
 TEST(CommandLog, RefusesWhatIsNoRecording) {
-    const auto faultOf = [](const std::string& text) -> std::string {
-        try {
-            static_cast<void>(CommandLog::parse(text, "file"));
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return "none";
-    };
     EXPECT_EQ(faultOf("{}").substr(0, 37), "file cannot be read as a recording: [");
     EXPECT_NE(faultOf("nonsense"), "none");
     Session session({.name = "wander", .file = {}, .objects = 10, .seed = 5});
