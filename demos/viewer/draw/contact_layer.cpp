@@ -41,10 +41,9 @@ void main() {
 )glsl";
 
 constexpr std::size_t kCorners = 4;
-constexpr float kLeastPixels = 4;      // radius of a sphere whose spot begins to be seen
-constexpr float kFullPixels = 7;       // and of one whose spot is as dark as it gets
-constexpr float kReach = 1.5F;         // a sphere so many radii above the ground has no spot
-constexpr float kSpotRadius = 1.5F;    // in radii of the sphere
+constexpr float kFull = 1.45F;       // so much larger than the least, spots are as dark as they get
+constexpr float kReach = 1.5F;       // a sphere so many radii above the ground has no spot
+constexpr float kSpotRadius = 1.4F;  // in radii of the sphere
 constexpr float kMostStrength = 0.8F;  // of the spot below a sphere that touches the ground
 
 }  // namespace
@@ -56,9 +55,9 @@ ContactLayer::ContactLayer() : program_("contact shade", kVertexShader, kFragmen
     describeVertexField({1, 4, GL_FLOAT, false, offsetof(Spot, normal)}, sizeof(Spot));
 }
 
-void ContactLayer::draw(std::span<const DrawnSphere> spheres, const View& view,
+void ContactLayer::draw(std::span<const DrawnSphere> spheres, const View& view, float least,
                         QuadIndices& quads) {
-    findSpots(spheres, view);
+    findSpots(spheres, view, least);
     if (spots_.empty()) {
         return;
     }
@@ -77,7 +76,7 @@ void ContactLayer::draw(std::span<const DrawnSphere> spheres, const View& view,
     glDisable(GL_BLEND);
 }
 
-void ContactLayer::findSpots(std::span<const DrawnSphere> spheres, const View& view) {
+void ContactLayer::findSpots(std::span<const DrawnSphere> spheres, const View& view, float least) {
     spots_.clear();
     for (const DrawnSphere& sphere : spheres) {
         const float depth = view.depth(sphere.centre);
@@ -85,7 +84,7 @@ void ContactLayer::findSpots(std::span<const DrawnSphere> spheres, const View& v
             continue;
         }
         const float pixels = view.pixels(sphere.radius, depth);
-        if (pixels < kLeastPixels) {
+        if (pixels <= least) {
             continue;
         }
         const auto ground = heights_.at(sphere.centre.x(), sphere.centre.z());
@@ -97,8 +96,7 @@ void ContactLayer::findSpots(std::span<const DrawnSphere> spheres, const View& v
         if (nearness > 0 && gap > -2 * sphere.radius) {
             Vector3<float> centre = sphere.centre;
             centre.y() = ground->height;
-            const float size =
-                std::min((pixels - kLeastPixels) / (kFullPixels - kLeastPixels), 1.0F);
+            const float size = std::min((pixels - least) / ((kFull - 1) * least), 1.0F);
             spots_.push_back({centre, kSpotRadius * sphere.radius, ground->normal,
                               kMostStrength * size * nearness * nearness});
         }

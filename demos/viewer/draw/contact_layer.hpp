@@ -20,8 +20,9 @@ public:
     /// The ground that lies below from now on.
     void setGround(const GroundMesh& mesh) { heights_ = GroundHeights(mesh); }
 
-    /// After the ground, before the spheres.
-    void draw(std::span<const DrawnSphere> spheres, const View& view, QuadIndices& quads);
+    /// After the ground, before the spheres. Those of `least` pixels or less have no spot.
+    void draw(std::span<const DrawnSphere> spheres, const View& view, float least,
+              QuadIndices& quads);
 
 private:
     /// A spot on the ground.
@@ -32,7 +33,7 @@ private:
         float strength;  // 0 to 1
     };
 
-    void findSpots(std::span<const DrawnSphere> spheres, const View& view);
+    void findSpots(std::span<const DrawnSphere> spheres, const View& view, float least);
 
     ShaderProgram program_;
     GlVertexArray vertexArray_;

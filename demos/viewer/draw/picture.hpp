@@ -90,6 +90,8 @@ struct DrawnRectangle {
 
 enum class Theme : std::uint8_t { light, dark };
 
+inline constexpr float kContactFrom = 5.5F;  // below that one hardly sees it
+
 struct Picture {
     DrawnCamera camera;
     Theme theme = Theme::light;
@@ -101,8 +103,9 @@ struct Picture {
     std::optional<GroundCells> gridLines;
     std::optional<HeatMap> heatMap;
     std::optional<DrawnRectangle> rectangle;
-    float leastRadius = 1;        // spheres are drawn at least so large [pixels]
-    bool hasContactShade = true;  // a dark spot below each sphere that is near the ground
+    float leastRadius = 1;  // spheres are drawn at least so large [pixels]
+    /// Spheres larger than that have a dark spot below them, on ground that is near [pixels, radius].
+    float contactFrom = kContactFrom;
 };
 
 }  // namespace hashphase::demos

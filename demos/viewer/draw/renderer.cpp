@@ -78,12 +78,10 @@ void Renderer::Layers::drawFrame(const Picture& picture) {
 
     ground.draw(picture, view);
     sky.draw();
-    if (picture.hasContactShade) {
-        contacts.draw(picture.spheres, view, quads);
-    }
+    contacts.draw(picture.spheres, view, picture.contactFrom, quads);
     boxes.draw(picture.boxes, view);
     capsules.draw(picture.capsules, view);
-    spheres.draw(picture.spheres, view, quads);
+    spheres.draw(picture.spheres, view, picture.leastRadius, quads);
     lines.draw(picture.lines, quads);
     if (picture.rectangle) {
         rectangle.draw(*picture.rectangle, picture.theme);

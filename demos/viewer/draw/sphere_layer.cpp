@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 
 namespace hashphase::demos {
 
@@ -21,6 +22,8 @@ namespace {
 //
 // A small sphere is a point, whose square is a primitive instead of two and a vertex instead of
 // four, which is what costs. There s is next to nothing, and offset a linear function of the pixel.
+//
+// A tiny one is a dot: a disc before it, shaded like a sphere by fewer steps for each pixel.
 constexpr const char* kSphereOfVertex = R"glsl(
 layout(location = 0) in vec4 sphere;
 layout(location = 1) in vec4 colourOfSphere;
@@ -65,10 +68,10 @@ void main() {
 }
 )glsl";
 
-constexpr const char* kPointOfVertex = R"glsl(
+constexpr const char* kSquareOfVertex = R"glsl(
 flat out vec3 offsetOfPlace;  // x by x, y by x, y by y; x does not depend on y
 
-void main() {
+void placePoint() {
     placeSphere();
     // Away from the middle of the screen, spheres are drawn out by one over the cosine.
     float size = 2.0 * shape.z * distance / depth + 1.0;
@@ -77,6 +80,35 @@ void main() {
                          dot(cameraUp.xyz, up) * scale.y);
     gl_PointSize = size;
     gl_Position = clipFromWorld * vec4(sphere.xyz, 1.0);
+}
+)glsl";
+
+constexpr const char* kPointOfVertex = R"glsl(
+void main() {
+    placePoint();
+}
+)glsl";
+
+constexpr const char* kDotOfVertex = R"glsl(
+flat out vec4 dark;    // colour away from the light
+flat out vec4 bright;  // what is added to it towards the light; and the brightness of the gleam
+flat out vec3 slope;   // of the brightness, in right, up and towards the eye
+
+void main() {
+    placePoint();
+    gl_Position = clipFromWorld * vec4(sphere.xyz - radius * axis, 1.0);
+    vec3 away = tint.rgb * shadow.rgb + 0.02 * horizon.rgb;
+    dark = vec4(mix(away, horizon.rgb, lightInQuad.w), tint.a);
+    bright = vec4((1.0 - lightInQuad.w) * tint.rgb * (1.0 - shadow.rgb),
+                  mix(1.0, horizon.g, lightInQuad.w));
+    slope = 0.5 * lightInQuad.xyz;
+}
+)glsl";
+
+// How much of a pixel a circle covers, by the square of how far its centre is from the pixel, in radii.
+constexpr const char* kCoverage = R"glsl(
+float coverageOf(float squared, float pixels) {
+    return min((1.0 - sqrt(squared)) * pixels + 0.5, 1.0);
 }
 )glsl";
 
@@ -89,7 +121,7 @@ out vec4 colour;
 
 void paintSphere(vec2 offset) {
     float squared = dot(offset, offset);
-    float coverage = min((1.0 - sqrt(squared)) * shape.z + 0.5, 1.0);
+    float coverage = coverageOf(squared, shape.z);
     if (coverage <= 0.0) {
         discard;
     }
@@ -121,6 +153,32 @@ void main() {
 }
 )glsl";
 
+constexpr const char* kDotOfFragment = R"glsl(
+flat in vec4 shape;
+flat in vec3 offsetOfPlace;
+flat in vec4 dark;
+flat in vec4 bright;
+flat in vec3 slope;
+
+out vec4 colour;
+
+void main() {
+    vec2 place = gl_PointCoord - 0.5;
+    vec2 offset = place.x * offsetOfPlace.xy + vec2(0.0, place.y * offsetOfPlace.z);
+    float squared = dot(offset, offset);
+    float coverage = coverageOf(squared, shape.z);
+    if (coverage <= 0.0) {
+        discard;
+    }
+    float towardsLight = dot(slope, vec3(offset, sqrt(max(1.0 - squared, 0.0))));
+    float brightness = 0.5 + towardsLight;
+    vec3 lit = dark.rgb + min(1.1 * brightness * brightness, 1.0) * bright.rgb;
+    float gleam = max(2.0 * towardsLight, 0.0);
+    gleam *= gleam;
+    colour = vec4(mix(lit, bright.aaa, 0.2 * gleam * gleam), dark.a * coverage);
+}
+)glsl";
+
 /// The sphere that is copied to each vertex of what it is drawn by.
 void describeSphere(const StreamBuffer& vertices) {
     vertices.bind();
@@ -130,15 +188,20 @@ void describeSphere(const StreamBuffer& vertices) {
                         sizeof(DrawnSphere));
 }
 
-constexpr std::size_t kCorners = 4;
-constexpr float kLargestPoint = 16;  // radius [pixels]
-
-/// Whether the sphere is so small that a point will do. OpenGL drops points whose middle is not on
-/// the screen, so those at its edge are none.
-bool isPoint(const Vector3<float>& fromEye, float depth, float radius, const View& view) {
-    if (view.pixels(radius, depth) > kLargestPoint) {
-        return false;
+std::string join(std::initializer_list<const char*> parts) {
+    std::string all;
+    for (const char* const part : parts) {
+        all += part;
     }
+    return all;
+}
+
+constexpr std::size_t kCorners = 4;
+constexpr float kLargestDot = 3.5F;  // radius [pixels]
+constexpr float kLargestPoint = 16;
+
+/// OpenGL drops points whose middle is not on the screen, so spheres at its edge are none.
+bool isInside(const Vector3<float>& fromEye, float depth, const View& view) {
     const Eigen::Vector2f place(view.right.dot(fromEye) / view.tangents.x(),
                                 view.up.dot(fromEye) / view.tangents.y());
     const Eigen::Vector2f limit = (1 - 4 * kLargestPoint / view.size.array()) * depth;
@@ -167,29 +230,47 @@ void SphereLayer::Batch::fill(std::span<const DrawnSphere> spheres, std::size_t 
 }
 
 SphereLayer::SphereLayer()
-    : points_("small spheres", std::string(kSphereOfVertex) + kPointOfVertex,
-              std::string(kSphereOfFragment) + kPointOfFragment),
-      quads_("spheres", std::string(kSphereOfVertex) + kQuadOfVertex,
-             std::string(kSphereOfFragment) + kQuadOfFragment) {}
+    : dots_("tiny spheres", join({kSphereOfVertex, kSquareOfVertex, kDotOfVertex}),
+            join({kCoverage, kDotOfFragment})),
+      points_("small spheres", join({kSphereOfVertex, kSquareOfVertex, kPointOfVertex}),
+              join({kCoverage, kSphereOfFragment, kPointOfFragment})),
+      quads_("spheres", join({kSphereOfVertex, kQuadOfVertex}),
+             join({kCoverage, kSphereOfFragment, kQuadOfFragment})) {}
 
-void SphereLayer::draw(std::span<const DrawnSphere> spheres, const View& view,
-                       QuadIndices& indices) {
+SphereLayer::Batch& SphereLayer::batchFor(const Vector3<float>& fromEye, float depth, float pixels,
+                                          const View& view) {
+    if (pixels > kLargestPoint || !isInside(fromEye, depth, view)) {
+        return quads_;
+    }
+    return pixels > kLargestDot ? points_ : dots_;
+}
+
+void SphereLayer::sort(std::span<const DrawnSphere> spheres, const View& view, float leastRadius) {
+    for (Batch* const batch : {&dots_, &points_, &quads_}) {
+        batch->order.clear();
+    }
     // Spheres that the eye is in, or that lie behind it, cannot be seen.
-    points_.order.clear();
-    quads_.order.clear();
     for (std::uint32_t i = 0; i < spheres.size(); ++i) {
         const Vector3<float> fromEye = spheres[i].centre - view.eye;
         const float depth = view.forward.dot(fromEye);
         const float radius = spheres[i].radius;
         if (depth > 0 && fromEye.squaredNorm() > radius * radius) {
-            (isPoint(fromEye, depth, radius, view) ? points_ : quads_).order.add(depth, i);
+            const float pixels = std::max(view.pixels(radius, depth), leastRadius);
+            batchFor(fromEye, depth, pixels, view).order.add(depth, i);
         }
     }
+}
+
+void SphereLayer::draw(std::span<const DrawnSphere> spheres, const View& view, float leastRadius,
+                       QuadIndices& indices) {
+    sort(spheres, view, leastRadius);
     glEnable(GL_BLEND);
     glEnable(GL_PROGRAM_POINT_SIZE);
-    if (points_.order.size() > 0) {
-        points_.fill(spheres, 1);
-        glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(points_.order.size()));
+    for (Batch* const batch : {&dots_, &points_}) {
+        if (batch->order.size() > 0) {
+            batch->fill(spheres, 1);
+            glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(batch->order.size()));
+        }
     }
     if (quads_.order.size() > 0) {
         quads_.fill(spheres, kCorners);

@@ -20,8 +20,9 @@ public:
     SphereLayer();
 
     /// After all that is solid. The edges are smooth, and so the farthest are painted first; but
-    /// what is small on the screen before what is not.
-    void draw(std::span<const DrawnSphere> spheres, const View& view, QuadIndices& indices);
+    /// what is small on the screen before what is not. None is smaller than `leastRadius` [pixels].
+    void draw(std::span<const DrawnSphere> spheres, const View& view, float leastRadius,
+              QuadIndices& indices);
 
 private:
     /// Spheres that are drawn in one way.
@@ -38,6 +39,11 @@ private:
         DepthOrder order;
     };
 
+    /// How to draw a sphere of that radius in `pixels`.
+    Batch& batchFor(const Vector3<float>& fromEye, float depth, float pixels, const View& view);
+    void sort(std::span<const DrawnSphere> spheres, const View& view, float leastRadius);
+
+    Batch dots_;
     Batch points_;
     Batch quads_;
 };

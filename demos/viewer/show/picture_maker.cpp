@@ -39,7 +39,7 @@ void addEdges(const Corners& corners, Colour colour, bool isOnTop, std::vector<D
 
 }  // namespace
 
-const Picture& PictureMaker::make(const Session& session) {
+const Picture& PictureMaker::make(const Session& session, float contactFrom) {
     const ViewOptions& options = session.options();
     palette_ = palette(options.theme);
     spheres_.clear();
@@ -66,6 +66,7 @@ const Picture& PictureMaker::make(const Session& session) {
     picture_.lines = lines_;
     picture_.rectangle = session.rectangle();
     picture_.leastRadius = options.dots;
+    picture_.contactFrom = contactFrom;
     setGround(session);
     return picture_;
 }

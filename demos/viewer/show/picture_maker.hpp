@@ -14,8 +14,9 @@ namespace hashphase::demos {
 
 class PictureMaker {
 public:
-    /// Valid until the next call, or the session changes. Cost: O(bodies).
-    [[nodiscard]] const Picture& make(const Session& session);
+    /// Spheres larger than `contactFrom` have a dark spot below them [pixels]. Valid until the next
+    /// call, or the session changes. Cost: O(bodies).
+    [[nodiscard]] const Picture& make(const Session& session, float contactFrom = kContactFrom);
 
 private:
     void addBodies(const Session& session);

@@ -7,14 +7,36 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
+
 namespace hashphase::demos {
+
+namespace {
+
+constexpr double kSlow = 1.0 / 22;     // [s]
+constexpr double kQuick = 1.0 / 28;    // [s]
+constexpr float kPace = 1.05F;         // of the change, in a frame
+constexpr float kMostContact = 40.0F;  // [pixels]
+
+}  // namespace
+
+void Viewer::keepPace(double seconds) {
+    if (seconds > kSlow) {
+        contactFrom_ = std::min(kPace * contactFrom_, kMostContact);
+    } else if (seconds < kQuick) {
+        contactFrom_ = std::max(contactFrom_ / kPace, kContactFrom);
+    }
+}
 
 void Viewer::show(Session& session, const Panel::Pointer& pointer, double seconds) {
     if (renderer_.width() != session.width() || renderer_.height() != session.height()) {
         renderer_.resize(session.width(), session.height());
     }
     panel_.build(session, pointer, seconds);
-    renderer_.draw(maker_.make(session));
+    if (seconds > 0) {
+        keepPace(seconds);
+    }
+    renderer_.draw(maker_.make(session, contactFrom_));
     glBindFramebuffer(GL_FRAMEBUFFER, renderer_.framebuffer());
     glViewport(0, 0, session.width(), session.height());
     panel_.draw();

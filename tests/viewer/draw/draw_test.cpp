@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace hashphase::demos {
 namespace {
@@ -114,6 +115,29 @@ TEST(SpheresOnScreen, AreLitFromAboveBothLargeAndSmall) {
     }
 }
 
+// Those of 3.5 pixels and less are drawn in another way, which nobody should see.
+TEST(SpheresOnScreen, AreTheSameWhereTheyAreTiny) {
+    for (const Vector3<float>& eye :
+         {Vector3<float>(0, 0, 1), Vector3<float>(0, 1, 0), Vector3<float>(-1, 0.3F, -1)}) {
+        const auto ofRadius = [&](float pixels) {
+            const float distance = 0.5F * kSampleHeight / std::tan(0.5F) / pixels;
+            const DrawnSphere sphere{{0, 0, 0}, 1, kRed};
+            Picture picture;
+            picture.camera = sampleCamera(distance * eye.normalized(), {0, 0, 0});
+            picture.spheres = {&sphere, 1};
+            return drawn(picture);
+        };
+        const Image larger = ofRadius(3.51F);
+        const Image tiny = ofRadius(3.49F);
+        int most = 0;
+        for (std::size_t i = 0; i < larger.pixels.size(); ++i) {
+            most = std::max(most, std::abs(int{larger.pixels[i]} - int{tiny.pixels[i]}));
+        }
+        EXPECT_LE(most, 16);
+        EXPECT_NE(tiny, ofRadius(3.3F));
+    }
+}
+
 TEST(SpheresOnScreen, NearOnesHideFarOnesInAnyOrder) {
     const DrawnSphere front{{0, 0, -5}, 1, kRed}, back{{0, 0, -9}, 1.5F, kGreen};
     for (const auto& spheres : {std::array{front, back}, std::array{back, front}}) {
@@ -139,7 +163,7 @@ TEST(SpheresOnScreen, SinkIntoTheGroundByHalf) {
         const DrawnSphere sphere{{0, -3, -depth}, 1, kRed};
         Picture picture = pictureOf({&sphere, 1});
         picture.ground = {ground, 1};
-        picture.hasContactShade = false;
+        picture.contactFrom = std::numeric_limits<float>::infinity();
         const Image image = drawn(picture);
         // It is seen down to where its nearest point meets the ground, and no further.
         const float lowest = onScreen(picture.camera, {0, -3, -depth + 1}).y();
@@ -249,9 +273,9 @@ TEST(Renderer, DrawsContactShadeOnlyBelowWhatIsNearTheGround) {
     Picture picture = world.picture();
     picture.spheres = {&sphere, 1};
     const auto differs = [&] {
-        picture.hasContactShade = true;
+        picture.contactFrom = kContactFrom;
         const Image with = drawn(picture);
-        picture.hasContactShade = false;
+        picture.contactFrom = std::numeric_limits<float>::infinity();
         return drawn(picture) != with;
     };
     EXPECT_TRUE(differs());

@@ -107,6 +107,27 @@ TEST(GoldenViews, AreOthersAfterAStep) {
     EXPECT_FALSE(looksTheSame(imageDifference(before, later)));
 }
 
+// --- Pace ----------------------------------------------------------------------------------------
+
+TEST(Viewer, LeavesOutContactShadeWhileFramesTakeLong) {
+    const HeadlessContext context;
+    Viewer viewer(64, 48);
+    Session session(kWander, 64, 48);
+    const auto show = [&](int frames, double seconds) {
+        for (int i = 0; i < frames; ++i) {
+            viewer.show(session, {}, seconds);
+        }
+        return viewer.contactFrom();
+    };
+    EXPECT_EQ(show(100, 0), kContactFrom);
+    EXPECT_GT(show(100, 0.1), 5 * kContactFrom);
+    const float most = viewer.contactFrom();
+    EXPECT_EQ(show(10, 0.1), most);
+    EXPECT_EQ(show(10, 0.04), most);
+    EXPECT_LT(show(10, 0.016), most);
+    EXPECT_EQ(show(100, 0.016), kContactFrom);
+}
+
 // --- The panel -----------------------------------------------------------------------------------
 
 TEST(Panel, IsDrawnOverEachSceneInBothThemes) {
