@@ -16,15 +16,11 @@ struct Gap {
 };
 
 Gap gapBetween(const Aabb<float>& a, const Aabb<float>& b) {
-    Gap gap;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double metres = std::max(double{b.min()[axis]} - double{a.max()[axis]},
-                                       double{a.min()[axis]} - double{b.max()[axis]});
-        if (axis == 0 || metres > gap.metres) {
-            gap = {metres, "xyz"[axis]};
-        }
-    }
-    return gap;
+    const Vector3<double> gaps = (b.min().cast<double>() - a.max().cast<double>())
+                                     .cwiseMax(a.min().cast<double>() - b.max().cast<double>());
+    Eigen::Index axis = 0;
+    const double metres = gaps.maxCoeff(&axis);
+    return {metres, "xyz"[axis]};
 }
 
 std::string lengthAlong(double metres, char axis) {

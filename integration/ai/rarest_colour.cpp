@@ -37,6 +37,12 @@ struct ColourCount {
     }
 };
 
+/// What `regionOf` gives for each of the numbers.
+template <class RegionOf, std::size_t... numbers>
+auto regionsOf(const RegionOf& regionOf, std::index_sequence<numbers...>) {
+    return std::array{regionOf(numbers)...};
+}
+
 /// The rarest colour around each of 1 to kAtOnce agents; colourCount for who is nowhere.
 template <class Scalar>
 QueryCost countAround(const Grid<Scalar>& grid, Scalar radius, std::uint32_t colourCount,
@@ -46,10 +52,7 @@ QueryCost countAround(const Grid<Scalar>& grid, Scalar radius, std::uint32_t col
         const ProxyId agent = agents[std::min(i, agents.size() - 1)];
         return PositionRegion<Scalar>(positionOf(grid.box(agent)), radius);
     };
-    const auto around = [&]<std::size_t... i>(std::index_sequence<i...>) {
-        return std::array{regionOf(i)...};
-    }
-    (std::make_index_sequence<kAtOnce>());
+    const auto around = regionsOf(regionOf, std::make_index_sequence<kAtOnce>());
     std::array<ColourCount, kAtOnce> found;
     for (std::size_t i = 0; i < agents.size(); ++i) {
         found[i] = {agents[i], &filter, colours, colourCount, {}};
