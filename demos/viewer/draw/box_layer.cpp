@@ -113,22 +113,16 @@ void BoxLayer::draw(std::span<const DrawnBox> boxes, const View& view) {
             order_.add(std::max(depth, 0.0F), i);
         }
     }
-    const auto farthestFirst = order_.sort();
-    if (farthestFirst.empty()) {
+    if (order_.size() == 0) {
         return;
     }
-    instances_.fill<DrawnBox>(farthestFirst.size(), [&](std::span<DrawnBox> instances) {
-        auto next = instances.begin();
-        for (const DepthOrder::Entry& entry : farthestFirst) {
-            *next++ = boxes[entry.index];
-        }
-    });
+    instances_.fill<DrawnBox>(
+        order_.size(), [&](std::span<DrawnBox> instances) { order_.write(boxes, instances); });
     program_.use();
     glBindVertexArray(vertexArray_.name());
     glEnable(GL_BLEND);
     glEnable(GL_CULL_FACE);
-    glDrawArraysInstanced(GL_TRIANGLES, 0, kVertexCount,
-                          static_cast<GLsizei>(farthestFirst.size()));
+    glDrawArraysInstanced(GL_TRIANGLES, 0, kVertexCount, static_cast<GLsizei>(order_.size()));
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);
 }

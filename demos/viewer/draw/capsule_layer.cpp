@@ -140,23 +140,18 @@ void CapsuleLayer::draw(std::span<const DrawnCapsule> capsules, const View& view
             order_.add(std::max((one + other) / 2, 0.0F), i);
         }
     }
-    const auto farthestFirst = order_.sort();
-    if (farthestFirst.empty()) {
+    if (order_.size() == 0) {
         return;
     }
-    instances_.fill<DrawnCapsule>(farthestFirst.size(), [&](std::span<DrawnCapsule> instances) {
-        auto next = instances.begin();
-        for (const DepthOrder::Entry& entry : farthestFirst) {
-            *next++ = capsules[entry.index];
-        }
+    instances_.fill<DrawnCapsule>(order_.size(), [&](std::span<DrawnCapsule> instances) {
+        order_.write(capsules, instances);
     });
     program_.use();
     glBindVertexArray(vertexArray_.name());
     glEnable(GL_BLEND);
     glEnable(GL_CULL_FACE);
     glCullFace(GL_FRONT);
-    glDrawArraysInstanced(GL_TRIANGLES, 0, kVertexCount,
-                          static_cast<GLsizei>(farthestFirst.size()));
+    glDrawArraysInstanced(GL_TRIANGLES, 0, kVertexCount, static_cast<GLsizei>(order_.size()));
     glCullFace(GL_BACK);
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);

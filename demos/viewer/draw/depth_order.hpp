@@ -4,6 +4,7 @@
 // Things by their distance, the farthest first: what has soft edges is painted over what lies
 // behind it.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -21,15 +22,24 @@ public:
     /// Something so far in front of the eye; its `depth` is positive, its `index` the caller's.
     void add(float depth, std::uint32_t index);
 
-    /// The indices of all that were added since clear(), the farthest first. Valid until the next
-    /// call.
+    /// Writes all that were added since clear(), the farthest first and each so many times in a row;
+    /// `to` has just room for them.
+    template <typename Thing>
+    void write(std::span<const Thing> things, std::span<Thing> to, std::size_t copies = 1) {
+        auto next = to.begin();
+        for (const Entry& entry : sort()) {
+            next = std::fill_n(next, copies, things[entry.index]);
+        }
+    }
+
     struct Entry {
         std::uint32_t key;
         std::uint32_t index;
     };
-    [[nodiscard]] std::span<const Entry> sort();
 
 private:
+    [[nodiscard]] std::span<const Entry> sort();
+
     std::vector<Entry> entries_;
     std::vector<Entry> sorted_;
 };

@@ -218,12 +218,8 @@ SphereLayer::Batch::Batch(std::string_view name, const std::string& vertexShader
 }
 
 void SphereLayer::Batch::fill(std::span<const DrawnSphere> spheres, std::size_t copies) {
-    const auto farthestFirst = order.sort();
-    vertices.fill<DrawnSphere>(copies * farthestFirst.size(), [&](std::span<DrawnSphere> filled) {
-        auto next = filled.begin();
-        for (const DepthOrder::Entry& entry : farthestFirst) {
-            next = std::fill_n(next, copies, spheres[entry.index]);
-        }
+    vertices.fill<DrawnSphere>(copies * order.size(), [&](std::span<DrawnSphere> filled) {
+        order.write(spheres, filled, copies);
     });
     program.use();
     glBindVertexArray(vertexArray.name());
