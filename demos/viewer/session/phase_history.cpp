@@ -8,11 +8,13 @@ namespace {
 
 constexpr double kWeight = 0.08;  // of a new frame in what is smoothed
 
-double p95Of(std::vector<float>& sample) {
+// The smallest time that so many percent of the sample do not exceed.
+double timeAtRank(std::vector<float> sample, std::size_t percent) {
     if (sample.empty()) {
         return 0;
     }
-    const auto place = sample.begin() + static_cast<std::ptrdiff_t>((sample.size() - 1) * 95 / 100);
+    const std::size_t rank = (sample.size() * percent + 99) / 100;  // from 1, rounded up
+    const auto place = sample.begin() + static_cast<std::ptrdiff_t>(rank - 1);
     std::nth_element(sample.begin(), place, sample.end());
     return double{*place};
 }
@@ -38,6 +40,7 @@ void PhaseHistory::add(std::span<const PhaseTime> times) {
         row->frames[next_] = static_cast<float>(time.milliseconds);
         row->smoothed += kWeight * (time.milliseconds - row->smoothed);
     }
+    knowsBeginning_ = knowsBeginning_ && count_ < kFrames;
     next_ = (next_ + 1) % kFrames;
     count_ = std::min(count_ + 1, kFrames);
     std::erase_if(rows_, [](const Row& row) {
@@ -46,12 +49,32 @@ void PhaseHistory::add(std::span<const PhaseTime> times) {
     });
 }
 
-double PhaseHistory::p95(const Row& row) const {
-    std::vector<float> sample;
-    for (std::size_t frame = 0; frame < count_; ++frame) {
-        sample.push_back(at(row, frame));
+std::vector<float> PhaseHistory::timesOf(const Row& row) const {
+    std::vector<float> times;
+    for (std::size_t frame = firstTold(); frame < count_; ++frame) {
+        times.push_back(at(row, frame));
     }
-    return p95Of(sample);
+    return times;
+}
+
+std::vector<float> PhaseHistory::totals() const {
+    std::vector<float> totals;
+    for (std::size_t frame = firstTold(); frame < count_; ++frame) {
+        float sum = 0;
+        for (const Row& row : rows_) {
+            sum += at(row, frame);
+        }
+        totals.push_back(sum);
+    }
+    return totals;
+}
+
+double PhaseHistory::median(const Row& row) const {
+    return timeAtRank(timesOf(row), 50);
+}
+
+double PhaseHistory::p95(const Row& row) const {
+    return timeAtRank(timesOf(row), 95);
 }
 
 double PhaseHistory::smoothedTotal() const {
@@ -62,16 +85,12 @@ double PhaseHistory::smoothedTotal() const {
     return sum;
 }
 
+double PhaseHistory::medianTotal() const {
+    return timeAtRank(totals(), 50);
+}
+
 double PhaseHistory::p95Total() const {
-    std::vector<float> sample;
-    for (std::size_t frame = 0; frame < count_; ++frame) {
-        float sum = 0;
-        for (const Row& row : rows_) {
-            sum += at(row, frame);
-        }
-        sample.push_back(sum);
-    }
-    return p95Of(sample);
+    return timeAtRank(totals(), 95);
 }
 
 }  // namespace hashphase::demos

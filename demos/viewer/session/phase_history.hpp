@@ -19,7 +19,7 @@ public:
 
     struct Row {
         std::string_view name;
-        double smoothed = 0;                  // lately [ms]
+        double smoothed = 0;                  // lately, for who looks on [ms]
         std::array<float, kFrames> frames{};  // a ring; 0 in frames without the phase [ms]
         bool isPresent = false;               // in the last frame
     };
@@ -37,16 +37,29 @@ public:
         return row.frames[(next_ + kFrames - count_ + frame) % kFrames];
     }
 
-    /// Of the known frames, the time that one in twenty exceeds [ms].
+    /// Known frames that times are told of: all but the first of the scene, which fills tables and caches, unless
+    /// there is no other.
+    [[nodiscard]] std::size_t toldCount() const noexcept { return count_ - firstTold(); }
+
+    /// Of those, the time that half of them do not exceed, and the one that one in twenty does [ms].
+    [[nodiscard]] double median(const Row& row) const;
     [[nodiscard]] double p95(const Row& row) const;
 
     /// All phases together [ms].
     [[nodiscard]] double smoothedTotal() const;
+    [[nodiscard]] double medianTotal() const;
     [[nodiscard]] double p95Total() const;
 
 private:
+    [[nodiscard]] std::size_t firstTold() const noexcept {
+        return knowsBeginning_ && count_ > 1 ? 1 : 0;
+    }
+    [[nodiscard]] std::vector<float> timesOf(const Row& row) const;
+    [[nodiscard]] std::vector<float> totals() const;
+
     std::vector<Row> rows_;
-    std::size_t next_ = 0;  // where the next frame goes
+    bool knowsBeginning_ = true;  // the scene's first frame is still known, or to come
+    std::size_t next_ = 0;        // where the next frame goes
     std::size_t count_ = 0;
 };
 

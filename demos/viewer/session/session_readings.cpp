@@ -99,7 +99,7 @@ constexpr std::array kReadings{
     Reading{"memory", [](const Session& s) { return number(s.stage().memoryBytes()); }},
     Reading{"phases", [](const Session& s) { return number(s.stage().times().size()); }},
     Reading{"zones", [](const Session& s) { return number(s.stage().zones().size()); }},
-    Reading{"milliseconds", [](const Session& s) { return s.history().smoothedTotal(); }},
+    Reading{"milliseconds", [](const Session& s) { return s.history().medianTotal(); }},
     Reading{"p95", [](const Session& s) { return s.history().p95Total(); }},
     Reading{"eyeX", [](const Session& s) { return number(s.pose().eye.x()); }},
     Reading{"eyeY", [](const Session& s) { return number(s.pose().eye.y()); }},

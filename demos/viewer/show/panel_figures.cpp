@@ -74,12 +74,12 @@ void beginNumbers(const char* name, const char* first, const char* second, const
 }  // namespace
 
 void Panel::showPhases(const Session& session) {
-    if (!ImGui::CollapsingHeader("phases of a frame", ImGuiTreeNodeFlags_DefaultOpen)) {
+    if (!ImGui::CollapsingHeader("phases of a frame [ms]", ImGuiTreeNodeFlags_DefaultOpen)) {
         return;
     }
     drawStack(session);
     const PhaseHistory& history = session.history();
-    beginNumbers("phases", "", "ms", "p95");
+    beginNumbers("phases", "", "smoothed", "p95");
     for (std::size_t row = 0; row < history.rows().size(); ++row) {
         const PhaseHistory::Row& phase = history.rows()[row];
         ImGui::TableNextColumn();

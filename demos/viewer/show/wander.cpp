@@ -1,25 +1,20 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/viewer/show/wander.hpp>
 
-#include <demos/console/format.hpp>
 #include <demos/console/progress.hpp>
 #include <demos/console/result_file.hpp>
-#include <demos/console/table.hpp>
 #include <demos/report/stopwatch.hpp>
 #include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <demos/viewer/draw/draw_error.hpp>
 #include <demos/viewer/draw/headless_context.hpp>
-#include <demos/viewer/session/commands.hpp>
 #include <demos/viewer/session/script.hpp>
 #include <demos/viewer/show/viewer.hpp>
+#include <demos/viewer/show/wander_report.hpp>
 #include <demos/viewer/show/window.hpp>
 #include <demos/viewer/stage/threads.hpp>
 
-#include <nlohmann/json.hpp>
-
 #include <charconv>
-#include <iomanip>
 #include <memory>
 #include <ostream>
 
@@ -27,28 +22,6 @@ namespace hashphase::demos {
 namespace {
 
 constexpr std::uint64_t kHeadlessFrames = 300;
-
-void listAll(std::ostream& out) {
-    out << "scenes\n";
-    for (const ViewerScene& scene : viewerScenes()) {
-        out << "  " << std::left << std::setw(14) << scene.name << scene.description << " ("
-            << withThousands(scene.objects) << ")\n";
-    }
-    out << "\nkeys\n";
-    for (const KeyBinding& binding : keyBindings()) {
-        out << "  " << std::left << std::setw(8) << binding.key << std::setw(18) << binding.command
-            << binding.help << '\n';
-    }
-    out << "\ncommands of scripts, one a line\n";
-    for (const CommandKind& kind : commandKinds()) {
-        out << "  " << std::left << std::setw(54) << kind.usage << kind.help << '\n';
-    }
-    out << "\nreadings, for print and expect\n  ";
-    for (const std::string_view name : Session::readingNames()) {
-        out << name << ' ';
-    }
-    out << '\n';
-}
 
 std::pair<int, int> parseSize(const std::string& text) {
     int width = 0;
@@ -113,8 +86,6 @@ private:
     void feed();
     void tellMessages();
     int end();
-    void writeJson() const;
-    void tellPhases() const;
 
     const WanderOptions& options_;
     Console& console_;
@@ -199,14 +170,16 @@ int Run::inWindow() {
 
 int Run::end() {
     tellMessages();
+    const WanderEnd wanderEnd{*session_, drewPictures_};
     if (!playback_ && !script_) {
-        tellPhases();
+        tellPhases(wanderEnd, console_.out);
     }
     if (!options_.recordFile.empty()) {
         ResultFile file(options_.recordFile);
         file.write([this](std::ostream& out) { out << session_->log().text(); });
     }
-    writeJson();
+    ResultFile json(options_.jsonFile);
+    json.write([&wanderEnd](std::ostream& out) { writeNumbers(wanderEnd, out); });
     bool isSame = true;
     if (playback_ && playback_->isDone(*session_)) {
         console_.out << playback_->verdict(*session_, isSame) << '\n';
@@ -217,49 +190,11 @@ int Run::end() {
     return isSame && session_->failureCount() == 0 ? kExitOk : kExitCheckFailed;
 }
 
-void Run::tellPhases() const {
-    const PhaseHistory& history = session_->history();
-    std::ostream& out = console_.out;
-    for (const PhaseHistory::Row& row : history.rows()) {
-        out << std::left << std::setw(20) << row.name << std::right << std::setw(9)
-            << milliseconds(row.smoothed) << " ms   p95 " << std::setw(8)
-            << milliseconds(history.p95(row)) << '\n';
-    }
-    out << std::left << std::setw(20) << "together" << std::right << std::setw(9)
-        << milliseconds(history.smoothedTotal()) << " ms   p95 " << std::setw(8)
-        << milliseconds(history.p95Total()) << '\n'
-        << withThousands(session_->stage().size()) << " bodies, "
-        << withThousands(session_->visibleCount()) << " visible, "
-        << withThousands(session_->stage().pairCount()) << " pairs after "
-        << withThousands(session_->frame()) << " frames"
-        << (drewPictures_ ? "; these times are of a run that drew pictures as well" : "") << '\n';
-}
-
-void Run::writeJson() const {
-    ResultFile file(options_.jsonFile);
-    nlohmann::ordered_json json;
-    json["schema"] = "hashphase/wander";
-    json["version"] = 1;
-    json["scene"] = session_->choice().name;
-    for (const std::string_view name : Session::readingNames()) {
-        try {
-            json["readings"][std::string(name)] = session_->reading(name);
-        } catch (const InputError&) {
-            json["readings"][std::string(name)] = nullptr;
-        }
-    }
-    for (const PhaseHistory::Row& row : session_->history().rows()) {
-        json["phases"][std::string(row.name)] = {{"milliseconds", row.smoothed},
-                                                 {"p95", session_->history().p95(row)}};
-    }
-    file.write([&json](std::ostream& out) { out << json.dump(2) << '\n'; });
-}
-
 }  // namespace
 
 int runWander(const WanderOptions& options, Console& console) {
     if (options.list) {
-        listAll(console.out);
+        listWander(console.out);
         return kExitOk;
     }
     const ThreadLimit threads(options.threads.value_or(threadCount()));

@@ -221,22 +221,5 @@ TEST(Picking, TellsWhoIsNear) {
     EXPECT_GT(near, 5U);
 }
 
-TEST(PhaseHistory, KnowsTheMedianAndTheSlowestTwentieth) {
-    PhaseHistory history;
-    for (int frame = 0; frame < 1000; ++frame) {
-        const std::vector<PhaseTime> times{{"even", 2}, {"spiky", frame % 10 == 0 ? 9.0 : 1.0}};
-        history.add(times);
-    }
-    ASSERT_EQ(history.rows().size(), 2U);
-    EXPECT_EQ(history.frameCount(), PhaseHistory::kFrames);
-    EXPECT_NEAR(history.rows()[0].smoothed, 2, 1e-9);
-    EXPECT_NEAR(history.p95(history.rows()[1]), 9, 1e-6);
-    EXPECT_NEAR(history.p95Total(), 11, 1e-6);
-    for (std::size_t frame = 0; frame < PhaseHistory::kFrames; ++frame) {
-        history.add(std::vector<PhaseTime>{{"even", 2}});
-    }
-    EXPECT_EQ(history.rows().size(), 1U);
-}
-
 }  // namespace
 }  // namespace hashphase::demos

@@ -57,6 +57,18 @@ TEST_F(Wander, TellsThePhasesOfAFrame) {
     }
 }
 
+TEST_F(Wander, TellsTheMedianOfAllFramesButTheFirst) {
+    const std::string numbers = file("short.json");
+    const Outcome run =
+        typed({"--headless", "--objects", "3000", "--frames", "5", "--quiet", "--json", numbers});
+    EXPECT_NE(run.out.find("medians of the last 4 frames"), std::string::npos) << run.out;
+    const auto json = nlohmann::json::parse(std::ifstream(numbers));
+    EXPECT_GE(json["readings"]["p95"], json["readings"]["milliseconds"]);
+    for (const auto& phase : json["phases"]) {
+        EXPECT_GE(phase["p95"], phase["milliseconds"]);
+    }
+}
+
 TEST_F(Wander, ListsScenesKeysAndCommands) {
     const Outcome run = typed({"--list"});
     EXPECT_EQ(run.code, kExitOk);

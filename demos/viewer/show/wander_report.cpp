@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/viewer/show/wander_report.hpp>
+
+#include <demos/console/format.hpp>
+#include <demos/scenes/input_error.hpp>
+#include <demos/viewer/session/commands.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <iomanip>
+#include <ostream>
+
+namespace hashphase::demos {
+namespace {
+
+void tellPhase(std::ostream& out, std::string_view name, double median, double p95) {
+    out << std::left << std::setw(20) << name << std::right << std::setw(9) << milliseconds(median)
+        << " ms   p95 " << std::setw(8) << milliseconds(p95) << '\n';
+}
+
+}  // namespace
+
+void listWander(std::ostream& out) {
+    out << "scenes\n";
+    for (const ViewerScene& scene : viewerScenes()) {
+        out << "  " << std::left << std::setw(14) << scene.name << scene.description << " ("
+            << withThousands(scene.objects) << ")\n";
+    }
+    out << "\nkeys\n";
+    for (const KeyBinding& binding : keyBindings()) {
+        out << "  " << std::left << std::setw(8) << binding.key << std::setw(18) << binding.command
+            << binding.help << '\n';
+    }
+    out << "\ncommands of scripts, one a line\n";
+    for (const CommandKind& kind : commandKinds()) {
+        out << "  " << std::left << std::setw(54) << kind.usage << kind.help << '\n';
+    }
+    out << "\nreadings, for print and expect\n  ";
+    for (const std::string_view name : Session::readingNames()) {
+        out << name << ' ';
+    }
+    out << '\n';
+}
+
+void tellPhases(const WanderEnd& end, std::ostream& out) {
+    const Session& session = end.session;
+    const PhaseHistory& history = session.history();
+    for (const PhaseHistory::Row& row : history.rows()) {
+        tellPhase(out, row.name, history.median(row), history.p95(row));
+    }
+    tellPhase(out, "together", history.medianTotal(), history.p95Total());
+    out << "medians of the last " << withThousands(history.toldCount()) << " frames"
+        << (end.drewPictures ? ", of a run that drew pictures as well" : "") << '\n'
+        << withThousands(session.stage().size()) << " bodies, "
+        << withThousands(session.visibleCount()) << " visible, "
+        << withThousands(session.stage().pairCount()) << " pairs after "
+        << withThousands(session.frame()) << " frames\n";
+}
+
+void writeNumbers(const WanderEnd& end, std::ostream& out) {
+    const Session& session = end.session;
+    nlohmann::ordered_json json;
+    json["schema"] = "hashphase/wander";
+    json["version"] = 1;
+    json["scene"] = session.choice().name;
+    for (const std::string_view name : Session::readingNames()) {
+        try {
+            json["readings"][std::string(name)] = session.reading(name);
+        } catch (const InputError&) {
+            json["readings"][std::string(name)] = nullptr;
+        }
+    }
+    const PhaseHistory& history = session.history();
+    for (const PhaseHistory::Row& row : history.rows()) {
+        json["phases"][std::string(row.name)] = {{"milliseconds", history.median(row)},
+                                                 {"p95", history.p95(row)}};
+    }
+    out << json.dump(2) << '\n';
+}
+
+}  // namespace hashphase::demos

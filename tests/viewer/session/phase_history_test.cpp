@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Zlib
+
+#include <demos/viewer/session/phase_history.hpp>
+#include <demos/viewer/session/session.hpp>
+#include <tests/viewer/session/steps.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <initializer_list>
+#include <random>
+#include <vector>
+
+namespace hashphase::demos {
+namespace {
+
+void addFrame(PhaseHistory& history, double milliseconds) {
+    history.add(std::vector<PhaseTime>{{"stand", milliseconds}});
+}
+
+PhaseHistory historyOf(std::initializer_list<double> frames) {
+    PhaseHistory history;
+    for (const double frame : frames) {
+        addFrame(history, frame);
+    }
+    return history;
+}
+
+// The smallest of the sample that so large a share of it does not exceed, counted one by one.
+double bruteForceQuantile(const std::vector<double>& sample, double share) {
+    double best = *std::max_element(sample.begin(), sample.end());
+    for (const double candidate : sample) {
+        const auto notAbove = std::count_if(sample.begin(), sample.end(),
+                                            [&](double other) { return other <= candidate; });
+        if (static_cast<double>(notAbove) >= share * static_cast<double>(sample.size())) {
+            best = std::min(best, candidate);
+        }
+    }
+    return best;
+}
+
+TEST(PhaseHistory, KnowsTheMedianAndTheSlowestTwentieth) {
+    std::mt19937 random(5);
+    std::uniform_int_distribution<int> milliseconds(1, 999);
+    for (const std::size_t frames : {2, 3, 5, 20, 21, 100, 240, 241, 1000}) {
+        PhaseHistory history;
+        std::vector<double> all;
+        for (std::size_t frame = 0; frame < frames; ++frame) {
+            all.push_back(milliseconds(random));
+            addFrame(history, all.back());
+        }
+        const std::size_t told = std::min(frames - 1, PhaseHistory::kFrames);
+        const std::vector<double> last(all.end() - static_cast<std::ptrdiff_t>(told), all.end());
+        ASSERT_EQ(history.rows().size(), 1U);
+        EXPECT_EQ(history.toldCount(), told) << frames;
+        EXPECT_EQ(history.median(history.rows()[0]), bruteForceQuantile(last, 0.5)) << frames;
+        EXPECT_EQ(history.p95(history.rows()[0]), bruteForceQuantile(last, 0.95)) << frames;
+    }
+}
+
+TEST(PhaseHistory, LeavesOutTheFirstFrameUnlessThereIsNoOther) {
+    EXPECT_EQ(historyOf({}).medianTotal(), 0);
+    EXPECT_EQ(historyOf({}).p95Total(), 0);
+    EXPECT_EQ(historyOf({19}).medianTotal(), 19);
+    EXPECT_EQ(historyOf({19}).p95Total(), 19);
+    EXPECT_EQ(historyOf({19, 8}).medianTotal(), 8);
+    EXPECT_EQ(historyOf({19, 8}).p95Total(), 8);
+    EXPECT_EQ(historyOf({19, 8, 9, 7}).medianTotal(), 8);
+    EXPECT_EQ(historyOf({19, 8, 9, 7}).p95Total(), 9);
+}
+
+TEST(PhaseHistory, HasNoSlowestTwentiethBelowTheMedian) {
+    PhaseHistory history;
+    for (int frame = 0; frame < 300; ++frame) {
+        addFrame(history, frame == 0 ? 20 : 6 + frame % 7);
+        EXPECT_GE(history.p95Total(), history.medianTotal()) << frame;
+    }
+}
+
+TEST(PhaseHistory, AddsUpThePhasesOfEachFrame) {
+    PhaseHistory history;
+    for (int frame = 0; frame < 1000; ++frame) {
+        history.add(std::vector<PhaseTime>{{"even", 2}, {"spiky", frame % 10 == 0 ? 9.0 : 1.0}});
+    }
+    ASSERT_EQ(history.rows().size(), 2U);
+    EXPECT_EQ(history.frameCount(), PhaseHistory::kFrames);
+    EXPECT_EQ(history.median(history.rows()[1]), 1);
+    EXPECT_EQ(history.p95(history.rows()[1]), 9);
+    EXPECT_EQ(history.medianTotal(), 3);
+    EXPECT_EQ(history.p95Total(), 11);
+}
+
+TEST(PhaseHistory, ForgetsPhasesThatAreNoMore) {
+    PhaseHistory history;
+    history.add(std::vector<PhaseTime>{{"stand", 2}, {"once", 1}});
+    for (std::size_t frame = 1; frame < PhaseHistory::kFrames; ++frame) {
+        addFrame(history, 2);
+    }
+    EXPECT_EQ(history.rows().size(), 2U);
+    addFrame(history, 2);
+    EXPECT_EQ(history.rows().size(), 1U);
+    EXPECT_NEAR(history.smoothedTotal(), 2, 1e-9);
+}
+
+TEST(PhaseHistory, IsWhatASessionReads) {
+    Session session({.name = "wander", .file = {}, .objects = 200, .seed = 1});
+    step(session, 4);
+    EXPECT_EQ(session.reading("milliseconds"), session.history().medianTotal());
+    EXPECT_EQ(session.reading("p95"), session.history().p95Total());
+    EXPECT_GE(session.reading("p95"), session.reading("milliseconds"));
+}
+
+}  // namespace
+}  // namespace hashphase::demos
