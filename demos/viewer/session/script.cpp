@@ -3,11 +3,22 @@
 
 #include <demos/console/format.hpp>
 #include <demos/scenes/input_error.hpp>
+#include <demos/viewer/session/arguments.hpp>
 
+#include <algorithm>
+#include <array>
 #include <sstream>
 #include <utility>
 
 namespace hashphase::demos {
+namespace {
+
+// What changes neither the bodies nor who is seen.
+constexpr std::array<std::string_view, 15> kHarmless{
+    "pause", "step", "restart", "check",  "colour",     "overlay", "dots", "theme",
+    "panel", "help", "print",   "expect", "screenshot", "save",    "quit"};
+
+}  // namespace
 
 Script::Script(std::string_view text, std::string name) : name_(std::move(name)) {
     std::istringstream lines{std::string(text)};
@@ -27,7 +38,19 @@ void Script::feed(Session& session) {
     }
 }
 
+std::string Script::verdict(const Session& session) const {
+    if (!isComplete(session)) {
+        return "script: stopped at line " + withThousands(next_) + " of " +
+               withThousands(lines_.size());
+    }
+    return session.failureCount() == 0 ? "script: all expectations hold" : "";
+}
+
 void Playback::feed(Session& session) {
+    if (scene_ != session.sceneCount()) {
+        scene_ = session.sceneCount();
+        next_ = 0;
+    }
     const std::vector<LoggedCommand>& commands = log_.commands();
     for (; next_ < commands.size() && commands[next_].frame <= session.frame(); ++next_) {
         try {
@@ -38,19 +61,32 @@ void Playback::feed(Session& session) {
                              " cannot be run: " + error.what());
         }
     }
-    if (!isDone(session) && !session.isWaiting()) {
-        session.askForSteps(1);
+}
+
+void Playback::refuseChange(std::string_view line) {
+    const std::string_view name = firstWord(line);
+    if (!name.empty() && std::find(kHarmless.begin(), kHarmless.end(), name) == kHarmless.end()) {
+        throw InputError("A recording is being replayed: '" + std::string(name) +
+                         "' would make it another one. Pause (P), step (O) or begin again (R).");
     }
 }
 
 std::string Playback::verdict(const Session& session, bool& isSame) const {
+    const std::uint64_t all = log_.frameCount();
+    const std::uint64_t reached = std::min(session.log().frameCount(), all);
     const std::uint64_t same = log_.sameUntil(session.log());
-    isSame = same == log_.frameCount();
-    if (isSame) {
-        return "replay: all " + withThousands(same) + " frames are the same, to the last bit";
+    isSame = same == reached;
+    if (!isSame) {
+        return "replay: not the same after frame " + withThousands(same) + " of " +
+               withThousands(all);
     }
-    return "replay: not the same after frame " + withThousands(same) + " of " +
-           withThousands(log_.frameCount());
+    if (reached == all) {
+        return "replay: all " + withThousands(all) + " frames are the same, to the last bit";
+    }
+    // As far as there are hashes.
+    const std::uint64_t compared = reached - reached % CommandLog::kHashEvery;
+    return "replay: compared " + withThousands(compared) + " of " + withThousands(all) + " frames" +
+           (compared > 0 ? ", which are the same" : "");
 }
 
 }  // namespace hashphase::demos

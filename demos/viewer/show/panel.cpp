@@ -28,6 +28,9 @@ Panel::~Panel() {
 
 void Panel::run(Session& session, std::string_view command) {
     try {
+        if (guard_) {
+            guard_(command);
+        }
         session.run(command);
     } catch (const InputError& error) {
         say(error.what(), true);

@@ -6,8 +6,10 @@
 
 #include <demos/viewer/session/session.hpp>
 
+#include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace hashphase::demos {
 
@@ -42,6 +44,10 @@ public:
     /// What is shown for some seconds at the lower border: an error, or what a command said.
     void say(const std::string& message, bool isFault = false);
 
+    /// What is asked before a command of the user's is run; throws InputError for those that may not be.
+    using Guard = std::function<void(std::string_view command)>;
+    void setGuard(Guard guard) { guard_ = std::move(guard); }
+
     /// Runs a command of the user's; says what was wrong, where it cannot be run.
     void run(Session& session, std::string_view command);
 
@@ -57,6 +63,7 @@ private:
     void showBadge(const Session& session);
     void showMessage(const Session& session);
 
+    Guard guard_;
     std::string message_;
     bool isFault_ = false;
     double messageSeconds_ = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/viewer/show/wander.hpp>
 
+#include <demos/console/format.hpp>
 #include <demos/console/progress.hpp>
 #include <demos/console/result_file.hpp>
 #include <demos/report/stopwatch.hpp>
@@ -82,10 +83,14 @@ public:
     int inWindow();
 
 private:
-    [[nodiscard]] bool isDone() const;
+    [[nodiscard]] std::uint64_t frameCount() const;
+    [[nodiscard]] bool isTimeOver();
+    [[nodiscard]] bool isHeadlessDone() const;
+    [[nodiscard]] bool standsStill() const;
     void feed();
     void tellMessages();
     int end();
+    [[nodiscard]] bool isAsExpected() const;
 
     const WanderOptions& options_;
     Console& console_;
@@ -93,6 +98,7 @@ private:
     std::optional<Script> script_;
     std::optional<Playback> playback_;
     bool drewPictures_ = false;
+    bool isTimeOver_ = false;
     Stopwatch watch_;
 };
 
@@ -110,44 +116,56 @@ void Run::feed() {
     }
 }
 
-bool Run::isDone() const {
-    if (options_.timeLimit && watch_.milliseconds() > 1000 * *options_.timeLimit) {
-        return true;
-    }
+// How many are to be simulated without a window.
+std::uint64_t Run::frameCount() const {
+    return playback_ ? playback_->log().frameCount() : options_.frames.value_or(kHeadlessFrames);
+}
+
+bool Run::isTimeOver() {
+    isTimeOver_ =
+        isTimeOver_ || (options_.timeLimit && watch_.milliseconds() > 1000 * *options_.timeLimit);
+    return isTimeOver_;
+}
+
+bool Run::standsStill() const {
+    return !session_->isPlaying() && !session_->isWaiting();
+}
+
+bool Run::isHeadlessDone() const {
     if (session_->isOver()) {
         return true;
     }
-    if (session_->wantsScreenshot() || session_->isWaiting()) {
+    if (session_->wantsScreenshot()) {
         return false;
     }
-    if (playback_) {
-        return playback_->isDone(*session_);
-    }
     if (script_) {
-        return script_->isDone();
+        return script_->isComplete(*session_);
     }
-    return session_->frame() >= options_.frames.value_or(kHeadlessFrames);
+    return session_->frame() >= frameCount() || standsStill();
 }
 
 int Run::headless() {
     HeadlessViewer viewer;
-    const std::uint64_t total =
-        playback_ ? playback_->log().frameCount() : options_.frames.value_or(kHeadlessFrames);
     Progress progress(console_.err, progressStyle(console_, options_.quiet || script_),
-                      session_->choice().name, total);
-    if (playback_ || script_) {
+                      session_->choice().name, frameCount());
+    if (script_) {
         session_->setPlaying(false);
     }
-    for (feed(); !isDone(); feed()) {
+    for (feed(); !isHeadlessDone() && !isTimeOver(); feed()) {
         session_->advance();
         if (session_->wantsScreenshot()) {
             viewer.show(*session_);
             drewPictures_ = true;
         }
         tellMessages();
-        progress.update(std::min(session_->frame(), total));
+        progress.update(std::min(session_->frame(), frameCount()));
     }
     progress.clear();
+    if (!script_ && !session_->isOver() && standsStill() && session_->frame() < frameCount()) {
+        console_.err << "hashphase: the scene stands still after "
+                     << withThousands(session_->frame()) << " of " << withThousands(frameCount())
+                     << " frames, because a command has paused it.\n";
+    }
     if (!options_.screenshotFile.empty()) {
         session_->askForScreenshot(options_.screenshotFile);
         viewer.show(*session_);
@@ -160,9 +178,12 @@ int Run::inWindow() {
         throw InputError("--screenshot is for --headless; in a window press F12.");
     }
     Window window(session_->width(), session_->height());
+    if (playback_) {
+        window.setGuard(Playback::refuseChange);
+    }
     window.run(*session_, options_.frames.value_or(0), [this] {
         feed();
-        return (playback_ || options_.timeLimit) && isDone();
+        return isTimeOver() || (playback_ && playback_->isDone(*session_));
     });
     drewPictures_ = true;
     return end();
@@ -180,14 +201,24 @@ int Run::end() {
     }
     ResultFile json(options_.jsonFile);
     json.write([&wanderEnd](std::ostream& out) { writeNumbers(wanderEnd, out); });
+    return isAsExpected() ? kExitOk : kExitCheckFailed;
+}
+
+// Says so, too. Who ends a script or a replay early wants no more of it; a time limit cuts it off.
+bool Run::isAsExpected() const {
     bool isSame = true;
-    if (playback_ && playback_->isDone(*session_)) {
+    bool isComplete = true;
+    if (playback_) {
         console_.out << playback_->verdict(*session_, isSame) << '\n';
+        isComplete = playback_->isDone(*session_);
     }
-    if (script_ && session_->failureCount() == 0) {
-        console_.out << "script: all expectations hold\n";
+    if (script_) {
+        if (const std::string verdict = script_->verdict(*session_); !verdict.empty()) {
+            console_.out << verdict << '\n';
+        }
+        isComplete = script_->isComplete(*session_);
     }
-    return isSame && session_->failureCount() == 0 ? kExitOk : kExitCheckFailed;
+    return isSame && session_->failureCount() == 0 && (isComplete || !isTimeOver_);
 }
 
 }  // namespace

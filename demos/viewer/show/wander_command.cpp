@@ -27,17 +27,21 @@ void declareWander(CLI::App& app, WanderOptions& options) {
     app.add_option("--do", options.commands, "run a command at the start; may be given again")
         ->allow_extra_args(false);
     app.add_option("--script", options.scriptFile, "then run the commands of this file");
-    app.add_option("--replay", options.replayFile,
-                   "play back a recording, and compare what comes out")
+    app.add_option(
+           "--replay", options.replayFile,
+           "play back a recording, and compare what comes out; a window pauses it (P), steps "
+           "(O) and begins it again (R), but takes no command that would change it")
         ->excludes(scene)
         ->excludes(file);
     app.add_option("--record", options.recordFile, "write a recording at the end");
     app.add_option("--screenshot", options.screenshotFile, "write a picture at the end (PNG)");
     app.add_option("--json", options.jsonFile, "write all numbers at the end to this file");
     app.add_option("--frames", options.frames,
-                   "so many frames (default: until the window is closed; 300 without a window)")
+                   "so many frames (default: until the window is closed; 300 without a window, or "
+                   "fewer where a command pauses it)")
         ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000}));
-    app.add_option("--time-limit", options.timeLimit, "stop after so many seconds")
+    app.add_option("--time-limit", options.timeLimit,
+                   "stop after so many seconds; a script or a replay that this cuts off has failed")
         ->check(positiveSecondsFault);
     app.add_option("--threads", options.threads,
                    "simulate on so many threads at most (default: all; Bullet's scenes on one)")

@@ -196,6 +196,7 @@ Window::~Window() {
 void Window::run(Session& session, std::uint64_t frames, const std::function<bool()>& isDone) {
     using Clock = std::chrono::steady_clock;
     Viewer viewer(session.width(), session.height());
+    viewer.panel().setGuard(guard_);
     Clock::time_point before = Clock::now();
     while (glfwWindowShouldClose(input_->window) == GLFW_FALSE &&
            (frames == 0 || session.frame() < frames) && !isDone() && !session.isOver()) {

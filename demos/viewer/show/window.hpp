@@ -4,10 +4,12 @@
 // The viewer in a window, by GLFW: keys and the mouse become commands of the session.
 
 #include <demos/viewer/session/session.hpp>
+#include <demos/viewer/show/panel.hpp>
 
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <utility>
 
 namespace hashphase::demos {
 
@@ -20,6 +22,9 @@ public:
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
 
+    /// Has this asked before keys, clicks and the panel run a command; see Panel::setGuard().
+    void setGuard(Panel::Guard guard) { guard_ = std::move(guard); }
+
     /// Shows the session until the window is closed, `frames` of the scene have been simulated, if that is
     /// not 0, or `isDone`, which is asked before each frame and may run commands, says so.
     void run(Session& session, std::uint64_t frames, const std::function<bool()>& isDone);
@@ -27,6 +32,7 @@ public:
 private:
     struct Input;
     std::unique_ptr<Input> input_;
+    Panel::Guard guard_;
 };
 
 }  // namespace hashphase::demos

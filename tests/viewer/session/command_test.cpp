@@ -90,6 +90,25 @@ TEST(ViewerScript, NamesTheLineOfAFault) {
     }
 }
 
+TEST(ViewerScript, SaysHowFarItHasComeAndWhatHasComeOfIt) {
+    Session session = smallSession();
+    session.setPlaying(false);
+    Script script("step 3\n\nstep 2\nexpect frame = 5\n", "script");
+    script.feed(session);
+    EXPECT_EQ(script.verdict(session), "script: stopped at line 1 of 4");
+    for (int frame = 0; frame < 4; ++frame) {
+        session.advance();
+        script.feed(session);
+    }
+    EXPECT_EQ(script.verdict(session), "script: stopped at line 3 of 4");
+    session.advance();
+    script.feed(session);
+    EXPECT_EQ(script.verdict(session), "script: all expectations hold");
+    Script last("step 2", "script");
+    last.feed(session);
+    EXPECT_EQ(last.verdict(session), "script: stopped at line 1 of 1");
+}
+
 TEST(Commands, SayWhatIsWrongAndWhatWouldBeRight) {
     Session session = smallSession();
     EXPECT_EQ(faultOf(session, "pick 3"), "Y is missing. The command is: pick X Y");

@@ -34,11 +34,7 @@ void play(Session& session) {
 Session playBack(const CommandLog& log) {
     Playback playback(log);
     Session session(log.choice());
-    session.setPlaying(false);
     for (playback.feed(session); !playback.isDone(session); playback.feed(session)) {
-        session.advance();
-    }
-    while (session.isWaiting()) {
         session.advance();
     }
     return session;
@@ -91,6 +87,105 @@ TEST(Playback, SaysWhereItIsNotTheSame) {
     bool isSame = true;
     EXPECT_EQ(Playback(log).verdict(playBack(log), isSame),
               "replay: not the same after frame 60 of 130");
+    EXPECT_FALSE(isSame);
+}
+
+// Of a session of 130 frames in which bodies are pushed and removed.
+CommandLog shortLog() {
+    Session session({.name = "wander", .file = {}, .objects = 100, .seed = 5}, 800, 600);
+    session.run("pose top 200 7 200 439 0 0 0 0 0 0 0 0 0 20 0 0");
+    step(session, 20);
+    session.run("box 100 100 700 500");
+    session.run("push 1 0 2");
+    step(session, 31);
+    session.run("delete");
+    step(session, 79);
+    return session.log();
+}
+
+// So many turns of a viewer, or all that it takes.
+void turn(Session& session, Playback& playback, int turns = 1'000'000) {
+    playback.feed(session);
+    for (int i = 0; i < turns && !playback.isDone(session); ++i) {
+        session.advance();
+        playback.feed(session);
+    }
+}
+
+TEST(Playback, PausesStepsAndGoesOn) {
+    const CommandLog log = shortLog();
+    Playback playback(log);
+    Session session(log.choice());
+    turn(session, playback, 20);
+    EXPECT_EQ(session.frame(), 20U);
+    session.run("pause");
+    turn(session, playback, 5);
+    EXPECT_EQ(session.frame(), 20U);
+    session.run("step");
+    turn(session, playback, 5);
+    EXPECT_EQ(session.frame(), 21U);
+    session.run("step 40");
+    turn(session, playback, 100);
+    EXPECT_EQ(session.frame(), 61U);
+    session.run("pause");
+    turn(session, playback);
+    bool isSame = false;
+    EXPECT_EQ(playback.verdict(session, isSame),
+              "replay: all 130 frames are the same, to the last bit");
+    EXPECT_TRUE(isSame);
+}
+
+TEST(Playback, BeginsAgainWithItsFirstCommand) {
+    const CommandLog log = shortLog();
+    Playback playback(log);
+    Session session(log.choice());
+    turn(session, playback, 100);
+    session.run("restart");
+    EXPECT_EQ(session.frame(), 0U);
+    turn(session, playback);
+    EXPECT_EQ(session.hash(), log.hash());
+    EXPECT_EQ(session.frame(), 130U);
+}
+
+TEST(Playback, RefusesWhatWouldMakeItAnotherRecording) {
+    for (const char* line : {"turn 10 0", "zoom 2", "pick 3 4", "delete", "objects 5", "seed 3",
+                             "scene pile", "effect culling", "broadphase next", "capture a 5"}) {
+        EXPECT_THROW(Playback::refuseChange(line), InputError) << line;
+    }
+    for (const char* line : {"pause", "step 3", "restart", "overlay heat on", "theme", "help on",
+                             "screenshot", "save", "quit", "", "# nothing"}) {
+        EXPECT_NO_THROW(Playback::refuseChange(line)) << line;
+    }
+    try {
+        Playback::refuseChange("delete");
+    } catch (const InputError& error) {
+        EXPECT_STREQ(error.what(),
+                     "A recording is being replayed: 'delete' would make it another "
+                     "one. Pause (P), step (O) or begin again (R).");
+    }
+}
+
+TEST(Playback, SaysHowFarItHasCome) {
+    const CommandLog log = shortLog();
+    Playback playback(log);
+    Session session(log.choice());
+    bool isSame = false;
+    turn(session, playback, 59);
+    EXPECT_EQ(playback.verdict(session, isSame), "replay: compared 0 of 130 frames");
+    EXPECT_TRUE(isSame);
+    turn(session, playback, 60);
+    EXPECT_EQ(playback.verdict(session, isSame),
+              "replay: compared 60 of 130 frames, which are the same");
+    EXPECT_TRUE(isSame);
+}
+
+TEST(Playback, SaysBeforeItsEndWhereItIsNotTheSame) {
+    const CommandLog log = shortLog();
+    Playback playback(log);
+    Session session({.name = "wander", .file = {}, .objects = 100, .seed = 6}, 800, 600);
+    turn(session, playback, 70);
+    bool isSame = true;
+    EXPECT_EQ(playback.verdict(session, isSame), "replay: not the same after frame 0 of 130");
     EXPECT_FALSE(isSame);
 }
 

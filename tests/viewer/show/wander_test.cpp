@@ -91,6 +91,57 @@ TEST_F(Wander, FailsWhereAScriptExpectsWhatIsNotSo) {
         << refused.err;
 }
 
+TEST_F(Wander, EndsWhereACommandHasPausedIt) {
+    const auto runOf = [](const std::string& command) {
+        return typed({"--headless", "--objects", "50", "--frames", "100", "--quiet", "--time-limit",
+                      "20", "--do", command});
+    };
+    const Outcome paused = runOf("pause");
+    EXPECT_EQ(paused.code, kExitOk);
+    EXPECT_EQ(
+        paused.err,
+        "hashphase: the scene stands still after 0 of 100 frames, because a command has paused "
+        "it.\n");
+    const Outcome stepped = runOf("step 5");
+    EXPECT_NE(stepped.err.find("after 5 of 100 frames"), std::string::npos) << stepped.err;
+    EXPECT_NE(stepped.out.find("pairs after 5 frames"), std::string::npos) << stepped.out;
+    const Outcome stopped = runOf("step 500");
+    EXPECT_EQ(stopped.err, "");
+    EXPECT_NE(stopped.out.find("pairs after 100 frames"), std::string::npos) << stopped.out;
+}
+
+TEST_F(Wander, SaysWhereAScriptWasStopped) {
+    const auto runOf = [this](const std::string& text) {
+        return typed({"--headless", "--objects", "300", "--quiet", "--time-limit", "0.3",
+                      "--script", file("cut", text)});
+    };
+    const Outcome cut = runOf("step 1000000\nexpect bodies = 5\n");
+    EXPECT_EQ(cut.code, kExitCheckFailed);
+    EXPECT_EQ(cut.out, "script: stopped at line 1 of 2\n");
+    const Outcome cutInTheLast = runOf("# a comment\nstep 1000000\n");
+    EXPECT_EQ(cutInTheLast.code, kExitCheckFailed);
+    EXPECT_EQ(cutInTheLast.out, "script: stopped at line 2 of 2\n");
+    const Outcome left = runOf("step 2\nquit\nexpect bodies = 5\n");
+    EXPECT_EQ(left.code, kExitOk);
+    EXPECT_EQ(left.out, "script: stopped at line 2 of 3\n");
+    const Outcome whole = runOf("step 2\nexpect bodies = 300\n");
+    EXPECT_EQ(whole.code, kExitOk);
+    EXPECT_EQ(whole.out, "script: all expectations hold\n");
+}
+
+TEST_F(Wander, SaysHowFarAReplayHasCome) {
+    const std::string recording = file("r.json");
+    typed({"--headless", "--objects", "100", "--frames", "70", "--quiet", "--record", recording});
+    const Outcome cut =
+        typed({"--headless", "--quiet", "--replay", recording, "--time-limit", "1e-9"});
+    EXPECT_EQ(cut.code, kExitCheckFailed);
+    EXPECT_EQ(cut.out, "replay: compared 0 of 70 frames\n");
+    const Outcome whole =
+        typed({"--headless", "--quiet", "--replay", recording, "--time-limit", "60"});
+    EXPECT_EQ(whole.code, kExitOk);
+    EXPECT_EQ(whole.out, "replay: all 70 frames are the same, to the last bit\n");
+}
+
 TEST_F(Wander, WritesPicturesRecordingsAndNumbers) {
     const std::string picture = file("a.png");
     const std::string recording = file("a.json");
