@@ -20,7 +20,8 @@ public:
     void layOut(Session& session) { panel_.build(session, {}, 0); }
 
     /// Draws the session as it is. Where somebody looks on, `seconds` after the last frame, the contact shade
-    /// of small spheres is left out while frames take long, as nothing else costs that much. Throws InputError where a picture that was asked for cannot be written.
+    /// of small spheres is left out while frames take long, as nothing else costs that much. Throws InputError
+    /// where a picture that was asked for cannot be written; it has been drawn even so.
     void show(Session& session, const Panel::Pointer& pointer, double seconds);
 
     /// Spheres larger than that have a dark spot below them now [pixels, radius].

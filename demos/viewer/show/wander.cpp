@@ -99,6 +99,7 @@ private:
     std::optional<Playback> playback_;
     bool drewPictures_ = false;
     bool isTimeOver_ = false;
+    std::optional<double> framesPerSecond_;  // shown in a window
     Stopwatch watch_;
 };
 
@@ -181,20 +182,22 @@ int Run::inWindow() {
     if (playback_) {
         window.setGuard(Playback::refuseChange);
     }
-    window.run(*session_, options_.frames.value_or(0), [this] {
+    const FrameRate rate = window.run(*session_, options_.frames.value_or(0), [this] {
         feed();
         return isTimeOver() || (playback_ && playback_->isDone(*session_));
     });
     drewPictures_ = true;
+    framesPerSecond_ = rate.perSecond();
     return end();
 }
 
 int Run::end() {
     tellMessages();
-    const WanderEnd wanderEnd{*session_, drewPictures_};
+    const WanderEnd wanderEnd{*session_, drewPictures_, framesPerSecond_};
     if (!playback_ && !script_) {
         tellPhases(wanderEnd, console_.out);
     }
+    tellFrameRate(wanderEnd, console_.out);
     if (!options_.recordFile.empty()) {
         ResultFile file(options_.recordFile);
         file.write([this](std::ostream& out) { out << session_->log().text(); });

@@ -57,12 +57,21 @@ void tellPhases(const WanderEnd& end, std::ostream& out) {
         << withThousands(session.frame()) << " frames\n";
 }
 
+void tellFrameRate(const WanderEnd& end, std::ostream& out) {
+    if (end.framesPerSecond) {
+        out << fixed(*end.framesPerSecond, 1)
+            << " frames shown per second, the first second left out\n";
+    }
+}
+
 void writeNumbers(const WanderEnd& end, std::ostream& out) {
     const Session& session = end.session;
     nlohmann::ordered_json json;
     json["schema"] = "hashphase/wander";
     json["version"] = 1;
     json["scene"] = session.choice().name;
+    json["framesPerSecond"] =
+        end.framesPerSecond ? nlohmann::ordered_json(*end.framesPerSecond) : nullptr;
     for (const std::string_view name : Session::readingNames()) {
         try {
             json["readings"][std::string(name)] = session.reading(name);

@@ -6,6 +6,7 @@
 #include <demos/viewer/session/session.hpp>
 
 #include <iosfwd>
+#include <optional>
 
 namespace hashphase::demos {
 
@@ -16,10 +17,14 @@ void listWander(std::ostream& out);
 struct WanderEnd {
     const Session& session;
     bool drewPictures = false;
+    std::optional<double> framesPerSecond;  // that a window has shown, if it did for long enough
 };
 
 /// The phases of a frame, as a table, and how many bodies there are.
 void tellPhases(const WanderEnd& end, std::ostream& out);
+
+/// How many frames were shown a second, where that is known.
+void tellFrameRate(const WanderEnd& end, std::ostream& out);
 
 /// All numbers, as JSON; null for those that there are not.
 void writeNumbers(const WanderEnd& end, std::ostream& out);

@@ -2,6 +2,7 @@
 #include <demos/viewer/show/window.hpp>
 
 #include <demos/console/format.hpp>
+#include <demos/report/stopwatch.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <demos/viewer/session/commands.hpp>
 #include <demos/viewer/show/viewer.hpp>
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -63,7 +63,8 @@ std::string line(std::string_view command, std::initializer_list<double> numbers
 
 }  // namespace
 
-/// What comes from the keyboard and the mouse until the next frame.
+/// What comes from the keyboard and the mouse until the next frame. Places are the window's, which is as large
+/// as the picture or not; commands and the panel have those of the picture.
 struct Window::Input {
     GLFWwindow* window = nullptr;
     std::vector<std::string> commands;
@@ -72,15 +73,18 @@ struct Window::Input {
     std::optional<Pixel> pressedAt;  // the left button, on the scene
     bool isDragging = false;
     Pixel lastAt{0, 0};
+    Pixel scale{1, 1};  // of the picture, by the window
 
     static Input& of(GLFWwindow* window) {
         return *static_cast<Input*>(glfwGetWindowUserPointer(window));
     }
     void listen();
+    void setScale(const Session& session);
     void onKey(int key);
     void onButton(int button, bool isDown);
     void onMove(double x, double y);
     void steer(const Session& session, double seconds);
+    [[nodiscard]] Pixel inPicture(const Pixel& place) const { return place.cwiseProduct(scale); }
     [[nodiscard]] bool isDown(int key) const { return glfwGetKey(window, key) == GLFW_PRESS; }
 };
 
@@ -110,6 +114,15 @@ void Window::Input::listen() {
     });
 }
 
+void Window::Input::setScale(const Session& session) {
+    int width = 0;
+    int height = 0;
+    glfwGetWindowSize(window, &width, &height);
+    if (width > 0 && height > 0) {  // it has none while it is an icon
+        scale = {double(session.width()) / width, double(session.height()) / height};
+    }
+}
+
 void Window::Input::onKey(int key) {
     for (const KeyBinding& binding : keyBindings()) {
         if (keyOf(binding.key) == key) {
@@ -129,9 +142,10 @@ void Window::Input::onButton(int button, bool isDown) {
     if (isDown && !overPanel) {
         pressedAt = lastAt;
     } else if (!isDown && pressedAt) {
-        const Pixel from = *std::exchange(pressedAt, std::nullopt);
+        const Pixel from = inPicture(*std::exchange(pressedAt, std::nullopt));
+        const Pixel to = inPicture(lastAt);
         commands.push_back(std::exchange(isDragging, false)
-                               ? line("box", {from.x(), from.y(), lastAt.x(), lastAt.y()})
+                               ? line("box", {from.x(), from.y(), to.x(), to.y()})
                                : line("pick", {from.x(), from.y()}));
     }
 }
@@ -139,13 +153,15 @@ void Window::Input::onButton(int button, bool isDown) {
 void Window::Input::onMove(double x, double y) {
     const Pixel way = Pixel(x, y) - lastAt;
     lastAt = {x, y};
-    pointer.x = static_cast<float>(x);
-    pointer.y = static_cast<float>(y);
+    const Pixel at = inPicture(lastAt);
+    pointer.x = static_cast<float>(at.x());
+    pointer.y = static_cast<float>(at.y());
     if (pressedAt && (lastAt - *pressedAt).norm() > kClickReach) {
         isDragging = true;
     }
     if (isDragging) {
-        commands.push_back(line("drag", {pressedAt->x(), pressedAt->y(), x, y}));
+        const Pixel from = inPicture(*pressedAt);
+        commands.push_back(line("drag", {from.x(), from.y(), at.x(), at.y()}));
     }
     if (pointer.right && !overPanel) {
         commands.push_back(line("turn", {-kTurnPerPixel * way.x(), -kTurnPerPixel * way.y()}));
@@ -193,37 +209,53 @@ Window::~Window() {
     glfwTerminate();
 }
 
-void Window::run(Session& session, std::uint64_t frames, const std::function<bool()>& isDone) {
-    using Clock = std::chrono::steady_clock;
+// What has been pressed and moved since the last frame becomes commands, and they are run.
+void Window::listen(Session& session, Viewer& viewer, double seconds) {
+    input_->setScale(session);
+    input_->pointer.wheel = 0;
+    glfwPollEvents();
+    input_->steer(session, std::min(seconds, 0.1));
+    for (const std::string& command : std::exchange(input_->commands, {})) {
+        viewer.panel().run(session, command);
+    }
+}
+
+void Window::present(const Session& session, const Viewer& viewer) {
+    int width = 0;
+    int height = 0;
+    glfwGetFramebufferSize(input_->window, &width, &height);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, viewer.renderer().framebuffer());
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    glBlitFramebuffer(0, 0, session.width(), session.height(), 0, 0, width, height,
+                      GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glfwSwapBuffers(input_->window);
+}
+
+FrameRate Window::run(Session& session, std::uint64_t frames, const std::function<bool()>& isDone) {
     Viewer viewer(session.width(), session.height());
     viewer.panel().setGuard(guard_);
-    Clock::time_point before = Clock::now();
+    FrameRate rate;
+    const Stopwatch watch;
+    double before = 0;  // [s]
     while (glfwWindowShouldClose(input_->window) == GLFW_FALSE &&
            (frames == 0 || session.frame() < frames) && !isDone() && !session.isOver()) {
-        const Clock::time_point now = Clock::now();
-        const double seconds = std::chrono::duration<double>(now - before).count();
-        before = now;
-        input_->pointer.wheel = 0;
-        glfwPollEvents();
-        input_->steer(session, std::min(seconds, 0.1));
-        for (const std::string& command : std::exchange(input_->commands, {})) {
-            viewer.panel().run(session, command);
-        }
+        const double now = watch.milliseconds() / 1000;
+        const double seconds = now - std::exchange(before, now);
+        listen(session, viewer, seconds);
         session.advance();
-        viewer.show(session, input_->pointer, seconds);
+        try {
+            viewer.show(session, input_->pointer, seconds);
+        } catch (const InputError& error) {  // a picture that cannot be written
+            viewer.panel().say(error.what(), true);
+        }
         for (const std::string& message : session.takeMessages()) {
             viewer.panel().say(message);
         }
         input_->overPanel = viewer.panel().hasPointer();
-        int width = 0;
-        int height = 0;
-        glfwGetFramebufferSize(input_->window, &width, &height);
-        glBindFramebuffer(GL_READ_FRAMEBUFFER, viewer.renderer().framebuffer());
-        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-        glBlitFramebuffer(0, 0, session.width(), session.height(), 0, 0, width, height,
-                          GL_COLOR_BUFFER_BIT, GL_NEAREST);
-        glfwSwapBuffers(input_->window);
+        present(session, viewer);
+        rate.note(watch.milliseconds() / 1000);
     }
+    return rate;
 }
 
 }  // namespace hashphase::demos

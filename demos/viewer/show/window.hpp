@@ -4,6 +4,7 @@
 // The viewer in a window, by GLFW: keys and the mouse become commands of the session.
 
 #include <demos/viewer/session/session.hpp>
+#include <demos/viewer/show/frame_rate.hpp>
 #include <demos/viewer/show/panel.hpp>
 
 #include <cstdint>
@@ -12,6 +13,8 @@
 #include <utility>
 
 namespace hashphase::demos {
+
+class Viewer;
 
 class Window {
 public:
@@ -26,11 +29,15 @@ public:
     void setGuard(Panel::Guard guard) { guard_ = std::move(guard); }
 
     /// Shows the session until the window is closed, `frames` of the scene have been simulated, if that is
-    /// not 0, or `isDone`, which is asked before each frame and may run commands, says so.
-    void run(Session& session, std::uint64_t frames, const std::function<bool()>& isDone);
+    /// not 0, or `isDone`, which is asked before each frame and may run commands, says so. Returns how many
+    /// frames it has shown a second.
+    FrameRate run(Session& session, std::uint64_t frames, const std::function<bool()>& isDone);
 
 private:
     struct Input;
+    void listen(Session& session, Viewer& viewer, double seconds);
+    void present(const Session& session, const Viewer& viewer);
+
     std::unique_ptr<Input> input_;
     Panel::Guard guard_;
 };
