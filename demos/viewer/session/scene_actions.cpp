@@ -41,6 +41,9 @@ void seed(Session& session, Arguments& words) {
     SceneChoice choice = session.choice();
     choice.seed = static_cast<std::uint64_t>(words.whole("N", 0, kMostSeed));
     words.end();
+    if (isBoxRecording(choice)) {
+        throw InputError("A recording of boxes has no seed.");
+    }
     session.choose(choice);
 }
 

@@ -8,6 +8,7 @@
 #include <demos/viewer/stage/paper_stage.hpp>
 #include <demos/viewer/stage/recording_stage.hpp>
 
+#include <algorithm>
 #include <filesystem>
 
 namespace hashphase::demos {
@@ -56,18 +57,16 @@ std::unique_ptr<Stage> makePaperStage(EffectsFile file, const SceneChoice& choic
     return std::make_unique<PaperStage>(file);
 }
 
+bool hasExtension(const SceneChoice& choice, std::string_view extension) {
+    return std::filesystem::path(choice.file).extension() == extension;
+}
+
 std::unique_ptr<Stage> openFile(const SceneChoice& choice) {
-    const std::string extension = std::filesystem::path(choice.file).extension().string();
-    if (extension == ".aabbs") {
+    if (isBoxRecording(choice)) {
         return std::make_unique<RecordingStage>(choice.file, choice.objects.value_or(0));
     }
-    if (extension == ".json") {
-        EffectsFile file = readEffectsFile(choice.file);
-        const SceneChoice sized{.name = {},
-                                .file = choice.file,
-                                .objects = choice.objects,
-                                .seed = choice.seed == 1 ? file.scene.seed : choice.seed};
-        return makePaperStage(std::move(file), sized);
+    if (hasExtension(choice, ".json")) {
+        return makePaperStage(readEffectsFile(choice.file), choice);
     }
     throw InputError(choice.file +
                      " is neither a scene file (.json) nor a recording of boxes (.aabbs).");
@@ -86,6 +85,26 @@ std::span<const ViewerScene> viewerScenes() {
         return all;
     }();
     return scenes;
+}
+
+const std::string& titleOf(const SceneChoice& choice) {
+    return choice.file.empty() ? choice.name : choice.file;
+}
+
+bool isBoxRecording(const SceneChoice& choice) {
+    return hasExtension(choice, ".aabbs");
+}
+
+std::uint64_t ownSeed(const SceneChoice& choice) {
+    return hasExtension(choice, ".json") ? readEffectsFile(choice.file).scene.seed
+                                         : SceneChoice().seed;
+}
+
+std::size_t objectCount(const SceneChoice& choice) {
+    const auto scene =
+        std::find_if(viewerScenes().begin(), viewerScenes().end(),
+                     [&](const ViewerScene& known) { return known.name == choice.name; });
+    return choice.objects.value_or(scene != viewerScenes().end() ? scene->objects : 0);
 }
 
 std::unique_ptr<Stage> makeStage(const SceneChoice& choice) {

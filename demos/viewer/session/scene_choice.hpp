@@ -37,6 +37,18 @@ struct SceneChoice {
     std::uint64_t seed = 1;
 };
 
+/// What people call it: its name, or its file.
+[[nodiscard]] const std::string& titleOf(const SceneChoice& choice);
+
+/// Whether it is a recording of boxes, which no seed changes.
+[[nodiscard]] bool isBoxRecording(const SceneChoice& choice);
+
+/// The seed that it has by itself, which is a scene file's own. Throws InputError for broken files.
+[[nodiscard]] std::uint64_t ownSeed(const SceneChoice& choice);
+
+/// How many objects a scene has that was chosen by name: those that were asked for, or its own.
+[[nodiscard]] std::size_t objectCount(const SceneChoice& choice);
+
 /// Puts it on stage, as it is declared by itself. Throws InputError for unknown names, numbers of objects
 /// that cannot be, and broken files.
 [[nodiscard]] std::unique_ptr<Stage> makeStage(const SceneChoice& choice);

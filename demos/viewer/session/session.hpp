@@ -49,6 +49,10 @@ enum class Overlay : std::uint8_t { bodies, grid, heat, boxes, pairs };
 inline constexpr std::array<std::string_view, 5> kOverlays{"bodies", "grid", "heat", "boxes",
                                                            "pairs"};
 
+/// How wide and high a picture can be [pixels]; twice as much each way would take 4 GB.
+inline constexpr int kLeastSide = 16;
+inline constexpr int kMostSide = 8192;
+
 /// How it is shown; none of it changes what happens.
 struct ViewOptions {
     Colouring colouring = Colouring::agents;

@@ -94,8 +94,8 @@ void freeze(Session& session, Arguments& words) {
 }
 
 void size(Session& session, Arguments& words) {
-    const long long width = words.whole("WIDTH", 16, 16'384);
-    const long long height = words.whole("HEIGHT", 16, 16'384);
+    const long long width = words.whole("WIDTH", kLeastSide, kMostSide);
+    const long long height = words.whole("HEIGHT", kLeastSide, kMostSide);
     words.end();
     session.resize(static_cast<int>(width), static_cast<int>(height));
 }

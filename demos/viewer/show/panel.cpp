@@ -96,8 +96,7 @@ void Panel::draw() {
 // --- What is on stage ----------------------------------------------------------------------------
 
 void Panel::showScene(Session& session) {
-    ImGui::TextUnformatted(session.choice().file.empty() ? session.choice().name.c_str()
-                                                         : session.choice().file.c_str());
+    ImGui::TextUnformatted(titleOf(session.choice()).c_str());
     if (frameSeconds_ > 0) {
         alignRight(fixed(1 / frameSeconds_, 0) + " pictures a second");
     }
@@ -127,9 +126,10 @@ void Panel::showScene(Session& session) {
         run(session, "help");
     }
     ImGui::SetNextItemWidth(150);
-    if (ImGui::BeginCombo("scene", session.choice().name.c_str())) {
+    const std::string title = titleOf(session.choice());
+    if (ImGui::BeginCombo("scene", title.c_str())) {
         for (const ViewerScene& scene : viewerScenes()) {
-            if (ImGui::Selectable(scene.name.c_str(), scene.name == session.choice().name)) {
+            if (ImGui::Selectable(scene.name.c_str(), scene.name == title)) {
                 run(session, "scene " + scene.name);
             }
         }

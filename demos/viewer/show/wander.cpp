@@ -15,6 +15,7 @@
 #include <demos/viewer/show/window.hpp>
 #include <demos/viewer/stage/threads.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <memory>
 #include <ostream>
@@ -31,12 +32,21 @@ std::pair<int, int> parseSize(const std::string& text) {
     const auto first = std::from_chars(text.data(), end, width);
     const bool isPair = first.ec == std::errc() && first.ptr != end && *first.ptr == 'x' &&
                         std::from_chars(first.ptr + 1, end, height).ptr == end;
-    if (!isPair || width < 16 || height < 16 || width > 16'384 || height > 16'384) {
+    if (!isPair || std::min(width, height) < kLeastSide || std::max(width, height) > kMostSide) {
         throw InputError(
-            "--size is a width and a height of 16 to 16,384 pixels, as in 1280x800, not '" + text +
+            "--size is a width and a height of 16 to 8,192 pixels, as in 1280x800, not '" + text +
             "'.");
     }
     return {width, height};
+}
+
+SceneChoice chosen(const WanderOptions& options) {
+    SceneChoice choice = options.scene;
+    if (options.seed && isBoxRecording(choice)) {
+        throw InputError("--seed is for scenes; " + choice.file + " is a recording of boxes.");
+    }
+    choice.seed = options.seed ? *options.seed : ownSeed(choice);
+    return choice;
 }
 
 /// OpenGL without a window, from the first picture on.
@@ -63,21 +73,7 @@ private:
 /// What is run and written, whoever shows it.
 class Run {
 public:
-    Run(const WanderOptions& options, Console& console) : options_(options), console_(console) {
-        if (!options.replayFile.empty()) {
-            playback_.emplace(CommandLog::parse(readFile(options.replayFile), options.replayFile));
-        }
-        if (!options.scriptFile.empty()) {
-            script_.emplace(readFile(options.scriptFile), options.scriptFile);
-        }
-        const auto [width, height] = parseSize(options.size);
-        session_ = std::make_unique<Session>(playback_ ? playback_->log().choice() : options.scene,
-                                             width, height);
-        session_->options().panel = !options.isHeadless;
-        for (const std::string& command : options.commands) {
-            session_->run(command);
-        }
-    }
+    Run(const WanderOptions& options, Console& console);
 
     int headless();
     int inWindow();
@@ -97,11 +93,32 @@ private:
     std::unique_ptr<Session> session_;
     std::optional<Script> script_;
     std::optional<Playback> playback_;
+    // Opened before anything runs, but not before what may be read from files of the same name.
+    std::optional<ResultFile> record_;
+    std::optional<ResultFile> json_;
     bool drewPictures_ = false;
     bool isTimeOver_ = false;
     std::optional<double> framesPerSecond_;  // shown in a window
     Stopwatch watch_;
 };
+
+Run::Run(const WanderOptions& options, Console& console) : options_(options), console_(console) {
+    if (!options.replayFile.empty()) {
+        playback_.emplace(CommandLog::parse(readFile(options.replayFile), options.replayFile));
+    }
+    if (!options.scriptFile.empty()) {
+        script_.emplace(readFile(options.scriptFile), options.scriptFile);
+    }
+    const auto [width, height] = parseSize(options.size);
+    session_ = std::make_unique<Session>(playback_ ? playback_->log().choice() : chosen(options),
+                                         width, height);
+    record_.emplace(options.recordFile);
+    json_.emplace(options.jsonFile);
+    session_->options().panel = !options.isHeadless;
+    for (const std::string& command : options.commands) {
+        session_->run(command);
+    }
+}
 
 void Run::tellMessages() {
     for (const std::string& message : session_->takeMessages()) {
@@ -148,7 +165,7 @@ bool Run::isHeadlessDone() const {
 int Run::headless() {
     HeadlessViewer viewer;
     Progress progress(console_.err, progressStyle(console_, options_.quiet || script_),
-                      session_->choice().name, frameCount());
+                      titleOf(session_->choice()), frameCount());
     if (script_) {
         session_->setPlaying(false);
     }
@@ -198,12 +215,8 @@ int Run::end() {
         tellPhases(wanderEnd, console_.out);
     }
     tellFrameRate(wanderEnd, console_.out);
-    if (!options_.recordFile.empty()) {
-        ResultFile file(options_.recordFile);
-        file.write([this](std::ostream& out) { out << session_->log().text(); });
-    }
-    ResultFile json(options_.jsonFile);
-    json.write([&wanderEnd](std::ostream& out) { writeNumbers(wanderEnd, out); });
+    record_->write([this](std::ostream& out) { out << session_->log().text(); });
+    json_->write([&wanderEnd](std::ostream& out) { writeNumbers(wanderEnd, out); });
     return isAsExpected() ? kExitOk : kExitCheckFailed;
 }
 

@@ -14,8 +14,9 @@
 namespace hashphase::demos {
 
 struct WanderOptions {
-    SceneChoice scene;
-    std::string size = "1280x800";  // of the picture or window [pixels]
+    SceneChoice scene;                  // its seed is its own, unless there is one here:
+    std::optional<std::uint64_t> seed;  // that was asked for
+    std::string size = "1280x800";      // of the picture or window [pixels]
     bool isHeadless = false;
     std::vector<std::string> commands;    // run at the start
     std::string scriptFile;               // run then

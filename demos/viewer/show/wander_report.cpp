@@ -18,6 +18,21 @@ void tellPhase(std::ostream& out, std::string_view name, double median, double p
         << " ms   p95 " << std::setw(8) << milliseconds(p95) << '\n';
 }
 
+// The scene that was on stage at the end; of a recording of boxes all objects are bodies, and of a scene file,
+// in which one can be removed, each has an index.
+void addScene(const Session& session, nlohmann::ordered_json& json) {
+    const SceneChoice& choice = session.choice();
+    const bool isFile = !choice.file.empty();
+    const auto orNull = [](bool isThere, auto value) {
+        return isThere ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+    };
+    json["scene"] = orNull(!isFile, choice.name);
+    json["file"] = orNull(isFile, choice.file);
+    json["objects"] = isFile ? session.stage().indexLimit() : objectCount(choice);
+    json["seed"] = orNull(!isBoxRecording(choice), choice.seed);
+    json["broadphase"] = session.stage().broadphase().name;
+}
+
 }  // namespace
 
 void listWander(std::ostream& out) {
@@ -69,7 +84,7 @@ void writeNumbers(const WanderEnd& end, std::ostream& out) {
     nlohmann::ordered_json json;
     json["schema"] = "hashphase/wander";
     json["version"] = 1;
-    json["scene"] = session.choice().name;
+    addScene(session, json);
     json["framesPerSecond"] =
         end.framesPerSecond ? nlohmann::ordered_json(*end.framesPerSecond) : nullptr;
     for (const std::string_view name : Session::readingNames()) {

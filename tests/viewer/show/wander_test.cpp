@@ -12,6 +12,7 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace hashphase::demos {
@@ -162,6 +163,97 @@ TEST_F(Wander, WritesPicturesRecordingsAndNumbers) {
     EXPECT_EQ(again.out, "replay: all 30 frames are the same, to the last bit\n");
 }
 
+// A scene file of the seed 7.
+constexpr const char* kSceneOfSeed7 =
+    R"({"scene": {"objects": 60, "seed": 7}, "effects": {"motion": true, "pairs": true}})";
+
+TEST_F(Wander, TellsWhichSceneItsNumbersAreOf) {
+    const std::string numbers = file("n.json");
+    const auto numbersOf = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), {"--headless", "--quiet", "--frames", "2", "--json",
+                                             numbers, "--do", "broadphase dbvt"});
+        EXPECT_EQ(typed(arguments).code, kExitOk);
+        return nlohmann::json::parse(std::ifstream(numbers));
+    };
+    const auto named = numbersOf({"--seed", "5"});
+    EXPECT_EQ(named["scene"], "wander");
+    EXPECT_TRUE(named["file"].is_null());
+    EXPECT_EQ(named["objects"], 30'000);
+    EXPECT_EQ(named["seed"], 5);
+    EXPECT_EQ(named["broadphase"], "dbvt");
+    EXPECT_EQ(numbersOf({"--scene", "pile", "--objects", "50"})["objects"], 50);
+    const std::string scene = file("scene.json", kSceneOfSeed7);
+    const auto fromFile = numbersOf({"--file", scene});
+    EXPECT_TRUE(fromFile["scene"].is_null());
+    EXPECT_EQ(fromFile["file"], scene);
+    EXPECT_EQ(fromFile["objects"], 60);
+    EXPECT_EQ(fromFile["seed"], 7);
+    const std::string boxes = file("boxes.aabbs");
+    typed({"--headless", "--quiet", "--objects", "40", "--frames", "1", "--do",
+           "capture " + boxes + " 3"});
+    const auto recorded = numbersOf({"--file", boxes});
+    EXPECT_TRUE(recorded["scene"].is_null());
+    EXPECT_EQ(recorded["file"], boxes);
+    EXPECT_EQ(recorded["objects"], 40);
+    EXPECT_TRUE(recorded["seed"].is_null());
+}
+
+TEST_F(Wander, TakesTheSeedThatIsAskedForBeforeASceneFilesOwn) {
+    const std::string scene = file("scene.json", kSceneOfSeed7);
+    const auto hashOf = [&](std::vector<std::string> arguments) {
+        const std::string numbers = file("n.json");
+        arguments.insert(arguments.begin(), {"--headless", "--quiet", "--file", scene, "--frames",
+                                             "3", "--json", numbers});
+        EXPECT_EQ(typed(arguments).code, kExitOk);
+        return nlohmann::json::parse(std::ifstream(numbers))["readings"]["hash"].get<double>();
+    };
+    EXPECT_EQ(hashOf({}), hashOf({"--seed", "7"}));
+    EXPECT_NE(hashOf({}), hashOf({"--seed", "1"}));
+    const std::string recording = file("r.json");
+    hashOf({"--record", recording});
+    EXPECT_EQ(typed({"--headless", "--quiet", "--replay", recording}).code, kExitOk);
+}
+
+TEST_F(Wander, HasNoSeedForARecordingOfBoxes) {
+    const std::string boxes = file("boxes.aabbs");
+    typed({"--headless", "--quiet", "--objects", "40", "--frames", "1", "--do",
+           "capture " + boxes + " 3"});
+    EXPECT_EQ(typed({"--headless", "--file", boxes, "--seed", "3"}).err,
+              "hashphase: --seed is for scenes; " + boxes + " is a recording of boxes.\n");
+    EXPECT_EQ(typed({"--headless", "--file", boxes, "--do", "seed 3"}).err,
+              "hashphase: A recording of boxes has no seed.\n");
+}
+
+TEST_F(Wander, RefusesOptionsThatWouldBeIgnored) {
+    const std::string recording = file("r.json");
+    typed({"--headless", "--quiet", "--objects", "40", "--frames", "3", "--record", recording});
+    const std::string script = file("script", "step 1\n");
+    const auto refuses = [](const std::vector<std::string>& arguments, const std::string& option) {
+        const Outcome run = typed(arguments);
+        EXPECT_EQ(run.code, kExitUsage) << option;
+        EXPECT_NE(run.err.find(option), std::string::npos) << run.err;
+    };
+    const std::vector<std::pair<std::string, std::string>> ignored{
+        {"--objects", "7"},   {"--seed", "9"},   {"--scene", "pile"}, {"--do", "step"},
+        {"--script", script}, {"--frames", "3"}, {"--file", "a.json"}};
+    for (const auto& [option, value] : ignored) {
+        refuses({"--headless", "--replay", recording, option, value}, option);
+    }
+    refuses({"--headless", "--script", script, "--frames", "3"}, "--frames");
+}
+
+TEST_F(Wander, FindsOutBeforeItRunsWhereNothingCanBeWritten) {
+    for (const char* option : {"--record", "--json"}) {
+        const std::string marker = file(std::string("ran") + option);
+        const Outcome run = typed({"--headless", "--objects", "50", "--frames", "5", "--do",
+                                   "save " + marker, option, "/nowhere/a.json"});
+        EXPECT_EQ(run.code, kExitUsage);
+        EXPECT_EQ(run.err, "hashphase: /nowhere/a.json cannot be written.\n");
+        EXPECT_EQ(run.out, "");
+        EXPECT_FALSE(std::filesystem::exists(marker)) << option;
+    }
+}
+
 TEST_F(Wander, SaysWhatIsWrong) {
     const auto faultOf = [](std::vector<std::string> arguments) {
         arguments.insert(arguments.begin(), "--headless");
@@ -170,8 +262,12 @@ TEST_F(Wander, SaysWhatIsWrong) {
         return run.err;
     };
     EXPECT_EQ(faultOf({"--size", "10x10"}),
-              "hashphase: --size is a width and a height of 16 to 16,384 pixels, as in 1280x800, "
+              "hashphase: --size is a width and a height of 16 to 8,192 pixels, as in 1280x800, "
               "not '10x10'.\n");
+    EXPECT_NE(faultOf({"--size", "8193x100", "--frames", "1"}).find("of 16 to 8,192 pixels"),
+              std::string::npos);
+    EXPECT_NE(faultOf({"--do", "size 100 8193"}).find("from 16 to 8192, not '8193'"),
+              std::string::npos);
     EXPECT_EQ(faultOf({"--scene", "wandr"}).substr(0, 46),
               "hashphase: There is no scene 'wandr'; did you ");
     EXPECT_EQ(faultOf({"--file", "a.txt"}),
