@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/viewer/viewer_program.hpp>
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <ostream>
+#include <string>
 #include <system_error>
 #include <vector>
 
@@ -44,12 +47,14 @@ int runViewerProgram(std::span<const std::string> arguments, Console& console) {
     }
     pointers.push_back(nullptr);
     console.out.flush();
-    if (!path.empty()) {
-        execv(path.c_str(), pointers.data());
+    if (path.empty()) {
+        console.err << "hashphase: the viewer was not built. Install libepoxy-dev, libstb-dev, "
+                       "libimgui-dev and libglfw3-dev (Debian, Ubuntu), and build again.\n";
+        return kExitUsage;
     }
-    console.err << "hashphase: the viewer was not built. Install libepoxy-dev, libstb-dev, "
-                   "libimgui-dev and "
-                   "libglfw3-dev (Debian, Ubuntu), and build again.\n";
+    execv(path.c_str(), pointers.data());  // returns only where it fails
+    const std::string reason = std::strerror(errno);
+    console.err << "hashphase: " << path << " cannot be run: " << reason << ".\n";
     return kExitUsage;
 }
 
