@@ -16,7 +16,7 @@ if [[ -z ${PLAY_INSIDE-} ]]; then
     mkdir -p "$folder"
     PLAY_INSIDE=1 exec xvfb-run -a -s "-screen 0 1280x800x24" "$0" "$@"
 fi
-cd "$folder"
+cd "$folder" || exit
 folder=$PWD
 program=
 
@@ -28,7 +28,7 @@ fail() {
 
 # Starts the viewer with these options, and waits for its window; what it says goes to said.txt.
 open_window() {
-    "$viewer" "$@" >"$folder/said.txt" 2>&1 &
+    "${viewer:?}" "$@" >"$folder/said.txt" 2>&1 &
     program=$!
     window=$(timeout 60 xdotool search --sync --onlyvisible --name "hashphase wander" | head -n 1) ||
         fail "no window has come up: $(cat "$folder/said.txt")"
