@@ -73,28 +73,24 @@ Effect effectNamed(Arguments& words) {
 }
 
 void effect(Session& session, Arguments& words) {
-    SceneEffects effects = session.stage().effects();
+    EffectSet effects = session.stage().effects().set();
     const Effect named = effectNamed(words);
-    const bool isOn = words.onOff(effects.set().contains(named));
+    const bool isOn = words.onOff(effects.contains(named));
     words.end();
     if (isOn && !session.stage().possibleEffects().contains(named)) {
         throw InputError("This scene cannot have " + std::string(nameOf(named)) + "; it can have " +
                          namesOf(session.stage().possibleEffects()) + ".");
     }
     if (isOn) {
-        for (const Effect needed : kAllEffects) {
-            if (needsOf(named).contains(needed)) {
-                effects.declare(needed);
-            }
-        }
-        effects.declare(named);
+        effects = effects | needsOf(named);
+        effects.insert(named);
     } else {
         for (const Effect other : kAllEffects) {
             if (needsOf(other).contains(named)) {
-                effects.remove(other);
+                effects.erase(other);
             }
         }
-        effects.remove(named);
+        effects.erase(named);
     }
     session.declare(effects);
 }

@@ -10,9 +10,33 @@
 #include <utility>
 
 namespace hashphase::demos {
+namespace {
+
+// Of what a scene declares by itself, commands change which effects there are, the grid's variables, and the
+// radius of proximity. So much a recording has at its beginning: see logSetting().
+SceneEffects changed(SceneEffects own, EffectSet declared, const SceneEffects& now) {
+    for (const Effect effect : kAllEffects) {
+        if (declared.contains(effect)) {
+            own.declare(effect);
+        } else {
+            own.remove(effect);
+        }
+    }
+    own.grid = now.grid;
+    if (own.proximity && now.proximity) {
+        own.proximity->radius = now.proximity->radius;
+    }
+    return own;
+}
+
+}  // namespace
 
 Session::Session(const SceneChoice& choice, int width, int height)
-    : choice_(choice), stage_(makeStage(choice)), width_(width), height_(height) {
+    : choice_(choice),
+      stage_(makeStage(choice)),
+      ownEffects_(stage_->effects()),
+      width_(width),
+      height_(height) {
     beginAnew(true);
 }
 
@@ -91,12 +115,14 @@ void Session::look() {
 
 void Session::choose(const SceneChoice& choice) {
     std::unique_ptr<Stage> next = makeStage(choice);
+    const SceneEffects own = next->effects();
     const bool isOther = choice.name != choice_.name || choice.file != choice_.file;
     if (!isOther) {
-        next->declare(stage_->effects());
+        next->declare(changed(own, stage_->effects().set(), stage_->effects()));
         next->setBroadphase(stage_->broadphase());
     }
     stage_ = std::move(next);
+    ownEffects_ = own;
     choice_ = choice;
     beginAnew(isOther);
 }
@@ -109,6 +135,7 @@ void Session::beginAnew(bool goesHome) {
     restingCuller_ = Culler<float>();
     isResting_ = true;
     forgetSelection();
+    rectangle_.reset();
     recoloured_.clear();
     history_.clear();
     pairs_.clear();
@@ -139,6 +166,10 @@ void Session::declare(const SceneEffects& effects) {
     if (!effects.culling) {
         frozen_.reset();
     }
+}
+
+void Session::declare(EffectSet effects) {
+    declare(changed(ownEffects_, effects, stage_->effects()));
 }
 
 void Session::setBroadphase(const BroadphaseKind& kind) {

@@ -90,6 +90,9 @@ public:
     void setPlaying(bool isPlaying) noexcept { isPlaying_ = isPlaying; }
     void askForSteps(std::uint64_t count);
     void declare(const SceneEffects& effects);
+    /// Declares these effects and no others: each with what the scene says of it by itself, or with defaults
+    /// where it says nothing. The grid's variables and the radius of proximity stay as they are.
+    void declare(EffectSet effects);
     void setBroadphase(const BroadphaseKind& kind);
     void setChecking(bool isChecking);
     void freeze(bool isFrozen);
@@ -179,6 +182,7 @@ private:
 
     SceneChoice choice_;
     std::unique_ptr<Stage> stage_;
+    SceneEffects ownEffects_;  // those that the scene declares by itself
     Camera camera_;
     ViewOptions options_;
     int width_;

@@ -22,31 +22,6 @@ Session smallSession() {
     return Session({.name = "wander", .file = {}, .objects = 200, .seed = 1}, 800, 600);
 }
 
-std::string faultOf(Session& session, const std::string& line) {
-    try {
-        session.run(line);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "none";
-}
-
-/// Runs a script to its end and returns what was said.
-std::vector<std::string> runScript(Session& session, const std::string& text) {
-    std::vector<std::string> said;
-    Script script(text, "script");
-    session.setPlaying(false);
-    while (!script.isDone() || session.isWaiting()) {
-        script.feed(session);
-        session.advance();
-        for (const std::string& message : session.takeMessages()) {
-            said.push_back(message);
-        }
-        static_cast<void>(session.takeScreenshots());
-    }
-    return said;
-}
-
 TEST(ViewerScript, DrivesEachFeatureAndFindsWhatItExpects) {
     Session session = smallSession();
     const std::vector<std::string> said = runScript(session, readFile(HASHPHASE_FEATURES_SCRIPT));
@@ -166,6 +141,33 @@ TEST(Commands, KeepWhatIsDeclaredThroughARestart) {
     EXPECT_FALSE(session.stage().effects().culling);
     EXPECT_EQ(session.stage().effects().grid.cellSize, 7);
     EXPECT_EQ(session.stage().broadphase().name, "dbvt");
+}
+
+TEST(Commands, GiveAnEffectBackWhatTheSceneDeclaresOfIt) {
+    Session session = smallSession();
+    const SceneEffects own = session.stage().effects();
+    for (const char* effect : {"motion", "response", "proximity"}) {
+        session.run(std::string("effect ") + effect + " off");
+    }
+    session.run("effect terrain on");
+    session.run("effect response on");
+    session.run("effect proximity on");
+    const SceneEffects& effects = session.stage().effects();
+    EXPECT_EQ(effects.response->restitution, own.response->restitution);
+    EXPECT_NE(effects.response->restitution, ResponseEffect().restitution);
+    EXPECT_EQ(effects.proximity->radius, own.proximity->radius);
+    EXPECT_EQ(effects.proximity->turns, own.proximity->turns);
+    EXPECT_EQ(effects.motion->bounds.max().x(), 399);
+    session.run("effect radar on");  // which the scene does not declare
+    EXPECT_EQ(effects.radar->columns, RadarEffect().columns);
+}
+
+TEST(Commands, ForgetADraggedRectangleWhereTheSceneBeginsAgain) {
+    Session session = smallSession();
+    session.run("drag 10 10 90 90");
+    EXPECT_TRUE(session.rectangle());
+    session.run("restart");
+    EXPECT_FALSE(session.rectangle());
 }
 
 TEST(Commands, AreBoundToKeysOnceEach) {

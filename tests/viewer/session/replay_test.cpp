@@ -7,8 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace hashphase::demos {
 namespace {
@@ -57,16 +59,30 @@ TEST_P(Replay, GivesTheSameHash) {
     EXPECT_TRUE(isSame);
 }
 
+/// Which colours the agents have; none while they do not look around.
+std::vector<std::uint32_t> coloursOf(const Session& session) {
+    if (!session.stage().effects().proximity) {
+        return {};
+    }
+    const auto colours = session.stage().observers().colours();
+    return {colours.begin(), colours.end()};
+}
+
 TEST_P(Replay, GivesTheSameHashAfterARestartWithOtherSettings) {
-    Session session({.name = GetParam(), .file = {}, .objects = 300, .seed = 5}, 800, 600);
-    session.run("effect pairs off");
-    session.run("broadphase axis-sweep");
-    session.run("zoom 2");
-    step(session, 7);
-    session.run("restart");
-    play(session);
-    EXPECT_EQ(playBack(CommandLog::parse(session.log().text(), "recording")).hash(),
-              session.hash());
+    for (const char* settings :
+         {"effect pairs off\nbroadphase axis-sweep\nzoom 2",
+          "effect response off\neffect response on\ncell 4\nratio 3",
+          "effect motion off\neffect response on\neffect sleeping on\nbroadphase dbvt",
+          "effect proximity off\neffect proximity on\nradius 9\nobjects 350\nseed 8"}) {
+        Session session({.name = GetParam(), .file = {}, .objects = 300, .seed = 5}, 800, 600);
+        runScript(session, settings);
+        step(session, 7);
+        session.run("restart");
+        play(session);
+        const Session again = playBack(CommandLog::parse(session.log().text(), "recording"));
+        EXPECT_EQ(again.hash(), session.hash()) << settings;
+        EXPECT_EQ(coloursOf(again), coloursOf(session)) << settings;
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Replay, testing::Values("wander", "pile"),
