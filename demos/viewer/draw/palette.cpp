@@ -32,7 +32,8 @@ const Palette& palette(Theme theme) {
                                 .line = {36, 44, 58, 230},
                                 .alert = {200, 40, 20},
                                 .warning = kOrange,
-                                .confirmed = kGreen};
+                                .confirmed = kGreen,
+                                .unknown = kLightGrey};
     static const Palette kDark{.calm = kLightBlue,
                                .awake = kSkyBlue,
                                .selected = kYellow,
@@ -42,7 +43,8 @@ const Palette& palette(Theme theme) {
                                .line = {226, 232, 242, 230},
                                .alert = {255, 92, 70},
                                .warning = kOrange,
-                               .confirmed = {40, 190, 146}};
+                               .confirmed = {40, 190, 146},
+                               .unknown = kLightGrey};
     return theme == Theme::light ? kLight : kDark;
 }
 

@@ -25,6 +25,7 @@ struct Palette {
     Colour alert;      // what is wrong
     Colour warning;    // what may be wrong
     Colour confirmed;  // what was checked and is right
+    Colour unknown;    // what is to be checked
 };
 
 [[nodiscard]] const Palette& palette(Theme theme);

@@ -62,6 +62,7 @@ void Session::advance() {
     if (steps) {
         stage_->step();
         ++frame_;
+        knowsPairs_ = true;
         history_.add(stage_->times());
         log_.note(frame_, stage_->placesHash());
         if (picked_ && camera_.mode() == CameraMode::follow) {
@@ -106,7 +107,7 @@ void Session::look() {
     if (card_ || options_.has(Overlay::pairs) || options_.colouring == Colouring::pairs) {
         stage_->listPairs(pairs_);
     }
-    if (isChecking_) {
+    if (check() != nullptr) {
         check_.look(*stage_);
     }
 }
@@ -140,6 +141,7 @@ void Session::beginAnew(bool goesHome) {
     history_.clear();
     pairs_.clear();
     check_ = {};
+    knowsPairs_ = false;
     if (goesHome) {
         goHome();
     }
@@ -163,6 +165,7 @@ void Session::declare(const SceneEffects& effects) {
     } catch (const std::invalid_argument& error) {
         throw InputError(error.what());
     }
+    knowsPairs_ = false;
     if (!effects.culling) {
         frozen_.reset();
     }
@@ -178,11 +181,13 @@ void Session::setBroadphase(const BroadphaseKind& kind) {
     } catch (const std::invalid_argument& error) {
         throw InputError(error.what());
     }
+    knowsPairs_ = false;
 }
 
 void Session::setChecking(bool isChecking) {
     isChecking_ = isChecking;
     check_ = {};
+    look();
 }
 
 void Session::freeze(bool isFrozen) {
@@ -253,9 +258,8 @@ std::size_t Session::pushSelected(const Vector3<float>& velocity) {
 }
 
 std::size_t Session::removeSelected() {
-    const auto count = static_cast<std::size_t>(
-        std::count_if(selected_.begin(), selected_.end(),
-                      [&](std::uint32_t index) { return stage_->remove(index); }));
+    const std::size_t count = stage_->remove(selected_);
+    knowsPairs_ = knowsPairs_ && count == 0;
     forgetSelection();
     look();
     return count;
@@ -300,8 +304,11 @@ bool Session::isRecoloured(std::uint32_t index) const {
 }
 
 const PairCheck* Session::check() const {
-    const SceneEffects& effects = stage_->effects();
-    return isChecking_ && frame_ > 0 && effects.pairs && !effects.sweep ? &check_ : nullptr;
+    return canCheck() && knowsPairs_ ? &check_ : nullptr;
+}
+
+bool Session::canCheck() const {
+    return isChecking_ && stage_->effects().pairs && !stage_->effects().sweep;
 }
 
 std::vector<std::string> Session::takeScreenshots() {

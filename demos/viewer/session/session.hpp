@@ -147,9 +147,12 @@ public:
         return rectangle_;
     }
 
-    /// Of the last frame; none while it is not checked, or cannot be, because pairs are swept.
+    /// Of the last frame; none while it is not checked or cannot be, and none since another broadphase or
+    /// something else was declared or bodies were removed, as nobody has looked for pairs since.
     [[nodiscard]] const PairCheck* check() const;
     [[nodiscard]] bool isChecking() const noexcept { return isChecking_; }
+    /// Whether it is checked from the next frame on at the latest: pairs are declared, and not swept.
+    [[nodiscard]] bool canCheck() const;
     [[nodiscard]] const CellLoads& loads() const noexcept { return loads_; }
     /// Those that the broadphase has found, sorted; none while nobody shows them.
     [[nodiscard]] const std::vector<PairKey>& pairs() const noexcept { return pairs_; }
@@ -203,6 +206,7 @@ private:
     std::optional<DrawnRectangle> rectangle_;
 
     bool isChecking_ = false;
+    bool knowsPairs_ = false;  // whether the stage's are those of its bodies
     PairCheck check_;
     CellLoads loads_;
     std::vector<PairKey> pairs_;

@@ -22,6 +22,9 @@ const InfoCard& cardOf(const Session& session) {
 
 const PairCheck& checkOf(const Session& session) {
     const PairCheck* check = session.check();
+    if (check == nullptr && session.canCheck()) {
+        throw InputError("Pairs are verified after the next frame: run \"step\".");
+    }
     if (check == nullptr) {
         throw InputError("Pairs are not verified: run \"check on\" and a step, without sweep.");
     }

@@ -148,7 +148,10 @@ void Panel::showBadge(const Session& session) {
     const PairCheck* check = session.check();
     std::string text = "pairs are not verified: none are declared, or they are swept";
     Colour colour = colours.warning;
-    if (check != nullptr && !check->missing().empty()) {
+    if (check == nullptr && session.canCheck()) {
+        text = "pairs are verified after the next frame";
+        colour = colours.unknown;
+    } else if (check != nullptr && !check->missing().empty()) {
         text = "WRONG: " + withThousands(check->missing().size()) + " of " +
                withThousands(check->exactCount()) + " pairs are missing";
         colour = colours.alert;

@@ -282,7 +282,12 @@ StageBody BulletStage::body(std::uint32_t index) const {
     return seen;
 }
 
-bool BulletStage::remove(std::uint32_t index) {
+std::size_t BulletStage::remove(std::span<const std::uint32_t> indices) {
+    return static_cast<std::size_t>(std::count_if(
+        indices.begin(), indices.end(), [this](std::uint32_t index) { return removeOne(index); }));
+}
+
+bool BulletStage::removeOne(std::uint32_t index) {
     btRigidBody* body = bodyAt(index);
     if (body == nullptr || isGround(*body)) {
         return false;

@@ -31,7 +31,7 @@ public:
     [[nodiscard]] std::size_t size() const override { return size_; }
     [[nodiscard]] std::uint32_t indexLimit() const override;
     [[nodiscard]] StageBody body(std::uint32_t index) const override;
-    bool remove(std::uint32_t index) override;
+    std::size_t remove(std::span<const std::uint32_t> indices) override;
     bool push(std::uint32_t index, const Vector3<float>& velocity) override;
     [[nodiscard]] Aabb<float> bounds() const override { return bounds_; }
     [[nodiscard]] std::span<const Vector3<float>> ground() const override { return ground_; }
@@ -64,6 +64,7 @@ private:
 
     /// Null where nobody has the index.
     [[nodiscard]] btRigidBody* bodyAt(std::uint32_t index) const;
+    bool removeOne(std::uint32_t index);
     void measureBounds();
     void makeSecondIndex();
     void updateSecondIndex();

@@ -48,8 +48,9 @@ void PaperStage::step() {
     }
 }
 
-// The present pairs, from those of the last frame and what has changed; all are sorted. The simulation
-// has such a list only while somebody responds.
+// The present pairs, from those of the last frame and what has changed; all are sorted. Those of bodies that
+// were removed have died, too, and are not among them any more. The simulation has such a list only while
+// somebody responds.
 void PaperStage::takeChanges() {
     const auto keyOf = [](const ProxyPair& pair) {
         return pairKey(pair.first.index, pair.second.index);
@@ -59,6 +60,9 @@ void PaperStage::takeChanges() {
     auto fresh = born.begin();
     auto gone = died.begin();
     for (const PairKey key : pairs_) {
+        while (gone != died.end() && keyOf(*gone) < key) {
+            ++gone;
+        }
         if (gone != died.end() && keyOf(*gone) == key) {
             ++gone;
             continue;
@@ -100,7 +104,20 @@ StageBody PaperStage::body(std::uint32_t index) const {
     return body;
 }
 
-bool PaperStage::remove(std::uint32_t index) {
+std::size_t PaperStage::remove(std::span<const std::uint32_t> indices) {
+    const auto count = static_cast<std::size_t>(std::count_if(
+        indices.begin(), indices.end(), [this](std::uint32_t index) { return removeOne(index); }));
+    const auto isGone = [this](PairKey pair) {
+        return bodies_[firstOf(pair)].isNull() || bodies_[secondOf(pair)].isNull();
+    };
+    std::erase_if(pairs_, isGone);
+    if (rival_ != nullptr) {
+        rival_->eraseIf(isGone);
+    }
+    return count;
+}
+
+bool PaperStage::removeOne(std::uint32_t index) {
     if (!contains(index)) {
         return false;
     }

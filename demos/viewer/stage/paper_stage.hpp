@@ -26,7 +26,7 @@ public:
         return static_cast<std::uint32_t>(bodies_.size());
     }
     [[nodiscard]] StageBody body(std::uint32_t index) const override;
-    bool remove(std::uint32_t index) override;
+    std::size_t remove(std::span<const std::uint32_t> indices) override;
     bool push(std::uint32_t index, const Vector3<float>& velocity) override;
     [[nodiscard]] std::span<const Vector3<float>> ground() const override;
     [[nodiscard]] Aabb<float> bounds() const override;
@@ -53,6 +53,7 @@ private:
     [[nodiscard]] static SceneEffects withoutPairs(SceneEffects effects);
     [[nodiscard]] const std::vector<PairKey>& presentPairs() const;
     void declareToSimulation();
+    bool removeOne(std::uint32_t index);
     void takeChanges();
     void collideRivals();
 

@@ -28,7 +28,7 @@ public:
         return static_cast<std::uint32_t>(proxies_.size());
     }
     [[nodiscard]] StageBody body(std::uint32_t index) const override;
-    bool remove(std::uint32_t /*index*/) override { return false; }
+    std::size_t remove(std::span<const std::uint32_t> /*indices*/) override { return 0; }
     bool push(std::uint32_t /*index*/, const Vector3<float>& /*velocity*/) override {
         return false;
     }

@@ -21,6 +21,12 @@ public:
     void update(std::span<const Aabb<float>> boxes, std::span<const CollisionFilter> filters,
                 PhaseClock& clock);
 
+    /// Forgets pairs of the last update.
+    template <class IsGone>
+    void eraseIf(const IsGone& isGone) {
+        std::erase_if(pairs_, isGone);
+    }
+
     /// As the broadphase lists them, sorted.
     [[nodiscard]] const std::vector<PairKey>& pairs() const noexcept { return pairs_; }
 

@@ -67,9 +67,9 @@ public:
         return body(index).shape != StageBody::Shape::none;
     }
 
-    /// Takes the body out, or gives it another velocity as well as its own. False where that cannot be: of a
-    /// recording, or of nobody.
-    virtual bool remove(std::uint32_t index) = 0;
+    /// Takes bodies out, with their pairs, and returns how many; none of a recording, or of who is not there.
+    virtual std::size_t remove(std::span<const std::uint32_t> indices) = 0;
+    /// Gives the body another velocity as well as its own. False where that cannot be, as above.
     virtual bool push(std::uint32_t index, const Vector3<float>& velocity) = 0;
 
     /// Corners of triangles, three each; valid while the stage lives.
@@ -96,7 +96,8 @@ public:
     virtual void setBroadphase(const BroadphaseKind& kind) = 0;
     [[nodiscard]] virtual const BroadphaseKind& broadphase() const = 0;
 
-    /// As the broadphase has found them in the last frame, by indices, sorted; none while they are not declared.
+    /// As the broadphase has found them in the last frame, of who is still there, by indices, sorted; none while
+    /// they are not declared. After a declaration or with another broadphase they are wrong until the next frame.
     virtual void listPairs(std::vector<PairKey>& pairs) const = 0;
     /// How many these are. Cost: O(1).
     [[nodiscard]] virtual std::size_t pairCount() const = 0;

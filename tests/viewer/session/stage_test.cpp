@@ -1,32 +1,24 @@
 // SPDX-License-Identifier: Zlib
 
 #include <demos/scenes/result_hash.hpp>
-#include <demos/viewer/session/box_recorder.hpp>
 #include <demos/viewer/session/pair_check.hpp>
-#include <demos/viewer/session/session.hpp>
 #include <demos/viewer/stage/body_shape.hpp>
 #include <demos/viewer/stage/bullet_stage.hpp>
 #include <demos/viewer/stage/paper_stage.hpp>
-#include <demos/viewer/stage/recording_stage.hpp>
+#include <tests/viewer/session/stages.hpp>
 
 #include <gtest/gtest.h>
 
 #include <BulletCollision/BroadphaseCollision/btSimpleBroadphase.h>
 
 #include <algorithm>
-#include <filesystem>
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace hashphase::demos {
 namespace {
-
-const BroadphaseKind& kindNamed(std::string_view name) {
-    const auto kinds = broadphaseKinds();
-    return *std::find_if(kinds.begin(), kinds.end(),
-                         [name](const BroadphaseKind& kind) { return kind.name == name; });
-}
 
 /// Spheres so close together that many touch in each frame.
 EffectsFile throng() {
@@ -43,29 +35,6 @@ EffectsFile throng() {
     file.effects.motion->bounds = {Vector3<double>(1, -infinity, 1),
                                    Vector3<double>(39, infinity, 39)};
     return file;
-}
-
-SceneEffects worldEffects() {
-    SceneEffects effects;
-    for (const Effect effect :
-         {Effect::motion, Effect::pairs, Effect::response, Effect::sleeping, Effect::rotation,
-          Effect::friction, Effect::picking, Effect::boxSelection, Effect::culling}) {
-        effects.declare(effect);
-    }
-    return effects;
-}
-
-const WorldSceneKind& worldNamed(std::string_view name) {
-    const auto kinds = worldSceneKinds();
-    return *std::find_if(kinds.begin(), kinds.end(),
-                         [name](const WorldSceneKind& kind) { return kind.name == name; });
-}
-
-void expectPairs(const Stage& stage, bool exact, const std::string& when) {
-    PairCheck check;
-    check.look(stage);
-    EXPECT_TRUE(check.missing().empty()) << when;
-    EXPECT_TRUE(!exact || check.extra().empty()) << when;
 }
 
 TEST(PaperStage, MovesBodiesInTheSameWayWhoeverFindsThePairs) {
@@ -129,8 +98,8 @@ TEST(PaperStage, GoesOnWithPairsThatWereTakenBackAndWithoutBodiesThatWereRemoved
             stage.declare(all);
         }
         stage.setBroadphase(kindNamed(frame % 3 == 0 ? "dbvt" : "hash"));
-        EXPECT_TRUE(stage.remove(frame));
-        EXPECT_FALSE(stage.remove(frame));
+        EXPECT_EQ(stage.remove(std::array{frame}), 1U);
+        EXPECT_EQ(stage.remove(std::array{frame}), 0U);
         stage.step();
         if (stage.effects().pairs) {
             expectPairs(stage, frame % 3 != 0, "frame " + std::to_string(frame));
@@ -200,8 +169,7 @@ TEST(PairCheck, SeesThatPairsAreMissing) {
 
 TEST(BulletStage, KeepsIndicesAndPairsWhenTheBroadphaseIsSwapped) {
     BulletStage stage(worldNamed("pile"), 150, 1, worldEffects());
-    EXPECT_TRUE(stage.remove(7));
-    EXPECT_FALSE(stage.remove(0));  // the floor
+    EXPECT_EQ(stage.remove(std::array{0U, 7U}), 1U);  // not the floor
     std::size_t frame = 0;
     for (const char* name : {"dbvt", "hash", "simple", "axis-sweep", "dbvt-deferred", "hash"}) {
         const Vector3<float> before = stage.body(100).centre;
@@ -256,40 +224,6 @@ TEST(BulletStage, MarksWhatPassesThroughWallsUnlessItIsSwept) {
     for (const TunnelMark& mark : discrete.tunnelMarks()) {
         EXPECT_GT((mark.to - mark.from).norm(), 1);
     }
-}
-
-// --- Recordings ----------------------------------------------------------------------------------
-
-TEST(RecordingStage, PlaysWhatWasCapturedAndBeginsAgain) {
-    const std::filesystem::path path =
-        std::filesystem::temp_directory_path() / "hashphase_stage_test.aabbs";
-    Session session({.name = "wander", .file = {}, .objects = 200, .seed = 3});
-    std::vector<Aabb<float>> before;
-    std::vector<CollisionFilter> filters;
-    session.stage().listBoxes(before, filters);
-    recordBoxes(session, path, 5);
-    std::vector<Aabb<float>> after;
-    session.stage().listBoxes(after, filters);
-    RecordingStage stage(path, 0);
-    const auto expectBoxes = [&](const std::vector<Aabb<float>>& boxes) {
-        std::vector<Aabb<float>> played;
-        stage.listBoxes(played, filters);
-        ASSERT_EQ(played.size(), boxes.size());
-        for (std::size_t i = 0; i < boxes.size(); ++i) {
-            ASSERT_EQ(played[i].min(), boxes[i].min());
-            ASSERT_EQ(played[i].max(), boxes[i].max());
-        }
-    };
-    expectBoxes(before);
-    for (int frame = 0; frame < 5; ++frame) {
-        stage.step();
-        expectPairs(stage, true, "played");
-        stage.setBroadphase(kindNamed(frame % 2 == 0 ? "dbvt" : "hash"));
-    }
-    expectBoxes(after);
-    stage.step();
-    expectBoxes(before);
-    std::filesystem::remove(path);
 }
 
 // --- Shapes --------------------------------------------------------------------------------------
