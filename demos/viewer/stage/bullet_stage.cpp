@@ -157,10 +157,8 @@ private:
 
 BulletStage::BulletStage(const WorldSceneKind& scene, std::size_t objects, std::uint64_t seed,
                          const SceneEffects& effects)
-    : effects_(effects),
-      kind_(&broadphaseKinds().front()),
-      world_(std::make_unique<World>(*kind_, scene, objects, seed)),
-      observers_(effects) {
+    : kind_(&broadphaseKinds().front()),
+      world_(std::make_unique<World>(*kind_, scene, objects, seed)) {
     size_ = world_->contents().bodies().size();
     measureBounds();
     declare(effects);
@@ -335,24 +333,36 @@ EffectSet BulletStage::possibleEffects() const {
 
 void BulletStage::declare(const SceneEffects& effects) {
     const WorldEffects ofWorld = worldEffectsOf(effects);
+    const bool isOtherGrid = effects.grid != effects_.grid;
+    const bool hadColours = effects_.proximity.has_value();
     observers_.declare(effects);
     world_->configurator().apply(ofWorld);
     effects_ = effects;
-    for (std::uint32_t index = 0; effects_.proximity && index < before_.size(); ++index) {
-        observers_.setColour(index, index % effects_.proximity->colourCount);
+    if (isOtherGrid) {
+        fileAnew(*kind_);
     }
+    colourAgents(hadColours);
 }
 
 void BulletStage::setBroadphase(const BroadphaseKind& kind) {
-    if (&kind == kind_) {
-        return;
+    if (&kind != kind_) {
+        fileAnew(kind);
     }
-    Aabb<float> room = bounds_;
-    room.extend(Vector3<float>(room.max() + Vector3<float>::Constant(kRoomForAll)));
-    room.extend(Vector3<float>(room.min() - Vector3<float>::Constant(kRoomForAll)));
-    world_->replaceBroadphase(kind,
-                              {.bounds = room, .objects = world_->contents().bodies().size()});
-    kind_ = &kind;
+}
+
+// In that broadphase, and in the grid that is declared: its own, or the one beside it, for which a broadphase
+// that has none stays as it is.
+void BulletStage::fileAnew(const BroadphaseKind& kind) {
+    if (kind.ours || &kind != kind_) {
+        Aabb<float> room = bounds_;
+        room.extend(Vector3<float>(room.max() + Vector3<float>::Constant(kRoomForAll)));
+        room.extend(Vector3<float>(room.min() - Vector3<float>::Constant(kRoomForAll)));
+        world_->replaceBroadphase(
+            kind,
+            {.bounds = room, .objects = world_->contents().bodies().size(), .grid = effects_.grid});
+        kind_ = &kind;
+    }
+    observers_.forgetProxies();
     second_ = nullptr;
     if (!kind.ours) {
         makeSecondIndex();
@@ -360,7 +370,7 @@ void BulletStage::setBroadphase(const BroadphaseKind& kind) {
 }
 
 void BulletStage::makeSecondIndex() {
-    second_ = std::make_unique<SecondIndex>();
+    second_ = std::make_unique<SecondIndex>(effects_.grid);
     const auto bodies = world_->contents().bodies();
     for (const auto& body : bodies) {
         btVector3 low;

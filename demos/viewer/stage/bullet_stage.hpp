@@ -56,6 +56,8 @@ public:
 private:
     /// The grid beside a broadphase that has none.
     struct SecondIndex {
+        explicit SecondIndex(const GridConfig& config) : grid(config) {}
+
         Grid<float> grid;
         std::vector<ProxyId> proxies;  // by body
     };
@@ -66,6 +68,7 @@ private:
     [[nodiscard]] btRigidBody* bodyAt(std::uint32_t index) const;
     bool removeOne(std::uint32_t index);
     void measureBounds();
+    void fileAnew(const BroadphaseKind& kind);
     void makeSecondIndex();
     void updateSecondIndex();
     void notePlaces();

@@ -186,10 +186,7 @@ void PaperStage::declareToSimulation() {
     if (simulation_.declared().zones && !hadZones) {
         addZones(scene_, simulation_);
     }
-    for (std::uint32_t index = 0;
-         simulation_.declared().proximity && !hadColours && index < bodies_.size(); ++index) {
-        simulation_.observers().setColour(index, index % effects_.proximity->colourCount);
-    }
+    colourAgents(hadColours);
 }
 
 void PaperStage::declare(const SceneEffects& effects) {

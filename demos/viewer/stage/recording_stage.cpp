@@ -99,10 +99,23 @@ void RecordingStage::declare(const SceneEffects& effects) {
         throw std::invalid_argument("A recording has no " + namesOf(others) + ".");
     }
     const bool isOtherGrid = effects.grid != effects_.grid;
+    const bool hadColours = effects_.proximity.has_value();
     observers_.declare(effects);
     effects_ = effects;
     if (isOtherGrid) {
         makeGrid();
+    }
+    forgetUndeclaredPairs();
+    colourAgents(hadColours);
+}
+
+void RecordingStage::forgetUndeclaredPairs() {
+    if (effects_.pairs) {
+        return;
+    }
+    pairs_ = nullptr;
+    if (rival_ != nullptr) {
+        rival_->eraseIf([](PairKey) { return true; });
     }
 }
 

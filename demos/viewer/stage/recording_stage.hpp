@@ -51,6 +51,7 @@ public:
 
 private:
     void makeGrid();
+    void forgetUndeclaredPairs();
 
     std::filesystem::path path_;
     std::size_t objects_;

@@ -14,4 +14,13 @@ Picked<float> Stage::pick(const RayRegion<float>& ray) {
     return grid() != nullptr ? observers().pick({*grid()}, ray, exactly) : Picked<float>{};
 }
 
+void Stage::colourAgents(bool hadColours) {
+    if (hadColours || !effects().proximity) {
+        return;
+    }
+    for (std::uint32_t index = 0; index < indexLimit(); ++index) {
+        observers().setColour(index, index % effects().proximity->colourCount);
+    }
+}
+
 }  // namespace hashphase::demos

@@ -133,6 +133,10 @@ public:
     [[nodiscard]] virtual std::uint64_t memoryBytes() const = 0;
 
 protected:
+    /// Gives agents their first colours, where they have just begun to look around: the same, whoever runs the
+    /// scene.
+    void colourAgents(bool hadColours);
+
     PhaseClock clock_;
 };
 

@@ -49,5 +49,54 @@ TEST(RecordingStage, PlaysWhatWasCapturedAndBeginsAgain) {
     std::filesystem::remove(path);
 }
 
+TEST(RecordingStage, HasNoPairsWhileTheyAreNotDeclared) {
+    const std::filesystem::path path =
+        std::filesystem::temp_directory_path() / "hashphase_recorded_pairs_test.aabbs";
+    Session session({.name = "pile", .file = {}, .objects = 200, .seed = 3});
+    session.run("capture " + path.string() + " 5");
+    while (session.isWaiting()) {
+        session.advance();
+    }
+    RecordingStage stage(path, 0);
+    const SceneEffects all = stage.effects();
+    SceneEffects without = all;
+    without.remove(Effect::pairs);
+    std::vector<PairKey> pairs;
+    for (const char* name : {"hash", "dbvt"}) {
+        stage.setBroadphase(kindNamed(name));
+        stage.step();
+        EXPECT_GT(stage.pairCount(), 0U) << name;
+        stage.declare(without);
+        for (int frame = 0; frame < 2; ++frame) {
+            stage.listPairs(pairs);
+            EXPECT_TRUE(pairs.empty()) << name;
+            EXPECT_EQ(stage.pairCount(), 0U) << name;
+            stage.step();
+        }
+        stage.declare(all);
+        EXPECT_EQ(stage.pairCount(), 0U) << name << ": those of the past";
+        stage.step();
+        EXPECT_GT(stage.pairCount(), 0U) << name;
+        expectPairs(stage, false, name);
+    }
+    std::filesystem::remove(path);
+}
+
+TEST(RecordingStage, ColoursAgentsOnceWhenTheyBeginToLookAround) {
+    const std::filesystem::path path =
+        std::filesystem::temp_directory_path() / "hashphase_recorded_colours_test.aabbs";
+    Session session({.name = "wander", .file = {}, .objects = 200, .seed = 3});
+    session.run("capture " + path.string() + " 2");
+    while (session.isWaiting()) {
+        session.advance();
+    }
+    RecordingStage stage(path, 0);
+    SceneEffects effects = stage.effects();
+    effects.declare(Effect::proximity);
+    stage.declare(effects);
+    expectEvenColours(stage);
+    std::filesystem::remove(path);
+}
+
 }  // namespace
 }  // namespace hashphase::demos

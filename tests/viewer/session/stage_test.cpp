@@ -190,6 +190,44 @@ TEST(BulletStage, KeepsIndicesAndPairsWhenTheBroadphaseIsSwapped) {
     EXPECT_GT(frame, 0U);
 }
 
+TEST(BulletStage, FilesBodiesInCellsOfTheDeclaredSize) {
+    BulletStage stage(worldNamed("pile"), 150, 1, worldEffects());
+    for (const char* name : {"hash", "dbvt", "hash"}) {
+        stage.setBroadphase(kindNamed(name));
+        for (const double cellSize : {4.0, 9.0}) {
+            SceneEffects effects = stage.effects();
+            effects.grid.cellSize = cellSize;
+            stage.declare(effects);
+            EXPECT_EQ(stage.grid()->cellSize(), cellSize) << name;
+            for (int step = 0; step < 3; ++step) {
+                stage.step();
+                expectPairs(stage, stage.broadphase().ours, name);
+            }
+            EXPECT_EQ(stage.grid()->cellSize(), cellSize) << name;
+        }
+    }
+    stage.setBroadphase(kindNamed("dbvt"));
+    EXPECT_EQ(stage.grid()->cellSize(), 9);
+}
+
+TEST(BulletStage, ColoursAgentsOnceWhenTheyBeginToLookAround) {
+    SceneEffects effects = worldEffects();
+    effects.declare(Effect::proximity);
+    BulletStage stage(worldNamed("stack"), 200, 1, worldEffects());
+    stage.declare(effects);
+    expectEvenColours(stage);
+    for (int frame = 0; frame < 5; ++frame) {
+        stage.step();
+    }
+    const std::span<const std::uint32_t> now = stage.observers().colours();
+    const std::vector<std::uint32_t> before(now.begin(), now.end());
+    effects.proximity->radius = 3;
+    stage.declare(effects);
+    const std::span<const std::uint32_t> after = stage.observers().colours();
+    EXPECT_TRUE(std::equal(before.begin(), before.end(), after.begin(), after.end()));
+    expectEvenColours(BulletStage(worldNamed("stack"), 200, 1, effects));
+}
+
 TEST(BulletStage, HearsBulletsOwnZones) {
     BulletStage stage(worldNamed("pile"), 50, 1, worldEffects());
     stage.step();
