@@ -9,10 +9,28 @@ namespace hashphase::demos {
 namespace {
 
 constexpr float kFieldOfView = 0.9F;  // vertical
-constexpr float kSteepest = 1.55F;    // less than straight up or down
+constexpr float kPi = std::numbers::pi_v<float>;
 
-float clampPitch(float pitch) {
-    return std::clamp(pitch, -kSteepest, kSteepest);
+constexpr Camera::Limits kPlace{-1e7F, 1e7F};        // [m]
+constexpr Camera::Limits kDistance{0.015625, 1e7F};  // [m]
+constexpr Camera::Limits kHeading{-kPi, kPi};
+constexpr Camera::Limits kPitch{-1.55F, 1.55F};  // less than straight up or down
+
+// As in Camera::state().
+constexpr std::array<Camera::Limits, Camera::kStateSize> kLimits{
+    kPlace,   kPlace, kPlace, kDistance, kHeading, kPlace,    kPlace,   kPlace,
+    kHeading, kPitch, kPlace, kPlace,    kPlace,   kDistance, kHeading, kPitch};
+constexpr std::array<std::size_t, 3> kHeadings{4, 8, 14};
+
+Camera::State limited(Camera::State state) {
+    for (const std::size_t heading : kHeadings) {
+        state[heading] = std::remainder(state[heading], 2 * kPi);
+    }
+    for (std::size_t i = 0; i < state.size(); ++i) {
+        const auto [low, high] = kLimits[i];
+        state[i] = state[i] >= low ? std::min(state[i], high) : low;  // NaN as well
+    }
+    return state;
 }
 
 Vector3<float> direction(float yaw, float pitch) {
@@ -41,6 +59,7 @@ void Camera::goHome(const Aabb<float>& bounds) {
     distance_ = std::max(12.0F, 0.04F * extent);
     followYaw_ = 0;
     followPitch_ = -0.4F;
+    keepWithinLimits();
 }
 
 void Camera::setMode(CameraMode mode) {
@@ -57,6 +76,7 @@ void Camera::move(const Vector3<float>& way) {
         eye_ += way.x() * direction(yaw_, 0).cross(Vector3<float>::UnitY()) +
                 way.y() * Vector3<float>::UnitY() + way.z() * forward;
     }
+    keepWithinLimits();
 }
 
 void Camera::turn(float yaw, float pitch) {
@@ -66,13 +86,14 @@ void Camera::turn(float yaw, float pitch) {
             break;
         case CameraMode::free:
             yaw_ += yaw;
-            pitch_ = clampPitch(pitch_ + pitch);
+            pitch_ += pitch;
             break;
         case CameraMode::follow:
             followYaw_ += yaw;
-            followPitch_ = clampPitch(followPitch_ + pitch);
+            followPitch_ += pitch;
             break;
     }
+    keepWithinLimits();
 }
 
 void Camera::zoom(float factor) {
@@ -87,13 +108,20 @@ void Camera::zoom(float factor) {
             distance_ = std::max(2.0F, distance_ / factor);
             break;
     }
+    keepWithinLimits();
 }
 
 void Camera::place(const Vector3<float>& eye, float yaw, float pitch) {
     mode_ = CameraMode::free;
     eye_ = eye;
     yaw_ = yaw;
-    pitch_ = clampPitch(pitch);
+    pitch_ = pitch;
+    keepWithinLimits();
+}
+
+void Camera::setTarget(const Vector3<float>& target) {
+    target_ = target;
+    keepWithinLimits();
 }
 
 float Camera::reach() const {
@@ -108,7 +136,7 @@ CameraPose Camera::pose(double aspect) const {
         case CameraMode::top:
             pose.eye = centre_ + height_ * Vector3<float>::UnitY();
             pose.yaw = topYaw_;
-            pose.pitch = -std::numbers::pi_v<float> / 2;
+            pose.pitch = -kPi / 2;
             break;
         case CameraMode::free:
             pose.eye = eye_;
@@ -131,7 +159,12 @@ Camera::State Camera::state() const {
             target_.z(), distance_,   followYaw_,  followPitch_};
 }
 
-void Camera::setState(CameraMode mode, const State& state) {
+std::span<const Camera::Limits, Camera::kStateSize> Camera::stateLimits() {
+    return kLimits;
+}
+
+void Camera::setState(CameraMode mode, const State& wanted) {
+    const State state = limited(wanted);
     mode_ = mode;
     centre_ = {state[0], state[1], state[2]};
     height_ = state[3];

@@ -12,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 namespace hashphase::demos {
@@ -24,6 +25,9 @@ class Camera {
 public:
     /// Stands where all of the bounds is to be seen, in each mode.
     void goHome(const Aabb<float>& bounds);
+
+    /// Stays where it is, in a scene of these bounds.
+    void setBounds(const Aabb<float>& bounds) { bounds_ = bounds; }
 
     void setMode(CameraMode mode);
     [[nodiscard]] CameraMode mode() const noexcept { return mode_; }
@@ -42,7 +46,7 @@ public:
     void place(const Vector3<float>& eye, float yaw, float pitch);
 
     /// Where the body that it follows is now.
-    void setTarget(const Vector3<float>& target) { target_ = target; }
+    void setTarget(const Vector3<float>& target);
 
     [[nodiscard]] CameraPose pose(double aspect) const;
 
@@ -50,9 +54,18 @@ public:
     static constexpr std::size_t kStateSize = 16;
     using State = std::array<float, kStateSize>;
     [[nodiscard]] State state() const;
-    void setState(CameraMode mode, const State& state);
+    void setState(CameraMode mode, const State& wanted);
+
+    /// The least and the most that each number of a state can be. Whatever would take the camera beyond takes
+    /// it there; after half a turn headings go on from the other side.
+    struct Limits {
+        float low;
+        float high;
+    };
+    [[nodiscard]] static std::span<const Limits, kStateSize> stateLimits();
 
 private:
+    void keepWithinLimits() { setState(mode_, state()); }
     [[nodiscard]] float reach() const;
 
     CameraMode mode_ = CameraMode::top;

@@ -142,6 +142,7 @@ void Session::beginAnew(bool goesHome) {
     pairs_.clear();
     check_ = {};
     knowsPairs_ = false;
+    camera_.setBounds(stage_->bounds());
     if (goesHome) {
         goHome();
     }

@@ -80,8 +80,9 @@ void eye(Session& session, Arguments& words) {
 void pose(Session& session, Arguments& words) {
     const auto mode = static_cast<CameraMode>(words.choice("camera", kCameraModes));
     Camera::State state{};
-    for (float& number : state) {
-        number = metres(words, "NUMBER");
+    for (std::size_t i = 0; i < state.size(); ++i) {
+        const auto [low, high] = Camera::stateLimits()[i];
+        state[i] = static_cast<float>(words.number("NUMBER", double{low}, double{high}));
     }
     words.end();
     session.camera().setState(mode, state);

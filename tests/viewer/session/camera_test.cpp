@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Zlib
+
+#include <demos/viewer/session/camera.hpp>
+#include <demos/viewer/session/script.hpp>
+#include <demos/viewer/session/session.hpp>
+#include <tests/viewer/session/steps.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+#include <string>
+
+namespace hashphase::demos {
+namespace {
+
+std::string poseLine(const Camera& camera) {
+    std::ostringstream line;
+    line.precision(9);
+    line << "pose " << kCameraModes[static_cast<std::size_t>(camera.mode())];
+    for (const float number : camera.state()) {
+        line << ' ' << number;
+    }
+    return line.str();
+}
+
+/// Somebody goes on and on in one direction.
+void goFar(Session& session, float sign) {
+    const std::string number = sign < 0 ? "-1000000" : "1000000";
+    for (const char* mode : {"camera top", "camera free"}) {
+        session.run(mode);
+        for (int i = 0; i < 1100; ++i) {
+            session.run("move " + number + " " + number + " " + number);
+            session.run(sign < 0 ? "turn -350 -80" : "turn 350 80");
+        }
+        for (int i = 0; i < 30; ++i) {
+            session.run(sign < 0 ? "zoom 100" : "zoom 0.01");
+        }
+    }
+    session.camera().setTarget(Vector3<float>::Constant(sign * 1e20F));
+    session.camera().setMode(CameraMode::follow);
+    for (int i = 0; i < 30; ++i) {
+        session.run(sign < 0 ? "zoom 100" : "zoom 0.01");
+    }
+}
+
+TEST(Camera, StaysWhereAPoseCanPutIt) {
+    for (const float sign : {1.0F, -1.0F}) {
+        Session session({.name = "wander", .file = {}, .objects = 20, .seed = 1}, 800, 600);
+        goFar(session, sign);
+        const Camera::State far = session.camera().state();
+        const std::string line = poseLine(session.camera());
+        for (const float number : far) {
+            EXPECT_TRUE(std::isfinite(number)) << line;
+        }
+        session.run("home");
+        EXPECT_EQ(faultOf(session, line), "none");
+        EXPECT_EQ(session.camera().state(), far) << line;
+        for (const char* mode : {"camera top", "camera free"}) {
+            session.run(mode);
+            step(session, 1);
+            EXPECT_TRUE(session.pose().eye.allFinite());
+            EXPECT_TRUE(std::isfinite(session.pose().farPlane));
+        }
+    }
+}
+
+TEST(Camera, IsPutNowhereElse) {
+    Session session({.name = "wander", .file = {}, .objects = 20, .seed = 1}, 800, 600);
+    const Camera::State home = session.camera().state();
+    for (std::size_t i = 0; i < home.size(); ++i) {
+        for (const char* number : {"10000001", "-10000001", "nan"}) {
+            std::string line = "pose free";
+            for (std::size_t k = 0; k < home.size(); ++k) {
+                line += k == i ? std::string(" ") + number : " " + std::to_string(home[k]);
+            }
+            EXPECT_NE(faultOf(session, line), "none") << line;
+        }
+    }
+    EXPECT_EQ(session.camera().state(), home);
+}
+
+TEST(Camera, ThatIsFarAwayIsPlayedBack) {
+    Session session({.name = "wander", .file = {}, .objects = 100, .seed = 1}, 800, 600);
+    session.run("move 1000000 0 0");
+    session.run("move 1000000 0 0");
+    session.run("restart");
+    step(session, 3);
+    Playback playback(CommandLog::parse(session.log().text(), "recording"));
+    Session again(playback.log().choice());
+    EXPECT_NO_THROW(playback.feed(again));
+    EXPECT_EQ(again.camera().state(), session.camera().state());
+}
+
+TEST(Camera, KnowsHowLargeTheSceneIsThatBeginsAgain) {
+    Session session({.name = "pile", .file = {}, .objects = 50, .seed = 1}, 800, 600);
+    const Aabb<float> before = session.stage().bounds();
+    session.run("camera free");
+    session.run("seed 9");
+    ASSERT_FALSE(session.stage().bounds().isApprox(before));
+    step(session, 1);
+    session.run("zoom 2");
+    Playback playback(CommandLog::parse(session.log().text(), "recording"));
+    Session again(playback.log().choice());
+    for (playback.feed(again); again.isWaiting(); playback.feed(again)) {
+        again.advance();
+    }
+    EXPECT_EQ(again.camera().state(), session.camera().state());
+}
+
+}  // namespace
+}  // namespace hashphase::demos
