@@ -1,104 +1,141 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/viewer/session/box_recorder.hpp>
 
+#include <demos/console/format.hpp>
 #include <demos/scenes/input_error.hpp>
-#include <demos/viewer/session/session.hpp>
 
+#include <array>
 #include <bit>
-#include <fstream>
+#include <system_error>
 
 namespace hashphase::demos {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "Recordings are little-endian.");
 
-class BoxFile {
-public:
-    explicit BoxFile(const std::filesystem::path& path)
-        : path_(path.string()), file_(path, std::ios::binary) {
-        refuseIfBad();
-    }
-
-    void name(std::string_view text) {
-        std::array<char, 128> field{};
-        text.copy(field.data(), field.size() - 1);
-        file_.write(field.data(), field.size());
-    }
-    template <class Number>
-    void number(Number value) {
-        const auto bytes = std::bit_cast<std::array<char, sizeof(Number)>>(value);
-        file_.write(bytes.data(), bytes.size());
-    }
-    void box(const Aabb<float>& box) {
-        for (const Vector3<float>& corner : {box.min(), box.max()}) {
-            for (int axis = 0; axis < 3; ++axis) {
-                number(corner[axis]);
-            }
-            number(0.0F);
-        }
-    }
-    void goTo(std::streamoff place) { file_.seekp(place); }
-    void close() {
-        file_.close();
-        refuseIfBad();
-    }
-
-private:
-    void refuseIfBad() const {
-        if (!file_) {
-            throw InputError(path_ + " cannot be written.");
-        }
-    }
-
-    std::string path_;
-    std::ofstream file_;
-};
-
 constexpr std::streamoff kWorldBoxPlace = 2 * 128 + 4 * 4;
 
-// The boxes of bodies that are there and have an end.
-std::vector<Aabb<float>> boxesOf(const Session& session) {
-    std::vector<Aabb<float>> boxes;
-    std::vector<CollisionFilter> filters;
-    session.stage().listBoxes(boxes, filters);
-    constexpr float kEnd = 1e6F;
-    std::erase_if(boxes, [](const Aabb<float>& box) {
-        return box.min().hasNaN() || box.min().cwiseAbs().maxCoeff() > kEnd ||
-               box.max().cwiseAbs().maxCoeff() > kEnd;
-    });
-    return boxes;
+bool isNear(const Aabb<float>& box) {
+    return box.min().cwiseAbs().maxCoeff() <= BoxRecorder::kFarthest &&
+           box.max().cwiseAbs().maxCoeff() <= BoxRecorder::kFarthest;
 }
 
 }  // namespace
 
-void recordBoxes(Session& session, const std::filesystem::path& path, int frames) {
-    BoxFile file(path);
-    std::vector<Aabb<float>> boxes = boxesOf(session);
-    const std::size_t count = boxes.size();
-    file.name(session.choice().name);
-    file.name("hashphase wander");
-    for (const auto number : {static_cast<std::int32_t>(count), std::int32_t{frames}, 0, 0}) {
-        file.number(number);
+BoxRecorder::BoxRecorder(const std::filesystem::path& path, int frames)
+    : path_(path), partial_(path.string() + ".partial"), frames_(frames) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path_, ignored)) {
+        throw InputError(path_.string() + " cannot be written.");
     }
-    Aabb<float> world;
-    file.box({Vector3<float>::Zero(), Vector3<float>::Zero()});
-    for (int frame = 0; frame <= frames; ++frame) {
-        for (const Aabb<float>& box : boxes) {
-            file.box(box);
-            world.extend(box);
-        }
-        if (frame < frames) {
-            session.askForSteps(1);
-            session.advance();
-            boxes = boxesOf(session);
-        }
-        if (boxes.size() != count) {
-            throw InputError(path.string() + " is not complete: bodies have come or gone.");
+    file_.open(partial_, std::ios::binary);
+    refuseIfBad();
+}
+
+BoxRecorder::BoxRecorder(const std::filesystem::path& path, std::string_view title,
+                         const Stage& stage, int frames)
+    : BoxRecorder(path, frames) {
+    stage.listBoxes(boxes_, filters_);
+    for (std::uint32_t index = 0; index < boxes_.size(); ++index) {
+        if (!boxes_[index].min().hasNaN() && isNear(boxes_[index])) {
+            indices_.push_back(index);
         }
     }
-    file.goTo(kWorldBoxPlace);
-    file.box(world);
-    file.close();
+    writeName(title);
+    writeName("hashphase wander");
+    for (const auto number :
+         {static_cast<std::int32_t>(indices_.size()), std::int32_t{frames}, 0, 0}) {
+        writeNumber(number);
+    }
+    writeBox(
+        {Vector3<float>::Zero(), Vector3<float>::Zero()});  // the world's, which is not known yet
+    writeFrame();
+}
+
+BoxRecorder::~BoxRecorder() {
+    if (!isComplete()) {
+        file_.close();
+        std::error_code ignored;
+        std::filesystem::remove(partial_, ignored);
+    }
+}
+
+void BoxRecorder::add(const Stage& stage) {
+    stage.listBoxes(boxes_, filters_);
+    for (const std::uint32_t index : indices_) {
+        const Aabb<float>& box = boxes_[index];
+        if (box.min().hasNaN() || !isNear(box)) {
+            throw InputError(faultSentence(
+                "body " + std::to_string(index) +
+                (box.min().hasNaN()
+                     ? " is gone"
+                     : " is farther than " + withThousands(static_cast<std::uint64_t>(kFarthest)) +
+                           " m from the origin")));
+        }
+    }
+    writeFrame();
+    if (count_ + 1 == frames_) {
+        putInPlace();
+    }
+    ++count_;
+}
+
+std::string BoxRecorder::progress() const {
+    return withThousands(static_cast<std::uint64_t>(count_)) + " of " +
+           withThousands(static_cast<std::uint64_t>(frames_)) + " frames";
+}
+
+std::string BoxRecorder::faultSentence(const std::string& reason) const {
+    return path() + " is not written: " + reason + " after " + progress() + ".";
+}
+
+// --- Bytes ---------------------------------------------------------------------------------------
+
+template <class Number>
+void BoxRecorder::writeNumber(Number value) {
+    const auto bytes = std::bit_cast<std::array<char, sizeof(Number)>>(value);
+    file_.write(bytes.data(), bytes.size());
+}
+
+void BoxRecorder::writeName(std::string_view text) {
+    std::array<char, 128> field{};
+    text.copy(field.data(), field.size() - 1);
+    file_.write(field.data(), field.size());
+}
+
+void BoxRecorder::writeBox(const Aabb<float>& box) {
+    for (const Vector3<float>& corner : {box.min(), box.max()}) {
+        for (int axis = 0; axis < 3; ++axis) {
+            writeNumber(corner[axis]);
+        }
+        writeNumber(0.0F);
+    }
+}
+
+void BoxRecorder::writeFrame() {
+    for (const std::uint32_t index : indices_) {
+        writeBox(boxes_[index]);
+        world_.extend(boxes_[index]);
+    }
+    refuseIfBad();
+}
+
+void BoxRecorder::putInPlace() {
+    file_.seekp(kWorldBoxPlace);
+    writeBox(world_);
+    file_.close();
+    refuseIfBad();
+    std::error_code error;
+    std::filesystem::rename(partial_, path_, error);
+    if (error) {
+        throw InputError(path() + " cannot be written.");
+    }
+}
+
+void BoxRecorder::refuseIfBad() const {
+    if (!file_) {
+        throw InputError(path() + " cannot be written.");
+    }
 }
 
 }  // namespace hashphase::demos

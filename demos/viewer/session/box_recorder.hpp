@@ -1,15 +1,68 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
+// Writes the boxes of a stage's bodies, frame by frame, as a Broadmark recording (recording_scene.hpp). It is
+// written beside its place, and put there when it is complete: until then, and where it does not come to that,
+// a file that is there stays as it is.
+
+#include <demos/viewer/stage/stage.hpp>
+
+#include <cstdint>
 #include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace hashphase::demos {
 
-class Session;
+class BoxRecorder {
+public:
+    /// Begins with the stage as it is. Bodies that are farther than kFarthest then, or have no end, are left
+    /// out. Throws InputError where the file cannot be written.
+    BoxRecorder(const std::filesystem::path& path, std::string_view title, const Stage& stage,
+                int frames);
+    /// Leaves no file that is not complete.
+    ~BoxRecorder();
+    BoxRecorder(const BoxRecorder&) = delete;
+    BoxRecorder& operator=(const BoxRecorder&) = delete;
 
-/// Simulates so many frames of the session and writes the boxes of all bodies, of now and of each frame, as a
-/// Broadmark recording (recording_scene.hpp). Throws InputError where the file cannot be written, or where
-/// bodies come or go meanwhile.
-void recordBoxes(Session& session, const std::filesystem::path& path, int frames);
+    /// Adds the frame that has been simulated. Throws InputError where the file cannot be written, and where a
+    /// body that was there at the beginning is gone, or farther than kFarthest; nothing can be added then.
+    void add(const Stage& stage);
+
+    /// Whether all frames are there, and the file is in its place.
+    [[nodiscard]] bool isComplete() const noexcept { return count_ == frames_; }
+
+    [[nodiscard]] std::uint64_t frameCount() const noexcept {
+        return static_cast<std::uint64_t>(count_);
+    }
+    /// How many frames there are, "3 of 60 frames"; and what is to be said where there will be no more.
+    [[nodiscard]] std::string progress() const;
+    [[nodiscard]] std::string faultSentence(const std::string& reason) const;
+    [[nodiscard]] std::string path() const { return path_.string(); }
+
+    static constexpr float kFarthest = 1e6F;  // any coordinate [m]
+
+private:
+    BoxRecorder(const std::filesystem::path& path, int frames);
+    template <class Number>
+    void writeNumber(Number value);
+    void writeName(std::string_view text);
+    void writeBox(const Aabb<float>& box);
+    void writeFrame();
+    void putInPlace();
+    void refuseIfBad() const;
+
+    std::filesystem::path path_;
+    std::filesystem::path partial_;  // what is written
+    std::ofstream file_;
+    int frames_;
+    int count_ = 0;                       // of frames after the first state
+    std::vector<std::uint32_t> indices_;  // of those that are recorded
+    Aabb<float> world_;
+    std::vector<Aabb<float>> boxes_;  // of all, by index
+    std::vector<CollisionFilter> filters_;
+};
 
 }  // namespace hashphase::demos

@@ -3,7 +3,6 @@
 
 #include <demos/console/format.hpp>
 #include <demos/console/result_file.hpp>
-#include <demos/viewer/session/box_recorder.hpp>
 
 #include <array>
 
@@ -29,9 +28,7 @@ void capture(Session& session, Arguments& words) {
     const std::string path = words.word("FILE");
     const long long frames = words.wholeOr("FRAMES", 1, 1'000'000, 60);
     words.end();
-    recordBoxes(session, path, static_cast<int>(frames));
-    session.say("wrote the boxes of " + withThousands(static_cast<std::uint64_t>(frames)) +
-                " frames to " + path);
+    session.capture(path, static_cast<int>(frames));
 }
 
 void quit(Session& session, Arguments& words) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/viewer/session/session.hpp>
 
+#include <demos/console/format.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <demos/viewer/session/commands.hpp>
 
@@ -68,6 +69,7 @@ void Session::advance() {
         if (picked_ && camera_.mode() == CameraMode::follow) {
             camera_.setTarget(stage_->body(*picked_).centre);
         }
+        captureFrame();
     }
     isResting_ = !steps;
     look();
@@ -112,6 +114,29 @@ void Session::look() {
     }
 }
 
+void Session::captureFrame() {
+    if (capture_ == nullptr) {
+        return;
+    }
+    try {
+        capture_->add(*stage_);
+    } catch (const InputError& error) {
+        giveUpCapture(error.what());
+        stepsWaiting_ = 0;
+        return;
+    }
+    if (capture_->isComplete()) {
+        say("wrote the boxes of " + withThousands(capture_->frameCount()) + " frames to " +
+            capture_->path());
+        capture_ = nullptr;
+    }
+}
+
+void Session::giveUpCapture(const std::string& fault) {
+    noteFailure(fault);
+    capture_ = nullptr;
+}
+
 // --- Scene ---------------------------------------------------------------------------------------
 
 void Session::choose(const SceneChoice& choice) {
@@ -129,6 +154,9 @@ void Session::choose(const SceneChoice& choice) {
 }
 
 void Session::beginAnew(bool goesHome) {
+    if (capture_ != nullptr) {
+        giveUpCapture(capture_->faultSentence("the scene ends"));
+    }
     frame_ = 0;
     ++sceneCount_;
     stepsWaiting_ = 0;
@@ -272,6 +300,15 @@ std::size_t Session::recolourSelected() {
                    std::back_inserter(all));
     recoloured_.swap(all);
     return selected_.size();
+}
+
+void Session::capture(const std::string& path, int frames) {
+    if (capture_ != nullptr) {
+        throw InputError("Boxes are captured to " + capture_->path() +
+                         " already: " + capture_->progress() + " are there.");
+    }
+    capture_ = std::make_unique<BoxRecorder>(path, choice_.name, *stage_, frames);
+    askForSteps(static_cast<std::uint64_t>(frames));
 }
 
 void Session::noteFailure(const std::string& message) {

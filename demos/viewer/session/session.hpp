@@ -16,6 +16,7 @@
 // Units    metres, seconds; on the screen pixels, from the upper left corner
 
 #include <demos/viewer/draw/picture.hpp>
+#include <demos/viewer/session/box_recorder.hpp>
 #include <demos/viewer/session/camera.hpp>
 #include <demos/viewer/session/cell_loads.hpp>
 #include <demos/viewer/session/command_log.hpp>
@@ -110,6 +111,10 @@ public:
     std::size_t removeSelected();
     std::size_t recolourSelected();
 
+    /// Writes the boxes of all bodies, of now and of so many frames, which are asked for and taken as they are
+    /// simulated; says when the file is there, and notes a failure where that cannot be. One at a time.
+    void capture(const std::string& path, int frames);
+
     void askForScreenshot(const std::string& path) { screenshots_.push_back(path); }
     void say(const std::string& message) { messages_.push_back(message); }
     void noteFailure(const std::string& message);
@@ -180,6 +185,8 @@ public:
 
 private:
     void beginAnew(bool goesHome);
+    void captureFrame();
+    void giveUpCapture(const std::string& fault);
     void setView();
     void look();
 
@@ -213,6 +220,7 @@ private:
     PhaseHistory history_;
 
     CommandLog log_;
+    std::unique_ptr<BoxRecorder> capture_;  // one that is not complete; else null
     std::vector<std::string> screenshots_;
     std::vector<std::string> messages_;
     int failureCount_ = 0;

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Zlib
+
+#include <demos/scenes/file_bytes.hpp>
+#include <demos/scenes/recording_scene.hpp>
+#include <demos/viewer/session/session.hpp>
+#include <tests/viewer/session/steps.hpp>
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+namespace hashphase::demos {
+namespace {
+
+class Capture : public testing::Test {
+protected:
+    Capture() : folder_(std::filesystem::temp_directory_path() / "hashphase_capture_test") {
+        std::filesystem::remove_all(folder_);
+        std::filesystem::create_directories(folder_);
+        std::ofstream(path()) << "of before";
+    }
+    ~Capture() override { std::filesystem::remove_all(folder_); }
+
+    [[nodiscard]] std::string path() const { return (folder_ / "boxes.aabbs").string(); }
+
+    /// The file is as it was, and there is no other.
+    void expectUntouched() const {
+        EXPECT_TRUE(readFile(path()) == "of before");
+        using Iterator = std::filesystem::directory_iterator;
+        EXPECT_EQ(std::distance(Iterator(folder_), Iterator()), 1);
+    }
+
+    /// What is said until no step is waited for.
+    static std::string saidUntilEnd(Session& session) {
+        std::string all;
+        do {
+            session.advance();
+            for (const std::string& message : session.takeMessages()) {
+                all += message + '\n';
+            }
+        } while (session.isWaiting());
+        return all;
+    }
+
+    Session session_{{.name = "wander", .file = {}, .objects = 100, .seed = 3}, 800, 600};
+
+private:
+    std::filesystem::path folder_;
+};
+
+TEST_F(Capture, TakesFramesAsTheyAreSimulated) {
+    session_.run("capture " + path() + " 20");
+    EXPECT_EQ(session_.frame(), 0U);
+    session_.advance();
+    EXPECT_EQ(session_.frame(), 1U);
+    EXPECT_TRUE(readFile(path()) == "of before");
+    EXPECT_EQ(saidUntilEnd(session_), "wrote the boxes of 20 frames to " + path() + "\n");
+    EXPECT_EQ(session_.frame(), 20U);
+    RecordingScene recording(path(), 0);
+    EXPECT_EQ(recording.frameLimit(), 21);
+    EXPECT_EQ(recording.boxes().size(), 100U);
+}
+
+TEST_F(Capture, IsDoneBeforeTheNextLineOfAScript) {
+    const auto said = runScript(session_, "capture " + path() + " 7\nexpect frame = 7\n");
+    EXPECT_EQ(said, std::vector<std::string>{"wrote the boxes of 7 frames to " + path()});
+    EXPECT_EQ(session_.failureCount(), 0);
+}
+
+TEST_F(Capture, LeavesTheFileAsItWasAndNamesTheBodyThatFliesTooFar) {
+    Session session({.name = "pile", .file = {}, .objects = 50, .seed = 1}, 1280, 800);
+    step(session, 30);
+    session.run("box 0 0 1280 800");
+    for (int i = 0; i < 3; ++i) {
+        session.run("push 1000000 0 0");
+    }
+    session.run("clear");
+    static_cast<void>(session.takeMessages());
+    session.run("capture " + path() + " 120");
+    const std::string said = saidUntilEnd(session);
+    EXPECT_NE(said.find(path() + " is not written: body "), std::string::npos) << said;
+    EXPECT_NE(said.find("is farther than 1,000,000 m from the origin after "), std::string::npos)
+        << said;
+    EXPECT_EQ(session.failureCount(), 1);
+    EXPECT_LT(session.frame(), 150U);
+    expectUntouched();
+}
+
+TEST_F(Capture, LeavesTheFileAsItWasWhereABodyIsRemoved) {
+    session_.run("capture " + path() + " 10");
+    session_.advance();
+    EXPECT_EQ(session_.stage().remove(std::array{42U}), 1U);
+    EXPECT_EQ(saidUntilEnd(session_),
+              path() + " is not written: body 42 is gone after 1 of 10 frames.\n");
+    EXPECT_EQ(session_.failureCount(), 1);
+    expectUntouched();
+}
+
+TEST_F(Capture, LeavesTheFileAsItWasWhereTheSceneBeginsAgain) {
+    session_.run("capture " + path() + " 10");
+    session_.advance();
+    session_.run("restart");
+    EXPECT_EQ(
+        session_.takeMessages(),
+        std::vector<std::string>{path() + " is not written: the scene ends after 1 of 10 frames."});
+    EXPECT_EQ(session_.failureCount(), 1);
+    expectUntouched();
+}
+
+TEST_F(Capture, LeavesTheFileAsItWasWhereTheSessionEnds) {
+    {
+        Session session({.name = "wander", .file = {}, .objects = 100, .seed = 3}, 800, 600);
+        session.run("capture " + path() + " 10");
+        session.advance();
+    }
+    expectUntouched();
+}
+
+TEST_F(Capture, RefusesWhatCannotBeWrittenBeforeItSimulatesAnything) {
+    EXPECT_EQ(faultOf(session_, "capture /nowhere/a.aabbs 5"),
+              "/nowhere/a.aabbs cannot be written.");
+    EXPECT_EQ(faultOf(session_, "capture /tmp 5"), "/tmp cannot be written.");
+    EXPECT_FALSE(session_.isWaiting());
+    session_.run("capture " + path() + " 5");
+    EXPECT_EQ(faultOf(session_, "capture " + path() + "2 5"),
+              "Boxes are captured to " + path() + " already: 0 of 5 frames are there.");
+}
+
+}  // namespace
+}  // namespace hashphase::demos
