@@ -9,21 +9,25 @@
 #include <demos/viewer/stage/recording_stage.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 
 namespace hashphase::demos {
 namespace {
 
 constexpr std::size_t kWanderers = 30'000;
 
-// The paper's test bed, with all that its authors showed.
-EffectsFile wanderers() {
+// The paper's test bed, with all that its authors showed. Of more than kWanderers the domain grows, and its
+// ground with it, so that they stay as dense, as in `hashphase paper`.
+EffectsFile wanderers(std::size_t objects) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    constexpr double kDomain = 400;
+    const double growth = std::sqrt(std::max(1.0, static_cast<double>(objects) / kWanderers));
+    const double domain = 400 * growth;
     EffectsFile file;
-    file.scene.objects = kWanderers;
-    file.scene.domain = kDomain;
-    file.scene.terrain = 64;
+    file.scene.objects = static_cast<std::uint32_t>(objects);
+    file.scene.domain = domain;
+    file.scene.terrain = static_cast<std::uint32_t>(std::lround(64 * growth));
     file.scene.zones = 20;
     for (const Effect effect :
          {Effect::motion, Effect::terrain, Effect::pairs, Effect::response, Effect::picking,
@@ -31,7 +35,7 @@ EffectsFile wanderers() {
         file.effects.declare(effect);
     }
     file.effects.motion->bounds = {Vector3<double>(1, -infinity, 1),
-                                   Vector3<double>(kDomain - 1, infinity, kDomain - 1)};
+                                   Vector3<double>(domain - 1, infinity, domain - 1)};
     file.effects.response->restitution = 0.9;
     file.effects.proximity->radius = 5;
     file.effects.proximity->turns = 30;  // else whole regions would flicker
@@ -116,7 +120,7 @@ std::unique_ptr<Stage> makeStage(const SceneChoice& choice) {
         return openFile(choice);
     }
     if (choice.name == viewerScenes().front().name) {
-        return makePaperStage(wanderers(), choice);
+        return makePaperStage(wanderers(choice.objects.value_or(kWanderers)), choice);
     }
     for (const WorldSceneKind& kind : worldSceneKinds()) {
         if (kind.name == choice.name) {

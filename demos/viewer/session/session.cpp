@@ -147,10 +147,12 @@ void Session::choose(const SceneChoice& choice) {
         next->declare(changed(own, stage_->effects().set(), stage_->effects()));
         next->setBroadphase(stage_->broadphase());
     }
+    const bool isOtherSize =
+        choice.objects != choice_.objects && !next->bounds().isApprox(stage_->bounds());
     stage_ = std::move(next);
     ownEffects_ = own;
     choice_ = choice;
-    beginAnew(isOther);
+    beginAnew(isOther || isOtherSize);
 }
 
 void Session::beginAnew(bool goesHome) {

@@ -86,7 +86,8 @@ public:
     // --- What commands do ------------------------------------------------------------------------
 
     /// Puts a scene on stage from its beginning. Where it is another one, it is declared as it is by itself,
-    /// and the camera goes home; else all that is declared, the broadphase and the camera stay.
+    /// and the camera goes home; else all that is declared, the broadphase and the camera stay, which goes home
+    /// where other numbers of bodies take other room.
     void choose(const SceneChoice& choice);
     void setPlaying(bool isPlaying) noexcept { isPlaying_ = isPlaying; }
     void askForSteps(std::uint64_t count);
