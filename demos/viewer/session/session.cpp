@@ -156,9 +156,7 @@ void Session::choose(const SceneChoice& choice) {
 }
 
 void Session::beginAnew(bool goesHome) {
-    if (capture_ != nullptr) {
-        giveUpCapture(capture_->faultSentence("the scene ends"));
-    }
+    endCapture("the scene ends");
     frame_ = 0;
     ++sceneCount_;
     stepsWaiting_ = 0;
@@ -310,7 +308,13 @@ void Session::capture(const std::string& path, int frames) {
                          " already: " + capture_->progress() + " are there.");
     }
     capture_ = std::make_unique<BoxRecorder>(path, choice_.name, *stage_, frames);
-    askForSteps(static_cast<std::uint64_t>(frames));
+    stepsWaiting_ = std::max(stepsWaiting_, static_cast<std::uint64_t>(frames));
+}
+
+void Session::endCapture(const std::string& reason) {
+    if (capture_ != nullptr) {
+        giveUpCapture(capture_->faultSentence(reason));
+    }
 }
 
 void Session::noteFailure(const std::string& message) {

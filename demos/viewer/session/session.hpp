@@ -112,9 +112,13 @@ public:
     std::size_t removeSelected();
     std::size_t recolourSelected();
 
-    /// Writes the boxes of all bodies, of now and of so many frames, which are asked for and taken as they are
-    /// simulated; says when the file is there, and notes a failure where that cannot be. One at a time.
+    /// Writes the boxes of all bodies, of now and of so many frames, which are waited for and taken as they are
+    /// simulated; says when the file is there, and notes a failure where that cannot be. One at a time. Who
+    /// plays goes on playing after it.
     void capture(const std::string& path, int frames);
+    [[nodiscard]] bool isCapturing() const noexcept { return capture_ != nullptr; }
+    /// Gives up a capture that is not complete, and says why: "the scene ends".
+    void endCapture(const std::string& reason);
 
     void askForScreenshot(const std::string& path) { screenshots_.push_back(path); }
     void say(const std::string& message) { messages_.push_back(message); }

@@ -159,7 +159,7 @@ bool Run::isHeadlessDone() const {
     if (script_) {
         return script_->isComplete(*session_);
     }
-    return session_->frame() >= frameCount() || standsStill();
+    return (session_->frame() >= frameCount() && !session_->isCapturing()) || standsStill();
 }
 
 int Run::headless() {
@@ -209,6 +209,7 @@ int Run::inWindow() {
 }
 
 int Run::end() {
+    session_->endCapture("the run ends");
     tellMessages();
     const WanderEnd wanderEnd{*session_, drewPictures_, framesPerSecond_};
     if (!playback_ && !script_) {

@@ -102,7 +102,7 @@ TEST(Camera, KnowsHowLargeTheSceneIsThatBeginsAgain) {
     session.run("zoom 2");
     Playback playback(CommandLog::parse(session.log().text(), "recording"));
     Session again(playback.log().choice());
-    for (playback.feed(again); again.isWaiting(); playback.feed(again)) {
+    for (playback.feed(again); !playback.isDone(again); playback.feed(again)) {
         again.advance();
     }
     EXPECT_EQ(again.camera().state(), session.camera().state());

@@ -72,6 +72,16 @@ TEST_F(Capture, IsDoneBeforeTheNextLineOfAScript) {
     EXPECT_EQ(session_.failureCount(), 0);
 }
 
+TEST_F(Capture, LeavesAloneWhetherTheSceneIsPlayed) {
+    for (const bool isPlaying : {true, false}) {
+        session_.setPlaying(isPlaying);
+        session_.run("capture " + path() + " 3");
+        saidUntilEnd(session_);
+        EXPECT_EQ(session_.isPlaying(), isPlaying);
+        EXPECT_FALSE(session_.isCapturing());
+    }
+}
+
 TEST_F(Capture, LeavesTheFileAsItWasAndNamesTheBodyThatFliesTooFar) {
     Session session({.name = "pile", .file = {}, .objects = 50, .seed = 1}, 1280, 800);
     step(session, 30);

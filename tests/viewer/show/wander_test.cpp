@@ -214,6 +214,23 @@ TEST_F(Wander, TakesTheSeedThatIsAskedForBeforeASceneFilesOwn) {
     EXPECT_EQ(typed({"--headless", "--quiet", "--replay", recording}).code, kExitOk);
 }
 
+TEST_F(Wander, RunsOnUntilBoxesAreCaptured) {
+    const std::string boxes = file("boxes.aabbs");
+    const auto capture = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), {"--headless", "--quiet", "--objects", "40", "--frames",
+                                             "2", "--do", "capture " + boxes + " 5"});
+        return typed(arguments);
+    };
+    const Outcome cut = capture({"--time-limit", "1e-9"});
+    EXPECT_EQ(cut.code, kExitCheckFailed);
+    EXPECT_TRUE(cut.out.starts_with(boxes + " is not written: the run ends after 0 of 5 frames.\n"))
+        << cut.out;
+    EXPECT_FALSE(std::filesystem::exists(boxes));
+    const Outcome whole = capture({});
+    EXPECT_EQ(whole.code, kExitOk);
+    EXPECT_TRUE(whole.out.starts_with("wrote the boxes of 5 frames to " + boxes)) << whole.out;
+}
+
 TEST_F(Wander, HasNoSeedForARecordingOfBoxes) {
     const std::string boxes = file("boxes.aabbs");
     typed({"--headless", "--quiet", "--objects", "40", "--frames", "1", "--do",
