@@ -60,13 +60,15 @@ void listWander(std::ostream& out) {
 void tellPhases(const WanderEnd& end, std::ostream& out) {
     const Session& session = end.session;
     const PhaseHistory& history = session.history();
-    for (const PhaseHistory::Row& row : history.rows()) {
-        tellPhase(out, row.name, history.median(row), history.p95(row));
+    if (const std::size_t count = history.toldCount(); count > 0) {
+        for (const PhaseHistory::Row& row : history.rows()) {
+            tellPhase(out, row.name, history.median(row), history.p95(row));
+        }
+        tellPhase(out, "together", history.medianTotal(), history.p95Total());
+        out << "medians of the last " << (count == 1 ? "frame" : withThousands(count) + " frames")
+            << (end.drewPictures ? ", of a run that drew pictures as well" : "") << '\n';
     }
-    tellPhase(out, "together", history.medianTotal(), history.p95Total());
-    out << "medians of the last " << withThousands(history.toldCount()) << " frames"
-        << (end.drewPictures ? ", of a run that drew pictures as well" : "") << '\n'
-        << withThousands(session.stage().size()) << " bodies, "
+    out << withThousands(session.stage().size()) << " bodies, "
         << withThousands(session.visibleCount()) << " visible, "
         << withThousands(session.stage().pairCount()) << " pairs after "
         << withThousands(session.frame()) << " frames\n";
