@@ -307,7 +307,7 @@ void Session::capture(const std::string& path, int frames) {
         throw InputError("Boxes are captured to " + capture_->path() +
                          " already: " + capture_->progress() + " are there.");
     }
-    capture_ = std::make_unique<BoxRecorder>(path, choice_.name, *stage_, frames);
+    capture_ = std::make_unique<BoxRecorder>(path, titleOf(choice_), *stage_, frames);
     stepsWaiting_ = std::max(stepsWaiting_, static_cast<std::uint64_t>(frames));
 }
 
