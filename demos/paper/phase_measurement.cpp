@@ -130,11 +130,12 @@ private:
         if (frame == 0) {
             const double frames = effort_.methodMilliseconds / std::max(milliseconds, 1e-6);
             const std::uint32_t fewest = milliseconds > kSlowFrame
-                                             ? effort_.fewestFrames - (method.isMeasured() ? 1 : 0)
+                                             ? effort_.fewestFrames
                                              : std::max(effort_.fewestFrames, kFewestOfQuick);
-            lastFrame_[i] = frames > effort_.frames
-                                ? effort_.frames
-                                : std::max(static_cast<std::uint32_t>(frames), fewest);
+            const std::uint32_t measured =
+                frames > effort_.frames ? effort_.frames
+                                        : std::max(static_cast<std::uint32_t>(frames), fewest);
+            lastFrame_[i] = measured - (method.isMeasured() ? 1 : 0);  // this one is
         }
     }
 

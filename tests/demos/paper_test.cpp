@@ -117,7 +117,7 @@ TEST(PaperPhases, FindWhatBruteForceFindsInEveryFrame) {
         ASSERT_EQ(result.methods.size(), 12U);
         for (const MethodResult& method : result.methods) {
             EXPECT_EQ(method.frameMs.size(), kBrief.frames) << describe(method);
-            EXPECT_EQ(method.checkedFrames, kBrief.frames + 1) << describe(method);
+            EXPECT_GE(method.checkedFrames, kBrief.frames) << describe(method);
             EXPECT_EQ(method.wrongFrames, 0U) << describe(method) << ": " << method.fault;
         }
         EXPECT_GT(result.found, 50U);
@@ -160,7 +160,9 @@ TEST(PaperPhases, FailTheRunWhenAMethodIsBroken) {
         results.figures.push_back(measurePhase(
             {.phase = phase, .objects = kFew, .seed = 3, .aiRadius = 12}, specs, kBrief));
         results.checks = {agreement(results.figures)};
-        EXPECT_EQ(results.figures[0].methods.back().wrongFrames, kBrief.frames + 1);
+        const MethodResult& wrong = results.figures[0].methods.back();
+        EXPECT_GE(wrong.checkedFrames, kBrief.frames);
+        EXPECT_EQ(wrong.wrongFrames, wrong.checkedFrames);
         EXPECT_EQ(results.figures[0].methods[1].wrongFrames, 0U);
         EXPECT_FALSE(results.allHold());
         EXPECT_EQ(exitCodeOf(results), kExitCheckFailed);
