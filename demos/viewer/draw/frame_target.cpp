@@ -20,7 +20,7 @@ FrameTarget::FrameTarget(int width, int height) : width_(width), height_(height)
     glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
     glBindRenderbuffer(GL_RENDERBUFFER, depth_.name());
     glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width, height);
-    bind();
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
                               colour_.name());
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_.name());
@@ -28,11 +28,6 @@ FrameTarget::FrameTarget(int width, int height) : width_(width), height_(height)
         throw DrawError("OpenGL offers no framebuffer of " + size +
                         " pixels with colour and depth.");
     }
-}
-
-void FrameTarget::bind() const {
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
-    glViewport(0, 0, width_, height_);
 }
 
 Image FrameTarget::read() const {

@@ -16,9 +16,6 @@ public:
     [[nodiscard]] int height() const { return height_; }
     [[nodiscard]] GLuint name() const { return framebuffer_.name(); }
 
-    /// Draws from now on go here, into all of it.
-    void bind() const;
-
     [[nodiscard]] Image read() const;
 
 private:

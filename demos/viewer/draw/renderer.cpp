@@ -28,7 +28,7 @@ constexpr float kReachOfNothing = 1000;  // and so far away where there is none 
 struct Renderer::Layers {
     Layers(int width, int height) : target(width, height) {}
 
-    void drawFrame(const Picture& picture);
+    void drawFrame(const Picture& picture, unsigned framebuffer);
     void uploadFrame(const Picture& picture, const View& view) const;
 
     FrameTarget target;
@@ -54,7 +54,7 @@ void Renderer::Layers::uploadFrame(const Picture& picture, const View& view) con
     glBufferData(GL_UNIFORM_BUFFER, sizeof(uniforms), &uniforms, GL_STREAM_DRAW);
 }
 
-void Renderer::Layers::drawFrame(const Picture& picture) {
+void Renderer::Layers::drawFrame(const Picture& picture, unsigned framebuffer) {
     const View view(picture.camera,
                     {static_cast<float>(target.width()), static_cast<float>(target.height())});
     if (ground.update(picture.ground)) {
@@ -62,7 +62,8 @@ void Renderer::Layers::drawFrame(const Picture& picture) {
     }
     uploadFrame(picture, view);
 
-    target.bind();
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glViewport(0, 0, target.width(), target.height());
     glDisable(GL_SCISSOR_TEST);
     glDisable(GL_CULL_FACE);
     glCullFace(GL_BACK);
@@ -113,8 +114,8 @@ Image Renderer::read() const {
     return layers_->target.read();
 }
 
-void Renderer::draw(const Picture& picture) {
-    layers_->drawFrame(picture);
+void Renderer::draw(const Picture& picture, unsigned framebuffer) {
+    layers_->drawFrame(picture, framebuffer);
     if (const GLenum fault = glGetError(); fault != GL_NO_ERROR) {
         throw DrawError("OpenGL refused a part of the picture (error " + std::to_string(fault) +
                         ").");

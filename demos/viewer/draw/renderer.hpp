@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Draws pictures (picture.hpp) by OpenGL 3.3, into a framebuffer of its own: the same pixels with a
-// window and without one.
+// Draws pictures (picture.hpp) by OpenGL 3.3, into a framebuffer of its own or another one: the same pixels
+// with a window and without one.
 //
-// A frame  draw(), then read() the pixels, or blit framebuffer() to a window's
+// A frame  draw(), then read() the pixels, or blit framebuffer() to a window's. A window of the same size is
+//          better drawn into: a blit takes a software renderer a tenth of a frame
 // Context  current in every call, from the constructor to the destructor; whatever state a draw()
 //          needs it sets, and it may leave any state behind
 // Memory   grows to the largest picture so far; from then on a draw() allocates nothing
@@ -31,12 +32,15 @@ public:
     [[nodiscard]] int height() const;
 
     /// Returns when OpenGL has the picture; it may still be drawing it.
-    void draw(const Picture& picture);
+    void draw(const Picture& picture) { draw(picture, framebuffer()); }
+    /// Draws into the framebuffer of that name, as large as pictures are, with colour and depth; 0 is that of
+    /// the context's window.
+    void draw(const Picture& picture, unsigned framebuffer);
 
-    /// What was drawn last. Waits for it.
+    /// What was drawn last into framebuffer(). Waits for it.
     [[nodiscard]] Image read() const;
 
-    /// OpenGL's name of what is drawn into, to be read from.
+    /// OpenGL's name of its own framebuffer.
     [[nodiscard]] unsigned framebuffer() const;
 
 private:

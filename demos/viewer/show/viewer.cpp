@@ -28,7 +28,8 @@ void Viewer::keepPace(double seconds) {
     }
 }
 
-void Viewer::show(Session& session, const Panel::Pointer& pointer, double seconds) {
+void Viewer::show(Session& session, const Panel::Pointer& pointer, double seconds,
+                  bool fitsWindow) {
     if (renderer_.width() != session.width() || renderer_.height() != session.height()) {
         renderer_.resize(session.width(), session.height());
     }
@@ -36,8 +37,9 @@ void Viewer::show(Session& session, const Panel::Pointer& pointer, double second
     if (seconds > 0) {
         keepPace(seconds);
     }
-    renderer_.draw(maker_.make(session, contactFrom_));
-    glBindFramebuffer(GL_FRAMEBUFFER, renderer_.framebuffer());
+    framebuffer_ = fitsWindow && !session.wantsScreenshot() ? 0 : renderer_.framebuffer();
+    renderer_.draw(maker_.make(session, contactFrom_), framebuffer_);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
     glViewport(0, 0, session.width(), session.height());
     panel_.draw();
     for (const std::string& path : session.takeScreenshots()) {

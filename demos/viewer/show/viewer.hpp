@@ -19,19 +19,23 @@ public:
     /// Lays out the panel, without drawing it: new parts of it find their size before they are shown.
     void layOut(Session& session) { panel_.build(session, {}, 0); }
 
-    /// Draws the session as it is. Where somebody looks on, `seconds` after the last frame, the contact shade
-    /// of small spheres is left out while frames take long, as nothing else costs that much. Throws InputError
-    /// where a picture that was asked for cannot be written; it has been drawn even so.
-    void show(Session& session, const Panel::Pointer& pointer, double seconds);
+    /// Draws the session as it is; straight into the context's window where the picture `fitsWindow`, unless
+    /// it is wanted as a screenshot, too. Where somebody looks on, `seconds` after the last frame, the contact
+    /// shade of small spheres is left out while frames take long, as nothing else costs that much. Throws
+    /// InputError where a picture that was asked for cannot be written; it has been drawn even so.
+    void show(Session& session, const Panel::Pointer& pointer, double seconds,
+              bool fitsWindow = false);
 
+    /// OpenGL's name of what has been drawn into: 0 for the window.
+    [[nodiscard]] unsigned framebuffer() const noexcept { return framebuffer_; }
     /// Spheres larger than that have a dark spot below them now [pixels, radius].
     [[nodiscard]] float contactFrom() const noexcept { return contactFrom_; }
     [[nodiscard]] Panel& panel() noexcept { return panel_; }
-    [[nodiscard]] const Renderer& renderer() const noexcept { return renderer_; }
 
 private:
     void keepPace(double seconds);
 
+    unsigned framebuffer_ = 0;
     float contactFrom_ = kContactFrom;  // [pixels]
     Renderer renderer_;
     Panel panel_;

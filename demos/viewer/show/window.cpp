@@ -220,14 +220,22 @@ void Window::listen(Session& session, Viewer& viewer, double seconds) {
     }
 }
 
-void Window::present(const Session& session, const Viewer& viewer) {
+void Window::present(Session& session, Viewer& viewer, double seconds) {
     int width = 0;
     int height = 0;
     glfwGetFramebufferSize(input_->window, &width, &height);
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, viewer.renderer().framebuffer());
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-    glBlitFramebuffer(0, 0, session.width(), session.height(), 0, 0, width, height,
-                      GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    const bool fits = width == session.width() && height == session.height();
+    try {
+        viewer.show(session, input_->pointer, seconds, fits);
+    } catch (const InputError& error) {  // a picture that cannot be written
+        viewer.panel().say(error.what(), true);
+    }
+    if (viewer.framebuffer() != 0) {
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, viewer.framebuffer());
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+        glBlitFramebuffer(0, 0, session.width(), session.height(), 0, 0, width, height,
+                          GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    }
     glfwSwapBuffers(input_->window);
 }
 
@@ -243,16 +251,11 @@ FrameRate Window::run(Session& session, std::uint64_t frames, const std::functio
         const double seconds = now - std::exchange(before, now);
         listen(session, viewer, seconds);
         session.advance();
-        try {
-            viewer.show(session, input_->pointer, seconds);
-        } catch (const InputError& error) {  // a picture that cannot be written
-            viewer.panel().say(error.what(), true);
-        }
+        present(session, viewer, seconds);
         for (const std::string& message : session.takeMessages()) {
             viewer.panel().say(message);
         }
         input_->overPanel = viewer.panel().hasPointer();
-        present(session, viewer);
         rate.note(watch.milliseconds() / 1000);
     }
     return rate;

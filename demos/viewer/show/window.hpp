@@ -36,7 +36,7 @@ public:
 private:
     struct Input;
     void listen(Session& session, Viewer& viewer, double seconds);
-    void present(const Session& session, const Viewer& viewer);
+    void present(Session& session, Viewer& viewer, double seconds);
 
     std::unique_ptr<Input> input_;
     Panel::Guard guard_;

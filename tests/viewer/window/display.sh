@@ -14,7 +14,7 @@ if [[ -z ${PLAY_INSIDE-} ]]; then
     done
     rm -rf "$folder"
     mkdir -p "$folder"
-    PLAY_INSIDE=1 exec xvfb-run -a -s "-screen 0 1280x800x24" "$0" "$@"
+    PLAY_INSIDE=1 exec xvfb-run -a -s "-screen 0 1280x800x24 -fbdir $(cd "$folder" && pwd)" "$0" "$@"
 fi
 cd "$folder" || exit
 folder=$PWD
