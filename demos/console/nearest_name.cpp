@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/console/nearest_name.hpp>
 
+#include <demos/console/quoted_word.hpp>
+
 #include <algorithm>
 #include <vector>
 
@@ -45,7 +47,7 @@ std::string nearestName(std::string_view name, std::span<const std::string> know
 
 std::string unknownNameSentence(std::string_view whatItIs, std::string_view name,
                                 std::span<const std::string> known) {
-    std::string sentence = "There is no " + std::string(whatItIs) + " '" + std::string(name) + "'";
+    std::string sentence = "There is no " + std::string(whatItIs) + " " + quotedWord(name);
     const std::string nearest = nearestName(name, known);
     if (!nearest.empty()) {
         return sentence + "; did you mean '" + nearest + "'?";

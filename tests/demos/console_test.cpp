@@ -39,6 +39,8 @@ TEST(NearestName, SuggestsNothingForWhatIsNoMisspelling) {
 TEST(NearestName, ListsAllNamesWhereNoneIsNear) {
     EXPECT_EQ(unknownNameSentence("scene", "papr", kNames),
               "There is no scene 'papr'; did you mean 'paper'?");
+    EXPECT_EQ(unknownNameSentence("scene", "\x1b[2Jpapr", kNames).substr(0, 31),
+              "There is no scene '?[2Jpapr'; t");
     EXPECT_EQ(unknownNameSentence("scene", "elephant", kNames),
               "There is no scene 'elephant'; there are paper, uniform, piles, pile, static-city.");
 }

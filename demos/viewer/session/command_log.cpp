@@ -136,7 +136,9 @@ CommandLog CommandLog::parse(std::string_view text, const std::string& name) {
         }
         return log;
     } catch (const Json::exception& error) {
-        throw InputError(name + " cannot be read as a recording: " + error.what());
+        const std::string_view fault = error.what();  // after the number of its kind, in brackets
+        throw InputError(name + " cannot be read as a recording: " +
+                         std::string(fault.substr(fault.find("] ") + 2)) + ".");
     } catch (const InputError& error) {
         throw InputError(name + " cannot be read as a recording: " + error.what() + ".");
     }

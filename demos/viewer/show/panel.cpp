@@ -141,13 +141,14 @@ void Panel::showEffects(Session& session) {
     if (!ImGui::CollapsingHeader("effects", ImGuiTreeNodeFlags_DefaultOpen)) {
         return;
     }
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {1, 1});  // as long names need the room
     int shown = 0;
     for (const Effect effect : kAllEffects) {
         if (!session.stage().possibleEffects().contains(effect)) {
             continue;
         }
         if (shown++ % 3 != 0) {
-            ImGui::SameLine(static_cast<float>((shown - 1) % 3) * kPanelWidth / 3);
+            ImGui::SameLine(8 + static_cast<float>((shown - 1) % 3) * (kPanelWidth / 3 - 4));
         }
         bool isDeclared = session.stage().effects().set().contains(effect);
         const std::string name(nameOf(effect));
@@ -155,6 +156,7 @@ void Panel::showEffects(Session& session) {
             run(session, "effect " + name + (isDeclared ? " on" : " off"));
         }
     }
+    ImGui::PopStyleVar();
     if (session.stage().effects().proximity) {
         auto radius = static_cast<float>(session.stage().effects().proximity->radius);
         ImGui::SetNextItemWidth(150);
@@ -275,9 +277,11 @@ void Panel::showHelp(Session& session) {
     if (!session.options().help) {
         return;
     }
-    ImGui::SetNextWindowPos(
-        {static_cast<float>(session.width()) / 2, static_cast<float>(session.height()) / 2},
-        ImGuiCond_Always, {0.5F, 0.5F});
+    // Beside the panel, where there is room.
+    const float left = session.options().panel ? kPanelWidth + 16 : 0;
+    ImGui::SetNextWindowPos({(left + static_cast<float>(session.width())) / 2,
+                             static_cast<float>(session.height()) / 2},
+                            ImGuiCond_Always, {0.5F, 0.5F});
     ImGui::Begin("help", nullptr, kStill);
     ImGui::TextUnformatted(
         "click: who is that    drag: select    right button: turn    wheel: nearer");

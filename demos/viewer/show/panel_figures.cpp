@@ -20,7 +20,7 @@ ImU32 phaseColour(const Session& session, std::size_t row) {
     return ImGui::ColorConvertFloat4ToU32(colourOf(kinds[row % kinds.size()]));
 }
 
-// A column a frame, its phases on top of each other; a line where a frame would take 8 ms.
+// A column a frame, its phases on top of each other; a line where a frame would take 8 ms, named at its end.
 void drawStack(const Session& session) {
     constexpr float kHeight = 70;
     const PhaseHistory& history = session.history();
@@ -48,9 +48,12 @@ void drawStack(const Session& session) {
     }
     const float limit = bottom - heightOf(8);
     list.AddLine({corner.x, limit}, {corner.x + width, limit}, ImGui::GetColorU32(ImGuiCol_Text));
-    const float above = limit - ImGui::GetTextLineHeight();
-    list.AddText({corner.x + 2, above < corner.y ? limit : above},
-                 ImGui::GetColorU32(ImGuiCol_Text), "8 ms");
+    const ImVec2 size = ImGui::CalcTextSize("8 ms");
+    const float above = limit - size.y;
+    const ImVec2 at{corner.x + width - size.x - 2, above < corner.y ? limit + 1 : above - 1};
+    list.AddRectFilled({at.x - 2, at.y}, {at.x + size.x + 2, at.y + size.y},
+                       ImGui::GetColorU32(ImGuiCol_WindowBg));
+    list.AddText(at, ImGui::GetColorU32(ImGuiCol_Text), "8 ms");
 }
 
 void rightInColumn(const std::string& text) {

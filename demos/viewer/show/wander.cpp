@@ -114,6 +114,7 @@ Run::Run(const WanderOptions& options, Console& console) : options_(options), co
                                          width, height);
     record_.emplace(options.recordFile);
     json_.emplace(options.jsonFile);
+    const ResultFile screenshot(options.screenshotFile);  // as a wrong path is to cost no waiting
     session_->options().panel = !options.isHeadless;
     for (const std::string& command : options.commands) {
         session_->run(command);

@@ -260,7 +260,7 @@ TEST_F(Wander, RefusesOptionsThatWouldBeIgnored) {
 }
 
 TEST_F(Wander, FindsOutBeforeItRunsWhereNothingCanBeWritten) {
-    for (const char* option : {"--record", "--json"}) {
+    for (const char* option : {"--record", "--json", "--screenshot"}) {
         const std::string marker = file(std::string("ran") + option);
         const Outcome run = typed({"--headless", "--objects", "50", "--frames", "5", "--do",
                                    "save " + marker, option, "/nowhere/a.json"});
@@ -291,9 +291,6 @@ TEST_F(Wander, SaysWhatIsWrong) {
               "hashphase: a.txt is neither a scene file (.json) nor a recording of boxes "
               "(.aabbs).\n");
     EXPECT_NE(faultOf({"--replay", file("empty", "{}")}).find("cannot be read as a recording"),
-              std::string::npos);
-    EXPECT_NE(faultOf({"--objects", "10", "--frames", "1", "--screenshot", "/nowhere/a.png"})
-                  .find("/nowhere/a.png"),
               std::string::npos);
 }
 
