@@ -92,10 +92,12 @@ HeadlessContext::HeadlessContext() {
     context_ = found.context;
 }
 
+// The display is the process's, and stays: others may draw on it.
 HeadlessContext::~HeadlessContext() {
-    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    if (eglGetCurrentContext() == context_) {
+        eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    }
     eglDestroyContext(display_, context_);
-    eglTerminate(display_);
 }
 
 std::string HeadlessContext::description() const {

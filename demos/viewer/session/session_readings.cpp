@@ -26,7 +26,8 @@ const PairCheck& checkOf(const Session& session) {
         throw InputError("Pairs are verified after the next frame: run \"step\".");
     }
     if (check == nullptr) {
-        throw InputError("Pairs are not verified: run \"check on\" and a step, without sweep.");
+        throw InputError(
+            "Pairs are not verified: run \"check on\" and a step, with pairs and without sweep.");
     }
     return *check;
 }

@@ -102,7 +102,7 @@ TEST(Commands, SayWhatIsWrongAndWhatWouldBeRight) {
               "This scene cannot have rotation; it can have motion, terrain, pairs, response, "
               "sweep, sleeping, picking, boxSelection, culling, proximity, zones, radar.");
     EXPECT_EQ(faultOf(session, "expect missing = 0"),
-              "Pairs are not verified: run \"check on\" and a step, without sweep.");
+              "Pairs are not verified: run \"check on\" and a step, with pairs and without sweep.");
     EXPECT_EQ(faultOf(session, "cell 1001"),
               "SIZE is a number from 0 to 1000, not '1001'. The command is: cell SIZE");
     EXPECT_EQ(faultOf(session, "  # nothing"), "none");
