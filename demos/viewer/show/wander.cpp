@@ -103,6 +103,9 @@ private:
 };
 
 Run::Run(const WanderOptions& options, Console& console) : options_(options), console_(console) {
+    if (!options.screenshotFile.empty() && !options.isHeadless) {
+        throw InputError("--screenshot is for --headless; in a window press F12.");
+    }
     if (!options.replayFile.empty()) {
         playback_.emplace(CommandLog::parse(readFile(options.replayFile), options.replayFile));
     }
@@ -193,9 +196,6 @@ int Run::headless() {
 }
 
 int Run::inWindow() {
-    if (!options_.screenshotFile.empty()) {
-        throw InputError("--screenshot is for --headless; in a window press F12.");
-    }
     Window window(session_->width(), session_->height());
     if (playback_) {
         window.setGuard(Playback::refuseChange);

@@ -2,6 +2,7 @@
 //
 // `hashphase wander` as it is typed, without a window.
 
+#include <demos/scenes/file_bytes.hpp>
 #include <demos/viewer/show/wander.hpp>
 
 #include <gtest/gtest.h>
@@ -269,6 +270,14 @@ TEST_F(Wander, FindsOutBeforeItRunsWhereNothingCanBeWritten) {
         EXPECT_EQ(run.out, "");
         EXPECT_FALSE(std::filesystem::exists(marker)) << option;
     }
+}
+
+TEST_F(Wander, LeavesAPictureAsItIsWhereItCannotBeTaken) {
+    const std::string picture = file("kept.png", "what it was");
+    const Outcome run = typed({"--objects", "10", "--screenshot", picture});
+    EXPECT_EQ(run.code, kExitUsage);
+    EXPECT_NE(run.err.find("--screenshot is for --headless"), std::string::npos) << run.err;
+    EXPECT_EQ(readFile(picture), "what it was");
 }
 
 TEST_F(Wander, SaysWhatIsWrong) {
