@@ -113,6 +113,11 @@ detail::GroundTriangle<Scalar> Terrain<Scalar>::groundTriangle(const Corners& co
         triangle.z[i] = corner[alongZ_];
         triangle.y[i] = corner[up_];
     }
+    if (triangle.hasHeights) {
+        triangle.normal = detail::normalOf(triangle);
+        triangle.hasNormal =
+            triangle.normal.x != 0 || triangle.normal.y != 0 || triangle.normal.z != 0;
+    }
     return triangle;
 }
 
@@ -172,17 +177,12 @@ typename Terrain<Scalar>::Corners Terrain<Scalar>::corners(std::uint32_t triangl
 template <class Scalar>
 Vector3<Scalar> Terrain<Scalar>::normal(std::uint32_t triangle) const {
     HASHPHASE_ASSERT(triangle < size(), "Triangles have numbers below size().");
-    if (!triangles_[triangle].hasHeights) {
-        return Point::Zero();
-    }
-    const Corners at = corners(triangle);
-    const Vector3<double> a = at[0].template cast<double>();
-    const Vector3<double> ab = at[1].template cast<double>() - a;
-    const Vector3<double> ac = at[2].template cast<double>() - a;
-    // Scaled, so that squares of lengths stay in range.
-    const double largest = std::max(ab.cwiseAbs().maxCoeff(), ac.cwiseAbs().maxCoeff());
-    const Vector3<double> normal = (ab / largest).cross(ac / largest).normalized();
-    return (normal[up_] < 0 ? Vector3<double>(-normal) : normal).template cast<Scalar>();
+    const detail::Direction& stored = triangles_[triangle].normal;
+    Point normal;
+    normal[alongX_] = static_cast<Scalar>(stored.x);
+    normal[up_] = static_cast<Scalar>(stored.y);
+    normal[alongZ_] = static_cast<Scalar>(stored.z);
+    return normal;
 }
 
 template <class Scalar>

@@ -35,13 +35,12 @@ struct Terrain<Scalar>::Candidates {
     }
 
     void lookAtAll() noexcept {
-        for (const std::uint32_t number : numbers) {
-            static_cast<Search&>(*this).lookAt(number);
-        }
+        static_cast<Search&>(*this).lookAtNoted();
         numbers.clear();
     }
 
-    detail::FixedList<std::uint32_t, 12> numbers;
+    static constexpr std::size_t kMost = 12;
+    detail::FixedList<std::uint32_t, kMost> numbers;
 };
 
 /// The highest surface among the triangles below a point.
@@ -71,6 +70,12 @@ struct Terrain<Scalar>::SurfaceSearch : Candidates<SurfaceSearch> {
         best = choice[static_cast<std::size_t>(counts & isBetter)];
     }
 
+    void lookAtNoted() noexcept {
+        for (const std::uint32_t number : this->numbers) {
+            lookAt(number);
+        }
+    }
+
     [[nodiscard]] Found result() noexcept {
         this->lookAtAll();
         return best.triangle == kNone ? std::nullopt : Found(best);
@@ -80,6 +85,11 @@ struct Terrain<Scalar>::SurfaceSearch : Candidates<SurfaceSearch> {
 /// The same for a sphere that rests on triangles below its centre.
 template <class Scalar>
 struct Terrain<Scalar>::RestSearch : Candidates<RestSearch> {
+    struct Peak {
+        std::uint32_t triangle;
+        detail::Weights weights;
+    };
+
     const Terrain* terrain = nullptr;
     detail::Point2 center;
     double radius = 0;
@@ -97,14 +107,27 @@ struct Terrain<Scalar>::RestSearch : Candidates<RestSearch> {
         height = detail::kNoHeight;
     }
 
-    void lookAt(std::uint32_t number) noexcept {
-        const detail::GroundTriangle<Scalar>& triangle = terrain->triangles_[number];
-        const double most =
-            std::max({triangle.height(0), triangle.height(1), triangle.height(2)}) + radius;
-        if (most < height) {
-            return;
+    // Faces first: most spheres rest on one, high enough to be clear of all edges.
+    void lookAtNoted() noexcept {
+        std::array<Peak, RestSearch::kMost> outside;
+        std::size_t outsideCount = 0;
+        for (const std::uint32_t number : this->numbers) {
+            const detail::GroundTriangle<Scalar>& triangle = terrain->triangles_[number];
+            const detail::Weights weights = detail::weightsAtPeak(triangle, center, radius);
+            if (weights.areInside()) {
+                take(number, detail::restOnFace(triangle, weights, radius));
+            } else {
+                outside[outsideCount++] = {number, weights};
+            }
         }
-        const detail::Rest rest = detail::restOn(triangle, center, radius);
+        for (std::size_t i = 0; i < outsideCount; ++i) {
+            const auto& [number, weights] = outside[i];
+            take(number,
+                 detail::restOnEdges(terrain->triangles_[number], weights, center, radius, height));
+        }
+    }
+
+    void take(std::uint32_t number, const detail::Rest& rest) noexcept {
         const bool counts =
             rest.center > detail::kNoHeight && static_cast<Scalar>(rest.touch) <= from;
         if (counts && (rest.center > height || (rest.center == height && number < best))) {

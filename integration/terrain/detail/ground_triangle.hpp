@@ -4,6 +4,7 @@
 // One triangle of the ground: how high it is at a point, and at what height it carries a sphere.
 // All in double precision, with y upward, whichever axis that is in the world.
 
+#include <broadphase/aabb.hpp>
 #include <integration/terrain/detail/orientation.hpp>
 
 #include <algorithm>
@@ -16,13 +17,23 @@ namespace hashphase::detail {
 
 inline constexpr double kNoHeight = -std::numeric_limits<double>::infinity();
 
-/// Corners by coordinate. Seen from above, those of a triangle that has heights turn from x to z.
+/// A direction; y is up.
+struct Direction {
+    double x = 0;
+    double y = 0;
+    double z = 0;
+};
+
+/// Corners by coordinate. Seen from above, those of a triangle that has heights turn from x to z. A line
+/// of the cache each, in single precision.
 template <class Scalar>
-struct GroundTriangle {
+struct alignas(64) GroundTriangle {
+    Direction normal;  // of length 1, the side that is up; or 0
     std::array<Scalar, 3> x;
     std::array<Scalar, 3> z;
     std::array<Scalar, 3> y;
     bool hasHeights = false;  // not vertical, nor without an area
+    bool hasNormal = false;   // and not so thin that rounding hides where its plane is
     bool isTurned = false;    // the last two corners were exchanged
 
     [[nodiscard]] Point2 above(std::size_t corner) const noexcept {
@@ -77,85 +88,131 @@ template <class Scalar>
     return std::clamp(a + rise, std::min({a, b, c}), std::max({a, b, c}));
 }
 
-/// At what height the edge from corner i to corner j carries a sphere.
+/// The normal of a triangle that has heights; 0 where rounding hides it.
 template <class Scalar>
-[[nodiscard]] Rest restOnEdge(const GroundTriangle<Scalar>& triangle, std::size_t i, std::size_t j,
-                              const Point2& center, double radius) noexcept {
-    const Point2 from{triangle.above(i).x - center.x, triangle.above(i).z - center.z};
-    const Point2 way{triangle.above(j).x - triangle.above(i).x,
-                     triangle.above(j).z - triangle.above(i).z};
-    const double low = triangle.height(i);
-    const double rise = triangle.height(j) - low;
-    const double lengthSquared = way.x * way.x + way.z * way.z;
+[[nodiscard]] Direction normalOf(const GroundTriangle<Scalar>& triangle) noexcept {
+    const auto side = [&](std::size_t corner) {
+        return Vector3<double>(triangle.above(corner).x - triangle.above(0).x,
+                               triangle.height(corner) - triangle.height(0),
+                               triangle.above(corner).z - triangle.above(0).z);
+    };
+    // Scaled, so that squares of lengths stay in range.
+    const Vector3<double> first = side(1);
+    const Vector3<double> second = side(2);
+    const double largest = std::max(first.cwiseAbs().maxCoeff(), second.cwiseAbs().maxCoeff());
+    const double scale = std::scalbn(1.0, -std::ilogb(largest));
+    const Vector3<double> normal = (scale * second).cross(scale * first).stableNormalized();
+    return {normal.x(), normal.y(), normal.z()};
+}
+
+/// An edge as seen from a sphere's centre.
+struct Edge {
+    Point2 from;  // the first corner, seen from the centre
+    Point2 way;   // to the other one
+    double low;   // height of the first corner
+    double high;  // and of the other one
+
+    template <class Scalar>
+    Edge(const GroundTriangle<Scalar>& triangle, std::size_t i, std::size_t j,
+         const Point2& center) noexcept
+        : from{triangle.above(i).x - center.x, triangle.above(i).z - center.z},
+          way{triangle.above(j).x - triangle.above(i).x, triangle.above(j).z - triangle.above(i).z},
+          low(triangle.height(i)),
+          high(triangle.height(j)) {}
+
+    [[nodiscard]] double rise() const noexcept { return high - low; }
+    [[nodiscard]] double lengthSquared() const noexcept { return way.x * way.x + way.z * way.z; }
+    /// How far the centre is along the way and beside it, times the length.
+    [[nodiscard]] double ahead() const noexcept { return -(from.x * way.x + from.z * way.z); }
+    [[nodiscard]] double aside() const noexcept { return from.x * way.z - from.z * way.x; }
+};
+
+/// Whether a sphere whose centre is at `height` is clear of the line through the edge, and above it, by
+/// more than rounding: then the edge does not carry it as high. Without a division or a root.
+[[nodiscard, gnu::always_inline]] inline bool isClearOf(const Edge& edge, double radius,
+                                                        double height) noexcept {
+    constexpr double slack = 1e-9;
+    const double lengthSquared = edge.lengthSquared();
+    // The line above which the sphere is cut to a circle of this radius, squared, times the length's
+    // square.
+    const double circle =
+        radius * radius * lengthSquared - (1 - slack) * edge.aside() * edge.aside();
+    const double up = (height - edge.low) * lengthSquared;
+    const double slope = edge.ahead() * edge.rise();
+    const double gap = up - slope - slack * (std::abs(up) + std::abs(slope));
+    return (circle < 0) |
+           ((gap > 0) & (gap * gap > circle * (lengthSquared + edge.rise() * edge.rise())));
+}
+
+/// At what height an edge carries a sphere.
+[[nodiscard]] inline Rest restOnEdge(const Edge& edge, double radius) noexcept {
+    const double lengthSquared = edge.lengthSquared();
+    const double rise = edge.rise();
     const double radiusSquared = radius * radius;
     double share = rise > 0 ? 1 : 0;  // of the way; on a vertical edge, the upper end
     if (lengthSquared > 0) {
         // Above the line through the edge, the sphere is cut to a circle.
-        const double aside = from.x * way.z - from.z * way.x;
-        const double circleSquared = radiusSquared - aside * aside / lengthSquared;
+        const double circleSquared = radiusSquared - edge.aside() * edge.aside() / lengthSquared;
         if (circleSquared < 0) {
             return {};
         }
         const double slope = rise / std::sqrt(lengthSquared + rise * rise);
-        const double ahead = std::sqrt(circleSquared * lengthSquared) * slope;
-        share = (ahead - (from.x * way.x + from.z * way.z)) / lengthSquared;
-        share = std::clamp(share, 0.0, 1.0);
+        const double uphill = std::sqrt(circleSquared * lengthSquared) * slope;
+        share = std::clamp((uphill + edge.ahead()) / lengthSquared, 0.0, 1.0);
     }
-    const double x = from.x + share * way.x;
-    const double z = from.z + share * way.z;
+    const double x = edge.from.x + share * edge.way.x;
+    const double z = edge.from.z + share * edge.way.z;
     const double left = radiusSquared - (x * x + z * z);
     if (left < 0) {
         return {};
     }
-    const double high = triangle.height(j);
-    const double touch =
-        share == 1 ? high
-                   : std::clamp(low + share * rise, std::min(low, high), std::max(low, high));
+    const double touch = share == 1
+                             ? edge.high
+                             : std::clamp(edge.low + share * rise, std::min(edge.low, edge.high),
+                                          std::max(edge.low, edge.high));
     return {touch + std::sqrt(left), touch};
 }
 
-[[nodiscard]] inline Rest higher(const Rest& a, const Rest& b) noexcept {
-    return b.center > a.center ? b : a;
+// At what height a triangle carries a sphere whose centre is on a vertical line: the largest
+// y + sqrt(radius^2 - d^2) over its points, d being their distance from the line. That is a concave
+// function. Its peak on the plane is where the sphere touches the plane; when that is not in the
+// triangle, the largest value is on an edge that has the peak on its outer side.
+
+/// Where the peak is. All weights are negative where the triangle has no normal.
+template <class Scalar>
+[[nodiscard, gnu::always_inline]] inline Weights weightsAtPeak(
+    const GroundTriangle<Scalar>& triangle, const Point2& center, double radius) noexcept {
+    if (!triangle.hasNormal) [[unlikely]] {
+        return {-1, -1, -1};
+    }
+    return weightsAt(
+        triangle, {center.x - radius * triangle.normal.x, center.z - radius * triangle.normal.z});
 }
 
-/// At what height the triangle carries a sphere whose centre is on a vertical line: the largest
-/// y + sqrt(radius^2 - d^2) over its points, d being their distance from the line. That is a
-/// concave function. Its peak on the plane is where the sphere touches the plane; when that is not
-/// in the triangle, the largest value is on an edge that has the peak on its outer side.
+/// The height when the peak is inside.
 template <class Scalar>
-[[nodiscard]] Rest restOn(const GroundTriangle<Scalar>& triangle, const Point2& center,
-                          double radius) noexcept {
-    Weights weights{-1, -1, -1};
-    if (triangle.hasHeights) {
-        const double x1 = triangle.above(1).x - triangle.above(0).x;
-        const double z1 = triangle.above(1).z - triangle.above(0).z;
-        const double y1 = triangle.height(1) - triangle.height(0);
-        const double x2 = triangle.above(2).x - triangle.above(0).x;
-        const double z2 = triangle.above(2).z - triangle.above(0).z;
-        const double y2 = triangle.height(2) - triangle.height(0);
-        const double normalX = y2 * z1 - y1 * z2;
-        const double normalY = x1 * z2 - x2 * z1;
-        const double normalZ = x2 * y1 - x1 * y2;
-        const double length = std::sqrt(normalX * normalX + normalY * normalY + normalZ * normalZ);
-        if (length > 0) {
-            const double scale = radius / length;
-            weights = weightsAt(triangle, {center.x - scale * normalX, center.z - scale * normalZ});
-            if (weights.areInside()) {
-                const double touch = heightAt(triangle, weights);
-                return {touch + radius * (normalY / length), touch};
-            }
-        }
-    }
+[[nodiscard, gnu::always_inline]] inline Rest restOnFace(const GroundTriangle<Scalar>& triangle,
+                                                         const Weights& peak,
+                                                         double radius) noexcept {
+    const double touch = heightAt(triangle, peak);
+    return {touch + radius * triangle.normal.y, touch};
+}
+
+/// The height when it is not. Means nothing where that is below `least`.
+template <class Scalar>
+[[nodiscard]] Rest restOnEdges(const GroundTriangle<Scalar>& triangle, const Weights& peak,
+                               const Point2& center, double radius, double least) noexcept {
     Rest best;
-    if (weights.a < 0) {
-        best = restOnEdge(triangle, 1, 2, center, radius);
-    }
-    if (weights.b < 0) {
-        best = higher(best, restOnEdge(triangle, 2, 0, center, radius));
-    }
-    if (weights.c < 0) {
-        best = higher(best, restOnEdge(triangle, 0, 1, center, radius));
-    }
+    const auto look = [&](double weight, std::size_t i, std::size_t j) {
+        const Edge edge(triangle, i, j, center);
+        if (weight < 0 && !isClearOf(edge, radius, least)) {
+            const Rest rest = restOnEdge(edge, radius);
+            best = rest.center > best.center ? rest : best;
+        }
+    };
+    look(peak.a, 1, 2);
+    look(peak.b, 2, 0);
+    look(peak.c, 0, 1);
     return best;
 }
 

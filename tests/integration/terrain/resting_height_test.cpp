@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 
 // Where spheres rest: on flat ground, slopes, edges, corners, in valleys, under bridges, and in random
-// meshes as by looking at every triangle.
+// meshes as by looking at every triangle, and as on each by itself.
 
 #include <tests/integration/terrain/meshes.hpp>
 #include <tests/support/terrain_oracle.hpp>
@@ -10,6 +10,8 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <type_traits>
 
 namespace hashphase::test {
 namespace {
@@ -192,6 +194,80 @@ TYPED_TEST(RestingHeight, IsThatOfBruteForceInRandomMeshes) {
         }
     }
     EXPECT_GT(found, 1000U);
+}
+
+/// Each triangle of a mesh in a world of its own, where nothing is left out because another one carries
+/// the sphere higher.
+template <class Scalar>
+class TrianglesApart {
+public:
+    using Found = std::optional<Ground<Scalar>>;
+
+    explicit TrianglesApart(const Mesh<Scalar>& mesh) {
+        for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+            Mesh<Scalar> one{mesh.vertices, {}};
+            one.indices.assign(mesh.indices.begin() + static_cast<std::ptrdiff_t>(i),
+                               mesh.indices.begin() + static_cast<std::ptrdiff_t>(i + 3));
+            worlds_.push_back(std::make_unique<GroundWorld<Scalar>>(one));
+        }
+    }
+
+    /// The highest of all; of several the one with the smallest number.
+    [[nodiscard]] Found highest(const Vector3<Scalar>& center, Scalar radius) const {
+        Found best;
+        for (std::uint32_t i = 0; i < worlds_.size(); ++i) {
+            const Found found = worlds_[i]->terrain.restingHeight(center, radius);
+            if (found && (!best || found->height > best->height)) {
+                best = Ground<Scalar>{i, found->height};
+            }
+        }
+        return best;
+    }
+
+    [[nodiscard]] Found on(std::uint32_t triangle, const Vector3<Scalar>& center,
+                           Scalar radius) const {
+        return worlds_[triangle]->terrain.restingHeight(center, radius);
+    }
+
+private:
+    std::vector<std::unique_ptr<GroundWorld<Scalar>>> worlds_;
+};
+
+TYPED_TEST(RestingHeight, IsThatOfTheTriangleThatCarriesHighestByItself) {
+    Random random(0x5eed2203);
+    std::size_t found = 0;
+    for (int meshNumber = 0; meshNumber < 120; ++meshNumber) {
+        SCOPED_TRACE(testing::Message() << "mesh " << meshNumber);
+        const double roughness = random.chance(0.2) ? 0 : random.logBetween(1e-6, 4);
+        const Mesh<TypeParam> mesh = random.chance(0.7)
+                                         ? roughGround<TypeParam>(random, 5, 1, roughness, 0.15)
+                                         : splinters<TypeParam>(random, 1 + random.below(25));
+        const GroundWorld<TypeParam> world(mesh);
+        const TrianglesApart<TypeParam> apart(mesh);
+        for (int i = 0; i < 100; ++i) {
+            Vector3<TypeParam> center =
+                random.pointIn({-1, 0, -1}, {6, 7, 6}).template cast<TypeParam>();
+            if (random.chance(0.2)) {  // above an edge, or a corner
+                center[0] = std::round(center[0]);
+                center[2] = std::round(center[2]);
+            }
+            const auto radius = static_cast<TypeParam>(random.logBetween(1e-7, 10));
+            const auto ground = world.terrain.restingHeight(center, radius);
+            const auto highest = apart.highest(center, radius);
+            ASSERT_EQ(ground.has_value(), highest.has_value()) << "radius " << radius;
+            if (ground) {
+                ++found;
+                ASSERT_EQ(ground->height, highest->height) << "radius " << radius;
+                const auto itsOwn = apart.on(ground->triangle, center, radius);
+                ASSERT_TRUE(itsOwn && itsOwn->height == highest->height) << "radius " << radius;
+                // Heights that differ in double precision only are no ties.
+                if constexpr (std::is_same_v<TypeParam, double>) {
+                    ASSERT_EQ(ground->triangle, highest->triangle) << "radius " << radius;
+                }
+            }
+        }
+    }
+    EXPECT_GT(found, 5000U);
 }
 
 }  // namespace
