@@ -115,8 +115,7 @@ detail::GroundTriangle<Scalar> Terrain<Scalar>::groundTriangle(const Corners& co
     }
     if (triangle.hasHeights) {
         triangle.normal = detail::normalOf(triangle);
-        triangle.hasNormal =
-            triangle.normal.x != 0 || triangle.normal.y != 0 || triangle.normal.z != 0;
+        triangle.hasNormal = triangle.normal != Vector3<double>::Zero();
     }
     return triangle;
 }
@@ -177,11 +176,11 @@ typename Terrain<Scalar>::Corners Terrain<Scalar>::corners(std::uint32_t triangl
 template <class Scalar>
 Vector3<Scalar> Terrain<Scalar>::normal(std::uint32_t triangle) const {
     HASHPHASE_ASSERT(triangle < size(), "Triangles have numbers below size().");
-    const detail::Direction& stored = triangles_[triangle].normal;
+    const auto& stored = triangles_[triangle].normal;
     Point normal;
-    normal[alongX_] = static_cast<Scalar>(stored.x);
-    normal[up_] = static_cast<Scalar>(stored.y);
-    normal[alongZ_] = static_cast<Scalar>(stored.z);
+    normal[alongX_] = static_cast<Scalar>(stored.x());
+    normal[up_] = static_cast<Scalar>(stored.y());
+    normal[alongZ_] = static_cast<Scalar>(stored.z());
     return normal;
 }
 

@@ -17,18 +17,11 @@ namespace hashphase::detail {
 
 inline constexpr double kNoHeight = -std::numeric_limits<double>::infinity();
 
-/// A direction; y is up.
-struct Direction {
-    double x = 0;
-    double y = 0;
-    double z = 0;
-};
-
 /// Corners by coordinate. Seen from above, those of a triangle that has heights turn from x to z. A line
 /// of the cache each, in single precision.
 template <class Scalar>
 struct alignas(64) GroundTriangle {
-    Direction normal;  // of length 1, the side that is up; or 0
+    Vector3<double> normal = Vector3<double>::Zero();  // of length 1, of the side that is up; or 0
     std::array<Scalar, 3> x;
     std::array<Scalar, 3> z;
     std::array<Scalar, 3> y;
@@ -43,6 +36,8 @@ struct alignas(64) GroundTriangle {
         return static_cast<double>(y[corner]);
     }
 };
+
+static_assert(sizeof(GroundTriangle<float>) == 64);
 
 /// A sphere's centre on its vertical line, and how high the point lies that carries it.
 struct Rest {
@@ -90,7 +85,7 @@ template <class Scalar>
 
 /// The normal of a triangle that has heights; 0 where rounding hides it.
 template <class Scalar>
-[[nodiscard]] Direction normalOf(const GroundTriangle<Scalar>& triangle) noexcept {
+[[nodiscard]] Vector3<double> normalOf(const GroundTriangle<Scalar>& triangle) noexcept {
     const auto side = [&](std::size_t corner) {
         return Vector3<double>(triangle.above(corner).x - triangle.above(0).x,
                                triangle.height(corner) - triangle.height(0),
@@ -101,8 +96,7 @@ template <class Scalar>
     const Vector3<double> second = side(2);
     const double largest = std::max(first.cwiseAbs().maxCoeff(), second.cwiseAbs().maxCoeff());
     const double scale = std::scalbn(1.0, -std::ilogb(largest));
-    const Vector3<double> normal = (scale * second).cross(scale * first).stableNormalized();
-    return {normal.x(), normal.y(), normal.z()};
+    return (scale * second).cross(scale * first).stableNormalized();
 }
 
 /// An edge as seen from a sphere's centre.
@@ -133,8 +127,7 @@ struct Edge {
                                                         double height) noexcept {
     constexpr double slack = 1e-9;
     const double lengthSquared = edge.lengthSquared();
-    // The line above which the sphere is cut to a circle of this radius, squared, times the length's
-    // square.
+    // Above the line, the sphere is cut to a circle: its radius, squared, times the length, squared.
     const double circle =
         radius * radius * lengthSquared - (1 - slack) * edge.aside() * edge.aside();
     const double up = (height - edge.low) * lengthSquared;
@@ -185,8 +178,8 @@ template <class Scalar>
     if (!triangle.hasNormal) [[unlikely]] {
         return {-1, -1, -1};
     }
-    return weightsAt(
-        triangle, {center.x - radius * triangle.normal.x, center.z - radius * triangle.normal.z});
+    return weightsAt(triangle, {center.x - radius * triangle.normal.x(),
+                                center.z - radius * triangle.normal.z()});
 }
 
 /// The height when the peak is inside.
@@ -195,7 +188,7 @@ template <class Scalar>
                                                          const Weights& peak,
                                                          double radius) noexcept {
     const double touch = heightAt(triangle, peak);
-    return {touch + radius * triangle.normal.y, touch};
+    return {touch + radius * triangle.normal.y(), touch};
 }
 
 /// The height when it is not. Means nothing where that is below `least`.
