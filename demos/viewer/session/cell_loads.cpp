@@ -29,10 +29,10 @@ void CellLoads::count(const Grid<float>& grid, const Aabb<float>& bounds) {
             largest_ = std::max(largest_, ++load);
         }
     });
-    const std::uint32_t full = std::max(largest_, 8U);
+    full_ = std::max(largest_, 8U);
     shades_.resize(counts_.size());
-    std::transform(counts_.begin(), counts_.end(), shades_.begin(), [full](std::uint32_t load) {
-        return static_cast<std::uint8_t>(load * 255 / full);
+    std::transform(counts_.begin(), counts_.end(), shades_.begin(), [this](std::uint32_t load) {
+        return static_cast<std::uint8_t>(load * 255 / full_);
     });
 }
 

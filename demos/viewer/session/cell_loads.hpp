@@ -26,7 +26,9 @@ public:
     [[nodiscard]] std::uint32_t rows() const noexcept { return rows_; }
     [[nodiscard]] std::uint32_t largest() const noexcept { return largest_; }
 
-    /// Row by row, 255 for the fullest column, or for eight and more where none has as many.
+    /// A column that is as full as any is shown: the fullest, or of eight where none has as many.
+    [[nodiscard]] std::uint32_t full() const noexcept { return full_; }
+    /// Row by row, 255 for a full column.
     [[nodiscard]] const std::vector<std::uint8_t>& shades() const noexcept { return shades_; }
 
     static constexpr std::uint32_t kMostColumns = 512;
@@ -37,6 +39,7 @@ private:
     std::uint32_t columns_ = 0;
     std::uint32_t rows_ = 0;
     std::uint32_t largest_ = 0;
+    std::uint32_t full_ = 1;
     std::vector<std::uint32_t> counts_;
     std::vector<std::uint8_t> shades_;
 };

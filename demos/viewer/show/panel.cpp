@@ -47,7 +47,8 @@ bool Panel::hasPointer() const {
     return ImGui::GetIO().WantCaptureMouse;
 }
 
-void Panel::build(Session& session, const Pointer& pointer, double seconds) {
+void Panel::build(Session& session, std::span<const Legend> legends, const Pointer& pointer,
+                  double seconds) {
     ImGuiIO& io = ImGui::GetIO();
     io.DisplaySize = {static_cast<float>(session.width()), static_cast<float>(session.height())};
     io.DeltaTime = static_cast<float>(std::clamp(seconds, 1e-4, 1.0));
@@ -82,6 +83,7 @@ void Panel::build(Session& session, const Pointer& pointer, double seconds) {
         showZones(session);
         ImGui::End();
         showCard(session);
+        showLegends(session, legends);
     }
     showBadge(session);
     showHelp(session);

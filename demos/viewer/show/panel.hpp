@@ -5,8 +5,10 @@
 // All that is switched goes through the session's commands.
 
 #include <demos/viewer/session/session.hpp>
+#include <demos/viewer/show/body_colours.hpp>
 
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -31,9 +33,10 @@ public:
         float wheel = 0;
     };
 
-    /// Lays out a frame and runs what was switched. `seconds` have passed since the last one; 0 where nobody
-    /// looks on.
-    void build(Session& session, const Pointer& pointer, double seconds);
+    /// Lays out a frame and runs what was switched. `legends` say what the picture's colours tell. `seconds`
+    /// have passed since the last one; 0 where nobody looks on.
+    void build(Session& session, std::span<const Legend> legends, const Pointer& pointer,
+               double seconds);
 
     /// Draws it into the framebuffer that is bound, of the size of the session's picture.
     void draw();
@@ -59,6 +62,7 @@ private:
     void showZones(const Session& session);
     void showView(Session& session);
     void showCard(const Session& session);
+    void showLegends(const Session& session, std::span<const Legend> legends);
     void showHelp(Session& session);
     void showBadge(const Session& session);
     void showMessage(const Session& session);

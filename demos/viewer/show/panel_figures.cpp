@@ -56,6 +56,15 @@ void drawStack(const Session& session) {
     list.AddText(at, ImGui::GetColorU32(ImGuiCol_Text), "8 ms");
 }
 
+// Before a text of that colour's meaning.
+void swatch(ImU32 colour) {
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float side = ImGui::GetTextLineHeight();
+    ImGui::GetWindowDrawList()->AddRectFilled({corner.x, corner.y + 2},
+                                              {corner.x + side - 4, corner.y + side - 2}, colour);
+    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + side);
+}
+
 void rightInColumn(const std::string& text) {
     ImGui::TableNextColumn();
     const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x;
@@ -86,12 +95,7 @@ void Panel::showPhases(const Session& session) {
     for (std::size_t row = 0; row < history.rows().size(); ++row) {
         const PhaseHistory::Row& phase = history.rows()[row];
         ImGui::TableNextColumn();
-        const ImVec2 corner = ImGui::GetCursorScreenPos();
-        const float side = ImGui::GetTextLineHeight();
-        ImGui::GetWindowDrawList()->AddRectFilled({corner.x, corner.y + 2},
-                                                  {corner.x + side - 4, corner.y + side - 2},
-                                                  phaseColour(session, row));
-        ImGui::SetCursorPosX(ImGui::GetCursorPosX() + side);
+        swatch(phaseColour(session, row));
         ImGui::TextUnformatted(std::string(phase.name).c_str());
         rightInColumn(fixed(phase.smoothed, 2));
         rightInColumn(fixed(history.p95(phase), 2));
@@ -139,6 +143,24 @@ void Panel::showCard(const Session& session) {
                             fixed(double{at.z()}, 1));
     if (card.body.isStatic || card.body.isAsleep) {
         ImGui::TextUnformatted(card.body.isStatic ? "never moves" : "asleep");
+    }
+    ImGui::End();
+}
+
+void Panel::showLegends(const Session& session, std::span<const Legend> legends) {
+    if (legends.empty()) {
+        return;
+    }
+    ImGui::SetNextWindowPos(
+        {static_cast<float>(session.width()) - 8, static_cast<float>(session.height()) - 8},
+        ImGuiCond_Always, {1, 1});
+    ImGui::Begin("legends", nullptr, kStill);
+    for (const Legend& legend : legends) {
+        ImGui::TextUnformatted(legend.title.c_str());
+        for (const Legend::Entry& entry : legend.entries) {
+            swatch(ImGui::ColorConvertFloat4ToU32(colourOf(entry.colour)));
+            ImGui::TextUnformatted(entry.meaning.c_str());
+        }
     }
     ImGui::End();
 }

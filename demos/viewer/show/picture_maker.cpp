@@ -42,13 +42,11 @@ void addEdges(const Corners& corners, Colour colour, bool isOnTop, std::vector<D
 const Picture& PictureMaker::make(const Session& session, float contactFrom) {
     const ViewOptions& options = session.options();
     palette_ = palette(options.theme);
+    colours_.prepare(session);
     spheres_.clear();
     boxes_.clear();
     capsules_.clear();
     lines_.clear();
-    if (options.colouring == Colouring::pairs) {
-        countPairs(session);
-    }
     if (options.has(Overlay::bodies)) {
         addBodies(session);
     }
@@ -91,16 +89,13 @@ void PictureMaker::setGround(const Session& session) {
 
 void PictureMaker::addBodies(const Session& session) {
     const std::uint32_t limit = session.stage().indexLimit();
-    float fastest = 0;
     for (std::uint32_t index = 0; index < limit; ++index) {
         if (!session.isVisible(index)) {
             continue;
         }
         const StageBody body = session.stage().body(index);
-        fastest = std::max(fastest, body.speed);
-        addBody(body, highlightOf(session, index, colourOf(session, index, body)));
+        addBody(body, colours_.of(session, index, body));
     }
-    fastest_ = std::max({1.0F, fastest, 0.98F * fastest_});
 }
 
 void PictureMaker::addBody(const StageBody& body, Colour colour) {
@@ -117,65 +112,6 @@ void PictureMaker::addBody(const StageBody& body, Colour colour) {
             const Vector3<float> half = body.orientation * Vector3<float>(0, body.size.y(), 0);
             capsules_.push_back({body.centre - half, body.centre + half, body.size.x(), colour});
             break;
-        }
-    }
-}
-
-Colour PictureMaker::colourOf(const Session& session, std::uint32_t index,
-                              const StageBody& body) const {
-    const auto& kinds = qualitativeColours(session.options().theme);
-    switch (session.options().colouring) {
-        case Colouring::agents: {
-            if (!session.stage().effects().proximity) {
-                return body.isStatic ? palette_.faint : kinds[index % kinds.size()];
-            }
-            const auto colours = session.stage().observers().colours();
-            return kinds[index < colours.size() ? colours[index] % kinds.size() : 0];
-        }
-        case Colouring::cells: {
-            const Grid<float>* grid = session.stage().grid();
-            if (grid == nullptr) {
-                return palette_.calm;
-            }
-            const auto cell = grid->cellAt(body.centre);
-            // Neighbouring cells differ, as on a map.
-            const auto kind = static_cast<std::uint64_t>(cell[0] + 3 * cell[2] + 5 * cell[1]);
-            return kinds[kind % kinds.size()];
-        }
-        case Colouring::load: {
-            const CellLoads& loads = session.loads();
-            const auto full = static_cast<float>(std::max(loads.largest(), 8U));
-            const auto load = static_cast<float>(loads.at(body.centre.x(), body.centre.z()));
-            return sequentialColour(load / full);
-        }
-        case Colouring::speed:
-            return sequentialColour(body.speed / fastest_);
-        case Colouring::pairs:
-            return sequentialColour(
-                static_cast<float>(index < pairCounts_.size() ? pairCounts_[index] : 0) / 8);
-        case Colouring::rest:
-            return body.isStatic ? palette_.faint : body.isAsleep ? palette_.calm : palette_.awake;
-    }
-    return palette_.calm;
-}
-
-Colour PictureMaker::highlightOf(const Session& session, std::uint32_t index,
-                                 Colour otherwise) const {
-    if (session.card() && session.card()->index == index) {
-        return palette_.picked;
-    }
-    if (session.isSelected(index)) {
-        return palette_.selected;
-    }
-    return session.isRecoloured(index) ? palette_.accent : otherwise;
-}
-
-void PictureMaker::countPairs(const Session& session) {
-    pairCounts_.assign(session.stage().indexLimit(), 0);
-    for (const PairKey pair : session.pairs()) {
-        if (secondOf(pair) < pairCounts_.size()) {
-            ++pairCounts_[firstOf(pair)];
-            ++pairCounts_[secondOf(pair)];
         }
     }
 }

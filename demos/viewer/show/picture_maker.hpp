@@ -6,6 +6,7 @@
 #include <demos/viewer/draw/palette.hpp>
 #include <demos/viewer/draw/picture.hpp>
 #include <demos/viewer/session/session.hpp>
+#include <demos/viewer/show/body_colours.hpp>
 
 #include <cstdint>
 #include <vector>
@@ -18,14 +19,14 @@ public:
     /// call, or the session changes. Cost: O(bodies).
     [[nodiscard]] const Picture& make(const Session& session, float contactFrom = kContactFrom);
 
+    /// What the colours of the last picture tell, or would tell of the session as it is now.
+    [[nodiscard]] std::vector<Legend> legends(const Session& session) const {
+        return colours_.legends(session);
+    }
+
 private:
     void addBodies(const Session& session);
     void addBody(const StageBody& body, Colour colour);
-    [[nodiscard]] Colour colourOf(const Session& session, std::uint32_t index,
-                                  const StageBody& body) const;
-    [[nodiscard]] Colour highlightOf(const Session& session, std::uint32_t index,
-                                     Colour otherwise) const;
-    void countPairs(const Session& session);
     void addFrustum(const CameraPose& pose);
     void addPairs(const Session& session);
     void addLink(const Session& session, PairKey pair, Colour colour, bool isOnTop);
@@ -39,8 +40,7 @@ private:
     std::vector<DrawnBox> boxes_;
     std::vector<DrawnCapsule> capsules_;
     std::vector<DrawnLine> lines_;
-    std::vector<std::uint32_t> pairCounts_;  // by index
-    float fastest_ = 1;                      // of all bodies, lately [m/s]
+    BodyColours colours_;
 };
 
 }  // namespace hashphase::demos

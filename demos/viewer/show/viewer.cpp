@@ -28,12 +28,17 @@ void Viewer::keepPace(double seconds) {
     }
 }
 
+void Viewer::layOut(Session& session) {
+    static_cast<void>(maker_.make(session));
+    panel_.build(session, maker_.legends(session), {}, 0);
+}
+
 void Viewer::show(Session& session, const Panel::Pointer& pointer, double seconds,
                   bool fitsWindow) {
     if (renderer_.width() != session.width() || renderer_.height() != session.height()) {
         renderer_.resize(session.width(), session.height());
     }
-    panel_.build(session, pointer, seconds);
+    panel_.build(session, maker_.legends(session), pointer, seconds);
     if (seconds > 0) {
         keepPace(seconds);
     }

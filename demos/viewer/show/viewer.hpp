@@ -16,8 +16,8 @@ public:
     /// Needs an OpenGL context, for as long as it lives.
     Viewer(int width, int height) : renderer_(width, height) {}
 
-    /// Lays out the panel, without drawing it: new parts of it find their size before they are shown.
-    void layOut(Session& session) { panel_.build(session, {}, 0); }
+    /// Lays out what show() draws: new parts of the panel find their size, and colours what they tell.
+    void layOut(Session& session);
 
     /// Draws the session as it is; straight into the context's window where the picture `fitsWindow`, unless
     /// it is wanted as a screenshot, too. Where somebody looks on, `seconds` after the last frame, the contact
