@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/viewer/session/command_log.hpp>
 
+#include <demos/report/json_values.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <demos/viewer/session/commands.hpp>
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <charconv>
 
 namespace hashphase::demos {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr int kVersion = 1;
 constexpr std::uint64_t kMostFrames = 1'000'000'000;
@@ -85,7 +82,7 @@ std::string CommandLog::text() const {
     json["version"] = kVersion;
     json["scene"] = choice_.name;
     json["file"] = choice_.file;
-    json["objects"] = choice_.objects ? Json(*choice_.objects) : Json(nullptr);
+    json["objects"] = orNull(choice_.objects);
     json["seed"] = choice_.seed;
     json["frames"] = frames_;
     json["hash"] = hexadecimal(hash_);
@@ -98,7 +95,7 @@ std::string CommandLog::text() const {
     for (const LoggedCommand& command : commands_) {
         commands.push_back({{"frame", command.frame}, {"command", command.line}});
     }
-    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return textOf(json);
 }
 
 CommandLog CommandLog::parse(std::string_view text, const std::string& name) {

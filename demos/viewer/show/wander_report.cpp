@@ -2,10 +2,9 @@
 #include <demos/viewer/show/wander_report.hpp>
 
 #include <demos/console/format.hpp>
+#include <demos/report/json_values.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <demos/viewer/session/commands.hpp>
-
-#include <nlohmann/json.hpp>
 
 #include <iomanip>
 #include <ostream>
@@ -20,16 +19,13 @@ void tellPhase(std::ostream& out, std::string_view name, double median, double p
 
 // The scene that was on stage at the end; of a recording of boxes all objects are bodies, and of a scene file,
 // in which one can be removed, each has an index.
-void addScene(const Session& session, nlohmann::ordered_json& json) {
+void addScene(const Session& session, Json& json) {
     const SceneChoice& choice = session.choice();
     const bool isFile = !choice.file.empty();
-    const auto orNull = [](bool isThere, auto value) {
-        return isThere ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
-    };
-    json["scene"] = orNull(!isFile, choice.name);
-    json["file"] = orNull(isFile, choice.file);
+    json["scene"] = isFile ? Json(nullptr) : Json(choice.name);
+    json["file"] = orNull(choice.file);
     json["objects"] = isFile ? session.stage().indexLimit() : objectCount(choice);
-    json["seed"] = orNull(!isBoxRecording(choice), choice.seed);
+    json["seed"] = isBoxRecording(choice) ? Json(nullptr) : Json(choice.seed);
     json["broadphase"] = session.stage().broadphase().name;
 }
 
@@ -83,12 +79,11 @@ void tellFrameRate(const WanderEnd& end, std::ostream& out) {
 
 void writeNumbers(const WanderEnd& end, std::ostream& out) {
     const Session& session = end.session;
-    nlohmann::ordered_json json;
+    Json json;
     json["schema"] = "hashphase/wander";
     json["version"] = 1;
     addScene(session, json);
-    json["framesPerSecond"] =
-        end.framesPerSecond ? nlohmann::ordered_json(*end.framesPerSecond) : nullptr;
+    json["framesPerSecond"] = orNull(end.framesPerSecond);
     for (const std::string_view name : Session::readingNames()) {
         try {
             json["readings"][std::string(name)] = session.reading(name);
@@ -101,7 +96,7 @@ void writeNumbers(const WanderEnd& end, std::ostream& out) {
         json["phases"][std::string(row.name)] = {{"milliseconds", history.median(row)},
                                                  {"p95", history.p95(row)}};
     }
-    out << json.dump(2) << '\n';
+    out << textOf(json);
 }
 
 }  // namespace hashphase::demos
