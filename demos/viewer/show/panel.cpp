@@ -144,13 +144,15 @@ void Panel::showEffects(Session& session) {
         return;
     }
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {1, 1});  // as long names need the room
+    constexpr int kColumns = 3;
+    const float column = ImGui::GetContentRegionAvail().x / kColumns;
     int shown = 0;
     for (const Effect effect : kAllEffects) {
         if (!session.stage().possibleEffects().contains(effect)) {
             continue;
         }
-        if (shown++ % 3 != 0) {
-            ImGui::SameLine(8 + static_cast<float>((shown - 1) % 3) * (kPanelWidth / 3 - 4));
+        if (const int place = shown++ % kColumns; place != 0) {
+            ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + column * static_cast<float>(place));
         }
         bool isDeclared = session.stage().effects().set().contains(effect);
         const std::string name(nameOf(effect));

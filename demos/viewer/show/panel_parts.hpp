@@ -11,7 +11,7 @@
 
 namespace hashphase::demos {
 
-inline constexpr float kPanelWidth = 330;  // [pixels]
+inline constexpr float kPanelWidth = 350;  // [pixels]
 
 /// A window that only tells.
 inline constexpr ImGuiWindowFlags kStill =
