@@ -130,6 +130,15 @@ TEST(Viewer, LeavesOutContactShadeWhileFramesTakeLong) {
 
 // --- The panel -----------------------------------------------------------------------------------
 
+/// The picture with nothing left of x and above y.
+Image from(int x, int y, Image image) {
+    for (int row = 0; row < image.height; ++row) {
+        const auto begin = image.pixels.begin() + std::ptrdiff_t{4} * row * image.width;
+        std::fill_n(begin, 4 * (row < y ? image.width : x), 0);
+    }
+    return image;
+}
+
 TEST(Panel, IsDrawnOverEachSceneInBothThemes) {
     const HeadlessContext context;
     Viewer viewer(900, 700);
@@ -155,16 +164,14 @@ TEST(Panel, IsDrawnOverEachSceneInBothThemes) {
             EXPECT_FALSE(looksTheSame(imageDifference(without, with)));
             EXPECT_FALSE(looksTheSame(imageDifference(with, checked)));
             // The panel is to the left, the scene to the right is as it was.
-            Image right = with;
-            Image rightWithout = without;
-            for (Image* image : {&right, &rightWithout}) {
-                for (int y = 0; y < image->height; ++y) {
-                    for (int x = 0; x < 360; ++x) {
-                        std::fill_n(image->pixels.begin() + 4 * (y * image->width + x), 4, 0);
-                    }
-                }
-            }
-            EXPECT_TRUE(looksTheSame(imageDifference(right, rightWithout))) << scene << theme;
+            EXPECT_TRUE(looksTheSame(imageDifference(from(360, 0, with), from(360, 0, without))))
+                << scene << theme;
+            // What colours tell is said in the lower right corner, where else there is the scene.
+            const Image told = picture({"help off", "check off", "overlay heat on"});
+            const Image untold = picture({"panel off"});
+            EXPECT_FALSE(
+                looksTheSame(imageDifference(from(700, 600, told), from(700, 600, untold))))
+                << scene << theme;
         }
     }
     std::filesystem::remove(path);
