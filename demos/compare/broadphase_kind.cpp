@@ -57,10 +57,10 @@ constexpr std::array kKinds{
                    false, makeDeferredDbvt},
     BroadphaseKind{"axis-sweep", "bt32BitAxisSweep3",
                    "Bullet's sweep and prune (slow to fill: by default up to 35,000 objects)",
-                   false, 35'000, true, makeAxisSweep},
+                   false, 35'000, true, makeAxisSweep, 5'000},
     BroadphaseKind{"simple", "btSimpleBroadphase",
                    "Bullet's brute force (by default up to 3,000 objects)", false, 3'000, true,
-                   makeSimple},
+                   makeSimple, 3'000},
 };
 
 }  // namespace

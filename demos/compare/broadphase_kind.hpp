@@ -36,6 +36,10 @@ struct BroadphaseKind {
     bool freesProxies;
 
     std::unique_ptr<btBroadphaseInterface> (*make)(const BroadphaseNeeds& needs);
+
+    /// Runs while somebody looks on up to this many objects; beyond, they would wait for it, the longer by
+    /// the square of their number.
+    std::size_t liveUpTo = std::numeric_limits<std::size_t>::max();
 };
 
 /// Ours first, then Bullet's.

@@ -61,6 +61,7 @@ struct Observers<Scalar>::Proximity {
     RarestColour<Scalar> rarest;
     std::vector<std::uint32_t> colours;
     std::vector<ProxyId> looking;  // in this frame, where they look by turns
+    std::uint64_t turn = 0;        // of those, the next; goes on where others are declared anew
 };
 
 template <class Scalar>
@@ -254,7 +255,7 @@ void Observers<Scalar>::lookByTurns(const Scene& scene, ParallelFor parallelFor)
             const bool isFar = offset.squaredNorm() > effect.interestRadius * effect.interestRadius;
             turns *= isFar ? effect.farFrames : 1;
         }
-        return id.index % turns == frame_ % turns;
+        return id.index % turns == proximity.turn % turns;
     };
     proximity.looking.clear();
     scene.grid.forEach([&](ProxyId id, const Aabb<Scalar>& box) {
@@ -267,6 +268,7 @@ void Observers<Scalar>::lookByTurns(const Scene& scene, ParallelFor parallelFor)
             ++late;
         }
     });
+    ++proximity.turn;
     const QueryCost cost = askFor(scene, Effect::proximity, [&](ProxyFilter filter) {
         return proximity.rarest.updateSome(scene.grid, static_cast<Scalar>(effect.radius),
                                            effect.colourCount, proximity.colours, proximity.looking,

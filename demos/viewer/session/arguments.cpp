@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cmath>
 #include <sstream>
+#include <variant>
 
 namespace hashphase::demos {
 namespace {
@@ -21,19 +22,16 @@ bool isNumber(const std::string& word, Number& number) {
 
 }  // namespace
 
-std::string_view firstWord(std::string_view line) {
-    line = line.substr(0, line.find('#'));
-    const std::size_t begin = line.find_first_not_of(" \t\r");
-    if (begin == std::string_view::npos) {
-        return {};
-    }
-    line.remove_prefix(begin);
-    return line.substr(0, line.find_first_of(" \t\r"));
+std::string firstWord(std::string_view line) {
+    std::istringstream words{std::string(line)};
+    std::string first;
+    words >> first;
+    return first.starts_with('#') ? std::string() : first;
 }
 
 Arguments::Arguments(std::string_view line, std::string_view usage) : usage_(usage) {
-    std::istringstream words{std::string(line.substr(0, line.find('#')))};
-    for (std::string word; words >> word;) {
+    std::istringstream words{std::string(line)};
+    for (std::string word; words >> word && !word.starts_with('#');) {
         words_.push_back(word);
     }
 }
@@ -55,6 +53,19 @@ double Arguments::number(std::string_view name, double low, double high) {
     if (!isNumber(word, number) || !(number >= low && number <= high)) {
         fail(std::string(name) + " is a number from " + plain(low) + " to " + plain(high) +
              ", not " + quotedWord(word) + ".");
+    }
+    return number;
+}
+
+double Arguments::number(std::string_view name, const EffectsField& field) {
+    const auto& limits = std::get<NumberField>(field.kind);
+    const std::string& word = take(name);
+    if (word == kNoBound && limits.most == NumberField::kInfinite) {
+        return NumberField::kInfinite;
+    }
+    double number = 0;
+    if (!isNumber(word, number) || !(number >= limits.least && number <= limits.most)) {
+        fail(std::string(name) + " is " + requirementOf(field) + ", not " + quotedWord(word) + ".");
     }
     return number;
 }

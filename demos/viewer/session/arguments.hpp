@@ -4,6 +4,8 @@
 // The words of a command, taken one by one. Each fault is an InputError that names the word and says what
 // would be right.
 
+#include <demos/scenes/effects_fields.hpp>
+
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,7 +15,7 @@ namespace hashphase::demos {
 
 class Arguments {
 public:
-    /// Words are separated by spaces; '#' begins a comment. `usage` is the whole form, for messages: "pick X Y".
+    /// Words are separated by spaces; one that begins with '#' begins a comment. `usage` is the whole form, for messages: "pick X Y".
     Arguments(std::string_view line, std::string_view usage);
 
     [[nodiscard]] bool isEmpty() const noexcept { return next_ == words_.size(); }
@@ -21,7 +23,9 @@ public:
     /// A number from `low` to `high`; `name` is what it stands for.
     [[nodiscard]] double number(std::string_view name, double low, double high);
     [[nodiscard]] double numberOr(std::string_view name, double low, double high, double otherwise);
-    /// The same of a whole one.
+    /// One that a scene file may have in that field, which is a NumberField; without a bound as there.
+    [[nodiscard]] double number(std::string_view name, const EffectsField& field);
+    /// The same as the first of a whole one.
     [[nodiscard]] long long whole(std::string_view name, long long low, long long high);
     [[nodiscard]] long long wholeOr(std::string_view name, long long low, long long high,
                                     long long otherwise);
@@ -48,6 +52,6 @@ private:
 };
 
 /// The first word of a line; empty for none.
-[[nodiscard]] std::string_view firstWord(std::string_view line);
+[[nodiscard]] std::string firstWord(std::string_view line);
 
 }  // namespace hashphase::demos

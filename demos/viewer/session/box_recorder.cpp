@@ -37,9 +37,18 @@ BoxRecorder::BoxRecorder(const std::filesystem::path& path, std::string_view tit
     : BoxRecorder(path, frames) {
     stage.listBoxes(boxes_, filters_);
     for (std::uint32_t index = 0; index < boxes_.size(); ++index) {
-        if (!boxes_[index].min().hasNaN() && isNear(boxes_[index])) {
-            indices_.push_back(index);
+        if (boxes_[index].min().hasNaN()) {
+            continue;
         }
+        if (isNear(boxes_[index])) {
+            indices_.push_back(index);
+        } else {
+            ++leftOut_;
+        }
+    }
+    if (indices_.empty()) {
+        throw InputError(this->path() + " is not written: there are no bodies" +
+                         (leftOut_ > 0 ? " but " + leftOutText() : "") + ".");
     }
     writeName(title);
     writeName("hashphase wander");
@@ -83,6 +92,14 @@ void BoxRecorder::add(const Stage& stage) {
 std::string BoxRecorder::progress() const {
     return withThousands(static_cast<std::uint64_t>(count_)) + " of " +
            withThousands(static_cast<std::uint64_t>(frames_)) + " frames";
+}
+
+std::string BoxRecorder::leftOutText() const {
+    const std::string reach = withThousands(static_cast<std::uint64_t>(kFarthest)) + " m";
+    return leftOut_ == 0
+               ? ""
+               : withThousands(leftOut_) + (leftOut_ == 1 ? " body that is" : " bodies that are") +
+                     " farther than " + reach + " from the origin";
 }
 
 std::string BoxRecorder::faultSentence(const std::string& reason) const {

@@ -19,7 +19,7 @@ namespace hashphase::demos {
 class BoxRecorder {
 public:
     /// Begins with the stage as it is. Bodies that are farther than kFarthest then, or have no end, are left
-    /// out. Throws InputError where the file cannot be written.
+    /// out. Throws InputError where the file cannot be written, or nobody is left.
     BoxRecorder(const std::filesystem::path& path, std::string_view title, const Stage& stage,
                 int frames);
     /// Leaves no file that is not complete.
@@ -34,6 +34,8 @@ public:
     /// Whether all frames are there, and the file is in its place.
     [[nodiscard]] bool isComplete() const noexcept { return count_ == frames_; }
 
+    /// Whom the recording is without, "3 bodies that are ..."; empty where all are in it.
+    [[nodiscard]] std::string leftOutText() const;
     [[nodiscard]] std::uint64_t frameCount() const noexcept {
         return static_cast<std::uint64_t>(count_);
     }
@@ -60,6 +62,7 @@ private:
     int frames_;
     int count_ = 0;                       // of frames after the first state
     std::vector<std::uint32_t> indices_;  // of those that are recorded
+    std::uint64_t leftOut_ = 0;
     Aabb<float> world_;
     std::vector<Aabb<float>> boxes_;  // of all, by index
     std::vector<CollisionFilter> filters_;

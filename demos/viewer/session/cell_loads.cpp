@@ -13,8 +13,13 @@ void CellLoads::count(const Grid<float>& grid, const Aabb<float>& bounds) {
     cellSize_ = finest * std::max(1.0F, std::ceil(extent / (finest * (kMostColumns - 2))));
     const auto cellOf = [this](float x) { return std::floor(x / cellSize_); };
     corner_ = cellSize_ * Eigen::Vector2f(cellOf(bounds.min().x()), cellOf(bounds.min().z()));
-    columns_ = static_cast<std::uint32_t>((bounds.max().x() - corner_.x()) / cellSize_) + 1;
-    rows_ = static_cast<std::uint32_t>((bounds.max().z() - corner_.y()) / cellSize_) + 1;
+    // Far from the origin, cells may be smaller than what coordinates are rounded to.
+    const auto countTo = [this](float length) {
+        const float count = std::max(1.0F, std::floor(length / cellSize_) + 1);
+        return static_cast<std::uint32_t>(std::min(count, float{kMostColumns}));
+    };
+    columns_ = countTo(bounds.max().x() - corner_.x());
+    rows_ = countTo(bounds.max().z() - corner_.y());
     counts_.assign(std::size_t{columns_} * rows_, 0);
     largest_ = 0;
     grid.forEach([this](ProxyId, const Aabb<float>& box) {

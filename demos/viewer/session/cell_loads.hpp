@@ -17,6 +17,9 @@ public:
     /// more than kMostColumns of these along a side of the bounds. Cost: O(proxies + cells).
     void count(const Grid<float>& grid, const Aabb<float>& bounds);
 
+    /// Whether nobody has counted.
+    [[nodiscard]] bool isEmpty() const noexcept { return counts_.empty(); }
+
     /// Those in the column of cells at that place; 0 outside.
     [[nodiscard]] std::uint32_t at(float x, float z) const;
 

@@ -6,7 +6,13 @@
 #include <demos/viewer/session/arguments.hpp>
 #include <demos/viewer/session/session.hpp>
 
+#include <array>
+#include <string_view>
+
 namespace hashphase::demos::actions {
+
+/// Of a reading to a number.
+inline constexpr std::array<std::string_view, 6> kRelations{"=", "!=", "<", "<=", ">", ">="};
 
 // The scene, and what runs (scene_actions.cpp).
 void scene(Session& session, Arguments& words);

@@ -11,7 +11,7 @@
 namespace hashphase::demos {
 namespace {
 
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr std::uint64_t kMostFrames = 1'000'000'000;
 
 // Numbers in JSON are doubles to many readers.
@@ -41,10 +41,21 @@ std::uint64_t countIn(const Json& json, const char* name, std::uint64_t most) {
     return number.get<std::uint64_t>();
 }
 
+void requireVersion(const Json& json) {
+    if (json.at("schema") != "hashphase/wander-recording") {
+        throw InputError("it is no recording of hashphase wander");
+    }
+    if (const Json& version = json.at("version"); version != kVersion) {
+        throw InputError("it is of version " + version.dump() + ", and this program plays back " +
+                         std::to_string(kVersion) +
+                         " alone, with which agents' colours are compared as well: record it anew");
+    }
+}
+
 // A recording may come from anywhere: it writes no files.
 void requireLogged(const std::string& line) {
     const CommandKind* const kind = findCommand(line);
-    if (kind == nullptr || !kind->isLogged) {
+    if (kind == nullptr || !isLogged(kind->role)) {
         throw InputError("'" + line + "' is no command of a recording");
     }
 }
@@ -101,9 +112,7 @@ std::string CommandLog::text() const {
 CommandLog CommandLog::parse(std::string_view text, const std::string& name) {
     try {
         const Json json = Json::parse(text);
-        if (json.at("schema") != "hashphase/wander-recording" || json.at("version") != kVersion) {
-            throw InputError("it is no recording of hashphase wander, version 1");
-        }
+        requireVersion(json);
         CommandLog log;
         log.choice_.name = json.at("scene").get<std::string>();
         log.choice_.file = json.at("file").get<std::string>();

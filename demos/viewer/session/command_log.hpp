@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A recording of a session: its scene, the commands with the frames in which they came, and a hash of all
-// that has happened. Whoever plays them back sees the same, to the last bit, or is told where it differs.
+// A recording of a session: its scene, the commands with the frames in which they came, and a hash of what
+// each frame has come to: Session::hash() says of what. Whoever plays them back sees the same, to the last
+// bit, or is told where it differs.
 
 #include <demos/viewer/session/scene_choice.hpp>
 

@@ -6,6 +6,7 @@
 #include <demos/viewer/session/arguments.hpp>
 #include <demos/viewer/session/command_log.hpp>
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,13 +15,29 @@ namespace hashphase::demos {
 
 class Session;
 
+/// What a command is to a recording, and to whoever looks on while one is replayed.
+enum class CommandRole : std::uint8_t {
+    chooses,  // what is on stage: begins another recording
+    changes,  // what happens, or who is seen: belongs into a recording
+    shows,  // what is told of it, and how: belongs into a recording as well, and may be done to a replay
+    steers,  // when frames come, what stands beside the picture, questions: are the onlooker's own affair
+    writes,  // files: no recording may do so, as it may come from anywhere
+};
+
+[[nodiscard]] constexpr bool isLogged(CommandRole role) noexcept {
+    return role == CommandRole::changes || role == CommandRole::shows;
+}
+/// Whether what is replayed is the same recording after it.
+[[nodiscard]] constexpr bool leavesReplay(CommandRole role) noexcept {
+    return role != CommandRole::chooses && role != CommandRole::changes;
+}
+
 struct CommandKind {
     std::string_view name;
-    std::string_view usage;  // "pick X Y"
+    CommandRole role;
+    std::string usage;  // "pick X Y"
     std::string_view help;
     void (*run)(Session& session, Arguments& arguments);
-    /// Whether it changes what happens or what is seen, and so belongs into a recording.
-    bool isLogged = true;
 };
 
 [[nodiscard]] std::span<const CommandKind> commandKinds();
@@ -37,7 +54,7 @@ struct KeyBinding {
 
 [[nodiscard]] std::span<const KeyBinding> keyBindings();
 
-/// Adds the commands that set up a new session as this one is set: size, camera, options.
+/// Adds the commands that set up a new session as this one is set, where logged ones can.
 void logSetting(Session& session, CommandLog& log);
 
 }  // namespace hashphase::demos

@@ -46,7 +46,6 @@ void print(Session& session, Arguments& words) {
 }
 
 void expect(Session& session, Arguments& words) {
-    constexpr std::array<std::string_view, 6> kRelations{"=", "!=", "<", "<=", ">", ">="};
     const std::string name = words.word("READING");
     const std::size_t relation = words.choice("relation", kRelations);
     const double wanted = words.number("NUMBER", -1e18, 1e18);

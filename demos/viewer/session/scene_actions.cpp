@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/viewer/session/command_actions.hpp>
 
+#include <demos/console/format.hpp>
+#include <demos/scenes/effects_fields.hpp>
 #include <demos/scenes/input_error.hpp>
 
 #include <algorithm>
@@ -53,9 +55,13 @@ void restart(Session& session, Arguments& words) {
 }
 
 void pause(Session& session, Arguments& words) {
-    const bool isPaused = words.onOff(!session.isPlaying());
+    const bool isPaused = words.onOff(!session.isPlaying() && !session.isWaiting());
     words.end();
-    session.setPlaying(!isPaused);
+    if (isPaused) {
+        session.standStill();
+    } else {
+        session.setPlaying(true);
+    }
 }
 
 void step(Session& session, Arguments& words) {
@@ -95,6 +101,21 @@ void effect(Session& session, Arguments& words) {
     session.declare(effects);
 }
 
+// The kind after the present one with which so many bodies can be watched. Ours is one, for any number.
+const BroadphaseKind& nextQuickKind(const Session& session, std::string& skipped) {
+    const std::span<const BroadphaseKind> kinds = broadphaseKinds();
+    auto place = static_cast<std::size_t>(&session.stage().broadphase() - kinds.data());
+    for (;;) {
+        place = (place + 1) % kinds.size();
+        const BroadphaseKind& kind = kinds[place];
+        if (session.stage().size() <= kind.liveUpTo) {
+            return kind;
+        }
+        skipped += (skipped.empty() ? "" : " and ") + std::string(kind.name) + " (for up to " +
+                   withThousands(kind.liveUpTo) + ")";
+    }
+}
+
 void broadphase(Session& session, Arguments& words) {
     const std::span<const BroadphaseKind> kinds = broadphaseKinds();
     std::vector<std::string_view> names;
@@ -102,13 +123,20 @@ void broadphase(Session& session, Arguments& words) {
         names.push_back(kind.name);
     }
     names.push_back("next");
-    std::size_t chosen = words.choice("broadphase", names);
+    const std::size_t chosen = words.choice("broadphase", names);
     words.end();
-    if (chosen == kinds.size()) {
-        const auto now = static_cast<std::size_t>(&session.stage().broadphase() - kinds.data());
-        chosen = (now + 1) % kinds.size();
+    if (chosen < kinds.size()) {
+        session.setBroadphase(kinds[chosen]);
+        return;
     }
-    session.setBroadphase(kinds[chosen]);
+    std::string skipped;
+    const BroadphaseKind& next = nextQuickKind(session, skipped);
+    session.setBroadphase(next);
+    if (!skipped.empty()) {
+        session.say("passed over " + skipped + ", as there are " +
+                    withThousands(session.stage().size()) +
+                    " bodies; \"broadphase NAME\" takes one all the same");
+    }
 }
 
 void check(Session& session, Arguments& words) {
@@ -117,16 +145,24 @@ void check(Session& session, Arguments& words) {
     session.setChecking(isOn);
 }
 
+// Commands take what files may have, so that whatever a file has can be recorded.
+const EffectsField& fileField(std::string_view section, std::string_view name) {
+    const std::span<const EffectsField> fields = effectsFields();
+    return *std::find_if(fields.begin(), fields.end(), [&](const EffectsField& field) {
+        return field.section == section && field.name == name;
+    });
+}
+
 void cell(Session& session, Arguments& words) {
     SceneEffects effects = session.stage().effects();
-    effects.grid.cellSize = words.number("SIZE", 0, 1000);
+    effects.grid.cellSize = words.number("SIZE", fileField("grid", "cellSize"));
     words.end();
     session.declare(effects);
 }
 
 void ratio(Session& session, Arguments& words) {
     SceneEffects effects = session.stage().effects();
-    effects.grid.levelRatio = words.number("RATIO", 2, 64);
+    effects.grid.levelRatio = words.number("RATIO", fileField("grid", "levelRatio"));
     words.end();
     session.declare(effects);
 }
@@ -136,7 +172,7 @@ void radius(Session& session, Arguments& words) {
     if (!effects.proximity) {
         throw InputError("The radius is that of proximity: run \"effect proximity on\" before.");
     }
-    effects.proximity->radius = words.number("R", 0, 1000);
+    effects.proximity->radius = words.number("R", fileField("effects.proximity", "radius"));
     words.end();
     session.declare(effects);
 }

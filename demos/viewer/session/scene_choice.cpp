@@ -12,6 +12,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <stdexcept>
 
 namespace hashphase::demos {
 namespace {
@@ -58,7 +59,11 @@ std::unique_ptr<Stage> makePaperStage(EffectsFile file, const SceneChoice& choic
         file.scene.objects = static_cast<std::uint32_t>(*choice.objects);
     }
     file.scene.seed = static_cast<std::uint32_t>(choice.seed);
-    return std::make_unique<PaperStage>(file);
+    try {
+        return std::make_unique<PaperStage>(file);
+    } catch (const std::invalid_argument& error) {
+        throw InputError(titleOf(choice) + ": " + error.what());
+    }
 }
 
 bool hasExtension(const SceneChoice& choice, std::string_view extension) {

@@ -3,23 +3,13 @@
 
 #include <demos/console/format.hpp>
 #include <demos/scenes/input_error.hpp>
-#include <demos/viewer/session/arguments.hpp>
+#include <demos/viewer/session/commands.hpp>
 
 #include <algorithm>
-#include <array>
 #include <sstream>
 #include <utility>
 
 namespace hashphase::demos {
-namespace {
-
-// What changes neither the bodies nor who is seen.
-constexpr std::array<std::string_view, 15> kHarmless{
-    "pause", "step", "restart", "check",  "colour",     "overlay", "dots", "theme",
-    "panel", "help", "print",   "expect", "screenshot", "save",    "quit"};
-
-}  // namespace
-
 Script::Script(std::string_view text, std::string name) : name_(std::move(name)) {
     std::istringstream lines{std::string(text)};
     for (std::string line; std::getline(lines, line);) {
@@ -64,9 +54,9 @@ void Playback::feed(Session& session) {
 }
 
 void Playback::refuseChange(std::string_view line) {
-    const std::string_view name = firstWord(line);
-    if (!name.empty() && std::find(kHarmless.begin(), kHarmless.end(), name) == kHarmless.end()) {
-        throw InputError("A recording is being replayed: '" + std::string(name) +
+    const CommandKind* const kind = findCommand(line);
+    if (kind != nullptr && !leavesReplay(kind->role)) {
+        throw InputError("A recording is being replayed: '" + std::string(kind->name) +
                          "' would make it another one. Pause (P), step (O) or begin again (R).");
     }
 }

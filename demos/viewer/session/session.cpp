@@ -3,6 +3,7 @@
 
 #include <demos/console/format.hpp>
 #include <demos/scenes/input_error.hpp>
+#include <demos/scenes/result_hash.hpp>
 #include <demos/viewer/session/commands.hpp>
 
 #include <algorithm>
@@ -12,6 +13,9 @@
 
 namespace hashphase::demos {
 namespace {
+
+// A message is said after a picture, and seen with the next one.
+constexpr int kFramesToRead = 2;
 
 // Of what a scene declares by itself, commands change which effects there are, the grid's variables, and the
 // radius of proximity. So much a recording has at its beginning: see logSetting().
@@ -28,6 +32,16 @@ SceneEffects changed(SceneEffects own, EffectSet declared, const SceneEffects& n
         own.proximity->radius = now.proximity->radius;
     }
     return own;
+}
+
+// What a stage refuses, as a fault of whoever has asked for it.
+template <class Call>
+void ask(const Call& call) {
+    try {
+        call();
+    } catch (const std::invalid_argument& error) {
+        throw InputError(error.what());
+    }
 }
 
 }  // namespace
@@ -49,7 +63,7 @@ void Session::run(std::string_view line) {
     Arguments arguments(line, kind->usage);
     const std::uint64_t frame = frame_;
     kind->run(*this, arguments);
-    if (kind->isLogged) {
+    if (isLogged(kind->role)) {
         log_.add(frame, line);
     }
 }
@@ -57,6 +71,11 @@ void Session::run(std::string_view line) {
 // --- Frame ---------------------------------------------------------------------------------------
 
 void Session::advance() {
+    if (framesToRead_ > 0) {
+        --framesToRead_;
+        look();
+        return;
+    }
     const bool steps = isPlaying_ || stepsWaiting_ > 0;
     stepsWaiting_ -= stepsWaiting_ > 0 ? 1 : 0;
     setView();
@@ -65,36 +84,71 @@ void Session::advance() {
         ++frame_;
         knowsPairs_ = true;
         history_.add(stage_->times());
-        log_.note(frame_, stage_->placesHash());
-        if (picked_ && camera_.mode() == CameraMode::follow) {
-            camera_.setTarget(stage_->body(*picked_).centre);
-        }
+        log_.note(frame_, frameHash());
         captureFrame();
     }
-    isResting_ = !steps;
     look();
 }
 
+std::uint64_t Session::frameHash() const {
+    ResultHash hash;
+    hash.add(stage_->placesHash());
+    if (stage_->effects().proximity) {
+        const auto colours = stage_->observers().colours();
+        for (const std::uint32_t colour :
+             colours.first(std::min<std::size_t>(colours.size(), stage_->indexLimit()))) {
+            hash.add(std::uint64_t{colour});
+        }
+    }
+    return hash.value();
+}
+
 void Session::setView() {
-    if (stage_->effects().culling && !frozen_) {
-        const ConvexRegion<float> frustum(cameraView(pose()).planes, Containment::touching,
-                                          Touch::byPlanes);
-        stage_->observers().setView(frustum);
+    if (stage_->effects().culling) {
+        stage_->observers().setView(seenRegion());
     }
     stage_->observers().setInterest(pose().eye);
 }
 
-// What is asked about a frame, whether the scene has moved or not.
+// --- What is asked about a frame -----------------------------------------------------------------
+
+ConvexRegion<float> Session::seenRegion() const {
+    return ConvexRegion<float>(cameraView(frozen_.value_or(pose())).planes, Containment::touching,
+                               Touch::byPlanes);
+}
+
+// The camera that follows goes with its body.
+void Session::aim() {
+    if (picked_ && camera_.mode() == CameraMode::follow) {
+        camera_.setTarget(stage_->body(*picked_).centre);
+    }
+}
+
+// What the stage has found serves where the picture is taken by the same camera.
+void Session::see() {
+    if (!stage_->effects().culling) {
+        usesOwnCuller_ = false;
+        return;
+    }
+    const ConvexRegion<float> region = seenRegion();
+    usesOwnCuller_ = !(stage_->observers().culler().view() == region);
+    if (usesOwnCuller_) {
+        ownCuller_.look(*stage_->grid(), region);
+    }
+}
+
+const Culler<float>& Session::culler() const {
+    return usesOwnCuller_ ? ownCuller_ : stage_->observers().culler();
+}
+
+// Whether the scene has moved or not.
 void Session::look() {
     const Grid<float>* grid = stage_->grid();
-    if (stage_->effects().culling && isResting_ && grid != nullptr) {
-        const CameraPose seen = frozen_.value_or(pose());
-        restingCuller_.look(*grid, ConvexRegion<float>(cameraView(seen).planes,
-                                                       Containment::touching, Touch::byPlanes));
-    }
     if (picked_ && !stage_->contains(*picked_)) {
         picked_.reset();
     }
+    aim();
+    see();
     card_.reset();
     if (picked_ && grid != nullptr) {
         const auto& proximity = stage_->effects().proximity;
@@ -104,6 +158,8 @@ void Session::look() {
     const bool countsLoads = options_.has(Overlay::heat) || options_.colouring == Colouring::load;
     if (countsLoads && grid != nullptr) {
         loads_.count(*grid, stage_->bounds());
+    } else {
+        loads_ = {};
     }
     pairs_.clear();
     if (card_ || options_.has(Overlay::pairs) || options_.colouring == Colouring::pairs) {
@@ -126,8 +182,9 @@ void Session::captureFrame() {
         return;
     }
     if (capture_->isComplete()) {
+        const std::string leftOut = capture_->leftOutText();
         say("wrote the boxes of " + withThousands(capture_->frameCount()) + " frames to " +
-            capture_->path());
+            capture_->path() + (leftOut.empty() ? "" : ", without " + leftOut));
         capture_ = nullptr;
     }
 }
@@ -144,8 +201,10 @@ void Session::choose(const SceneChoice& choice) {
     const SceneEffects own = next->effects();
     const bool isOther = choice.name != choice_.name || choice.file != choice_.file;
     if (!isOther) {
-        next->declare(changed(own, stage_->effects().set(), stage_->effects()));
-        next->setBroadphase(stage_->broadphase());
+        ask([&] {
+            next->declare(changed(own, stage_->effects().set(), stage_->effects()));
+            next->setBroadphase(stage_->broadphase());
+        });
     }
     const bool isOtherSize =
         choice.objects != choice_.objects && !next->bounds().isApprox(stage_->bounds());
@@ -161,8 +220,6 @@ void Session::beginAnew(bool goesHome) {
     ++sceneCount_;
     stepsWaiting_ = 0;
     frozen_.reset();
-    restingCuller_ = Culler<float>();
-    isResting_ = true;
     forgetSelection();
     rectangle_.reset();
     recoloured_.clear();
@@ -181,6 +238,20 @@ void Session::beginAnew(bool goesHome) {
 
 void Session::goHome() {
     camera_.goHome(stage_->bounds());
+    aim();
+}
+
+void Session::setCameraMode(CameraMode mode) {
+    if (mode == CameraMode::follow && !picked_) {
+        throw InputError("Nobody is picked to be followed: click on a body, or run \"pick X Y\".");
+    }
+    camera_.setMode(mode);
+    aim();
+}
+
+void Session::standStill() noexcept {
+    isPlaying_ = false;
+    stepsWaiting_ = 0;
 }
 
 void Session::askForSteps(std::uint64_t count) {
@@ -189,11 +260,7 @@ void Session::askForSteps(std::uint64_t count) {
 }
 
 void Session::declare(const SceneEffects& effects) {
-    try {
-        stage_->declare(effects);
-    } catch (const std::invalid_argument& error) {
-        throw InputError(error.what());
-    }
+    ask([&] { stage_->declare(effects); });
     knowsPairs_ = false;
     if (!effects.culling) {
         frozen_.reset();
@@ -205,12 +272,15 @@ void Session::declare(EffectSet effects) {
 }
 
 void Session::setBroadphase(const BroadphaseKind& kind) {
-    try {
-        stage_->setBroadphase(kind);
-    } catch (const std::invalid_argument& error) {
-        throw InputError(error.what());
-    }
+    ask([&] { stage_->setBroadphase(kind); });
     knowsPairs_ = false;
+    framesToRead_ = 0;
+    if (const std::size_t bodies = stage_->size(); bodies > kind.liveUpTo) {
+        say(std::string(kind.name) + " takes a time that grows with the square of the bodies: " +
+            withThousands(bodies) + " are many, above " + withThousands(kind.liveUpTo) +
+            " the scene may stand still for long.");
+        framesToRead_ = kFramesToRead;
+    }
 }
 
 void Session::setChecking(bool isChecking) {
@@ -288,6 +358,7 @@ std::size_t Session::pushSelected(const Vector3<float>& velocity) {
 
 std::size_t Session::removeSelected() {
     const std::size_t count = stage_->remove(selected_);
+    std::erase_if(recoloured_, [this](std::uint32_t index) { return !stage_->contains(index); });
     knowsPairs_ = knowsPairs_ && count == 0;
     forgetSelection();
     look();
@@ -317,6 +388,11 @@ void Session::endCapture(const std::string& reason) {
     }
 }
 
+void Session::askForScreenshot(const std::string& path) {
+    screenshots_.push_back(path);
+    see();
+}
+
 void Session::noteFailure(const std::string& message) {
     ++failureCount_;
     say(message);
@@ -325,18 +401,20 @@ void Session::noteFailure(const std::string& message) {
 // --- What is to be seen --------------------------------------------------------------------------
 
 bool Session::isVisible(std::uint32_t index) const {
-    if (!stage_->effects().culling) {
-        return true;
-    }
-    const Culler<float>& culler = isResting_ ? restingCuller_ : stage_->observers().culler();
-    return culler.isVisible({index, 1});
+    return !stage_->effects().culling || culler().isVisible({index, 1});
 }
 
 std::size_t Session::visibleCount() const {
     if (!stage_->effects().culling) {
         return stage_->size();
     }
-    return (isResting_ ? restingCuller_ : stage_->observers().culler()).count();
+    const ConvexRegion<float> region = seenRegion();
+    if (culler().view() == region) {
+        return culler().count();
+    }
+    Culler<float> now;
+    now.look(*stage_->grid(), region);
+    return now.count();
 }
 
 bool Session::isSelected(std::uint32_t index) const {

@@ -50,6 +50,8 @@ enum class Overlay : std::uint8_t { bodies, grid, heat, boxes, pairs };
 inline constexpr std::array<std::string_view, 5> kOverlays{"bodies", "grid", "heat", "boxes",
                                                            "pairs"};
 
+inline constexpr std::array<std::string_view, 2> kThemes{"light", "dark"};
+
 /// How wide and high a picture can be [pixels]; twice as much each way would take 4 GB.
 inline constexpr int kLeastSide = 16;
 inline constexpr int kMostSide = 8192;
@@ -76,7 +78,8 @@ public:
     /// Does what the line says. Lines that are empty or comments do nothing.
     void run(std::string_view line);
 
-    /// A frame of the viewer: simulates one of the scene, if it plays or steps are waited for, and looks.
+    /// A frame of the viewer: simulates one of the scene, if it plays or steps are waited for, and looks. Before
+    /// a frame that may take long the scene stands still for two, so that whoever looks on can read why.
     void advance();
 
     /// Whether steps that were asked for have not been simulated.
@@ -90,16 +93,21 @@ public:
     /// where other numbers of bodies take other room.
     void choose(const SceneChoice& choice);
     void setPlaying(bool isPlaying) noexcept { isPlaying_ = isPlaying; }
+    /// Plays no more, and waits for no steps. A capture takes up those that are simulated later.
+    void standStill() noexcept;
     void askForSteps(std::uint64_t count);
     void declare(const SceneEffects& effects);
     /// Declares these effects and no others: each with what the scene says of it by itself, or with defaults
     /// where it says nothing. The grid's variables and the radius of proximity stay as they are.
     void declare(EffectSet effects);
+    /// Says beforehand what to expect where so many bodies are too many for it: see advance().
     void setBroadphase(const BroadphaseKind& kind);
     void setChecking(bool isChecking);
     void freeze(bool isFrozen);
     void resize(int width, int height);
     void goHome();
+    /// Throws InputError where nobody is picked to be followed.
+    void setCameraMode(CameraMode mode);
 
     /// Picks what is at the pixel, or nobody; what was selected is not any more.
     void pick(const Pixel& pixel);
@@ -120,7 +128,7 @@ public:
     /// Gives up a capture that is not complete, and says why: "the scene ends".
     void endCapture(const std::string& reason);
 
-    void askForScreenshot(const std::string& path) { screenshots_.push_back(path); }
+    void askForScreenshot(const std::string& path);
     void say(const std::string& message) { messages_.push_back(message); }
     void noteFailure(const std::string& message);
     void end() noexcept { isOver_ = true; }
@@ -143,7 +151,9 @@ public:
 
     /// The camera whose view decides what is visible, where it was frozen.
     [[nodiscard]] const std::optional<CameraPose>& frozenPose() const noexcept { return frozen_; }
+    /// Whether it was when the scene was looked at for the last time, for a frame or for a screenshot.
     [[nodiscard]] bool isVisible(std::uint32_t index) const;
+    /// By the camera of now. Cost: where it has moved since, that of a look.
     [[nodiscard]] std::size_t visibleCount() const;
 
     [[nodiscard]] const std::vector<std::uint32_t>& selected() const noexcept { return selected_; }
@@ -163,6 +173,7 @@ public:
     [[nodiscard]] bool isChecking() const noexcept { return isChecking_; }
     /// Whether it is checked from the next frame on at the latest: pairs are declared, and not swept.
     [[nodiscard]] bool canCheck() const;
+    /// Of the last frame; empty while nobody shows them, and without a grid.
     [[nodiscard]] const CellLoads& loads() const noexcept { return loads_; }
     /// Those that the broadphase has found, sorted; none while nobody shows them.
     [[nodiscard]] const std::vector<PairKey>& pairs() const noexcept { return pairs_; }
@@ -173,7 +184,8 @@ public:
     [[nodiscard]] double reading(std::string_view name) const;
     [[nodiscard]] static std::span<const std::string_view> readingNames();
 
-    /// The same where all that has happened since the scene began is the same, to the last bit.
+    /// The same where in each frame since the scene began bodies were at the same places and agents had the same
+    /// colours, to the last bit. Whoever found the pairs: Bullet's broadphases list more than overlap.
     [[nodiscard]] std::uint64_t hash() const noexcept { return log_.hash(); }
     [[nodiscard]] const CommandLog& log() const noexcept { return log_; }
 
@@ -192,8 +204,13 @@ private:
     void beginAnew(bool goesHome);
     void captureFrame();
     void giveUpCapture(const std::string& fault);
+    [[nodiscard]] std::uint64_t frameHash() const;
+    [[nodiscard]] ConvexRegion<float> seenRegion() const;
+    [[nodiscard]] const Culler<float>& culler() const;
+    void aim();
     void setView();
     void look();
+    void see();
 
     SceneChoice choice_;
     std::unique_ptr<Stage> stage_;
@@ -204,12 +221,13 @@ private:
     int height_;
     bool isPlaying_ = true;
     std::uint64_t stepsWaiting_ = 0;
+    int framesToRead_ = 0;  // in which the scene stands still for what was said
     std::uint64_t frame_ = 0;
     std::uint64_t sceneCount_ = 0;
 
     std::optional<CameraPose> frozen_;
-    Culler<float> restingCuller_;  // while the scene rests, and the camera does not
-    bool isResting_ = false;
+    Culler<float> ownCuller_;  // where the camera has moved since the stage's has looked
+    bool usesOwnCuller_ = false;
 
     std::vector<std::uint32_t> selected_;    // sorted
     std::vector<std::uint32_t> recoloured_;  // sorted

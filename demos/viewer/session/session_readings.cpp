@@ -32,6 +32,15 @@ const PairCheck& checkOf(const Session& session) {
     return *check;
 }
 
+const CellLoads& loadsOf(const Session& session) {
+    if (session.loads().isEmpty()) {
+        throw InputError(
+            "Loads are not counted: run \"overlay heat on\" and a step, with an effect that asks "
+            "the grid.");
+    }
+    return session.loads();
+}
+
 template <class Holds>
 double countBodies(const Session& session, const Holds& holds) {
     const std::uint32_t limit = session.stage().indexLimit();
@@ -88,8 +97,8 @@ constexpr std::array kReadings{
     Reading{"missing", [](const Session& s) { return number(checkOf(s).missing().size()); }},
     Reading{"extra", [](const Session& s) { return number(checkOf(s).extra().size()); }},
     Reading{"cellSize", cellSizeOf},
-    Reading{"largestLoad", [](const Session& s) { return number(s.loads().largest()); }},
-    Reading{"columns", [](const Session& s) { return number(s.loads().columns()); }},
+    Reading{"largestLoad", [](const Session& s) { return number(loadsOf(s).largest()); }},
+    Reading{"columns", [](const Session& s) { return number(loadsOf(s).columns()); }},
     Reading{"colours", colourCount},
     Reading{"tunnelled", [](const Session& s) { return number(s.stage().tunnelMarks().size()); }},
     Reading{"asleep",
@@ -108,6 +117,11 @@ constexpr std::array kReadings{
     Reading{"eyeX", [](const Session& s) { return number(s.pose().eye.x()); }},
     Reading{"eyeY", [](const Session& s) { return number(s.pose().eye.y()); }},
     Reading{"eyeZ", [](const Session& s) { return number(s.pose().eye.z()); }},
+    Reading{"dragging", [](const Session& s) { return number(s.rectangle().has_value()); }},
+    Reading{"dots", [](const Session& s) { return number(s.options().dots); }},
+    Reading{"dark", [](const Session& s) { return number(s.options().theme == Theme::dark); }},
+    Reading{"panel", [](const Session& s) { return number(s.options().panel); }},
+    Reading{"help", [](const Session& s) { return number(s.options().help); }},
     Reading{"width", [](const Session& s) { return number(s.width()); }},
     Reading{"height", [](const Session& s) { return number(s.height()); }},
     // So much of it as a double holds.

@@ -2,10 +2,10 @@
 #include <demos/viewer/session/command_actions.hpp>
 
 #include <demos/console/format.hpp>
-#include <demos/scenes/input_error.hpp>
 
 #include <array>
 #include <numbers>
+#include <vector>
 
 namespace hashphase::demos::actions {
 namespace {
@@ -19,6 +19,16 @@ float metres(Arguments& words, std::string_view name) {
 
 float degrees(Arguments& words, std::string_view name) {
     return static_cast<float>(words.number(name, -360, 360) * kDegree);
+}
+
+// The one that is named, or the one after the present one.
+std::size_t chosenOrNext(Arguments& words, std::string_view name,
+                         std::span<const std::string_view> known, std::size_t now) {
+    std::vector<std::string_view> names(known.begin(), known.end());
+    names.push_back("next");
+    const std::size_t chosen = words.isEmpty() ? known.size() : words.choice(name, names);
+    words.end();
+    return chosen < known.size() ? chosen : (now + 1) % known.size();
 }
 
 Pixel pixel(Arguments& words) {
@@ -35,10 +45,7 @@ void camera(Session& session, Arguments& words) {
     const std::size_t chosen = words.choice("camera", kCameraModes);
     words.end();
     const auto mode = static_cast<CameraMode>(chosen);
-    if (mode == CameraMode::follow && !session.card()) {
-        throw InputError("Nobody is picked to be followed: click on a body, or run \"pick X Y\".");
-    }
-    session.camera().setMode(mode);
+    session.setCameraMode(mode);
 }
 
 void home(Session& session, Arguments& words) {
@@ -155,14 +162,8 @@ void recolour(Session& session, Arguments& words) {
 // --- How it is shown -----------------------------------------------------------------------------
 
 void colour(Session& session, Arguments& words) {
-    std::vector<std::string_view> names(kColourings.begin(), kColourings.end());
-    names.push_back("next");
-    std::size_t chosen = words.choice("colouring", names);
-    words.end();
-    if (chosen == kColourings.size()) {
-        chosen = (static_cast<std::size_t>(session.options().colouring) + 1) % kColourings.size();
-    }
-    session.options().colouring = static_cast<Colouring>(chosen);
+    session.options().colouring = static_cast<Colouring>(chosenOrNext(
+        words, "colouring", kColourings, static_cast<std::size_t>(session.options().colouring)));
 }
 
 void overlay(Session& session, Arguments& words) {
@@ -179,11 +180,8 @@ void dots(Session& session, Arguments& words) {
 }
 
 void theme(Session& session, Arguments& words) {
-    constexpr std::array<std::string_view, 3> kNames{"light", "dark", "next"};
-    const std::size_t chosen = words.isEmpty() ? 2 : words.choice("theme", kNames);
-    words.end();
-    const bool isDark = chosen == 2 ? session.options().theme == Theme::light : chosen == 1;
-    session.options().theme = isDark ? Theme::dark : Theme::light;
+    session.options().theme = static_cast<Theme>(
+        chosenOrNext(words, "theme", kThemes, static_cast<std::size_t>(session.options().theme)));
 }
 
 void panel(Session& session, Arguments& words) {

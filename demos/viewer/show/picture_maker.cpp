@@ -78,8 +78,8 @@ void PictureMaker::setGround(const Session& session) {
     if (session.options().has(Overlay::grid) && grid != nullptr) {
         picture_.gridLines = GroundCells{Eigen::Vector2f::Zero(), grid->cellSize()};
     }
-    if (session.options().has(Overlay::heat)) {
-        const CellLoads& loads = session.loads();
+    const CellLoads& loads = session.loads();
+    if (session.options().has(Overlay::heat) && !loads.isEmpty()) {
         picture_.heatMap = HeatMap{
             {loads.corner(), loads.cellSize()}, loads.columns(), loads.rows(), loads.shades()};
     }

@@ -96,6 +96,10 @@ TEST(Observers, LetAgentsLookByTurns) {
     Observers<float> some(effects);
     Walk walk(0x5eed0fef);
     for (std::uint32_t frame = 0; frame < 3 * kTurns; ++frame) {
+        if (frame % 5 == 3) {  // whatever else is declared meanwhile
+            effects.culling.emplace();
+            some.declare(effects);
+        }
         walk.step();
         const auto agents = static_cast<std::uint32_t>(walk.places().size());
         std::vector<std::uint32_t> before(agents);

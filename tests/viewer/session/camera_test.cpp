@@ -108,5 +108,84 @@ TEST(Camera, KnowsHowLargeTheSceneIsThatBeginsAgain) {
     EXPECT_EQ(again.camera().state(), session.camera().state());
 }
 
+// --- Who is seen ---------------------------------------------------------------------------------
+
+/// Whom the camera of now sees, asked of the grid.
+std::size_t seenNow(const Session& session) {
+    Culler<float> culler;
+    culler.look(*session.stage().grid(),
+                ConvexRegion<float>(cameraView(session.pose()).planes, Containment::touching,
+                                    Touch::byPlanes));
+    return culler.count();
+}
+
+/// Those that a picture shows.
+std::size_t shown(const Session& session) {
+    std::size_t count = 0;
+    for (std::uint32_t index = 0; index < session.stage().indexLimit(); ++index) {
+        count += session.stage().contains(index) && session.isVisible(index) ? 1 : 0;
+    }
+    return count;
+}
+
+Session crowd() {
+    return Session({.name = "wander", .file = {}, .objects = 2000, .seed = 1}, 800, 600);
+}
+
+TEST(FrozenCulling, IsByTheCameraOfTheMomentAtWhichItWasFrozen) {
+    Session session = crowd();
+    session.run("eye 200 60 390 0 -25");
+    session.run("freeze on");
+    session.run("home");
+    step(session, 5);
+    Session other = crowd();
+    other.run("eye 200 60 390 0 -25");
+    step(other, 5);
+    EXPECT_EQ(session.visibleCount(), seenNow(other));
+    EXPECT_EQ(shown(session), seenNow(other));
+    EXPECT_LT(shown(session), 1900U);
+}
+
+TEST(Culling, IsByTheCameraOfThePicture) {
+    Session session = crowd();
+    step(session, 1);
+    EXPECT_EQ(session.visibleCount(), 2000U);
+    session.run("effect culling off");
+    session.run("effect culling on");
+    EXPECT_EQ(session.visibleCount(), 2000U);
+    session.run("eye 200 60 390 0 -25");
+    const std::size_t seen = seenNow(session);
+    EXPECT_LT(seen, 1900U);
+    EXPECT_EQ(session.visibleCount(), seen);
+    session.run("screenshot a.png");
+    EXPECT_EQ(shown(session), seen);
+}
+
+TEST(FollowingCamera, LooksAtTheBodyAsSoonAsItFollows) {
+    Session session = crowd();
+    session.run("pose top 200 7 200 60 0 0 0 0 0 0 0 0 0 20 0 0");
+    for (int x = 20; x < 800 && !session.card(); x += 4) {
+        session.pick({double(x), 300});
+    }
+    ASSERT_TRUE(session.card());
+    const Vector3<float> before = session.card()->body.centre;
+    step(session, 60);
+    const Vector3<float> centre = session.card()->body.centre;
+    EXPECT_GT((centre - before).norm(), 1);
+    const float distance = session.camera().state()[13];
+    session.run("camera follow");
+    EXPECT_NEAR((session.pose().eye - centre).norm(), distance, 1e-3);
+    session.run("home");
+    EXPECT_NEAR((session.pose().eye - centre).norm(), session.camera().state()[13], 1e-3);
+    session.run("turn 120 0");
+    for (int frame = 0; frame < 20; ++frame) {
+        step(session, 1);
+        EXPECT_NEAR((session.pose().eye - session.card()->body.centre).norm(),
+                    session.camera().state()[13], 1e-3);
+        EXPECT_EQ(shown(session), seenNow(session)) << frame;
+        EXPECT_EQ(session.visibleCount(), seenNow(session)) << frame;
+    }
+}
+
 }  // namespace
 }  // namespace hashphase::demos

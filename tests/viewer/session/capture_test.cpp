@@ -101,6 +101,47 @@ TEST_F(Capture, LeavesTheFileAsItWasAndNamesTheBodyThatFliesTooFar) {
     expectUntouched();
 }
 
+TEST_F(Capture, SaysHowManyAreTooFarToBeRecorded) {
+    Session session({.name = "pile", .file = {}, .objects = 50, .seed = 1}, 1280, 800);
+    step(session, 1);
+    session.run("box 0 0 1280 800");
+    const std::size_t all = session.selected().size();
+    session.run("box 0 0 640 800");
+    const std::size_t far = session.selected().size();
+    ASSERT_GT(far, 1U);
+    ASSERT_LT(far, all);
+    session.run("push 1000000 0 0");
+    session.run("push 1000000 0 0");
+    step(session, 120);
+    static_cast<void>(session.takeMessages());
+    session.run("capture " + path() + " 2");
+    EXPECT_EQ(saidUntilEnd(session),
+              "wrote the boxes of 2 frames to " + path() + ", without " + std::to_string(far) +
+                  " bodies that are farther than 1,000,000 m from the origin\n");
+    EXPECT_EQ(session.failureCount(), 0);
+}
+
+TEST_F(Capture, IsRefusedWhereThereIsNobody) {
+    session_.run("box 0 0 800 600");
+    session_.run("delete");
+    ASSERT_EQ(session_.stage().size(), 0U);
+    EXPECT_EQ(faultOf(session_, "capture " + path() + " 5"),
+              path() + " is not written: there are no bodies.");
+    EXPECT_FALSE(session_.isCapturing());
+    expectUntouched();
+}
+
+TEST_F(Capture, GoesOnAfterAPause) {
+    session_.run("capture " + path() + " 5");
+    session_.advance();
+    session_.run("pause");
+    session_.advance();
+    EXPECT_EQ(session_.frame(), 1U);
+    EXPECT_TRUE(session_.isCapturing());
+    session_.run("step 4");
+    EXPECT_EQ(saidUntilEnd(session_), "wrote the boxes of 5 frames to " + path() + "\n");
+}
+
 TEST_F(Capture, LeavesTheFileAsItWasWhereABodyIsRemoved) {
     session_.run("capture " + path() + " 10");
     session_.advance();

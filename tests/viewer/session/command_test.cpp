@@ -103,8 +103,16 @@ TEST(Commands, SayWhatIsWrongAndWhatWouldBeRight) {
               "sweep, sleeping, picking, boxSelection, culling, proximity, zones, radar.");
     EXPECT_EQ(faultOf(session, "expect missing = 0"),
               "Pairs are not verified: run \"check on\" and a step, with pairs and without sweep.");
-    EXPECT_EQ(faultOf(session, "cell 1001"),
-              "SIZE is a number from 0 to 1000, not '1001'. The command is: cell SIZE");
+    EXPECT_EQ(faultOf(session, "cell 1e31"),
+              "SIZE is a number from 0 to 1e+30 [m], not '1e31'. The command is: cell SIZE");
+    EXPECT_EQ(faultOf(session, "cell none"),
+              "SIZE is a number from 0 to 1e+30 [m], not 'none'. The command is: cell SIZE");
+    EXPECT_EQ(faultOf(session, "radius -1"),
+              "R is a number, 0 or more, or 'none' [m], not '-1'. The command is: radius R");
+    EXPECT_EQ(faultOf(session, "overlay stars").substr(0, 30), "There is no overlay 'stars'; t");
+    EXPECT_EQ(faultOf(session, "overlay boxes perhaps"),
+              "'perhaps' is neither on nor off. The command is: overlay "
+              "bodies|grid|heat|boxes|pairs [on|off]");
     EXPECT_EQ(faultOf(session, "  # nothing"), "none");
     session.run("effect culling off");
     EXPECT_EQ(faultOf(session, "freeze on"),
@@ -161,6 +169,135 @@ TEST(Commands, GiveAnEffectBackWhatTheSceneDeclaresOfIt) {
     session.run("effect radar on");  // which the scene does not declare
     EXPECT_EQ(effects.radar->columns, RadarEffect().columns);
 }
+
+TEST(Commands, TakeANumberSignWithinAWord) {
+    Session session = smallSession();
+    EXPECT_EQ(faultOf(session, "scene a#b # no scene").substr(0, 27),
+              "There is no scene 'a#b'; th");
+    EXPECT_EQ(faultOf(session, "step#2").substr(0, 28), "There is no command 'step#2'");
+    EXPECT_EQ(faultOf(session, "size 500 400 #300"), "none");
+    EXPECT_EQ(session.width(), 500);
+}
+
+TEST(Commands, CountMarkedBodiesThatAreStillThere) {
+    Session session = smallSession();
+    session.run("box 0 0 800 600");
+    session.run("recolour");
+    session.run("box 0 0 400 600");
+    const std::size_t removed = session.selected().size();
+    EXPECT_GT(removed, 0U);
+    EXPECT_LT(removed, 200U);
+    session.run("delete");
+    EXPECT_EQ(session.reading("recoloured"), 200 - static_cast<double>(removed));
+    EXPECT_EQ(session.reading("recoloured"), session.reading("bodies"));
+}
+
+// --- Broadphases ---------------------------------------------------------------------------------
+
+TEST(Broadphases, AreTakenByTurnsButForThoseThatWouldTakeTooLong) {
+    Session session({.name = "wander", .file = {}, .objects = 5001, .seed = 1}, 800, 600);
+    std::string order;
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_TRUE(session.takeMessages().empty());
+        session.run("broadphase next");
+        order += std::string(session.stage().broadphase().name) + ' ';
+    }
+    EXPECT_EQ(order, "dbvt dbvt-deferred hash ");
+    EXPECT_EQ(session.takeMessages(),
+              std::vector<std::string>{
+                  "passed over axis-sweep (for up to 5,000) and simple (for up to 3,000), as there "
+                  "are 5,001 bodies; \"broadphase NAME\" takes one all the same"});
+    Session small = smallSession();
+    for (const BroadphaseKind& kind : broadphaseKinds()) {
+        EXPECT_EQ(small.stage().broadphase().name, kind.name);
+        small.run("broadphase next");
+    }
+    EXPECT_EQ(small.stage().broadphase().name, "hash");
+    EXPECT_TRUE(small.takeMessages().empty());
+}
+
+TEST(Broadphases, AreSwappedInWhereTheyAreNamedAndSayBeforehandThatTheyTakeLong) {
+    Session session({.name = "wander", .file = {}, .objects = 3001, .seed = 1}, 800, 600);
+    session.run("check on");
+    session.run("broadphase simple");
+    EXPECT_EQ(session.takeMessages(),
+              std::vector<std::string>{"simple takes a time that grows with the square of the "
+                                       "bodies: 3,001 are many, above 3,000 the scene may stand "
+                                       "still for long."});
+    for (const std::uint64_t frame : {0U, 0U, 1U, 2U}) {
+        session.advance();
+        EXPECT_EQ(session.frame(), frame);
+    }
+    EXPECT_EQ(session.stage().broadphase().name, "simple");
+    EXPECT_GT(session.reading("exact"), 0);
+    EXPECT_EQ(session.reading("missing"), 0);
+}
+
+// --- Standing still ------------------------------------------------------------------------------
+
+TEST(Pause, DropsStepsThatAreWaitedFor) {
+    for (const char* pause : {"pause", "pause on"}) {
+        Session session = smallSession();
+        session.run("step 50");
+        session.advance();
+        session.run(pause);
+        EXPECT_FALSE(session.isWaiting()) << pause;
+        EXPECT_FALSE(session.isPlaying()) << pause;
+        session.advance();
+        EXPECT_EQ(session.frame(), 1U) << pause;
+        session.run("pause");
+        EXPECT_TRUE(session.isPlaying()) << pause;
+    }
+}
+
+// --- Loads ---------------------------------------------------------------------------------------
+
+TEST(Loads, AreThoseOfTheLastFrameOrThereAreNone) {
+    Session session = smallSession();
+    const std::string fault =
+        "Loads are not counted: run \"overlay heat on\" and a step, with an effect that asks the "
+        "grid.";
+    EXPECT_EQ(faultOf(session, "expect largestLoad = 0"), fault);
+    session.run("overlay heat on");
+    step(session, 1);
+    EXPECT_GE(session.reading("largestLoad"), 1);
+    for (const char* effect : {"pairs", "picking", "boxSelection", "culling", "proximity"}) {
+        session.run(std::string("effect ") + effect + " off");
+    }
+    step(session, 1);
+    ASSERT_EQ(session.stage().grid(), nullptr);
+    EXPECT_EQ(faultOf(session, "expect largestLoad = 0"), fault);
+    session.run("effect picking on");
+    step(session, 1);
+    EXPECT_GE(session.reading("columns"), 1);
+    session.run("overlay heat off");
+    step(session, 1);
+    EXPECT_EQ(faultOf(session, "expect columns = 0"), fault);
+}
+
+TEST(Loads, AreCountedWhereCellsAreSmallerThanTheRoundingOfCoordinates) {
+    for (const float place : {255'143'500.0F, -255'143'500.0F, 1e30F}) {
+        for (const double cellSize : {0.1, 1e-30, 1e30}) {
+            GridConfig config;
+            config.cellSize = cellSize;
+            Grid<float> grid(config);
+            const Aabb<float> box(Vector3<float>::Constant(place), Vector3<float>::Constant(place));
+            static_cast<void>(grid.add(box));
+            grid.update();
+            CellLoads loads;
+            EXPECT_TRUE(loads.isEmpty());
+            loads.count(grid, box);
+            EXPECT_FALSE(loads.isEmpty());
+            for (const std::uint32_t count : {loads.columns(), loads.rows()}) {
+                EXPECT_GE(count, 1U) << place << ' ' << cellSize;
+                EXPECT_LE(count, CellLoads::kMostColumns) << place << ' ' << cellSize;
+            }
+            EXPECT_EQ(loads.shades().size(), std::size_t{loads.columns()} * loads.rows());
+        }
+    }
+}
+
+// --- What there is -------------------------------------------------------------------------------
 
 TEST(Commands, ForgetADraggedRectangleWhereTheSceneBeginsAgain) {
     Session session = smallSession();

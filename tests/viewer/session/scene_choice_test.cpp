@@ -6,6 +6,10 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+#include <string>
+
 namespace hashphase::demos {
 namespace {
 
@@ -33,6 +37,31 @@ TEST(SceneChoice, ShowsAllOfASceneThatHasGrown) {
     EXPECT_EQ(session.pose().eye.x(), 400);
     step(session, 1);
     EXPECT_EQ(session.visibleCount(), 120'000U);
+}
+
+TEST(SceneChoice, RefusesAFileWithAnEffectThatNoSimulationHas) {
+    const std::string path =
+        (std::filesystem::temp_directory_path() / "hashphase_scene_choice_test.json").string();
+    const auto write = [&path](const std::string& effects) {
+        std::ofstream(path) << R"({"scene": {"objects": 20}, "effects": {"motion": true)" << effects
+                            << "}}";
+    };
+    write("");
+    Session session({.name = {}, .file = path, .objects = {}, .seed = 1});
+    step(session, 3);
+    for (const char* effects :
+         {R"(, "rotation": true)", R"(, "pairs": true, "response": true, "friction": true)"}) {
+        write(effects);
+        const std::string fault = faultOf(session, "restart");
+        EXPECT_EQ(fault.substr(0, path.size() + 2), path + ": ") << fault;
+        EXPECT_EQ(faultOf(session, "objects 30"), fault);
+        EXPECT_EQ(session.frame(), 3U);
+        EXPECT_EQ(session.stage().size(), 20U);
+    }
+    write(R"(, "pairs": true)");
+    session.run("restart");
+    EXPECT_EQ(session.frame(), 0U);
+    std::filesystem::remove(path);
 }
 
 }  // namespace
