@@ -91,11 +91,10 @@ std::vector<Step> stepsOf(const PaperPlan& plan) {
     addFigures(plan, steps);
     addRadii(plan, steps);
     addCellSizes(plan, steps);
-    steps.push_back({"bounding volumes", plan.sticks,
-                     [&plan](PaperResults& results, const IsTimeUp& /*isTimeUp*/) {
-                         results.volumes =
-                             measureVolumes(plan.sticks, plan.effort.frames, plan.seed);
-                     }});
+    steps.push_back(
+        {"bounding volumes", plan.sticks, [&plan](PaperResults& results, const IsTimeUp& isTimeUp) {
+             results.volumes = measureVolumes(plan.sticks, plan.effort, plan.seed, isTimeUp);
+         }});
     return steps;
 }
 
@@ -129,27 +128,32 @@ const PhaseResult* PaperResults::figure(Phase phase, std::uint32_t objects) cons
     return found == figures.end() ? nullptr : &*found;
 }
 
-bool PaperResults::allHold() const {
-    return std::all_of(checks.begin(), checks.end(),
-                       [](const Check& check) { return check.holds; });
+Outcome PaperResults::outcome() const {
+    const auto has = [this](Outcome outcome) {
+        return std::any_of(checks.begin(), checks.end(),
+                           [=](const Comparison& check) { return check.outcome == outcome; });
+    };
+    if (has(Outcome::broken)) {
+        return Outcome::broken;
+    }
+    return checks.empty() || has(Outcome::notChecked) ? Outcome::notChecked : Outcome::holds;
 }
 
 RealTimeTally tallyRealTime(const PaperResults& results) {
     RealTimeTally tally;
-    for (const PhaseResult& result : results.figures) {
-        const auto& [phase, objects, seed, radius] = result.task;
-        if (isTooSlow(printedRate(phase, objects, std::nullopt))) {
-            ++tally.unoptimizedTooSlow;
-            tally.unoptimizedRealTime +=
-                isRealTime(result, MethodKind::hashphase, std::nullopt) ? 1 : 0;
+    const auto look = [](const PhaseResult& result, MethodKind kind, std::optional<double> cellSize,
+                         CellTally& cells) {
+        if (isTooSlow(printedRate(result.task.phase, result.task.objects, cellSize))) {
+            ++cells.tooSlow;
+            cells.today += isRealTime(result, kind, cellSize) ? 1 : 0;
+            cells.hashphase += isRealTime(result, MethodKind::hashphase, cellSize) ? 1 : 0;
         }
+    };
+    for (const PhaseResult& result : results.figures) {
+        const auto phase = static_cast<std::size_t>(result.task.phase);
+        look(result, MethodKind::unoptimized, std::nullopt, tally.unoptimized[phase]);
         for (const double cellSize : kPrintedCellSizes) {
-            if (isTooSlow(printedRate(phase, objects, cellSize))) {
-                ++tally.tooSlow;
-                tally.realTime += isRealTime(result, MethodKind::hashphase, cellSize) ? 1 : 0;
-                tally.paperGridRealTime +=
-                    isRealTime(result, MethodKind::paperGrid, cellSize) ? 1 : 0;
-            }
+            look(result, MethodKind::paperGrid, cellSize, tally.grid[phase]);
         }
     }
     return tally;
