@@ -31,7 +31,7 @@ PaperPlan planOf(const PaperOptions& options) {
     }
     plan.effort.frames = options.frames.value_or(plan.effort.frames);
     plan.effort.fewestFrames = std::min(plan.effort.fewestFrames, plan.effort.frames);
-    plan.effort.isOneByOne = options.timeLimit.has_value();
+    plan.effort.isHurried = options.timeLimit.has_value();
     return plan;
 }
 

@@ -27,7 +27,7 @@ struct PaperOptions {
     bool quiet = false;
 };
 
-/// What the options ask for. Under a time limit the methods are measured one by one.
+/// What the options ask for; hurried where there is a time limit.
 [[nodiscard]] PaperPlan planOf(const PaperOptions& options);
 
 /// Measures, writes the figures, and returns exitCodeOf() them. Throws InputError for files that

@@ -43,8 +43,8 @@ void declarePaper(CLI::App& app, PaperOptions& options) {
     app.add_option("--html", options.htmlFile, "write a page with tables and charts to this file");
     app.add_option(
            "--time-limit", options.timeLimit,
-           "after so many seconds leave out what is not measured yet; methods then run one by one, "
-           "the cheapest first")
+           "after so many seconds leave out what is not measured yet; hashphase then runs before "
+           "the rivals")
         ->check(positiveSecondsFault);
     app.add_flag("--ms", options.showMilliseconds,
                  "print milliseconds a frame, in place of frames a second");

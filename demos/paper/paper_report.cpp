@@ -241,8 +241,8 @@ std::vector<std::string> howItWasMeasured(const PaperResults& results) {
                         "refiling.");
     sentences.push_back(
         "Medians of up to " + withThousands(plan.effort.frames) + " different frames, " +
-        (plan.effort.isOneByOne
-             ? "one method after another, the cheapest first, because the time is limited"
+        (plan.effort.isHurried
+             ? "hashphase in a round of its own before the rivals, because the time is limited"
              : "all methods in each, in an order that is drawn anew") +
         "; of what takes longer fewer, but at least " + std::to_string(plan.effort.fewestFrames) +
         ". Seed " + std::to_string(plan.seed) + ".");

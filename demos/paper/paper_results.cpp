@@ -5,7 +5,9 @@
 #include <demos/console/format.hpp>
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
+#include <utility>
 
 namespace hashphase::demos {
 namespace {
@@ -35,16 +37,48 @@ double meanNeighbours(const PhaseTask& task) {
            static_cast<double>(std::max<std::size_t>(counts.size(), 1));
 }
 
+/// The kinds that run together: all, or in a hurry one after the other, the cheapest first, so that
+/// what is slow takes no time from the others.
+std::vector<std::vector<MethodKind>> roundsOf(const PaperPlan& plan) {
+    using enum MethodKind;
+    return plan.effort.isHurried
+               ? std::vector<std::vector<MethodKind>>{{hashphase}, {paperGrid}, {unoptimized}}
+               : std::vector<std::vector<MethodKind>>{{hashphase, paperGrid, unoptimized}};
+}
+
+/// Another round has other methods.
+void addRound(PhaseResult round, std::vector<PhaseResult>& figures) {
+    for (PhaseResult& figure : figures) {
+        if (figure.task.phase == round.task.phase && figure.task.objects == round.task.objects) {
+            figure.found = std::max(figure.found, round.found);
+            std::move(round.methods.begin(), round.methods.end(),
+                      std::back_inserter(figure.methods));
+            return;
+        }
+    }
+    figures.push_back(std::move(round));
+}
+
 void addFigures(const PaperPlan& plan, std::vector<Step>& steps) {
-    for (const Phase phase : kPhases) {
-        for (const std::uint32_t objects : plan.objects) {
-            steps.push_back({std::string(nameOf(phase)) + " of " + withThousands(objects), objects,
-                             [=, &plan](PaperResults& results, const IsTimeUp& isTimeUp) {
-                                 results.figures.push_back(
-                                     measurePhase({phase, objects, plan.seed, plan.aiRadius},
-                                                  figureMethods(phase, objects, plan.aiRadius),
-                                                  plan.effort, isTimeUp));
-                             }});
+    for (const std::vector<MethodKind>& kinds : roundsOf(plan)) {
+        for (const Phase phase : kPhases) {
+            for (const std::uint32_t objects : plan.objects) {
+                std::vector<MethodSpec> specs = figureMethods(phase, objects, plan.aiRadius);
+                std::erase_if(specs, [&](const MethodSpec& spec) {
+                    return std::find(kinds.begin(), kinds.end(), spec.kind) == kinds.end();
+                });
+                if (specs.empty()) {
+                    continue;
+                }
+                std::string what = std::string(nameOf(phase)) + " of " + withThousands(objects);
+                what += kinds.size() == 1 ? ", " + std::string(nameOf(kinds[0])) : "";
+                steps.push_back(
+                    {what, objects, [=, &plan](PaperResults& results, const IsTimeUp& isTimeUp) {
+                         addRound(measurePhase({phase, objects, plan.seed, plan.aiRadius}, specs,
+                                               plan.effort, isTimeUp),
+                                  results.figures);
+                     }});
+            }
         }
     }
 }

@@ -91,10 +91,9 @@ Subjects spotSubjects(const PhaseTask& task) {
                                         : Subjects::drawn(task.objects, kSpotChecked, task.seed);
 }
 
-/// All objects, where there is the time.
-Subjects firstSubjects(const PhaseTask& task, const PhaseEffort& effort) {
-    return task.objects <= kMostBruteForced && !effort.isOneByOne ? Subjects::all(task.objects)
-                                                                  : spotSubjects(task);
+/// All objects, where they are not too many.
+Subjects firstSubjects(const PhaseTask& task) {
+    return task.objects <= kMostBruteForced ? Subjects::all(task.objects) : spotSubjects(task);
 }
 
 void shuffle(std::vector<std::size_t>& order, Random& random) {
@@ -124,7 +123,7 @@ public:
           bed_(task.objects, task.seed),
           random_(task.seed),
           all_(Subjects::all(task.objects)),
-          firstJudge_(task, firstSubjects(task, effort)),
+          firstJudge_(task, firstSubjects(task)),
           lastJudge_(task, spotSubjects(task)),
           result_(unmeasured(task, specs)) {
         for (const MethodSpec& spec : specs) {
@@ -165,7 +164,9 @@ private:
 
     /// Returns whether there is another one to be run.
     bool runFrame(std::uint32_t frame) {
-        shuffle(order_, random_);
+        if (!effort_.isHurried) {
+            shuffle(order_, random_);
+        }
         std::vector<Turn> turns;
         for (const std::size_t i : order_) {
             if (frame <= lastFrame_[i] && !isTimeUp_()) {
@@ -215,9 +216,10 @@ private:
         });
         if (unoptimized != turns.end()) {
             compare(turns, methods_[unoptimized->method]->answer(), all_);
-        } else if (!turns.empty() && (frame == 0 || isLastOfAny(frame, turns))) {
-            Judge& judge = frame == 0 && !isTimeUp_() ? firstJudge_ : lastJudge_;
-            compare(turns, judge.answer(bed_), judge.subjects());
+        } else if (frame == 0 && !effort_.isHurried && !turns.empty()) {
+            compare(turns, firstJudge_.answer(bed_), firstJudge_.subjects());
+        } else if (!turns.empty() && isLastOfAny(frame, turns)) {
+            compare(turns, lastJudge_.answer(bed_), lastJudge_.subjects());
         }
     }
 
@@ -310,33 +312,9 @@ std::string faultOf(Phase phase, const PhaseAnswer& answer, const PhaseAnswer& r
                             " heights and speeds differ";
 }
 
-std::vector<std::size_t> cheapestFirst(std::span<const MethodSpec> specs) {
-    std::vector<std::size_t> order(specs.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        // Kinds are named in the order of their costs, the dearest first.
-        return std::pair(specs[b].kind, specs[a].cellSize) <
-               std::pair(specs[a].kind, specs[b].cellSize);
-    });
-    return order;
-}
-
 PhaseResult measurePhase(const PhaseTask& task, std::span<const MethodSpec> specs,
                          const PhaseEffort& effort, const IsTimeUp& isTimeUp) {
-    if (!effort.isOneByOne) {
-        return PhaseRun(task, specs, effort, isTimeUp).run();
-    }
-    PhaseResult result = unmeasured(task, specs);
-    for (const std::size_t i : cheapestFirst(specs)) {
-        if (!isTimeUp()) {
-            PhaseResult one = PhaseRun(task, specs.subspan(i, 1), effort, isTimeUp).run();
-            result.side = one.side;
-            result.triangles = one.triangles;
-            result.found = std::max(result.found, one.found);
-            result.methods[i] = std::move(one.methods.front());
-        }
-    }
-    return result;
+    return PhaseRun(task, specs, effort, isTimeUp).run();
 }
 
 Comparison agreement(std::span<const PhaseResult> results) {

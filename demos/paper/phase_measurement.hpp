@@ -8,11 +8,11 @@
 //           and keep nothing from frame to frame, as hashphase does. Each method runs for the first
 //           frames, as many as it may take time for, and at least a few: what is slow has fewer,
 //           and says how many.
-// Turns     In each frame all methods have a turn, in an order that is drawn anew. One by one, each
-//           has all its frames before the next one begins, the cheapest first: what is slow then
-//           takes no time from the others.
+// Turns     In each frame all methods have a turn, in an order that is drawn anew; hurried, in the
+//           order of their specs, for the time may be up in the first frame.
 // Checked   In every frame that the un-optimized method runs, for all objects. Without it in the
-//           first frame, and in the last one of each method for some objects drawn at random.
+//           first frame, unless hurried, and in the last one of each method for some objects drawn at
+//           random.
 
 #include <demos/paper/comparison.hpp>
 #include <demos/paper/phase_method.hpp>
@@ -27,7 +27,7 @@ struct PhaseEffort {
     std::uint32_t frames = 60;        // of a method, at most
     std::uint32_t fewestFrames = 3;   // at least 1
     double methodMilliseconds = 400;  // that a method may take for more frames than the fewest
-    bool isOneByOne = false;          // for want of time
+    bool isHurried = false;           // the time may be up before everything is measured
 };
 
 using IsTimeUp = std::function<bool()>;

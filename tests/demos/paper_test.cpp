@@ -154,14 +154,14 @@ TEST(PaperPhases, CatchWhatGoesWrongInALateFrameOfAQuickRun) {
         specs.front().make = [right = specs.front().make](const TestBed& bed) {
             return std::make_unique<Forgetful>(right(bed), 5);
         };
-        for (const bool isOneByOne : {false, true}) {
+        for (const bool isHurried : {false, true}) {
             PhaseEffort effort = quickEffort();
-            effort.isOneByOne = isOneByOne;
+            effort.isHurried = isHurried;
             const std::array result{measurePhase(
                 {.phase = phase, .objects = 900, .seed = 3, .aiRadius = 12}, specs, effort)};
             const MethodResult& wrong = result[0].methods.front();
             EXPECT_EQ(wrong.frameMs.size(), effort.frames);
-            EXPECT_EQ(wrong.checkedFrames, 2U);
+            EXPECT_EQ(wrong.checkedFrames, isHurried ? 1U : 2U);
             EXPECT_EQ(wrong.checkedTimed, 1U);
             EXPECT_EQ(wrong.wrongFrames, 1U);
             EXPECT_EQ(result[0].methods.back().wrongFrames, 0U);
@@ -235,29 +235,29 @@ private:
     int name_;
 };
 
-std::vector<int> turnsOf(std::span<const MethodKind> kinds, std::uint64_t seed, bool isOneByOne) {
+std::vector<int> turnsOf(std::size_t methods, std::uint64_t seed, bool isHurried) {
     std::vector<int> entries;
     std::vector<MethodSpec> specs;
-    for (const MethodKind kind : kinds) {
-        specs.push_back({kind, std::nullopt, [&, name = static_cast<int>(specs.size())](auto&) {
+    while (specs.size() < methods) {
+        specs.push_back({MethodKind::hashphase, std::nullopt,
+                         [&, name = static_cast<int>(specs.size())](auto&) {
                              return std::make_unique<Diary>(entries, name);
                          }});
     }
     PhaseEffort effort = kBrief;
-    effort.isOneByOne = isOneByOne;
+    effort.isHurried = isHurried;
     static_cast<void>(measurePhase({Phase::visibility, 10, seed, 12}, specs, effort));
     return entries;
 }
 
 TEST(PaperPhases, TakeTurnsInAnOrderThatIsDrawnAnewInEachFrame) {
-    const std::vector<MethodKind> kinds(4, MethodKind::hashphase);
-    const std::vector<int> turns = turnsOf(kinds, 3, false);
-    EXPECT_EQ(turns, turnsOf(kinds, 3, false));
-    EXPECT_NE(turns, turnsOf(kinds, 4, false));
-    ASSERT_EQ(turns.size(), kinds.size() * (kBrief.frames + 1));
+    const std::vector<int> turns = turnsOf(4, 3, false);
+    EXPECT_EQ(turns, turnsOf(4, 3, false));
+    EXPECT_NE(turns, turnsOf(4, 4, false));
+    ASSERT_EQ(turns.size(), 4 * (kBrief.frames + 1));
     std::set<int> after0;
     for (std::size_t i = 0; i + 1 < turns.size(); ++i) {
-        if (turns[i] == 0 && (i + 1) % kinds.size() != 0) {
+        if (turns[i] == 0 && (i + 1) % 4 != 0) {
             after0.insert(turns[i + 1]);
         }
     }
@@ -265,17 +265,38 @@ TEST(PaperPhases, TakeTurnsInAnOrderThatIsDrawnAnewInEachFrame) {
     for (auto frame = turns.begin(); frame != turns.end(); frame += 4) {
         EXPECT_EQ(std::set<int>(frame, frame + 4).size(), 4U);
     }
+    const std::vector<int> hurried = turnsOf(4, 3, true);
+    EXPECT_TRUE(std::is_sorted(hurried.begin(), hurried.begin() + 4));
 }
 
-TEST(PaperPhases, RunTheCheapestFirstWhereTheTimeIsLimited) {
+TEST(PaperResults, HaveHashphaseBeforeItsRivalsWhereTheTimeIsLimited) {
     PaperOptions options;
-    EXPECT_FALSE(planOf(options).effort.isOneByOne);
+    EXPECT_FALSE(planOf(options).effort.isHurried);
     options.timeLimit = 10;
-    EXPECT_TRUE(planOf(options).effort.isOneByOne);
-    const std::array kinds{MethodKind::unoptimized, MethodKind::paperGrid, MethodKind::hashphase};
-    std::vector<int> turns = turnsOf(kinds, 3, true);
-    EXPECT_TRUE(std::is_sorted(turns.rbegin(), turns.rend()));
-    EXPECT_EQ(turns.size(), kinds.size() * (kBrief.frames + 1));
+    options.objects = {100, 200};
+    PaperPlan plan = planOf(options);
+    plan.effort = kBrief;
+    plan.effort.isHurried = true;
+    std::vector<std::string> steps;
+    PaperWatch watch;
+    watch.tellProgress = [&](std::size_t, std::string_view what) { steps.emplace_back(what); };
+    watch.isTimeUp = [&] { return steps.size() > 12; };  // as the first un-optimized one begins
+    const PaperResults results = measurePaper(plan, watch);
+    ASSERT_GT(steps.size(), 18U);
+    EXPECT_EQ(steps[0], "collision of 100, hashphase");
+    EXPECT_EQ(steps[5], "AI of 200, hashphase");
+    EXPECT_EQ(steps[6], "collision of 100, paper's grid");
+    EXPECT_EQ(steps[17], "AI of 200, un-optimized");
+    ASSERT_EQ(results.figures.size(), 6U);
+    for (const PhaseResult& figure : results.figures) {
+        EXPECT_EQ(figure.methods.size(), 11U);
+        for (const MethodResult& method : figure.methods) {
+            EXPECT_TRUE(method.isMeasured());
+            EXPECT_GE(method.checkedTimed, 1U);
+        }
+    }
+    EXPECT_EQ(results.outcome(), Outcome::holds);
+    EXPECT_EQ(results.leftOut.front(), "collision of 100, un-optimized");
 }
 
 TEST(BoundingVolumes, StopWhenTheTimeIsUp) {
@@ -349,7 +370,7 @@ TEST(PaperCommand, LeavesOutWhatTheTimeLimitDoesNotAllowAndClaimsNothing) {
     const std::string json = folder.file("paper.json");
     const PaperOutput output = runPaperCommand({"--time-limit", "1e-9", "--json", json, "--quiet"});
     EXPECT_EQ(output.exitCode, kExitCheckFailed) << output.err;
-    EXPECT_NE(output.out.find("Left out for want of time: collision of 50,000\n"),
+    EXPECT_NE(output.out.find("Left out for want of time: collision of 50,000, hashphase\n"),
               std::string::npos);
     EXPECT_NE(output.out.find("the same as brute force: not checked\n"), std::string::npos);
     const Json read = Json::parse(contentsOfPaperFile(json));
