@@ -56,7 +56,7 @@ const PrintedFigure& figureOf(Phase phase) {
          kFigure14},
         {15, "AI", "every object counts the colours within a radius and takes the rarest",
          "hashing all spheres anew, counting the colours within the radius of each, and taking the "
-         "rarest",
+         "rarest; hashphase counts in cells that follow the radius, whatever the column",
          kFigure15},
     }};
     return kFigures[static_cast<std::size_t>(phase)];
