@@ -60,15 +60,9 @@ private:
 class PaperAi final : public PhaseMethod {
 public:
     PaperAi(const TestBed& bed, float cellSize, float radius)
-        : map_(bed.boxes(), cellSize), radius_(radius) {}
+        : map_(bed.domain(), cellSize), radius_(radius) {}
 
-    void hash(const TestBed& bed) override {
-        points_.clear();
-        for (const Vector3<float>& centre : bed.centres()) {
-            points_.emplace_back(centre, centre);
-        }
-        map_.refile(points_);
-    }
+    void hash(const TestBed& bed) override { map_.refile(bed.centres()); }
 
     void run(const TestBed& bed) override {
         colours_.resize(bed.objects());
@@ -81,8 +75,7 @@ public:
         return {{colours_.begin(), colours_.end()}, {}};
     }
     [[nodiscard]] std::size_t memoryBytes() const override {
-        return map_.memoryBytes() + points_.capacity() * sizeof(points_[0]) +
-               colours_.capacity() * sizeof(std::uint32_t);
+        return map_.memoryBytes() + colours_.capacity() * sizeof(std::uint32_t);
     }
 
 private:
@@ -94,11 +87,9 @@ private:
                                                  position.x() + reach, position.z() + reach);
         ColourCounts counts{};
         for (int z = cells.lowZ; z <= cells.highZ; ++z) {
-            for (int x = cells.lowX; x <= cells.highX; ++x) {
-                for (const std::uint32_t other : map_.objects(x, z)) {
-                    if (areNear(position, bed.centres()[other], radius_) && other != agent) {
-                        ++counts[bed.colours()[other]];
-                    }
+            for (const std::uint32_t other : map_.row(cells.lowX, cells.highX, z)) {
+                if (areNear(position, bed.centres()[other], radius_) && other != agent) {
+                    ++counts[bed.colours()[other]];
                 }
             }
         }
@@ -107,7 +98,6 @@ private:
 
     PaperMap map_;
     float radius_;
-    std::vector<Aabb<float>> points_;
     std::vector<std::uint32_t> colours_;
 };
 

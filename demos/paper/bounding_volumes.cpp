@@ -4,6 +4,7 @@
 #include <broadphase/neighbours.hpp>
 #include <demos/console/format.hpp>
 #include <demos/report/frame_clock.hpp>
+#include <demos/report/stopwatch.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -90,6 +91,25 @@ void runVolumeFrame(VolumePass& pass, std::span<const Stick> sticks, VolumeResul
     result.touching += static_cast<double>(pass.touching().size());
 }
 
+/// With one pass for each kind, which are made.
+Comparison compareVolumes(std::span<const Stick> sticks,
+                          std::vector<std::unique_ptr<VolumePass>>& passes) {
+    const std::vector<Couple> right = touchingByBruteForce(sticks);
+    std::string faults;
+    for (const VolumeKind kind : kVolumeKinds) {
+        passes.push_back(std::make_unique<VolumePass>(kind, sticks));
+        passes.back()->findCandidates(sticks);
+        passes.back()->testExactly(sticks);
+        if (passes.back()->touching() != right) {
+            faults += " " + std::string(nameOf(kind));
+        }
+    }
+    return {
+        "Whatever the bounding volume, the same sticks touch",
+        faults.empty() ? Outcome::holds : Outcome::broken,
+        faults.empty() ? withThousands(right.size()) + " couples touch" : "wrong with" + faults};
+}
+
 }  // namespace
 
 std::string_view nameOf(VolumeKind kind) {
@@ -97,36 +117,37 @@ std::string_view nameOf(VolumeKind kind) {
     return kNames[static_cast<std::size_t>(kind)];
 }
 
-VolumeResults measureVolumes(std::uint32_t sticks, std::uint32_t frames, std::uint64_t seed) {
+VolumeResults measureVolumes(std::uint32_t sticks, const PhaseEffort& effort, std::uint64_t seed,
+                             const IsTimeUp& isTimeUp) {
     StickScene scene(sticks, seed);
-    VolumeResults results{sticks, {}, {}};
+    VolumeResults results;
+    results.sticks = sticks;
     std::vector<std::unique_ptr<VolumePass>> passes;
-    const std::vector<Couple> right = touchingByBruteForce(scene.sticks());
-    std::string faults;
+    results.checks.push_back(compareVolumes(scene.sticks(), passes));
     for (const VolumeKind kind : kVolumeKinds) {
-        passes.push_back(std::make_unique<VolumePass>(kind, scene.sticks()));
-        passes.back()->findCandidates(scene.sticks());
-        passes.back()->testExactly(scene.sticks());
-        if (passes.back()->touching() != right) {
-            faults += " " + std::string(nameOf(kind));
-        }
         results.volumes.push_back({kind, {}, {}, 0, 0, 0});
     }
-    for (std::uint32_t frame = 0; frame < frames; ++frame) {
+    const double budget = effort.methodMilliseconds * static_cast<double>(passes.size());
+    const Stopwatch watch;
+    const auto goesOn = [&] {
+        return results.frames < effort.fewestFrames ||
+               (results.frames < effort.frames && watch.milliseconds() < budget);
+    };
+    for (; goesOn() && !isTimeUp(); ++results.frames) {
         scene.advance();
         for (std::size_t turn = 0; turn < passes.size(); ++turn) {
-            const std::size_t i = (turn + frame) % passes.size();
+            const std::size_t i = (turn + results.frames) % passes.size();
             runVolumeFrame(*passes[i], scene.sticks(), results.volumes[i]);
         }
     }
-    for (VolumeResult& each : results.volumes) {
-        each.candidates /= frames;
-        each.passed /= frames;
-        each.touching /= frames;
+    if (results.frames == 0) {
+        results.volumes.clear();
     }
-    results.checks.push_back(
-        {"Whatever the bounding volume, the same sticks touch", faults.empty(),
-         faults.empty() ? withThousands(right.size()) + " couples touch" : "wrong with" + faults});
+    for (VolumeResult& each : results.volumes) {
+        each.candidates /= results.frames;
+        each.passed /= results.frames;
+        each.touching /= results.frames;
+    }
     return results;
 }
 

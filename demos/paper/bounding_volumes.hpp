@@ -4,8 +4,8 @@
 // How well each kind of bounding volume works as a first pass for bodies that are not round (the
 // paper's "efficiency of hashing different bounding volume types").
 
+#include <demos/paper/phase_measurement.hpp>
 #include <demos/paper/stick_scene.hpp>
-#include <demos/report/check.hpp>
 
 #include <string_view>
 #include <vector>
@@ -24,15 +24,17 @@ struct VolumeResult {
 
 struct VolumeResults {
     std::uint32_t sticks = 0;
-    std::vector<VolumeResult> volumes;  // by kind
-    std::vector<Check> checks;
+    std::uint32_t frames = 0;           // timed, of each kind
+    std::vector<VolumeResult> volumes;  // by kind; none where no frame was timed
+    std::vector<Comparison> checks;
 };
 
 [[nodiscard]] std::string_view nameOf(VolumeKind kind);
 
-/// All kinds in turn in each frame. In the first one, which is not timed, they are compared with
-/// the exact test of all couples.
-[[nodiscard]] VolumeResults measureVolumes(std::uint32_t sticks, std::uint32_t frames,
-                                           std::uint64_t seed);
+/// All kinds in turn in each frame, as many as the effort allows until the time is up. In the first
+/// one, which is not timed, they are compared with the exact test of all couples.
+[[nodiscard]] VolumeResults measureVolumes(
+    std::uint32_t sticks, const PhaseEffort& effort, std::uint64_t seed,
+    const IsTimeUp& isTimeUp = [] { return false; });
 
 }  // namespace hashphase::demos

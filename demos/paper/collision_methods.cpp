@@ -4,6 +4,7 @@
 #include <demos/paper/phase_makers.hpp>
 
 #include <algorithm>
+#include <ranges>
 #include <utility>
 
 namespace hashphase::demos {
@@ -14,7 +15,7 @@ PhaseAnswer sortedAnswer(std::vector<std::uint64_t> couples, std::vector<float> 
     return {std::move(couples), std::move(numbers)};
 }
 
-/// All boxes with all boxes, and all triangles for each.
+/// All boxes with all boxes, and for each the triangles one by one until one has it.
 class BruteCollision final : public PhaseMethod {
 public:
     explicit BruteCollision(Subjects subjects) : subjects_(std::move(subjects)) {}
@@ -33,19 +34,22 @@ public:
                 }
             }
         }
+    }
+
+    void stand(const TestBed& bed) override {
+        const auto all = std::views::iota(std::size_t{0}, bed.ground().boxes.size());
         for (const std::uint32_t object : subjects_.list()) {
-            HighestTriangle highest(bed.centres()[object].x(), bed.centres()[object].z());
-            for (std::size_t i = 0; i < bed.ground().boxes.size(); ++i) {
-                highest.look(bed.ground().corners(i));
-            }
-            states_.stand(object, highest.height());
+            const Vector3<float>& centre = bed.centres()[object];
+            states_.stand(object, groundHeight(bed.ground(), all, centre.x(), centre.z()));
         }
     }
 
     [[nodiscard]] PhaseAnswer answer() const override {
         return sortedAnswer(couples_, states_.numbers(subjects_));
     }
-    [[nodiscard]] std::size_t memoryBytes() const override { return states_.memoryBytes(); }
+    [[nodiscard]] std::size_t memoryBytes() const override {
+        return states_.memoryBytes() + couples_.capacity() * sizeof(couples_[0]);
+    }
 
 private:
     Subjects subjects_;
@@ -58,7 +62,7 @@ private:
 class PaperCollision final : public PhaseMethod {
 public:
     PaperCollision(const TestBed& bed, float cellSize)
-        : spheres_(bed.boxes(), cellSize), triangles_(bed.ground().boxes, cellSize) {}
+        : spheres_(bed.domain(), cellSize), triangles_(bed.ground().boxes, cellSize) {}
 
     void hash(const TestBed& bed) override { spheres_.refile(bed.boxes()); }
 
@@ -71,15 +75,15 @@ public:
                 collide(x, z, bed.boxes());
             }
         }
+    }
+
+    void stand(const TestBed& bed) override {
         for (std::uint32_t object = 0; object < bed.objects(); ++object) {
             const float x = bed.centres()[object].x();
             const float z = bed.centres()[object].z();
-            const PaperMap::Range cell = triangles_.range(x, z, x, z);
-            HighestTriangle highest(x, z);
-            for (const std::uint32_t triangle : triangles_.objects(cell.lowX, cell.lowZ)) {
-                highest.look(bed.ground().corners(triangle));
-            }
-            states_.stand(object, highest.height());
+            const PaperMap::Cell cell = triangles_.cellAt(x, z);
+            states_.stand(object,
+                          groundHeight(bed.ground(), triangles_.objects(cell.x, cell.z), x, z));
         }
     }
 
@@ -88,7 +92,7 @@ public:
     }
     [[nodiscard]] std::size_t memoryBytes() const override {
         return spheres_.memoryBytes() + triangles_.memoryBytes() + states_.memoryBytes() +
-               couples_.capacity() * sizeof(std::uint64_t);
+               couples_.capacity() * sizeof(couples_[0]);
     }
 
 private:
@@ -109,8 +113,8 @@ private:
     [[nodiscard]] bool isHome(int x, int z, const Aabb<float>& a, const Aabb<float>& b) const {
         const float lowX = std::max(a.min().x(), b.min().x());
         const float lowZ = std::max(a.min().z(), b.min().z());
-        const PaperMap::Range home = spheres_.range(lowX, lowZ, lowX, lowZ);
-        return home.lowX == x && home.lowZ == z;
+        const PaperMap::Cell home = spheres_.cellAt(lowX, lowZ);
+        return home.x == x && home.z == z;
     }
 
     PaperMap spheres_;

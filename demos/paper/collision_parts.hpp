@@ -55,32 +55,40 @@ private:
     std::vector<float> heights_;
 };
 
-/// The highest of the triangles at that place of the map. Edges count to both sides.
-class HighestTriangle {
-public:
-    HighestTriangle(float x, float z) : x_(x), z_(z) {}
+/// The height of the triangle at that place of the map, or nothing where the place is beside it. Edges
+/// belong to both sides.
+inline std::optional<float> heightOf(const TriangleGround& ground, std::size_t triangle, float x,
+                                     float z) {
+    constexpr float kEdge = 1e-5F;  // rounding must not lose a point between two triangles
+    const Aabb<float>& box = ground.boxes[triangle];
+    if (x < box.min().x() || x > box.max().x() || z < box.min().z() || z > box.max().z()) {
+        return std::nullopt;
+    }
+    const auto [a, b, c] = ground.corners(triangle);
+    const float abX = b.x() - a.x();
+    const float abZ = b.z() - a.z();
+    const float acX = c.x() - a.x();
+    const float acZ = c.z() - a.z();
+    const float inverseArea = 1 / (abX * acZ - abZ * acX);
+    const float u = ((x - a.x()) * acZ - (z - a.z()) * acX) * inverseArea;
+    const float v = (abX * (z - a.z()) - abZ * (x - a.x())) * inverseArea;
+    if (u < -kEdge || v < -kEdge || u + v > 1 + kEdge) {
+        return std::nullopt;
+    }
+    return a.y() + u * (b.y() - a.y()) + v * (c.y() - a.y());
+}
 
-    void look(const std::array<Vector3<float>, 3>& corners) {
-        constexpr float kEdge = 1e-5F;  // rounding must not lose a point between two triangles
-        const auto& [a, b, c] = corners;
-        const float abX = b.x() - a.x();
-        const float abZ = b.z() - a.z();
-        const float acX = c.x() - a.x();
-        const float acZ = c.z() - a.z();
-        const float area = abX * acZ - abZ * acX;
-        const float u = ((x_ - a.x()) * acZ - (z_ - a.z()) * acX) / area;
-        const float v = (abX * (z_ - a.z()) - abZ * (x_ - a.x())) / area;
-        if (u >= -kEdge && v >= -kEdge && u + v <= 1 + kEdge) {
-            height_ = std::max(height_, a.y() + u * (b.y() - a.y()) + v * (c.y() - a.y()));
+/// The height of the ground at that place of the map. No surface is vertical or above another one, so
+/// the first of the triangles that has the place is the answer; 0 where none has.
+template <class Triangles>
+[[nodiscard]] float groundHeight(const TriangleGround& ground, const Triangles& triangles, float x,
+                                 float z) {
+    for (const auto triangle : triangles) {
+        if (const std::optional<float> height = heightOf(ground, triangle, x, z)) {
+            return *height;
         }
     }
-
-    [[nodiscard]] float height() const { return height_; }
-
-private:
-    float x_;
-    float z_;
-    float height_ = 0;  // no ground of ours is below
-};
+    return 0;
+}
 
 }  // namespace hashphase::demos

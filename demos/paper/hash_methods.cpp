@@ -29,7 +29,10 @@ public:
     }
 
     [[nodiscard]] Grid<float>& grid() { return grid_; }
-    [[nodiscard]] const Grid<float>& grid() const { return grid_; }
+    [[nodiscard]] double cellSize() const { return static_cast<double>(grid_.cellSize()); }
+    [[nodiscard]] std::size_t memoryBytes() const {
+        return grid_.memoryBytes() + ids_.capacity() * sizeof(ids_[0]);
+    }
 
 private:
     Grid<float> grid_;
@@ -62,26 +65,9 @@ public:
         for (const auto& [a, b] : current_) {
             states_.meet(a.index, b.index);
         }
-        standAll(bed);
     }
 
-    [[nodiscard]] PhaseAnswer answer() const override {
-        std::vector<std::uint64_t> couples;
-        for (const auto& [a, b] : current_) {
-            couples.push_back(pairKeyOf(a.index, b.index));
-        }
-        return {std::move(couples), states_.numbers(Subjects::all(states_.size()))};
-    }
-
-    [[nodiscard]] std::size_t memoryBytes() const override {
-        return spheres_.grid().memoryBytes() + pairs_.memoryBytes() + triangles_.memoryBytes() +
-               terrain_.memoryBytes() + states_.memoryBytes() +
-               (current_.capacity() + survived_.capacity()) * sizeof(ProxyPair) +
-               above_.capacity() * sizeof(above_[0]) + grounds_.capacity() * sizeof(grounds_[0]);
-    }
-
-private:
-    void standAll(const TestBed& bed) {
+    void stand(const TestBed& bed) override {
         above_.resize(bed.objects());
         grounds_.resize(bed.objects());
         for (std::size_t i = 0; i < above_.size(); ++i) {
@@ -94,6 +80,23 @@ private:
         }
     }
 
+    [[nodiscard]] PhaseAnswer answer() const override {
+        std::vector<std::uint64_t> couples;
+        for (const auto& [a, b] : current_) {
+            couples.push_back(pairKeyOf(a.index, b.index));
+        }
+        return {std::move(couples), states_.numbers(Subjects::all(states_.size()))};
+    }
+
+    [[nodiscard]] double cellSize() const override { return spheres_.cellSize(); }
+    [[nodiscard]] std::size_t memoryBytes() const override {
+        return spheres_.memoryBytes() + pairs_.memoryBytes() + triangles_.memoryBytes() +
+               terrain_.memoryBytes() + states_.memoryBytes() +
+               (current_.capacity() + survived_.capacity()) * sizeof(ProxyPair) +
+               above_.capacity() * sizeof(above_[0]) + grounds_.capacity() * sizeof(grounds_[0]);
+    }
+
+private:
     SphereGrid spheres_;
     Pairs<float> pairs_;
     Grid<float> triangles_;
@@ -123,8 +126,9 @@ public:
     [[nodiscard]] PhaseAnswer answer() const override {
         return {{visible_.begin(), visible_.end()}, {}};
     }
+    [[nodiscard]] double cellSize() const override { return spheres_.cellSize(); }
     [[nodiscard]] std::size_t memoryBytes() const override {
-        return spheres_.grid().memoryBytes() + culler_.memoryBytes() +
+        return spheres_.memoryBytes() + culler_.memoryBytes() +
                visible_.capacity() * sizeof(std::uint32_t);
     }
 
@@ -153,8 +157,9 @@ public:
     [[nodiscard]] PhaseAnswer answer() const override {
         return {{colours_.begin(), colours_.end()}, {}};
     }
+    [[nodiscard]] double cellSize() const override { return spheres_.cellSize(); }
     [[nodiscard]] std::size_t memoryBytes() const override {
-        return spheres_.grid().memoryBytes() + rarest_.memoryBytes() +
+        return spheres_.memoryBytes() + rarest_.memoryBytes() +
                colours_.capacity() * sizeof(std::uint32_t);
     }
 

@@ -10,8 +10,6 @@
 #include <ostream>
 
 namespace hashphase::demos {
-namespace {
-
 PaperPlan planOf(const PaperOptions& options) {
     PaperPlan plan;
     plan.seed = options.seed;
@@ -33,10 +31,9 @@ PaperPlan planOf(const PaperOptions& options) {
     }
     plan.effort.frames = options.frames.value_or(plan.effort.frames);
     plan.effort.fewestFrames = std::min(plan.effort.fewestFrames, plan.effort.frames);
+    plan.effort.isHurried = options.timeLimit.has_value();
     return plan;
 }
-
-}  // namespace
 
 int runPaper(const PaperOptions& options, Console& console) {
     const PaperPlan plan = planOf(options);
@@ -67,7 +64,7 @@ int runPaper(const PaperOptions& options, Console& console) {
 }
 
 int exitCodeOf(const PaperResults& results) {
-    return results.allHold() ? kExitOk : kExitCheckFailed;
+    return results.outcome() == Outcome::holds ? kExitOk : kExitCheckFailed;
 }
 
 }  // namespace hashphase::demos

@@ -27,11 +27,15 @@ struct PaperOptions {
     bool quiet = false;
 };
 
+/// What the options ask for; hurried where there is a time limit.
+[[nodiscard]] PaperPlan planOf(const PaperOptions& options);
+
 /// Measures, writes the figures, and returns exitCodeOf() them. Throws InputError for files that
 /// cannot be written.
 int runPaper(const PaperOptions& options, Console& console);
 
-/// kExitCheckFailed when a method found something else than brute force. Times do not matter.
+/// kExitCheckFailed when a method found something else than brute force, or nothing was compared.
+/// Times do not matter.
 [[nodiscard]] int exitCodeOf(const PaperResults& results);
 
 }  // namespace hashphase::demos

@@ -41,8 +41,10 @@ void declarePaper(CLI::App& app, PaperOptions& options) {
     app.add_option("--json", options.jsonFile, "write everything measured to this file");
     app.add_option("--csv", options.csvFile, "write a row for each measurement to this file");
     app.add_option("--html", options.htmlFile, "write a page with tables and charts to this file");
-    app.add_option("--time-limit", options.timeLimit,
-                   "after so many seconds leave out what is not measured yet")
+    app.add_option(
+           "--time-limit", options.timeLimit,
+           "after so many seconds leave out what is not measured yet; hashphase then runs before "
+           "the rivals")
         ->check(positiveSecondsFault);
     app.add_flag("--ms", options.showMilliseconds,
                  "print milliseconds a frame, in place of frames a second");

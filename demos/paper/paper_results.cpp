@@ -5,7 +5,9 @@
 #include <demos/console/format.hpp>
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
+#include <utility>
 
 namespace hashphase::demos {
 namespace {
@@ -35,16 +37,48 @@ double meanNeighbours(const PhaseTask& task) {
            static_cast<double>(std::max<std::size_t>(counts.size(), 1));
 }
 
+/// The kinds that run together: all, or in a hurry one after the other, the cheapest first, so that
+/// what is slow takes no time from the others.
+std::vector<std::vector<MethodKind>> roundsOf(const PaperPlan& plan) {
+    using enum MethodKind;
+    return plan.effort.isHurried
+               ? std::vector<std::vector<MethodKind>>{{hashphase}, {paperGrid}, {unoptimized}}
+               : std::vector<std::vector<MethodKind>>{{hashphase, paperGrid, unoptimized}};
+}
+
+/// Another round has other methods.
+void addRound(PhaseResult round, std::vector<PhaseResult>& figures) {
+    for (PhaseResult& figure : figures) {
+        if (figure.task.phase == round.task.phase && figure.task.objects == round.task.objects) {
+            figure.found = std::max(figure.found, round.found);
+            std::move(round.methods.begin(), round.methods.end(),
+                      std::back_inserter(figure.methods));
+            return;
+        }
+    }
+    figures.push_back(std::move(round));
+}
+
 void addFigures(const PaperPlan& plan, std::vector<Step>& steps) {
-    for (const Phase phase : kPhases) {
-        for (const std::uint32_t objects : plan.objects) {
-            steps.push_back({std::string(nameOf(phase)) + " of " + withThousands(objects), objects,
-                             [=, &plan](PaperResults& results, const IsTimeUp& isTimeUp) {
-                                 results.figures.push_back(
-                                     measurePhase({phase, objects, plan.seed, plan.aiRadius},
-                                                  figureMethods(phase, objects, plan.aiRadius),
-                                                  plan.effort, isTimeUp));
-                             }});
+    for (const std::vector<MethodKind>& kinds : roundsOf(plan)) {
+        for (const Phase phase : kPhases) {
+            for (const std::uint32_t objects : plan.objects) {
+                std::vector<MethodSpec> specs = figureMethods(phase, objects, plan.aiRadius);
+                std::erase_if(specs, [&](const MethodSpec& spec) {
+                    return std::find(kinds.begin(), kinds.end(), spec.kind) == kinds.end();
+                });
+                if (specs.empty()) {
+                    continue;
+                }
+                std::string what = std::string(nameOf(phase)) + " of " + withThousands(objects);
+                what += kinds.size() == 1 ? ", " + std::string(nameOf(kinds[0])) : "";
+                steps.push_back(
+                    {what, objects, [=, &plan](PaperResults& results, const IsTimeUp& isTimeUp) {
+                         addRound(measurePhase({phase, objects, plan.seed, plan.aiRadius}, specs,
+                                               plan.effort, isTimeUp),
+                                  results.figures);
+                     }});
+            }
         }
     }
 }
@@ -91,11 +125,10 @@ std::vector<Step> stepsOf(const PaperPlan& plan) {
     addFigures(plan, steps);
     addRadii(plan, steps);
     addCellSizes(plan, steps);
-    steps.push_back({"bounding volumes", plan.sticks,
-                     [&plan](PaperResults& results, const IsTimeUp& /*isTimeUp*/) {
-                         results.volumes =
-                             measureVolumes(plan.sticks, plan.effort.frames, plan.seed);
-                     }});
+    steps.push_back(
+        {"bounding volumes", plan.sticks, [&plan](PaperResults& results, const IsTimeUp& isTimeUp) {
+             results.volumes = measureVolumes(plan.sticks, plan.effort, plan.seed, isTimeUp);
+         }});
     return steps;
 }
 
@@ -129,27 +162,32 @@ const PhaseResult* PaperResults::figure(Phase phase, std::uint32_t objects) cons
     return found == figures.end() ? nullptr : &*found;
 }
 
-bool PaperResults::allHold() const {
-    return std::all_of(checks.begin(), checks.end(),
-                       [](const Check& check) { return check.holds; });
+Outcome PaperResults::outcome() const {
+    const auto has = [this](Outcome outcome) {
+        return std::any_of(checks.begin(), checks.end(),
+                           [=](const Comparison& check) { return check.outcome == outcome; });
+    };
+    if (has(Outcome::broken)) {
+        return Outcome::broken;
+    }
+    return checks.empty() || has(Outcome::notChecked) ? Outcome::notChecked : Outcome::holds;
 }
 
 RealTimeTally tallyRealTime(const PaperResults& results) {
     RealTimeTally tally;
-    for (const PhaseResult& result : results.figures) {
-        const auto& [phase, objects, seed, radius] = result.task;
-        if (isTooSlow(printedRate(phase, objects, std::nullopt))) {
-            ++tally.unoptimizedTooSlow;
-            tally.unoptimizedRealTime +=
-                isRealTime(result, MethodKind::hashphase, std::nullopt) ? 1 : 0;
+    const auto look = [](const PhaseResult& result, MethodKind kind, std::optional<double> cellSize,
+                         CellTally& cells) {
+        if (isTooSlow(printedRate(result.task.phase, result.task.objects, cellSize))) {
+            ++cells.tooSlow;
+            cells.today += isRealTime(result, kind, cellSize) ? 1 : 0;
+            cells.hashphase += isRealTime(result, MethodKind::hashphase, cellSize) ? 1 : 0;
         }
+    };
+    for (const PhaseResult& result : results.figures) {
+        const auto phase = static_cast<std::size_t>(result.task.phase);
+        look(result, MethodKind::unoptimized, std::nullopt, tally.unoptimized[phase]);
         for (const double cellSize : kPrintedCellSizes) {
-            if (isTooSlow(printedRate(phase, objects, cellSize))) {
-                ++tally.tooSlow;
-                tally.realTime += isRealTime(result, MethodKind::hashphase, cellSize) ? 1 : 0;
-                tally.paperGridRealTime +=
-                    isRealTime(result, MethodKind::paperGrid, cellSize) ? 1 : 0;
-            }
+            look(result, MethodKind::paperGrid, cellSize, tally.grid[phase]);
         }
     }
     return tally;

@@ -39,20 +39,26 @@ struct PaperResults {
     PhaseResult cellSizes;             // collision
     VolumeResults volumes;
     std::vector<std::string> leftOut;  // for want of time
-    std::vector<Check> checks;
+    std::vector<Comparison> checks;
 
     /// Null where it was left out.
     [[nodiscard]] const PhaseResult* figure(Phase phase, std::uint32_t objects) const;
-    [[nodiscard]] bool allHold() const;
+
+    /// Of all checks together: broken by one that is; not checked where one is not, or there is none.
+    [[nodiscard]] Outcome outcome() const;
 };
 
-/// How the paper's cells that are too slow for real time fare today.
+/// Of some cells of a figure.
+struct CellTally {
+    std::size_t tooSlow = 0;    // so marked in the paper, of what was measured
+    std::size_t today = 0;      // of these, where the paper's method is fast enough today
+    std::size_t hashphase = 0;  // of these, where hashphase is
+};
+
+/// How the paper's cells that are too slow for real time fare today, by phase.
 struct RealTimeTally {
-    std::size_t tooSlow = 0;   // cells so marked in the paper, of what was measured
-    std::size_t realTime = 0;  // of these, where hashphase is fast enough at the same cell size
-    std::size_t unoptimizedTooSlow = 0;   // the same of the un-optimized column ...
-    std::size_t unoptimizedRealTime = 0;  // ... with automatic cells
-    std::size_t paperGridRealTime = 0;    // of tooSlow, where the paper's grid is fast enough today
+    std::array<CellTally, kPhases.size()> grid;         // with the cell sizes of the paper
+    std::array<CellTally, kPhases.size()> unoptimized;  // beside hashphase with automatic cells
 };
 [[nodiscard]] RealTimeTally tallyRealTime(const PaperResults& results);
 

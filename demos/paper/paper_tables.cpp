@@ -9,6 +9,7 @@ namespace hashphase::demos {
 namespace {
 
 constexpr double kSmoothRate = 60;  // [frames/s]; more is not told apart in the paper
+constexpr double kSecond = 1000;    // [ms]
 
 GradedText gradedRate(const MethodResult* method, bool showMilliseconds) {
     if (method == nullptr || !method->isMeasured()) {
@@ -18,22 +19,28 @@ GradedText gradedRate(const MethodResult* method, bool showMilliseconds) {
             gradeOf(method->rate())};
 }
 
-GradedText gradedPrint(std::string_view printed) {
-    return {printed.empty() ? "-" : std::string(printed), gradeOfPrinted(printed)};
+GradedText gradedPrint(std::string_view printed, bool showMilliseconds) {
+    if (printed.empty()) {
+        return {"-", Grade::kNone};
+    }
+    return {showMilliseconds ? printedMilliseconds(printed) : std::string(printed),
+            gradeOfPrinted(printed)};
 }
 
 void addFigureRows(const PhaseResult& result, bool showMilliseconds, GradedTable& table) {
     const auto& [phase, objects, seed, radius] = result.task;
     const std::string first = withThousands(objects);
     std::vector<GradedText> paper{
-        {first}, {"paper, 2005"}, gradedPrint(printedRate(phase, objects, std::nullopt))};
+        {first},
+        {"paper, 2005"},
+        gradedPrint(printedRate(phase, objects, std::nullopt), showMilliseconds)};
     std::vector<GradedText> today{
         {first},
         {"paper, today"},
         gradedRate(result.find(MethodKind::unoptimized, std::nullopt), showMilliseconds)};
     std::vector<GradedText> ours{{first}, {"hashphase"}, {"", Grade::kNone}};
     for (const double cellSize : kPrintedCellSizes) {
-        paper.push_back(gradedPrint(printedRate(phase, objects, cellSize)));
+        paper.push_back(gradedPrint(printedRate(phase, objects, cellSize), showMilliseconds));
         today.push_back(gradedRate(result.find(MethodKind::paperGrid, cellSize), showMilliseconds));
         ours.push_back(gradedRate(result.find(MethodKind::hashphase, cellSize), showMilliseconds));
     }
@@ -45,8 +52,9 @@ void addFigureRows(const PhaseResult& result, bool showMilliseconds, GradedTable
     }
 }
 
-Value valueOfNumber(const std::optional<double>& number) {
-    return number ? Value(*number) : Value();
+template <class Number>
+Value valueOfNumber(const std::optional<Number>& number) {
+    return number ? Value(static_cast<double>(*number)) : Value();
 }
 
 Value medianOf(const MethodResult& method) {
@@ -70,15 +78,31 @@ void addMeasurementRows(const std::string& part, const PhaseResult& result, Data
         const bool isApart = method.isMeasured() &&
                              (phase != Phase::collision || method.kind != MethodKind::hashphase);
         const Value hashing = isApart ? Value(spreadOf(method.hashMs).median) : Value();
-        table.add({part, static_cast<double>(figureNumber(phase)), std::string(nameOf(phase)),
-                   static_cast<double>(objects), std::string(nameOf(method.kind)),
+        const Value ground = method.isMeasured() && phase == Phase::collision
+                                 ? Value(spreadOf(method.standMs).median)
+                                 : Value();
+        table.add({part,
+                   static_cast<double>(figureNumber(phase)),
+                   std::string(nameOf(phase)),
+                   static_cast<double>(objects),
+                   std::string(nameOf(method.kind)),
                    valueOfNumber(method.cellSize),
                    phase == Phase::ai ? Value(static_cast<double>(radius)) : Value(),
-                   printed.empty() ? Value() : Value(std::string(printed)), timed(time.median),
-                   timed(time.low), timed(time.high), hashing, valueOfNumber(method.rate()),
+                   printed.empty() ? Value() : Value(std::string(printed)),
+                   timed(time.median),
+                   timed(time.low),
+                   timed(time.high),
+                   hashing,
+                   ground,
+                   valueOfNumber(method.rate()),
                    static_cast<double>(method.frameMs.size()),
-                   static_cast<double>(method.checkedFrames), static_cast<double>(result.subjects),
-                   static_cast<double>(method.wrongFrames), static_cast<double>(method.bytes)});
+                   static_cast<double>(method.checkedFrames),
+                   static_cast<double>(method.checkedTimed),
+                   static_cast<double>(method.checkedObjects),
+                   static_cast<double>(method.wrongFrames),
+                   valueOfNumber(method.bytes),
+                   timed(static_cast<double>(result.side)),
+                   timed(static_cast<double>(result.triangles))});
     }
 }
 
@@ -112,12 +136,19 @@ std::string rateText(std::optional<double> rate) {
                            : withThousands(static_cast<std::uint64_t>(std::floor(*rate)));
 }
 
+std::string printedMilliseconds(std::string_view printed) {
+    if (printed == "60+") {
+        return "<=16.7";
+    }
+    const std::optional<double> rate = exactRate(printed);
+    return rate ? milliseconds(kSecond / *rate) : ">1000";
+}
+
 GradedTable figureTable(const PaperResults& results, Phase phase, bool showMilliseconds) {
     GradedTable table;
     table.caption = "Figure " + std::to_string(figureNumber(phase)) + ", " +
                     std::string(nameOf(phase)) + ": " +
-                    (showMilliseconds ? "milliseconds a frame (the paper: frames a second)"
-                                      : "frames a second") +
+                    (showMilliseconds ? "milliseconds a frame" : "frames a second") +
                     " by number of objects and cell size";
     table.legend = {"60 frames a second or more", "20 to 60", "below 20: too slow for real time"};
     table.header = {"objects", "", "un-optimized"};
@@ -146,12 +177,16 @@ DataTable measurementRows(const PaperResults& results) {
                      {"p5_ms", "5th percentile"},
                      {"p95_ms", "95th percentile"},
                      {"hashing_ms", "of which hashing [ms]"},
+                     {"ground_ms", "of which the ground [ms]"},
                      {"frames_per_second", "frames/s"},
                      {"frames", "frames timed"},
                      {"checked_frames", "frames checked"},
-                     {"checked_objects", "objects checked"},
+                     {"checked_timed_frames", "of these, timed"},
+                     {"checked_objects", "objects checked in them"},
                      {"wrong_frames", "wrong frames"},
-                     {"bytes"}},
+                     {"bytes"},
+                     {"side_m", "domain [m]"},
+                     {"triangles"}},
                     {}};
     for (const PhaseResult& result : results.figures) {
         addMeasurementRows("figure", result, table);
@@ -209,10 +244,13 @@ DataTable cellSizeTable(const PaperResults& results) {
     constexpr double kMebibyte = 1024.0 * 1024.0;
     for (const MethodKind kind : {MethodKind::paperGrid, MethodKind::hashphase}) {
         for (const MethodResult& method : results.cellSizes.methods) {
-            if (method.kind == kind && method.cellSize && method.isMeasured()) {
+            if (method.kind == kind && method.isMeasured() && method.bytes) {
                 const Spread time = method.time();
-                table.add({std::string(nameOf(kind)), *method.cellSize, time.median, time.low,
-                           time.high, static_cast<double>(method.bytes) / kMebibyte});
+                const bool isFixed = method.cellSize.has_value();
+                table.add({isFixed ? std::string(nameOf(kind)) : describe(method),
+                           valueOfNumber(isFixed ? method.cellSize : method.chosenCellSize),
+                           time.median, time.low, time.high,
+                           static_cast<double>(*method.bytes) / kMebibyte});
             }
         }
     }

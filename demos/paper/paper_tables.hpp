@@ -20,9 +20,12 @@ namespace hashphase::demos {
 /// "1,234", "45", "0.3"; "-" for none.
 [[nodiscard]] std::string rateText(std::optional<double> rate);
 
+/// A printed rate as milliseconds a frame; of a censored one the bound, "<=16.7" or ">1000".
+[[nodiscard]] std::string printedMilliseconds(std::string_view printed);
+
 /// A figure: three rows for each number of objects, the paper's values, its methods today, and
 /// hashphase; a column for each cell size. Graded by frames a second, of which it has the
-/// milliseconds instead on request; the paper's row always has what is printed.
+/// milliseconds instead on request.
 [[nodiscard]] GradedTable figureTable(const PaperResults& results, Phase phase,
                                       bool showMilliseconds);
 
@@ -33,6 +36,8 @@ namespace hashphase::demos {
 [[nodiscard]] DataTable fewFramesTable(const PaperResults& results);
 
 [[nodiscard]] DataTable radiusTable(const PaperResults& results);
+
+/// Automatic cells have the size that was chosen.
 [[nodiscard]] DataTable cellSizeTable(const PaperResults& results);
 [[nodiscard]] DataTable volumeTable(const PaperResults& results);
 

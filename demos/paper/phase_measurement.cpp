@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
+#include <utility>
 
 namespace hashphase::demos {
 namespace {
@@ -65,6 +67,53 @@ std::size_t countOfDifferent(const std::vector<std::uint64_t>& a,
 constexpr double kSlowFrame = 250;           // [ms]; that memory was new then matters little
 constexpr std::uint32_t kFewestOfQuick = 2;  // frames of what is not as slow
 
+/// Whom the others are compared with where no method that is measured is right by itself.
+class Judge {
+public:
+    Judge(const PhaseTask& task, Subjects subjects)
+        : subjects_(std::move(subjects)),
+          method_(bruteForce(task.phase, subjects_, task.aiRadius)) {}
+
+    [[nodiscard]] PhaseAnswer answer(const TestBed& bed) {
+        method_->run(bed);
+        method_->stand(bed);
+        return method_->answer();
+    }
+    [[nodiscard]] const Subjects& subjects() const { return subjects_; }
+
+private:
+    Subjects subjects_;
+    std::unique_ptr<PhaseMethod> method_;
+};
+
+Subjects spotSubjects(const PhaseTask& task) {
+    return task.objects <= kSpotChecked ? Subjects::all(task.objects)
+                                        : Subjects::drawn(task.objects, kSpotChecked, task.seed);
+}
+
+/// All objects, where they are not too many.
+Subjects firstSubjects(const PhaseTask& task) {
+    return task.objects <= kMostBruteForced ? Subjects::all(task.objects) : spotSubjects(task);
+}
+
+void shuffle(std::vector<std::size_t>& order, Random& random) {
+    for (std::size_t left = order.size(); left > 1; --left) {
+        const auto other = static_cast<std::size_t>(random.unit() * static_cast<float>(left));
+        std::swap(order[left - 1], order[std::min(other, left - 1)]);
+    }
+}
+
+PhaseResult unmeasured(const PhaseTask& task, std::span<const MethodSpec> specs) {
+    PhaseResult result;
+    result.task = task;
+    for (const MethodSpec& spec : specs) {
+        result.methods.emplace_back();
+        result.methods.back().kind = spec.kind;
+        result.methods.back().cellSize = spec.cellSize;
+    }
+    return result;
+}
+
 class PhaseRun {
 public:
     PhaseRun(const PhaseTask& task, std::span<const MethodSpec> specs, const PhaseEffort& effort,
@@ -72,19 +121,19 @@ public:
         : effort_(effort),
           isTimeUp_(isTimeUp),
           bed_(task.objects, task.seed),
-          subjects_(task.objects <= kMostBruteForced
-                        ? Subjects::all(task.objects)
-                        : Subjects::drawn(task.objects, kSubjectsBeyond, task.seed)),
-          judge_(bruteForce(task.phase, subjects_, task.aiRadius)) {
-        result_.task = task;
-        result_.subjects = static_cast<std::uint32_t>(subjects_.list().size());
+          random_(task.seed),
+          all_(Subjects::all(task.objects)),
+          firstJudge_(task, firstSubjects(task)),
+          lastJudge_(task, spotSubjects(task)),
+          result_(unmeasured(task, specs)) {
         for (const MethodSpec& spec : specs) {
             methods_.push_back(spec.make(bed_));
-            result_.methods.emplace_back();
-            result_.methods.back().kind = spec.kind;
-            result_.methods.back().cellSize = spec.cellSize;
         }
         lastFrame_.assign(specs.size(), effort.frames);
+        order_.resize(specs.size());
+        std::iota(order_.begin(), order_.end(), std::size_t{0});
+        result_.side = bed_.side();
+        result_.triangles = bed_.ground().boxes.size();
     }
 
     PhaseResult run() {
@@ -97,71 +146,99 @@ public:
             }
         }
         for (std::size_t i = 0; i < methods_.size(); ++i) {
-            result_.methods[i].bytes = methods_[i]->memoryBytes();
+            MethodResult& method = result_.methods[i];
+            if (method.isMeasured()) {
+                method.bytes = methods_[i]->memoryBytes();
+                const double cellSize = methods_[i]->cellSize();
+                method.chosenCellSize = cellSize > 0 ? std::optional(cellSize) : std::nullopt;
+            }
         }
         return std::move(result_);
     }
 
 private:
+    struct Turn {
+        std::size_t method;
+        bool isTimed;
+    };
+
     /// Returns whether there is another one to be run.
     bool runFrame(std::uint32_t frame) {
-        std::vector<std::size_t> ran;
-        for (std::size_t turn = 0; turn < methods_.size() && !isTimeUp_(); ++turn) {
-            const std::size_t i = (turn + frame) % methods_.size();
-            if (frame <= lastFrame_[i]) {
-                const FrameClock clock;
-                methods_[i]->hash(bed_);
-                const double hashed = clock.milliseconds();
-                methods_[i]->run(bed_);
-                note(i, frame, hashed, clock.milliseconds());
-                ran.push_back(i);
+        if (!effort_.isHurried) {
+            shuffle(order_, random_);
+        }
+        std::vector<Turn> turns;
+        for (const std::size_t i : order_) {
+            if (frame <= lastFrame_[i] && !isTimeUp_()) {
+                turns.push_back({i, runMethod(i, frame)});
             }
         }
-        judge(frame, ran);
-        return !ran.empty() && !isTimeUp_();
+        judge(frame, turns);
+        return !turns.empty() && !isTimeUp_();
     }
 
-    void note(std::size_t i, std::uint32_t frame, double hashed, double milliseconds) {
+    /// Returns whether the frame counts.
+    bool runMethod(std::size_t i, std::uint32_t frame) {
+        const FrameClock clock;
+        methods_[i]->hash(bed_);
+        const double hashed = clock.milliseconds();
+        methods_[i]->run(bed_);
+        const double found = clock.milliseconds();
+        methods_[i]->stand(bed_);
+        const double all = clock.milliseconds();
         MethodResult& method = result_.methods[i];
-        if (frame > 0 || (milliseconds > kSlowFrame && method.kind != MethodKind::hashphase)) {
-            method.frameMs.push_back(milliseconds);
+        const bool isTimed =
+            frame > 0 || (all > kSlowFrame && method.kind != MethodKind::hashphase);
+        if (isTimed) {
+            method.frameMs.push_back(all);
             method.hashMs.push_back(hashed);
+            method.standMs.push_back(all - found);
         }
         if (frame == 0) {
-            const double frames = effort_.methodMilliseconds / std::max(milliseconds, 1e-6);
-            const std::uint32_t fewest = milliseconds > kSlowFrame
-                                             ? effort_.fewestFrames
-                                             : std::max(effort_.fewestFrames, kFewestOfQuick);
-            const std::uint32_t measured =
-                frames > effort_.frames ? effort_.frames
-                                        : std::max(static_cast<std::uint32_t>(frames), fewest);
-            lastFrame_[i] = measured - (method.isMeasured() ? 1 : 0);  // this one is
+            lastFrame_[i] = framesFor(all) - (isTimed ? 1 : 0);  // this one is
+        }
+        return isTimed;
+    }
+
+    /// How many to time of what takes so long [ms].
+    [[nodiscard]] std::uint32_t framesFor(double milliseconds) const {
+        const double frames = effort_.methodMilliseconds / std::max(milliseconds, 1e-6);
+        const std::uint32_t fewest = milliseconds > kSlowFrame
+                                         ? effort_.fewestFrames
+                                         : std::max(effort_.fewestFrames, kFewestOfQuick);
+        return frames > effort_.frames ? effort_.frames
+                                       : std::max(static_cast<std::uint32_t>(frames), fewest);
+    }
+
+    void judge(std::uint32_t frame, const std::vector<Turn>& turns) {
+        const auto unoptimized = std::find_if(turns.begin(), turns.end(), [this](const Turn& turn) {
+            return result_.methods[turn.method].kind == MethodKind::unoptimized;
+        });
+        if (unoptimized != turns.end()) {
+            compare(turns, methods_[unoptimized->method]->answer(), all_);
+        } else if (frame == 0 && !effort_.isHurried && !turns.empty()) {
+            compare(turns, firstJudge_.answer(bed_), firstJudge_.subjects());
+        } else if (!turns.empty() && isLastOfAny(frame, turns)) {
+            compare(turns, lastJudge_.answer(bed_), lastJudge_.subjects());
         }
     }
 
-    void judge(std::uint32_t frame, const std::vector<std::size_t>& ran) {
-        const auto unoptimized = std::find_if(ran.begin(), ran.end(), [this](std::size_t i) {
-            return result_.methods[i].kind == MethodKind::unoptimized;
-        });
-        const bool isDue = frame == 0 || frame + 1 == effort_.fewestFrames;
-        if (ran.empty() || (unoptimized == ran.end() && (!isDue || isTimeUp_()))) {
-            return;
-        }
-        PhaseAnswer right;
-        if (unoptimized != ran.end()) {
-            right = methods_[*unoptimized]->answer();
-        } else {
-            judge_->run(bed_);
-            right = judge_->answer();
-        }
-        if (frame == 0) {
-            result_.found = right.found.size();
-        }
-        for (const std::size_t i : ran) {
+    [[nodiscard]] bool isLastOfAny(std::uint32_t frame, const std::vector<Turn>& turns) const {
+        return isTimeUp_() || std::any_of(turns.begin(), turns.end(), [&](const Turn& turn) {
+                   return frame == lastFrame_[turn.method];
+               });
+    }
+
+    void compare(const std::vector<Turn>& turns, const PhaseAnswer& right,
+                 const Subjects& subjects) {
+        result_.found = std::max(result_.found, right.found.size());
+        for (const auto& [i, isTimed] : turns) {
             MethodResult& method = result_.methods[i];
             const std::string fault =
-                faultOf(result_.task.phase, methods_[i]->answer(), right, subjects_);
+                faultOf(result_.task.phase, methods_[i]->answer(), right, subjects);
             ++method.checkedFrames;
+            method.checkedTimed += isTimed ? 1 : 0;
+            method.checkedObjects += subjects.list().size();
             if (!fault.empty()) {
                 method.fault = method.wrongFrames == 0 ? fault : method.fault;
                 ++method.wrongFrames;
@@ -172,19 +249,23 @@ private:
     const PhaseEffort& effort_;
     const IsTimeUp& isTimeUp_;
     TestBed bed_;
-    Subjects subjects_;
-    std::unique_ptr<PhaseMethod> judge_;
+    Random random_;
+    Subjects all_;
+    Judge firstJudge_;
+    Judge lastJudge_;
     PhaseResult result_;
     std::vector<std::unique_ptr<PhaseMethod>> methods_;
     std::vector<std::uint32_t> lastFrame_;  // of each method
+    std::vector<std::size_t> order_;        // of the methods, in the present frame
 };
 
 }  // namespace
 
 std::vector<double> MethodResult::lookMs() const {
     std::vector<double> differences;
-    std::transform(frameMs.begin(), frameMs.end(), hashMs.begin(), std::back_inserter(differences),
-                   std::minus<>());
+    for (std::size_t i = 0; i < frameMs.size(); ++i) {
+        differences.push_back(frameMs[i] - hashMs[i] - standMs[i]);
+    }
     return differences;
 }
 
@@ -236,11 +317,15 @@ PhaseResult measurePhase(const PhaseTask& task, std::span<const MethodSpec> spec
     return PhaseRun(task, specs, effort, isTimeUp).run();
 }
 
-Check agreement(std::span<const PhaseResult> results) {
+Comparison agreement(std::span<const PhaseResult> results) {
+    std::size_t timed = 0;
+    std::size_t checkedTimed = 0;
     std::size_t checked = 0;
     std::string faults;
     for (const PhaseResult& result : results) {
         for (const MethodResult& method : result.methods) {
+            timed += method.frameMs.size();
+            checkedTimed += method.checkedTimed;
             checked += method.checkedFrames;
             if (method.wrongFrames > 0) {
                 faults += (faults.empty() ? "" : "; ") + std::string(nameOf(result.task.phase)) +
@@ -249,8 +334,14 @@ Check agreement(std::span<const PhaseResult> results) {
             }
         }
     }
-    return {"Every method finds what brute force finds in the same frame", faults.empty(),
-            faults.empty() ? withThousands(checked) + " frames of all methods compared" : faults};
+    const Outcome outcome = !faults.empty() ? Outcome::broken
+                            : checked == 0  ? Outcome::notChecked
+                                            : Outcome::holds;
+    return {"Every method finds what brute force finds in the same frame", outcome,
+            faults.empty() ? withThousands(checkedTimed) + " of " + withThousands(timed) +
+                                 " timed frames checked, and " +
+                                 withThousands(checked - checkedTimed) + " that are not timed"
+                           : faults};
 }
 
 }  // namespace hashphase::demos

@@ -56,14 +56,20 @@ public:
     /// Files all objects anew, as they are in the bed's present frame, where that is a step apart.
     virtual void hash(const TestBed& /*bed*/) {}
 
-    /// Computes the phase for the frame, after hash() for it. Both are timed.
+    /// Computes the phase for the frame, after hash() for it.
     virtual void run(const TestBed& bed) = 0;
 
-    /// What the last run() found: for all objects, or for the subjects of brute force.
+    /// Puts all objects on the ground, after run(), where the phase has a ground. All three are timed.
+    virtual void stand(const TestBed& /*bed*/) {}
+
+    /// What was found for the last frame: for all objects, or for the subjects of brute force.
     [[nodiscard]] virtual PhaseAnswer answer() const = 0;
 
     /// Bytes held for all frames, those of spheres and triangles as they are handed in left out.
     [[nodiscard]] virtual std::size_t memoryBytes() const = 0;
+
+    /// Of the cells that the spheres are filed in [m]; 0 where there are none.
+    [[nodiscard]] virtual double cellSize() const { return 0; }
 };
 
 enum class MethodKind : std::uint8_t {

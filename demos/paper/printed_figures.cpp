@@ -51,11 +51,12 @@ const PrintedFigure& figureOf(Phase phase) {
          "and the ground below each",
          kFigure13},
         {14, "visibility", "frustum culling and the draw calls of all visible objects",
-         "hashing all spheres anew, and the list of those that the camera sees; nothing is drawn",
+         "hashing all spheres anew, and the list of those that a free camera sees; nothing is "
+         "drawn",
          kFigure14},
         {15, "AI", "every object counts the colours within a radius and takes the rarest",
          "hashing all spheres anew, counting the colours within the radius of each, and taking the "
-         "rarest",
+         "rarest; hashphase counts in cells that follow the radius, whatever the column",
          kFigure15},
     }};
     return kFigures[static_cast<std::size_t>(phase)];

@@ -45,6 +45,10 @@ public:
     /// Moves to the next frame.
     void advance();
 
+    /// What all boxes of all frames are in, the ground too.
+    [[nodiscard]] Aabb<float> domain() const { return scene_.bounds(); }
+    [[nodiscard]] float side() const { return side_; }  // [m]
+
     [[nodiscard]] std::uint32_t objects() const {
         return static_cast<std::uint32_t>(scene_.boxes().size());
     }

@@ -8,8 +8,9 @@
 namespace hashphase::demos {
 namespace {
 
-ConvexRegion<float> frustumOf(const TestBed& bed) {
-    return frustumRegion<float>(bed.view().viewProjection, kDepthRange);
+ConvexRegion<float> frustumOf(const TestBed& bed, Containment containment = Containment::touching) {
+    return frustumRegion<float>(bed.view().viewProjection, kDepthRange, wholeScreen<float>(),
+                                containment);
 }
 
 /// Every object against the frustum.
@@ -39,22 +40,46 @@ private:
     std::vector<std::uint32_t> visible_;
 };
 
-/// The paper's free camera: every cell against the frustum, and all objects of those that touch it.
-/// Cells are as high as what stands in them, and an object in several is listed once.
+/// The paper's free camera: every cell that has objects against the frustum. The boxes of cells are
+/// stored, as high as the domain; of a cell that is wholly inside all objects are taken, of one that
+/// is cut those that touch the frustum, and an object in several cells is listed once.
 class PaperVisibility final : public PhaseMethod {
 public:
-    PaperVisibility(const TestBed& bed, float cellSize) : map_(bed.boxes(), cellSize) {}
+    PaperVisibility(const TestBed& bed, float cellSize) : map_(bed.domain(), cellSize) {
+        const Aabb<float> domain = bed.domain();
+        const PaperMap::Range all = map_.all();
+        for (int z = all.lowZ; z <= all.highZ; ++z) {
+            for (int x = all.lowX; x <= all.highX; ++x) {
+                Aabb<float> box = map_.square(x, z);
+                box.min().y() = domain.min().y();
+                box.max().y() = domain.max().y();
+                // What rounding files in the cell is in its box too.
+                constexpr float kSlack = 0.01F;  // [m]
+                box.min().array() -= kSlack;
+                box.max().array() += kSlack;
+                cells_.push_back({x, z, box});
+            }
+        }
+    }
 
     void hash(const TestBed& bed) override { map_.refile(bed.boxes()); }
 
     void run(const TestBed& bed) override {
         const ConvexRegion<float> frustum = frustumOf(bed);
+        const ConvexRegion<float> inside = frustumOf(bed, Containment::inside);
         visible_.clear();
         isListed_.assign(bed.objects(), 0);
-        const PaperMap::Range all = map_.all();
-        for (int z = all.lowZ; z <= all.highZ; ++z) {
-            for (int x = all.lowX; x <= all.highX; ++x) {
-                lookInto(map_.objects(x, z), bed.boxes(), frustum);
+        for (const Cell& cell : cells_) {
+            const std::span<const std::uint32_t> bucket = map_.objects(cell.x, cell.z);
+            if (bucket.empty() || frustum.key(cell.box) < 0) {
+                continue;
+            }
+            const bool isInside = inside.key(cell.box) >= 0;
+            for (const std::uint32_t object : bucket) {
+                if (isListed_[object] == 0 && (isInside || frustum.key(bed.boxes()[object]) >= 0)) {
+                    isListed_[object] = 1;
+                    visible_.push_back(object);
+                }
             }
         }
     }
@@ -65,29 +90,19 @@ public:
         return {std::move(found), {}};
     }
     [[nodiscard]] std::size_t memoryBytes() const override {
-        return map_.memoryBytes() + visible_.capacity() * sizeof(std::uint32_t) +
-               isListed_.capacity();
+        return map_.memoryBytes() + cells_.capacity() * sizeof(Cell) +
+               visible_.capacity() * sizeof(std::uint32_t) + isListed_.capacity();
     }
 
 private:
-    void lookInto(std::span<const std::uint32_t> bucket, std::span<const Aabb<float>> boxes,
-                  const ConvexRegion<float>& frustum) {
-        Aabb<float> cell;
-        for (const std::uint32_t object : bucket) {
-            cell.extend(boxes[object]);
-        }
-        if (bucket.empty() || frustum.key(cell) < 0) {
-            return;
-        }
-        for (const std::uint32_t object : bucket) {
-            if (isListed_[object] == 0 && frustum.key(boxes[object]) >= 0) {
-                isListed_[object] = 1;
-                visible_.push_back(object);
-            }
-        }
-    }
+    struct Cell {
+        int x;
+        int z;
+        Aabb<float> box;
+    };
 
     PaperMap map_;
+    std::vector<Cell> cells_;
     std::vector<std::uint32_t> visible_;
     std::vector<char> isListed_;  // by object
 };

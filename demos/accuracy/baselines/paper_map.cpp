@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/baselines/paper_map.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -16,47 +15,69 @@ Aabb<float> boundsOf(std::span<const Aabb<float>> boxes) {
     return bounds;
 }
 
-int cellIn(float distance, float cellSize, int count) {
-    return static_cast<int>(
-        std::clamp(std::floor(distance / cellSize), 0.0F, static_cast<float>(count - 1)));
+int cellsAlong(float side, float cellSize) {
+    return static_cast<int>(std::max(1.0F, std::ceil(side / cellSize)));
 }
 
 }  // namespace
 
-PaperMap::PaperMap(std::span<const Aabb<float>> boxes, float cellSize) : cellSize_(cellSize) {
+PaperMap::PaperMap(const Aabb<float>& domain, float cellSize)
+    : cellSize_(cellSize),
+      conversionFactor_(1 / cellSize),
+      lowX_(domain.min().x()),
+      lowZ_(domain.min().z()),
+      width_(cellsAlong(domain.sizes().x(), cellSize)),
+      depth_(cellsAlong(domain.sizes().z(), cellSize)),
+      lastX_(static_cast<float>(width_ - 1)),
+      lastZ_(static_cast<float>(depth_ - 1)) {
+    fillBuckets();
+}
+
+PaperMap::PaperMap(std::span<const Aabb<float>> boxes, float cellSize)
+    : PaperMap(boundsOf(boxes), cellSize) {
     refile(boxes);
 }
 
 void PaperMap::refile(std::span<const Aabb<float>> boxes) {
-    const Aabb<float> bounds = boundsOf(boxes);
-    lowX_ = bounds.min().x();
-    lowZ_ = bounds.min().z();
-    width_ = 1 + static_cast<int>(bounds.sizes().x() / cellSize_);
-    depth_ = 1 + static_cast<int>(bounds.sizes().z() / cellSize_);
-    const auto forEachEntry = [&](const auto& visit) {
-        for (std::uint32_t i = 0; i < boxes.size(); ++i) {
-            const Range cells = range(boxes[i].min().x(), boxes[i].min().z(), boxes[i].max().x(),
-                                      boxes[i].max().z());
-            for (int z = cells.lowZ; z <= cells.highZ; ++z) {
-                for (int x = cells.lowX; x <= cells.highX; ++x) {
-                    visit(bucketOf(x, z), i);
-                }
-            }
-        }
-    };
-    // Counts first: begin_ of a bucket is where those before it end.
-    begin_.assign(bucketOf(0, depth_) + 1, 0);
-    forEachEntry([&](std::size_t bucket, std::uint32_t) { ++begin_[bucket + 1]; });
-    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-    objects_.resize(begin_.back());
-    next_.assign(begin_.begin(), begin_.end() - 1);
-    forEachEntry(
-        [&](std::size_t bucket, std::uint32_t object) { objects_[next_[bucket]++] = object; });
+    index_.resize(boxes.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const Aabb<float>& box = boxes[i];
+        index_[i] = range(box.min().x(), box.min().z(), box.max().x(), box.max().z());
+    }
+    fillBuckets();
 }
 
-PaperMap::Range PaperMap::range(float lowX, float lowZ, float highX, float highZ) const {
-    return {cellIn(lowX - lowX_, cellSize_, width_), cellIn(lowZ - lowZ_, cellSize_, depth_),
-            cellIn(highX - lowX_, cellSize_, width_), cellIn(highZ - lowZ_, cellSize_, depth_)};
+void PaperMap::refile(std::span<const Vector3<float>> points) {
+    index_.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Cell cell = cellAt(points[i].x(), points[i].z());
+        index_[i] = {cell.x, cell.z, cell.x, cell.z};
+    }
+    fillBuckets();
+}
+
+template <class Visit>
+void PaperMap::forEachEntry(const Visit& visit) const {
+    for (std::uint32_t i = 0; i < index_.size(); ++i) {
+        const Range& cells = index_[i];
+        for (int z = cells.lowZ; z <= cells.highZ; ++z) {
+            for (int x = cells.lowX; x <= cells.highX; ++x) {
+                visit(bucketOf(x, z), i);
+            }
+        }
+    }
+}
+
+void PaperMap::fillBuckets() {
+    // Counts come first, two places on, so that their sums say where the bucket before begins; that
+    // place moves on as the bucket fills, until it is where the next one begins.
+    begin_.assign(bucketOf(0, depth_) + 2, 0);
+    forEachEntry([this](std::size_t bucket, std::uint32_t) { ++begin_[bucket + 2]; });
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    objects_.resize(begin_.back());
+    forEachEntry([this](std::size_t bucket, std::uint32_t object) {
+        objects_[begin_[bucket + 1]++] = object;
+    });
 }
 
 Aabb<float> PaperMap::square(int x, int z) const {
