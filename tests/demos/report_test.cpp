@@ -161,22 +161,52 @@ TEST(JoinedReport, HoldsAllNumbersWithoutJavaScriptAndNeedsNothingElse) {
     EXPECT_EQ(html.find("<link"), std::string::npos);
 }
 
-TEST(JoinedReport, DrawsASeriesInOneColourInAllParts) {
-    Chart first{"a",   "A",   "", ChartMark::kPoint, {{{"x"}, {"m"}}, {{1.0, "one"}, {2.0, "two"}}},
-                {"x"}, {"x"}, "m"};
-    Chart second = first;
-    second.data.rows = {{1.0, "three"}, {2.0, "two"}};
-    Page page{"Title", "", "", true, {}, {}};
-    for (const Chart& chart : {first, second}) {
-        Page part = page;
-        part.parts.clear();
-        part.sections.assign({PageSection{"S", {}, {}, {}, {chart}, {}, {}}});
-        page.parts.push_back(part);
+Page pageOfSeries(const std::vector<std::string>& names) {
+    Chart chart{"a", "A", "", ChartMark::kLine, {{{"x"}, {"m"}}, {}}, {"x"}, {"x"}, "m"};
+    for (const std::string& name : names) {
+        chart.data.add({1.0, name});
     }
+    Page page{"Title", "", "", true, {}, {}};
+    page.sections.push_back({"S", {}, {}, {}, {chart}, {}, {}});
+    return page;
+}
+
+TEST(JoinedReport, DrawsASeriesInOneColourInAllParts) {
+    Page page{"Title", "", "", true, {}, {}};
+    page.parts = {pageOfSeries({"one", "two"}), pageOfSeries({"three", "two"})};
     const SeriesLooks looks = seriesLooks(page);
     EXPECT_EQ(looks.size(), 3U);
     EXPECT_NE(looks.at("two").colour, looks.at("one").colour);
     EXPECT_NE(looks.at("two").colour, looks.at("three").colour);
+}
+
+TEST(JoinedReport, DrawsAllVariantsOfAMethodInItsColour) {
+    Page page{"Title", "", "", true, {}, {}};
+    page.parts = {pageOfSeries({"un-optimized", "grid, cells of 5 m", "grid, cells of 100 m",
+                                "hash, cells of 5 m", "hash, cells of 100 m", "hash, automatic"}),
+                  pageOfSeries({"grid", "hash"})};
+    const SeriesLooks looks = seriesLooks(page);
+    const std::array<std::vector<std::string>, 3> methods{
+        {{"un-optimized"},
+         {"grid", "grid, cells of 5 m", "grid, cells of 100 m"},
+         {"hash", "hash, cells of 5 m", "hash, cells of 100 m", "hash, automatic"}}};
+    std::set<std::size_t> colours;
+    for (const std::vector<std::string>& series : methods) {
+        std::set<std::size_t> ofMethod;
+        std::set<std::size_t> dashes;
+        for (const std::string& name : series) {
+            ofMethod.insert(looks.at(name).colour);
+            dashes.insert(looks.at(name).dash);
+        }
+        EXPECT_EQ(ofMethod.size(), 1U) << series[0];
+        EXPECT_EQ(dashes.size(), series.size()) << series[0];
+        colours.merge(ofMethod);
+    }
+    EXPECT_EQ(colours.size(), methods.size());
+    const std::set<std::size_t> shapes{looks.at("hash, cells of 5 m").shape,
+                                       looks.at("hash, cells of 100 m").shape,
+                                       looks.at("hash, automatic").shape};
+    EXPECT_EQ(shapes.size(), 3U) << "in one chart";
 }
 
 TEST(JoinedReport, HandsItsOptionsToTheParts) {
