@@ -4,6 +4,8 @@
 #include <demos/paper/paper_tables.hpp>
 #include <demos/report/page.hpp>
 
+#include <algorithm>
+
 namespace hashphase::demos {
 namespace {
 
@@ -182,6 +184,16 @@ PageSection checkSection(const PaperResults& results) {
     return section;
 }
 
+bool wasChecked(const PaperResults& results) {
+    const auto isChecked = [](const PhaseResult& result) {
+        return std::any_of(result.methods.begin(), result.methods.end(),
+                           [](const MethodResult& method) { return method.checkedFrames > 0; });
+    };
+    return !results.volumes.checks.empty() || isChecked(results.cellSizes) ||
+           std::any_of(results.figures.begin(), results.figures.end(), isChecked) ||
+           std::any_of(results.radii.begin(), results.radii.end(), isChecked);
+}
+
 }  // namespace
 
 Page pageOf(const PaperReport& report) {
@@ -189,7 +201,7 @@ Page pageOf(const PaperReport& report) {
     Page page{"The paper's figures, then and today",
               kPaperIntroduction,
               verdictLine(results) + ".",
-              results.allHold(),
+              wasChecked(results) ? std::optional(results.allHold()) : std::nullopt,
               {checkSection(results)},
               report.provenance};
     for (const Phase phase : kPhases) {
