@@ -53,7 +53,7 @@ Page pageOf(const AccuracyReport& report) {
     Page page{"What accuracy costs in time",
               kIntroduction,
               verdictLine(report) + ".",
-              broken.empty(),
+              std::nullopt,
               {},
               report.provenance};
     for (const std::string& each : broken) {
@@ -64,6 +64,9 @@ Page pageOf(const AccuracyReport& report) {
         page.sections.push_back(adviceSection(choices));
     }
     for (const Outcome& outcome : report.outcomes) {
+        if (!outcome.findings.checks.empty()) {
+            page.holds = broken.empty();
+        }
         page.sections.push_back(sectionOf(outcome, report.effort));
     }
     return page;

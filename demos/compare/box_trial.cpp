@@ -48,6 +48,7 @@ Observation BoxTrial::runFrame(std::size_t contestant) {
     seen.reported = reported_;
     seen.exact = exact_;
     seen.boxes = scene_->boxes();
+    seen.cellSize = cellSizeOf(current.broadphase());
     return seen;
 }
 

@@ -52,7 +52,7 @@ constexpr std::array kKinds{
     BroadphaseKind{"dbvt", "btDbvtBroadphase",
                    "Bullet's usual broadphase, a pair of bounding volume trees", false, kNoLimit,
                    false, makeDbvt},
-    BroadphaseKind{"dbvt-deferred", "btDbvtBroadphase (deferred)",
+    BroadphaseKind{"dbvt-deferred", "btDbvtBroadphase, deferred",
                    "the same with m_deferedcollide, which pairs once a frame", false, kNoLimit,
                    false, makeDeferredDbvt},
     BroadphaseKind{"axis-sweep", "bt32BitAxisSweep3",

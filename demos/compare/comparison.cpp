@@ -77,8 +77,8 @@ Comparison runComparison(Trial& trial, const std::vector<const BroadphaseKind*>&
             record(frame, frame >= comparison.warmUpFrames, seen, verifiers[i],
                    comparison.results[i]);
             if (replay != nullptr) {
-                replay->add(i,
-                            {seen.boxes, seen.exact, verifiers[i].missing(), verifiers[i].extra()});
+                replay->add(i, {seen.boxes, seen.exact, verifiers[i].missing(),
+                                verifiers[i].extra(), seen.cellSize});
             }
         }
         if (replay != nullptr) {

@@ -21,6 +21,12 @@ void emptyBulletsCache(btBroadphaseInterface& broadphase) {
 
 }  // namespace
 
+std::optional<float> cellSizeOf(const btBroadphaseInterface& broadphase) {
+    const auto* ours = dynamic_cast<const SpatialHashBroadphase*>(&broadphase);
+    return ours != nullptr ? std::optional(static_cast<float>(ours->grid().cellSize()))
+                           : std::nullopt;
+}
+
 void toBulletBoxes(std::span<const Aabb<float>> boxes, std::vector<BulletBox>& converted) {
     converted.clear();
     for (const Aabb<float>& box : boxes) {

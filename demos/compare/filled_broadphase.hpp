@@ -9,6 +9,7 @@
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,9 @@ struct BulletBox {
 
 /// Replaces `converted` by the same boxes in Bullet's vectors.
 void toBulletBoxes(std::span<const Aabb<float>> boxes, std::vector<BulletBox>& converted);
+
+/// The edge of the finest cells [m]; nothing for a broadphase without a grid of ours.
+[[nodiscard]] std::optional<float> cellSizeOf(const btBroadphaseInterface& broadphase);
 
 class FilledBroadphase {
 public:

@@ -20,6 +20,11 @@ Value nameOf(const Result& result) {
     return std::string(result.kind->name);
 }
 
+/// In charts: as the other parts of a report call the same method.
+Value classOf(const Result& result) {
+    return std::string(result.kind->title);
+}
+
 Value number(std::size_t count) {
     return static_cast<double>(count);
 }
@@ -63,13 +68,15 @@ PageSection correctness(const Report& report) {
         "that overlapped once and were not removed since are stale."};
     section.checks = checks(report);
     DataTable table{{{"broadphase", "broadphase"},
+                     {"class", "class"},
                      {"pairs", "listed pairs"},
                      {"missing", "missing"},
                      {"extra", "extra"},
                      {"stale", "of these stale"}},
                     {}};
     for (const Result& result : report.comparison.results) {
-        table.add({nameOf(result), number(tallyOf(result, &FrameVerdict::pairs).total),
+        table.add({nameOf(result), classOf(result),
+                   number(tallyOf(result, &FrameVerdict::pairs).total),
                    number(tallyOf(result, &FrameVerdict::missing).total),
                    number(tallyOf(result, &FrameVerdict::extra).total),
                    number(tallyOf(result, &FrameVerdict::stale).total)});
@@ -101,12 +108,37 @@ Chart mediansChart(const Report& report) {
                 "p5_ms",
                 "p95_ms"};
     for (const Result& result : report.comparison.results) {
-        std::vector<Value> row{nameOf(result)};
+        std::vector<Value> row{classOf(result)};
         const std::optional<Timing> timing = timingOf(result);
         addSpread(row, timing ? std::optional(timing->both) : std::nullopt);
         chart.data.add(std::move(row));
     }
     return chart;
+}
+
+/// More frames than this are drawn as the median, least and most of so many together.
+constexpr std::size_t kMostTracePoints = 1000;
+
+std::size_t framesOfATracePoint(const Report& report) {
+    const int timed = report.comparison.framesDone - report.comparison.warmUpFrames;
+    return (static_cast<std::size_t>(std::max(timed, 1)) - 1) / kMostTracePoints + 1;
+}
+
+void addTrace(const Result& result, std::size_t framesOfAPoint, DataTable& data) {
+    std::vector<double> times;
+    for (std::size_t i = 0; i < result.rows.size(); ++i) {
+        const FrameRow& row = result.rows[i];
+        if (row.measured) {
+            times.push_back(row.setAabbMs + row.calculateMs);
+        }
+        if (times.size() == framesOfAPoint || (!times.empty() && i + 1 == result.rows.size())) {
+            const auto [least, most] = std::minmax_element(times.begin(), times.end());
+            const auto first =
+                static_cast<double>(row.frame) - static_cast<double>(times.size()) + 1;
+            data.add({classOf(result), first, spreadOf(times).median, *least, *most});
+            times.clear();
+        }
+    }
 }
 
 Chart traceChart(const Report& report) {
@@ -116,18 +148,29 @@ Chart traceChart(const Report& report) {
                 ChartMark::kLine,
                 {{{"broadphase", "broadphase"},
                   {"frame", "frame"},
-                  {"frame_ms", "setAabb and calculate [ms]"}},
+                  {"frame_ms", "setAabb and calculate [ms]"},
+                  {"least_ms", "least [ms]"},
+                  {"most_ms", "most [ms]"}},
                  {}},
                 {"frame"},
                 {"frame_ms", AxisScale::kLog},
                 "broadphase"};
+    const std::size_t framesOfAPoint = framesOfATracePoint(report);
     for (const Result& result : report.comparison.results) {
-        for (const FrameRow& row : result.rows) {
-            if (row.measured) {
-                chart.data.add({nameOf(result), static_cast<double>(row.frame),
-                                row.setAabbMs + row.calculateMs});
-            }
+        addTrace(result, framesOfAPoint, chart.data);
+    }
+    if (framesOfAPoint == 1) {
+        chart.data.columns.resize(3);
+        for (std::vector<Value>& row : chart.data.rows) {
+            row.resize(3);
         }
+    } else {
+        const std::string count = std::to_string(framesOfAPoint);
+        chart.title = "Time of the frames, " + count + " together";
+        chart.settings += " Each point is the median of " + count +
+                          " frames, from the least to the most of them; --csv has each frame.";
+        chart.low = "least_ms";
+        chart.high = "most_ms";
     }
     return chart;
 }
@@ -189,10 +232,10 @@ PageSection drawnTimes(const Report& report) {
 }  // namespace
 
 Page pageOf(const Report& report) {
-    Page page{"hashphase compare: " + report.scene,
+    Page page{"Broadphases compared: " + report.scene,
               kIntroduction,
               verdictLine(report) + ".",
-              report.comparison.framesDone == 0 || oursWereExact(report).value_or(true),
+              report.comparison.framesDone > 0 ? oursWereExact(report) : std::nullopt,
               {correctness(report), times(report)},
               report.provenance};
     page.sections.front().sentences.insert(page.sections.front().sentences.begin(),

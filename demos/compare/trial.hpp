@@ -24,6 +24,7 @@ struct Observation {
     std::span<const PairKey> reported;
     std::span<const PairKey> exact;
     std::span<const Aabb<float>> boxes;  // as the broadphase knows them
+    std::optional<float> cellSize;       // of its finest cells [m], where it has cells
 };
 
 class Trial {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/compare/world_trial.hpp>
 
+#include <demos/compare/filled_broadphase.hpp>
 #include <demos/compare/observed_world.hpp>
 
 #include <utility>
@@ -101,6 +102,7 @@ Observation WorldTrial::runFrame(std::size_t contestant) {
     seen.reported = reported_;
     seen.exact = exact_;
     seen.boxes = boxes_;
+    seen.cellSize = cellSizeOf(*worlds_[contestant]->broadphase);
     return seen;
 }
 

@@ -237,8 +237,12 @@ Page pageOf(const EffectsReport& report) {
                               withThousands(report.prices.frames) + " frames."};
     }
     prices.settings = {sceneLine(report) + "."};
-    return {"What each effect costs", kIntroduction, verdictLine(report) + ".",
-            allHold(report),          {prices},      report.provenance};
+    return {"What each effect costs",
+            kIntroduction,
+            verdictLine(report) + ".",
+            report.prices.frames > 0 ? std::optional(allHold(report)) : std::nullopt,
+            {prices},
+            report.provenance};
 }
 
 }  // namespace hashphase::demos

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -18,6 +19,11 @@ enum class Outcome : std::uint8_t {
     return outcome == Outcome::holds    ? "holds"
            : outcome == Outcome::broken ? "BROKEN"
                                         : "not checked";
+}
+
+/// None where nothing was compared.
+[[nodiscard]] constexpr std::optional<bool> whetherItHolds(Outcome outcome) {
+    return outcome == Outcome::notChecked ? std::nullopt : std::optional(outcome == Outcome::holds);
 }
 
 /// What must be so, and whether it is, as far as it was compared.

@@ -4,6 +4,8 @@
 #include <demos/paper/paper_tables.hpp>
 #include <demos/report/page.hpp>
 
+#include <algorithm>
+
 namespace hashphase::demos {
 namespace {
 
@@ -215,7 +217,7 @@ Page pageOf(const PaperReport& report) {
     const PaperResults& results = report.results;
     Page page{
         "The paper's figures, then and today", kPaperIntroduction,      verdictLine(results) + ".",
-        results.outcome() == Outcome::holds,   {checkSection(results)}, report.provenance};
+        whetherItHolds(results.outcome()),     {checkSection(results)}, report.provenance};
     for (const Phase phase : kPhases) {
         page.sections.push_back(figureSection(results, phase));
     }

@@ -306,9 +306,7 @@ void writeJson(const PaperReport& report, std::ostream& out) {
               {"checks", Json::array()}};
     for (const Comparison& check : results.checks) {
         json["checks"].push_back({{"claim", check.claim},
-                                  {"holds", check.outcome == Outcome::notChecked
-                                                ? Json()
-                                                : Json(check.outcome == Outcome::holds)},
+                                  {"holds", orNull(whetherItHolds(check.outcome))},
                                   {"evidence", check.evidence}});
     }
     json["measurements"] = tableJson(measurementRows(results));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 //
 // Replays a recording in a canvas, once its tab is shown. What is shown is told by data attributes of
-// the replay's element, too: state, playing, frame, frames, pairs (that overlap), lines (that are drawn of
+// the replay's element, too: state (ready; lost while the browser has taken WebGL2 back), playing, frame, frames, pairs (that overlap), lines (that are drawn of
 // them), colouring, broadphase, missing, extra, drawn (of the wrong pairs), marks (where in the picture
 // the first of them is drawn, from its lower left), draws.
 
@@ -24,6 +24,7 @@ class Replay {
         this.recording = recording;
         this.frame = 0;
         this.broadphase = recording.worst();
+        this.gl = gl;
         this.drawing = new Drawing(gl, recording);
         this.outline = recording.outline(recording.numbersOf(this.broadphase, 0));
         const { centre, radius, heights } = this.outline;
@@ -31,7 +32,9 @@ class Replay {
         this.look = {
             camera: this.camera,
             colouring: "cell",
-            cellSize: Number((recording.typicalEdge * 8).toPrecision(2)) || 1,
+            cellSize:
+                recording.withCells(this.broadphase)?.cellSize ??
+                Number((recording.typicalEdge * 8).toPrecision(2)),
             heights: [heights.low, Math.max(heights.high, heights.low + 1e-3)],
             groundEdge: Math.max(radius, 10 * recording.typicalEdge),
             spheres: recording.spheres,
@@ -43,6 +46,7 @@ class Replay {
         this.draws = 0;
         this.build();
         this.followScreen();
+        this.followLoss();
         this.show(0);
         root.dataset.state = "ready";
     }
@@ -67,7 +71,8 @@ class Replay {
         );
     }
 
-    // Wherever in the tab they are pressed, but where something is typed or chosen.
+    // Wherever they are pressed while the tab is shown, but where something is typed or chosen; a focused
+    // button, as that of the tab itself, keeps its Space.
     followKeys() {
         const keys = {
             " ": () => this.togglePlaying(),
@@ -82,14 +87,16 @@ class Replay {
         };
         const typed = "input[type=number], select";
         const own = {
-            " ": `button, input[type=checkbox], ${typed}`,
+            " ": `button, summary, input[type=checkbox], ${typed}`,
             Home: "input, select",
             End: "input, select",
         };
-        this.root.closest("[role=tabpanel]").addEventListener("keydown", (event) => {
+        const panel = this.root.closest("[role=tabpanel]");
+        document.addEventListener("keydown", (event) => {
             const { target, ctrlKey, altKey, metaKey } = event;
             const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
-            const taken = target.closest(own[key] ?? typed);
+            const taken =
+                panel.hidden || event.defaultPrevented || target.closest(own[key] ?? typed);
             if (keys[key] && !taken && !ctrlKey && !altKey && !metaKey) {
                 event.preventDefault();
                 keys[key]();
@@ -150,7 +157,7 @@ class Replay {
             name: "cellSize",
             min: 0,
             step: "any",
-            value: this.look.cellSize,
+            value: Number(this.look.cellSize.toPrecision(4)),
             oninput: () =>
                 Number(cells.value) > 0 && this.change({ cellSize: Number(cells.value) }),
         });
@@ -190,6 +197,40 @@ class Replay {
         dark.addEventListener("change", follow);
         this.look.screen = dark.matches ? "dark" : "light";
         new ResizeObserver(() => this.redraw()).observe(this.canvas);
+        this.followDensity();
+    }
+
+    // A query knows one density: when it is no longer that, another one waits for the next.
+    followDensity() {
+        matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener(
+            "change",
+            () => {
+                this.redraw();
+                this.followDensity();
+            },
+            { once: true },
+        );
+    }
+
+    // All that WebGL2 held is gone; the browser gives another context, which begins with nothing.
+    followLoss() {
+        const { canvas, root } = this;
+        canvas.addEventListener("webglcontextlost", (event) => {
+            event.preventDefault(); // or it would not be restored
+            this.setPlaying(false);
+            this.isLost = true;
+            root.dataset.state = "lost";
+            this.words.textContent =
+                "The browser has taken WebGL2 back. The picture returns when it gives it again; " +
+                "if it does not, load the page again.";
+        });
+        canvas.addEventListener("webglcontextrestored", () => {
+            this.isLost = false;
+            this.words.textContent = "";
+            this.drawing = new Drawing(this.gl, this.recording);
+            this.show(this.frame);
+            root.dataset.state = "ready";
+        });
     }
 
     change(look) {
@@ -245,8 +286,9 @@ class Replay {
                 : "";
         const here =
             pairs.here < pairs.inAll ? `, ${thousands(pairs.here)} of them between those drawn` : "";
+        const unlisted = pairs.listed < pairs.here ? ", too many to be drawn" : "";
         this.counts.textContent =
-            `${thousands(pairs.inAll)} pairs overlap${here}; of ` +
+            `${thousands(pairs.inAll)} pairs overlap${here}${unlisted}; of ` +
             `${broadphase.name}'s, ${thousands(missing)} are missing and ${thousands(extra)} extra${drawn}.`;
         Object.assign(this.root.dataset, {
             frame,
@@ -273,8 +315,8 @@ class Replay {
         const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((each) =>
             Math.round(each * look.pixels),
         );
-        if (width === 0 || height === 0) {
-            return; // the tab is hidden
+        if (width === 0 || height === 0 || this.isLost) {
+            return; // the tab is hidden, or there is nothing to draw with
         }
         if (canvas.width !== width || canvas.height !== height) {
             Object.assign(canvas, { width, height });
@@ -283,7 +325,13 @@ class Replay {
         this.chart.draw(this.broadphase, this.frame, recording.frames);
         this.legend.replaceChildren(
             ...wrongLegend(),
-            ...legendOf(look.colouring, look.heights, recording.low[1], look.cellSize),
+            ...legendOf(
+                look.colouring,
+                look.heights,
+                recording.low[1],
+                look.cellSize,
+                recording.broadphases.find((each) => each.cellSize === look.cellSize)?.name,
+            ),
         );
         const first = this.wrong.find((pair) => this.isShown(pair)) ?? this.wrong[0];
         const marks =
@@ -326,7 +374,7 @@ class Replay {
     }
 
     togglePlaying() {
-        this.setPlaying(!this.playing);
+        this.setPlaying(!this.playing && !this.isLost);
     }
 
     setPlaying(playing) {
@@ -350,12 +398,6 @@ function startReplay(root) {
         tabindex: 0,
         role: "img",
         "aria-label": "The recorded objects; arrow keys turn the camera, plus and minus zoom",
-    });
-    canvas.addEventListener("webglcontextlost", () => {
-        root.dataset.state = "lost";
-        root.prepend(
-            element("p", {}, "The browser has taken WebGL2 back: load the page again to go on."),
-        );
     });
     // Kept after it was shown, so that it can be saved, and read by whoever checks it.
     const gl = canvas.getContext("webgl2", {

@@ -37,7 +37,8 @@ const swatch = (colour, text) => {
     return element("span", {}, box, ` ${text}`);
 };
 
-function legendOf(colouring, heights, low, cellSize) {
+// `owner`: the broadphase whose finest cells these are, where they are one's.
+function legendOf(colouring, heights, low, cellSize, owner) {
     if (colouring === "height") {
         const bar = element("span", { class: "ramp" });
         bar.style.background = `linear-gradient(to right, ${HEIGHT_COLOURS.join(", ")})`;
@@ -56,8 +57,14 @@ function legendOf(colouring, heights, low, cellSize) {
             swatch(colour, ["overlaps none", "2", "4", "6", "8 or more others"][i]),
         );
     }
+    const whose = owner ? `the finest of ${owner}` : "which is no broadphase's own size";
     return [
-        element("span", {}, `one colour a cell of ${metres(cellSize)}, by the hash of its place`),
+        element(
+            "span",
+            {},
+            `cells of ${metres(cellSize)}, ${whose}, in eight colours: cells side by side differ; ` +
+                "a body is in that of its lowest corner",
+        ),
     ];
 }
 

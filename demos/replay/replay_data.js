@@ -170,6 +170,11 @@ class Recording {
         });
     }
 
+    // The broadphase whose cells are shown: the one that is judged, or else the first that has cells.
+    withCells(broadphase) {
+        return broadphase.cellSize ? broadphase : this.broadphases.find((each) => each.cellSize);
+    }
+
     // What all objects are like, as the broadphase sees them.
     numbersOf(broadphase, frame) {
         return this.tracks[broadphase.track].at(frame).boxes;

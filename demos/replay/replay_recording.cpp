@@ -58,6 +58,7 @@ void ReplayRecording::add(std::size_t broadphase, const ReplayFrame& frame) {
     WrongPairs& wrong = wrong_[broadphase];
     wrong.missing.push_back(frame.missing.size());
     wrong.extra.push_back(frame.extra.size());
+    wrong.cellSize = frame.cellSize;
     if (wrong.first.is_null()) {
         describeFirst(frame, wrong);
     }
@@ -219,6 +220,7 @@ Json ReplayRecording::json() const {
                                        {"missingListed", wrong.missingListed},
                                        {"extraListed", wrong.extraListed},
                                        {"places", littleEndian(wrong.places)},
+                                       {"cellSize", orNull(wrong.cellSize)},
                                        {"first", wrong.first}});
     }
     return json;

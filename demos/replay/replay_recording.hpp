@@ -14,6 +14,7 @@
 #include <demos/report/json_values.hpp>
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -40,6 +41,7 @@ struct ReplayFrame {
     std::span<const PairKey> exact;      // what overlaps and is allowed
     std::span<const PairKey> missing;    // of the exact ones
     std::span<const PairKey> extra;      // listed but not exact
+    std::optional<float> cellSize = {};  // of its finest cells [m], where it has cells
 };
 
 class ReplayRecording {
@@ -87,8 +89,9 @@ private:
         std::vector<std::size_t> extra;
         std::vector<std::size_t> missingListed;
         std::vector<std::size_t> extraListed;
-        std::vector<std::uint32_t> places;  // two for each: frame by frame, the missing ones first
-        Json first = nullptr;               // who they are, in words
+        std::vector<std::uint32_t> places;   // two for each: frame by frame, the missing ones first
+        Json first = nullptr;                // who they are, in words
+        std::optional<float> cellSize = {};  // in the last frame that was added
     };
 
     void begin(std::span<const Aabb<float>> boxes);

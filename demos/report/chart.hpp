@@ -26,7 +26,7 @@ enum class ChartMark {
     kLine,   // a line with points a series, in the order of the rows
     kPoint,  // points
     kBar,    // bars side by side; x are names
-    kCell,   // a heat map: x and y are names, the colour is `shade`; numbers among them grow upwards
+    kCell,  // a heat map: x and y are names, the colour is `shade`; numbers among them grow upwards
 };
 
 struct Chart {
@@ -39,7 +39,7 @@ struct Chart {
     Axis y;
 
     /// The column, of texts, that tells the lines, points or bars apart; empty for one series. A
-    /// method's colour is the same in all charts of a page.
+    /// method's colour is the same in all charts of a page; see series_looks.hpp.
     std::string series = {};
 
     std::string low = {};  // the columns of an error bar around y; empty: none

@@ -4,6 +4,7 @@
 #include <demos/report/chart_labels.hpp>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace hashphase::demos::detail {
@@ -200,6 +201,23 @@ Json ChartDrawing::seriesColour() const {
         colours.push_back(theme_.series[lookOf(name).colour]);
     }
     return seriesScale(colours);
+}
+
+// Without a scale, which would be that of dashOf(), and without a legend: that has the shapes.
+Json ChartDrawing::seriesDash() const {
+    static const std::array<std::vector<int>, 6> kDashes{
+        {{1, 0}, {8, 4}, {2, 3}, {10, 3, 2, 3}, {4, 4}, {14, 4}}};
+    Json conditions = Json::array();
+    for (const std::string& name : series_) {
+        conditions.push_back(
+            {{"test", "datum[" + Json(chart_.series).dump() + "] === " + Json(name).dump()},
+             {"value", kDashes[lookOf(name).dash % kDashes.size()]}});
+    }
+    Json dash{{"value", kDashes[0]}};
+    if (!conditions.empty()) {
+        dash["condition"] = std::move(conditions);
+    }
+    return dash;
 }
 
 Json ChartDrawing::seriesShape() const {

@@ -52,6 +52,7 @@ private:
     [[nodiscard]] Json legend() const;
     [[nodiscard]] Json seriesColour() const;
     [[nodiscard]] Json seriesShape() const;
+    [[nodiscard]] Json seriesDash() const;
     [[nodiscard]] Json seriesScale(const std::vector<std::string>& range) const;
     void addLabelPlaces(Json& rows) const;
 

@@ -110,6 +110,7 @@ Json ChartDrawing::lineLayer() const {
     return {{"mark", {{"type", "line"}, {"strokeWidth", 2}}},
             {"encoding",
              {{"color", seriesColour()},
+              {"strokeDash", seriesDash()},
               {"order", {{"field", field::kRow}, {"type", "quantitative"}}}}}};
 }
 

@@ -5,6 +5,7 @@
 #include <demos/report/chart_scripts.hpp>
 #include <demos/report/html.hpp>
 #include <demos/report/page_style.hpp>
+#include <demos/report/report_text.hpp>
 #include <demos/report/vega_lite.hpp>
 
 #include <ostream>
@@ -151,6 +152,10 @@ void PageWriter::writeTop() const {
     out_ << "<header>\n<h1>" << escaped(page_.title) << "</h1>\n";
     writeParagraph(page_.introduction);
     writeVerdict(page_);
+    const std::string caution = cautionOf(page_.provenance);
+    if (!caution.empty()) {
+        out_ << "<p class=\"verdict unchecked\">" << escaped(caution) << "</p>\n";
+    }
     if (scripts_.code.empty()) {
         out_ << "<p class=\"quiet\">" << escaped(scripts_.whyNone)
              << " This page has the numbers of all charts as tables.</p>\n";
@@ -162,8 +167,8 @@ void PageWriter::writeTop() const {
 }
 
 void PageWriter::writeVerdict(const Page& page) const {
-    out_ << "<p class=\"verdict" << (page.isGood ? "" : " bad") << "\">" << escaped(page.verdict)
-         << "</p>\n";
+    const char* const look = !page.holds ? " unchecked" : *page.holds ? "" : " bad";
+    out_ << "<p class=\"verdict" << look << "\">" << escaped(page.verdict) << "</p>\n";
 }
 
 void PageWriter::writeTabs() const {
@@ -299,11 +304,16 @@ void PageWriter::writeChecks(const std::vector<Check>& checks) const {
 }
 
 void PageWriter::writeChart(const Chart& chart, const Place& place) const {
-    const bool isDrawn = !scripts_.code.empty();
+    const bool isMeasured = !chart.data.rows.empty();
+    const bool isDrawn = isMeasured && !scripts_.code.empty();
     out_ << "<figure" << (isDrawn ? " class=\"chart\"" : "") << " id=\""
          << escaped(place.idPrefix + chart.name) << "\">\n<figcaption>"
          << heading(place.headingLevel + 1, chart.title) << "<p>" << escaped(chart.settings)
          << "</p></figcaption>\n";
+    if (!isMeasured) {
+        out_ << "<p>Nothing was measured.</p>\n</figure>\n";
+        return;
+    }
     if (isDrawn) {
         out_ << "<div class=\"drawing\"></div>\n<script type=\"application/json\">"
              << jsonInScript(vegaLiteSpec(chart, looks_, pageTheme(), ChartTitle::kNone))
@@ -321,10 +331,13 @@ void PageWriter::writeProvenance() const {
     table.add({"hashphase", provenance.hashphaseVersion});
     table.add({"Bullet", provenance.bulletVersion + ", " + provenance.precision + " precision"});
     table.add({"compiler", provenance.compiler});
-    table.add(
-        {"its flags", provenance.compilerFlags.empty() ? "unknown" : provenance.compilerFlags});
-    table.add({"optimised", provenance.optimised ? "yes" : "NO: times mean nothing"});
+    table.add({"its flags", flagsText(provenance)});
+    table.add({"build", provenance.buildType + (provenance.isForMeasuring
+                                                    ? ", for measuring"
+                                                    : ", for tests: times mean little")});
+    table.add({"assertions", provenance.hasAssertions ? "on" : "off"});
     table.add({"processor", provenance.cpu});
+    table.add({"instructions that hashphase uses", provenance.instructionSet});
     table.add({"cores", std::to_string(provenance.cores)});
     if (provenance.loadAverage) {
         const auto& [one, five, fifteen] = *provenance.loadAverage;

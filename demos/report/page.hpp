@@ -19,6 +19,7 @@
 #include <demos/report/series_looks.hpp>
 
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,7 +41,7 @@ struct Page {
     std::string title;
     std::string introduction;  // for somebody who has never heard of the program
     std::string verdict;
-    bool isGood = false;
+    std::optional<bool> holds;  // all that was checked; nothing where nothing was
     std::vector<PageSection> sections;
     Provenance provenance;
 

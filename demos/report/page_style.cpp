@@ -8,14 +8,14 @@ std::string_view pageStyle() {
 :root {
   color-scheme: light dark;
   --ink: #222222; --quiet: #5c5c5c; --faint: #e3e3e3; --paper: #ffffff; --panel: #f5f6f7;
-  --link: #0b57a4; --good: #1b6e3c; --bad: #b3261e;
+  --link: #0b57a4; --good: #1b6e3c; --bad: #b3261e; --open: #a86500;
   --series-0: #0072b2; --series-1: #d55e00; --series-2: #009e73; --series-3: #cc79a7;
   --series-4: #e69f00; --series-5: #56b4e9; --series-6: #666666;
 }
 @media screen and (prefers-color-scheme: dark) {
   :root {
     --ink: #e8e8e8; --quiet: #a9adb3; --faint: #383c42; --paper: #15181c; --panel: #1f2329;
-    --link: #8ab8f0; --good: #7fd19b; --bad: #ff8a80;
+    --link: #8ab8f0; --good: #7fd19b; --bad: #ff8a80; --open: #f0b53c;
     --series-0: #4aa3df; --series-1: #f0824a; --series-2: #2fc79a; --series-3: #e09cc3;
     --series-4: #f0b53c; --series-5: #8fd0f7; --series-6: #a8a8a8;
   }
@@ -41,11 +41,12 @@ a { color: var(--link); }
   padding: .7rem 1rem; margin: 1rem 0; font-size: 1.1rem;
 }
 .verdict.bad { border-color: var(--bad); }
+.verdict.unchecked { border-color: var(--open); }
 .holds, .broken { font-weight: 600; color: var(--good); }
 .broken { color: var(--bad); }
 .quiet, figcaption p, summary { color: var(--quiet); font-size: .875rem; }
 ul.checks { list-style: none; padding: 0; }
-ul.checks li { display: flex; }
+ul.checks li { display: flex; margin: .4rem 0; }
 ul.checks .holds, ul.checks .broken { flex: 0 0 5rem; }
 .contents ul { padding: 0; list-style: none; columns: 17rem; }
 .contents > ul > li { break-inside: avoid; }
@@ -63,7 +64,8 @@ ul.checks .holds, ul.checks .broken { flex: 0 0 5rem; }
 }
 figure { margin: 2rem 0; }
 figcaption p { margin: .15rem 0 .6rem; }
-.drawing svg { max-width: 100%; height: auto; }
+.drawing { overflow-x: auto; }
+.drawing svg { max-width: 100%; min-width: 34rem; height: auto; }
 details { margin: .4rem 0; }
 summary { cursor: pointer; }
 .table { overflow-x: auto; margin: .75rem 0; }
@@ -101,6 +103,7 @@ code { overflow-wrap: anywhere; }
   .contents, .tabs, summary { display: none; }
   h2, h3, h4 { break-after: avoid; }
   .part { break-before: page; border: 0; margin: 0; padding: 0; }
+  .drawing svg { min-width: 0; }
   figcaption, .drawing, tr, li { break-inside: avoid; }
   figcaption { break-after: avoid; }
   body { font-size: 10pt; }

@@ -3,6 +3,9 @@
 
 #include <demos/console/program.hpp>
 
+#include <broadphase/detail/kernels.hpp>
+#include <broadphase/diagnostics.hpp>
+
 #include <LinearMath/btScalar.h>
 
 #include <cstdlib>
@@ -43,7 +46,12 @@ Provenance gatherProvenance(const std::string& commandLine) {
     provenance.compiler = compilerName();
 #ifdef HASHPHASE_COMPILER_FLAGS
     provenance.compilerFlags = HASHPHASE_COMPILER_FLAGS;
+    provenance.programFlags = HASHPHASE_PROGRAM_FLAGS;
+    provenance.buildType = HASHPHASE_BUILD_TYPE;
+    provenance.isForMeasuring = HASHPHASE_BUILT_FOR_MEASURING != 0;
 #endif
+    provenance.hasAssertions = HASHPHASE_ENABLE_ASSERTS != 0;
+    provenance.instructionSet = detail::nameOf(detail::instructionSet());
 #ifdef __OPTIMIZE__
     provenance.optimised = true;
 #endif

@@ -103,8 +103,9 @@ private:
     Console& console_;
     Stopwatch watch_;
     Page page_;
-    std::vector<Check> verdicts_;       // of each part
-    std::vector<std::string> leftOut_;  // for want of time
+    PageSection inShort_;                  // the verdict of each part
+    std::vector<std::string> notChecked_;  // ran, but had no time to check anything
+    std::vector<std::string> leftOut_;     // for want of time
 };
 
 /// Of what is left, the part's share of the expected time of all that are to come.
@@ -142,8 +143,14 @@ void ReportRun::runPart(std::size_t index) {
     const Stopwatch watch;
     page_.parts.push_back(pageOfPart(part, arguments));
     const Page& done = page_.parts.back();
-    verdicts_.push_back(
-        {done.verdict, done.isGood, name + ", " + fixed(watch.milliseconds() / 1000, 0) + " s"});
+    const std::string evidence = name + ", " + fixed(watch.milliseconds() / 1000, 0) + " s";
+    if (done.holds) {
+        inShort_.checks.push_back({done.verdict, *done.holds, evidence});
+    } else {
+        notChecked_.push_back(name);
+        inShort_.conclusions.push_back("Not checked: " + done.verdict + " (" + evidence +
+                                       ")");
+    }
     console_.out << name << ": " << done.verdict << '\n' << std::flush;
 }
 
@@ -166,30 +173,34 @@ Page ReportRun::pageOfPart(const ReportPart& part, const std::vector<std::string
     }
     try {
         app.parse(std::move(arguments));
-        page.isGood = part.command.run(console) == kExitOk && page.isGood;
+        if (part.command.run(console) != kExitOk) {
+            page.holds = false;
+        }
     } catch (const std::exception& error) {
-        page.isGood = false;
+        page.holds = false;
         page.verdict = std::string("It did not come to its end: ") + error.what();
     }
     return page;
 }
 
 void ReportRun::conclude() {
-    const auto broken = std::count_if(verdicts_.begin(), verdicts_.end(),
+    const std::vector<Check>& checked = inShort_.checks;
+    const auto broken = std::count_if(checked.begin(), checked.end(),
                                       [](const Check& check) { return !check.holds; });
-    const std::size_t parts = page_.parts.size();
-    page_.isGood = broken == 0;
-    page_.verdict =
-        std::to_string(parts) + (parts == 1 ? " part: " : " parts: ") +
-        (broken == 0 ? "all checks hold" : "checks of " + std::to_string(broken) + " are BROKEN") +
-        leftOutText(leftOut_) + ".";
-    PageSection section;
-    section.heading = "In short";
-    section.checks = std::move(verdicts_);
-    if (options_.isQuick) {
-        section.sentences = {"Measured with --quick: fewer objects, fewer frames."};
+    page_.verdict = "Checked " + std::to_string(checked.size()) + " of " +
+                    std::to_string(parts_.size()) + (parts_.size() == 1 ? " part" : " parts");
+    if (!checked.empty()) {
+        page_.holds = broken == 0;
+        page_.verdict += broken == 0 ? ": all checks hold"
+                                     : ": checks of " + std::to_string(broken) + " are BROKEN";
     }
-    page_.sections = {std::move(section)};
+    page_.verdict +=
+        namesText("; not checked: ", notChecked_) + leftOutText(leftOut_) + ".";
+    inShort_.heading = "In short";
+    if (options_.isQuick) {
+        inShort_.sentences = {"Measured with --quick: fewer objects, fewer frames."};
+    }
+    page_.sections = {std::move(inShort_)};
 }
 
 int runReport(const std::vector<ReportPart>& parts, const ReportOptions& options,
@@ -199,7 +210,11 @@ int runReport(const std::vector<ReportPart>& parts, const ReportOptions& options
     const Page page = ReportRun(std::move(chosen), options, console).run();
     deliverPage(page, file, console);
     console.out << page.verdict << " The page is " << options.htmlFile << ".\n";
-    return page.isGood ? kExitOk : kExitCheckFailed;
+    const std::string caution = cautionOf(page.provenance);
+    if (!caution.empty()) {
+        console.out << caution << '\n';
+    }
+    return page.holds.value_or(false) ? kExitOk : kExitCheckFailed;
 }
 
 }  // namespace

@@ -21,16 +21,20 @@ std::string ratioText(const std::optional<double>& ratio) {
     return ratio ? fixed(*ratio, *ratio < 10 ? 2 : 1) + "x" : "-";
 }
 
-std::string leftOutText(const std::vector<std::string>& names) {
+std::string namesText(const std::string& opening, const std::vector<std::string>& names) {
     constexpr std::size_t mostNames = 10;
     std::string text;
     for (std::size_t i = 0; i < std::min(names.size(), mostNames); ++i) {
-        text += (i == 0 ? "; left out for want of time: " : ", ") + names[i];
+        text += (i == 0 ? opening : ", ") + names[i];
     }
     if (names.size() > mostNames) {
         text += " and " + std::to_string(names.size() - mostNames) + " more";
     }
     return text;
+}
+
+std::string leftOutText(const std::vector<std::string>& names) {
+    return namesText("; left out for want of time: ", names);
 }
 
 std::string boxText(const Aabb<float>& box) {
@@ -41,10 +45,39 @@ std::string boxText(const Aabb<float>& box) {
     return text.str();
 }
 
+std::string flagsText(const Provenance& provenance) {
+    if (provenance.compilerFlags.empty()) {
+        return "unknown";
+    }
+    return provenance.compilerFlags +
+           (provenance.programFlags.empty()
+                ? ""
+                : "; what hashphase is compared with, but Bullet's own library, and what times it: "
+                  "also " +
+                      provenance.programFlags);
+}
+
+std::string cautionOf(const Provenance& provenance) {
+    if (provenance.isForMeasuring) {
+        return {};
+    }
+    return "Times mean little: this program is built for tests (" + provenance.buildType +
+           ", assertions " + (provenance.hasAssertions ? "on" : "off") +
+           (provenance.programFlags.empty()
+                ? ""
+                : ", what hashphase is compared with optimised less than hashphase itself") +
+           "). Measure with the build that demos/run makes.";
+}
+
 void printProvenance(const Provenance& provenance, std::ostream& out) {
     out << "hashphase " << provenance.hashphaseVersion << ", Bullet " << provenance.bulletVersion
         << " (" << provenance.precision << " precision), " << provenance.compiler << ", "
-        << provenance.cpu << ", " << provenance.cores << " cores, one thread\n";
+        << provenance.cpu << ", " << provenance.cores << " cores, one thread, "
+        << provenance.instructionSet << " instructions\n";
+    const std::string caution = cautionOf(provenance);
+    if (!caution.empty()) {
+        out << caution << '\n';
+    }
     if (provenance.loadAverage && (*provenance.loadAverage)[0] > provenance.cores) {
         out << "Other programs kept the processor busy (load "
             << fixed((*provenance.loadAverage)[0], 1) << " on " << provenance.cores

@@ -24,11 +24,22 @@ namespace hashphase::demos {
 /// "[0 0 0 to 1 1 1]", with enough digits to tell any two floats apart.
 [[nodiscard]] std::string boxText(const Aabb<float>& box);
 
-/// "; left out for want of time: P9, P10", ten of them at most and the number of the others; empty
-/// for none.
+/// ". Unknown: P9, P10" of the opening ". Unknown: ", ten names at most and the number of the others;
+/// empty for none.
+[[nodiscard]] std::string namesText(const std::string& opening,
+                                    const std::vector<std::string>& names);
+
+/// The same, "; left out for want of time: P9, P10".
 [[nodiscard]] std::string leftOutText(const std::vector<std::string>& names);
 
-/// A line with versions, compiler and processor, and a warning when the processor was busy.
+/// The compiler's flags, and which others were in use for what the grid is compared with.
+[[nodiscard]] std::string flagsText(const Provenance& provenance);
+
+/// A sentence that begins "Times mean little"; empty for a build that is meant for measuring.
+[[nodiscard]] std::string cautionOf(const Provenance& provenance);
+
+/// A line with versions, compiler and processor, and warnings where times mean little: in a build for
+/// tests, or when the processor was busy.
 void printProvenance(const Provenance& provenance, std::ostream& out);
 
 }  // namespace hashphase::demos

@@ -242,9 +242,12 @@ void writeCsv(const StabilityReport& report, std::ostream& out) {
 }
 
 Page pageOf(const StabilityReport& report) {
-    Page page{"Hard cases",    kIntroduction,          verdictLine(report) + ".",
-              allHold(report), {tableSection(report)}, report.provenance};
+    Page page{"Hard cases", kIntroduction,          verdictLine(report) + ".",
+              std::nullopt, {tableSection(report)}, report.provenance};
     for (const CaseResult& result : report.results) {
+        if (caseHolds(report, result)) {
+            page.holds = allHold(report);
+        }
         page.sections.push_back(caseSection(report, result));
     }
     return page;

@@ -3,8 +3,10 @@
 // node browse_replay.mjs <chromium> <page>...
 //
 // Plays the recordings of pages in headless Chromium, whose WebGL2 is drawn by the processor, and tells
-// as JSON, page by page, what was to be seen in each frame, how the picture changes with what is chosen,
-// where the first wrong pair is, how fast it draws, and what is said where there is no WebGL2.
+// as JSON, page by page, what was to be seen in each frame. Of the first page also how the picture changes
+// with what is chosen, where the first wrong pair is, how fast it draws, what comes of a loss of WebGL2 or
+// of another size or density of the screen, and what is said where there is no WebGL2; of the others
+// what is said of the pairs, and the colours of bodies in a row.
 
 import { Browser, scheme } from "./browser.mjs";
 
@@ -158,11 +160,126 @@ async function byKeys({ tab, evaluate }) {
     return seen;
 }
 
+// Keys that are pressed while the focus is not in the tab's contents.
+async function byKeysElsewhere({ tab, evaluate }) {
+    const after = async (key) => {
+        await press(tab, key);
+        return evaluate("[Number(root.dataset.frame), root.dataset.playing === 'true']");
+    };
+    const focus = (what) => evaluate(`scrub(3).then(() => ${what})`);
+    await focus("document.getElementById('tab-replay').focus()");
+    const seen = { onTab: [await after("."), await after(" ")] };
+    await focus("document.activeElement.blur()");
+    seen.nowhere = [await after("."), await after("End"), await after(" "), await after(" ")];
+    await focus("root.querySelector('[name=cellSize]').focus()");
+    seen.typing = await after(".");
+    await focus("document.getElementById('tab-report').click()");
+    seen.hidden = await after(",");
+    await evaluate("document.getElementById('tab-replay').click()");
+    return seen;
+}
+
+const lossOfContext = `(async () => {
+    const lose = canvas.getContext("webgl2").getExtension("WEBGL_lose_context");
+    const happens = (name) => new Promise((resolve) => {
+        canvas.addEventListener(name, () => resolve(true), { once: true });
+        setTimeout(() => resolve(false), 5000);
+    });
+    await scrub(2);
+    remember("whole");
+    root.querySelector("[aria-label=Play]").click();
+    const lost = happens("webglcontextlost");
+    lose.loseContext();
+    await lost;
+    root.querySelector(".time button").click(); // nothing can be played now
+    const during = { state: root.dataset.state, playing: root.dataset.playing };
+    await new Promise((resolve) => setTimeout(resolve));
+    const restored = happens("webglcontextrestored");
+    lose.restoreContext();
+    if (!(await restored)) {
+        return { during };
+    }
+    await scrub(2);
+    return { during, state: root.dataset.state, changed: changedSince("whole") };
+})()`;
+
+// The picture has as many pixels as the screen.
+async function onScreens({ tab, evaluate }) {
+    const sizes = [];
+    for (const [width, deviceScaleFactor] of [[900, 1], [700, 1], [700, 2], [700, 1.5], [700, 1]]) {
+        await tab("Emulation.setDeviceMetricsOverride", {
+            width,
+            height: 900,
+            deviceScaleFactor,
+            mobile: false,
+        });
+        // Chromium tells media queries of an emulated density when another medium changes, too.
+        await tab("Emulation.setEmulatedMedia", {
+            features: [
+                { name: "prefers-color-scheme", value: "light" },
+                { name: "prefers-reduced-motion", value: sizes.length % 2 ? "reduce" : "no-preference" },
+            ],
+        });
+        await evaluate("settled().then(settled)");
+        sizes.push(await evaluate("[canvas.width, canvas.clientWidth * devicePixelRatio]"));
+    }
+    await tab("Emulation.clearDeviceMetricsOverride");
+    await evaluate("settled()");
+    return sizes;
+}
+
+// The colours along the middle of the picture, each where it covers some pixels of bodies.
+const coloursOfRow = `(async () => {
+    const middle = () => {
+        const { width, height } = canvas;
+        return pixels().slice((height >> 1) * width, ((height >> 1) + 1) * width);
+    };
+    await choose("colouring", "height");
+    const other = middle();
+    await choose("colouring", "cell");
+    const row = middle();
+    const colours = [];
+    for (let at = 0, end; at < row.length; at = end) {
+        for (end = at + 1; end < row.length && row[end] === row[at]; ++end) {}
+        if (end - at >= 4 && row[at] !== other[at]) {
+            colours.push(row[at]);
+        }
+    }
+    return colours;
+})()`;
+
+async function inShort({ tab, evaluate }) {
+    await scheme(tab, "light");
+    const seen = { state: await evaluate(ready) };
+    await evaluate(helpers);
+    await evaluate("settled()");
+    const textOf = (place) => evaluate(`root.querySelector("${place}").textContent`);
+    seen.frames = await evaluate(allFrames);
+    seen.lines = Number((await evaluate("choose('pairs', true)")).lines);
+    await evaluate("choose('pairs', false)");
+    await evaluate("canvas.focus()");
+    for (const key of [..."123456"].map(() => "ArrowLeft").concat([..."12345"].map(() => "ArrowDown"))) {
+        await press(tab, key); // until the camera looks along z
+    }
+    await evaluate("choose('cellSize', '1')");
+    seen.colours = await evaluate(coloursOfRow);
+    seen.counts = await textOf(".counts");
+    seen.played = await pictureAfter(evaluate, () => press(tab, " "));
+    return seen;
+}
+
 async function withWebGL2({ tab, evaluate }) {
     await scheme(tab, "light");
     const seen = { state: await evaluate(ready) };
     await evaluate(helpers);
     await evaluate("settled()");
+    seen.cells = await evaluate(`({
+        size: Number(root.querySelector("[name=cellSize]").value),
+        legend: root.querySelector(".legend").textContent,
+    })`);
+    seen.keysElsewhere = await byKeysElsewhere({ tab, evaluate });
+    seen.loss = await evaluate(lossOfContext);
+    seen.screens = await onScreens({ tab, evaluate });
     seen.frames = await evaluate(allFrames);
     seen.changes = await evaluate(changes);
     seen.inks = [await evaluate("pixels()[0]")];
@@ -194,12 +311,14 @@ const browser = new Browser(
     180,
 );
 const seen = [];
-for (const page of pages) {
-    const fragment = "#replay";
-    seen.push({
-        withWebGL2: await browser.inTab(page, { fragment }, withWebGL2),
-        withoutWebGL2: await browser.inTab(page, { fragment, setUp: hideWebGL2 }, withoutWebGL2),
-    });
+const fragment = "#replay";
+const [whole, ...small] = pages;
+seen.push({
+    withWebGL2: await browser.inTab(whole, { fragment }, withWebGL2),
+    withoutWebGL2: await browser.inTab(whole, { fragment, setUp: hideWebGL2 }, withoutWebGL2),
+});
+for (const page of small) {
+    seen.push(await browser.inTab(page, { fragment }, inShort));
 }
 console.log(JSON.stringify(seen, null, 1));
 await browser.close();

@@ -241,6 +241,31 @@ TEST(Compare, WritesAPageWithoutChartsWhereNothingWasTimed) {
     EXPECT_NE(page.str().find("The time limit was reached after 0 of 120 frames."),
               std::string::npos);
     EXPECT_EQ(page.str().find("class=\"verdict bad\""), std::string::npos) << "nothing was wrong";
+    EXPECT_EQ(page.str().find("class=\"verdict\""), std::string::npos) << "nor was it checked";
+}
+
+TEST(Compare, DrawsManyFramesTogether) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("r.html");
+    run({"compare", "--objects", "3", "--frames", "2511", "--broadphases", "hash,dbvt", "--html",
+         path, "--replay-frames", "0", "--csv", folder.file("r.csv")});
+    std::ostringstream page;
+    page << std::ifstream(path).rdbuf();
+    const std::string html = page.str();
+    const std::size_t trace = html.find("id=\"compare-trace\"");
+    ASSERT_NE(trace, std::string::npos);
+    EXPECT_NE(html.find("median of 3 frames, from the least to the most", trace),
+              std::string::npos);
+    std::size_t rows = 0;
+    const std::size_t end = html.find("</figure>", trace);
+    for (std::size_t at = trace; (at = html.find("<tr>", at + 1)) < end;) {
+        ++rows;
+    }
+    EXPECT_EQ(rows, 1 + 2 * 834U) << "2,501 frames were timed";
+    std::ostringstream csv;
+    csv << std::ifstream(folder.file("r.csv")).rdbuf();
+    const std::string text = csv.str();
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + 2 * 2511) << "all of them";
 }
 
 TEST(Compare, RefusesResultFilesThatCannotBeWritten) {

@@ -3,7 +3,11 @@
 #include <demos/report/chart_scripts.hpp>
 #include <demos/report/html.hpp>
 #include <demos/report/page.hpp>
+#include <demos/report/report_text.hpp>
 #include <tests/demos/sample_experiments.hpp>
+
+#include <broadphase/detail/kernels.hpp>
+#include <broadphase/diagnostics.hpp>
 
 #include <gtest/gtest.h>
 
@@ -96,12 +100,63 @@ TEST(Page, HoldsTheNumbersOfAllChartsAsTables) {
     EXPECT_EQ(count(html.substr(0, html.find("id=\"provenance\"")), "<tr>"), rows);
 }
 
+TEST(Page, DrawsNoChartOfNothing) {
+    Page page = samplePage();
+    page.sections[0].charts.resize(1);
+    page.sections[0].charts[0].data.rows.clear();
+    const std::string html = withoutScripts(page);
+    EXPECT_EQ(count(html, "<p>Nothing was measured.</p>"), 1U);
+    EXPECT_EQ(count(html, "class=\"drawing\""), 0U);
+    EXPECT_EQ(count(html, "<th scope=\"col\">method</th>"), 0U) << "a table of nothing";
+}
+
 TEST(Page, SaysInWordsWhetherAChecksHolds) {
     Page page = samplePage();
     page.sections[0].checks = {{"One", true, "1 of 1"}, {"Other", false, "0 of 1"}};
     const std::string html = withoutScripts(page);
     EXPECT_NE(html.find(">holds</span><span>One "), std::string::npos);
     EXPECT_NE(html.find(">BROKEN</span><span>Other "), std::string::npos);
+}
+
+TEST(Page, SaysThatTimesMeanLittleUnlessItWasBuiltForMeasuring) {
+    Page page = samplePage();
+    page.provenance.compilerFlags = "-O2";
+    page.provenance.buildType = "RelWithDebInfo";
+    page.provenance.hasAssertions = true;
+    page.provenance.programFlags = "-Og";
+    page.provenance.instructionSet = "AVX2";
+    const std::string test = withoutScripts(page);
+    EXPECT_EQ(count(test, "imes mean little"), 2U) << "below the verdict, and in the table";
+    EXPECT_LT(test.find("Times mean little: this program is built for tests (RelWithDebInfo, "
+                        "assertions on, what hashphase is compared with optimised less"),
+              test.find("</header>"));
+    EXPECT_EQ(count(test, "also -Og"), 1U);
+    EXPECT_EQ(count(test, "<td>assertions</td><td>on</td>"), 1U);
+    EXPECT_EQ(count(test, "<td>AVX2</td>"), 1U);
+
+    page.provenance.buildType = "Release";
+    page.provenance.hasAssertions = false;
+    page.provenance.programFlags.clear();
+    page.provenance.isForMeasuring = true;
+    const std::string release = withoutScripts(page);
+    EXPECT_EQ(count(release, "mean little"), 0U);
+    EXPECT_EQ(count(release, "<td>-O2</td>"), 1U);
+    EXPECT_EQ(count(release, "<td>assertions</td><td>off</td>"), 1U);
+}
+
+TEST(Provenance, TellsAssertionsAndInstructionsOfThisBuildInTextAndJson) {
+    const Provenance provenance = gatherProvenance("command");
+    EXPECT_EQ(provenance.hasAssertions, HASHPHASE_ENABLE_ASSERTS != 0);
+    EXPECT_FALSE(provenance.hasAssertions && provenance.isForMeasuring);
+    EXPECT_EQ(provenance.instructionSet, detail::nameOf(detail::instructionSet()));
+    const Json json = provenanceJson(provenance);
+    EXPECT_EQ(json["assertions"], provenance.hasAssertions);
+    EXPECT_EQ(json["forMeasuring"], provenance.isForMeasuring);
+    EXPECT_EQ(json["instructionSet"], provenance.instructionSet);
+    std::ostringstream text;
+    printProvenance(provenance, text);
+    EXPECT_EQ(count(text.str(), ", " + provenance.instructionSet + " instructions\n"), 1U);
+    EXPECT_EQ(count(text.str(), "Times mean little"), provenance.isForMeasuring ? 0U : 1U);
 }
 
 TEST(Page, NeedsNothingElseAndRunsNoScriptButItsOwn) {

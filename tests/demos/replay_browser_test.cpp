@@ -102,6 +102,56 @@ void expectKeys(const nlohmann::json& keys, std::size_t frames) {
     EXPECT_EQ(keys["playing"], "false") << "paused by the same key";
 }
 
+void expectKeysElsewhere(const nlohmann::json& keys) {
+    using nlohmann::json;
+    EXPECT_EQ(keys["onTab"], json::parse("[[4, false], [4, false]]")) << "Space is the tab's own";
+    EXPECT_EQ(keys["nowhere"], json::parse("[[4, false], [13, false], [13, true], [13, false]]"));
+    EXPECT_EQ(keys["typing"], json::parse("[3, false]"));
+    EXPECT_EQ(keys["hidden"], json::parse("[3, false]"));
+}
+
+void expectLossAndScreens(const nlohmann::json& seen) {
+    const nlohmann::json& loss = seen["loss"];
+    EXPECT_EQ(loss["during"]["state"], "lost");
+    EXPECT_EQ(loss["during"]["playing"], "false");
+    EXPECT_EQ(loss["state"], "ready") << "where WebGL2 comes back";
+    EXPECT_EQ(loss["changed"], 0) << "the same picture again, to the last bit";
+    for (const nlohmann::json& size : seen["screens"]) {
+        EXPECT_NEAR(size[0].get<double>(), size[1].get<double>(), 1) << seen["screens"];
+    }
+}
+
+std::string boxesInARow(int count, float apart) {
+    std::ostringstream text;
+    for (int i = 0; i < count; ++i) {
+        const float low = 0.2F + apart * static_cast<float>(i);
+        text << low << " 0.2 0.2 " << low + 0.9F << " 1.1 1.1\n";
+    }
+    return text.str();
+}
+
+/// Writes a page of one frame of these boxes.
+std::string pageOfBoxes(const TemporaryFolder& folder, const std::string& name,
+                        const std::string& boxes) {
+    const std::string page = folder.file(name + ".html");
+    comparePage(folder, {"--file", folder.write(name + ".txt", boxes), "--frames", "1"}, page);
+    return page;
+}
+
+void expectOneFrame(const nlohmann::json& seen) {
+    EXPECT_EQ(seen["state"], "ready");
+    EXPECT_EQ(seen["faults"].size(), 0U) << seen["faults"];
+    EXPECT_EQ(seen["frames"].size(), 1U);
+    EXPECT_EQ(seen["played"]["frame"], 0) << "round and round";
+}
+
+void expectNeighboursToDiffer(const nlohmann::json& colours, std::size_t bodies) {
+    ASSERT_EQ(colours.size(), bodies) << "one a body: " << colours;
+    for (std::size_t i = 1; i < bodies; ++i) {
+        EXPECT_NE(colours[i], colours[i - 1]) << "cells side by side, number " << i;
+    }
+}
+
 TEST(ReplayInBrowser, ShowsFramesPairsAndTheFirstWrongOne) {
     if (std::string(HASHPHASE_CHROMIUM).empty() || std::string(HASHPHASE_NODE).empty()) {
         GTEST_SKIP() << "Chromium and Node.js are needed (Debian: chromium, nodejs).";
@@ -109,8 +159,10 @@ TEST(ReplayInBrowser, ShowsFramesPairsAndTheFirstWrongOne) {
     const TemporaryFolder folder;
     const std::string page = folder.file("compare.html");
     const nlohmann::json found = comparePage(folder, {"--objects", "1500", "--frames", "14"}, page);
-    const nlohmann::json seen = browseReplays(folder, {page});
-    ASSERT_EQ(seen.size(), 1U);
+    const nlohmann::json seen =
+        browseReplays(folder, {page, pageOfBoxes(folder, "row", boxesInARow(50, 1)),
+                               pageOfBoxes(folder, "heap", boxesInARow(550, 0))});
+    ASSERT_EQ(seen.size(), 3U);
 
     const nlohmann::json& with = seen[0]["withWebGL2"];
     EXPECT_EQ(with["state"], "ready");
@@ -119,6 +171,11 @@ TEST(ReplayInBrowser, ShowsFramesPairsAndTheFirstWrongOne) {
     expectFrames(with, found);
     expectPictures(with);
     expectKeys(with["keys"], 14);
+    expectKeysElsewhere(with["keysElsewhere"]);
+    expectLossAndScreens(with);
+    EXPECT_NE(with["cells"]["legend"].get<std::string>().find("which is no broadphase's own size"),
+              std::string::npos)
+        << "neither of these has cells: " << with["cells"];
     RecordProperty("frames a second", with["framesASecond"].dump());
 
     const nlohmann::json& wrong = with["wrongPair"];
@@ -141,6 +198,13 @@ TEST(ReplayInBrowser, ShowsFramesPairsAndTheFirstWrongOne) {
     EXPECT_NE(without["words"].get<std::string>().find("this browser has no WebGL2"),
               std::string::npos);
     EXPECT_EQ(without["faults"].size(), 0U) << without["faults"];
+
+    expectOneFrame(seen[1]);
+    expectNeighboursToDiffer(seen[1]["colours"], 50);
+    expectOneFrame(seen[2]);
+    EXPECT_EQ(seen[2]["frames"][0][1], 150'975);
+    EXPECT_EQ(seen[2]["lines"], 0) << "more pairs than are listed";
+    EXPECT_EQ(seen[2]["counts"].get<std::string>().rfind("150,975 pairs overlap, too many", 0), 0U);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <array>
 #include <cstdlib>
 #include <iterator>
+#include <regex>
 #include <sstream>
 
 namespace hashphase::demos {
@@ -71,6 +72,19 @@ TEST(ReplayRecording, TellsCountsAndTheFirstWrongPair) {
                          "Objects " + std::to_string(firstOf(pair)) + " and " +
                              std::to_string(secondOf(pair)) + " overlap by "))
         << first;
+}
+
+TEST(ReplayRecording, TellsTheFinestCellsOfWhatHasCells) {
+    ReplaySettings settings = replaySettings();
+    ReplayRecording recording(settings);
+    for (const float cellSize : {1.0F, 2.5F}) {
+        const auto boxes = driftingFrames(5, 1)[0];
+        recording.add(0, {boxes, {}, {}, {}, cellSize});
+        recording.add(1, {boxes, {}, {}, {}});
+        recording.finishFrame();
+    }
+    EXPECT_EQ(recording.json()["broadphases"][0]["cellSize"], 2.5F) << "in the last frame";
+    EXPECT_TRUE(recording.json()["broadphases"][1]["cellSize"].is_null());
 }
 
 TEST(ReplayRecording, EndsWhereTheSettingsSay) {
@@ -176,7 +190,10 @@ std::string pageOfCommand(std::vector<std::string> arguments, const TemporaryFol
 TEST(ReplayTab, IsInPagesOfComparisonsUnlessNotWanted) {
     const TemporaryFolder folder;
     const std::vector<std::string> brief{"compare", "--objects", "50", "--frames", "12"};
-    EXPECT_TRUE(includes(pageOfCommand(brief, folder), "of paper: the first 12 of 12 frames"));
+    const std::string page = pageOfCommand(brief, folder);
+    EXPECT_TRUE(includes(page, "of paper: the first 12 of 12 frames"));
+    EXPECT_TRUE(std::regex_search(page, std::regex("\"name\":\"hash\"[^}]*\"cellSize\":[0-9]")));
+    EXPECT_TRUE(includes(page, "\"cellSize\":null")) << "of trees";
     std::vector<std::string> fewer = brief;
     fewer.insert(fewer.end(), {"--replay-frames", "4"});
     EXPECT_TRUE(includes(pageOfCommand(fewer, folder), "of paper: the first 4 of 12 frames"));

@@ -13,6 +13,7 @@
 #include <chrono>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -31,7 +32,8 @@ struct PartCall {
     int count = 0;
 };
 
-ReportPart samplePart(const std::string& name, bool isGood, std::shared_ptr<PartCall> call) {
+ReportPart samplePart(const std::string& name, std::optional<bool> holds,
+                      std::shared_ptr<PartCall> call) {
     ReportPart part;
     part.command.name = name;
     part.command.description = "A sample";
@@ -44,13 +46,13 @@ ReportPart samplePart(const std::string& name, bool isGood, std::shared_ptr<Part
     part.command.run = [=](Console& console) {
         ++call->count;
         console.out << "what " << name << " prints\n";
-        Page page{"Page of " + name, "Introduction.", "Verdict of " + name + ".", isGood, {}, {}};
+        Page page{"Page of " + name, "Introduction.", "Verdict of " + name + ".", holds, {}, {}};
         page.provenance.commandLine = console.commandLine;
         page.sections.push_back({"First", {"Sentence"}, {}, {}, sampleCharts(), {}, {}});
         page.sections.push_back({"Second", {"Sentence"}, {}, {}, {}, {}, {}});
         ResultFile none("");
         deliverPage(page, none, console);
-        return isGood ? kExitOk : kExitCheckFailed;
+        return holds.value_or(true) ? kExitOk : kExitCheckFailed;
     };
     part.quickOptions = {"--size", "3"};
     return part;
@@ -86,9 +88,9 @@ ReportSeen runReport(const std::vector<ReportPart>& parts, const std::vector<std
 }
 
 /// One that holds, one that may not.
-std::vector<ReportPart> twoParts(bool isSecondGood = true) {
+std::vector<ReportPart> twoParts(std::optional<bool> secondHolds = true) {
     return {samplePart("alpha", true, std::make_shared<PartCall>()),
-            samplePart("beta", isSecondGood, std::make_shared<PartCall>())};
+            samplePart("beta", secondHolds, std::make_shared<PartCall>())};
 }
 
 std::vector<std::string> matches(const std::string& text, const char* pattern) {
@@ -120,7 +122,8 @@ TEST(JoinedReport, HasUniqueIdsAndALinkToEachPartAndSection) {
 TEST(JoinedReport, SaysWhatEachPartFoundAndHowToHaveItAlone) {
     const ReportSeen seen = runReport(twoParts(), {"--seed", "7"});
     EXPECT_EQ(seen.out.substr(0, seen.out.find("The page is")),
-              "alpha: Verdict of alpha.\nbeta: Verdict of beta.\n2 parts: all checks hold. ");
+              "alpha: Verdict of alpha.\nbeta: Verdict of beta.\n"
+              "Checked 2 of 2 parts: all checks hold. ");
     EXPECT_NE(seen.err.find("part 2 of 2: beta\n"), std::string::npos) << seen.err;
     const std::size_t beta = seen.html.find("<h2>Page of beta</h2>");
     ASSERT_NE(beta, std::string::npos);
@@ -133,10 +136,31 @@ TEST(JoinedReport, SaysWhatEachPartFoundAndHowToHaveItAlone) {
 TEST(JoinedReport, IsBadIfOneOfItsPartsIs) {
     const ReportSeen seen = runReport(twoParts(false), {});
     EXPECT_EQ(seen.code, kExitCheckFailed);
-    EXPECT_NE(seen.html.find("<p class=\"verdict bad\">2 parts: checks of 1 are BROKEN.</p>"),
+    EXPECT_NE(seen.html.find("<p class=\"verdict bad\">Checked 2 of 2 parts: "
+                             "checks of 1 are BROKEN.</p>"),
               std::string::npos);
     EXPECT_NE(seen.html.find("<p class=\"verdict\">Verdict of alpha.</p>"), std::string::npos);
     EXPECT_NE(seen.html.find("<p class=\"verdict bad\">Verdict of beta.</p>"), std::string::npos);
+}
+
+TEST(JoinedReport, DoesNotHoldWhereNothingWasChecked) {
+    const ReportSeen seen = runReport(twoParts(std::nullopt), {});
+    EXPECT_EQ(seen.code, kExitOk) << "what was checked holds";
+    EXPECT_NE(seen.html.find("<p class=\"verdict\">Checked 1 of 2 parts: all "
+                             "checks hold; not checked: beta.</p>"),
+              std::string::npos);
+    EXPECT_NE(seen.html.find("<p class=\"verdict unchecked\">Verdict of beta.</p>"),
+              std::string::npos);
+    EXPECT_EQ(matches(seen.html, "class=\"(holds|broken)\"").size(), 1U) << "that of alpha";
+    EXPECT_NE(seen.html.find("<li>Nothing was checked: Verdict of beta. (beta, "),
+              std::string::npos);
+
+    const ReportSeen none = runReport(twoParts(std::nullopt), {"--only", "beta"});
+    EXPECT_EQ(none.code, kExitCheckFailed);
+    EXPECT_NE(none.html.find("<p class=\"verdict unchecked\">Checked 0 of 1 part; "
+                             "not checked: beta.</p>"),
+              std::string::npos);
+    EXPECT_EQ(none.out.find("hold"), std::string::npos) << none.out;
 }
 
 TEST(JoinedReport, GoesOnAfterAPartThatThrows) {
@@ -161,22 +185,52 @@ TEST(JoinedReport, HoldsAllNumbersWithoutJavaScriptAndNeedsNothingElse) {
     EXPECT_EQ(html.find("<link"), std::string::npos);
 }
 
-TEST(JoinedReport, DrawsASeriesInOneColourInAllParts) {
-    Chart first{"a",   "A",   "", ChartMark::kPoint, {{{"x"}, {"m"}}, {{1.0, "one"}, {2.0, "two"}}},
-                {"x"}, {"x"}, "m"};
-    Chart second = first;
-    second.data.rows = {{1.0, "three"}, {2.0, "two"}};
-    Page page{"Title", "", "", true, {}, {}};
-    for (const Chart& chart : {first, second}) {
-        Page part = page;
-        part.parts.clear();
-        part.sections.assign({PageSection{"S", {}, {}, {}, {chart}, {}, {}}});
-        page.parts.push_back(part);
+Page pageOfSeries(const std::vector<std::string>& names) {
+    Chart chart{"a", "A", "", ChartMark::kLine, {{{"x"}, {"m"}}, {}}, {"x"}, {"x"}, "m"};
+    for (const std::string& name : names) {
+        chart.data.add({1.0, name});
     }
+    Page page{"Title", "", "", true, {}, {}};
+    page.sections.push_back({"S", {}, {}, {}, {chart}, {}, {}});
+    return page;
+}
+
+TEST(JoinedReport, DrawsASeriesInOneColourInAllParts) {
+    Page page{"Title", "", "", true, {}, {}};
+    page.parts = {pageOfSeries({"one", "two"}), pageOfSeries({"three", "two"})};
     const SeriesLooks looks = seriesLooks(page);
     EXPECT_EQ(looks.size(), 3U);
     EXPECT_NE(looks.at("two").colour, looks.at("one").colour);
     EXPECT_NE(looks.at("two").colour, looks.at("three").colour);
+}
+
+TEST(JoinedReport, DrawsAllVariantsOfAMethodInItsColour) {
+    Page page{"Title", "", "", true, {}, {}};
+    page.parts = {pageOfSeries({"un-optimized", "grid, cells of 5 m", "grid, cells of 100 m",
+                                "hash, cells of 5 m", "hash, cells of 100 m", "hash, automatic"}),
+                  pageOfSeries({"grid", "hash"})};
+    const SeriesLooks looks = seriesLooks(page);
+    const std::array<std::vector<std::string>, 3> methods{
+        {{"un-optimized"},
+         {"grid", "grid, cells of 5 m", "grid, cells of 100 m"},
+         {"hash", "hash, cells of 5 m", "hash, cells of 100 m", "hash, automatic"}}};
+    std::set<std::size_t> colours;
+    for (const std::vector<std::string>& series : methods) {
+        std::set<std::size_t> ofMethod;
+        std::set<std::size_t> dashes;
+        for (const std::string& name : series) {
+            ofMethod.insert(looks.at(name).colour);
+            dashes.insert(looks.at(name).dash);
+        }
+        EXPECT_EQ(ofMethod.size(), 1U) << series[0];
+        EXPECT_EQ(dashes.size(), series.size()) << series[0];
+        colours.merge(ofMethod);
+    }
+    EXPECT_EQ(colours.size(), methods.size());
+    const std::set<std::size_t> shapes{looks.at("hash, cells of 5 m").shape,
+                                       looks.at("hash, cells of 100 m").shape,
+                                       looks.at("hash, automatic").shape};
+    EXPECT_EQ(shapes.size(), 3U) << "in one chart";
 }
 
 TEST(JoinedReport, HandsItsOptionsToTheParts) {
@@ -194,7 +248,7 @@ TEST(JoinedReport, HandsItsOptionsToTheParts) {
     EXPECT_TRUE(call->quiet);
     EXPECT_EQ(call->count, 1);
     EXPECT_EQ(other->count, 0) << "not asked for";
-    EXPECT_NE(seen.out.find("1 part: all checks hold."), std::string::npos);
+    EXPECT_NE(seen.out.find("Checked 1 of 1 part: all checks hold."), std::string::npos);
 }
 
 TEST(JoinedReport, SaysWhatItLeftOutForWantOfTime) {
@@ -206,7 +260,8 @@ TEST(JoinedReport, SaysWhatItLeftOutForWantOfTime) {
     };
     const ReportSeen seen = runReport(parts, {"--time-limit", "0.2"});
     EXPECT_EQ(seen.code, kExitOk);
-    EXPECT_NE(seen.html.find(">1 part: all checks hold; left out for want of time: beta.</p>"),
+    EXPECT_NE(seen.html.find(">Checked 1 of 2 parts: all checks hold; "
+                             "left out for want of time: beta.</p>"),
               std::string::npos);
     EXPECT_EQ(seen.html.find("Page of beta"), std::string::npos);
 }
