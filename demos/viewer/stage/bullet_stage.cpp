@@ -27,6 +27,20 @@ Aabb<float> boxOf(const btBroadphaseProxy& proxy) {
     return {toEigen(proxy.m_aabbMin), toEigen(proxy.m_aabbMax)};
 }
 
+Aabb<float> nowhere() {
+    const Vector3<float> corner = Vector3<float>::Constant(std::numeric_limits<float>::quiet_NaN());
+    return {corner, corner};
+}
+
+// What btCollisionWorld::updateSingleAabb() would set now.
+Aabb<float> presentBox(const btRigidBody& body) {
+    btVector3 low;
+    btVector3 high;
+    body.getAabb(low, high);
+    const Vector3<float> margin = Vector3<float>::Constant(gContactBreakingThreshold);
+    return {toEigen(low) - margin, toEigen(high) + margin};
+}
+
 // What everything stands on: a plane, or a slab of which the upper face is at height 0.
 bool isGround(const btRigidBody& body) {
     const btCollisionShape& shape = *body.getCollisionShape();
@@ -162,6 +176,7 @@ BulletStage::BulletStage(const WorldSceneKind& scene, std::size_t objects, std::
     size_ = world_->contents().bodies().size();
     measureBounds();
     declare(effects);
+    noteGivenBoxes();
 }
 
 BulletStage::~BulletStage() = default;
@@ -193,10 +208,9 @@ void BulletStage::step() {
         world_->configurator().step(kFrameSeconds);
     }
     takeTimes(clock_.skip());
-    if (second_ != nullptr) {
-        updateSecondIndex();
-        clock_.end("second index");
-    }
+    noteGivenBoxes();
+    clock_.skip();
+    fileWhereBodiesAre();
     observers_.watchPhases([this](std::string_view phase) { clock_.end(phase); });
     observers_.observe({*grid()});
     findTunnelled();
@@ -218,6 +232,34 @@ void BulletStage::takeTimes(double wholeMs) {
         known += milliseconds;
     }
     clock_.add("rest of the step", std::max(0.0, wholeMs - known));
+}
+
+// Of these the broadphase has found the pairs.
+void BulletStage::noteGivenBoxes() {
+    const auto bodies = world_->contents().bodies();
+    given_.resize(bodies.size());
+    for (std::uint32_t index = 0; index < bodies.size(); ++index) {
+        const btRigidBody* body = bodyAt(index);
+        given_[index] = body ? boxOf(*body->getBroadphaseHandle()) : nowhere();
+    }
+}
+
+// Bullet sets boxes at the beginning of a step, and moves bodies at its end. Whoever looks asks where they are
+// now. The next step begins with the same boxes; other broadphases than ours, which may pair whatever is set,
+// are left alone.
+void BulletStage::fileWhereBodiesAre() {
+    if (second_ == nullptr) {
+        world_->world().updateAabbs();
+        clock_.end("boxes anew");
+        return;
+    }
+    for (std::uint32_t index = 0; index < second_->proxies.size(); ++index) {
+        if (const btRigidBody* body = bodyAt(index)) {
+            second_->grid.move(second_->proxies[index], presentBox(*body));
+        }
+    }
+    second_->grid.update();
+    clock_.end("second index");
 }
 
 void BulletStage::notePlaces() {
@@ -373,25 +415,13 @@ void BulletStage::makeSecondIndex() {
     second_ = std::make_unique<SecondIndex>(effects_.grid);
     const auto bodies = world_->contents().bodies();
     for (const auto& body : bodies) {
-        btVector3 low;
-        btVector3 high;
-        body->getAabb(low, high);
-        second_->proxies.push_back(second_->grid.add({toEigen(low), toEigen(high)}));
+        second_->proxies.push_back(second_->grid.add(presentBox(*body)));
     }
     for (std::uint32_t index = 0; index < bodies.size(); ++index) {
         if (bodyAt(index) == nullptr) {
             second_->grid.remove(std::exchange(second_->proxies[index], {}));
         }
     }
-}
-
-void BulletStage::updateSecondIndex() {
-    for (std::uint32_t index = 0; index < second_->proxies.size(); ++index) {
-        if (const btRigidBody* body = bodyAt(index)) {
-            second_->grid.move(second_->proxies[index], boxOf(*body->getBroadphaseHandle()));
-        }
-    }
-    second_->grid.update();
 }
 
 const Grid<float>* BulletStage::grid() const {
@@ -416,14 +446,12 @@ std::size_t BulletStage::pairCount() const {
 
 void BulletStage::listBoxes(std::vector<Aabb<float>>& boxes,
                             std::vector<CollisionFilter>& filters) const {
-    boxes.clear();
+    boxes = given_;
     filters.clear();
-    const Vector3<float> nowhere =
-        Vector3<float>::Constant(std::numeric_limits<float>::quiet_NaN());
-    for (std::uint32_t index = 0; index < world_->contents().bodies().size(); ++index) {
+    for (std::uint32_t index = 0; index < boxes.size(); ++index) {
         const btRigidBody* body = bodyAt(index);
         const btBroadphaseProxy* proxy = body ? body->getBroadphaseHandle() : nullptr;
-        boxes.push_back(proxy ? boxOf(*proxy) : Aabb<float>(nowhere, nowhere));
+        boxes[index] = proxy ? boxes[index] : nowhere();
         filters.push_back(
             proxy ? CollisionFilter{proxy->m_collisionFilterGroup, proxy->m_collisionFilterMask}
                   : CollisionFilter{});

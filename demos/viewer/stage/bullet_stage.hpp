@@ -70,7 +70,8 @@ private:
     void measureBounds();
     void fileAnew(const BroadphaseKind& kind);
     void makeSecondIndex();
-    void updateSecondIndex();
+    void noteGivenBoxes();
+    void fileWhereBodiesAre();
     void notePlaces();
     void findTunnelled();
     void takeTimes(double wholeMs);
@@ -83,6 +84,7 @@ private:
     std::size_t size_ = 0;
     Aabb<float> bounds_;
     std::array<Vector3<float>, 6> ground_;
+    std::vector<Aabb<float>> given_;      // boxes of which pairs were found, by index
     std::vector<Vector3<float>> before_;  // where bodies were, by index
     std::vector<TunnelMark> marks_;
     std::vector<Zone> zones_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 
 #include <demos/scenes/result_hash.hpp>
+#include <demos/viewer/session/info_card.hpp>
 #include <demos/viewer/session/pair_check.hpp>
 #include <demos/viewer/stage/body_shape.hpp>
 #include <demos/viewer/stage/bullet_stage.hpp>
@@ -262,6 +263,93 @@ TEST(BulletStage, MarksWhatPassesThroughWallsUnlessItIsSwept) {
     for (const TunnelMark& mark : discrete.tunnelMarks()) {
         EXPECT_GT((mark.to - mark.from).norm(), 1);
     }
+}
+
+TEST(BulletStage, ShowsWhoLooksWhereBodiesAreThoughBulletFilesWhereTheyWere) {
+    for (const char* name : {"hash", "dbvt", "simple"}) {
+        BulletStage stage(worldNamed("bullet-storm"), 60, 1, worldEffects());
+        stage.setBroadphase(kindNamed(name));
+        float fastest = 0;
+        for (int frame = 0; frame < 20; ++frame) {
+            stage.step();
+            for (std::uint32_t index = 0; index < stage.indexLimit(); ++index) {
+                const StageBody body = stage.body(index);
+                if (body.shape != StageBody::Shape::sphere) {
+                    continue;
+                }
+                fastest = std::max(fastest, body.speed);
+                const Aabb<float>& filed = stage.grid()->box({index, 1});
+                const Aabb<float> present = boxAround(body);
+                ASSERT_TRUE(filed.contains(present)) << name << " in frame " << frame;
+                ASSERT_LT((filed.sizes() - present.sizes()).maxCoeff(), 0.1F) << name;
+            }
+            expectPairs(stage, stage.broadphase().ours, name);
+        }
+        EXPECT_GT(fastest, 100) << name;
+    }
+}
+
+/// A world that nobody looks at.
+struct BareWorld {
+    BareWorld(const WorldSceneKind& scene, std::size_t objects, const SceneEffects& effects)
+        : contents(world), configurator(fill(scene, objects)) {
+        configurator.apply(worldEffectsOf(effects));
+    }
+
+    btDiscreteDynamicsWorld& fill(const WorldSceneKind& scene, std::size_t objects) {
+        scene.fill(contents, objects, 1);
+        return world;
+    }
+
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher{&configuration};
+    btSequentialImpulseConstraintSolver solver;
+    SpatialHashBroadphase broadphase;
+    btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
+    WorldContents contents;
+    WorldConfigurator configurator;
+};
+
+TEST(BulletStage, MovesBodiesAsBulletDoesWhereNobodyLooks) {
+    for (const bool isSwept : {false, true}) {
+        for (const char* scene : {"bullet-storm", "pile", "chains"}) {
+            SceneEffects effects = worldEffects();
+            if (isSwept) {
+                effects.declare(Effect::sweep);
+            }
+            BulletStage stage(worldNamed(scene), 80, 1, effects);
+            BareWorld bare(worldNamed(scene), 80, effects);
+            for (int frame = 0; frame < 60; ++frame) {
+                stage.step();
+                bare.configurator.step(kFrameSeconds);
+            }
+            for (std::uint32_t index = 1; index < stage.indexLimit(); ++index) {
+                const btVector3 place =
+                    bare.contents.bodies()[index]->getWorldTransform().getOrigin();
+                const Vector3<float> expected(place.x(), place.y(), place.z());
+                ASSERT_EQ(stage.body(index).centre, expected) << scene << ", " << isSwept;
+            }
+        }
+    }
+}
+
+TEST(InfoCard, CountsOtherBodiesAndNeitherTheBodyNorTheGround) {
+    BulletStage stage(worldNamed("pile"), 1, 1, worldEffects());
+    for (int frame = 0; frame < 300; ++frame) {
+        stage.step();
+    }
+    const InfoCard alone = infoCard(stage, *stage.grid(), 1, 5);
+    EXPECT_LT(alone.body.centre.y(), 2) << "lies on the ground";
+    EXPECT_EQ(alone.load, 1U);
+    EXPECT_EQ(alone.neighbours, 0U);
+    EXPECT_EQ(alone.candidates, 0U);
+    // A grid that has the body elsewhere.
+    Grid<float> other;
+    const Vector3<float> far = Vector3<float>::Constant(100);
+    static_cast<void>(other.add({far, far}));
+    static_cast<void>(other.add({far, far}));
+    EXPECT_EQ(infoCard(stage, other, 1, 5).neighbours, 0U);
+    EXPECT_EQ(infoCard(stage, other, 1, 5).candidates, 0U);
 }
 
 // --- Shapes --------------------------------------------------------------------------------------
