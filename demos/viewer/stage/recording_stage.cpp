@@ -20,9 +20,7 @@ SceneEffects lookingEffects() {
 }  // namespace
 
 RecordingStage::RecordingStage(const std::filesystem::path& path, std::size_t objects)
-    : path_(path),
-      objects_(objects),
-      scene_(std::make_unique<RecordingScene>(path, objects)),
+    : scene_(path, objects),
       effects_(lookingEffects()),
       observers_(effects_),
       kind_(&broadphaseKinds().front()) {
@@ -34,21 +32,21 @@ void RecordingStage::makeGrid() {
     grid_ = std::make_unique<Grid<float>>(effects_.grid);
     observers_.forgetProxies();
     proxies_.clear();
-    for (const Aabb<float>& box : scene_->boxes()) {
+    for (const Aabb<float>& box : scene_.boxes()) {
         proxies_.push_back(grid_->add(box));
     }
 }
 
 void RecordingStage::step() {
-    if (++frame_ == scene_->frameLimit()) {
-        scene_ = std::make_unique<RecordingScene>(path_, objects_);
+    if (++frame_ == scene_.frameLimit()) {
+        scene_.rewind();
         frame_ = 0;
     } else {
-        scene_->advance();
+        scene_.advance();
     }
     clock_.begin();
     for (std::size_t i = 0; i < proxies_.size(); ++i) {
-        grid_->move(proxies_[i], scene_->boxes()[i]);
+        grid_->move(proxies_[i], scene_.boxes()[i]);
     }
     clock_.end("set boxes");
     if (effects_.pairs && rival_ == nullptr) {
@@ -63,7 +61,7 @@ void RecordingStage::step() {
         clock_.end("update");
     }
     if (effects_.pairs && rival_ != nullptr) {
-        rival_->update(scene_->boxes(), scene_->filters(), clock_);
+        rival_->update(scene_.boxes(), scene_.filters(), clock_);
     }
     observers_.watchPhases([this](std::string_view phase) { clock_.end(phase); });
     observers_.observe({*grid_});
@@ -72,7 +70,7 @@ void RecordingStage::step() {
 StageBody RecordingStage::body(std::uint32_t index) const {
     StageBody body;
     if (index < proxies_.size()) {
-        const Aabb<float>& box = scene_->boxes()[index];
+        const Aabb<float>& box = scene_.boxes()[index];
         body.shape = StageBody::Shape::box;
         body.centre = box.center();
         body.size = box.sizes() / 2;
@@ -82,7 +80,7 @@ StageBody RecordingStage::body(std::uint32_t index) const {
 
 std::uint64_t RecordingStage::placesHash() const {
     ResultHash hash;
-    for (const Aabb<float>& box : scene_->boxes()) {
+    for (const Aabb<float>& box : scene_.boxes()) {
         hash.add(box.min());
         hash.add(box.max());
     }
@@ -122,7 +120,7 @@ void RecordingStage::forgetUndeclaredPairs() {
 void RecordingStage::setBroadphase(const BroadphaseKind& kind) {
     if (&kind != kind_) {
         rival_ = kind.ours ? nullptr
-                           : std::make_unique<RivalPairs>(kind, scene_->bounds(), proxies_.size());
+                           : std::make_unique<RivalPairs>(kind, scene_.bounds(), proxies_.size());
         kind_ = &kind;
     }
 }
@@ -146,8 +144,8 @@ std::size_t RecordingStage::pairCount() const {
 
 void RecordingStage::listBoxes(std::vector<Aabb<float>>& boxes,
                                std::vector<CollisionFilter>& filters) const {
-    boxes = scene_->boxes();
-    filters = scene_->filters();
+    boxes = scene_.boxes();
+    filters = scene_.filters();
 }
 
 std::uint64_t RecordingStage::memoryBytes() const {

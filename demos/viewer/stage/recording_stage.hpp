@@ -32,7 +32,7 @@ public:
     bool push(std::uint32_t /*index*/, const Vector3<float>& /*velocity*/) override {
         return false;
     }
-    [[nodiscard]] Aabb<float> bounds() const override { return scene_->bounds(); }
+    [[nodiscard]] Aabb<float> bounds() const override { return scene_.bounds(); }
     [[nodiscard]] std::uint64_t placesHash() const override;
 
     [[nodiscard]] const SceneEffects& effects() const override { return effects_; }
@@ -53,9 +53,7 @@ private:
     void makeGrid();
     void forgetUndeclaredPairs();
 
-    std::filesystem::path path_;
-    std::size_t objects_;
-    std::unique_ptr<RecordingScene> scene_;
+    RecordingScene scene_;
     int frame_ = 0;
     SceneEffects effects_;
     std::unique_ptr<Grid<float>> grid_;
