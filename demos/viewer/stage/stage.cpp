@@ -3,13 +3,16 @@
 
 #include <demos/viewer/stage/body_shape.hpp>
 
+#include <algorithm>
+
 namespace hashphase::demos {
 
 Picked<float> Stage::pick(const RayRegion<float>& ray) {
-    const auto exactly = [this](ProxyId id, const RayRegion<float>& along,
-                                float limit) -> std::optional<float> {
+    const float groundShare = meets(ground(), ray.from(), ray.direction()).value_or(1);
+    const auto exactly = [&](ProxyId id, const RayRegion<float>& along,
+                             float limit) -> std::optional<float> {
         const std::optional<float> share = meets(body(id.index), along.from(), along.direction());
-        return share && *share <= limit ? share : std::nullopt;
+        return share && *share <= std::min(limit, groundShare) ? share : std::nullopt;
     };
     return grid() != nullptr ? observers().pick({*grid()}, ray, exactly) : Picked<float>{};
 }

@@ -111,7 +111,7 @@ public:
     [[nodiscard]] virtual Observers<float>& observers() = 0;
     [[nodiscard]] virtual const Observers<float>& observers() const = 0;
 
-    /// The nearest body that the ray meets, exactly. Needs picking.
+    /// The nearest body that the ray meets, as it is drawn and before it comes to the ground. Needs picking.
     [[nodiscard]] Picked<float> pick(const RayRegion<float>& ray);
 
     // --- What it took ----------------------------------------------------------------------------
