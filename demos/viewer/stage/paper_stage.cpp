@@ -16,7 +16,7 @@ PaperStage::PaperStage(const EffectsFile& file)
     : scene_(file.scene),
       effects_(file.effects),
       ground_(groundOf(file.scene)),
-      simulation_(withoutPairs(effects_)),
+      simulation_(ofScene(effects_)),
       kind_(&broadphaseKinds().front()) {
     bodies_ = addBodies(scene_, simulation_);
     simulation_.watchPhases([this](std::string_view phase) { clock_.end(phase); });
@@ -98,8 +98,8 @@ StageBody PaperStage::body(std::uint32_t index) const {
     body.shape = StageBody::Shape::sphere;
     body.centre = simulation_.position(id);
     body.size.setConstant(simulation_.radius(id));
-    body.speed = declared.motion ? simulation_.velocity(id).norm() : 0;
     body.isStatic = !simulation_.effects(id).contains(Effect::motion);
+    body.speed = declared.motion && !body.isStatic ? simulation_.velocity(id).norm() : 0;
     body.isAsleep = declared.sleeping && simulation_.isAsleep(id);
     return body;
 }
@@ -131,6 +131,9 @@ bool PaperStage::push(std::uint32_t index, const Vector3<float>& velocity) {
         return false;
     }
     const BodyId id = bodies_[index];
+    if (!simulation_.effects(id).contains(Effect::motion)) {
+        return false;
+    }
     simulation_.setVelocity(id, simulation_.velocity(id) + velocity);
     return true;
 }
@@ -168,17 +171,30 @@ SceneEffects PaperStage::withoutPairs(SceneEffects effects) {
     return effects;
 }
 
+// What bodies are made with: velocities as well, which are kept where they do not move by themselves.
+SceneEffects PaperStage::ofScene(SceneEffects effects) {
+    effects.declare(Effect::motion);
+    return withoutPairs(std::move(effects));
+}
+
 // What asks the grid has one, whatever finds the pairs. Pairs are declared after they were not, so that
 // all are told as born.
 void PaperStage::declareToSimulation() {
     const SceneEffects& before = simulation_.declared();
+    const bool hadMotion = before.motion.has_value();
     const bool hadTerrain = before.terrain.has_value();
     const bool hadZones = before.zones.has_value();
     const bool hadColours = before.proximity.has_value();
     pairs_.clear();
+    if (hadMotion && !effects_.motion) {
+        keepVelocities();
+    }
     simulation_.declare(withoutPairs(effects_));
     if (rival_ == nullptr) {
         simulation_.declare(effects_);
+    }
+    if (effects_.motion && !hadMotion) {
+        giveVelocitiesBack();
     }
     if (simulation_.declared().terrain && !hadTerrain) {
         simulation_.ground().add(ground_);
@@ -187,6 +203,23 @@ void PaperStage::declareToSimulation() {
         addZones(scene_, simulation_);
     }
     colourAgents(hadColours);
+}
+
+void PaperStage::keepVelocities() {
+    kept_.resize(bodies_.size());
+    for (std::size_t index = 0; index < bodies_.size(); ++index) {
+        if (!bodies_[index].isNull()) {
+            kept_[index] = simulation_.velocity(bodies_[index]);
+        }
+    }
+}
+
+void PaperStage::giveVelocitiesBack() {
+    for (std::size_t index = 0; index < bodies_.size(); ++index) {
+        if (!bodies_[index].isNull()) {
+            simulation_.setVelocity(bodies_[index], kept_[index]);
+        }
+    }
 }
 
 void PaperStage::declare(const SceneEffects& effects) {

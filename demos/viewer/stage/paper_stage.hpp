@@ -51,8 +51,11 @@ public:
 
 private:
     [[nodiscard]] static SceneEffects withoutPairs(SceneEffects effects);
+    [[nodiscard]] static SceneEffects ofScene(SceneEffects effects);
     [[nodiscard]] const std::vector<PairKey>& presentPairs() const;
     void declareToSimulation();
+    void keepVelocities();
+    void giveVelocitiesBack();
     bool removeOne(std::uint32_t index);
     void takeChanges();
     void collideRivals();
@@ -61,7 +64,8 @@ private:
     SceneEffects effects_;  // as declared; the simulation's has no pairs where a rival finds them
     std::vector<Vector3<float>> ground_;
     Simulation<float> simulation_;
-    std::vector<BodyId> bodies_;  // by index; null where nobody is
+    std::vector<BodyId> bodies_;        // by index; null where nobody is
+    std::vector<Vector3<float>> kept_;  // their velocities while motion is not declared
     const BroadphaseKind* kind_;
     std::unique_ptr<RivalPairs> rival_;  // none: the grid finds the pairs
     std::vector<PairKey> pairs_;         // the grid's

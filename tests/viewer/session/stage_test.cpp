@@ -122,6 +122,71 @@ TEST(PaperStage, RefusesToSweepWithPairsOfAnother) {
     EXPECT_THROW(stage.declare(effects), std::invalid_argument);
 }
 
+SceneEffects withoutMotion(SceneEffects effects) {
+    for (const Effect effect : {Effect::response, Effect::terrain, Effect::motion}) {
+        effects.remove(effect);
+    }
+    return effects;
+}
+
+TEST(PaperStage, GivesBodiesTheirVelocitiesBackWhenMotionIsDeclaredAgain) {
+    const EffectsFile file = throng();
+    EffectsFile still = file;
+    still.effects = withoutMotion(file.effects);
+    PaperStage moving(file);
+    PaperStage stopped(file);
+    PaperStage stillAtFirst(still);
+    stillAtFirst.step();
+    stillAtFirst.declare(file.effects);
+    for (int frame = 0; frame < 30; ++frame) {
+        if (frame % 10 == 0) {
+            const std::uint64_t places = stopped.placesHash();
+            stopped.declare(withoutMotion(file.effects));
+            EXPECT_EQ(stopped.body(5).speed, 0);
+            stopped.step();
+            EXPECT_EQ(stopped.placesHash(), places);
+            stopped.declare(file.effects);
+        }
+        moving.step();
+        stopped.step();
+        stillAtFirst.step();
+        ASSERT_EQ(stopped.placesHash(), moving.placesHash()) << frame;
+        ASSERT_EQ(stillAtFirst.placesHash(), moving.placesHash()) << frame;
+    }
+    EXPECT_GT(moving.body(5).speed, 0);
+}
+
+TEST(PaperStage, PushesOnlyBodiesThatMove) {
+    EffectsFile file = throng();
+    file.scene.moving = 0.5;
+    PaperStage stage(file);
+    std::size_t pushed = 0;
+    for (std::uint32_t index = 0; index < stage.indexLimit(); ++index) {
+        const StageBody before = stage.body(index);
+        EXPECT_EQ(stage.push(index, {0, 0, 50}), !before.isStatic);
+        EXPECT_EQ(stage.body(index).speed > 0, !before.isStatic);
+        pushed += before.isStatic ? 0 : 1;
+    }
+    EXPECT_GT(pushed, 100U);
+    EXPECT_LT(pushed, 200U);
+}
+
+TEST(PaperStage, PicksNobodyThroughTheGround) {
+    PaperStage stage(throng());
+    stage.step();
+    std::size_t seen = 0;
+    for (std::uint32_t index = 0; index < stage.indexLimit(); ++index) {
+        const Vector3<float> middle = stage.body(index).centre;
+        EXPECT_TRUE(stage.pick({middle - Vector3<float>(0, 30, 0), middle}).id.isNull()) << index;
+        seen += stage.pick({middle + Vector3<float>(0, 2, 0), middle}).id.index == index ? 1 : 0;
+    }
+    EXPECT_GT(seen, 200U);
+    // Nobody hides them where there is no ground.
+    stage.declare(withoutMotion(stage.effects()));
+    const Vector3<float> middle = stage.body(7).centre;
+    EXPECT_FALSE(stage.pick({middle - Vector3<float>(0, 30, 0), middle}).id.isNull());
+}
+
 // --- The check itself ----------------------------------------------------------------------------
 
 /// Brute force that does not see pairs of a body with index 3.
