@@ -109,7 +109,23 @@ public:
             std::max<std::int64_t>(world_.heap().bytes().value_or(0), 0));
     }
 
+    /// Its joints go with it, and whoever leans on it wakes up.
     void remove(btRigidBody& body) {
+        for (int i = world_.getNumConstraints() - 1; i >= 0; --i) {
+            btTypedConstraint& joint = *world_.getConstraint(i);
+            if (&joint.getRigidBodyA() == &body || &joint.getRigidBodyB() == &body) {
+                joint.getRigidBodyA().activate();
+                joint.getRigidBodyB().activate();
+                world_.removeConstraint(&joint);
+            }
+        }
+        for (int i = 0; i < dispatcher_.getNumManifolds(); ++i) {
+            const btPersistentManifold& contact = *dispatcher_.getManifoldByIndexInternal(i);
+            if (contact.getBody0() == &body || contact.getBody1() == &body) {
+                contact.getBody0()->activate();
+                contact.getBody1()->activate();
+            }
+        }
         configurator_->release(body);
         world_.removeRigidBody(&body);
     }

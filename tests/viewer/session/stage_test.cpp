@@ -354,6 +354,46 @@ TEST(BulletStage, ShowsWhoLooksWhereBodiesAreThoughBulletFilesWhereTheyWere) {
     }
 }
 
+TEST(BulletStage, TakesJointsOutWithABody) {
+    BulletStage three(worldNamed("chains"), 3, 1, worldEffects());
+    BulletStage four(worldNamed("chains"), 4, 1, worldEffects());
+    EXPECT_EQ(four.remove(std::array{4U}), 1U);
+    for (int frame = 0; frame < 120; ++frame) {
+        three.step();
+        four.step();
+        ASSERT_EQ(four.placesHash(), three.placesHash()) << frame;
+    }
+    EXPECT_LT(three.body(3).centre.y(), 9.5F);
+    // Whoever hung on it falls.
+    four.remove(std::array{1U});
+    for (int frame = 0; frame < 120; ++frame) {
+        four.step();
+    }
+    EXPECT_LT(four.body(2).centre.y(), 1);
+}
+
+TEST(BulletStage, WakesWhoeverLeansOnABodyThatIsRemoved) {
+    BulletStage stage(worldNamed("stack"), 20, 1, worldEffects());
+    for (int frame = 0; frame < 400 && !stage.body(15).isAsleep; ++frame) {
+        stage.step();
+    }
+    ASSERT_TRUE(stage.body(15).isAsleep);
+    stage.remove(std::array{4U, 5U, 6U});
+    EXPECT_FALSE(stage.body(15).isAsleep);
+    for (int frame = 0; frame < 60; ++frame) {
+        stage.step();
+    }
+    EXPECT_LT(stage.body(15).centre.y(), 0.5F);
+}
+
+TEST(BulletStage, PicksNobodyThroughTheGround) {
+    BulletStage stage(worldNamed("pile"), 1, 1, worldEffects());
+    const Vector3<float> middle = stage.body(1).centre;
+    const Vector3<float> below(middle.x(), -3, middle.z());
+    EXPECT_TRUE(stage.pick({below, middle}).id.isNull());
+    EXPECT_EQ(stage.pick({middle + Vector3<float>(0, 5, 0), below}).id.index, 1U);
+}
+
 /// A world that nobody looks at.
 struct BareWorld {
     BareWorld(const WorldSceneKind& scene, std::size_t objects, const SceneEffects& effects)
