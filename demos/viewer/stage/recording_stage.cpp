@@ -3,8 +3,6 @@
 
 #include <demos/scenes/result_hash.hpp>
 
-#include <stdexcept>
-
 namespace hashphase::demos {
 namespace {
 
@@ -20,16 +18,16 @@ SceneEffects lookingEffects() {
 }  // namespace
 
 RecordingStage::RecordingStage(const std::filesystem::path& path, std::size_t objects)
-    : scene_(path, objects),
-      effects_(lookingEffects()),
-      observers_(effects_),
+    : Stage(lookingEffects()),
+      scene_(path, objects),
+      observers_(effects()),
       kind_(&broadphaseKinds().front()) {
     makeGrid();
 }
 
 void RecordingStage::makeGrid() {
     pairs_ = nullptr;
-    grid_ = std::make_unique<Grid<float>>(effects_.grid);
+    grid_ = std::make_unique<Grid<float>>(effects().grid);
     observers_.forgetProxies();
     proxies_.clear();
     for (const Aabb<float>& box : scene_.boxes()) {
@@ -49,7 +47,7 @@ void RecordingStage::step() {
         grid_->move(proxies_[i], scene_.boxes()[i]);
     }
     clock_.end("set boxes");
-    if (effects_.pairs && rival_ == nullptr) {
+    if (effects().pairs && rival_ == nullptr) {
         if (pairs_ == nullptr) {
             pairs_ = std::make_unique<Pairs<float>>(*grid_);
         }
@@ -60,7 +58,7 @@ void RecordingStage::step() {
         grid_->update();
         clock_.end("update");
     }
-    if (effects_.pairs && rival_ != nullptr) {
+    if (effects().pairs && rival_ != nullptr) {
         rival_->update(scene_.boxes(), scene_.filters(), clock_);
     }
     observers_.watchPhases([this](std::string_view phase) { clock_.end(phase); });
@@ -92,23 +90,23 @@ EffectSet RecordingStage::possibleEffects() const {
             Effect::culling, Effect::proximity, Effect::radar};
 }
 
-void RecordingStage::declare(const SceneEffects& effects) {
+std::string RecordingStage::faultOf(const SceneEffects& effects) const {
     if (const EffectSet others = effects.set() - possibleEffects(); !others.isEmpty()) {
-        throw std::invalid_argument("A recording has no " + namesOf(others) + ".");
+        return "A recording has no " + namesOf(others) + ".";
     }
-    const bool isOtherGrid = effects.grid != effects_.grid;
-    const bool hadColours = effects_.proximity.has_value();
-    observers_.declare(effects);
-    effects_ = effects;
-    if (isOtherGrid) {
+    return effectsError(effects);
+}
+
+void RecordingStage::follow(const SceneEffects& before) {
+    observers_.declare(effects());
+    if (effects().grid != before.grid) {
         makeGrid();
     }
     forgetUndeclaredPairs();
-    colourAgents(hadColours);
 }
 
 void RecordingStage::forgetUndeclaredPairs() {
-    if (effects_.pairs) {
+    if (effects().pairs) {
         return;
     }
     pairs_ = nullptr;

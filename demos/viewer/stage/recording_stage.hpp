@@ -12,6 +12,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace hashphase::demos {
@@ -35,8 +36,6 @@ public:
     [[nodiscard]] Aabb<float> bounds() const override { return scene_.bounds(); }
     [[nodiscard]] std::uint64_t placesHash() const override;
 
-    [[nodiscard]] const SceneEffects& effects() const override { return effects_; }
-    void declare(const SceneEffects& effects) override;
     [[nodiscard]] EffectSet possibleEffects() const override;
     void setBroadphase(const BroadphaseKind& kind) override;
     [[nodiscard]] const BroadphaseKind& broadphase() const override { return *kind_; }
@@ -50,12 +49,13 @@ public:
     [[nodiscard]] std::uint64_t memoryBytes() const override;
 
 private:
+    [[nodiscard]] std::string faultOf(const SceneEffects& effects) const override;
+    void follow(const SceneEffects& before) override;
     void makeGrid();
     void forgetUndeclaredPairs();
 
     RecordingScene scene_;
     int frame_ = 0;
-    SceneEffects effects_;
     std::unique_ptr<Grid<float>> grid_;
     std::vector<ProxyId> proxies_;  // by object, which is their index
     std::unique_ptr<Pairs<float>> pairs_;

@@ -4,6 +4,8 @@
 #include <demos/viewer/stage/body_shape.hpp>
 
 #include <algorithm>
+#include <stdexcept>
+#include <utility>
 
 namespace hashphase::demos {
 
@@ -17,10 +19,18 @@ Picked<float> Stage::pick(const RayRegion<float>& ray) {
     return grid() != nullptr ? observers().pick({*grid()}, ray, exactly) : Picked<float>{};
 }
 
-void Stage::colourAgents(bool hadColours) {
-    if (hadColours || !effects().proximity) {
-        return;
+void Stage::declare(const SceneEffects& effects) {
+    if (const std::string fault = faultOf(effects); !fault.empty()) {
+        throw std::invalid_argument(fault);
     }
+    const SceneEffects before = std::exchange(effects_, effects);
+    follow(before);
+    if (effects_.proximity && !before.proximity) {
+        colourAgents();
+    }
+}
+
+void Stage::colourAgents() {
     for (std::uint32_t index = 0; index < indexLimit(); ++index) {
         observers().setColour(index, index % effects().proximity->colourCount);
     }

@@ -20,8 +20,10 @@
 #include <Eigen/Geometry>
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -43,6 +45,12 @@ struct StageBody {
     bool isStatic = false;
     bool isAsleep = false;
 };
+
+/// The box of nobody.
+[[nodiscard]] inline Aabb<float> nowhere() {
+    const Vector3<float> corner = Vector3<float>::Constant(std::numeric_limits<float>::quiet_NaN());
+    return {corner, corner};
+}
 
 /// A place where something fast has passed through a wall.
 struct TunnelMark {
@@ -86,8 +94,9 @@ public:
 
     // --- What runs -------------------------------------------------------------------------------
 
-    [[nodiscard]] virtual const SceneEffects& effects() const = 0;
-    virtual void declare(const SceneEffects& effects) = 0;
+    [[nodiscard]] const SceneEffects& effects() const noexcept { return effects_; }
+    /// Where it throws, nothing has changed.
+    void declare(const SceneEffects& effects);
 
     /// The effects that this scene can run.
     [[nodiscard]] virtual EffectSet possibleEffects() const = 0;
@@ -102,7 +111,7 @@ public:
     /// How many these are. Cost: O(1).
     [[nodiscard]] virtual std::size_t pairCount() const = 0;
 
-    /// What it was given: by index; NaN for who is not there. `filters` stays empty where all may pair.
+    /// What it was given: by index; nowhere() for who is not there. `filters` stays empty where all may pair.
     virtual void listBoxes(std::vector<Aabb<float>>& boxes,
                            std::vector<CollisionFilter>& filters) const = 0;
 
@@ -133,11 +142,21 @@ public:
     [[nodiscard]] virtual std::uint64_t memoryBytes() const = 0;
 
 protected:
-    /// Gives agents their first colours, where they have just begun to look around: the same, whoever runs the
-    /// scene.
-    void colourAgents(bool hadColours);
+    /// Declared from the beginning.
+    explicit Stage(const SceneEffects& effects = {}) : effects_(effects) {}
+
+    /// Says in a sentence why the declaration cannot be run; empty when it can.
+    [[nodiscard]] virtual std::string faultOf(const SceneEffects& effects) const = 0;
+    /// Goes on with effects(), which have no fault, after those before.
+    virtual void follow(const SceneEffects& before) = 0;
 
     PhaseClock clock_;
+
+private:
+    /// Gives agents their first colours: the same, whoever runs the scene.
+    void colourAgents();
+
+    SceneEffects effects_;
 };
 
 }  // namespace hashphase::demos

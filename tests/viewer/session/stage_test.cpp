@@ -10,6 +10,9 @@
 
 #include <gtest/gtest.h>
 
+#include <integration/bullet/spatial_hash_broadphase.hpp>
+#include <integration/effects/bullet_frame.hpp>
+
 #include <BulletCollision/BroadphaseCollision/btSimpleBroadphase.h>
 
 #include <algorithm>
