@@ -62,7 +62,7 @@ void BulletStage::measureBounds() {
 
 // --- Frame ---------------------------------------------------------------------------------------
 
-void BulletStage::step() {
+void BulletStage::runFrame() {
     tunnels_.notePlaces(*this);
     clock_.begin();
     {
@@ -189,7 +189,7 @@ std::uint64_t BulletStage::placesHash() const {
 // --- What runs -----------------------------------------------------------------------------------
 
 EffectSet BulletStage::possibleEffects() const {
-    return EffectSet::all() - EffectSet{Effect::terrain};
+    return EffectSet::all() - EffectSet{Effect::terrain, Effect::zones};
 }
 
 std::string BulletStage::faultOf(const SceneEffects& effects) const {

@@ -20,8 +20,6 @@ public:
     BulletStage(const WorldSceneKind& scene, std::size_t objects, std::uint64_t seed,
                 const SceneEffects& effects);
 
-    void step() override;
-
     [[nodiscard]] std::size_t size() const override { return size_; }
     [[nodiscard]] std::uint32_t indexLimit() const override;
     [[nodiscard]] StageBody body(std::uint32_t index) const override;
@@ -56,6 +54,7 @@ private:
         std::vector<ProxyId> proxies;  // by body
     };
 
+    void runFrame() override;
     [[nodiscard]] std::string faultOf(const SceneEffects& effects) const override;
     void follow(const SceneEffects& before) override;
     /// Null where nobody has the index.

@@ -30,7 +30,7 @@ PaperStage::PaperStage(const EffectsFile& file)
 
 // --- Frame ---------------------------------------------------------------------------------------
 
-void PaperStage::step() {
+void PaperStage::runFrame() {
     clock_.begin();
     simulation_.advance(kFrameSeconds, stageFor);
     if (!effects().pairs) {

@@ -20,8 +20,6 @@ class PaperStage final : public Stage {
 public:
     explicit PaperStage(const EffectsFile& file);
 
-    void step() override;
-
     [[nodiscard]] std::size_t size() const override { return simulation_.size(); }
     [[nodiscard]] std::uint32_t indexLimit() const override {
         return static_cast<std::uint32_t>(bodies_.size());
@@ -49,6 +47,7 @@ public:
     [[nodiscard]] std::uint64_t memoryBytes() const override;
 
 private:
+    void runFrame() override;
     [[nodiscard]] std::string faultOf(const SceneEffects& effects) const override;
     void follow(const SceneEffects& /*before*/) override { declareToSimulation(); }
     [[nodiscard]] static SceneEffects withoutPairs(SceneEffects effects);

@@ -35,7 +35,7 @@ void RecordingStage::makeGrid() {
     }
 }
 
-void RecordingStage::step() {
+void RecordingStage::runFrame() {
     if (++frame_ == scene_.frameLimit()) {
         scene_.rewind();
         frame_ = 0;

@@ -22,8 +22,6 @@ public:
     /// As RecordingScene, and throws as it does.
     RecordingStage(const std::filesystem::path& path, std::size_t objects);
 
-    void step() override;
-
     [[nodiscard]] std::size_t size() const override { return proxies_.size(); }
     [[nodiscard]] std::uint32_t indexLimit() const override {
         return static_cast<std::uint32_t>(proxies_.size());
@@ -49,6 +47,7 @@ public:
     [[nodiscard]] std::uint64_t memoryBytes() const override;
 
 private:
+    void runFrame() override;
     [[nodiscard]] std::string faultOf(const SceneEffects& effects) const override;
     void follow(const SceneEffects& before) override;
     void makeGrid();

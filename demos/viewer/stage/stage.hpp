@@ -58,12 +58,29 @@ struct TunnelMark {
     Vector3<float> to;
 };
 
+/// A ball that knows who is in it.
+struct InterestZone {
+    Vector3<float> centre;
+    float radius = 0;
+    std::size_t bodyCount = 0;  // whose middles were in it in the last frame
+};
+
+/// How many bodies were where, in columns along x and rows along z, at all heights together.
+struct RadarView {
+    Eigen::Vector2f corner;  // of the first column and row: their least x and z [m]
+    float cellSize = 0;
+    std::uint32_t columns = 0;
+    std::uint32_t rows = 0;
+    std::uint32_t groupCount = 0;
+    std::span<const std::uint32_t> counts;  // as [group][row][column], until the next frame
+};
+
 class Stage {
 public:
     virtual ~Stage() = default;
 
     /// Simulates one frame of what is declared.
-    virtual void step() = 0;
+    void step();
 
     // --- Who is there ----------------------------------------------------------------------------
 
@@ -123,6 +140,15 @@ public:
     /// The nearest body that the ray meets, as it is drawn and before it comes to the ground. Needs picking.
     [[nodiscard]] Picked<float> pick(const RayRegion<float>& ray);
 
+    /// The scene's zones; none while they are not declared.
+    [[nodiscard]] std::span<const InterestZone> interestZones() const noexcept {
+        return interestZones_;
+    }
+
+    /// What the radar saw when it last looked: around the observers' interest, which it does not turn with.
+    /// Nothing before its first frame, while it is not declared, and where it does not look along x and z.
+    [[nodiscard]] const std::optional<RadarView>& radar() const noexcept { return radar_; }
+
     // --- What it took ----------------------------------------------------------------------------
 
     /// The phases of the last frame.
@@ -145,6 +171,8 @@ protected:
     /// Declared from the beginning.
     explicit Stage(const SceneEffects& effects = {}) : effects_(effects) {}
 
+    /// Simulates one frame and has it observed.
+    virtual void runFrame() = 0;
     /// Says in a sentence why the declaration cannot be run; empty when it can.
     [[nodiscard]] virtual std::string faultOf(const SceneEffects& effects) const = 0;
     /// Goes on with effects(), which have no fault, after those before.
@@ -156,7 +184,12 @@ private:
     /// Gives agents their first colours: the same, whoever runs the scene.
     void colourAgents();
 
+    void noteZones();
+    void noteRadar();
+
     SceneEffects effects_;
+    std::vector<InterestZone> interestZones_;
+    std::optional<RadarView> radar_;
 };
 
 }  // namespace hashphase::demos
