@@ -112,7 +112,7 @@ public:
     // --- What runs -------------------------------------------------------------------------------
 
     [[nodiscard]] const SceneEffects& effects() const noexcept { return effects_; }
-    /// Where it throws, nothing has changed.
+    /// Goes on with another declaration. Where it throws, nothing has changed.
     void declare(const SceneEffects& effects);
 
     /// The effects that this scene can run.
@@ -137,7 +137,8 @@ public:
     [[nodiscard]] virtual Observers<float>& observers() = 0;
     [[nodiscard]] virtual const Observers<float>& observers() const = 0;
 
-    /// The nearest body that the ray meets, as it is drawn and before it comes to the ground. Needs picking.
+    /// The nearest body that the ray meets, as it is drawn, before it comes to the ground. Needs picking.
+    /// Cost: that of the query, and a look at each triangle of the ground.
     [[nodiscard]] Picked<float> pick(const RayRegion<float>& ray);
 
     /// The scene's zones; none while they are not declared.
@@ -145,8 +146,8 @@ public:
         return interestZones_;
     }
 
-    /// What the radar saw when it last looked: around the observers' interest, which it does not turn with.
-    /// Nothing before its first frame, while it is not declared, and where it does not look along x and z.
+    /// What the radar saw when it last looked: around the observers' interest, along the axes. Nothing before
+    /// its first frame, while it is not declared, and where y is not up for it.
     [[nodiscard]] const std::optional<RadarView>& radar() const noexcept { return radar_; }
 
     // --- What it took ----------------------------------------------------------------------------

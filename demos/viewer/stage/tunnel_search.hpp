@@ -15,8 +15,8 @@ public:
     /// Before a frame.
     void notePlaces(const Stage& stage);
 
-    /// After it: marks spheres that have moved by more than their radius and have a static box between where they
-    /// were and where they are. Needs a grid. Cost: a ray for each sphere that is so fast.
+    /// After it: marks spheres that have moved by more than their radius and have a static box between where
+    /// they were and where they are. Needs a grid. Cost: a ray for each sphere that is so fast.
     void find(const Stage& stage);
 
     /// Of all frames, up to kMostMarks.

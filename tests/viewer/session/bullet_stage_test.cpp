@@ -78,6 +78,12 @@ TEST(BulletStage, ColoursAgentsOnceWhenTheyBeginToLookAround) {
     expectEvenColours(BulletStage(worldNamed("stack"), 200, 1, effects));
 }
 
+TEST(BulletStage, OffersNoEffectsThatItsScenesHaveNothingFor) {
+    const BulletStage stage(worldNamed("pile"), 5, 1, worldEffects());
+    EXPECT_FALSE(stage.possibleEffects().containsAny({Effect::zones, Effect::terrain}));
+    EXPECT_TRUE(stage.possibleEffects().contains(Effect::radar));
+}
+
 TEST(BulletStage, HearsBulletsOwnZones) {
     BulletStage stage(worldNamed("pile"), 50, 1, worldEffects());
     stage.step();
