@@ -59,6 +59,11 @@ void RecordingScene::advance() {
     }
 }
 
+void RecordingScene::rewind() {
+    current_ = 0;
+    readFrame(current_);
+}
+
 void RecordingScene::readHeader() {
     const std::uint64_t size = std::filesystem::file_size(path_);
     if (size < kHeaderBytes) {

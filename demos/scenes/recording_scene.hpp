@@ -25,6 +25,10 @@ public:
     /// Past the last frame it stays on it.
     void advance() override;
 
+    /// Back to the initial state, of the file that was opened, whatever has its name by now. Throws as
+    /// advance() does.
+    void rewind();
+
     [[nodiscard]] Aabb<float> bounds() const override { return bounds_; }
     [[nodiscard]] std::optional<int> frameLimit() const override { return frames_ + 1; }
 

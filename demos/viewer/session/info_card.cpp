@@ -3,22 +3,31 @@
 
 #include <demos/viewer/stage/body_shape.hpp>
 
+#include <broadphase/proxy_filter.hpp>
+
 namespace hashphase::demos {
+
 InfoCard infoCard(const Stage& stage, const Grid<float>& grid, std::uint32_t index, float radius) {
+    // The grid files the ground as well.
+    const auto isBody = [&](ProxyId id) { return stage.contains(id.index); };
+    const auto isOther = [&](ProxyId id) { return id.index != index && isBody(id); };
+    const auto countIn = [&](const auto& region) {
+        CollectCount count;
+        CollectIf others(count, isOther);
+        grid.visit(region, others);
+        return count.count();
+    };
     InfoCard card;
     card.index = index;
     card.body = stage.body(index);
     card.radius = radius;
     card.cell = grid.cellAt(card.body.centre);
     CollectCount load;
-    grid.visitCell(card.cell, load);
-    CollectCount near;
-    grid.visit(SphereRegion<float>(card.body.centre, radius), near);
-    CollectCount touching;
-    grid.visit(BoxRegion<float>{boxAround(card.body)}, touching);
+    CollectIf bodies(load, isBody);
+    grid.visitCell(card.cell, bodies);
     card.load = load.count();
-    card.neighbours = near.count() - 1;
-    card.candidates = touching.count() - 1;
+    card.neighbours = countIn(SphereRegion<float>(card.body.centre, radius));
+    card.candidates = countIn(BoxRegion<float>{boxAround(card.body)});
     return card;
 }
 

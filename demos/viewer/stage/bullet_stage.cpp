@@ -1,170 +1,47 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/viewer/stage/bullet_stage.hpp>
 
-#include <demos/compare/observed_world.hpp>
+#include <demos/compare/trial.hpp>
 #include <demos/scenes/result_hash.hpp>
-#include <demos/viewer/stage/body_shape.hpp>
+#include <demos/viewer/stage/bullet_body.hpp>
 #include <demos/viewer/stage/bullet_zones.hpp>
 
-#include <integration/picking/pick.hpp>
+#include <integration/bullet/conversions.hpp>
+#include <integration/bullet/spatial_hash_broadphase.hpp>
+#include <integration/effects/bullet_frame.hpp>
 
 #include <algorithm>
-#include <limits>
-#include <stdexcept>
 #include <utility>
 
 namespace hashphase::demos {
 namespace {
 
-constexpr std::size_t kMostMarks = 2000;
 constexpr float kRoomForAll = 500;  // around what is there, for axis sweeps [m]
 
-Vector3<float> toEigen(const btVector3& vector) {
-    return {vector.x(), vector.y(), vector.z()};
-}
-
 Aabb<float> boxOf(const btBroadphaseProxy& proxy) {
-    return {toEigen(proxy.m_aabbMin), toEigen(proxy.m_aabbMax)};
+    return toAabb(proxy.m_aabbMin, proxy.m_aabbMax);
 }
 
-// What everything stands on: a plane, or a slab of which the upper face is at height 0.
-bool isGround(const btRigidBody& body) {
-    const btCollisionShape& shape = *body.getCollisionShape();
-    if (shape.getShapeType() == STATIC_PLANE_PROXYTYPE) {
-        return true;
-    }
-    return body.getUserIndex() == 0 && body.isStaticObject() &&
-           shape.getShapeType() == BOX_SHAPE_PROXYTYPE;
-}
-
-void takeShape(const btCollisionShape& shape, StageBody& body) {
-    switch (shape.getShapeType()) {
-        case SPHERE_SHAPE_PROXYTYPE:
-            body.shape = StageBody::Shape::sphere;
-            body.size.setConstant(static_cast<const btSphereShape&>(shape).getRadius());
-            return;
-        case CAPSULE_SHAPE_PROXYTYPE: {
-            const auto& capsule = static_cast<const btCapsuleShape&>(shape);
-            body.shape = StageBody::Shape::capsule;
-            body.size = {capsule.getRadius(), capsule.getHalfHeight(), 0};
-            // Drawn upright, along y.
-            const int axis = capsule.getUpAxis();
-            if (axis != 1) {
-                body.orientation =
-                    body.orientation *
-                    Eigen::Quaternionf::FromTwoVectors(Vector3<float>::UnitY(),
-                                                       Vector3<float>(Vector3<float>::Unit(axis)));
-            }
-            return;
-        }
-        case BOX_SHAPE_PROXYTYPE:
-            body.shape = StageBody::Shape::box;
-            body.size = toEigen(static_cast<const btBoxShape&>(shape).getHalfExtentsWithMargin());
-            return;
-        default: {
-            btVector3 low;
-            btVector3 high;
-            shape.getAabb(btTransform::getIdentity(), low, high);
-            body.shape = StageBody::Shape::box;
-            body.size = toEigen((high - low) / 2);
-        }
-    }
+// What btCollisionWorld::updateSingleAabb() would set now.
+Aabb<float> presentBox(const btRigidBody& body) {
+    btVector3 low;
+    btVector3 high;
+    body.getAabb(low, high);
+    const Vector3<float> margin = Vector3<float>::Constant(gContactBreakingThreshold);
+    return {toEigen(low) - margin, toEigen(high) + margin};
 }
 
 }  // namespace
 
-/// All that a world is made of, in the order in which it is made.
-class BulletStage::World {
-public:
-    World(const BroadphaseKind& kind, const WorldSceneKind& scene, std::size_t objects,
-          std::uint64_t seed)
-        : dispatcher_(&configuration_),
-          broadphase_(kind.make({.bounds = {}, .objects = objects})),
-          world_(&dispatcher_, broadphase_.get(), &solver_, &configuration_),
-          contents_(world_) {
-        scene.fill(contents_, objects, seed);
-        configurator_ = std::make_unique<WorldConfigurator>(world_);
-    }
-
-    [[nodiscard]] ObservedWorld& world() noexcept { return world_; }
-    [[nodiscard]] const WorldContents& contents() const noexcept { return contents_; }
-    [[nodiscard]] WorldConfigurator& configurator() noexcept { return *configurator_; }
-    [[nodiscard]] btBroadphaseInterface& broadphase() noexcept { return *broadphase_; }
-    [[nodiscard]] std::uint64_t memoryBytes() const noexcept {
-        return static_cast<std::uint64_t>(
-            std::max<std::int64_t>(world_.heap().bytes().value_or(0), 0));
-    }
-
-    void remove(btRigidBody& body) {
-        configurator_->release(body);
-        world_.removeRigidBody(&body);
-    }
-
-    /// Gives every body a proxy of a new broadphase. Bodies have the indices of proxies that they would have
-    /// if all had been added in their order, and those that were removed had been then.
-    void replaceBroadphase(const BroadphaseKind& kind, const BroadphaseNeeds& needs) {
-        const WorldEffects effects = configurator_->effects();
-        configurator_ = nullptr;
-        HeapMeter used;
-        {
-            const HeapScope scope(used);
-            std::unique_ptr<btBroadphaseInterface> next = kind.make(needs);
-            std::vector<btBroadphaseProxy*> removed;
-            for (const auto& body : contents_.bodies()) {
-                moveProxy(*body, *next, removed);
-            }
-            for (btBroadphaseProxy* proxy : removed) {
-                next->destroyProxy(proxy, &dispatcher_);
-            }
-            world_.setBroadphase(next.get());
-            broadphase_ = std::move(next);
-        }
-        world_.heap() = used;
-        configurator_ = std::make_unique<WorldConfigurator>(world_);
-        configurator_->apply(effects);
-    }
-
-private:
-    void moveProxy(btRigidBody& body, btBroadphaseInterface& next,
-                   std::vector<btBroadphaseProxy*>& removed) {
-        btVector3 low;
-        btVector3 high;
-        body.getAabb(low, high);
-        btBroadphaseProxy* before = body.getBroadphaseHandle();
-        const CollisionFilter filter =
-            before ? CollisionFilter{before->m_collisionFilterGroup, before->m_collisionFilterMask}
-                   : CollisionFilter{0, 0};
-        btBroadphaseProxy* proxy =
-            next.createProxy(low, high, body.getCollisionShape()->getShapeType(), &body,
-                             filter.group, filter.mask, &dispatcher_);
-        if (before == nullptr) {
-            removed.push_back(proxy);
-            return;
-        }
-        broadphase_->getOverlappingPairCache()->cleanProxyFromPairs(before, &dispatcher_);
-        broadphase_->destroyProxy(before, &dispatcher_);
-        body.setBroadphaseHandle(proxy);
-    }
-
-    btDefaultCollisionConfiguration configuration_;
-    btCollisionDispatcher dispatcher_;
-    btSequentialImpulseConstraintSolver solver_;
-    std::unique_ptr<btBroadphaseInterface> broadphase_;
-    ObservedWorld world_;
-    WorldContents contents_;
-    std::unique_ptr<WorldConfigurator> configurator_;
-};
-
 BulletStage::BulletStage(const WorldSceneKind& scene, std::size_t objects, std::uint64_t seed,
                          const SceneEffects& effects)
     : kind_(&broadphaseKinds().front()),
-      world_(std::make_unique<World>(*kind_, scene, objects, seed)) {
+      world_(std::make_unique<BulletWorld>(*kind_, scene, objects, seed)) {
     size_ = world_->contents().bodies().size();
     measureBounds();
     declare(effects);
+    noteGivenBoxes();
 }
-
-BulletStage::~BulletStage() = default;
 
 void BulletStage::measureBounds() {
     for (const auto& body : world_->contents().bodies()) {
@@ -185,21 +62,20 @@ void BulletStage::measureBounds() {
 
 // --- Frame ---------------------------------------------------------------------------------------
 
-void BulletStage::step() {
-    notePlaces();
+void BulletStage::runFrame() {
+    tunnels_.notePlaces(*this);
     clock_.begin();
     {
         const BulletZones listening(zones_);
         world_->configurator().step(kFrameSeconds);
     }
     takeTimes(clock_.skip());
-    if (second_ != nullptr) {
-        updateSecondIndex();
-        clock_.end("second index");
-    }
+    noteGivenBoxes();
+    clock_.skip();
+    fileWhereBodiesAre();
     observers_.watchPhases([this](std::string_view phase) { clock_.end(phase); });
     observers_.observe({*grid()});
-    findTunnelled();
+    tunnels_.find(*this);
 }
 
 // What Bullet says of itself. (Its zones take some time themselves.)
@@ -220,35 +96,32 @@ void BulletStage::takeTimes(double wholeMs) {
     clock_.add("rest of the step", std::max(0.0, wholeMs - known));
 }
 
-void BulletStage::notePlaces() {
+// Of these the broadphase has found the pairs.
+void BulletStage::noteGivenBoxes() {
     const auto bodies = world_->contents().bodies();
-    before_.resize(bodies.size());
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        before_[i] = toEigen(bodies[i]->getWorldTransform().getOrigin());
+    given_.resize(bodies.size());
+    for (std::uint32_t index = 0; index < bodies.size(); ++index) {
+        const btRigidBody* body = bodyAt(index);
+        given_[index] = body ? boxOf(*body->getBroadphaseHandle()) : nowhere();
     }
 }
 
-// Who has moved by more than its radius and has a wall between where it was and where it is.
-void BulletStage::findTunnelled() {
-    for (std::uint32_t index = 0; index < before_.size() && marks_.size() < kMostMarks; ++index) {
-        const StageBody mover = body(index);
-        const Vector3<float> way = mover.centre - before_[index];
-        if (mover.shape != StageBody::Shape::sphere || mover.isStatic ||
-            way.squaredNorm() <= mover.size.x() * mover.size.x()) {
-            continue;
-        }
-        const RayRegion<float> path(before_[index], mover.centre);
-        for (const Picked<float>& met : pickAll(*grid(), path, picked_)) {
-            const StageBody wall = body(met.id.index);
-            const bool isThrough = wall.shape == StageBody::Shape::box && wall.isStatic &&
-                                   meets(wall, before_[index], way).value_or(0) > 0 &&
-                                   meets(wall, mover.centre, -way).value_or(0) > 0;
-            if (isThrough) {
-                marks_.push_back({before_[index], mover.centre});
-                break;
-            }
+// Bullet sets boxes at the beginning of a step, and moves bodies at its end. Whoever looks asks where they are
+// now. The next step begins with the same boxes; other broadphases than ours, which may pair whatever is set,
+// are left alone.
+void BulletStage::fileWhereBodiesAre() {
+    if (second_ == nullptr) {
+        world_->world().updateAabbs();
+        clock_.end("boxes anew");
+        return;
+    }
+    for (std::uint32_t index = 0; index < second_->proxies.size(); ++index) {
+        if (const btRigidBody* body = bodyAt(index)) {
+            second_->grid.move(second_->proxies[index], presentBox(*body));
         }
     }
+    second_->grid.update();
+    clock_.end("second index");
 }
 
 // --- Who is there --------------------------------------------------------------------------------
@@ -264,20 +137,8 @@ std::uint32_t BulletStage::indexLimit() const {
 }
 
 StageBody BulletStage::body(std::uint32_t index) const {
-    StageBody seen;
     const btRigidBody* body = bodyAt(index);
-    if (body == nullptr || isGround(*body)) {
-        return seen;
-    }
-    const btTransform& place = body->getWorldTransform();
-    const btQuaternion turn = place.getRotation();
-    seen.centre = toEigen(place.getOrigin());
-    seen.orientation = Eigen::Quaternionf(turn.w(), turn.x(), turn.y(), turn.z());
-    seen.speed = body->getLinearVelocity().length();
-    seen.isStatic = body->isStaticObject();
-    seen.isAsleep = !seen.isStatic && !body->isActive();
-    takeShape(*body->getCollisionShape(), seen);
-    return seen;
+    return body == nullptr || isGround(*body) ? StageBody() : stageBody(*body);
 }
 
 std::size_t BulletStage::remove(std::span<const std::uint32_t> indices) {
@@ -328,20 +189,19 @@ std::uint64_t BulletStage::placesHash() const {
 // --- What runs -----------------------------------------------------------------------------------
 
 EffectSet BulletStage::possibleEffects() const {
-    return EffectSet::all() - EffectSet{Effect::terrain};
+    return EffectSet::all() - EffectSet{Effect::terrain, Effect::zones};
 }
 
-void BulletStage::declare(const SceneEffects& effects) {
-    const WorldEffects ofWorld = worldEffectsOf(effects);
-    const bool isOtherGrid = effects.grid != effects_.grid;
-    const bool hadColours = effects_.proximity.has_value();
-    observers_.declare(effects);
-    world_->configurator().apply(ofWorld);
-    effects_ = effects;
-    if (isOtherGrid) {
+std::string BulletStage::faultOf(const SceneEffects& effects) const {
+    return bulletEffectsError(effects);
+}
+
+void BulletStage::follow(const SceneEffects& before) {
+    observers_.declare(effects());
+    world_->configurator().apply(worldEffectsOf(effects()));
+    if (effects().grid != before.grid) {
         fileAnew(*kind_);
     }
-    colourAgents(hadColours);
 }
 
 void BulletStage::setBroadphase(const BroadphaseKind& kind) {
@@ -357,9 +217,9 @@ void BulletStage::fileAnew(const BroadphaseKind& kind) {
         Aabb<float> room = bounds_;
         room.extend(Vector3<float>(room.max() + Vector3<float>::Constant(kRoomForAll)));
         room.extend(Vector3<float>(room.min() - Vector3<float>::Constant(kRoomForAll)));
-        world_->replaceBroadphase(
-            kind,
-            {.bounds = room, .objects = world_->contents().bodies().size(), .grid = effects_.grid});
+        world_->replaceBroadphase(kind, {.bounds = room,
+                                         .objects = world_->contents().bodies().size(),
+                                         .grid = effects().grid});
         kind_ = &kind;
     }
     observers_.forgetProxies();
@@ -370,28 +230,16 @@ void BulletStage::fileAnew(const BroadphaseKind& kind) {
 }
 
 void BulletStage::makeSecondIndex() {
-    second_ = std::make_unique<SecondIndex>(effects_.grid);
+    second_ = std::make_unique<SecondIndex>(effects().grid);
     const auto bodies = world_->contents().bodies();
     for (const auto& body : bodies) {
-        btVector3 low;
-        btVector3 high;
-        body->getAabb(low, high);
-        second_->proxies.push_back(second_->grid.add({toEigen(low), toEigen(high)}));
+        second_->proxies.push_back(second_->grid.add(presentBox(*body)));
     }
     for (std::uint32_t index = 0; index < bodies.size(); ++index) {
         if (bodyAt(index) == nullptr) {
             second_->grid.remove(std::exchange(second_->proxies[index], {}));
         }
     }
-}
-
-void BulletStage::updateSecondIndex() {
-    for (std::uint32_t index = 0; index < second_->proxies.size(); ++index) {
-        if (const btRigidBody* body = bodyAt(index)) {
-            second_->grid.move(second_->proxies[index], boxOf(*body->getBroadphaseHandle()));
-        }
-    }
-    second_->grid.update();
 }
 
 const Grid<float>* BulletStage::grid() const {
@@ -416,14 +264,12 @@ std::size_t BulletStage::pairCount() const {
 
 void BulletStage::listBoxes(std::vector<Aabb<float>>& boxes,
                             std::vector<CollisionFilter>& filters) const {
-    boxes.clear();
+    boxes = given_;
     filters.clear();
-    const Vector3<float> nowhere =
-        Vector3<float>::Constant(std::numeric_limits<float>::quiet_NaN());
-    for (std::uint32_t index = 0; index < world_->contents().bodies().size(); ++index) {
+    for (std::uint32_t index = 0; index < boxes.size(); ++index) {
         const btRigidBody* body = bodyAt(index);
         const btBroadphaseProxy* proxy = body ? body->getBroadphaseHandle() : nullptr;
-        boxes.push_back(proxy ? boxOf(*proxy) : Aabb<float>(nowhere, nowhere));
+        boxes[index] = proxy ? boxes[index] : nowhere();
         filters.push_back(
             proxy ? CollisionFilter{proxy->m_collisionFilterGroup, proxy->m_collisionFilterMask}
                   : CollisionFilter{});

@@ -7,16 +7,15 @@
 #include <demos/viewer/stage/threads.hpp>
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 
 namespace hashphase::demos {
 
 PaperStage::PaperStage(const EffectsFile& file)
-    : scene_(file.scene),
-      effects_(file.effects),
+    : Stage(file.effects),
+      scene_(file.scene),
       ground_(groundOf(file.scene)),
-      simulation_(withoutPairs(effects_)),
+      simulation_(ofScene(effects())),
       kind_(&broadphaseKinds().front()) {
     bodies_ = addBodies(scene_, simulation_);
     simulation_.watchPhases([this](std::string_view phase) { clock_.end(phase); });
@@ -31,10 +30,10 @@ PaperStage::PaperStage(const EffectsFile& file)
 
 // --- Frame ---------------------------------------------------------------------------------------
 
-void PaperStage::step() {
+void PaperStage::runFrame() {
     clock_.begin();
     simulation_.advance(kFrameSeconds, stageFor);
-    if (!effects_.pairs) {
+    if (!effects().pairs) {
         return;
     }
     if (rival_ == nullptr) {
@@ -43,7 +42,7 @@ void PaperStage::step() {
     }
     listBoxes(boxes_, noFilters_);
     rival_->update(boxes_, noFilters_, clock_);
-    if (effects_.response) {
+    if (effects().response) {
         collideRivals();
     }
 }
@@ -81,7 +80,7 @@ void PaperStage::takeChanges() {
 void PaperStage::collideRivals() {
     for (const PairKey key : rival_->pairs()) {
         simulation_.collide(bodies_[firstOf(key)], bodies_[secondOf(key)],
-                            effects_.response->restitution);
+                            effects().response->restitution);
     }
     clock_.end("respond");
 }
@@ -98,8 +97,8 @@ StageBody PaperStage::body(std::uint32_t index) const {
     body.shape = StageBody::Shape::sphere;
     body.centre = simulation_.position(id);
     body.size.setConstant(simulation_.radius(id));
-    body.speed = declared.motion ? simulation_.velocity(id).norm() : 0;
     body.isStatic = !simulation_.effects(id).contains(Effect::motion);
+    body.speed = declared.motion && !body.isStatic ? simulation_.velocity(id).norm() : 0;
     body.isAsleep = declared.sleeping && simulation_.isAsleep(id);
     return body;
 }
@@ -131,12 +130,15 @@ bool PaperStage::push(std::uint32_t index, const Vector3<float>& velocity) {
         return false;
     }
     const BodyId id = bodies_[index];
+    if (!simulation_.effects(id).contains(Effect::motion)) {
+        return false;
+    }
     simulation_.setVelocity(id, simulation_.velocity(id) + velocity);
     return true;
 }
 
 std::span<const Vector3<float>> PaperStage::ground() const {
-    return effects_.terrain ? std::span(ground_) : std::span<const Vector3<float>>();
+    return effects().terrain ? std::span(ground_) : std::span<const Vector3<float>>();
 }
 
 Aabb<float> PaperStage::bounds() const {
@@ -168,17 +170,29 @@ SceneEffects PaperStage::withoutPairs(SceneEffects effects) {
     return effects;
 }
 
+// What bodies are made with: velocities as well, which are kept where they do not move by themselves.
+SceneEffects PaperStage::ofScene(SceneEffects effects) {
+    effects.declare(Effect::motion);
+    return withoutPairs(std::move(effects));
+}
+
 // What asks the grid has one, whatever finds the pairs. Pairs are declared after they were not, so that
 // all are told as born.
 void PaperStage::declareToSimulation() {
     const SceneEffects& before = simulation_.declared();
+    const bool hadMotion = before.motion.has_value();
     const bool hadTerrain = before.terrain.has_value();
     const bool hadZones = before.zones.has_value();
-    const bool hadColours = before.proximity.has_value();
     pairs_.clear();
-    simulation_.declare(withoutPairs(effects_));
+    if (hadMotion && !effects().motion) {
+        keepVelocities();
+    }
+    simulation_.declare(withoutPairs(effects()));
     if (rival_ == nullptr) {
-        simulation_.declare(effects_);
+        simulation_.declare(effects());
+    }
+    if (effects().motion && !hadMotion) {
+        giveVelocitiesBack();
     }
     if (simulation_.declared().terrain && !hadTerrain) {
         simulation_.ground().add(ground_);
@@ -186,20 +200,31 @@ void PaperStage::declareToSimulation() {
     if (simulation_.declared().zones && !hadZones) {
         addZones(scene_, simulation_);
     }
-    colourAgents(hadColours);
 }
 
-void PaperStage::declare(const SceneEffects& effects) {
-    if (const std::string error = simulationError(effects); !error.empty()) {
-        throw std::invalid_argument(error);
+void PaperStage::keepVelocities() {
+    kept_.resize(bodies_.size());
+    for (std::size_t index = 0; index < bodies_.size(); ++index) {
+        if (!bodies_[index].isNull()) {
+            kept_[index] = simulation_.velocity(bodies_[index]);
+        }
     }
+}
+
+void PaperStage::giveVelocitiesBack() {
+    for (std::size_t index = 0; index < bodies_.size(); ++index) {
+        if (!bodies_[index].isNull()) {
+            simulation_.setVelocity(bodies_[index], kept_[index]);
+        }
+    }
+}
+
+std::string PaperStage::faultOf(const SceneEffects& effects) const {
     if (effects.sweep && rival_ != nullptr) {
-        throw std::invalid_argument(
-            "Only the grid finds whom a sweep passes: choose the broadphase "
-            "hash to declare sweep.");
+        return "Only the grid finds whom a sweep passes: choose the broadphase hash to declare "
+               "sweep.";
     }
-    effects_ = effects;
-    declareToSimulation();
+    return simulationError(effects);
 }
 
 EffectSet PaperStage::possibleEffects() const {
@@ -210,7 +235,7 @@ void PaperStage::setBroadphase(const BroadphaseKind& kind) {
     if (&kind == kind_) {
         return;
     }
-    if (effects_.sweep && !kind.ours) {
+    if (effects().sweep && !kind.ours) {
         throw std::invalid_argument(
             "Only the grid finds whom a sweep passes: take back sweep to "
             "choose another broadphase.");
@@ -225,18 +250,16 @@ void PaperStage::setBroadphase(const BroadphaseKind& kind) {
 }
 
 const std::vector<PairKey>& PaperStage::presentPairs() const {
-    return rival_ && effects_.pairs ? rival_->pairs() : pairs_;
+    return rival_ && effects().pairs ? rival_->pairs() : pairs_;
 }
 
 void PaperStage::listBoxes(std::vector<Aabb<float>>& boxes,
                            std::vector<CollisionFilter>& filters) const {
     filters.clear();
     boxes.clear();
-    const Vector3<float> nowhere =
-        Vector3<float>::Constant(std::numeric_limits<float>::quiet_NaN());
     for (const BodyId id : bodies_) {
         if (id.isNull()) {
-            boxes.emplace_back(nowhere, nowhere);
+            boxes.push_back(nowhere());
             continue;
         }
         const Vector3<float> half = Vector3<float>::Constant(simulation_.radius(id));

@@ -11,6 +11,7 @@
 #include <integration/effects/simulation.hpp>
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace hashphase::demos {
@@ -18,8 +19,6 @@ namespace hashphase::demos {
 class PaperStage final : public Stage {
 public:
     explicit PaperStage(const EffectsFile& file);
-
-    void step() override;
 
     [[nodiscard]] std::size_t size() const override { return simulation_.size(); }
     [[nodiscard]] std::uint32_t indexLimit() const override {
@@ -33,8 +32,6 @@ public:
     [[nodiscard]] float heightAt(float x, float z) const override;
     [[nodiscard]] std::uint64_t placesHash() const override;
 
-    [[nodiscard]] const SceneEffects& effects() const override { return effects_; }
-    void declare(const SceneEffects& effects) override;
     [[nodiscard]] EffectSet possibleEffects() const override;
     void setBroadphase(const BroadphaseKind& kind) override;
     [[nodiscard]] const BroadphaseKind& broadphase() const override { return *kind_; }
@@ -50,18 +47,24 @@ public:
     [[nodiscard]] std::uint64_t memoryBytes() const override;
 
 private:
+    void runFrame() override;
+    [[nodiscard]] std::string faultOf(const SceneEffects& effects) const override;
+    void follow(const SceneEffects& /*before*/) override { declareToSimulation(); }
     [[nodiscard]] static SceneEffects withoutPairs(SceneEffects effects);
+    [[nodiscard]] static SceneEffects ofScene(SceneEffects effects);
     [[nodiscard]] const std::vector<PairKey>& presentPairs() const;
     void declareToSimulation();
+    void keepVelocities();
+    void giveVelocitiesBack();
     bool removeOne(std::uint32_t index);
     void takeChanges();
     void collideRivals();
 
     EffectsScene scene_;
-    SceneEffects effects_;  // as declared; the simulation's has no pairs where a rival finds them
     std::vector<Vector3<float>> ground_;
-    Simulation<float> simulation_;
-    std::vector<BodyId> bodies_;  // by index; null where nobody is
+    Simulation<float> simulation_;      // declares no pairs where a rival finds them
+    std::vector<BodyId> bodies_;        // by index; null where nobody is
+    std::vector<Vector3<float>> kept_;  // their velocities while motion is not declared
     const BroadphaseKind* kind_;
     std::unique_ptr<RivalPairs> rival_;  // none: the grid finds the pairs
     std::vector<PairKey> pairs_;         // the grid's

@@ -3,8 +3,6 @@
 
 #include <demos/scenes/result_hash.hpp>
 
-#include <stdexcept>
-
 namespace hashphase::demos {
 namespace {
 
@@ -20,38 +18,36 @@ SceneEffects lookingEffects() {
 }  // namespace
 
 RecordingStage::RecordingStage(const std::filesystem::path& path, std::size_t objects)
-    : path_(path),
-      objects_(objects),
-      scene_(std::make_unique<RecordingScene>(path, objects)),
-      effects_(lookingEffects()),
-      observers_(effects_),
+    : Stage(lookingEffects()),
+      scene_(path, objects),
+      observers_(effects()),
       kind_(&broadphaseKinds().front()) {
     makeGrid();
 }
 
 void RecordingStage::makeGrid() {
     pairs_ = nullptr;
-    grid_ = std::make_unique<Grid<float>>(effects_.grid);
+    grid_ = std::make_unique<Grid<float>>(effects().grid);
     observers_.forgetProxies();
     proxies_.clear();
-    for (const Aabb<float>& box : scene_->boxes()) {
+    for (const Aabb<float>& box : scene_.boxes()) {
         proxies_.push_back(grid_->add(box));
     }
 }
 
-void RecordingStage::step() {
-    if (++frame_ == scene_->frameLimit()) {
-        scene_ = std::make_unique<RecordingScene>(path_, objects_);
+void RecordingStage::runFrame() {
+    if (++frame_ == scene_.frameLimit()) {
+        scene_.rewind();
         frame_ = 0;
     } else {
-        scene_->advance();
+        scene_.advance();
     }
     clock_.begin();
     for (std::size_t i = 0; i < proxies_.size(); ++i) {
-        grid_->move(proxies_[i], scene_->boxes()[i]);
+        grid_->move(proxies_[i], scene_.boxes()[i]);
     }
     clock_.end("set boxes");
-    if (effects_.pairs && rival_ == nullptr) {
+    if (effects().pairs && rival_ == nullptr) {
         if (pairs_ == nullptr) {
             pairs_ = std::make_unique<Pairs<float>>(*grid_);
         }
@@ -62,8 +58,8 @@ void RecordingStage::step() {
         grid_->update();
         clock_.end("update");
     }
-    if (effects_.pairs && rival_ != nullptr) {
-        rival_->update(scene_->boxes(), scene_->filters(), clock_);
+    if (effects().pairs && rival_ != nullptr) {
+        rival_->update(scene_.boxes(), scene_.filters(), clock_);
     }
     observers_.watchPhases([this](std::string_view phase) { clock_.end(phase); });
     observers_.observe({*grid_});
@@ -72,7 +68,7 @@ void RecordingStage::step() {
 StageBody RecordingStage::body(std::uint32_t index) const {
     StageBody body;
     if (index < proxies_.size()) {
-        const Aabb<float>& box = scene_->boxes()[index];
+        const Aabb<float>& box = scene_.boxes()[index];
         body.shape = StageBody::Shape::box;
         body.centre = box.center();
         body.size = box.sizes() / 2;
@@ -82,7 +78,7 @@ StageBody RecordingStage::body(std::uint32_t index) const {
 
 std::uint64_t RecordingStage::placesHash() const {
     ResultHash hash;
-    for (const Aabb<float>& box : scene_->boxes()) {
+    for (const Aabb<float>& box : scene_.boxes()) {
         hash.add(box.min());
         hash.add(box.max());
     }
@@ -94,23 +90,23 @@ EffectSet RecordingStage::possibleEffects() const {
             Effect::culling, Effect::proximity, Effect::radar};
 }
 
-void RecordingStage::declare(const SceneEffects& effects) {
+std::string RecordingStage::faultOf(const SceneEffects& effects) const {
     if (const EffectSet others = effects.set() - possibleEffects(); !others.isEmpty()) {
-        throw std::invalid_argument("A recording has no " + namesOf(others) + ".");
+        return "A recording has no " + namesOf(others) + ".";
     }
-    const bool isOtherGrid = effects.grid != effects_.grid;
-    const bool hadColours = effects_.proximity.has_value();
-    observers_.declare(effects);
-    effects_ = effects;
-    if (isOtherGrid) {
+    return effectsError(effects);
+}
+
+void RecordingStage::follow(const SceneEffects& before) {
+    observers_.declare(effects());
+    if (effects().grid != before.grid) {
         makeGrid();
     }
     forgetUndeclaredPairs();
-    colourAgents(hadColours);
 }
 
 void RecordingStage::forgetUndeclaredPairs() {
-    if (effects_.pairs) {
+    if (effects().pairs) {
         return;
     }
     pairs_ = nullptr;
@@ -122,7 +118,7 @@ void RecordingStage::forgetUndeclaredPairs() {
 void RecordingStage::setBroadphase(const BroadphaseKind& kind) {
     if (&kind != kind_) {
         rival_ = kind.ours ? nullptr
-                           : std::make_unique<RivalPairs>(kind, scene_->bounds(), proxies_.size());
+                           : std::make_unique<RivalPairs>(kind, scene_.bounds(), proxies_.size());
         kind_ = &kind;
     }
 }
@@ -146,8 +142,8 @@ std::size_t RecordingStage::pairCount() const {
 
 void RecordingStage::listBoxes(std::vector<Aabb<float>>& boxes,
                                std::vector<CollisionFilter>& filters) const {
-    boxes = scene_->boxes();
-    filters = scene_->filters();
+    boxes = scene_.boxes();
+    filters = scene_.filters();
 }
 
 std::uint64_t RecordingStage::memoryBytes() const {

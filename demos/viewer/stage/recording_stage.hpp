@@ -12,6 +12,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace hashphase::demos {
@@ -20,8 +21,6 @@ class RecordingStage final : public Stage {
 public:
     /// As RecordingScene, and throws as it does.
     RecordingStage(const std::filesystem::path& path, std::size_t objects);
-
-    void step() override;
 
     [[nodiscard]] std::size_t size() const override { return proxies_.size(); }
     [[nodiscard]] std::uint32_t indexLimit() const override {
@@ -32,11 +31,9 @@ public:
     bool push(std::uint32_t /*index*/, const Vector3<float>& /*velocity*/) override {
         return false;
     }
-    [[nodiscard]] Aabb<float> bounds() const override { return scene_->bounds(); }
+    [[nodiscard]] Aabb<float> bounds() const override { return scene_.bounds(); }
     [[nodiscard]] std::uint64_t placesHash() const override;
 
-    [[nodiscard]] const SceneEffects& effects() const override { return effects_; }
-    void declare(const SceneEffects& effects) override;
     [[nodiscard]] EffectSet possibleEffects() const override;
     void setBroadphase(const BroadphaseKind& kind) override;
     [[nodiscard]] const BroadphaseKind& broadphase() const override { return *kind_; }
@@ -50,14 +47,14 @@ public:
     [[nodiscard]] std::uint64_t memoryBytes() const override;
 
 private:
+    void runFrame() override;
+    [[nodiscard]] std::string faultOf(const SceneEffects& effects) const override;
+    void follow(const SceneEffects& before) override;
     void makeGrid();
     void forgetUndeclaredPairs();
 
-    std::filesystem::path path_;
-    std::size_t objects_;
-    std::unique_ptr<RecordingScene> scene_;
+    RecordingScene scene_;
     int frame_ = 0;
-    SceneEffects effects_;
     std::unique_ptr<Grid<float>> grid_;
     std::vector<ProxyId> proxies_;  // by object, which is their index
     std::unique_ptr<Pairs<float>> pairs_;

@@ -20,8 +20,10 @@
 #include <Eigen/Geometry>
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -44,10 +46,33 @@ struct StageBody {
     bool isAsleep = false;
 };
 
+/// The box of nobody.
+[[nodiscard]] inline Aabb<float> nowhere() {
+    const Vector3<float> corner = Vector3<float>::Constant(std::numeric_limits<float>::quiet_NaN());
+    return {corner, corner};
+}
+
 /// A place where something fast has passed through a wall.
 struct TunnelMark {
     Vector3<float> from;
     Vector3<float> to;
+};
+
+/// A ball that knows who is in it.
+struct InterestZone {
+    Vector3<float> centre;
+    float radius = 0;
+    std::size_t bodyCount = 0;  // whose middles were in it in the last frame
+};
+
+/// How many bodies were where, in columns along x and rows along z, at all heights together.
+struct RadarView {
+    Eigen::Vector2f corner;  // of the first column and row: their least x and z [m]
+    float cellSize = 0;
+    std::uint32_t columns = 0;
+    std::uint32_t rows = 0;
+    std::uint32_t groupCount = 0;
+    std::span<const std::uint32_t> counts;  // as [group][row][column], until the next frame
 };
 
 class Stage {
@@ -55,7 +80,7 @@ public:
     virtual ~Stage() = default;
 
     /// Simulates one frame of what is declared.
-    virtual void step() = 0;
+    void step();
 
     // --- Who is there ----------------------------------------------------------------------------
 
@@ -86,8 +111,9 @@ public:
 
     // --- What runs -------------------------------------------------------------------------------
 
-    [[nodiscard]] virtual const SceneEffects& effects() const = 0;
-    virtual void declare(const SceneEffects& effects) = 0;
+    [[nodiscard]] const SceneEffects& effects() const noexcept { return effects_; }
+    /// Goes on with another declaration. Where it throws, nothing has changed.
+    void declare(const SceneEffects& effects);
 
     /// The effects that this scene can run.
     [[nodiscard]] virtual EffectSet possibleEffects() const = 0;
@@ -102,7 +128,7 @@ public:
     /// How many these are. Cost: O(1).
     [[nodiscard]] virtual std::size_t pairCount() const = 0;
 
-    /// What it was given: by index; NaN for who is not there. `filters` stays empty where all may pair.
+    /// What it was given: by index; nowhere() for who is not there. `filters` stays empty where all may pair.
     virtual void listBoxes(std::vector<Aabb<float>>& boxes,
                            std::vector<CollisionFilter>& filters) const = 0;
 
@@ -111,8 +137,18 @@ public:
     [[nodiscard]] virtual Observers<float>& observers() = 0;
     [[nodiscard]] virtual const Observers<float>& observers() const = 0;
 
-    /// The nearest body that the ray meets, exactly. Needs picking.
+    /// The nearest body that the ray meets, as it is drawn, before it comes to the ground. Needs picking.
+    /// Cost: that of the query, and a look at each triangle of the ground.
     [[nodiscard]] Picked<float> pick(const RayRegion<float>& ray);
+
+    /// The scene's zones; none while they are not declared.
+    [[nodiscard]] std::span<const InterestZone> interestZones() const noexcept {
+        return interestZones_;
+    }
+
+    /// What the radar saw when it last looked: around the observers' interest, along the axes. Nothing before
+    /// its first frame, while it is not declared, and where y is not up for it.
+    [[nodiscard]] const std::optional<RadarView>& radar() const noexcept { return radar_; }
 
     // --- What it took ----------------------------------------------------------------------------
 
@@ -133,11 +169,28 @@ public:
     [[nodiscard]] virtual std::uint64_t memoryBytes() const = 0;
 
 protected:
-    /// Gives agents their first colours, where they have just begun to look around: the same, whoever runs the
-    /// scene.
-    void colourAgents(bool hadColours);
+    /// Declared from the beginning.
+    explicit Stage(const SceneEffects& effects = {}) : effects_(effects) {}
+
+    /// Simulates one frame and has it observed.
+    virtual void runFrame() = 0;
+    /// Says in a sentence why the declaration cannot be run; empty when it can.
+    [[nodiscard]] virtual std::string faultOf(const SceneEffects& effects) const = 0;
+    /// Goes on with effects(), which have no fault, after those before.
+    virtual void follow(const SceneEffects& before) = 0;
 
     PhaseClock clock_;
+
+private:
+    /// Gives agents their first colours: the same, whoever runs the scene.
+    void colourAgents();
+
+    void noteZones();
+    void noteRadar();
+
+    SceneEffects effects_;
+    std::vector<InterestZone> interestZones_;
+    std::optional<RadarView> radar_;
 };
 
 }  // namespace hashphase::demos

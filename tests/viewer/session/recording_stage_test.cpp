@@ -49,6 +49,30 @@ TEST(RecordingStage, PlaysWhatWasCapturedAndBeginsAgain) {
     std::filesystem::remove(path);
 }
 
+TEST(RecordingStage, GoesOnWithTheFileThatItOpenedWhateverTakesItsName) {
+    const std::filesystem::path path =
+        std::filesystem::temp_directory_path() / "hashphase_replaced_recording_test.aabbs";
+    const auto capture = [&path](std::size_t objects) {
+        Session session({.name = "wander", .file = {}, .objects = objects, .seed = 3});
+        session.run("capture " + path.string() + " 2");
+        while (session.isWaiting()) {
+            session.advance();
+        }
+    };
+    capture(200);
+    RecordingStage stage(path, 0);
+    const std::uint64_t first = stage.placesHash();
+    capture(5);
+    for (int frame = 0; frame < 2; ++frame) {
+        stage.step();
+        EXPECT_NE(stage.placesHash(), first);
+    }
+    stage.step();
+    EXPECT_EQ(stage.placesHash(), first);
+    EXPECT_EQ(stage.size(), 200U);
+    std::filesystem::remove(path);
+}
+
 TEST(RecordingStage, HasNoPairsWhileTheyAreNotDeclared) {
     const std::filesystem::path path =
         std::filesystem::temp_directory_path() / "hashphase_recorded_pairs_test.aabbs";

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Zlib
 
-#include <demos/scenes/result_hash.hpp>
+#include <demos/compare/filled_broadphase.hpp>
 #include <demos/viewer/session/pair_check.hpp>
-#include <demos/viewer/stage/body_shape.hpp>
-#include <demos/viewer/stage/bullet_stage.hpp>
 #include <demos/viewer/stage/paper_stage.hpp>
 #include <tests/viewer/session/stages.hpp>
 
@@ -13,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -121,6 +120,102 @@ TEST(PaperStage, RefusesToSweepWithPairsOfAnother) {
     EXPECT_THROW(stage.declare(effects), std::invalid_argument);
 }
 
+SceneEffects withoutMotion(SceneEffects effects) {
+    for (const Effect effect : {Effect::response, Effect::terrain, Effect::motion}) {
+        effects.remove(effect);
+    }
+    return effects;
+}
+
+TEST(PaperStage, GivesBodiesTheirVelocitiesBackWhenMotionIsDeclaredAgain) {
+    const EffectsFile file = throng();
+    EffectsFile still = file;
+    still.effects = withoutMotion(file.effects);
+    PaperStage moving(file);
+    PaperStage stopped(file);
+    PaperStage stillAtFirst(still);
+    stillAtFirst.step();
+    stillAtFirst.declare(file.effects);
+    for (int frame = 0; frame < 30; ++frame) {
+        if (frame % 10 == 0) {
+            const std::uint64_t places = stopped.placesHash();
+            stopped.declare(withoutMotion(file.effects));
+            EXPECT_EQ(stopped.body(5).speed, 0);
+            stopped.step();
+            EXPECT_EQ(stopped.placesHash(), places);
+            stopped.declare(file.effects);
+        }
+        moving.step();
+        stopped.step();
+        stillAtFirst.step();
+        ASSERT_EQ(stopped.placesHash(), moving.placesHash()) << frame;
+        ASSERT_EQ(stillAtFirst.placesHash(), moving.placesHash()) << frame;
+    }
+    EXPECT_GT(moving.body(5).speed, 0);
+}
+
+TEST(PaperStage, PushesOnlyBodiesThatMove) {
+    EffectsFile file = throng();
+    file.scene.moving = 0.5;
+    PaperStage stage(file);
+    std::size_t pushed = 0;
+    for (std::uint32_t index = 0; index < stage.indexLimit(); ++index) {
+        const StageBody before = stage.body(index);
+        EXPECT_EQ(stage.push(index, {0, 0, 50}), !before.isStatic);
+        EXPECT_EQ(stage.body(index).speed > 0, !before.isStatic);
+        pushed += before.isStatic ? 0 : 1;
+    }
+    EXPECT_GT(pushed, 100U);
+    EXPECT_LT(pushed, 200U);
+}
+
+TEST(PaperStage, PicksNobodyThroughTheGround) {
+    PaperStage stage(throng());
+    stage.step();
+    std::size_t seen = 0;
+    for (std::uint32_t index = 0; index < stage.indexLimit(); ++index) {
+        const Vector3<float> middle = stage.body(index).centre;
+        EXPECT_TRUE(stage.pick({middle - Vector3<float>(0, 30, 0), middle}).id.isNull()) << index;
+        seen += stage.pick({middle + Vector3<float>(0, 2, 0), middle}).id.index == index ? 1 : 0;
+    }
+    EXPECT_GT(seen, 200U);
+    // Nobody hides them where there is no ground.
+    stage.declare(withoutMotion(stage.effects()));
+    const Vector3<float> middle = stage.body(7).centre;
+    EXPECT_FALSE(stage.pick({middle - Vector3<float>(0, 30, 0), middle}).id.isNull());
+}
+
+TEST(PaperStage, CountsWhoIsInItsZonesOfInterest) {
+    EffectsFile file = throng();
+    file.scene.zones = 5;
+    PaperStage stage(file);
+    stage.step();
+    EXPECT_TRUE(stage.interestZones().empty());
+    SceneEffects effects = file.effects;
+    effects.declare(Effect::zones);
+    stage.declare(effects);
+    EXPECT_EQ(stage.interestZones().size(), 5U);
+    std::size_t all = 0;
+    for (std::uint32_t frame = 0; frame < 10; ++frame) {
+        stage.remove(std::array{frame});
+        stage.step();
+        ASSERT_EQ(stage.interestZones().size(), 5U);
+        for (const InterestZone& zone : stage.interestZones()) {
+            std::size_t within = 0;
+            for (std::uint32_t index = 0; index < stage.indexLimit(); ++index) {
+                const bool isWithin =
+                    (stage.body(index).centre - zone.centre).norm() <= zone.radius;
+                within += stage.contains(index) && isWithin ? 1 : 0;
+            }
+            EXPECT_EQ(zone.bodyCount, within) << frame;
+            all += within;
+        }
+    }
+    EXPECT_GT(all, 10U);
+    stage.declare(file.effects);
+    EXPECT_TRUE(stage.interestZones().empty());
+}
+
 // --- The check itself ----------------------------------------------------------------------------
 
 /// Brute force that does not see pairs of a body with index 3.
@@ -165,123 +260,57 @@ TEST(PairCheck, SeesThatPairsAreMissing) {
     EXPECT_GT(missing, 0U);
 }
 
-// --- Bullet's scenes -----------------------------------------------------------------------------
+// --- The radar -----------------------------------------------------------------------------------
 
-TEST(BulletStage, KeepsIndicesAndPairsWhenTheBroadphaseIsSwapped) {
-    BulletStage stage(worldNamed("pile"), 150, 1, worldEffects());
-    EXPECT_EQ(stage.remove(std::array{0U, 7U}), 1U);  // not the floor
-    std::size_t frame = 0;
-    for (const char* name : {"dbvt", "hash", "simple", "axis-sweep", "dbvt-deferred", "hash"}) {
-        const Vector3<float> before = stage.body(100).centre;
-        stage.setBroadphase(kindNamed(name));
-        EXPECT_EQ(stage.body(100).centre, before);
-        EXPECT_FALSE(stage.contains(7));
-        for (int step = 0; step < 20; ++step) {
-            stage.step();
-            expectPairs(stage, stage.broadphase().ours, name);
-            // Whatever the grid is, it knows bodies by their indices.
-            const Picked<float> picked = stage.pick(
-                {stage.body(100).centre + Vector3<float>(0, 1e-3F, 0), stage.body(100).centre});
-            EXPECT_EQ(picked.id.index, 100U) << name;
-        }
-        frame += 20;
-    }
-    EXPECT_EQ(stage.size(), 150U);
-    EXPECT_GT(frame, 0U);
-}
-
-TEST(BulletStage, FilesBodiesInCellsOfTheDeclaredSize) {
-    BulletStage stage(worldNamed("pile"), 150, 1, worldEffects());
-    for (const char* name : {"hash", "dbvt", "hash"}) {
-        stage.setBroadphase(kindNamed(name));
-        for (const double cellSize : {4.0, 9.0}) {
-            SceneEffects effects = stage.effects();
-            effects.grid.cellSize = cellSize;
-            stage.declare(effects);
-            EXPECT_EQ(stage.grid()->cellSize(), cellSize) << name;
-            for (int step = 0; step < 3; ++step) {
-                stage.step();
-                expectPairs(stage, stage.broadphase().ours, name);
-            }
-            EXPECT_EQ(stage.grid()->cellSize(), cellSize) << name;
+void expectCounts(const Stage& stage) {
+    const RadarView& radar = *stage.radar();
+    std::vector<std::uint32_t> expected(std::size_t{radar.columns} * radar.rows);
+    for (std::uint32_t index = 0; index < stage.indexLimit(); ++index) {
+        const Vector3<float> middle = stage.body(index).centre;
+        const float column = std::floor((middle.x() - radar.corner.x()) / radar.cellSize);
+        const float row = std::floor((middle.z() - radar.corner.y()) / radar.cellSize);
+        const bool isSeen = stage.contains(index) && column >= 0 && row >= 0 &&
+                            column < static_cast<float>(radar.columns) &&
+                            row < static_cast<float>(radar.rows);
+        if (isSeen) {
+            ++expected[static_cast<std::size_t>(row) * radar.columns +
+                       static_cast<std::size_t>(column)];
         }
     }
-    stage.setBroadphase(kindNamed("dbvt"));
-    EXPECT_EQ(stage.grid()->cellSize(), 9);
+    ASSERT_EQ(radar.groupCount, 1U);
+    EXPECT_TRUE(
+        std::equal(radar.counts.begin(), radar.counts.end(), expected.begin(), expected.end()));
+    EXPECT_GT(*std::max_element(expected.begin(), expected.end()), 1U);
 }
 
-TEST(BulletStage, ColoursAgentsOnceWhenTheyBeginToLookAround) {
-    SceneEffects effects = worldEffects();
-    effects.declare(Effect::proximity);
-    BulletStage stage(worldNamed("stack"), 200, 1, worldEffects());
-    stage.declare(effects);
-    expectEvenColours(stage);
-    for (int frame = 0; frame < 5; ++frame) {
-        stage.step();
-    }
-    const std::span<const std::uint32_t> now = stage.observers().colours();
-    const std::vector<std::uint32_t> before(now.begin(), now.end());
-    effects.proximity->radius = 3;
-    stage.declare(effects);
-    const std::span<const std::uint32_t> after = stage.observers().colours();
-    EXPECT_TRUE(std::equal(before.begin(), before.end(), after.begin(), after.end()));
-    expectEvenColours(BulletStage(worldNamed("stack"), 200, 1, effects));
-}
-
-TEST(BulletStage, HearsBulletsOwnZones) {
-    BulletStage stage(worldNamed("pile"), 50, 1, worldEffects());
+TEST(RadarView, IsAroundTheInterestAsOfWhenTheRadarLooked) {
+    SceneEffects effects = throng().effects;
+    effects.declare(Effect::radar);
+    effects.radar->cellSize = 4;
+    effects.radar->columns = 7;
+    effects.radar->rows = 5;
+    effects.radar->frames = 2;
+    PaperStage stage(throng());
+    stage.observers().setInterest(Vector3<float>(20, 0, 21));
     stage.step();
-    const auto zones = stage.zones();
-    ASSERT_FALSE(zones.empty());
-    EXPECT_EQ(zones.front().depth, 0);
-    const auto isThere = [&](std::string_view name) {
-        return std::any_of(zones.begin(), zones.end(),
-                           [name](const Stage::Zone& zone) { return zone.name == name; });
-    };
-    for (const char* name : {"updateAabbs", "calculateOverlappingPairs",
-                             "dispatchAllCollisionPairs", "solveConstraints"}) {
-        EXPECT_TRUE(isThere(name)) << name;
+    EXPECT_FALSE(stage.radar());
+    stage.declare(effects);
+    stage.step();
+    stage.step();
+    ASSERT_TRUE(stage.radar());
+    for (int frame = 0; frame < 6; ++frame) {
+        const Eigen::Vector2f corner = stage.radar()->corner;
+        stage.observers().setInterest(Vector3<float>(9.0F + 5 * static_cast<float>(frame), 3, 15));
+        stage.step();
+        if (stage.observers().cost()[SceneCounter::radarScans] > 0) {
+            EXPECT_NE(stage.radar()->corner, corner);
+            expectCounts(stage);
+        } else {
+            EXPECT_EQ(stage.radar()->corner, corner);
+        }
     }
-    for (std::size_t i = 1; i < zones.size(); ++i) {
-        EXPECT_LE(zones[i].depth, zones[i - 1].depth + 1);
-        EXPECT_GT(zones[i].calls, 0U);
-    }
-}
-
-TEST(BulletStage, MarksWhatPassesThroughWallsUnlessItIsSwept) {
-    SceneEffects effects = worldEffects();
-    BulletStage discrete(worldNamed("bullet-storm"), 60, 1, effects);
-    effects.declare(Effect::sweep);
-    BulletStage swept(worldNamed("bullet-storm"), 60, 1, effects);
-    for (int frame = 0; frame < 60; ++frame) {
-        discrete.step();
-        swept.step();
-    }
-    EXPECT_GT(discrete.tunnelMarks().size(), 60U);
-    EXPECT_EQ(swept.tunnelMarks().size(), 0U);
-    for (const TunnelMark& mark : discrete.tunnelMarks()) {
-        EXPECT_GT((mark.to - mark.from).norm(), 1);
-    }
-}
-
-// --- Shapes --------------------------------------------------------------------------------------
-
-TEST(BodyShape, IsMetWhereItsSurfaceIs) {
-    StageBody body;
-    body.shape = StageBody::Shape::sphere;
-    body.centre = {10, 0, 0};
-    body.size.setConstant(2);
-    EXPECT_FLOAT_EQ(*meets(body, {0, 0, 0}, {16, 0, 0}), 0.5F);
-    EXPECT_FLOAT_EQ(*meets(body, {10, 1, 0}, {1, 0, 0}), 0);
-    EXPECT_FALSE(meets(body, {0, 3, 0}, {20, 0, 0}));
-    EXPECT_FALSE(meets(body, {0, 0, 0}, {7, 0, 0}));
-    EXPECT_FALSE(meets(body, {0, 0, 0}, {-20, 0, 0}));
-    body.shape = StageBody::Shape::box;
-    body.size = {1, 2, 3};
-    body.orientation = Eigen::AngleAxisf(std::numbers::pi_v<float> / 2, Vector3<float>::UnitZ());
-    EXPECT_FLOAT_EQ(*meets(body, {0, 0, 0}, {16, 0, 0}), 0.5F);
-    EXPECT_FALSE(meets(body, {0, 1.5F, 0}, {16, 0, 0}));
-    EXPECT_LT((boxAround(body).min() - Vector3<float>(8, -1, -3)).norm(), 1e-5F);
+    stage.declare(throng().effects);
+    EXPECT_FALSE(stage.radar());
 }
 
 }  // namespace

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/viewer/stage/bullet_world.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace hashphase::demos {
+
+BulletWorld::BulletWorld(const BroadphaseKind& kind, const WorldSceneKind& scene,
+                         std::size_t objects, std::uint64_t seed)
+    : dispatcher_(&configuration_),
+      broadphase_(kind.make({.bounds = {}, .objects = objects})),
+      world_(&dispatcher_, broadphase_.get(), &solver_, &configuration_),
+      contents_(world_) {
+    scene.fill(contents_, objects, seed);
+    configurator_ = std::make_unique<WorldConfigurator>(world_);
+}
+
+std::uint64_t BulletWorld::memoryBytes() const noexcept {
+    return static_cast<std::uint64_t>(std::max<std::int64_t>(world_.heap().bytes().value_or(0), 0));
+}
+
+void BulletWorld::remove(btRigidBody& body) {
+    // The world would go on solving them.
+    for (int i = world_.getNumConstraints() - 1; i >= 0; --i) {
+        btTypedConstraint& joint = *world_.getConstraint(i);
+        if (&joint.getRigidBodyA() == &body || &joint.getRigidBodyB() == &body) {
+            joint.getRigidBodyA().activate();
+            joint.getRigidBodyB().activate();
+            world_.removeConstraint(&joint);
+        }
+    }
+    for (int i = 0; i < dispatcher_.getNumManifolds(); ++i) {
+        const btPersistentManifold& contact = *dispatcher_.getManifoldByIndexInternal(i);
+        if (contact.getBody0() == &body || contact.getBody1() == &body) {
+            contact.getBody0()->activate();
+            contact.getBody1()->activate();
+        }
+    }
+    configurator_->release(body);
+    world_.removeRigidBody(&body);
+}
+
+void BulletWorld::replaceBroadphase(const BroadphaseKind& kind, const BroadphaseNeeds& needs) {
+    const WorldEffects effects = configurator_->effects();
+    configurator_ = nullptr;
+    HeapMeter used;
+    {
+        const HeapScope scope(used);
+        std::unique_ptr<btBroadphaseInterface> next = kind.make(needs);
+        std::vector<btBroadphaseProxy*> removed;
+        for (const auto& body : contents_.bodies()) {
+            moveProxy(*body, *next, removed);
+        }
+        for (btBroadphaseProxy* proxy : removed) {
+            next->destroyProxy(proxy, &dispatcher_);
+        }
+        world_.setBroadphase(next.get());
+        broadphase_ = std::move(next);
+    }
+    world_.heap() = used;
+    configurator_ = std::make_unique<WorldConfigurator>(world_);
+    configurator_->apply(effects);
+}
+
+void BulletWorld::moveProxy(btRigidBody& body, btBroadphaseInterface& next,
+                            std::vector<btBroadphaseProxy*>& removed) {
+    btVector3 low;
+    btVector3 high;
+    body.getAabb(low, high);
+    btBroadphaseProxy* before = body.getBroadphaseHandle();
+    const CollisionFilter filter =
+        before ? CollisionFilter{before->m_collisionFilterGroup, before->m_collisionFilterMask}
+               : CollisionFilter{0, 0};
+    btBroadphaseProxy* proxy = next.createProxy(low, high, body.getCollisionShape()->getShapeType(),
+                                                &body, filter.group, filter.mask, &dispatcher_);
+    if (before == nullptr) {
+        removed.push_back(proxy);
+        return;
+    }
+    broadphase_->getOverlappingPairCache()->cleanProxyFromPairs(before, &dispatcher_);
+    broadphase_->destroyProxy(before, &dispatcher_);
+    body.setBroadphaseHandle(proxy);
+}
+
+}  // namespace hashphase::demos

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// All that a Bullet world on stage is made of, in the order in which it is made, with a broadphase that can be
+// replaced while the world runs.
+
+#include <demos/compare/broadphase_kind.hpp>
+#include <demos/compare/observed_world.hpp>
+#include <demos/scenes/world_scenes.hpp>
+
+#include <integration/bullet/world_effects.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace hashphase::demos {
+
+class BulletWorld {
+public:
+    BulletWorld(const BroadphaseKind& kind, const WorldSceneKind& scene, std::size_t objects,
+                std::uint64_t seed);
+
+    [[nodiscard]] ObservedWorld& world() noexcept { return world_; }
+    [[nodiscard]] const WorldContents& contents() const noexcept { return contents_; }
+    [[nodiscard]] WorldConfigurator& configurator() noexcept { return *configurator_; }
+    [[nodiscard]] btBroadphaseInterface& broadphase() noexcept { return *broadphase_; }
+
+    /// Of the broadphase.
+    [[nodiscard]] std::uint64_t memoryBytes() const noexcept;
+
+    /// Takes a body that is in the world out of it. Its joints go with it, and whoever leans on it wakes up.
+    void remove(btRigidBody& body);
+
+    /// Gives every body a proxy of a new broadphase. Bodies have the indices of proxies that they would have
+    /// if all had been added in their order, and those that were removed had been then.
+    void replaceBroadphase(const BroadphaseKind& kind, const BroadphaseNeeds& needs);
+
+private:
+    void moveProxy(btRigidBody& body, btBroadphaseInterface& next,
+                   std::vector<btBroadphaseProxy*>& removed);
+
+    btDefaultCollisionConfiguration configuration_;
+    btCollisionDispatcher dispatcher_;
+    btSequentialImpulseConstraintSolver solver_;
+    std::unique_ptr<btBroadphaseInterface> broadphase_;
+    ObservedWorld world_;
+    WorldContents contents_;
+    std::unique_ptr<WorldConfigurator> configurator_;
+};
+
+}  // namespace hashphase::demos
