@@ -152,7 +152,7 @@ TEST(JoinedReport, DoesNotHoldWhereNothingWasChecked) {
     EXPECT_NE(seen.html.find("<p class=\"verdict unchecked\">Verdict of beta.</p>"),
               std::string::npos);
     EXPECT_EQ(matches(seen.html, "class=\"(holds|broken)\"").size(), 1U) << "that of alpha";
-    EXPECT_NE(seen.html.find("<li>Nothing was checked: Verdict of beta. (beta, "),
+    EXPECT_NE(seen.html.find("<li>Not checked: Verdict of beta. (beta, "),
               std::string::npos);
 
     const ReportSeen none = runReport(twoParts(std::nullopt), {"--only", "beta"});
