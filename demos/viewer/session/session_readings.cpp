@@ -8,6 +8,7 @@
 #include <demos/scenes/input_error.hpp>
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 
 namespace hashphase::demos {
@@ -76,6 +77,25 @@ double number(Number value) {
     return static_cast<double>(value);
 }
 
+double inZones(const Session& session) {
+    if (!session.stage().effects().zones) {
+        throw InputError("No zones are declared: run \"effect zones on\" and a step.");
+    }
+    std::size_t count = 0;
+    for (const InterestZone& zone : session.stage().interestZones()) {
+        count += zone.bodyCount;
+    }
+    return number(count);
+}
+
+double onRadar(const Session& session) {
+    const std::optional<RadarView>& radar = session.stage().radar();
+    if (!radar) {
+        throw InputError("The radar has not looked: run \"effect radar on\" and a step.");
+    }
+    return number(std::accumulate(radar->counts.begin(), radar->counts.end(), std::uint64_t{0}));
+}
+
 constexpr std::array kReadings{
     Reading{"frame", [](const Session& s) { return number(s.frame()); }},
     Reading{"playing", [](const Session& s) { return number(s.isPlaying()); }},
@@ -100,6 +120,8 @@ constexpr std::array kReadings{
     Reading{"largestLoad", [](const Session& s) { return number(loadsOf(s).largest()); }},
     Reading{"columns", [](const Session& s) { return number(loadsOf(s).columns()); }},
     Reading{"colours", colourCount},
+    Reading{"inZones", inZones},  // a body in two of them counts twice
+    Reading{"onRadar", onRadar},
     Reading{"tunnelled", [](const Session& s) { return number(s.stage().tunnelMarks().size()); }},
     Reading{"asleep",
             [](const Session& s) {

@@ -83,6 +83,7 @@ void Panel::build(Session& session, std::span<const Legend> legends, const Point
         showZones(session);
         ImGui::End();
         showCard(session);
+        showRadar(session);
         showLegends(session, legends);
     }
     showBadge(session);

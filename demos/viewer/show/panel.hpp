@@ -62,6 +62,7 @@ private:
     void showZones(const Session& session);
     void showView(Session& session);
     void showCard(const Session& session);
+    void showRadar(const Session& session);
     void showLegends(const Session& session, std::span<const Legend> legends);
     void showHelp(Session& session);
     void showBadge(const Session& session);

@@ -65,6 +65,16 @@ void swatch(ImU32 colour) {
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + side);
 }
 
+// Of all groups, row by row.
+std::vector<std::uint32_t> totalsOf(const RadarView& radar) {
+    const std::size_t cells = std::size_t{radar.columns} * radar.rows;
+    std::vector<std::uint32_t> totals(cells);
+    for (std::size_t i = 0; i < radar.counts.size(); ++i) {
+        totals[i % cells] += radar.counts[i];
+    }
+    return totals;
+}
+
 void rightInColumn(const std::string& text) {
     ImGui::TableNextColumn();
     const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x;
@@ -144,6 +154,36 @@ void Panel::showCard(const Session& session) {
     if (card.body.isStatic || card.body.isAsleep) {
         ImGui::TextUnformatted(card.body.isStatic ? "never moves" : "asleep");
     }
+    ImGui::End();
+}
+
+// Seen from above, x to the right and z downwards, as by the camera above.
+void Panel::showRadar(const Session& session) {
+    const std::optional<RadarView>& radar = session.stage().radar();
+    if (!radar || radar->columns == 0 || radar->rows == 0) {
+        return;
+    }
+    constexpr float kSide = 200;  // of the longer side [pixels]
+    constexpr float kBelowCard = 160;
+    const std::vector<std::uint32_t> counts = totalsOf(*radar);
+    const std::uint32_t most = std::max(1U, *std::max_element(counts.begin(), counts.end()));
+    const float side = kSide / static_cast<float>(std::max(radar->columns, radar->rows));
+    ImGui::SetNextWindowPos({static_cast<float>(session.width()) - 8, kBelowCard}, ImGuiCond_Always,
+                            {1, 0});
+    ImGui::Begin("radar", nullptr, kStill);
+    ImGui::TextUnformatted(("radar, cells of " + fixed(double{radar->cellSize}, 0) + " m").c_str());
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    ImGui::Dummy(
+        {side * static_cast<float>(radar->columns), side * static_cast<float>(radar->rows)});
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    for (std::uint32_t cell = 0; cell < counts.size(); ++cell) {
+        const float x = corner.x + side * static_cast<float>(cell % radar->columns);
+        const float y = corner.y + side * static_cast<float>(cell / radar->columns);
+        const float share = static_cast<float>(counts[cell]) / static_cast<float>(most);
+        list.AddRectFilled({x, y}, {x + side, y + side},
+                           ImGui::ColorConvertFloat4ToU32(colourOf(sequentialColour(share))));
+    }
+    numberRow("most in a cell", withThousands(most));
     ImGui::End();
 }
 

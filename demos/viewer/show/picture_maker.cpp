@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace hashphase::demos {
 namespace {
@@ -52,6 +53,9 @@ const Picture& PictureMaker::make(const Session& session, float contactFrom) {
     }
     if (session.frozenPose()) {
         addFrustum(*session.frozenPose());
+    }
+    for (const InterestZone& zone : session.stage().interestZones()) {
+        addZone(zone);
     }
     addPairs(session);
     addMarks(session);
@@ -120,6 +124,24 @@ void PictureMaker::addBody(const StageBody& body, Colour colour) {
 
 void PictureMaker::addFrustum(const CameraPose& pose) {
     addEdges(frustumCorners(pose), palette_.line, true, lines_);
+}
+
+// A ball, as its circles across the axes.
+void PictureMaker::addZone(const InterestZone& zone) {
+    constexpr int kSides = 32;
+    for (int axis = 0; axis < 3; ++axis) {
+        Vector3<float> before = Vector3<float>::Zero();
+        for (int i = 0; i <= kSides; ++i) {
+            const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(i) / kSides;
+            Vector3<float> place = zone.centre;
+            place[(axis + 1) % 3] += zone.radius * std::cos(angle);
+            place[(axis + 2) % 3] += zone.radius * std::sin(angle);
+            if (i > 0) {
+                lines_.push_back({before, place, palette_.accent, true});
+            }
+            before = place;
+        }
+    }
 }
 
 void PictureMaker::addLink(const Session& session, PairKey pair, Colour colour, bool isOnTop) {

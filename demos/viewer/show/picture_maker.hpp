@@ -28,6 +28,7 @@ private:
     void addBodies(const Session& session);
     void addBody(const StageBody& body, Colour colour);
     void addFrustum(const CameraPose& pose);
+    void addZone(const InterestZone& zone);
     void addPairs(const Session& session);
     void addLink(const Session& session, PairKey pair, Colour colour, bool isOnTop);
     void addWireBox(const StageBody& body, Colour colour);

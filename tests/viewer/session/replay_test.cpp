@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -28,18 +29,34 @@ Pixel pixelOf(const Session& session, std::uint32_t index) {
             0.5 * double{1 - device.y()} * session.height()};
 }
 
-std::uint32_t lastBody(const Session& session) {
-    std::uint32_t last = 0;
+/// Which no other hides from above.
+std::uint32_t highestBody(const Session& session) {
+    std::optional<std::uint32_t> highest;
+    const auto heightOf = [&session](std::uint32_t index) {
+        return session.stage().body(index).centre.y();
+    };
     for (std::uint32_t index = 0; index < session.stage().indexLimit(); ++index) {
-        last = session.stage().contains(index) ? index : last;
+        const bool isThere = session.stage().contains(index) &&
+                             session.stage().body(index).shape != StageBody::Shape::none;
+        if (isThere && (!highest || heightOf(index) > heightOf(*highest))) {
+            highest = index;
+        }
     }
-    EXPECT_TRUE(session.stage().contains(last));
-    return last;
+    EXPECT_TRUE(highest);
+    return highest.value_or(0);
 }
 
 void runAt(Session& session, const char* command, const Pixel& pixel) {
     std::ostringstream line;
     line << command << ' ' << pixel.x() << ' ' << pixel.y();
+    session.run(line.str());
+}
+
+/// From so near that no ground is between, where bodies have fallen through it without pairs.
+void lookDownOn(Session& session, std::uint32_t index) {
+    const Vector3<float> at = session.stage().body(index).centre;
+    std::ostringstream line;
+    line << "eye " << at.x() << ' ' << at.y() + 2 << ' ' << at.z() << " 0 -80";
     session.run(line.str());
 }
 
@@ -59,7 +76,8 @@ void play(Session& session) {
     step(session, 15);
     session.run("broadphase dbvt");
     session.run("effect response on");
-    runAt(session, "pick", pixelOf(session, lastBody(session)));
+    lookDownOn(session, highestBody(session));
+    runAt(session, "pick", pixelOf(session, highestBody(session)));
     EXPECT_TRUE(session.card());
     session.run("camera follow");
     step(session, 64);
