@@ -18,20 +18,21 @@ layout(location = 1) in vec3 to;
 layout(location = 2) in vec4 colourOfLine;
 
 const float kHalfWidth = 0.8;  // [pixels]
+const float kNearer = 0.002;
 
 out float acrossTimesW;  // from the middle of the line [pixels]; so divided by w, it is linear
 flat out vec4 tint;
 
 void main() {
-    vec4 start = clipFromWorld * vec4(from, 1.0);
-    vec4 end = clipFromWorld * vec4(to, 1.0);
+    // Nearer to the eye by a part of the distance, or surfaces would swallow the lines on them.
+    vec4 start = clipFromWorld * vec4(mix(from, eye.xyz, kNearer), 1.0);
+    vec4 end = clipFromWorld * vec4(mix(to, eye.xyz, kNearer), 1.0);
     vec2 way = (end.xy * start.w - start.xy * end.w) * screen.xy;
     vec2 aside = normalize(dot(way, way) > 0.0 ? vec2(-way.y, way.x) : vec2(1.0, 0.0));
     float side = float(gl_VertexID & 1) * 2.0 - 1.0;
     vec4 place = (gl_VertexID & 2) == 0 ? start : end;
     float across = side * (kHalfWidth + 0.5);
     place.xy += 2.0 * across * aside / screen.xy * place.w;
-    place.z -= 1e-4 * place.w;
     acrossTimesW = across * place.w;
     gl_Position = place;
     tint = colourOfLine;

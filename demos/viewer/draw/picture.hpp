@@ -106,6 +106,8 @@ struct Picture {
     float leastRadius = 1;  // spheres are drawn at least so large [pixels]
     /// Spheres larger than that have a dark spot below them, on ground that is near [pixels, radius].
     float contactFrom = kContactFrom;
+    /// So many columns at the left border are not drawn, as something else will cover them [pixels].
+    int coveredLeft = 0;
 };
 
 }  // namespace hashphase::demos

@@ -64,7 +64,9 @@ void Renderer::Layers::drawFrame(const Picture& picture, unsigned framebuffer) {
 
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glViewport(0, 0, target.width(), target.height());
-    glDisable(GL_SCISSOR_TEST);
+    const int covered = std::clamp(picture.coveredLeft, 0, target.width());
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(covered, 0, target.width() - covered, target.height());
     glDisable(GL_CULL_FACE);
     glCullFace(GL_BACK);
     glFrontFace(GL_CCW);
@@ -87,6 +89,7 @@ void Renderer::Layers::drawFrame(const Picture& picture, unsigned framebuffer) {
     if (picture.rectangle) {
         rectangle.draw(*picture.rectangle, picture.theme);
     }
+    glDisable(GL_SCISSOR_TEST);
 }
 
 Renderer::Renderer(int width, int height) : layers_(std::make_unique<Layers>(width, height)) {}

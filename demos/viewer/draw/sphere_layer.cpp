@@ -200,11 +200,13 @@ constexpr std::size_t kCorners = 4;
 constexpr float kLargestDot = 3.5F;  // radius [pixels]
 constexpr float kLargestPoint = 16;
 
-/// OpenGL drops points whose middle is not on the screen, so spheres at its edge are none.
+/// OpenGL drops points whose middle is not on the screen, so spheres whose middle is beyond its edge, or on it,
+/// are none.
 bool isInside(const Vector3<float>& fromEye, float depth, const View& view) {
     const Eigen::Vector2f place(view.right.dot(fromEye) / view.tangents.x(),
                                 view.up.dot(fromEye) / view.tangents.y());
-    const Eigen::Vector2f limit = (1 - 4 * kLargestPoint / view.size.array()) * depth;
+    constexpr float kMargin = 2;  // [pixels]
+    const Eigen::Vector2f limit = (1 - 2 * kMargin / view.size.array()) * depth;
     return std::abs(place.x()) < limit.x() && std::abs(place.y()) < limit.y();
 }
 
@@ -245,14 +247,17 @@ void SphereLayer::sort(std::span<const DrawnSphere> spheres, const View& view, f
     for (Batch* const batch : {&dots_, &points_, &quads_}) {
         batch->order.clear();
     }
-    // Spheres that the eye is in, or that lie behind it, cannot be seen.
+    // Spheres that the eye is in, or that lie behind it, cannot be seen. Of two that are apart, the one whose
+    // tangents from the eye are longer hides nothing of the other. Dots have one depth each, and go by that.
     for (std::uint32_t i = 0; i < spheres.size(); ++i) {
         const Vector3<float> fromEye = spheres[i].centre - view.eye;
         const float depth = view.forward.dot(fromEye);
         const float radius = spheres[i].radius;
-        if (depth > 0 && fromEye.squaredNorm() > radius * radius) {
+        const float tangentSquared = fromEye.squaredNorm() - radius * radius;
+        if (depth > 0 && tangentSquared > 0) {
             const float pixels = std::max(view.pixels(radius, depth), leastRadius);
-            batchFor(fromEye, depth, pixels, view).order.add(depth, i);
+            Batch& batch = batchFor(fromEye, depth, pixels, view);
+            batch.order.add(&batch == &dots_ ? depth : tangentSquared, i);
         }
     }
 }

@@ -64,7 +64,7 @@ Colour BodyColours::byColouring(const Session& session, std::uint32_t index,
     switch (session.options().colouring) {
         case Colouring::agents: {
             if (!session.stage().effects().proximity) {
-                return body.isStatic ? palette_.faint : kinds[index % kinds.size()];
+                return body.isStatic ? palette_.fixed : kinds[index % kinds.size()];
             }
             const auto colours = session.stage().observers().colours();
             return kinds[index < colours.size() ? colours[index] % kinds.size() : 0];
@@ -91,7 +91,7 @@ Colour BodyColours::byColouring(const Session& session, std::uint32_t index,
                 static_cast<float>(index < pairCounts_.size() ? pairCounts_[index] : 0) /
                 kManyPairs);
         case Colouring::rest:
-            return body.isStatic ? palette_.faint : body.isAsleep ? palette_.calm : palette_.awake;
+            return body.isStatic ? palette_.fixed : body.isAsleep ? palette_.calm : palette_.awake;
     }
     return palette_.calm;
 }
@@ -113,7 +113,7 @@ std::vector<Legend> BodyColours::legends(const Session& session) const {
         const Palette& colours = palette(options.theme);
         legends.push_back(
             {"who rests",
-             {{colours.faint, "never moves"}, {colours.calm, "asleep"}, {colours.awake, "awake"}}});
+             {{colours.fixed, "never moves"}, {colours.calm, "asleep"}, {colours.awake, "awake"}}});
     }
     return legends;
 }

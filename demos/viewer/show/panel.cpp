@@ -68,13 +68,14 @@ void Panel::build(Session& session, std::span<const Legend> legends, const Point
     ImGui_ImplOpenGL3_NewFrame();
     ImGui::NewFrame();
     if (session.options().panel) {
-        ImGui::SetNextWindowPos({8, 8});
-        ImGui::SetNextWindowSizeConstraints(
-            {kPanelWidth, 0}, {kPanelWidth, static_cast<float>(session.height()) - 16});
-        ImGui::SetNextWindowBgAlpha(0.9F);
-        ImGui::Begin("hashphase", nullptr,
-                     ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                         ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoTitleBar);
+        ImGui::SetNextWindowPos({0, 0});
+        ImGui::SetNextWindowSize({kPanelWidth, static_cast<float>(session.height())});
+        ImGui::SetNextWindowBgAlpha(1);  // nothing is drawn below it
+        ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
+        ImGui::Begin(
+            "hashphase", nullptr,
+            ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoTitleBar);
+        ImGui::PopStyleVar();
         showScene(session);
         showPhases(session);
         showEffects(session);
@@ -283,7 +284,7 @@ void Panel::showHelp(Session& session) {
         return;
     }
     // Beside the panel, where there is room.
-    const float left = session.options().panel ? kPanelWidth + 16 : 0;
+    const float left = session.options().panel ? kPanelWidth : 0;
     ImGui::SetNextWindowPos({(left + static_cast<float>(session.width())) / 2,
                              static_cast<float>(session.height()) / 2},
                             ImGuiCond_Always, {0.5F, 0.5F});

@@ -230,7 +230,8 @@ void Panel::showBadge(const Session& session) {
     ImGui::SetNextWindowPos({static_cast<float>(session.width()) / 2, 8}, ImGuiCond_Always,
                             {0.5F, 0});
     ImGui::PushStyleColor(ImGuiCol_WindowBg, colourOf(colour));
-    ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(0, 0, 0, 1));
+    const bool isDarkText = !(check != nullptr && !check->missing().empty());
+    ImGui::PushStyleColor(ImGuiCol_Text, isDarkText ? ImVec4(0, 0, 0, 1) : ImVec4(1, 1, 1, 1));
     ImGui::Begin("badge", nullptr, kStill);
     ImGui::TextUnformatted(text.c_str());
     ImGui::End();

@@ -40,7 +40,7 @@ void addEdges(const Corners& corners, Colour colour, bool isOnTop, std::vector<D
 
 }  // namespace
 
-const Picture& PictureMaker::make(const Session& session, float contactFrom) {
+const Picture& PictureMaker::make(const Session& session, float contactFrom, int coveredLeft) {
     const ViewOptions& options = session.options();
     palette_ = palette(options.theme);
     colours_.prepare(session);
@@ -69,6 +69,7 @@ const Picture& PictureMaker::make(const Session& session, float contactFrom) {
     picture_.rectangle = session.rectangle();
     picture_.leastRadius = options.dots;
     picture_.contactFrom = contactFrom;
+    picture_.coveredLeft = coveredLeft;
     setGround(session);
     return picture_;
 }
@@ -145,12 +146,15 @@ void PictureMaker::addZone(const InterestZone& zone) {
 }
 
 void PictureMaker::addLink(const Session& session, PairKey pair, Colour colour, bool isOnTop) {
-    const bool isSeen = session.isVisible(firstOf(pair)) && session.isVisible(secondOf(pair));
+    if (lines_.size() >= kMostLinks || !session.isVisible(firstOf(pair)) ||
+        !session.isVisible(secondOf(pair))) {
+        return;
+    }
     const StageBody first = session.stage().body(firstOf(pair));
     const StageBody second = session.stage().body(secondOf(pair));
     const bool areThere =
         first.shape != StageBody::Shape::none && second.shape != StageBody::Shape::none;
-    if (isSeen && areThere && lines_.size() < kMostLinks) {
+    if (areThere) {
         lines_.push_back({first.centre, second.centre, colour, isOnTop});
     }
 }

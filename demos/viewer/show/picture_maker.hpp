@@ -15,9 +15,10 @@ namespace hashphase::demos {
 
 class PictureMaker {
 public:
-    /// Spheres larger than `contactFrom` have a dark spot below them [pixels]. Valid until the next
-    /// call, or the session changes. Cost: O(bodies).
-    [[nodiscard]] const Picture& make(const Session& session, float contactFrom = kContactFrom);
+    /// Spheres larger than `contactFrom` have a dark spot below them; something else will cover `coveredLeft`
+    /// columns [pixels]. Valid until the next call, or the session changes. Cost: O(bodies).
+    [[nodiscard]] const Picture& make(const Session& session, float contactFrom = kContactFrom,
+                                      int coveredLeft = 0);
 
     /// What the colours of the last picture tell, or would tell of the session as it is now.
     [[nodiscard]] std::vector<Legend> legends(const Session& session) const {
