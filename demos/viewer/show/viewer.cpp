@@ -4,6 +4,7 @@
 #include <demos/scenes/input_error.hpp>
 #include <demos/viewer/draw/draw_error.hpp>
 #include <demos/viewer/draw/png.hpp>
+#include <demos/viewer/show/panel_parts.hpp>
 
 #include <epoxy/gl.h>
 
@@ -13,8 +14,8 @@ namespace hashphase::demos {
 
 namespace {
 
-constexpr double kSlow = 1.0 / 22;     // [s]
-constexpr double kQuick = 1.0 / 28;    // [s]
+constexpr double kSlow = 0.038;        // [s]: with the simulation, 22 pictures a second
+constexpr double kQuick = 0.028;       // [s]
 constexpr float kPace = 1.05F;         // of the change, in a frame
 constexpr float kMostContact = 40.0F;  // [pixels]
 
@@ -39,11 +40,10 @@ void Viewer::show(Session& session, const Panel::Pointer& pointer, double second
         renderer_.resize(session.width(), session.height());
     }
     panel_.build(session, maker_.legends(session), pointer, seconds);
-    if (seconds > 0) {
-        keepPace(seconds);
-    }
     framebuffer_ = fitsWindow && !session.wantsScreenshot() ? 0 : renderer_.framebuffer();
-    renderer_.draw(maker_.make(session, contactFrom_), framebuffer_);
+    const float contactFrom = session.wantsScreenshot() ? kContactFrom : contactFrom_;
+    const int covered = session.options().panel ? static_cast<int>(kPanelWidth) : 0;
+    renderer_.draw(maker_.make(session, contactFrom, covered), framebuffer_);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
     glViewport(0, 0, session.width(), session.height());
     panel_.draw();

@@ -20,11 +20,14 @@ public:
     void layOut(Session& session);
 
     /// Draws the session as it is; straight into the context's window where the picture `fitsWindow`, unless
-    /// it is wanted as a screenshot, too. Where somebody looks on, `seconds` after the last frame, the contact
-    /// shade of small spheres is left out while frames take long, as nothing else costs that much. Throws
+    /// it is wanted as a screenshot, too. Somebody looks on where it is `seconds` after the last frame, not 0. Throws
     /// InputError where a picture that was asked for cannot be written; it has been drawn even so.
     void show(Session& session, const Panel::Pointer& pointer, double seconds,
               bool fitsWindow = false);
+
+    /// A picture took so long to draw: small spheres go without their contact shade while that is long, but for
+    /// screenshots, as nothing else costs that much.
+    void keepPace(double seconds);
 
     /// OpenGL's name of what has been drawn into: 0 for the window.
     [[nodiscard]] unsigned framebuffer() const noexcept { return framebuffer_; }
@@ -33,8 +36,6 @@ public:
     [[nodiscard]] Panel& panel() noexcept { return panel_; }
 
 private:
-    void keepPace(double seconds);
-
     unsigned framebuffer_ = 0;
     float contactFrom_ = kContactFrom;  // [pixels]
     Renderer renderer_;

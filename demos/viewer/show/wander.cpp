@@ -200,12 +200,17 @@ int Run::inWindow() {
     if (playback_) {
         window.setGuard(Playback::refuseChange);
     }
-    const FrameRate rate = window.run(*session_, options_.frames.value_or(0), [this] {
-        feed();
-        return isTimeOver() || (playback_ && playback_->isDone(*session_));
-    });
     drewPictures_ = true;
-    framesPerSecond_ = rate.perSecond();
+    try {
+        const FrameRate rate = window.run(*session_, options_.frames.value_or(0), [this] {
+            feed();
+            return isTimeOver() || (playback_ && playback_->isDone(*session_));
+        });
+        framesPerSecond_ = rate.perSecond();
+    } catch (const DrawError& error) {
+        end();  // what was played until then is not lost
+        throw InputError(error.what());
+    }
     return end();
 }
 

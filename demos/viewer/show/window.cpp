@@ -22,8 +22,9 @@
 namespace hashphase::demos {
 namespace {
 
-constexpr double kClickReach = 4;      // a drag begins beyond it [pixels]
-constexpr double kTurnPerPixel = 0.2;  // [degrees]
+constexpr double kClickReach = 4;       // a drag begins beyond it [pixels]
+constexpr double kTurnPerPixel = 0.2;   // [degrees]
+constexpr double kStillSeconds = 0.25;  // between the pictures of what stands still [s]
 
 struct NamedKey {
     std::string_view name;
@@ -72,6 +73,10 @@ struct Window::Input {
     bool overPanel = false;
     std::optional<Pixel> pressedAt;  // the left button, on the scene
     bool isDragging = false;
+    bool isSteering = false;  // by keys that are held down
+    bool leftIsDown =
+        false;  // the pointer's buttons are down for a frame at least, so that no click is lost
+    bool rightIsDown = false;
     Pixel lastAt{0, 0};
     Pixel scale{1, 1};  // of the picture, by the window
 
@@ -85,13 +90,15 @@ struct Window::Input {
     void onMove(double x, double y);
     void steer(const Session& session, double seconds);
     [[nodiscard]] Pixel inPicture(const Pixel& place) const { return place.cwiseProduct(scale); }
+    [[nodiscard]] bool isBusy() const { return isSteering || leftIsDown || rightIsDown; }
     [[nodiscard]] bool isDown(int key) const { return glfwGetKey(window, key) == GLFW_PRESS; }
 };
 
 void Window::Input::listen() {
     glfwSetWindowUserPointer(window, this);
-    glfwSetKeyCallback(window, [](GLFWwindow* from, int key, int, int action, int) {
-        if (action == GLFW_PRESS) {
+    glfwSetKeyCallback(window, [](GLFWwindow* from, int key, int, int action, int modifiers) {
+        constexpr int kNotOurs = GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER;
+        if (action == GLFW_PRESS && (modifiers & kNotOurs) == 0) {
             of(from).onKey(key);
         }
     });
@@ -133,12 +140,14 @@ void Window::Input::onKey(int key) {
 
 void Window::Input::onButton(int button, bool isDown) {
     if (button == GLFW_MOUSE_BUTTON_RIGHT) {
-        pointer.right = isDown;
+        rightIsDown = isDown;
+        pointer.right = pointer.right || isDown;
     }
     if (button != GLFW_MOUSE_BUTTON_LEFT) {
         return;
     }
-    pointer.left = isDown;
+    leftIsDown = isDown;
+    pointer.left = pointer.left || isDown;
     if (isDown && !overPanel) {
         pressedAt = lastAt;
     } else if (!isDown && pressedAt) {
@@ -163,7 +172,7 @@ void Window::Input::onMove(double x, double y) {
         const Pixel from = inPicture(*pressedAt);
         commands.push_back(line("drag", {from.x(), from.y(), at.x(), at.y()}));
     }
-    if (pointer.right && !overPanel) {
+    if (rightIsDown && !overPanel) {
         commands.push_back(line("turn", {-kTurnPerPixel * way.x(), -kTurnPerPixel * way.y()}));
     }
 }
@@ -182,6 +191,7 @@ void Window::Input::steer(const Session& session, double seconds) {
     }
     const double left = 60 * seconds * held(GLFW_KEY_LEFT, GLFW_KEY_RIGHT);
     const double higher = 60 * seconds * held(GLFW_KEY_UP, GLFW_KEY_DOWN);
+    isSteering = right != 0 || up != 0 || forward != 0 || left != 0 || higher != 0;
     if (left != 0 || higher != 0) {
         commands.push_back(line("turn", {left, higher}));
     }
@@ -212,7 +222,6 @@ Window::~Window() {
 // What has been pressed and moved since the last frame becomes commands, and they are run.
 void Window::listen(Session& session, Viewer& viewer, double seconds) {
     input_->setScale(session);
-    input_->pointer.wheel = 0;
     glfwPollEvents();
     input_->steer(session, std::min(seconds, 0.1));
     for (const std::string& command : std::exchange(input_->commands, {})) {
@@ -225,11 +234,15 @@ void Window::present(Session& session, Viewer& viewer, double seconds) {
     int height = 0;
     glfwGetFramebufferSize(input_->window, &width, &height);
     const bool fits = width == session.width() && height == session.height();
+    const Stopwatch watch;
     try {
         viewer.show(session, input_->pointer, seconds, fits);
     } catch (const InputError& error) {  // a picture that cannot be written
         viewer.panel().say(error.what(), true);
     }
+    input_->pointer.wheel = 0;
+    input_->pointer.left = input_->leftIsDown;
+    input_->pointer.right = input_->rightIsDown;
     if (viewer.framebuffer() != 0) {
         glBindFramebuffer(GL_READ_FRAMEBUFFER, viewer.framebuffer());
         glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
@@ -237,6 +250,21 @@ void Window::present(Session& session, Viewer& viewer, double seconds) {
                           GL_COLOR_BUFFER_BIT, GL_NEAREST);
     }
     glfwSwapBuffers(input_->window);
+    viewer.keepPace(watch.milliseconds() / 1000);
+}
+
+// No frame is shorter than the scene's, or it would run too fast. What stands still is drawn again when
+// somebody does something, and now and then.
+void Window::rest(const Session& session, double frameSeconds) {
+    const bool isStill = !session.isPlaying() && !session.isWaiting() && !input_->isBusy();
+    if (isStill) {
+        glfwWaitEventsTimeout(kStillSeconds);
+    }
+    const Stopwatch watch;
+    for (double left = double{kFrameSeconds} - frameSeconds; left > 0;
+         left = double{kFrameSeconds} - frameSeconds - watch.milliseconds() / 1000) {
+        glfwWaitEventsTimeout(left);
+    }
 }
 
 FrameRate Window::run(Session& session, std::uint64_t frames, const std::function<bool()>& isDone) {
@@ -256,6 +284,7 @@ FrameRate Window::run(Session& session, std::uint64_t frames, const std::functio
             viewer.panel().say(message);
         }
         input_->overPanel = viewer.panel().hasPointer();
+        rest(session, watch.milliseconds() / 1000 - now);
         rate.note(watch.milliseconds() / 1000);
     }
     return rate;

@@ -37,6 +37,7 @@ private:
     struct Input;
     void listen(Session& session, Viewer& viewer, double seconds);
     void present(Session& session, Viewer& viewer, double seconds);
+    void rest(const Session& session, double frameSeconds);
 
     std::unique_ptr<Input> input_;
     Panel::Guard guard_;

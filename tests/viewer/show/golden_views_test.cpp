@@ -109,23 +109,40 @@ TEST(GoldenViews, AreOthersAfterAStep) {
 
 // --- Pace ----------------------------------------------------------------------------------------
 
-TEST(Viewer, LeavesOutContactShadeWhileFramesTakeLong) {
+TEST(Viewer, LeavesOutContactShadeWhilePicturesTakeLong) {
     const HeadlessContext context;
     Viewer viewer(64, 48);
-    Session session(kWander, 64, 48);
-    const auto show = [&](int frames, double seconds) {
-        for (int i = 0; i < frames; ++i) {
-            viewer.show(session, {}, seconds);
+    const auto draw = [&](int pictures, double seconds) {
+        for (int i = 0; i < pictures; ++i) {
+            viewer.keepPace(seconds);
         }
         return viewer.contactFrom();
     };
-    EXPECT_EQ(show(100, 0), kContactFrom);
-    EXPECT_GT(show(100, 0.1), 5 * kContactFrom);
+    EXPECT_EQ(draw(100, 0.016), kContactFrom);
+    EXPECT_GT(draw(100, 0.1), 5 * kContactFrom);
     const float most = viewer.contactFrom();
-    EXPECT_EQ(show(10, 0.1), most);
-    EXPECT_EQ(show(10, 0.04), most);
-    EXPECT_LT(show(10, 0.016), most);
-    EXPECT_EQ(show(100, 0.016), kContactFrom);
+    EXPECT_EQ(draw(10, 0.1), most);
+    EXPECT_EQ(draw(10, 0.033), most);
+    EXPECT_LT(draw(10, 0.016), most);
+    EXPECT_EQ(draw(100, 0.016), kContactFrom);
+}
+
+// --- Clicks --------------------------------------------------------------------------------------
+
+TEST(Panel, RunsWhatIsClicked) {
+    const HeadlessContext context;
+    Viewer viewer(900, 700);
+    Session session(kWander, 900, 700);
+    const auto show = [&](bool isPressed) {
+        viewer.show(session, {.x = 60, .y = 145, .left = isPressed}, 0.016);
+    };
+    show(false);
+    show(false);
+    EXPECT_TRUE(viewer.panel().hasPointer());
+    ASSERT_TRUE(session.isPlaying());
+    show(true);
+    show(false);
+    EXPECT_FALSE(session.isPlaying());
 }
 
 // --- The panel -----------------------------------------------------------------------------------
