@@ -92,7 +92,7 @@ void runVolumeFrame(VolumePass& pass, std::span<const Stick> sticks, VolumeResul
 }
 
 /// With one pass for each kind, which are made.
-Comparison compareVolumes(std::span<const Stick> sticks,
+PaperCheck compareVolumes(std::span<const Stick> sticks,
                           std::vector<std::unique_ptr<VolumePass>>& passes) {
     const std::vector<Couple> right = touchingByBruteForce(sticks);
     std::string faults;
@@ -106,7 +106,7 @@ Comparison compareVolumes(std::span<const Stick> sticks,
     }
     return {
         "Whatever the bounding volume, the same sticks touch",
-        faults.empty() ? Outcome::holds : Outcome::broken,
+        faults.empty() ? CheckOutcome::holds : CheckOutcome::broken,
         faults.empty() ? withThousands(right.size()) + " couples touch" : "wrong with" + faults};
 }
 

@@ -26,7 +26,7 @@ struct VolumeResults {
     std::uint32_t sticks = 0;
     std::uint32_t frames = 0;           // timed, of each kind
     std::vector<VolumeResult> volumes;  // by kind; none where no frame was timed
-    std::vector<Comparison> checks;
+    std::vector<PaperCheck> checks;
 };
 
 [[nodiscard]] std::string_view nameOf(VolumeKind kind);

@@ -4,8 +4,9 @@
 #include <demos/paper/phase_makers.hpp>
 
 #include <algorithm>
-#include <ranges>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 namespace hashphase::demos {
 namespace {
@@ -37,7 +38,8 @@ public:
     }
 
     void stand(const TestBed& bed) override {
-        const auto all = std::views::iota(std::size_t{0}, bed.ground().boxes.size());
+        std::vector<std::uint32_t> all(bed.ground().boxes.size());
+        std::iota(all.begin(), all.end(), 0U);
         for (const std::uint32_t object : subjects_.list()) {
             const Vector3<float>& centre = bed.centres()[object];
             states_.stand(object, groundHeight(bed.ground(), all, centre.x(), centre.z()));

@@ -64,7 +64,7 @@ int runPaper(const PaperOptions& options, Console& console) {
 }
 
 int exitCodeOf(const PaperResults& results) {
-    return results.outcome() == Outcome::holds ? kExitOk : kExitCheckFailed;
+    return results.outcome() == CheckOutcome::holds ? kExitOk : kExitCheckFailed;
 }
 
 }  // namespace hashphase::demos

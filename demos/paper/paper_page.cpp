@@ -195,13 +195,13 @@ PageSection checkSection(const PaperResults& results) {
         "What every method found, couples, bounces and heights, visible objects, colours, is "
         "compared with brute force in the same frame."};
     section.conclusions = observations(results);
-    for (const Comparison& check : results.checks) {
-        if (check.outcome == Outcome::notChecked) {
+    for (const PaperCheck& check : results.checks) {
+        if (check.outcome == CheckOutcome::notChecked) {
             section.conclusions.push_back("Not checked: " + check.claim + " (" + check.evidence +
                                           ").");
         } else {
             section.checks.push_back(
-                {check.claim, check.outcome == Outcome::holds, check.evidence});
+                {check.claim, check.outcome == CheckOutcome::holds, check.evidence});
         }
     }
     for (const std::string& each : results.leftOut) {

@@ -190,11 +190,11 @@ std::string verdictLine(const PaperResults& results) {
     if (visibility.tooSlow > 0) {
         text += ". " + drawingText(visibility);
     }
-    const Outcome outcome = results.outcome();
+    const CheckOutcome outcome = results.outcome();
     return text + ". All methods found the same as brute force: " +
-           (outcome == Outcome::holds    ? "yes"
-            : outcome == Outcome::broken ? "NO, see above"
-                                         : "not checked");
+           (outcome == CheckOutcome::holds    ? "yes"
+            : outcome == CheckOutcome::broken ? "NO, see above"
+                                              : "not checked");
 }
 
 std::vector<std::string> observations(const PaperResults& results) {
@@ -282,7 +282,7 @@ void printReport(const PaperReport& report, bool showMilliseconds, std::ostream&
         out << "Left out for want of time: " << each << '\n';
     }
     out << '\n';
-    for (const Comparison& check : results.checks) {
+    for (const PaperCheck& check : results.checks) {
         out << nameOf(check.outcome) << ": " << check.claim << " (" << check.evidence << ")\n";
     }
     printProvenance(report.provenance, out);
@@ -304,7 +304,7 @@ void writeJson(const PaperReport& report, std::ostream& out) {
               {"leftOut", results.leftOut},
               {"howItWasMeasured", howItWasMeasured(results)},
               {"checks", Json::array()}};
-    for (const Comparison& check : results.checks) {
+    for (const PaperCheck& check : results.checks) {
         json["checks"].push_back({{"claim", check.claim},
                                   {"holds", orNull(whetherItHolds(check.outcome))},
                                   {"evidence", check.evidence}});

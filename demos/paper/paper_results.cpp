@@ -162,15 +162,16 @@ const PhaseResult* PaperResults::figure(Phase phase, std::uint32_t objects) cons
     return found == figures.end() ? nullptr : &*found;
 }
 
-Outcome PaperResults::outcome() const {
-    const auto has = [this](Outcome outcome) {
+CheckOutcome PaperResults::outcome() const {
+    const auto has = [this](CheckOutcome outcome) {
         return std::any_of(checks.begin(), checks.end(),
-                           [=](const Comparison& check) { return check.outcome == outcome; });
+                           [=](const PaperCheck& check) { return check.outcome == outcome; });
     };
-    if (has(Outcome::broken)) {
-        return Outcome::broken;
+    if (has(CheckOutcome::broken)) {
+        return CheckOutcome::broken;
     }
-    return checks.empty() || has(Outcome::notChecked) ? Outcome::notChecked : Outcome::holds;
+    return checks.empty() || has(CheckOutcome::notChecked) ? CheckOutcome::notChecked
+                                                           : CheckOutcome::holds;
 }
 
 RealTimeTally tallyRealTime(const PaperResults& results) {

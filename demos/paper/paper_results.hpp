@@ -39,13 +39,13 @@ struct PaperResults {
     PhaseResult cellSizes;             // collision
     VolumeResults volumes;
     std::vector<std::string> leftOut;  // for want of time
-    std::vector<Comparison> checks;
+    std::vector<PaperCheck> checks;
 
     /// Null where it was left out.
     [[nodiscard]] const PhaseResult* figure(Phase phase, std::uint32_t objects) const;
 
     /// Of all checks together: broken by one that is; not checked where one is not, or there is none.
-    [[nodiscard]] Outcome outcome() const;
+    [[nodiscard]] CheckOutcome outcome() const;
 };
 
 /// Of some cells of a figure.

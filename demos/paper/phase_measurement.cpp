@@ -317,7 +317,7 @@ PhaseResult measurePhase(const PhaseTask& task, std::span<const MethodSpec> spec
     return PhaseRun(task, specs, effort, isTimeUp).run();
 }
 
-Comparison agreement(std::span<const PhaseResult> results) {
+PaperCheck agreement(std::span<const PhaseResult> results) {
     std::size_t timed = 0;
     std::size_t checkedTimed = 0;
     std::size_t checked = 0;
@@ -334,9 +334,9 @@ Comparison agreement(std::span<const PhaseResult> results) {
             }
         }
     }
-    const Outcome outcome = !faults.empty() ? Outcome::broken
-                            : checked == 0  ? Outcome::notChecked
-                                            : Outcome::holds;
+    const CheckOutcome outcome = !faults.empty() ? CheckOutcome::broken
+                                 : checked == 0  ? CheckOutcome::notChecked
+                                                 : CheckOutcome::holds;
     return {"Every method finds what brute force finds in the same frame", outcome,
             faults.empty() ? withThousands(checkedTimed) + " of " + withThousands(timed) +
                                  " timed frames checked, and " +

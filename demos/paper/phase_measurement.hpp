@@ -14,7 +14,7 @@
 //           first frame, unless hurried, and in the last one of each method for some objects drawn at
 //           random.
 
-#include <demos/paper/comparison.hpp>
+#include <demos/paper/paper_check.hpp>
 #include <demos/paper/phase_method.hpp>
 #include <demos/report/statistics.hpp>
 
@@ -91,6 +91,6 @@ struct PhaseResult {
                                   const Subjects& subjects);
 
 /// That of all results no frame is wrong, with the first that are; not checked where no frame was.
-[[nodiscard]] Comparison agreement(std::span<const PhaseResult> results);
+[[nodiscard]] PaperCheck agreement(std::span<const PhaseResult> results);
 
 }  // namespace hashphase::demos

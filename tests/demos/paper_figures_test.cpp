@@ -102,7 +102,7 @@ PhaseResult rowOf(Phase phase, std::uint32_t objects, double unoptimized, double
 
 PaperResults resultsOfRows() {
     PaperResults results;
-    results.checks = {{"", Outcome::holds, ""}};
+    results.checks = {{"", CheckOutcome::holds, ""}};
     results.figures = {rowOf(Phase::collision, 20'000, 900, 60, 10),
                        rowOf(Phase::collision, 50'000, 5'000, 50, 49),
                        rowOf(Phase::visibility, 5'000, 0.2, 0.1, 0.3),

@@ -140,7 +140,7 @@ TEST(PaperPhases, FailTheRunWhenAMethodIsBroken) {
         EXPECT_GE(wrong.checkedFrames, kBrief.frames);
         EXPECT_EQ(wrong.wrongFrames, wrong.checkedFrames);
         EXPECT_EQ(results.figures[0].methods[1].wrongFrames, 0U);
-        EXPECT_EQ(results.outcome(), Outcome::broken);
+        EXPECT_EQ(results.outcome(), CheckOutcome::broken);
         EXPECT_EQ(exitCodeOf(results), kExitCheckFailed);
         EXPECT_NE(results.checks[0].evidence.find("hashphase"), std::string::npos);
         EXPECT_NE(verdictLine(results).find("NO, see above"), std::string::npos);
@@ -165,7 +165,7 @@ TEST(PaperPhases, CatchWhatGoesWrongInALateFrameOfAQuickRun) {
             EXPECT_EQ(wrong.checkedTimed, 1U);
             EXPECT_EQ(wrong.wrongFrames, 1U);
             EXPECT_EQ(result[0].methods.back().wrongFrames, 0U);
-            EXPECT_EQ(agreement(result).outcome, Outcome::broken);
+            EXPECT_EQ(agreement(result).outcome, CheckOutcome::broken);
         }
     }
 }
@@ -180,11 +180,11 @@ TEST(PaperPhases, TellHowManyTimedFramesAreChecked) {
 TEST(PaperPhases, AreNotCheckedWhereNoFrameWas) {
     const std::array result{measurePhase({Phase::ai, 300, 3, 12}, figureMethods(Phase::ai, 300, 12),
                                          kBrief, [] { return true; })};
-    EXPECT_EQ(agreement(result).outcome, Outcome::notChecked);
+    EXPECT_EQ(agreement(result).outcome, CheckOutcome::notChecked);
     PaperResults results;
-    EXPECT_EQ(results.outcome(), Outcome::notChecked);
-    results.checks = {{"", Outcome::holds, ""}, agreement(result)};
-    EXPECT_EQ(results.outcome(), Outcome::notChecked);
+    EXPECT_EQ(results.outcome(), CheckOutcome::notChecked);
+    results.checks = {{"", CheckOutcome::holds, ""}, agreement(result)};
+    EXPECT_EQ(results.outcome(), CheckOutcome::notChecked);
     EXPECT_EQ(exitCodeOf(results), kExitCheckFailed);
     EXPECT_NE(verdictLine(results).find("brute force: not checked"), std::string::npos);
     results.checks.pop_back();
@@ -295,7 +295,7 @@ TEST(PaperResults, HaveHashphaseBeforeItsRivalsWhereTheTimeIsLimited) {
             EXPECT_GE(method.checkedTimed, 1U);
         }
     }
-    EXPECT_EQ(results.outcome(), Outcome::holds);
+    EXPECT_EQ(results.outcome(), CheckOutcome::holds);
     EXPECT_EQ(results.leftOut.front(), "collision of 100, un-optimized");
 }
 
@@ -319,7 +319,7 @@ TEST(BoundingVolumes, TakeNoMoreFramesThanTheEffortAllows) {
 TEST(BoundingVolumes, PassAllThatTouchAndFewerTheBetterTheyFit) {
     const VolumeResults results = measureVolumes(1'000, {.frames = 2, .fewestFrames = 2}, 1);
     ASSERT_EQ(results.volumes.size(), 3U);
-    EXPECT_EQ(results.checks[0].outcome, Outcome::holds) << results.checks[0].evidence;
+    EXPECT_EQ(results.checks[0].outcome, CheckOutcome::holds) << results.checks[0].evidence;
     const auto& [sphere, aabb, obb] =
         std::tie(results.volumes[0], results.volumes[1], results.volumes[2]);
     EXPECT_GT(sphere.touching, 50);

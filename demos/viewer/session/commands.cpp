@@ -139,7 +139,7 @@ std::span<const KeyBinding> keyBindings() {
 }
 
 const CommandKind* findCommand(std::string_view line) {
-    const std::string_view name = firstWord(line);
+    const std::string name = firstWord(line);
     if (name.empty()) {
         return nullptr;
     }

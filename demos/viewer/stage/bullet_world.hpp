@@ -6,6 +6,7 @@
 
 #include <demos/compare/broadphase_kind.hpp>
 #include <demos/compare/observed_world.hpp>
+#include <demos/scenes/box_scene.hpp>
 #include <demos/scenes/world_scenes.hpp>
 
 #include <integration/bullet/world_effects.hpp>
