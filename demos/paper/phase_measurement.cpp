@@ -64,7 +64,6 @@ std::size_t countOfDifferent(const std::vector<std::uint64_t>& a,
     return count;
 }
 
-constexpr double kSlowFrame = 250;           // [ms]; that memory was new then matters little
 constexpr std::uint32_t kFewestOfQuick = 2;  // frames of what is not as slow
 
 /// Whom the others are compared with where no method that is measured is right by itself.
@@ -188,7 +187,7 @@ private:
         const double all = clock.milliseconds();
         MethodResult& method = result_.methods[i];
         const bool isTimed =
-            frame > 0 || (all > kSlowFrame && method.kind != MethodKind::hashphase);
+            frame > 0 || (all > effort_.slowMilliseconds && method.kind != MethodKind::hashphase);
         if (isTimed) {
             method.frameMs.push_back(all);
             method.hashMs.push_back(hashed);
@@ -203,7 +202,7 @@ private:
     /// How many to time of what takes so long [ms].
     [[nodiscard]] std::uint32_t framesFor(double milliseconds) const {
         const double frames = effort_.methodMilliseconds / std::max(milliseconds, 1e-6);
-        const std::uint32_t fewest = milliseconds > kSlowFrame
+        const std::uint32_t fewest = milliseconds > effort_.slowMilliseconds
                                          ? effort_.fewestFrames
                                          : std::max(effort_.fewestFrames, kFewestOfQuick);
         return frames > effort_.frames ? effort_.frames

@@ -27,7 +27,9 @@ struct PhaseEffort {
     std::uint32_t frames = 60;        // of a method, at most
     std::uint32_t fewestFrames = 3;   // at least 1
     double methodMilliseconds = 400;  // that a method may take for more frames than the fewest
-    bool isHurried = false;           // the time may be up before everything is measured
+    double slowMilliseconds =
+        250;                 // of a frame, from which on it matters little that memory was new
+    bool isHurried = false;  // the time may be up before everything is measured
 };
 
 using IsTimeUp = std::function<bool()>;

@@ -73,10 +73,12 @@ PhaseEffort quickEffort() {
     options.quick = true;
     PhaseEffort effort = planOf(options).effort;
     effort.methodMilliseconds = 1e9;
+    effort.slowMilliseconds = 1e9;
     return effort;
 }
 
-constexpr PhaseEffort kBrief{.frames = 6, .fewestFrames = 2, .methodMilliseconds = 1e9};
+constexpr PhaseEffort kBrief{
+    .frames = 6, .fewestFrames = 2, .methodMilliseconds = 1e9, .slowMilliseconds = 1e9};
 constexpr std::uint32_t kFew = 1'500;
 
 TEST(PaperPhases, FindWhatBruteForceFindsInEveryFrame) {
