@@ -11,6 +11,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <initializer_list>
 #include <string>
@@ -105,6 +107,29 @@ TEST(GoldenViews, AreOthersAfterAStep) {
     const Image before = after(kWander, {"step 20", "eye 200 30 400 10 -15"});
     const Image later = after(kWander, {"step 50", "eye 200 30 400 10 -15"});
     EXPECT_FALSE(looksTheSame(imageDifference(before, later)));
+}
+
+// --- What is laid over a scene -------------------------------------------------------------------
+
+TEST(PictureMaker, DrawsZonesAsBallsOfTheirRadiusWhileTheyAreDeclared) {
+    Session session(kWander, kWidth, kHeight);
+    PictureMaker maker;
+    const std::size_t without = maker.make(session).lines.size();
+    session.run("effect zones on");
+    session.advance();
+    const auto zones = session.stage().interestZones();
+    ASSERT_FALSE(zones.empty());
+    const std::span<const DrawnLine> lines = maker.make(session).lines;
+    ASSERT_GT(lines.size(), without);
+    for (const DrawnLine& line : lines) {
+        EXPECT_TRUE(std::any_of(zones.begin(), zones.end(), [&line](const InterestZone& zone) {
+            const float distance = (line.from - zone.centre).norm();
+            return std::abs(distance - zone.radius) < 1e-3F * zone.radius;
+        }));
+    }
+    session.run("effect zones off");
+    session.advance();
+    EXPECT_EQ(maker.make(session).lines.size(), without);
 }
 
 // --- Pace ----------------------------------------------------------------------------------------
