@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/viewer/draw/box_layer.hpp>
 
-#include <array>
+#include <algorithm>
 #include <cstddef>
 
 namespace hashphase::demos {
@@ -9,122 +9,92 @@ namespace hashphase::demos {
 namespace {
 
 constexpr const char* kVertexShader = R"glsl(
-layout(location = 0) in vec3 corner;
-layout(location = 1) in vec3 face;
-layout(location = 2) in vec3 centre;
-layout(location = 3) in vec3 halfExtents;
-layout(location = 4) in vec4 orientation;
-layout(location = 5) in vec4 colourOfBox;
+layout(location = 0) in vec3 middle;
+layout(location = 1) in vec3 right;
+layout(location = 2) in vec3 up;
+layout(location = 3) in vec3 colourOfBox;
 
-out vec3 onFace;       // the coordinates across the face, and 0
-flat out vec3 widths;  // of the face, where onFace is not 0
-flat out vec4 tint;
-flat out float hazeOfBox;
-
-vec3 rotate(vec3 v) {
-    return v + 2.0 * cross(orientation.xyz, cross(orientation.xyz, v) + orientation.w * v);
-}
+out vec2 onFace;       // from its middle, along both sides [m]
+flat out vec2 widths;  // of its halves [m]
+flat out vec4 tint;    // and the share of haze
 
 void main() {
-    vec3 place = centre + rotate(corner * halfExtents);
-    onFace = (corner - face) * halfExtents;
-    widths = (vec3(1.0) - abs(face)) * halfExtents;
-    tint = vec4(shade(colourOfBox.rgb, dot(rotate(face), light.xyz)), colourOfBox.a);
-    hazeOfBox = haze(centre - eye.xyz);
-    gl_Position = clipFromWorld * vec4(place, 1.0);
+    vec2 corner = vec2(gl_VertexID & 1, (gl_VertexID >> 1) & 1) * 2.0 - 1.0;
+    widths = vec2(length(right), length(up));
+    onFace = corner * widths;
+    vec3 normal = normalize(cross(right, up));
+    tint = vec4(shade(colourOfBox, dot(normal, light.xyz)), haze(middle - eye.xyz));
+    gl_Position = clipFromWorld * vec4(middle + corner.x * right + corner.y * up, 1.0);
 }
 )glsl";
 
-// Edges are a pixel and a half wide, and fade where the box is too small for them.
+// Edges are a pixel and a half wide, and fade where the face is too small for them.
 constexpr const char* kFragmentShader = R"glsl(
-in vec3 onFace;
-flat in vec3 widths;
+in vec2 onFace;
+flat in vec2 widths;
 flat in vec4 tint;
-flat in float hazeOfBox;
 
 out vec4 colour;
 
 void main() {
-    vec3 pixel = max(fwidth(onFace), vec3(1e-9));
-    vec3 fromEdge = (widths - abs(onFace)) / pixel;
-    vec3 size = widths / pixel;
-    float edge = 0.0;
-    for (int axis = 0; axis < 3; ++axis) {
-        if (widths[axis] > 0.0) {
-            edge = max(edge, clamp(2.0 - fromEdge[axis], 0.0, 1.0) *
-                             clamp(size[axis] * 0.2 - 0.5, 0.0, 1.0));
-        }
-    }
-    vec3 lit = mix(tint.rgb, tint.rgb * 0.55, edge);
-    colour = vec4(mix(lit, horizon.rgb, hazeOfBox), mix(tint.a, 1.0, 0.5 * edge * tint.a));
+    vec2 pixel = max(fwidth(onFace), vec2(1e-9));
+    vec2 fromEdge = (widths - abs(onFace)) / pixel;
+    vec2 edges = clamp(2.0 - fromEdge, 0.0, 1.0) * clamp(widths / pixel * 0.2 - 0.5, 0.0, 1.0);
+    vec3 lit = tint.rgb * (1.0 - 0.45 * max(edges.x, edges.y));
+    colour = vec4(mix(lit, horizon.rgb, tint.a), 1.0);
 }
 )glsl";
 
-struct CubeVertex {
-    Vector3<float> corner;
-    Vector3<float> face;
-};
-
-constexpr GLsizei kVertexCount = 36;
-
-/// The twelve triangles of a cube from -1 to 1, each counterclockwise seen from outside.
-std::array<CubeVertex, kVertexCount> cube() {
-    constexpr std::array<std::array<float, 2>, 6> kPlaces{
-        {{-1, -1}, {1, -1}, {-1, 1}, {-1, 1}, {1, -1}, {1, 1}}};
-    std::array<CubeVertex, kVertexCount> vertices;
-    auto next = vertices.begin();
-    for (int axis = 0; axis < 3; ++axis) {
-        for (const float side : {-1.0F, 1.0F}) {
-            Vector3<float> face = Vector3<float>::Zero();
-            face[axis] = side;
-            for (const auto& place : kPlaces) {
-                Vector3<float> corner = face;
-                corner[(axis + 1) % 3] = side * place[0];
-                corner[(axis + 2) % 3] = place[1];
-                *next++ = {corner, face};
-            }
-        }
-    }
-    return vertices;
-}
+constexpr std::size_t kCorners = 4;
 
 }  // namespace
 
 BoxLayer::BoxLayer() : program_("boxes", kVertexShader, kFragmentShader) {
-    const auto vertices = cube();
     glBindVertexArray(vertexArray_.name());
-    glBindBuffer(GL_ARRAY_BUFFER, corners_.name());
-    glBufferData(GL_ARRAY_BUFFER, sizeof(vertices), vertices.data(), GL_STATIC_DRAW);
-    describeVertexField({0, 3, GL_FLOAT, false, offsetof(CubeVertex, corner)}, sizeof(CubeVertex));
-    describeVertexField({1, 3, GL_FLOAT, false, offsetof(CubeVertex, face)}, sizeof(CubeVertex));
-    instances_.bind();
-    const std::size_t stride = sizeof(DrawnBox);
-    describeVertexField({2, 3, GL_FLOAT, false, offsetof(DrawnBox, centre)}, stride, 1);
-    describeVertexField({3, 3, GL_FLOAT, false, offsetof(DrawnBox, halfExtents)}, stride, 1);
-    describeVertexField({4, 4, GL_FLOAT, false, offsetof(DrawnBox, orientation)}, stride, 1);
-    describeVertexField({5, 4, GL_UNSIGNED_BYTE, true, offsetof(DrawnBox, colour)}, stride, 1);
+    vertices_.bind();
+    const std::size_t stride = sizeof(Face);
+    describeVertexField({0, 3, GL_FLOAT, false, offsetof(Face, middle)}, stride);
+    describeVertexField({1, 3, GL_FLOAT, false, offsetof(Face, right)}, stride);
+    describeVertexField({2, 3, GL_FLOAT, false, offsetof(Face, up)}, stride);
+    describeVertexField({3, 3, GL_UNSIGNED_BYTE, true, offsetof(Face, colour)}, stride);
 }
 
-void BoxLayer::draw(std::span<const DrawnBox> boxes, const View& view) {
-    order_.clear();
-    for (std::uint32_t i = 0; i < boxes.size(); ++i) {
-        const float depth = view.depth(boxes[i].centre);
-        if (depth > -boxes[i].halfExtents.norm()) {
-            order_.add(std::max(depth, 0.0F), i);
+// Those that look towards the eye: of the two across an axis the one on whose outer side the eye is.
+void BoxLayer::addFaces(const DrawnBox& box, const View& view) {
+    const Eigen::Matrix3f axes = Eigen::Quaternionf(box.orientation).toRotationMatrix();
+    const Vector3<float> towardsEye = axes.transpose() * (view.eye - box.centre);
+    const float nearness = 1 / std::max(view.depth(box.centre), 1e-6F);
+    for (int axis = 0; axis < 3; ++axis) {
+        const float halfExtent = box.halfExtents[axis];
+        if (std::abs(towardsEye[axis]) > halfExtent) {
+            const float side = towardsEye[axis] > 0 ? 1.0F : -1.0F;
+            const int next = (axis + 1) % 3;
+            const int last = (axis + 2) % 3;
+            order_.add(nearness, static_cast<std::uint32_t>(faces_.size()));
+            faces_.push_back({box.centre + side * halfExtent * axes.col(axis),
+                              side * box.halfExtents[next] * axes.col(next),
+                              box.halfExtents[last] * axes.col(last), box.colour});
         }
     }
-    if (order_.size() == 0) {
+}
+
+void BoxLayer::draw(std::span<const DrawnBox> boxes, const View& view, QuadIndices& quads) {
+    order_.clear();
+    faces_.clear();
+    for (const DrawnBox& box : boxes) {
+        if (view.depth(box.centre) > -box.halfExtents.norm()) {
+            addFaces(box, view);
+        }
+    }
+    if (faces_.empty()) {
         return;
     }
-    instances_.fill<DrawnBox>(
-        order_.size(), [&](std::span<DrawnBox> instances) { order_.write(boxes, instances); });
+    vertices_.fill<Face>(kCorners * faces_.size(), [&](std::span<Face> vertices) {
+        order_.write<Face>(faces_, vertices, kCorners);
+    });
     program_.use();
     glBindVertexArray(vertexArray_.name());
-    glEnable(GL_BLEND);
-    glEnable(GL_CULL_FACE);
-    glDrawArraysInstanced(GL_TRIANGLES, 0, kVertexCount, static_cast<GLsizei>(order_.size()));
-    glDisable(GL_CULL_FACE);
-    glDisable(GL_BLEND);
+    quads.draw(0, faces_.size());
 }
 
 }  // namespace hashphase::demos

@@ -5,9 +5,12 @@
 
 #include <demos/viewer/draw/depth_order.hpp>
 #include <demos/viewer/draw/gl_objects.hpp>
+#include <demos/viewer/draw/quad_indices.hpp>
 #include <demos/viewer/draw/shader_program.hpp>
 #include <demos/viewer/draw/stream_buffer.hpp>
 #include <demos/viewer/draw/view.hpp>
+
+#include <vector>
 
 namespace hashphase::demos {
 
@@ -15,14 +18,24 @@ class BoxLayer {
 public:
     BoxLayer();
 
-    /// The farthest first, because boxes may be translucent.
-    void draw(std::span<const DrawnBox> boxes, const View& view);
+    /// Opaque, whatever their colours say; the nearest first, so that most of what is hidden costs nothing.
+    void draw(std::span<const DrawnBox> boxes, const View& view, QuadIndices& quads);
 
 private:
+    /// From its middle to the middles of two of its sides; right, up and outward are as x, y and z.
+    struct Face {
+        Vector3<float> middle;
+        Vector3<float> right;
+        Vector3<float> up;
+        Colour colour;
+    };
+
+    void addFaces(const DrawnBox& box, const View& view);
+
     ShaderProgram program_;
     GlVertexArray vertexArray_;
-    GlBuffer corners_;
-    StreamBuffer instances_;
+    StreamBuffer vertices_;
+    std::vector<Face> faces_;
     DepthOrder order_;
 };
 

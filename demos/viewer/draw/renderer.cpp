@@ -82,7 +82,7 @@ void Renderer::Layers::drawFrame(const Picture& picture, unsigned framebuffer) {
     ground.draw(picture, view);
     sky.draw();
     contacts.draw(picture.spheres, view, picture.contactFrom, quads);
-    boxes.draw(picture.boxes, view);
+    boxes.draw(picture.boxes, view, quads);
     capsules.draw(picture.capsules, view);
     spheres.draw(picture.spheres, view, picture.leastRadius, quads);
     lines.draw(picture.lines, quads);

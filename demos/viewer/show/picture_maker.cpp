@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace hashphase::demos {
 namespace {
@@ -127,21 +128,45 @@ void PictureMaker::addFrustum(const CameraPose& pose) {
     addEdges(frustumCorners(pose), palette_.line, true, lines_);
 }
 
+// Around `centre`, through what `right` and `up` lead to.
+void PictureMaker::addCircle(const Vector3<float>& centre, const Vector3<float>& right,
+                             const Vector3<float>& up, Colour colour) {
+    constexpr int kSides = 32;
+    Vector3<float> before = centre + right;
+    for (int i = 1; i <= kSides; ++i) {
+        const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(i) / kSides;
+        const Vector3<float> place = centre + std::cos(angle) * right + std::sin(angle) * up;
+        lines_.push_back({before, place, colour, true});
+        before = place;
+    }
+}
+
 // A ball, as its circles across the axes.
 void PictureMaker::addZone(const InterestZone& zone) {
-    constexpr int kSides = 32;
     for (int axis = 0; axis < 3; ++axis) {
-        Vector3<float> before = Vector3<float>::Zero();
-        for (int i = 0; i <= kSides; ++i) {
-            const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(i) / kSides;
-            Vector3<float> place = zone.centre;
-            place[(axis + 1) % 3] += zone.radius * std::cos(angle);
-            place[(axis + 2) % 3] += zone.radius * std::sin(angle);
-            if (i > 0) {
-                lines_.push_back({before, place, palette_.accent, true});
-            }
-            before = place;
-        }
+        addCircle(zone.centre, zone.radius * Vector3<float>::Unit((axis + 1) % 3),
+                  zone.radius * Vector3<float>::Unit((axis + 2) % 3), palette_.accent);
+    }
+}
+
+// Two rings around its box, dark and light, so that one is seen on whatever is behind them, and large enough
+// to be found. They are a metre in front of the eye, where hardly anything hides them.
+void PictureMaker::addRings(const StageBody& body, const CameraPose& pose) {
+    const Vector3<float> fromEye = body.centre - pose.eye;
+    const float distance = fromEye.norm();
+    const float radius = boxAround(body).diagonal().norm() / 2;
+    if (body.shape == StageBody::Shape::none || distance <= radius) {
+        return;
+    }
+    constexpr float kLeast = 0.016F;  // [m], a metre away
+    constexpr float kApart = 0.0022F;
+    const Vector3<float> axis = fromEye / distance;
+    const Vector3<float> right = axis.unitOrthogonal();
+    const Vector3<float> up = right.cross(axis);
+    const float inner = std::max(radius / distance, kLeast);
+    for (const auto& [size, colour] : {std::pair{inner, palette_.accent},
+                                       std::pair{inner + kApart, palette_.contrast}}) {
+        addCircle(pose.eye + axis, size * right, size * up, colour);
     }
 }
 
@@ -202,6 +227,9 @@ void PictureMaker::addMarks(const Session& session) {
         }
     } else if (session.card()) {
         addWireBox(session.card()->body, palette_.picked);
+    }
+    if (session.card()) {
+        addRings(session.card()->body, session.pose());
     }
 }
 

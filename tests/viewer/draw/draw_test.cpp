@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 
 namespace hashphase::demos {
@@ -212,6 +213,30 @@ TEST(BoxesOnScreen, CoverWhatTheirCornersSpan) {
     const Eigen::Vector2f lowerRight = onScreen(picture.camera, {3, -2, -9});
     EXPECT_LT((area.first - upperLeft).cwiseAbs().maxCoeff(), 1);
     EXPECT_LT((area.last - lowerRight).cwiseAbs().maxCoeff(), 1);
+}
+
+TEST(BoxesOnScreen, HideEachOtherWhicheverIsNamedFirst) {
+    const DrawnBox near{{0, 0, -10}, {1, 1, 1}, {0, 0, 0, 1}, kRed};
+    const DrawnBox far{{0, 0, -20}, {1, 1, 1}, {0, 0, 0, 1}, {20, 40, 220}};
+    const auto seen = [](std::initializer_list<DrawnBox> boxes) {
+        Picture picture = pictureOf({});
+        picture.boxes = boxes;
+        return drawn(picture);
+    };
+    const Image alone = seen({near});
+    EXPECT_NE(alone, seen({}));
+    EXPECT_EQ(seen({near, far}), alone);
+    EXPECT_EQ(seen({far, near}), alone);
+}
+
+TEST(BoxesOnScreen, ShowNothingFromInside) {
+    const Eigen::Quaternionf turned(
+        Eigen::AngleAxisf(0.7F, Vector3<float>(0.3F, 1, 0.2F).normalized()));
+    const DrawnBox box{{0, 0, 0}, {3, 2, 4}, turned.coeffs(), kRed};
+    Picture picture = pictureOf({});
+    const Image without = drawn(picture);
+    picture.boxes = {&box, 1};
+    EXPECT_EQ(drawn(picture), without);
 }
 
 TEST(LinesOnScreen, AreHiddenUnlessTheyAreOnTop) {

@@ -132,6 +132,35 @@ TEST(PictureMaker, DrawsZonesAsBallsOfTheirRadiusWhileTheyAreDeclared) {
     EXPECT_EQ(maker.make(session).lines.size(), without);
 }
 
+TEST(PictureMaker, RingsWhatIsPickedWhereItIsOnTheScreen) {
+    Session session(kWander, kWidth, kHeight);
+    PictureMaker maker;
+    session.run("eye 200 30 400 10 -15");
+    session.advance();
+    const std::size_t without = maker.make(session).lines.size();
+    for (int x = 10; x < kWidth && !session.card(); x += 3) {
+        session.pick({x, kHeight / 2});
+    }
+    ASSERT_TRUE(session.card());
+    const std::span<const DrawnLine> lines = maker.make(session).lines;
+    ASSERT_GT(lines.size(), without);
+    const StageBody& body = session.card()->body;
+    const Eigen::Matrix4f camera = cameraView(session.pose()).viewProjection;
+    const auto onScreen = [&](const Vector3<float>& place) {
+        const Eigen::Vector4f clip = camera * place.homogeneous();
+        return Eigen::Vector2f(clip.x() / clip.w() * kWidth / 2, clip.y() / clip.w() * kHeight / 2);
+    };
+    // The last lines are the outer ring: the body is within, and no farther than its own size, or some pixels.
+    const float pixels = kHeight / 2.0F / std::tan(session.pose().fieldOfView / 2) * body.size.x() /
+                         (body.centre - session.pose().eye).norm();
+    for (const DrawnLine& line : lines.last(32)) {
+        const float distance = (onScreen(line.from) - onScreen(body.centre)).norm();
+        EXPECT_GT(distance, pixels);
+        EXPECT_LT(distance, 2 * pixels + 12);
+        EXPECT_LT((line.from - session.pose().eye).norm(), 1.1F);
+    }
+}
+
 // --- Pace ----------------------------------------------------------------------------------------
 
 TEST(Viewer, LeavesOutContactShadeWhilePicturesTakeLong) {
