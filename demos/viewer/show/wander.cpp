@@ -7,7 +7,6 @@
 #include <demos/report/stopwatch.hpp>
 #include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/input_error.hpp>
-#include <demos/viewer/draw/draw_error.hpp>
 #include <demos/viewer/draw/headless_context.hpp>
 #include <demos/viewer/session/script.hpp>
 #include <demos/viewer/show/viewer.hpp>
@@ -19,6 +18,7 @@
 #include <charconv>
 #include <memory>
 #include <ostream>
+#include <stdexcept>
 
 namespace hashphase::demos {
 namespace {
@@ -53,16 +53,12 @@ SceneChoice chosen(const WanderOptions& options) {
 class HeadlessViewer {
 public:
     void show(Session& session) {
-        try {
-            if (!viewer_) {
-                context_ = std::make_unique<HeadlessContext>();
-                viewer_ = std::make_unique<Viewer>(session.width(), session.height());
-            }
-            viewer_->layOut(session);
-            viewer_->show(session, {}, 0);
-        } catch (const DrawError& error) {
-            throw InputError(error.what());
+        if (!viewer_) {
+            context_ = std::make_unique<HeadlessContext>();
+            viewer_ = std::make_unique<Viewer>(session.width(), session.height());
         }
+        viewer_->layOut(session);
+        viewer_->show(session, {}, 0);
     }
 
 private:
@@ -75,10 +71,11 @@ class Run {
 public:
     Run(const WanderOptions& options, Console& console);
 
-    int headless();
-    int inWindow();
+    int play();
 
 private:
+    void playHeadless();
+    void playInWindow();
     [[nodiscard]] std::uint64_t frameCount() const;
     [[nodiscard]] bool isTimeOver();
     [[nodiscard]] bool isHeadlessDone() const;
@@ -166,7 +163,17 @@ bool Run::isHeadlessDone() const {
     return (session_->frame() >= frameCount() && !session_->isCapturing()) || standsStill();
 }
 
-int Run::headless() {
+int Run::play() {
+    try {
+        options_.isHeadless ? playHeadless() : playInWindow();
+    } catch (const std::runtime_error& fault) {
+        end();  // what was played until then is not lost
+        throw InputError(fault.what());
+    }
+    return end();
+}
+
+void Run::playHeadless() {
     HeadlessViewer viewer;
     Progress progress(console_.err, progressStyle(console_, options_.quiet || script_),
                       titleOf(session_->choice()), frameCount());
@@ -192,26 +199,19 @@ int Run::headless() {
         session_->askForScreenshot(options_.screenshotFile);
         viewer.show(*session_);
     }
-    return end();
 }
 
-int Run::inWindow() {
+void Run::playInWindow() {
     Window window(session_->width(), session_->height());
     if (playback_) {
         window.setGuard(Playback::refuseChange);
     }
     drewPictures_ = true;
-    try {
-        const FrameRate rate = window.run(*session_, options_.frames.value_or(0), [this] {
-            feed();
-            return isTimeOver() || (playback_ && playback_->isDone(*session_));
-        });
-        framesPerSecond_ = rate.perSecond();
-    } catch (const DrawError& error) {
-        end();  // what was played until then is not lost
-        throw InputError(error.what());
-    }
-    return end();
+    const FrameRate rate = window.run(*session_, options_.frames.value_or(0), [this] {
+        feed();
+        return isTimeOver() || (playback_ && playback_->isDone(*session_));
+    });
+    framesPerSecond_ = rate.perSecond();
 }
 
 int Run::end() {
@@ -252,8 +252,7 @@ int runWander(const WanderOptions& options, Console& console) {
         return kExitOk;
     }
     const ThreadLimit threads(options.threads.value_or(threadCount()));
-    Run run(options, console);
-    return options.isHeadless ? run.headless() : run.inWindow();
+    return Run(options, console).play();
 }
 
 }  // namespace hashphase::demos

@@ -280,6 +280,20 @@ TEST_F(Wander, LeavesAPictureAsItIsWhereItCannotBeTaken) {
     EXPECT_EQ(readFile(picture), "what it was");
 }
 
+TEST_F(Wander, KeepsWhatWasPlayedUntilAPictureCannotBeWritten) {
+    const std::string recording = file("kept.json");
+    const std::string numbers = file("kept-numbers.json");
+    const std::string folder = std::filesystem::path(recording).parent_path();
+    const std::string script = file("fault.script", "step 7\nscreenshot " + folder + "\nstep 7\n");
+    const Outcome run = typed({"--headless", "--objects", "50", "--script", script, "--record",
+                               recording, "--json", numbers});
+    EXPECT_EQ(run.code, kExitUsage);
+    EXPECT_NE(run.err.find("cannot be written"), std::string::npos) << run.err;
+    EXPECT_EQ(nlohmann::json::parse(std::ifstream(numbers))["readings"]["frame"], 7);
+    const Outcome again = typed({"--headless", "--quiet", "--replay", recording});
+    EXPECT_EQ(again.out, "replay: all 7 frames are the same, to the last bit\n");
+}
+
 TEST_F(Wander, SaysWhatIsWrong) {
     const auto faultOf = [](std::vector<std::string> arguments) {
         arguments.insert(arguments.begin(), "--headless");
