@@ -74,8 +74,8 @@ struct Window::Input {
     std::optional<Pixel> pressedAt;  // the left button, on the scene
     bool isDragging = false;
     bool isSteering = false;  // by keys that are held down
-    bool leftIsDown =
-        false;  // the pointer's buttons are down for a frame at least, so that no click is lost
+    // The pointer's buttons are down for a frame at least, so that no click is lost.
+    bool leftIsDown = false;
     bool rightIsDown = false;
     Pixel lastAt{0, 0};
     Pixel scale{1, 1};  // of the picture, by the window
