@@ -248,5 +248,55 @@ TEST(Panel, IsDrawnOverEachSceneInBothThemes) {
     std::filesystem::remove(path);
 }
 
+TEST(Panel, ShowsTheRadarAsAMapSeenFromAbove) {
+    const HeadlessContext context;
+    Viewer viewer(900, 700);
+    Session session(kWander, 900, 700);
+    const std::filesystem::path path =
+        std::filesystem::temp_directory_path() / "hashphase_radar_test.png";
+    session.run("effect radar on");
+    session.run("overlay bodies off");
+    for (int frame = 0; frame < 30; ++frame) {
+        session.advance();
+    }
+    viewer.layOut(session);
+    session.askForScreenshot(path.string());
+    viewer.show(session, {}, 0);
+    const Image picture = readPng(path);
+    std::filesystem::remove(path);
+
+    const RadarView radar = session.stage().radar().value();
+    const std::uint32_t columns = radar.columns;
+    std::vector<std::uint32_t> counts(std::size_t{columns} * radar.rows);
+    for (std::size_t i = 0; i < radar.counts.size(); ++i) {
+        counts[i % counts.size()] += radar.counts[i];
+    }
+    const std::uint32_t most = *std::max_element(counts.begin(), counts.end());
+    ASSERT_GT(most, 1U);
+    const float side = 200.0F / static_cast<float>(std::max(columns, radar.rows));
+    const auto isMapAt = [&](int left, int top) {
+        for (std::uint32_t cell = 0; cell < counts.size(); ++cell) {
+            const int x = left + static_cast<int>(side * (0.5F + static_cast<float>(cell % columns)));
+            const int y = top + static_cast<int>(side * (0.5F + static_cast<float>(cell / columns)));
+            const Colour colour =
+                sequentialColour(static_cast<float>(counts[cell]) / static_cast<float>(most));
+            const std::uint8_t* pixel = picture.at(x, y);
+            if (std::abs(pixel[0] - colour.red) > 1 || std::abs(pixel[1] - colour.green) > 1 ||
+                std::abs(pixel[2] - colour.blue) > 1) {
+                return false;
+            }
+        }
+        return true;
+    };
+    int places = 0;  // all about the same
+    for (int top = 160; top < 300; ++top) {
+        for (int left = 600; left < 900 - 200; ++left) {
+            places += isMapAt(left, top) ? 1 : 0;
+        }
+    }
+    EXPECT_GT(places, 0);
+    EXPECT_LT(places, 4 * side * side);
+}
+
 }  // namespace
 }  // namespace hashphase::demos
