@@ -164,8 +164,8 @@ void PictureMaker::addRings(const StageBody& body, const CameraPose& pose) {
     const Vector3<float> right = axis.unitOrthogonal();
     const Vector3<float> up = right.cross(axis);
     const float inner = std::max(radius / distance, kLeast);
-    for (const auto& [size, colour] : {std::pair{inner, palette_.accent},
-                                       std::pair{inner + kApart, palette_.contrast}}) {
+    for (const auto& [size, colour] :
+         {std::pair{inner, palette_.accent}, std::pair{inner + kApart, palette_.contrast}}) {
         addCircle(pose.eye + axis, size * right, size * up, colour);
     }
 }

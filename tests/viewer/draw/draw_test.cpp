@@ -193,6 +193,28 @@ TEST(SpheresOnScreen, AreNotSeenFromInsideOrBehind) {
     EXPECT_EQ(redArea(drawn(pictureOf(spheres))).count, 0);
 }
 
+// Edges are soft: what is behind must be there already, or the sky shows through.
+TEST(SpheresOnScreen, HaveNoFringeOfTheSkyBeforeEachOther) {
+    for (const float away : {1.0F, 8.0F, 25.0F}) {
+        const DrawnSphere front{{0, 0, -5 * away}, 1, kRed};
+        const DrawnSphere back{{0, 0, -6 * away - 3}, 4, kGreen};
+        const float radius = radiusOnScreen(back.radius, 6 * away + 3) - 3;
+        for (const auto& spheres : {std::array{front, back}, std::array{back, front}}) {
+            const Image image = drawn(pictureOf(spheres));
+            for (int y = 0; y < image.height; ++y) {
+                for (int x = 0; x < image.width; ++x) {
+                    const float fromMiddle =
+                        std::hypot(static_cast<float>(x) + 0.5F - kSampleWidth / 2.0F,
+                                   static_cast<float>(y) + 0.5F - kSampleHeight / 2.0F);
+                    if (fromMiddle < radius) {
+                        ASSERT_LT(image.at(x, y)[2], 110) << away << ": " << x << ", " << y;
+                    }
+                }
+            }
+        }
+    }
+}
+
 TEST(CapsulesOnScreen, AreSpheresWhenTheirEndsAreOne) {
     const DrawnCapsule capsule{{1, 0.5F, -6}, {1, 0.5F, -6}, 1, kRed};
     const DrawnSphere sphere{{1, 0.5F, -6}, 1, kRed};

@@ -276,8 +276,10 @@ TEST(Panel, ShowsTheRadarAsAMapSeenFromAbove) {
     const float side = 200.0F / static_cast<float>(std::max(columns, radar.rows));
     const auto isMapAt = [&](int left, int top) {
         for (std::uint32_t cell = 0; cell < counts.size(); ++cell) {
-            const int x = left + static_cast<int>(side * (0.5F + static_cast<float>(cell % columns)));
-            const int y = top + static_cast<int>(side * (0.5F + static_cast<float>(cell / columns)));
+            const int x =
+                left + static_cast<int>(side * (0.5F + static_cast<float>(cell % columns)));
+            const int y =
+                top + static_cast<int>(side * (0.5F + static_cast<float>(cell / columns)));
             const Colour colour =
                 sequentialColour(static_cast<float>(counts[cell]) / static_cast<float>(most));
             const std::uint8_t* pixel = picture.at(x, y);
