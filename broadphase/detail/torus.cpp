@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 
 namespace hashphase::detail {
 namespace {
@@ -15,20 +17,27 @@ constexpr double kSlack = 1 + 0x1p-10;
 constexpr double kPointsInHalfCells = 12;
 
 // One in so many points at either end of an axis may lie beyond the cells without being asked.
-constexpr std::size_t kStrays = 32;
+constexpr std::ptrdiff_t kStrays = 32;
 
 struct Range {
     std::array<double, 3> low{};
     std::array<double, 3> half{};  // the extent, halved so that it does not overflow
 };
 
-// Of the sorted sample, but for so many points at either end of an axis.
-Range rangeOf(const PointSample& sample, std::size_t left) {
+// Of the sample, but for so many points at either end of an axis.
+Range rangeOf(PointSample& sample, std::ptrdiff_t left) {
     Range range;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const std::vector<double>& sorted = sample[axis];
-        range.low[axis] = sorted[left];
-        range.half[axis] = sorted[sorted.size() - 1 - left] / 2 - sorted[left] / 2;
+        std::vector<double>& column = sample[axis];
+        const auto first = column.begin() + left;
+        const auto last = column.end() - 1 - left;
+        if (left > 0) {
+            std::nth_element(column.begin(), first, column.end());
+            std::nth_element(first, last, column.end());
+        }
+        const auto [low, high] = std::minmax_element(first, last + 1);
+        range.low[axis] = *low;
+        range.half[axis] = *high / 2 - *low / 2;
     }
     return range;
 }
@@ -50,9 +59,6 @@ Torus torusFor(PointSample& sample, double radius, std::size_t count) {
     if (sample[0].empty()) {
         return torus;
     }
-    for (std::vector<double>& column : sample) {
-        std::sort(column.begin(), column.end());
-    }
     const auto points = static_cast<double>(count);
     const double mostCells = std::min(4 * points + 64, 0x1p28);
     Range range = rangeOf(sample, 0);
@@ -60,7 +66,7 @@ Torus torusFor(PointSample& sample, double radius, std::size_t count) {
     // Where there are too many cells for so few points, strays may be what spreads them; else the
     // cells are too small.
     if (cellsIn(range, cellSize) > mostCells) {
-        range = rangeOf(sample, sample[0].size() / kStrays);
+        range = rangeOf(sample, std::ssize(sample[0]) / kStrays);
     }
     const double longest = *std::max_element(range.half.begin(), range.half.end());
     cellSize = std::max(cellSize, longest * 0x1p-28);  // which is not far from what fits

@@ -58,7 +58,7 @@ private:
     }
 };
 
-/// Cells for `count` points, of which the sample tells where they are (it is sorted), and for
+/// Cells for `count` points, of which the sample tells where they are (its order changes), and for
 /// searches within `radius`, which is not negative and may be infinite. Cost: that of the sample.
 [[nodiscard]] Torus torusFor(PointSample& sample, double radius, std::size_t count);
 
