@@ -7,6 +7,7 @@
 #include <demos/report/stopwatch.hpp>
 #include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/input_error.hpp>
+#include <demos/viewer/draw/draw_error.hpp>
 #include <demos/viewer/draw/headless_context.hpp>
 #include <demos/viewer/session/script.hpp>
 #include <demos/viewer/show/viewer.hpp>
@@ -18,7 +19,7 @@
 #include <charconv>
 #include <memory>
 #include <ostream>
-#include <stdexcept>
+#include <string>
 
 namespace hashphase::demos {
 namespace {
@@ -83,6 +84,10 @@ private:
     void feed();
     void tellMessages();
     int end();
+    [[nodiscard]] std::string keep(std::string faults);
+    void writeRecording();
+    void writeNumbers();
+    [[nodiscard]] WanderEnd played() const { return {*session_, drewPictures_, framesPerSecond_}; }
     [[nodiscard]] bool isAsExpected() const;
 
     const WanderOptions& options_;
@@ -165,10 +170,15 @@ bool Run::isHeadlessDone() const {
 
 int Run::play() {
     try {
-        options_.isHeadless ? playHeadless() : playInWindow();
-    } catch (const std::runtime_error& fault) {
-        end();  // what was played until then is not lost
-        throw InputError(fault.what());
+        if (options_.isHeadless) {
+            playHeadless();
+        } else {
+            playInWindow();
+        }
+    } catch (const InputError& fault) {
+        throw InputError(keep(fault.what()));
+    } catch (const DrawError& fault) {
+        throw InputError(keep(fault.what()));
     }
     return end();
 }
@@ -183,8 +193,8 @@ void Run::playHeadless() {
     for (feed(); !isHeadlessDone() && !isTimeOver(); feed()) {
         session_->advance();
         if (session_->wantsScreenshot()) {
-            viewer.show(*session_);
             drewPictures_ = true;
+            viewer.show(*session_);
         }
         tellMessages();
         progress.update(std::min(session_->frame(), frameCount()));
@@ -217,14 +227,38 @@ void Run::playInWindow() {
 int Run::end() {
     session_->endCapture("the run ends");
     tellMessages();
-    const WanderEnd wanderEnd{*session_, drewPictures_, framesPerSecond_};
     if (!playback_ && !script_) {
-        tellPhases(wanderEnd, console_.out);
+        tellPhases(played(), console_.out);
     }
-    tellFrameRate(wanderEnd, console_.out);
-    record_->write([this](std::ostream& out) { out << session_->log().text(); });
-    json_->write([&wanderEnd](std::ostream& out) { writeNumbers(wanderEnd, out); });
+    tellFrameRate(played(), console_.out);
+    writeRecording();
+    writeNumbers();
     return isAsExpected() ? kExitOk : kExitCheckFailed;
+}
+
+// What was played until a fault is not lost. Returns that fault, and what cannot be written besides.
+std::string Run::keep(std::string faults) {
+    if (session_->frame() == 0) {
+        return faults;
+    }
+    session_->endCapture("the run ends");
+    tellMessages();
+    for (const auto& write : {&Run::writeRecording, &Run::writeNumbers}) {
+        try {
+            (this->*write)();
+        } catch (const InputError& another) {
+            faults += std::string(" ") + another.what();
+        }
+    }
+    return faults;
+}
+
+void Run::writeRecording() {
+    record_->write([this](std::ostream& out) { out << session_->log().text(); });
+}
+
+void Run::writeNumbers() {
+    json_->write([this](std::ostream& out) { demos::writeNumbers(played(), out); });
 }
 
 // Says so, too. Who ends a script or a replay early wants no more of it; a time limit cuts it off.

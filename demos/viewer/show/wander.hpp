@@ -33,7 +33,7 @@ struct WanderOptions {
 
 /// Shows the scene, and returns the exit code: kExitCheckFailed when an expectation of a script does not
 /// hold, or a recording comes out otherwise. Throws InputError for bad options, files and commands, and where
-/// no picture can be drawn.
+/// no picture can be drawn or written: what was played until then has been written.
 int runWander(const WanderOptions& options, Console& console);
 
 /// The subcommand, as its program runs it.

@@ -288,10 +288,24 @@ TEST_F(Wander, KeepsWhatWasPlayedUntilAPictureCannotBeWritten) {
     const Outcome run = typed({"--headless", "--objects", "50", "--script", script, "--record",
                                recording, "--json", numbers});
     EXPECT_EQ(run.code, kExitUsage);
+    EXPECT_EQ(run.out, "") << "of a script that was not run to its end there is no verdict";
     EXPECT_NE(run.err.find("cannot be written"), std::string::npos) << run.err;
     EXPECT_EQ(nlohmann::json::parse(std::ifstream(numbers))["readings"]["frame"], 7);
     const Outcome again = typed({"--headless", "--quiet", "--replay", recording});
     EXPECT_EQ(again.out, "replay: all 7 frames are the same, to the last bit\n");
+}
+
+TEST_F(Wander, NamesEachFileThatCannotBeWrittenAndWritesTheOthers) {
+    const std::string numbers = file("full-numbers.json");
+    const std::string folder = std::filesystem::path(numbers).parent_path();
+    const std::string script = file("full.script", "step 2\nscreenshot " + folder + "\n");
+    const Outcome run = typed({"--headless", "--objects", "50", "--script", script, "--record",
+                               "/dev/full", "--json", numbers});
+    EXPECT_EQ(run.code, kExitUsage);
+    EXPECT_NE(run.err.find("The picture " + folder + " cannot be written"), std::string::npos)
+        << run.err;
+    EXPECT_NE(run.err.find("/dev/full cannot be written"), std::string::npos) << run.err;
+    EXPECT_EQ(nlohmann::json::parse(std::ifstream(numbers))["readings"]["frame"], 2);
 }
 
 TEST_F(Wander, SaysWhatIsWrong) {
