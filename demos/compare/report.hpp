@@ -30,7 +30,8 @@ struct Report {
 /// nothing without a measurement of both.
 [[nodiscard]] std::optional<double> speedAgainstDbvt(const Report& report, const Result& result);
 
-/// True when no broadphase of ours missed or invented a pair; nothing when none of ours took part.
+/// True when no broadphase of ours missed or invented a pair; nothing when none of ours took part, or no
+/// frame was run.
 [[nodiscard]] std::optional<bool> oursWereExact(const Report& report);
 
 /// One sentence: objects, frames, times, ratio, and whether the pair sets were exact.

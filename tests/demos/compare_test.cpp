@@ -320,6 +320,7 @@ TEST(Compare, ReportsNothingMeasuredWhenTheTimeLimitLeavesNoFrame) {
     EXPECT_NE(outcome.out.find("not verified: no frame was run"), std::string::npos) << outcome.out;
     const auto report = nlohmann::json::parse(std::ifstream(json));
     EXPECT_TRUE(report["broadphases"][0]["bothMs"].is_null());
+    EXPECT_TRUE(report["verdict"]["exact"].is_null());
 }
 
 TEST(CommandLine, ListsScenesAndBroadphases) {
