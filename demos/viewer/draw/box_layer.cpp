@@ -2,7 +2,9 @@
 #include <demos/viewer/draw/box_layer.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 namespace hashphase::demos {
 
@@ -44,8 +46,6 @@ void main() {
     colour = vec4(mix(lit, horizon.rgb, tint.a), 1.0);
 }
 )glsl";
-
-constexpr std::size_t kCorners = 4;
 
 }  // namespace
 
@@ -89,8 +89,8 @@ void BoxLayer::draw(std::span<const DrawnBox> boxes, const View& view, QuadIndic
     if (faces_.empty()) {
         return;
     }
-    vertices_.fill<Face>(kCorners * faces_.size(), [&](std::span<Face> vertices) {
-        order_.write<Face>(faces_, vertices, kCorners);
+    vertices_.fill<Face>(QuadIndices::kCorners * faces_.size(), [&](std::span<Face> vertices) {
+        order_.write<Face>(faces_, vertices, QuadIndices::kCorners);
     });
     program_.use();
     glBindVertexArray(vertexArray_.name());

@@ -10,6 +10,7 @@
 #include <demos/viewer/draw/stream_buffer.hpp>
 #include <demos/viewer/draw/view.hpp>
 
+#include <span>
 #include <vector>
 
 namespace hashphase::demos {
@@ -18,7 +19,7 @@ class BoxLayer {
 public:
     BoxLayer();
 
-    /// Opaque, whatever their colours say; the nearest first, so that most of what is hidden costs nothing.
+    /// The nearest first, so that most of what is hidden costs nothing.
     void draw(std::span<const DrawnBox> boxes, const View& view, QuadIndices& quads);
 
 private:

@@ -40,7 +40,6 @@ void main() {
 }
 )glsl";
 
-constexpr std::size_t kCorners = 4;
 constexpr float kFull = 1.45F;       // so much larger than the least, spots are as dark as they get
 constexpr float kReach = 1.5F;       // a sphere so many radii above the ground has no spot
 constexpr float kSpotRadius = 1.4F;  // in radii of the sphere
@@ -61,10 +60,10 @@ void ContactLayer::draw(std::span<const DrawnSphere> spheres, const View& view, 
     if (spots_.empty()) {
         return;
     }
-    vertices_.fill<Spot>(kCorners * spots_.size(), [this](std::span<Spot> vertices) {
+    vertices_.fill<Spot>(QuadIndices::kCorners * spots_.size(), [this](std::span<Spot> vertices) {
         auto next = vertices.begin();
         for (const Spot& spot : spots_) {
-            next = std::fill_n(next, kCorners, spot);
+            next = std::fill_n(next, QuadIndices::kCorners, spot);
         }
     });
     program_.use();

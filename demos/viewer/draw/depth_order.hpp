@@ -2,7 +2,7 @@
 #pragma once
 
 // Things by their distance, the farthest first: what has soft edges is painted over what lies
-// behind it.
+// behind it. Or, by the inverse of it, the nearest first: what is hidden costs little.
 
 #include <algorithm>
 #include <cstddef>
@@ -19,7 +19,7 @@ public:
     void clear() { entries_.clear(); }
     [[nodiscard]] std::size_t size() const { return entries_.size(); }
 
-    /// Something so far in front of the eye; its `depth` is positive, its `index` the caller's.
+    /// Something so far in front of the eye; its `depth` is any positive number, its `index` the caller's.
     void add(float depth, std::uint32_t index);
 
     /// Writes all that were added since clear(), the farthest first and each so many times in a row;

@@ -54,7 +54,6 @@ void main() {
 }
 )glsl";
 
-constexpr std::size_t kCorners = 4;
 constexpr float kHiddenOpacity = 0.3F;  // of lines on top, behind what hides them
 
 }  // namespace
@@ -74,17 +73,18 @@ void LineLayer::draw(std::span<const DrawnLine> lines, QuadIndices& quads) {
     }
     // Those on top come last, so that they can be drawn once more on their own.
     std::size_t ordinaryCount = 0;
-    vertices_.fill<DrawnLine>(kCorners * lines.size(), [&](std::span<DrawnLine> vertices) {
-        auto next = vertices.begin();
-        for (const bool isOnTop : {false, true}) {
-            for (const DrawnLine& line : lines) {
-                if (line.isOnTop == isOnTop) {
-                    next = std::fill_n(next, kCorners, line);
-                    ordinaryCount += isOnTop ? 0 : 1;
-                }
-            }
-        }
-    });
+    vertices_.fill<DrawnLine>(QuadIndices::kCorners * lines.size(),
+                              [&](std::span<DrawnLine> vertices) {
+                                  auto next = vertices.begin();
+                                  for (const bool isOnTop : {false, true}) {
+                                      for (const DrawnLine& line : lines) {
+                                          if (line.isOnTop == isOnTop) {
+                                              next = std::fill_n(next, QuadIndices::kCorners, line);
+                                              ordinaryCount += isOnTop ? 0 : 1;
+                                          }
+                                      }
+                                  }
+                              });
     program_.use();
     glBindVertexArray(vertexArray_.name());
     glEnable(GL_BLEND);

@@ -20,7 +20,7 @@ struct Palette {
     Colour selected;   // by the user
     Colour picked;     // the one under the pointer
     Colour accent;     // what the user has marked
-    Colour contrast;   // the opposite of it
+    Colour contrast;   // the opposite of accent
     Colour fixed;      // what never moves
     Colour line;       // thin lines that must be seen
     Colour alert;      // what is wrong

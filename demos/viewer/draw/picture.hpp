@@ -34,6 +34,7 @@ struct DrawnSphere {
     Colour colour;
 };
 
+/// Opaque: the colour's alpha is of no account.
 struct DrawnBox {
     Vector3<float> centre;
     Vector3<float> halfExtents;

@@ -9,7 +9,7 @@ namespace hashphase::demos {
 
 namespace {
 
-constexpr std::array<std::uint32_t, 6> kCorners{0, 1, 2, 2, 1, 3};
+constexpr std::array<std::uint32_t, 6> kTriangles{0, 1, 2, 2, 1, 3};
 
 }  // namespace
 
@@ -18,18 +18,18 @@ void QuadIndices::draw(std::size_t first, std::size_t count) {
     if (first + count > capacity_) {
         grow(first + count);
     }
-    const std::size_t offset = first * kCorners.size() * sizeof(std::uint32_t);
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count * kCorners.size()), GL_UNSIGNED_INT,
+    const std::size_t offset = first * kTriangles.size() * sizeof(std::uint32_t);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count * kTriangles.size()), GL_UNSIGNED_INT,
                    reinterpret_cast<const void*>(offset));
 }
 
 void QuadIndices::grow(std::size_t quadCount) {
     capacity_ = quadCount + quadCount / 2;
     std::vector<std::uint32_t> indices;
-    indices.reserve(capacity_ * kCorners.size());
+    indices.reserve(capacity_ * kTriangles.size());
     for (std::uint32_t quad = 0; quad < capacity_; ++quad) {
-        for (const std::uint32_t corner : kCorners) {
-            indices.push_back(4 * quad + corner);
+        for (const std::uint32_t corner : kTriangles) {
+            indices.push_back(static_cast<std::uint32_t>(kCorners) * quad + corner);
         }
     }
     glBufferData(GL_ELEMENT_ARRAY_BUFFER,

@@ -13,6 +13,8 @@ namespace hashphase::demos {
 
 class QuadIndices {
 public:
+    static constexpr std::size_t kCorners = 4;  // of a quad
+
     /// Draws quads `first` to `first + count` of the bound vertex array.
     void draw(std::size_t first, std::size_t count);
 

@@ -196,7 +196,6 @@ std::string join(std::initializer_list<const char*> parts) {
     return all;
 }
 
-constexpr std::size_t kCorners = 4;
 constexpr float kLargestDot = 3.5F;  // radius [pixels]
 constexpr float kLargestPoint = 16;
 
@@ -274,7 +273,7 @@ void SphereLayer::draw(std::span<const DrawnSphere> spheres, const View& view, f
         }
     }
     if (quads_.order.size() > 0) {
-        quads_.fill(spheres, kCorners);
+        quads_.fill(spheres, QuadIndices::kCorners);
         indices.draw(0, quads_.order.size());
     }
     glDisable(GL_PROGRAM_POINT_SIZE);

@@ -150,23 +150,27 @@ void PictureMaker::addZone(const InterestZone& zone) {
 }
 
 // Two rings around its box, dark and light, so that one is seen on whatever is behind them, and large enough
-// to be found. They are a metre in front of the eye, where hardly anything hides them.
+// to be found. They are just behind the near plane, where hardly anything hides them, but no nearer than their
+// coordinates can tell apart.
 void PictureMaker::addRings(const StageBody& body, const CameraPose& pose) {
     const Vector3<float> fromEye = body.centre - pose.eye;
     const float distance = fromEye.norm();
     const float radius = boxAround(body).diagonal().norm() / 2;
-    if (body.shape == StageBody::Shape::none || distance <= radius) {
+    const float depth = cameraView(pose).viewProjection.row(3).dot(body.centre.homogeneous());
+    if (!(distance > radius) || !(depth > 0)) {
         return;
     }
-    constexpr float kLeast = 0.016F;  // [m], a metre away
+    constexpr float kLeast = 0.016F;  // tangents, seen from the eye
     constexpr float kApart = 0.0022F;
+    const float nearest = std::max(2 * kNearPlane * distance / depth, 1e-3F * pose.eye.norm());
+    const float away = std::min(nearest, distance);
     const Vector3<float> axis = fromEye / distance;
     const Vector3<float> right = axis.unitOrthogonal();
     const Vector3<float> up = right.cross(axis);
-    const float inner = std::max(radius / distance, kLeast);
-    for (const auto& [size, colour] :
+    const float inner = std::max(radius / std::sqrt(distance * distance - radius * radius), kLeast);
+    for (const auto& [tangent, colour] :
          {std::pair{inner, palette_.accent}, std::pair{inner + kApart, palette_.contrast}}) {
-        addCircle(pose.eye + axis, size * right, size * up, colour);
+        addCircle(pose.eye + away * axis, away * tangent * right, away * tangent * up, colour);
     }
 }
 

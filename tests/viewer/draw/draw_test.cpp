@@ -193,24 +193,34 @@ TEST(SpheresOnScreen, AreNotSeenFromInsideOrBehind) {
     EXPECT_EQ(redArea(drawn(pictureOf(spheres))).count, 0);
 }
 
-// Edges are soft: what is behind must be there already, or the sky shows through.
+// Edges are soft: what is behind must be there already, or the sky shows through. Of two that are drawn in the
+// same way: quads, points, dots.
 TEST(SpheresOnScreen, HaveNoFringeOfTheSkyBeforeEachOther) {
-    for (const float away : {1.0F, 8.0F, 25.0F}) {
+    struct Case {
+        float away;
+        float radiusBehind;
+    };
+    for (const auto& [away, radiusBehind] : {Case{1, 4}, Case{8, 4}, Case{25, 2.9F}}) {
+        SCOPED_TRACE(away);
         const DrawnSphere front{{0, 0, -5 * away}, 1, kRed};
-        const DrawnSphere back{{0, 0, -6 * away - 3}, 4, kGreen};
-        const float radius = radiusOnScreen(back.radius, 6 * away + 3) - 3;
+        const DrawnSphere back{{0, 0, -6 * away - 3}, radiusBehind, kGreen};
+        const float inside = radiusOnScreen(back.radius, 6 * away + 3) - 1;
+        const float outline = radiusOnScreen(front.radius, 5 * away);
         for (const auto& spheres : {std::array{front, back}, std::array{back, front}}) {
             const Image image = drawn(pictureOf(spheres));
+            int soft = 0;
             for (int y = 0; y < image.height; ++y) {
                 for (int x = 0; x < image.width; ++x) {
                     const float fromMiddle =
                         std::hypot(static_cast<float>(x) + 0.5F - kSampleWidth / 2.0F,
                                    static_cast<float>(y) + 0.5F - kSampleHeight / 2.0F);
-                    if (fromMiddle < radius) {
-                        ASSERT_LT(image.at(x, y)[2], 110) << away << ": " << x << ", " << y;
+                    if (fromMiddle < inside) {
+                        ASSERT_LT(image.at(x, y)[2], 110) << x << ", " << y;
+                        soft += std::abs(fromMiddle - outline) < 0.4F ? 1 : 0;
                     }
                 }
             }
+            EXPECT_GT(soft, 0);
         }
     }
 }

@@ -13,9 +13,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <initializer_list>
+#include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace hashphase::demos {
 namespace {
@@ -132,32 +136,59 @@ TEST(PictureMaker, DrawsZonesAsBallsOfTheirRadiusWhileTheyAreDeclared) {
     EXPECT_EQ(maker.make(session).lines.size(), without);
 }
 
-TEST(PictureMaker, RingsWhatIsPickedWhereItIsOnTheScreen) {
-    Session session(kWander, kWidth, kHeight);
-    PictureMaker maker;
-    session.run("eye 200 30 400 10 -15");
-    session.advance();
-    const std::size_t without = maker.make(session).lines.size();
-    for (int x = 10; x < kWidth && !session.card(); x += 3) {
-        session.pick({x, kHeight / 2});
+/// The corners of the box around a sphere or a box that is not turned.
+std::vector<Vector3<float>> cornersOf(const StageBody& body) {
+    const Vector3<float> half = body.shape == StageBody::Shape::sphere
+                                    ? Vector3<float>::Constant(body.size.x())
+                                    : body.size;
+    std::vector<Vector3<float>> corners;
+    for (int i = 0; i < 8; ++i) {
+        const Vector3<float> side((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1,
+                                  (i & 4) != 0 ? 1 : -1);
+        corners.push_back(body.centre + half.cwiseProduct(side));
     }
-    ASSERT_TRUE(session.card());
-    const std::span<const DrawnLine> lines = maker.make(session).lines;
-    ASSERT_GT(lines.size(), without);
-    const StageBody& body = session.card()->body;
-    const Eigen::Matrix4f camera = cameraView(session.pose()).viewProjection;
-    const auto onScreen = [&](const Vector3<float>& place) {
-        const Eigen::Vector4f clip = camera * place.homogeneous();
-        return Eigen::Vector2f(clip.x() / clip.w() * kWidth / 2, clip.y() / clip.w() * kHeight / 2);
-    };
-    // The last lines are the outer ring: the body is within, and no farther than its own size, or some pixels.
-    const float pixels = kHeight / 2.0F / std::tan(session.pose().fieldOfView / 2) * body.size.x() /
-                         (body.centre - session.pose().eye).norm();
-    for (const DrawnLine& line : lines.last(32)) {
-        const float distance = (onScreen(line.from) - onScreen(body.centre)).norm();
-        EXPECT_GT(distance, pixels);
-        EXPECT_LT(distance, 2 * pixels + 12);
-        EXPECT_LT((line.from - session.pose().eye).norm(), 1.1F);
+    return corners;
+}
+
+// A ring and the light one around it are the last lines. From far away and from nearby, in the middle of
+// the screen and at its corner.
+TEST(PictureMaker, RingsWhatIsPickedWhereItIsOnTheScreen) {
+    for (const float away : {200.0F, 20.0F, 3.5F}) {
+        for (const float aside : {0.0F, 0.5F}) {
+            SCOPED_TRACE(testing::Message() << away << " m away, to the side by " << aside);
+            Session session(kWander, kWidth, kHeight);
+            session.setPlaying(false);
+            session.advance();
+            session.run("pose top 200 7 200 40 0 0 0 0 0 0 0 0 0 20 0 -0.4");
+            for (int x = 10; x < kWidth && !session.card(); x += 3) {
+                session.pick({x, kHeight / 2});
+            }
+            ASSERT_TRUE(session.card());
+            const StageBody body = session.card()->body;
+            session.camera().place(body.centre + Vector3<float>(aside * away, aside * away, away),
+                                   0, 0);
+            PictureMaker maker;
+            const Picture& picture = maker.make(session);
+            ASSERT_GT(picture.lines.size(), 64U);
+            const CameraPose pose = session.pose();
+            const Vector3<float> axis = (body.centre - pose.eye).normalized();
+            const auto tangentOf =
+                [&](const Vector3<float>& place) {  // from the middle of the body
+                    const float ahead = axis.dot(place - pose.eye);
+                    return (place - pose.eye - ahead * axis).norm() / ahead;
+                };
+            float reach = 0;
+            for (const Vector3<float>& corner : cornersOf(body)) {
+                reach = std::max(reach, tangentOf(corner));
+            }
+            for (const DrawnLine& line : picture.lines.last(64)) {
+                EXPECT_GT(tangentOf(line.from), reach);
+                EXPECT_LT(tangentOf(line.from), std::max(1.2F * reach, 0.016F) + 0.003F);
+                const float depth = (cameraView(pose).viewProjection * line.from.homogeneous()).w();
+                EXPECT_GT(depth, kNearPlane);
+                EXPECT_LT(depth, 2);  // nothing hides it
+            }
+        }
     }
 }
 
@@ -290,14 +321,19 @@ TEST(Panel, ShowsTheRadarAsAMapSeenFromAbove) {
         }
         return true;
     };
-    int places = 0;  // all about the same
+    std::vector<std::pair<int, int>> places;  // where its corner might be, for all one can see
     for (int top = 160; top < 300; ++top) {
         for (int left = 600; left < 900 - 200; ++left) {
-            places += isMapAt(left, top) ? 1 : 0;
+            if (isMapAt(left, top)) {
+                places.emplace_back(left, top);
+            }
         }
     }
-    EXPECT_GT(places, 0);
-    EXPECT_LT(places, 4 * side * side);
+    ASSERT_FALSE(places.empty());
+    for (const auto& [left, top] : places) {
+        EXPECT_LE(std::abs(left - places.front().first), side);
+        EXPECT_LE(std::abs(top - places.front().second), side);
+    }
 }
 
 }  // namespace
