@@ -17,8 +17,10 @@ namespace {
 
 constexpr std::size_t kGrain = 4096;        // proxies that one thread deals with at a time
 constexpr std::size_t kAgentsGrain = 1024;  // the same of agents that look around
-constexpr std::size_t kSampleSize = 512;
-constexpr std::size_t kAhead = 12;  // agents to be read that are fetched meanwhile
+constexpr std::size_t kSampledShare = 4;    // one in so many agents says which cells fit, of
+constexpr std::size_t kLeastSample = 64;    // at least so many
+constexpr std::size_t kMostSample = 512;    // and at most
+constexpr std::size_t kAhead = 12;          // agents to be read that are fetched meanwhile
 constexpr std::uint32_t kNoCell = ~std::uint32_t{0};
 
 [[maybe_unused]] constexpr const char* kIsAsked =
@@ -118,7 +120,8 @@ void Crowd<Scalar>::chooseCells(const Grid<Scalar>& grid, Scalar radius, ProxyFi
     const detail::QueryScope gridScope(&grid);
     const detail::QueryScope scope(this);
     const std::size_t count = grid.records_.size();
-    const std::size_t step = 1 + count / kSampleSize;
+    const std::size_t wanted = std::clamp(count / kSampledShare, kLeastSample, kMostSample);
+    const std::size_t step = std::max<std::size_t>(count / wanted, 1);
     std::size_t examined = 0;
     for (std::size_t slot = 0; slot < count; slot += step) {
         // Where others than agents stand, the next agent.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/accuracy_command.hpp>
 #include <tests/demos/sample_experiments.hpp>
-#include <tests/demos/temporary_folder.hpp>
+#include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

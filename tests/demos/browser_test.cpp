@@ -5,7 +5,7 @@
 #include <demos/report/chart_scripts.hpp>
 #include <demos/report/report_command.hpp>
 #include <tests/demos/sample_experiments.hpp>
-#include <tests/demos/temporary_folder.hpp>
+#include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

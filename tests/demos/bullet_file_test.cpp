@@ -3,7 +3,7 @@
 #include <demos/scenes/bullet_world_file.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <tests/demos/bullet_file.hpp>
-#include <tests/demos/temporary_folder.hpp>
+#include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/compare/compare_command.hpp>
 #include <tests/demos/bullet_file.hpp>
-#include <tests/demos/temporary_folder.hpp>
+#include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/scenes/effects_file.hpp>
 #include <demos/scenes/input_error.hpp>
-#include <tests/demos/temporary_folder.hpp>
+#include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
 

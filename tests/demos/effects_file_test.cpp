@@ -2,7 +2,7 @@
 #include <demos/scenes/effects_fields.hpp>
 #include <demos/scenes/effects_file.hpp>
 #include <demos/scenes/input_error.hpp>
-#include <tests/demos/temporary_folder.hpp>
+#include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include <demos/effects/effects_command.hpp>
 #include <demos/effects/effects_prices.hpp>
 #include <demos/scenes/example_scenes.hpp>
-#include <tests/demos/temporary_folder.hpp>
+#include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
 

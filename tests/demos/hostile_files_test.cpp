@@ -11,7 +11,7 @@
 #include <demos/scenes/recording_scene.hpp>
 #include <demos/scenes/text_boxes.hpp>
 #include <tests/demos/bullet_file.hpp>
-#include <tests/demos/temporary_folder.hpp>
+#include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
 

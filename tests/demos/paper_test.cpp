@@ -4,7 +4,7 @@
 #include <demos/paper/paper_command.hpp>
 #include <demos/paper/paper_report.hpp>
 #include <demos/report/json_values.hpp>
-#include <tests/demos/temporary_folder.hpp>
+#include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
 

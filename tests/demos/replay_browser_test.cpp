@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/compare/compare_command.hpp>
-#include <tests/demos/temporary_folder.hpp>
+#include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

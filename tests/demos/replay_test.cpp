@@ -4,7 +4,7 @@
 #include <demos/replay/replay_tab.hpp>
 #include <demos/report/report_command.hpp>
 #include <tests/demos/replay_streams.hpp>
-#include <tests/demos/temporary_folder.hpp>
+#include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
 

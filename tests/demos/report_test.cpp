@@ -4,7 +4,7 @@
 #include <demos/report/report_command.hpp>
 #include <demos/report/report_text.hpp>
 #include <tests/demos/sample_experiments.hpp>
-#include <tests/demos/temporary_folder.hpp>
+#include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
 #include <CLI/CLI.hpp>
@@ -152,8 +152,7 @@ TEST(JoinedReport, DoesNotHoldWhereNothingWasChecked) {
     EXPECT_NE(seen.html.find("<p class=\"verdict unchecked\">Verdict of beta.</p>"),
               std::string::npos);
     EXPECT_EQ(matches(seen.html, "class=\"(holds|broken)\"").size(), 1U) << "that of alpha";
-    EXPECT_NE(seen.html.find("<li>Not checked: Verdict of beta. (beta, "),
-              std::string::npos);
+    EXPECT_NE(seen.html.find("<li>Not checked: Verdict of beta. (beta, "), std::string::npos);
 
     const ReportSeen none = runReport(twoParts(std::nullopt), {"--only", "beta"});
     EXPECT_EQ(none.code, kExitCheckFailed);

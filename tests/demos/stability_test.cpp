@@ -2,7 +2,7 @@
 #include <demos/stability/isolation.hpp>
 #include <demos/stability/pair_scene.hpp>
 #include <demos/stability/stability_command.hpp>
-#include <tests/demos/temporary_folder.hpp>
+#include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/scenes/input_error.hpp>
 #include <demos/scenes/text_boxes.hpp>
-#include <tests/demos/temporary_folder.hpp>
+#include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
 

@@ -3,6 +3,7 @@
 #include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/recording_scene.hpp>
 #include <demos/viewer/session/session.hpp>
+#include <tests/support/temporary_folder.hpp>
 #include <tests/viewer/session/steps.hpp>
 
 #include <gtest/gtest.h>
@@ -19,20 +20,15 @@ namespace {
 
 class Capture : public testing::Test {
 protected:
-    Capture() : folder_(std::filesystem::temp_directory_path() / "hashphase_capture_test") {
-        std::filesystem::remove_all(folder_);
-        std::filesystem::create_directories(folder_);
-        std::ofstream(path()) << "of before";
-    }
-    ~Capture() override { std::filesystem::remove_all(folder_); }
+    Capture() { folder_.write("boxes.aabbs", "of before"); }
 
-    [[nodiscard]] std::string path() const { return (folder_ / "boxes.aabbs").string(); }
+    [[nodiscard]] std::string path() const { return folder_.file("boxes.aabbs"); }
 
     /// The file is as it was, and there is no other.
     void expectUntouched() const {
         EXPECT_TRUE(readFile(path()) == "of before");
         using Iterator = std::filesystem::directory_iterator;
-        EXPECT_EQ(std::distance(Iterator(folder_), Iterator()), 1);
+        EXPECT_EQ(std::distance(Iterator(folder_.path()), Iterator()), 1);
     }
 
     /// What is said until no step is waited for.
@@ -50,7 +46,7 @@ protected:
     Session session_{{.name = "wander", .file = {}, .objects = 100, .seed = 3}, 800, 600};
 
 private:
-    std::filesystem::path folder_;
+    TemporaryFolder folder_;
 };
 
 TEST_F(Capture, TakesFramesAsTheyAreSimulated) {

@@ -2,12 +2,12 @@
 
 #include <demos/viewer/session/session.hpp>
 #include <demos/viewer/stage/recording_stage.hpp>
+#include <tests/support/temporary_folder.hpp>
 #include <tests/viewer/session/stages.hpp>
 #include <tests/viewer/session/steps.hpp>
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -15,13 +15,13 @@ namespace hashphase::demos {
 namespace {
 
 TEST(RecordingStage, PlaysWhatWasCapturedAndBeginsAgain) {
-    const std::filesystem::path path =
-        std::filesystem::temp_directory_path() / "hashphase_stage_test.aabbs";
+    const TemporaryFolder folder;
+    const std::string path = folder.file("boxes.aabbs");
     Session session({.name = "wander", .file = {}, .objects = 200, .seed = 3});
     std::vector<Aabb<float>> before;
     std::vector<CollisionFilter> filters;
     session.stage().listBoxes(before, filters);
-    session.run("capture " + path.string() + " 5");
+    session.run("capture " + path + " 5");
     while (session.isWaiting()) {
         session.advance();
     }
@@ -46,15 +46,14 @@ TEST(RecordingStage, PlaysWhatWasCapturedAndBeginsAgain) {
     expectBoxes(after);
     stage.step();
     expectBoxes(before);
-    std::filesystem::remove(path);
 }
 
 TEST(RecordingStage, GoesOnWithTheFileThatItOpenedWhateverTakesItsName) {
-    const std::filesystem::path path =
-        std::filesystem::temp_directory_path() / "hashphase_replaced_recording_test.aabbs";
+    const TemporaryFolder folder;
+    const std::string path = folder.file("boxes.aabbs");
     const auto capture = [&path](std::size_t objects) {
         Session session({.name = "wander", .file = {}, .objects = objects, .seed = 3});
-        session.run("capture " + path.string() + " 2");
+        session.run("capture " + path + " 2");
         while (session.isWaiting()) {
             session.advance();
         }
@@ -70,14 +69,13 @@ TEST(RecordingStage, GoesOnWithTheFileThatItOpenedWhateverTakesItsName) {
     stage.step();
     EXPECT_EQ(stage.placesHash(), first);
     EXPECT_EQ(stage.size(), 200U);
-    std::filesystem::remove(path);
 }
 
 TEST(RecordingStage, HasNoPairsWhileTheyAreNotDeclared) {
-    const std::filesystem::path path =
-        std::filesystem::temp_directory_path() / "hashphase_recorded_pairs_test.aabbs";
+    const TemporaryFolder folder;
+    const std::string path = folder.file("boxes.aabbs");
     Session session({.name = "pile", .file = {}, .objects = 200, .seed = 3});
-    session.run("capture " + path.string() + " 5");
+    session.run("capture " + path + " 5");
     while (session.isWaiting()) {
         session.advance();
     }
@@ -103,14 +101,13 @@ TEST(RecordingStage, HasNoPairsWhileTheyAreNotDeclared) {
         EXPECT_GT(stage.pairCount(), 0U) << name;
         expectPairs(stage, false, name);
     }
-    std::filesystem::remove(path);
 }
 
 TEST(RecordingStage, ColoursAgentsOnceWhenTheyBeginToLookAround) {
-    const std::filesystem::path path =
-        std::filesystem::temp_directory_path() / "hashphase_recorded_colours_test.aabbs";
+    const TemporaryFolder folder;
+    const std::string path = folder.file("boxes.aabbs");
     Session session({.name = "wander", .file = {}, .objects = 200, .seed = 3});
-    session.run("capture " + path.string() + " 2");
+    session.run("capture " + path + " 2");
     while (session.isWaiting()) {
         session.advance();
     }
@@ -119,7 +116,6 @@ TEST(RecordingStage, ColoursAgentsOnceWhenTheyBeginToLookAround) {
     effects.declare(Effect::proximity);
     stage.declare(effects);
     expectEvenColours(stage);
-    std::filesystem::remove(path);
 }
 
 }  // namespace

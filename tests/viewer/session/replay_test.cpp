@@ -3,13 +3,13 @@
 #include <demos/scenes/input_error.hpp>
 #include <demos/viewer/session/script.hpp>
 #include <demos/viewer/session/session.hpp>
+#include <tests/support/temporary_folder.hpp>
 #include <tests/viewer/session/steps.hpp>
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <fstream>
 #include <optional>
 #include <sstream>
@@ -193,8 +193,8 @@ TEST(Playback, ComesToTheSameHashWhoeverFindsThePairs) {
 // --- Settings ------------------------------------------------------------------------------------
 
 TEST(CommandLog, SetsUpWhatASceneFileMayHave) {
-    const std::filesystem::path path =
-        std::filesystem::temp_directory_path() / "hashphase_replay_test.json";
+    const TemporaryFolder folder;
+    const std::string path = folder.file("scene.json");
     for (const char* grid :
          {R"("cellSize": 0, "levelRatio": 2)", R"("cellSize": 1e-30, "levelRatio": 64)",
           R"("cellSize": 1e30, "levelRatio": 2.0000000000000004)",
@@ -203,9 +203,9 @@ TEST(CommandLog, SetsUpWhatASceneFileMayHave) {
             std::ofstream(path) << R"({"scene": {"objects": 30}, "effects": {"motion": true, )"
                                 << R"("pairs": true, "proximity": {"radius": )" << radius
                                 << R"(}}, "grid": {)" << grid << "}}";
-            Session session({.name = {}, .file = path.string(), .objects = {}, .seed = 1});
+            Session session({.name = {}, .file = path, .objects = {}, .seed = 1});
             step(session, 2);
-            Session other({.name = {}, .file = path.string(), .objects = {}, .seed = 1});
+            Session other({.name = {}, .file = path, .objects = {}, .seed = 1});
             other.run("cell 3");
             other.run("ratio 3");
             other.run("radius 3");
@@ -220,7 +220,6 @@ TEST(CommandLog, SetsUpWhatASceneFileMayHave) {
             EXPECT_EQ(playBack(log).hash(), session.hash()) << grid << radius;
         }
     }
-    std::filesystem::remove(path);
 }
 
 TEST(CommandLog, SetsUpASessionThatBeginsAgainAsItWas) {

@@ -2,11 +2,11 @@
 
 #include <demos/viewer/session/scene_choice.hpp>
 #include <demos/viewer/session/session.hpp>
+#include <tests/support/temporary_folder.hpp>
 #include <tests/viewer/session/steps.hpp>
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fstream>
 #include <string>
 
@@ -40,8 +40,8 @@ TEST(SceneChoice, ShowsAllOfASceneThatHasGrown) {
 }
 
 TEST(SceneChoice, RefusesAFileWithAnEffectThatNoSimulationHas) {
-    const std::string path =
-        (std::filesystem::temp_directory_path() / "hashphase_scene_choice_test.json").string();
+    const TemporaryFolder folder;
+    const std::string path = folder.file("scene.json");
     const auto write = [&path](const std::string& effects) {
         std::ofstream(path) << R"({"scene": {"objects": 20}, "effects": {"motion": true)" << effects
                             << "}}";
@@ -61,7 +61,6 @@ TEST(SceneChoice, RefusesAFileWithAnEffectThatNoSimulationHas) {
     write(R"(, "pairs": true)");
     session.run("restart");
     EXPECT_EQ(session.frame(), 0U);
-    std::filesystem::remove(path);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <demos/viewer/session/session.hpp>
 #include <demos/viewer/show/picture_maker.hpp>
 #include <demos/viewer/show/viewer.hpp>
+#include <tests/support/temporary_folder.hpp>
 #include <tests/viewer/expect_golden.hpp>
 
 #include <gtest/gtest.h>
@@ -14,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <initializer_list>
 #include <span>
 #include <string>
@@ -244,8 +244,8 @@ Image from(int x, int y, Image image) {
 TEST(Panel, IsDrawnOverEachSceneInBothThemes) {
     const HeadlessContext context;
     Viewer viewer(900, 700);
-    const std::filesystem::path path =
-        std::filesystem::temp_directory_path() / "hashphase_panel_test.png";
+    const TemporaryFolder folder;
+    const std::string path = folder.file("picture.png");
     for (const char* scene : {"wander", "pile", "bullet-storm"}) {
         for (const char* theme : {"theme light", "theme dark"}) {
             Session session({.name = scene, .file = {}, .objects = 200, .seed = 1}, 900, 700);
@@ -256,7 +256,7 @@ TEST(Panel, IsDrawnOverEachSceneInBothThemes) {
                 }
                 session.setPlaying(false);
                 viewer.layOut(session);
-                session.askForScreenshot(path.string());
+                session.askForScreenshot(path);
                 viewer.show(session, {}, 0);
                 return readPng(path);
             };
@@ -276,25 +276,23 @@ TEST(Panel, IsDrawnOverEachSceneInBothThemes) {
                 << scene << theme;
         }
     }
-    std::filesystem::remove(path);
 }
 
 TEST(Panel, ShowsTheRadarAsAMapSeenFromAbove) {
     const HeadlessContext context;
     Viewer viewer(900, 700);
     Session session(kWander, 900, 700);
-    const std::filesystem::path path =
-        std::filesystem::temp_directory_path() / "hashphase_radar_test.png";
+    const TemporaryFolder folder;
+    const std::string path = folder.file("picture.png");
     session.run("effect radar on");
     session.run("overlay bodies off");
     for (int frame = 0; frame < 30; ++frame) {
         session.advance();
     }
     viewer.layOut(session);
-    session.askForScreenshot(path.string());
+    session.askForScreenshot(path);
     viewer.show(session, {}, 0);
     const Image picture = readPng(path);
-    std::filesystem::remove(path);
 
     const RadarView radar = session.stage().radar().value();
     const std::uint32_t columns = radar.columns;

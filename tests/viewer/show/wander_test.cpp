@@ -4,6 +4,7 @@
 
 #include <demos/scenes/file_bytes.hpp>
 #include <demos/viewer/show/wander.hpp>
+#include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
 
@@ -34,21 +35,12 @@ Outcome typed(const std::vector<std::string>& arguments) {
 
 class Wander : public testing::Test {
 protected:
-    Wander() : folder_(std::filesystem::temp_directory_path() / "hashphase_wander_test") {
-        std::filesystem::create_directories(folder_);
-    }
-    ~Wander() override { std::filesystem::remove_all(folder_); }
-
     [[nodiscard]] std::string file(const std::string& name, const std::string& text = {}) const {
-        const std::string path = (folder_ / name).string();
-        if (!text.empty()) {
-            std::ofstream(path) << text;
-        }
-        return path;
+        return text.empty() ? folder_.file(name) : folder_.write(name, text);
     }
 
 private:
-    std::filesystem::path folder_;
+    TemporaryFolder folder_;
 };
 
 TEST_F(Wander, TellsThePhasesOfAFrame) {

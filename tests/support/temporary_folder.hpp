@@ -33,6 +33,8 @@ public:
         return (path_ / name).string();
     }
 
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
     /// Writes the bytes to a file of that name and returns its path.
     std::string write(const std::string& name, const std::string& bytes) const {
         std::ofstream(path_ / name, std::ios::binary) << bytes;
