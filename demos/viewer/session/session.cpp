@@ -138,7 +138,10 @@ void Session::see() {
 }
 
 const Culler<float>& Session::culler() const {
-    return usesOwnCuller_ ? ownCuller_ : stage_->observers().culler();
+    if (usesOwnCuller_) {
+        return ownCuller_;
+    }
+    return stage_->observers().culler();
 }
 
 // Whether the scene has moved or not.

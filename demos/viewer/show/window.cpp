@@ -261,9 +261,10 @@ void Window::rest(const Session& session, double frameSeconds) {
         glfwWaitEventsTimeout(kStillSeconds);
     }
     const Stopwatch watch;
-    for (double left = double{kFrameSeconds} - frameSeconds; left > 0;
-         left = double{kFrameSeconds} - frameSeconds - watch.milliseconds() / 1000) {
+    double left = double{kFrameSeconds} - frameSeconds;
+    while (left > 0) {
         glfwWaitEventsTimeout(left);
+        left = double{kFrameSeconds} - frameSeconds - watch.milliseconds() / 1000;
     }
 }
 
