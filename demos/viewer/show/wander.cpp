@@ -84,9 +84,8 @@ private:
     void feed();
     void tellMessages();
     int end();
-    [[nodiscard]] std::string keep(std::string faults);
-    void writeRecording();
-    void writeNumbers();
+    [[nodiscard]] std::string keep(const std::string& fault);
+    [[nodiscard]] std::string writeFiles();
     [[nodiscard]] WanderEnd played() const { return {*session_, drewPictures_, framesPerSecond_}; }
     [[nodiscard]] bool isAsExpected() const;
 
@@ -231,34 +230,36 @@ int Run::end() {
         tellPhases(played(), console_.out);
     }
     tellFrameRate(played(), console_.out);
-    writeRecording();
-    writeNumbers();
+    if (const std::string faults = writeFiles(); !faults.empty()) {
+        throw InputError(faults);
+    }
     return isAsExpected() ? kExitOk : kExitCheckFailed;
 }
 
 // What was played until a fault is not lost. Returns that fault, and what cannot be written besides.
-std::string Run::keep(std::string faults) {
+std::string Run::keep(const std::string& fault) {
     if (session_->frame() == 0) {
-        return faults;
+        return fault;
     }
     session_->endCapture("the run ends");
     tellMessages();
-    for (const auto& write : {&Run::writeRecording, &Run::writeNumbers}) {
+    const std::string others = writeFiles();
+    return others.empty() ? fault : fault + " " + others;
+}
+
+// Each that can be written; returns what is to be said of the others.
+std::string Run::writeFiles() {
+    std::string faults;
+    const auto write = [&faults](ResultFile& file, const auto& content) {
         try {
-            (this->*write)();
-        } catch (const InputError& another) {
-            faults += std::string(" ") + another.what();
+            file.write(content);
+        } catch (const InputError& fault) {
+            faults += (faults.empty() ? "" : " ") + std::string(fault.what());
         }
-    }
+    };
+    write(*record_, [this](std::ostream& out) { out << session_->log().text(); });
+    write(*json_, [this](std::ostream& out) { writeNumbers(played(), out); });
     return faults;
-}
-
-void Run::writeRecording() {
-    record_->write([this](std::ostream& out) { out << session_->log().text(); });
-}
-
-void Run::writeNumbers() {
-    json_->write([this](std::ostream& out) { demos::writeNumbers(played(), out); });
 }
 
 // Says so, too. Who ends a script or a replay early wants no more of it; a time limit cuts it off.

@@ -298,6 +298,11 @@ TEST_F(Wander, NamesEachFileThatCannotBeWrittenAndWritesTheOthers) {
         << run.err;
     EXPECT_NE(run.err.find("/dev/full cannot be written"), std::string::npos) << run.err;
     EXPECT_EQ(nlohmann::json::parse(std::ifstream(numbers))["readings"]["frame"], 2);
+    // The same where nothing else is wrong.
+    const Outcome whole = typed({"--headless", "--quiet", "--objects", "50", "--frames", "3",
+                                 "--record", "/dev/full", "--json", numbers});
+    EXPECT_EQ(whole.code, kExitUsage);
+    EXPECT_EQ(nlohmann::json::parse(std::ifstream(numbers))["readings"]["frame"], 3);
 }
 
 TEST_F(Wander, SaysWhatIsWrong) {
