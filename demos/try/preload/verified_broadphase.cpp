@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/try/preload/verified_broadphase.hpp>
+
+#include <demos/try/preload/overlap.hpp>
+#include <demos/try/preload/recorder.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdio>
+#include <functional>
+#include <iterator>
+
+namespace hashphase::tryout {
+namespace {
+
+using Couple = std::pair<btBroadphaseProxy*, btBroadphaseProxy*>;
+
+Couple coupleOf(btBroadphaseProxy* a, btBroadphaseProxy* b) {
+    return std::less<>()(a, b) ? Couple(a, b) : Couple(b, a);
+}
+
+btBroadphaseProxy* programs(const btBroadphaseProxy* stock) {
+    return static_cast<btBroadphaseProxy*>(stock->m_clientObject);
+}
+
+template <class Name>
+std::vector<Couple> couplesOf(const btOverlappingPairCache& cache, const Name& name) {
+    const btBroadphasePair* pairs = cache.getOverlappingPairArrayPtr();
+    std::vector<Couple> couples;
+    for (int i = 0; i < cache.getNumOverlappingPairs(); ++i) {
+        couples.push_back(coupleOf(name(pairs[i].m_pProxy0), name(pairs[i].m_pProxy1)));
+    }
+    std::sort(couples.begin(), couples.end());
+    return couples;
+}
+
+std::vector<Couple> difference(const std::vector<Couple>& from, const std::vector<Couple>& what) {
+    std::vector<Couple> left;
+    std::set_difference(from.begin(), from.end(), what.begin(), what.end(),
+                        std::back_inserter(left));
+    return left;
+}
+
+// The first fault, as a sentence for the record.
+void describe(Verification& verification, const char* fault, const Couple& couple,
+              std::uint64_t calculation) {
+    if (verification.firstFault[0] != '\0') {
+        return;
+    }
+    const auto& [a, b] = couple;
+    const auto number = [](btScalar x) { return static_cast<double>(x); };
+    std::snprintf(verification.firstFault.data(), verification.firstFault.size(),
+                  "calculation %llu: the pair of proxies %d and %d is %s; their boxes are "
+                  "(%.9g, %.9g, %.9g) to (%.9g, %.9g, %.9g) and (%.9g, %.9g, %.9g) to "
+                  "(%.9g, %.9g, %.9g)",
+                  static_cast<unsigned long long>(calculation), a->m_uniqueId, b->m_uniqueId, fault,
+                  number(a->m_aabbMin.x()), number(a->m_aabbMin.y()), number(a->m_aabbMin.z()),
+                  number(a->m_aabbMax.x()), number(a->m_aabbMax.y()), number(a->m_aabbMax.z()),
+                  number(b->m_aabbMin.x()), number(b->m_aabbMin.y()), number(b->m_aabbMin.z()),
+                  number(b->m_aabbMax.x()), number(b->m_aabbMax.y()), number(b->m_aabbMax.z()));
+}
+
+}  // namespace
+
+// --- Bullet's broadphase -------------------------------------------------------------------------
+
+class VerifiedBroadphase::Stock {
+public:
+    explicit Stock(btOverlappingPairCache& programsCache) : filter_(programsCache) {
+        cache_.setOverlapFilterCallback(&filter_);
+        stockDbvt().construct(object(), &cache_);
+    }
+    ~Stock() { stockDbvt().destruct(object()); }
+    Stock(const Stock&) = delete;
+    Stock& operator=(const Stock&) = delete;
+
+    // The functions of `stockDbvt()`; the virtual ones of the object itself lead back to us.
+    btDbvtBroadphase* object() { return reinterpret_cast<btDbvtBroadphase*>(room_); }
+    btHashedOverlappingPairCache& cache() { return cache_; }
+
+    void takeSettings(const btDbvtBroadphase& settings) {
+        object()->m_prediction = settings.m_prediction;
+        object()->m_fupdates = settings.m_fupdates;
+        object()->m_dupdates = settings.m_dupdates;
+        object()->m_cupdates = settings.m_cupdates;
+        object()->m_deferedcollide = settings.m_deferedcollide;
+    }
+
+private:
+    struct Filter : btOverlapFilterCallback {
+        explicit Filter(btOverlappingPairCache& cache) : programsCache(cache) {}
+        bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override {
+            return programsCache.needsBroadphaseCollision(programs(a), programs(b));
+        }
+        btOverlappingPairCache& programsCache;
+    };
+
+    Filter filter_;
+    btHashedOverlappingPairCache cache_;
+    alignas(16) std::byte room_[sizeof(btDbvtBroadphase)];
+};
+
+// --- Both told the same --------------------------------------------------------------------------
+
+VerifiedBroadphase::VerifiedBroadphase(const btDbvtBroadphase& settings,
+                                       btOverlappingPairCache* cache)
+    : settings_(settings),
+      ours_(cache),
+      stock_(std::make_unique<Stock>(*ours_.getOverlappingPairCache())) {}
+
+VerifiedBroadphase::~VerifiedBroadphase() = default;
+
+btBroadphaseProxy* VerifiedBroadphase::createProxy(const btVector3& aabbMin,
+                                                   const btVector3& aabbMax, int shapeType,
+                                                   void* userPtr, int collisionFilterGroup,
+                                                   int collisionFilterMask,
+                                                   btDispatcher* dispatcher) {
+    btBroadphaseProxy* proxy =
+        ours_.createProxy(aabbMin, aabbMax, shapeType, userPtr, collisionFilterGroup,
+                          collisionFilterMask, dispatcher);
+    btBroadphaseProxy* stock =
+        stockDbvt().createProxy(stock_->object(), aabbMin, aabbMax, shapeType, proxy,
+                                collisionFilterGroup, collisionFilterMask, nullptr);
+    twins_[proxy] = {stock, calculation_};
+    return proxy;
+}
+
+void VerifiedBroadphase::destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
+    const auto twin = twins_.find(proxy);
+    stockDbvt().destroyProxy(stock_->object(), twin->second.stock, nullptr);
+    twins_.erase(twin);
+    ours_.destroyProxy(proxy, dispatcher);
+}
+
+void VerifiedBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin,
+                                 const btVector3& aabbMax, btDispatcher* dispatcher) {
+    Twin& twin = twins_.at(proxy);
+    if (!(proxy->m_aabbMin == aabbMin && proxy->m_aabbMax == aabbMax)) {
+        twin.changed = calculation_;
+    }
+    ours_.setAabb(proxy, aabbMin, aabbMax, dispatcher);
+    stockDbvt().setAabb(stock_->object(), twin.stock, aabbMin, aabbMax, nullptr);
+}
+
+void VerifiedBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
+    stock_->takeSettings(settings_);
+    stockDbvt().calculateOverlappingPairs(stock_->object(), nullptr);
+    ours_.calculateOverlappingPairs(dispatcher);
+    compare();
+    ++calculation_;
+}
+
+void VerifiedBroadphase::resetPool(btDispatcher* dispatcher) {
+    stockDbvt().resetPool(stock_->object(), nullptr);
+    ours_.resetPool(dispatcher);
+}
+
+// --- Ours alone ----------------------------------------------------------------------------------
+
+void VerifiedBroadphase::getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin,
+                                 btVector3& aabbMax) const {
+    ours_.getAabb(proxy, aabbMin, aabbMax);
+}
+
+void VerifiedBroadphase::rayTest(const btVector3& rayFrom, const btVector3& rayTo,
+                                 btBroadphaseRayCallback& rayCallback, const btVector3& aabbMin,
+                                 const btVector3& aabbMax) {
+    ours_.rayTest(rayFrom, rayTo, rayCallback, aabbMin, aabbMax);
+}
+
+void VerifiedBroadphase::aabbTest(const btVector3& aabbMin, const btVector3& aabbMax,
+                                  btBroadphaseAabbCallback& callback) {
+    ours_.aabbTest(aabbMin, aabbMax, callback);
+}
+
+btOverlappingPairCache* VerifiedBroadphase::getOverlappingPairCache() {
+    return ours_.getOverlappingPairCache();
+}
+
+const btOverlappingPairCache* VerifiedBroadphase::getOverlappingPairCache() const {
+    return ours_.getOverlappingPairCache();
+}
+
+void VerifiedBroadphase::getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax) const {
+    ours_.getBroadphaseAabb(aabbMin, aabbMax);
+}
+
+// --- The comparison ------------------------------------------------------------------------------
+
+// A sweep along x: from each box on, those that begin before it ends.
+std::vector<Couple> VerifiedBroadphase::findOverlapping() const {
+    std::vector<btBroadphaseProxy*> proxies;
+    for (const auto& [proxy, twin] : twins_) {
+        // NaN overlaps nothing, and cannot be sorted.
+        if (proxy->m_aabbMin.x() == proxy->m_aabbMin.x()) {
+            proxies.push_back(proxy);
+        }
+    }
+    std::sort(proxies.begin(), proxies.end(),
+              [](const btBroadphaseProxy* a, const btBroadphaseProxy* b) {
+                  return a->m_aabbMin.x() < b->m_aabbMin.x();
+              });
+    std::vector<Couple> couples;
+    for (std::size_t i = 0; i < proxies.size(); ++i) {
+        for (std::size_t j = i + 1;
+             j < proxies.size() && proxies[j]->m_aabbMin.x() <= proxies[i]->m_aabbMax.x(); ++j) {
+            if (overlaps(*proxies[i], *proxies[j])) {
+                couples.push_back(coupleOf(proxies[i], proxies[j]));
+            }
+        }
+    }
+    std::sort(couples.begin(), couples.end());
+    return couples;
+}
+
+bool VerifiedBroadphase::isUnasked(const Couple& couple) const {
+    return twins_.at(couple.first).changed < calculation_ &&
+           twins_.at(couple.second).changed < calculation_;
+}
+
+void VerifiedBroadphase::compare() {
+    Record* into = record();
+    if (into == nullptr) {
+        return;
+    }
+    Verification& verification = into->verification;
+    btOverlappingPairCache& cache = *ours_.getOverlappingPairCache();
+    const std::vector<Couple> exact = findOverlapping();
+    const std::vector<Couple> ours = couplesOf(cache, [](btBroadphaseProxy* proxy) { return proxy; });
+    const std::vector<Couple> stock = couplesOf(stock_->cache(), programs);
+
+    verification.calculations.fetch_add(1);
+    verification.pairs.fetch_add(ours.size());
+    for (const Couple& couple : difference(ours, exact)) {
+        verification.extra.fetch_add(1);
+        describe(verification, "extra", couple, calculation_);
+    }
+    for (const Couple& couple : difference(exact, ours)) {
+        if (!cache.needsBroadphaseCollision(couple.first, couple.second)) {
+            continue;
+        }
+        if (isUnasked(couple)) {
+            verification.unasked.fetch_add(1);
+        } else {
+            verification.missing.fetch_add(1);
+            describe(verification, "missing", couple, calculation_);
+        }
+    }
+    verification.stockExtra.fetch_add(difference(stock, exact).size());
+    for (const Couple& couple : difference(exact, stock)) {
+        if (!isUnasked(couple) && cache.needsBroadphaseCollision(couple.first, couple.second)) {
+            verification.stockMissing.fetch_add(1);
+        }
+    }
+}
+
+}  // namespace hashphase::tryout

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Our broadphase at work, with Bullet's beside it that is told the same; after each
+// calculateOverlappingPairs() the pairs of both are compared with the exact ones, and what is wrong is
+// counted in the record.
+//
+// Exact    The couples whose boxes overlap (overlap.hpp), by a sweep along x that shares no code with the
+//          library, and that the pair cache accepts when it is asked, now. A couple that is not a pair
+//          although it is accepted now, and whose boxes are as they were in the last calculation, was
+//          refused when it was asked about: it is counted apart, as it waits for a move under any
+//          broadphase of Bullet's.
+// Filter   Asked for both broadphases, and by the comparison; always about the program's own proxies.
+// Threads  As the broadphase.
+
+#include <demos/try/preload/stock_dbvt.hpp>
+
+#include <integration/bullet/spatial_hash_broadphase.hpp>
+
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
+#include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
+
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace hashphase::tryout {
+
+class VerifiedBroadphase : public btBroadphaseInterface {
+public:
+    /// `settings` is the program's object, whose fields steer Bullet's broadphase; it outlives this one.
+    /// `cache` as for SpatialHashBroadphase.
+    VerifiedBroadphase(const btDbvtBroadphase& settings, btOverlappingPairCache* cache);
+    ~VerifiedBroadphase() override;
+
+    btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
+                                   int shapeType, void* userPtr, int collisionFilterGroup,
+                                   int collisionFilterMask, btDispatcher* dispatcher) override;
+    void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
+    void setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin, const btVector3& aabbMax,
+                 btDispatcher* dispatcher) override;
+    void getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin, btVector3& aabbMax) const override;
+    void rayTest(const btVector3& rayFrom, const btVector3& rayTo,
+                 btBroadphaseRayCallback& rayCallback, const btVector3& aabbMin,
+                 const btVector3& aabbMax) override;
+    void aabbTest(const btVector3& aabbMin, const btVector3& aabbMax,
+                  btBroadphaseAabbCallback& callback) override;
+    void calculateOverlappingPairs(btDispatcher* dispatcher) override;
+    btOverlappingPairCache* getOverlappingPairCache() override;
+    [[nodiscard]] const btOverlappingPairCache* getOverlappingPairCache() const override;
+    void getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax) const override;
+    void resetPool(btDispatcher* dispatcher) override;
+    void printStats() override {}
+
+private:
+    /// Bullet's broadphase, in room of its own; its proxies' clients are the program's proxies.
+    class Stock;
+
+    struct Twin {
+        btBroadphaseProxy* stock;
+        std::uint64_t changed;  // by the number of the calculation that comes next
+    };
+
+    /// Two proxies of the program's, the one with the lower address first.
+    using Couple = std::pair<btBroadphaseProxy*, btBroadphaseProxy*>;
+
+    [[nodiscard]] std::vector<Couple> findOverlapping() const;
+    void compare();
+    [[nodiscard]] bool isUnasked(const Couple& couple) const;
+
+    const btDbvtBroadphase& settings_;
+    SpatialHashBroadphase ours_;
+    std::unique_ptr<Stock> stock_;
+    std::unordered_map<btBroadphaseProxy*, Twin> twins_;
+    std::uint64_t calculation_ = 1;  // the next one
+};
+
+}  // namespace hashphase::tryout

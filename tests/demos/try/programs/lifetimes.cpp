@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Zlib
+
+// How worlds come and go.
+
+#include "program.hpp"
+
+#include <cstdlib>
+#include <random>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace programs {
+namespace {
+
+std::unique_ptr<Scene<>> makeScene(int height) {
+    auto scene = std::make_unique<Scene<>>();
+    scene->addGround();
+    auto* box = scene->things.shape<btBoxShape>(btVector3(0.5, 0.5, 0.5));
+    for (int i = 0; i < 20; ++i) {
+        scene->add(box, 1, {btScalar(i % 5 * 2), btScalar(height + i / 5), 0});
+    }
+    return scene;
+}
+
+// Three worlds in turn, destroyed in another order than they were made, and a fourth made in between.
+int severalWorlds() {
+    std::unique_ptr<Scene<>> scenes[4];
+    for (int i = 0; i < 3; ++i) {
+        scenes[i] = makeScene(1 + i);
+    }
+    for (int i = 0; i < 60; ++i) {
+        scenes[i % 3]->step(1);
+    }
+    scenes[1].reset();
+    scenes[3] = makeScene(2);
+    for (int i = 0; i < 60; ++i) {
+        scenes[i % 2 == 0 ? 0 : 3]->step(1);
+    }
+    scenes[0].reset();
+    scenes[2]->step(30);
+    scenes[3].reset();
+    say("boxes of the last world", countNear(scenes[2]->things, {4, 2, 0}, 8) - 1);
+    scenes[2].reset();
+    return 0;
+}
+
+// Bodies come and go while the world is stepped, at a fixed seed.
+int churn() {
+    Scene<> scene;
+    scene.addGround();
+    auto* sphere = scene.things.shape<btSphereShape>(btScalar(0.5));
+    std::mt19937 random(1);
+    std::vector<btRigidBody*> alive;
+    for (int i = 0; i < 200; ++i) {
+        for (int added = 0; added < 2; ++added) {
+            const auto x = btScalar(random() % 10);
+            const auto z = btScalar(random() % 10);
+            alive.push_back(scene.add(sphere, 1, {x, 8, z}));
+        }
+        if (alive.size() > 100) {
+            for (int removed = 0; removed < 2; ++removed) {
+                const std::size_t which = random() % alive.size();
+                scene.world.removeRigidBody(alive[which]);
+                alive[which] = alive.back();
+                alive.pop_back();
+            }
+        }
+        scene.step(1);
+    }
+    say("bodies", scene.world.getNumCollisionObjects());
+    return 0;
+}
+
+// The order of the tutorial "Hello World": world, solver, broadphase, dispatcher, all on the heap; bodies
+// are left to the world, and the broadphase is deleted through its base.
+int helloWorld() {
+    auto* configuration = new btDefaultCollisionConfiguration();
+    auto* dispatcher = new btCollisionDispatcher(configuration);
+    btBroadphaseInterface* broadphase = new btDbvtBroadphase();
+    auto* solver = new btSequentialImpulseConstraintSolver();
+    auto* world = new btDiscreteDynamicsWorld(dispatcher, broadphase, solver, configuration);
+    Things things;
+    world->addRigidBody(things.body(things.shape<btBoxShape>(btVector3(50, 50, 50)), 0, {0, -50, 0}));
+    btRigidBody* ball = things.body(things.shape<btSphereShape>(btScalar(1)), 1, {2, 10, 0});
+    world->addRigidBody(ball);
+    for (int i = 0; i < 150; ++i) {
+        world->stepSimulation(btScalar(1) / 60, 10);
+    }
+    say("height", ball->getWorldTransform().getOrigin().y());
+    delete world;
+    delete solver;
+    delete broadphase;
+    delete dispatcher;
+    delete configuration;
+    return 0;
+}
+
+// A cache that dies before the broadphase that uses it; Bullet never looks at it then.
+int cacheGoesFirst() {
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher(&configuration);
+    auto cache = std::make_unique<btHashedOverlappingPairCache>();
+    btDbvtBroadphase broadphase(cache.get());
+    Things things;
+    {
+        btSequentialImpulseConstraintSolver solver;
+        btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
+        auto* sphere = things.shape<btSphereShape>(btScalar(1));
+        for (int i = 0; i < 10; ++i) {
+            world.addRigidBody(things.body(sphere, 1, {btScalar(i), 0, 0}));
+        }
+        world.stepSimulation(btScalar(1) / 60, 0);
+        say("pairs", cache->getNumOverlappingPairs() >= 9 ? 1 : 0);
+    }
+    cache.reset();
+    return 0;
+}
+
+// Leaves the program in the middle, with everything alive.
+int exitAnyhow() {
+    static const std::unique_ptr<Scene<>> scene = makeScene(1);
+    scene->step(30);
+    say("steps", 30);
+    std::exit(0);
+}
+
+// A child that steps a world of its own beside its parent's.
+int forks() {
+    const std::unique_ptr<Scene<>> scene = makeScene(1);
+    scene->step(30);
+    std::fflush(stdout);
+    const pid_t child = fork();
+    if (child == 0) {
+        scene->step(30);
+        _exit(7);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    say("child", WEXITSTATUS(status));
+    scene->step(30);
+    return 0;
+}
+
+int failing() {
+    makeScene(1)->step(5);
+    return 3;
+}
+
+int crashing() {
+    const std::unique_ptr<Scene<>> scene = makeScene(1);
+    scene->step(5);
+    std::abort();
+}
+
+}  // namespace
+
+const std::vector<Program>& lifetimePrograms() {
+    static const std::vector<Program> list{{"several-worlds", severalWorlds},
+                                           {"churn", churn},
+                                           {"hello-world", helloWorld},
+                                           {"cache-goes-first", cacheGoesFirst},
+                                           {"exit-anyhow", exitAnyhow},
+                                           {"forks", forks},
+                                           {"failing", failing},
+                                           {"crashing", crashing}};
+    return list;
+}
+
+}  // namespace programs

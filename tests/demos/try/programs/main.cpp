@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Zlib
+
+// stock_programs NAME: runs a program; without a name, lists them.
+
+#include "program.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+namespace programs {
+
+void say(const char* name, double value) {
+    // Not -0.0, which depends on the order of contacts.
+    std::printf("%s = %.2f\n", name, std::round(value * 100) / 100 + 0.0);
+}
+
+btRigidBody* Things::body(btCollisionShape* shape, btScalar mass, const btVector3& place) {
+    btVector3 inertia(0, 0, 0);
+    if (mass > 0) {
+        shape->calculateLocalInertia(mass, inertia);
+    }
+    states_.push_back(std::make_unique<btDefaultMotionState>(
+        btTransform(btQuaternion::getIdentity(), place)));
+    bodies.push_back(
+        std::make_unique<btRigidBody>(mass, states_.back().get(), shape, inertia));
+    return bodies.back().get();
+}
+
+int countNear(const Things& things, const btVector3& place, btScalar distance) {
+    int count = 0;
+    for (const auto& body : things.bodies) {
+        count += body->getWorldTransform().getOrigin().distance(place) < distance ? 1 : 0;
+    }
+    return count;
+}
+
+}  // namespace programs
+
+int main(int argc, char** argv) {
+    using namespace programs;
+    for (const auto* list : {&rigidBodyPrograms(), &broadphasePrograms(), &queryPrograms(),
+                             &softBodyPrograms(), &lifetimePrograms()}) {
+        for (const Program& program : *list) {
+            if (argc < 2) {
+                std::puts(program.name.c_str());
+            } else if (program.name == argv[1]) {
+                return program.run();
+            }
+        }
+    }
+    return argc < 2 ? 0 : 2;
+}

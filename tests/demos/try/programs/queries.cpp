@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Zlib
+
+#include "program.hpp"
+
+#include <cmath>
+
+namespace programs {
+namespace {
+
+int hitCount = 0;
+
+// From a tick callback, in each step, at the very boxes of the moment.
+int raysFromTicks() {
+    Scene<> scene;
+    scene.addGround();
+    auto* box = scene.things.shape<btBoxShape>(btVector3(0.5, 0.5, 0.5));
+    for (int i = 0; i < 25; ++i) {
+        scene.add(box, 1, {btScalar(i % 5 * 3), btScalar(3 + i % 4), btScalar(i / 5 * 3)});
+    }
+    hitCount = 0;
+    const auto castRays = [](btDynamicsWorld* world, btScalar /*timeStep*/) {
+        for (int i = 0; i < 25; ++i) {
+            const btVector3 from(btScalar(i % 5 * 3), 20, btScalar(i / 5 * 3));
+            const btVector3 to = from - btVector3(0, 40, 0);
+            btCollisionWorld::AllHitsRayResultCallback hits(from, to);
+            world->rayTest(from, to, hits);
+            hitCount += hits.m_collisionObjects.size();
+        }
+    };
+    scene.world.setInternalTickCallback(castRays, nullptr, true);
+    scene.step(60);
+    scene.world.setInternalTickCallback(castRays);
+    scene.step(60);
+    say("hits", hitCount);
+    return 0;
+}
+
+struct CountContacts : btCollisionWorld::ContactResultCallback {
+    btScalar addSingleResult(btManifoldPoint& /*point*/, const btCollisionObjectWrapper* /*a*/,
+                             int /*partA*/, int /*indexA*/, const btCollisionObjectWrapper* /*b*/,
+                             int /*partB*/, int /*indexB*/) override {
+        ++count;
+        return 0;
+    }
+    int count = 0;
+};
+
+int contactTests() {
+    Scene<> scene;
+    auto* box = scene.things.shape<btBoxShape>(btVector3(1, 1, 1));
+    for (int i = 0; i < 27; ++i) {
+        scene.add(box, 0, {btScalar(i % 3 * 3), btScalar(i / 3 % 3 * 3), btScalar(i / 9 * 3)});
+    }
+    btSphereShape sphere(3);
+    btCollisionObject probe;
+    probe.setCollisionShape(&sphere);
+    probe.setWorldTransform(btTransform(btQuaternion::getIdentity(), {3, 3, 3}));
+    CountContacts contacts;
+    scene.world.contactTest(&probe, contacts);
+    say("touched", contacts.count);
+    btSphereShape small(btScalar(0.4));
+    const btTransform from(btQuaternion::getIdentity(), {0, 20, 0});
+    const btTransform to(btQuaternion::getIdentity(), {0, -20, 0});
+    btCollisionWorld::ClosestConvexResultCallback hit(from.getOrigin(), to.getOrigin());
+    scene.world.convexSweepTest(&small, from, to, hit);
+    say("swept to", 20 - 40 * hit.m_closestHitFraction);
+    return 0;
+}
+
+// Objects that are moved by hand, and no dynamics.
+int collisionWorld() {
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher(&configuration);
+    btDbvtBroadphase broadphase;
+    btCollisionWorld world(&dispatcher, &broadphase, &configuration);
+    btSphereShape sphere(1);
+    std::vector<std::unique_ptr<btCollisionObject>> objects;
+    for (int i = 0; i < 60; ++i) {
+        objects.push_back(std::make_unique<btCollisionObject>());
+        objects.back()->setCollisionShape(&sphere);
+        world.addCollisionObject(objects.back().get());
+    }
+    int contacts = 0;
+    for (int step = 0; step < 90; ++step) {
+        for (int i = 0; i < 60; ++i) {
+            const btScalar angle = btScalar(step) * btScalar(0.05) * btScalar(1 + i % 3);
+            objects[i]->setWorldTransform(btTransform(
+                btQuaternion::getIdentity(),
+                {btScalar(i % 8) * 3 + std::cos(angle), 0, btScalar(i / 8) * 3 + std::sin(angle)}));
+        }
+        world.performDiscreteCollisionDetection();
+        for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+            contacts += dispatcher.getManifoldByIndexInternal(i)->getNumContacts();
+        }
+    }
+    say("contacts", contacts);
+    for (const auto& object : objects) {
+        world.removeCollisionObject(object.get());
+    }
+    return 0;
+}
+
+struct SameColour : btOverlapFilterCallback {
+    bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override {
+        const auto* first = static_cast<btCollisionObject*>(a->m_clientObject);
+        const auto* second = static_cast<btCollisionObject*>(b->m_clientObject);
+        return first->getUserIndex() != second->getUserIndex();
+    }
+};
+
+int filterCallback() {
+    SameColour filter;
+    Scene<> scene;
+    scene.broadphase.getOverlappingPairCache()->setOverlapFilterCallback(&filter);
+    scene.addGround();
+    auto* sphere = scene.things.shape<btSphereShape>(btScalar(0.5));
+    for (int i = 0; i < 40; ++i) {
+        scene.add(sphere, 1, {0, btScalar(1 + i), 0})->setUserIndex(1 + i % 2);
+    }
+    scene.step(200);
+    int wrong = 0;
+    for (int i = 0; i < scene.dispatcher.getNumManifolds(); ++i) {
+        const btPersistentManifold* manifold = scene.dispatcher.getManifoldByIndexInternal(i);
+        wrong += manifold->getBody0()->getUserIndex() == manifold->getBody1()->getUserIndex() ? 1 : 0;
+    }
+    say("of one colour", wrong);
+    return 0;
+}
+
+}  // namespace
+
+const std::vector<Program>& queryPrograms() {
+    static const std::vector<Program> list{{"rays-from-ticks", raysFromTicks},
+                                           {"contact-tests", contactTests},
+                                           {"collision-world", collisionWorld},
+                                           {"filter-callback", filterCallback}};
+    return list;
+}
+
+}  // namespace programs

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Zlib
+
+// Soft bodies, deformables, multibodies.
+
+#include "program.hpp"
+
+#include <BulletDynamics/Featherstone/btMultiBody.h>
+#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
+#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
+#include <BulletSoftBody/btDeformableBodySolver.h>
+#include <BulletSoftBody/btDeformableMultiBodyConstraintSolver.h>
+#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
+#include <BulletSoftBody/btSoftBody.h>
+#include <BulletSoftBody/btSoftBodyHelpers.h>
+#include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
+#include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
+
+namespace programs {
+namespace {
+
+int cloth() {
+    Things things;
+    btSoftBodyRigidBodyCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher(&configuration);
+    btDbvtBroadphase broadphase;
+    btSequentialImpulseConstraintSolver solver;
+    btSoftRigidDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
+    world.setGravity({0, -10, 0});
+    world.getWorldInfo().m_gravity.setValue(0, -10, 0);
+    btRigidBody* box =
+        things.body(things.shape<btBoxShape>(btVector3(2, 2, 2)), 0, {0, 2, 0});
+    world.addRigidBody(box);
+    btSoftBody* sheet = btSoftBodyHelpers::CreatePatch(
+        world.getWorldInfo(), {-4, 6, -4}, {4, 6, -4}, {-4, 6, 4}, {4, 6, 4}, 17, 17, 0, true);
+    sheet->setTotalMass(1);
+    world.addSoftBody(sheet);
+    for (int i = 0; i < 120; ++i) {
+        world.stepSimulation(btScalar(1) / 60, 0);
+    }
+    int onTop = 0;
+    for (int i = 0; i < sheet->m_nodes.size(); ++i) {
+        onTop += sheet->m_nodes[i].m_x.y() > btScalar(3.5) ? 1 : 0;
+    }
+    say("cloth lies on the box", onTop > 20 ? 1 : 0);
+    world.removeSoftBody(sheet);
+    delete sheet;
+    world.removeRigidBody(box);
+    return 0;
+}
+
+int deformable() {
+    Things things;
+    btSoftBodyRigidBodyCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher(&configuration);
+    btDbvtBroadphase broadphase;
+    btDeformableBodySolver bodySolver;
+    btDeformableMultiBodyConstraintSolver solver;
+    solver.setDeformableSolver(&bodySolver);
+    btDeformableMultiBodyDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration,
+                                             &bodySolver);
+    world.setGravity({0, -10, 0});
+    world.getWorldInfo().m_gravity.setValue(0, -10, 0);
+    btRigidBody* ground =
+        things.body(things.shape<btBoxShape>(btVector3(10, 1, 10)), 0, {0, -1, 0});
+    world.addRigidBody(ground);
+    btSoftBody* sheet = btSoftBodyHelpers::CreatePatch(
+        world.getWorldInfo(), {-2, 2, -2}, {2, 2, -2}, {-2, 2, 2}, {2, 2, 2}, 9, 9, 0, true);
+    sheet->setTotalMass(1);
+    sheet->m_cfg.collisions = btSoftBody::fCollision::SDF_RD;
+    world.addSoftBody(sheet);
+    btDeformableMassSpringForce springs(10, btScalar(0.1));
+    btDeformableGravityForce gravity({0, -10, 0});
+    world.addForce(sheet, &springs);
+    world.addForce(sheet, &gravity);
+    for (int i = 0; i < 60; ++i) {
+        world.stepSimulation(btScalar(1) / 60, 0);
+    }
+    say("sheet is above the ground", sheet->m_nodes[40].m_x.y() > btScalar(-0.5) ? 1 : 0);
+    world.removeForce(sheet, &springs);
+    world.removeForce(sheet, &gravity);
+    world.removeSoftBody(sheet);
+    delete sheet;
+    world.removeRigidBody(ground);
+    return 0;
+}
+
+int multibody() {
+    Things things;
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher(&configuration);
+    btDbvtBroadphase broadphase;
+    btMultiBodyConstraintSolver solver;
+    btMultiBodyDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
+    world.setGravity({0, -10, 0});
+    btRigidBody* wall =
+        things.body(things.shape<btBoxShape>(btVector3(0.5, 5, 5)), 0, {-3, 0, 0});
+    world.addRigidBody(wall);
+    constexpr int kLinks = 5;
+    auto* chain = new btMultiBody(kLinks, 1, {1, 1, 1}, true, false);
+    for (int i = 0; i < kLinks; ++i) {
+        chain->setupRevolute(i, 1, {1, 1, 1}, i - 1, btQuaternion::getIdentity(), {0, 0, 1},
+                             {btScalar(i == 0 ? 0 : 0.5), 0, 0}, {btScalar(0.5), 0, 0}, true);
+    }
+    chain->finalizeMultiDof();
+    chain->setBasePos({0, 3, 0});
+    world.addMultiBody(chain);
+    auto* box = things.shape<btBoxShape>(btVector3(0.4, 0.2, 0.2));
+    std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders;
+    for (int i = 0; i < kLinks; ++i) {
+        colliders.push_back(std::make_unique<btMultiBodyLinkCollider>(chain, i));
+        colliders.back()->setCollisionShape(box);
+        world.addCollisionObject(colliders.back().get(), btBroadphaseProxy::DefaultFilter,
+                                 btBroadphaseProxy::StaticFilter);
+        chain->getLink(i).m_collider = colliders.back().get();
+    }
+    for (int i = 0; i < 180; ++i) {
+        world.stepSimulation(btScalar(1) / 60, 0);
+    }
+    say("chain has swung", chain->getJointPos(0) < -btScalar(0.3) ? 1 : 0);
+    for (const auto& collider : colliders) {
+        world.removeCollisionObject(collider.get());
+    }
+    world.removeMultiBody(chain);
+    delete chain;
+    world.removeRigidBody(wall);
+    return 0;
+}
+
+}  // namespace
+
+const std::vector<Program>& softBodyPrograms() {
+    static const std::vector<Program> list{
+        {"cloth", cloth}, {"deformable", deformable}, {"multibody", multibody}};
+    return list;
+}
+
+}  // namespace programs
