@@ -10,6 +10,7 @@
 #include <demos/paper/paper_command.hpp>
 #include <demos/report/report_command.hpp>
 #include <demos/stability/stability_command.hpp>
+#include <demos/try/try_command.hpp>
 #include <demos/viewer/viewer_program.hpp>
 
 #include <array>
@@ -46,6 +47,7 @@ int main(int argc, char** argv) {
                                  stabilityCommand(),
                                  effectsCommand(countAllocations),
                                  report,
+                                 tryCommand(),
                                  viewerCommand()};
     return runProgram(arguments, subcommands, console);
 }

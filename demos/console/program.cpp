@@ -40,6 +40,13 @@ std::string unknownWordSentence(const CLI::App& command, const std::string& call
     return unknownNameSentence("option", name, optionNames(command));
 }
 
+// Words that the command does not know; "--", before what is no option, is none of them.
+std::vector<std::string> extrasOf(const CLI::App& app) {
+    std::vector<std::string> extras = app.remaining();
+    std::erase(extras, "--");
+    return extras;
+}
+
 void warnOfSlowBuild(Console& console) {
 #ifndef __OPTIMIZE__
     console.err << "hashphase: warning: built without optimisation; the times mean nothing.\n";
@@ -101,7 +108,7 @@ int runProgram(const std::vector<std::string>& arguments, std::span<const Subcom
         return *ended;
     }
     const std::vector<CLI::App*> chosen = app.get_subcommands();
-    if (const std::vector<std::string> extras = app.remaining(); !extras.empty()) {
+    if (const std::vector<std::string> extras = extrasOf(app); !extras.empty()) {
         return refuse(console, extras.front().front() == '-'
                                    ? unknownNameSentence("option", extras.front(), optionNames(app))
                                    : unknownNameSentence("subcommand", extras.front(), names));
@@ -110,7 +117,7 @@ int runProgram(const std::vector<std::string>& arguments, std::span<const Subcom
         console.err << app.help();
         return kExitUsage;
     }
-    if (const std::vector<std::string> extras = chosen.front()->remaining(); !extras.empty()) {
+    if (const std::vector<std::string> extras = extrasOf(*chosen.front()); !extras.empty()) {
         return refuse(
             console, unknownWordSentence(*chosen.front(), "hashphase " + chosen.front()->get_name(),
                                          extras.front()));
@@ -130,7 +137,7 @@ int runSingleCommand(const std::vector<std::string>& arguments, const Subcommand
     if (const std::optional<int> ended = parse(app, arguments, console)) {
         return *ended;
     }
-    if (const std::vector<std::string> extras = app.remaining(); !extras.empty()) {
+    if (const std::vector<std::string> extras = extrasOf(app); !extras.empty()) {
         return refuse(console, unknownWordSentence(app, command.name, extras.front()));
     }
     return runGuarded(command, console);

@@ -24,9 +24,9 @@ class WatchedSweep : public Sweep {
 public:
     using Sweep::Sweep;
 
-    btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax, int shapeType,
-                                   void* userPtr, int collisionFilterGroup, int collisionFilterMask,
-                                   btDispatcher* dispatcher) override {
+    btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
+                                   int shapeType, void* userPtr, int collisionFilterGroup,
+                                   int collisionFilterMask, btDispatcher* dispatcher) override {
         countObjects(1);
         return Sweep::createProxy(aabbMin, aabbMax, shapeType, userPtr, collisionFilterGroup,
                                   collisionFilterMask, dispatcher);
@@ -61,9 +61,9 @@ class TakenSweep : public Sweep {
 public:
     using Sweep::Sweep;
 
-    btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax, int shapeType,
-                                   void* userPtr, int collisionFilterGroup, int collisionFilterMask,
-                                   btDispatcher* dispatcher) override {
+    btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
+                                   int shapeType, void* userPtr, int collisionFilterGroup,
+                                   int collisionFilterMask, btDispatcher* dispatcher) override {
         return taken().createProxy(aabbMin, aabbMax, shapeType, userPtr, collisionFilterGroup,
                                    collisionFilterMask, dispatcher);
     }
@@ -93,8 +93,7 @@ public:
 
     /// Puts `trees` beside the sweep, as its constructor would have, for its destructor to destroy.
     void take(btDbvtBroadphase* trees) {
-        this->m_nullPairCache =
-            new (btAlignedAlloc(sizeof(btNullPairCache), 16)) btNullPairCache();
+        this->m_nullPairCache = new (btAlignedAlloc(sizeof(btNullPairCache), 16)) btNullPairCache();
         this->m_raycastAccelerator = trees;
     }
 
@@ -153,8 +152,9 @@ void constructSweep(SweepConstructor<Sweep, Handle>* stock, Sweep* sweep, const 
 using namespace hashphase::tryout;
 
 // Neither class has virtual bases, so the constructors of whole objects (C1) and of bases (C2) are the same.
-#define HASHPHASE_SWEEP16(kind) "_ZN12btAxisSweep3" kind "ERK9btVector3S2_tP22btOverlappingPairCacheb"
-#define HASHPHASE_SWEEP32(kind) \
+#define HASHPHASE_SWEEP16(kind)                                                                    \
+    "_ZN12btAxisSweep3" kind "ERK9btVector3S2_tP22btOverlappingPairCacheb"
+#define HASHPHASE_SWEEP32(kind)                                                                    \
     "_ZN17bt32BitAxisSweep3" kind "ERK9btVector3S2_jP22btOverlappingPairCacheb"
 
 extern "C" {

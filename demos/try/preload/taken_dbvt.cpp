@@ -154,7 +154,9 @@ void btDbvtBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
     }
 }
 
-btOverlappingPairCache* btDbvtBroadphase::getOverlappingPairCache() { return m_paircache; }
+btOverlappingPairCache* btDbvtBroadphase::getOverlappingPairCache() {
+    return m_paircache;
+}
 const btOverlappingPairCache* btDbvtBroadphase::getOverlappingPairCache() const {
     return m_paircache;
 }
@@ -167,7 +169,9 @@ void btDbvtBroadphase::getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax)
     }
 }
 
-void btDbvtBroadphase::printStats() { stockDbvt().printStats(this); }
+void btDbvtBroadphase::printStats() {
+    stockDbvt().printStats(this);
+}
 
 void btDbvtBroadphase::resetPool(btDispatcher* dispatcher) {
     if (btBroadphaseInterface* taken = takenFrom(*this)) {

@@ -226,7 +226,8 @@ void VerifiedBroadphase::compare() {
     Verification& verification = into->verification;
     btOverlappingPairCache& cache = *ours_.getOverlappingPairCache();
     const std::vector<Couple> exact = findOverlapping();
-    const std::vector<Couple> ours = couplesOf(cache, [](btBroadphaseProxy* proxy) { return proxy; });
+    const std::vector<Couple> ours =
+        couplesOf(cache, [](btBroadphaseProxy* proxy) { return proxy; });
     const std::vector<Couple> stock = couplesOf(stock_->cache(), programs);
 
     verification.calculations.fetch_add(1);

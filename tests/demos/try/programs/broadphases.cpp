@@ -104,8 +104,8 @@ int bareBroadphase() {
     int clients[100] = {};
     for (int i = 0; i < 100; ++i) {
         const btVector3 low(btScalar(i), 0, 0);
-        proxies.push_back(broadphase.createProxy(low, low + btVector3(1.5, 1, 1), BOX_SHAPE_PROXYTYPE,
-                                                 &clients[i], 1, -1, nullptr));
+        proxies.push_back(broadphase.createProxy(low, low + btVector3(1.5, 1, 1),
+                                                 BOX_SHAPE_PROXYTYPE, &clients[i], 1, -1, nullptr));
     }
     broadphase.calculateOverlappingPairs(nullptr);
     say("pairs in a row", broadphase.getOverlappingPairCache()->getNumOverlappingPairs());
@@ -155,13 +155,6 @@ int ownProfiler() {
     return 0;
 }
 
-// A broadphase that is none of those that are taken over.
-int simpleBroadphase() {
-    Scene<btSimpleBroadphase> scene;
-    dropBoxes(scene);
-    return 0;
-}
-
 }  // namespace
 
 const std::vector<Program>& broadphasePrograms() {
@@ -173,8 +166,7 @@ const std::vector<Program>& broadphasePrograms() {
                                            {"fields-written", fieldsWritten},
                                            {"derived-broadphase", derivedBroadphase},
                                            {"bare-broadphase", bareBroadphase},
-                                           {"own-profiler", ownProfiler},
-                                           {"simple-broadphase", simpleBroadphase}};
+                                           {"own-profiler", ownProfiler}};
     return list;
 }
 

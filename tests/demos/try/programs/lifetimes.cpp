@@ -81,7 +81,8 @@ int helloWorld() {
     auto* solver = new btSequentialImpulseConstraintSolver();
     auto* world = new btDiscreteDynamicsWorld(dispatcher, broadphase, solver, configuration);
     Things things;
-    world->addRigidBody(things.body(things.shape<btBoxShape>(btVector3(50, 50, 50)), 0, {0, -50, 0}));
+    world->addRigidBody(
+        things.body(things.shape<btBoxShape>(btVector3(50, 50, 50)), 0, {0, -50, 0}));
     btRigidBody* ball = things.body(things.shape<btSphereShape>(btScalar(1)), 1, {2, 10, 0});
     world->addRigidBody(ball);
     for (int i = 0; i < 150; ++i) {
@@ -142,28 +143,13 @@ int forks() {
     return 0;
 }
 
-int failing() {
-    makeScene(1)->step(5);
-    return 3;
-}
-
-int crashing() {
-    const std::unique_ptr<Scene<>> scene = makeScene(1);
-    scene->step(5);
-    std::abort();
-}
-
 }  // namespace
 
 const std::vector<Program>& lifetimePrograms() {
-    static const std::vector<Program> list{{"several-worlds", severalWorlds},
-                                           {"churn", churn},
-                                           {"hello-world", helloWorld},
-                                           {"cache-goes-first", cacheGoesFirst},
-                                           {"exit-anyhow", exitAnyhow},
-                                           {"forks", forks},
-                                           {"failing", failing},
-                                           {"crashing", crashing}};
+    static const std::vector<Program> list{
+        {"several-worlds", severalWorlds}, {"churn", churn},
+        {"hello-world", helloWorld},       {"cache-goes-first", cacheGoesFirst},
+        {"exit-anyhow", exitAnyhow},       {"forks", forks}};
     return list;
 }
 

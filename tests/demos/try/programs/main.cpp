@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 
-// stock_programs NAME: runs a program; without a name, lists them.
+//     stock-programs NAME     runs that program
+//     stock-programs          lists all but the misfits
 
 #include "program.hpp"
 
@@ -19,10 +20,9 @@ btRigidBody* Things::body(btCollisionShape* shape, btScalar mass, const btVector
     if (mass > 0) {
         shape->calculateLocalInertia(mass, inertia);
     }
-    states_.push_back(std::make_unique<btDefaultMotionState>(
-        btTransform(btQuaternion::getIdentity(), place)));
-    bodies.push_back(
-        std::make_unique<btRigidBody>(mass, states_.back().get(), shape, inertia));
+    states_.push_back(
+        std::make_unique<btDefaultMotionState>(btTransform(btQuaternion::getIdentity(), place)));
+    bodies.push_back(std::make_unique<btRigidBody>(mass, states_.back().get(), shape, inertia));
     return bodies.back().get();
 }
 
@@ -34,19 +34,30 @@ int countNear(const Things& things, const btVector3& place, btScalar distance) {
     return count;
 }
 
-}  // namespace programs
-
-int main(int argc, char** argv) {
-    using namespace programs;
+int run(const std::string& name) {
     for (const auto* list : {&rigidBodyPrograms(), &broadphasePrograms(), &queryPrograms(),
-                             &softBodyPrograms(), &lifetimePrograms()}) {
+                             &softBodyPrograms(), &lifetimePrograms(), &misfitPrograms()}) {
         for (const Program& program : *list) {
-            if (argc < 2) {
-                std::puts(program.name.c_str());
-            } else if (program.name == argv[1]) {
+            if (program.name == name) {
                 return program.run();
             }
         }
     }
-    return argc < 2 ? 0 : 2;
+    return 2;
+}
+
+}  // namespace programs
+
+int main(int argc, char** argv) {
+    using namespace programs;
+    if (argc == 2) {
+        return run(argv[1]);
+    }
+    for (const auto* list : {&rigidBodyPrograms(), &broadphasePrograms(), &queryPrograms(),
+                             &softBodyPrograms(), &lifetimePrograms()}) {
+        for (const Program& program : *list) {
+            std::puts(program.name.c_str());
+        }
+    }
+    return 0;
 }

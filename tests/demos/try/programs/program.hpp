@@ -25,6 +25,12 @@ const std::vector<Program>& queryPrograms();
 const std::vector<Program>& softBodyPrograms();
 const std::vector<Program>& lifetimePrograms();
 
+/// Those that go wrong, or on for ever: what is said of them is tested, not their outcome.
+const std::vector<Program>& misfitPrograms();
+
+/// Runs the program of that name.
+int run(const std::string& name);
+
 /// Says `name = value`, with as many digits as the float of either precision is good for after some seconds
 /// of physics.
 void say(const char* name, double value);

@@ -51,6 +51,7 @@ int contactTests() {
     for (int i = 0; i < 27; ++i) {
         scene.add(box, 0, {btScalar(i % 3 * 3), btScalar(i / 3 % 3 * 3), btScalar(i / 9 * 3)});
     }
+    scene.step(1);
     btSphereShape sphere(3);
     btCollisionObject probe;
     probe.setCollisionShape(&sphere);
@@ -121,7 +122,8 @@ int filterCallback() {
     int wrong = 0;
     for (int i = 0; i < scene.dispatcher.getNumManifolds(); ++i) {
         const btPersistentManifold* manifold = scene.dispatcher.getManifoldByIndexInternal(i);
-        wrong += manifold->getBody0()->getUserIndex() == manifold->getBody1()->getUserIndex() ? 1 : 0;
+        wrong +=
+            manifold->getBody0()->getUserIndex() == manifold->getBody1()->getUserIndex() ? 1 : 0;
     }
     say("of one colour", wrong);
     return 0;

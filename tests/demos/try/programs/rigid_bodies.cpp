@@ -2,9 +2,9 @@
 
 #include "program.hpp"
 
+#include <BulletCollision/CollisionDispatch/btGhostObject.h>
 #include <BulletDynamics/Character/btKinematicCharacterController.h>
 #include <BulletDynamics/Dynamics/btSimpleDynamicsWorld.h>
-#include <BulletCollision/CollisionDispatch/btGhostObject.h>
 
 namespace programs {
 namespace {
@@ -13,7 +13,8 @@ void addWall(Scene<>& scene, int width, int height) {
     auto* brick = scene.things.shape<btBoxShape>(btVector3(0.5, 0.25, 0.25));
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
-            scene.add(brick, 1, {btScalar(x) + (y % 2) * btScalar(0.5), btScalar(0.25 + y * 0.5), 0});
+            scene.add(brick, 1,
+                      {btScalar(x) + (y % 2) * btScalar(0.5), btScalar(0.25 + y * 0.5), 0});
         }
     }
 }
@@ -34,8 +35,9 @@ int pile() {
         scene.things.shape<btCapsuleShape>(btScalar(0.3), btScalar(0.6)),
         scene.things.shape<btCylinderShape>(btVector3(0.4, 0.5, 0.4))};
     for (int i = 0; i < 200; ++i) {
-        scene.add(shapes[i % 4], 1,
-                  {btScalar(i % 5 - 2) * btScalar(1.1), btScalar(1 + i / 25), btScalar(i / 5 % 5 - 2)});
+        scene.add(
+            shapes[i % 4], 1,
+            {btScalar(i % 5 - 2) * btScalar(1.1), btScalar(1 + i / 25), btScalar(i / 5 % 5 - 2)});
     }
     scene.step(200);
     say("in the pit", countNear(scene.things, {0, 2, 0}, 8) - 4);
@@ -134,7 +136,8 @@ int vehicle() {
     scene.world.addAction(&car);
     for (const btScalar z : {btScalar(1.5), btScalar(-1.5)}) {
         for (const btScalar x : {btScalar(-1), btScalar(1)}) {
-            car.addWheel({x, 0, z}, {0, -1, 0}, {-1, 0, 0}, btScalar(0.6), btScalar(0.4), tuning, z > 0);
+            car.addWheel({x, 0, z}, {0, -1, 0}, {-1, 0, 0}, btScalar(0.6), btScalar(0.4), tuning,
+                         z > 0);
         }
     }
     for (int i = 0; i < 180; ++i) {
@@ -189,8 +192,9 @@ int ghostZone() {
     zone.setCollisionShape(&box);
     zone.setWorldTransform(btTransform(btQuaternion::getIdentity(), {0, 10, 0}));
     zone.setCollisionFlags(zone.getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
-    scene.world.addCollisionObject(&zone, btBroadphaseProxy::SensorTrigger,
-                                   btBroadphaseProxy::AllFilter & ~btBroadphaseProxy::SensorTrigger);
+    scene.world.addCollisionObject(
+        &zone, btBroadphaseProxy::SensorTrigger,
+        btBroadphaseProxy::AllFilter & ~btBroadphaseProxy::SensorTrigger);
     auto* sphere = scene.things.shape<btSphereShape>(btScalar(0.2));
     for (int i = 0; i < 9; ++i) {
         scene.add(sphere, 1, {btScalar(i % 3 - 1), btScalar(14 + i / 3 * 2), 0});

@@ -28,8 +28,7 @@ int cloth() {
     btSoftRigidDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
     world.setGravity({0, -10, 0});
     world.getWorldInfo().m_gravity.setValue(0, -10, 0);
-    btRigidBody* box =
-        things.body(things.shape<btBoxShape>(btVector3(2, 2, 2)), 0, {0, 2, 0});
+    btRigidBody* box = things.body(things.shape<btBoxShape>(btVector3(2, 2, 2)), 0, {0, 2, 0});
     world.addRigidBody(box);
     btSoftBody* sheet = btSoftBodyHelpers::CreatePatch(
         world.getWorldInfo(), {-4, 6, -4}, {4, 6, -4}, {-4, 6, 4}, {4, 6, 4}, 17, 17, 0, true);
@@ -61,21 +60,28 @@ int deformable() {
                                              &bodySolver);
     world.setGravity({0, -10, 0});
     world.getWorldInfo().m_gravity.setValue(0, -10, 0);
+    world.getWorldInfo().m_sparsesdf.setDefaultVoxelsz(btScalar(0.25));
+    world.getWorldInfo().m_sparsesdf.Reset();
     btRigidBody* ground =
         things.body(things.shape<btBoxShape>(btVector3(10, 1, 10)), 0, {0, -1, 0});
     world.addRigidBody(ground);
     btSoftBody* sheet = btSoftBodyHelpers::CreatePatch(
         world.getWorldInfo(), {-2, 2, -2}, {2, 2, -2}, {-2, 2, 2}, {2, 2, 2}, 9, 9, 0, true);
     sheet->setTotalMass(1);
-    sheet->m_cfg.collisions = btSoftBody::fCollision::SDF_RD;
+    sheet->m_cfg.kKHR = 1;
+    sheet->m_cfg.kCHR = 1;
+    sheet->m_cfg.kDF = 1;
+    sheet->m_cfg.collisions = btSoftBody::fCollision::SDF_RD | btSoftBody::fCollision::SDF_RDN;
+    sheet->getCollisionShape()->setMargin(btScalar(0.1));
     world.addSoftBody(sheet);
     btDeformableMassSpringForce springs(10, btScalar(0.1));
     btDeformableGravityForce gravity({0, -10, 0});
     world.addForce(sheet, &springs);
     world.addForce(sheet, &gravity);
-    for (int i = 0; i < 60; ++i) {
-        world.stepSimulation(btScalar(1) / 60, 0);
+    for (int i = 0; i < 120; ++i) {
+        world.stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 240);
     }
+    say("height", sheet->m_nodes[40].m_x.y());
     say("sheet is above the ground", sheet->m_nodes[40].m_x.y() > btScalar(-0.5) ? 1 : 0);
     world.removeForce(sheet, &springs);
     world.removeForce(sheet, &gravity);
@@ -93,8 +99,7 @@ int multibody() {
     btMultiBodyConstraintSolver solver;
     btMultiBodyDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
     world.setGravity({0, -10, 0});
-    btRigidBody* wall =
-        things.body(things.shape<btBoxShape>(btVector3(0.5, 5, 5)), 0, {-3, 0, 0});
+    btRigidBody* wall = things.body(things.shape<btBoxShape>(btVector3(0.5, 5, 5)), 0, {-3, 0, 0});
     world.addRigidBody(wall);
     constexpr int kLinks = 5;
     auto* chain = new btMultiBody(kLinks, 1, {1, 1, 1}, true, false);

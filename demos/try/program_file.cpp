@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/try/program_file.hpp>
+
+#include <demos/console/quoted_word.hpp>
+#include <demos/scenes/input_error.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <sstream>
+#include <string_view>
+
+#include <elf.h>
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace hashphase::demos {
+namespace {
+
+constexpr const char* kCollisionLibrary = "libBulletCollision";
+
+bool isExecutable(const std::filesystem::path& path) {
+    std::error_code error;
+    return std::filesystem::is_regular_file(path, error) && access(path.c_str(), X_OK) == 0;
+}
+
+// --- The ELF file --------------------------------------------------------------------------------
+
+#if defined(__x86_64__)
+constexpr Elf64_Half kMachine = EM_X86_64;
+#elif defined(__aarch64__)
+constexpr Elf64_Half kMachine = EM_AARCH64;
+#else
+constexpr Elf64_Half kMachine = EM_NONE;
+#endif
+
+template <class Plain>
+bool readAt(std::ifstream& file, std::uint64_t offset, Plain& into) {
+    file.seekg(static_cast<std::streamoff>(offset));
+    return static_cast<bool>(file.read(reinterpret_cast<char*>(&into), sizeof(into)));
+}
+
+// The dynamic loader that the program asks for; nothing where it asks for none.
+std::optional<std::string> interpreterOf(std::ifstream& file, const Elf64_Ehdr& header) {
+    for (std::uint64_t i = 0; i < header.e_phnum; ++i) {
+        Elf64_Phdr part{};
+        if (!readAt(file, header.e_phoff + i * header.e_phentsize, part)) {
+            return std::nullopt;
+        }
+        constexpr std::uint64_t kLongestPath = 4096;
+        if (part.p_type == PT_INTERP && part.p_filesz < kLongestPath) {
+            std::string path(part.p_filesz, '\0');
+            file.seekg(static_cast<std::streamoff>(part.p_offset));
+            file.read(path.data(), static_cast<std::streamsize>(path.size()));
+            return file ? std::optional(std::string(path.c_str())) : std::nullopt;
+        }
+    }
+    return std::nullopt;
+}
+
+// --- What is loaded ------------------------------------------------------------------------------
+
+struct Output {
+    int status = -1;
+    std::string text;
+};
+
+// Both streams of a program that needs no input.
+Output outputOf(std::vector<std::string> words) {
+    std::vector<char*> pointers;
+    for (std::string& word : words) {
+        pointers.push_back(word.data());
+    }
+    pointers.push_back(nullptr);
+    std::array<int, 2> ends{};
+    if (pipe2(ends.data(), O_CLOEXEC) != 0) {
+        return {};
+    }
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
+    pid_t child = 0;
+    const int error = posix_spawn(&child, pointers[0], &actions, nullptr, pointers.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    close(ends[1]);
+    Output output;
+    std::array<char, 4096> buffer{};
+    for (ssize_t count = 0; (count = read(ends[0], buffer.data(), buffer.size())) > 0;) {
+        output.text.append(buffer.data(), static_cast<std::size_t>(count));
+    }
+    close(ends[0]);
+    int status = 0;
+    if (error == 0 && waitpid(child, &status, 0) == child && WIFEXITED(status)) {
+        output.status = WEXITSTATUS(status);
+    }
+    return output;
+}
+
+// A line such as "\tlibm.so.6 => /lib/x86_64-linux-gnu/libm.so.6 (0x00007f9a)".
+std::optional<SharedLibrary> libraryOf(const std::string& line) {
+    std::istringstream words(line);
+    SharedLibrary library;
+    std::string arrow;
+    std::string place;
+    if (!(words >> library.name >> arrow) || arrow != "=>") {
+        return std::nullopt;
+    }
+    words >> place;
+    if (place.starts_with('/')) {
+        library.path = place;
+    }
+    return library;
+}
+
+BulletPrecision precisionOf(const SharedLibrary& bullet) {
+    // The constructor of a capsule takes two numbers, so that its name tells them.
+    return fileContains(bullet.path, "_ZN14btCapsuleShapeC1Edd") ? BulletPrecision::kDouble
+                                                                 : BulletPrecision::kSingle;
+}
+
+// Bullet's code in the program, or in a library of its own, as its type's name tells.
+std::string placeOfStaticBullet(const std::string& path,
+                                const std::vector<SharedLibrary>& libraries) {
+    const std::string typeName = "16btDbvtBroadphase";
+    if (fileContains(path, typeName)) {
+        return path;
+    }
+    for (const SharedLibrary& library : libraries) {
+        if (fileContains(library.path, typeName)) {
+            return library.path;
+        }
+    }
+    return {};
+}
+
+std::string alternatives(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) {
+        text += (text.empty() ? "" : " or ") + name;
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string findProgram(const std::string& word) {
+    if (word.find('/') != std::string::npos) {
+        if (!isExecutable(word)) {
+            throw InputError(quotedWord(word) + " is no program that can be run");
+        }
+        return word;
+    }
+    const char* path = std::getenv("PATH");
+    std::istringstream folders(path != nullptr ? path : "");
+    for (std::string folder; std::getline(folders, folder, ':');) {
+        const std::filesystem::path file = std::filesystem::path(folder) / word;
+        if (isExecutable(file)) {
+            return file.string();
+        }
+    }
+    throw InputError(quotedWord(word) + " was not found in PATH" +
+                     (isExecutable(word) ? "; did you mean ./" + word + "?" : ""));
+}
+
+bool fileContains(const std::string& path, const std::string& bytes) {
+    std::ifstream file(path, std::ios::binary);
+    const std::string content{std::istreambuf_iterator<char>(file), {}};
+    return content.find(bytes) != std::string::npos;
+}
+
+std::string loaderOf(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    Elf64_Ehdr header{};
+    const bool isWhole = readAt(file, 0, header);
+    if (header.e_ident[0] == '#' && header.e_ident[1] == '!') {
+        throw InputError(path +
+                         " is a script; name the program that it starts, or what runs it, with "
+                         "--precision");
+    }
+    if (!isWhole || !std::equal(ELFMAG, ELFMAG + SELFMAG, header.e_ident) ||
+        header.e_ident[EI_CLASS] != ELFCLASS64 || header.e_machine != kMachine) {
+        throw InputError(path + " is no 64-bit program for this machine");
+    }
+    const std::optional<std::string> loader = interpreterOf(file, header);
+    if (!loader) {
+        throw InputError(path + " is linked statically as a whole: nothing can be loaded into it");
+    }
+    return *loader;
+}
+
+std::vector<SharedLibrary> sharedLibrariesOf(const std::string& path, const std::string& loader) {
+    const Output output = outputOf({loader, "--list", path});
+    std::vector<SharedLibrary> libraries;
+    std::istringstream lines(output.text);
+    for (std::string line; std::getline(lines, line);) {
+        if (const std::optional<SharedLibrary> library = libraryOf(line)) {
+            libraries.push_back(*library);
+        }
+    }
+    if (output.status != 0) {
+        throw InputError(path + " cannot be loaded: " +
+                         printable(output.text.substr(0, output.text.find('\n'))));
+    }
+    return libraries;
+}
+
+TriedProgram inspectProgram(const std::string& path, const std::vector<std::string>& ownBullets,
+                            bool loadsBulletLater) {
+    const std::vector<SharedLibrary> libraries = sharedLibrariesOf(path, loaderOf(path));
+    const auto bullet = std::find_if(
+        libraries.begin(), libraries.end(),
+        [](const SharedLibrary& library) { return library.name.starts_with(kCollisionLibrary); });
+    if (bullet == libraries.end()) {
+        if (loadsBulletLater) {
+            return {path, "", BulletPrecision::kSingle};
+        }
+        const std::string holder = placeOfStaticBullet(path, libraries);
+        throw InputError(
+            holder.empty()
+                ? path +
+                      " links no Bullet; if it loads Bullet as it runs, name its "
+                      "precision by --precision"
+                : "Bullet is linked statically into " + holder +
+                      ", where its broadphase cannot be taken over; link Bullet's shared "
+                      "libraries, or swap the broadphase in the source");
+    }
+    if (bullet->path.empty()) {
+        throw InputError(path + " cannot be loaded: " + bullet->name + " was not found");
+    }
+    if (std::find(ownBullets.begin(), ownBullets.end(), bullet->name) == ownBullets.end()) {
+        throw InputError(path + " links " + bullet->name + ", and this hashphase was built with " +
+                         alternatives(ownBullets) +
+                         ": build hashphase with the Bullet of the program");
+    }
+    return {path, bullet->name, precisionOf(*bullet)};
+}
+
+}  // namespace hashphase::demos

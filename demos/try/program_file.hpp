@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What a program on disk is, as far as it decides whether its broadphase can be taken over: the file of an
+// ELF program, and what the dynamic loader would load for it.
+
+#include <string>
+#include <vector>
+
+namespace hashphase::demos {
+
+enum class BulletPrecision { kSingle, kDouble };
+
+/// A program that loads Bullet as a shared library.
+struct TriedProgram {
+    std::string path;  // of the file
+    std::string
+        bullet;  // "libBulletCollision.so.3.24"; empty: it loads Bullet as it runs, if at all
+    BulletPrecision precision = BulletPrecision::kSingle;
+};
+
+/// The file that the shell would run for that word: itself with a slash, else from PATH. Throws InputError.
+[[nodiscard]] std::string findProgram(const std::string& word);
+
+/// Whether the file contains these bytes. False where it cannot be read.
+[[nodiscard]] bool fileContains(const std::string& path, const std::string& bytes);
+
+struct SharedLibrary {
+    std::string name;  // "libm.so.6"
+    std::string path;  // empty: not found
+};
+
+/// The dynamic loader that the program asks for. Throws InputError, a sentence, for what is no program of this
+/// machine, or is linked statically.
+[[nodiscard]] std::string loaderOf(const std::string& path);
+
+/// What that loader would load for a program or library, in its order. Throws InputError where it cannot.
+[[nodiscard]] std::vector<SharedLibrary> sharedLibrariesOf(const std::string& path,
+                                                           const std::string& loader);
+
+/// Looks at the program, whose Bullet has to be the one that hashphase was built with: one of `ownBullets`, by
+/// their names. Throws InputError, a sentence that says why it cannot be taken over. `loadsBulletLater`: does
+/// not ask for a Bullet.
+[[nodiscard]] TriedProgram inspectProgram(const std::string& path,
+                                          const std::vector<std::string>& ownBullets,
+                                          bool loadsBulletLater);
+
+}  // namespace hashphase::demos

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/try/try_command.hpp>
+
+#include <demos/console/option_checks.hpp>
+#include <demos/try/try.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <map>
+#include <memory>
+
+namespace hashphase::demos {
+namespace {
+
+void declare(CLI::App& app, TryOptions& options) {
+    app.add_option("program", options.words,
+                   "after --, the program and its arguments: it links Bullet's shared libraries")
+        ->type_name("");
+    CLI::Option* verify = app.add_flag(
+        "--verify", options.verify,
+        "one run with ours at work and Bullet's beside it: compare the pairs of both with the "
+        "exact ones in every step");
+    app.add_option("--runs", options.runs, "so many runs with each broadphase, by turns")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 1000))
+        ->excludes(verify);
+    app.add_option("--steps", options.steps, "end the program after so many steps")
+        ->check(CLI::Range(std::uint32_t{1}, tryout::Record::kMaxRows));
+    app.add_option("--seconds", options.seconds, "end the program after so many seconds")
+        ->check(positiveSecondsFault);
+    app.add_option("--precision", options.precision,
+                   "of the Bullet that the program loads as it runs: single or double")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, BulletPrecision>{
+            {"single", BulletPrecision::kSingle}, {"double", BulletPrecision::kDouble}}))
+        ->type_name("single|double");
+    app.add_option("--json", options.jsonFile, "write everything measured to this file");
+    app.add_flag("--quiet", options.quiet, "say nothing but the results");
+}
+
+}  // namespace
+
+Subcommand tryCommand() {
+    auto options = std::make_shared<TryOptions>();
+    Subcommand command;
+    command.name = "try";
+    command.description =
+        "Run a program of yours, as it is, with Bullet's broadphase and with ours, and compare";
+    command.declareOptions = [options](CLI::App& app) { declare(app, *options); };
+    command.run = [options](Console& console) { return runTry(*options, console); };
+    return command;
+}
+
+}  // namespace hashphase::demos

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Zlib
+
+#include "program.hpp"
+
+#include <cstdlib>
+
+namespace programs {
+namespace {
+
+void addPile(Scene<>& scene) {
+    scene.addGround();
+    auto* box = scene.things.shape<btBoxShape>(btVector3(0.5, 0.5, 0.5));
+    for (int i = 0; i < 20; ++i) {
+        scene.add(box, 1, {btScalar(i % 5 * 2), btScalar(1 + i / 5), 0});
+    }
+}
+
+int failing() {
+    Scene<> scene;
+    addPile(scene);
+    scene.step(5);
+    return 3;
+}
+
+int crashing() {
+    Scene<> scene;
+    addPile(scene);
+    scene.step(5);
+    std::abort();
+}
+
+int endless() {
+    Scene<> scene;
+    addPile(scene);
+    for (;;) {
+        scene.step(1);
+    }
+}
+
+// Relies on the class of the pair cache, which another broadphase need not have.
+int castsCache() {
+    Scene<> scene;
+    const auto* cache = dynamic_cast<const btHashedOverlappingPairCache*>(
+        scene.broadphase.getOverlappingPairCache());
+    scene.step(1);
+    return cache != nullptr ? 0 : 4;
+}
+
+// Takes pairs out of the cache, and puts others into it, behind the broadphase's back.
+int tampering() {
+    Scene<> scene;
+    addPile(scene);
+    btOverlappingPairCache* cache = scene.broadphase.getOverlappingPairCache();
+    scene.step(1);
+    btBroadphaseProxy* first = scene.things.bodies[1]->getBroadphaseHandle();
+    btBroadphaseProxy* above = scene.things.bodies[6]->getBroadphaseHandle();
+    btBroadphaseProxy* far = scene.things.bodies[5]->getBroadphaseHandle();
+    cache->removeOverlappingPair(first, above, &scene.dispatcher);
+    cache->addOverlappingPair(first, far);
+    scene.step(1);
+    return 0;
+}
+
+// Changes a group without a word to the broadphase, while nothing moves.
+int changesGroup() {
+    Scene<> scene;
+    scene.world.setGravity({0, 0, 0});
+    auto* box = scene.things.shape<btBoxShape>(btVector3(0.5, 0.5, 0.5));
+    btRigidBody* body = scene.things.body(box, 0, {0, 0, 0});
+    scene.world.addRigidBody(body, 2, 0);
+    scene.add(box, 1, {0, btScalar(0.9), 0});
+    scene.step(1);
+    scene.things.bodies[1]->setActivationState(DISABLE_SIMULATION);
+    scene.step(1);
+    body->getBroadphaseHandle()->m_collisionFilterMask = -1;
+    scene.step(3);
+    return 0;
+}
+
+// Two broadphases, one of which is none of those that are taken over.
+int mixed() {
+    Scene<> scene;
+    addPile(scene);
+    Scene<btSimpleBroadphase> other;
+    other.add(other.things.shape<btSphereShape>(btScalar(1)), 1, {0, 0, 0});
+    for (int i = 0; i < 10; ++i) {
+        scene.step(1);
+        other.step(1);
+    }
+    return 0;
+}
+
+// A broadphase that is none of those that are taken over.
+int simpleBroadphase() {
+    Scene<btSimpleBroadphase> scene;
+    scene.add(scene.things.shape<btSphereShape>(btScalar(1)), 1, {0, 0, 0});
+    scene.step(10);
+    return 0;
+}
+
+}  // namespace
+
+const std::vector<Program>& misfitPrograms() {
+    static const std::vector<Program> list{
+        {"failing", failing},     {"crashing", crashing},
+        {"endless", endless},     {"casts-cache", castsCache},
+        {"tampering", tampering}, {"changes-group", changesGroup},
+        {"mixed", mixed},         {"simple-broadphase", simpleBroadphase}};
+    return list;
+}
+
+}  // namespace programs

@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: Zlib
+
+// `hashphase try`, on programs that are compiled with Bullet's headers and know nothing of hashphase.
+
+#include <demos/console/program.hpp>
+#include <demos/try/try_report.hpp>
+#include <tests/support/temporary_folder.hpp>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cctype>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <sys/wait.h>
+
+namespace hashphase::demos {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Output {
+    int status = -1;
+    std::string out;
+    std::string err;
+};
+
+/// What the shell makes of the command.
+Output runCommand(const std::string& command, const TemporaryFolder& folder) {
+    Output output;
+    std::FILE* pipe = popen((command + " 2>" + folder.file("err")).c_str(), "r");
+    for (int byte = 0; (byte = std::fgetc(pipe)) != EOF;) {
+        output.out += static_cast<char>(byte);
+    }
+    const int status = pclose(pipe);
+    output.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    std::stringstream err;
+    err << std::ifstream(folder.file("err")).rdbuf();
+    output.err = err.str();
+    return output;
+}
+
+Output runCommand(const std::string& command) {
+    return runCommand(command, TemporaryFolder());
+}
+
+std::string stock(const std::string& file) {
+    return std::string(HASHPHASE_STOCK_FOLDER) + "/" + file;
+}
+
+Output tryProgram(const std::string& arguments, const TemporaryFolder& folder = {}) {
+    return runCommand(std::string(HASHPHASE_PROGRAM) + " try " + arguments, folder);
+}
+
+/// The outcome of `try`, and what it has written as JSON.
+std::pair<Output, Json> measure(const std::string& options, const std::string& program) {
+    const TemporaryFolder folder;
+    const std::string file = folder.file("try.json");
+    Output output = runCommand(std::string(HASHPHASE_PROGRAM) + " try --quiet " + options +
+                                   " --json " + file + " -- " + program,
+                               folder);
+    return {output, Json::parse(std::ifstream(file), nullptr, false)};
+}
+
+std::size_t countOf(const std::string& text, const std::string& part) {
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; ++at) {
+        ++count;
+    }
+    return count;
+}
+
+bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+// --- Programs of all kinds -----------------------------------------------------------------------
+
+class TriedProgramTest : public testing::TestWithParam<std::tuple<std::string, std::string>> {
+protected:
+    void SetUp() override {
+        if (!std::filesystem::exists(program())) {
+            GTEST_SKIP() << program() << " was not built";
+        }
+    }
+    [[nodiscard]] static std::string program() { return stock(std::get<0>(GetParam())); }
+    [[nodiscard]] static std::string call() { return program() + " " + std::get<1>(GetParam()); }
+};
+
+const std::vector<std::string> kPrograms{"pile",
+                                         "wall",
+                                         "hinged-door",
+                                         "spheres-on-terrain",
+                                         "bullets-with-ccd",
+                                         "vehicle",
+                                         "character",
+                                         "ghost-zone",
+                                         "simple-world",
+                                         "sweep-16",
+                                         "sweep-32",
+                                         "sweep-without-trees",
+                                         "own-cache",
+                                         "sorted-cache",
+                                         "fields-written",
+                                         "derived-broadphase",
+                                         "bare-broadphase",
+                                         "own-profiler",
+                                         "rays-from-ticks",
+                                         "contact-tests",
+                                         "collision-world",
+                                         "filter-callback",
+                                         "cloth",
+                                         "deformable",
+                                         "multibody",
+                                         "several-worlds",
+                                         "churn",
+                                         "hello-world",
+                                         "cache-goes-first",
+                                         "exit-anyhow",
+                                         "forks"};
+
+TEST_P(TriedProgramTest, HasTheSameOutcomeUnderVerification) {
+    const Output plain = runCommand(call());
+    ASSERT_EQ(plain.status, 0);
+    ASSERT_FALSE(plain.out.empty());
+    const auto [output, json] = measure("--verify", call());
+    EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
+    EXPECT_EQ(output.out.rfind(plain.out, 0), 0U)
+        << "before: " << plain.out << "now: " << output.out;
+    ASSERT_TRUE(json.is_object());
+    const Json& verification = json["verification"];
+    EXPECT_GT(verification["calculations"], 0) << output.out;
+    EXPECT_EQ(verification["missing"], 0) << output.out;
+    EXPECT_EQ(verification["extra"], 0) << output.out;
+    EXPECT_EQ(verification["bulletMissing"], 0) << output.out;
+}
+
+TEST_P(TriedProgramTest, HasTheSameOutcomeWithEitherBroadphase) {
+    const Output plain = runCommand(call());
+    const auto [output, json] = measure("", call());
+    EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
+    EXPECT_EQ(countOf(output.out, plain.out), 2U) << "before: " << plain.out << output.out;
+    ASSERT_TRUE(json.is_object());
+    ASSERT_EQ(json["runs"].size(), 2U);
+    EXPECT_EQ(json["runs"][0]["steps"].size(), json["runs"][1]["steps"].size());
+    EXPECT_EQ(json["runs"][0]["dbvts"], json["runs"][1]["dbvts"]);
+    EXPECT_EQ(json["runs"][0]["axisSweeps"], json["runs"][1]["axisSweeps"]);
+    for (const Json& step : json["runs"][1]["steps"]) {
+        if (!step["overlappingPairs"].is_null()) {
+            EXPECT_EQ(step["overlappingPairs"], step["pairs"]);
+        }
+    }
+}
+
+std::string nameOf(const testing::TestParamInfo<TriedProgramTest::ParamType>& info) {
+    std::string name = std::get<1>(info.param);
+    for (char& letter : name) {
+        letter = std::isalnum(static_cast<unsigned char>(letter)) != 0 ? letter : '_';
+    }
+    return (has(std::get<0>(info.param), "64") ? "double_" : "single_") + name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Stock, TriedProgramTest,
+                         testing::Combine(testing::Values(std::string("stock-programs"),
+                                                          std::string("stock-programs-float64")),
+                                          testing::ValuesIn(kPrograms)),
+                         nameOf);
+
+TEST(TriedPrograms, AreAllThatThereAre) {
+    std::istringstream lines(runCommand(stock("stock-programs")).out);
+    std::set<std::string> names;
+    for (std::string name; std::getline(lines, name);) {
+        names.insert(name);
+    }
+    EXPECT_EQ(names, std::set<std::string>(kPrograms.begin(), kPrograms.end()));
+}
+
+// --- What is counted -----------------------------------------------------------------------------
+
+TEST(Try, CountsStepsObjectsAndPairs) {
+    const auto [output, json] = measure("--runs 2", stock("stock-programs") + " wall");
+    EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
+    ASSERT_EQ(json["runs"].size(), 4U);
+    const char* const turns[] = {"bullet", "hashphase", "bullet", "hashphase"};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Json& run = json["runs"][i];
+        EXPECT_EQ(run["broadphase"], turns[i]);
+        EXPECT_EQ(run["dbvts"], 1);
+        ASSERT_EQ(run["steps"].size(), 300U);
+        EXPECT_EQ(run["steps"][0]["objects"], 31);
+        EXPECT_EQ(run["steps"][299]["objects"], 32);
+        EXPECT_GE(run["steps"][0]["pairs"], 30);  // each brick and the ground
+        for (const Json& step : run["steps"]) {
+            EXPECT_GE(step["stepMs"],
+                      step["calculateMs"].get<double>() + step["updateAabbsMs"].get<double>());
+        }
+    }
+    EXPECT_EQ(json["bulletStep"]["steps"], 600);
+    EXPECT_EQ(json["bulletStep"]["objects"], 32);
+    EXPECT_TRUE(json["verification"].is_null());
+    // Bullet lists what is near as well.
+    EXPECT_GT(json["bulletStep"]["pairs"], json["hashphaseStep"]["pairs"]);
+    EXPECT_EQ(json["hashphaseStep"]["pairs"], json["hashphaseStep"]["overlappingPairs"]);
+    for (const char* word :
+         {"updateAabbs [ms]", "calculateOverlappingPairs [ms]", "rays, with", "whole step [ms]",
+          "share of these", "of which overlap", "With hashphase a step of "}) {
+        EXPECT_TRUE(has(output.out, word)) << word << output.out;
+    }
+}
+
+TEST(Try, CountsRays) {
+    const auto [output, json] = measure("", stock("stock-programs") + " rays-from-ticks");
+    for (const Json& run : json["runs"]) {
+        ASSERT_EQ(run["steps"].size(), 120U);
+        EXPECT_EQ(run["steps"][10]["rays"], 25);
+        EXPECT_EQ(run["steps"][70]["rays"], 50);  // before the step, and after
+        EXPECT_GT(run["steps"][70]["raysMs"], 0);
+    }
+}
+
+TEST(Try, TellsAxisSweepsFromTrees) {
+    const auto [output, json] = measure("", stock("stock-programs") + " sweep-16");
+    for (const Json& run : json["runs"]) {
+        EXPECT_EQ(run["axisSweeps"], 1);
+        EXPECT_EQ(run["dbvts"], 0);
+        EXPECT_EQ(run["steps"][0]["objects"], 49);
+    }
+    EXPECT_TRUE(has(output.out, ": 1 axis sweep, single precision")) << output.out;
+}
+
+TEST(Try, ProjectsWhatAStepTakes) {
+    StepSummary stock;
+    stock.updateAabbs = 4;
+    stock.calculate = 2;
+    stock.rays = 1;
+    stock.step = 10;
+    StepSummary ours;
+    ours.updateAabbs = 0.5;
+    ours.calculate = 1;
+    ours.rays = 0.25;
+    EXPECT_DOUBLE_EQ(projectedStep(stock, ours).value(), 10 - 7 + 1.75);
+    stock.step.reset();
+    EXPECT_FALSE(projectedStep(stock, ours).has_value());
+}
+
+TEST(Try, SaysWhereStepsHaveNoLength) {
+    const auto [output, json] = measure("", stock("stock-programs") + " bare-broadphase");
+    EXPECT_TRUE(json["bulletStep"]["stepMs"].is_null());
+    EXPECT_TRUE(has(output.out, "How long a step is as a whole Bullet's profile zones do not tell"))
+        << output.out;
+}
+
+// --- Limits and ends -----------------------------------------------------------------------------
+
+TEST(Try, EndsAProgramAfterSoManySteps) {
+    const auto [output, json] = measure("--steps 20", stock("stock-programs") + " endless");
+    EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
+    for (const Json& run : json["runs"]) {
+        EXPECT_EQ(run["steps"].size(), 20U);
+        EXPECT_EQ(run["ended"], "was stopped at the limit");
+    }
+}
+
+TEST(Try, EndsAProgramAfterSoManySeconds) {
+    const auto [output, json] = measure("--seconds 0.2", stock("stock-programs") + " endless");
+    EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
+    EXPECT_EQ(json["runs"].size(), 2U);
+    EXPECT_GT(json["runs"][1]["steps"].size(), 0U);
+}
+
+TEST(Try, KeepsWhatWasMeasuredBeforeACrash) {
+    const auto [output, json] = measure("", stock("stock-programs") + " crashing");
+    EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
+    EXPECT_EQ(json["runs"][0]["steps"].size(), 5U);
+    EXPECT_TRUE(has(output.out, "signal 6 (Aborted), whichever the broadphase")) << output.out;
+}
+
+TEST(Try, SaysWhenAProgramEndsDifferently) {
+    const Output output = tryProgram("-- " + stock("stock-programs") + " casts-cache");
+    EXPECT_EQ(output.status, kExitCheckFailed);
+    EXPECT_TRUE(has(output.out,
+                    "ended with status 0 with Bullet's broadphase, and ended with "
+                    "status 4 with hashphase"))
+        << output.out;
+}
+
+TEST(Try, LeavesTheStatusOfAProgramThatFailsAlike) {
+    const auto [output, json] = measure("", stock("stock-programs") + " failing");
+    EXPECT_EQ(output.status, kExitOk);
+    EXPECT_EQ(json["runs"][1]["ended"], "ended with status 3");
+}
+
+// --- Verification sees what is wrong -------------------------------------------------------------
+
+TEST(Try, FindsPairsThatAreMissingOrExtra) {
+    const auto [output, json] = measure("--verify", stock("stock-programs") + " tampering");
+    EXPECT_EQ(output.status, kExitCheckFailed);
+    EXPECT_EQ(json["verification"]["calculations"], 2);
+    EXPECT_EQ(json["verification"]["missing"], 1) << output.out;
+    EXPECT_EQ(json["verification"]["extra"], 1) << output.out;
+    EXPECT_TRUE(has(json["verification"]["firstFault"], "calculation 2: the pair of proxies"));
+    EXPECT_TRUE(has(output.out, "NOT EXACT")) << output.out;
+}
+
+TEST(Try, TellsPairsThatWaitForAMoveFromMissingOnes) {
+    const auto [output, json] = measure("--verify", stock("stock-programs") + " changes-group");
+    EXPECT_EQ(output.status, kExitOk) << output.out;
+    EXPECT_EQ(json["verification"]["missing"], 0);
+    EXPECT_GT(json["verification"]["waitForAMove"], 0) << output.out;
+    EXPECT_TRUE(has(output.out, "See refilter().")) << output.out;
+}
+
+TEST(Try, SaysWhichBroadphasesItDoesNotTakeOver) {
+    const auto [output, json] = measure("", stock("stock-programs") + " mixed");
+    EXPECT_EQ(json["runs"][0]["foreignCalculations"], 10);
+    EXPECT_EQ(json["runs"][0]["steps"].size(), 10U);
+    EXPECT_TRUE(has(output.out, "10 calculations of pairs were those of broadphases that are not"))
+        << output.out;
+}
+
+// --- Programs that cannot be tried ---------------------------------------------------------------
+
+void expectRefused(const std::string& arguments, const std::string& sentence,
+                   const TemporaryFolder& folder = {}) {
+    const Output output = tryProgram(arguments, folder);
+    EXPECT_EQ(output.status, kExitUsage) << output.out << output.err;
+    EXPECT_TRUE(has(output.err, sentence)) << output.err;
+}
+
+TEST(TryRefuses, WhatIsNoProgram) {
+    expectRefused("", "name a program to try: hashphase try -- ./program");
+    expectRefused("-- no-such-program-anywhere",
+                  "'no-such-program-anywhere' was not found in PATH");
+    expectRefused("-- ./no-such-program", "'./no-such-program' is no program that can be run");
+    const TemporaryFolder folder;
+    const std::string script = folder.write("script", "#!/bin/sh\necho\n");
+    const std::string text = folder.write("text", "nothing that runs");
+    for (const std::string& file : {script, text}) {
+        std::filesystem::permissions(file, std::filesystem::perms::owner_all);
+    }
+    expectRefused("-- " + script, "is a script; name the program that it starts", folder);
+    expectRefused("-- " + text, "is no 64-bit program for this machine", folder);
+}
+
+TEST(TryRefuses, ProgramsWithoutASharedBulletOfThisVersion) {
+    expectRefused("-- " + stock("stock-static"), "is linked statically as a whole");
+    expectRefused("-- " + stock("stock-host"), "links no Bullet");
+    expectRefused("-- " + stock("stock-embedded"), "Bullet is linked statically into ");
+    expectRefused("-- " + stock("stock-old"),
+                  " links libBulletCollision.so.2.83, and this hashphase was built with "
+                  "libBulletCollision.so.");
+}
+
+TEST(TryRefuses, ProgramsThatMakeNoBroadphaseOfThese) {
+    expectRefused("-- " + stock("stock-programs") + " simple-broadphase",
+                  "ended with status 0, and has made no btDbvtBroadphase and no axis sweep");
+}
+
+TEST(Try, TakesOverABulletThatIsLoadedLater) {
+    for (const auto& [precision, name] :
+         {std::pair("single", "stock-programs"), std::pair("double", "stock-programs-float64")}) {
+        if (!std::filesystem::exists(stock(name))) {
+            continue;
+        }
+        const std::string plugin = stock(std::string("lib") + name + "-plugin.so");
+        const auto [output, json] = measure(std::string("--verify --precision ") + precision,
+                                            stock("stock-host") + " " + plugin + " churn");
+        EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
+        EXPECT_EQ(json["verification"]["calculations"], 200);
+    }
+}
+
+}  // namespace
+}  // namespace hashphase::demos
