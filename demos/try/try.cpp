@@ -114,8 +114,13 @@ int runTry(const TryOptions& options, Console& console) {
     for (const std::string& word : options.words) {
         trial.commandLine += (trial.commandLine.empty() ? "" : " ") + word;
     }
-    trial.program = inspectProgram(findProgram(options.words.front()), ownBullets(),
-                                   options.precision.has_value());
+    const std::vector<std::string> bullets = ownBullets();
+    if (bullets.empty()) {
+        throw InputError("this hashphase has no " + preloadFor(BulletPrecision::kSingle) +
+                         " to load into programs, as builds under a sanitizer have not");
+    }
+    trial.program =
+        inspectProgram(findProgram(options.words.front()), bullets, options.precision.has_value());
     trial.program.precision = options.precision.value_or(trial.program.precision);
     TriedRunSettings settings = settingsFor(options, trial.program);
 

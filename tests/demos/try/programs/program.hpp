@@ -25,7 +25,7 @@ const std::vector<Program>& queryPrograms();
 const std::vector<Program>& softBodyPrograms();
 const std::vector<Program>& lifetimePrograms();
 
-/// Those that go wrong, or on for ever: what is said of them is tested, not their outcome.
+/// Those that go wrong, or on for ever, or print times: what is said of them is tested, not their outcome.
 const std::vector<Program>& misfitPrograms();
 
 /// Runs the program of that name.
