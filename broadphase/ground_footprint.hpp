@@ -18,6 +18,7 @@
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/detail/fixed_list.hpp>
+#include <broadphase/export.hpp>
 #include <broadphase/frustum.hpp>
 #include <broadphase/up_axis.hpp>
 
@@ -42,7 +43,7 @@ struct HeightRange {
 /// A convex polygon on the map, and the prism over it between two heights. Corrects the paper's drag
 /// box and top-down camera, which take two corners and one height.
 template <class Scalar>
-class GroundFootprint {
+class HASHPHASE_BROADPHASE_EXPORT GroundFootprint {
 public:
     /// Across the up axis: (y, z), (x, z) or (x, y), where x, y or z is upwards.
     using Point = Eigen::Matrix<Scalar, 2, 1>;
@@ -82,7 +83,7 @@ private:
 
 /// Says in a sentence why there is no footprint; empty when there may be one.
 template <class Scalar>
-[[nodiscard]] std::string footprintError(
+[[nodiscard]] HASHPHASE_BROADPHASE_EXPORT std::string footprintError(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection, const HeightRange<Scalar>& heights,
     const ScreenRectangle<Scalar>& rectangle = wholeScreen<Scalar>(), double farthest = kFarthest);
 

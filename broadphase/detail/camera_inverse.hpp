@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
+#include <broadphase/export.hpp>
+
 #include <Eigen/Core>
 
 namespace hashphase::detail {
 
 /// The way from the screen back into the world, in double precision.
-class CameraInverse {
+class HASHPHASE_BROADPHASE_EXPORT CameraInverse {
 public:
     CameraInverse() = default;
 

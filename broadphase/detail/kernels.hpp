@@ -9,6 +9,7 @@
 //           may run anywhere, each with a list of couples of its own.
 
 #include <broadphase/detail/kernel_types.hpp>
+#include <broadphase/export.hpp>
 
 #include <algorithm>
 #include <concepts>
@@ -34,7 +35,7 @@ void useInstructionSet(InstructionSet set) noexcept;
 
 /// Those of the instruction set in use.
 template <class Scalar>
-[[nodiscard]] const Kernels<Scalar>& kernels() noexcept;
+[[nodiscard]] HASHPHASE_BROADPHASE_EXPORT const Kernels<Scalar>& kernels() noexcept;
 
 /// A growing array of couples for kernels to write to. Does not initialise what it grows by, and
 /// keeps its memory.
@@ -87,7 +88,7 @@ private:
 };
 
 /// The same for a search that finds few: they are on the stack, and on the heap when they are more.
-class FewPairs {
+class HASHPHASE_BROADPHASE_EXPORT FewPairs {
 public:
     // Its 4 kB are written before they are read.
     // cppcheck-suppress uninitMemberVar

@@ -5,6 +5,16 @@
 include_guard(GLOBAL)
 include(GNUInstallDirs)
 
+# Before version 1.0 every minor version may change what programs have compiled in; from then on only
+# a major version may (integration/guide/abi.md).
+if(PROJECT_VERSION_MAJOR EQUAL 0)
+    set(HASHPHASE_ABI_VERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+    set(HASHPHASE_COMPATIBILITY SameMinorVersion)
+else()
+    set(HASHPHASE_ABI_VERSION ${PROJECT_VERSION_MAJOR})
+    set(HASHPHASE_COMPATIBILITY SameMajorVersion)
+endif()
+
 # Warnings, reproducible floating point and plain C++20 for a target of our own. The headers of
 # Bullet, Eigen and GoogleTest come from imported targets and count as system headers.
 function(hashphase_own_target target)
@@ -76,8 +86,26 @@ function(hashphase_add_library component)
         ${target}
         PROPERTIES EXPORT_NAME ${component}
                    VERSION ${PROJECT_VERSION}
-                   SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
-                   WINDOWS_EXPORT_ALL_SYMBOLS ON)
+                   SOVERSION ${HASHPHASE_ABI_VERSION}
+                   CXX_VISIBILITY_PRESET hidden
+                   VISIBILITY_INLINES_HIDDEN ON)
+    if(BUILD_SHARED_LIBS)
+        target_compile_definitions(${target} PUBLIC HASHPHASE_SHARED=1)
+        if(NOT WIN32)
+            # Makes no difference, but to precompiled headers, which must not differ in it.
+            set_target_properties(${target} PROPERTIES DEFINE_SYMBOL "")
+        endif()
+        if(UNIX AND NOT APPLE AND NOT HASHPHASE_SANITIZE)
+            # What another library hides is found out here, not by who links both. The standard
+            # library's templates are never hidden by the compiler.
+            target_link_options(
+                ${target} PRIVATE -Wl,--no-undefined
+                -Wl,--version-script=${PROJECT_SOURCE_DIR}/integration/package/exports.map)
+            set_property(
+                TARGET ${target} APPEND
+                PROPERTY LINK_DEPENDS ${PROJECT_SOURCE_DIR}/integration/package/exports.map)
+        endif()
+    endif()
     if(TARGET hashphase_broadphase AND NOT component STREQUAL "broadphase")
         hashphase_precompile_headers(${target} AS hashphase_broadphase)
     endif()
