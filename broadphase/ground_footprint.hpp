@@ -46,7 +46,7 @@ template <class Scalar>
 class HASHPHASE_BROADPHASE_EXPORT GroundFootprint {
 public:
     /// Across the up axis: (y, z), (x, z) or (x, y), where x, y or z is upwards.
-    using Point = Eigen::Matrix<Scalar, 2, 1>;
+    using Point = Eigen::Matrix<Scalar, 2, 1, Eigen::DontAlign>;
 
     /// Nine planes bound the view between the heights, and so no more than 14 corners.
     static constexpr std::size_t kMostCorners = 14;
@@ -72,7 +72,8 @@ public:
         Containment containment = Containment::touching) const;
 
 private:
-    using Plane = Eigen::Hyperplane<Scalar, 3>;
+    // Not aligned, as points: see integration/guide/abi.md.
+    using Plane = Eigen::Hyperplane<Scalar, 3, Eigen::DontAlign>;
 
     template <class Points>
     void setHull(const Points& points, const HeightRange<Scalar>& heights);

@@ -22,16 +22,16 @@ namespace hashphase::detail {
 
 enum class InstructionSet { scalar, sse2, avx2, avx512 };
 
-[[nodiscard]] const char* nameOf(InstructionSet set) noexcept;
+[[nodiscard]] HASHPHASE_BROADPHASE_EXPORT const char* nameOf(InstructionSet set) noexcept;
 
 /// True when the library was built with it and this processor has it.
-[[nodiscard]] bool isAvailable(InstructionSet set) noexcept;
+[[nodiscard]] HASHPHASE_BROADPHASE_EXPORT bool isAvailable(InstructionSet set) noexcept;
 
 /// The one in use: the best one available, or what was chosen by useInstructionSet().
-[[nodiscard]] InstructionSet instructionSet() noexcept;
+[[nodiscard]] HASHPHASE_BROADPHASE_EXPORT InstructionSet instructionSet() noexcept;
 
 /// For tests and measurements. It must be available.
-void useInstructionSet(InstructionSet set) noexcept;
+HASHPHASE_BROADPHASE_EXPORT void useInstructionSet(InstructionSet set) noexcept;
 
 /// Those of the instruction set in use.
 template <class Scalar>

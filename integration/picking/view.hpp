@@ -68,14 +68,15 @@ public:
     /// without area. isEmpty() when none of it does.
     [[nodiscard]] ScreenRectangle<Scalar> rectangleBetween(const Pixel& a, const Pixel& b) const;
 
-    [[nodiscard]] const Matrix& viewProjection() const noexcept { return viewProjection_; }
+    [[nodiscard]] Matrix viewProjection() const noexcept { return viewProjection_; }
     [[nodiscard]] DepthRange depthRange() const noexcept { return depthRange_; }
     [[nodiscard]] const Viewport& viewport() const noexcept { return viewport_; }
 
 private:
     [[nodiscard]] Eigen::Vector2d deviceCoordinates(const Pixel& pixel) const;
 
-    Matrix viewProjection_;
+    // Not aligned: see integration/guide/abi.md.
+    Eigen::Matrix<Scalar, 4, 4, Eigen::DontAlign> viewProjection_;
     detail::CameraInverse inverse_;
     Viewport viewport_;
     DepthRange depthRange_;
