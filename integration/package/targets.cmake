@@ -68,6 +68,24 @@ function(hashphase_compile_together target number)
     endif()
 endfunction()
 
+# hashphase_find_libraries_from(<target> <folder>): what is installed in the folder finds our shared
+# libraries wherever the prefix is. Where the system's are it needs no telling, and packages must not.
+function(hashphase_find_libraries_from target folder)
+    if(BUILD_SHARED_LIBS AND UNIX AND NOT APPLE AND NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+        file(RELATIVE_PATH way ${CMAKE_INSTALL_PREFIX}/${folder}
+             ${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR})
+        set_target_properties(${target} PROPERTIES INSTALL_RPATH "$ORIGIN/${way}")
+    endif()
+endfunction()
+
+# hashphase_install_program(<target>...): among the tools.
+function(hashphase_install_program)
+    foreach(target IN LISTS ARGN)
+        hashphase_find_libraries_from(${target} ${CMAKE_INSTALL_BINDIR})
+    endforeach()
+    install(TARGETS ${ARGN} RUNTIME COMPONENT hashphase_tools)
+endfunction()
+
 # hashphase_add_library(<component> SOURCES <file>... LINKS <target>...)
 #
 # Adds hashphase::<component>, with the repository root as its include folder, and installs it in an
@@ -109,7 +127,13 @@ function(hashphase_add_library component)
     if(TARGET hashphase_broadphase AND NOT component STREQUAL "broadphase")
         hashphase_precompile_headers(${target} AS hashphase_broadphase)
     endif()
-    install(TARGETS ${target} EXPORT hashphase-${component}-targets)
+    hashphase_find_libraries_from(${target} ${CMAKE_INSTALL_LIBDIR})
+    install(
+        TARGETS ${target}
+        EXPORT hashphase-${component}-targets
+        RUNTIME COMPONENT hashphase_libraries
+        LIBRARY COMPONENT hashphase_libraries NAMELINK_COMPONENT hashphase_development
+        ARCHIVE COMPONENT hashphase_development)
     set_property(GLOBAL APPEND PROPERTY HASHPHASE_COMPONENTS ${component})
 endfunction()
 
@@ -119,6 +143,7 @@ function(hashphase_install_headers)
     install(
         DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hashphase/${folder}
+        COMPONENT hashphase_development
         FILES_MATCHING
         PATTERN "*.hpp")
 endfunction()
