@@ -4,6 +4,7 @@
 #include <broadphase/aabb.hpp>
 #include <broadphase/detail/fixed_list.hpp>
 #include <broadphase/detail/kernel_types.hpp>
+#include <broadphase/export.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -27,7 +28,7 @@ enum class Touch : std::uint8_t { exact, byPlanes };
 /// precision, 1e-9 in double. Volumes may be unbounded; no planes at all are all of space. A volume
 /// without a point, or with a plane that is NaN or has an infinite normal, is empty.
 template <class Scalar>
-class ConvexRegion {
+class HASHPHASE_BROADPHASE_EXPORT ConvexRegion {
 public:
     using Plane = Eigen::Hyperplane<Scalar, 3>;
     static constexpr std::size_t kMostPlanes = detail::kMostOwnPlanes;

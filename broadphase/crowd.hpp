@@ -25,6 +25,7 @@
 
 #include <broadphase/detail/kernel_types.hpp>
 #include <broadphase/detail/torus.hpp>
+#include <broadphase/export.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/position_region.hpp>
 #include <broadphase/proxy_filter.hpp>
@@ -44,7 +45,7 @@ namespace hashphase {
 /// Finds neighbours. Keeps its memory: a frame like the last one allocates nothing, unless more threads
 /// are at work at the same time than ever before.
 template <class Scalar>
-class Crowd {
+class HASHPHASE_BROADPHASE_EXPORT Crowd {
 public:
     using Point = Vector3<Scalar>;
 

@@ -12,6 +12,8 @@
 //           place to stderr and aborts. Assertions are compiled in when HASHPHASE_ENABLE_ASSERTS is
 //           1, which is so in every build type but Release.
 
+#include <broadphase/export.hpp>
+
 namespace hashphase {
 
 /// Receives one message, a full sentence without a trailing newline.
@@ -23,14 +25,15 @@ using AssertHandler = void (*)(const char* condition, const char* sentence, cons
                                int line);
 
 /// Replaces the message handler; nullptr restores the default. Returns the previous one.
-MessageHandler setMessageHandler(MessageHandler handler) noexcept;
+HASHPHASE_BROADPHASE_EXPORT MessageHandler setMessageHandler(MessageHandler handler) noexcept;
 
 /// Replaces the assertion handler; nullptr restores the default. Returns the previous one.
-AssertHandler setAssertHandler(AssertHandler handler) noexcept;
+HASHPHASE_BROADPHASE_EXPORT AssertHandler setAssertHandler(AssertHandler handler) noexcept;
 
 namespace detail {
-void reportMessage(const char* message);
-void reportBrokenAssert(const char* condition, const char* sentence, const char* file, int line);
+HASHPHASE_BROADPHASE_EXPORT void reportMessage(const char* message);
+HASHPHASE_BROADPHASE_EXPORT void reportBrokenAssert(const char* condition, const char* sentence,
+                                                    const char* file, int line);
 }  // namespace detail
 
 }  // namespace hashphase

@@ -12,6 +12,7 @@
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/convex_region.hpp>
+#include <broadphase/export.hpp>
 
 #include <array>
 #include <cstdint>
@@ -36,7 +37,7 @@ template <class Scalar>
 /// Says in a sentence why nothing can be seen through the matrix, 4 x 4, or through that part of the
 /// screen; empty when something may be.
 template <class Scalar>
-[[nodiscard]] std::string frustumError(
+[[nodiscard]] HASHPHASE_BROADPHASE_EXPORT std::string frustumError(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection,
     const ScreenRectangle<Scalar>& rectangle = wholeScreen<Scalar>());
 
@@ -45,13 +46,13 @@ template <class Scalar>
 /// places, and an infinite far plane has everything inside. Not normalised. After Gribb and Hartmann,
 /// "Fast Extraction of Viewing Frustum Planes from the World-View-Projection Matrix" (2001).
 template <class Scalar>
-[[nodiscard]] std::array<Eigen::Hyperplane<Scalar, 3>, 6> frustumPlanes(
+[[nodiscard]] HASHPHASE_BROADPHASE_EXPORT std::array<Eigen::Hyperplane<Scalar, 3>, 6> frustumPlanes(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection, DepthRange depthRange,
     const ScreenRectangle<Scalar>& rectangle = wholeScreen<Scalar>());
 
 /// The same as a region. Cost: some microseconds.
 template <class Scalar>
-[[nodiscard]] ConvexRegion<Scalar> frustumRegion(
+[[nodiscard]] HASHPHASE_BROADPHASE_EXPORT ConvexRegion<Scalar> frustumRegion(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection, DepthRange depthRange,
     const ScreenRectangle<Scalar>& rectangle = wholeScreen<Scalar>(),
     Containment containment = Containment::touching, Touch touch = Touch::exact) {

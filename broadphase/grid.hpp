@@ -38,6 +38,7 @@
 #include <broadphase/detail/query_scope.hpp>
 #include <broadphase/detail/table.hpp>
 #include <broadphase/diagnostics.hpp>
+#include <broadphase/export.hpp>
 #include <broadphase/grid_config.hpp>
 #include <broadphase/parallel_for.hpp>
 #include <broadphase/proxy_id.hpp>
@@ -92,7 +93,7 @@ struct UpdateCost {
 };
 
 template <class Scalar>
-class Grid {
+class HASHPHASE_BROADPHASE_EXPORT Grid {
 public:
     using Box = Aabb<Scalar>;
     using Point = Vector3<Scalar>;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
+#include <broadphase/export.hpp>
 #include <cstdint>
 #include <string>
 
@@ -26,6 +27,6 @@ struct GridConfig {
 /// Says what is wrong with `config` in a sentence that names the field and its valid range; empty
 /// when all is well. The constructors that take a configuration throw std::invalid_argument with
 /// this sentence; ask here first where exceptions are not wanted.
-[[nodiscard]] std::string configError(const GridConfig& config);
+[[nodiscard]] HASHPHASE_BROADPHASE_EXPORT std::string configError(const GridConfig& config);
 
 }  // namespace hashphase

@@ -157,10 +157,15 @@ PointList normalsOf(const PointList& corners) {
 template <class Scalar>
 ConvexRegion<Scalar> GroundFootprint<Scalar>::region(Containment containment) const {
     if (isEmpty()) {
-        const Plane none(Vector3<Scalar>::Zero(), std::numeric_limits<Scalar>::quiet_NaN());
+        const typename ConvexRegion<Scalar>::Plane none(Vector3<Scalar>::Zero(),
+                                                        std::numeric_limits<Scalar>::quiet_NaN());
         return ConvexRegion<Scalar>(std::span(&none, 1), containment);
     }
-    return ConvexRegion<Scalar>(std::span(planes_.begin(), planes_.end()), containment);
+    detail::FixedList<typename ConvexRegion<Scalar>::Plane, kMostCorners + 2> planes;
+    for (const Plane& plane : planes_) {
+        planes.push(typename ConvexRegion<Scalar>::Plane(plane));
+    }
+    return ConvexRegion<Scalar>(std::span(planes.begin(), planes.end()), containment);
 }
 
 template <class Scalar>

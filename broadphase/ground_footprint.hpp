@@ -18,6 +18,7 @@
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/detail/fixed_list.hpp>
+#include <broadphase/export.hpp>
 #include <broadphase/frustum.hpp>
 #include <broadphase/up_axis.hpp>
 
@@ -42,10 +43,10 @@ struct HeightRange {
 /// A convex polygon on the map, and the prism over it between two heights. Corrects the paper's drag
 /// box and top-down camera, which take two corners and one height.
 template <class Scalar>
-class GroundFootprint {
+class HASHPHASE_BROADPHASE_EXPORT GroundFootprint {
 public:
     /// Across the up axis: (y, z), (x, z) or (x, y), where x, y or z is upwards.
-    using Point = Eigen::Matrix<Scalar, 2, 1>;
+    using Point = Eigen::Matrix<Scalar, 2, 1, Eigen::DontAlign>;
 
     /// Nine planes bound the view between the heights, and so no more than 14 corners.
     static constexpr std::size_t kMostCorners = 14;
@@ -71,7 +72,8 @@ public:
         Containment containment = Containment::touching) const;
 
 private:
-    using Plane = Eigen::Hyperplane<Scalar, 3>;
+    // Not aligned, as points: see integration/guide/abi.md.
+    using Plane = Eigen::Hyperplane<Scalar, 3, Eigen::DontAlign>;
 
     template <class Points>
     void setHull(const Points& points, const HeightRange<Scalar>& heights);
@@ -82,7 +84,7 @@ private:
 
 /// Says in a sentence why there is no footprint; empty when there may be one.
 template <class Scalar>
-[[nodiscard]] std::string footprintError(
+[[nodiscard]] HASHPHASE_BROADPHASE_EXPORT std::string footprintError(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection, const HeightRange<Scalar>& heights,
     const ScreenRectangle<Scalar>& rectangle = wholeScreen<Scalar>(), double farthest = kFarthest);
 

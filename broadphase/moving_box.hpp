@@ -11,6 +11,7 @@
 // Bad data  What has a NaN, or an infinite displacement, touches nothing.
 
 #include <broadphase/aabb.hpp>
+#include <broadphase/export.hpp>
 #include <broadphase/regions.hpp>
 
 #include <cmath>
@@ -28,15 +29,15 @@ struct MovingBox {
 
 /// The box around a moving box's way between two times [m], rounded outward.
 template <class Scalar>
-[[nodiscard]] Aabb<Scalar> wayBounds(const MovingBox<Scalar>& moving, double from = 0,
-                                     double to = 1);
+[[nodiscard]] HASHPHASE_BROADPHASE_EXPORT Aabb<Scalar> wayBounds(const MovingBox<Scalar>& moving,
+                                                                 double from = 0, double to = 1);
 
 namespace detail {
 
 /// firstContact(), slowly, whatever the numbers.
 template <class Scalar>
-[[nodiscard]] std::optional<double> firstContactExactly(const MovingBox<Scalar>& a,
-                                                        const MovingBox<Scalar>& b) noexcept;
+[[nodiscard]] HASHPHASE_BROADPHASE_EXPORT std::optional<double> firstContactExactly(
+    const MovingBox<Scalar>& a, const MovingBox<Scalar>& b) noexcept;
 
 /// A time as computed is off by less than this share of it.
 inline constexpr double kTimeDoubt = 0x1p-49;
@@ -91,7 +92,7 @@ template <class Scalar>
 /// What a moving box meets on its way. Key: the time of the first contact, by firstContact(). With
 /// CollectClosest, what is hit first.
 template <class Scalar>
-class MovingBoxRegion {
+class HASHPHASE_BROADPHASE_EXPORT MovingBoxRegion {
 public:
     explicit MovingBoxRegion(const MovingBox<Scalar>& moving);
 

@@ -8,6 +8,7 @@
 //           a position (position_region.hpp) are nowhere.
 
 #include <broadphase/collectors.hpp>
+#include <broadphase/export.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/position_region.hpp>
 #include <broadphase/proxy_filter.hpp>
@@ -27,9 +28,10 @@ namespace hashphase {
 /// dense as at the point; at most that of reading the grid three times and once for every doubling
 /// of the distance.
 template <class Scalar>
-QueryCost findNearest(const Grid<Scalar>& grid, const Vector3<std::type_identity_t<Scalar>>& point,
-                      std::size_t count, std::type_identity_t<Scalar> maximalDistance,
-                      std::vector<KeyedProxy<Scalar>>& nearest, ProxyFilter filter = acceptAll);
+HASHPHASE_BROADPHASE_EXPORT QueryCost
+findNearest(const Grid<Scalar>& grid, const Vector3<std::type_identity_t<Scalar>>& point,
+            std::size_t count, std::type_identity_t<Scalar> maximalDistance,
+            std::vector<KeyedProxy<Scalar>>& nearest, ProxyFilter filter = acceptAll);
 
 extern template QueryCost findNearest(const Grid<float>&, const Vector3<float>&, std::size_t, float,
                                       std::vector<KeyedProxy<float>>&, ProxyFilter);

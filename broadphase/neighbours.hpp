@@ -8,6 +8,7 @@
 // Threads   find() reads the grid, as queries do, and needs this object for itself.
 
 #include <broadphase/detail/join.hpp>
+#include <broadphase/export.hpp>
 #include <broadphase/grid.hpp>
 
 #include <cstddef>
@@ -19,7 +20,7 @@ namespace hashphase {
 
 /// Finds neighbours. Keeps its memory: a frame like the last one allocates nothing.
 template <class Scalar>
-class Neighbours {
+class HASHPHASE_BROADPHASE_EXPORT Neighbours {
 public:
     /// Every two proxies of the grid whose boxes are at most `distance` [m] apart (closed, by the
     /// straight line between the nearest points; 0 apart where they overlap), each couple once, in

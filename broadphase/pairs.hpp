@@ -21,6 +21,7 @@
 #include <broadphase/detail/flat_set.hpp>
 #include <broadphase/detail/kernels.hpp>
 #include <broadphase/detail/pair_parts.hpp>
+#include <broadphase/export.hpp>
 #include <broadphase/function_ref.hpp>
 #include <broadphase/grid.hpp>
 
@@ -85,7 +86,7 @@ struct PairCost {
 };
 
 template <class Scalar>
-class Pairs {
+class HASHPHASE_BROADPHASE_EXPORT Pairs {
 public:
     /// Keeps a reference to the grid, and to the sweeps over it if there are any, which must outlive
     /// this object. They are of the same grid, which has no other Pairs (asserted). The first update()

@@ -22,6 +22,7 @@
 
 #include <broadphase/detail/contact_search.hpp>
 #include <broadphase/detail/query_scope.hpp>
+#include <broadphase/export.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/moving_box.hpp>
 #include <broadphase/proxy_filter.hpp>
@@ -38,7 +39,7 @@
 namespace hashphase {
 
 template <class Scalar>
-class Sweeps {
+class HASHPHASE_BROADPHASE_EXPORT Sweeps {
 public:
     /// Keeps a reference to the grid, which must outlive this object. Hand it to Pairs.
     explicit Sweeps(Grid<Scalar>& grid) : grid_(grid), search_(grid) {}

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
+#include <broadphase/export.hpp>
+
 #include <Eigen/Core>
 
 namespace hashphase::detail {
 
 /// The way from the screen back into the world, in double precision.
-class CameraInverse {
+class HASHPHASE_BROADPHASE_EXPORT CameraInverse {
 public:
     CameraInverse() = default;
 
@@ -33,8 +35,9 @@ public:
 
 private:
     // Of the matrix for a world with its origin near the eye. For one far away, what a weight loses by
-    // cancellation would move points by as large a share of the way from there.
-    Eigen::Matrix4d inverse_ = Eigen::Matrix4d::Zero();
+    // cancellation would move points by as large a share of the way from there. (Not aligned: see
+    // integration/guide/abi.md.)
+    Eigen::Matrix<double, 4, 4, Eigen::DontAlign> inverse_ = Eigen::Matrix4d::Zero();
     Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // [m]
     double weightPerMetre_ = 0;                         // of the w of clip space, along the view
     bool isValid_ = false;

@@ -8,6 +8,7 @@
 #include <broadphase/detail/kernels.hpp>
 #include <broadphase/detail/pair_parts.hpp>
 #include <broadphase/detail/table.hpp>
+#include <broadphase/export.hpp>
 
 #include <cstdint>
 
@@ -26,7 +27,8 @@ void walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::
 /// The same for a few boxes, on the caller's thread; sooner where those that follow each other are
 /// near each other.
 template <class Scalar>
-void walkTogether(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t count,
-                  PairSink& sink, KernelCost& cost);
+HASHPHASE_BROADPHASE_EXPORT void walkTogether(const Table<Scalar>& table,
+                                              const Columns<Scalar>& queries, std::uint32_t count,
+                                              PairSink& sink, KernelCost& cost);
 
 }  // namespace hashphase::detail

@@ -9,6 +9,7 @@
 //           may run anywhere, each with a list of couples of its own.
 
 #include <broadphase/detail/kernel_types.hpp>
+#include <broadphase/export.hpp>
 
 #include <algorithm>
 #include <concepts>
@@ -21,20 +22,20 @@ namespace hashphase::detail {
 
 enum class InstructionSet { scalar, sse2, avx2, avx512 };
 
-[[nodiscard]] const char* nameOf(InstructionSet set) noexcept;
+[[nodiscard]] HASHPHASE_BROADPHASE_EXPORT const char* nameOf(InstructionSet set) noexcept;
 
 /// True when the library was built with it and this processor has it.
-[[nodiscard]] bool isAvailable(InstructionSet set) noexcept;
+[[nodiscard]] HASHPHASE_BROADPHASE_EXPORT bool isAvailable(InstructionSet set) noexcept;
 
 /// The one in use: the best one available, or what was chosen by useInstructionSet().
-[[nodiscard]] InstructionSet instructionSet() noexcept;
+[[nodiscard]] HASHPHASE_BROADPHASE_EXPORT InstructionSet instructionSet() noexcept;
 
 /// For tests and measurements. It must be available.
-void useInstructionSet(InstructionSet set) noexcept;
+HASHPHASE_BROADPHASE_EXPORT void useInstructionSet(InstructionSet set) noexcept;
 
 /// Those of the instruction set in use.
 template <class Scalar>
-[[nodiscard]] const Kernels<Scalar>& kernels() noexcept;
+[[nodiscard]] HASHPHASE_BROADPHASE_EXPORT const Kernels<Scalar>& kernels() noexcept;
 
 /// A growing array of couples for kernels to write to. Does not initialise what it grows by, and
 /// keeps its memory.
@@ -87,7 +88,7 @@ private:
 };
 
 /// The same for a search that finds few: they are on the stack, and on the heap when they are more.
-class FewPairs {
+class HASHPHASE_BROADPHASE_EXPORT FewPairs {
 public:
     // Its 4 kB are written before they are read.
     // cppcheck-suppress uninitMemberVar

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
+#include <broadphase/export.hpp>
+
 namespace hashphase::detail {
 
 /// Must not be broken by who is called back.
@@ -42,7 +44,8 @@ private:
         return false;
     }
 
-    static inline constinit thread_local const QueryScope* innermost_ = nullptr;
+    HASHPHASE_ONE_FOR_ALL static inline constinit thread_local const QueryScope* innermost_ =
+        nullptr;
 
     const void* owner_;
     const QueryScope* outer_;

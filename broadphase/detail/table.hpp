@@ -18,6 +18,7 @@
 #include <broadphase/detail/padded_box.hpp>
 #include <broadphase/detail/quantise.hpp>
 #include <broadphase/detail/sorted_bucket.hpp>
+#include <broadphase/export.hpp>
 #include <broadphase/parallel_for.hpp>
 
 #include <algorithm>
@@ -50,7 +51,7 @@ struct EntryRange {
 };
 
 template <class Scalar>
-class Table {
+class HASHPHASE_BROADPHASE_EXPORT Table {
 public:
     /// Files boxes[i], of slots[i], for every i, anew; boxes with a NaN are left out. Cell sizes
     /// follow the population, or are fixed when `fixed.count` > 0. Where it throws, for want of

@@ -14,6 +14,7 @@
 
 #include <broadphase/grid.hpp>
 #include <broadphase/proxy_filter.hpp>
+#include <integration/ai/export.hpp>
 
 #include <type_traits>
 #include <vector>
@@ -23,10 +24,11 @@ namespace hashphase {
 /// Finds those whose position is within `radius` [m] of `position`. Cost: the cells around, at most
 /// one test for each proxy, as Grid::visit() says, and sorting what is found.
 template <class Scalar>
-QueryCost findWithin(const Grid<Scalar>& grid,
-                     const Vector3<std::type_identity_t<Scalar>>& position,
-                     std::type_identity_t<Scalar> radius, std::vector<ProxyId>& found,
-                     ProxyFilter filter = acceptAll, ProxyId self = {});
+HASHPHASE_AI_EXPORT QueryCost findWithin(const Grid<Scalar>& grid,
+                                         const Vector3<std::type_identity_t<Scalar>>& position,
+                                         std::type_identity_t<Scalar> radius,
+                                         std::vector<ProxyId>& found,
+                                         ProxyFilter filter = acceptAll, ProxyId self = {});
 
 /// Finds those whose box touches a cell, of Grid::cellSize(), that the ball's box touches
 /// (cells_region.hpp): all who are within the radius, and others, none of whose boxes is farther away
@@ -36,10 +38,11 @@ QueryCost findWithin(const Grid<Scalar>& grid,
 /// where they are only counted, by Grid::visit(CellsRegion, CollectCount), and the radius is some
 /// cells: in lists, and within a cell in space, the exact ones take less. Cost: at most as above.
 template <class Scalar>
-QueryCost estimateWithin(const Grid<Scalar>& grid,
-                         const Vector3<std::type_identity_t<Scalar>>& position,
-                         std::type_identity_t<Scalar> radius, std::vector<ProxyId>& found,
-                         ProxyFilter filter = acceptAll, ProxyId self = {});
+HASHPHASE_AI_EXPORT QueryCost estimateWithin(const Grid<Scalar>& grid,
+                                             const Vector3<std::type_identity_t<Scalar>>& position,
+                                             std::type_identity_t<Scalar> radius,
+                                             std::vector<ProxyId>& found,
+                                             ProxyFilter filter = acceptAll, ProxyId self = {});
 
 extern template QueryCost findWithin(const Grid<float>&, const Vector3<float>&, float,
                                      std::vector<ProxyId>&, ProxyFilter, ProxyId);

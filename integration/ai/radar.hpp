@@ -14,6 +14,7 @@
 
 #include <broadphase/grid.hpp>
 #include <broadphase/up_axis.hpp>
+#include <integration/ai/export.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -52,7 +53,7 @@ using RadarGroups = FunctionRef<std::uint32_t(ProxyId)>;
 
 /// Counts who is where. Keeps its memory: a frame like the last one allocates nothing.
 template <class Scalar>
-class Radar {
+class HASHPHASE_AI_EXPORT Radar {
 public:
     static constexpr std::size_t kMostCounts = std::size_t{1} << 28;
 

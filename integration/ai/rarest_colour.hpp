@@ -14,6 +14,7 @@
 //            of colours is counted by nobody, and takes one.
 
 #include <broadphase/crowd.hpp>
+#include <integration/ai/export.hpp>
 
 #include <cstdint>
 #include <span>
@@ -23,7 +24,7 @@ namespace hashphase {
 
 /// Changes colours. Keeps its memory: a frame like the last one allocates nothing.
 template <class Scalar>
-class RarestColour {
+class HASHPHASE_AI_EXPORT RarestColour {
 public:
     /// Of every proxy that the filter accepts, sets colours[ProxyId::index] to that of the colours
     /// 0 to colourCount - 1 which fewest of the other ones within `radius` [m] of its centre have; of

@@ -20,6 +20,7 @@
 #include <broadphase/parallel_for.hpp>
 #include <broadphase/position_region.hpp>
 #include <broadphase/proxy_filter.hpp>
+#include <integration/ai/export.hpp>
 
 #include <cstddef>
 #include <limits>
@@ -45,7 +46,7 @@ struct Viewer {
 /// Every proxy whose position is in the viewer's cone; nothing is in the way. Key: squared distance
 /// [m^2] from the eye. At the eye itself one is in every cone.
 template <class Scalar>
-class ViewRegion {
+class HASHPHASE_AI_EXPORT ViewRegion {
 public:
     explicit ViewRegion(const Viewer<Scalar>& viewer);
 
@@ -67,29 +68,30 @@ private:
 /// and `target` aside. False when an end, or the distance, is not finite. Cost: a ray that stops at
 /// the first blocker found; at most one test for each proxy.
 template <class Scalar>
-[[nodiscard]] bool hasLineOfSight(const Grid<Scalar>& grid,
-                                  const Vector3<std::type_identity_t<Scalar>>& from,
-                                  const Vector3<std::type_identity_t<Scalar>>& to,
-                                  ProxyFilter blockers = acceptAll, ProxyId viewer = {},
-                                  ProxyId target = {});
+[[nodiscard]] HASHPHASE_AI_EXPORT bool hasLineOfSight(
+    const Grid<Scalar>& grid, const Vector3<std::type_identity_t<Scalar>>& from,
+    const Vector3<std::type_identity_t<Scalar>>& to, ProxyFilter blockers = acceptAll,
+    ProxyId viewer = {}, ProxyId target = {});
 
 /// True when the viewer sees the proxy. Not itself, nor one that is not in the grid (any more). Cost:
 /// at most that of hasLineOfSight().
 template <class Scalar>
-[[nodiscard]] bool canSee(const Grid<Scalar>& grid, const Viewer<Scalar>& viewer, ProxyId target,
-                          ProxyFilter blockers = acceptAll);
+[[nodiscard]] HASHPHASE_AI_EXPORT bool canSee(const Grid<Scalar>& grid,
+                                              const Viewer<Scalar>& viewer, ProxyId target,
+                                              ProxyFilter blockers = acceptAll);
 
 /// Finds all whom the viewer sees of those that `targets` accepts, sorted, in place of what `seen`
 /// held. Cost: the cells around the cone, and a ray for each target in it; at most one test for each
 /// proxy, and for each proxy and target.
 template <class Scalar>
-QueryCost visibleFrom(const Grid<Scalar>& grid, const Viewer<Scalar>& viewer,
-                      std::vector<ProxyId>& seen, ProxyFilter targets = acceptAll,
-                      ProxyFilter blockers = acceptAll);
+HASHPHASE_AI_EXPORT QueryCost visibleFrom(const Grid<Scalar>& grid, const Viewer<Scalar>& viewer,
+                                          std::vector<ProxyId>& seen,
+                                          ProxyFilter targets = acceptAll,
+                                          ProxyFilter blockers = acceptAll);
 
 /// visibleFrom() for many. Keeps its memory: a frame like the last one allocates nothing.
 template <class Scalar>
-class Sight {
+class HASHPHASE_AI_EXPORT Sight {
 public:
     /// Looks for all viewers, in place of those before. The result does not depend on `parallelFor`.
     QueryCost look(const Grid<Scalar>& grid, std::span<const Viewer<Scalar>> viewers,

@@ -21,6 +21,7 @@
 #include <broadphase/grid.hpp>
 #include <broadphase/parallel_for.hpp>
 #include <broadphase/position_region.hpp>
+#include <integration/ai/export.hpp>
 
 #include <compare>
 #include <cstddef>
@@ -86,7 +87,7 @@ using ZoneChoice = FunctionRef<bool(ZoneId)>;
 
 /// Watches zones. Keeps its memory: a frame like the last one allocates nothing.
 template <class Scalar>
-class Zones {
+class HASHPHASE_AI_EXPORT Zones {
 public:
     // --- Zones -----------------------------------------------------------------------------------
 

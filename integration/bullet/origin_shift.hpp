@@ -14,6 +14,7 @@
 //           world that has any is asserted. A shift that is not finite is asserted, too. Either does
 //           nothing.
 
+#include <integration/bullet/export.hpp>
 #include <integration/bullet/precision.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
@@ -29,7 +30,8 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 /// its own to shift: bodies that are in no world, zones, cameras, terrains. A motion state is asked for
 /// its place and told the new one, whether its body moves or not. Cost: a look at each object,
 /// contact and joint, and SpatialHashBroadphase::shiftOrigin().
-void shiftWorldOrigin(btCollisionWorld& world, SpatialHashBroadphase& broadphase,
-                      const btVector3& shift);
+HASHPHASE_BULLET_EXPORT void shiftWorldOrigin(btCollisionWorld& world,
+                                              SpatialHashBroadphase& broadphase,
+                                              const btVector3& shift);
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

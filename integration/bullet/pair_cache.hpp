@@ -30,6 +30,7 @@
 #include <broadphase/detail/flat_set.hpp>
 #include <broadphase/detail/query_scope.hpp>
 #include <broadphase/detail/run_map.hpp>
+#include <integration/bullet/export.hpp>
 #include <integration/bullet/precision.hpp>
 #include <integration/bullet/proxy_ranks.hpp>
 
@@ -92,7 +93,7 @@ private:
     std::uint64_t ids_;
 };
 
-class PairCache final : public btOverlappingPairCache {
+class HASHPHASE_BULLET_EXPORT PairCache final : public btOverlappingPairCache {
 public:
     /// The key orients pairs in either order: m_pProxy0 has the lower one. The default orients as
     /// Bullet does; another one is for broadphases that re-use unique ids.

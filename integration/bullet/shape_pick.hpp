@@ -12,6 +12,7 @@
 #include <broadphase/collectors.hpp>
 #include <broadphase/proxy_filter.hpp>
 #include <broadphase/regions.hpp>
+#include <integration/bullet/export.hpp>
 #include <integration/bullet/precision.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
@@ -23,7 +24,7 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 /// integration/picking/pick.hpp. To find the nearest only, closestShape() is exact where pickNearest()
 /// is not: Bullet's casts may end up to 2 cm in front of a shape, and of its box. The broadphase must
 /// outlive the test.
-class ShapeTest {
+class HASHPHASE_BULLET_EXPORT ShapeTest {
 public:
     explicit ShapeTest(const SpatialHashBroadphase& broadphase) noexcept
         : broadphase_(&broadphase) {}
@@ -39,13 +40,14 @@ private:
 
 /// The nearest object that the ray meets by its shape, and at what fraction of the ray's length; null
 /// when there is none. What closestRay() finds, which also has a normal to tell.
-[[nodiscard]] KeyedProxy<btScalar> closestShape(const SpatialHashBroadphase& broadphase,
-                                                const RayRegion<btScalar>& ray,
-                                                ProxyFilter filter = acceptAll);
+[[nodiscard]] HASHPHASE_BULLET_EXPORT KeyedProxy<btScalar> closestShape(
+    const SpatialHashBroadphase& broadphase, const RayRegion<btScalar>& ray,
+    ProxyFilter filter = acceptAll);
 
 /// Casts a ray at the shape of a proxy's object, when there is one and the callback's
 /// needsCollision() wants it.
-void castAtShape(const SpatialHashBroadphase& broadphase, ProxyId id, const btVector3& from,
-                 const btVector3& to, btCollisionWorld::RayResultCallback& callback);
+HASHPHASE_BULLET_EXPORT void castAtShape(const SpatialHashBroadphase& broadphase, ProxyId id,
+                                         const btVector3& from, const btVector3& to,
+                                         btCollisionWorld::RayResultCallback& callback);
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

@@ -37,6 +37,7 @@
 #include <broadphase/grid.hpp>
 #include <broadphase/pairs.hpp>
 #include <broadphase/sweeps.hpp>
+#include <integration/bullet/export.hpp>
 #include <integration/bullet/pair_cache.hpp>
 #include <integration/bullet/precision.hpp>
 
@@ -111,7 +112,7 @@ struct ClosestRay {
     btCollisionWorld::RayResultCallback* callback = nullptr;
 };
 
-class SpatialHashBroadphase : public btBroadphaseInterface {
+class HASHPHASE_BULLET_EXPORT SpatialHashBroadphase : public btBroadphaseInterface {
 public:
     /// Makes and owns a PairCache. Throws std::invalid_argument with configError(config.grid).
     explicit SpatialHashBroadphase(const SpatialHashConfig& config = {});

@@ -8,6 +8,7 @@
 //     terrain.add(corners);  // integration/terrain
 
 #include <broadphase/aabb.hpp>
+#include <integration/bullet/export.hpp>
 #include <integration/bullet/precision.hpp>
 
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
@@ -27,8 +28,8 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 /// does, a sentence that says so, and then nothing was appended. A heightfield with a negative scaling
 /// has none either: Bullet itself finds none there. Cost: O(triangles), and the children of
 /// compounds, each as often as it is contained.
-[[nodiscard]] std::string appendTriangles(const btCollisionShape& shape,
-                                          const btTransform& transform,
-                                          std::vector<Vector3<btScalar>>& corners);
+[[nodiscard]] HASHPHASE_BULLET_EXPORT std::string appendTriangles(
+    const btCollisionShape& shape, const btTransform& transform,
+    std::vector<Vector3<btScalar>>& corners);
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

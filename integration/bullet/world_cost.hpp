@@ -3,6 +3,7 @@
 
 // What the last step of a Bullet world had to do.
 
+#include <integration/bullet/export.hpp>
 #include <integration/bullet/precision.hpp>
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
@@ -25,9 +26,9 @@ struct WorldCost {
 
 /// Reads the world as its last step has left it: call it between two steps. Cost: a look at each
 /// object and each contact.
-[[nodiscard]] WorldCost costOf(btDiscreteDynamicsWorld& world);
+[[nodiscard]] HASHPHASE_BULLET_EXPORT WorldCost costOf(btDiscreteDynamicsWorld& world);
 
 /// Whether Bullet sweeps the body when it moves by `way` [m] in a step, with m_useContinuous set.
-[[nodiscard]] bool isSwept(const btRigidBody& body, btScalar way);
+[[nodiscard]] HASHPHASE_BULLET_EXPORT bool isSwept(const btRigidBody& body, btScalar way);
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

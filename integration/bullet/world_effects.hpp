@@ -43,6 +43,7 @@
 //           std::bad_alloc is passed on, and the call may be repeated; pairs are complete in the next step
 //           that returns.
 
+#include <integration/bullet/export.hpp>
 #include <integration/bullet/kept_setting.hpp>
 #include <integration/bullet/precision.hpp>
 
@@ -93,7 +94,7 @@ struct WorldEffects {
     std::function<BodyEffects(const btCollisionObject&)> effectsOf{};
 };
 
-class WorldConfigurator {
+class HASHPHASE_BULLET_EXPORT WorldConfigurator {
 public:
     explicit WorldConfigurator(btDiscreteDynamicsWorld& world);
     /// Gives back all settings. Pairs that come back take memory: where that may run out, apply({})

@@ -22,6 +22,7 @@
 #include <broadphase/detail/query_scope.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/proxy_filter.hpp>
+#include <integration/culling/export.hpp>
 
 #include <bit>
 #include <cstddef>
@@ -39,7 +40,7 @@ struct Overdraw {
 };
 
 template <class Scalar>
-class Culler {
+class HASHPHASE_CULLING_EXPORT Culler {
 public:
     using View = ConvexRegion<Scalar>;
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <initializer_list>
+#include <integration/effects/export.hpp>
 #include <string>
 #include <string_view>
 
@@ -36,7 +37,7 @@ inline constexpr std::array kAllEffects{
 };
 
 /// As it is spelled in code and in files: "boxSelection".
-[[nodiscard]] std::string_view nameOf(Effect effect) noexcept;
+[[nodiscard]] HASHPHASE_EFFECTS_EXPORT std::string_view nameOf(Effect effect) noexcept;
 
 /// A set of effects; a value of two bytes.
 class EffectSet {
@@ -90,7 +91,7 @@ private:
 };
 
 /// Their names with commas between them; "nothing" for none.
-[[nodiscard]] std::string namesOf(EffectSet effects);
+[[nodiscard]] HASHPHASE_EFFECTS_EXPORT std::string namesOf(EffectSet effects);
 
 /// Those that decide where the bodies of a Simulation are.
 inline constexpr EffectSet kMovingEffects{Effect::motion, Effect::terrain, Effect::response,

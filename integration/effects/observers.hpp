@@ -27,6 +27,7 @@
 #include <broadphase/parallel_for.hpp>
 #include <integration/ai/zones.hpp>
 #include <integration/culling/culler.hpp>
+#include <integration/effects/export.hpp>
 #include <integration/effects/scene_cost.hpp>
 #include <integration/effects/scene_effects.hpp>
 #include <integration/effects/undeclared_effect.hpp>
@@ -71,7 +72,7 @@ struct ObservedScene {
 };
 
 template <class Scalar>
-class Observers {
+class HASHPHASE_EFFECTS_EXPORT Observers {
 public:
     using Point = Vector3<Scalar>;
     using Scene = ObservedScene<Scalar>;

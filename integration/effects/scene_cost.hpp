@@ -5,6 +5,7 @@
 // belongs to effects: where none of them is declared it is exactly 0.
 
 #include <integration/effects/effect.hpp>
+#include <integration/effects/export.hpp>
 
 #include <array>
 #include <cstddef>
@@ -89,8 +90,10 @@ inline constexpr std::size_t kSceneCounterCount = 35;
 inline constexpr std::size_t kSceneTableCount = 18;
 
 /// In the order of SceneCounter, and of SceneTable.
-[[nodiscard]] const std::array<SceneItem, kSceneCounterCount>& sceneCounters() noexcept;
-[[nodiscard]] const std::array<SceneItem, kSceneTableCount>& sceneTables() noexcept;
+[[nodiscard]] HASHPHASE_EFFECTS_EXPORT const std::array<SceneItem, kSceneCounterCount>&
+sceneCounters() noexcept;
+[[nodiscard]] HASHPHASE_EFFECTS_EXPORT const std::array<SceneItem, kSceneTableCount>&
+sceneTables() noexcept;
 
 /// A number for each Item: of a frame, or the sum of some.
 template <class Item, std::size_t count>
@@ -119,6 +122,7 @@ using SceneCost = SceneNumbers<SceneCounter, kSceneCounterCount>;
 /// Bytes, capacity included.
 using SceneFootprint = SceneNumbers<SceneTable, kSceneTableCount>;
 
-[[nodiscard]] std::uint64_t totalBytes(const SceneFootprint& footprint) noexcept;
+[[nodiscard]] HASHPHASE_EFFECTS_EXPORT std::uint64_t totalBytes(
+    const SceneFootprint& footprint) noexcept;
 
 }  // namespace hashphase

@@ -18,6 +18,7 @@
 #include <broadphase/sweep_mode.hpp>
 #include <broadphase/up_axis.hpp>
 #include <integration/effects/effect.hpp>
+#include <integration/effects/export.hpp>
 
 #include <cstdint>
 #include <limits>
@@ -144,11 +145,11 @@ struct SceneEffects {
 };
 
 /// The effects without which that one cannot be declared, those that these need included.
-[[nodiscard]] EffectSet needsOf(Effect effect) noexcept;
+[[nodiscard]] HASHPHASE_EFFECTS_EXPORT EffectSet needsOf(Effect effect) noexcept;
 
 /// Says in a sentence how the declaration contradicts itself: which effect, or which setting, is wrong,
 /// and what to declare instead; empty when all is well. Who runs a declaration throws
 /// std::invalid_argument with this sentence.
-[[nodiscard]] std::string effectsError(const SceneEffects& effects);
+[[nodiscard]] HASHPHASE_EFFECTS_EXPORT std::string effectsError(const SceneEffects& effects);
 
 }  // namespace hashphase

@@ -31,6 +31,7 @@
 #include <broadphase/grid.hpp>
 #include <broadphase/pairs.hpp>
 #include <broadphase/parallel_for.hpp>
+#include <integration/effects/export.hpp>
 #include <integration/effects/observers.hpp>
 #include <integration/effects/scene_cost.hpp>
 #include <integration/effects/scene_effects.hpp>
@@ -69,7 +70,7 @@ struct Body {
 };
 
 template <class Scalar>
-class Simulation {
+class HASHPHASE_EFFECTS_EXPORT Simulation {
 public:
     using Point = Vector3<Scalar>;
 
@@ -298,7 +299,7 @@ private:
 };
 
 /// effectsError(), and what a Simulation cannot run.
-[[nodiscard]] std::string simulationError(const SceneEffects& effects);
+[[nodiscard]] HASHPHASE_EFFECTS_EXPORT std::string simulationError(const SceneEffects& effects);
 
 extern template class Simulation<float>;
 extern template class Simulation<double>;

@@ -2,13 +2,14 @@
 #pragma once
 
 #include <integration/effects/effect.hpp>
+#include <integration/effects/export.hpp>
 
 #include <stdexcept>
 
 namespace hashphase {
 
 /// Thrown by a call for an effect that the scene does not declare. It has done nothing.
-class UndeclaredEffect : public std::logic_error {
+class HASHPHASE_EFFECTS_EXPORT UndeclaredEffect : public std::logic_error {
 public:
     /// `call` is what was asked for: "colours()".
     UndeclaredEffect(Effect effect, std::string_view call);

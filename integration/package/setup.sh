@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Zlib
 # shellcheck shell=bash
 #
-# Sourced by demos/run, tests/run, tests/fuzz/run and tests/benchmarks/run: from a fresh machine to
+# Sourced by demos/run, tests/run, integration/package/make-deb and others: from a fresh machine to
 # an up-to-date build.
 # Everything is said on stderr, so that the output of the program that is run stays clean.
 

@@ -5,6 +5,16 @@
 include_guard(GLOBAL)
 include(GNUInstallDirs)
 
+# Before version 1.0 every minor version may change what programs have compiled in; from then on only
+# a major version may (integration/guide/abi.md).
+if(PROJECT_VERSION_MAJOR EQUAL 0)
+    set(HASHPHASE_ABI_VERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+    set(HASHPHASE_COMPATIBILITY SameMinorVersion)
+else()
+    set(HASHPHASE_ABI_VERSION ${PROJECT_VERSION_MAJOR})
+    set(HASHPHASE_COMPATIBILITY SameMajorVersion)
+endif()
+
 # Warnings, reproducible floating point and plain C++20 for a target of our own. The headers of
 # Bullet, Eigen and GoogleTest come from imported targets and count as system headers.
 function(hashphase_own_target target)
@@ -58,6 +68,24 @@ function(hashphase_compile_together target number)
     endif()
 endfunction()
 
+# hashphase_find_libraries_from(<target> <folder>): what is installed in the folder finds our shared
+# libraries wherever the prefix is. Where the system's are it needs no telling, and packages must not.
+function(hashphase_find_libraries_from target folder)
+    if(BUILD_SHARED_LIBS AND UNIX AND NOT APPLE AND NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+        file(RELATIVE_PATH way ${CMAKE_INSTALL_PREFIX}/${folder}
+             ${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR})
+        set_target_properties(${target} PROPERTIES INSTALL_RPATH "$ORIGIN/${way}")
+    endif()
+endfunction()
+
+# hashphase_install_program(<target>...): among the tools.
+function(hashphase_install_program)
+    foreach(target IN LISTS ARGN)
+        hashphase_find_libraries_from(${target} ${CMAKE_INSTALL_BINDIR})
+    endforeach()
+    install(TARGETS ${ARGN} RUNTIME COMPONENT hashphase_tools)
+endfunction()
+
 # hashphase_add_library(<component> SOURCES <file>... LINKS <target>...)
 #
 # Adds hashphase::<component>, with the repository root as its include folder, and installs it in an
@@ -76,12 +104,36 @@ function(hashphase_add_library component)
         ${target}
         PROPERTIES EXPORT_NAME ${component}
                    VERSION ${PROJECT_VERSION}
-                   SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
-                   WINDOWS_EXPORT_ALL_SYMBOLS ON)
+                   SOVERSION ${HASHPHASE_ABI_VERSION}
+                   CXX_VISIBILITY_PRESET hidden
+                   VISIBILITY_INLINES_HIDDEN ON)
+    if(BUILD_SHARED_LIBS)
+        target_compile_definitions(${target} PUBLIC HASHPHASE_SHARED=1)
+        if(NOT WIN32)
+            # Makes no difference, but to precompiled headers, which must not differ in it.
+            set_target_properties(${target} PROPERTIES DEFINE_SYMBOL "")
+        endif()
+        if(UNIX AND NOT APPLE AND NOT HASHPHASE_SANITIZE)
+            # What another library hides is found out here, not by who links both. The standard
+            # library's templates are never hidden by the compiler.
+            target_link_options(
+                ${target} PRIVATE -Wl,--no-undefined
+                -Wl,--version-script=${PROJECT_SOURCE_DIR}/integration/package/exports.map)
+            set_property(
+                TARGET ${target} APPEND
+                PROPERTY LINK_DEPENDS ${PROJECT_SOURCE_DIR}/integration/package/exports.map)
+        endif()
+    endif()
     if(TARGET hashphase_broadphase AND NOT component STREQUAL "broadphase")
         hashphase_precompile_headers(${target} AS hashphase_broadphase)
     endif()
-    install(TARGETS ${target} EXPORT hashphase-${component}-targets)
+    hashphase_find_libraries_from(${target} ${CMAKE_INSTALL_LIBDIR})
+    install(
+        TARGETS ${target}
+        EXPORT hashphase-${component}-targets
+        RUNTIME COMPONENT hashphase_libraries
+        LIBRARY COMPONENT hashphase_libraries NAMELINK_COMPONENT hashphase_development
+        ARCHIVE COMPONENT hashphase_development)
     set_property(GLOBAL APPEND PROPERTY HASHPHASE_COMPONENTS ${component})
 endfunction()
 
@@ -91,6 +143,7 @@ function(hashphase_install_headers)
     install(
         DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hashphase/${folder}
+        COMPONENT hashphase_development
         FILES_MATCHING
         PATTERN "*.hpp")
 endfunction()

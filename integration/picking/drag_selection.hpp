@@ -13,6 +13,7 @@
 #include <broadphase/convex_region.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/proxy_filter.hpp>
+#include <integration/picking/export.hpp>
 #include <integration/picking/view.hpp>
 
 #include <span>
@@ -23,21 +24,22 @@ namespace hashphase {
 
 /// Says in a sentence why nothing can be selected; empty when something may be.
 template <class Scalar>
-[[nodiscard]] std::string selectionError(const View<Scalar>& view, const Pixel& a, const Pixel& b);
+[[nodiscard]] HASHPHASE_PICKING_EXPORT std::string selectionError(const View<Scalar>& view,
+                                                                  const Pixel& a, const Pixel& b);
 
 /// All that is seen between two corners, exactly. Cost: some microseconds.
 template <class Scalar>
-[[nodiscard]] ConvexRegion<Scalar> selectionRegion(const View<Scalar>& view, const Pixel& a,
-                                                   const Pixel& b,
-                                                   Containment containment = Containment::touching);
+[[nodiscard]] HASHPHASE_PICKING_EXPORT ConvexRegion<Scalar> selectionRegion(
+    const View<Scalar>& view, const Pixel& a, const Pixel& b,
+    Containment containment = Containment::touching);
 
 /// The proxies whose boxes touch what is seen between two corners, or lie wholly inside, by their ids,
 /// in a vector of the caller's, which is emptied first. Returns what is in it. Cost: at most one test
 /// for each proxy (Grid::visit()), and sorting what is found. That of the query is added to `cost`.
 template <class Scalar>
-std::span<const ProxyId> select(const Grid<Scalar>& grid, const View<Scalar>& view, const Pixel& a,
-                                const Pixel& b, std::vector<ProxyId>& selected,
-                                Containment containment = Containment::touching,
-                                ProxyFilter filter = acceptAll, QueryCost* cost = nullptr);
+HASHPHASE_PICKING_EXPORT std::span<const ProxyId> select(
+    const Grid<Scalar>& grid, const View<Scalar>& view, const Pixel& a, const Pixel& b,
+    std::vector<ProxyId>& selected, Containment containment = Containment::touching,
+    ProxyFilter filter = acceptAll, QueryCost* cost = nullptr);
 
 }  // namespace hashphase

@@ -11,6 +11,7 @@
 
 #include <broadphase/ground_footprint.hpp>
 #include <broadphase/regions.hpp>
+#include <integration/picking/export.hpp>
 #include <integration/picking/view.hpp>
 
 #include <optional>
@@ -21,22 +22,21 @@ namespace hashphase {
 /// The part of a ray between the heights: of what stands there, it meets what the ray meets, but for
 /// rounding. Its fractions count from where it begins. Empty when the ray never comes there.
 template <class Scalar>
-[[nodiscard]] RayRegion<Scalar> clipToHeights(const RayRegion<Scalar>& ray,
-                                              const HeightRange<Scalar>& heights);
+[[nodiscard]] HASHPHASE_PICKING_EXPORT RayRegion<Scalar> clipToHeights(
+    const RayRegion<Scalar>& ray, const HeightRange<Scalar>& heights);
 
 /// Where the ray meets the plane at this height; nothing for a ray that ends before, looks over the
 /// horizon, or is parallel to the ground.
 template <class Scalar>
-[[nodiscard]] std::optional<Vector3<Scalar>> groundPoint(const RayRegion<Scalar>& ray,
-                                                         std::type_identity_t<Scalar> height = 0,
-                                                         UpAxis upAxis = UpAxis::y);
+[[nodiscard]] HASHPHASE_PICKING_EXPORT std::optional<Vector3<Scalar>> groundPoint(
+    const RayRegion<Scalar>& ray, std::type_identity_t<Scalar> height = 0,
+    UpAxis upAxis = UpAxis::y);
 
 /// What a rectangle that is dragged on the screen covers on the ground (see drag_selection.hpp and
 /// ground_footprint.hpp). Select by its region(): all columns of air over it count, as on a map.
 template <class Scalar>
-[[nodiscard]] GroundFootprint<Scalar> dragFootprint(const View<Scalar>& view, const Pixel& a,
-                                                    const Pixel& b,
-                                                    const HeightRange<Scalar>& heights,
-                                                    double farthest = kFarthest);
+[[nodiscard]] HASHPHASE_PICKING_EXPORT GroundFootprint<Scalar> dragFootprint(
+    const View<Scalar>& view, const Pixel& a, const Pixel& b, const HeightRange<Scalar>& heights,
+    double farthest = kFarthest);
 
 }  // namespace hashphase

@@ -16,6 +16,7 @@
 #include <broadphase/function_ref.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/proxy_filter.hpp>
+#include <integration/picking/export.hpp>
 
 #include <optional>
 #include <span>
@@ -40,26 +41,29 @@ using ExactTest =
 
 /// The nearest proxy whose box the ray meets.
 template <class Scalar>
-[[nodiscard]] Picked<Scalar> pickNearest(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
-                                         ProxyFilter filter = acceptAll, QueryCost* cost = nullptr);
+[[nodiscard]] HASHPHASE_PICKING_EXPORT Picked<Scalar> pickNearest(const Grid<Scalar>& grid,
+                                                                  const RayRegion<Scalar>& ray,
+                                                                  ProxyFilter filter = acceptAll,
+                                                                  QueryCost* cost = nullptr);
 
 /// The nearest by the exact test, which is not asked about boxes behind what was found before.
 template <class Scalar>
-[[nodiscard]] Picked<Scalar> pickNearest(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
-                                         std::type_identity_t<ExactTest<Scalar>> test,
-                                         ProxyFilter filter = acceptAll, QueryCost* cost = nullptr);
+[[nodiscard]] HASHPHASE_PICKING_EXPORT Picked<Scalar> pickNearest(
+    const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
+    std::type_identity_t<ExactTest<Scalar>> test, ProxyFilter filter = acceptAll,
+    QueryCost* cost = nullptr);
 
 /// All that the ray meets, near to far, in a vector of the caller's, which is emptied first. Returns
 /// what is in it.
 template <class Scalar>
-std::span<const Picked<Scalar>> pickAll(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
-                                        std::vector<Picked<Scalar>>& picked,
-                                        ProxyFilter filter = acceptAll, QueryCost* cost = nullptr);
+HASHPHASE_PICKING_EXPORT std::span<const Picked<Scalar>> pickAll(
+    const Grid<Scalar>& grid, const RayRegion<Scalar>& ray, std::vector<Picked<Scalar>>& picked,
+    ProxyFilter filter = acceptAll, QueryCost* cost = nullptr);
 
 template <class Scalar>
-std::span<const Picked<Scalar>> pickAll(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
-                                        std::vector<Picked<Scalar>>& picked,
-                                        std::type_identity_t<ExactTest<Scalar>> test,
-                                        ProxyFilter filter = acceptAll, QueryCost* cost = nullptr);
+HASHPHASE_PICKING_EXPORT std::span<const Picked<Scalar>> pickAll(
+    const Grid<Scalar>& grid, const RayRegion<Scalar>& ray, std::vector<Picked<Scalar>>& picked,
+    std::type_identity_t<ExactTest<Scalar>> test, ProxyFilter filter = acceptAll,
+    QueryCost* cost = nullptr);
 
 }  // namespace hashphase

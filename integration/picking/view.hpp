@@ -17,6 +17,7 @@
 #include <broadphase/frustum.hpp>
 #include <broadphase/ground_footprint.hpp>
 #include <broadphase/regions.hpp>
+#include <integration/picking/export.hpp>
 
 #include <cstdint>
 #include <string>
@@ -41,11 +42,11 @@ enum class DepthOrder : std::uint8_t { nearFirst, reversed };
 /// Says in a sentence why nothing can be seen or picked through the matrix, 4 x 4, in the viewport;
 /// empty when something may be.
 template <class Scalar>
-[[nodiscard]] std::string viewError(const Eigen::Matrix<Scalar, 4, 4>& viewProjection,
-                                    const Viewport& viewport);
+[[nodiscard]] HASHPHASE_PICKING_EXPORT std::string viewError(
+    const Eigen::Matrix<Scalar, 4, 4>& viewProjection, const Viewport& viewport);
 
 template <class Scalar>
-class View {
+class HASHPHASE_PICKING_EXPORT View {
 public:
     using Matrix = Eigen::Matrix<Scalar, 4, 4>;
 
@@ -67,14 +68,15 @@ public:
     /// without area. isEmpty() when none of it does.
     [[nodiscard]] ScreenRectangle<Scalar> rectangleBetween(const Pixel& a, const Pixel& b) const;
 
-    [[nodiscard]] const Matrix& viewProjection() const noexcept { return viewProjection_; }
+    [[nodiscard]] Matrix viewProjection() const noexcept { return viewProjection_; }
     [[nodiscard]] DepthRange depthRange() const noexcept { return depthRange_; }
     [[nodiscard]] const Viewport& viewport() const noexcept { return viewport_; }
 
 private:
     [[nodiscard]] Eigen::Vector2d deviceCoordinates(const Pixel& pixel) const;
 
-    Matrix viewProjection_;
+    // Not aligned: see integration/guide/abi.md.
+    Eigen::Matrix<Scalar, 4, 4, Eigen::DontAlign> viewProjection_;
     detail::CameraInverse inverse_;
     Viewport viewport_;
     DepthRange depthRange_;

@@ -21,6 +21,7 @@
 #include <broadphase/parallel_for.hpp>
 #include <broadphase/up_axis.hpp>
 #include <integration/terrain/detail/ground_triangle.hpp>
+#include <integration/terrain/export.hpp>
 
 #include <algorithm>
 #include <array>
@@ -50,7 +51,7 @@ struct AddedTriangles {
 };
 
 template <class Scalar>
-class Terrain {
+class HASHPHASE_TERRAIN_EXPORT Terrain {
 public:
     using Point = Vector3<Scalar>;
     using Corners = std::array<Point, 3>;

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What the shared libraries hashphase_bullet and hashphase_bullet_float64 offer: see
+// broadphase/export.hpp.
+
+#include <broadphase/export.hpp>
+
+#if defined(hashphase_bullet_EXPORTS) || defined(hashphase_bullet_float64_EXPORTS)
+#define HASHPHASE_BULLET_EXPORT HASHPHASE_SYMBOL_EXPORT
+#else
+#define HASHPHASE_BULLET_EXPORT HASHPHASE_SYMBOL_IMPORT
+#endif

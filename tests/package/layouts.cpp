@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Zlib
+//
+// Compiled for AVX, for which Eigen aligns some of its matrices more than for any x86-64: what a program
+// and a library share must not know of it.
+
+#include <broadphase/cells_region.hpp>
+#include <broadphase/crowd.hpp>
+#include <broadphase/frustum.hpp>
+#include <broadphase/ground_footprint.hpp>
+#include <broadphase/neighbours.hpp>
+#include <broadphase/position_region.hpp>
+#include <broadphase/sweeps.hpp>
+#include <integration/ai/radar.hpp>
+#include <integration/ai/rarest_colour.hpp>
+#include <integration/ai/sight.hpp>
+#include <integration/effects/observers.hpp>
+#include <integration/effects/simulation.hpp>
+
+#include <Eigen/Core>
+
+using namespace hashphase;
+
+static_assert(alignof(Eigen::Matrix4f) > 16, "This is to be compiled for AVX.");
+
+template <template <class> class... Templates>
+constexpr bool isSameForAll =
+    ((alignof(Templates<float>) <= 16 && alignof(Templates<double>) <= 16) && ...);
+
+static_assert(isSameForAll<Aabb, BoxRegion, CellsRegion, ConvexRegion, GroundFootprint, MovingBox,
+                           MovingBoxRegion, PositionRegion, RayRegion, SphereRegion>);
+static_assert(isSameForAll<Crowd, Grid, Neighbours, Pairs, Sweeps>);
+static_assert(isSameForAll<Culler, Picked, Radar, RadarWindow, RarestColour, Sight, Terrain, View,
+                           Viewer, ViewRegion, Zone, Zones>);
+static_assert(isSameForAll<Body, ObservedScene, Observers, Simulation>);
+static_assert(alignof(SceneEffects) <= 16);
