@@ -8,7 +8,7 @@
 #   targets      that exist already: Bullet as part of the same build, or from Conan or vcpkg
 #   pkg-config   `bullet`, `bullet-float64`
 #   config file  Debian's has paths relative to BULLET_ROOT_DIR, and names libraries that are in
-#                other packages
+#                other packages; those of Conan and vcpkg make targets
 #   FindBullet   comes with CMake, and cannot tell the precision
 # Bullet of the wrong precision links without a word and then finds no pairs, so whatever is found
 # is compiled and linked once before it is believed.
@@ -52,7 +52,10 @@ endmacro()
 
 macro(_hashphase_bullet_from_config_file)
     find_package(Bullet QUIET CONFIG CONFIGS BulletConfig${suffix}.cmake BulletConfig.cmake)
-    if(Bullet_FOUND)
+    if(TARGET Bullet::Bullet OR TARGET BulletCollision)
+        _hashphase_bullet_from_targets()
+        list(APPEND definitions ${BULLET_DEFINITIONS})
+    elseif(Bullet_FOUND)
         # Users before the libraries that they use: Bullet's list is the other way round.
         set(names ${BULLET_LIBRARIES})
         list(FILTER names INCLUDE REGEX "^(BulletDynamics|BulletCollision|LinearMath)")

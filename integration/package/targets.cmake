@@ -68,6 +68,18 @@ function(hashphase_compile_together target number)
     endif()
 endfunction()
 
+# What headers compile must agree with the libraries: users are told by CMake and by pkg-config.
+set(HASHPHASE_DEFINITIONS "")
+foreach(definition IN ITEMS ENABLE_ASSERTS=HASHPHASE_ASSERTS USE_SCALAR=HASHPHASE_SCALAR
+                            SHARED=BUILD_SHARED_LIBS)
+    string(REGEX MATCH "(.*)=(.*)" definition "${definition}")
+    if(${CMAKE_MATCH_2})
+        list(APPEND HASHPHASE_DEFINITIONS HASHPHASE_${CMAKE_MATCH_1}=1)
+    else()
+        list(APPEND HASHPHASE_DEFINITIONS HASHPHASE_${CMAKE_MATCH_1}=0)
+    endif()
+endforeach()
+
 # hashphase_find_libraries_from(<target> <folder>): what is installed in the folder finds our shared
 # libraries wherever the prefix is. Where the system's are it needs no telling, and packages must not.
 function(hashphase_find_libraries_from target folder)
@@ -108,7 +120,6 @@ function(hashphase_add_library component)
                    CXX_VISIBILITY_PRESET hidden
                    VISIBILITY_INLINES_HIDDEN ON)
     if(BUILD_SHARED_LIBS)
-        target_compile_definitions(${target} PUBLIC HASHPHASE_SHARED=1)
         if(NOT WIN32)
             # Makes no difference, but to precompiled headers, which must not differ in it.
             set_target_properties(${target} PROPERTIES DEFINE_SYMBOL "")

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Zlib
+#
+# A recipe for Conan 2, which builds the repository that it lies in:
+#
+#   conan create integration/package/conan --build=missing
+#
+# Bullet's own option says the precision: -o "bullet3/*:double_precision=True".
+
+import os
+import re
+
+from conan import ConanFile
+from conan.tools.build import check_min_cppstd
+from conan.tools.cmake import CMake, CMakeDeps, CMakeToolchain, cmake_layout
+from conan.tools.files import copy, load, rmdir
+
+required_conan_version = ">=2.0"
+
+REPOSITORY = os.path.join("..", "..", "..")
+CLIENTS = ["ai", "culling", "picking", "terrain"]
+
+
+class HashphaseConan(ConanFile):
+    name = "hashphase"
+    description = "A spatial-hash broadphase for the Bullet physics engine"
+    license = "Zlib"
+    topics = ("bullet", "physics", "broadphase", "collision-detection", "spatial-hash")
+    package_type = "library"
+    settings = "os", "arch", "compiler", "build_type"
+    options = {"shared": [True, False], "fPIC": [True, False]}
+    default_options = {"shared": False, "fPIC": True}
+    implements = ["auto_shared_fpic"]
+
+    def set_version(self):
+        text = load(self, os.path.join(self.recipe_folder, REPOSITORY, "CMakeLists.txt"))
+        self.version = re.search(r"^ +VERSION ([0-9.]+)$", text, re.MULTILINE).group(1)
+
+    def export_sources(self):
+        source = os.path.join(self.recipe_folder, REPOSITORY)
+        for pattern in ("CMakeLists.txt", "LICENSE", "broadphase/*", "integration/*"):
+            copy(self, pattern, source, self.export_sources_folder)
+
+    def requirements(self):
+        # Both are in public headers.
+        self.requires("bullet3/3.25", transitive_headers=True, transitive_libs=True)
+        self.requires("eigen/3.4.0", transitive_headers=True)
+
+    def validate(self):
+        check_min_cppstd(self, 20)
+
+    def layout(self):
+        cmake_layout(self)
+
+    def generate(self):
+        toolchain = CMakeToolchain(self)
+        # The Bullet that pkg-config knows is the system's.
+        toolchain.cache_variables["CMAKE_DISABLE_FIND_PACKAGE_PkgConfig"] = True
+        toolchain.cache_variables["HASHPHASE_BUILD_DEMOS"] = False
+        toolchain.cache_variables["HASHPHASE_BUILD_TESTS"] = False
+        toolchain.cache_variables["HASHPHASE_WARNINGS_AS_ERRORS"] = False
+        # Whoever compiles against the package is told the same (package_info).
+        toolchain.cache_variables["HASHPHASE_ASSERTS"] = self._has_asserts
+        toolchain.generate()
+        CMakeDeps(self).generate()
+
+    def build(self):
+        cmake = CMake(self)
+        cmake.configure()
+        cmake.build()
+
+    def package(self):
+        copy(self, "LICENSE", self.source_folder, os.path.join(self.package_folder, "licenses"))
+        CMake(self).install()
+        # Conan writes its own, by package_info().
+        rmdir(self, os.path.join(self.package_folder, "lib", "cmake"))
+        rmdir(self, os.path.join(self.package_folder, "lib", "pkgconfig"))
+
+    @property
+    def _has_asserts(self):
+        return self.settings.build_type != "Release"
+
+    def package_info(self):
+        self.cpp_info.set_property("cmake_file_name", "hashphase")
+        self._add_library("broadphase", ["eigen::eigen"])
+        flags = {"ENABLE_ASSERTS": self._has_asserts, "SHARED": self.options.shared}
+        self.cpp_info.components["broadphase"].defines = [
+            f"HASHPHASE_{name}={int(bool(value))}" for name, value in flags.items()
+        ]
+        for client in CLIENTS:
+            self._add_library(client, ["broadphase"])
+        self._add_library("effects", CLIENTS)
+        is_double = self.dependencies["bullet3"].options.get_safe("double_precision")
+        bullet = "bullet-float64" if is_double else "bullet"
+        self._add_library(bullet, ["broadphase", "bullet3::bullet3"])
+        if is_double:
+            self.cpp_info.components[bullet].defines = ["BT_USE_DOUBLE_PRECISION"]
+
+    def _add_library(self, name, requires):
+        component = self.cpp_info.components[name]
+        component.set_property("cmake_target_name", f"hashphase::{name}")
+        component.set_property(
+            "pkg_config_name", "hashphase" if name == "broadphase" else f"hashphase-{name}"
+        )
+        component.includedirs = [os.path.join("include", "hashphase")]
+        component.libs = ["hashphase_" + name.replace("-", "_")]
+        component.requires = requires
+        if self.settings.os in ("Linux", "FreeBSD"):
+            component.system_libs = ["m"]
