@@ -84,6 +84,7 @@ struct PairCost {
     UpdateCost grid;
 };
 
+/// Tells which pairs were born and which died from one update to the next.
 template <class Scalar>
 class Pairs {
 public:

@@ -37,6 +37,7 @@
 
 namespace hashphase {
 
+/// Knows how far proxies move in a frame, for Pairs and for queries.
 template <class Scalar>
 class Sweeps {
 public:

@@ -93,6 +93,7 @@ struct WorldEffects {
     std::function<BodyEffects(const btCollisionObject&)> effectsOf{};
 };
 
+/// Lets a Bullet world compute no more than is declared.
 class WorldConfigurator {
 public:
     explicit WorldConfigurator(btDiscreteDynamicsWorld& world);

@@ -70,6 +70,7 @@ struct ObservedScene {
     }
 };
 
+/// Runs those effects of a declaration that look at a grid.
 template <class Scalar>
 class Observers {
 public:

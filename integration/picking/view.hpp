@@ -44,6 +44,7 @@ template <class Scalar>
 [[nodiscard]] std::string viewError(const Eigen::Matrix<Scalar, 4, 4>& viewProjection,
                                     const Viewport& viewport);
 
+/// A camera and the part of the window that it draws to.
 template <class Scalar>
 class View {
 public:
