@@ -92,6 +92,7 @@ struct UpdateCost {
     std::uint32_t largestCell = 0;
 };
 
+/// Knows every proxy's box, and answers where things are. Scalar is float or double.
 template <class Scalar>
 class HASHPHASE_BROADPHASE_EXPORT Grid {
 public:

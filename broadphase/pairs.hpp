@@ -85,6 +85,7 @@ struct PairCost {
     UpdateCost grid;
 };
 
+/// Tells which pairs were born and which died from one update to the next.
 template <class Scalar>
 class HASHPHASE_BROADPHASE_EXPORT Pairs {
 public:

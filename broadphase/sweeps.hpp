@@ -38,6 +38,7 @@
 
 namespace hashphase {
 
+/// Knows how far proxies move in a frame, for Pairs and for queries.
 template <class Scalar>
 class HASHPHASE_BROADPHASE_EXPORT Sweeps {
 public:

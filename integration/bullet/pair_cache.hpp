@@ -93,6 +93,7 @@ private:
     std::uint64_t ids_;
 };
 
+/// A btOverlappingPairCache in which removing a proxy costs as much as it has pairs.
 class HASHPHASE_BULLET_EXPORT PairCache final : public btOverlappingPairCache {
 public:
     /// The key orients pairs in either order: m_pProxy0 has the lower one. The default orients as

@@ -112,6 +112,7 @@ struct ClosestRay {
     btCollisionWorld::RayResultCallback* callback = nullptr;
 };
 
+/// A btBroadphaseInterface over a Grid, in place of btDbvtBroadphase.
 class HASHPHASE_BULLET_EXPORT SpatialHashBroadphase : public btBroadphaseInterface {
 public:
     /// Makes and owns a PairCache. Throws std::invalid_argument with configError(config.grid).

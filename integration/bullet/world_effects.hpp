@@ -94,6 +94,7 @@ struct WorldEffects {
     std::function<BodyEffects(const btCollisionObject&)> effectsOf{};
 };
 
+/// Lets a Bullet world compute no more than is declared.
 class HASHPHASE_BULLET_EXPORT WorldConfigurator {
 public:
     explicit WorldConfigurator(btDiscreteDynamicsWorld& world);

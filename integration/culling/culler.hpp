@@ -39,6 +39,7 @@ struct Overdraw {
     std::size_t unseen = 0;
 };
 
+/// Finds and keeps the set of proxies that a view touches.
 template <class Scalar>
 class HASHPHASE_CULLING_EXPORT Culler {
 public:

@@ -71,6 +71,7 @@ struct ObservedScene {
     }
 };
 
+/// Runs those effects of a declaration that look at a grid.
 template <class Scalar>
 class HASHPHASE_EFFECTS_EXPORT Observers {
 public:

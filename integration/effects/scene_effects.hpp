@@ -118,6 +118,7 @@ struct RadarEffect {
     UpAxis up = UpAxis::y;
 };
 
+/// What a scene calls for: an effect that has settings here is declared.
 struct SceneEffects {
     std::optional<MotionEffect> motion;
     std::optional<TerrainEffect> terrain;

@@ -69,6 +69,7 @@ struct Body {
     bool isAsleep = false;    // to begin with; kept if sleeping is declared
 };
 
+/// Runs frames of spheres: what is declared, and nothing else.
 template <class Scalar>
 class HASHPHASE_EFFECTS_EXPORT Simulation {
 public:

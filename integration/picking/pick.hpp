@@ -25,6 +25,7 @@
 
 namespace hashphase {
 
+/// What a ray has met, and where.
 template <class Scalar>
 struct Picked {
     ProxyId id;                                       // null: nothing

@@ -45,6 +45,7 @@ template <class Scalar>
 [[nodiscard]] HASHPHASE_PICKING_EXPORT std::string viewError(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection, const Viewport& viewport);
 
+/// A camera and the part of the window that it draws to.
 template <class Scalar>
 class HASHPHASE_PICKING_EXPORT View {
 public:

@@ -50,6 +50,7 @@ struct AddedTriangles {
     std::vector<std::uint32_t> refused;  ///< numbers of those that the ground goes without
 };
 
+/// Triangles that stand still, and what stands on them.
 template <class Scalar>
 class HASHPHASE_TERRAIN_EXPORT Terrain {
 public:

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Zlib
+#
+# Headers as Doxygen reads them, line by line. The comment at the head of each says what it is for, and
+# becomes the file's description: its first paragraph as text, the rest as it stands, because its tables
+# live by their columns. Explicit instantiations are left out, and the namespace that tells precisions
+# apart, which nobody writes.
+
+{ sub(/::inline HASHPHASE_BULLET_NAMESPACE/, "") }
+
+/^extern template/ { isInstantiation = 1 }
+isInstantiation {
+    if (/;$/) isInstantiation = 0
+    print ""
+    next
+}
+
+/^#pragma once/ {
+    print
+    getline blank
+    getline
+    isHead = /^\/\/ /
+    print isHead ? "/** \\file" : blank
+}
+isHead && /^\/\/ / {
+    print substr($0, 4)
+    next
+}
+isHead && /^\/\/$/ {
+    print isTable ? "" : "\\verbatim"
+    isTable = 1
+    next
+}
+isHead {
+    print isTable ? "\\endverbatim */" : "*/"
+    isHead = 0
+    next
+}
+{ print }

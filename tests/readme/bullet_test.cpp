@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Zlib
+
+// The pieces of C++ of integration/guide/bullet.md.
+
+#include <tests/readme/surroundings.hpp>
+
+namespace hashphase::test {
+namespace {
+
+/// A world with one sphere at the origin.
+class BulletPage : public testing::Test {
+protected:
+    BulletPage() { world.addRigidBody(&sphere.body); }
+    ~BulletPage() override { world.removeRigidBody(&sphere.body); }
+
+    FallingSphere sphere;
+    btRigidBody& body = sphere.body;
+    btDispatcher* dispatcher = &sphere.dispatcher;
+    SpatialHashBroadphase broadphase;
+    btDiscreteDynamicsWorld world{dispatcher, &broadphase, &sphere.solver, &sphere.configuration};
+};
+
+TEST(BulletPageAlone, SettingsAreTaken) {
+#include <bullet_1.inl>
+    EXPECT_NE(broadphase.sweeps(), nullptr);
+}
+
+TEST_F(BulletPage, ThousandAreCreatedAndDestroyed) {
+    const std::size_t size = broadphase.grid().size();
+#include <bullet_2.inl>
+    EXPECT_EQ(broadphase.grid().size(), size);
+    EXPECT_EQ(broadphase.getOverlappingPairCache()->getNumOverlappingPairs(), 0);
+}
+
+TEST_F(BulletPage, RaysFindTheSphere) {
+    const btVector3 from(0, 9, 0);
+    const btVector3 to(0, -9, 0);
+    std::vector<btCollisionWorld::ClosestRayResultCallback> callbacks;
+    callbacks.emplace_back(from, to);
+    callbacks.emplace_back(to, from);
+#include <bullet_3.inl>
+    EXPECT_TRUE(hit.hasHit());
+    EXPECT_TRUE(callbacks[0].hasHit() && callbacks[1].hasHit());
+}
+
+TEST_F(BulletPage, IdsLeadToObjectsAndBack) {
+#include <bullet_4.inl>
+    EXPECT_EQ(object, &body);
+}
+
+TEST_F(BulletPage, GroupsGoAlong) {
+    const int kEnemyGroup = btBroadphaseProxy::DefaultFilter;
+    const btVector3 position(0, 20, 0);
+#include <bullet_5.inl>
+    EXPECT_EQ(found, std::vector{SpatialHashBroadphase::idOf(body.getBroadphaseProxy())});
+}
+
+TEST_F(BulletPage, OriginIsShifted) {
+#include <bullet_6.inl>
+    EXPECT_EQ(body.getWorldTransform().getOrigin().x(), -1024);
+}
+
+TEST(BulletPageAlone, CacheOfYoursIsUsed) {
+#include <bullet_7.inl>
+    EXPECT_EQ(broadphase.getOverlappingPairCache(), &pairCache);
+}
+
+}  // namespace
+}  // namespace hashphase::test

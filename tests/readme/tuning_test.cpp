@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Zlib
+
+// The pieces of C++ of integration/guide/tuning.md.
+
+#include <tests/readme/surroundings.hpp>
+
+#include <random>
+
+namespace hashphase::test {
+namespace {
+
+TEST(TuningPage, CostIsPrinted) {
+    SpatialHashBroadphase broadphase;
+    std::vector<btBroadphaseProxy*> proxies;
+    for (int i = 0; i < 100; ++i) {
+        proxies.push_back(
+            broadphase.createProxy({0, 0, 0}, {1, 1, 1}, 0, nullptr, i < 3 ? 1 : 2, 1, nullptr));
+    }
+    broadphase.calculateOverlappingPairs(nullptr);
+    for (btBroadphaseProxy* proxy : proxies) {
+        broadphase.setAabb(proxy, {0, 0, 1}, {1, 1, 2}, nullptr);
+    }
+    broadphase.calculateOverlappingPairs(nullptr);
+    testing::internal::CaptureStdout();
+    {
+#include <tuning_1.inl>
+    } EXPECT_EQ(testing::internal::GetCapturedStdout(),
+                "100 changed, 0 at rest, 4950 boxes tested, 4950 couples watched, 100 share a "
+                "cell\n");
+}
+
+/// How many boxes are compared for each of 3,000 cubes of a metre, four of which overlap each.
+double testsOfEach(double cellSize) {
+    SpatialHashConfig config;
+    config.grid.cellSize = cellSize;
+    SpatialHashBroadphase broadphase(config);
+    std::mt19937 random(1);
+    std::uniform_real_distribution<btScalar> anywhere(0, btScalar(14.4));
+    for (int i = 0; i < 3000; ++i) {
+        const btVector3 min(anywhere(random), anywhere(random), anywhere(random));
+        broadphase.createProxy(min, min + btVector3(1, 1, 1), 0, nullptr, 1, -1, nullptr);
+    }
+    broadphase.calculateOverlappingPairs(nullptr);
+    const PairCost& cost = broadphase.lastCost();
+    return static_cast<double>(cost.boxesTested) / cost.grid.changed;
+}
+
+TEST(TuningPage, CostTellsOfCellsThatAreTooLarge) {
+    EXPECT_LT(testsOfEach(0), 30);
+    EXPECT_GT(testsOfEach(100), 100);
+}
+
+TEST(TuningPage, SettingsAreTaken) {
+    {
+#include <tuning_2.inl>
+        EXPECT_EQ(SpatialHashBroadphase(config).grid().cellSize(), 4);
+    }
+    {
+#include <tuning_3.inl>
+        SpatialHashBroadphase broadphase(config);
+        for (int i = 0; i < 2; ++i) {
+            broadphase.createProxy({0, 0, 0}, {1, 1, 1}, 0, nullptr,
+                                   btBroadphaseProxy::SensorTrigger, -1, nullptr);
+        }
+        EXPECT_EQ(broadphase.getOverlappingPairCache()->getNumOverlappingPairs(), 0);
+    }
+#include <tuning_4.inl>
+    SpatialHashBroadphase(config).calculateOverlappingPairs(nullptr);
+    EXPECT_TRUE(config.parallelFor != nullptr);
+}
+
+}  // namespace
+}  // namespace hashphase::test
