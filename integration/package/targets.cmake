@@ -3,6 +3,7 @@
 # What every library and program of hashphase has in common.
 
 include_guard(GLOBAL)
+include(CheckLinkerFlag)
 include(GNUInstallDirs)
 
 # Warnings, reproducible floating point and plain C++20 for a target of our own. The headers of
@@ -101,6 +102,17 @@ function(hashphase_install_headers)
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hashphase/${folder}
         FILES_MATCHING
         PATTERN "*.hpp")
+endfunction()
+
+# In a quick build, links everything in the calling directory and below by LLVM's linker where it is
+# there: in an eighth to a third of the time.
+function(hashphase_link_quickly)
+    if(HASHPHASE_QUICK_BUILD AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+        check_linker_flag(CXX -fuse-ld=lld HASHPHASE_HAS_LLD)
+        if(HASHPHASE_HAS_LLD)
+            add_link_options(-fuse-ld=lld)
+        endif()
+    endif()
 endfunction()
 
 # Applies HASHPHASE_SANITIZE to everything in the calling directory and below.
