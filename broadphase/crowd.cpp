@@ -15,7 +15,7 @@
 namespace hashphase {
 namespace {
 
-constexpr std::size_t kGrain = 4096;        // proxies that one thread deals with at a time
+constexpr std::size_t kCrowdGrain = 4096;   // proxies that one thread deals with at a time
 constexpr std::size_t kAgentsGrain = 1024;  // the same of agents that look around
 constexpr std::size_t kSampledShare = 4;    // one in so many agents says which cells fit, of
 constexpr std::size_t kLeastSample = 64;    // at least so many
@@ -148,7 +148,7 @@ void Crowd<Scalar>::stage(const Grid<Scalar>& grid, ProxyFilter filter, Parallel
     cellOfSlot_.resize(staged_.size());
     std::atomic<std::uint32_t> agentCount{0};
     std::atomic<std::uint32_t> leftOut{0};
-    parallelFor(staged_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallelFor(staged_.size(), kCrowdGrain, [&](std::size_t begin, std::size_t end) {
         const detail::QueryScope gridScope(&grid);
         const detail::QueryScope scope(this);
         const detail::Torus torus = torus_;
@@ -199,7 +199,7 @@ void Crowd<Scalar>::sort(ParallelFor parallelFor) {
     for (std::vector<Scalar>& column : columns_) {
         column.resize(agentCount_ + detail::kColumnPadding);
     }
-    parallelFor(agentCount_, kGrain, [&](std::size_t begin, std::size_t end) {
+    parallelFor(agentCount_, kCrowdGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t agent = begin; agent < end; ++agent) {
             if (agent + kAhead < end) {
                 detail::prefetch(&staged_[slots_[agent + kAhead]]);
@@ -338,7 +338,7 @@ QueryCost Crowd<Scalar>::countGroups(FunctionRef<std::uint32_t(ProxyId)> groupOf
                      "There is one count for each agent and group.");
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kIsAsked);
     groups_.resize(size() + detail::kColumnPadding);
-    parallelFor(size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallelFor(size(), kCrowdGrain, [&](std::size_t begin, std::size_t end) {
         const detail::QueryScope scope(this);
         for (std::size_t agent = begin; agent < end; ++agent) {
             const std::uint32_t group = groupOf(ids_[agent]);

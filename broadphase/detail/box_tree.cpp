@@ -14,7 +14,7 @@
 namespace hashphase::detail {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
 
 // Rounds x [m] downward into single precision, by a few units of the last place too many.
 float roundedDown(double x) {
@@ -27,8 +27,8 @@ float roundedDown(double x) {
 BoxBlock emptyBlock() {
     BoxBlock block{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        block.bounds[axis].fill(kInfinity);
-        block.bounds[axis + 3].fill(-kInfinity);
+        block.bounds[axis].fill(kFloatInfinity);
+        block.bounds[axis + 3].fill(-kFloatInfinity);
     }
     block.below.fill(0);
     block.count = 0;
@@ -182,7 +182,8 @@ void BoxTree::addStorey() {
     std::uint32_t blockCount = 0;
     float edges = 0;
     for (std::uint32_t first = 0; first < count;) {
-        const float usual = blockCount == 0 ? kInfinity : edges / static_cast<float>(blockCount);
+        const float usual =
+            blockCount == 0 ? kFloatInfinity : edges / static_cast<float>(blockCount);
         const std::uint32_t last = neighbours(first, kFarApart * usual);
         BoxBlock block = emptyBlock();
         Box bounds = boxes_[first];
@@ -259,7 +260,7 @@ std::string BoxTree::validate() const {
             for (std::uint32_t k = 0; k < kBlockWidth; ++k) {
                 const Box box = boxOf(block, k);
                 if (k >= block.count) {
-                    if (box.low[0] != kInfinity || box.high[0] != -kInfinity) {
+                    if (box.low[0] != kFloatInfinity || box.high[0] != -kFloatInfinity) {
                         return "Lanes without a box are met by nothing: broken.";
                     }
                     continue;

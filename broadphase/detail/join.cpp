@@ -60,7 +60,7 @@ void run(const Table<Scalar>& table, const Search<Scalar>& search, std::uint32_t
 }
 
 // Entries or boxes that one thread deals with at a time.
-constexpr std::size_t kGrain = 2048;
+constexpr std::size_t kJoinGrain = 2048;
 
 }  // namespace
 
@@ -85,7 +85,7 @@ void joinTable(const Table<Scalar>& table, ParallelFor parallelFor, PairParts& p
         }
     }
     // The entries of all searches, one after the other, are one loop.
-    parts.collect(parallelFor, total, kGrain, found, cost,
+    parts.collect(parallelFor, total, kJoinGrain, found, cost,
                   [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost& own) {
                       for (std::size_t i = 0; i < searchCount && last > 0; ++i) {
                           const std::size_t count = searches[i].from->count();
@@ -114,7 +114,7 @@ void walkTogether(const Table<Scalar>& table, const Columns<Scalar>& queries, st
 template <class Scalar>
 void walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t count,
                ParallelFor parallelFor, PairParts& parts, PairList& found, KernelCost& cost) {
-    parts.collect(parallelFor, count, kGrain, found, cost,
+    parts.collect(parallelFor, count, kJoinGrain, found, cost,
                   [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost& own) {
                       for (const Level<Scalar>& level : table.levels()) {
                           if (level.count() > 0) {

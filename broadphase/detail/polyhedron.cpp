@@ -22,7 +22,7 @@ constexpr double kParallel = 1e-12;
 // Edges shorter than this share of what is around them count as none.
 constexpr double kShort = 1e-9;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kDoubleInfinity = std::numeric_limits<double>::infinity();
 
 bool isSamePlane(const Polyhedron::Plane& a, const Polyhedron::Plane& b) {
     return (a.normal() - b.normal()).cwiseAbs().maxCoeff() <= kShort &&
@@ -144,7 +144,7 @@ void Polyhedron::appendAround(const Vector3<double>& normal, Planes& planes) con
             return;
         }
     }
-    double least = kInfinity;
+    double least = kDoubleInfinity;
     for (const Corner& corner : corners_) {
         const double doubt = corner.error + kEpsilon * corner.point.cwiseAbs().sum();
         least = std::min(least, normal.dot(corner.point) - doubt);

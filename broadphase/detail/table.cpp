@@ -20,7 +20,7 @@ namespace hashphase::detail {
 namespace {
 
 // Boxes that one thread deals with at a time.
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kTableGrain = 4096;
 
 }  // namespace
 
@@ -40,7 +40,7 @@ std::size_t Table<Scalar>::countBuckets(std::span<const PaddedBox<Scalar>> boxes
     for (const Level<Scalar>& level : levels_) {
         views_.push_back(view(level));
     }
-    parallelFor(boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallelFor(boxes.size(), kTableGrain, [&](std::size_t begin, std::size_t end) {
         kernels<Scalar>().fileBoxes(views_.data(), views_.size(), boxes.data() + begin, end - begin,
                                     buckets_.data() + begin);
     });
@@ -95,7 +95,7 @@ void Table<Scalar>::sortEntries(std::span<const std::uint32_t> slots,
     bucketStart_[0] = 0;
     sortCrowds(boxes);
 
-    parallelFor(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    parallelFor(count, kTableGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t entry = begin; entry < end; ++entry) {
             const std::uint32_t i = order_[entry];
             slots_[entry] = slots[i];

@@ -51,5 +51,6 @@ std::span<const ProxyId> select(const Grid<Scalar>& grid, const View<Scalar>& vi
 
 HASHPHASE_INSTANTIATE(float);
 HASHPHASE_INSTANTIATE(double);
+#undef HASHPHASE_INSTANTIATE
 
 }  // namespace hashphase

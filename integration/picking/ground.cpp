@@ -89,5 +89,6 @@ GroundFootprint<Scalar> dragFootprint(const View<Scalar>& view, const Pixel& a, 
 
 HASHPHASE_INSTANTIATE(float);
 HASHPHASE_INSTANTIATE(double);
+#undef HASHPHASE_INSTANTIATE
 
 }  // namespace hashphase

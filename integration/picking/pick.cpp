@@ -127,5 +127,6 @@ std::span<const Picked<Scalar>> pickAll(const Grid<Scalar>& grid, const RayRegio
 
 HASHPHASE_INSTANTIATE(float);
 HASHPHASE_INSTANTIATE(double);
+#undef HASHPHASE_INSTANTIATE
 
 }  // namespace hashphase

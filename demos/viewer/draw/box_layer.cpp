@@ -10,7 +10,7 @@ namespace hashphase::demos {
 
 namespace {
 
-constexpr const char* kVertexShader = R"glsl(
+constexpr const char* kBoxVertexShader = R"glsl(
 layout(location = 0) in vec3 middle;
 layout(location = 1) in vec3 right;
 layout(location = 2) in vec3 up;
@@ -31,7 +31,7 @@ void main() {
 )glsl";
 
 // Edges are a pixel and a half wide, and fade where the face is too small for them.
-constexpr const char* kFragmentShader = R"glsl(
+constexpr const char* kBoxFragmentShader = R"glsl(
 in vec2 onFace;
 flat in vec2 widths;
 flat in vec4 tint;
@@ -49,7 +49,7 @@ void main() {
 
 }  // namespace
 
-BoxLayer::BoxLayer() : program_("boxes", kVertexShader, kFragmentShader) {
+BoxLayer::BoxLayer() : program_("boxes", kBoxVertexShader, kBoxFragmentShader) {
     glBindVertexArray(vertexArray_.name());
     vertices_.bind();
     const std::size_t stride = sizeof(Face);

@@ -9,7 +9,7 @@ namespace hashphase::demos {
 namespace {
 
 // The far sides of a box around the capsule: they are seen from inside as well.
-constexpr const char* kVertexShader = R"glsl(
+constexpr const char* kCapsuleVertexShader = R"glsl(
 layout(location = 0) in vec3 from;
 layout(location = 1) in vec3 to;
 layout(location = 2) in float radiusOfCapsule;
@@ -47,7 +47,7 @@ void main() {
 
 // How near the ray comes to the axis says how much of the pixel is covered; where the ray first is
 // a radius away from the axis, it meets the capsule.
-constexpr const char* kFragmentShader = R"glsl(
+constexpr const char* kCapsuleFragmentShader = R"glsl(
 in vec3 ray;
 flat in vec3 start;
 flat in vec3 along;
@@ -121,7 +121,7 @@ constexpr GLsizei kVertexCount = 36;
 
 }  // namespace
 
-CapsuleLayer::CapsuleLayer() : program_("capsules", kVertexShader, kFragmentShader) {
+CapsuleLayer::CapsuleLayer() : program_("capsules", kCapsuleVertexShader, kCapsuleFragmentShader) {
     glBindVertexArray(vertexArray_.name());
     instances_.bind();
     const std::size_t stride = sizeof(DrawnCapsule);

@@ -10,7 +10,7 @@ namespace {
 
 // A square in the plane of the ground. It comes nearer to the eye by a part of its radius, which
 // moves nothing on the screen, and so it is not swallowed by ground that bulges.
-constexpr const char* kVertexShader = R"glsl(
+constexpr const char* kContactVertexShader = R"glsl(
 layout(location = 0) in vec4 spot;
 layout(location = 1) in vec4 ground;
 
@@ -28,7 +28,7 @@ void main() {
 }
 )glsl";
 
-constexpr const char* kFragmentShader = R"glsl(
+constexpr const char* kContactFragmentShader = R"glsl(
 in vec2 offset;
 flat in float strength;
 
@@ -47,7 +47,8 @@ constexpr float kMostStrength = 0.8F;  // of the spot below a sphere that touche
 
 }  // namespace
 
-ContactLayer::ContactLayer() : program_("contact shade", kVertexShader, kFragmentShader) {
+ContactLayer::ContactLayer()
+    : program_("contact shade", kContactVertexShader, kContactFragmentShader) {
     glBindVertexArray(vertexArray_.name());
     vertices_.bind();
     describeVertexField({0, 4, GL_FLOAT, false, offsetof(Spot, centre)}, sizeof(Spot));

@@ -13,7 +13,7 @@ namespace hashphase::demos {
 namespace {
 
 // Colour, light and haze change slowly over the ground, so vertices are shaded, not pixels.
-constexpr const char* kVertexShader = R"glsl(
+constexpr const char* kGroundVertexShader = R"glsl(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 
@@ -39,7 +39,7 @@ void main() {
 }
 )glsl";
 
-constexpr const char* kFragmentShader = R"glsl(
+constexpr const char* kGroundFragmentShader = R"glsl(
 in vec4 ground;
 in vec4 cells;
 
@@ -97,10 +97,10 @@ void setSampling(GLint filter) {
 }  // namespace
 
 GroundLayer::Variant::Variant(bool hasLines, bool hasHeat)
-    : program("the ground", kVertexShader,
+    : program("the ground", kGroundVertexShader,
               std::string("const bool hasLines = ") + (hasLines ? "true" : "false") +
                   ";\nconst bool hasHeat = " + (hasHeat ? "true" : "false") + ";\n" +
-                  kFragmentShader) {}
+                  kGroundFragmentShader) {}
 
 GroundLayer::GroundLayer()
     : variants_{Variant(false, false), Variant(true, false), Variant(false, true),

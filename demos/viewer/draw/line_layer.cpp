@@ -12,7 +12,7 @@ namespace {
 // screen is found without a division, because an end may lie beside the eye or behind it.
 // (`noperspective` would say in a word what acrossTimesW says, but Mesa 22's software rendering
 // drops lines that use it and are clipped.)
-constexpr const char* kVertexShader = R"glsl(
+constexpr const char* kLineVertexShader = R"glsl(
 layout(location = 0) in vec3 from;
 layout(location = 1) in vec3 to;
 layout(location = 2) in vec4 colourOfLine;
@@ -39,7 +39,7 @@ void main() {
 }
 )glsl";
 
-constexpr const char* kFragmentShader = R"glsl(
+constexpr const char* kLineFragmentShader = R"glsl(
 in float acrossTimesW;
 flat in vec4 tint;
 
@@ -58,7 +58,7 @@ constexpr float kHiddenOpacity = 0.3F;  // of lines on top, behind what hides th
 
 }  // namespace
 
-LineLayer::LineLayer() : program_("lines", kVertexShader, kFragmentShader) {
+LineLayer::LineLayer() : program_("lines", kLineVertexShader, kLineFragmentShader) {
     glBindVertexArray(vertexArray_.name());
     vertices_.bind();
     const std::size_t stride = sizeof(DrawnLine);

@@ -7,7 +7,7 @@ namespace hashphase::demos {
 
 namespace {
 
-constexpr const char* kVertexShader = R"glsl(
+constexpr const char* kRectangleVertexShader = R"glsl(
 uniform vec4 corners;  // left, top, right, bottom [pixels]
 
 out vec2 place;
@@ -20,7 +20,7 @@ void main() {
 }
 )glsl";
 
-constexpr const char* kFragmentShader = R"glsl(
+constexpr const char* kRectangleFragmentShader = R"glsl(
 in vec2 place;
 
 uniform vec4 corners;
@@ -37,7 +37,8 @@ void main() {
 
 }  // namespace
 
-RectangleLayer::RectangleLayer() : program_("the rectangle", kVertexShader, kFragmentShader) {}
+RectangleLayer::RectangleLayer()
+    : program_("the rectangle", kRectangleVertexShader, kRectangleFragmentShader) {}
 
 void RectangleLayer::draw(const DrawnRectangle& rectangle, Theme theme) const {
     const Eigen::Vector2f first = rectangle.from.cwiseMin(rectangle.to);

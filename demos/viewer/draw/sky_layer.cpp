@@ -7,7 +7,7 @@ namespace {
 
 // The screen in strips from the left to the right, whose vertices are coloured: the gradient is
 // smooth enough for that, and a pixel costs half.
-constexpr const char* kVertexShader = R"glsl(
+constexpr const char* kSkyVertexShader = R"glsl(
 uniform ivec2 squares;
 
 out vec3 seen;
@@ -29,7 +29,7 @@ void main() {
 }
 )glsl";
 
-constexpr const char* kFragmentShader = R"glsl(
+constexpr const char* kSkyFragmentShader = R"glsl(
 in vec3 seen;
 out vec4 colour;
 
@@ -43,7 +43,7 @@ constexpr GLsizei kRows = 40;
 
 }  // namespace
 
-SkyLayer::SkyLayer() : program_("the sky", kVertexShader, kFragmentShader) {}
+SkyLayer::SkyLayer() : program_("the sky", kSkyVertexShader, kSkyFragmentShader) {}
 
 void SkyLayer::draw() const {
     program_.use();
