@@ -118,7 +118,7 @@ struct RadarEffect {
     UpAxis up = UpAxis::y;
 };
 
-struct SceneEffects {
+struct HASHPHASE_EFFECTS_EXPORT SceneEffects {
     std::optional<MotionEffect> motion;
     std::optional<TerrainEffect> terrain;
     std::optional<PairsEffect> pairs;
