@@ -119,7 +119,7 @@ struct RadarEffect {
 };
 
 /// What a scene calls for: an effect that has settings here is declared.
-struct SceneEffects {
+struct HASHPHASE_EFFECTS_EXPORT SceneEffects {
     std::optional<MotionEffect> motion;
     std::optional<TerrainEffect> terrain;
     std::optional<PairsEffect> pairs;

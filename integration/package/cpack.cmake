@@ -4,7 +4,7 @@
 #
 #   hashphase_libraries     libhashphase<SONAME>: the shared libraries
 #   hashphase_development   libhashphase-dev: headers, CMake package, pkg-config files
-#   hashphase_tools         hashphase: the programs
+#   hashphase_tools         hashphase: the programs, and modules of theirs in <libdir>/hashphase/
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME hashphase)
