@@ -29,7 +29,7 @@
 namespace hashphase {
 
 /// Where views end whose far plane is farther away [m], unless told otherwise.
-inline constexpr double kFarthest = 1e6;
+inline constexpr double kFarthestView = 1e6;
 
 /// From the lowest to the highest of what is on the ground.
 template <class Scalar>
@@ -55,7 +55,7 @@ public:
     GroundFootprint(const Eigen::Matrix<Scalar, 4, 4>& viewProjection, DepthRange depthRange,
                     const HeightRange<Scalar>& heights,
                     const ScreenRectangle<Scalar>& rectangle = wholeScreen<Scalar>(),
-                    double farthest = kFarthest);
+                    double farthest = kFarthestView);
 
     [[nodiscard]] bool isEmpty() const noexcept { return corners_.empty(); }
 
@@ -84,7 +84,8 @@ private:
 template <class Scalar>
 [[nodiscard]] std::string footprintError(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection, const HeightRange<Scalar>& heights,
-    const ScreenRectangle<Scalar>& rectangle = wholeScreen<Scalar>(), double farthest = kFarthest);
+    const ScreenRectangle<Scalar>& rectangle = wholeScreen<Scalar>(),
+    double farthest = kFarthestView);
 
 extern template class GroundFootprint<float>;
 extern template class GroundFootprint<double>;

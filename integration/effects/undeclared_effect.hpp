@@ -4,6 +4,7 @@
 #include <integration/effects/effect.hpp>
 
 #include <stdexcept>
+#include <string_view>
 
 namespace hashphase {
 

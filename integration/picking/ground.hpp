@@ -29,7 +29,7 @@ template <class Scalar>
 template <class Scalar>
 [[nodiscard]] std::optional<Vector3<Scalar>> groundPoint(const RayRegion<Scalar>& ray,
                                                          std::type_identity_t<Scalar> height = 0,
-                                                         UpAxis upAxis = UpAxis::y);
+                                                         UpAxis up = UpAxis::y);
 
 /// What a rectangle that is dragged on the screen covers on the ground (see drag_selection.hpp and
 /// ground_footprint.hpp). Select by its region(): all columns of air over it count, as on a map.
@@ -37,6 +37,6 @@ template <class Scalar>
 [[nodiscard]] GroundFootprint<Scalar> dragFootprint(const View<Scalar>& view, const Pixel& a,
                                                     const Pixel& b,
                                                     const HeightRange<Scalar>& heights,
-                                                    double farthest = kFarthest);
+                                                    double farthest = kFarthestView);
 
 }  // namespace hashphase
