@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstring>
+#include <type_traits>
 
 namespace hashphase {
 
@@ -21,6 +22,28 @@ using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
 /// which case the predicates below still mean exactly what they say.
 template <class Scalar>
 using Aabb = Eigen::AlignedBox<Scalar, 3>;
+
+/// The box from `min` to `max` [m]: boxBetween<float>({0, 0, 0}, {4, 2.5F, 1}).
+template <class Scalar>
+[[nodiscard]] inline Aabb<Scalar> boxBetween(const Vector3<Scalar>& min,
+                                             const Vector3<std::type_identity_t<Scalar>>& max) {
+    return {min, max};
+}
+
+/// The box that reaches `halfExtents` [m] to either side of its centre, by a rounding error more or
+/// less.
+template <class Scalar>
+[[nodiscard]] inline Aabb<Scalar> boxAround(
+    const Vector3<Scalar>& center, const Vector3<std::type_identity_t<Scalar>>& halfExtents) {
+    return {center - halfExtents, center + halfExtents};
+}
+
+/// The cube around a ball: boxAround() with the radius [m] on every axis.
+template <class Scalar>
+[[nodiscard]] inline Aabb<Scalar> boxAround(const Vector3<Scalar>& center,
+                                            std::type_identity_t<Scalar> radius) {
+    return boxAround<Scalar>(center, Vector3<Scalar>::Constant(radius));
+}
 
 /// True when the closed boxes a and b share a point: a.min <= b.max and b.min <= a.max on every
 /// axis. False when any of the twelve numbers is NaN. Written without branches: its outcome is

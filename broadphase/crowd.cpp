@@ -330,9 +330,9 @@ QueryCost Crowd<Scalar>::count(std::span<std::uint32_t> counts, ParallelFor para
 }
 
 template <class Scalar>
-QueryCost Crowd<Scalar>::countGroups(FunctionRef<std::uint32_t(ProxyId)> groupOf,
-                                     std::uint32_t groupCount, std::span<std::uint32_t> counts,
-                                     ParallelFor parallelFor) {
+QueryCost Crowd<Scalar>::countGroups(std::uint32_t groupCount,
+                                     FunctionRef<std::uint32_t(ProxyId)> groupOf,
+                                     std::span<std::uint32_t> counts, ParallelFor parallelFor) {
     HASHPHASE_ASSERT(groupCount <= kMostGroups, "There are at most kMostGroups groups.");
     HASHPHASE_ASSERT(counts.size() == std::size_t{size()} * groupCount,
                      "There is one count for each agent and group.");

@@ -15,7 +15,7 @@
 //            radius near 1. So of two agents either both or none is the other's neighbour, and the
 //            answer is the same with all instructions and on any number of threads.
 // Bad data   Who has no position, because its box has a NaN or an infinite face or is inverted, is no
-//            agent: see leftOut(). Within a negative or NaN radius nobody has a neighbour, within an
+//            agent: see leftOutCount(). Within a negative or NaN radius nobody has a neighbour, within an
 //            infinite one everybody has all.
 // Threads    Everything but the accessors needs this object for itself; take() reads the grid, as
 //            queries do.
@@ -72,7 +72,7 @@ public:
     }
 
     /// Number of proxies that are no agents because they have no position.
-    [[nodiscard]] std::uint32_t leftOut() const noexcept { return leftOut_; }
+    [[nodiscard]] std::uint32_t leftOutCount() const noexcept { return leftOut_; }
 
     /// Of an agent, by its number below size() (asserted).
     [[nodiscard]] ProxyId id(std::uint32_t agent) const {
@@ -111,7 +111,7 @@ public:
     /// size() * groupCount numbers (asserted). groupOf(ProxyId) is asked once for every agent, on the
     /// loop's threads; who is in no group below groupCount, at most kMostGroups (asserted), is not
     /// counted. Cost: that of count(), and a pass over the agents.
-    QueryCost countGroups(FunctionRef<std::uint32_t(ProxyId)> groupOf, std::uint32_t groupCount,
+    QueryCost countGroups(std::uint32_t groupCount, FunctionRef<std::uint32_t(ProxyId)> groupOf,
                           std::span<std::uint32_t> counts, ParallelFor parallelFor = serialFor);
 
     /// Bytes held, capacity included.

@@ -6,6 +6,8 @@
 // Matrices  any view-projection matrix that maps world coordinates (columns: x, y, z, 1) to clip
 //           coordinates: perspective or orthographic, oblique, with a reversed or an infinite far
 //           plane. What is seen are the points with -w <= x <= w, -w <= y <= w, and z by DepthRange.
+//           One of OpenGL, GLM or Vulkan, column by column from `const float* matrix`, is
+//           Eigen::Map<const Eigen::Matrix4f>(matrix), as an argument of frustumRegion<float>().
 // Units     metres in the world; normalised device coordinates from -1 to 1 on the screen.
 // Bad data  A matrix that is NaN or infinite sees nothing; frustumError() says why. A singular one
 //           sees what its planes enclose: a line of sight, a sheet, nothing.

@@ -40,6 +40,11 @@ Grid<Scalar>::Grid(const GridConfig& config) : config_(checked(config)) {
     }
 }
 
+template <class Scalar>
+Grid<Scalar>::~Grid() {
+    HASHPHASE_ASSERT(!hasPairs_, "A grid outlives its Pairs.");
+}
+
 // --- Proxies -------------------------------------------------------------------------------------
 
 template <class Scalar>

@@ -42,8 +42,10 @@
 #include <broadphase/grid_config.hpp>
 #include <broadphase/parallel_for.hpp>
 #include <broadphase/proxy_id.hpp>
+#include <broadphase/query_cost.hpp>
 #include <broadphase/regions.hpp>
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -101,7 +103,8 @@ public:
 
     /// Throws std::invalid_argument with configError(config) when the configuration is bad.
     explicit Grid(const GridConfig& config = {});
-
+    /// The Pairs of the grid, if there are any, are destroyed before it (asserted).
+    ~Grid();
     Grid(const Grid&) = delete;
     Grid& operator=(const Grid&) = delete;
 

@@ -30,7 +30,7 @@
 namespace hashphase {
 
 /// Where views end whose far plane is farther away [m], unless told otherwise.
-inline constexpr double kFarthest = 1e6;
+inline constexpr double kFarthestView = 1e6;
 
 /// From the lowest to the highest of what is on the ground.
 template <class Scalar>
@@ -56,7 +56,7 @@ public:
     GroundFootprint(const Eigen::Matrix<Scalar, 4, 4>& viewProjection, DepthRange depthRange,
                     const HeightRange<Scalar>& heights,
                     const ScreenRectangle<Scalar>& rectangle = wholeScreen<Scalar>(),
-                    double farthest = kFarthest);
+                    double farthest = kFarthestView);
 
     [[nodiscard]] bool isEmpty() const noexcept { return corners_.empty(); }
 
@@ -86,7 +86,8 @@ private:
 template <class Scalar>
 [[nodiscard]] HASHPHASE_BROADPHASE_EXPORT std::string footprintError(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection, const HeightRange<Scalar>& heights,
-    const ScreenRectangle<Scalar>& rectangle = wholeScreen<Scalar>(), double farthest = kFarthest);
+    const ScreenRectangle<Scalar>& rectangle = wholeScreen<Scalar>(),
+    double farthest = kFarthestView);
 
 extern template class GroundFootprint<float>;
 extern template class GroundFootprint<double>;

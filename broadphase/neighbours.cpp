@@ -51,7 +51,7 @@ Scalar squaredGap(const detail::PaddedBox<Scalar>& a, const detail::PaddedBox<Sc
 
 template <class Scalar>
 std::span<const ProxyPair> Neighbours<Scalar>::find(const Grid<Scalar>& grid, Scalar distance,
-                                                    ParallelFor parallelFor) {
+                                                    ParallelFor parallelFor) & {
     ids_.clear();
     boxes_.clear();
     grown_.clear();

@@ -27,8 +27,8 @@ public:
     /// any order. Valid until the next call. None for a negative or NaN distance. The result does
     /// not depend on `parallelFor`. Cost: that of an update of the grid, and of the couples; at most
     /// that of comparing all with all.
-    std::span<const ProxyPair> find(const Grid<Scalar>& grid, Scalar distance,
-                                    ParallelFor parallelFor = serialFor);
+    [[nodiscard]] std::span<const ProxyPair> find(const Grid<Scalar>& grid, Scalar distance,
+                                                  ParallelFor parallelFor = serialFor) &;
 
     /// What the last find() cost; hits are couples.
     [[nodiscard]] const QueryCost& lastCost() const noexcept { return cost_; }

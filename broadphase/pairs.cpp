@@ -29,7 +29,7 @@ Pairs<Scalar>::~Pairs() {
 // --- An update -----------------------------------------------------------------------------------
 
 template <class Scalar>
-PairChanges Pairs<Scalar>::update(PairFilter filter, ParallelFor parallelFor) {
+PairChanges Pairs<Scalar>::update(PairFilter filter, ParallelFor parallelFor) & {
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(&grid_),
                      "An update is not begun within a query, or within the filter.");
     beginCall();

@@ -80,8 +80,8 @@ struct PairChanges {
 /// What an update cost.
 struct PairCost {
     std::uint64_t boxesTested = 0;
-    std::uint64_t couplesWatched =
-        0;  ///< tested whether they still overlap: one of the two is mobile
+    /// Tested whether they still overlap: one of the two is mobile.
+    std::uint64_t couplesWatched = 0;
     UpdateCost grid;
 };
 
@@ -105,17 +105,17 @@ public:
     /// axis, the best one of each; at worst, for proxies that lie side by side along every axis and do
     /// not touch, or that are inverted, a few tests of every two. Ways of Sweeps are searched in up to
     /// 40 parts each, and against each other in up to 64.
-    PairChanges update(PairFilter filter, ParallelFor parallelFor = serialFor);
+    PairChanges update(PairFilter filter, ParallelFor parallelFor = serialFor) &;
 
     /// Pairs of one proxy, which is alive (asserted), that have come to overlap since the last update,
     /// at once; update() will not report them again. Returns births only; not what it meets on its
     /// way. Cost: that of a box query.
-    PairChanges announce(ProxyId id, PairFilter filter);
+    PairChanges announce(ProxyId id, PairFilter filter) &;
 
     /// Asks the filter again about everything that the proxy, which is alive (asserted), overlaps, or
     /// met on its way at the last update, refused or not, at once. Cost: that of a box query, and a
     /// look at all watched couples.
-    PairChanges refilter(ProxyId id, PairFilter filter);
+    PairChanges refilter(ProxyId id, PairFilter filter) &;
 
     /// The whole set as of the last update, sorted, appended to `pairs`. The grid must not have
     /// changed since (asserted). Cost: that of finding all pairs from scratch.

@@ -29,7 +29,7 @@ struct CollectInto {
 }  // namespace
 
 template <class Scalar>
-PairChanges Pairs<Scalar>::announce(ProxyId id, PairFilter filter) {
+PairChanges Pairs<Scalar>::announce(ProxyId id, PairFilter filter) & {
     HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid can announce its pairs.");
     HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(&grid_), kMustNotAsk);
     beginCall();
@@ -42,7 +42,7 @@ PairChanges Pairs<Scalar>::announce(ProxyId id, PairFilter filter) {
 }
 
 template <class Scalar>
-PairChanges Pairs<Scalar>::refilter(ProxyId id, PairFilter filter) {
+PairChanges Pairs<Scalar>::refilter(ProxyId id, PairFilter filter) & {
     HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid can be filtered again.");
     HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(&grid_), kMustNotAsk);
     beginCall();
@@ -134,10 +134,10 @@ void Pairs<Scalar>::findUnknown(std::uint32_t slot) {
     grid_.visit(BoxRegion<Scalar>{grid_.records_[slot].box}, collector);
 }
 
-template PairChanges Pairs<float>::announce(ProxyId, PairFilter);
-template PairChanges Pairs<double>::announce(ProxyId, PairFilter);
-template PairChanges Pairs<float>::refilter(ProxyId, PairFilter);
-template PairChanges Pairs<double>::refilter(ProxyId, PairFilter);
+template PairChanges Pairs<float>::announce(ProxyId, PairFilter) &;
+template PairChanges Pairs<double>::announce(ProxyId, PairFilter) &;
+template PairChanges Pairs<float>::refilter(ProxyId, PairFilter) &;
+template PairChanges Pairs<double>::refilter(ProxyId, PairFilter) &;
 template void Pairs<float>::announceUnknown() noexcept;
 template void Pairs<double>::announceUnknown() noexcept;
 template void Pairs<float>::findUnknown(std::uint32_t);

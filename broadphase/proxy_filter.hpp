@@ -18,9 +18,10 @@ using ProxyFilter = FunctionRef<bool(ProxyId)>;
     return true;
 }
 
-/// A collector that hands on to another one what the filter accepts. Of a query's cost, `hits` are
-/// those that were asked about.
-template <class Collector, class Filter = ProxyFilter>
+/// A collector that hands on to another one, which must outlive it, what the filter accepts, of which it
+/// keeps a copy: CollectIf enemies(all, [&](ProxyId id) { ... }). Of a query's cost, `hits` are those
+/// that were asked about.
+template <class Collector, class Filter>
 class CollectIf {
 public:
     CollectIf(Collector& collector, Filter filter)

@@ -149,7 +149,7 @@ template <class Scalar>
 template <class Region, class Collector>
 QueryCost Sweeps<Scalar>::visit(const Region& region, Collector& collector) const {
     const auto stands = [this](ProxyId id) { return !sweeps(id); };
-    CollectIf<Collector, decltype(stands)> standing(collector, stands);
+    CollectIf standing(collector, stands);
     QueryCost cost = grid_.visit(region, standing);
     const detail::QueryScope scope(&grid_, detail::QueryScope::Changes::allowed);
     // Neither by iterators nor by reference: the collector may change what sweeps. What begins to is

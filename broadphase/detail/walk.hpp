@@ -5,27 +5,12 @@
 // level by level.
 
 #include <broadphase/detail/table.hpp>
+#include <broadphase/query_cost.hpp>
 
 #include <algorithm>
 #include <cstdint>
 
-namespace hashphase {
-
-/// What a query cost, returned with its answer.
-struct QueryCost {
-    std::uint64_t rowsVisited = 0;  ///< rows of cells, or a ray's blocks of up to eight boxes
-    std::uint64_t boxesTested = 0;
-    std::uint64_t hits = 0;
-
-    QueryCost& operator+=(const QueryCost& other) noexcept {
-        rowsVisited += other.rowsVisited;
-        boxesTested += other.boxesTested;
-        hits += other.hits;
-        return *this;
-    }
-};
-
-namespace detail {
+namespace hashphase::detail {
 
 // Looking up a run of buckets costs about as much as testing this many boxes one after another.
 inline constexpr std::uint64_t kBoxesPerRun = 4;
@@ -169,5 +154,4 @@ bool walkTable(const Table<Scalar>& table, const Aabb<Scalar>& bounds, QueryCost
     return true;
 }
 
-}  // namespace detail
-}  // namespace hashphase
+}  // namespace hashphase::detail

@@ -15,7 +15,7 @@ QueryCost findIn(const Grid<Scalar>& grid, const Region& region, std::vector<Pro
     found.clear();
     CollectAll all(found);
     const auto isWanted = [&](ProxyId id) { return id != self && filter(id); };
-    CollectIf<CollectAll, decltype(isWanted)> wanted(all, isWanted);
+    CollectIf wanted(all, isWanted);
     const QueryCost cost = grid.visit(region, wanted);
     std::sort(found.begin(), found.end());
     return cost;

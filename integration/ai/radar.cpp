@@ -133,7 +133,8 @@ struct CollectRadar {
 template <class Scalar>
 std::span<const std::uint32_t> Radar<Scalar>::scan(const Grid<Scalar>& grid,
                                                    const RadarWindow<Scalar>& window,
-                                                   std::uint32_t groupCount, RadarGroups groupOf) {
+                                                   std::uint32_t groupCount,
+                                                   RadarGroups groupOf) & {
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
                      "A radar does not scan from within its own scan.");
     const detail::QueryScope scope(this);

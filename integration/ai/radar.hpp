@@ -61,7 +61,7 @@ public:
     /// fastest; one layer where the window has none. Valid until the next call. Cost: the grid's
     /// cells in the window, at most one test for each proxy (Grid::visit()), and the counts set to 0.
     std::span<const std::uint32_t> scan(const Grid<Scalar>& grid, const RadarWindow<Scalar>& window,
-                                        std::uint32_t groupCount, RadarGroups groupOf);
+                                        std::uint32_t groupCount, RadarGroups groupOf) &;
 
     /// What the last scan() cost; hits are boxes that touch the window's bounds.
     [[nodiscard]] const QueryCost& lastCost() const noexcept { return cost_; }

@@ -74,8 +74,8 @@ QueryCost countAround(const Grid<Scalar>& grid, Scalar radius, std::uint32_t col
 template <class Scalar>
 QueryCost RarestColour<Scalar>::update(const Grid<Scalar>& grid, Scalar radius,
                                        std::uint32_t colourCount, std::span<std::uint32_t> colours,
-                                       ProxyFilter filter, ParallelFor parallelFor,
-                                       ProxyFilter changes) {
+                                       ProxyFilter filter, ProxyFilter changes,
+                                       ParallelFor parallelFor) {
     HASHPHASE_ASSERT(colourCount > 0 && colourCount <= Crowd<Scalar>::kMostGroups,
                      "There are 1 to kMostGroups colours.");
     crowd_.take(grid, radius, filter, parallelFor);
@@ -87,7 +87,7 @@ QueryCost RarestColour<Scalar>::update(const Grid<Scalar>& grid, Scalar radius,
     // All read ...
     counts_.resize(ids.size() * colourCount);
     const auto colourOf = [colours](ProxyId id) { return colours[id.index]; };
-    const QueryCost cost = crowd_.countGroups(colourOf, colourCount, counts_, parallelFor);
+    const QueryCost cost = crowd_.countGroups(colourCount, colourOf, counts_, parallelFor);
 
     // ... then all change.
     constexpr std::size_t kGrain = 4096;

@@ -34,7 +34,7 @@ public:
     /// counting. Cost: that of Crowd::countGroups().
     QueryCost update(const Grid<Scalar>& grid, Scalar radius, std::uint32_t colourCount,
                      std::span<std::uint32_t> colours, ProxyFilter filter = acceptAll,
-                     ParallelFor parallelFor = serialFor, ProxyFilter changes = acceptAll);
+                     ProxyFilter changes = acceptAll, ParallelFor parallelFor = serialFor);
 
     /// The same for these agents alone, each named once and alive (asserted). Who has no position keeps
     /// its colour. Cost: a query for each of them (Grid::visitEach()); less than update() where they are few.

@@ -58,7 +58,7 @@ bool isClear(const Grid<Scalar>& grid, const Vector3<Scalar>& from, const Vector
 }  // namespace
 
 template <class Scalar>
-ViewRegion<Scalar>::ViewRegion(const Viewer<Scalar>& viewer)
+SightRegion<Scalar>::SightRegion(const Viewer<Scalar>& viewer)
     : ball_(viewer.eye, viewer.range),
       direction_(ofOrdinaryLength(viewer.direction)),
       halfAngle_(viewer.halfAngle) {
@@ -69,7 +69,7 @@ ViewRegion<Scalar>::ViewRegion(const Viewer<Scalar>& viewer)
 }
 
 template <class Scalar>
-bool ViewRegion<Scalar>::isInCone(const Vector3<Scalar>& position) const noexcept {
+bool SightRegion<Scalar>::isInCone(const Vector3<Scalar>& position) const noexcept {
     const Vector3<Scalar> offset = position - ball_.center();
     if (looksEverywhere() || offset.isZero(Scalar(0))) {
         return true;
@@ -78,7 +78,7 @@ bool ViewRegion<Scalar>::isInCone(const Vector3<Scalar>& position) const noexcep
 }
 
 template <class Scalar>
-Scalar ViewRegion<Scalar>::key(const Aabb<Scalar>& box) const noexcept {
+Scalar SightRegion<Scalar>::key(const Aabb<Scalar>& box) const noexcept {
     const Vector3<Scalar> position = positionOf(box);
     const Scalar key = ball_.keyAt(position);
     return key >= 0 && isInCone(position) ? key : Scalar(-1);
@@ -87,7 +87,7 @@ Scalar ViewRegion<Scalar>::key(const Aabb<Scalar>& box) const noexcept {
 // Along an axis, a cone of length 1 reaches as far as the direction in it that is nearest to the
 // axis: 1 if the axis lies in the cone, else the cosine of the angle from the axis to its surface.
 template <class Scalar>
-Aabb<Scalar> ViewRegion<Scalar>::bounds() const noexcept {
+Aabb<Scalar> SightRegion<Scalar>::bounds() const noexcept {
     using Limits = std::numeric_limits<Scalar>;
     Aabb<Scalar> bounds = ball_.bounds();
     if (looksEverywhere() || !bounds.min().allFinite() || !bounds.max().allFinite()) {
@@ -126,7 +126,7 @@ bool canSee(const Grid<Scalar>& grid, const Viewer<Scalar>& viewer, ProxyId targ
         return false;
     }
     const Aabb<Scalar>& box = grid.box(target);
-    return ViewRegion<Scalar>(viewer).key(box) >= 0 &&
+    return SightRegion<Scalar>(viewer).key(box) >= 0 &&
            hasLineOfSight(grid, viewer.eye, positionOf(box), blockers, viewer.self, target);
 }
 
@@ -136,8 +136,8 @@ QueryCost visibleFrom(const Grid<Scalar>& grid, const Viewer<Scalar>& viewer,
     seen.clear();
     CollectAll all(seen);
     const auto isTarget = [&](ProxyId id) { return id != viewer.self && targets(id); };
-    CollectIf<CollectAll, decltype(isTarget)> inCone(all, isTarget);
-    QueryCost cost = grid.visit(ViewRegion<Scalar>(viewer), inCone);
+    CollectIf inCone(all, isTarget);
+    QueryCost cost = grid.visit(SightRegion<Scalar>(viewer), inCone);
     std::sort(seen.begin(), seen.end());
     std::erase_if(seen, [&](ProxyId id) {
         const Vector3<Scalar> position = positionOf(grid.box(id));
@@ -175,8 +175,8 @@ std::span<const ProxyId> Sight<Scalar>::seenBy(std::size_t viewer) const {
     return views_[viewer].seen;
 }
 
-template class ViewRegion<float>;
-template class ViewRegion<double>;
+template class SightRegion<float>;
+template class SightRegion<double>;
 template class Sight<float>;
 template class Sight<double>;
 template bool hasLineOfSight(const Grid<float>&, const Vector3<float>&, const Vector3<float>&,

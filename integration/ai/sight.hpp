@@ -46,9 +46,9 @@ struct Viewer {
 /// Every proxy whose position is in the viewer's cone; nothing is in the way. Key: squared distance
 /// [m^2] from the eye. At the eye itself one is in every cone.
 template <class Scalar>
-class HASHPHASE_AI_EXPORT ViewRegion {
+class HASHPHASE_AI_EXPORT SightRegion {
 public:
-    explicit ViewRegion(const Viewer<Scalar>& viewer);
+    explicit SightRegion(const Viewer<Scalar>& viewer);
 
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept;
     [[nodiscard]] Aabb<Scalar> bounds() const noexcept;
@@ -111,8 +111,8 @@ private:
     std::size_t viewerCount_ = 0;
 };
 
-extern template class ViewRegion<float>;
-extern template class ViewRegion<double>;
+extern template class SightRegion<float>;
+extern template class SightRegion<double>;
 extern template class Sight<float>;
 extern template class Sight<double>;
 extern template bool hasLineOfSight(const Grid<float>&, const Vector3<float>&,

@@ -31,7 +31,7 @@ QueryCost findOccupants(const Grid<Scalar>& grid, const Region& region, Presence
         return (presence == Presence::box || isIn<Scalar>(region, positionOf(grid.box(id)))) &&
                filter(id);
     };
-    CollectIf<CollectAll, decltype(isPresent)> present(all, isPresent);
+    CollectIf present(all, isPresent);
     const QueryCost cost = grid.visit(region, present);
     std::sort(occupants.begin(), occupants.end());
     return cost;
@@ -107,8 +107,8 @@ const Zone<Scalar>& Zones<Scalar>::zone(ZoneId id) const {
 // --- Frame ---------------------------------------------------------------------------------------
 
 template <class Scalar>
-ZoneEvents Zones<Scalar>::update(const Grid<Scalar>& grid, ZoneFilter filter,
-                                 ParallelFor parallelFor, ZoneChoice due) {
+ZoneEvents Zones<Scalar>::update(const Grid<Scalar>& grid, ZoneFilter filter, ZoneChoice due,
+                                 ParallelFor parallelFor) {
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kMustNotChange);
     // Who is where.
     constexpr std::size_t grain = 8;

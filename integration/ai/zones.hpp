@@ -117,7 +117,7 @@ public:
     /// each zone that is due, at most one test for each zone and proxy (Grid::visit()), and the sum of
     /// the occupants.
     ZoneEvents update(const Grid<Scalar>& grid, ZoneFilter filter = acceptAllInZones,
-                      ParallelFor parallelFor = serialFor, ZoneChoice due = allZones);
+                      ZoneChoice due = allZones, ParallelFor parallelFor = serialFor);
 
     // --- Queries ---------------------------------------------------------------------------------
 

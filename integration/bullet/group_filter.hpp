@@ -20,6 +20,7 @@ public:
     explicit GroupFilter(const SpatialHashBroadphase& broadphase, int mask,
                          int group = btBroadphaseProxy::AllFilter) noexcept
         : broadphase_(&broadphase), mask_(mask), group_(group) {}
+    GroupFilter(const SpatialHashBroadphase&&, int, int = 0) = delete;
 
     [[nodiscard]] bool operator()(ProxyId id) const {
         const btBroadphaseProxy* proxy = broadphase_->proxyOf(id);

@@ -30,9 +30,9 @@
 #include <broadphase/detail/flat_set.hpp>
 #include <broadphase/detail/query_scope.hpp>
 #include <broadphase/detail/run_map.hpp>
+#include <integration/bullet/detail/proxy_ranks.hpp>
 #include <integration/bullet/export.hpp>
 #include <integration/bullet/precision.hpp>
-#include <integration/bullet/proxy_ranks.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 
@@ -349,7 +349,7 @@ private:
     std::vector<Retired> retired_;
 
     std::vector<std::uint32_t> vacant_;  // scratch of update(): places whose pairs have died
-    ProxyRanks ranks_;                   // scratch of removals
+    detail::ProxyRanks ranks_;           // scratch of removals
     std::vector<Note> scratch_;
     std::vector<std::uint32_t> newIndex_;  // scratch of sort()
 };

@@ -197,7 +197,7 @@ std::vector<PairCache::Note> PairCache::notesOfAll(std::span<btBroadphaseProxy* 
         const std::uint64_t ids = ids_.keys()[i];
         const std::uint32_t rank = ranks_.lowestRank(static_cast<std::uint32_t>(ids >> 32),
                                                      static_cast<std::uint32_t>(ids));
-        if (rank != ProxyRanks::kNone) {
+        if (rank != detail::ProxyRanks::kNone) {
             add(i, rank);
         }
     }

@@ -28,6 +28,7 @@ class HASHPHASE_BULLET_EXPORT ShapeTest {
 public:
     explicit ShapeTest(const SpatialHashBroadphase& broadphase) noexcept
         : broadphase_(&broadphase) {}
+    explicit ShapeTest(const SpatialHashBroadphase&&) = delete;
 
     /// The fraction of the ray's length, below the limit, that btCollisionWorld::rayTestSingle() has
     /// for the ray without its fatness.

@@ -4,8 +4,8 @@
 #include <broadphase/detail/ensure_capacity.hpp>
 #include <broadphase/detail/limits.hpp>
 #include <broadphase/detail/prefetch.hpp>
-#include <integration/bullet/body_motion.hpp>
 #include <integration/bullet/conversions.hpp>
+#include <integration/bullet/detail/body_motion.hpp>
 #include <integration/bullet/pair_cache.hpp>
 
 #include <LinearMath/btGeometryUtil.h>
@@ -118,7 +118,7 @@ void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& a
 
 void SpatialHashBroadphase::move(const Proxy& proxy) {
     const std::optional<MovingBox<btScalar>> motion =
-        sweeps_ != nullptr ? fastMotion(proxy, config_.fastFrom) : std::nullopt;
+        sweeps_ != nullptr ? detail::fastMotion(proxy, config_.fastFrom) : std::nullopt;
     grid_.move(proxy.id, motion ? motion->box : toAabb(proxy.m_aabbMin, proxy.m_aabbMax));
     if (sweeps_ != nullptr) {
         sweeps_->set(proxy.id, motion ? motion->displacement : Vector3<btScalar>(0, 0, 0),

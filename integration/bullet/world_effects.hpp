@@ -43,8 +43,8 @@
 //           std::bad_alloc is passed on, and the call may be repeated; pairs are complete in the next step
 //           that returns.
 
+#include <integration/bullet/detail/kept_setting.hpp>
 #include <integration/bullet/export.hpp>
-#include <integration/bullet/kept_setting.hpp>
 #include <integration/bullet/precision.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
@@ -134,16 +134,16 @@ public:
 
 private:
     struct KeptBody {
-        KeptSetting<int> noResponse;
-        KeptSetting<btScalar> friction;
-        KeptSetting<btScalar> rollingFriction;
-        KeptSetting<btScalar> spinningFriction;
-        KeptSetting<btScalar> restitution;
-        KeptSetting<btVector3> angularFactor;
-        KeptSetting<int> gyroscopicFlags;
-        KeptSetting<btScalar> ccdThreshold;
-        KeptSetting<btScalar> ccdRadius;
-        KeptSetting<btScalar> slowBelow;
+        detail::KeptSetting<int> noResponse;
+        detail::KeptSetting<btScalar> friction;
+        detail::KeptSetting<btScalar> rollingFriction;
+        detail::KeptSetting<btScalar> spinningFriction;
+        detail::KeptSetting<btScalar> restitution;
+        detail::KeptSetting<btVector3> angularFactor;
+        detail::KeptSetting<int> gyroscopicFlags;
+        detail::KeptSetting<btScalar> ccdThreshold;
+        detail::KeptSetting<btScalar> ccdRadius;
+        detail::KeptSetting<btScalar> slowBelow;
         bool isKeptAwake = false;
         std::uint64_t lastSeen = 0;
 
@@ -183,8 +183,8 @@ private:
     WorldEffects effects_;
     Filter filter_{*this};
     bool hadForcedBoxes_;
-    KeptSetting<bool> useContinuous_;
-    KeptSetting<int> frictionDirections_;
+    detail::KeptSetting<bool> useContinuous_;
+    detail::KeptSetting<int> frictionDirections_;
     std::unordered_map<const btCollisionObject*, KeptBody> kept_;  // of those that are overridden
     std::uint64_t applyCount_ = 0;
     bool arePairsOld_ = false;       // until every couple has been asked about again

@@ -29,7 +29,7 @@ std::optional<Value> overridden(bool isOverridden, const Value& value) {
 
 /// Writes what `kept` says, if that is anything new; returns whether it was.
 template <class Value, class Write>
-bool set(KeptSetting<Value>& kept, const Value& present, const std::optional<Value>& wanted,
+bool set(detail::KeptSetting<Value>& kept, const Value& present, const std::optional<Value>& wanted,
          const Write& write) {
     const Value next = kept.next(present, wanted);
     if (next == present) {

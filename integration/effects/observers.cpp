@@ -222,8 +222,8 @@ void Observers<Scalar>::lookAround(const Scene& scene, Scalar /*moved*/, Paralle
     const QueryCost cost = askFor(scene, Effect::proximity, [&](ProxyFilter filter) {
         const auto update = [&](ProxyFilter counts, ProxyFilter looks) {
             return proximity.rarest.update(scene.grid, static_cast<Scalar>(effect.radius),
-                                           effect.colourCount, proximity.colours, counts,
-                                           parallelFor, looks);
+                                           effect.colourCount, proximity.colours, counts, looks,
+                                           parallelFor);
         };
         if (allLook) {
             return update(filter, acceptAll);
@@ -307,7 +307,7 @@ void Observers<Scalar>::watchZones(const Scene& scene, Scalar /*moved*/, Paralle
     };
     askFor(scene, Effect::zones, [&](ProxyFilter filter) {
         const auto counts = [&](ZoneId /*zone*/, ProxyId proxy) { return filter(proxy); };
-        watch.events = watch.zones.update(scene.grid, counts, parallelFor, isDueZone);
+        watch.events = watch.zones.update(scene.grid, counts, isDueZone, parallelFor);
     });
     cost_[SceneCounter::zonesTested] = watch.zones.size() - lateCount;
     cost_[SceneCounter::cellRowsVisited] += watch.zones.lastCost().rowsVisited;
@@ -435,17 +435,15 @@ Picked<Scalar> Observers<Scalar>::pick(const Scene& scene, const RayRegion<Scala
 }
 
 template <class Scalar>
-std::span<const ProxyId> Observers<Scalar>::select(const Scene& scene, const View<Scalar>& view,
-                                                   const Pixel& a, const Pixel& b,
-                                                   std::vector<ProxyId>& selected,
-                                                   Containment containment) {
+QueryCost Observers<Scalar>::select(const Scene& scene, const View<Scalar>& view, const Pixel& a,
+                                    const Pixel& b, std::vector<ProxyId>& selected,
+                                    Containment containment) {
     require(Effect::boxSelection, "select()");
-    QueryCost cost;
-    askFor(scene, Effect::boxSelection, [&](ProxyFilter filter) {
-        return hashphase::select(scene.grid, view, a, b, selected, containment, filter, &cost);
+    const QueryCost cost = askFor(scene, Effect::boxSelection, [&](ProxyFilter filter) {
+        return hashphase::select(scene.grid, view, a, b, selected, containment, filter);
     });
     noteAsked(SceneCounter::selections, SceneCounter::selectionBoxesTested, cost);
-    return selected;
+    return cost;
 }
 
 template <class Scalar>

@@ -152,9 +152,9 @@ public:
                                       ExactTest<Scalar> test);
 
     /// hashphase::select(), of those that take part in box selection, which it needs.
-    std::span<const ProxyId> select(const Scene& scene, const View<Scalar>& view, const Pixel& a,
-                                    const Pixel& b, std::vector<ProxyId>& selected,
-                                    Containment containment = Containment::touching);
+    QueryCost select(const Scene& scene, const View<Scalar>& view, const Pixel& a, const Pixel& b,
+                     std::vector<ProxyId>& selected,
+                     Containment containment = Containment::touching);
 
     /// Adds the bytes of all tables here, capacity included. Cost: O(zones).
     void addFootprint(SceneFootprint& footprint) const;

@@ -358,9 +358,8 @@ Picked<Scalar> Simulation<Scalar>::pick(const RayRegion<Scalar>& ray) {
 }
 
 template <class Scalar>
-std::span<const ProxyId> Simulation<Scalar>::select(const View<Scalar>& view, const Pixel& a,
-                                                    const Pixel& b, std::vector<ProxyId>& selected,
-                                                    Containment containment) {
+QueryCost Simulation<Scalar>::select(const View<Scalar>& view, const Pixel& a, const Pixel& b,
+                                     std::vector<ProxyId>& selected, Containment containment) {
     require(Effect::boxSelection, "select()");
     takeStock();
     return observers_.select(observed(), view, a, b, selected, containment);

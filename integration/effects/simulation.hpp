@@ -168,9 +168,9 @@ public:
 
     /// As those of Observers.
     [[nodiscard]] Picked<Scalar> pick(const RayRegion<Scalar>& ray);
-    std::span<const ProxyId> select(const View<Scalar>& view, const Pixel& a, const Pixel& b,
-                                    std::vector<ProxyId>& selected,
-                                    Containment containment = Containment::touching);
+    QueryCost select(const View<Scalar>& view, const Pixel& a, const Pixel& b,
+                     std::vector<ProxyId>& selected,
+                     Containment containment = Containment::touching);
 
     /// Bytes by table, capacity included; exactly 0 for each table of an effect that is not declared.
     /// Cost: O(zones).

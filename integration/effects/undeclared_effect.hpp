@@ -5,6 +5,7 @@
 #include <integration/effects/export.hpp>
 
 #include <stdexcept>
+#include <string_view>
 
 namespace hashphase {
 

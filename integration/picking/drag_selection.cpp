@@ -27,27 +27,22 @@ ConvexRegion<Scalar> selectionRegion(const View<Scalar>& view, const Pixel& a, c
 }
 
 template <class Scalar>
-std::span<const ProxyId> select(const Grid<Scalar>& grid, const View<Scalar>& view, const Pixel& a,
-                                const Pixel& b, std::vector<ProxyId>& selected,
-                                Containment containment, ProxyFilter filter, QueryCost* cost) {
+QueryCost select(const Grid<Scalar>& grid, const View<Scalar>& view, const Pixel& a, const Pixel& b,
+                 std::vector<ProxyId>& selected, Containment containment, ProxyFilter filter) {
     selected.clear();
     CollectAll all(selected);
     CollectIf accepted(all, filter);
-    const QueryCost spent = grid.visit(selectionRegion(view, a, b, containment), accepted);
-    if (cost != nullptr) {
-        *cost += spent;
-    }
+    const QueryCost cost = grid.visit(selectionRegion(view, a, b, containment), accepted);
     std::sort(selected.begin(), selected.end());
-    return selected;
+    return cost;
 }
 
 #define HASHPHASE_INSTANTIATE(Scalar)                                                              \
     template std::string selectionError(const View<Scalar>&, const Pixel&, const Pixel&);          \
     template ConvexRegion<Scalar> selectionRegion(const View<Scalar>&, const Pixel&, const Pixel&, \
                                                   Containment);                                    \
-    template std::span<const ProxyId> select(const Grid<Scalar>&, const View<Scalar>&,             \
-                                             const Pixel&, const Pixel&, std::vector<ProxyId>&,    \
-                                             Containment, ProxyFilter, QueryCost*)
+    template QueryCost select(const Grid<Scalar>&, const View<Scalar>&, const Pixel&,              \
+                              const Pixel&, std::vector<ProxyId>&, Containment, ProxyFilter)
 
 HASHPHASE_INSTANTIATE(float);
 HASHPHASE_INSTANTIATE(double);

@@ -16,7 +16,6 @@
 #include <integration/picking/export.hpp>
 #include <integration/picking/view.hpp>
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -33,13 +32,14 @@ template <class Scalar>
     const View<Scalar>& view, const Pixel& a, const Pixel& b,
     Containment containment = Containment::touching);
 
-/// The proxies whose boxes touch what is seen between two corners, or lie wholly inside, by their ids,
-/// in a vector of the caller's, which is emptied first. Returns what is in it. Cost: at most one test
-/// for each proxy (Grid::visit()), and sorting what is found. That of the query is added to `cost`.
+/// The proxies whose boxes touch what is seen between two corners, or lie wholly inside, sorted, in place
+/// of what `selected` held. Returns the query's cost. Cost: at most one test for each proxy
+/// (Grid::visit()), and sorting what is found.
 template <class Scalar>
-HASHPHASE_PICKING_EXPORT std::span<const ProxyId> select(
-    const Grid<Scalar>& grid, const View<Scalar>& view, const Pixel& a, const Pixel& b,
-    std::vector<ProxyId>& selected, Containment containment = Containment::touching,
-    ProxyFilter filter = acceptAll, QueryCost* cost = nullptr);
+HASHPHASE_PICKING_EXPORT QueryCost select(const Grid<Scalar>& grid, const View<Scalar>& view,
+                                          const Pixel& a, const Pixel& b,
+                                          std::vector<ProxyId>& selected,
+                                          Containment containment = Containment::touching,
+                                          ProxyFilter filter = acceptAll);
 
 }  // namespace hashphase

@@ -58,18 +58,18 @@ RayRegion<Scalar> clipToHeights(const RayRegion<Scalar>& ray, const HeightRange<
 
 template <class Scalar>
 std::optional<Vector3<Scalar>> groundPoint(const RayRegion<Scalar>& ray,
-                                           std::type_identity_t<Scalar> height, UpAxis upAxis) {
-    const auto up = static_cast<int>(upAxis);
-    const auto way = static_cast<double>(ray.direction()[up]);
+                                           std::type_identity_t<Scalar> height, UpAxis up) {
+    const auto axis = static_cast<int>(up);
+    const auto way = static_cast<double>(ray.direction()[axis]);
     const double fraction =
-        (static_cast<double>(height) - static_cast<double>(ray.from()[up])) / way;
+        (static_cast<double>(height) - static_cast<double>(ray.from()[axis])) / way;
     if (ray.isEmpty() || way == 0 || !(fraction >= 0 && fraction <= 1)) {
         return std::nullopt;
     }
     const Vector3<double> point =
         ray.from().template cast<double>() + fraction * ray.direction().template cast<double>();
     Vector3<Scalar> result = point.cast<Scalar>();
-    result[up] = height;
+    result[axis] = height;
     return result;
 }
 

@@ -29,14 +29,13 @@ template <class Scalar>
 /// horizon, or is parallel to the ground.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_PICKING_EXPORT std::optional<Vector3<Scalar>> groundPoint(
-    const RayRegion<Scalar>& ray, std::type_identity_t<Scalar> height = 0,
-    UpAxis upAxis = UpAxis::y);
+    const RayRegion<Scalar>& ray, std::type_identity_t<Scalar> height = 0, UpAxis up = UpAxis::y);
 
 /// What a rectangle that is dragged on the screen covers on the ground (see drag_selection.hpp and
 /// ground_footprint.hpp). Select by its region(): all columns of air over it count, as on a map.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_PICKING_EXPORT GroundFootprint<Scalar> dragFootprint(
     const View<Scalar>& view, const Pixel& a, const Pixel& b, const HeightRange<Scalar>& heights,
-    double farthest = kFarthest);
+    double farthest = kFarthestView);
 
 }  // namespace hashphase

@@ -45,11 +45,10 @@ public:
     void add(ProxyId id, Scalar fraction) { picked_.push_back(pickedAt(ray_, id, fraction)); }
     [[nodiscard]] static constexpr Scalar limit() { return 1; }
 
-    std::span<const Picked<Scalar>> sort() {
+    void sort() {
         std::sort(picked_.begin(), picked_.end(), [](const auto& a, const auto& b) {
             return std::tie(a.fraction, a.id) < std::tie(b.fraction, b.id);
         });
-        return picked_;
     }
 
 private:
@@ -58,12 +57,15 @@ private:
 };
 
 template <class Scalar, class Collector>
-void visitIf(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray, Collector& collector,
-             ProxyFilter filter, QueryCost* cost) {
+QueryCost visitIf(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray, Collector& collector,
+                  ProxyFilter filter) {
     CollectIf accepted(collector, filter);
-    const QueryCost spent = grid.visit(ray, accepted);
-    if (cost != nullptr) {
-        *cost += spent;
+    return grid.visit(ray, accepted);
+}
+
+void addTo(QueryCost* sum, const QueryCost& cost) {
+    if (sum != nullptr) {
+        *sum += cost;
     }
 }
 
@@ -79,7 +81,7 @@ template <class Scalar>
 Picked<Scalar> pickNearest(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
                            ProxyFilter filter, QueryCost* cost) {
     CollectClosest<Scalar> closest;
-    visitIf(grid, ray, closest, filter, cost);
+    addTo(cost, visitIf(grid, ray, closest, filter));
     return nearestOf(ray, closest);
 }
 
@@ -89,28 +91,28 @@ Picked<Scalar> pickNearest(const Grid<Scalar>& grid, const RayRegion<Scalar>& ra
                            QueryCost* cost) {
     CollectClosest<Scalar> closest;
     CollectConfirmed confirmed(ray, test, closest);
-    visitIf(grid, ray, confirmed, filter, cost);
+    addTo(cost, visitIf(grid, ray, confirmed, filter));
     return nearestOf(ray, closest);
 }
 
 template <class Scalar>
-std::span<const Picked<Scalar>> pickAll(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
-                                        std::vector<Picked<Scalar>>& picked, ProxyFilter filter,
-                                        QueryCost* cost) {
+QueryCost pickAll(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
+                  std::vector<Picked<Scalar>>& picked, ProxyFilter filter) {
     CollectPicked<Scalar> all(ray, picked);
-    visitIf(grid, ray, all, filter, cost);
-    return all.sort();
+    const QueryCost cost = visitIf(grid, ray, all, filter);
+    all.sort();
+    return cost;
 }
 
 template <class Scalar>
-std::span<const Picked<Scalar>> pickAll(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
-                                        std::vector<Picked<Scalar>>& picked,
-                                        std::type_identity_t<ExactTest<Scalar>> test,
-                                        ProxyFilter filter, QueryCost* cost) {
+QueryCost pickAll(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
+                  std::vector<Picked<Scalar>>& picked, std::type_identity_t<ExactTest<Scalar>> test,
+                  ProxyFilter filter) {
     CollectPicked<Scalar> all(ray, picked);
     CollectConfirmed confirmed(ray, test, all);
-    visitIf(grid, ray, confirmed, filter, cost);
-    return all.sort();
+    const QueryCost cost = visitIf(grid, ray, confirmed, filter);
+    all.sort();
+    return cost;
 }
 
 #define HASHPHASE_INSTANTIATE(Scalar)                                                              \
@@ -118,12 +120,10 @@ std::span<const Picked<Scalar>> pickAll(const Grid<Scalar>& grid, const RayRegio
                                         ProxyFilter, QueryCost*);                                  \
     template Picked<Scalar> pickNearest(const Grid<Scalar>&, const RayRegion<Scalar>&,             \
                                         ExactTest<Scalar>, ProxyFilter, QueryCost*);               \
-    template std::span<const Picked<Scalar>> pickAll(                                              \
-        const Grid<Scalar>&, const RayRegion<Scalar>&, std::vector<Picked<Scalar>>&, ProxyFilter,  \
-        QueryCost*);                                                                               \
-    template std::span<const Picked<Scalar>> pickAll(                                              \
-        const Grid<Scalar>&, const RayRegion<Scalar>&, std::vector<Picked<Scalar>>&,               \
-        ExactTest<Scalar>, ProxyFilter, QueryCost*)
+    template QueryCost pickAll(const Grid<Scalar>&, const RayRegion<Scalar>&,                      \
+                               std::vector<Picked<Scalar>>&, ProxyFilter);                         \
+    template QueryCost pickAll(const Grid<Scalar>&, const RayRegion<Scalar>&,                      \
+                               std::vector<Picked<Scalar>>&, ExactTest<Scalar>, ProxyFilter)
 
 HASHPHASE_INSTANTIATE(float);
 HASHPHASE_INSTANTIATE(double);

@@ -10,8 +10,8 @@
 // Bad data An empty ray (RayRegion::isEmpty()) picks nothing. An exact test that answers NaN, a number
 //          below 0, or one above the limit has found nothing.
 // Cost     what lies near the ray, up to what is found; however long the ray, at most one test for each
-//          proxy (Grid::visit()), an exact one for each box that is met, and sorting these. Where a
-//          `cost` is given, that of the query is added to it.
+//          proxy (Grid::visit()), an exact one for each box that is met, and sorting these. That of the
+//          query is returned, or, where what is picked is, added to `cost` if that is given.
 
 #include <broadphase/function_ref.hpp>
 #include <broadphase/grid.hpp>
@@ -19,7 +19,6 @@
 #include <integration/picking/export.hpp>
 
 #include <optional>
-#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -54,17 +53,17 @@ template <class Scalar>
     std::type_identity_t<ExactTest<Scalar>> test, ProxyFilter filter = acceptAll,
     QueryCost* cost = nullptr);
 
-/// All that the ray meets, near to far, in a vector of the caller's, which is emptied first. Returns
-/// what is in it.
+/// All that the ray meets, near to far, in place of what `picked` held.
 template <class Scalar>
-HASHPHASE_PICKING_EXPORT std::span<const Picked<Scalar>> pickAll(
-    const Grid<Scalar>& grid, const RayRegion<Scalar>& ray, std::vector<Picked<Scalar>>& picked,
-    ProxyFilter filter = acceptAll, QueryCost* cost = nullptr);
+HASHPHASE_PICKING_EXPORT QueryCost pickAll(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
+                                           std::vector<Picked<Scalar>>& picked,
+                                           ProxyFilter filter = acceptAll);
 
+/// The same by the exact test.
 template <class Scalar>
-HASHPHASE_PICKING_EXPORT std::span<const Picked<Scalar>> pickAll(
-    const Grid<Scalar>& grid, const RayRegion<Scalar>& ray, std::vector<Picked<Scalar>>& picked,
-    std::type_identity_t<ExactTest<Scalar>> test, ProxyFilter filter = acceptAll,
-    QueryCost* cost = nullptr);
+HASHPHASE_PICKING_EXPORT QueryCost pickAll(const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,
+                                           std::vector<Picked<Scalar>>& picked,
+                                           std::type_identity_t<ExactTest<Scalar>> test,
+                                           ProxyFilter filter = acceptAll);
 
 }  // namespace hashphase

@@ -63,7 +63,7 @@ public:
     /// plane, as measured along the camera's view. Empty where nothing is, or `farthest` is not
     /// positive.
     [[nodiscard]] RayRegion<Scalar> rayThrough(const Pixel& pixel,
-                                               double farthest = kFarthest) const;
+                                               double farthest = kFarthestView) const;
 
     /// The rectangle between two corners, in any order, as far as it lies in the viewport; perhaps
     /// without area. isEmpty() when none of it does.

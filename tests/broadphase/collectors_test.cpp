@@ -91,5 +91,14 @@ TYPED_TEST(Collectors, HearOnlyOfWhatAFilterAccepts) {
     EXPECT_EQ(any.found(), wanted);
 }
 
+TYPED_TEST(Collectors, KeepAFilterThatWasMadeInPassing) {
+    CollectCount count;
+    CollectIf none(count, [refused = std::vector<int>(9, 1)](ProxyId id) {
+        return refused[id.index % refused.size()] == 0;
+    });
+    EXPECT_GT(this->grid_.visit(this->ball_, none).hits, 50U);
+    EXPECT_EQ(count.count(), 0U);
+}
+
 }  // namespace
 }  // namespace hashphase::test

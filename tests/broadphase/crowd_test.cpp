@@ -48,7 +48,7 @@ protected:
         EXPECT_EQ(crowd_.size(), expected.size());
         const std::vector<std::uint32_t> counts = count();
         std::vector<std::uint32_t> groups(std::size_t{crowd_.size()} * kGroups);
-        crowd_.countGroups(groupOf, kGroups, groups);
+        crowd_.countGroups(kGroups, groupOf, groups);
         std::size_t visited = 0;
         std::size_t sum = 0;
         const auto visit = [&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) {
@@ -268,7 +268,7 @@ TYPED_TEST(CrowdTest, LeavesOutWhoHasNoFiniteCentre) {
         this->grid_.add(makeBox<TypeParam>(-1e18, -1e18, -1e18, 1e18, 1e18, 1e18));
     const ProxyId stone = this->addPoint(1, 1, 1);
     this->crowd_.take(this->grid_, 10);
-    EXPECT_EQ(this->crowd_.leftOut(), 3U);
+    EXPECT_EQ(this->crowd_.leftOutCount(), 3U);
     ASSERT_EQ(this->crowd_.size(), 2U);
     EXPECT_EQ(this->count(), (std::vector<std::uint32_t>{1, 1}));
     EXPECT_EQ(std::min(this->crowd_.id(0), this->crowd_.id(1)), plane);
@@ -295,7 +295,7 @@ TYPED_TEST(CrowdTest, TakesWhomTheFilterAccepts) {
     this->crowd_.take(this->grid_, 8, isAgent);
     const NeighbourLists expected = neighboursByBruteForce<TypeParam>(agents, 8);
     ASSERT_EQ(this->crowd_.size(), expected.size());
-    EXPECT_EQ(this->crowd_.leftOut(), 0U);
+    EXPECT_EQ(this->crowd_.leftOutCount(), 0U);
     const std::vector<std::uint32_t> counts = this->count();
     for (std::uint32_t agent = 0; agent < this->crowd_.size(); ++agent) {
         EXPECT_EQ(counts[agent], expected.at(this->crowd_.id(agent)).size());
@@ -313,14 +313,14 @@ TYPED_TEST(CrowdTest, CountsAsManyGroupsAsThereMayBe) {
     this->crowd_.take(this->grid_, 1);
     std::vector<std::uint32_t> counts(100 * kMost, 77);
     const auto groupOf = [](ProxyId id) { return id.index < kMost ? id.index : id.index * 1000; };
-    EXPECT_EQ(this->crowd_.countGroups(groupOf, kMost, counts).hits, 99 * kMost);
+    EXPECT_EQ(this->crowd_.countGroups(kMost, groupOf, counts).hits, 99 * kMost);
     for (std::uint32_t agent = 0; agent < 100; ++agent) {
         for (std::uint32_t group = 0; group < kMost; ++group) {
             const bool isOwn = groupOf(this->crowd_.id(agent)) == group;
             ASSERT_EQ(counts[agent * kMost + group], isOwn ? 0U : 1U);
         }
     }
-    EXPECT_EQ(this->crowd_.countGroups(groupOf, 0, {}).hits, 0U);
+    EXPECT_EQ(this->crowd_.countGroups(0, groupOf, {}).hits, 0U);
 }
 
 TYPED_TEST(CrowdTest, IsTheSameOnAnyNumberOfThreads) {
@@ -337,7 +337,7 @@ TYPED_TEST(CrowdTest, IsTheSameOnAnyNumberOfThreads) {
         counts.resize(this->crowd_.size());
         this->crowd_.count(counts, parallelFor);
         std::vector<std::uint32_t> groups(counts.size() * 5);
-        this->crowd_.countGroups(this->groupOf, 5, groups, parallelFor);
+        this->crowd_.countGroups(5, this->groupOf, groups, parallelFor);
         counts.insert(counts.end(), groups.begin(), groups.end());
         Lists lists(this->crowd_.size());
         cost = this->crowd_.forEach(
@@ -430,9 +430,9 @@ TYPED_TEST(CrowdTest, WantsOneCountForEachAgentAndGroupAndNoMoreGroupsThanThereM
     this->crowd_.take(this->grid_, 1);
     std::vector<std::uint32_t> counts(2);
     EXPECT_THROW(this->crowd_.count(counts), BrokenAssert);
-    EXPECT_THROW(this->crowd_.countGroups(this->groupOf, 3, counts), BrokenAssert);
+    EXPECT_THROW(this->crowd_.countGroups(3, this->groupOf, counts), BrokenAssert);
     counts.resize(33);
-    EXPECT_THROW(this->crowd_.countGroups(this->groupOf, 33, counts), BrokenAssert);
+    EXPECT_THROW(this->crowd_.countGroups(33, this->groupOf, counts), BrokenAssert);
 }
 
 }  // namespace

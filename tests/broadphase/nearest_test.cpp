@@ -39,6 +39,19 @@ private:
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(Nearest, Scalars);
 
+TYPED_TEST(Nearest, LeaveOutWhoAsks) {
+    Grid<TypeParam> grid;
+    const ProxyId self = grid.add(boxBetween<TypeParam>({0, 0, 0}, {1, 1, 1}));
+    const ProxyId other = grid.add(boxBetween<TypeParam>({4, 0, 0}, {5, 1, 1}));
+    const auto nearestTo = [&](ProxyId without) {
+        findNearest(grid, positionOf(grid.box(self)), 1, 10, this->nearest, acceptAll, without);
+        return this->nearest.at(0).id;
+    };
+    EXPECT_EQ(nearestTo({}), self);
+    EXPECT_EQ(nearestTo(self), other);
+    EXPECT_EQ(nearestTo(other), self);
+}
+
 TYPED_TEST(Nearest, AreThoseOfBruteForceInEveryScene) {
     std::size_t found = 0;
     std::size_t cut = 0;

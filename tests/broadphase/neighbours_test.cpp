@@ -11,10 +11,17 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace hashphase::test {
 namespace {
+
+template <class Found>
+concept CanBeAskedInPassing = requires(Found found, const Grid<float>& grid) {
+    std::move(found).find(grid, 1.0F);
+};
+static_assert(!CanBeAskedInPassing<Neighbours<float>>, "couples would outlive what holds them");
 
 template <class Scalar>
 class NeighboursTest : public testing::Test {

@@ -185,7 +185,7 @@ private:
         const auto accept = [isFiltered](ZoneId zone, ProxyId proxy) {
             return !isFiltered || (zone.index + proxy.index) % 3 != 0;
         };
-        const ZoneEvents events = zones_.update(world_.grid, accept, anyFor(arguments));
+        const ZoneEvents events = zones_.update(world_.grid, accept, allZones, anyFor(arguments));
         const auto expected = byBruteForce_.update(life_.proxies(), accept);
         const auto list = [](std::span<const ZoneEvent> from) {
             return std::vector<ZoneEvent>(from.begin(), from.end());

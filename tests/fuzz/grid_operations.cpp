@@ -285,7 +285,7 @@ private:
         crowd_.take(world_.grid, reach, acceptAll, anyFor(arguments));
         const NeighbourLists expected = neighboursByBruteForce(life_.proxies(), reach);
         ASSERT_EQ(crowd_.size(), expected.size());
-        EXPECT_EQ(crowd_.size() + crowd_.leftOut(), life_.proxies().size());
+        EXPECT_EQ(crowd_.size() + crowd_.leftOutCount(), life_.proxies().size());
         std::vector<std::uint32_t> counts(crowd_.size());
         crowd_.count(counts);
         NeighbourLists found;

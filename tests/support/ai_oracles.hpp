@@ -53,7 +53,7 @@ template <class Scalar>
 void visibleFromByBruteForce(std::span<const Placed<Scalar>> proxies, const Viewer<Scalar>& viewer,
                              std::vector<ProxyId>& seen, ProxyFilter targets = acceptAll,
                              ProxyFilter blockers = acceptAll) {
-    const ViewRegion<Scalar> view(viewer);
+    const SightRegion<Scalar> view(viewer);
     seen.clear();
     for (const Placed<Scalar>& proxy : proxies) {
         if (view.key(proxy.box) >= 0 && proxy.id != viewer.self && targets(proxy.id) &&

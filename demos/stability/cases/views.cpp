@@ -186,7 +186,8 @@ CaseOutcome strangeRectangles(const CaseContext& context) {
     const auto chosen = [&](const View<float>& view, const Pixel& a, const Pixel& b) {
         std::vector<ProxyId> selected;
         Objects objects;
-        for (const ProxyId id : select(hash->grid(), view, a, b, selected)) {
+        select(hash->grid(), view, a, b, selected);
+        for (const ProxyId id : selected) {
             objects.push_back(id.index);
         }
         std::sort(objects.begin(), objects.end());

@@ -23,7 +23,8 @@ void TunnelSearch::find(const Stage& stage) {
             continue;
         }
         const RayRegion<float> path(before_[index], mover.centre);
-        for (const Picked<float>& met : pickAll(*stage.grid(), path, picked_)) {
+        pickAll(*stage.grid(), path, picked_);
+        for (const Picked<float>& met : picked_) {
             const StageBody wall = stage.body(met.id.index);
             const bool isThrough = wall.shape == StageBody::Shape::box && wall.isStatic &&
                                    meets(wall, before_[index], way).value_or(0) > 0 &&

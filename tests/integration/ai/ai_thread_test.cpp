@@ -120,7 +120,7 @@ TEST(AiThreads, LookForManyZonesAndViewersAtTheSameTime) {
     Sight<float> sight;
     for (int frame = 0; frame < 10; ++frame) {
         script.playFrame(world);
-        zones.update(world.grid, acceptAllInZones, threads);
+        zones.update(world.grid, acceptAllInZones, allZones, threads);
         script.playFrame(world);
         EXPECT_GT(sight.look(world.grid, viewers, acceptAll, acceptAll, threads).hits, 0U);
     }

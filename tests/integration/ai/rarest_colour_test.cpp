@@ -150,7 +150,7 @@ TYPED_TEST(RarestColourTest, IsTheSameOnAnyNumberOfThreads) {
     for (const std::size_t threads : {2, 5}) {
         ThreadedFor threadedFor(threads, threads);
         Colours colours = first;
-        this->rarest_.update(grid, 4, 8, colours, acceptAll, threadedFor);
+        this->rarest_.update(grid, 4, 8, colours, acceptAll, acceptAll, threadedFor);
         EXPECT_EQ(colours, expected);
     }
     const std::size_t bytes = this->rarest_.memoryBytes();

@@ -130,7 +130,7 @@ TYPED_TEST(SightTest, OfAConeFindsWhatBruteForceFindsInEveryScene) {
         for (int i = 0; i < 150; ++i) {
             const Viewer<TypeParam> viewer = this->anyViewer(script.random(), script.proxies());
             found +=
-                expectLikeBruteForce(world.grid, script.proxies(), ViewRegion<TypeParam>(viewer));
+                expectLikeBruteForce(world.grid, script.proxies(), SightRegion<TypeParam>(viewer));
             ASSERT_FALSE(this->HasFailure());
             if (i % 5 == 0) {
                 script.playFrame(world);
@@ -162,7 +162,7 @@ TYPED_TEST(SightTest, OfAConeIsByTheAngleToItsAxis) {
         const Vector3<long double> offset = point.template cast<long double>();
         const long double angle = std::atan2(axis.cross(offset).norm(), axis.dot(offset));
         const long double slack = 16 * std::numeric_limits<TypeParam>::epsilon();
-        const TypeParam key = ViewRegion<TypeParam>(viewer).key({point, point});
+        const TypeParam key = SightRegion<TypeParam>(viewer).key({point, point});
         if (angle < viewer.halfAngle - slack) {
             ASSERT_GE(key, 0) << static_cast<double>(angle) << ' ' << viewer.halfAngle;
             ++inside;
@@ -185,7 +185,7 @@ TYPED_TEST(SightTest, OfAConeLooksAsFarAsItsSurfaceReachesAlongEachAxis) {
         viewer.direction = axis.cast<TypeParam>();
         viewer.halfAngle = static_cast<TypeParam>(halfAngle);
         viewer.range = static_cast<TypeParam>(random.logBetween(0.1, 1000));
-        const ViewRegion<TypeParam> view(viewer);
+        const SightRegion<TypeParam> view(viewer);
         for (int side = 0; side < 6; ++side) {
             // The direction of the cone that is nearest to this side of an axis.
             const Vector3<double> unit =
@@ -214,9 +214,9 @@ TYPED_TEST(SightTest, OfANarrowConeReadsFarLessThanItsBall) {
     Viewer<TypeParam> viewer;
     viewer.range = 50;
     CollectCount count;
-    const Aabb<TypeParam> ball = ViewRegion<TypeParam>(viewer).bounds();
+    const Aabb<TypeParam> ball = SightRegion<TypeParam>(viewer).bounds();
     viewer.halfAngle = TypeParam(0.2);
-    const Aabb<TypeParam> cone = ViewRegion<TypeParam>(viewer).bounds();
+    const Aabb<TypeParam> cone = SightRegion<TypeParam>(viewer).bounds();
     EXPECT_LT(cone.volume(), ball.volume() / 40);
     EXPECT_TRUE(ball.contains(cone));
 }

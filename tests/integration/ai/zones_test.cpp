@@ -113,8 +113,9 @@ TYPED_TEST(ZonesTest, TellWhatBruteForceTellsInEveryScene) {
                     expected.set(ids[i], zone);
                 }
             }
-            const ZoneEvents events = frame % 2 == 0 ? zones.update(world.grid, filter)
-                                                     : zones.update(world.grid, filter, threads);
+            const ZoneEvents events = frame % 2 == 0
+                                          ? zones.update(world.grid, filter)
+                                          : zones.update(world.grid, filter, allZones, threads);
             const auto wanted = expected.update(script.proxies(), filter);
             ASSERT_EQ(differences(this->list(events.entered), wanted.entered), "");
             ASSERT_EQ(differences(this->list(events.stayed), wanted.stayed), "");

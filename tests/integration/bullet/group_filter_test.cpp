@@ -9,11 +9,15 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <type_traits>
 
 namespace hashphase::test {
 namespace {
 
 constexpr std::array<int, 6> kBits{0, 1, 2, 64, 1 | 64, btBroadphaseProxy::AllFilter};
+
+static_assert(std::is_constructible_v<GroupFilter, const SpatialHashBroadphase&, int>);
+static_assert(!std::is_constructible_v<GroupFilter, SpatialHashBroadphase, int>);
 
 class GroupFilterTest : public testing::Test {
 protected:

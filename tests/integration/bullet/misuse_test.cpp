@@ -70,7 +70,7 @@ TEST(PairCacheMisuse, OfAFilterThatChangesIsAsserted) {
 }
 
 TEST(ProxyRanksMisuse, OfNobodyFindsNobody) {
-    EXPECT_EQ(ProxyRanks().lowestRank(1, 2), ProxyRanks::kNone);
+    EXPECT_EQ(detail::ProxyRanks().lowestRank(1, 2), detail::ProxyRanks::kNone);
 }
 
 TEST(BroadphaseMisuse, OfACacheThatHasPairsIsAsserted) {

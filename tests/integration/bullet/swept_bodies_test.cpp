@@ -2,8 +2,8 @@
 
 // SpatialHashConfig::sweep: fast bodies make pairs with what they pass, and with nothing else.
 
-#include <integration/bullet/body_motion.hpp>
 #include <integration/bullet/conversions.hpp>
+#include <integration/bullet/detail/body_motion.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 #include <tests/support/random.hpp>
 
@@ -89,7 +89,7 @@ struct Range {
         for (const auto& body : bodies) {
             const btBroadphaseProxy& proxy = *body->getBroadphaseProxy();
             motions.push_back(
-                fastMotion(proxy, share)
+                detail::fastMotion(proxy, share)
                     .value_or(MovingBox<btScalar>{toAabb(proxy.m_aabbMin, proxy.m_aabbMax)}));
         }
         std::set<Couple> pairs;
@@ -334,26 +334,26 @@ TEST(SweptBodies, AreDynamicRigidBodiesThatMoveFarForTheirSize) {
                         object.getWorldTransform().getOrigin() + btVector3(way, 0, 0)));
     };
     const btBroadphaseProxy& proxy = *ball.getBroadphaseProxy();
-    EXPECT_FALSE(fastMotion(proxy, 1));
+    EXPECT_FALSE(detail::fastMotion(proxy, 1));
     predictBy(ball, btScalar(0.2));  // its box, with margins, is 0.24 m long
-    EXPECT_FALSE(fastMotion(proxy, 1));
-    EXPECT_TRUE(fastMotion(proxy, btScalar(0.5)));
+    EXPECT_FALSE(detail::fastMotion(proxy, 1));
+    EXPECT_TRUE(detail::fastMotion(proxy, btScalar(0.5)));
     predictBy(ball, btScalar(0.3));
-    ASSERT_TRUE(fastMotion(proxy, 1));
-    EXPECT_FLOAT_EQ(static_cast<float>(fastMotion(proxy, 1)->displacement.x()), 0.3F);
+    ASSERT_TRUE(detail::fastMotion(proxy, 1));
+    EXPECT_FLOAT_EQ(static_cast<float>(detail::fastMotion(proxy, 1)->displacement.x()), 0.3F);
     predictBy(ball, std::numeric_limits<btScalar>::quiet_NaN());
-    EXPECT_FALSE(fastMotion(proxy, 1));
+    EXPECT_FALSE(detail::fastMotion(proxy, 1));
 
     btRigidBody& wall = range.add(range.wall, 0, btVector3(5, 0, 0));
     predictBy(wall, 9);
-    EXPECT_FALSE(fastMotion(*wall.getBroadphaseProxy(), 1));
+    EXPECT_FALSE(detail::fastMotion(*wall.getBroadphaseProxy(), 1));
     btCollisionObject sensor;
     sensor.setCollisionShape(&range.ball);
     range.world.addCollisionObject(&sensor);
     predictBy(sensor, 9);
-    EXPECT_FALSE(fastMotion(*sensor.getBroadphaseHandle(), 1));
+    EXPECT_FALSE(detail::fastMotion(*sensor.getBroadphaseHandle(), 1));
     range.world.removeCollisionObject(&sensor);
-    EXPECT_FALSE(fastMotion(btBroadphaseProxy(), 1));
+    EXPECT_FALSE(detail::fastMotion(btBroadphaseProxy(), 1));
 }
 
 }  // namespace

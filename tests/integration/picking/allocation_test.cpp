@@ -44,9 +44,12 @@ public:
             return std::optional(limit);
         };
         std::size_t found = pickNearest(grid_, ray).id.isNull() ? 0 : 1;
-        found += pickAll(grid_, ray, picked_, test).size();
-        found += pickAll(grid_, clipToHeights(ray, {-5, 5}), picked_).size();
-        found += select(grid_, view, {400, 200}, {800, 500}, selected_).size();
+        pickAll(grid_, ray, picked_, test);
+        found += picked_.size();
+        pickAll(grid_, clipToHeights(ray, {-5, 5}), picked_);
+        found += picked_.size();
+        select(grid_, view, {400, 200}, {800, 500}, selected_);
+        found += selected_.size();
         CollectAll all(onMap_);
         onMap_.clear();
         grid_.visit(dragFootprint(view, {400, 200}, {800, 500}, {-5, 5}).region(), all);

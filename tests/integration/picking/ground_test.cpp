@@ -113,7 +113,8 @@ TYPED_TEST(Ground, APickFindsWhatHasHeightInFrontOfThePointOnTheGround) {
     const auto part = clipToHeights(ray, {TypeParam(0), TypeParam(9)});
     EXPECT_EQ(pickNearest(grid, part).id, tower);
     std::vector<Picked<TypeParam>> all;
-    EXPECT_EQ(pickAll(grid, part, all).size(), 2U);
+    pickAll(grid, part, all);
+    EXPECT_EQ(all.size(), 2U);
     // Along no more than it takes: from z = -4 to the ground.
     EXPECT_NEAR(part.from().y(), 9, 1e-4);
     EXPECT_NEAR((part.from() + part.direction()).y(), 0, 1e-4);

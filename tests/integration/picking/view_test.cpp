@@ -202,7 +202,7 @@ TYPED_TEST(Views, EndRaysAtTheFarthestDistance) {
             return -this->endOf(view.rayThrough({300, 100}, farthest)).z();
         };
         EXPECT_NEAR(depthOf(50), 50.1, 1e-3);
-        EXPECT_NEAR(-this->endOf(view.rayThrough({300, 100})).z(), kFarthest, 1);
+        EXPECT_NEAR(-this->endOf(view.rayThrough({300, 100})).z(), kFarthestView, 1);
         EXPECT_TRUE(view.rayThrough({300, 100}, 0).isEmpty());
         EXPECT_TRUE(view.rayThrough({300, 100}, -1).isEmpty());
         EXPECT_TRUE(view.rayThrough({300, 100}, this->kInfinity).isEmpty() ||

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <integration/bullet/body_motion.hpp>
+#include <integration/bullet/detail/body_motion.hpp>
 
 #include <integration/bullet/conversions.hpp>
 
@@ -9,7 +9,7 @@
 
 #include <limits>
 
-namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 namespace {
 
 Aabb<btScalar> boxAt(const btCollisionObject& object, const btTransform& transform) {
@@ -50,4 +50,4 @@ std::optional<MovingBox<btScalar>> fastMotion(const btBroadphaseProxy& proxy, bt
     return moving;
 }
 
-}  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE
+}  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

@@ -11,7 +11,7 @@
 
 #include <optional>
 
-namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 
 /// The box and the displacement [m] of the proxy's rigid body from where it is to where Bullet has
 /// predicted it, during a step; nothing when the proxy's client is no dynamic rigid body, or moves by
@@ -21,4 +21,4 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 [[nodiscard]] HASHPHASE_BULLET_EXPORT std::optional<MovingBox<btScalar>> fastMotion(
     const btBroadphaseProxy& proxy, btScalar share);
 
-}  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE
+}  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

@@ -9,7 +9,7 @@
 
 #include <optional>
 
-namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 
 /// Remembers what a setting was before it was overridden. Who sets it meanwhile is believed: that is
 /// from then on what the setting was.
@@ -35,4 +35,4 @@ private:
     bool isHeld_ = false;
 };
 
-}  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE
+}  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

@@ -13,13 +13,13 @@
 #include <span>
 #include <vector>
 
-namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 
 /// Tells which proxies are among some, and at what place, by their unique ids. Made to be asked
 /// about many that are not: a few bits answer most of the time. Keeps its memory.
 class ProxyRanks {
 public:
-    static constexpr std::uint32_t kNone = detail::FlatSet::kNone;
+    static constexpr std::uint32_t kNone = FlatSet::kNone;
 
     void assign(std::span<btBroadphaseProxy* const> proxies) {
         constexpr std::size_t kBitsPerProxy = 16;
@@ -51,7 +51,7 @@ private:
     static std::uint64_t bitOf(std::uint32_t id) noexcept { return std::uint64_t{1} << id % 64; }
 
     std::vector<std::uint64_t> bits_{0};  // a power of two of words
-    detail::FlatSet ids_;                 // numbered by rank
+    FlatSet ids_;                         // numbered by rank
 };
 
-}  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE
+}  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

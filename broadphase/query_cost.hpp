@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+#include <cstdint>
+
+namespace hashphase {
+
+/// What a query cost, returned with its answer.
+struct QueryCost {
+    std::uint64_t rowsVisited = 0;  ///< rows of cells, or a ray's blocks of up to eight boxes
+    std::uint64_t boxesTested = 0;
+    std::uint64_t hits = 0;
+
+    QueryCost& operator+=(const QueryCost& other) noexcept {
+        rowsVisited += other.rowsVisited;
+        boxesTested += other.boxesTested;
+        hits += other.hits;
+        return *this;
+    }
+};
+
+}  // namespace hashphase
