@@ -40,10 +40,27 @@ std::string unknownWordSentence(const CLI::App& command, const std::string& call
     return unknownNameSentence("option", name, optionNames(command));
 }
 
-// Words that the command does not know; "--", before what is no option, is none of them.
-std::vector<std::string> extrasOf(const CLI::App& app) {
-    std::vector<std::string> extras = app.remaining();
-    std::erase(extras, "--");
+// The words that the command does not know: those that look like options, and the rest.
+struct Extras {
+    std::vector<std::string> refused;
+    std::vector<std::string> rest;
+};
+
+Extras extrasOf(const CLI::App& app, bool takesRest) {
+    const std::vector<std::string> words = app.remaining();
+    Extras extras;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (words[i] == "--") {
+            extras.rest.insert(extras.rest.end(),
+                               words.begin() + static_cast<std::ptrdiff_t>(i) + 1, words.end());
+            break;
+        }
+        const bool isOption = words[i].starts_with("-") && words[i] != "-";
+        (isOption ? extras.refused : extras.rest).push_back(words[i]);
+    }
+    if (!takesRest) {
+        extras.refused.insert(extras.refused.end(), extras.rest.begin(), extras.rest.end());
+    }
     return extras;
 }
 
@@ -108,7 +125,7 @@ int runProgram(const std::vector<std::string>& arguments, std::span<const Subcom
         return *ended;
     }
     const std::vector<CLI::App*> chosen = app.get_subcommands();
-    if (const std::vector<std::string> extras = extrasOf(app); !extras.empty()) {
+    if (const std::vector<std::string> extras = extrasOf(app, false).refused; !extras.empty()) {
         return refuse(console, extras.front().front() == '-'
                                    ? unknownNameSentence("option", extras.front(), optionNames(app))
                                    : unknownNameSentence("subcommand", extras.front(), names));
@@ -117,14 +134,18 @@ int runProgram(const std::vector<std::string>& arguments, std::span<const Subcom
         console.err << app.help();
         return kExitUsage;
     }
-    if (const std::vector<std::string> extras = extrasOf(*chosen.front()); !extras.empty()) {
-        return refuse(
-            console, unknownWordSentence(*chosen.front(), "hashphase " + chosen.front()->get_name(),
-                                         extras.front()));
-    }
     const auto subcommand = std::find_if(
         subcommands.begin(), subcommands.end(),
         [&chosen](const Subcommand& known) { return known.name == chosen.front()->get_name(); });
+    const Extras extras = extrasOf(*chosen.front(), static_cast<bool>(subcommand->takeRest));
+    if (!extras.refused.empty()) {
+        return refuse(
+            console, unknownWordSentence(*chosen.front(), "hashphase " + chosen.front()->get_name(),
+                                         extras.refused.front()));
+    }
+    if (subcommand->takeRest) {
+        subcommand->takeRest(extras.rest);
+    }
     return runGuarded(*subcommand, console);
 }
 
@@ -137,8 +158,8 @@ int runSingleCommand(const std::vector<std::string>& arguments, const Subcommand
     if (const std::optional<int> ended = parse(app, arguments, console)) {
         return *ended;
     }
-    if (const std::vector<std::string> extras = extrasOf(app); !extras.empty()) {
-        return refuse(console, unknownWordSentence(app, command.name, extras.front()));
+    if (const Extras extras = extrasOf(app, false); !extras.refused.empty()) {
+        return refuse(console, unknownWordSentence(app, command.name, extras.refused.front()));
     }
     return runGuarded(command, console);
 }

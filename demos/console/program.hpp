@@ -42,6 +42,10 @@ struct Subcommand {
     /// Declares the options, bound to storage that the subcommand owns.
     std::function<void(CLI::App&)> declareOptions;
 
+    /// Takes the words from the first one on that is no option, or that follow `--`, as they are; empty: such
+    /// words are refused.
+    std::function<void(std::vector<std::string>)> takeRest = {};
+
     /// Runs with the options as parsed; returns the exit code. May throw InputError.
     std::function<int(Console&)> run;
 };

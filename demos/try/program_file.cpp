@@ -105,24 +105,30 @@ Output outputOf(std::vector<std::string> words) {
 
 // A line such as "\tlibm.so.6 => /lib/x86_64-linux-gnu/libm.so.6 (0x00007f9a)".
 std::optional<SharedLibrary> libraryOf(const std::string& line) {
-    std::istringstream words(line);
-    SharedLibrary library;
-    std::string arrow;
-    std::string place;
-    if (!(words >> library.name >> arrow) || arrow != "=>") {
+    const std::string arrow = " => ";
+    const std::size_t begin = line.find_first_not_of(" \t");
+    const std::size_t middle = line.find(arrow);
+    if (begin == std::string::npos || middle == std::string::npos) {
         return std::nullopt;
     }
-    words >> place;
+    SharedLibrary library;
+    library.name = line.substr(begin, middle - begin);
+    const std::string place = line.substr(middle + arrow.size());
     if (place.starts_with('/')) {
-        library.path = place;
+        library.path = place.substr(0, place.rfind(" ("));
     }
     return library;
 }
 
 BulletPrecision precisionOf(const SharedLibrary& bullet) {
     // The constructor of a capsule takes two numbers, so that its name tells them.
-    return fileContains(bullet.path, "_ZN14btCapsuleShapeC1Edd") ? BulletPrecision::kDouble
-                                                                 : BulletPrecision::kSingle;
+    if (fileContains(bullet.path, "_ZN14btCapsuleShapeC1Eff")) {
+        return BulletPrecision::kSingle;
+    }
+    if (fileContains(bullet.path, "_ZN14btCapsuleShapeC1Edd")) {
+        return BulletPrecision::kDouble;
+    }
+    throw InputError(bullet.path + " does not tell the precision of its numbers");
 }
 
 // Bullet's code in the program, or in a library of its own, as its type's name tells.
@@ -140,6 +146,15 @@ std::string placeOfStaticBullet(const std::string& path,
     return {};
 }
 
+void refuseStaticBullet(const std::string& path, const std::vector<SharedLibrary>& libraries) {
+    const std::string holder = placeOfStaticBullet(path, libraries);
+    if (!holder.empty()) {
+        throw InputError("Bullet is linked statically into " + holder +
+                         ", where its broadphase cannot be taken over; link Bullet's shared "
+                         "libraries, or swap the broadphase in the source");
+    }
+}
+
 std::string alternatives(const std::vector<std::string>& names) {
     std::string text;
     for (const std::string& name : names) {
@@ -149,6 +164,10 @@ std::string alternatives(const std::vector<std::string>& names) {
 }
 
 }  // namespace
+
+std::string nameOf(BulletPrecision precision) {
+    return precision == BulletPrecision::kSingle ? "single" : "double";
+}
 
 std::string findProgram(const std::string& word) {
     if (word.find('/') != std::string::npos) {
@@ -205,31 +224,35 @@ std::vector<SharedLibrary> sharedLibrariesOf(const std::string& path, const std:
         }
     }
     if (output.status != 0) {
-        throw InputError(path + " cannot be loaded: " +
-                         printable(output.text.substr(0, output.text.find('\n'))));
+        const std::string reason = printable(output.text.substr(0, output.text.find('\n')));
+        throw InputError(path + " cannot be loaded by " + loader +
+                         (reason.empty() ? "" : ": " + reason));
     }
     return libraries;
 }
 
 TriedProgram inspectProgram(const std::string& path, const std::vector<std::string>& ownBullets,
-                            bool loadsBulletLater) {
+                            std::optional<BulletPrecision> precision) {
     const std::vector<SharedLibrary> libraries = sharedLibrariesOf(path, loaderOf(path));
+    TriedProgram program;
+    program.path = path;
+    for (const SharedLibrary& library : libraries) {
+        if (library.name.starts_with("libasan.so")) {
+            program.sanitizer = library.path;
+        }
+    }
     const auto bullet = std::find_if(
         libraries.begin(), libraries.end(),
         [](const SharedLibrary& library) { return library.name.starts_with(kCollisionLibrary); });
     if (bullet == libraries.end()) {
-        if (loadsBulletLater) {
-            return {path, "", BulletPrecision::kSingle};
+        refuseStaticBullet(path, libraries);
+        if (!precision) {
+            throw InputError(path +
+                             " links no Bullet; if it loads Bullet as it runs, name its "
+                             "precision by --precision");
         }
-        const std::string holder = placeOfStaticBullet(path, libraries);
-        throw InputError(
-            holder.empty()
-                ? path +
-                      " links no Bullet; if it loads Bullet as it runs, name its "
-                      "precision by --precision"
-                : "Bullet is linked statically into " + holder +
-                      ", where its broadphase cannot be taken over; link Bullet's shared "
-                      "libraries, or swap the broadphase in the source");
+        program.precision = *precision;
+        return program;
     }
     if (bullet->path.empty()) {
         throw InputError(path + " cannot be loaded: " + bullet->name + " was not found");
@@ -239,7 +262,13 @@ TriedProgram inspectProgram(const std::string& path, const std::vector<std::stri
                          alternatives(ownBullets) +
                          ": build hashphase with the Bullet of the program");
     }
-    return {path, bullet->name, precisionOf(*bullet)};
+    program.bullet = bullet->name;
+    program.precision = precisionOf(*bullet);
+    if (precision && *precision != program.precision) {
+        throw InputError(path + " links " + bullet->name + ", which is of " +
+                         nameOf(program.precision) + " precision, and not " + nameOf(*precision));
+    }
+    return program;
 }
 
 }  // namespace hashphase::demos

@@ -5,9 +5,11 @@
 // program `hashphase` and the program that it tries, in which a preloaded library writes. What was
 // written survives however the program ends.
 //
+// A step   is a call of stepSimulation() in which pairs were calculated, with all its sub-steps; where
+//          Bullet is linked so that its functions cannot be stood in for (-Bsymbolic-functions), one of
+//          these sub-steps; and a performDiscreteCollisionDetection() outside of both.
 // Threads  the counters are atomic; a row is written before `rowCount` counts it.
-// Units    milliseconds; steps are calls of stepSimulation() in which pairs were calculated, or, of a
-//          program that makes none, calls of calculateOverlappingPairs().
+// Units    milliseconds.
 
 #include <array>
 #include <atomic>
@@ -25,15 +27,17 @@ enum class Broadphase : std::uint32_t {
     verifying,  // ours in its place, Bullet's beside it, both compared with the exact pairs
 };
 
-/// A step, over all worlds in it.
+/// A step of one thread, over all worlds in it; or pairs that were calculated outside of any.
 struct StepRow {
     static constexpr std::uint32_t kNotCounted = 0xffffffffU;
 
-    float step;  // stepSimulation(); 0 where there is none
+    float step;  // 0: pairs were calculated outside of steps
     float updateAabbs;
     float calculate;
-    float rays;  // what their callbacks do included
+    float rays;         // in the step, what their callbacks do included
+    float raysBetween;  // since the last row, outside of steps or on threads that make none
     std::uint32_t rayCount;
+    std::uint32_t rayBetweenCount;
     std::uint32_t objectCount;
     std::uint32_t pairCount;
     std::uint32_t truePairCount;  // whose boxes overlap; kNotCounted in most steps: it takes time
@@ -46,8 +50,10 @@ struct Verification {
     std::atomic<std::uint64_t> missing;
     std::atomic<std::uint64_t> extra;
     std::atomic<std::uint64_t> unasked;  // the filter would take them now, but nothing has moved
+    std::atomic<std::uint64_t> removed;  // by the program, out of the cache
     std::atomic<std::uint64_t> stockMissing;
     std::atomic<std::uint64_t> stockExtra;
+    std::atomic<bool> hasFault;
     std::array<char, 480> firstFault;  // of ours; empty: none
 };
 
@@ -58,15 +64,17 @@ struct Record {
     // Asked for.
     std::uint32_t format;
     Broadphase broadphase;
-    std::uint32_t stepLimit;  // so many rows are written; at most kMaxRows
+    std::uint32_t rowLimit;  // so many rows are written; at most kMaxRows
 
     // Answered.
     std::atomic<std::int32_t> process;  // who made the first broadphase
     std::atomic<std::uint32_t> otherProcesses;
     std::atomic<std::uint32_t> dbvtCount;
     std::atomic<std::uint32_t> axisSweepCount;
-    std::atomic<std::uint32_t> foreignCalculations;  // of broadphases that were not taken over
+    std::atomic<std::uint32_t> derivedSweepCount;    // which are not taken over
+    std::atomic<std::uint32_t> foreignCalculations;  // of broadphases that are not taken over
     std::atomic<std::uint32_t> rowCount;
+    std::atomic<std::uint32_t> droppedRows;  // beyond the limit
     Verification verification;
     std::array<StepRow, kMaxRows> rows;
 };

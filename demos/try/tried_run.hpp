@@ -15,7 +15,7 @@ namespace hashphase::demos {
 struct TriedRunSettings {
     std::string path;                // of the program
     std::vector<std::string> words;  // argv, the name first
-    std::string preload;             // path of the library
+    std::string preload;             // paths of libraries, between colons
     tryout::Broadphase broadphase = tryout::Broadphase::stock;
     std::optional<std::uint32_t> stepLimit;  // ends the program after so many steps
     std::optional<double> secondLimit;       // or seconds
@@ -24,11 +24,12 @@ struct TriedRunSettings {
 /// How a program ended.
 struct RunEnd {
     bool isCrash = false;    // by a signal that nobody here has sent
-    bool isStopped = false;  // by us, at a limit
+    bool isStopped = false;  // by us, at a limit or because we were interrupted
     int code = 0;            // its exit status, or the signal
-
-    bool operator==(const RunEnd&) const = default;
 };
+
+/// Whether one is as good as the other: at a limit who was stopped may have been about to end.
+[[nodiscard]] bool areAlike(const RunEnd& a, const RunEnd& b) noexcept;
 
 /// "ended with status 0", "was ended by signal 11 (Segmentation fault)".
 [[nodiscard]] std::string textOf(const RunEnd& end);
@@ -39,9 +40,12 @@ struct TriedRun {
     bool hasBroadphase = false;
     std::uint32_t dbvtCount = 0;
     std::uint32_t axisSweepCount = 0;
+    std::uint32_t derivedSweepCount = 0;
     std::uint32_t foreignCalculations = 0;
     std::uint32_t otherProcesses = 0;
-    std::vector<tryout::StepRow> rows;
+    std::uint32_t droppedRows = 0;
+    std::vector<tryout::StepRow> rows;  // steps; of a program that makes none, calculations
+    int interruption = 0;               // the signal that ended more than this run; 0: none
 
     // Of Broadphase::verifying.
     std::uint64_t calculations = 0;
@@ -49,13 +53,15 @@ struct TriedRun {
     std::uint64_t missing = 0;
     std::uint64_t extra = 0;
     std::uint64_t unasked = 0;
+    std::uint64_t removed = 0;
     std::uint64_t stockMissing = 0;
     std::uint64_t stockExtra = 0;
     std::string firstFault;
 };
 
-/// Runs the program to its end, or to a limit, with this process's streams. An interrupt from the keyboard is
-/// for the program alone. Throws InputError when it cannot be started.
+/// Runs the program to its end, or to a limit, with this process's streams, of which the input begins anew where
+/// it is a file. Signals that would end this process end the program, and are told. Throws InputError when it
+/// cannot be started.
 [[nodiscard]] TriedRun runTried(const TriedRunSettings& settings);
 
 }  // namespace hashphase::demos

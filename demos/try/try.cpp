@@ -66,6 +66,9 @@ TriedRunSettings settingsFor(const TryOptions& options, const TriedProgram& prog
                          std::filesystem::path(settings.preload).filename().string() +
                          ": Bullet of that precision was not found when it was");
     }
+    if (!program.sanitizer.empty()) {
+        settings.preload = program.sanitizer + ":" + settings.preload;
+    }
     return settings;
 }
 
@@ -86,17 +89,12 @@ void sayWhatRuns(const TryOptions& options, Broadphase broadphase, std::size_t n
 // A program that makes none of the broadphases that are taken over runs as ever.
 [[noreturn]] void refuse(const Trial& trial, const TriedRun& run) {
     throw InputError(trial.program.path + " " + textOf(run.end) +
-                     ", and has made no btDbvtBroadphase and no axis sweep: there is nothing to "
-                     "compare");
-}
-
-bool areEndsAlike(const Trial& trial) {
-    return std::all_of(trial.runs.begin(), trial.runs.end(),
-                       [&](const TriedRun& run) { return run.end == trial.runs.front().end; });
+                     ", and has made no btDbvtBroadphase and no axis sweep that can be taken over: "
+                     "there is nothing to compare");
 }
 
 bool isSound(const Trial& trial) {
-    return areEndsAlike(trial) &&
+    return !isEndOfOurs(trial) &&
            std::all_of(trial.runs.begin(), trial.runs.end(), [](const TriedRun& run) {
                return run.missing == 0 && run.extra == 0 &&
                       (run.broadphase != Broadphase::verifying || run.calculations > 0);
@@ -119,9 +117,7 @@ int runTry(const TryOptions& options, Console& console) {
         throw InputError("this hashphase has no " + preloadFor(BulletPrecision::kSingle) +
                          " to load into programs, as builds under a sanitizer have not");
     }
-    trial.program =
-        inspectProgram(findProgram(options.words.front()), bullets, options.precision.has_value());
-    trial.program.precision = options.precision.value_or(trial.program.precision);
+    trial.program = inspectProgram(findProgram(options.words.front()), bullets, options.precision);
     TriedRunSettings settings = settingsFor(options, trial.program);
 
     std::vector<Broadphase> turns{Broadphase::verifying};
@@ -131,17 +127,26 @@ int runTry(const TryOptions& options, Console& console) {
             turns.insert(turns.end(), {Broadphase::stock, Broadphase::hash});
         }
     }
+    int interruption = 0;
     for (const Broadphase broadphase : turns) {
         settings.broadphase = broadphase;
         sayWhatRuns(options, broadphase, trial.runs.size() + 1, turns.size(), console);
         console.out.flush();
         trial.runs.push_back(runTried(settings));
+        interruption = trial.runs.back().interruption;
         if (!trial.runs.back().hasBroadphase) {
             refuse(trial, trial.runs.back());
+        }
+        if (interruption != 0) {
+            break;
         }
     }
     printTrial(trial, console.out);
     json.write([&](std::ostream& out) { writeTrialJson(trial, console.commandLine, out); });
+    constexpr int kExitInterrupted = 128;  // and the signal, as shells have it
+    if (interruption != 0) {
+        return kExitInterrupted + interruption;
+    }
     return isSound(trial) ? kExitOk : kExitCheckFailed;
 }
 

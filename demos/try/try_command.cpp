@@ -8,14 +8,20 @@
 
 #include <map>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace hashphase::demos {
 namespace {
 
 void declare(CLI::App& app, TryOptions& options) {
-    app.add_option("program", options.words,
-                   "after --, the program and its arguments: it links Bullet's shared libraries")
-        ->type_name("");
+    app.footer(
+        "hashphase try [OPTIONS] -- PROGRAM [ARGUMENT]...\n\n"
+        "PROGRAM links Bullet's shared libraries, and makes its broadphase from btDbvtBroadphase, "
+        "btAxisSweep3 or\nbt32BitAxisSweep3. With ours in place, the trees in "
+        "btDbvtBroadphase::m_sets are empty for programs that\nwalk them themselves. "
+        "Ctrl-C ends the program, and further runs.");
     CLI::Option* verify = app.add_flag(
         "--verify", options.verify,
         "one run with ours at work and Bullet's beside it: compare the pairs of both with the "
@@ -46,6 +52,9 @@ Subcommand tryCommand() {
     command.description =
         "Run a program of yours, as it is, with Bullet's broadphase and with ours, and compare";
     command.declareOptions = [options](CLI::App& app) { declare(app, *options); };
+    command.takeRest = [options](std::vector<std::string> words) {
+        options->words = std::move(words);
+    };
     command.run = [options](Console& console) { return runTry(*options, console); };
     return command;
 }

@@ -4,7 +4,6 @@
 #include <demos/console/format.hpp>
 #include <demos/console/table.hpp>
 #include <demos/report/json_values.hpp>
-#include <demos/report/statistics.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -16,23 +15,14 @@ namespace {
 using tryout::Broadphase;
 using tryout::StepRow;
 
-std::vector<StepRow> rowsOf(const Trial& trial, Broadphase broadphase) {
-    std::vector<StepRow> rows;
+std::vector<const TriedRun*> runsOf(const Trial& trial, Broadphase broadphase) {
+    std::vector<const TriedRun*> runs;
     for (const TriedRun& run : trial.runs) {
         if (run.broadphase == broadphase) {
-            rows.insert(rows.end(), run.rows.begin(), run.rows.end());
+            runs.push_back(&run);
         }
     }
-    return rows;
-}
-
-template <class Number>
-double median(const std::vector<StepRow>& rows, Number StepRow::*field) {
-    std::vector<double> series;
-    for (const StepRow& row : rows) {
-        series.push_back(static_cast<double>(row.*field));
-    }
-    return spreadOf(std::move(series)).median;
+    return runs;
 }
 
 template <class Number>
@@ -42,6 +32,18 @@ double mean(const std::vector<StepRow>& rows, Number StepRow::*field) {
         sum += static_cast<double>(row.*field);
     }
     return sum / static_cast<double>(rows.size());
+}
+
+// Without the fastest and the slowest twentieth; of few, with all.
+std::vector<StepRow> withoutFits(std::vector<StepRow> rows) {
+    constexpr std::ptrdiff_t kShare = 20;
+    const auto length = [](const StepRow& row) {
+        return row.step > 0 ? row.step : row.updateAabbs + row.calculate;
+    };
+    std::stable_sort(rows.begin(), rows.end(),
+                     [&](const StepRow& a, const StepRow& b) { return length(a) < length(b); });
+    const std::ptrdiff_t cut = static_cast<std::ptrdiff_t>(rows.size()) / kShare;
+    return {rows.begin() + cut, rows.end() - cut};
 }
 
 // The share of pairs that overlap in the steps that were looked at, of all pairs.
@@ -94,24 +96,42 @@ std::string headOf(const Trial& trial) {
     };
     part(run.dbvtCount, "btDbvtBroadphase");
     part(run.axisSweepCount, "axis sweep");
-    text += trial.program.precision == BulletPrecision::kSingle ? "single" : "double";
-    return text + " precision" + (trial.program.bullet.empty() ? "" : ", " + trial.program.bullet);
+    part(run.derivedSweepCount, "class derived from an axis sweep, not taken over");
+    return text + nameOf(trial.program.precision) + " precision" +
+           (trial.program.bullet.empty() ? "" : ", " + trial.program.bullet);
+}
+
+// "ended with status 0" or, of several runs that ended differently, all their ends.
+std::string endsOf(const Trial& trial, Broadphase broadphase) {
+    std::string text;
+    for (const TriedRun* run : runsOf(trial, broadphase)) {
+        if (text.find(textOf(run->end)) == std::string::npos) {
+            text += (text.empty() ? "" : " or ") + textOf(run->end);
+        }
+    }
+    return text;
+}
+
+void printEnds(const Trial& trial, std::ostream& out) {
+    const std::string stock = endsOf(trial, Broadphase::stock);
+    const std::string ours = endsOf(trial, Broadphase::hash);
+    if (isEndOfOurs(trial)) {
+        out << "The program " << stock << " with Bullet's broadphase, and " << ours
+            << " with hashphase.\n";
+        return;
+    }
+    for (const TriedRun& run : trial.runs) {
+        if (run.end.isCrash) {
+            out << "The program " << textOf(run.end)
+                << (trial.runs.size() > 1 ? ", whichever the broadphase.\n" : ".\n");
+            return;
+        }
+    }
 }
 
 void printNotes(const Trial& trial, std::ostream& out) {
     const TriedRun& first = trial.runs.front();
-    for (const TriedRun& run : trial.runs) {
-        if (run.end != first.end) {
-            out << "The program " << textOf(first.end) << " with Bullet's broadphase, and "
-                << textOf(run.end) << " with hashphase.\n";
-            break;
-        }
-        if (run.end.isCrash) {
-            out << "The program " << textOf(run.end)
-                << (trial.runs.size() > 1 ? ", whichever the broadphase.\n" : ".\n");
-            break;
-        }
-    }
+    printEnds(trial, out);
     if (first.foreignCalculations > 0) {
         out << withThousands(first.foreignCalculations)
             << " calculations of pairs were those of broadphases that are not taken over.\n";
@@ -119,6 +139,10 @@ void printNotes(const Trial& trial, std::ostream& out) {
     if (first.otherProcesses > 0) {
         out << withThousands(first.otherProcesses)
             << " further processes had broadphases of their own, which are not in these figures.\n";
+    }
+    if (first.droppedRows > 0) {
+        out << "Of the first " << withThousands(tryout::Record::kMaxRows) << " steps; "
+            << withThousands(first.droppedRows) << " more are not in these figures.\n";
     }
 }
 
@@ -134,6 +158,11 @@ void printVerified(const Trial& trial, const TriedRun& run, std::ostream& out) {
         out << withThousands(run.unasked)
             << " times a pair was refused that the filter would take now: the filter was changed, "
                "and nothing has moved since. See refilter().\n";
+    }
+    if (run.removed > 0) {
+        out << withThousands(run.removed)
+            << " times a pair was missing that the program had taken out of the cache itself: with "
+               "hashphase it comes back when the two meet again, or by refilter().\n";
     }
     if (!run.firstFault.empty()) {
         out << "The first fault, " << run.firstFault << ".\n";
@@ -168,32 +197,45 @@ void printTable(const StepSummary& stock, const StepSummary& ours, std::ostream&
     table.addRow({"of which overlap", orDash(stock.truePairCount, count),
                   orDash(ours.truePairCount, count), ""});
     countRow("rays", stock.rayCount, ours.rayCount);
+    if (stock.rayBetweenCount + ours.rayBetweenCount > 0) {
+        countRow("rays between steps", stock.rayBetweenCount, ours.rayBetweenCount);
+        timeRow("these, with what they hit [ms]", stock.raysBetween, ours.raysBetween);
+    }
     countRow("objects at most", stock.objectCount, ours.objectCount);
     countRow("steps", static_cast<double>(stock.stepCount), static_cast<double>(ours.stepCount));
     table.print(out);
 }
 
 void printCompared(const Trial& trial, std::ostream& out) {
-    const std::optional<StepSummary> stock = summaryOf(trial, Broadphase::stock);
-    const std::optional<StepSummary> ours = summaryOf(trial, Broadphase::hash);
-    if (stock && ours) {
-        printTable(*stock, *ours, out);
+    const std::optional<StepComparison> steps = compareSteps(trial);
+    if (steps) {
+        printTable(steps->stock, steps->ours, out);
     }
     printNotes(trial, out);
-    if (!stock || !ours) {
-        out << "No step was measured: no pairs were calculated.\n";
+    if (!steps) {
+        out << "No steps were compared: the runs have none in common in which pairs were "
+               "calculated.\n";
         return;
     }
+    const StepSummary& stock = steps->stock;
+    const StepSummary& ours = steps->ours;
+    if (steps->isCut) {
+        out << "Compared are the first " << withThousands(stock.stepCount)
+            << " steps: one of the runs had more.\n";
+    }
     constexpr std::size_t kFew = 60;
-    if (std::min(stock->stepCount, ours->stepCount) < kFew) {
+    if (stock.stepCount < kFew) {
         out << "These are few steps: take the figures as a hint.\n";
     }
-    if (const std::optional<double> step = projectedStep(*stock, *ours)) {
-        out << "With hashphase a step of " << ms(*stock->step) << " ms takes " << ms(*step)
-            << " ms, all else being equal (" << times(*stock->step / *step) << "); measured, "
-            << ms(*ours->step) << " ms (" << times(*stock->step / *ours->step) << ").\n";
+    if (stock.objectCount != ours.objectCount) {
+        out << "The numbers of objects differ: the program does not do the same each time.\n";
+    }
+    if (const std::optional<double> step = projectedStep(stock, ours)) {
+        out << "With hashphase a step of " << ms(*stock.step) << " ms takes " << ms(*step)
+            << " ms, all else being equal (" << times(*stock.step / *step) << "); measured, "
+            << ms(*ours.step) << " ms (" << times(*stock.step / *ours.step) << ").\n";
     } else {
-        out << "How long a step is as a whole Bullet's profile zones do not tell.\n";
+        out << "The program makes no steps: pairs were calculated by hand.\n";
     }
 }
 
@@ -223,24 +265,25 @@ Json runJson(const TriedRun& run) {
             {"ended", textOf(run.end)},
             {"dbvts", run.dbvtCount},
             {"axisSweeps", run.axisSweepCount},
+            {"derivedSweeps", run.derivedSweepCount},
+            {"droppedSteps", run.droppedRows},
             {"foreignCalculations", run.foreignCalculations},
             {"otherProcesses", run.otherProcesses},
             {"steps", std::move(rows)}};
 }
 
-Json summaryJson(const std::optional<StepSummary>& summary) {
-    if (!summary) {
-        return nullptr;
-    }
-    return {{"steps", summary->stepCount},
-            {"updateAabbsMs", summary->updateAabbs},
-            {"calculateMs", summary->calculate},
-            {"raysMs", summary->rays},
-            {"stepMs", orNull(summary->step)},
-            {"rays", summary->rayCount},
-            {"objects", summary->objectCount},
-            {"pairs", summary->pairCount},
-            {"overlappingPairs", orNull(summary->truePairCount)}};
+Json summaryJson(const StepSummary& summary) {
+    return {{"steps", summary.stepCount},
+            {"updateAabbsMs", summary.updateAabbs},
+            {"calculateMs", summary.calculate},
+            {"raysMs", summary.rays},
+            {"stepMs", orNull(summary.step)},
+            {"rays", summary.rayCount},
+            {"raysBetweenMs", summary.raysBetween},
+            {"raysBetween", summary.rayBetweenCount},
+            {"objects", summary.objectCount},
+            {"pairs", summary.pairCount},
+            {"overlappingPairs", orNull(summary.truePairCount)}};
 }
 
 Json verifiedJson(const TriedRun& run) {
@@ -255,33 +298,68 @@ Json verifiedJson(const TriedRun& run) {
 
 }  // namespace
 
-std::optional<StepSummary> summaryOf(const Trial& trial, Broadphase broadphase) {
-    const std::vector<StepRow> rows = rowsOf(trial, broadphase);
-    if (rows.empty()) {
-        return std::nullopt;
-    }
+namespace {
+
+StepSummary summaryOf(const std::vector<StepRow>& all) {
+    const std::vector<StepRow> rows = withoutFits(all);
     StepSummary summary;
-    summary.stepCount = rows.size();
-    summary.updateAabbs = median(rows, &StepRow::updateAabbs);
-    summary.calculate = median(rows, &StepRow::calculate);
-    summary.rays = median(rows, &StepRow::rays);
-    if (const double step = median(rows, &StepRow::step); step > 0) {
+    summary.stepCount = all.size();
+    summary.updateAabbs = mean(rows, &StepRow::updateAabbs);
+    summary.calculate = mean(rows, &StepRow::calculate);
+    summary.rays = mean(rows, &StepRow::rays);
+    if (const double step = mean(rows, &StepRow::step); step > 0) {
         summary.step = step;
     }
     summary.rayCount = mean(rows, &StepRow::rayCount);
-    for (const StepRow& row : rows) {
+    summary.raysBetween = mean(rows, &StepRow::raysBetween);
+    summary.rayBetweenCount = mean(rows, &StepRow::rayBetweenCount);
+    for (const StepRow& row : all) {
         summary.objectCount = std::max(summary.objectCount, static_cast<double>(row.objectCount));
     }
-    summary.pairCount = mean(rows, &StepRow::pairCount);
-    summary.truePairCount = truePairs(rows, summary.pairCount);
+    summary.pairCount = mean(all, &StepRow::pairCount);
+    summary.truePairCount = truePairs(all, summary.pairCount);
     return summary;
+}
+
+}  // namespace
+
+std::optional<StepComparison> compareSteps(const Trial& trial) {
+    const std::vector<const TriedRun*> stock = runsOf(trial, Broadphase::stock);
+    const std::vector<const TriedRun*> ours = runsOf(trial, Broadphase::hash);
+    std::vector<StepRow> stockRows;
+    std::vector<StepRow> ourRows;
+    StepComparison comparison;
+    for (std::size_t i = 0; i < std::min(stock.size(), ours.size()); ++i) {
+        const std::size_t count = std::min(stock[i]->rows.size(), ours[i]->rows.size());
+        comparison.isCut |= stock[i]->rows.size() != ours[i]->rows.size();
+        const auto end = static_cast<std::ptrdiff_t>(count);
+        stockRows.insert(stockRows.end(), stock[i]->rows.begin(), stock[i]->rows.begin() + end);
+        ourRows.insert(ourRows.end(), ours[i]->rows.begin(), ours[i]->rows.begin() + end);
+    }
+    if (stockRows.empty()) {
+        return std::nullopt;
+    }
+    comparison.stock = summaryOf(stockRows);
+    comparison.ours = summaryOf(ourRows);
+    return comparison;
+}
+
+bool isEndOfOurs(const Trial& trial) {
+    const std::vector<const TriedRun*> stock = runsOf(trial, Broadphase::stock);
+    for (const TriedRun* ours : runsOf(trial, Broadphase::hash)) {
+        if (std::none_of(stock.begin(), stock.end(),
+                         [&](const TriedRun* run) { return areAlike(run->end, ours->end); })) {
+            return true;
+        }
+    }
+    return false;
 }
 
 std::optional<double> projectedStep(const StepSummary& stock, const StepSummary& ours) {
     if (!stock.step) {
         return std::nullopt;
     }
-    return std::max(*stock.step - stock.broadphase(), 0.0) + ours.broadphase();
+    return *stock.step - stock.broadphase() + ours.broadphase();
 }
 
 void printTrial(const Trial& trial, std::ostream& out) {
@@ -301,11 +379,11 @@ void writeTrialJson(const Trial& trial, const std::string& commandLine, std::ost
         {"program", trial.commandLine},
         {"bullet", orNull(trial.program.bullet)},
         {"precision", trial.program.precision == BulletPrecision::kSingle ? "single" : "double"}};
-    const std::optional<StepSummary> stock = summaryOf(trial, Broadphase::stock);
-    const std::optional<StepSummary> ours = summaryOf(trial, Broadphase::hash);
-    json["bulletStep"] = summaryJson(stock);
-    json["hashphaseStep"] = summaryJson(ours);
-    json["projectedStepMs"] = stock && ours ? orNull(projectedStep(*stock, *ours)) : Json(nullptr);
+    const std::optional<StepComparison> steps = compareSteps(trial);
+    json["bulletStep"] = steps ? summaryJson(steps->stock) : Json(nullptr);
+    json["hashphaseStep"] = steps ? summaryJson(steps->ours) : Json(nullptr);
+    json["projectedStepMs"] =
+        steps ? orNull(projectedStep(steps->stock, steps->ours)) : Json(nullptr);
     json["verification"] = verifiedJson(trial.runs.front());
     for (const TriedRun& run : trial.runs) {
         json["runs"].push_back(runJson(run));

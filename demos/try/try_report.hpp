@@ -9,14 +9,17 @@
 
 namespace hashphase::demos {
 
-/// The middle of all steps with one broadphase. Times in milliseconds, medians; counts a step, means.
+/// A step with one broadphase: means over the same steps of all runs, so that parts add up; of steps but for
+/// the fastest and the slowest twentieth, as machines have fits. Times in milliseconds.
 struct StepSummary {
     std::size_t stepCount = 0;
     double updateAabbs = 0;
     double calculate = 0;
     double rays = 0;
-    std::optional<double> step;  // nothing where the program's Bullet does not tell
+    std::optional<double> step;  // nothing where the program makes no steps
     double rayCount = 0;
+    double raysBetween = 0;  // outside of steps
+    double rayBetweenCount = 0;
     double objectCount = 0;  // the most
     double pairCount = 0;
     std::optional<double> truePairCount;  // scaled up from the steps in which they were counted
@@ -24,9 +27,17 @@ struct StepSummary {
     [[nodiscard]] double broadphase() const { return updateAabbs + calculate + rays; }
 };
 
-/// Nothing where there was no step.
-[[nodiscard]] std::optional<StepSummary> summaryOf(const Trial& trial,
-                                                   tryout::Broadphase broadphase);
+/// Both broadphases over the same steps: run by run, the first ones, as many as both have. Nothing where that
+/// is none.
+struct StepComparison {
+    StepSummary stock;
+    StepSummary ours;
+    bool isCut = false;  // one of two runs had more steps
+};
+[[nodiscard]] std::optional<StepComparison> compareSteps(const Trial& trial);
+
+/// Whether a run with ours ended in a way in which none of Bullet's did.
+[[nodiscard]] bool isEndOfOurs(const Trial& trial);
 
 /// The step with Bullet's broadphase, of which ours takes the place; nothing where its time is not known.
 [[nodiscard]] std::optional<double> projectedStep(const StepSummary& stock,

@@ -14,18 +14,16 @@ class btOverlappingPairCache;
 
 namespace hashphase::tryout {
 
-/// The record of this process; nullptr where none was asked for, or another process has it.
+/// The record of this process; nullptr where none was asked for, or another process has it. Who asks
+/// first, for its first broadphase, has it from then on, and its steps are timed.
 [[nodiscard]] Record* record() noexcept;
 
-/// Which broadphase the program gets: without a record, ours.
+/// Which broadphase the program gets: what the record says; ours without one.
 [[nodiscard]] Broadphase wantedBroadphase() noexcept;
 
-/// Notes that a broadphase was made, and from the first one on times Bullet's profile zones.
 void noteDbvt();
-
-/// The same; whether the sweep has made a btDbvtBroadphase of its own, which is not the program's.
-void noteAxisSweep(bool hasMadeDbvt);
-
+void noteAxisSweep();
+void noteDerivedSweep();
 void noteObjects(int change) noexcept;
 
 /// Around calculateOverlappingPairs() of one broadphase. Cost: two looks at the clock, and now and
@@ -41,6 +39,19 @@ private:
     btOverlappingPairCache& cache_;
     std::int64_t begin_;
 };
+
+// Of what is watched around the broadphases (profile_zones.hpp), on the caller's thread.
+
+/// A step, or a part of one: a step ends with its outermost part.
+void beginStep() noexcept;
+void endStep() noexcept;
+
+/// Says to endUpdateOfAabbs() when it began.
+[[nodiscard]] std::int64_t beginUpdateOfAabbs() noexcept;
+void endUpdateOfAabbs(std::int64_t begin) noexcept;
+
+/// How many CalculateScopes have ended.
+[[nodiscard]] std::uint64_t calculationsOfThread() noexcept;
 
 /// Around a ray; those that a ray's callback casts count as part of it.
 class RayScope {

@@ -3,8 +3,11 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <string>
+#include <string_view>
 
 #include <dlfcn.h>
+#include <link.h>
 
 namespace hashphase::tryout {
 
@@ -18,6 +21,30 @@ void* findNext(const char* mangledName) {
         std::abort();
     }
     return function;
+}
+
+void refuseOtherBullets() {
+    struct Found {
+        int count = 0;
+        std::string names;
+    } found;
+    const auto look = [](dl_phdr_info* object, std::size_t /*size*/, void* into) {
+        const std::string_view path = object->dlpi_name;
+        const std::string_view name = path.substr(path.rfind('/') + 1);
+        if (name.starts_with("libBulletCollision")) {
+            auto& all = *static_cast<Found*>(into);
+            all.names += std::string(all.count++ > 0 ? " and " : "") + std::string(name);
+        }
+        return 0;
+    };
+    dl_iterate_phdr(look, &found);
+    if (found.count > 1) {
+        std::fprintf(stderr,
+                     "hashphase try: the program and hashphase use two Bullets, %s; is the "
+                     "precision right?\n",
+                     found.names.c_str());
+        std::abort();
+    }
 }
 
 }  // namespace hashphase::tryout

@@ -20,4 +20,8 @@ struct Next {
     }
 };
 
+/// Ends the program with a sentence where it has loaded a Bullet beside that which this library links: of
+/// the other precision, or another version.
+void refuseOtherBullets();
+
 }  // namespace hashphase::tryout

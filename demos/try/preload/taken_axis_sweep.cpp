@@ -3,10 +3,14 @@
 // The constructors of the two axis sweeps, in place of Bullet's. The rest of these classes is in headers,
 // and therefore in the program itself; so the object is a sweep as the program knows it, made by Bullet's
 // constructor, and is then given other virtual functions. A sweep has a btDbvtBroadphase beside it, for
-// rays, and destroys it: where ours takes over, that one (taken_dbvt.cpp) does all the work, and the sweep
-// has room for a single object.
+// rays, and destroys it: where ours takes over, that one (taken_dbvt.cpp) does all the work.
+//
+// Not taken over are objects of derived classes, which have virtual functions of their own; and calls that
+// the compiler binds to the code in the header, of a sweep that is used without a world: these find a sweep
+// of the size that was asked for, and work as ever.
 
 #include <demos/try/preload/recorder.hpp>
+#include <demos/try/preload/stock_parts.hpp>
 #include <demos/try/preload/symbol.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btAxisSweep3.h>
@@ -28,8 +32,13 @@ public:
                                    int shapeType, void* userPtr, int collisionFilterGroup,
                                    int collisionFilterMask, btDispatcher* dispatcher) override {
         countObjects(1);
-        return Sweep::createProxy(aabbMin, aabbMax, shapeType, userPtr, collisionFilterGroup,
-                                  collisionFilterMask, dispatcher);
+        btBroadphaseProxy* proxy =
+            Sweep::createProxy(aabbMin, aabbMax, shapeType, userPtr, collisionFilterGroup,
+                               collisionFilterMask, dispatcher);
+        // Left as they were by the sweep, until the box is set.
+        proxy->m_aabbMin = aabbMin;
+        proxy->m_aabbMax = aabbMax;
+        return proxy;
     }
     void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override {
         countObjects(-1);
@@ -101,7 +110,7 @@ private:
     [[nodiscard]] btDbvtBroadphase& taken() const noexcept { return *this->m_raycastAccelerator; }
 };
 
-btDbvtBroadphase* makeTrees(btOverlappingPairCache* cache) {
+btDbvtBroadphase* makeTakenTrees(btOverlappingPairCache* cache) {
     return new (btAlignedAlloc(sizeof(btDbvtBroadphase), 16)) btDbvtBroadphase(cache);
 }
 
@@ -130,20 +139,28 @@ template <class Sweep, class Handle>
 void constructSweep(SweepConstructor<Sweep, Handle>* stock, Sweep* sweep, const btVector3& worldMin,
                     const btVector3& worldMax, Handle maxHandles, btOverlappingPairCache* cache,
                     bool hasNoTrees) {
-    if (isMakingPattern) {
-        stock(sweep, worldMin, worldMax, maxHandles, cache, hasNoTrees);
-        return;
-    }
+    noteAxisSweep();
     if (wantedBroadphase() == Broadphase::stock) {
+        const StockParts parts;
         stock(sweep, worldMin, worldMax, maxHandles, cache, hasNoTrees);
         turnInto<WatchedSweep<Sweep>>(*sweep);
-        noteAxisSweep(!hasNoTrees);
         return;
     }
-    btDbvtBroadphase* trees = makeTrees(cache);
-    stock(sweep, worldMin, worldMax, 2, trees->getOverlappingPairCache(), true);
+    btDbvtBroadphase* trees = makeTakenTrees(cache);
+    stock(sweep, worldMin, worldMax, maxHandles, trees->getOverlappingPairCache(), true);
     turnInto<TakenSweep<Sweep>>(*sweep).take(trees);
-    noteAxisSweep(true);
+}
+
+// Of a derived class: the program's, or one that is to be a pattern.
+template <class Sweep, class Handle>
+void constructBaseSweep(SweepConstructor<Sweep, Handle>* stock, Sweep* sweep,
+                        const btVector3& worldMin, const btVector3& worldMax, Handle maxHandles,
+                        btOverlappingPairCache* cache, bool hasNoTrees) {
+    if (!isMakingPattern) {
+        noteDerivedSweep();
+    }
+    const StockParts parts;
+    stock(sweep, worldMin, worldMax, maxHandles, cache, hasNoTrees);
 }
 
 }  // namespace
@@ -151,20 +168,18 @@ void constructSweep(SweepConstructor<Sweep, Handle>* stock, Sweep* sweep, const 
 
 using namespace hashphase::tryout;
 
-// Neither class has virtual bases, so the constructors of whole objects (C1) and of bases (C2) are the same.
 #define HASHPHASE_SWEEP16(kind)                                                                    \
     "_ZN12btAxisSweep3" kind "ERK9btVector3S2_tP22btOverlappingPairCacheb"
 #define HASHPHASE_SWEEP32(kind)                                                                    \
     "_ZN17bt32BitAxisSweep3" kind "ERK9btVector3S2_jP22btOverlappingPairCacheb"
 
+// C1 makes a whole object, C2 the base of a derived one.
 extern "C" {
 
 SweepConstructor<btAxisSweep3, unsigned short> constructSweep16 asm(HASHPHASE_SWEEP16("C1"));
-SweepConstructor<btAxisSweep3, unsigned short> constructBaseSweep16 asm(HASHPHASE_SWEEP16("C2"))
-    __attribute__((alias(HASHPHASE_SWEEP16("C1"))));
+SweepConstructor<btAxisSweep3, unsigned short> constructBaseSweep16 asm(HASHPHASE_SWEEP16("C2"));
 SweepConstructor<bt32BitAxisSweep3, unsigned> constructSweep32 asm(HASHPHASE_SWEEP32("C1"));
-SweepConstructor<bt32BitAxisSweep3, unsigned> constructBaseSweep32 asm(HASHPHASE_SWEEP32("C2"))
-    __attribute__((alias(HASHPHASE_SWEEP32("C1"))));
+SweepConstructor<bt32BitAxisSweep3, unsigned> constructBaseSweep32 asm(HASHPHASE_SWEEP32("C2"));
 
 void constructSweep16(btAxisSweep3* sweep, const btVector3& worldMin, const btVector3& worldMax,
                       unsigned short maxHandles, btOverlappingPairCache* cache, bool hasNoTrees) {
@@ -173,11 +188,27 @@ void constructSweep16(btAxisSweep3* sweep, const btVector3& worldMin, const btVe
     constructSweep(stock, sweep, worldMin, worldMax, maxHandles, cache, hasNoTrees);
 }
 
+void constructBaseSweep16(btAxisSweep3* sweep, const btVector3& worldMin, const btVector3& worldMax,
+                          unsigned short maxHandles, btOverlappingPairCache* cache,
+                          bool hasNoTrees) {
+    static SweepConstructor<btAxisSweep3, unsigned short>* const stock =
+        Next{HASHPHASE_SWEEP16("C2")};
+    constructBaseSweep(stock, sweep, worldMin, worldMax, maxHandles, cache, hasNoTrees);
+}
+
 void constructSweep32(bt32BitAxisSweep3* sweep, const btVector3& worldMin,
                       const btVector3& worldMax, unsigned maxHandles, btOverlappingPairCache* cache,
                       bool hasNoTrees) {
     static SweepConstructor<bt32BitAxisSweep3, unsigned>* const stock =
         Next{HASHPHASE_SWEEP32("C1")};
     constructSweep(stock, sweep, worldMin, worldMax, maxHandles, cache, hasNoTrees);
+}
+
+void constructBaseSweep32(bt32BitAxisSweep3* sweep, const btVector3& worldMin,
+                          const btVector3& worldMax, unsigned maxHandles,
+                          btOverlappingPairCache* cache, bool hasNoTrees) {
+    static SweepConstructor<bt32BitAxisSweep3, unsigned>* const stock =
+        Next{HASHPHASE_SWEEP32("C2")};
+    constructBaseSweep(stock, sweep, worldMin, worldMax, maxHandles, cache, hasNoTrees);
 }
 }

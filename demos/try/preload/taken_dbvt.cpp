@@ -8,6 +8,7 @@
 
 #include <demos/try/preload/recorder.hpp>
 #include <demos/try/preload/stock_dbvt.hpp>
+#include <demos/try/preload/stock_parts.hpp>
 #include <demos/try/preload/verified_broadphase.hpp>
 
 #include <integration/bullet/spatial_hash_broadphase.hpp>
@@ -58,6 +59,11 @@ using namespace hashphase::tryout;
 // Bullet's constructor makes the members anew that the compiler has made here, which hold nothing yet; its
 // destructor destroys them, and something must be there for the compiler to destroy.
 btDbvtBroadphase::btDbvtBroadphase(btOverlappingPairCache* paircache) {
+    if (StockParts::areBeingMade()) {
+        constructStock(*this, paircache);
+        return;
+    }
+    refuseOtherBullets();
     noteDbvt();
     if (wantedBroadphase() == Broadphase::stock) {
         constructStock(*this, paircache);

@@ -44,7 +44,7 @@ std::vector<Couple> difference(const std::vector<Couple>& from, const std::vecto
 // The first fault, as a sentence for the record.
 void describe(Verification& verification, const char* fault, const Couple& couple,
               std::uint64_t calculation) {
-    if (verification.firstFault[0] != '\0') {
+    if (verification.hasFault.exchange(true)) {
         return;
     }
     const auto& [a, b] = couple;
@@ -129,6 +129,7 @@ void VerifiedBroadphase::destroyProxy(btBroadphaseProxy* proxy, btDispatcher* di
     const auto twin = twins_.find(proxy);
     stockDbvt().destroyProxy(stock_->object(), twin->second.stock, nullptr);
     twins_.erase(twin);
+    forget(proxy);
     ours_.destroyProxy(proxy, dispatcher);
 }
 
@@ -143,6 +144,7 @@ void VerifiedBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& aabb
 }
 
 void VerifiedBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
+    noteRemoved();
     stock_->takeSettings(settings_);
     stockDbvt().calculateOverlappingPairs(stock_->object(), nullptr);
     ours_.calculateOverlappingPairs(dispatcher);
@@ -218,6 +220,24 @@ bool VerifiedBroadphase::isUnasked(const Couple& couple) const {
            twins_.at(couple.second).changed < calculation_;
 }
 
+// Pairs that the last calculation left in the cache and that are no longer there; those of proxies that
+// were destroyed have gone from last_ with them.
+void VerifiedBroadphase::noteRemoved() {
+    const std::vector<Couple> now =
+        couplesOf(*ours_.getOverlappingPairCache(), [](btBroadphaseProxy* proxy) { return proxy; });
+    const std::vector<Couple> gone = difference(last_, now);
+    removed_.insert(removed_.end(), gone.begin(), gone.end());
+    std::sort(removed_.begin(), removed_.end());
+}
+
+void VerifiedBroadphase::forget(const btBroadphaseProxy* proxy) {
+    const auto names = [proxy](const Couple& couple) {
+        return couple.first == proxy || couple.second == proxy;
+    };
+    std::erase_if(last_, names);
+    std::erase_if(removed_, names);
+}
+
 void VerifiedBroadphase::compare() {
     Record* into = record();
     if (into == nullptr) {
@@ -240,13 +260,21 @@ void VerifiedBroadphase::compare() {
         if (!cache.needsBroadphaseCollision(couple.first, couple.second)) {
             continue;
         }
-        if (isUnasked(couple)) {
+        if (std::binary_search(removed_.begin(), removed_.end(), couple)) {
+            verification.removed.fetch_add(1);
+        } else if (isUnasked(couple)) {
             verification.unasked.fetch_add(1);
         } else {
             verification.missing.fetch_add(1);
             describe(verification, "missing", couple, calculation_);
         }
     }
+    std::erase_if(removed_, [&](const Couple& couple) {
+        return std::binary_search(ours.begin(), ours.end(), couple) ||
+               !std::binary_search(exact.begin(), exact.end(), couple);
+    });
+    last_ = ours;
+
     verification.stockExtra.fetch_add(difference(stock, exact).size());
     for (const Couple& couple : difference(exact, stock)) {
         if (!isUnasked(couple) && cache.needsBroadphaseCollision(couple.first, couple.second)) {

@@ -10,6 +10,8 @@
 //          although it is accepted now, and whose boxes are as they were in the last calculation, was
 //          refused when it was asked about: it is counted apart, as it waits for a move under any
 //          broadphase of Bullet's.
+// Removed  A pair that the program itself took out of the cache between two calculations is counted apart
+//          as well, until its boxes part: with ours it comes back when they meet again, or by refilter().
 // Filter   Asked for both broadphases, and by the comparison; always about the program's own proxies.
 // Threads  As the broadphase.
 
@@ -67,6 +69,8 @@ private:
     using Couple = std::pair<btBroadphaseProxy*, btBroadphaseProxy*>;
 
     [[nodiscard]] std::vector<Couple> findOverlapping() const;
+    void noteRemoved();
+    void forget(const btBroadphaseProxy* proxy);
     void compare();
     [[nodiscard]] bool isUnasked(const Couple& couple) const;
 
@@ -74,6 +78,8 @@ private:
     SpatialHashBroadphase ours_;
     std::unique_ptr<Stock> stock_;
     std::unordered_map<btBroadphaseProxy*, Twin> twins_;
+    std::vector<Couple> last_;       // pairs of ours after the last calculation
+    std::vector<Couple> removed_;    // by the program since, or before, and overlapping ever since
     std::uint64_t calculation_ = 1;  // the next one
 };
 

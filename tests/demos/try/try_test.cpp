@@ -103,10 +103,12 @@ const std::vector<std::string> kPrograms{"pile",
                                          "vehicle",
                                          "character",
                                          "ghost-zone",
+                                         "sub-steps",
                                          "simple-world",
                                          "sweep-16",
                                          "sweep-32",
                                          "sweep-without-trees",
+                                         "sweep-at-rest",
                                          "own-cache",
                                          "sorted-cache",
                                          "fields-written",
@@ -114,6 +116,8 @@ const std::vector<std::string> kPrograms{"pile",
                                          "bare-broadphase",
                                          "own-profiler",
                                          "rays-from-ticks",
+                                         "rays-between-steps",
+                                         "pairs-by-hand",
                                          "contact-tests",
                                          "collision-world",
                                          "filter-callback",
@@ -251,11 +255,129 @@ TEST(Try, ProjectsWhatAStepTakes) {
     EXPECT_FALSE(projectedStep(stock, ours).has_value());
 }
 
-TEST(Try, SaysWhereStepsHaveNoLength) {
+TEST(Try, SaysWhereThereAreNoSteps) {
     const auto [output, json] = measure("", stock("stock-programs") + " bare-broadphase");
     EXPECT_TRUE(json["bulletStep"]["stepMs"].is_null());
-    EXPECT_TRUE(has(output.out, "How long a step is as a whole Bullet's profile zones do not tell"))
+    EXPECT_EQ(json["bulletStep"]["steps"], 51);
+    EXPECT_TRUE(has(output.out, "The program makes no steps: pairs were calculated by hand."))
         << output.out;
+}
+
+// A step is all that the program waits for: solver, sub-steps, ticks.
+TEST(Try, TimesStepsAsTheProgramItselfDoes) {
+    const auto [output, json] = measure("", stock("stock-programs") + " timed-steps");
+    std::istringstream words(output.out);
+    std::string word;
+    for (const Json& run : json["runs"]) {
+        double itsOwn = 0;
+        words >> word >> itsOwn;
+        double ours = 0;
+        for (const Json& step : run["steps"]) {
+            ours += step["stepMs"].get<double>();
+        }
+        EXPECT_EQ(run["steps"].size(), 200U);
+        EXPECT_LE(ours, itsOwn * 1.001);
+        EXPECT_GT(ours, itsOwn * 0.9);
+        words >> std::ws;
+    }
+}
+
+TEST(Try, CountsStepsWithTheirSubSteps) {
+    const auto [output, json] = measure("", stock("stock-programs") + " sub-steps");
+    for (const Json& run : json["runs"]) {
+        EXPECT_GE(run["steps"].size(), 50U);
+        EXPECT_LE(run["steps"].size(), 60U);  // a short call has a sub-step now and then
+    }
+}
+
+TEST(Try, KeepsRaysBetweenStepsApart) {
+    const auto [output, json] = measure("", stock("stock-programs") + " rays-between-steps");
+    for (const Json& run : json["runs"]) {
+        EXPECT_EQ(run["steps"].size(), 60U);
+        for (const Json& step : run["steps"]) {
+            EXPECT_EQ(step["rays"], 0);
+        }
+        EXPECT_EQ(run["steps"][0]["raysBetween"], 0);
+        EXPECT_EQ(run["steps"][1]["raysBetween"], 50);
+        EXPECT_GT(run["steps"][1]["raysBetweenMs"], 0);
+    }
+    EXPECT_TRUE(has(output.out, "rays between steps")) << output.out;
+}
+
+TEST(Try, TakesPairsThatAreCalculatedByHandForNoStep) {
+    const auto [output, json] = measure("", stock("stock-programs") + " pairs-by-hand");
+    for (const Json& run : json["runs"]) {
+        EXPECT_EQ(run["steps"].size(), 40U);
+        EXPECT_EQ(run["foreignCalculations"], 0);
+        for (const Json& step : run["steps"]) {
+            EXPECT_GE(step["stepMs"].get<double>(), step["updateAabbsMs"].get<double>() +
+                                                        step["calculateMs"].get<double>() +
+                                                        step["raysMs"].get<double>());
+        }
+    }
+}
+
+TEST(Try, CountsTruePairsOfASweepWhoseBoxesAreNeverSet) {
+    const auto [output, json] = measure("", stock("stock-programs") + " sweep-at-rest");
+    const Json& step = json["bulletStep"];
+    EXPECT_GT(step["overlappingPairs"].get<double>(), 0.95 * step["pairs"].get<double>());
+}
+
+TEST(Try, ComparesTheStepsThatBothRunsHave) {
+    Trial trial;
+    TriedRun run;
+    run.rows.assign(100, tryout::StepRow{.step = 2, .calculate = 1, .pairCount = 10});
+    trial.runs.push_back(run);
+    run.broadphase = tryout::Broadphase::hash;
+    run.rows.assign(60, tryout::StepRow{.step = 1, .calculate = 0.25F, .pairCount = 8});
+    trial.runs.push_back(run);
+    const StepComparison steps = compareSteps(trial).value();
+    EXPECT_TRUE(steps.isCut);
+    EXPECT_EQ(steps.stock.stepCount, 60U);
+    EXPECT_EQ(steps.ours.stepCount, 60U);
+    EXPECT_EQ(steps.stock.pairCount, 10);
+    EXPECT_DOUBLE_EQ(projectedStep(steps.stock, steps.ours).value(), 2 - 1 + 0.25);
+    trial.runs.back().rows.clear();
+    EXPECT_FALSE(compareSteps(trial).has_value());
+}
+
+// Work that is not in every step counts, and parts add up.
+TEST(Try, TakesMeans) {
+    Trial trial;
+    TriedRun run;
+    for (int i = 0; i < 300; ++i) {
+        const float rays = i % 3 == 0 ? 3.0F : 0.0F;
+        run.rows.push_back({.step = 1 + rays, .rays = rays});
+    }
+    trial.runs.push_back(run);
+    run.broadphase = tryout::Broadphase::hash;
+    trial.runs.push_back(run);
+    const StepSummary step = compareSteps(trial).value().stock;
+    EXPECT_NEAR(step.rays, 1, 0.06);
+    EXPECT_NEAR(step.step.value(), 1 + step.rays, 1e-6);
+}
+
+// --- Processes -----------------------------------------------------------------------------------
+
+TEST(Try, LeavesFurtherProcessesTheirBroadphase) {
+    const auto [output, json] = measure("", stock("stock-programs") + " starter");
+    EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
+    EXPECT_TRUE(
+        output.out.starts_with("first has trees\nsecond has trees\n"
+                               "first has none\nsecond has none\n"))
+        << output.out;
+    EXPECT_EQ(json["runs"][0]["otherProcesses"], 1);
+}
+
+TEST(Try, EndsWithItsProgramWhenItIsEnded) {
+    const TemporaryFolder folder;
+    const Output output = runCommand(
+        "TMPDIR=" + folder.path().string() + " " + HASHPHASE_PROGRAM + " try --quiet -- " +
+            stock("stock-programs") +
+            " endless & sleep 0.5; kill $!; wait $!; echo status $?; ls " + folder.path().string(),
+        folder);
+    EXPECT_TRUE(has(output.out, "status 143\n")) << output.out;
+    EXPECT_FALSE(has(output.out, "hashphase-try-")) << output.out;
 }
 
 // --- Limits and ends -----------------------------------------------------------------------------
@@ -265,7 +387,7 @@ TEST(Try, EndsAProgramAfterSoManySteps) {
     EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
     for (const Json& run : json["runs"]) {
         EXPECT_EQ(run["steps"].size(), 20U);
-        EXPECT_EQ(run["ended"], "was stopped at the limit");
+        EXPECT_EQ(run["ended"], "was stopped");
     }
 }
 
@@ -300,14 +422,33 @@ TEST(Try, LeavesTheStatusOfAProgramThatFailsAlike) {
 
 // --- Verification sees what is wrong -------------------------------------------------------------
 
-TEST(Try, FindsPairsThatAreMissingOrExtra) {
+TEST(Try, FindsPairsThatAreMissing) {
+    const auto [output, json] = measure("--verify", stock("stock-programs") + " sabotage");
+    EXPECT_EQ(output.status, kExitCheckFailed);
+    EXPECT_EQ(json["verification"]["calculations"], 1);
+    EXPECT_EQ(json["verification"]["missing"], 1) << output.out;
+    EXPECT_TRUE(has(output.out, "NOT EXACT")) << output.out;
+    EXPECT_TRUE(has(output.out, "The first fault, calculation 1: the pair of proxies"))
+        << output.out;
+}
+
+TEST(Try, FindsPairsThatAreExtra) {
     const auto [output, json] = measure("--verify", stock("stock-programs") + " tampering");
     EXPECT_EQ(output.status, kExitCheckFailed);
     EXPECT_EQ(json["verification"]["calculations"], 2);
-    EXPECT_EQ(json["verification"]["missing"], 1) << output.out;
+    EXPECT_EQ(json["verification"]["missing"], 0) << output.out;
+    EXPECT_EQ(json["verification"]["removedByProgram"], 1) << output.out;
     EXPECT_EQ(json["verification"]["extra"], 1) << output.out;
     EXPECT_TRUE(has(json["verification"]["firstFault"], "calculation 2: the pair of proxies"));
-    EXPECT_TRUE(has(output.out, "NOT EXACT")) << output.out;
+}
+
+TEST(Try, TellsPairsThatTheProgramRemovedFromMissingOnes) {
+    const auto [output, json] = measure("--verify", stock("stock-programs") + " removes-pairs");
+    EXPECT_EQ(output.status, kExitOk) << output.out;
+    EXPECT_EQ(json["verification"]["missing"], 0);
+    EXPECT_GT(json["verification"]["removedByProgram"], 0);
+    EXPECT_TRUE(has(output.out, "that the program had taken out of the cache itself"))
+        << output.out;
 }
 
 TEST(Try, TellsPairsThatWaitForAMoveFromMissingOnes) {
@@ -339,7 +480,9 @@ TEST(TryRefuses, WhatIsNoProgram) {
     expectRefused("", "name a program to try: hashphase try -- ./program");
     expectRefused("-- no-such-program-anywhere",
                   "'no-such-program-anywhere' was not found in PATH");
-    expectRefused("-- ./no-such-program", "'./no-such-program' is no program that can be run");
+    expectRefused("-- './[no,such]-program'",
+                  "'./[no,such]-program' is no program that can be run");
+    expectRefused("--no-such-option -- ls", "There is no option '--no-such-option'");
     const TemporaryFolder folder;
     const std::string script = folder.write("script", "#!/bin/sh\necho\n");
     const std::string text = folder.write("text", "nothing that runs");
@@ -354,6 +497,10 @@ TEST(TryRefuses, ProgramsWithoutASharedBulletOfThisVersion) {
     expectRefused("-- " + stock("stock-static"), "is linked statically as a whole");
     expectRefused("-- " + stock("stock-host"), "links no Bullet");
     expectRefused("-- " + stock("stock-embedded"), "Bullet is linked statically into ");
+    expectRefused("--precision single -- " + stock("stock-embedded"),
+                  "Bullet is linked statically into ");
+    expectRefused("--precision double -- " + stock("stock-programs") + " pile",
+                  "is of single precision, and not double");
     expectRefused("-- " + stock("stock-old"),
                   " links libBulletCollision.so.2.83, and this hashphase was built with "
                   "libBulletCollision.so.");
@@ -362,6 +509,28 @@ TEST(TryRefuses, ProgramsWithoutASharedBulletOfThisVersion) {
 TEST(TryRefuses, ProgramsThatMakeNoBroadphaseOfThese) {
     expectRefused("-- " + stock("stock-programs") + " simple-broadphase",
                   "ended with status 0, and has made no btDbvtBroadphase and no axis sweep");
+}
+
+TEST(TryRefuses, ClassesDerivedFromASweep) {
+    expectRefused("-- " + stock("stock-programs") + " derived-sweep",
+                  "has made no btDbvtBroadphase and no axis sweep that can be taken over");
+}
+
+TEST(TryRefuses, FoldersOfTemporaryFilesThatAreNone) {
+    const TemporaryFolder folder;
+    const Output output = runCommand(std::string("TMPDIR=/no/such/folder ") + HASHPHASE_PROGRAM +
+                                         " try -- " + stock("stock-programs") + " pile",
+                                     folder);
+    EXPECT_EQ(output.status, kExitUsage);
+    EXPECT_TRUE(has(output.err, "can be made in the folder of temporary files")) << output.err;
+}
+
+TEST(Try, LeavesSweepsAloneThatAreCalledDirectly) {
+    const std::string call = stock("stock-programs") + " bare-sweep";
+    const Output plain = runCommand(call);
+    const Output output = tryProgram("--quiet -- " + call);
+    EXPECT_EQ(output.status, kExitOk) << output.out;
+    EXPECT_EQ(countOf(output.out, plain.out), 2U) << plain.out << output.out;
 }
 
 TEST(Try, TakesOverABulletThatIsLoadedLater) {

@@ -53,6 +53,14 @@ int sweepWithoutTrees() {
     return 0;
 }
 
+// Statics whose boxes nobody sets again.
+int sweepAtRest() {
+    Scene<btAxisSweep3> scene(btVector3(-100, -100, -100), btVector3(100, 100, 100));
+    scene.world.setForceUpdateAllAabbs(false);
+    dropBoxes(scene);
+    return 0;
+}
+
 int ownCache() {
     btHashedOverlappingPairCache cache;
     Scene<> scene(&cache);
@@ -161,6 +169,7 @@ const std::vector<Program>& broadphasePrograms() {
     static const std::vector<Program> list{{"sweep-16", sweep16},
                                            {"sweep-32", sweep32},
                                            {"sweep-without-trees", sweepWithoutTrees},
+                                           {"sweep-at-rest", sweepAtRest},
                                            {"own-cache", ownCache},
                                            {"sorted-cache", sortedCache},
                                            {"fields-written", fieldsWritten},

@@ -3,9 +3,13 @@
 #include "program.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace programs {
 namespace {
@@ -110,6 +114,119 @@ int tampering() {
     return 0;
 }
 
+// Resets a body as many do, by taking its pairs away.
+int removesPairs() {
+    Scene<> scene;
+    addPile(scene);
+    for (int i = 0; i < 5; ++i) {
+        scene.step(1);
+        scene.broadphase.getOverlappingPairCache()->removeOverlappingPairsContainingProxy(
+            scene.things.bodies[1]->getBroadphaseHandle(), &scene.dispatcher);
+    }
+    return 0;
+}
+
+// Loses the first pair of each calculation while the others are made.
+struct Saboteur : btOverlappingPairCallback {
+    btBroadphasePair* addOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b) override {
+        if (++count == 1) {
+            first = a;
+            second = b;
+        } else if (count == 5) {
+            cache->removeOverlappingPair(first, second, nullptr);
+        }
+        return nullptr;
+    }
+    void* removeOverlappingPair(btBroadphaseProxy* /*a*/, btBroadphaseProxy* /*b*/,
+                                btDispatcher* /*dispatcher*/) override {
+        return nullptr;
+    }
+    void removeOverlappingPairsContainingProxy(btBroadphaseProxy* /*proxy*/,
+                                               btDispatcher* /*dispatcher*/) override {}
+
+    btOverlappingPairCache* cache = nullptr;
+    btBroadphaseProxy* first = nullptr;
+    btBroadphaseProxy* second = nullptr;
+    int count = 0;
+};
+
+int sabotage() {
+    Saboteur saboteur;
+    Scene<> scene;
+    saboteur.cache = scene.broadphase.getOverlappingPairCache();
+    saboteur.cache->setInternalGhostPairCallback(&saboteur);
+    addPile(scene);
+    scene.step(1);
+    return 0;
+}
+
+struct DerivedSweep : btAxisSweep3 {
+    DerivedSweep() : btAxisSweep3(btVector3(-100, -100, -100), btVector3(100, 100, 100)) {}
+    void calculateOverlappingPairs(btDispatcher* dispatcher) override {
+        btAxisSweep3::calculateOverlappingPairs(dispatcher);
+    }
+};
+
+int derivedSweep() {
+    Scene<DerivedSweep> scene;
+    scene.add(scene.things.shape<btBoxShape>(btVector3(20, 1, 20)), 0, {0, -1, 0});
+    scene.add(scene.things.shape<btBoxShape>(btVector3(1, 1, 1)), 1, {0, 1, 0});
+    scene.step(30);
+    say("pairs", scene.broadphase.getOverlappingPairCache()->getNumOverlappingPairs());
+    return 0;
+}
+
+// A sweep whose functions the compiler calls directly, in the header.
+int bareSweep() {
+    btAxisSweep3 sweep({-100, -100, -100}, {100, 100, 100});
+    std::vector<btBroadphaseProxy*> proxies;
+    for (int i = 0; i < 50; ++i) {
+        const btVector3 low(btScalar(i), 0, 0);
+        proxies.push_back(
+            sweep.createProxy(low, low + btVector3(1.5, 1, 1), 0, nullptr, 1, -1, nullptr));
+    }
+    for (int i = 0; i < 50; ++i) {
+        const btVector3 low(btScalar(i), btScalar(i % 2 * 3), 0);
+        sweep.setAabb(proxies[i], low, low + btVector3(1.5, 1, 1), nullptr);
+    }
+    sweep.calculateOverlappingPairs(nullptr);
+    say("pairs", sweep.getOverlappingPairCache()->getNumOverlappingPairs());
+    for (btBroadphaseProxy* proxy : proxies) {
+        sweep.destroyProxy(proxy, nullptr);
+    }
+    return 0;
+}
+
+// Says how long its steps are.
+int timedSteps() {
+    using Clock = std::chrono::steady_clock;
+    Scene<> scene;
+    addPile(scene);
+    Clock::duration all{};
+    for (int i = 0; i < 200; ++i) {
+        const Clock::time_point begin = Clock::now();
+        scene.step(1);
+        all += Clock::now() - begin;
+    }
+    std::printf("milliseconds: %.6f\n", std::chrono::duration<double, std::milli>(all).count());
+    return 0;
+}
+
+// Says whether its broadphase has trees, and starts itself once more to say so.
+int starter(bool isFirst) {
+    Scene<> scene;
+    addPile(scene);
+    scene.step(5);
+    std::printf("%s has %s\n", isFirst ? "first" : "second",
+                scene.broadphase.m_sets[0].m_root != nullptr ? "trees" : "none");
+    std::fflush(stdout);
+    if (isFirst && fork() == 0) {
+        execl("/proc/self/exe", "stock-programs", "started", nullptr);
+    }
+    wait(nullptr);
+    return 0;
+}
+
 // Changes a group without a word to the broadphase, while nothing moves.
 int changesGroup() {
     Scene<> scene;
@@ -156,6 +273,13 @@ const std::vector<Program>& misfitPrograms() {
                                            {"traffic", traffic},
                                            {"casts-cache", castsCache},
                                            {"tampering", tampering},
+                                           {"removes-pairs", removesPairs},
+                                           {"sabotage", sabotage},
+                                           {"derived-sweep", derivedSweep},
+                                           {"bare-sweep", bareSweep},
+                                           {"timed-steps", timedSteps},
+                                           {"starter", [] { return starter(true); }},
+                                           {"started", [] { return starter(false); }},
                                            {"changes-group", changesGroup},
                                            {"mixed", mixed},
                                            {"simple-broadphase", simpleBroadphase}};

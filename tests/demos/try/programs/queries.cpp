@@ -35,6 +35,44 @@ int raysFromTicks() {
     return 0;
 }
 
+// As games cast them: between the steps.
+int raysBetweenSteps() {
+    Scene<> scene;
+    auto* box = scene.things.shape<btBoxShape>(btVector3(0.5, 0.5, 0.5));
+    for (int i = 0; i < 25; ++i) {
+        scene.add(box, 0, {btScalar(i % 5 * 3), 0, btScalar(i / 5 * 3)});
+    }
+    int hits = 0;
+    for (int step = 0; step < 60; ++step) {
+        scene.step(1);
+        for (int i = 0; i < 50; ++i) {
+            const btVector3 from(btScalar(i), 5, btScalar(step % 15));
+            btCollisionWorld::ClosestRayResultCallback hit(from, from - btVector3(0, 10, 0));
+            scene.world.rayTest(hit.m_rayFromWorld, hit.m_rayToWorld, hit);
+            hits += hit.hasHit() ? 1 : 0;
+        }
+    }
+    say("hits", hits);
+    return 0;
+}
+
+// Pairs that are calculated by hand, after each step.
+int pairsByHand() {
+    Scene<> scene;
+    scene.addGround();
+    auto* box = scene.things.shape<btBoxShape>(btVector3(0.5, 0.5, 0.5));
+    for (int i = 0; i < 10; ++i) {
+        scene.add(box, 1, {0, btScalar(1 + i), 0});
+    }
+    for (int i = 0; i < 40; ++i) {
+        scene.step(1);
+        scene.world.updateAabbs();
+        scene.world.computeOverlappingPairs();
+    }
+    say("bodies", scene.world.getNumCollisionObjects());
+    return 0;
+}
+
 struct CountContacts : btCollisionWorld::ContactResultCallback {
     btScalar addSingleResult(btManifoldPoint& /*point*/, const btCollisionObjectWrapper* /*a*/,
                              int /*partA*/, int /*indexA*/, const btCollisionObjectWrapper* /*b*/,
@@ -132,10 +170,10 @@ int filterCallback() {
 }  // namespace
 
 const std::vector<Program>& queryPrograms() {
-    static const std::vector<Program> list{{"rays-from-ticks", raysFromTicks},
-                                           {"contact-tests", contactTests},
-                                           {"collision-world", collisionWorld},
-                                           {"filter-callback", filterCallback}};
+    static const std::vector<Program> list{
+        {"rays-from-ticks", raysFromTicks},  {"rays-between-steps", raysBetweenSteps},
+        {"pairs-by-hand", pairsByHand},      {"contact-tests", contactTests},
+        {"collision-world", collisionWorld}, {"filter-callback", filterCallback}};
     return list;
 }
 

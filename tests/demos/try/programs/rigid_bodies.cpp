@@ -210,6 +210,20 @@ int ghostZone() {
     return 0;
 }
 
+// Calls of six sub-steps each, and some of none.
+int subSteps() {
+    Scene<> scene;
+    addWall(scene, 5, 6);
+    scene.addGround();
+    int made = 0;
+    for (int i = 0; i < 50; ++i) {
+        made += scene.world.stepSimulation(btScalar(1) / 60, 6, btScalar(1) / 360);
+        made += scene.world.stepSimulation(btScalar(1) / 10000, 6, btScalar(1) / 360);
+    }
+    say("sub-steps", made >= 300 ? 1 : 0);
+    return 0;
+}
+
 int simpleWorld() {
     Scene<btDbvtBroadphase, btSimpleDynamicsWorld> scene;
     scene.add(scene.things.shape<btBoxShape>(btVector3(10, 1, 10)), 0, {0, -1, 0});
@@ -237,6 +251,7 @@ const std::vector<Program>& rigidBodyPrograms() {
                                            {"vehicle", vehicle},
                                            {"character", character},
                                            {"ghost-zone", ghostZone},
+                                           {"sub-steps", subSteps},
                                            {"simple-world", simpleWorld}};
     return list;
 }
