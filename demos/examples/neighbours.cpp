@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 //
-// A flock, after Reynolds (1987): 2,000 birds, each of which keeps away from, flies along with, and
+// A flock, after Reynolds (1987): 1,000 birds, each of which keeps away from, flies along with, and
 // stays near those within 5 m. You should see how far they agree on where to fly, from 0 (not at all)
 // to 1 (all the same way), grow from near 0 to near 1.
 
@@ -19,7 +19,7 @@ namespace {
 constexpr float kRadius = 5;        // [m]
 constexpr float kSpeed = 10;        // [m/s]
 constexpr float kTimeStep = 0.05F;  // [s]
-constexpr float kWorld = 50;        // edge of the cube that they stay in [m]
+constexpr float kWorld = 40;        // edge of the cube that they stay in [m]
 
 struct Bird {
     ProxyId id;
@@ -42,7 +42,7 @@ int main() {
     std::mt19937 random(1);
     const auto uniform = [&] { return static_cast<float>(random()) * 0x1p-32F; };
     Grid<float> grid;
-    std::vector<Bird> birds(2000);  // by ProxyId::index
+    std::vector<Bird> birds(1000);  // by ProxyId::index
     for (Bird& bird : birds) {
         bird.position = {kWorld * uniform(), kWorld * uniform(), kWorld * uniform()};
         bird.velocity = {uniform() - 0.5F, uniform() - 0.5F, uniform() - 0.5F};
@@ -53,7 +53,7 @@ int main() {
 
     Crowd<float> crowd;
     QueryCost first;
-    for (int frame = 0; frame < 300; ++frame) {
+    for (int frame = 0; frame < 200; ++frame) {
         crowd.take(grid, kRadius);
         const QueryCost cost =
             crowd.forEach([&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) {
