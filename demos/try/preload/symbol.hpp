@@ -5,8 +5,8 @@
 
 namespace hashphase::tryout {
 
-/// The next function of that name in the order in which libraries were loaded, by dlsym(RTLD_NEXT); ends
-/// the program with a sentence where there is none.
+/// The next function of that name in the order in which libraries were loaded (dlsym(RTLD_NEXT)), or that of a
+/// Bullet which was loaded aside from it; ends the program with a sentence where there is none.
 [[nodiscard]] void* findNext(const char* mangledName);
 
 /// Becomes a pointer to that function. Of members, `this` is the first argument, as the Itanium C++ ABI

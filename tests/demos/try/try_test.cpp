@@ -516,6 +516,14 @@ TEST(TryRefuses, ClassesDerivedFromASweep) {
                   "has made no btDbvtBroadphase and no axis sweep that can be taken over");
 }
 
+TEST(Try, SaysWhenThePrecisionIsWrong) {
+    const std::string plugin = stock("libstock-programs-plugin.so");
+    const Output output = tryProgram("--quiet --precision double -- " + stock("stock-host") + " " +
+                                     plugin + " churn");
+    EXPECT_TRUE(has(output.err, "use two Bullets, libBulletCollision")) << output.err;
+    EXPECT_NE(output.status, kExitOk);
+}
+
 TEST(TryRefuses, FoldersOfTemporaryFilesThatAreNone) {
     const TemporaryFolder folder;
     const Output output = runCommand(std::string("TMPDIR=/no/such/folder ") + HASHPHASE_PROGRAM +
@@ -544,6 +552,9 @@ TEST(Try, TakesOverABulletThatIsLoadedLater) {
                                             stock("stock-host") + " " + plugin + " churn");
         EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
         EXPECT_EQ(json["verification"]["calculations"], 200);
+        const auto [compared, figures] = measure(std::string("--precision ") + precision,
+                                                 stock("stock-host") + " " + plugin + " churn");
+        EXPECT_EQ(figures["runs"][1]["steps"].size(), 200U) << compared.out;
     }
 }
 
