@@ -5,7 +5,6 @@
 // with a macro of its own: to DLLs it matters whose functions are meant. HASHPHASE_SHARED is 1 where
 // the libraries are shared ones, which their users are told by CMake and pkg-config, and
 // hashphase_<component>_EXPORTS is set where that library itself is compiled.
-
 //
 // HASHPHASE_ONE_FOR_ALL stands before a variable of a thread in a header, of which all libraries of a
 // program are to see the same one. DLLs cannot share it, and have one each.

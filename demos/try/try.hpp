@@ -35,7 +35,7 @@ struct Trial {
 
 /// Exit codes: kExitCheckFailed when pairs of ours were wrong, when nothing was verified, or when the
 /// program ended in another way with ours than with Bullet's; kExitUsage when it made no broadphase that can
-/// be taken over. Throws InputError.
+/// be taken over; 128 and a signal's number when that has ended the trial. Throws InputError.
 int runTry(const TryOptions& options, Console& console);
 
 }  // namespace hashphase::demos

@@ -64,7 +64,8 @@ set(CPACK_COMPONENT_HASHPHASE_TOOLS_DEPENDS hashphase_libraries)
 set(CPACK_COMPONENT_HASHPHASE_TOOLS_DESCRIPTION "${about}
 .
 This package has the program hashphase, which compares it with Bullet's own
-broadphases on many scenes, and the viewer hashphase-wander.")
+broadphases on many scenes and tries it on programs as they are, and the
+viewer hashphase-wander.")
 
 # dpkg-shlibdeps looks for the libraries of the other package where they are built; when others use the
 # package, it is the file `shlibs` that tells what they depend on.

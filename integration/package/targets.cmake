@@ -73,7 +73,8 @@ function(hashphase_compile_together target number)
     endif()
 endfunction()
 
-# What headers compile must agree with the libraries: users are told by CMake and by pkg-config.
+# What users of the libraries are told, by CMake and by pkg-config, so that both sides agree
+# (integration/guide/abi.md).
 set(HASHPHASE_DEFINITIONS "")
 foreach(definition IN ITEMS ENABLE_ASSERTS=HASHPHASE_ASSERTS USE_SCALAR=HASHPHASE_SCALAR
                             SHARED=BUILD_SHARED_LIBS)

@@ -30,6 +30,6 @@ static_assert(isSameForAll<Aabb, BoxRegion, CellsRegion, ConvexRegion, GroundFoo
                            MovingBoxRegion, PositionRegion, RayRegion, SphereRegion>);
 static_assert(isSameForAll<Crowd, Grid, Neighbours, Pairs, Sweeps>);
 static_assert(isSameForAll<Culler, Picked, Radar, RadarWindow, RarestColour, Sight, Terrain, View,
-                           Viewer, ViewRegion, Zone, Zones>);
+                           Viewer, SightRegion, Zone, Zones>);
 static_assert(isSameForAll<Body, ObservedScene, Observers, Simulation>);
 static_assert(alignof(SceneEffects) <= 16);

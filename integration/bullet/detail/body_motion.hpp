@@ -4,7 +4,6 @@
 // How a rigid body is going to move in the present step, as the broadphase sees it.
 
 #include <broadphase/moving_box.hpp>
-#include <integration/bullet/export.hpp>
 #include <integration/bullet/precision.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
@@ -18,7 +17,7 @@ namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 /// no more than `share` of the smallest edge of its box. The box is as large as it takes to cover the
 /// body at either end, whichever way it turns, with Bullet's contact margin around it; in between,
 /// turning is not looked at. The client must be null or a btCollisionObject.
-[[nodiscard]] HASHPHASE_BULLET_EXPORT std::optional<MovingBox<btScalar>> fastMotion(
-    const btBroadphaseProxy& proxy, btScalar share);
+[[nodiscard]] std::optional<MovingBox<btScalar>> fastMotion(const btBroadphaseProxy& proxy,
+                                                            btScalar share);
 
 }  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

@@ -2,85 +2,20 @@
 
 // `hashphase try`, on programs that are compiled with Bullet's headers and know nothing of hashphase.
 
-#include <demos/console/program.hpp>
-#include <demos/try/try_report.hpp>
-#include <tests/support/temporary_folder.hpp>
+#include <tests/demos/try/try_output.hpp>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include <cctype>
-#include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <set>
 #include <sstream>
 #include <string>
 #include <tuple>
-#include <utility>
 #include <vector>
-
-#include <sys/wait.h>
 
 namespace hashphase::demos {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-struct Output {
-    int status = -1;
-    std::string out;
-    std::string err;
-};
-
-/// What the shell makes of the command.
-Output runCommand(const std::string& command, const TemporaryFolder& folder) {
-    Output output;
-    std::FILE* pipe = popen((command + " 2>" + folder.file("err")).c_str(), "r");
-    for (int byte = 0; (byte = std::fgetc(pipe)) != EOF;) {
-        output.out += static_cast<char>(byte);
-    }
-    const int status = pclose(pipe);
-    output.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    std::stringstream err;
-    err << std::ifstream(folder.file("err")).rdbuf();
-    output.err = err.str();
-    return output;
-}
-
-Output runCommand(const std::string& command) {
-    return runCommand(command, TemporaryFolder());
-}
-
-std::string stock(const std::string& file) {
-    return std::string(HASHPHASE_STOCK_FOLDER) + "/" + file;
-}
-
-Output tryProgram(const std::string& arguments, const TemporaryFolder& folder = {}) {
-    return runCommand(std::string(HASHPHASE_PROGRAM) + " try " + arguments, folder);
-}
-
-/// The outcome of `try`, and what it has written as JSON.
-std::pair<Output, Json> measure(const std::string& options, const std::string& program) {
-    const TemporaryFolder folder;
-    const std::string file = folder.file("try.json");
-    Output output = runCommand(std::string(HASHPHASE_PROGRAM) + " try --quiet " + options +
-                                   " --json " + file + " -- " + program,
-                               folder);
-    return {output, Json::parse(std::ifstream(file), nullptr, false)};
-}
-
-std::size_t countOf(const std::string& text, const std::string& part) {
-    std::size_t count = 0;
-    for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; ++at) {
-        ++count;
-    }
-    return count;
-}
-
-bool has(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
 
 // --- Programs of all kinds -----------------------------------------------------------------------
 
@@ -326,10 +261,17 @@ TEST(Try, CountsTruePairsOfASweepWhoseBoxesAreNeverSet) {
 TEST(Try, ComparesTheStepsThatBothRunsHave) {
     Trial trial;
     TriedRun run;
-    run.rows.assign(100, tryout::StepRow{.step = 2, .calculate = 1, .pairCount = 10});
+    tryout::StepRow row{};
+    row.step = 2;
+    row.calculate = 1;
+    row.pairCount = 10;
+    run.rows.assign(100, row);
     trial.runs.push_back(run);
     run.broadphase = tryout::Broadphase::hash;
-    run.rows.assign(60, tryout::StepRow{.step = 1, .calculate = 0.25F, .pairCount = 8});
+    row.step = 1;
+    row.calculate = 0.25F;
+    row.pairCount = 8;
+    run.rows.assign(60, row);
     trial.runs.push_back(run);
     const StepComparison steps = compareSteps(trial).value();
     EXPECT_TRUE(steps.isCut);
@@ -346,8 +288,10 @@ TEST(Try, TakesMeans) {
     Trial trial;
     TriedRun run;
     for (int i = 0; i < 300; ++i) {
-        const float rays = i % 3 == 0 ? 3.0F : 0.0F;
-        run.rows.push_back({.step = 1 + rays, .rays = rays});
+        tryout::StepRow row{};
+        row.rays = i % 3 == 0 ? 3.0F : 0.0F;
+        row.step = 1 + row.rays;
+        run.rows.push_back(row);
     }
     trial.runs.push_back(run);
     run.broadphase = tryout::Broadphase::hash;
@@ -418,144 +362,6 @@ TEST(Try, LeavesTheStatusOfAProgramThatFailsAlike) {
     const auto [output, json] = measure("", stock("stock-programs") + " failing");
     EXPECT_EQ(output.status, kExitOk);
     EXPECT_EQ(json["runs"][1]["ended"], "ended with status 3");
-}
-
-// --- Verification sees what is wrong -------------------------------------------------------------
-
-TEST(Try, FindsPairsThatAreMissing) {
-    const auto [output, json] = measure("--verify", stock("stock-programs") + " sabotage");
-    EXPECT_EQ(output.status, kExitCheckFailed);
-    EXPECT_EQ(json["verification"]["calculations"], 1);
-    EXPECT_EQ(json["verification"]["missing"], 1) << output.out;
-    EXPECT_TRUE(has(output.out, "NOT EXACT")) << output.out;
-    EXPECT_TRUE(has(output.out, "The first fault, calculation 1: the pair of proxies"))
-        << output.out;
-}
-
-TEST(Try, FindsPairsThatAreExtra) {
-    const auto [output, json] = measure("--verify", stock("stock-programs") + " tampering");
-    EXPECT_EQ(output.status, kExitCheckFailed);
-    EXPECT_EQ(json["verification"]["calculations"], 2);
-    EXPECT_EQ(json["verification"]["missing"], 0) << output.out;
-    EXPECT_EQ(json["verification"]["removedByProgram"], 1) << output.out;
-    EXPECT_EQ(json["verification"]["extra"], 1) << output.out;
-    EXPECT_TRUE(has(json["verification"]["firstFault"], "calculation 2: the pair of proxies"));
-}
-
-TEST(Try, TellsPairsThatTheProgramRemovedFromMissingOnes) {
-    const auto [output, json] = measure("--verify", stock("stock-programs") + " removes-pairs");
-    EXPECT_EQ(output.status, kExitOk) << output.out;
-    EXPECT_EQ(json["verification"]["missing"], 0);
-    EXPECT_GT(json["verification"]["removedByProgram"], 0);
-    EXPECT_TRUE(has(output.out, "that the program had taken out of the cache itself"))
-        << output.out;
-}
-
-TEST(Try, TellsPairsThatWaitForAMoveFromMissingOnes) {
-    const auto [output, json] = measure("--verify", stock("stock-programs") + " changes-group");
-    EXPECT_EQ(output.status, kExitOk) << output.out;
-    EXPECT_EQ(json["verification"]["missing"], 0);
-    EXPECT_GT(json["verification"]["waitForAMove"], 0) << output.out;
-    EXPECT_TRUE(has(output.out, "See refilter().")) << output.out;
-}
-
-TEST(Try, SaysWhichBroadphasesItDoesNotTakeOver) {
-    const auto [output, json] = measure("", stock("stock-programs") + " mixed");
-    EXPECT_EQ(json["runs"][0]["foreignCalculations"], 10);
-    EXPECT_EQ(json["runs"][0]["steps"].size(), 10U);
-    EXPECT_TRUE(has(output.out, "10 calculations of pairs were those of broadphases that are not"))
-        << output.out;
-}
-
-// --- Programs that cannot be tried ---------------------------------------------------------------
-
-void expectRefused(const std::string& arguments, const std::string& sentence,
-                   const TemporaryFolder& folder = {}) {
-    const Output output = tryProgram(arguments, folder);
-    EXPECT_EQ(output.status, kExitUsage) << output.out << output.err;
-    EXPECT_TRUE(has(output.err, sentence)) << output.err;
-}
-
-TEST(TryRefuses, WhatIsNoProgram) {
-    expectRefused("", "name a program to try: hashphase try -- ./program");
-    expectRefused("-- no-such-program-anywhere",
-                  "'no-such-program-anywhere' was not found in PATH");
-    expectRefused("-- './[no,such]-program'",
-                  "'./[no,such]-program' is no program that can be run");
-    expectRefused("--no-such-option -- ls", "There is no option '--no-such-option'");
-    const TemporaryFolder folder;
-    const std::string script = folder.write("script", "#!/bin/sh\necho\n");
-    const std::string text = folder.write("text", "nothing that runs");
-    for (const std::string& file : {script, text}) {
-        std::filesystem::permissions(file, std::filesystem::perms::owner_all);
-    }
-    expectRefused("-- " + script, "is a script; name the program that it starts", folder);
-    expectRefused("-- " + text, "is no 64-bit program for this machine", folder);
-}
-
-TEST(TryRefuses, ProgramsWithoutASharedBulletOfThisVersion) {
-    expectRefused("-- " + stock("stock-static"), "is linked statically as a whole");
-    expectRefused("-- " + stock("stock-host"), "links no Bullet");
-    expectRefused("-- " + stock("stock-embedded"), "Bullet is linked statically into ");
-    expectRefused("--precision single -- " + stock("stock-embedded"),
-                  "Bullet is linked statically into ");
-    expectRefused("--precision double -- " + stock("stock-programs") + " pile",
-                  "is of single precision, and not double");
-    expectRefused("-- " + stock("stock-old"),
-                  " links libBulletCollision.so.2.83, and this hashphase was built with "
-                  "libBulletCollision.so.");
-}
-
-TEST(TryRefuses, ProgramsThatMakeNoBroadphaseOfThese) {
-    expectRefused("-- " + stock("stock-programs") + " simple-broadphase",
-                  "ended with status 0, and has made no btDbvtBroadphase and no axis sweep");
-}
-
-TEST(TryRefuses, ClassesDerivedFromASweep) {
-    expectRefused("-- " + stock("stock-programs") + " derived-sweep",
-                  "has made no btDbvtBroadphase and no axis sweep that can be taken over");
-}
-
-TEST(Try, SaysWhenThePrecisionIsWrong) {
-    const std::string plugin = stock("libstock-programs-plugin.so");
-    const Output output = tryProgram("--quiet --precision double -- " + stock("stock-host") + " " +
-                                     plugin + " churn");
-    EXPECT_TRUE(has(output.err, "use two Bullets, libBulletCollision")) << output.err;
-    EXPECT_NE(output.status, kExitOk);
-}
-
-TEST(TryRefuses, FoldersOfTemporaryFilesThatAreNone) {
-    const TemporaryFolder folder;
-    const Output output = runCommand(std::string("TMPDIR=/no/such/folder ") + HASHPHASE_PROGRAM +
-                                         " try -- " + stock("stock-programs") + " pile",
-                                     folder);
-    EXPECT_EQ(output.status, kExitUsage);
-    EXPECT_TRUE(has(output.err, "can be made in the folder of temporary files")) << output.err;
-}
-
-TEST(Try, LeavesSweepsAloneThatAreCalledDirectly) {
-    const std::string call = stock("stock-programs") + " bare-sweep";
-    const Output plain = runCommand(call);
-    const Output output = tryProgram("--quiet -- " + call);
-    EXPECT_EQ(output.status, kExitOk) << output.out;
-    EXPECT_EQ(countOf(output.out, plain.out), 2U) << plain.out << output.out;
-}
-
-TEST(Try, TakesOverABulletThatIsLoadedLater) {
-    for (const auto& [precision, name] :
-         {std::pair("single", "stock-programs"), std::pair("double", "stock-programs-float64")}) {
-        if (!std::filesystem::exists(stock(name))) {
-            continue;
-        }
-        const std::string plugin = stock(std::string("lib") + name + "-plugin.so");
-        const auto [output, json] = measure(std::string("--verify --precision ") + precision,
-                                            stock("stock-host") + " " + plugin + " churn");
-        EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
-        EXPECT_EQ(json["verification"]["calculations"], 200);
-        const auto [compared, figures] = measure(std::string("--precision ") + precision,
-                                                 stock("stock-host") + " " + plugin + " churn");
-        EXPECT_EQ(figures["runs"][1]["steps"].size(), 200U) << compared.out;
-    }
 }
 
 }  // namespace

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Zlib
+
+// What `hashphase try` says of programs that it cannot take over, or not all of.
+
+#include <tests/demos/try/try_output.hpp>
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <utility>
+
+namespace hashphase::demos {
+namespace {
+
+void expectRefused(const std::string& arguments, const std::string& sentence,
+                   const TemporaryFolder& folder = {}) {
+    const Output output = tryProgram(arguments, folder);
+    EXPECT_EQ(output.status, kExitUsage) << output.out << output.err;
+    EXPECT_TRUE(has(output.err, sentence)) << output.err;
+}
+
+TEST(TryRefuses, WhatIsNoProgram) {
+    expectRefused("", "name a program to try: hashphase try -- ./program");
+    expectRefused("-- no-such-program-anywhere",
+                  "'no-such-program-anywhere' was not found in PATH");
+    expectRefused("-- './[no,such]-program'",
+                  "'./[no,such]-program' is no program that can be run");
+    expectRefused("--no-such-option -- ls", "There is no option '--no-such-option'");
+    const TemporaryFolder folder;
+    const std::string script = folder.write("script", "#!/bin/sh\necho\n");
+    const std::string text = folder.write("text", "nothing that runs");
+    for (const std::string& file : {script, text}) {
+        std::filesystem::permissions(file, std::filesystem::perms::owner_all);
+    }
+    expectRefused("-- " + script, "is a script; name the program that it starts", folder);
+    expectRefused("-- " + text, "is no 64-bit program for this machine", folder);
+}
+
+TEST(TryRefuses, ProgramsWithoutASharedBulletOfThisVersion) {
+    expectRefused("-- " + stock("stock-static"), "is linked statically as a whole");
+    expectRefused("-- " + stock("stock-host"), "links no Bullet");
+    expectRefused("-- " + stock("stock-embedded"), "Bullet is linked statically into ");
+    expectRefused("--precision single -- " + stock("stock-embedded"),
+                  "Bullet is linked statically into ");
+    expectRefused("--precision double -- " + stock("stock-programs") + " pile",
+                  "is of single precision, and not double");
+    expectRefused("-- " + stock("stock-old"),
+                  " links libBulletCollision.so.2.83, and this hashphase was built with "
+                  "libBulletCollision.so.");
+}
+
+TEST(TryRefuses, ProgramsThatMakeNoBroadphaseOfThese) {
+    expectRefused("-- " + stock("stock-programs") + " simple-broadphase",
+                  "ended with status 0, and has made no btDbvtBroadphase and no axis sweep");
+}
+
+TEST(TryRefuses, ClassesDerivedFromASweep) {
+    expectRefused("-- " + stock("stock-programs") + " derived-sweep",
+                  "has made no btDbvtBroadphase and no axis sweep that can be taken over");
+}
+
+TEST(Try, SaysWhenThePrecisionIsWrong) {
+    const std::string plugin = stock("libstock-programs-plugin.so");
+    const Output output = tryProgram("--quiet --precision double -- " + stock("stock-host") + " " +
+                                     plugin + " churn");
+    EXPECT_TRUE(has(output.err, "use two Bullets, libBulletCollision")) << output.err;
+    EXPECT_NE(output.status, kExitOk);
+}
+
+TEST(TryRefuses, FoldersOfTemporaryFilesThatAreNone) {
+    const TemporaryFolder folder;
+    const Output output = runCommand(std::string("TMPDIR=/no/such/folder ") + HASHPHASE_PROGRAM +
+                                         " try -- " + stock("stock-programs") + " pile",
+                                     folder);
+    EXPECT_EQ(output.status, kExitUsage);
+    EXPECT_TRUE(has(output.err, "can be made in the folder of temporary files")) << output.err;
+}
+
+TEST(Try, LeavesSweepsAloneThatAreCalledDirectly) {
+    const std::string call = stock("stock-programs") + " bare-sweep";
+    const Output plain = runCommand(call);
+    const Output output = tryProgram("--quiet -- " + call);
+    EXPECT_EQ(output.status, kExitOk) << output.out;
+    EXPECT_EQ(countOf(output.out, plain.out), 2U) << plain.out << output.out;
+}
+
+TEST(Try, TakesOverABulletThatIsLoadedLater) {
+    for (const auto& [precision, name] :
+         {std::pair("single", "stock-programs"), std::pair("double", "stock-programs-float64")}) {
+        if (!std::filesystem::exists(stock(name))) {
+            continue;
+        }
+        const std::string plugin = stock(std::string("lib") + name + "-plugin.so");
+        const auto [output, json] = measure(std::string("--verify --precision ") + precision,
+                                            stock("stock-host") + " " + plugin + " churn");
+        EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
+        EXPECT_EQ(json["verification"]["calculations"], 200);
+        const auto [compared, figures] = measure(std::string("--precision ") + precision,
+                                                 stock("stock-host") + " " + plugin + " churn");
+        EXPECT_EQ(figures["runs"][1]["steps"].size(), 200U) << compared.out;
+    }
+}
+
+TEST(Try, SaysWhichBroadphasesItDoesNotTakeOver) {
+    const auto [output, json] = measure("", stock("stock-programs") + " mixed");
+    EXPECT_EQ(json["runs"][0]["foreignCalculations"], 10);
+    EXPECT_EQ(json["runs"][0]["steps"].size(), 10U);
+    EXPECT_TRUE(has(output.out, "10 calculations of pairs were those of broadphases that are not"))
+        << output.out;
+}
+
+}  // namespace
+}  // namespace hashphase::demos

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Zlib
+
+// That `hashphase try --verify` sees what is wrong, and whose fault it is.
+
+#include <tests/demos/try/try_output.hpp>
+
+#include <gtest/gtest.h>
+
+namespace hashphase::demos {
+namespace {
+
+TEST(Try, FindsPairsThatAreMissing) {
+    const auto [output, json] = measure("--verify", stock("stock-programs") + " sabotage");
+    EXPECT_EQ(output.status, kExitCheckFailed);
+    EXPECT_EQ(json["verification"]["calculations"], 1);
+    EXPECT_EQ(json["verification"]["missing"], 1) << output.out;
+    EXPECT_TRUE(has(output.out, "NOT EXACT")) << output.out;
+    EXPECT_TRUE(has(output.out, "The first fault, calculation 1: the pair of proxies"))
+        << output.out;
+}
+
+TEST(Try, FindsPairsThatAreExtra) {
+    const auto [output, json] = measure("--verify", stock("stock-programs") + " tampering");
+    EXPECT_EQ(output.status, kExitCheckFailed);
+    EXPECT_EQ(json["verification"]["calculations"], 2);
+    EXPECT_EQ(json["verification"]["missing"], 0) << output.out;
+    EXPECT_EQ(json["verification"]["removedByProgram"], 1) << output.out;
+    EXPECT_EQ(json["verification"]["extra"], 1) << output.out;
+    EXPECT_TRUE(has(json["verification"]["firstFault"], "calculation 2: the pair of proxies"));
+}
+
+TEST(Try, TellsPairsThatTheProgramRemovedFromMissingOnes) {
+    const auto [output, json] = measure("--verify", stock("stock-programs") + " removes-pairs");
+    EXPECT_EQ(output.status, kExitOk) << output.out;
+    EXPECT_EQ(json["verification"]["missing"], 0);
+    EXPECT_GT(json["verification"]["removedByProgram"], 0);
+    EXPECT_TRUE(has(output.out, "that the program had taken out of the cache itself"))
+        << output.out;
+}
+
+TEST(Try, TellsPairsThatWaitForAMoveFromMissingOnes) {
+    const auto [output, json] = measure("--verify", stock("stock-programs") + " changes-group");
+    EXPECT_EQ(output.status, kExitOk) << output.out;
+    EXPECT_EQ(json["verification"]["missing"], 0);
+    EXPECT_GT(json["verification"]["waitForAMove"], 0) << output.out;
+    EXPECT_TRUE(has(output.out, "See refilter().")) << output.out;
+}
+
+}  // namespace
+}  // namespace hashphase::demos
