@@ -10,6 +10,7 @@
 #include <exception>
 #include <optional>
 #include <ostream>
+#include <utility>
 
 namespace hashphase::demos {
 namespace {
@@ -40,28 +41,22 @@ std::string unknownWordSentence(const CLI::App& command, const std::string& call
     return unknownNameSentence("option", name, optionNames(command));
 }
 
-// The words that the command does not know: those that look like options, and the rest.
-struct Extras {
-    std::vector<std::string> refused;
-    std::vector<std::string> rest;
-};
-
-Extras extrasOf(const CLI::App& app, bool takesRest) {
-    const std::vector<std::string> words = app.remaining();
-    Extras extras;
-    for (std::size_t i = 0; i < words.size(); ++i) {
-        if (words[i] == "--") {
-            extras.rest.insert(extras.rest.end(),
-                               words.begin() + static_cast<std::ptrdiff_t>(i) + 1, words.end());
-            break;
-        }
-        const bool isOption = words[i].starts_with("-") && words[i] != "-";
-        (isOption ? extras.refused : extras.rest).push_back(words[i]);
+// Takes what follows the first `--` off the arguments of a subcommand that wants it, as it is.
+std::vector<std::string> takeRest(std::vector<std::string>& arguments,
+                                  std::span<const Subcommand> subcommands) {
+    const bool isWanted =
+        !arguments.empty() && std::any_of(subcommands.begin(), subcommands.end(),
+                                          [&arguments](const Subcommand& subcommand) {
+                                              return subcommand.name == arguments.front() &&
+                                                     subcommand.takeRest;
+                                          });
+    const auto dashes = std::find(arguments.begin(), arguments.end(), "--");
+    if (!isWanted || dashes == arguments.end()) {
+        return {};
     }
-    if (!takesRest) {
-        extras.refused.insert(extras.refused.end(), extras.rest.begin(), extras.rest.end());
-    }
-    return extras;
+    std::vector<std::string> rest(dashes + 1, arguments.end());
+    arguments.erase(dashes, arguments.end());
+    return rest;
 }
 
 void warnOfSlowBuild(Console& console) {
@@ -107,8 +102,9 @@ std::string versionText() {
 
 }  // namespace
 
-int runProgram(const std::vector<std::string>& arguments, std::span<const Subcommand> subcommands,
+int runProgram(std::vector<std::string> arguments, std::span<const Subcommand> subcommands,
                Console console) {
+    std::vector<std::string> rest = takeRest(arguments, subcommands);
     CLI::App app("hashphase: a spatial-hash broadphase for Bullet, shown at work", "hashphase");
     app.set_version_flag("--version", versionText());
     // Unknown words are collected rather than refused, so that the right one can be suggested.
@@ -125,7 +121,7 @@ int runProgram(const std::vector<std::string>& arguments, std::span<const Subcom
         return *ended;
     }
     const std::vector<CLI::App*> chosen = app.get_subcommands();
-    if (const std::vector<std::string> extras = extrasOf(app, false).refused; !extras.empty()) {
+    if (const std::vector<std::string> extras = app.remaining(); !extras.empty()) {
         return refuse(console, extras.front().front() == '-'
                                    ? unknownNameSentence("option", extras.front(), optionNames(app))
                                    : unknownNameSentence("subcommand", extras.front(), names));
@@ -137,14 +133,13 @@ int runProgram(const std::vector<std::string>& arguments, std::span<const Subcom
     const auto subcommand = std::find_if(
         subcommands.begin(), subcommands.end(),
         [&chosen](const Subcommand& known) { return known.name == chosen.front()->get_name(); });
-    const Extras extras = extrasOf(*chosen.front(), static_cast<bool>(subcommand->takeRest));
-    if (!extras.refused.empty()) {
+    if (const std::vector<std::string> extras = chosen.front()->remaining(); !extras.empty()) {
         return refuse(
             console, unknownWordSentence(*chosen.front(), "hashphase " + chosen.front()->get_name(),
-                                         extras.refused.front()));
+                                         extras.front()));
     }
     if (subcommand->takeRest) {
-        subcommand->takeRest(extras.rest);
+        subcommand->takeRest(std::move(rest));
     }
     return runGuarded(*subcommand, console);
 }
@@ -158,8 +153,8 @@ int runSingleCommand(const std::vector<std::string>& arguments, const Subcommand
     if (const std::optional<int> ended = parse(app, arguments, console)) {
         return *ended;
     }
-    if (const Extras extras = extrasOf(app, false); !extras.refused.empty()) {
-        return refuse(console, unknownWordSentence(app, command.name, extras.refused.front()));
+    if (const std::vector<std::string> extras = app.remaining(); !extras.empty()) {
+        return refuse(console, unknownWordSentence(app, command.name, extras.front()));
     }
     return runGuarded(command, console);
 }

@@ -42,8 +42,7 @@ struct Subcommand {
     /// Declares the options, bound to storage that the subcommand owns.
     std::function<void(CLI::App&)> declareOptions;
 
-    /// Takes the words from the first one on that is no option, or that follow `--`, as they are; empty: such
-    /// words are refused.
+    /// Takes the words that follow the first `--`, as they are; empty: there are none to take.
     std::function<void(std::vector<std::string>)> takeRest = {};
 
     /// Runs with the options as parsed; returns the exit code. May throw InputError.
@@ -52,7 +51,7 @@ struct Subcommand {
 
 /// Parses the arguments (without the program's name), runs the subcommand and returns its exit
 /// code. Unknown words are told together with what was probably meant.
-int runProgram(const std::vector<std::string>& arguments, std::span<const Subcommand> subcommands,
+int runProgram(std::vector<std::string> arguments, std::span<const Subcommand> subcommands,
                Console console);
 
 /// The same for a program without subcommands: `command.name` is what the user types to run it.

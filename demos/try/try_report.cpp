@@ -255,6 +255,8 @@ Json runJson(const TriedRun& run) {
                         {"calculateMs", row.calculate},
                         {"raysMs", row.rays},
                         {"rays", row.rayCount},
+                        {"raysBetweenMs", row.raysBetween},
+                        {"raysBetween", row.rayBetweenCount},
                         {"objects", row.objectCount},
                         {"pairs", row.pairCount},
                         {"overlappingPairs", row.truePairCount != StepRow::kNotCounted
@@ -290,10 +292,15 @@ Json verifiedJson(const TriedRun& run) {
     if (run.broadphase != Broadphase::verifying) {
         return nullptr;
     }
-    return {{"calculations", run.calculations}, {"pairs", run.pairs},
-            {"missing", run.missing},           {"extra", run.extra},
-            {"waitForAMove", run.unasked},      {"bulletMissing", run.stockMissing},
-            {"bulletExtra", run.stockExtra},    {"firstFault", orNull(run.firstFault)}};
+    return {{"calculations", run.calculations},
+            {"pairs", run.pairs},
+            {"missing", run.missing},
+            {"extra", run.extra},
+            {"waitForAMove", run.unasked},
+            {"removedByProgram", run.removed},
+            {"bulletMissing", run.stockMissing},
+            {"bulletExtra", run.stockExtra},
+            {"firstFault", orNull(run.firstFault)}};
 }
 
 }  // namespace

@@ -27,15 +27,21 @@ const StockProfile& stockProfile() {
     return functions;
 }
 
-// What the program has Bullet call; nullptr while that is what Bullet calls anyhow, which does nothing.
+// What Bullet calls in its zones unless told otherwise, which does nothing.
+struct Defaults {
+    btEnterProfileZoneFunc* enter = stockProfile().enter();
+    btLeaveProfileZoneFunc* leave = stockProfile().leave();
+};
+
+const Defaults& defaults() {
+    static const Defaults functions;
+    return functions;
+}
+
+// What the program has Bullet call; nullptr for the defaults.
 std::atomic<btEnterProfileZoneFunc*> programsEnter = nullptr;
 std::atomic<btLeaveProfileZoneFunc*> programsLeave = nullptr;
-std::atomic<btEnterProfileZoneFunc*> stockEnter = nullptr;
-std::atomic<btLeaveProfileZoneFunc*> stockLeave = nullptr;
-
-bool isWatching() noexcept {
-    return stockEnter.load(std::memory_order_relaxed) != nullptr;
-}
+std::atomic<bool> isWatching = false;
 
 // --- Zones ---------------------------------------------------------------------------------------
 
@@ -113,18 +119,11 @@ void leaveZone() {
     endZone();
 }
 
-template <class Function>
-Function* unlessStock(Function* function, const std::atomic<Function*>& stock) noexcept {
-    return function == stock.load() ? nullptr : function;
-}
-
 }  // namespace
 
 void watchProfileZones() {
-    btEnterProfileZoneFunc* const enter = stockProfile().enter();
-    btLeaveProfileZoneFunc* const leave = stockProfile().leave();
-    stockLeave = leave;
-    stockEnter = enter;
+    static_cast<void>(defaults());
+    isWatching = true;
     stockProfile().setEnter(&enterZone);
     stockProfile().setLeave(&leaveZone);
 }
@@ -136,29 +135,27 @@ void watchProfileZones() {
 using namespace hashphase::tryout;
 
 void btSetCustomEnterProfileZoneFunc(btEnterProfileZoneFunc* enterFunc) {
-    if (isWatching()) {
-        programsEnter = unlessStock(enterFunc, stockEnter);
-    } else {
+    programsEnter = enterFunc != defaults().enter ? enterFunc : nullptr;
+    if (!isWatching) {
         stockProfile().setEnter(enterFunc);
     }
 }
 
 void btSetCustomLeaveProfileZoneFunc(btLeaveProfileZoneFunc* leaveFunc) {
-    if (isWatching()) {
-        programsLeave = unlessStock(leaveFunc, stockLeave);
-    } else {
+    programsLeave = leaveFunc != defaults().leave ? leaveFunc : nullptr;
+    if (!isWatching) {
         stockProfile().setLeave(leaveFunc);
     }
 }
 
 btEnterProfileZoneFunc* btGetCurrentEnterProfileZoneFunc() {
     btEnterProfileZoneFunc* const enter = programsEnter;
-    return enter != nullptr ? enter : isWatching() ? stockEnter.load() : stockProfile().enter();
+    return enter != nullptr ? enter : defaults().enter;
 }
 
 btLeaveProfileZoneFunc* btGetCurrentLeaveProfileZoneFunc() {
     btLeaveProfileZoneFunc* const leave = programsLeave;
-    return leave != nullptr ? leave : isWatching() ? stockLeave.load() : stockProfile().leave();
+    return leave != nullptr ? leave : defaults().leave;
 }
 
 // The name of a member that takes a number, an int and a number.

@@ -139,9 +139,9 @@ Broadphase wantedBroadphase() noexcept {
                                  : Broadphase::hash;
 }
 
-void noteDbvt() {
+void noteDbvts(int change) {
     if (Record* into = record()) {
-        into->dbvtCount.fetch_add(1);
+        into->dbvtCount.fetch_add(static_cast<std::uint32_t>(change));
     }
 }
 

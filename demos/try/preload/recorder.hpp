@@ -21,7 +21,7 @@ namespace hashphase::tryout {
 /// Which broadphase the program gets: what the record says; ours without one.
 [[nodiscard]] Broadphase wantedBroadphase() noexcept;
 
-void noteDbvt();
+void noteDbvts(int change);
 void noteAxisSweep();
 void noteDerivedSweep();
 void noteObjects(int change) noexcept;

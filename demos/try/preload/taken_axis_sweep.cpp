@@ -147,6 +147,7 @@ void constructSweep(SweepConstructor<Sweep, Handle>* stock, Sweep* sweep, const 
         return;
     }
     btDbvtBroadphase* trees = makeTakenTrees(cache);
+    noteDbvts(-1);  // it is none of the program's
     stock(sweep, worldMin, worldMax, maxHandles, trees->getOverlappingPairCache(), true);
     turnInto<TakenSweep<Sweep>>(*sweep).take(trees);
 }

@@ -64,7 +64,7 @@ btDbvtBroadphase::btDbvtBroadphase(btOverlappingPairCache* paircache) {
         return;
     }
     refuseOtherBullets();
-    noteDbvt();
+    noteDbvts(1);
     if (wantedBroadphase() == Broadphase::stock) {
         constructStock(*this, paircache);
         return;
