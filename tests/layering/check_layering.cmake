@@ -9,6 +9,7 @@
 #   integration/bullet/     Bullet as well, and it alone
 #   integration/tbb/        oneTBB as well, and it alone
 #   integration/effects/    the other clients as well
+#   integration/package/    whatever users include: its sources are their programs
 # demos/ and tests/ may include everything, and nobody else includes them. Names every breach by
 # file, line and rule.
 
@@ -35,6 +36,9 @@ standard library")
     elseif("${file}" MATCHES "^integration/tbb/")
         set(allowed "((broadphase|integration/tbb|tbb)/.+|${standard})")
         set(rule "integration/tbb/ includes only itself, broadphase/, oneTBB and the standard library")
+    elseif("${file}" MATCHES "^integration/package/")
+        set(allowed "((broadphase|integration)/.+|${bullet}|${eigen}|${standard})")
+        set(rule "integration/package/ includes only what users of hashphase include")
     elseif("${file}" MATCHES "^integration/effects/")
         set(allowed "((broadphase|integration)/.+|${eigen}|${standard})")
         set(rule "integration/effects/ includes only the clients, broadphase/, Eigen and the \

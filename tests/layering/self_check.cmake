@@ -70,6 +70,8 @@ expect_breach(integration/bullet/broadphase.hpp 6 "integration/bullet/ includes 
               "#include <integration/picking/pick.hpp>\n")
 expect_breach(integration/effects/plan.cpp 3 "integration/effects/ includes only the clients"
               "#include <LinearMath/btVector3.h>\n")
+expect_breach(integration/package/consumer.cpp 1 "integration/package/ includes only what users"
+              "#include <demos/scene.hpp>\n")
 expect_breach(integration/stray.hpp 1 "only a folder for each client" "#include <vector>\n")
 
 file(REMOVE_RECURSE ${SCRATCH})
