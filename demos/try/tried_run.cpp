@@ -125,7 +125,9 @@ pid_t start(const TriedRunSettings& settings, const std::string& recordPath) {
     std::vector<std::string> words = settings.words;
     std::vector<std::string> variables = environmentFor(settings.preload, recordPath);
     pid_t child = 0;
-    lseek(STDIN_FILENO, 0, SEEK_SET);  // fails on what is no file
+    if (settings.inputBegin >= 0) {
+        lseek(STDIN_FILENO, settings.inputBegin, SEEK_SET);
+    }
     const int error = posix_spawn(&child, settings.path.c_str(), nullptr, nullptr,
                                   pointersTo(words).data(), pointersTo(variables).data());
     if (error != 0) {

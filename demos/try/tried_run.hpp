@@ -19,6 +19,7 @@ struct TriedRunSettings {
     tryout::Broadphase broadphase = tryout::Broadphase::stock;
     std::optional<std::uint32_t> stepLimit;  // ends the program after so many steps
     std::optional<double> secondLimit;       // or seconds
+    std::int64_t inputBegin = -1;            // where its input begins; negative: in no file
 };
 
 /// How a program ended.
@@ -59,8 +60,8 @@ struct TriedRun {
     std::string firstFault;
 };
 
-/// Runs the program to its end, or to a limit, with this process's streams, of which the input begins anew where
-/// it is a file. Signals that would end this process end the program, and are told. Throws InputError when it
+/// Runs the program to its end, or to a limit, with this process's streams, of which the input begins where it
+/// is told. Signals that would end this process end the program, and are told. Throws InputError when it
 /// cannot be started.
 [[nodiscard]] TriedRun runTried(const TriedRunSettings& settings);
 

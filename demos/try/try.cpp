@@ -11,6 +11,8 @@
 #include <ostream>
 #include <system_error>
 
+#include <unistd.h>
+
 namespace hashphase::demos {
 namespace {
 
@@ -61,6 +63,8 @@ TriedRunSettings settingsFor(const TryOptions& options, const TriedProgram& prog
     settings.preload = preloadFor(program.precision);
     settings.stepLimit = options.steps;
     settings.secondLimit = options.seconds;
+    // A script may have read some of it, and go on behind us.
+    settings.inputBegin = lseek(STDIN_FILENO, 0, SEEK_CUR);
     if (!exists(settings.preload)) {
         throw InputError("this hashphase was built without " +
                          std::filesystem::path(settings.preload).filename().string() +

@@ -313,6 +313,17 @@ TEST(Try, LeavesFurtherProcessesTheirBroadphase) {
     EXPECT_EQ(json["runs"][0]["otherProcesses"], 1);
 }
 
+// Each run reads the same, and what a script has read before is not read again.
+TEST(Try, GivesEachRunTheSameInput) {
+    const TemporaryFolder folder;
+    const std::string input = folder.write("input", "first\nsecond\n");
+    const Output output =
+        runCommand("{ read line; " + std::string(HASHPHASE_PROGRAM) + " try --quiet -- " +
+                       stock("stock-programs") + " reads-input; } < " + input,
+                   folder);
+    EXPECT_EQ(countOf(output.out, "read second\n"), 2U) << output.out << output.err;
+}
+
 TEST(Try, EndsWithItsProgramWhenItIsEnded) {
     const TemporaryFolder folder;
     const Output output = runCommand(

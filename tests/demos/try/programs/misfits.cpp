@@ -212,6 +212,15 @@ int timedSteps() {
     return 0;
 }
 
+int readsInput() {
+    Scene<> scene;
+    addPile(scene);
+    scene.step(1);
+    char line[64] = "";
+    std::printf("read %s", std::fgets(line, sizeof(line), stdin) != nullptr ? line : "nothing\n");
+    return 0;
+}
+
 // Says whether its broadphase has trees, and starts itself once more to say so.
 int starter(bool isFirst) {
     Scene<> scene;
@@ -278,6 +287,7 @@ const std::vector<Program>& misfitPrograms() {
                                            {"derived-sweep", derivedSweep},
                                            {"bare-sweep", bareSweep},
                                            {"timed-steps", timedSteps},
+                                           {"reads-input", readsInput},
                                            {"starter", [] { return starter(true); }},
                                            {"started", [] { return starter(false); }},
                                            {"changes-group", changesGroup},
