@@ -34,6 +34,11 @@ std::vector<Couple> couplesOf(const btOverlappingPairCache& cache, const Name& n
     return couples;
 }
 
+// By its three coordinates; the fourth may be anything.
+bool isSame(const btVector3& a, const btVector3& b) {
+    return a.x() == b.x() && a.y() == b.y() && a.z() == b.z();
+}
+
 std::vector<Couple> difference(const std::vector<Couple>& from, const std::vector<Couple>& what) {
     std::vector<Couple> left;
     std::set_difference(from.begin(), from.end(), what.begin(), what.end(),
@@ -136,7 +141,7 @@ void VerifiedBroadphase::destroyProxy(btBroadphaseProxy* proxy, btDispatcher* di
 void VerifiedBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin,
                                  const btVector3& aabbMax, btDispatcher* dispatcher) {
     Twin& twin = twins_.at(proxy);
-    if (!(proxy->m_aabbMin == aabbMin && proxy->m_aabbMax == aabbMax)) {
+    if (!isSame(proxy->m_aabbMin, aabbMin) || !isSame(proxy->m_aabbMax, aabbMax)) {
         twin.changed = calculation_;
     }
     ours_.setAabb(proxy, aabbMin, aabbMax, dispatcher);
