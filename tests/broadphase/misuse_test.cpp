@@ -16,7 +16,6 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <memory>
 #include <set>
 #include <vector>
 
@@ -428,16 +427,6 @@ TEST(CrowdMisuse, OfItsOwnCallbacksIsAsserted) {
     grid.move(id, cube(3));  // all scopes have ended
     crowd.take(grid, 1);
     EXPECT_EQ(crowd.position(0), Point(3, 0, 0));
-}
-
-TEST(GridMisuseDeathTest, OfOneThatGoesBeforeItsPairsIsAsserted) {
-    GTEST_FLAG_SET(death_test_style, "threadsafe");
-    const auto goesFirst = [] {
-        auto grid = std::make_unique<Grid<float>>();
-        const Pairs<float> pairs(*grid);
-        grid.reset();
-    };
-    EXPECT_DEATH(goesFirst(), "A grid outlives its Pairs");
 }
 
 TEST(GridMisuseDeathTest, EndsTheProgramWithASentence) {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <memory>
 #include <vector>
 
 namespace hashphase::test {
@@ -252,6 +253,17 @@ TEST(Announce, FindsProxiesAtRest) {
 // --- Misuse --------------------------------------------------------------------------------------
 
 #if HASHPHASE_ENABLE_ASSERTS
+
+TEST(PairsDeathTest, TheirGridThatGoesBeforeThemIsAsserted) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    const auto goesFirst = [] {
+        auto grid = std::make_unique<Grid<float>>();
+        const Pairs<float> pairs(*grid);
+        grid.reset();
+    };
+    EXPECT_DEATH(goesFirst(), "A grid outlives its Pairs");
+}
+
 TEST(Pairs, MisuseIsAsserted) {
     const ThrowingAsserts throwing;
     PairWorld<float> world;
