@@ -116,7 +116,4 @@ private:
     Table<Scalar> sliceTable_;
 };
 
-extern template class ContactSearch<float>;
-extern template class ContactSearch<double>;
-
 }  // namespace hashphase::detail

@@ -71,7 +71,4 @@ private:
     SizeCensus census_;
 };
 
-extern template class LevelLayout<float>;
-extern template class LevelLayout<double>;
-
 }  // namespace hashphase::detail

@@ -3,7 +3,7 @@
 # Debian packages by CPack, one for each component: integration/package/make-deb makes them.
 #
 #   hashphase_libraries     libhashphase<SONAME>: the shared libraries
-#   hashphase_development   libhashphase-dev: headers, CMake package, pkg-config files
+#   hashphase_development   libhashphase-dev: headers, CMake package, pkg-config files, examples
 #   hashphase_tools         hashphase: the programs, and modules of theirs in <libdir>/hashphase/
 
 set(CPACK_GENERATOR DEB)
@@ -53,7 +53,8 @@ set(CPACK_DEBIAN_HASHPHASE_DEVELOPMENT_PACKAGE_SUGGESTS "libtbb-dev")
 set(CPACK_COMPONENT_HASHPHASE_DEVELOPMENT_DEPENDS hashphase_libraries)
 set(CPACK_COMPONENT_HASHPHASE_DEVELOPMENT_DESCRIPTION "${about}
 .
-This package has the headers, and what CMake and pkg-config find them by.")
+This package has the headers, what CMake and pkg-config find them by, and seven
+programs to copy, in /usr/share/doc/libhashphase-dev/examples.")
 
 set(CPACK_DEBIAN_HASHPHASE_TOOLS_PACKAGE_NAME hashphase)
 set(CPACK_DEBIAN_HASHPHASE_TOOLS_PACKAGE_SECTION science)
@@ -104,6 +105,11 @@ if(HASHPHASE_GZIP)
             COMPONENT hashphase_${component}
             EXCLUDE_FROM_ALL)
     endforeach()
+    install(
+        DIRECTORY ${PROJECT_SOURCE_DIR}/demos/examples
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_HASHPHASE_DEVELOPMENT_PACKAGE_NAME}
+        COMPONENT hashphase_development
+        EXCLUDE_FROM_ALL)
     install(
         FILES ${CMAKE_CURRENT_LIST_DIR}/debian/libraries.lintian-overrides
         DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides

@@ -2,7 +2,7 @@
 #
 # A recipe for Conan 2, which builds the repository that it lies in:
 #
-#   conan create integration/package/conan --build=missing
+#   conan create integration/package/conan --build=missing -s compiler.cppstd=20
 #
 # Bullet's own option says the precision: -o "bullet3/*:double_precision=True".
 
