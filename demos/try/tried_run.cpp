@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -142,8 +143,11 @@ bool isAtLimit(const TriedRunSettings& settings, const Record& record, Clock::du
             std::chrono::duration<double>(time).count() >= *settings.secondLimit);
 }
 
+// One that is dead is there until it is waited for, but has no program any more.
 bool isAlive(pid_t process) {
-    return process > 0 && kill(process, 0) == 0;
+    std::array<char, 1> name{};
+    return process > 0 && kill(process, 0) == 0 &&
+           readlink(("/proc/" + std::to_string(process) + "/exe").c_str(), name.data(), 1) >= 0;
 }
 
 /// The program that was started, and whoever of its descendants has the record, whom it may leave behind.
@@ -213,14 +217,26 @@ RunEnd waitFor(RunningProgram& program, const TriedRunSettings& settings, const 
                        : RunEnd{.code = WEXITSTATUS(status)};
 }
 
-// Pairs that were calculated outside of steps count where there are no steps.
+// Pairs that were calculated outside of steps count where there are no steps. Rays that were cast before
+// them are before the next step, too.
 std::vector<tryout::StepRow> stepsOf(const Record& record) {
     const std::uint32_t count = record.rowCount.load(std::memory_order_acquire);
     std::vector<tryout::StepRow> rows(record.rows.begin(), record.rows.begin() + count);
     const auto isNoStep = [](const tryout::StepRow& row) { return row.step == 0; };
-    if (!std::all_of(rows.begin(), rows.end(), isNoStep)) {
-        std::erase_if(rows, isNoStep);
+    if (std::all_of(rows.begin(), rows.end(), isNoStep)) {
+        return rows;
     }
+    float raysBetween = 0;
+    std::uint32_t rayBetweenCount = 0;
+    for (tryout::StepRow& row : rows) {
+        raysBetween += row.raysBetween;
+        rayBetweenCount += row.rayBetweenCount;
+        if (!isNoStep(row)) {
+            row.raysBetween = std::exchange(raysBetween, 0.0F);
+            row.rayBetweenCount = std::exchange(rayBetweenCount, 0);
+        }
+    }
+    std::erase_if(rows, isNoStep);
     return rows;
 }
 

@@ -172,12 +172,19 @@ namespace {
 
 using StepFunction = int(void* world, btScalar timeStep, int maxSubSteps, btScalar fixedTimeStep);
 
+/// Ends by an exception of the program's, too: from a callback of its own, out of Bullet.
+class StepScope {
+public:
+    StepScope() noexcept { beginStep(); }
+    ~StepScope() { endStep(); }
+    StepScope(const StepScope&) = delete;
+    StepScope& operator=(const StepScope&) = delete;
+};
+
 int step(StepFunction* stock, void* world, btScalar timeStep, int maxSubSteps,
          btScalar fixedTimeStep) {
-    beginStep();
-    const int subSteps = stock(world, timeStep, maxSubSteps, fixedTimeStep);
-    endStep();
-    return subSteps;
+    const StepScope scope;
+    return stock(world, timeStep, maxSubSteps, fixedTimeStep);
 }
 
 }  // namespace

@@ -168,12 +168,12 @@ void beginStep() noexcept {
     }
 }
 
-// A step in which others' broadphases alone were asked is none of ours.
+// A step in which others' broadphases alone were asked is none of ours, nor does it claim the record.
 void endStep() noexcept {
     if (--stepDepth > 0) {
         return;
     }
-    Record* into = record();
+    Record* into = ownRecord.load(std::memory_order_relaxed);
     if (into != nullptr && current.calculations > 0) {
         writeRow(*into, milliseconds(nanoseconds() - current.begin - current.aside));
     }

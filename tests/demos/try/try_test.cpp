@@ -64,7 +64,8 @@ const std::vector<std::string> kPrograms{"pile",
                                          "hello-world",
                                          "cache-goes-first",
                                          "exit-anyhow",
-                                         "forks"};
+                                         "forks",
+                                         "throws-from-tick"};
 
 TEST_P(TriedProgramTest, HasTheSameOutcomeUnderVerification) {
     const Output plain = runCommand(call());
@@ -225,6 +226,13 @@ TEST(Try, CountsStepsWithTheirSubSteps) {
     }
 }
 
+TEST(Try, CountsStepsAfterOneThatAnExceptionLeft) {
+    const auto [output, json] = measure("", stock("stock-programs") + " throws-from-tick");
+    for (const Json& run : json["runs"]) {
+        EXPECT_EQ(run["steps"].size(), 30U);
+    }
+}
+
 TEST(Try, KeepsRaysBetweenStepsApart) {
     const auto [output, json] = measure("", stock("stock-programs") + " rays-between-steps");
     for (const Json& run : json["runs"]) {
@@ -243,6 +251,7 @@ TEST(Try, TakesPairsThatAreCalculatedByHandForNoStep) {
     const auto [output, json] = measure("", stock("stock-programs") + " pairs-by-hand");
     for (const Json& run : json["runs"]) {
         EXPECT_EQ(run["steps"].size(), 40U);
+        EXPECT_EQ(run["steps"][20]["raysBetween"], 1);
         EXPECT_EQ(run["foreignCalculations"], 0);
         for (const Json& step : run["steps"]) {
             EXPECT_GE(step["stepMs"].get<double>(), step["updateAabbsMs"].get<double>() +
@@ -311,6 +320,21 @@ TEST(Try, LeavesFurtherProcessesTheirBroadphase) {
                                "first has none\nsecond has none\n"))
         << output.out;
     EXPECT_EQ(json["runs"][0]["otherProcesses"], 1);
+}
+
+TEST(Try, RecordsTheFirstProcessWithABroadphaseThatCanBeTaken) {
+    const auto [output, json] = measure("", stock("stock-programs") + " simple-starter");
+    EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
+    EXPECT_TRUE(output.out.starts_with("second has trees\nsecond has none\n")) << output.out;
+    EXPECT_EQ(json["runs"][1]["steps"].size(), 5U);
+}
+
+// The recorded one has ended; who has started it lives on for a minute, and has nothing to do with Bullet.
+TEST(Try, DoesNotWaitForTheDead) {
+    const Output output =
+        runCommand("timeout 50 " + std::string(HASHPHASE_PROGRAM) + " try --quiet -- " +
+                   stock("stock-programs") + " leaves-zombie");
+    EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
 }
 
 // Each run reads the same, and what a script has read before is not read again.

@@ -143,13 +143,35 @@ int forks() {
     return 0;
 }
 
+// A tick that fails in one step, which the program gets over.
+int throwsFromTick() {
+    const std::unique_ptr<Scene<>> scene = makeScene(1);
+    static int ticks = 0;
+    scene->world.setInternalTickCallback([](btDynamicsWorld* /*world*/, btScalar /*step*/) {
+        if (++ticks == 10) {
+            throw std::runtime_error("a tick has failed");
+        }
+    });
+    int failures = 0;
+    for (int i = 0; i < 30; ++i) {
+        try {
+            scene->step(1);
+        } catch (const std::runtime_error&) {
+            ++failures;
+        }
+    }
+    say("failures", failures);
+    return 0;
+}
+
 }  // namespace
 
 const std::vector<Program>& lifetimePrograms() {
     static const std::vector<Program> list{
-        {"several-worlds", severalWorlds}, {"churn", churn},
-        {"hello-world", helloWorld},       {"cache-goes-first", cacheGoesFirst},
-        {"exit-anyhow", exitAnyhow},       {"forks", forks}};
+        {"several-worlds", severalWorlds},   {"churn", churn},
+        {"hello-world", helloWorld},         {"cache-goes-first", cacheGoesFirst},
+        {"exit-anyhow", exitAnyhow},         {"forks", forks},
+        {"throws-from-tick", throwsFromTick}};
     return list;
 }
 

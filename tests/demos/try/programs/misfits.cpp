@@ -236,6 +236,43 @@ int starter(bool isFirst) {
     return 0;
 }
 
+// Steps a world of another broadphase, and starts one whose broadphase can be taken over.
+int simpleStarter() {
+    Scene<btSimpleBroadphase> scene;
+    scene.add(scene.things.shape<btSphereShape>(btScalar(1)), 1, {0, 0, 0});
+    scene.step(10);
+    std::fflush(stdout);
+    if (fork() == 0) {
+        execl("/proc/self/exe", "stock-programs", "started", nullptr);
+    }
+    wait(nullptr);
+    return 0;
+}
+
+// Leaves behind a process, for a minute, whose child has stepped a world, is dead, and never waited for.
+int leavesZombie() {
+    int ends[2];
+    if (pipe(ends) != 0) {
+        return 1;
+    }
+    if (fork() == 0) {
+        if (fork() == 0) {
+            Scene<> scene;
+            addPile(scene);
+            scene.step(5);
+            _exit(0);
+        }
+        for (int file : {0, 1, 2, ends[0], ends[1]}) {
+            close(file);
+        }
+        sleep(60);
+        _exit(0);
+    }
+    close(ends[1]);
+    char byte = 0;
+    return static_cast<int>(read(ends[0], &byte, 1));  // returns when the grandchild has ended
+}
+
 // Changes a group without a word to the broadphase, while nothing moves.
 int changesGroup() {
     Scene<> scene;
@@ -290,6 +327,8 @@ const std::vector<Program>& misfitPrograms() {
                                            {"reads-input", readsInput},
                                            {"starter", [] { return starter(true); }},
                                            {"started", [] { return starter(false); }},
+                                           {"simple-starter", simpleStarter},
+                                           {"leaves-zombie", leavesZombie},
                                            {"changes-group", changesGroup},
                                            {"mixed", mixed},
                                            {"simple-broadphase", simpleBroadphase}};

@@ -64,12 +64,17 @@ int pairsByHand() {
     for (int i = 0; i < 10; ++i) {
         scene.add(box, 1, {0, btScalar(1 + i), 0});
     }
+    const btVector3 from(0, 50, 0), to(0, -1, 0);
+    int hits = 0;
     for (int i = 0; i < 40; ++i) {
         scene.step(1);
+        btCollisionWorld::ClosestRayResultCallback hit(from, to);
+        scene.world.rayTest(from, to, hit);
+        hits += hit.hasHit() ? 1 : 0;
         scene.world.updateAabbs();
         scene.world.computeOverlappingPairs();
     }
-    say("bodies", scene.world.getNumCollisionObjects());
+    say("hits", hits);
     return 0;
 }
 
