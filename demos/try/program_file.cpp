@@ -237,7 +237,8 @@ TriedProgram inspectProgram(const std::string& path, const std::vector<std::stri
     TriedProgram program;
     program.path = path;
     for (const SharedLibrary& library : libraries) {
-        if (library.name.starts_with("libasan.so")) {
+        if (library.name.starts_with("libasan.so") ||
+            library.name.starts_with("libclang_rt.asan")) {
             program.sanitizer = library.path;
         }
     }

@@ -8,7 +8,7 @@
 // A step   is a call of stepSimulation() in which pairs were calculated, with all its sub-steps; where
 //          Bullet is linked so that its functions cannot be stood in for (-Bsymbolic-functions), one of
 //          these sub-steps; and a performDiscreteCollisionDetection() outside of both.
-// Threads  the counters are atomic; a row is written before `rowCount` counts it.
+// Threads  the counters are atomic, a row is one thread's; the verification is added up under a lock.
 // Units    milliseconds.
 
 #include <array>
@@ -39,46 +39,47 @@ struct StepRow {
     std::uint32_t rayCount;
     std::uint32_t rayBetweenCount;
     std::uint32_t objectCount;
-    std::uint32_t pairCount;
+    std::uint32_t calculations;   // 0: not written to the end
+    std::uint32_t pairCount;      // after each calculation, in all
     std::uint32_t truePairCount;  // whose boxes overlap; kNotCounted in most steps: it takes time
 };
 
-/// What was verified, by the pairs that were wrong in all steps together.
+/// What was verified, by the pairs of all calculations together.
 struct Verification {
-    std::atomic<std::uint64_t> calculations;
-    std::atomic<std::uint64_t> pairs;
-    std::atomic<std::uint64_t> missing;
-    std::atomic<std::uint64_t> extra;
-    std::atomic<std::uint64_t> unasked;  // the filter would take them now, but nothing has moved
-    std::atomic<std::uint64_t> removed;  // by the program, out of the cache
-    std::atomic<std::uint64_t> stockMissing;
-    std::atomic<std::uint64_t> stockExtra;
-    std::atomic<bool> hasFault;
-    std::array<char, 480> firstFault;  // of ours; empty: none
+    std::uint64_t calculations = 0;
+    std::uint64_t pairs = 0;
+    std::uint64_t missing = 0;
+    std::uint64_t extra = 0;
+    std::uint64_t unasked = 0;  // the filter would take them now, but nothing has moved
+    std::uint64_t removed = 0;  // by the program, out of the cache
+    std::uint64_t stockPairs = 0;
+    std::uint64_t stockMissing = 0;
+    std::uint64_t stockExtra = 0;
+    std::array<char, 480> firstFault{};  // of ours; empty: none
 };
 
 struct Record {
     static constexpr std::uint32_t kMaxRows = 200'000;
-    static constexpr std::uint32_t kFormat = 1;
+    static constexpr std::uint32_t kFormat = 2;
 
     // Asked for.
     std::uint32_t format;
     Broadphase broadphase;
-    std::uint32_t rowLimit;  // so many rows are written; at most kMaxRows
 
     // Answered.
-    std::atomic<std::int32_t> process;  // who made the first broadphase
+    std::atomic<std::uint32_t> isLoaded;  // into a process at all
+    std::atomic<std::int32_t> process;    // who made the first broadphase, by its own number
     std::atomic<std::uint32_t> otherProcesses;
     std::atomic<std::uint32_t> dbvtCount;
     std::atomic<std::uint32_t> axisSweepCount;
     std::atomic<std::uint32_t> derivedSweepCount;    // which are not taken over
     std::atomic<std::uint32_t> foreignCalculations;  // of broadphases that are not taken over
-    std::atomic<std::uint32_t> rowCount;
-    std::atomic<std::uint32_t> droppedRows;  // beyond the limit
+    std::atomic<std::uint32_t> stepCount;
+    std::atomic<std::uint32_t> rowCount;  // those that had no room left included
     Verification verification;
     std::array<StepRow, kMaxRows> rows;
 };
 
-static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
+static_assert(std::atomic<std::uint32_t>::is_always_lock_free);
 
 }  // namespace hashphase::tryout

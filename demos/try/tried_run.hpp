@@ -3,6 +3,7 @@
 
 // One run of a program that is tried: with a library preloaded, and a record that it fills.
 
+#include <demos/try/noted_signals.hpp>
 #include <demos/try/record.hpp>
 
 #include <cstdint>
@@ -13,9 +14,9 @@
 namespace hashphase::demos {
 
 struct TriedRunSettings {
-    std::string path;                // of the program
-    std::vector<std::string> words;  // argv, the name first
-    std::string preload;             // paths of libraries, between colons
+    std::string path;                   // of the program
+    std::vector<std::string> words;     // argv, the name first
+    std::vector<std::string> preloads;  // paths of libraries, the first one first
     tryout::Broadphase broadphase = tryout::Broadphase::stock;
     std::optional<std::uint32_t> stepLimit;  // ends the program after so many steps
     std::optional<double> secondLimit;       // or seconds
@@ -38,6 +39,7 @@ struct RunEnd {
 struct TriedRun {
     tryout::Broadphase broadphase = tryout::Broadphase::stock;
     RunEnd end;
+    bool isLoaded = false;  // the library, into whatever ran
     bool hasBroadphase = false;
     std::uint32_t dbvtCount = 0;
     std::uint32_t axisSweepCount = 0;
@@ -46,23 +48,11 @@ struct TriedRun {
     std::uint32_t otherProcesses = 0;
     std::uint32_t droppedRows = 0;
     std::vector<tryout::StepRow> rows;  // steps; of a program that makes none, calculations
-    int interruption = 0;               // the signal that ended more than this run; 0: none
-
-    // Of Broadphase::verifying.
-    std::uint64_t calculations = 0;
-    std::uint64_t pairs = 0;
-    std::uint64_t missing = 0;
-    std::uint64_t extra = 0;
-    std::uint64_t unasked = 0;
-    std::uint64_t removed = 0;
-    std::uint64_t stockMissing = 0;
-    std::uint64_t stockExtra = 0;
-    std::string firstFault;
+    tryout::Verification verification;  // of Broadphase::verifying
 };
 
 /// Runs the program to its end, or to a limit, with this process's streams, of which the input begins where it
-/// is told. Signals that would end this process end the program, and are told. Throws InputError when it
-/// cannot be started.
-[[nodiscard]] TriedRun runTried(const TriedRunSettings& settings);
+/// is told. What `signals` notes ends it, too. Throws InputError when it cannot be started.
+[[nodiscard]] TriedRun runTried(const TriedRunSettings& settings, const NotedSignals& signals);
 
 }  // namespace hashphase::demos

@@ -7,9 +7,11 @@
 
 #include <algorithm>
 #include <array>
+#include <csignal>
 #include <filesystem>
 #include <ostream>
 #include <system_error>
+#include <utility>
 
 #include <unistd.h>
 
@@ -60,19 +62,20 @@ TriedRunSettings settingsFor(const TryOptions& options, const TriedProgram& prog
     TriedRunSettings settings;
     settings.path = program.path;
     settings.words = options.words;
-    settings.preload = preloadFor(program.precision);
+    const std::string preload = preloadFor(program.precision);
     settings.stepLimit = options.steps;
     settings.secondLimit = options.seconds;
     // A script may have read some of it, and go on behind us.
     settings.inputBegin = lseek(STDIN_FILENO, 0, SEEK_CUR);
-    if (!exists(settings.preload)) {
+    if (!exists(preload)) {
         throw InputError("this hashphase was built without " +
-                         std::filesystem::path(settings.preload).filename().string() +
+                         std::filesystem::path(preload).filename().string() +
                          ": Bullet of that precision was not found when it was");
     }
     if (!program.sanitizer.empty()) {
-        settings.preload = program.sanitizer + ":" + settings.preload;
+        settings.preloads.push_back(program.sanitizer);
     }
+    settings.preloads.push_back(preload);
     return settings;
 }
 
@@ -92,6 +95,11 @@ void sayWhatRuns(const TryOptions& options, Broadphase broadphase, std::size_t n
 
 // A program that makes none of the broadphases that are taken over runs as ever.
 [[noreturn]] void refuse(const Trial& trial, const TriedRun& run) {
+    if (!run.isLoaded) {
+        throw InputError(trial.program.path + " " + textOf(run.end) +
+                         ", and has not loaded what was preloaded: programs with rights of their "
+                         "own (setuid) do not, nor those that are started without LD_PRELOAD");
+    }
     throw InputError(trial.program.path + " " + textOf(run.end) +
                      ", and has made no btDbvtBroadphase and no axis sweep that can be taken over: "
                      "there is nothing to compare");
@@ -100,9 +108,33 @@ void sayWhatRuns(const TryOptions& options, Broadphase broadphase, std::size_t n
 bool isSound(const Trial& trial) {
     return !isEndOfOurs(trial) &&
            std::all_of(trial.runs.begin(), trial.runs.end(), [](const TriedRun& run) {
-               return run.missing == 0 && run.extra == 0 &&
-                      (run.broadphase != Broadphase::verifying || run.calculations > 0);
+               return run.verification.missing == 0 && run.verification.extra == 0 &&
+                      (run.broadphase != Broadphase::verifying ||
+                       run.verification.calculations > 0);
            });
+}
+
+// Until a signal ends them: returns it, or 0. Of a run that it ended before there was a broadphase nothing is
+// known.
+int runAll(const TryOptions& options, const std::vector<Broadphase>& turns, Trial& trial,
+           Console& console) {
+    TriedRunSettings settings = settingsFor(options, trial.program);
+    const NotedSignals signals;
+    for (const Broadphase broadphase : turns) {
+        settings.broadphase = broadphase;
+        sayWhatRuns(options, broadphase, trial.runs.size() + 1, turns.size(), console);
+        console.out.flush();
+        TriedRun run = runTried(settings, signals);
+        if (run.hasBroadphase) {
+            trial.runs.push_back(std::move(run));
+        } else if (signals.received() == 0) {
+            refuse(trial, run);
+        }
+        if (signals.received() != 0) {
+            break;
+        }
+    }
+    return signals.received();
 }
 
 }  // namespace
@@ -111,6 +143,8 @@ int runTry(const TryOptions& options, Console& console) {
     if (options.words.empty()) {
         throw InputError("name a program to try: hashphase try -- ./program its arguments");
     }
+    // Whoever has started us may ignore them, and then none could be waited for.
+    std::signal(SIGCHLD, SIG_DFL);
     ResultFile json(options.jsonFile);
     Trial trial;
     for (const std::string& word : options.words) {
@@ -122,7 +156,6 @@ int runTry(const TryOptions& options, Console& console) {
                          " to load into programs, as builds under a sanitizer have not");
     }
     trial.program = inspectProgram(findProgram(options.words.front()), bullets, options.precision);
-    TriedRunSettings settings = settingsFor(options, trial.program);
 
     std::vector<Broadphase> turns{Broadphase::verifying};
     if (!options.verify) {
@@ -131,23 +164,13 @@ int runTry(const TryOptions& options, Console& console) {
             turns.insert(turns.end(), {Broadphase::stock, Broadphase::hash});
         }
     }
-    int interruption = 0;
-    for (const Broadphase broadphase : turns) {
-        settings.broadphase = broadphase;
-        sayWhatRuns(options, broadphase, trial.runs.size() + 1, turns.size(), console);
-        console.out.flush();
-        trial.runs.push_back(runTried(settings));
-        interruption = trial.runs.back().interruption;
-        if (!trial.runs.back().hasBroadphase) {
-            refuse(trial, trial.runs.back());
-        }
-        if (interruption != 0) {
-            break;
-        }
+    const int interruption = runAll(options, turns, trial, console);
+    constexpr int kExitInterrupted = 128;  // and the signal, as shells have it
+    if (trial.runs.empty()) {
+        return kExitInterrupted + interruption;
     }
     printTrial(trial, console.out);
     json.write([&](std::ostream& out) { writeTrialJson(trial, console.commandLine, out); });
-    constexpr int kExitInterrupted = 128;  // and the signal, as shells have it
     if (interruption != 0) {
         return kExitInterrupted + interruption;
     }

@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <ostream>
+#include <set>
 
 namespace hashphase::demos {
 namespace {
@@ -34,16 +36,38 @@ double mean(const std::vector<StepRow>& rows, Number StepRow::*field) {
     return sum / static_cast<double>(rows.size());
 }
 
-// Without the fastest and the slowest twentieth; of few, with all.
-std::vector<StepRow> withoutFits(std::vector<StepRow> rows) {
+float lengthOf(const StepRow& row) {
+    return row.step > 0 ? row.step : row.updateAabbs + row.calculate;
+}
+
+/// Steps by their length: a twentieth of them on either side is set apart, of few none.
+struct SortedSteps {
+    std::vector<StepRow> usual;
+    std::vector<StepRow> slowest;
+};
+
+SortedSteps sortByLength(std::vector<StepRow> rows) {
     constexpr std::ptrdiff_t kShare = 20;
-    const auto length = [](const StepRow& row) {
-        return row.step > 0 ? row.step : row.updateAabbs + row.calculate;
-    };
     std::stable_sort(rows.begin(), rows.end(),
-                     [&](const StepRow& a, const StepRow& b) { return length(a) < length(b); });
+                     [](const StepRow& a, const StepRow& b) { return lengthOf(a) < lengthOf(b); });
     const std::ptrdiff_t cut = static_cast<std::ptrdiff_t>(rows.size()) / kShare;
-    return {rows.begin() + cut, rows.end() - cut};
+    return {{rows.begin() + cut, rows.end() - cut}, {rows.end() - cut, rows.end()}};
+}
+
+double timeOf(const std::vector<StepRow>& rows) {
+    return std::accumulate(rows.begin(), rows.end(), 0.0,
+                           [](double sum, const StepRow& row) { return sum + lengthOf(row); });
+}
+
+// Of a calculation, on average.
+double meanPairs(const std::vector<StepRow>& rows) {
+    double calculations = 0;
+    double pairs = 0;
+    for (const StepRow& row : rows) {
+        calculations += row.calculations;
+        pairs += row.pairCount;
+    }
+    return pairs / calculations;
 }
 
 // The share of pairs that overlap in the steps that were looked at, of all pairs.
@@ -103,29 +127,35 @@ std::string headOf(const Trial& trial) {
 
 // "ended with status 0" or, of several runs that ended differently, all their ends.
 std::string endsOf(const Trial& trial, Broadphase broadphase) {
-    std::string text;
+    std::set<std::string> ends;
     for (const TriedRun* run : runsOf(trial, broadphase)) {
-        if (text.find(textOf(run->end)) == std::string::npos) {
-            text += (text.empty() ? "" : " or ") + textOf(run->end);
-        }
+        ends.insert(textOf(run->end));
+    }
+    std::string text;
+    for (const std::string& end : ends) {
+        text += (text.empty() ? "" : " or ") + end;
     }
     return text;
 }
 
+const TriedRun* findCrash(const std::vector<const TriedRun*>& runs) {
+    const auto crashed = std::find_if(runs.begin(), runs.end(),
+                                      [](const TriedRun* run) { return run->end.isCrash; });
+    return crashed != runs.end() ? *crashed : nullptr;
+}
+
 void printEnds(const Trial& trial, std::ostream& out) {
-    const std::string stock = endsOf(trial, Broadphase::stock);
-    const std::string ours = endsOf(trial, Broadphase::hash);
-    if (isEndOfOurs(trial)) {
-        out << "The program " << stock << " with Bullet's broadphase, and " << ours
-            << " with hashphase.\n";
-        return;
-    }
-    for (const TriedRun& run : trial.runs) {
-        if (run.end.isCrash) {
-            out << "The program " << textOf(run.end)
-                << (trial.runs.size() > 1 ? ", whichever the broadphase.\n" : ".\n");
-            return;
-        }
+    const TriedRun* stock = findCrash(runsOf(trial, Broadphase::stock));
+    const TriedRun* ours = findCrash(runsOf(trial, Broadphase::hash));
+    const TriedRun* verified = findCrash(runsOf(trial, Broadphase::verifying));
+    if (isEndOfOurs(trial) || (stock != nullptr) != (ours != nullptr)) {
+        const std::string endsOfOurs = endsOf(trial, Broadphase::hash);
+        out << "The program " << endsOf(trial, Broadphase::stock) << " with Bullet's broadphase"
+            << (endsOfOurs.empty() ? "" : ", and " + endsOfOurs + " with hashphase") << ".\n";
+    } else if (stock != nullptr) {
+        out << "The program " << textOf(stock->end) << ", whichever the broadphase.\n";
+    } else if (verified != nullptr) {
+        out << "The program " << textOf(verified->end) << ".\n";
     }
 }
 
@@ -147,32 +177,33 @@ void printNotes(const Trial& trial, std::ostream& out) {
 }
 
 void printVerified(const Trial& trial, const TriedRun& run, std::ostream& out) {
+    const tryout::Verification& pairs = run.verification;
     Table table({"pairs", "right", "missing", "extra"});
-    table.addRow({"hashphase", withThousands(run.pairs - run.extra), withThousands(run.missing),
-                  withThousands(run.extra)});
-    table.addRow({"Bullet's", withThousands(run.pairs - run.extra + run.missing - run.stockMissing),
-                  withThousands(run.stockMissing), withThousands(run.stockExtra)});
+    table.addRow({"hashphase", withThousands(pairs.pairs - pairs.extra),
+                  withThousands(pairs.missing), withThousands(pairs.extra)});
+    table.addRow({"Bullet's", withThousands(pairs.stockPairs - pairs.stockExtra),
+                  withThousands(pairs.stockMissing), withThousands(pairs.stockExtra)});
     table.print(out);
     printNotes(trial, out);
-    if (run.unasked > 0) {
-        out << withThousands(run.unasked)
+    if (pairs.unasked > 0) {
+        out << withThousands(pairs.unasked)
             << " times a pair was refused that the filter would take now: the filter was changed, "
                "and nothing has moved since. See refilter().\n";
     }
-    if (run.removed > 0) {
-        out << withThousands(run.removed)
+    if (pairs.removed > 0) {
+        out << withThousands(pairs.removed)
             << " times a pair was missing that the program had taken out of the cache itself: with "
                "hashphase it comes back when the two meet again, or by refilter().\n";
     }
-    if (!run.firstFault.empty()) {
-        out << "The first fault, " << run.firstFault << ".\n";
+    if (const std::string fault = pairs.firstFault.data(); !fault.empty()) {
+        out << "The first fault, " << fault << ".\n";
     }
-    if (run.calculations == 0) {
+    if (pairs.calculations == 0) {
         out << "Nothing was verified: no pairs were calculated.\n";
         return;
     }
-    out << withThousands(run.calculations) << " calculations of pairs verified: the pairs of "
-        << "hashphase are " << (run.missing + run.extra == 0 ? "exact in each" : "NOT EXACT")
+    out << withThousands(pairs.calculations) << " calculations of pairs verified: the pairs of "
+        << "hashphase are " << (pairs.missing + pairs.extra == 0 ? "exact in each" : "NOT EXACT")
         << ".\n";
 }
 
@@ -223,6 +254,13 @@ void printCompared(const Trial& trial, std::ostream& out) {
         out << "Compared are the first " << withThousands(stock.stepCount)
             << " steps: one of the runs had more.\n";
     }
+    constexpr double kLargeShare = 0.2;
+    if (std::max(stock.slowestShare, ours.slowestShare) > kLargeShare) {
+        out << "Times are without the slowest twentieth of the steps, which took "
+            << percent(stock.slowestShare) << " of all time with Bullet's and "
+            << percent(ours.slowestShare) << " with hashphase: " << ms(stock.slowest) << " and "
+            << ms(ours.slowest) << " ms a step.\n";
+    }
     constexpr std::size_t kFew = 60;
     if (stock.stepCount < kFew) {
         out << "These are few steps: take the figures as a hint.\n";
@@ -258,6 +296,7 @@ Json runJson(const TriedRun& run) {
                         {"raysBetweenMs", row.raysBetween},
                         {"raysBetween", row.rayBetweenCount},
                         {"objects", row.objectCount},
+                        {"calculations", row.calculations},
                         {"pairs", row.pairCount},
                         {"overlappingPairs", row.truePairCount != StepRow::kNotCounted
                                                  ? Json(row.truePairCount)
@@ -292,15 +331,17 @@ Json verifiedJson(const TriedRun& run) {
     if (run.broadphase != Broadphase::verifying) {
         return nullptr;
     }
-    return {{"calculations", run.calculations},
-            {"pairs", run.pairs},
-            {"missing", run.missing},
-            {"extra", run.extra},
-            {"waitForAMove", run.unasked},
-            {"removedByProgram", run.removed},
-            {"bulletMissing", run.stockMissing},
-            {"bulletExtra", run.stockExtra},
-            {"firstFault", orNull(run.firstFault)}};
+    const tryout::Verification& pairs = run.verification;
+    return {{"calculations", pairs.calculations},
+            {"pairs", pairs.pairs},
+            {"missing", pairs.missing},
+            {"extra", pairs.extra},
+            {"waitForAMove", pairs.unasked},
+            {"removedByProgram", pairs.removed},
+            {"bulletPairs", pairs.stockPairs},
+            {"bulletMissing", pairs.stockMissing},
+            {"bulletExtra", pairs.stockExtra},
+            {"firstFault", orNull(std::string(pairs.firstFault.data()))}};
 }
 
 }  // namespace
@@ -308,22 +349,25 @@ Json verifiedJson(const TriedRun& run) {
 namespace {
 
 StepSummary summaryOf(const std::vector<StepRow>& all) {
-    const std::vector<StepRow> rows = withoutFits(all);
+    const SortedSteps sorted = sortByLength(all);
+    const std::vector<StepRow>& usual = sorted.usual;
     StepSummary summary;
     summary.stepCount = all.size();
-    summary.updateAabbs = mean(rows, &StepRow::updateAabbs);
-    summary.calculate = mean(rows, &StepRow::calculate);
-    summary.rays = mean(rows, &StepRow::rays);
-    if (const double step = mean(rows, &StepRow::step); step > 0) {
+    summary.updateAabbs = mean(usual, &StepRow::updateAabbs);
+    summary.calculate = mean(usual, &StepRow::calculate);
+    summary.rays = mean(usual, &StepRow::rays);
+    if (const double step = mean(usual, &StepRow::step); step > 0) {
         summary.step = step;
     }
-    summary.rayCount = mean(rows, &StepRow::rayCount);
-    summary.raysBetween = mean(rows, &StepRow::raysBetween);
-    summary.rayBetweenCount = mean(rows, &StepRow::rayBetweenCount);
+    summary.raysBetween = mean(usual, &StepRow::raysBetween);
+    summary.slowestShare = timeOf(sorted.slowest) / timeOf(all);
+    summary.slowest = timeOf(sorted.slowest) / std::max(1.0, double(sorted.slowest.size()));
+    summary.rayCount = mean(all, &StepRow::rayCount);
+    summary.rayBetweenCount = mean(all, &StepRow::rayBetweenCount);
     for (const StepRow& row : all) {
         summary.objectCount = std::max(summary.objectCount, static_cast<double>(row.objectCount));
     }
-    summary.pairCount = mean(all, &StepRow::pairCount);
+    summary.pairCount = meanPairs(all);
     summary.truePairCount = truePairs(all, summary.pairCount);
     return summary;
 }

@@ -9,8 +9,8 @@
 
 namespace hashphase::demos {
 
-/// A step with one broadphase: means over the same steps of all runs, so that parts add up; of steps but for
-/// the fastest and the slowest twentieth, as machines have fits. Times in milliseconds.
+/// A step with one broadphase: means over the same steps of all runs. Times, in milliseconds, are those of the
+/// steps but for the fastest and the slowest twentieth, as machines have fits, so that parts add up.
 struct StepSummary {
     std::size_t stepCount = 0;
     double updateAabbs = 0;
@@ -20,9 +20,12 @@ struct StepSummary {
     double rayCount = 0;
     double raysBetween = 0;  // outside of steps
     double rayBetweenCount = 0;
-    double objectCount = 0;  // the most
-    double pairCount = 0;
+    double objectCount = 0;               // the most
+    double pairCount = 0;                 // after a calculation
     std::optional<double> truePairCount;  // scaled up from the steps in which they were counted
+
+    double slowest = 0;       // a step of the slowest twentieth
+    double slowestShare = 0;  // of these, of the time of all steps
 
     [[nodiscard]] double broadphase() const { return updateAabbs + calculate + rays; }
 };

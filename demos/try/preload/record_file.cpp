@@ -27,7 +27,11 @@ Record* mapRecord() noexcept {
         return nullptr;
     }
     auto* mapped = static_cast<Record*>(bytes);
-    return mapped->format == Record::kFormat ? mapped : nullptr;
+    if (mapped->format != Record::kFormat) {
+        return nullptr;
+    }
+    mapped->isLoaded = 1;
+    return mapped;
 }
 
 [[gnu::constructor]] void mapEarly() {

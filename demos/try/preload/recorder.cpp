@@ -26,14 +26,15 @@ float milliseconds(std::int64_t nanoseconds) noexcept {
 
 std::atomic<Record*> ownRecord = nullptr;
 
-// A program may start others, which inherit the library: one of them is recorded.
+// A program may start others, which inherit the library: one of them is recorded, and what takes its place
+// (exec).
 Record* claimRecord() {
     Record* mapped = mappedRecord();
     if (mapped == nullptr) {
         return nullptr;
     }
-    std::int32_t nobody = 0;
-    if (!mapped->process.compare_exchange_strong(nobody, getpid())) {
+    std::int32_t holder = 0;
+    if (!mapped->process.compare_exchange_strong(holder, getpid()) && holder != getpid()) {
         mapped->otherProcesses.fetch_add(1);
         return nullptr;
     }
@@ -62,15 +63,14 @@ thread_local std::uint64_t calculationCount = 0;
 std::atomic<int> objectCount = 0;
 std::atomic<std::int64_t> rayTimeBetween = 0;
 std::atomic<std::uint32_t> rayCountBetween = 0;
-std::atomic<std::uint32_t> startedRows = 0;
 std::atomic<std::int64_t> firstCalculation = 0;
 std::atomic<std::int64_t> lookTime = 0;
 
 void writeRow(Record& into, float stepTime) noexcept {
     const float between = milliseconds(rayTimeBetween.exchange(0));
     const std::uint32_t countBetween = rayCountBetween.exchange(0);
-    const std::uint32_t index = startedRows.fetch_add(1);
-    if (index < into.rowLimit) {
+    const std::uint32_t index = into.rowCount.fetch_add(1);
+    if (index < Record::kMaxRows) {
         into.rows[index] = {stepTime,
                             milliseconds(current.updateAabbs),
                             milliseconds(current.calculate),
@@ -79,11 +79,12 @@ void writeRow(Record& into, float stepTime) noexcept {
                             current.rayCount,
                             countBetween,
                             static_cast<std::uint32_t>(objectCount.load()),
+                            current.calculations,
                             current.pairCount,
                             current.truePairCount};
-        into.rowCount.fetch_add(1, std::memory_order_release);
-    } else {
-        into.droppedRows.fetch_add(1);
+    }
+    if (stepTime > 0) {
+        into.stepCount.fetch_add(1, std::memory_order_release);
     }
     current = {};
 }

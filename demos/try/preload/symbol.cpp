@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,32 +15,46 @@ namespace hashphase::tryout {
 
 namespace {
 
-// Calls found(path, name) for each of Bullet's libraries that is loaded.
-template <class Found>
-void forEachBullet(Found found) {
-    const auto look = [](dl_phdr_info* object, std::size_t /*size*/, void* into) {
-        const std::string_view path = object->dlpi_name;
-        const std::string_view name = path.substr(path.rfind('/') + 1);
-        if (name.starts_with("libBullet")) {
-            (*static_cast<Found*>(into))(object->dlpi_name, name);
-        }
+// Paths of all that is loaded; empty for the program.
+std::vector<std::string> loadedObjects() {
+    std::vector<std::string> paths;
+    const auto add = [](dl_phdr_info* object, std::size_t /*size*/, void* into) {
+        static_cast<std::vector<std::string>*>(into)->emplace_back(object->dlpi_name);
         return 0;
     };
-    dl_iterate_phdr(look, &found);
+    dl_iterate_phdr(add, &paths);
+    return paths;
+}
+
+// What the object defines, or one that it was loaded with.
+void* findIn(const std::string& path, const char* mangledName) {
+    void* object = dlopen(path.empty() ? nullptr : path.c_str(), RTLD_LAZY | RTLD_NOLOAD);
+    void* function = object != nullptr ? dlsym(object, mangledName) : nullptr;
+    if (object != nullptr) {
+        dlclose(object);  // is counted, and stays
+    }
+    return function;
+}
+
+std::string_view nameOf(std::string_view path) {
+    return path.substr(path.rfind('/') + 1);
 }
 
 // Libraries that a plugin has brought along are not in the order of all.
 void* findInPlugins(const char* mangledName) {
-    std::vector<std::string> paths;
-    forEachBullet([&](const char* path, std::string_view /*name*/) { paths.emplace_back(path); });
-    for (const std::string& path : paths) {
-        void* library = dlopen(path.c_str(), RTLD_LAZY | RTLD_NOLOAD);
-        void* function = library != nullptr ? dlsym(library, mangledName) : nullptr;
+    for (const std::string& path : loadedObjects()) {
+        void* function =
+            nameOf(path).starts_with("libBullet") ? findIn(path, mangledName) : nullptr;
         if (function != nullptr) {
             return function;
         }
     }
     return nullptr;
+}
+
+const char* pathOf(const void* function) {
+    Dl_info place{};
+    return dladdr(function, &place) != 0 && place.dli_fname != nullptr ? place.dli_fname : "";
 }
 
 }  // namespace
@@ -60,18 +75,25 @@ void* findNext(const char* mangledName) {
 }
 
 void refuseOtherBullets() {
-    int count = 0;
-    std::string names;
-    forEachBullet([&](const char* /*path*/, std::string_view name) {
-        if (name.starts_with("libBulletCollision")) {
-            names += (count++ > 0 ? " and " : "") + std::string(name);
+    const std::string ownPath = pathOf(reinterpret_cast<const void*>(&refuseOtherBullets));
+    std::set<std::string> bullets;
+    for (const std::string& object : loadedObjects()) {
+        const void* constructor =
+            findIn(object, "_ZN16btDbvtBroadphaseC1EP22btOverlappingPairCache");
+        if (constructor != nullptr && pathOf(constructor) != ownPath) {
+            bullets.insert(pathOf(constructor));
         }
-    });
-    if (count > 1) {
-        std::fprintf(stderr,
-                     "hashphase try: the program and hashphase use two Bullets, %s; is the "
-                     "precision right?\n",
-                     names.c_str());
+    }
+    if (bullets.size() > 1) {
+        std::string names;
+        for (const std::string& path : bullets) {
+            names += (names.empty() ? "" : " and ") + std::string(nameOf(path));
+        }
+        std::fprintf(
+            stderr,
+            "hashphase try: the program and hashphase use two Bullets, those of %s; is the "
+            "precision right, and is none of them linked statically?\n",
+            names.c_str());
         std::abort();
     }
 }

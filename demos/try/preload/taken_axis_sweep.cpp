@@ -139,6 +139,7 @@ template <class Sweep, class Handle>
 void constructSweep(SweepConstructor<Sweep, Handle>* stock, Sweep* sweep, const btVector3& worldMin,
                     const btVector3& worldMax, Handle maxHandles, btOverlappingPairCache* cache,
                     bool hasNoTrees) {
+    refuseOtherBullets();
     noteAxisSweep();
     if (wantedBroadphase() == Broadphase::stock) {
         const StockParts parts;
@@ -158,6 +159,7 @@ void constructBaseSweep(SweepConstructor<Sweep, Handle>* stock, Sweep* sweep,
                         const btVector3& worldMin, const btVector3& worldMax, Handle maxHandles,
                         btOverlappingPairCache* cache, bool hasNoTrees) {
     if (!isMakingPattern) {
+        refuseOtherBullets();
         noteDerivedSweep();
     }
     const StockParts parts;

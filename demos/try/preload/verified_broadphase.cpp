@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <functional>
 #include <iterator>
+#include <mutex>
 
 namespace hashphase::tryout {
 namespace {
@@ -49,7 +50,7 @@ std::vector<Couple> difference(const std::vector<Couple>& from, const std::vecto
 // The first fault, as a sentence for the record.
 void describe(Verification& verification, const char* fault, const Couple& couple,
               std::uint64_t calculation) {
-    if (verification.hasFault.exchange(true)) {
+    if (verification.firstFault[0] != '\0') {
         return;
     }
     const auto& [a, b] = couple;
@@ -63,6 +64,24 @@ void describe(Verification& verification, const char* fault, const Couple& coupl
                   number(a->m_aabbMax.x()), number(a->m_aabbMax.y()), number(a->m_aabbMax.z()),
                   number(b->m_aabbMin.x()), number(b->m_aabbMin.y()), number(b->m_aabbMin.z()),
                   number(b->m_aabbMax.x()), number(b->m_aabbMax.y()), number(b->m_aabbMax.z()));
+}
+
+// Worlds may be stepped on several threads.
+void add(const Verification& calculation, Verification& into) {
+    static std::mutex adding;
+    const std::lock_guard lock(adding);
+    if (into.firstFault[0] == '\0') {
+        into.firstFault = calculation.firstFault;
+    }
+    into.calculations += calculation.calculations;
+    into.pairs += calculation.pairs;
+    into.missing += calculation.missing;
+    into.extra += calculation.extra;
+    into.unasked += calculation.unasked;
+    into.removed += calculation.removed;
+    into.stockPairs += calculation.stockPairs;
+    into.stockMissing += calculation.stockMissing;
+    into.stockExtra += calculation.stockExtra;
 }
 
 }  // namespace
@@ -248,17 +267,17 @@ void VerifiedBroadphase::compare() {
     if (into == nullptr) {
         return;
     }
-    Verification& verification = into->verification;
     btOverlappingPairCache& cache = *ours_.getOverlappingPairCache();
     const std::vector<Couple> exact = findOverlapping();
     const std::vector<Couple> ours =
         couplesOf(cache, [](btBroadphaseProxy* proxy) { return proxy; });
     const std::vector<Couple> stock = couplesOf(stock_->cache(), programs);
 
-    verification.calculations.fetch_add(1);
-    verification.pairs.fetch_add(ours.size());
+    Verification verification;
+    verification.calculations = 1;
+    verification.pairs = ours.size();
     for (const Couple& couple : difference(ours, exact)) {
-        verification.extra.fetch_add(1);
+        ++verification.extra;
         describe(verification, "extra", couple, calculation_);
     }
     for (const Couple& couple : difference(exact, ours)) {
@@ -266,11 +285,11 @@ void VerifiedBroadphase::compare() {
             continue;
         }
         if (std::binary_search(removed_.begin(), removed_.end(), couple)) {
-            verification.removed.fetch_add(1);
+            ++verification.removed;
         } else if (isUnasked(couple)) {
-            verification.unasked.fetch_add(1);
+            ++verification.unasked;
         } else {
-            verification.missing.fetch_add(1);
+            ++verification.missing;
             describe(verification, "missing", couple, calculation_);
         }
     }
@@ -280,12 +299,14 @@ void VerifiedBroadphase::compare() {
     });
     last_ = ours;
 
-    verification.stockExtra.fetch_add(difference(stock, exact).size());
+    verification.stockPairs = stock.size();
+    verification.stockExtra = difference(stock, exact).size();
     for (const Couple& couple : difference(exact, stock)) {
         if (!isUnasked(couple) && cache.needsBroadphaseCollision(couple.first, couple.second)) {
-            verification.stockMissing.fetch_add(1);
+            ++verification.stockMissing;
         }
     }
+    add(verification, into->verification);
 }
 
 }  // namespace hashphase::tryout

@@ -62,10 +62,35 @@ TEST(TryRefuses, ClassesDerivedFromASweep) {
 
 TEST(Try, SaysWhenThePrecisionIsWrong) {
     const std::string plugin = stock("libstock-programs-plugin.so");
-    const Output output = tryProgram("--quiet --precision double -- " + stock("stock-host") + " " +
-                                     plugin + " churn");
-    EXPECT_TRUE(has(output.err, "use two Bullets, libBulletCollision")) << output.err;
+    for (const std::string name : {"churn", "sweep-16", "derived-sweep"}) {
+        const Output output = tryProgram("--quiet --precision double -- " + stock("stock-host") +
+                                         " " + plugin + " " + name);
+        EXPECT_TRUE(has(output.err, "use two Bullets, those of libBulletCollision"))
+            << name << output.err;
+        EXPECT_NE(output.status, kExitOk);
+    }
+}
+
+TEST(Try, SaysWhenAPluginHasABulletOfItsOwn) {
+    const Output output = tryProgram("--quiet --precision single -- " + stock("stock-host") + " " +
+                                     stock("libstock-programs-embedding-plugin.so") + " churn");
+    EXPECT_TRUE(has(output.err,
+                    " and libstock-programs-embedding-plugin.so; is the precision "
+                    "right, and is none of them linked statically?"))
+        << output.err;
     EXPECT_NE(output.status, kExitOk);
+}
+
+TEST(TryRefuses, ProgramsThatDoNotLoadWhatIsPreloaded) {
+    const TemporaryFolder folder;
+    const std::string program = folder.file("program");
+    if (runCommand("cp " + stock("stock-host") + " " + program + " && chown nobody " + program +
+                       " && chmod u+s " + program,
+                   folder)
+            .status != 0) {
+        GTEST_SKIP() << "only root can give a program the rights of another user";
+    }
+    expectRefused("--precision single -- " + program, "has not loaded what was preloaded", folder);
 }
 
 TEST(TryRefuses, FoldersOfTemporaryFilesThatAreNone) {

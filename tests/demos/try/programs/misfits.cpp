@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -41,6 +42,29 @@ int endless() {
     addPile(scene);
     for (;;) {
         scene.step(1);
+    }
+}
+
+// Ends when it is interrupted, and says so.
+int interruptible() {
+    static volatile std::sig_atomic_t isInterrupted = 0;
+    std::signal(SIGINT, [](int) { isInterrupted = 1; });
+    Scene<> scene;
+    addPile(scene);
+    while (isInterrupted == 0) {
+        scene.step(1);
+    }
+    std::puts("interrupted");
+    return 0;
+}
+
+// Calculates pairs by hand as often as it steps.
+int endlessByHand() {
+    Scene<> scene;
+    addPile(scene);
+    for (;;) {
+        scene.world.performDiscreteCollisionDetection();
+        scene.broadphase.calculateOverlappingPairs(&scene.dispatcher);
     }
 }
 
@@ -221,6 +245,32 @@ int readsInput() {
     return 0;
 }
 
+// Waits for a line before it makes a world.
+int waitsForInput() {
+    char line[64] = "";
+    return std::fgets(line, sizeof(line), stdin) != nullptr ? readsInput() : 1;
+}
+
+// Becomes another program, after some steps.
+int restarts() {
+    {
+        Scene<> scene;
+        addPile(scene);
+        scene.step(5);
+    }
+    std::fflush(stdout);
+    return execl("/proc/self/exe", "stock-programs", "started", nullptr);
+}
+
+// Starts another program, which takes its time, and ends.
+int launcher() {
+    if (fork() == 0) {
+        usleep(300'000);
+        execl("/proc/self/exe", "stock-programs", "started", nullptr);
+    }
+    return 0;
+}
+
 // Says whether its broadphase has trees, and starts itself once more to say so.
 int starter(bool isFirst) {
     Scene<> scene;
@@ -316,6 +366,8 @@ const std::vector<Program>& misfitPrograms() {
     static const std::vector<Program> list{{"failing", failing},
                                            {"crashing", crashing},
                                            {"endless", endless},
+                                           {"interruptible", interruptible},
+                                           {"endless-by-hand", endlessByHand},
                                            {"traffic", traffic},
                                            {"casts-cache", castsCache},
                                            {"tampering", tampering},
@@ -325,6 +377,9 @@ const std::vector<Program>& misfitPrograms() {
                                            {"bare-sweep", bareSweep},
                                            {"timed-steps", timedSteps},
                                            {"reads-input", readsInput},
+                                           {"waits-for-input", waitsForInput},
+                                           {"restarts", restarts},
+                                           {"launcher", launcher},
                                            {"starter", [] { return starter(true); }},
                                            {"started", [] { return starter(false); }},
                                            {"simple-starter", simpleStarter},
