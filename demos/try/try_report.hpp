@@ -1,50 +1,16 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
+#include <demos/try/step_summary.hpp>
 #include <demos/try/try.hpp>
 
 #include <iosfwd>
-#include <optional>
 #include <string>
 
 namespace hashphase::demos {
 
-/// A step with one broadphase: means over the same steps of all runs. Times, in milliseconds, are those of the
-/// steps but for the fastest and the slowest twentieth, as machines have fits, so that parts add up.
-struct StepSummary {
-    std::size_t stepCount = 0;
-    double updateAabbs = 0;
-    double calculate = 0;
-    double rays = 0;
-    std::optional<double> step;  // nothing where the program makes no steps
-    double rayCount = 0;
-    double raysBetween = 0;  // outside of steps
-    double rayBetweenCount = 0;
-    double objectCount = 0;               // the most
-    double pairCount = 0;                 // after a calculation
-    std::optional<double> truePairCount;  // scaled up from the steps in which they were counted
-
-    double slowest = 0;       // a step of the slowest twentieth
-    double slowestShare = 0;  // of these, of the time of all steps
-
-    [[nodiscard]] double broadphase() const { return updateAabbs + calculate + rays; }
-};
-
-/// Both broadphases over the same steps: run by run, the first ones, as many as both have. Nothing where that
-/// is none.
-struct StepComparison {
-    StepSummary stock;
-    StepSummary ours;
-    bool isCut = false;  // one of two runs had more steps
-};
-[[nodiscard]] std::optional<StepComparison> compareSteps(const Trial& trial);
-
 /// Whether a run with ours ended in a way in which none of Bullet's did.
 [[nodiscard]] bool isEndOfOurs(const Trial& trial);
-
-/// The step with Bullet's broadphase, of which ours takes the place; nothing where its time is not known.
-[[nodiscard]] std::optional<double> projectedStep(const StepSummary& stock,
-                                                  const StepSummary& ours);
 
 void printTrial(const Trial& trial, std::ostream& out);
 void writeTrialJson(const Trial& trial, const std::string& commandLine, std::ostream& out);

@@ -5,22 +5,20 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
-
-#include <unistd.h>
+#include <system_error>
 
 namespace hashphase::demos {
 
 class TemporaryFolder {
 public:
     TemporaryFolder() {
-        const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-        path_ = std::filesystem::temp_directory_path() /
-                ("hashphase-" + std::to_string(getpid()) + "-" + test->test_suite_name() + "-" +
-                 test->name());
-        std::filesystem::create_directories(path_);
+        std::string path = (std::filesystem::temp_directory_path() / "hashphase-XXXXXX").string();
+        EXPECT_NE(mkdtemp(path.data()), nullptr) << path;
+        path_ = path;
     }
     TemporaryFolder(const TemporaryFolder&) = delete;
     TemporaryFolder& operator=(const TemporaryFolder&) = delete;

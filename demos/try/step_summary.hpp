@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What the steps of a trial took.
+
+#include <demos/try/try.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace hashphase::demos {
+
+/// The runs of a trial with that broadphase, in their order.
+[[nodiscard]] std::vector<const TriedRun*> runsOf(const Trial& trial,
+                                                  tryout::Broadphase broadphase);
+
+/// A step with one broadphase: means over the same steps of all runs. Times, in milliseconds, are those of the
+/// steps but for the fastest and the slowest twentieth, as machines have fits, so that parts add up.
+struct StepSummary {
+    std::size_t stepCount = 0;
+    double updateAabbs = 0;
+    double calculate = 0;
+    double rays = 0;
+    std::optional<double> step;  // nothing where the program makes no steps
+    double rayCount = 0;
+    double raysBetween = 0;  // outside of steps
+    double rayBetweenCount = 0;
+    double objectCount = 0;               // the most
+    double pairCount = 0;                 // after a calculation
+    std::optional<double> truePairCount;  // scaled up from the steps in which they were counted
+
+    double slowest = 0;       // a step of the slowest twentieth
+    double slowestShare = 0;  // of these, of the time of all steps
+
+    [[nodiscard]] double broadphase() const { return updateAabbs + calculate + rays; }
+};
+
+/// Both broadphases over the same steps: run by run, the first ones, as many as both have. Nothing where that
+/// is none.
+struct StepComparison {
+    StepSummary stock;
+    StepSummary ours;
+    bool isCut = false;  // one of two runs had more steps
+};
+[[nodiscard]] std::optional<StepComparison> compareSteps(const Trial& trial);
+
+/// The step with Bullet's broadphase, of which ours takes the place; nothing where its time is not known.
+[[nodiscard]] std::optional<double> projectedStep(const StepSummary& stock,
+                                                  const StepSummary& ours);
+
+}  // namespace hashphase::demos
