@@ -25,7 +25,7 @@
 // Failure     Where memory runs out in advance(), some bodies may have moved; the next frame goes on, and
 //             tells all pairs as born. add() has added nothing then, and remove() has removed nothing.
 // Units       metres, seconds
-// Misuse      An id of no body and a time step that is negative or not finite are asserted.
+// Misuse      An id of no body (of this simulation, or as another one's of the same numbers) and a time step that is negative or not finite are asserted.
 
 #include <broadphase/detail/fixed_list.hpp>
 #include <broadphase/grid.hpp>
@@ -54,6 +54,7 @@ struct BodyId {
     std::uint32_t index = 0;
     std::uint32_t generation = 0;
 
+    /// True for BodyId{}, which names nobody.
     [[nodiscard]] constexpr bool isNull() const noexcept { return generation == 0; }
     friend constexpr auto operator<=>(const BodyId&, const BodyId&) = default;
 };
@@ -306,3 +307,7 @@ extern template class Simulation<float>;
 extern template class Simulation<double>;
 
 }  // namespace hashphase
+
+/// For keys of std::unordered_map.
+template <>
+struct std::hash<hashphase::BodyId> : hashphase::detail::IdHash<hashphase::BodyId> {};
