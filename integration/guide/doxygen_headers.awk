@@ -3,9 +3,9 @@
 # Headers as Doxygen reads them, line by line. The comment at the head of each says what it is for, and
 # becomes the file's description: its first paragraph as text, the rest as it stands, because its tables
 # live by their columns. Explicit instantiations are left out, and the namespace that tells precisions
-# apart, which nobody writes.
+# apart, which nobody writes, and what is for compilers alone.
 
-{ sub(/::inline HASHPHASE_BULLET_NAMESPACE/, "") }
+{ sub(/::inline HASHPHASE_BULLET_NAMESPACE/, ""); sub(/ HASHPHASE_LIFETIME_BOUND\)/, ")") }
 
 /^extern template/ { isInstantiation = 1 }
 isInstantiation {
