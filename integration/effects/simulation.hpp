@@ -25,7 +25,7 @@
 // Failure     Where memory runs out in advance(), some bodies may have moved; the next frame goes on, and
 //             tells all pairs as born. add() has added nothing then, and remove() has removed nothing.
 // Units       metres, seconds
-// Misuse      An id of no body (of this simulation, or as another one's of the same numbers) and a time step that is negative or not finite are asserted.
+// Misuse      An id of no body and a time step that is negative or not finite are asserted.
 
 #include <broadphase/detail/fixed_list.hpp>
 #include <broadphase/grid.hpp>
