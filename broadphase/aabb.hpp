@@ -7,6 +7,8 @@
 // Closed  Boxes contain their faces: boxes that touch overlap, as in Bullet.
 // NaN     A box with a NaN coordinate overlaps nothing.
 
+#include <broadphase/export.hpp>
+
 #include <Eigen/Geometry>
 
 #include <cstddef>

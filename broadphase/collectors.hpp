@@ -6,7 +6,8 @@
 //   add(id, key)   takes a proxy that lies in the region, each at most once a query
 //   limit()        the largest key still wanted; below zero the query ends
 //
-// Each lives on the caller's stack and serves one query on one thread.
+// Each lives on the caller's stack and serves one query on one thread. Queries take it as a variable,
+// which has the answer afterwards, not as a temporary.
 
 #include <broadphase/proxy_id.hpp>
 

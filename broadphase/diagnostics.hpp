@@ -10,7 +10,8 @@
 //           sentence; the default handler writes it to stderr.
 // Misuse    A broken precondition is an assertion. The default handler writes the sentence with its
 //           place to stderr and aborts. Assertions are compiled in when HASHPHASE_ENABLE_ASSERTS is
-//           1, which is so in every build type but Release.
+//           1, which is so in every build type but Release and MinSizeRel: in RelWithDebInfo as well.
+//           HASHPHASE_ASSERTS of CMake says otherwise.
 
 #include <broadphase/export.hpp>
 

@@ -9,6 +9,11 @@
 // HASHPHASE_ONE_FOR_ALL stands before a variable of a thread in a header, of which all libraries of a
 // program are to see the same one. DLLs cannot share it, and have one each.
 
+// Every public header leads here before anything that older compilers stumble over.
+#if defined(_MSVC_LANG) ? _MSVC_LANG <= 201703L : __cplusplus <= 201703L
+#error "hashphase needs C++20: -std=c++20, /std:c++20, or target_compile_features(... cxx_std_20)."
+#endif
+
 #if HASHPHASE_SHARED && defined(_WIN32)
 #define HASHPHASE_SYMBOL_EXPORT __declspec(dllexport)
 #define HASHPHASE_SYMBOL_IMPORT __declspec(dllimport)

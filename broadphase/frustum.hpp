@@ -10,7 +10,8 @@
 //           Eigen::Map<const Eigen::Matrix4f>(matrix), as an argument of frustumRegion<float>().
 // Units     metres in the world; normalised device coordinates from -1 to 1 on the screen.
 // Bad data  A matrix that is NaN or infinite sees nothing; frustumError() says why. A singular one
-//           sees what its planes enclose: a line of sight, a sheet, nothing.
+//           sees what its planes enclose: a line of sight, a sheet, nothing. A transposed one is that of
+//           some other camera, which nothing can tell.
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/convex_region.hpp>
@@ -37,7 +38,8 @@ template <class Scalar>
 }
 
 /// Says in a sentence why nothing can be seen through the matrix, 4 x 4, or through that part of the
-/// screen; empty when something may be.
+/// screen; empty when something may be. Not whether that is what was meant: of a point that the camera is
+/// known to see, `viewProjection * (x, y, z, 1)` has -w <= x <= w and -w <= y <= w.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_BROADPHASE_EXPORT std::string frustumError(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection,
@@ -60,6 +62,14 @@ template <class Scalar>
     Containment containment = Containment::touching, Touch touch = Touch::exact) {
     return ConvexRegion<Scalar>(frustumPlanes(viewProjection, depthRange, rectangle), containment,
                                 touch);
+}
+
+/// The same for the whole screen.
+template <class Scalar>
+[[nodiscard]] ConvexRegion<Scalar> frustumRegion(const Eigen::Matrix<Scalar, 4, 4>& viewProjection,
+                                                 DepthRange depthRange, Containment containment,
+                                                 Touch touch = Touch::exact) {
+    return frustumRegion(viewProjection, depthRange, wholeScreen<Scalar>(), containment, touch);
 }
 
 }  // namespace hashphase

@@ -1,9 +1,19 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
+#include <broadphase/export.hpp>
+
 #include <memory>
 #include <type_traits>
 #include <utility>
+
+// Before a parameter that what is made of it refers to: Clang warns where it is a temporary that is gone
+// before that.
+#if __has_cpp_attribute(clang::lifetimebound)
+#define HASHPHASE_LIFETIME_BOUND [[clang::lifetimebound]]
+#else
+#define HASHPHASE_LIFETIME_BOUND
+#endif
 
 namespace hashphase {
 
@@ -11,7 +21,7 @@ template <class Signature>
 class FunctionRef;
 
 /// A reference to anything callable, for parameters only: it must not outlive the call that it is
-/// passed to. Two pointers, no allocation.
+/// passed to, nor the callable. To keep a lambda, keep it as `const auto`. Two pointers, no allocation.
 template <class Result, class... Arguments>
 class FunctionRef<Result(Arguments...)> {
 public:
@@ -19,7 +29,7 @@ public:
         requires(!std::is_same_v<std::remove_cvref_t<Callable>, FunctionRef> &&
                  std::is_invocable_r_v<Result, Callable&, Arguments...>)
     // NOLINTNEXTLINE(bugprone-forwarding-reference-overload): copies are ruled out above
-    FunctionRef(Callable&& callable)
+    FunctionRef(Callable&& callable HASHPHASE_LIFETIME_BOUND)
     noexcept {
         using Target = std::remove_reference_t<Callable>;
         if constexpr (std::is_function_v<Target>) {

@@ -28,7 +28,8 @@
 // Memory     Where it runs out, std::bad_alloc comes from add(), reserve(), shiftOrigin(), update() and
 //            queries that file or grow; nothing is lost, and the call may be repeated. move() and
 //            remove() allocate nothing.
-// Misuse     An id that is null, stale or of another grid is asserted.
+// Misuse     An id that is null or stale is asserted. One of another grid is too, unless this grid has a
+//            proxy of the same index and generation, for which it is taken.
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/collectors.hpp>
@@ -148,6 +149,12 @@ public:
     /// ProxyId::index of every proxy, present and past, is below it: the length of an array by index.
     [[nodiscard]] std::uint32_t indexLimit() const noexcept {
         return static_cast<std::uint32_t>(records_.size());
+    }
+
+    /// The proxy alive that has this index; null when there is none. From what is kept by index, as
+    /// CollectBits does, back to who is meant. Cost: O(1).
+    [[nodiscard]] ProxyId idAt(std::uint32_t index) const noexcept {
+        return index < indexLimit() && isAlive(index) ? idOf(index) : ProxyId{};
     }
 
     /// Number of proxies whose box has a NaN now.

@@ -47,12 +47,13 @@ public:
     using OfMany = FunctionRef<void(std::span<const ProxyPair> asked, std::span<char> accepted)>;
 
     template <std::convertible_to<OfOne> Ask>
-    PairFilter(Ask&& ask) noexcept : ask_(OfOne(ask)) {}  // NOLINT: conversion is its purpose
+    PairFilter(Ask&& ask HASHPHASE_LIFETIME_BOUND) noexcept  // NOLINT: conversion is its purpose
+        : ask_(OfOne(ask)) {}
 
     template <class Ask>
         requires(!std::is_same_v<std::remove_cvref_t<Ask>, PairFilter> &&
                  !std::convertible_to<Ask, OfOne> && std::convertible_to<Ask, OfMany>)
-    PairFilter(Ask&& ask)  // NOLINT: conversion is its purpose
+    PairFilter(Ask&& ask HASHPHASE_LIFETIME_BOUND)  // NOLINT: conversion is its purpose
         : ask_(OfMany(ask)) {}
 
     void operator()(std::span<const ProxyPair> asked, std::span<char> accepted) const {
@@ -69,6 +70,11 @@ public:
 private:
     std::variant<OfOne, OfMany> ask_;
 };
+
+/// The filter that refuses nothing.
+[[nodiscard]] inline bool acceptAllPairs(ProxyId /*first*/, ProxyId /*second*/) noexcept {
+    return true;
+}
 
 /// Sorted; what update() returns is valid until the next update(), the rest until the next call of
 /// another kind. A pair that died may name a proxy that was removed.
@@ -105,7 +111,7 @@ public:
     /// axis, the best one of each; at worst, for proxies that lie side by side along every axis and do
     /// not touch, or that are inverted, a few tests of every two. Ways of Sweeps are searched in up to
     /// 40 parts each, and against each other in up to 64.
-    PairChanges update(PairFilter filter, ParallelFor parallelFor = serialFor) &;
+    PairChanges update(PairFilter filter = acceptAllPairs, ParallelFor parallelFor = serialFor) &;
 
     /// Pairs of one proxy, which is alive (asserted), that have come to overlap since the last update,
     /// at once; update() will not report them again. Returns births only; not what it meets on its

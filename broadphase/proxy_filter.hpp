@@ -11,6 +11,10 @@ namespace hashphase {
 /// Says whether a query may find a proxy: by group and mask (integration/bullet/group_filter.hpp), by
 /// team, by anything that the caller keeps by ProxyId::index. Asked about what lies in the region
 /// only. Queries that run on several threads ask on all of them.
+///
+/// For parameters only: it refers to the function that it is made of, and keeps no copy. Keep the function:
+/// `const auto enemies = [&](ProxyId id) { ... };`. As `const ProxyFilter enemies = [&] ...` it would be gone
+/// at the end of the line (Clang warns).
 using ProxyFilter = FunctionRef<bool(ProxyId)>;
 
 /// The filter that refuses nothing.

@@ -15,7 +15,7 @@
 // Units     metres; times are fractions of the frame, 0 to 1.
 // Bad data  A displacement that is NaN or infinite counts as none, and is reported once through the
 //           message handler.
-// Misuse    An id that is null, stale or of another grid is asserted.
+// Misuse    An id that the grid does not contain is asserted.
 //
 // After Hastings, Mesit and Guha, "Optimization of Large-Scale, Real-Time Simulations by Spatial
 // Hashing", 2005: hashing over time, by a box or by a line of cells, chosen by behaviour.

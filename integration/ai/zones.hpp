@@ -15,7 +15,8 @@
 //           told the next one does.
 // Bad data  Nobody is in a zone whose shape has a NaN or a negative radius. An inverted box means
 //           what overlaps() says.
-// Misuse    An id of no zone is asserted.
+// Misuse    An id of no zone is asserted; one of other Zones that some zone here has as well is taken for
+//           that.
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/grid.hpp>
@@ -26,6 +27,7 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -37,6 +39,7 @@ struct ZoneId {
     std::uint32_t index = 0;
     std::uint32_t generation = 0;
 
+    /// True for ZoneId{}, which names no zone.
     [[nodiscard]] constexpr bool isNull() const noexcept { return generation == 0; }
     friend constexpr auto operator<=>(const ZoneId&, const ZoneId&) = default;
 };
@@ -163,3 +166,7 @@ extern template class Zones<float>;
 extern template class Zones<double>;
 
 }  // namespace hashphase
+
+/// For keys of std::unordered_map.
+template <>
+struct std::hash<hashphase::ZoneId> : hashphase::detail::IdHash<hashphase::ZoneId> {};

@@ -11,27 +11,34 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// A ProxyFilter by Bullet's rule: accepts proxies whose group is in `mask`, and whose mask has `group`,
-/// that of whoever asks. As for a ray callback's m_collisionFilterMask and m_collisionFilterGroup. Sees
-/// changes of a proxy's group and mask at once. The broadphase must outlive the filter. Any number of
+/// A ProxyFilter by Bullet's rule: accepts proxies whose group is in the mask of whoever asks, and whose
+/// mask has that one's group:
+///
+///     const GroupFilter enemies(broadphase, {.mask = kEnemyGroup});
+///
+/// Sees changes of a proxy's group and mask at once. The broadphase must outlive the filter. Any number of
 /// threads.
 class GroupFilter {
 public:
-    explicit GroupFilter(const SpatialHashBroadphase& broadphase, int mask,
-                         int group = btBroadphaseProxy::AllFilter) noexcept
-        : broadphase_(&broadphase), mask_(mask), group_(group) {}
-    GroupFilter(const SpatialHashBroadphase&&, int, int = 0) = delete;
+    /// Who asks, as a ray callback's m_collisionFilterGroup and m_collisionFilterMask say.
+    struct Asker {
+        int group = btBroadphaseProxy::AllFilter;
+        int mask = btBroadphaseProxy::AllFilter;
+    };
+
+    GroupFilter(const SpatialHashBroadphase& broadphase, const Asker& asker) noexcept
+        : broadphase_(&broadphase), asker_(asker) {}
+    GroupFilter(const SpatialHashBroadphase&&, const Asker&) = delete;
 
     [[nodiscard]] bool operator()(ProxyId id) const {
         const btBroadphaseProxy* proxy = broadphase_->proxyOf(id);
-        return (proxy->m_collisionFilterGroup & mask_) != 0 &&
-               (group_ & proxy->m_collisionFilterMask) != 0;
+        return (proxy->m_collisionFilterGroup & asker_.mask) != 0 &&
+               (asker_.group & proxy->m_collisionFilterMask) != 0;
     }
 
 private:
     const SpatialHashBroadphase* broadphase_;
-    int mask_;
-    int group_;
+    Asker asker_;
 };
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

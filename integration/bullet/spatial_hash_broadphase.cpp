@@ -12,6 +12,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <sstream>
+#include <stdexcept>
 #include <utility>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
@@ -22,6 +24,28 @@ extern bool (*const kBulletOfTheSamePrecision)(const btAlignedObjectArray<btVect
                                                const btVector3&, btScalar);
 bool (*const kBulletOfTheSamePrecision)(const btAlignedObjectArray<btVector3>&, const btVector3&,
                                         btScalar) = &btGeometryUtil::isPointInsidePlanes;
+
+namespace {
+
+const SpatialHashConfig& checked(const SpatialHashConfig& config) {
+    const std::string error = configError(config);
+    if (!error.empty()) {
+        throw std::invalid_argument(error);
+    }
+    return config;
+}
+
+}  // namespace
+
+std::string configError(const SpatialHashConfig& config) {
+    if (!(config.fastFrom >= 0)) {  // or NaN
+        std::ostringstream sentence;
+        sentence << "SpatialHashConfig::fastFrom is " << config.fastFrom
+                 << ", but must be 0 or more.";
+        return sentence.str();
+    }
+    return configError(config.grid);
+}
 
 // --- Proxies -------------------------------------------------------------------------------------
 
@@ -38,7 +62,7 @@ SpatialHashBroadphase::SpatialHashBroadphase(PairCache* pairCache, const Spatial
 
 SpatialHashBroadphase::SpatialHashBroadphase(btOverlappingPairCache* pairCache,
                                              const SpatialHashConfig& config)
-    : config_(config),
+    : config_(checked(config)),
       grid_(config.grid),
       sweeps_(config.sweep != Sweep::none ? std::make_unique<Sweeps<btScalar>>(grid_) : nullptr),
       pairs_(grid_, sweeps_.get()),

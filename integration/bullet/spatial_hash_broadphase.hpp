@@ -58,7 +58,7 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 /// Settings of the broadphase; the defaults work for any world.
 struct SpatialHashConfig {
-    GridConfig grid;
+    GridConfig grid{};
 
     /// Proxies of these groups get their pairs at once, in createProxy() and setAabb(), as Bullet's
     /// character controller and ghost objects expect.
@@ -67,7 +67,7 @@ struct SpatialHashConfig {
     /// On what threads calculateOverlappingPairs() runs its loops; empty for the caller's. The
     /// result is the same on any number. See bullet_parallel_for.hpp and
     /// integration/tbb/tbb_parallel_for.hpp. Called with count, grain and body, see ParallelFor.
-    std::function<void(std::size_t count, std::size_t grain, LoopBody body)> parallelFor;
+    std::function<void(std::size_t count, std::size_t grain, LoopBody body)> parallelFor{};
 
     /// How to find what a fast rigid body passes in a step; by default not at all. In place of the box
     /// that Bullet hands in, which with m_useContinuous covers start and end and all that lies
@@ -79,13 +79,16 @@ struct SpatialHashConfig {
     Sweep sweep = Sweep::none;
 
     /// A body is fast in a step in which it moves by more than this share of the smallest edge of its
-    /// box. The others keep the box that Bullet hands in.
+    /// box. The others keep the box that Bullet hands in. Valid: 0 or more.
     btScalar fastFrom = 1;
 
     /// Ends a query when process() of its callback returns false. Off by default: Bullet's own
     /// broadphases ignore the result, and programs return false for other reasons.
     bool stopWhenProcessReturnsFalse = false;
 };
+
+/// As that of GridConfig, for the grid's settings and fastFrom.
+[[nodiscard]] HASHPHASE_BULLET_EXPORT std::string configError(const SpatialHashConfig& config);
 
 /// What createProxies() makes a proxy of: the arguments of createProxy().
 struct ProxyDefinition {
@@ -115,7 +118,7 @@ struct ClosestRay {
 /// A btBroadphaseInterface over a Grid, in place of btDbvtBroadphase.
 class HASHPHASE_BULLET_EXPORT SpatialHashBroadphase : public btBroadphaseInterface {
 public:
-    /// Makes and owns a PairCache. Throws std::invalid_argument with configError(config.grid).
+    /// Makes and owns a PairCache. Throws std::invalid_argument with configError(config).
     explicit SpatialHashBroadphase(const SpatialHashConfig& config = {});
 
     /// Uses `pairCache`, which must outlive the broadphase and have no pairs yet (asserted); with
@@ -238,7 +241,8 @@ public:
     std::size_t shiftOrigin(const btVector3& shift);
 
     /// The grid, for queries that Bullet has none for. proxyOf() leads back to Bullet, of what is
-    /// alive (asserted); idOf() is for proxies of this class.
+    /// alive (asserted), whose m_clientObject is the btCollisionObject; idOf() is for proxies of this
+    /// class. Of an index: proxyOf(grid().idAt(index)).
     [[nodiscard]] const Grid<btScalar>& grid() const noexcept { return grid_; }
     [[nodiscard]] btBroadphaseProxy* proxyOf(ProxyId id) const;
     [[nodiscard]] static ProxyId idOf(const btBroadphaseProxy* proxy);

@@ -5,7 +5,7 @@
 // volume, such as the ground below a camera that looks down.
 //
 //     Culler<float> culler;
-//     culler.look(grid, frustumRegion<float>(viewProjection, DepthRange::zeroToOne, ...));
+//     culler.look(grid, frustumRegion<float>(viewProjection, DepthRange::zeroToOne));
 //     culler.forEach([&](std::uint32_t index) { draw(objects[index]); });
 //
 // Never culls what is visible: a proxy of which the box touches the volume is in the set. A few more
@@ -20,6 +20,7 @@
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/detail/query_scope.hpp>
+#include <broadphase/frustum.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/proxy_filter.hpp>
 #include <integration/culling/export.hpp>
@@ -95,8 +96,8 @@ public:
 
     [[nodiscard]] std::size_t count() const noexcept;
 
-    /// Calls visit(index) for the ProxyId::index of every proxy in the set, ascending. It does not look
-    /// anew (asserted). Cost: a 64th of the proxies, and the calls.
+    /// Calls visit(index) for the ProxyId::index of every proxy in the set, ascending; Grid::idAt() has
+    /// its id. It does not look anew (asserted). Cost: a 64th of the proxies, and the calls.
     template <class Visit>
     void forEach(Visit&& visit) const {
         const detail::QueryScope scope(this);

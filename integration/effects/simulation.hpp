@@ -54,6 +54,7 @@ struct BodyId {
     std::uint32_t index = 0;
     std::uint32_t generation = 0;
 
+    /// True for BodyId{}, which names nobody.
     [[nodiscard]] constexpr bool isNull() const noexcept { return generation == 0; }
     friend constexpr auto operator<=>(const BodyId&, const BodyId&) = default;
 };
@@ -306,3 +307,7 @@ extern template class Simulation<float>;
 extern template class Simulation<double>;
 
 }  // namespace hashphase
+
+/// For keys of std::unordered_map.
+template <>
+struct std::hash<hashphase::BodyId> : hashphase::detail::IdHash<hashphase::BodyId> {};

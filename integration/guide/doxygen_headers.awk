@@ -2,12 +2,12 @@
 #
 # Headers as Doxygen reads them, line by line. The comment at the head of each says what it is for, and
 # becomes the file's description: its first paragraph as text, the rest as it stands, because its tables
-# live by their columns. Explicit instantiations are left out, and the namespace that tells precisions
-# apart, which nobody writes.
+# live by their columns. Instantiations and specialisations are left out, the namespace that tells precisions
+# apart, which nobody writes, and what is for compilers alone.
 
-{ sub(/::inline HASHPHASE_BULLET_NAMESPACE/, "") }
+{ sub(/::inline HASHPHASE_BULLET_NAMESPACE/, ""); sub(/ HASHPHASE_LIFETIME_BOUND\)/, ")") }
 
-/^extern template/ { isInstantiation = 1 }
+/^extern template/ || /^template <>$/ { isInstantiation = 1 }
 isInstantiation {
     if (/;$/) isInstantiation = 0
     print ""

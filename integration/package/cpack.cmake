@@ -33,8 +33,8 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
-set(about "A spatial hash that replaces the broadphase of Bullet in one line, with exact
-pairs in every step. Picking, culling, AI and terrain ask the same grid.")
+set(about "A spatial hash that replaces the broadphase of Bullet, with exact pairs in every
+step. Picking, culling, AI and terrain ask the same grid.")
 
 set(librariesPackage libhashphase${HASHPHASE_ABI_VERSION})
 set(CPACK_DEBIAN_HASHPHASE_LIBRARIES_PACKAGE_NAME ${librariesPackage})

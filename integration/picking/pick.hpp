@@ -27,7 +27,7 @@ namespace hashphase {
 /// What a ray has met, and where.
 template <class Scalar>
 struct Picked {
-    ProxyId id;                                       // null: nothing
+    ProxyId id;                                       // isNull(): nothing is met
     Scalar fraction = 0;                              // of the ray's length, at which it is met
     Vector3<Scalar> point = Vector3<Scalar>::Zero();  // there [m]
 };

@@ -21,6 +21,7 @@
 
 #include <cstdint>
 #include <string>
+#include <type_traits>
 
 namespace hashphase {
 
@@ -33,6 +34,18 @@ struct Viewport {
     double y = 0;
     double width = 0;
     double height = 0;
+
+    constexpr Viewport() = default;
+
+    /// Of any numbers: windows tell their sizes as whole ones.
+    template <class X, class Y, class Width, class Height>
+        requires(std::is_arithmetic_v<X>&& std::is_arithmetic_v<Y>&& std::is_arithmetic_v<Width>&&
+                     std::is_arithmetic_v<Height>)
+    constexpr Viewport(X left, Y top, Width columns, Height rows) noexcept
+        : x(static_cast<double>(left)),
+          y(static_cast<double>(top)),
+          width(static_cast<double>(columns)),
+          height(static_cast<double>(rows)) {}
 };
 
 /// Which end of the depth range is near. Asked about orthographic cameras only; of all others the

@@ -198,6 +198,17 @@ TYPED_TEST(ConvexQuery, HasAnAnswerForEveryBox) {
     EXPECT_TRUE(this->has(this->volumeOf({}, Containment::inside), all));
 }
 
+TEST(FrustumRegion, IsThatOfTheWholeScreenUnlessARectangleIsGiven) {
+    const Eigen::Matrix4f cube = Eigen::Matrix4f::Identity();  // what is seen is from -1 to 1
+    const auto crossing = boxBetween<float>({0.5F, -0.5F, -0.5F}, {1.5F, 0.5F, 0.5F});
+    const auto depths = DepthRange::minusOneToOne;
+    EXPECT_GE(frustumRegion(cube, depths, Containment::touching).key(crossing), 0);
+    EXPECT_LT(frustumRegion(cube, depths, Containment::inside).key(crossing), 0);
+    EXPECT_GE(frustumRegion(cube, depths, Containment::inside)
+                  .key(boxBetween<float>({-1, -1, -1}, {1, 1, 1})),
+              0);
+}
+
 #if HASHPHASE_ENABLE_ASSERTS
 TEST(ConvexQueryDeathTest, AConvexRegionHasAtMost16Planes) {
     const std::vector<ConvexRegion<float>::Plane> planes(

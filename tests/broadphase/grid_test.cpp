@@ -10,8 +10,10 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <set>
+#include <unordered_map>
 #include <vector>
 
 namespace hashphase::test {
@@ -98,6 +100,37 @@ TEST(Grid, ContainsNeitherNullNorStrangeIds) {
     EXPECT_FALSE(grid.contains({id.index + 1, id.generation}));
     EXPECT_FALSE(grid.contains({id.index, 0}));
     EXPECT_FALSE(grid.contains({0xffffffffU, 0xffffffffU}));
+}
+
+TEST(Grid, LeadsFromAnIndexBackToTheProxyAliveThatHasIt) {
+    Grid<float> grid;
+    EXPECT_TRUE(grid.idAt(0).isNull());
+    const ProxyId first = grid.add(cubeAt(0));
+    const ProxyId second = grid.add(cubeAt(1));
+    EXPECT_EQ(grid.idAt(first.index), first);
+    EXPECT_EQ(grid.idAt(second.index), second);
+    EXPECT_TRUE(grid.idAt(grid.indexLimit()).isNull());
+    grid.remove(first);
+    EXPECT_TRUE(grid.idAt(first.index).isNull());
+    grid.update();
+    const ProxyId third = grid.add(cubeAt(2));
+    EXPECT_EQ(third.index, first.index);
+    EXPECT_EQ(grid.idAt(first.index), third);
+}
+
+TEST(ProxyId, IsAKeyOfUnorderedMaps) {
+    Grid<float> grid;
+    std::unordered_map<ProxyId, int> names;
+    std::set<std::size_t> hashes;
+    for (int i = 0; i < 100; ++i) {
+        const ProxyId id = grid.add(cubeAt(i));
+        names[id] = i;
+        hashes.insert(std::hash<ProxyId>{}(id));
+        hashes.insert(std::hash<ProxyId>{}({id.index, id.generation + 2}));
+        EXPECT_EQ(names.at(id), i);
+    }
+    EXPECT_EQ(names.size(), 100U);
+    EXPECT_EQ(hashes.size(), 200U);
 }
 
 TEST(Grid, VisitsEveryProxyInTheOrderOfIndices) {

@@ -157,6 +157,14 @@ TEST(PairFilter, OfManyAtOnceDecidesAsOneByOneDoes) {
     }
 }
 
+TEST(PairFilter, RefusesNothingWhereNoneIsGiven) {
+    Grid<double> grid;
+    Pairs<double> pairs(grid);
+    const ProxyPair couple = makePair(grid.add(unitCubeAt(0)), grid.add(unitCubeAt(0.5)));
+    const PairChanges changes = pairs.update();
+    EXPECT_EQ(std::vector(changes.born.begin(), changes.born.end()), std::vector{couple});
+}
+
 TEST(PairFilter, MayTakeItsArgumentsAsAuto) {
     Grid<double> grid;
     Pairs<double> pairs(grid);

@@ -12,10 +12,13 @@ using AiPage = AgentsBeforeACamera;
 TEST_F(AiPage, OneAgentKnowsItsSurroundings) {
     const auto enemies = isEnemy();
     const auto walls = [&](ProxyId id) { return id == wall; };
+    float attacked = 0;
+    const auto attack = [&](ProxyId /*id*/, float distance) { attacked = distance; };
     {
 #include <ai_1.inl>
         EXPECT_EQ(near, std::vector<ProxyId>{enemy});
         EXPECT_EQ(nearest.size(), 1U);
+        EXPECT_FLOAT_EQ(attacked, 20);
     }
 #include <ai_3.inl>
     EXPECT_EQ(seen, std::vector<ProxyId>{enemy});

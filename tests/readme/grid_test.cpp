@@ -25,6 +25,8 @@ TEST(GridPage, PairsAndQueriesAnswer) {
         EXPECT_EQ(closest.found(), ball);
         EXPECT_GT(cost.boxesTested, 0U);
         EXPECT_EQ(found, std::vector<ProxyId>{ball});
+        ASSERT_EQ(nearest.size(), 1U);
+        EXPECT_EQ(nearest.front().id, wall);
     }
     int greeted = 0;
     const auto greet = [&](ProxyId, ProxyId) { ++greeted; };

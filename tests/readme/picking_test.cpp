@@ -16,8 +16,8 @@ std::optional<float> rayMeetsBall(const RayRegion<float>& ray, const Point& cent
 using PickingPage = AgentsBeforeACamera;
 
 TEST_F(PickingPage, ClicksAndRectanglesFindWhatIsThere) {
-    const float width = 800;
-    const float height = 800;
+    const int width = 800;
+    const int height = 800;
     const float x = 400;
     const float y = 400;
     const float x0 = 300;
@@ -43,8 +43,13 @@ TEST(PickingPageUnderBullet, ClosestShapeIsASphere) {
     SpatialHashBroadphase broadphase;
     btCollisionWorld world(&sphere.dispatcher, &broadphase, &sphere.configuration);
     world.addCollisionObject(&sphere.body);
+    const btVector3 from(0, 5, 0);
+    const btVector3 to(0, -5, 0);
+    const btCollisionObject* marked = nullptr;
+    const auto markObject = [&](const btCollisionObject* object) { marked = object; };
 #include <picking_4.inl>
     EXPECT_NEAR(shape.key, btScalar(0.4), btScalar(1e-3));
+    EXPECT_EQ(marked, &sphere.body);
     world.removeCollisionObject(&sphere.body);
 }
 

@@ -7,7 +7,7 @@
 namespace hashphase::test {
 namespace {
 
-TEST(Readme, BroadphaseIsSwappedInOneLine) {
+TEST(Readme, BroadphaseIsSwapped) {
 #include <readme_1.inl>
     btBroadphaseInterface& asBullet = broadphase;
     EXPECT_EQ(asBullet.getOverlappingPairCache()->getNumOverlappingPairs(), 0);

@@ -32,6 +32,7 @@
 #include <integration/effects/simulation.hpp>
 #include <integration/picking/drag_selection.hpp>
 #include <integration/picking/pick.hpp>
+#include <integration/picking/view.hpp>
 #include <integration/terrain/terrain.hpp>
 
 #include <BulletCollision/CollisionDispatch/btGhostObject.h>
@@ -41,6 +42,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <span>

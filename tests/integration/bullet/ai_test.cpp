@@ -84,8 +84,8 @@ protected:
     int wall = 0;
     int agent = 0;
     std::vector<int> enemies;
-    const GroupFilter isEnemy{*broadphase, kEnemies};
-    const GroupFilter isWall{*broadphase, kWalls};
+    const GroupFilter isEnemy{*broadphase, {.mask = kEnemies}};
+    const GroupFilter isWall{*broadphase, {.mask = kWalls}};
 };
 
 TEST_F(AgentsInAWorld, KnowTheirNeighboursWhileTheyFall) {

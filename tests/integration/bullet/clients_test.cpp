@@ -110,7 +110,8 @@ private:
 /// Everything that a game asks in a frame.
 class AllClients {
 public:
-    explicit AllClients(const RoamingBodies& world) : world_(world), red_(*world.broadphase, kRed) {
+    explicit AllClients(const RoamingBodies& world)
+        : world_(world), red_(*world.broadphase, {.mask = kRed}) {
         Vector3<Scalar> middle(kGroundSide / 2, 5, kGroundSide / 2);
         static_cast<void>(zones.add({SphereRegion<Scalar>(middle, 30)}));
         static_cast<void>(zones.add({BoxRegion<Scalar>{{middle, Vector3<Scalar>(middle * 2)}}}));

@@ -16,8 +16,12 @@ namespace {
 
 constexpr std::array<int, 6> kBits{0, 1, 2, 64, 1 | 64, btBroadphaseProxy::AllFilter};
 
-static_assert(std::is_constructible_v<GroupFilter, const SpatialHashBroadphase&, int>);
-static_assert(!std::is_constructible_v<GroupFilter, SpatialHashBroadphase, int>);
+using Asker = GroupFilter::Asker;
+static_assert(std::is_constructible_v<GroupFilter, const SpatialHashBroadphase&, Asker>);
+static_assert(!std::is_constructible_v<GroupFilter, SpatialHashBroadphase, Asker>);
+// Two numbers might be in either order.
+static_assert(!std::is_constructible_v<GroupFilter, const SpatialHashBroadphase&, int>);
+static_assert(!std::is_constructible_v<GroupFilter, const SpatialHashBroadphase&, int, int>);
 
 class GroupFilterTest : public testing::Test {
 protected:
@@ -54,7 +58,8 @@ TEST_F(GroupFilterTest, AcceptsWhatARayOfTheSameGroupAndMaskMeets) {
                                                                 btVector3(1, 0, 0));
             callback.m_collisionFilterGroup = group;
             callback.m_collisionFilterMask = mask;
-            const int accepted = countAccepted(GroupFilter(broadphase_, mask, group), callback);
+            const int accepted =
+                countAccepted(GroupFilter(broadphase_, {.group = group, .mask = mask}), callback);
             EXPECT_EQ(accepted > 0, group != 0 && mask != 0);
         }
     }
@@ -65,7 +70,7 @@ TEST_F(GroupFilterTest, AsksForAllGroupsUnlessToldOtherwise) {
     callback.m_collisionFilterGroup = btBroadphaseProxy::AllFilter;
     callback.m_collisionFilterMask = 64;
     // Three groups have the bit 64, and five masks are not empty.
-    EXPECT_EQ(countAccepted(GroupFilter(broadphase_, 64), callback), 15);
+    EXPECT_EQ(countAccepted(GroupFilter(broadphase_, {.mask = 64}), callback), 15);
 }
 
 }  // namespace

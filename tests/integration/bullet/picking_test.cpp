@@ -70,7 +70,7 @@ protected:
 
     // The ground's box is all of space.
     GroupFilter isMobile() const {
-        return GroupFilter(hash(), btBroadphaseProxy::AllFilter & ~btBroadphaseProxy::StaticFilter);
+        return GroupFilter(hash(), {.mask = ~btBroadphaseProxy::StaticFilter});
     }
 
     std::vector<Placed<btScalar>> bodies() {

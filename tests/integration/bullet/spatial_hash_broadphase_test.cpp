@@ -239,6 +239,19 @@ TEST(SpatialHashBroadphase, RefusesABadConfigurationByName) {
     EXPECT_THROW(SpatialHashBroadphase(nullptr, config), std::invalid_argument);
 }
 
+TEST(SpatialHashBroadphase, RefusesSharesOfAnEdgeThatAreNone) {
+    constexpr btScalar kInfinity = std::numeric_limits<btScalar>::infinity();
+    for (const btScalar bad :
+         {btScalar(-1), -kInfinity, std::numeric_limits<btScalar>::quiet_NaN()}) {
+        const SpatialHashConfig config{.fastFrom = bad};
+        EXPECT_NE(configError(config).find("fastFrom"), std::string::npos);
+        EXPECT_THROW(SpatialHashBroadphase{config}, std::invalid_argument);
+    }
+    for (const btScalar good : {btScalar(0), btScalar(-0.0), btScalar(1), kInfinity}) {
+        EXPECT_EQ(configError(SpatialHashConfig{.fastFrom = good}), "");
+    }
+}
+
 // --- Misuse --------------------------------------------------------------------------------------
 
 #if HASHPHASE_ENABLE_ASSERTS

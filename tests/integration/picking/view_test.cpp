@@ -171,6 +171,16 @@ TYPED_TEST(Views, TakeTheOrderOfDepthsFromThePerspective) {
     }
 }
 
+TEST(Viewports, AreMadeOfAnyNumbers) {
+    const int width = 640;
+    const unsigned height = 480;
+    const Viewport viewport{0, 0.5F, width, height};
+    EXPECT_EQ(viewport.x, 0);
+    EXPECT_EQ(viewport.y, 0.5);
+    EXPECT_EQ(viewport.width, 640);
+    EXPECT_EQ(viewport.height, 480);
+}
+
 TEST(ViewsFarAway, AreExactAHundredThousandKilometresFromTheOrigin) {
     Random random(0x5eed0706);
     for (int i = 0; i < 1000; ++i) {

@@ -10,7 +10,7 @@
 get_filename_component(SOURCE_PATH "${CMAKE_CURRENT_LIST_DIR}/../../../.." ABSOLUTE)
 
 # vcpkg's Bullet is in single or double precision, as its feature `double-precision` says, and that is
-# the library that is made. The Bullet that pkg-config knows is the system's.
+# the library that is made. The Bullet that pkg-config finds may be the system's.
 vcpkg_cmake_configure(
     SOURCE_PATH "${SOURCE_PATH}"
     OPTIONS
