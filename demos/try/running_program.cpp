@@ -4,13 +4,10 @@
 #include <demos/scenes/input_error.hpp>
 #include <demos/try/program_file.hpp>
 
-#include <algorithm>
 #include <csignal>
-#include <cstddef>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 #include <system_error>
 
@@ -35,56 +32,38 @@ std::filesystem::path folderOf(pid_t process) {
     return std::filesystem::path("/proc") / std::to_string(process);
 }
 
-struct Process {
-    pid_t number = 0;
-    pid_t ownNumber = 0;  // what it takes for its number itself, in a namespace of its own
-    pid_t parent = 0;
+struct ProcessStatus {
+    pid_t ownNumber = 0;  // what the process takes for its number itself, in a namespace of its own
+    bool isDead = false;  // and not waited for yet
+    int threadCount = 0;  // that of a dead one is 1
 };
 
-// As /proc tells. One that ends meanwhile has no parent.
-Process processOf(pid_t number) {
-    Process process{number, number, 0};
-    std::ifstream status(folderOf(number) / "status");
-    for (std::string line; std::getline(status, line);) {
+// As /proc tells; of one that is gone nothing.
+ProcessStatus statusOf(pid_t process) {
+    ProcessStatus status{.ownNumber = process};
+    std::ifstream lines(folderOf(process) / "status");
+    for (std::string line; std::getline(lines, line);) {
         std::istringstream words(line);
         std::string label;
         words >> label;
-        if (label == "PPid:") {
-            words >> process.parent;
-        } else if (label == "NSpid:") {
-            while (words >> process.ownNumber) {  // from the outermost namespace to the innermost
+        if (label == "NSpid:") {
+            while (words >> status.ownNumber) {  // from the outermost namespace to the innermost
             }
+        } else if (label == "State:") {
+            char letter = '\0';
+            words >> letter;
+            status.isDead = letter == 'Z' || letter == 'X';
+        } else if (label == "Threads:") {
+            words >> status.threadCount;
         }
     }
-    return process;
+    return status;
 }
 
-std::vector<Process> allProcesses() {
-    std::vector<Process> processes;
-    std::error_code error;
-    for (std::filesystem::directory_iterator entry("/proc", error), end; !error && entry != end;
-         entry.increment(error)) {
-        const std::string name = entry->path().filename().string();
-        if (name.find_first_not_of("0123456789") == std::string::npos) {
-            processes.push_back(processOf(std::stoi(name)));
-        }
-    }
-    return processes;
-}
-
-// The children of the process, and theirs.
-std::vector<Process> descendantsOf(pid_t ancestor) {
-    const std::vector<Process> all = allProcesses();
-    std::vector<Process> descendants;
-    const auto addChildrenOf = [&](pid_t parent) {
-        std::copy_if(all.begin(), all.end(), std::back_inserter(descendants),
-                     [parent](const Process& process) { return process.parent == parent; });
-    };
-    addChildrenOf(ancestor);
-    for (std::size_t i = 0; i < descendants.size(); ++i) {
-        addChildrenOf(descendants[i].number);
-    }
-    return descendants;
+// The first thread of a process may be dead, and others alive.
+bool isAlive(pid_t process) {
+    const ProcessStatus status = statusOf(process);
+    return status.threadCount > (status.isDead ? 1 : 0);
 }
 
 }  // namespace
@@ -101,32 +80,77 @@ RunningProgram::RunningProgram(ProgramCall call, const std::filesystem::path& re
 }
 
 bool RunningProgram::isRunning() {
-    int status = 0;
-    for (pid_t ended = 0; (ended = waitpid(-1, &status, WNOHANG)) > 0;) {
-        if (ended == child_) {
-            status_ = status;
+    reap();
+    if (!status_) {
+        return true;
+    }
+    return record_.process.load() != 0 ? isAlive(findRecorded()) : !processes().empty();
+}
+
+bool RunningProgram::hasProcesses() {
+    reap();
+    return !status_ || !processes().empty();
+}
+
+void RunningProgram::sendToRecorded(int signal) {
+    const pid_t recorded = findRecorded();
+    if (isAlive(recorded)) {
+        kill(recorded, signal);
+    } else {
+        send(signal);
+    }
+}
+
+void RunningProgram::send(int signal, bool reachedOurGroup) const {
+    std::vector<pid_t> receivers = processes();
+    if (!status_) {
+        std::erase(receivers, child_);
+        receivers.push_back(child_);
+    }
+    for (const pid_t receiver : receivers) {
+        if (!reachedOurGroup || getpgid(receiver) != getpgrp()) {
+            kill(receiver, signal);
         }
     }
-    return !status_ || !leftBehind().empty();
 }
 
-void RunningProgram::send(int signal) const {
-    if (!status_) {
-        kill(child_, signal);
-    }
-    for (const pid_t process : leftBehind()) {
-        kill(process, signal);
+// While a dead process is not waited for, it can still be asked who it was.
+void RunningProgram::reap() {
+    siginfo_t ended{};
+    while (waitid(P_ALL, 0, &ended, WEXITED | WNOHANG | WNOWAIT) == 0 && ended.si_pid != 0) {
+        const bool wasRecorded = statusOf(ended.si_pid).ownNumber == record_.process.load();
+        int status = 0;
+        waitpid(ended.si_pid, &status, 0);
+        if (ended.si_pid == child_) {
+            status_ = status;
+        } else if (wasRecorded) {
+            orphanStatus_ = status;
+        }
+        ended = {};
     }
 }
 
-// The dead have nothing mapped, whether they were waited for or not.
-std::vector<pid_t> RunningProgram::leftBehind() const {
-    const pid_t recorded = record_.process.load();
+pid_t RunningProgram::findRecorded() {
+    const pid_t ownNumber = record_.process.load();
+    if (recorded_ == 0 && ownNumber != 0) {
+        for (const pid_t process : processes()) {
+            if (statusOf(process).ownNumber == ownNumber) {
+                recorded_ = process;
+            }
+        }
+    }
+    return recorded_;
+}
+
+std::vector<pid_t> RunningProgram::processes() const {
     std::vector<pid_t> numbers;
-    for (const Process& process : descendantsOf(getpid())) {
-        if (process.number != child_ && (recorded == 0 || process.ownNumber == recorded) &&
-            fileContains((folderOf(process.number) / "maps").string(), recordName_)) {
-            numbers.push_back(process.number);
+    std::error_code error;
+    for (std::filesystem::directory_iterator entry("/proc", error), end; !error && entry != end;
+         entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        if (name.find_first_not_of("0123456789") == std::string::npos &&
+            fileContains((entry->path() / "environ").string(), recordName_)) {
+            numbers.push_back(std::stoi(name));
         }
     }
     return numbers;

@@ -20,34 +20,46 @@ struct ProgramCall {
     std::vector<std::string> variables;  // its environment: "NAME=value"
 };
 
+/// A process of it is one that has the record's name in its environment, whoever has started it; the one whose
+/// steps are recorded may have been left behind by what was started. Both are looked for in /proc.
 class RunningProgram {
 public:
-    /// Starts the program. `recordPath` names the file of `record`, which the processes of the program have
-    /// mapped if the library was loaded into them. Orphans of the program become children of this process
-    /// (PR_SET_CHILD_SUBREAPER). Throws InputError when it cannot be started.
+    /// Starts the program; its environment names `recordPath`, the file of `record`. Orphans of the program
+    /// become children of this process (PR_SET_CHILD_SUBREAPER). Throws InputError when it cannot be started.
     RunningProgram(ProgramCall call, const std::filesystem::path& recordPath,
                    const tryout::Record& record);
 
-    /// Whether something of it still runs: what was started, then the process whose steps are recorded, or,
-    /// for as long as there is none, any into which the library was loaded.
+    /// Whether what was started still runs, then the process whose steps are recorded, or, for as long as
+    /// there is none, any of it.
     [[nodiscard]] bool isRunning();
 
-    /// Whether what was started has ended; those that it has left behind are looked for in /proc.
+    /// Whether any process of it still runs.
+    [[nodiscard]] bool hasProcesses();
+
+    /// Whether what was started has ended.
     [[nodiscard]] bool hasLeft() const { return status_.has_value(); }
 
-    /// Sends it to all of what runs.
-    void send(int signal) const;
+    /// Sends it to the process whose steps are recorded; to all, where there is none.
+    void sendToRecorded(int signal);
 
-    /// Of what was started, as wait() has it.
-    [[nodiscard]] int status() const { return status_.value_or(0); }
+    /// Sends it to all processes of it, or, with `reachedOurGroup`, to those that are not in the process group
+    /// of this one.
+    void send(int signal, bool reachedOurGroup = false) const;
+
+    /// As wait() has it: of what was started, or, where that has left behind the recorded process, of this.
+    [[nodiscard]] int status() const { return orphanStatus_.value_or(status_.value_or(0)); }
 
 private:
-    [[nodiscard]] std::vector<pid_t> leftBehind() const;
+    void reap();
+    [[nodiscard]] pid_t findRecorded();
+    [[nodiscard]] std::vector<pid_t> processes() const;
 
     std::string recordName_;
     const tryout::Record& record_;
     pid_t child_ = 0;
+    pid_t recorded_ = 0;  // once it was found
     std::optional<int> status_;
+    std::optional<int> orphanStatus_;
 };
 
 }  // namespace hashphase::demos

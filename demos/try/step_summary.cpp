@@ -70,6 +70,8 @@ std::optional<double> truePairs(const std::vector<StepRow>& rows, double pairCou
     return pairCount * overlapping / all;
 }
 
+}  // namespace
+
 StepSummary summaryOf(const std::vector<StepRow>& all) {
     const SortedSteps sorted = sortByLength(all);
     const std::vector<StepRow>& usual = sorted.usual;
@@ -93,8 +95,6 @@ StepSummary summaryOf(const std::vector<StepRow>& all) {
     summary.truePairCount = truePairs(all, summary.pairCount);
     return summary;
 }
-
-}  // namespace
 
 std::vector<const TriedRun*> runsOf(const Trial& trial, tryout::Broadphase broadphase) {
     std::vector<const TriedRun*> runs;

@@ -36,6 +36,9 @@ struct StepSummary {
     [[nodiscard]] double broadphase() const { return updateAabbs + calculate + rays; }
 };
 
+/// Of at least one step.
+[[nodiscard]] StepSummary summaryOf(const std::vector<tryout::StepRow>& rows);
+
 /// Both broadphases over the same steps: run by run, the first ones, as many as both have. Nothing where that
 /// is none.
 struct StepComparison {

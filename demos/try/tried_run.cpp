@@ -5,6 +5,7 @@
 #include <demos/try/running_program.hpp>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstddef>
@@ -36,8 +37,7 @@ public:
                     .string();
         const int file = error ? -1 : mkstemp(path_.data());
         void* bytes = MAP_FAILED;
-        // All of it, now: where there is no room, the program would pay for it.
-        if (file >= 0 && posix_fallocate(file, 0, sizeof(Record)) == 0) {
+        if (file >= 0 && hasRoom(file)) {
             bytes = mmap(nullptr, sizeof(Record), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
         }
         if (file >= 0) {
@@ -63,6 +63,15 @@ public:
     [[nodiscard]] const Record& record() const { return *record_; }
 
 private:
+    // All of it, now: where there is none, the program would pay for it.
+    static bool hasRoom(int file) {
+        int error = EINTR;
+        while (error == EINTR) {
+            error = posix_fallocate(file, 0, sizeof(Record));
+        }
+        return error == 0;
+    }
+
     std::string path_;
     Record* record_ = nullptr;
 };
@@ -94,31 +103,65 @@ bool isAtLimit(const TriedRunSettings& settings, const Record& record, Clock::du
             std::chrono::duration<double>(time).count() >= *settings.secondLimit);
 }
 
-// Asks the program to end when it is at a limit or we are asked to, and some seconds later no longer asks.
+constexpr std::chrono::seconds kFirstPatience(1);
+constexpr std::chrono::seconds kLastPatience(3);
+
+/// Ends a program by and by, so that what has started it can clean up behind it.
+class Ending {
+public:
+    explicit Ending(RunningProgram& program) : program_(program) {}
+
+    [[nodiscard]] bool hasBegun() const { return begin_.has_value(); }
+
+    void begin(const NotedSignals& signals) {
+        begin_ = Clock::now();
+        if (signals.received() == 0) {
+            program_.sendToRecorded(SIGTERM);
+        } else {
+            program_.send(signals.received(), signals.isFromKeyboard());
+        }
+    }
+    void goOn() {
+        const Clock::duration time = Clock::now() - *begin_;
+        if (time > kLastPatience) {
+            program_.send(SIGKILL);
+        } else if (time > kFirstPatience && !hasAskedAll_) {
+            hasAskedAll_ = true;
+            program_.send(SIGTERM);
+        }
+    }
+
+private:
+    RunningProgram& program_;
+    std::optional<Clock::time_point> begin_;
+    bool hasAskedAll_ = false;
+};
+
+// Ends the program when it is at a limit or we are asked to.
 RunEnd waitFor(RunningProgram& program, const TriedRunSettings& settings, const Record& record,
                const NotedSignals& signals) {
     constexpr std::chrono::milliseconds kLook(5);
-    constexpr std::chrono::milliseconds kLookForOrphans(50);
-    constexpr std::chrono::seconds kPatience(3);
+    constexpr std::chrono::milliseconds kLookInProc(50);
+    constexpr int kLooksInSilence = 40;
     const Clock::time_point begin = Clock::now();
-    std::optional<Clock::time_point> asked;
-    while (program.isRunning()) {
+    int looksForNobody = 0;
+    Ending ending(program);
+    while (ending.hasBegun() ? program.hasProcesses() : program.isRunning()) {
         const Clock::time_point now = Clock::now();
-        const int received = signals.received();
-        if (!asked && (received != 0 || isAtLimit(settings, record, now - begin))) {
-            asked = now;
-            // What the keyboard sends has reached the program as well.
-            if (received == 0 || !signals.isFromKeyboard()) {
-                program.send(received != 0 ? received : SIGTERM);
-            }
-        } else if (asked && now - *asked > kPatience) {
-            program.send(SIGKILL);
+        if (ending.hasBegun()) {
+            ending.goOn();
+        } else if (signals.received() != 0 || isAtLimit(settings, record, now - begin)) {
+            ending.begin(signals);
         }
-        std::this_thread::sleep_for(program.hasLeft() ? kLookForOrphans : kLook);
+        if (program.hasLeft() && record.process.load() == 0 &&
+            looksForNobody++ == kLooksInSilence) {
+            settings.sayThatItWaits();
+        }
+        std::this_thread::sleep_for(program.hasLeft() ? kLookInProc : kLook);
     }
     const int status = program.status();
     const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-    if ((asked || signals.received() != 0) &&
+    if ((ending.hasBegun() || signals.received() != 0) &&
         (signal == 0 || signal == SIGTERM || signal == SIGKILL || signal == signals.received())) {
         return {.isStopped = true, .code = 0};
     }

@@ -7,6 +7,7 @@
 #include <demos/try/record.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +22,8 @@ struct TriedRunSettings {
     std::optional<std::uint32_t> stepLimit;  // ends the program after so many steps
     std::optional<double> secondLimit;       // or seconds
     std::int64_t inputBegin = -1;            // where its input begins; negative: in no file
+    std::function<void()> sayThatItWaits = [] {
+    };  // for what was left behind, and has no broadphase
 };
 
 /// How a program ended.
@@ -52,7 +55,7 @@ struct TriedRun {
 };
 
 /// Runs the program to its end, or to a limit, with this process's streams, of which the input begins where it
-/// is told. What `signals` notes ends it, too. Throws InputError when it cannot be started.
+/// is told. What `signals` notes ends it, too: at first it is asked to, some seconds later no longer. Throws InputError when it cannot be started.
 [[nodiscard]] TriedRun runTried(const TriedRunSettings& settings, const NotedSignals& signals);
 
 }  // namespace hashphase::demos

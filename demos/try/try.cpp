@@ -108,9 +108,10 @@ void sayWhatRuns(const TryOptions& options, Broadphase broadphase, std::size_t n
 bool isSound(const Trial& trial) {
     return !isEndOfOurs(trial) &&
            std::all_of(trial.runs.begin(), trial.runs.end(), [](const TriedRun& run) {
-               return run.verification.missing == 0 && run.verification.extra == 0 &&
+               return run.hasBroadphase && run.verification.missing == 0 &&
+                      run.verification.extra == 0 &&
                       (run.broadphase != Broadphase::verifying ||
-                       run.verification.calculations > 0);
+                       (run.verification.calculations > 0 && !run.end.isCrash));
            });
 }
 
@@ -119,18 +120,28 @@ bool isSound(const Trial& trial) {
 int runAll(const TryOptions& options, const std::vector<Broadphase>& turns, Trial& trial,
            Console& console) {
     TriedRunSettings settings = settingsFor(options, trial.program);
+    settings.sayThatItWaits = [&] {
+        if (!options.quiet) {
+            console.err
+                << "hashphase try: the program has ended, and has left others running; waiting "
+                   "for these (Ctrl-C ends them)"
+                << std::endl;
+        }
+    };
     const NotedSignals signals;
     for (const Broadphase broadphase : turns) {
         settings.broadphase = broadphase;
         sayWhatRuns(options, broadphase, trial.runs.size() + 1, turns.size(), console);
         console.out.flush();
         TriedRun run = runTried(settings, signals);
-        if (run.hasBroadphase) {
-            trial.runs.push_back(std::move(run));
-        } else if (signals.received() == 0) {
+        const bool isEmpty = !run.hasBroadphase;
+        if (isEmpty && signals.received() == 0 && trial.runs.empty()) {
             refuse(trial, run);
         }
-        if (signals.received() != 0) {
+        if (!isEmpty || signals.received() == 0) {
+            trial.runs.push_back(std::move(run));
+        }
+        if (isEmpty || signals.received() != 0) {
             break;
         }
     }

@@ -33,9 +33,10 @@ struct Trial {
     std::vector<TriedRun> runs;
 };
 
-/// Exit codes: kExitCheckFailed when pairs of ours were wrong, when nothing was verified, or when the
-/// program ended in another way with ours than with Bullet's; kExitUsage when it made no broadphase that can
-/// be taken over; 128 and a signal's number when that has ended the trial. Throws InputError.
+/// Exit codes: kExitCheckFailed when pairs of ours were wrong, when nothing was verified or a verified run ended
+/// by a crash, when the program ended in another way with ours than with Bullet's, or a later run of it made no
+/// broadphase; kExitUsage when the first did not; 128 and a signal's number when that has ended the trial.
+/// Throws InputError.
 int runTry(const TryOptions& options, Console& console);
 
 }  // namespace hashphase::demos

@@ -50,7 +50,10 @@ std::string headOf(const Trial& trial) {
     };
     part(run.dbvtCount, "btDbvtBroadphase");
     part(run.axisSweepCount, "axis sweep");
-    part(run.derivedSweepCount, "class derived from an axis sweep, not taken over");
+    if (run.derivedSweepCount > 0) {
+        text += withThousands(run.derivedSweepCount) +
+                " of classes derived from an axis sweep, not taken over, ";
+    }
     return text + nameOf(trial.program.precision) + " precision" +
            (trial.program.bullet.empty() ? "" : ", " + trial.program.bullet);
 }
@@ -101,8 +104,13 @@ void printNotes(const Trial& trial, std::ostream& out) {
             << " further processes had broadphases of their own, which are not in these figures.\n";
     }
     if (first.droppedRows > 0) {
-        out << "Of the first " << withThousands(tryout::Record::kMaxRows) << " steps; "
+        out << "There is room for " << withThousands(tryout::Record::kMaxRows) << " steps; "
             << withThousands(first.droppedRows) << " more are not in these figures.\n";
+    }
+    const TriedRun& last = trial.runs.back();
+    if (!last.hasBroadphase) {
+        out << "Run " << trial.runs.size() << " has made no broadphase, and " << textOf(last.end)
+            << ": it was the last.\n";
     }
 }
 
@@ -167,6 +175,25 @@ void printTable(const StepSummary& stock, const StepSummary& ours, std::ostream&
     table.print(out);
 }
 
+// Of a trial that was ended in its first run, or whose program does something else each time.
+void printNotCompared(const Trial& trial, std::ostream& out) {
+    const std::vector<StepRow>& rows = trial.runs.front().rows;
+    if (trial.runs.size() > 1 || rows.empty()) {
+        out << "No steps were compared: the runs have none in common in which pairs were "
+               "calculated.\n";
+        return;
+    }
+    const StepSummary stock = summaryOf(rows);
+    out << "There was no run with hashphase. With Bullet's broadphase, " << ms(stock.broadphase())
+        << " ms of a step";
+    if (stock.step) {
+        out << " of " << ms(*stock.step) << " ms";
+    }
+    out << " were updateAabbs, calculateOverlappingPairs and rays; "
+        << withThousands(stock.stepCount) << " steps, " << count(stock.objectCount)
+        << " objects at most, " << count(stock.pairCount) << " pairs.\n";
+}
+
 void printCompared(const Trial& trial, std::ostream& out) {
     const std::optional<StepComparison> steps = compareSteps(trial);
     if (steps) {
@@ -174,15 +201,13 @@ void printCompared(const Trial& trial, std::ostream& out) {
     }
     printNotes(trial, out);
     if (!steps) {
-        out << "No steps were compared: the runs have none in common in which pairs were "
-               "calculated.\n";
+        printNotCompared(trial, out);
         return;
     }
     const StepSummary& stock = steps->stock;
     const StepSummary& ours = steps->ours;
     if (steps->isCut) {
-        out << "Compared are the first " << withThousands(stock.stepCount)
-            << " steps: one of the runs had more.\n";
+        out << "Compared are the first steps, as many as both runs have: one of them had more.\n";
     }
     constexpr double kLargeShare = 0.2;
     if (std::max(stock.slowestShare, ours.slowestShare) > kLargeShare) {
@@ -203,7 +228,7 @@ void printCompared(const Trial& trial, std::ostream& out) {
             << " ms, all else being equal (" << times(*stock.step / *step) << "); measured, "
             << ms(*ours.step) << " ms (" << times(*stock.step / *ours.step) << ").\n";
     } else {
-        out << "The program makes no steps: pairs were calculated by hand.\n";
+        out << "The program has made no steps: pairs were calculated by hand.\n";
     }
 }
 

@@ -25,6 +25,7 @@ float milliseconds(std::int64_t nanoseconds) noexcept {
 }
 
 std::atomic<Record*> ownRecord = nullptr;
+std::atomic<bool> isUncountedFork = false;  // of the recorded process
 
 // A program may start others, which inherit the library: one of them is recorded, and what takes its place
 // (exec).
@@ -38,7 +39,10 @@ Record* claimRecord() {
         mapped->otherProcesses.fetch_add(1);
         return nullptr;
     }
-    pthread_atfork(nullptr, nullptr, [] { ownRecord = nullptr; });
+    pthread_atfork(nullptr, nullptr, [] {
+        ownRecord = nullptr;
+        isUncountedFork = true;
+    });
     return mapped;
 }
 
@@ -153,7 +157,7 @@ void noteAxisSweep() {
 }
 
 void noteDerivedSweep() {
-    if (Record* into = record()) {
+    if (Record* into = mappedRecord()) {  // and claims nothing: it is not recorded
         into->derivedSweepCount.fetch_add(1);
     }
 }
@@ -199,6 +203,9 @@ CalculateScope::CalculateScope(btOverlappingPairCache& cache) noexcept
 CalculateScope::~CalculateScope() {
     Record* into = record();
     if (into == nullptr) {
+        if (isUncountedFork.exchange(false)) {
+            mappedRecord()->otherProcesses.fetch_add(1);
+        }
         return;
     }
     const std::int64_t now = nanoseconds();

@@ -54,9 +54,61 @@ TEST(Try, RecordsWhatTakesThePlaceOfTheRecorded) {
 }
 
 TEST(Try, WaitsForWhatALauncherLeavesBehind) {
-    const auto [output, json] = measure("", stock("stock-programs") + " launcher");
+    for (const std::string name : {" launcher", " slow-launcher"}) {
+        const auto [output, json] = measure("--runs 4", stock("stock-programs") + name);
+        EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
+        ASSERT_EQ(json["runs"].size(), 8U) << name;
+        for (const Json& run : json["runs"]) {
+            EXPECT_EQ(run["steps"].size(), 5U) << name;
+        }
+    }
+}
+
+TEST(Try, TakesTheEndOfWhatALauncherLeavesBehind) {
+    const auto [output, json] = measure("", stock("stock-programs") + " crash-launcher");
+    EXPECT_EQ(output.status, kExitCheckFailed) << output.out << output.err;
+    EXPECT_TRUE(has(output.out,
+                    "ended with status 0 with Bullet's broadphase, and was ended by "
+                    "signal 6 (Aborted) with hashphase"))
+        << output.out;
+}
+
+TEST(Try, CountsForksThatStepTheWorldOfTheRecorded) {
+    const auto [output, json] = measure("", stock("stock-programs") + " forks-with-a-world");
+    EXPECT_EQ(json["runs"][0]["steps"].size(), 5U);
+    EXPECT_EQ(json["runs"][0]["otherProcesses"], 1);
+}
+
+// One of which is recorded.
+TEST(Try, EndsAllThatTheProgramHasStarted) {
+    const std::string program = stock("stock-programs") + " endless";
+    const auto [output, json] = measure("--steps 20 --precision single",
+                                        "/bin/sh -c '" + program + " & " + program + " & wait'");
     EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
-    EXPECT_EQ(json["runs"][1]["steps"].size(), 5U);
+    EXPECT_EQ(runCommand("pgrep -f '^" + program + "'").out, "");
+}
+
+TEST(Try, LetsAScriptCleanUpBehindItsProgram) {
+    const TemporaryFolder folder;
+    const auto [output, json] =
+        measure("--steps 20 --precision single", "/bin/sh -c 'trap \"echo cleaned up\" EXIT; " +
+                                                     stock("stock-programs") + " endless'");
+    EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
+    EXPECT_EQ(countOf(output.out, "cleaned up\n"), 2U) << output.out;
+}
+
+// The second time there is no line left to read.
+TEST(Try, KeepsWhatWasMeasuredBeforeARunWithoutABroadphase) {
+    const TemporaryFolder folder;
+    const Output output =
+        runCommand("printf 'a\\nb\\n' | " + std::string(HASHPHASE_PROGRAM) + " try --quiet -- " +
+                       stock("stock-programs") + " waits-for-input",
+                   folder);
+    EXPECT_EQ(output.status, kExitCheckFailed) << output.out << output.err;
+    EXPECT_TRUE(has(output.out,
+                    "Run 2 has made no broadphase, and ended with status 1: it was "
+                    "the last."))
+        << output.out;
 }
 
 // Where the program has a number of its own for itself, which is that of another process here.
@@ -115,6 +167,15 @@ TEST(Try, SaysWhatWasMeasuredBeforeARunThatIsInterruptedAsItStarts) {
     EXPECT_TRUE(has(output.out, "status 143\n")) << output.out << output.err;
     EXPECT_EQ(countOf(output.out, "\"broadphase\": \"bullet\""), 1U) << output.out;
     EXPECT_EQ(countOf(output.out, "\"broadphase\": \"hashphase\""), 0U) << output.out;
+}
+
+TEST(Try, SaysWhatWasMeasuredInTheFirstRunAlone) {
+    const TemporaryFolder folder;
+    const Output output = runScript(
+        "$try --quiet -- $stock endless & sleep 0.5\nkill $!; wait $!; echo status $?\n", folder);
+    EXPECT_TRUE(has(output.out, "There was no run with hashphase. With Bullet's broadphase, "))
+        << output.out << output.err;
+    EXPECT_TRUE(has(output.out, "status 143\n")) << output.out << output.err;
 }
 
 TEST(Try, LeavesSignalsIgnoredThatAre) {

@@ -19,6 +19,12 @@ TEST(Try, FindsPairsThatAreMissing) {
         << output.out;
 }
 
+TEST(Try, IsNotContentWithPairsOfAProgramThatCrashes) {
+    const auto [output, json] = measure("--verify", stock("stock-programs") + " crashing");
+    EXPECT_EQ(output.status, kExitCheckFailed);
+    EXPECT_EQ(json["verification"]["missing"], 0) << output.out;
+}
+
 TEST(Try, FindsPairsThatAreExtra) {
     const auto [output, json] = measure("--verify", stock("stock-programs") + " tampering");
     EXPECT_EQ(output.status, kExitCheckFailed);

@@ -262,11 +262,35 @@ int restarts() {
     return execl("/proc/self/exe", "stock-programs", "started", nullptr);
 }
 
-// Starts another program, which takes its time, and ends.
-int launcher() {
+// Starts another program and ends, at once or while that takes its time to begin.
+int launcher(const char* program, unsigned milliseconds) {
     if (fork() == 0) {
-        usleep(300'000);
-        execl("/proc/self/exe", "stock-programs", "started", nullptr);
+        usleep(milliseconds * 1000);
+        execl("/proc/self/exe", "stock-programs", program, nullptr);
+    }
+    return 0;
+}
+
+// Goes on in a process of its own after some steps.
+int forksWithAWorld() {
+    Scene<> scene;
+    addPile(scene);
+    scene.step(5);
+    if (fork() == 0) {
+        scene.step(5);
+        _exit(0);
+    }
+    wait(nullptr);
+    return 0;
+}
+
+// Crashes where the broadphase has no trees.
+int crashesWithoutTrees() {
+    Scene<> scene;
+    addPile(scene);
+    scene.step(5);
+    if (scene.broadphase.m_sets[0].m_root == nullptr) {
+        std::abort();
     }
     return 0;
 }
@@ -363,30 +387,35 @@ int simpleBroadphase() {
 }  // namespace
 
 const std::vector<Program>& misfitPrograms() {
-    static const std::vector<Program> list{{"failing", failing},
-                                           {"crashing", crashing},
-                                           {"endless", endless},
-                                           {"interruptible", interruptible},
-                                           {"endless-by-hand", endlessByHand},
-                                           {"traffic", traffic},
-                                           {"casts-cache", castsCache},
-                                           {"tampering", tampering},
-                                           {"removes-pairs", removesPairs},
-                                           {"sabotage", sabotage},
-                                           {"derived-sweep", derivedSweep},
-                                           {"bare-sweep", bareSweep},
-                                           {"timed-steps", timedSteps},
-                                           {"reads-input", readsInput},
-                                           {"waits-for-input", waitsForInput},
-                                           {"restarts", restarts},
-                                           {"launcher", launcher},
-                                           {"starter", [] { return starter(true); }},
-                                           {"started", [] { return starter(false); }},
-                                           {"simple-starter", simpleStarter},
-                                           {"leaves-zombie", leavesZombie},
-                                           {"changes-group", changesGroup},
-                                           {"mixed", mixed},
-                                           {"simple-broadphase", simpleBroadphase}};
+    static const std::vector<Program> list{
+        {"failing", failing},
+        {"crashing", crashing},
+        {"endless", endless},
+        {"interruptible", interruptible},
+        {"endless-by-hand", endlessByHand},
+        {"traffic", traffic},
+        {"casts-cache", castsCache},
+        {"tampering", tampering},
+        {"removes-pairs", removesPairs},
+        {"sabotage", sabotage},
+        {"derived-sweep", derivedSweep},
+        {"bare-sweep", bareSweep},
+        {"timed-steps", timedSteps},
+        {"reads-input", readsInput},
+        {"waits-for-input", waitsForInput},
+        {"restarts", restarts},
+        {"launcher", [] { return launcher("started", 0); }},
+        {"slow-launcher", [] { return launcher("started", 300); }},
+        {"crash-launcher", [] { return launcher("crashes-without-trees", 100); }},
+        {"crashes-without-trees", crashesWithoutTrees},
+        {"forks-with-a-world", forksWithAWorld},
+        {"starter", [] { return starter(true); }},
+        {"started", [] { return starter(false); }},
+        {"simple-starter", simpleStarter},
+        {"leaves-zombie", leavesZombie},
+        {"changes-group", changesGroup},
+        {"mixed", mixed},
+        {"simple-broadphase", simpleBroadphase}};
     return list;
 }
 
