@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <iterator>
 #include <optional>
 #include <ostream>
 #include <utility>
@@ -54,7 +55,8 @@ std::vector<std::string> takeRest(std::vector<std::string>& arguments,
     if (!isWanted || dashes == arguments.end()) {
         return {};
     }
-    std::vector<std::string> rest(dashes + 1, arguments.end());
+    std::vector<std::string> rest;
+    std::move(dashes + 1, arguments.end(), std::back_inserter(rest));
     arguments.erase(dashes, arguments.end());
     return rest;
 }

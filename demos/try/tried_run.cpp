@@ -30,12 +30,8 @@ using Clock = std::chrono::steady_clock;
 /// A file with a record, mapped; removed in the end.
 class RecordFile {
 public:
-    explicit RecordFile(const TriedRunSettings& settings) {
-        std::error_code error;
-        path_ = (std::filesystem::absolute(std::filesystem::temp_directory_path(error), error) /
-                 "hashphase-try-XXXXXX")
-                    .string();
-        const int file = error ? -1 : mkstemp(path_.data());
+    explicit RecordFile(const TriedRunSettings& settings) : path_(pathOfNone()) {
+        const int file = mkstemp(path_.data());
         void* bytes = MAP_FAILED;
         if (file >= 0 && hasRoom(file)) {
             bytes = mmap(nullptr, sizeof(Record), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
@@ -63,6 +59,14 @@ public:
     [[nodiscard]] const Record& record() const { return *record_; }
 
 private:
+    // Of which mkstemp() fills in the end, and which it refuses if it is empty.
+    static std::string pathOfNone() {
+        std::error_code error;
+        const std::filesystem::path folder =
+            std::filesystem::absolute(std::filesystem::temp_directory_path(error), error);
+        return error ? "" : (folder / "hashphase-try-XXXXXX").string();
+    }
+
     // All of it, now: where there is none, the program would pay for it.
     static bool hasRoom(int file) {
         int error = EINTR;

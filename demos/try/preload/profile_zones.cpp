@@ -184,6 +184,7 @@ public:
 int step(StepFunction* stock, void* world, btScalar timeStep, int maxSubSteps,
          btScalar fixedTimeStep) {
     const StepScope scope;
+    // cppcheck-suppress CastAddressToIntegerAtReturn; takes the function's type for a pointer
     return stock(world, timeStep, maxSubSteps, fixedTimeStep);
 }
 
