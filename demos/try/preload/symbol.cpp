@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/try/preload/symbol.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -76,24 +76,25 @@ void* findNext(const char* mangledName) {
 
 void refuseOtherBullets() {
     const std::string ownPath = pathOf(reinterpret_cast<const void*>(&refuseOtherBullets));
-    std::set<std::string> bullets;
+    std::vector<std::string> bullets;  // in the order they were loaded
     for (const std::string& object : loadedObjects()) {
         const void* constructor =
             findIn(object, "_ZN16btDbvtBroadphaseC1EP22btOverlappingPairCache");
-        if (constructor != nullptr && pathOf(constructor) != ownPath) {
-            bullets.insert(pathOf(constructor));
+        const std::string path = constructor != nullptr ? pathOf(constructor) : ownPath;
+        if (path != ownPath && std::ranges::find(bullets, path) == bullets.end()) {
+            bullets.push_back(path);
         }
     }
     if (bullets.size() > 1) {
-        std::string names;
+        std::string paths;
         for (const std::string& path : bullets) {
-            names += (names.empty() ? "" : " and ") + std::string(nameOf(path));
+            paths += (paths.empty() ? "" : " and ") + path;
         }
         std::fprintf(
             stderr,
             "hashphase try: the program and hashphase use two Bullets, those of %s; is the "
             "precision right, and is none of them linked statically?\n",
-            names.c_str());
+            paths.c_str());
         std::abort();
     }
 }
