@@ -31,10 +31,13 @@ std::vector<std::string> optionNames(const CLI::App& app) {
     return names;
 }
 
-// `call` is what the user types to run the command.
+// `call` is what the user types to run the command, `takesRest` whether words follow after `--`.
 std::string unknownWordSentence(const CLI::App& command, const std::string& call,
-                                const std::string& word) {
-    if (word.front() != '-') {
+                                const std::string& word, bool takesRest) {
+    if (!word.starts_with('-')) {
+        if (takesRest) {
+            return "'" + word + "' belongs behind --: " + call + " [options] -- " + word;
+        }
         return "'" + command.get_name() + "' takes no argument '" + word + "'; see " + call +
                " --help.";
     }
@@ -124,7 +127,7 @@ int runProgram(std::vector<std::string> arguments, std::span<const Subcommand> s
     }
     const std::vector<CLI::App*> chosen = app.get_subcommands();
     if (const std::vector<std::string> extras = app.remaining(); !extras.empty()) {
-        return refuse(console, extras.front().front() == '-'
+        return refuse(console, extras.front().starts_with('-')
                                    ? unknownNameSentence("option", extras.front(), optionNames(app))
                                    : unknownNameSentence("subcommand", extras.front(), names));
     }
@@ -138,7 +141,7 @@ int runProgram(std::vector<std::string> arguments, std::span<const Subcommand> s
     if (const std::vector<std::string> extras = chosen.front()->remaining(); !extras.empty()) {
         return refuse(
             console, unknownWordSentence(*chosen.front(), "hashphase " + chosen.front()->get_name(),
-                                         extras.front()));
+                                         extras.front(), subcommand->takeRest != nullptr));
     }
     if (subcommand->takeRest) {
         subcommand->takeRest(std::move(rest));
@@ -156,7 +159,7 @@ int runSingleCommand(const std::vector<std::string>& arguments, const Subcommand
         return *ended;
     }
     if (const std::vector<std::string> extras = app.remaining(); !extras.empty()) {
-        return refuse(console, unknownWordSentence(app, command.name, extras.front()));
+        return refuse(console, unknownWordSentence(app, command.name, extras.front(), false));
     }
     return runGuarded(command, console);
 }

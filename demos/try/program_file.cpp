@@ -179,7 +179,8 @@ std::string findProgram(const std::string& word) {
     const char* path = std::getenv("PATH");
     std::istringstream folders(path != nullptr ? path : "");
     for (std::string folder; std::getline(folders, folder, ':');) {
-        const std::filesystem::path file = std::filesystem::path(folder) / word;
+        const std::filesystem::path file =
+            std::filesystem::path(folder.empty() ? "." : folder) / word;
         if (isExecutable(file)) {
             return file.string();
         }
@@ -196,6 +197,9 @@ bool fileContains(const std::string& path, const std::string& bytes) {
 
 std::string loaderOf(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
+    if (!file) {
+        throw InputError(path + " cannot be read, which is how its libraries are found");
+    }
     Elf64_Ehdr header{};
     const bool isWhole = readAt(file, 0, header);
     if (header.e_ident[0] == '#' && header.e_ident[1] == '!') {

@@ -52,6 +52,7 @@ struct Verification {
     std::uint64_t extra = 0;
     std::uint64_t unasked = 0;  // the filter would take them now, but nothing has moved
     std::uint64_t removed = 0;  // by the program, out of the cache
+    std::uint64_t late = 0;     // overlap, but a callback has moved one meanwhile: not judged
     std::uint64_t stockPairs = 0;
     std::uint64_t stockMissing = 0;
     std::uint64_t stockExtra = 0;
@@ -60,7 +61,7 @@ struct Verification {
 
 struct Record {
     static constexpr std::uint32_t kMaxRows = 200'000;
-    static constexpr std::uint32_t kFormat = 2;
+    static constexpr std::uint32_t kFormat = 3;
 
     // Asked for.
     std::uint32_t format;
@@ -69,6 +70,7 @@ struct Record {
     // Answered.
     std::atomic<std::uint32_t> isLoaded;  // into a process at all
     std::atomic<std::int32_t> process;    // who made the first broadphase, by its own number
+    std::atomic<std::uint32_t> hasEnded;  // that process, by exit() or its like
     std::atomic<std::uint32_t> otherProcesses;
     std::atomic<std::uint32_t> dbvtCount;
     std::atomic<std::uint32_t> axisSweepCount;

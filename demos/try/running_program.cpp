@@ -2,12 +2,13 @@
 #include <demos/try/running_program.hpp>
 
 #include <demos/scenes/input_error.hpp>
-#include <demos/try/program_file.hpp>
 
+#include <algorithm>
 #include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 #include <system_error>
 
@@ -33,6 +34,7 @@ std::filesystem::path folderOf(pid_t process) {
 }
 
 struct ProcessStatus {
+    pid_t parent = 0;
     pid_t ownNumber = 0;  // what the process takes for its number itself, in a namespace of its own
     bool isDead = false;  // and not waited for yet
     int threadCount = 0;  // that of a dead one is 1
@@ -49,6 +51,8 @@ ProcessStatus statusOf(pid_t process) {
         if (label == "NSpid:") {
             while (words >> status.ownNumber) {  // from the outermost namespace to the innermost
             }
+        } else if (label == "PPid:") {
+            words >> status.parent;
         } else if (label == "State:") {
             char letter = '\0';
             words >> letter;
@@ -66,11 +70,51 @@ bool isAlive(pid_t process) {
     return status.threadCount > (status.isDead ? 1 : 0);
 }
 
+// The parents of all processes that are alive or not waited for.
+std::map<pid_t, pid_t> allParents() {
+    std::map<pid_t, pid_t> parents;
+    std::error_code error;
+    for (std::filesystem::directory_iterator entry("/proc", error), end; !error && entry != end;
+         entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        if (name.find_first_not_of("0123456789") == std::string::npos) {
+            const pid_t process = std::stoi(name);
+            parents[process] = statusOf(process).parent;
+        }
+    }
+    return parents;
+}
+
+// The descendants of this process, but for `others` and theirs.
+std::vector<pid_t> descendantsBut(const std::vector<pid_t>& others) {
+    const std::map<pid_t, pid_t> parents = allParents();
+    const auto isOurs = [&](pid_t process) {
+        // Read while processes come and go, a line of parents may lead anywhere.
+        for (std::size_t i = 0; i < parents.size(); ++i) {
+            const auto found = parents.find(process);
+            if (found == parents.end() || std::ranges::find(others, process) != others.end()) {
+                return false;
+            }
+            process = found->second;
+            if (process == getpid()) {
+                return true;
+            }
+        }
+        return false;
+    };
+    std::vector<pid_t> descendants;
+    for (const auto& [process, parent] : parents) {
+        if (isOurs(process)) {
+            descendants.push_back(process);
+        }
+    }
+    return descendants;
+}
+
 }  // namespace
 
-RunningProgram::RunningProgram(ProgramCall call, const std::filesystem::path& recordPath,
-                               const tryout::Record& record)
-    : recordName_(recordPath.filename().string()), record_(record) {
+RunningProgram::RunningProgram(ProgramCall call, const tryout::Record& record)
+    : earlier_(descendantsBut({})), record_(record) {
     prctl(PR_SET_CHILD_SUBREAPER, 1);
     const int error = posix_spawn(&child_, call.path.c_str(), nullptr, nullptr,
                                   pointersTo(call.words).data(), pointersTo(call.variables).data());
@@ -123,8 +167,9 @@ void RunningProgram::reap() {
         waitpid(ended.si_pid, &status, 0);
         if (ended.si_pid == child_) {
             status_ = status;
-        } else if (wasRecorded) {
-            orphanStatus_ = status;
+        }
+        if (wasRecorded) {
+            recordedStatus_ = status;
         }
         ended = {};
     }
@@ -143,17 +188,7 @@ pid_t RunningProgram::findRecorded() {
 }
 
 std::vector<pid_t> RunningProgram::processes() const {
-    std::vector<pid_t> numbers;
-    std::error_code error;
-    for (std::filesystem::directory_iterator entry("/proc", error), end; !error && entry != end;
-         entry.increment(error)) {
-        const std::string name = entry->path().filename().string();
-        if (name.find_first_not_of("0123456789") == std::string::npos &&
-            fileContains((entry->path() / "environ").string(), recordName_)) {
-            numbers.push_back(std::stoi(name));
-        }
-    }
-    return numbers;
+    return descendantsBut(earlier_);
 }
 
 }  // namespace hashphase::demos

@@ -5,7 +5,6 @@
 
 #include <demos/try/record.hpp>
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,14 +19,13 @@ struct ProgramCall {
     std::vector<std::string> variables;  // its environment: "NAME=value"
 };
 
-/// A process of it is one that has the record's name in its environment, whoever has started it; the one whose
-/// steps are recorded may have been left behind by what was started. Both are looked for in /proc.
+/// Its processes are the descendants of this one, as /proc tells, but for those that were there before: orphans
+/// of the program become children of this process (PR_SET_CHILD_SUBREAPER). The one whose steps are recorded may
+/// have been left behind by what was started.
 class RunningProgram {
 public:
-    /// Starts the program; its environment names `recordPath`, the file of `record`. Orphans of the program
-    /// become children of this process (PR_SET_CHILD_SUBREAPER). Throws InputError when it cannot be started.
-    RunningProgram(ProgramCall call, const std::filesystem::path& recordPath,
-                   const tryout::Record& record);
+    /// Starts the program, which fills `record`. Throws InputError when it cannot be started.
+    RunningProgram(ProgramCall call, const tryout::Record& record);
 
     /// Whether what was started still runs, then the process whose steps are recorded, or, for as long as
     /// there is none, any of it.
@@ -46,20 +44,22 @@ public:
     /// of this one.
     void send(int signal, bool reachedOurGroup = false) const;
 
-    /// As wait() has it: of what was started, or, where that has left behind the recorded process, of this.
-    [[nodiscard]] int status() const { return orphanStatus_.value_or(status_.value_or(0)); }
+    /// As wait() has it: of the recorded process, or, where somebody else has waited for that, of what was
+    /// started.
+    [[nodiscard]] int status() const { return recordedStatus_.value_or(status_.value_or(0)); }
+    [[nodiscard]] bool isStatusOfRecorded() const { return recordedStatus_.has_value(); }
 
 private:
     void reap();
     [[nodiscard]] pid_t findRecorded();
     [[nodiscard]] std::vector<pid_t> processes() const;
 
-    std::string recordName_;
+    std::vector<pid_t> earlier_;  // descendants that are none of the program's
     const tryout::Record& record_;
     pid_t child_ = 0;
     pid_t recorded_ = 0;  // once it was found
     std::optional<int> status_;
-    std::optional<int> orphanStatus_;
+    std::optional<int> recordedStatus_;
 };
 
 }  // namespace hashphase::demos

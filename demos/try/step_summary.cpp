@@ -115,6 +115,8 @@ std::optional<StepComparison> compareSteps(const Trial& trial) {
     for (std::size_t i = 0; i < std::min(stock.size(), ours.size()); ++i) {
         const std::size_t count = std::min(stock[i]->rows.size(), ours[i]->rows.size());
         comparison.isCut |= stock[i]->rows.size() != ours[i]->rows.size();
+        comparison.allOfStock += stock[i]->rows.size();
+        comparison.allOfOurs += ours[i]->rows.size();
         const auto end = static_cast<std::ptrdiff_t>(count);
         stockRows.insert(stockRows.end(), stock[i]->rows.begin(), stock[i]->rows.begin() + end);
         ourRows.insert(ourRows.end(), ours[i]->rows.begin(), ours[i]->rows.begin() + end);

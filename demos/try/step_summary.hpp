@@ -44,7 +44,9 @@ struct StepSummary {
 struct StepComparison {
     StepSummary stock;
     StepSummary ours;
-    bool isCut = false;  // one of two runs had more steps
+    bool isCut = false;          // one of two runs had more steps
+    std::size_t allOfStock = 0;  // steps of the runs, those of which there are no others included
+    std::size_t allOfOurs = 0;
 };
 [[nodiscard]] std::optional<StepComparison> compareSteps(const Trial& trial);
 

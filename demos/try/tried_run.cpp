@@ -69,10 +69,12 @@ private:
 
     // All of it, now: where there is none, the program would pay for it.
     static bool hasRoom(int file) {
+        const auto before = std::signal(SIGXFSZ, SIG_IGN);  // a limit is an error as any other
         int error = EINTR;
         while (error == EINTR) {
             error = posix_fallocate(file, 0, sizeof(Record));
         }
+        std::signal(SIGXFSZ, before);
         return error == 0;
     }
 
@@ -164,6 +166,10 @@ RunEnd waitFor(RunningProgram& program, const TriedRunSettings& settings, const 
         std::this_thread::sleep_for(program.hasLeft() ? kLookInProc : kLook);
     }
     const int status = program.status();
+    if (!program.isStatusOfRecorded() && record.process.load() != 0 && record.hasEnded == 0 &&
+        !ending.hasBegun() && signals.received() == 0) {
+        return {.isCrash = true, .isHidden = true, .code = WEXITSTATUS(status)};
+    }
     const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
     if ((ending.hasBegun() || signals.received() != 0) &&
         (signal == 0 || signal == SIGTERM || signal == SIGKILL || signal == signals.received())) {
@@ -219,6 +225,11 @@ std::string textOf(const RunEnd& end) {
     if (end.isStopped) {
         return "was stopped";
     }
+    if (end.isHidden) {
+        return "was ended otherwise than by exit(), after which what had started it ended with "
+               "status " +
+               std::to_string(end.code);
+    }
     if (end.isCrash) {
         return "was ended by signal " + std::to_string(end.code) + " (" + strsignal(end.code) + ")";
     }
@@ -229,7 +240,7 @@ bool areAlike(const RunEnd& a, const RunEnd& b) noexcept {
     const auto isRegular = [](const RunEnd& end) {
         return end.isStopped || (!end.isCrash && end.code == 0);
     };
-    return (a.isCrash == b.isCrash && a.code == b.code) ||
+    return (a.isCrash == b.isCrash && a.isHidden == b.isHidden && a.code == b.code) ||
            ((a.isStopped || b.isStopped) && isRegular(a) && isRegular(b));
 }
 
@@ -240,7 +251,7 @@ TriedRun runTried(const TriedRunSettings& settings, const NotedSignals& signals)
     if (settings.inputBegin >= 0) {
         lseek(STDIN_FILENO, settings.inputBegin, SEEK_SET);
     }
-    RunningProgram program(call, file.path(), record);
+    RunningProgram program(call, record);
     TriedRun run;
     run.end = waitFor(program, settings, record, signals);
     run.broadphase = settings.broadphase;

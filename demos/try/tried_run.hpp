@@ -22,15 +22,15 @@ struct TriedRunSettings {
     std::optional<std::uint32_t> stepLimit;  // ends the program after so many steps
     std::optional<double> secondLimit;       // or seconds
     std::int64_t inputBegin = -1;            // where its input begins; negative: in no file
-    std::function<void()> sayThatItWaits = [] {
-    };  // for what was left behind, and has no broadphase
+    std::function<void()> sayThatItWaits;    // for what was left behind, and has no broadphase
 };
 
 /// How a program ended.
 struct RunEnd {
     bool isCrash = false;    // by a signal that nobody here has sent
+    bool isHidden = false;   // a crash, of which who started the recorded process has not told
     bool isStopped = false;  // by us, at a limit or because we were interrupted
-    int code = 0;            // its exit status, or the signal
+    int code = 0;  // its exit status, or the signal; of a hidden crash, the status without it
 };
 
 /// Whether one is as good as the other: at a limit who was stopped may have been about to end.
@@ -55,7 +55,8 @@ struct TriedRun {
 };
 
 /// Runs the program to its end, or to a limit, with this process's streams, of which the input begins where it
-/// is told. What `signals` notes ends it, too: at first it is asked to, some seconds later no longer. Throws InputError when it cannot be started.
+/// is told. What `signals` notes ends it, too: at first it is asked to, some seconds later no longer. Throws
+/// InputError when it cannot be started.
 [[nodiscard]] TriedRun runTried(const TriedRunSettings& settings, const NotedSignals& signals);
 
 }  // namespace hashphase::demos

@@ -106,7 +106,9 @@ void sayWhatRuns(const TryOptions& options, Broadphase broadphase, std::size_t n
 }
 
 bool isSound(const Trial& trial) {
-    return !isEndOfOurs(trial) &&
+    const bool isCompared =
+        trial.runs.front().broadphase == Broadphase::verifying || compareSteps(trial).has_value();
+    return isCompared && !isEndOfOurs(trial) &&
            std::all_of(trial.runs.begin(), trial.runs.end(), [](const TriedRun& run) {
                return run.hasBroadphase && run.verification.missing == 0 &&
                       run.verification.extra == 0 &&
@@ -121,12 +123,9 @@ int runAll(const TryOptions& options, const std::vector<Broadphase>& turns, Tria
            Console& console) {
     TriedRunSettings settings = settingsFor(options, trial.program);
     settings.sayThatItWaits = [&] {
-        if (!options.quiet) {
-            console.err
-                << "hashphase try: the program has ended, and has left others running; waiting "
-                   "for these (Ctrl-C ends them)"
-                << std::endl;
-        }
+        console.err << "hashphase try: the program has ended, and has left others running; waiting "
+                       "for these (Ctrl-C ends them)"
+                    << std::endl;
     };
     const NotedSignals signals;
     for (const Broadphase broadphase : turns) {
@@ -156,7 +155,6 @@ int runTry(const TryOptions& options, Console& console) {
     }
     // Whoever has started us may ignore them, and then none could be waited for.
     std::signal(SIGCHLD, SIG_DFL);
-    ResultFile json(options.jsonFile);
     Trial trial;
     for (const std::string& word : options.words) {
         trial.commandLine += (trial.commandLine.empty() ? "" : " ") + word;
@@ -167,6 +165,7 @@ int runTry(const TryOptions& options, Console& console) {
                          " to load into programs, as builds under a sanitizer have not");
     }
     trial.program = inspectProgram(findProgram(options.words.front()), bullets, options.precision);
+    ResultFile json(options.jsonFile);
 
     std::vector<Broadphase> turns{Broadphase::verifying};
     if (!options.verify) {

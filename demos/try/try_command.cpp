@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -34,11 +33,15 @@ void declare(CLI::App& app, TryOptions& options) {
         ->check(CLI::Range(std::uint32_t{1}, tryout::Record::kMaxRows));
     app.add_option("--seconds", options.seconds, "end the program after so many seconds")
         ->check(positiveSecondsFault);
-    app.add_option("--precision", options.precision,
-                   "of the Bullet that the program loads as it runs: single or double")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, BulletPrecision>{
-            {"single", BulletPrecision::kSingle}, {"double", BulletPrecision::kDouble}}))
-        ->type_name("single|double");
+    app.add_option_function<std::string>(
+           "--precision",
+           [&options](const std::string& name) {
+               options.precision =
+                   name == "single" ? BulletPrecision::kSingle : BulletPrecision::kDouble;
+           },
+           "of the Bullet that the program loads as it runs")
+        ->check(CLI::IsMember({"single", "double"}))
+        ->type_name("");
     app.add_option("--json", options.jsonFile, "write everything measured to this file");
     app.add_flag("--quiet", options.quiet, "say nothing but the results");
 }

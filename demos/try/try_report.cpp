@@ -71,19 +71,23 @@ std::string endsOf(const Trial& trial, Broadphase broadphase) {
     return text;
 }
 
-const TriedRun* findCrash(const std::vector<const TriedRun*>& runs) {
-    const auto crashed = std::find_if(runs.begin(), runs.end(),
-                                      [](const TriedRun* run) { return run->end.isCrash; });
-    return crashed != runs.end() ? *crashed : nullptr;
+// A run that was ended by a signal or with a status that is not 0, but for those that we have stopped.
+const TriedRun* findFailure(const std::vector<const TriedRun*>& runs) {
+    const auto failure = std::ranges::find_if(runs, [](const TriedRun* run) {
+        return !run->end.isStopped && (run->end.isCrash || run->end.code != 0);
+    });
+    return failure != runs.end() ? *failure : nullptr;
 }
 
 void printEnds(const Trial& trial, std::ostream& out) {
-    const TriedRun* stock = findCrash(runsOf(trial, Broadphase::stock));
-    const TriedRun* ours = findCrash(runsOf(trial, Broadphase::hash));
-    const TriedRun* verified = findCrash(runsOf(trial, Broadphase::verifying));
-    if (isEndOfOurs(trial) || (stock != nullptr) != (ours != nullptr)) {
-        const std::string endsOfOurs = endsOf(trial, Broadphase::hash);
-        out << "The program " << endsOf(trial, Broadphase::stock) << " with Bullet's broadphase"
+    const TriedRun* stock = findFailure(runsOf(trial, Broadphase::stock));
+    const TriedRun* ours = findFailure(runsOf(trial, Broadphase::hash));
+    const TriedRun* verified = findFailure(runsOf(trial, Broadphase::verifying));
+    const std::string endsOfStock = endsOf(trial, Broadphase::stock);
+    const std::string endsOfOurs = endsOf(trial, Broadphase::hash);
+    const bool hasFailures = stock != nullptr || ours != nullptr;
+    if (isEndOfOurs(trial) || (hasFailures && endsOfStock != endsOfOurs)) {
+        out << "The program " << endsOfStock << " with Bullet's broadphase"
             << (endsOfOurs.empty() ? "" : ", and " + endsOfOurs + " with hashphase") << ".\n";
     } else if (stock != nullptr) {
         out << "The program " << textOf(stock->end) << ", whichever the broadphase.\n";
@@ -93,19 +97,26 @@ void printEnds(const Trial& trial, std::ostream& out) {
 }
 
 void printNotes(const Trial& trial, std::ostream& out) {
-    const TriedRun& first = trial.runs.front();
+    const auto most = [&trial](std::uint32_t TriedRun::*count) {
+        std::uint32_t number = 0;
+        for (const TriedRun& run : trial.runs) {
+            number = std::max(number, run.*count);
+        }
+        return number;
+    };
     printEnds(trial, out);
-    if (first.foreignCalculations > 0) {
-        out << withThousands(first.foreignCalculations)
+    if (const std::uint32_t number = most(&TriedRun::foreignCalculations); number > 0) {
+        out << withThousands(number)
             << " calculations of pairs were those of broadphases that are not taken over.\n";
     }
-    if (first.otherProcesses > 0) {
-        out << withThousands(first.otherProcesses)
-            << " further processes had broadphases of their own, which are not in these figures.\n";
+    if (const std::uint32_t number = most(&TriedRun::otherProcesses); number > 0) {
+        out << withThousands(number) << (number > 1 ? " further processes" : " further process")
+            << " had a broadphase or went on with a copy, and " << (number > 1 ? "are" : "is")
+            << " not in these figures.\n";
     }
-    if (first.droppedRows > 0) {
+    if (const std::uint32_t number = most(&TriedRun::droppedRows); number > 0) {
         out << "There is room for " << withThousands(tryout::Record::kMaxRows) << " steps; "
-            << withThousands(first.droppedRows) << " more are not in these figures.\n";
+            << withThousands(number) << " more are not in these figures.\n";
     }
     const TriedRun& last = trial.runs.back();
     if (!last.hasBroadphase) {
@@ -132,6 +143,11 @@ void printVerified(const Trial& trial, const TriedRun& run, std::ostream& out) {
         out << withThousands(pairs.removed)
             << " times a pair was missing that the program had taken out of the cache itself: with "
                "hashphase it comes back when the two meet again, or by refilter().\n";
+    }
+    if (pairs.late > 0) {
+        out << withThousands(pairs.late)
+            << " times a pair was not judged, as a callback had moved one of the two while pairs "
+               "were calculated: its turn is in the next calculation.\n";
     }
     if (const std::string fault = pairs.firstFault.data(); !fault.empty()) {
         out << "The first fault, " << fault << ".\n";
@@ -207,7 +223,10 @@ void printCompared(const Trial& trial, std::ostream& out) {
     const StepSummary& stock = steps->stock;
     const StepSummary& ours = steps->ours;
     if (steps->isCut) {
-        out << "Compared are the first steps, as many as both runs have: one of them had more.\n";
+        out << "Compared are the first steps, as many as both runs have: with Bullet's broadphase "
+               "there were "
+            << withThousands(steps->allOfStock) << ", with hashphase "
+            << withThousands(steps->allOfOurs) << ".\n";
     }
     constexpr double kLargeShare = 0.2;
     if (std::max(stock.slowestShare, ours.slowestShare) > kLargeShare) {
@@ -293,6 +312,7 @@ Json verifiedJson(const TriedRun& run) {
             {"extra", pairs.extra},
             {"waitForAMove", pairs.unasked},
             {"removedByProgram", pairs.removed},
+            {"notJudged", pairs.late},
             {"bulletPairs", pairs.stockPairs},
             {"bulletMissing", pairs.stockMissing},
             {"bulletExtra", pairs.stockExtra},

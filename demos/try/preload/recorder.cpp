@@ -3,6 +3,7 @@
 
 #include <demos/try/preload/overlap.hpp>
 #include <demos/try/preload/profile_zones.hpp>
+#include <demos/try/preload/program_end.hpp>
 #include <demos/try/preload/record_file.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
@@ -43,6 +44,7 @@ Record* claimRecord() {
         ownRecord = nullptr;
         isUncountedFork = true;
     });
+    watchQuickExit();
     return mapped;
 }
 
@@ -63,12 +65,18 @@ struct Step {
 thread_local Step current;
 thread_local int stepDepth = 0;  // steps hold sub-steps, these a collision detection
 thread_local int rayDepth = 0;
+thread_local std::int64_t rayTime = 0;  // of this thread's rays that have ended
 thread_local std::uint64_t calculationCount = 0;
 std::atomic<int> objectCount = 0;
 std::atomic<std::int64_t> rayTimeBetween = 0;
 std::atomic<std::uint32_t> rayCountBetween = 0;
 std::atomic<std::int64_t> firstCalculation = 0;
 std::atomic<std::int64_t> lookTime = 0;
+
+// Stands still while rays are cast: callbacks of updateAabbs and calculate may do so, and parts add up.
+std::int64_t nanosecondsWithoutRays() noexcept {
+    return nanoseconds() - rayTime;
+}
 
 void writeRow(Record& into, float stepTime) noexcept {
     const float between = milliseconds(rayTimeBetween.exchange(0));
@@ -186,11 +194,11 @@ void endStep() noexcept {
 }
 
 std::int64_t beginUpdateOfAabbs() noexcept {
-    return nanoseconds();
+    return nanosecondsWithoutRays();
 }
 
 void endUpdateOfAabbs(std::int64_t begin) noexcept {
-    current.updateAabbs += nanoseconds() - begin;
+    current.updateAabbs += nanosecondsWithoutRays() - begin;
 }
 
 std::uint64_t calculationsOfThread() noexcept {
@@ -198,7 +206,7 @@ std::uint64_t calculationsOfThread() noexcept {
 }
 
 CalculateScope::CalculateScope(btOverlappingPairCache& cache) noexcept
-    : cache_(cache), begin_(record() != nullptr ? nanoseconds() : 0) {}
+    : cache_(cache), begin_(record() != nullptr ? nanosecondsWithoutRays() : 0) {}
 
 CalculateScope::~CalculateScope() {
     Record* into = record();
@@ -209,7 +217,7 @@ CalculateScope::~CalculateScope() {
         return;
     }
     const std::int64_t now = nanoseconds();
-    current.calculate += now - begin_;
+    current.calculate += now - rayTime - begin_;
     ++current.calculations;
     ++calculationCount;
     countPairs(cache_, now);
@@ -226,6 +234,7 @@ RayScope::~RayScope() {
         return;
     }
     const std::int64_t took = nanoseconds() - begin_;
+    rayTime += took;
     if (stepDepth > 0) {
         current.rays += took;
         ++current.rayCount;

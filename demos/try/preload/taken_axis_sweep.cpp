@@ -31,7 +31,7 @@ public:
     btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
                                    int shapeType, void* userPtr, int collisionFilterGroup,
                                    int collisionFilterMask, btDispatcher* dispatcher) override {
-        countObjects(1);
+        noteObjects(1);
         btBroadphaseProxy* proxy =
             Sweep::createProxy(aabbMin, aabbMax, shapeType, userPtr, collisionFilterGroup,
                                collisionFilterMask, dispatcher);
@@ -41,7 +41,7 @@ public:
         return proxy;
     }
     void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override {
-        countObjects(-1);
+        noteObjects(-1);
         Sweep::destroyProxy(proxy, dispatcher);
     }
     void calculateOverlappingPairs(btDispatcher* dispatcher) override {
@@ -53,14 +53,6 @@ public:
                  const btVector3& aabbMax) override {
         const RayScope scope;
         Sweep::rayTest(rayFrom, rayTo, rayCallback, aabbMin, aabbMax);
-    }
-
-private:
-    // The trees beside it count theirs.
-    void countObjects(int change) noexcept {
-        if (this->m_raycastAccelerator == nullptr) {
-            noteObjects(change);
-        }
     }
 };
 

@@ -22,6 +22,8 @@ namespace {
 // What is in place of Bullet's trees hangs where Bullet, which is not asked, lists proxies; m_pid, which
 // Bullet sets to 0 and never looks at, says that it does.
 constexpr int kIsTaken = 0x68617368;
+constexpr int kIsPart =
+    0x70617274;  // of a sweep, whose objects and rays are counted there, if at all
 constexpr int kSlot = btDbvtBroadphase::STAGECOUNT;
 
 void setTaken(btDbvtBroadphase& object, btBroadphaseInterface* taken) noexcept {
@@ -43,6 +45,10 @@ std::unique_ptr<btBroadphaseInterface> makeTaken(const btDbvtBroadphase& object,
     return std::make_unique<VerifiedBroadphase>(object, cache);
 }
 
+bool isPart(const btDbvtBroadphase& object) noexcept {
+    return object.m_pid == kIsPart;
+}
+
 // Bullet's constructor sets which functions are virtual to whatever the loader found first.
 void constructStock(btDbvtBroadphase& object, btOverlappingPairCache* cache) {
     void* functions = nullptr;
@@ -61,6 +67,7 @@ using namespace hashphase::tryout;
 btDbvtBroadphase::btDbvtBroadphase(btOverlappingPairCache* paircache) {
     if (StockParts::areBeingMade()) {
         constructStock(*this, paircache);
+        m_pid = kIsPart;
         return;
     }
     refuseOtherBullets();
@@ -86,7 +93,7 @@ btBroadphaseProxy* btDbvtBroadphase::createProxy(const btVector3& aabbMin, const
                                                  int shapeType, void* userPtr,
                                                  int collisionFilterGroup, int collisionFilterMask,
                                                  btDispatcher* dispatcher) {
-    noteObjects(1);
+    noteObjects(isPart(*this) ? 0 : 1);
     if (btBroadphaseInterface* taken = takenFrom(*this)) {
         return taken->createProxy(aabbMin, aabbMax, shapeType, userPtr, collisionFilterGroup,
                                   collisionFilterMask, dispatcher);
@@ -96,7 +103,7 @@ btBroadphaseProxy* btDbvtBroadphase::createProxy(const btVector3& aabbMin, const
 }
 
 void btDbvtBroadphase::destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
-    noteObjects(-1);
+    noteObjects(isPart(*this) ? 0 : -1);
     if (btBroadphaseInterface* taken = takenFrom(*this)) {
         taken->destroyProxy(proxy, dispatcher);
     } else {
@@ -134,6 +141,10 @@ void btDbvtBroadphase::getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin,
 void btDbvtBroadphase::rayTest(const btVector3& rayFrom, const btVector3& rayTo,
                                btBroadphaseRayCallback& rayCallback, const btVector3& aabbMin,
                                const btVector3& aabbMax) {
+    if (isPart(*this)) {
+        stockDbvt().rayTest(this, rayFrom, rayTo, rayCallback, aabbMin, aabbMax);
+        return;
+    }
     const RayScope scope;
     if (btBroadphaseInterface* taken = takenFrom(*this)) {
         taken->rayTest(rayFrom, rayTo, rayCallback, aabbMin, aabbMax);

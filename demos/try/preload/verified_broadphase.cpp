@@ -47,6 +47,10 @@ std::vector<Couple> difference(const std::vector<Couple>& from, const std::vecto
     return left;
 }
 
+bool contains(const std::vector<Couple>& couples, const Couple& couple) {
+    return std::binary_search(couples.begin(), couples.end(), couple);
+}
+
 // The first fault, as a sentence for the record.
 void describe(Verification& verification, const char* fault, const Couple& couple,
               std::uint64_t calculation) {
@@ -79,6 +83,7 @@ void add(const Verification& calculation, Verification& into) {
     into.extra += calculation.extra;
     into.unasked += calculation.unasked;
     into.removed += calculation.removed;
+    into.late += calculation.late;
     into.stockPairs += calculation.stockPairs;
     into.stockMissing += calculation.stockMissing;
     into.stockExtra += calculation.stockExtra;
@@ -145,7 +150,7 @@ btBroadphaseProxy* VerifiedBroadphase::createProxy(const btVector3& aabbMin,
     btBroadphaseProxy* stock =
         stockDbvt().createProxy(stock_->object(), aabbMin, aabbMax, shapeType, proxy,
                                 collisionFilterGroup, collisionFilterMask, nullptr);
-    twins_[proxy] = {stock, calculation_};
+    twins_[proxy] = {stock, calculation_ + 1};
     return proxy;
 }
 
@@ -161,19 +166,19 @@ void VerifiedBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& aabb
                                  const btVector3& aabbMax, btDispatcher* dispatcher) {
     Twin& twin = twins_.at(proxy);
     if (!isSame(proxy->m_aabbMin, aabbMin) || !isSame(proxy->m_aabbMax, aabbMax)) {
-        twin.changed = calculation_;
+        twin.changed = calculation_ + 1;
     }
     ours_.setAabb(proxy, aabbMin, aabbMax, dispatcher);
     stockDbvt().setAabb(stock_->object(), twin.stock, aabbMin, aabbMax, nullptr);
 }
 
 void VerifiedBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
-    noteRemoved();
+    lookAtCache();
+    ++calculation_;
     stock_->takeSettings(settings_);
     stockDbvt().calculateOverlappingPairs(stock_->object(), nullptr);
     ours_.calculateOverlappingPairs(dispatcher);
     compare();
-    ++calculation_;
 }
 
 void VerifiedBroadphase::resetPool(btDispatcher* dispatcher) {
@@ -239,17 +244,22 @@ std::vector<Couple> VerifiedBroadphase::findOverlapping() const {
     return couples;
 }
 
-bool VerifiedBroadphase::isUnasked(const Couple& couple) const {
-    return twins_.at(couple.first).changed < calculation_ &&
-           twins_.at(couple.second).changed < calculation_;
+std::uint64_t VerifiedBroadphase::changeOf(const Couple& couple) const {
+    std::uint64_t last = 0;
+    for (btBroadphaseProxy* proxy : {couple.first, couple.second}) {
+        if (const auto twin = twins_.find(proxy); twin != twins_.end()) {
+            last = std::max(last, twin->second.changed);
+        }
+    }
+    return last;
 }
 
-// Pairs that the last calculation left in the cache and that are no longer there; those of proxies that
-// were destroyed have gone from last_ with them.
-void VerifiedBroadphase::noteRemoved() {
-    const std::vector<Couple> now =
+// Pairs that the last calculation left in the cache and that are no longer there were removed; those of
+// proxies that were destroyed have gone from last_ with them.
+void VerifiedBroadphase::lookAtCache() {
+    before_ =
         couplesOf(*ours_.getOverlappingPairCache(), [](btBroadphaseProxy* proxy) { return proxy; });
-    const std::vector<Couple> gone = difference(last_, now);
+    const std::vector<Couple> gone = difference(last_, before_);
     removed_.insert(removed_.end(), gone.begin(), gone.end());
     std::sort(removed_.begin(), removed_.end());
 }
@@ -258,8 +268,9 @@ void VerifiedBroadphase::forget(const btBroadphaseProxy* proxy) {
     const auto names = [proxy](const Couple& couple) {
         return couple.first == proxy || couple.second == proxy;
     };
-    std::erase_if(last_, names);
-    std::erase_if(removed_, names);
+    for (std::vector<Couple>* couples : {&last_, &before_, &removed_, &missing_}) {
+        std::erase_if(*couples, names);
+    }
 }
 
 void VerifiedBroadphase::compare() {
@@ -268,41 +279,56 @@ void VerifiedBroadphase::compare() {
         return;
     }
     btOverlappingPairCache& cache = *ours_.getOverlappingPairCache();
-    const std::vector<Couple> exact = findOverlapping();
-    const std::vector<Couple> ours =
-        couplesOf(cache, [](btBroadphaseProxy* proxy) { return proxy; });
-    const std::vector<Couple> stock = couplesOf(stock_->cache(), programs);
-
+    const auto isLate = [this](const Couple& couple) { return changeOf(couple) > calculation_; };
+    const auto isAccepted = [&cache](const Couple& couple) {
+        return cache.needsBroadphaseCollision(couple.first, couple.second);
+    };
     Verification verification;
     verification.calculations = 1;
+    std::vector<Couple> exact = findOverlapping();
+    std::vector<Couple> ours = couplesOf(cache, [](btBroadphaseProxy* proxy) { return proxy; });
+    std::vector<Couple> stock = couplesOf(stock_->cache(), programs);
+    last_ = ours;
+    verification.late = std::erase_if(exact, isLate);
+    std::erase_if(ours, isLate);
+    std::erase_if(stock, isLate);
+
     verification.pairs = ours.size();
     for (const Couple& couple : difference(ours, exact)) {
         ++verification.extra;
         describe(verification, "extra", couple, calculation_);
     }
+    for (const Couple& couple : difference(ours, before_)) {
+        if (contains(exact, couple) && !isAccepted(couple)) {
+            ++verification.extra;
+            describe(verification, "made although the filter refuses it", couple, calculation_);
+        }
+    }
+    std::vector<Couple> missing;
     for (const Couple& couple : difference(exact, ours)) {
-        if (!cache.needsBroadphaseCollision(couple.first, couple.second)) {
+        const bool isLost = contains(before_, couple) || contains(missing_, couple);
+        if (!isAccepted(couple)) {
             continue;
         }
-        if (std::binary_search(removed_.begin(), removed_.end(), couple)) {
+        if (!isLost && contains(removed_, couple)) {
             ++verification.removed;
-        } else if (isUnasked(couple)) {
+        } else if (!isLost && changeOf(couple) < calculation_) {
             ++verification.unasked;
         } else {
-            ++verification.missing;
+            missing.push_back(couple);
             describe(verification, "missing", couple, calculation_);
         }
     }
+    verification.missing = missing.size();
+    missing_ = std::move(missing);
     std::erase_if(removed_, [&](const Couple& couple) {
-        return std::binary_search(ours.begin(), ours.end(), couple) ||
-               !std::binary_search(exact.begin(), exact.end(), couple);
+        return contains(ours, couple) || !contains(exact, couple);
     });
-    last_ = ours;
 
     verification.stockPairs = stock.size();
     verification.stockExtra = difference(stock, exact).size();
     for (const Couple& couple : difference(exact, stock)) {
-        if (!isUnasked(couple) && cache.needsBroadphaseCollision(couple.first, couple.second)) {
+        if (changeOf(couple) == calculation_ && isAccepted(couple)) {
             ++verification.stockMissing;
         }
     }

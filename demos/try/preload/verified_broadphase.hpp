@@ -6,12 +6,15 @@
 // counted in the record.
 //
 // Exact    The couples whose boxes overlap (overlap.hpp), by a sweep along x that shares no code with the
-//          library, and that the pair cache accepts when it is asked, now. A couple that is not a pair
-//          although it is accepted now, and whose boxes are as they were in the last calculation, was
-//          refused when it was asked about: it is counted apart, as it waits for a move under any
-//          broadphase of Bullet's.
+//          library, and that the pair cache accepts: a couple that is no pair is missing if it is
+//          accepted when it is asked about, now, and a pair that the calculation has made is extra if it
+//          is not. A couple that was none before, is accepted now, and whose boxes are as they were in
+//          the last calculation, was refused then: it is counted apart, as it waits for a move under
+//          any broadphase of Bullet's.
 // Removed  A pair that the program itself took out of the cache between two calculations is counted apart
 //          as well, until its boxes part: with ours it comes back when they meet again, or by refilter().
+// Late     What a callback has moved or made while pairs were calculated is judged after the next
+//          calculation, which takes notice of it.
 // Filter   Asked for both broadphases, and by the comparison; always about the program's own proxies.
 // Threads  As the broadphase.
 
@@ -62,25 +65,28 @@ private:
 
     struct Twin {
         btBroadphaseProxy* stock;
-        std::uint64_t changed;  // by the number of the calculation that comes next
+        std::uint64_t changed;  // the number of the calculation that takes notice of it
     };
 
     /// Two proxies of the program's, the one with the lower address first.
     using Couple = std::pair<btBroadphaseProxy*, btBroadphaseProxy*>;
 
     [[nodiscard]] std::vector<Couple> findOverlapping() const;
-    void noteRemoved();
+    void lookAtCache();
     void forget(const btBroadphaseProxy* proxy);
     void compare();
-    [[nodiscard]] bool isUnasked(const Couple& couple) const;
+    [[nodiscard]] std::uint64_t changeOf(const Couple& couple) const;
 
     const btDbvtBroadphase& settings_;
     SpatialHashBroadphase ours_;
     std::unique_ptr<Stock> stock_;
     std::unordered_map<btBroadphaseProxy*, Twin> twins_;
-    std::vector<Couple> last_;       // pairs of ours after the last calculation
-    std::vector<Couple> removed_;    // by the program since, or before, and overlapping ever since
-    std::uint64_t calculation_ = 1;  // the next one
+    std::vector<Couple> last_;    // pairs of ours after the last calculation
+    std::vector<Couple> before_;  // and when the next one began
+    std::vector<Couple>
+        removed_;  // by the program in between, or earlier, and overlapping ever since
+    std::vector<Couple> missing_;    // after the last calculation
+    std::uint64_t calculation_ = 0;  // the last one that has begun
 };
 
 }  // namespace hashphase::tryout

@@ -31,7 +31,7 @@ struct Output {
 /// What the shell makes of the command.
 inline Output runCommand(const std::string& command, const TemporaryFolder& folder) {
     Output output;
-    std::FILE* pipe = popen((command + " 2>" + folder.file("err")).c_str(), "r");
+    std::FILE* pipe = popen((command + " 2>'" + folder.file("err") + "'").c_str(), "r");
     for (int byte = 0; (byte = std::fgetc(pipe)) != EOF;) {
         output.out += static_cast<char>(byte);
     }
@@ -60,7 +60,7 @@ inline std::pair<Output, Json> measure(const std::string& options, const std::st
     const TemporaryFolder folder;
     const std::string file = folder.file("try.json");
     Output output = runCommand(std::string(HASHPHASE_PROGRAM) + " try --quiet " + options +
-                                   " --json " + file + " -- " + program,
+                                   " --json '" + file + "' -- " + program,
                                folder);
     return {output, Json::parse(std::ifstream(file), nullptr, false)};
 }

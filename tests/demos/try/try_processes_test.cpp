@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 namespace hashphase::demos {
@@ -79,13 +81,66 @@ TEST(Try, CountsForksThatStepTheWorldOfTheRecorded) {
     EXPECT_EQ(json["runs"][0]["otherProcesses"], 1);
 }
 
+/// A name of its own for the stock programs, by which their processes can be told from others'.
+std::string linkToStockPrograms(const TemporaryFolder& folder) {
+    std::string link = folder.file("stock-programs");
+    std::filesystem::create_symlink(stock("stock-programs"), link);
+    return link;
+}
+
+bool hasProcessOf(const std::string& program) {
+    for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+        std::ifstream file(entry.path() / "cmdline");
+        std::string first;
+        if (std::getline(file, first, '\0') && first == program) {
+            return true;
+        }
+    }
+    return false;
+}
+
 // One of which is recorded.
 TEST(Try, EndsAllThatTheProgramHasStarted) {
-    const std::string program = stock("stock-programs") + " endless";
-    const auto [output, json] = measure("--steps 20 --precision single",
-                                        "/bin/sh -c '" + program + " & " + program + " & wait'");
+    const TemporaryFolder folder;
+    const std::string program = linkToStockPrograms(folder);
+    const std::string call = "\"" + program + "\" endless";
+    const auto [output, json] =
+        measure("--steps 20 --precision single", "/bin/sh -c '" + call + " & " + call + " & wait'");
     EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
-    EXPECT_EQ(runCommand("pgrep -f '^" + program + "'").out, "");
+    EXPECT_GE(countOf(output.out, "has begun\n"), 2U);
+    EXPECT_FALSE(hasProcessOf(program));
+}
+
+TEST(Try, WaitsForAnOrphanUnderAnotherName) {
+    const auto [output, json] = measure("", stock("stock-programs") + " renamed-orphan");
+    EXPECT_EQ(countOf(output.out, "the orphan has ended\n"), 2U) << output.out << output.err;
+    for (const Json& run : json["runs"]) {
+        EXPECT_EQ(run["steps"].size(), 100U);
+        EXPECT_EQ(run["ended"], "ended with status 9");
+    }
+}
+
+// A shell that ends with status 0, whatever its program does.
+TEST(Try, SeesACrashThatItsStarterKeepsToItself) {
+    const auto starting = [](const std::string& name) {
+        return "/bin/sh -c '" + stock("stock-programs") + " " + name + "; true'";
+    };
+    const auto [output, json] = measure("--precision single", starting("crashes-without-trees"));
+    EXPECT_EQ(output.status, kExitCheckFailed);
+    EXPECT_TRUE(has(output.out,
+                    "ended with status 0 with Bullet's broadphase, and was ended otherwise than by "
+                    "exit(), after which what had started it ended with status 0 with hashphase."))
+        << output.out;
+    const Output verified =
+        tryProgram("--quiet --verify --precision single -- " + starting("crashing"));
+    EXPECT_EQ(verified.status, kExitCheckFailed);
+    EXPECT_TRUE(has(verified.out, "The program was ended otherwise than by exit()"))
+        << verified.out;
+    for (const std::string name : {"exit-anyhow", "failing", "quick-exit", "exit-at-once"}) {
+        const Output regular =
+            tryProgram("--quiet --verify --precision single -- " + starting(name));
+        EXPECT_EQ(regular.status, kExitOk) << name << regular.out;
+    }
 }
 
 TEST(Try, LetsAScriptCleanUpBehindItsProgram) {
@@ -117,29 +172,35 @@ TEST(Try, EndsTheProgramThatIsRecordedAndNoOtherOfItsNumber) {
     if (runCommand(unshare + "true").status != 0) {
         GTEST_SKIP() << "no namespace of processes can be made";
     }
+    const TemporaryFolder folder;
+    const std::string program = linkToStockPrograms(folder);
     const auto [output, json] =
-        measure("--precision single --steps 20", "$(which unshare) --fork --pid sh -c '" +
-                                                     stock("stock-programs") + " endless; true'");
+        measure("--precision single --steps 20",
+                "$(which unshare) --fork --pid sh -c '\"" + program + "\" endless; true'");
     EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
     ASSERT_EQ(json["runs"].size(), 2U);
     EXPECT_EQ(json["runs"][1]["steps"].size(), 20U);
-    EXPECT_EQ(runCommand("pgrep -f '^" + stock("stock-programs") + " endless'").out, "");
+    EXPECT_FALSE(hasProcessOf(program));
 }
 
 // --- Signals -------------------------------------------------------------------------------------
 
-/// Runs `script` in a shell, in which $try is the program with the word `try`.
+/// Runs `script` in a shell, in the folder, in which $try is the program with the word `try`. The program that
+/// is tried says when it has made its first step; its output goes to the file `out`.
 Output runScript(const std::string& script, const TemporaryFolder& folder) {
-    const std::string begin = "folder=" + folder.path().string() + "\ntry=\"" + HASHPHASE_PROGRAM +
-                              " try\"\nstock=" + stock("stock-programs") + "\n";
-    return runCommand("sh " + folder.write("script", begin + script), folder);
+    const std::string begin =
+        "cd '" + folder.path().string() + "'\ntry=\"" + HASHPHASE_PROGRAM +
+        " try\"\nstock=" + stock("stock-programs") + "\n" +
+        "until_it_has_begun() {\n"
+        "  until grep -q 'has begun' out || ! kill -0 $!; do sleep 0.01; done\n}\n";
+    return runCommand("sh '" + folder.write("script", begin + script) + "'", folder);
 }
 
 TEST(Try, EndsWithItsProgramWhenItIsEnded) {
     const TemporaryFolder folder;
     const Output output = runScript(
-        "TMPDIR=$folder $try --quiet -- $stock endless & sleep 0.5\n"
-        "kill $!; wait $!; echo status $?; ls $folder\n",
+        "TMPDIR=. $try --quiet -- $stock endless >out & until_it_has_begun\n"
+        "kill $!; wait $!; echo status $?; ls\n",
         folder);
     EXPECT_TRUE(has(output.out, "status 143\n")) << output.out;
     EXPECT_FALSE(has(output.out, "hashphase-try-")) << output.out;
@@ -148,8 +209,9 @@ TEST(Try, EndsWithItsProgramWhenItIsEnded) {
 TEST(Try, PassesAnInterruptOnThatIsNotTheKeyboards) {
     const TemporaryFolder folder;
     const Output output = runScript(
-        "env --default-signal=INT $try --quiet -- $stock interruptible & sleep 0.5\n"
-        "kill -INT $!; wait $!; echo status $?\n",
+        "env --default-signal=INT $try --quiet -- $stock interruptible >out & "
+        "until_it_has_begun\n"
+        "kill -INT $!; wait $!; echo status $?; cat out\n",
         folder);
     EXPECT_TRUE(has(output.out, "interrupted\n")) << output.out << output.err;
     EXPECT_TRUE(has(output.out, "status 130\n")) << output.out << output.err;
@@ -159,10 +221,10 @@ TEST(Try, PassesAnInterruptOnThatIsNotTheKeyboards) {
 TEST(Try, SaysWhatWasMeasuredBeforeARunThatIsInterruptedAsItStarts) {
     const TemporaryFolder folder;
     const Output output = runScript(
-        "mkfifo $folder/input; exec 3<>$folder/input; echo go >&3; echo on >&3\n"
-        "$try --json $folder/json -- $stock waits-for-input <&3 2>$folder/progress &\n"
-        "until grep -q 'run 2 of 2' $folder/progress; do sleep 0.05; done\n"
-        "kill $!; wait $!; echo status $?; cat $folder/json\n",
+        "mkfifo input; exec 3<>input; echo go >&3; echo on >&3\n"
+        "$try --json json -- $stock waits-for-input <&3 2>progress &\n"
+        "until grep -q 'run 2 of 2' progress; do sleep 0.05; done\n"
+        "kill $!; wait $!; echo status $?; cat json\n",
         folder);
     EXPECT_TRUE(has(output.out, "status 143\n")) << output.out << output.err;
     EXPECT_EQ(countOf(output.out, "\"broadphase\": \"bullet\""), 1U) << output.out;
@@ -172,7 +234,9 @@ TEST(Try, SaysWhatWasMeasuredBeforeARunThatIsInterruptedAsItStarts) {
 TEST(Try, SaysWhatWasMeasuredInTheFirstRunAlone) {
     const TemporaryFolder folder;
     const Output output = runScript(
-        "$try --quiet -- $stock endless & sleep 0.5\nkill $!; wait $!; echo status $?\n", folder);
+        "$try --quiet -- $stock endless >out & until_it_has_begun\n"
+        "kill $!; wait $!; echo status $?; cat out\n",
+        folder);
     EXPECT_TRUE(has(output.out, "There was no run with hashphase. With Bullet's broadphase, "))
         << output.out << output.err;
     EXPECT_TRUE(has(output.out, "status 143\n")) << output.out << output.err;
@@ -181,7 +245,8 @@ TEST(Try, SaysWhatWasMeasuredInTheFirstRunAlone) {
 TEST(Try, LeavesSignalsIgnoredThatAre) {
     const TemporaryFolder folder;
     const Output output = runScript(
-        "env --ignore-signal=HUP $try --quiet --seconds 0.5 -- $stock endless & sleep 0.3\n"
+        "env --ignore-signal=HUP $try --quiet --seconds 0.5 -- $stock endless >out & "
+        "until_it_has_begun\n"
         "kill -HUP $!; wait $!; echo status $?\n",
         folder);
     EXPECT_TRUE(has(output.out, "status 0\n")) << output.out << output.err;

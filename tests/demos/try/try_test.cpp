@@ -60,6 +60,7 @@ const std::vector<std::string> kPrograms{"pile",
                                          "deformable",
                                          "multibody",
                                          "several-worlds",
+                                         "threads",
                                          "churn",
                                          "hello-world",
                                          "cache-goes-first",
@@ -164,6 +165,31 @@ TEST(Try, CountsRays) {
         EXPECT_EQ(run["steps"][10]["rays"], 25);
         EXPECT_EQ(run["steps"][70]["rays"], 50);  // before the step, and after
         EXPECT_GT(run["steps"][70]["raysMs"], 0);
+    }
+}
+
+// Parts add up where a callback of calculateOverlappingPairs() casts rays.
+TEST(Try, TakesRaysOutOfWhatCastsThem) {
+    const auto [output, json] = measure("", stock("stock-programs") + " rays-from-callback");
+    for (const Json& run : json["runs"]) {
+        ASSERT_EQ(run["steps"].size(), 6U);
+        const Json& step = run["steps"][3];
+        EXPECT_EQ(step["rays"], 20'000);
+        EXPECT_GT(step["raysMs"], step["calculateMs"]);
+        EXPECT_GE(step["stepMs"].get<double>(), step["updateAabbsMs"].get<double>() +
+                                                    step["calculateMs"].get<double>() +
+                                                    step["raysMs"].get<double>());
+    }
+}
+
+// Nor their trees, in which they look for rays.
+TEST(Try, CountsNothingOfSweepsThatAreNotTakenOver) {
+    const auto [output, json] = measure("", stock("stock-programs") + " derived-sweep-beside");
+    EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
+    for (const Json& run : json["runs"]) {
+        ASSERT_EQ(run["steps"].size(), 10U);
+        EXPECT_EQ(run["steps"][9]["objects"], 21);
+        EXPECT_EQ(run["steps"][9]["raysBetween"], 0);
     }
 }
 
@@ -305,6 +331,14 @@ TEST(Try, LeavesTheStatusOfAProgramThatFailsAlike) {
     const auto [output, json] = measure("", stock("stock-programs") + " failing");
     EXPECT_EQ(output.status, kExitOk);
     EXPECT_EQ(json["runs"][1]["ended"], "ended with status 3");
+    EXPECT_TRUE(has(output.out, "The program ended with status 3, whichever the broadphase."))
+        << output.out;
+}
+
+TEST(Try, IsNotContentWithNothingToCompare) {
+    const auto [output, json] = measure("", stock("stock-programs") + " no-steps-without-trees");
+    EXPECT_EQ(output.status, kExitCheckFailed);
+    EXPECT_TRUE(has(output.out, "No steps were compared")) << output.out;
 }
 
 }  // namespace

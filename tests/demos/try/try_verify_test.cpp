@@ -19,6 +19,40 @@ TEST(Try, FindsPairsThatAreMissing) {
         << output.out;
 }
 
+TEST(Try, FindsPairsThatGoMissingAtRest) {
+    const auto [output, json] =
+        measure("--verify", stock("stock-programs") + " loses-resting-pair");
+    EXPECT_EQ(output.status, kExitCheckFailed);
+    EXPECT_EQ(json["verification"]["missing"], 3) << output.out;  // from the fourth step on
+    EXPECT_TRUE(has(output.out, "The first fault, calculation 4: the pair of proxies"))
+        << output.out;
+}
+
+TEST(Try, FindsPairsThatTheFilterRefuses) {
+    const auto [output, json] =
+        measure("--verify", stock("stock-programs") + " makes-refused-pair");
+    EXPECT_EQ(output.status, kExitCheckFailed);
+    EXPECT_EQ(json["verification"]["missing"], 0) << output.out;
+    EXPECT_EQ(json["verification"]["extra"], 1) << output.out;
+    EXPECT_TRUE(has(output.out, "is made although the filter refuses it")) << output.out;
+}
+
+TEST(Try, JudgesWhatACallbackHasMovedAfterTheNextCalculation) {
+    const auto [output, json] =
+        measure("--verify", stock("stock-programs") + " moves-from-callback");
+    EXPECT_EQ(output.status, kExitOk) << output.out;
+    EXPECT_EQ(json["verification"]["notJudged"], 2) << output.out;
+    EXPECT_EQ(json["verification"]["bulletMissing"], 0) << output.out;
+    EXPECT_TRUE(has(output.out, "2 times a pair was not judged, as a callback had moved"))
+        << output.out;
+}
+
+TEST(Try, SaysHowAVerifiedProgramEnds) {
+    const auto [output, json] = measure("--verify", stock("stock-programs") + " failing");
+    EXPECT_EQ(output.status, kExitOk);
+    EXPECT_TRUE(has(output.out, "The program ended with status 3.\n")) << output.out;
+}
+
 TEST(Try, IsNotContentWithPairsOfAProgramThatCrashes) {
     const auto [output, json] = measure("--verify", stock("stock-programs") + " crashing");
     EXPECT_EQ(output.status, kExitCheckFailed);

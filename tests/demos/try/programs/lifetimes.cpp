@@ -5,7 +5,9 @@
 #include "program.hpp"
 
 #include <cstdlib>
+#include <numeric>
 #include <random>
+#include <thread>
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -42,6 +44,24 @@ int severalWorlds() {
     scenes[3].reset();
     say("boxes of the last world", countNear(scenes[2]->things, {4, 2, 0}, 8) - 1);
     scenes[2].reset();
+    return 0;
+}
+
+// Worlds that are stepped on threads of their own, all at once.
+int threads() {
+    std::vector<std::thread> all;
+    std::vector<int> resting(4);
+    for (int i = 0; i < 4; ++i) {
+        all.emplace_back([i, &resting] {
+            const std::unique_ptr<Scene<>> scene = makeScene(1);
+            scene->step(50 + 10 * i);
+            resting[i] = countNear(scene->things, {4, 2, 0}, 8) - 1;
+        });
+    }
+    for (std::thread& thread : all) {
+        thread.join();
+    }
+    say("boxes", std::accumulate(resting.begin(), resting.end(), 0));
     return 0;
 }
 
@@ -167,11 +187,14 @@ int throwsFromTick() {
 }  // namespace
 
 const std::vector<Program>& lifetimePrograms() {
-    static const std::vector<Program> list{
-        {"several-worlds", severalWorlds},   {"churn", churn},
-        {"hello-world", helloWorld},         {"cache-goes-first", cacheGoesFirst},
-        {"exit-anyhow", exitAnyhow},         {"forks", forks},
-        {"throws-from-tick", throwsFromTick}};
+    static const std::vector<Program> list{{"several-worlds", severalWorlds},
+                                           {"churn", churn},
+                                           {"threads", threads},
+                                           {"hello-world", helloWorld},
+                                           {"cache-goes-first", cacheGoesFirst},
+                                           {"exit-anyhow", exitAnyhow},
+                                           {"forks", forks},
+                                           {"throws-from-tick", throwsFromTick}};
     return list;
 }
 

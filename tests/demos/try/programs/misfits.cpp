@@ -7,7 +7,10 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <ctime>
+#include <functional>
+#include <utility>
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -37,9 +40,25 @@ int crashing() {
     std::abort();
 }
 
+void sayThatItHasBegun() {
+    std::puts("has begun");
+    std::fflush(stdout);
+}
+
+// Without what is to be done at an exit.
+int exitAtOnce(void (*exits)(int)) {
+    Scene<> scene;
+    addPile(scene);
+    scene.step(5);
+    exits(0);
+    return 1;
+}
+
 int endless() {
     Scene<> scene;
     addPile(scene);
+    scene.step(1);
+    sayThatItHasBegun();
     for (;;) {
         scene.step(1);
     }
@@ -51,6 +70,8 @@ int interruptible() {
     std::signal(SIGINT, [](int) { isInterrupted = 1; });
     Scene<> scene;
     addPile(scene);
+    scene.step(1);
+    sayThatItHasBegun();
     while (isInterrupted == 0) {
         scene.step(1);
     }
@@ -184,6 +205,114 @@ int sabotage() {
     return 0;
 }
 
+// What a program does when its first new pair is found; further pairs it only counts.
+struct Finder : btOverlappingPairCallback {
+    explicit Finder(std::function<void()> does) : action(std::move(does)) {}
+    btBroadphasePair* addOverlappingPair(btBroadphaseProxy* /*a*/,
+                                         btBroadphaseProxy* /*b*/) override {
+        if (++count == 1) {
+            action();
+        }
+        return nullptr;
+    }
+    void* removeOverlappingPair(btBroadphaseProxy* /*a*/, btBroadphaseProxy* /*b*/,
+                                btDispatcher* /*dispatcher*/) override {
+        return nullptr;
+    }
+    void removeOverlappingPairsContainingProxy(btBroadphaseProxy* /*proxy*/,
+                                               btDispatcher* /*dispatcher*/) override {}
+
+    std::function<void()> action;
+    int count = 0;
+};
+
+void moveTo(btCollisionWorld& world, btRigidBody& body, const btVector3& place) {
+    const btTransform transform(btQuaternion::getIdentity(), place);
+    body.setWorldTransform(transform);
+    body.setInterpolationWorldTransform(transform);
+    world.updateSingleAabb(&body);
+}
+
+// Four boxes without weight, of which two rest in each other; then the others meet, and the callback acts.
+int actsOnPair(const std::function<void(Scene<>&)>& action) {
+    Scene<> scene;
+    scene.world.setGravity({0, 0, 0});
+    scene.broadphase.m_deferedcollide = true;  // no pairs but in calculations
+    auto* box = scene.things.shape<btBoxShape>(btVector3(0.5, 0.5, 0.5));
+    for (const btScalar x : {btScalar(0), btScalar(0.5), btScalar(10), btScalar(20)}) {
+        scene.add(box, 1, {x, 0, 0})->setActivationState(DISABLE_SIMULATION);
+    }
+    scene.step(3);
+    Finder finder([&] { action(scene); });
+    scene.broadphase.getOverlappingPairCache()->setInternalGhostPairCallback(&finder);
+    moveTo(scene.world, *scene.things.bodies[3], {btScalar(10.5), 0, 0});
+    scene.step(3);
+    scene.broadphase.getOverlappingPairCache()->setInternalGhostPairCallback(nullptr);
+    return 0;
+}
+
+// As a broadphase would that loses pairs at rest.
+int losesRestingPair() {
+    return actsOnPair([](Scene<>& scene) {
+        scene.broadphase.getOverlappingPairCache()->removeOverlappingPair(
+            scene.things.bodies[0]->getBroadphaseHandle(),
+            scene.things.bodies[1]->getBroadphaseHandle(), &scene.dispatcher);
+    });
+}
+
+// As a broadphase would that does not ask the filter.
+int makesRefusedPair() {
+    return actsOnPair([](Scene<>& scene) {
+        scene.things.bodies[3]->getBroadphaseHandle()->m_collisionFilterMask = 0;
+    });
+}
+
+// Moves a body, while pairs are calculated, to where others are.
+int movesFromCallback() {
+    return actsOnPair([](Scene<>& scene) {
+        moveTo(scene.world, *scene.things.bodies[2], {btScalar(0.25), 0, 0});
+    });
+}
+
+// Casts rays while pairs are calculated, which take longer than all else.
+int raysFromCallback() {
+    return actsOnPair([](Scene<>& scene) {
+        for (int i = 0; i < 20'000; ++i) {
+            btCollisionWorld::AllHitsRayResultCallback hits({-30, 0, 0}, {30, 0, 0});
+            scene.world.rayTest(hits.m_rayFromWorld, hits.m_rayToWorld, hits);
+        }
+    });
+}
+
+// Makes steps with trees alone.
+int noStepsWithoutTrees() {
+    Scene<> scene;
+    addPile(scene);
+    if (scene.broadphase.m_sets[0].m_root != nullptr) {
+        scene.step(100);
+    }
+    return 0;
+}
+
+// Its parent ends first; then it steps for a second, under another name.
+int renamedOrphan() {
+    if (fork() != 0) {
+        return 0;
+    }
+    std::fill(environ[0], environ[0] + std::strlen(environ[0]), 'x');
+    for (char** variable = environ + 1; *variable != nullptr; ++variable) {
+        std::fill(*variable, *variable + std::strlen(*variable), 'x');
+    }
+    Scene<> scene;
+    addPile(scene);
+    for (int i = 0; i < 100; ++i) {
+        scene.step(1);
+        usleep(5000);
+    }
+    std::puts("the orphan has ended");
+    return 9;
+}
+
 struct DerivedSweep : btAxisSweep3 {
     DerivedSweep() : btAxisSweep3(btVector3(-100, -100, -100), btVector3(100, 100, 100)) {}
     void calculateOverlappingPairs(btDispatcher* dispatcher) override {
@@ -197,6 +326,23 @@ int derivedSweep() {
     scene.add(scene.things.shape<btBoxShape>(btVector3(1, 1, 1)), 1, {0, 1, 0});
     scene.step(30);
     say("pairs", scene.broadphase.getOverlappingPairCache()->getNumOverlappingPairs());
+    return 0;
+}
+
+// Rays in the world of a derived sweep, and steps in that of another broadphase.
+int derivedSweepBeside() {
+    Scene<> scene;
+    addPile(scene);
+    Scene<DerivedSweep> other;
+    auto* box = other.things.shape<btBoxShape>(btVector3(1, 1, 1));
+    for (int i = 0; i < 5; ++i) {
+        other.add(box, 1, {btScalar(3 * i), 0, 0});
+    }
+    for (int i = 0; i < 10; ++i) {
+        scene.step(1);
+        btCollisionWorld::AllHitsRayResultCallback hits({-30, 0, 0}, {30, 0, 0});
+        other.world.rayTest(hits.m_rayFromWorld, hits.m_rayToWorld, hits);
+    }
     return 0;
 }
 
@@ -389,6 +535,8 @@ int simpleBroadphase() {
 const std::vector<Program>& misfitPrograms() {
     static const std::vector<Program> list{
         {"failing", failing},
+        {"exit-at-once", [] { return exitAtOnce(_exit); }},
+        {"quick-exit", [] { return exitAtOnce(std::quick_exit); }},
         {"crashing", crashing},
         {"endless", endless},
         {"interruptible", interruptible},
@@ -398,6 +546,13 @@ const std::vector<Program>& misfitPrograms() {
         {"tampering", tampering},
         {"removes-pairs", removesPairs},
         {"sabotage", sabotage},
+        {"loses-resting-pair", losesRestingPair},
+        {"makes-refused-pair", makesRefusedPair},
+        {"moves-from-callback", movesFromCallback},
+        {"rays-from-callback", raysFromCallback},
+        {"no-steps-without-trees", noStepsWithoutTrees},
+        {"renamed-orphan", renamedOrphan},
+        {"derived-sweep-beside", derivedSweepBeside},
         {"derived-sweep", derivedSweep},
         {"bare-sweep", bareSweep},
         {"timed-steps", timedSteps},
