@@ -120,6 +120,12 @@ std::optional<SharedLibrary> libraryOf(const std::string& line) {
     return library;
 }
 
+bool fileContains(const std::string& path, const std::string& bytes) {
+    std::ifstream file(path, std::ios::binary);
+    const std::string content{std::istreambuf_iterator<char>(file), {}};
+    return content.find(bytes) != std::string::npos;
+}
+
 BulletPrecision precisionOf(const SharedLibrary& bullet) {
     // The constructor of a capsule takes two numbers, so that its name tells them.
     if (fileContains(bullet.path, "_ZN14btCapsuleShapeC1Eff")) {
@@ -187,12 +193,6 @@ std::string findProgram(const std::string& word) {
     }
     throw InputError(quotedWord(word) + " was not found in PATH" +
                      (isExecutable(word) ? "; did you mean ./" + word + "?" : ""));
-}
-
-bool fileContains(const std::string& path, const std::string& bytes) {
-    std::ifstream file(path, std::ios::binary);
-    const std::string content{std::istreambuf_iterator<char>(file), {}};
-    return content.find(bytes) != std::string::npos;
 }
 
 std::string loaderOf(const std::string& path) {

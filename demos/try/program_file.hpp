@@ -27,9 +27,6 @@ struct TriedProgram {
 /// The file that the shell would run for that word: itself with a slash, else from PATH. Throws InputError.
 [[nodiscard]] std::string findProgram(const std::string& word);
 
-/// Whether the file contains these bytes. False where it cannot be read.
-[[nodiscard]] bool fileContains(const std::string& path, const std::string& bytes);
-
 struct SharedLibrary {
     std::string name;  // "libm.so.6"
     std::string path;  // empty: not found

@@ -187,8 +187,11 @@ pid_t RunningProgram::findRecorded() {
     return recorded_;
 }
 
+// Those with rights of their own (setuid) cannot be ended, and load nothing of ours.
 std::vector<pid_t> RunningProgram::processes() const {
-    return descendantsBut(earlier_);
+    std::vector<pid_t> numbers = descendantsBut(earlier_);
+    std::erase_if(numbers, [](pid_t number) { return kill(number, 0) != 0; });
+    return numbers;
 }
 
 }  // namespace hashphase::demos

@@ -21,9 +21,9 @@ namespace {
 
 // What is in place of Bullet's trees hangs where Bullet, which is not asked, lists proxies; m_pid, which
 // Bullet sets to 0 and never looks at, says that it does.
+// It says, too, that the trees are part of a sweep, where objects and rays are counted, if at all.
 constexpr int kIsTaken = 0x68617368;
-constexpr int kIsPart =
-    0x70617274;  // of a sweep, whose objects and rays are counted there, if at all
+constexpr int kIsPart = 0x70617274;
 constexpr int kSlot = btDbvtBroadphase::STAGECOUNT;
 
 void setTaken(btDbvtBroadphase& object, btBroadphaseInterface* taken) noexcept {

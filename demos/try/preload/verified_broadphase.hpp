@@ -81,10 +81,9 @@ private:
     SpatialHashBroadphase ours_;
     std::unique_ptr<Stock> stock_;
     std::unordered_map<btBroadphaseProxy*, Twin> twins_;
-    std::vector<Couple> last_;    // pairs of ours after the last calculation
-    std::vector<Couple> before_;  // and when the next one began
-    std::vector<Couple>
-        removed_;  // by the program in between, or earlier, and overlapping ever since
+    std::vector<Couple> last_;       // pairs of ours after the last calculation
+    std::vector<Couple> before_;     // and when the next one began
+    std::vector<Couple> removed_;    // by the program since, or before, and overlapping ever since
     std::vector<Couple> missing_;    // after the last calculation
     std::uint64_t calculation_ = 0;  // the last one that has begun
 };
