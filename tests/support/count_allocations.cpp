@@ -111,6 +111,10 @@ using hashphase::test::kUsualAlignment;
 [[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
     return hashphase::test::allocate(size, kUsualAlignment);
 }
+// That of the library calls ours, but not under Valgrind, which puts its own there.
+[[gnu::noinline]] void* operator new[](std::size_t size) {
+    return operator new(size);
+}
 [[gnu::noinline]] void operator delete(void* block, std::align_val_t alignment) noexcept {
     hashphase::test::release(block, static_cast<std::size_t>(alignment));
 }
@@ -123,6 +127,12 @@ using hashphase::test::kUsualAlignment;
 }
 [[gnu::noinline]] void operator delete(void* block, std::size_t) noexcept {
     hashphase::test::release(block, kUsualAlignment);
+}
+[[gnu::noinline]] void operator delete[](void* block) noexcept {
+    operator delete(block);
+}
+[[gnu::noinline]] void operator delete[](void* block, std::size_t) noexcept {
+    operator delete(block);
 }
 
 #endif
