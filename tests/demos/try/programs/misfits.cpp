@@ -171,15 +171,12 @@ int removesPairs() {
     return 0;
 }
 
-// Loses the first pair of each calculation while the others are made.
-struct Saboteur : btOverlappingPairCallback {
+// Has the program do something about each new pair; the first one is number 1.
+struct Finder : btOverlappingPairCallback {
+    using Action = std::function<void(int number, btBroadphaseProxy* a, btBroadphaseProxy* b)>;
+    explicit Finder(Action does) : action(std::move(does)) {}
     btBroadphasePair* addOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b) override {
-        if (++count == 1) {
-            first = a;
-            second = b;
-        } else if (count == 5) {
-            cache->removeOverlappingPair(first, second, nullptr);
-        }
+        action(++count, a, b);
         return nullptr;
     }
     void* removeOverlappingPair(btBroadphaseProxy* /*a*/, btBroadphaseProxy* /*b*/,
@@ -189,42 +186,28 @@ struct Saboteur : btOverlappingPairCallback {
     void removeOverlappingPairsContainingProxy(btBroadphaseProxy* /*proxy*/,
                                                btDispatcher* /*dispatcher*/) override {}
 
-    btOverlappingPairCache* cache = nullptr;
-    btBroadphaseProxy* first = nullptr;
-    btBroadphaseProxy* second = nullptr;
+    Action action;
     int count = 0;
 };
 
+// Loses the first pair while others are made.
 int sabotage() {
-    Saboteur saboteur;
     Scene<> scene;
-    saboteur.cache = scene.broadphase.getOverlappingPairCache();
-    saboteur.cache->setInternalGhostPairCallback(&saboteur);
+    btOverlappingPairCache* cache = scene.broadphase.getOverlappingPairCache();
+    std::pair<btBroadphaseProxy*, btBroadphaseProxy*> first;
+    Finder finder([&](int number, btBroadphaseProxy* a, btBroadphaseProxy* b) {
+        if (number == 1) {
+            first = {a, b};
+        } else if (number == 5) {
+            cache->removeOverlappingPair(first.first, first.second, nullptr);
+        }
+    });
+    cache->setInternalGhostPairCallback(&finder);
     addPile(scene);
     scene.step(1);
+    cache->setInternalGhostPairCallback(nullptr);
     return 0;
 }
-
-// What a program does when its first new pair is found; further pairs it only counts.
-struct Finder : btOverlappingPairCallback {
-    explicit Finder(std::function<void()> does) : action(std::move(does)) {}
-    btBroadphasePair* addOverlappingPair(btBroadphaseProxy* /*a*/,
-                                         btBroadphaseProxy* /*b*/) override {
-        if (++count == 1) {
-            action();
-        }
-        return nullptr;
-    }
-    void* removeOverlappingPair(btBroadphaseProxy* /*a*/, btBroadphaseProxy* /*b*/,
-                                btDispatcher* /*dispatcher*/) override {
-        return nullptr;
-    }
-    void removeOverlappingPairsContainingProxy(btBroadphaseProxy* /*proxy*/,
-                                               btDispatcher* /*dispatcher*/) override {}
-
-    std::function<void()> action;
-    int count = 0;
-};
 
 void moveTo(btCollisionWorld& world, btRigidBody& body, const btVector3& place) {
     const btTransform transform(btQuaternion::getIdentity(), place);
@@ -243,7 +226,11 @@ int actsOnPair(const std::function<void(Scene<>&)>& action) {
         scene.add(box, 1, {x, 0, 0})->setActivationState(DISABLE_SIMULATION);
     }
     scene.step(3);
-    Finder finder([&] { action(scene); });
+    Finder finder([&](int number, btBroadphaseProxy* /*a*/, btBroadphaseProxy* /*b*/) {
+        if (number == 1) {
+            action(scene);
+        }
+    });
     scene.broadphase.getOverlappingPairCache()->setInternalGhostPairCallback(&finder);
     moveTo(scene.world, *scene.things.bodies[3], {btScalar(10.5), 0, 0});
     scene.step(3);
