@@ -41,9 +41,9 @@ void declare(CLI::App& app, TryOptions& options) {
            },
            "of the Bullet that the program loads as it runs")
         ->check(CLI::IsMember({"single", "double"}))
-        ->type_name("");
+        ->type_name("NAME");
     app.add_option("--json", options.jsonFile, "write everything measured to this file");
-    app.add_flag("--quiet", options.quiet, "say nothing but the results");
+    app.add_flag("--quiet", options.quiet, "say nothing but the results and what is waited for");
 }
 
 }  // namespace
