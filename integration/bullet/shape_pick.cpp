@@ -39,7 +39,11 @@ std::optional<btScalar> ShapeTest::operator()(ProxyId id, const RayRegion<btScal
     ClosestOf closest(acceptAll);
     closest.m_closestHitFraction = std::min(limit, btScalar(1));
     castAtShape(*broadphase_, id, toBullet(ray.from()), endOf(ray), closest);
-    return closest.hasHit() ? std::optional(closest.m_closestHitFraction) : std::nullopt;
+    if (!closest.hasHit()) {
+        return std::nullopt;
+    }
+    // Bullet ends a cast up to 2 cm in front of a shape, and so perhaps in front of the shape's box.
+    return std::max(closest.m_closestHitFraction, ray.key(broadphase_->grid().box(id)));
 }
 
 KeyedProxy<btScalar> closestShape(const SpatialHashBroadphase& broadphase,

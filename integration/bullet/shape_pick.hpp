@@ -20,10 +20,8 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// Where a ray meets the shape of a proxy's object: an ExactTest for pickAll() of
-/// integration/picking/pick.hpp. To find the nearest only, closestShape() is exact where pickNearest()
-/// is not: Bullet's casts may end up to 2 cm in front of a shape, and of its box. The broadphase must
-/// outlive the test.
+/// Where a ray meets the shape of a proxy's object: an ExactTest for pickNearest() and pickAll() of
+/// integration/picking/pick.hpp. The broadphase must outlive the test.
 class HASHPHASE_BULLET_EXPORT ShapeTest {
 public:
     explicit ShapeTest(const SpatialHashBroadphase& broadphase) noexcept
@@ -31,7 +29,8 @@ public:
     explicit ShapeTest(const SpatialHashBroadphase&&) = delete;
 
     /// The fraction of the ray's length, below the limit, that btCollisionWorld::rayTestSingle() has
-    /// for the ray without its fatness.
+    /// for the ray without its fatness; where that cast ends in front of the proxy's box, as it may by
+    /// up to 2 cm, the fraction at which the ray enters the box.
     [[nodiscard]] std::optional<btScalar> operator()(ProxyId id, const RayRegion<btScalar>& ray,
                                                      btScalar limit) const;
 

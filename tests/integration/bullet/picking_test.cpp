@@ -65,6 +65,10 @@ protected:
         return static_cast<const btCollisionObject*>(hash().proxyOf(id)->m_clientObject);
     }
 
+    btScalar entryOf(const RayRegion<btScalar>& ray, ProxyId id) const {
+        return ray.key(grid().box(id));
+    }
+
     const SpatialHashBroadphase& hash() const { return *broadphase_; }
     const Grid<btScalar>& grid() const { return hash().grid(); }
 
@@ -158,12 +162,46 @@ TEST_F(WorldPicking, ByShapeFindsAllHitsOfTheWorldsRayNearToFar) {
         pickAll(grid(), ray, picked, ShapeTest(hash()));
         ASSERT_EQ(picked.size(), expected.size());
         for (std::size_t k = 0; k < picked.size(); ++k) {
-            EXPECT_EQ(expected.at(objectOf(picked[k].id)), picked[k].fraction);
+            EXPECT_EQ(std::max(expected.at(objectOf(picked[k].id)), entryOf(ray, picked[k].id)),
+                      picked[k].fraction);
             EXPECT_LE(picked[k == 0 ? 0 : k - 1].fraction, picked[k].fraction);
         }
+        EXPECT_EQ(pickNearest(grid(), ray, ShapeTest(hash())).id,
+                  picked.empty() ? ProxyId{} : picked[0].id);
         found += picked.size();
     }
     EXPECT_GT(found, 600U);
+}
+
+TEST(ShapePicking, MeetsNoShapeInFrontOfItsBoxThoughBulletsCastsEndThere) {
+    SpatialHashBroadphase broadphase;
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher(&configuration);
+    btCollisionWorld world(&dispatcher, &broadphase, &configuration);
+    btBoxShape block({1, 1, 1});
+    btCollisionObject object;
+    object.setCollisionShape(&block);
+    object.getWorldTransform().setOrigin({10, 0, 0});
+    world.addCollisionObject(&object);  // with the box of the shape, no wider
+    const ProxyId id = SpatialHashBroadphase::idOf(object.getBroadphaseHandle());
+    int endedInFront = 0;
+    for (int i = 0; i < 200; ++i) {
+        SCOPED_TRACE(i);
+        const btScalar height = btScalar(i) / 100 - 1;
+        const btVector3 from(0, height, btScalar(0.3));
+        const btVector3 to(12, height / 2, btScalar(0.2));
+        const RayRegion<btScalar> ray(toEigen(from), toEigen(to));
+        const btScalar entry = ray.key(broadphase.grid().box(id));
+        btCollisionWorld::ClosestRayResultCallback cast(from, to);
+        castAtShape(broadphase, id, from, to, cast);
+        ASSERT_TRUE(cast.hasHit());
+        endedInFront += cast.m_closestHitFraction < entry ? 1 : 0;
+        const Picked<btScalar> picked = pickNearest(broadphase.grid(), ray, ShapeTest(broadphase));
+        EXPECT_EQ(picked.id, id);
+        EXPECT_EQ(picked.fraction, std::max(entry, cast.m_closestHitFraction));
+    }
+    EXPECT_GT(endedInFront, 10);
+    world.removeCollisionObject(&object);
 }
 
 TEST_F(WorldPicking, AsksTheFilterForGroupsAndMasks) {
