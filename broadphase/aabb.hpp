@@ -15,6 +15,8 @@
 #include <cstring>
 #include <type_traits>
 
+#include <broadphase/detail/hide_macros.hpp>
+
 namespace hashphase {
 
 template <class Scalar>
@@ -78,3 +80,5 @@ template <class Scalar>
 }
 
 }  // namespace hashphase
+
+#include <broadphase/detail/restore_macros.hpp>

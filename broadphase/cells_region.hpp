@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <broadphase/detail/hide_macros.hpp>
+
 namespace hashphase {
 
 /// Every proxy whose box touches a cell that a ball's box touches: an estimate of who is in the ball
@@ -45,3 +47,5 @@ private:
 };
 
 }  // namespace hashphase
+
+#include <broadphase/detail/restore_macros.hpp>

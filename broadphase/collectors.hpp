@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -167,5 +168,19 @@ private:
     std::uint64_t* words_;
     std::size_t wordCount_;
 };
+
+namespace detail {
+/// Whether a key is that of something in the region, and no larger than the collector's limit, which
+/// may be of the other precision.
+template <class Scalar, class Collector>
+[[nodiscard]] bool isWanted(Scalar key, const Collector& collector) {
+    const auto limit = collector.limit();
+    if constexpr (std::is_same_v<decltype(limit), const Scalar>) {
+        return key >= 0 && key <= limit;
+    } else {
+        return key >= 0 && static_cast<double>(key) <= static_cast<double>(limit);
+    }
+}
+}  // namespace detail
 
 }  // namespace hashphase

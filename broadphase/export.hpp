@@ -14,6 +14,14 @@
 #error "hashphase needs C++20: -std=c++20, /std:c++20, or target_compile_features(... cxx_std_20)."
 #endif
 
+// What is not set is 0, so that whoever asks the preprocessor asks about something that is defined.
+#ifndef HASHPHASE_SHARED
+#define HASHPHASE_SHARED 0
+#endif
+#ifndef HASHPHASE_USE_SCALAR
+#define HASHPHASE_USE_SCALAR 0
+#endif
+
 #if HASHPHASE_SHARED && defined(_WIN32)
 #define HASHPHASE_SYMBOL_EXPORT __declspec(dllexport)
 #define HASHPHASE_SYMBOL_IMPORT __declspec(dllimport)

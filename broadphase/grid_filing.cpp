@@ -82,7 +82,7 @@ template <class Scalar>
 void Grid<Scalar>::listResting() {
     restSlots_.clear();
     restBoxes_.clear();
-    for (const std::uint32_t slot : resting_.slots()) {
+    for (const std::uint32_t slot : resting_.entrySlots()) {
         if (records_[slot].place == Place::resting) {
             restSlots_.push_back(slot);
             restBoxes_.push_back(detail::padded(records_[slot].box));
@@ -125,7 +125,7 @@ void Grid<Scalar>::settle() noexcept {
         std::copy_if(mobileSlots_.begin(), mobileSlots_.end(), std::back_inserter(nanSlots_),
                      [this](std::uint32_t slot) { return records_[slot].isNan; });
     }
-    mobileSlots_.assign(mobile_.slots().begin(), mobile_.slots().end());
+    mobileSlots_.assign(mobile_.entrySlots().begin(), mobile_.entrySlots().end());
     mobileSlots_.insert(mobileSlots_.end(), nanSlots_.begin(), nanSlots_.end());
     if (firstRemoved_ != kNoSlot) {
         records_[lastRemoved_].restingEntry = firstFree_;

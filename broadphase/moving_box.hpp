@@ -18,6 +18,8 @@
 #include <limits>
 #include <optional>
 
+#include <broadphase/detail/hide_macros.hpp>
+
 namespace hashphase {
 
 /// At the time t, `box` shifted by t * displacement [m].
@@ -119,3 +121,5 @@ extern template class MovingBoxRegion<float>;
 extern template class MovingBoxRegion<double>;
 
 }  // namespace hashphase
+
+#include <broadphase/detail/restore_macros.hpp>

@@ -11,6 +11,8 @@
 #include <cmath>
 #include <limits>
 
+#include <broadphase/detail/hide_macros.hpp>
+
 namespace hashphase {
 
 /// A box's position: its centre, which lies in the closed box and does not overflow. NaN on all
@@ -89,3 +91,5 @@ private:
 };
 
 }  // namespace hashphase
+
+#include <broadphase/detail/restore_macros.hpp>

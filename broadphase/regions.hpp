@@ -25,6 +25,8 @@
 #include <limits>
 #include <utility>
 
+#include <broadphase/detail/hide_macros.hpp>
+
 namespace hashphase {
 
 /// Everything that overlaps a box (closed). Key: 0. An inverted box means what overlaps() says.
@@ -123,7 +125,7 @@ public:
         // Slabs; each distance is off by at most gamma(3), see Pharr, Jakob, Humphreys,
         // "Physically Based Rendering", 4th edition, section 6.8.3.
         Scalar enter = 0;
-        Scalar leave = last_;
+        Scalar exit = last_;
         for (int axis = 0; axis < 3; ++axis) {
             // Relative to the ray first: far from the origin, the small numbers stay exact.
             const Scalar low = (box.min()[axis] - from_[axis]) - fatness_.max()[axis];
@@ -134,19 +136,19 @@ public:
                 }
                 continue;
             }
-            Scalar near = low * scale_ * inverse_[axis];
-            Scalar far = high * scale_ * inverse_[axis];
+            Scalar slabEnter = low * scale_ * inverse_[axis];
+            Scalar slabExit = high * scale_ * inverse_[axis];
             if (direction_[axis] < 0) {
-                std::swap(near, far);
+                std::swap(slabEnter, slabExit);
             }
-            if (!(near <= far)) {
+            if (!(slabEnter <= slabExit)) {
                 return -1;
             }
-            far *= far > 0 ? kWidened : Scalar(1);
-            enter = std::max(enter, near);
-            leave = std::min(leave, far);
+            slabExit *= slabExit > 0 ? kWidened : Scalar(1);
+            enter = std::max(enter, slabEnter);
+            exit = std::min(exit, slabExit);
         }
-        return enter <= leave ? std::min(enter, Scalar(1)) : Scalar(-1);
+        return enter <= exit ? std::min(enter, Scalar(1)) : Scalar(-1);
     }
 
     /// True when an end is NaN or infinite, or the length: nothing has a key.
@@ -173,3 +175,5 @@ private:
 };
 
 }  // namespace hashphase
+
+#include <broadphase/detail/restore_macros.hpp>

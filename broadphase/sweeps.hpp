@@ -36,6 +36,8 @@
 #include <string>
 #include <vector>
 
+#include <broadphase/detail/hide_macros.hpp>
+
 namespace hashphase {
 
 /// Knows how far proxies move in a frame, for Pairs and for queries.
@@ -136,9 +138,9 @@ std::optional<Scalar> Sweeps<Scalar>::keyOnTheWay(const auto& region, const Moti
     // Parts of about its own size; so long a way that it would take more of them is seen less sharply.
     constexpr double mostParts = 64;
     const auto size = static_cast<double>(way.box.sizes().maxCoeff());
-    const auto far = static_cast<double>(way.displacement.cwiseAbs().maxCoeff());
-    const int count =
-        static_cast<int>(far < mostParts * size ? std::max(std::ceil(far / size), 1.0) : mostParts);
+    const auto distance = static_cast<double>(way.displacement.cwiseAbs().maxCoeff());
+    const int count = static_cast<int>(
+        distance < mostParts * size ? std::max(std::ceil(distance / size), 1.0) : mostParts);
     for (int i = 0; i < count; ++i) {
         add(keyOf(wayBounds(way, static_cast<double>(i) / count, (i + 1.0) / count)));
     }
@@ -162,7 +164,7 @@ QueryCost Sweeps<Scalar>::visit(const Region& region, Collector& collector) cons
         }
         ++cost.boxesTested;
         const std::optional<Scalar> key = keyOnTheWay(region, motion);
-        if (key && *key <= collector.limit()) {
+        if (key && detail::isWanted(*key, collector)) {
             ++cost.hits;
             collector.add(motion.id, *key);
         }
@@ -174,3 +176,5 @@ extern template class Sweeps<float>;
 extern template class Sweeps<double>;
 
 }  // namespace hashphase
+
+#include <broadphase/detail/restore_macros.hpp>

@@ -9,6 +9,8 @@
 #include <span>
 #include <vector>
 
+#include <broadphase/detail/hide_macros.hpp>
+
 namespace hashphase::detail {
 
 /// Boxes to be looked for in a table, by column. Keeps its memory.
@@ -72,3 +74,5 @@ private:
 };
 
 }  // namespace hashphase::detail
+
+#include <broadphase/detail/restore_macros.hpp>

@@ -27,10 +27,10 @@ public:
         return point;
     }
 
-    /// The weight of points that lie `farther` [m] behind those of weight `near`, as seen from the
+    /// The weight of points that lie `farther` [m] behind those of weight `nearer`, as seen from the
     /// eye; a little less, for rounding. 0 when all have the same weight (orthographic).
-    [[nodiscard]] double weightBehind(double near, double farther) const noexcept {
-        return weightPerMetre_ == 0 ? 0 : (1 - 1e-12) / (1 / near + farther * weightPerMetre_);
+    [[nodiscard]] double weightBehind(double nearer, double farther) const noexcept {
+        return weightPerMetre_ == 0 ? 0 : (1 - 1e-12) / (1 / nearer + farther * weightPerMetre_);
     }
 
 private:

@@ -14,6 +14,8 @@
 #include <span>
 #include <utility>
 
+#include <broadphase/detail/hide_macros.hpp>
+
 namespace hashphase::detail {
 
 template <class Scalar>
@@ -97,3 +99,5 @@ private:
 };
 
 }  // namespace hashphase::detail
+
+#include <broadphase/detail/restore_macros.hpp>

@@ -31,6 +31,8 @@
 #include <utility>
 #include <vector>
 
+#include <broadphase/detail/hide_macros.hpp>
+
 namespace hashphase::detail {
 
 class FlatSet {
@@ -101,7 +103,7 @@ public:
             return kNone;
         }
         const std::uint32_t number = groups_[place.group].numbers[place.lane];
-        leave(place, keyHash);
+        emptyPlace(place, keyHash);
         return number;
     }
 
@@ -315,7 +317,7 @@ private:
         groups_[g].numbers[lane] = number;
     }
 
-    void leave(const Place& place, std::uint32_t keyHash) noexcept {
+    void emptyPlace(const Place& place, std::uint32_t keyHash) noexcept {
         for (std::size_t g = home(keyHash); g != place.group; g = next(g)) {
             --groups_[g].passedBy;
         }
@@ -345,3 +347,5 @@ private:
 };
 
 }  // namespace hashphase::detail
+
+#include <broadphase/detail/restore_macros.hpp>

@@ -13,6 +13,8 @@
 #include <cmath>
 #include <limits>
 
+#include <broadphase/detail/hide_macros.hpp>
+
 namespace hashphase {
 
 /// Turns what the walk finds into what the collector takes.
@@ -50,7 +52,7 @@ struct Grid<Scalar>::VisitReader {
         return true;
     }
 
-    [[nodiscard]] bool isWanted(Scalar key) const { return key >= 0 && key <= limit(); }
+    [[nodiscard]] bool isWanted(Scalar key) const { return detail::isWanted(key, collector); }
 
     bool offer(std::uint32_t slot, Scalar key) {
         ++cost.hits;
@@ -77,7 +79,7 @@ struct Grid<Scalar>::RayReader {
             return true;
         }
         const Scalar key = region.key(grid.records_[slot].box);
-        if (!(key >= 0 && key <= limit())) {
+        if (!detail::isWanted(key, collector)) {
             return true;
         }
         ++cost.hits;
@@ -116,8 +118,8 @@ private:
         const auto flush = [](detail::SlotSink& sink) {
             return static_cast<VolumeReader*>(sink.owner)->take(sink);
         };
-        std::array<std::uint32_t, 512> slots;
-        detail::SlotSink sink{slots.data(), slots.data(), slots.data() + slots.size(), flush, this};
+        std::array<std::uint32_t, 512> found;
+        detail::SlotSink sink{found.data(), found.data(), found.data() + found.size(), flush, this};
         return detail::kernels<Scalar>().walkVolume(reader.table.view(level),
                                                     reader.region.volume(), sink, walk) &&
                take(sink);
@@ -195,7 +197,7 @@ bool Grid<Scalar>::offer(std::uint32_t slot, const Region& region, Collector& co
     }
     ++cost.boxesTested;
     const Scalar key = region.key(records_[slot].box);
-    if (!(key >= 0 && key <= collector.limit())) {
+    if (!detail::isWanted(key, collector)) {
         return true;
     }
     ++cost.hits;
@@ -269,7 +271,7 @@ QueryCost Grid<Scalar>::visitTogether(std::span<const Region> regions,
                 key = regions[i].key(table->box(entry));
             }
             const std::uint32_t slot = table->slot(entry);
-            if (key >= 0 && key <= collectors[i].limit() && (isAllFiled || isFiled(slot))) {
+            if (detail::isWanted(key, collectors[i]) && (isAllFiled || isFiled(slot))) {
                 ++cost.hits;
                 collectors[i].add(idOf(slot), key);
             }
@@ -404,3 +406,5 @@ void Grid<Scalar>::forEach(Visit&& visit) const {
 }
 
 }  // namespace hashphase
+
+#include <broadphase/detail/restore_macros.hpp>

@@ -106,7 +106,7 @@ struct LevelView {
     const Scalar* columns[6];            // min x, y, z, max x, y, z of the whole table
     const std::uint32_t* bucketStart;    // first entry of each of the level's buckets, and the end
     const std::uint32_t* bucketOfEntry;  // of the whole table, counted over all levels
-    const std::uint32_t* slots;          // of the whole table's entries
+    const std::uint32_t* entrySlots;     // of the whole table's entries
     std::uint32_t firstBucket;           // of the level
     const Row* rowOfEntry;               // of the whole table, where a level is hashed
     Scalar origin[4];

@@ -19,7 +19,7 @@ public:
         while (run.first < run.last) {
             const auto room = static_cast<std::uint32_t>(found_.end - found_.next);
             const std::uint32_t count = lowest(run.last - run.first, room);
-            __builtin_memcpy(found_.next, view_.level.slots + run.first,
+            __builtin_memcpy(found_.next, view_.level.entrySlots + run.first,
                              count * sizeof(*found_.next));
             found_.next += count;
             run.first += count;
@@ -101,8 +101,8 @@ private:
 
     void fetchSlots(Run run) const {
         const std::uint32_t last = lowest(run.last, run.first + kMostFetched);
-        for (std::uint32_t at = run.first; at < last; at += kLine / sizeof(*view_.level.slots)) {
-            __builtin_prefetch(view_.level.slots + at);
+        for (std::uint32_t at = run.first; at < last; at += kLine / sizeof(*view_.level.entrySlots)) {
+            __builtin_prefetch(view_.level.entrySlots + at);
         }
     }
 
@@ -169,14 +169,14 @@ private:
             for (PlaneSet left = planes; left != 0 && mask != 0; left &= left - 1) {
                 mask &= bitsOf<Pack>(view_.planes[firstPlane(left)], first);
             }
-            const std::uint32_t* slots = view_.level.slots;
+            const std::uint32_t* entrySlots = view_.level.entrySlots;
             if constexpr (kIsDense) {
-                found_.next = writeNumbers<Pack>(mask, slots + first, found_.next);
+                found_.next = writeNumbers<Pack>(mask, entrySlots + first, found_.next);
             } else {
                 for (; mask != 0; mask &= mask - 1) {
                     const std::uint32_t hit =
                         first + static_cast<std::uint32_t>(__builtin_ctz(mask));
-                    *found_.next = slots[hit];
+                    *found_.next = entrySlots[hit];
                     found_.next += isInRow<false>(view_.level, hit, row) ? 1 : 0;
                 }
             }

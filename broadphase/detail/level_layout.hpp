@@ -16,6 +16,8 @@
 #include <span>
 #include <vector>
 
+#include <broadphase/detail/hide_macros.hpp>
+
 namespace hashphase::detail {
 
 /// How many boxes are filed by cells, and between which cells.
@@ -72,3 +74,5 @@ private:
 };
 
 }  // namespace hashphase::detail
+
+#include <broadphase/detail/restore_macros.hpp>

@@ -4,9 +4,10 @@
 // How many of anything there may be. Whatever grows is measured before it does, so that no number
 // wraps around: beyond its limit it throws std::length_error, and is as it was.
 
+#include <broadphase/detail/raise.hpp>
+
 #include <cstddef>
 #include <cstdint>
-#include <stdexcept>
 
 namespace hashphase::detail {
 
@@ -21,7 +22,7 @@ inline constexpr std::uint32_t kLastGeneration = ~std::uint32_t{1};
 /// Throws std::length_error with the sentence when `count` is more than `most`.
 inline void checkCount(std::size_t count, std::size_t most, const char* sentence) {
     if (count > most) [[unlikely]] {
-        throw std::length_error(sentence);
+        raiseLengthError(sentence);
     }
 }
 

@@ -9,6 +9,8 @@
 
 #include <cstddef>
 
+#include <broadphase/detail/hide_macros.hpp>
+
 namespace hashphase::detail {
 
 /// Whether `difference` is x - shift without rounding. The error of a subtraction is zero exactly when
@@ -58,3 +60,5 @@ template <class Scalar>
 }
 
 }  // namespace hashphase::detail
+
+#include <broadphase/detail/restore_macros.hpp>

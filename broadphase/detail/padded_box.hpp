@@ -8,6 +8,8 @@
 
 #include <limits>
 
+#include <broadphase/detail/hide_macros.hpp>
+
 namespace hashphase::detail {
 
 template <class Scalar>
@@ -23,3 +25,5 @@ template <class Scalar>
 }
 
 }  // namespace hashphase::detail
+
+#include <broadphase/detail/restore_macros.hpp>

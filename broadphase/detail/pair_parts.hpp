@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <vector>
 
+#include <broadphase/detail/hide_macros.hpp>
+
 namespace hashphase::detail {
 
 /// Couples that a loop finds on several threads, put together in the loop's order: what it finds
@@ -61,3 +63,5 @@ private:
 };
 
 }  // namespace hashphase::detail
+
+#include <broadphase/detail/restore_macros.hpp>

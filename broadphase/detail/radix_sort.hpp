@@ -26,7 +26,7 @@ inline void radixSort(std::vector<std::uint64_t>& keys, std::uint32_t bound,
     }
     constexpr unsigned kDigitBits = 11;
     constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
-    const auto bits = static_cast<unsigned>(std::bit_width(bound));
+    const auto bits = 32 - static_cast<unsigned>(std::countl_zero(bound));
     scratch.resize(keys.size());
     std::array<std::uint32_t, kDigits> start;
     const auto sortBy = [&](unsigned shift) {

@@ -6,11 +6,13 @@
 // widened as in Ize, "Robust BVH ray traversal". The scalar version is the definition; the vector
 // version gives the same bits.
 
+#include <broadphase/export.hpp>
+
 #include <array>
 #include <cstdint>
 
 #if defined(__SSE2__) && !HASHPHASE_USE_SCALAR
-#define HASHPHASE_HAS_SSE2 1
+#define HASHPHASE_HAS_SSE2
 #include <emmintrin.h>
 #endif
 
@@ -46,30 +48,30 @@ struct RayLanes {
     std::uint32_t mask = 0;
     for (std::uint32_t k = 0; k < kBlockWidth; ++k) {
         float first = 0;
-        float leave = last;
+        float exit = last;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const float near =
+            const float slabEnter =
                 (block.bounds[ray.nearColumn[axis]][k] - ray.offset[ray.nearColumn[axis]]) *
                 ray.inverse[axis];
-            const float far =
+            const float slabExit =
                 (block.bounds[ray.farColumn[axis]][k] - ray.offset[ray.farColumn[axis]]) *
                 ray.farInverse[axis];
             // As the vector instructions do it: a NaN changes nothing.
-            first = near > first ? near : first;
-            leave = far < leave ? far : leave;
+            first = slabEnter > first ? slabEnter : first;
+            exit = slabExit < exit ? slabExit : exit;
         }
         enter[k] = first;
-        mask |= static_cast<std::uint32_t>(first <= leave) << k;
+        mask |= static_cast<std::uint32_t>(first <= exit) << k;
     }
     return mask;
 }
 
-#if HASHPHASE_HAS_SSE2
+#ifdef HASHPHASE_HAS_SSE2
 
 [[nodiscard]] inline std::uint32_t mayMeetMask(const BoxBlock& block, const RayLanes& ray,
                                                float last, float* enter) noexcept {
     __m128 first[2] = {_mm_setzero_ps(), _mm_setzero_ps()};
-    __m128 leave[2] = {_mm_set1_ps(last), _mm_set1_ps(last)};
+    __m128 exit[2] = {_mm_set1_ps(last), _mm_set1_ps(last)};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const __m128 nearOffset = _mm_set1_ps(ray.offset[ray.nearColumn[axis]]);
         const __m128 farOffset = _mm_set1_ps(ray.offset[ray.farColumn[axis]]);
@@ -78,18 +80,18 @@ struct RayLanes {
         const float* nearBounds = block.bounds[ray.nearColumn[axis]].data();
         const float* farBounds = block.bounds[ray.farColumn[axis]].data();
         for (std::size_t half = 0; half < 2; ++half) {
-            const __m128 near =
+            const __m128 slabEnter =
                 _mm_mul_ps(_mm_sub_ps(_mm_load_ps(nearBounds + 4 * half), nearOffset), inverse);
-            const __m128 far =
+            const __m128 slabExit =
                 _mm_mul_ps(_mm_sub_ps(_mm_load_ps(farBounds + 4 * half), farOffset), farInverse);
-            first[half] = _mm_max_ps(near, first[half]);
-            leave[half] = _mm_min_ps(far, leave[half]);
+            first[half] = _mm_max_ps(slabEnter, first[half]);
+            exit[half] = _mm_min_ps(slabExit, exit[half]);
         }
     }
     _mm_storeu_ps(enter, first[0]);
     _mm_storeu_ps(enter + 4, first[1]);
-    return static_cast<std::uint32_t>(_mm_movemask_ps(_mm_cmple_ps(first[0], leave[0]))) |
-           static_cast<std::uint32_t>(_mm_movemask_ps(_mm_cmple_ps(first[1], leave[1]))) << 4;
+    return static_cast<std::uint32_t>(_mm_movemask_ps(_mm_cmple_ps(first[0], exit[0]))) |
+           static_cast<std::uint32_t>(_mm_movemask_ps(_mm_cmple_ps(first[1], exit[1]))) << 4;
 }
 
 #else

@@ -63,7 +63,7 @@ std::size_t Table<Scalar>::countBuckets(std::span<const PaddedBox<Scalar>> boxes
 // A counting sort. Boxes that come in the order of the last time are read and written nearly in
 // sequence.
 template <class Scalar>
-void Table<Scalar>::sortEntries(std::span<const std::uint32_t> slots,
+void Table<Scalar>::sortEntries(std::span<const std::uint32_t> boxSlots,
                                 std::span<const PaddedBox<Scalar>> boxes, ParallelFor parallelFor) {
     std::uint32_t sum = 0;
     largestBucket_ = 0;
@@ -98,7 +98,7 @@ void Table<Scalar>::sortEntries(std::span<const std::uint32_t> slots,
     parallelFor(count, kTableGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t entry = begin; entry < end; ++entry) {
             const std::uint32_t i = order_[entry];
-            slots_[entry] = slots[i];
+            slots_[entry] = boxSlots[i];
             bucketOfEntry_[entry] = buckets_[i];
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 bounds_[axis][entry] = boxes[i].low[axis];
@@ -204,13 +204,13 @@ void Table<Scalar>::noteHeights() {
 }
 
 template <class Scalar>
-void Table<Scalar>::build(std::span<const std::uint32_t> slots,
+void Table<Scalar>::build(std::span<const std::uint32_t> boxSlots,
                           std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed,
                           ParallelFor parallelFor) {
-    HASHPHASE_ASSERT(slots.size() == boxes.size(), "Every box has a slot.");
+    HASHPHASE_ASSERT(boxSlots.size() == boxes.size(), "Every box has a slot.");
     try {
         findBuckets(boxes, fixed, parallelFor);
-        sortEntries(slots, boxes, parallelFor);
+        sortEntries(boxSlots, boxes, parallelFor);
     } catch (...) {
         clear();
         throw;
@@ -261,7 +261,7 @@ LevelView<Scalar> Table<Scalar>::view(const Level<Scalar>& level) const noexcept
     view.bucketStart = bucketStart_.data() + level.firstBucket;
     view.bucketOfEntry = bucketOfEntry_.data();
     view.rowOfEntry = rowOfEntry_.data();
-    view.slots = slots_.data();
+    view.entrySlots = slots_.data();
     view.firstBucket = level.firstBucket;
     view.firstEntry = level.firstEntry;
     view.lastEntry = level.lastEntry;

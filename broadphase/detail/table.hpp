@@ -29,6 +29,8 @@
 #include <string>
 #include <vector>
 
+#include <broadphase/detail/hide_macros.hpp>
+
 namespace hashphase::detail {
 
 /// Columns min x, y, z, max x, y, z of boxes.
@@ -53,11 +55,11 @@ struct EntryRange {
 template <class Scalar>
 class HASHPHASE_BROADPHASE_EXPORT Table {
 public:
-    /// Files boxes[i], of slots[i], for every i, anew; boxes with a NaN are left out. Cell sizes
+    /// Files boxes[i], of boxSlots[i], for every i, anew; boxes with a NaN are left out. Cell sizes
     /// follow the population, or are fixed when `fixed.count` > 0. Where it throws, for want of
     /// memory, nothing is filed. Cost: a few passes over the boxes; least when they come in about the
     /// order of the last time, see order().
-    void build(std::span<const std::uint32_t> slots, std::span<const PaddedBox<Scalar>> boxes,
+    void build(std::span<const std::uint32_t> boxSlots, std::span<const PaddedBox<Scalar>> boxes,
                const LevelSizes& fixed, ParallelFor parallelFor = serialFor);
 
     /// Leaves nothing filed.
@@ -74,7 +76,7 @@ public:
         return static_cast<std::uint32_t>(slots_.size());
     }
     [[nodiscard]] std::span<const Level<Scalar>> levels() const noexcept { return levels_; }
-    [[nodiscard]] std::span<const std::uint32_t> slots() const noexcept { return slots_; }
+    [[nodiscard]] std::span<const std::uint32_t> entrySlots() const noexcept { return slots_; }
     [[nodiscard]] std::uint32_t slot(std::uint32_t entry) const noexcept { return slots_[entry]; }
     /// For every entry the number under which build() was given it.
     [[nodiscard]] std::span<const std::uint32_t> order() const noexcept { return order_; }
@@ -150,8 +152,8 @@ private:
     void layOut(std::span<const PaddedBox<Scalar>> boxes);
     [[nodiscard]] std::size_t countBuckets(std::span<const PaddedBox<Scalar>> boxes,
                                            ParallelFor parallelFor);
-    void sortEntries(std::span<const std::uint32_t> slots, std::span<const PaddedBox<Scalar>> boxes,
-                     ParallelFor parallelFor);
+    void sortEntries(std::span<const std::uint32_t> boxSlots,
+                     std::span<const PaddedBox<Scalar>> boxes, ParallelFor parallelFor);
     template <class Visit>
     void forCrowds(const Level<Scalar>& level, const Visit& visit);
     void sortCrowds(std::span<const PaddedBox<Scalar>> boxes);
@@ -208,3 +210,5 @@ extern template class Table<float>;
 extern template class Table<double>;
 
 }  // namespace hashphase::detail
+
+#include <broadphase/detail/restore_macros.hpp>

@@ -4,6 +4,8 @@
 // Sixteen bytes at once against one: where a group of a hash table is searched. The scalar version is
 // the definition; the vector version gives the same bits.
 
+#include <broadphase/export.hpp>
+
 #include <cstdint>
 
 #if defined(__SSE2__) && !HASHPHASE_USE_SCALAR

@@ -13,6 +13,8 @@
 #include <cstdint>
 #include <limits>
 
+#include <broadphase/detail/hide_macros.hpp>
+
 namespace hashphase::detail {
 
 template <class Scalar>
@@ -151,3 +153,5 @@ private:
 };
 
 }  // namespace hashphase::detail
+
+#include <broadphase/detail/restore_macros.hpp>

@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include <broadphase/detail/hide_macros.hpp>
+
 namespace hashphase::detail {
 
 // Looking up a run of buckets costs about as much as testing this many boxes one after another.
@@ -155,3 +157,5 @@ bool walkTable(const Table<Scalar>& table, const Aabb<Scalar>& bounds, QueryCost
 }
 
 }  // namespace hashphase::detail
+
+#include <broadphase/detail/restore_macros.hpp>

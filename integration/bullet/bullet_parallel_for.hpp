@@ -12,6 +12,8 @@
 #include <cstddef>
 #include <limits>
 
+#include <broadphase/detail/hide_macros.hpp>
+
 namespace hashphase {
 
 /// A ParallelFor: config.parallelFor = hashphase::bulletFor.
@@ -34,3 +36,5 @@ inline void bulletFor(std::size_t count, std::size_t grain, LoopBody body) {
 }
 
 }  // namespace hashphase
+
+#include <broadphase/detail/restore_macros.hpp>

@@ -38,12 +38,14 @@
 // gDeactivationTime, 2 s. motion.bounds and sleeping.interestRadius, where they are finite, are errors:
 // put static planes at the bounds, and deactivate what is far.
 
+#include <broadphase/detail/raise.hpp>
 #include <integration/bullet/world_effects.hpp>
 #include <integration/effects/scene_effects.hpp>
 
 #include <limits>
-#include <stdexcept>
 #include <string>
+
+#include <broadphase/detail/hide_macros.hpp>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
@@ -70,7 +72,7 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 /// they have sleeping thresholds of their own. Throws std::invalid_argument with bulletEffectsError().
 [[nodiscard]] inline WorldEffects worldEffectsOf(const SceneEffects& effects) {
     if (const std::string error = bulletEffectsError(effects); !error.empty()) {
-        throw std::invalid_argument(error);
+        detail::raiseInvalidArgument(error);
     }
     WorldEffects ofWorld;
     ofWorld.motion = effects.motion.has_value();
@@ -90,3 +92,5 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 }
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE
+
+#include <broadphase/detail/restore_macros.hpp>

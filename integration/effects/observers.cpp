@@ -141,10 +141,20 @@ void Observers<Scalar>::compile() {
 }
 
 template <class Scalar>
-void Observers<Scalar>::require(Effect effect, const char* call) const {
+void Observers<Scalar>::demand(Effect effect, const char* call) const {
     if (!effects_.set().contains(effect)) {
         throw UndeclaredEffect(effect, call);
     }
+}
+
+template <class Scalar>
+template <class Part>
+Part& Observers<Scalar>::partOf(const std::unique_ptr<Part>& part, Effect effect,
+                                const char* call) {
+    if (!part) {
+        throw UndeclaredEffect(effect, call);
+    }
+    return *part;
 }
 
 // --- A frame -------------------------------------------------------------------------------------
@@ -413,7 +423,7 @@ void Observers<Scalar>::noteAsked(SceneCounter count, SceneCounter boxesTested,
 
 template <class Scalar>
 Picked<Scalar> Observers<Scalar>::pick(const Scene& scene, const RayRegion<Scalar>& ray) {
-    require(Effect::picking, "pick()");
+    demand(Effect::picking, "pick()");
     QueryCost cost;
     Picked<Scalar> picked = askFor(scene, Effect::picking, [&](ProxyFilter filter) {
         return pickNearest(scene.grid, ray, filter, &cost);
@@ -425,7 +435,7 @@ Picked<Scalar> Observers<Scalar>::pick(const Scene& scene, const RayRegion<Scala
 template <class Scalar>
 Picked<Scalar> Observers<Scalar>::pick(const Scene& scene, const RayRegion<Scalar>& ray,
                                        ExactTest<Scalar> test) {
-    require(Effect::picking, "pick()");
+    demand(Effect::picking, "pick()");
     QueryCost cost;
     Picked<Scalar> picked = askFor(scene, Effect::picking, [&](ProxyFilter filter) {
         return pickNearest(scene.grid, ray, test, filter, &cost);
@@ -438,7 +448,7 @@ template <class Scalar>
 QueryCost Observers<Scalar>::select(const Scene& scene, const View<Scalar>& view, const Pixel& a,
                                     const Pixel& b, std::vector<ProxyId>& selected,
                                     Containment containment) {
-    require(Effect::boxSelection, "select()");
+    demand(Effect::boxSelection, "select()");
     const QueryCost cost = askFor(scene, Effect::boxSelection, [&](ProxyFilter filter) {
         return hashphase::select(scene.grid, view, a, b, selected, containment, filter);
     });

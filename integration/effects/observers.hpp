@@ -182,13 +182,8 @@ private:
         return frame_ % everyFrames == 0 || farewell_.contains(effect);
     }
     template <class Part>
-    static Part& partOf(const std::unique_ptr<Part>& part, Effect effect, const char* call) {
-        if (!part) {
-            throw UndeclaredEffect(effect, call);
-        }
-        return *part;
-    }
-    void require(Effect effect, const char* call) const;
+    static Part& partOf(const std::unique_ptr<Part>& part, Effect effect, const char* call);
+    void demand(Effect effect, const char* call) const;
     void noteAsked(SceneCounter count, SceneCounter boxesTested, const QueryCost& cost);
 
     SceneEffects effects_;

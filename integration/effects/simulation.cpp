@@ -128,7 +128,7 @@ void Simulation<Scalar>::makeParts(const SceneEffects& effects) {
 }
 
 template <class Scalar>
-void Simulation<Scalar>::require(Effect effect, const char* call) const {
+void Simulation<Scalar>::demand(Effect effect, const char* call) const {
     if (!effects_.set().contains(effect)) {
         throw UndeclaredEffect(effect, call);
     }
@@ -215,7 +215,7 @@ void Simulation<Scalar>::remove(BodyId id) {
     } else {
         vacant_.push_back(id.index);
     }
-    if (sleep_ && sleep_->states[body] == Sleep::State::far) {
+    if (sleep_ && sleep_->states[body] == Sleep::State::distant) {
         --sleep_->farCount;
     }
     observers_.forget(id.index);
@@ -254,13 +254,13 @@ EffectSet Simulation<Scalar>::effects(BodyId id) const {
 
 template <class Scalar>
 const Vector3<Scalar>& Simulation<Scalar>::velocity(BodyId id) const {
-    require(Effect::motion, "velocity()");
+    demand(Effect::motion, "velocity()");
     return motion_->velocities[indexOf(id)];
 }
 
 template <class Scalar>
 void Simulation<Scalar>::setVelocity(BodyId id, const Point& velocity) {
-    require(Effect::motion, "setVelocity()");
+    demand(Effect::motion, "setVelocity()");
     const std::size_t body = indexOf(id);
     motion_->velocities[body] = velocity;
     between_[SceneCounter::wokeUp] += wakeUp(body) ? 1 : 0;
@@ -273,7 +273,7 @@ bool Simulation<Scalar>::isAwake(std::size_t body) const noexcept {
 
 template <class Scalar>
 bool Simulation<Scalar>::isAsleep(BodyId id) const {
-    require(Effect::sleeping, "isAsleep()");
+    demand(Effect::sleeping, "isAsleep()");
     const std::size_t body = indexOf(id);
     return isMovable(body) && !isAwake(body);
 }
@@ -307,7 +307,7 @@ BodyId Simulation<Scalar>::bodyOf(ProxyId id) const {
 
 template <class Scalar>
 Terrain<Scalar>& Simulation<Scalar>::ground() {
-    require(Effect::terrain, "ground()");
+    demand(Effect::terrain, "ground()");
     return walkers_->terrain;
 }
 
@@ -322,13 +322,13 @@ const Grid<Scalar>& Simulation<Scalar>::grid() const {
 template <class Scalar>
 const PairChanges& Simulation<Scalar>::pairChanges() const {
     static constexpr PairChanges kNone;
-    require(Effect::pairs, "pairChanges()");
+    demand(Effect::pairs, "pairChanges()");
     return pairing_ ? pairing_->changes : kNone;
 }
 
 template <class Scalar>
 std::size_t Simulation<Scalar>::pairCount() const {
-    require(Effect::pairs, "pairCount()");
+    demand(Effect::pairs, "pairCount()");
     return pairing_ ? pairing_->pairs.count() : 0;
 }
 
@@ -352,7 +352,7 @@ ObservedScene<Scalar> Simulation<Scalar>::observed() const {
 
 template <class Scalar>
 Picked<Scalar> Simulation<Scalar>::pick(const RayRegion<Scalar>& ray) {
-    require(Effect::picking, "pick()");
+    demand(Effect::picking, "pick()");
     takeStock();
     return observers_.pick(observed(), ray);
 }
@@ -360,7 +360,7 @@ Picked<Scalar> Simulation<Scalar>::pick(const RayRegion<Scalar>& ray) {
 template <class Scalar>
 QueryCost Simulation<Scalar>::select(const View<Scalar>& view, const Pixel& a, const Pixel& b,
                                      std::vector<ProxyId>& selected, Containment containment) {
-    require(Effect::boxSelection, "select()");
+    demand(Effect::boxSelection, "select()");
     takeStock();
     return observers_.select(observed(), view, a, b, selected, containment);
 }

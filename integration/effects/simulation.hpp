@@ -215,7 +215,7 @@ private:
     }
     [[nodiscard]] bool isAwake(std::size_t body) const noexcept;
     [[nodiscard]] ObservedScene<Scalar> observed() const;
-    void require(Effect effect, const char* call) const;
+    void demand(Effect effect, const char* call) const;
 
     template <class Visit>
     void forEachColumn(const Body<Scalar>& body, const Visit& visit);

@@ -79,7 +79,7 @@ bool Simulation<Scalar>::wakeUp(std::size_t body) {
     if (!sleep_ || !isMovable(body) || sleep_->states[body] == Sleep::State::awake) {
         return false;
     }
-    sleep_->farCount -= sleep_->states[body] == Sleep::State::far ? 1 : 0;
+    sleep_->farCount -= sleep_->states[body] == Sleep::State::distant ? 1 : 0;
     sleep_->states[body] = Sleep::State::awake;
     sleep_->slowFrames[body] = 0;
     stockIsStale_ = true;
@@ -237,7 +237,7 @@ void Simulation<Scalar>::land() {
 
 template <class Scalar>
 bool Simulation<Scalar>::collide(BodyId first, BodyId second, double restitution) {
-    require(Effect::motion, "collide()");
+    demand(Effect::motion, "collide()");
     const std::size_t a = indexOf(std::min(first, second));
     const std::size_t b = indexOf(std::max(first, second));
     HASHPHASE_ASSERT(a != b, "A body collides with another one.");

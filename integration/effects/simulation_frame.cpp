@@ -97,7 +97,7 @@ void Simulation<Scalar>::wake() {
     sleep.mustLook = false;
     const auto radius = static_cast<Scalar>(effects_.sleeping->interestRadius);
     for (std::size_t body = 0; body < positions_.size(); ++body) {
-        if (!isAlive(body) || sleep.states[body] != Sleep::State::far) {
+        if (!isAlive(body) || sleep.states[body] != Sleep::State::distant) {
             continue;
         }
         ++cost_[SceneCounter::sleepersAsked];
@@ -352,7 +352,7 @@ void Simulation<Scalar>::rest() {
             return true;
         }
         if (interest && (positions_[body] - *interest).norm() > radius) {
-            sleep.states[body] = Sleep::State::far;
+            sleep.states[body] = Sleep::State::distant;
             ++sleep.farCount;
             return true;
         }

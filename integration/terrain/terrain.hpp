@@ -31,6 +31,8 @@
 #include <span>
 #include <vector>
 
+#include <broadphase/detail/hide_macros.hpp>
+
 namespace hashphase {
 
 /// Where something stands: on which triangle, by its number, and how high.
@@ -195,3 +197,5 @@ extern template class Terrain<float>;
 extern template class Terrain<double>;
 
 }  // namespace hashphase
+
+#include <broadphase/detail/restore_macros.hpp>

@@ -13,6 +13,8 @@
 #include <span>
 #include <vector>
 
+#include <broadphase/detail/hide_macros.hpp>
+
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 
 /// Tells which proxies are among some, and at what place, by their unique ids. Made to be asked
@@ -55,3 +57,5 @@ private:
 };
 
 }  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE
+
+#include <broadphase/detail/restore_macros.hpp>

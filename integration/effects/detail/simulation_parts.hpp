@@ -19,7 +19,8 @@ struct Simulation<Scalar>::Motion {
 
 template <class Scalar>
 struct Simulation<Scalar>::Walkers {
-    explicit Walkers(UpAxis axis) : up(static_cast<Eigen::Index>(axis)), grid(), terrain(grid, axis) {}
+    explicit Walkers(UpAxis axis)
+        : up(static_cast<Eigen::Index>(axis)), grid(), terrain(grid, axis) {}
 
     void clear() noexcept {
         bodies.clear();
@@ -38,7 +39,7 @@ struct Simulation<Scalar>::Walkers {
 
 template <class Scalar>
 struct Simulation<Scalar>::Sleep {
-    enum class State : std::uint8_t { awake, slow, far };
+    enum class State : std::uint8_t { awake, slow, distant };
 
     std::vector<State> states;
     std::vector<std::uint32_t> slowFrames;  // how many in a row, until now

@@ -13,6 +13,8 @@
 #include <cstdint>
 #include <limits>
 
+#include <broadphase/detail/hide_macros.hpp>
+
 namespace hashphase::detail {
 
 inline constexpr double kNoHeight = -std::numeric_limits<double>::infinity();
@@ -210,3 +212,5 @@ template <class Scalar>
 }
 
 }  // namespace hashphase::detail
+
+#include <broadphase/detail/restore_macros.hpp>
