@@ -12,12 +12,6 @@
 namespace hashphase {
 namespace {
 
-// Reading the waiting list costs each query about a nanosecond a proxy, filing costs about ten for
-// every mobile proxy: this many waiting proxies balance the two for a write and a query in turn.
-std::size_t manyWaiting(std::size_t mobileCount) {
-    return 64 + mobileCount / 128;
-}
-
 void checkProxyCount(std::size_t count) {
     detail::checkCount(count, detail::kMostProxies, "A grid holds at most 268,435,456 proxies.");
 }
@@ -50,6 +44,7 @@ Grid<Scalar>::~Grid() {
 template <class Scalar>
 ProxyId Grid<Scalar>::add(const Box& box, Mobility mobility) {
     HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(this), detail::kMustNotChange);
+    beforeChange();  // before anything is listed that it does not have
     // It may be that of another proxy, which moves. NOLINTNEXTLINE(*-unnecessary-copy-initialization)
     const Box own = box;
     std::uint32_t slot = firstFree_;
@@ -90,7 +85,7 @@ void Grid<Scalar>::reserveSlots(std::size_t slotCount) {
     const auto room = std::max<std::size_t>({slotCount, twice, 8});
     mobileSlots_.reserve(room);
     woken_.reserve(room);
-    waiting_.reserve(manyWaiting(room) + 1);
+    waiting_.reserve(room);
     records_.reserve(room);  // last: the others have room for as many
 }
 
@@ -143,6 +138,7 @@ const Aabb<Scalar>& Grid<Scalar>::box(ProxyId id) const {
 // To be called before every change of a slot's box.
 template <class Scalar>
 void Grid<Scalar>::noteChange(std::uint32_t slot) noexcept {
+    beforeChange();
     Record& record = records_[slot];
     if (record.changedAt != updateNumber_) {
         record.before = record.box;
@@ -152,12 +148,9 @@ void Grid<Scalar>::noteChange(std::uint32_t slot) noexcept {
     if (record.place == Place::resting) {
         leaveRest(slot);
     }
-    if (!record.isWaiting && !manyWait_.load(std::memory_order_relaxed)) {
+    if (!record.isWaiting) {
         record.isWaiting = true;
         waiting_.push_back(slot);
-        if (waiting_.size() > manyWaiting(mobileSlots_.size())) {
-            manyWait_.store(true, std::memory_order_release);
-        }
     }
 }
 
@@ -218,19 +211,20 @@ std::size_t Grid<Scalar>::memoryBytes() const noexcept {
            boxesAtUpdate_.capacity() * sizeof(Box) +
            (staged_.capacity() + stagedBefore_.capacity() + restBoxes_.capacity()) *
                sizeof(detail::PaddedBox<Scalar>) +
-           mobile_.memoryBytes() + resting_.memoryBytes() + rayMemoryBytes();
+           mobile_.memoryBytes() + fresh_.memoryBytes() + resting_.memoryBytes() + rayMemoryBytes();
 }
 
 template <class Scalar>
 std::size_t Grid<Scalar>::rayMemoryBytes() const noexcept {
-    return mobileTree_.tree.memoryBytes() + restingTree_.tree.memoryBytes();
+    return mobileTree_.tree.memoryBytes() + freshTree_.tree.memoryBytes() +
+           restingTree_.tree.memoryBytes();
 }
 
 template <class Scalar>
 void Grid<Scalar>::releaseRayMemory() noexcept {
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
                      "What rays read is not freed within a query.");
-    for (TableTree* table : {&mobileTree_, &restingTree_}) {
+    for (TableTree* table : {&mobileTree_, &freshTree_, &restingTree_}) {
         table->tree = {};
         table->isStale.store(true, std::memory_order_relaxed);
     }
@@ -238,18 +232,17 @@ void Grid<Scalar>::releaseRayMemory() noexcept {
 
 template <class Scalar>
 std::string Grid<Scalar>::validate() const {
-    if (!fileIfMany()) {
-        return {};  // within a query that has changed the grid nothing of the kind holds
-    }
+    mendTables();
+    const Reading reading = presentReading();
     // How often each proxy stands where a query would look for it.
     std::vector<std::uint32_t> timesFound(records_.size(), 0);
-    for (const detail::Table<Scalar>* table : {&mobile_, &resting_}) {
+    for (const detail::Table<Scalar>* table : {&reading.mobile, &resting_}) {
         if (std::string error = table->validate(); !error.empty()) {
             return error;
         }
         for (std::uint32_t entry = 0; entry < table->size(); ++entry) {
             const std::uint32_t slot = table->slot(entry);
-            if (hasNan(table->box(entry)) || !isFiled(slot)) {
+            if (hasNan(table->box(entry)) || !isFiled(slot, reading)) {
                 continue;
             }
             ++timesFound[slot];
@@ -258,7 +251,7 @@ std::string Grid<Scalar>::validate() const {
             }
         }
     }
-    for (const TableTree* table : {&mobileTree_, &restingTree_}) {
+    for (const TableTree* table : {&reading.tree, &std::as_const(restingTree_)}) {
         if (table->isStale.load(std::memory_order_relaxed)) {
             continue;
         }
@@ -266,13 +259,13 @@ std::string Grid<Scalar>::validate() const {
             return error;
         }
     }
-    for (const std::uint32_t slot : waiting_) {
-        timesFound[slot] += isAlive(slot) ? 1 : 0;
+    for (std::size_t i = 0; i < waiting_.size() && !reading.isFresh; ++i) {
+        timesFound[waiting_[i]] += isAlive(waiting_[i]) ? 1 : 0;
     }
     std::size_t alive = 0;
     for (std::uint32_t slot = 0; slot < records_.size(); ++slot) {
         alive += isAlive(slot) ? 1 : 0;
-        const bool isNan = records_[slot].isNan && !records_[slot].isWaiting;
+        const bool isNan = records_[slot].isNan && (reading.isFresh || !records_[slot].isWaiting);
         if (timesFound[slot] != (isAlive(slot) && !isNan ? 1U : 0U)) {
             return "Every proxy alive is filed in exactly one table, or waits in the list of "
                    "changes, or is NaN: broken.";

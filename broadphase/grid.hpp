@@ -5,9 +5,10 @@
 //
 // A frame    move() whatever moved (or everything: an unchanged box costs a comparison), then
 //            update() once, or Pairs::update(), which does it for you.
-// Reads      Every change is visible to queries at once, with no call in between. A few changes are
-//            kept in a list that queries read beside the tables; the first query after many
-//            changes files them.
+// Reads      Every change is visible to queries at once, with no call in between. Changes are kept in
+//            a list that queries read beside the tables. When they have read about as much of it as
+//            filing would cost, a query files everything anew: changes and queries in turn never cost
+//            much more than the better of the two.
 // Threads    Queries are const and may run on any number of threads at the same time, and from
 //            within a collector. Everything else needs the grid for itself.
 // Units      metres, or any other unit of length used throughout.
@@ -27,7 +28,8 @@
 //            Asserted.
 // Memory     Where it runs out, std::bad_alloc comes from add(), reserve(), shiftOrigin(), update() and
 //            queries that file or grow; nothing is lost, and the call may be repeated. move() and
-//            remove() allocate nothing.
+//            remove() allocate nothing. Who asks much between changes and updates has a second table of
+//            what moves.
 // Misuse     An id that is null or stale is asserted. One of another grid is too, unless this grid has a
 //            proxy of the same index and generation, for which it is taken.
 
@@ -189,6 +191,11 @@ public:
     /// finest of the automatic ones at the last update; 1 while the grid is empty.
     [[nodiscard]] Scalar cellSize() const noexcept { return cellSize_; }
 
+    /// Files what has changed, if `count` queries would otherwise read more of the list of changes than
+    /// filing costs. visitEach() does it; for who makes many single queries on several threads, and wants
+    /// all of them to cost the same in every run. Cost: O(1), or that of an update().
+    void expectQueries(std::size_t count) const;
+
     /// Cell query: who is in the cell? Offers every proxy p with `cell` in cellsOf(p) to the
     /// collector. Cost: O(1) buckets; at most that of visit().
     template <class Collector>
@@ -211,7 +218,7 @@ public:
     UpdateCost update(ParallelFor parallelFor = serialFor);
 
     /// How often the mobile proxies have been filed: once by each update that found a change, and
-    /// before it by the first query after many.
+    /// between updates by queries, where those have read much of what has changed.
     [[nodiscard]] std::uint64_t filingCount() const noexcept { return filingCount_; }
 
     /// Bytes held, capacity included.
@@ -250,7 +257,7 @@ private:
         std::uint32_t changedAt = 0;  // number of the update that will see, or saw, the last change
         std::uint32_t restingEntry = 0;  // or, of a slot without a proxy, the next one of those
         Place place = Place::nowhere;
-        bool isWaiting = false;    // changed since filed: listed in waiting_
+        bool isWaiting = false;    // changed since mobile_ was built: listed in waiting_
         bool restsAtOnce = false;  // Mobility::resting, or rested, and has not moved since but by a
                                    // shift of the origin
         bool isNan = false;        // has a NaN; of a proxy alive
@@ -277,13 +284,27 @@ private:
         const Point nan = Point::Constant(std::numeric_limits<Scalar>::quiet_NaN());
         return {nan, nan};
     }
-    [[nodiscard]] bool isFiled(std::uint32_t slot) const noexcept {
+    /// What rays read of a table; made by the first ray after the table was built.
+    struct TableTree {
+        detail::BoxTree tree;
+        std::atomic<bool> isStale{false};
+    };
+
+    /// What a query reads beside the resting proxies.
+    struct Reading {
+        const detail::Table<Scalar>& mobile;
+        const TableTree& tree;
+        bool isFresh;  // filed since the last change, so that nothing waits
+    };
+
+    /// Whether a slot that is listed in a table is still filed there.
+    [[nodiscard]] bool isFiled(std::uint32_t slot, const Reading& reading) const noexcept {
         const Record& record = records_[slot];
-        return record.place != Place::nowhere && !record.isWaiting;
+        return record.place != Place::nowhere && (reading.isFresh || !record.isWaiting);
     }
-    /// Whether a slot that is listed in the table of that place is still filed there.
-    [[nodiscard]] bool standsIn(Place place, std::uint32_t slot) const noexcept {
-        return records_[slot].place == place && !records_[slot].isWaiting;
+    [[nodiscard]] bool standsIn(Place place, std::uint32_t slot,
+                                const Reading& reading) const noexcept {
+        return records_[slot].place == place && isFiled(slot, reading);
     }
     [[nodiscard]] bool changedNow(std::uint32_t slot) const noexcept {
         return records_[slot].changedAt == updateNumber_;
@@ -330,27 +351,37 @@ private:
     // What Pairs begin with: as if all had been added since the last update.
     void forgetLastUpdate() noexcept;
 
-    /// Returns false where that is impossible: from within a query, which reads the tables.
-    [[nodiscard]] bool fileIfMany() const;
+    /// How queries begin. The tables may be read from then on.
+    [[nodiscard]] Reading beginReading() const;
+    [[nodiscard]] Reading presentReading() const noexcept;
+    [[nodiscard]] std::uint64_t worthFiling() const noexcept;
+    void mendTables() const;
+    void fileFresh() const;
+    void beforeChange() noexcept {
+        if (isFresh_.load(std::memory_order_relaxed)) {
+            takeFresh();
+        }
+    }
+    void takeFresh() noexcept;
+    void dropList() noexcept;
+
     template <class Visit>
     void forEachFiled(Visit&& visit) const;
-    void growTrees() const;
-    [[nodiscard]] bool treesAreStale() const noexcept {
-        return mobileTree_.isStale.load(std::memory_order_acquire) ||
+    void growTrees(const Reading& reading) const;
+    [[nodiscard]] bool treesAreStale(const Reading& reading) const noexcept {
+        return reading.tree.isStale.load(std::memory_order_acquire) ||
                restingTree_.isStale.load(std::memory_order_acquire);
     }
     template <class Region, class Collector>
-    bool offer(std::uint32_t slot, const Region& region, Collector& collector,
-               QueryCost& cost) const;
+    QueryCost visit(const Reading& reading, const Region& region, Collector& collector) const;
     template <class Region, class Collector>
     void visitWaiting(const Region& region, Collector& collector, QueryCost& cost) const;
     template <class Region, class Collector>
-    QueryCost visitUnfiled(const Region& region, Collector& collector) const;
+    QueryCost visitTogether(const Reading& reading, std::span<const Region> regions,
+                            std::span<Collector> collectors, detail::FewPairs& found) const;
     template <class Region, class Collector>
-    QueryCost visitTogether(std::span<const Region> regions, std::span<Collector> collectors,
-                            detail::FewPairs& found) const;
-    template <class Region, class Collector>
-    bool visitTables(const Region& region, Collector& collector, QueryCost& cost) const;
+    bool visitTables(const Reading& reading, const Region& region, Collector& collector,
+                     QueryCost& cost) const;
 
     GridConfig config_;
     detail::LevelSizes fixedSizes_;
@@ -371,9 +402,11 @@ private:
     UpdateCost cost_;                            // of the present frame
     std::atomic<std::uint64_t> filingCount_{0};  // a query may file while others ask
 
-    // What changed since it was filed, until there are too many to list.
+    // What changed since mobile_ was built, and how much of that queries have read since.
     std::vector<std::uint32_t> waiting_;
-    std::atomic<bool> manyWait_{false};
+    mutable std::atomic<std::uint64_t> waitingRead_{0};
+    // mobile_ cannot be read: a shift of the origin, or want of memory, has left it as it is.
+    std::atomic<bool> isTableTorn_{false};
     std::mutex filing_;
 
     // In the table's order as of the last update, then what has joined since. What has left since
@@ -385,13 +418,14 @@ private:
     std::uint32_t restingErased_ = 0;
     detail::Table<Scalar> resting_;
 
-    /// What rays read of a table; made by the first ray after the table was built.
-    struct TableTree {
-        detail::BoxTree tree;
-        std::atomic<bool> isStale{false};
-    };
     TableTree mobileTree_;
     TableTree restingTree_;
+
+    // What a query has filed while others went on with mobile_ and waiting_. The next change makes it
+    // mobile_, or drops it where it is made within a query, which may be reading either.
+    detail::Table<Scalar> fresh_;
+    TableTree freshTree_;
+    std::atomic<bool> isFresh_{false};
 
     // Boxes by their place in mobileSlots_: as they are now, and as of the last update.
     std::vector<detail::PaddedBox<Scalar>> staged_;

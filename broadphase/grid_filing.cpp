@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-// How a grid files what has changed: an update's passes, and what the first query after many does.
+// How an update files what has changed, in passes.
 
 #include <broadphase/grid.hpp>
 
@@ -103,16 +103,23 @@ void Grid<Scalar>::fileResting(ParallelFor parallelFor) {
 
 template <class Scalar>
 void Grid<Scalar>::fileMobile(ParallelFor parallelFor) {
-    manyWait_.store(true, std::memory_order_relaxed);  // should it fail, the next one files anew
+    isFresh_.store(false, std::memory_order_relaxed);
+    isTableTorn_.store(true, std::memory_order_relaxed);  // should it fail, the next one files anew
     mobile_.build(mobileSlots_, staged_, fixedSizes_, parallelFor);
     ++filingCount_;
     mobileTree_.isStale.store(true, std::memory_order_relaxed);
     cost_.filed += mobile_.size();
+    dropList();
+    isTableTorn_.store(false, std::memory_order_release);
+}
+
+template <class Scalar>
+void Grid<Scalar>::dropList() noexcept {
     for (const std::uint32_t slot : waiting_) {
         records_[slot].isWaiting = false;
     }
     waiting_.clear();
-    manyWait_.store(false, std::memory_order_release);
+    waitingRead_.store(0, std::memory_order_relaxed);
 }
 
 // Lists the mobile proxies in the order of their table, for the next time, and forgets those that
@@ -143,7 +150,7 @@ UpdateCost Grid<Scalar>::endUpdate() noexcept {
     if (++updateNumber_ == std::numeric_limits<std::uint32_t>::max()) {
         countUpdatesAnew();
     }
-    if (config_.cellSize == 0 && !manyWait_.load(std::memory_order_relaxed)) {
+    if (config_.cellSize == 0 && !isTableTorn_.load(std::memory_order_relaxed)) {
         const double finest = std::min(mobile_.finestCellSize(), resting_.finestCellSize());
         cellSize_ = std::isinf(finest) ? Scalar(1) : static_cast<Scalar>(finest);
     }
@@ -210,45 +217,8 @@ void Grid<Scalar>::wakeAll() noexcept {
     resting_.clear();
     restingErased_ = 0;
     restingTree_.isStale.store(true, std::memory_order_relaxed);
-    manyWait_.store(true, std::memory_order_relaxed);
-}
-
-template <class Scalar>
-bool Grid<Scalar>::fileIfMany() const {
-    if (!manyWait_.load(std::memory_order_acquire)) {
-        return true;
-    }
-    if (detail::QueryScope::isWithin(this)) {
-        return false;
-    }
-    // The one write on behalf of readers: no reader has passed this point while many wait, and the
-    // first to come here files for all. The grid itself is never a const object: it is created by
-    // its owner, and only seen as const by readers.
-    auto& self = const_cast<Grid&>(*this);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
-    const std::lock_guard lock(self.filing_);
-    if (manyWait_.load(std::memory_order_relaxed)) {
-        self.stage(serialFor);
-        self.fileMobile(serialFor);
-        if (!hasPairs_) {
-            self.settle();
-        }
-    }
-    return true;
-}
-
-// As fileIfMany(): a write on behalf of readers, none of whom passes before it is done.
-template <class Scalar>
-void Grid<Scalar>::growTrees() const {
-    auto& self = const_cast<Grid&>(*this);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
-    const std::lock_guard lock(self.filing_);
-    const auto grow = [](TableTree& tree, const detail::Table<Scalar>& table) {
-        if (tree.isStale.load(std::memory_order_relaxed)) {
-            tree.tree.build(table);
-            tree.isStale.store(false, std::memory_order_release);
-        }
-    };
-    grow(self.mobileTree_, mobile_);
-    grow(self.restingTree_, resting_);
+    isFresh_.store(false, std::memory_order_relaxed);
+    isTableTorn_.store(true, std::memory_order_relaxed);
 }
 
 template void Grid<float>::stage(ParallelFor);
@@ -262,8 +232,7 @@ template void Grid<float>::countUpdatesAnew() noexcept;
 template UpdateCost Grid<float>::update(ParallelFor);
 template void Grid<float>::wakeAll() noexcept;
 template void Grid<float>::forgetLastUpdate() noexcept;
-template bool Grid<float>::fileIfMany() const;
-template void Grid<float>::growTrees() const;
+template void Grid<float>::dropList() noexcept;
 template void Grid<double>::stage(ParallelFor);
 template bool Grid<double>::putQuietToRest(ParallelFor);
 template void Grid<double>::listResting();
@@ -275,7 +244,6 @@ template void Grid<double>::countUpdatesAnew() noexcept;
 template UpdateCost Grid<double>::update(ParallelFor);
 template void Grid<double>::wakeAll() noexcept;
 template void Grid<double>::forgetLastUpdate() noexcept;
-template bool Grid<double>::fileIfMany() const;
-template void Grid<double>::growTrees() const;
+template void Grid<double>::dropList() noexcept;
 
 }  // namespace hashphase

@@ -20,6 +20,7 @@ std::size_t Grid<Scalar>::shiftOrigin(const Point& shift) {
     if (!shift.allFinite() || shift.isZero(0)) {
         return 0;
     }
+    beforeChange();
     if (hasPairs_ && boxesAtUpdate_.empty()) {
         keepBoxesAtUpdate(shift);
     }
@@ -74,7 +75,7 @@ void Grid<Scalar>::shiftTables(const Point& shift) {
     mobileTree_.isStale.store(true, std::memory_order_relaxed);
     restingTree_.isStale.store(true, std::memory_order_relaxed);
     if (!isMobileFiled) {
-        manyWait_.store(true, std::memory_order_release);
+        isTableTorn_.store(true, std::memory_order_release);
     }
     try {
         if (!isRestFiled) {
@@ -82,7 +83,7 @@ void Grid<Scalar>::shiftTables(const Point& shift) {
             fileResting(serialFor);
         }
         if (!isMobileFiled && cost_.changed == 0) {
-            static_cast<void>(fileIfMany());
+            mendTables();
         }
     } catch (const std::bad_alloc&) {
         wakeAll();

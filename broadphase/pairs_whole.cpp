@@ -12,7 +12,7 @@ namespace hashphase {
 
 template <class Scalar>
 void Pairs<Scalar>::forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const {
-    static_cast<void>(grid_.fileIfMany());
+    grid_.mendTables();
     detail::PairParts parts;
     detail::PairList found;
     detail::KernelCost cost;

@@ -22,6 +22,7 @@ template <class Scalar>
 template <class Region, class Collector>
 struct Grid<Scalar>::VisitReader {
     const Grid& grid;
+    const Reading& reading;
     const detail::Table<Scalar>& table;
     const Region& region;
     Collector& collector;
@@ -37,12 +38,12 @@ struct Grid<Scalar>::VisitReader {
                 continue;
             }
             const std::uint32_t slot = table.slot(entry);
-            if (!grid.isFiled(slot)) {
+            if (!grid.isFiled(slot, reading)) {
                 continue;
             }
-            // The collector may have changed so much that it is not listed any more: then boxes are
-            // asked for as they are now.
-            if (grid.manyWait_.load(std::memory_order_relaxed)) {
+            // What is fresh has no list of what the collector has changed since: boxes are asked for
+            // as they are now.
+            if (reading.isFresh) {
                 key = region.key(grid.records_[slot].box);
             }
             if (isWanted(key) && !offer(slot, key)) {
@@ -66,6 +67,7 @@ template <class Scalar>
 template <class Region, class Collector>
 struct Grid<Scalar>::RayReader {
     const Grid& grid;
+    const Reading& reading;
     const Region& region;
     Collector& collector;
     QueryCost& cost;
@@ -75,7 +77,7 @@ struct Grid<Scalar>::RayReader {
 
     bool read(std::uint32_t slot) {
         // The tree is as old as its table: who stands there may have left.
-        if (!grid.standsIn(place, slot)) {
+        if (!grid.standsIn(place, slot, reading)) {
             return true;
         }
         const Scalar key = region.key(grid.records_[slot].box);
@@ -137,7 +139,7 @@ private:
         bool goesOn = true;
         for (std::size_t i = 0; i < taken.size() && goesOn; ++i) {
             // Who is listed may have left: erased, or waiting.
-            if (!kMayHaveLeft || reader.grid.standsIn(place, taken[i])) {
+            if (!kMayHaveLeft || reader.grid.standsIn(place, taken[i], reader.reading)) {
                 ++hits;
                 reader.collector.add(reader.grid.idOf(taken[i]), Scalar(0));
                 goesOn = reader.limit() >= 0;
@@ -150,24 +152,25 @@ private:
 
 template <class Scalar>
 template <class Region, class Collector>
-bool Grid<Scalar>::visitTables(const Region& region, Collector& collector, QueryCost& cost) const {
+bool Grid<Scalar>::visitTables(const Reading& reading, const Region& region, Collector& collector,
+                               QueryCost& cost) const {
     if constexpr (requires { region.segment(); }) {
         const RayRegion<Scalar>& ray = region.segment();
-        if (treesAreStale()) {
-            growTrees();
+        if (treesAreStale(reading)) {
+            growTrees(reading);
         }
         using Reader = RayReader<Region, Collector>;
-        Reader mobile{*this, region, collector, cost, Place::mobile};
-        Reader resting{*this, region, collector, cost, Place::resting};
-        return detail::walkTree(mobileTree_.tree, ray, cost, mobile) &&
+        Reader mobile{*this, reading, region, collector, cost, Place::mobile};
+        Reader resting{*this, reading, region, collector, cost, Place::resting};
+        return detail::walkTree(reading.tree.tree, ray, cost, mobile) &&
                detail::walkTree(restingTree_.tree, ray, cost, resting);
     } else if constexpr (requires { region.volume(); }) {
-        for (const detail::Table<Scalar>* table : {&mobile_, &resting_}) {
-            const bool mayHaveLeft =
-                !waiting_.empty() || (table == &resting_ && restingErased_ > 0);
+        for (const detail::Table<Scalar>* table : {&reading.mobile, &resting_}) {
+            const bool mayHaveLeft = (!reading.isFresh && !waiting_.empty()) ||
+                                     (table == &resting_ && restingErased_ > 0);
             VolumeReader<Region, Collector> reader{
-                {*this, *table, region, collector, cost},
-                table == &mobile_ ? Place::mobile : Place::resting,
+                {*this, reading, *table, region, collector, cost},
+                table == &resting_ ? Place::resting : Place::mobile,
                 mayHaveLeft};
             const bool goesOn = region.isEmpty() || reader.read();
             cost.rowsVisited += reader.walk.rowsVisited;
@@ -179,65 +182,54 @@ bool Grid<Scalar>::visitTables(const Region& region, Collector& collector, Query
         return true;
     } else {
         using Reader = VisitReader<Region, Collector>;
-        Reader mobile{*this, mobile_, region, collector, cost};
-        Reader resting{*this, resting_, region, collector, cost};
+        Reader mobile{*this, reading, reading.mobile, region, collector, cost};
+        Reader resting{*this, reading, resting_, region, collector, cost};
         const Box bounds = region.bounds();
-        return detail::walkTable(mobile_, bounds, cost, mobile) &&
+        return detail::walkTable(reading.mobile, bounds, cost, mobile) &&
                detail::walkTable(resting_, bounds, cost, resting);
     }
 }
 
-// Offers the slot's proxy, by its box as it is now. Returns false when the collector wants no more.
-template <class Scalar>
-template <class Region, class Collector>
-bool Grid<Scalar>::offer(std::uint32_t slot, const Region& region, Collector& collector,
-                         QueryCost& cost) const {
-    if (!isAlive(slot)) {
-        return true;
-    }
-    ++cost.boxesTested;
-    const Scalar key = region.key(records_[slot].box);
-    if (!detail::isWanted(key, collector)) {
-        return true;
-    }
-    ++cost.hits;
-    collector.add(idOf(slot), key);
-    return collector.limit() >= 0;
-}
-
-// Offers what changed since it was filed. Not by iterators: the collector may change the list.
+// Offers what changed since it was filed, by the boxes as they are now. Not by iterators: the collector
+// may change the list.
 template <class Scalar>
 template <class Region, class Collector>
 void Grid<Scalar>::visitWaiting(const Region& region, Collector& collector, QueryCost& cost) const {
     const std::size_t count = waiting_.size();
-    for (std::size_t i = 0; i < count && offer(waiting_[i], region, collector, cost); ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t slot = waiting_[i];
+        if (!isAlive(slot)) {
+            continue;
+        }
+        ++cost.boxesTested;
+        const Scalar key = region.key(records_[slot].box);
+        if (detail::isWanted(key, collector)) {
+            ++cost.hits;
+            collector.add(idOf(slot), key);
+            if (!(collector.limit() >= 0)) {
+                return;
+            }
+        }
     }
-}
-
-// From within a query that has changed so much that it is not listed any more: everything.
-template <class Scalar>
-template <class Region, class Collector>
-QueryCost Grid<Scalar>::visitUnfiled(const Region& region, Collector& collector) const {
-    QueryCost cost;
-    const auto count = static_cast<std::uint32_t>(records_.size());
-    for (std::uint32_t slot = 0; slot < count && offer(slot, region, collector, cost); ++slot) {
-    }
-    return cost;
 }
 
 template <class Scalar>
 template <class Region, class Collector>
 QueryCost Grid<Scalar>::visit(const Region& region, Collector& collector) const {
+    return visit(beginReading(), region, collector);
+}
+
+template <class Scalar>
+template <class Region, class Collector>
+QueryCost Grid<Scalar>::visit(const Reading& reading, const Region& region,
+                              Collector& collector) const {
     using Changes = detail::QueryScope::Changes;
-    if (!fileIfMany()) {
-        return visitUnfiled(region, collector);
-    }
     constexpr bool kReadsRows = requires {
         region.volume();
     };
     const detail::QueryScope scope(this, kReadsRows ? Changes::forbidden : Changes::allowed);
     QueryCost cost;
-    if (visitTables(region, collector, cost)) {
+    if (visitTables(reading, region, collector, cost) && !reading.isFresh) {
         visitWaiting(region, collector, cost);
     }
     return cost;
@@ -247,14 +239,14 @@ QueryCost Grid<Scalar>::visit(const Region& region, Collector& collector) const 
 // the regions.
 template <class Scalar>
 template <class Region, class Collector>
-QueryCost Grid<Scalar>::visitTogether(std::span<const Region> regions,
+QueryCost Grid<Scalar>::visitTogether(const Reading& reading, std::span<const Region> regions,
                                       std::span<Collector> collectors,
                                       detail::FewPairs& found) const {
     const detail::QueryColumns<Scalar> bounds(regions);
     // Where nothing waits, all that the tables list is filed there.
-    const bool isAllFiled = waiting_.empty();
+    const bool isAllFiled = reading.isFresh || waiting_.empty();
     QueryCost cost;
-    for (const detail::Table<Scalar>* table : {&mobile_, &resting_}) {
+    for (const detail::Table<Scalar>* table : {&reading.mobile, &resting_}) {
         if (table->size() == 0) {
             continue;
         }
@@ -271,7 +263,7 @@ QueryCost Grid<Scalar>::visitTogether(std::span<const Region> regions,
                 key = regions[i].key(table->box(entry));
             }
             const std::uint32_t slot = table->slot(entry);
-            if (detail::isWanted(key, collectors[i]) && (isAllFiled || isFiled(slot))) {
+            if (detail::isWanted(key, collectors[i]) && (isAllFiled || isFiled(slot, reading))) {
                 ++cost.hits;
                 collectors[i].add(idOf(slot), key);
             }
@@ -291,7 +283,10 @@ QueryCost Grid<Scalar>::visitEach(std::span<const Region> regions, std::span<Col
                                   ParallelFor parallelFor) const {
     HASHPHASE_ASSERT(regions.size() == collectors.size(), "Each region has a collector.");
     constexpr std::size_t grain = 256;
-    const bool isFiled = fileIfMany();
+    expectQueries(regions.size());
+    const Reading reading = presentReading();
+    waitingRead_.fetch_add(reading.isFresh ? 0 : waiting_.size() * regions.size(),
+                           std::memory_order_relaxed);
     std::atomic<std::uint64_t> rowsVisited{0};
     std::atomic<std::uint64_t> boxesTested{0};
     std::atomic<std::uint64_t> hits{0};
@@ -302,15 +297,14 @@ QueryCost Grid<Scalar>::visitEach(std::span<const Region> regions, std::span<Col
             // So few that what they find has room, though each of them finds everything.
             constexpr std::size_t atOnce = detail::QueryColumns<Scalar>::kMost;
             detail::FewPairs found;
-            for (; begin < end && isFiled; begin += atOnce) {
+            for (; begin < end; begin += atOnce) {
                 const std::size_t count = std::min(atOnce, end - begin);
-                cost += visitTogether(regions.subspan(begin, count),
+                cost += visitTogether(reading, regions.subspan(begin, count),
                                       collectors.subspan(begin, count), found);
             }
         }
         for (; begin < end; ++begin) {
-            cost += isFiled ? visit(regions[begin], collectors[begin])
-                            : visitUnfiled(regions[begin], collectors[begin]);
+            cost += visit(reading, regions[begin], collectors[begin]);
         }
         rowsVisited += cost.rowsVisited;
         boxesTested += cost.boxesTested;
@@ -370,23 +364,17 @@ QueryCost Grid<Scalar>::visitCell(const std::array<std::int64_t, 3>& cell,
 template <class Scalar>
 template <class Visit>
 void Grid<Scalar>::forEachFiled(Visit&& visit) const {
-    if (!fileIfMany()) {
-        forEach([&](ProxyId id, const Box& box) {
-            if (!hasNan(box)) {
-                visit(id, box);
-            }
-        });
-        return;
-    }
-    for (const detail::Table<Scalar>* table : {&mobile_, &resting_}) {
+    const Reading reading = beginReading();
+    for (const detail::Table<Scalar>* table : {&reading.mobile, &resting_}) {
         for (std::uint32_t entry = 0; entry < table->size(); ++entry) {
             const Box box = table->box(entry);
-            if (isFiled(table->slot(entry)) && !hasNan(box)) {
+            if (isFiled(table->slot(entry), reading) && !hasNan(box)) {
                 visit(idOf(table->slot(entry)), box);
             }
         }
     }
-    for (const std::uint32_t slot : waiting_) {
+    for (std::size_t i = 0; i < waiting_.size() && !reading.isFresh; ++i) {
+        const std::uint32_t slot = waiting_[i];
         if (isAlive(slot) && !records_[slot].isNan) {
             visit(idOf(slot), records_[slot].box);
         }

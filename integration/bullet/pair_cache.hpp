@@ -157,8 +157,13 @@ public:
     void removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy,
                                                btDispatcher* dispatcher) override;
 
-    /// Frees their algorithms and keeps the pairs, in the same order at the same cost.
+    /// Frees their algorithms and keeps the pairs, in the same order at the same cost. Ghosts that keep
+    /// algorithms of their own are told nothing.
     void cleanProxyFromPairs(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
+
+    /// The same, and tells the ghost callback of each pair that it has ended and begun, as if it had been
+    /// removed and added: what ghosts keep of it is freed too. Cost: the same.
+    void renewPairsContainingProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
     // --- The pairs of many proxies ---------------------------------------------------------------
 
@@ -222,6 +227,9 @@ public:
     /// Told of each pair added and of each pair removed, once; NULL for none.
     void setInternalGhostPairCallback(btOverlappingPairCallback* callback) override {
         ghosts_ = callback;
+    }
+    [[nodiscard]] btOverlappingPairCallback* getInternalGhostPairCallback() const noexcept {
+        return ghosts_;
     }
 
     // --- Beyond Bullet ---------------------------------------------------------------------------
@@ -324,6 +332,7 @@ private:
     void rename(std::uint32_t from, std::uint32_t to);
     void noteUnchained(std::uint32_t id, std::vector<Note>& notes) const;
     [[nodiscard]] std::vector<Note> notesOf(const btBroadphaseProxy& proxy);
+    void tellGhostsAgain(std::uint64_t ids, const btBroadphasePair& pair, btDispatcher* dispatcher);
     void removeUnnoted(const btBroadphaseProxy& proxy, btDispatcher* dispatcher);
     void processByUniqueId(btOverlapCallback& callback, btDispatcher* dispatcher);
     void prepareWholeArray();

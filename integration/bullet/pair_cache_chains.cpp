@@ -190,6 +190,32 @@ void PairCache::cleanProxyFromPairs(btBroadphaseProxy* proxy, btDispatcher* disp
     scratch_ = std::move(notes);
 }
 
+void PairCache::renewPairsContainingProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
+    checkMayChange();
+    std::vector<Note> notes = notesOf(*proxy);
+    for (const Note& note : notes) {
+        const std::uint32_t index = indexOf(note);
+        if (index != kNone) {
+            cleanOverlappingPair(pairs_[static_cast<int>(index)], dispatcher);
+            tellGhostsAgain(note.uniqueIds, pairs_[static_cast<int>(index)], dispatcher);
+        }
+    }
+    scratch_ = std::move(notes);
+}
+
+// The callback may remove the pair, or itself.
+void PairCache::tellGhostsAgain(std::uint64_t ids, const btBroadphasePair& pair,
+                                btDispatcher* dispatcher) {
+    btBroadphaseProxy* const proxy0 = pair.m_pProxy0;
+    btBroadphaseProxy* const proxy1 = pair.m_pProxy1;
+    if (ghosts_ != nullptr) {
+        ghosts_->removeOverlappingPair(proxy0, proxy1, dispatcher);
+    }
+    if (ghosts_ != nullptr && ids_.find(ids) != kNone) {
+        ghosts_->addOverlappingPair(proxy0, proxy1);
+    }
+}
+
 bool PairCache::areChainsSound() const {
     std::size_t edgeCount = 0;
     bool isSound = links_.size() <= 2 * ids_.size();

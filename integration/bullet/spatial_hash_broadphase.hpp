@@ -10,7 +10,7 @@
 //     hashphase::SpatialHashBroadphase broadphase;
 //
 // What changes: pairs are exact (no fat boxes, no stale pairs) and are made and removed in
-// calculateOverlappingPairs() only, but for the groups that want theirs at once.
+// calculateOverlappingPairs() only, but for ghost objects, which have theirs at once.
 //
 // Batches   createProxies(), setAabbs() and destroyProxies() do what as many single calls do, at less
 //           cost.
@@ -60,9 +60,17 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 struct SpatialHashConfig {
     GridConfig grid{};
 
-    /// Proxies of these groups get their pairs at once, in createProxy() and setAabb(), as Bullet's
-    /// character controller and ghost objects expect.
-    int eagerGroups = btBroadphaseProxy::CharacterFilter | btBroadphaseProxy::SensorTrigger;
+    /// Ghost objects get their pairs at once, in createProxy() and setAabb(), as Bullet's character
+    /// controller expects: wherever the pair cache has an internal ghost pair callback, through which
+    /// they hear of pairs, or is not a PairCache given as one, and does not say whether it has. Only
+    /// then, and in calls that hand in a dispatcher, as a btCollisionWorld's do, is a client that may
+    /// have pairs taken for a btCollisionObject. For programs whose clients are something else even
+    /// then: false.
+    bool eagerGhosts = true;
+
+    /// Proxies of these groups get theirs at once as well; none by default, for what a bit means is up
+    /// to the program. For code that reads pairs between moves and steps, and is no ghost object.
+    int eagerGroups = 0;
 
     /// On what threads calculateOverlappingPairs() runs its loops; empty for the caller's. The
     /// result is the same on any number. See bullet_parallel_for.hpp and
@@ -136,7 +144,7 @@ public:
 
     /// The proxy's address is fixed for its life, m_uniqueId counts 1, 2, 3 ... and is never used
     /// again: after 2^31 - 1 of them std::length_error is thrown until resetPool(); likewise where there
-    /// are 2^28 proxies. `shapeType` is ignored. Cost: O(1); of
+    /// are 2^28 proxies. `shapeType` is ignored. Cost: O(1); of ghosts and of
     /// SpatialHashConfig::eagerGroups that of Pairs::announce() and of its pairs, too.
     btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
                                    int shapeType, void* userPtr, int collisionFilterGroup,
@@ -147,7 +155,7 @@ public:
     void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
 
     /// Cost: O(1); a comparison when the box is the same, with SpatialHashConfig::sweep a look at the
-    /// body, and of eagerGroups as in createProxy().
+    /// body, and of ghosts and eagerGroups as in createProxy().
     void setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin, const btVector3& aabbMax,
                  btDispatcher* dispatcher) override;
 
@@ -230,8 +238,17 @@ public:
 
     /// Asks the filter again about everything that the proxy overlaps, or met on its way, and adds and
     /// removes its pairs accordingly, at once. For use after a change of its group, mask, or of the
-    /// filter. Cost: that of Pairs::refilter(), and of the proxy's pairs.
+    /// filter. Pairs that stay keep their contacts: after a change of shape call shapeChanged(). Cost:
+    /// that of Pairs::refilter(), and of the proxy's pairs.
     void refilter(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
+
+    /// Frees what the proxy's pairs have kept of its shape, algorithms and contacts, here and in the ghosts
+    /// that list it; the pairs stay. For use after a change of shape, scale, margin or of anything else
+    /// by which contacts were made, beside btCollisionWorld::updateSingleAabb(), before the next step. Where
+    /// a ghost callback is set, it is told that each pair has ended and begun; a cache with deferred
+    /// removal tells ghosts nothing. Cost: that of PairCache::renewPairsContainingProxy(); a pass over all
+    /// pairs of any other cache.
+    void shapeChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
     /// Moves the origin of all coordinates to `shift`: subtracts it from the box of every proxy, in one
     /// call, with what Grid::shiftOrigin() says. Pairs stay as they are; should rounding have brought
@@ -262,8 +279,12 @@ public:
     [[nodiscard]] std::string validate() const;
 
 private:
+    /// What is known of a client.
+    enum class Client : std::uint8_t { unknown, ghost, other };
+
     struct Proxy : btBroadphaseProxy {
         ProxyId id;
+        Client client = Client::unknown;
     };
     struct Couples;
     template <class Callback>
@@ -282,9 +303,15 @@ private:
     void apply(const PairChanges& changes, std::size_t birthsAtOnce, btDispatcher* dispatcher);
     void applyToCache(const Couples& couples, btDispatcher* dispatcher);
     void catchUp(btDispatcher* dispatcher);
-    [[nodiscard]] bool isEager(const Proxy& proxy) const noexcept {
-        return (proxy.m_collisionFilterGroup & config_.eagerGroups) != 0;
+    [[nodiscard]] bool isEager(Proxy& proxy, const btDispatcher* dispatcher) const {
+        return (proxy.m_collisionFilterGroup & config_.eagerGroups) != 0 ||
+               (proxy.client != Client::other && mayHaveGhosts() && isGhost(proxy, dispatcher));
     }
+    [[nodiscard]] bool mayHaveGhosts() const noexcept {
+        return config_.eagerGhosts &&
+               (batchCache_ == nullptr || batchCache_->getInternalGhostPairCallback() != nullptr);
+    }
+    [[nodiscard]] static bool isGhost(Proxy& proxy, const btDispatcher* dispatcher);
     void announce(const Proxy& proxy, btDispatcher* dispatcher);
     void move(const Proxy& proxy);
     [[nodiscard]] bool doMeet(const btBroadphaseProxy& a, const btBroadphaseProxy& b) const;

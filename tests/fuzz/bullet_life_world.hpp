@@ -25,7 +25,8 @@ public:
         constexpr int all = btBroadphaseProxy::AllFilter;
         SpatialHashConfig config;
         config.grid = configOf(first);
-        config.eagerGroups = first.arguments[6] / 2 % 3 == 0   ? config.eagerGroups
+        config.eagerGroups = first.arguments[6] / 2 % 3 == 0
+                                 ? eagerCharactersAndSensors().eagerGroups
                              : first.arguments[6] / 2 % 3 == 1 ? 0
                                                                : all;
         const int kind = first.arguments[5] % 7;

@@ -33,7 +33,8 @@ TEST(Switching, ProgramPrintsTheSameBeforeAndAfter) {
 TEST(Switching, EagerGroupsGetTheirPairsAtOnce) {
     constexpr int kTriggerGroup = 64;
 #include <switching_3.inl>
-    for (const int group : {int{kTriggerGroup}, int{btBroadphaseProxy::SensorTrigger}}) {
+    for (const int group : {int{btBroadphaseProxy::SensorTrigger}, int{kTriggerGroup}}) {
+        EXPECT_EQ(broadphase.getOverlappingPairCache()->getNumOverlappingPairs(), 0);
         broadphase.createProxy({0, 0, 0}, {1, 1, 1}, 0, nullptr, group, -1, nullptr);
     }
     EXPECT_EQ(broadphase.getOverlappingPairCache()->getNumOverlappingPairs(), 1);
@@ -55,6 +56,29 @@ TEST(Switching, RefilteringRemovesAPairAtOnce) {
     } EXPECT_EQ(broadphase.getOverlappingPairCache()->getNumOverlappingPairs(), 0);
 }
 
+TEST(Switching, ChangedShapesKeepTheirPairsButNoAlgorithm) {
+    FallingSphere sphere;
+    btSphereShape larger(2);
+    btCollisionObject other;
+    other.setCollisionShape(&sphere.shape);
+    SpatialHashBroadphase broadphase;
+    btRigidBody& body = sphere.body;
+    btDispatcher& dispatcher = sphere.dispatcher;
+    btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &sphere.solver, &sphere.configuration);
+    world.addRigidBody(&body);
+    world.addCollisionObject(&other);
+    world.performDiscreteCollisionDetection();
+    btBroadphasePair* pair =
+        world.getPairCache()->findPair(body.getBroadphaseProxy(), other.getBroadphaseHandle());
+    ASSERT_NE(pair, nullptr);
+    ASSERT_NE(pair->m_algorithm, nullptr);
+#include <switching_5.inl>
+    EXPECT_EQ(pair->m_algorithm, nullptr);
+    EXPECT_EQ(world.getPairCache()->getNumOverlappingPairs(), 1);
+    world.removeCollisionObject(&other);
+    world.removeRigidBody(&body);
+}
+
 TEST(Switching, ClosestRayFindsWhatTheWorldFinds) {
     FallingSphere sphere;
     SpatialHashBroadphase broadphase;
@@ -65,14 +89,14 @@ TEST(Switching, ClosestRayFindsWhatTheWorldFinds) {
     const btVector3 to(0, -9, 0);
     btCollisionWorld::ClosestRayResultCallback expected(from, to);
     world.rayTest(from, to, expected);
-#include <switching_5.inl>
+#include <switching_6.inl>
     EXPECT_TRUE(hit.hasHit());
     EXPECT_EQ(hit.m_closestHitFraction, expected.m_closestHitFraction);
     world.removeRigidBody(&sphere.body);
 }
 
 TEST(Switching, PairCacheWorksUnderBulletsBroadphase) {
-#include <switching_6.inl>
+#include <switching_7.inl>
     for (int i = 0; i < 2; ++i) {
         broadphase.createProxy({0, 0, 0}, {1, 1, 1}, 0, nullptr, 1, -1, nullptr);
     }

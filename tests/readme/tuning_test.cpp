@@ -57,12 +57,22 @@ TEST(TuningPage, SettingsAreTaken) {
     }
     {
 #include <tuning_3.inl>
-        SpatialHashBroadphase broadphase(config);
-        for (int i = 0; i < 2; ++i) {
-            broadphase.createProxy({0, 0, 0}, {1, 1, 1}, 0, nullptr,
-                                   btBroadphaseProxy::SensorTrigger, -1, nullptr);
+        for (const SpatialHashConfig& each : {config, SpatialHashConfig()}) {
+            FallingSphere sphere;
+            btGhostObject ghosts[2];
+            btGhostPairCallback callback;
+            SpatialHashBroadphase broadphase(each);
+            broadphase.getOverlappingPairCache()->setInternalGhostPairCallback(&callback);
+            for (btGhostObject& ghost : ghosts) {
+                ghost.setBroadphaseHandle(broadphase.createProxy({0, 0, 0}, {1, 1, 1}, 0, &ghost, 1,
+                                                                 -1, &sphere.dispatcher));
+            }
+            EXPECT_EQ(broadphase.getOverlappingPairCache()->getNumOverlappingPairs(),
+                      each.eagerGhosts ? 1 : 0);
+            for (btGhostObject& ghost : ghosts) {
+                broadphase.destroyProxy(ghost.getBroadphaseHandle(), &sphere.dispatcher);
+            }
         }
-        EXPECT_EQ(broadphase.getOverlappingPairCache()->getNumOverlappingPairs(), 0);
     }
 #include <tuning_4.inl>
     SpatialHashBroadphase(config).calculateOverlappingPairs(nullptr);

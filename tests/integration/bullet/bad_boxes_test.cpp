@@ -75,7 +75,7 @@ TEST_P(NanBox, IsFoundByNoQuery) {
 }
 
 TEST_P(NanBox, OfAnEagerProxyIsHarmless) {
-    Player player = hashPlayer(2);
+    Player player = hashPlayer(2, nullptr, eagerCharactersAndSensors());
     player.play(createCommand(0, kUnit));
     Command sensor = createCommand(1, withNan(kUnit, GetParam()));
     sensor.group = btBroadphaseProxy::SensorTrigger;

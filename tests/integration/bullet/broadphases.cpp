@@ -11,6 +11,12 @@ Player hashPlayer(int objectCount, std::unique_ptr<btOverlappingPairCache> cache
     return Player(objectCount, std::move(broadphase), std::move(cache));
 }
 
+SpatialHashConfig eagerCharactersAndSensors() {
+    SpatialHashConfig config;
+    config.eagerGroups = btBroadphaseProxy::CharacterFilter | btBroadphaseProxy::SensorTrigger;
+    return config;
+}
+
 SpatialHashBroadphase& hashOf(const Player& player) {
     return dynamic_cast<SpatialHashBroadphase&>(player.broadphase());
 }

@@ -28,6 +28,9 @@ struct ExactDbvt : btDbvtBroadphase {
 Player hashPlayer(int objectCount, std::unique_ptr<btOverlappingPairCache> cache = nullptr,
                   const SpatialHashConfig& config = {});
 
+/// Characters and sensors, told by their groups, have their pairs at once.
+[[nodiscard]] SpatialHashConfig eagerCharactersAndSensors();
+
 /// The broadphase of a player made by hashPlayer().
 SpatialHashBroadphase& hashOf(const Player& player);
 

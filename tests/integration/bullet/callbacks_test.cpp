@@ -4,6 +4,7 @@
 
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
+#include <tests/integration/bullet/broadphases.hpp>
 #include <tests/support/handlers.hpp>
 #include <tests/support/random.hpp>
 
@@ -142,7 +143,7 @@ public:
     }
 
     Random random{3};
-    SpatialHashBroadphase broadphase;
+    SpatialHashBroadphase broadphase{eagerCharactersAndSensors()};
     std::vector<btBroadphaseProxy*> alive;  // in the order of creation
     std::set<btBroadphaseProxy*> touched;   // moved or destroyed since a query began
 

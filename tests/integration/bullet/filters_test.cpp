@@ -33,7 +33,7 @@ struct CountingFilter : btOverlapFilterCallback {
 class Filters : public testing::Test {
 protected:
     explicit Filters(std::unique_ptr<btOverlappingPairCache> cache = nullptr)
-        : player(hashPlayer(6, std::move(cache))) {}
+        : player(hashPlayer(6, std::move(cache), eagerCharactersAndSensors())) {}
 
     void create(int object, const Box& box) {
         player.play({Action::create, object, box, Proxy::DefaultFilter, Proxy::AllFilter});

@@ -10,7 +10,6 @@
 #include <integration/bullet/pair_cache.hpp>
 
 #include <BulletCollision/CollisionDispatch/btGhostObject.h>
-#include <BulletDynamics/Character/btKinematicCharacterController.h>
 #include <btBulletDynamicsCommon.h>
 #include <gtest/gtest.h>
 
@@ -123,7 +122,7 @@ protected:
     }
     void set(int object, const Box& box) { player.play({Action::set, object, box, 0, 0}); }
 
-    Player player = hashPlayer(8);
+    Player player = hashPlayer(8, nullptr, eagerCharactersAndSensors());
     const ObjectPairs none{};
 };
 
@@ -217,51 +216,6 @@ TEST(GhostObject, ForgetsABodyThatIsRemoved) {
     scene.world.addRigidBody(&guest);
     scene.world.stepSimulation(btScalar(1) / 60, 0);
     EXPECT_EQ(scene.listedBy(scene.ghost), std::vector<int>{0});
-}
-
-/// Walks a character between pillars; returns how many bodies the box that the character set last
-/// touches without its ghost knowing, summed over the steps.
-std::size_t unknownNeighboursOnAWalk(const SpatialHashConfig& config, std::size_t* knownCount) {
-    GhostWorld scene(config);
-    btPairCachingGhostObject body;
-    btCapsuleShape capsule(btScalar(0.4), 1);
-    body.setCollisionShape(&capsule);
-    body.setCollisionFlags(btCollisionObject::CF_CHARACTER_OBJECT);
-    body.setWorldTransform(GhostWorld::at({94, 0, btScalar(0.9)}));
-    btKinematicCharacterController character(&body, &capsule, btScalar(0.3));
-    character.setGravity({0, 0, 0});
-    character.setWalkDirection({btScalar(0.23), 0, btScalar(-0.013)});
-    scene.world.addCollisionObject(&body, Proxy::CharacterFilter, Proxy::AllFilter);
-    scene.world.addAction(&character);
-
-    std::size_t unknownCount = 0;
-    for (int step = 0; step < 200; ++step) {
-        scene.world.stepSimulation(btScalar(1) / 60, 0);
-        for (const int neighbour : scene.touching(body)) {
-            btRigidBody& other = *scene.bodies[static_cast<std::size_t>(neighbour)];
-            const bool isKnown =
-                body.getOverlappingPairCache()->findPair(body.getBroadphaseHandle(),
-                                                         other.getBroadphaseHandle()) != nullptr;
-            ++(isKnown ? *knownCount : unknownCount);
-        }
-    }
-    scene.world.removeAction(&character);
-    scene.world.removeCollisionObject(&body);
-    return unknownCount;
-}
-
-TEST(KinematicCharacter, KnowsItsNeighboursWithinTheStep) {
-    std::size_t knownCount = 0;
-    EXPECT_EQ(unknownNeighboursOnAWalk({}, &knownCount), 0U);
-    EXPECT_GT(knownCount, 100U);
-}
-
-// The test above can fail.
-TEST(KinematicCharacter, DoesNotKnowThemInTimeWhenNoGroupIsEager) {
-    SpatialHashConfig config;
-    config.eagerGroups = 0;
-    std::size_t knownCount = 0;
-    EXPECT_GT(unknownNeighboursOnAWalk(config, &knownCount), 0U);
 }
 
 }  // namespace

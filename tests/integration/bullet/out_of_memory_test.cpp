@@ -4,6 +4,7 @@
 
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
+#include <tests/integration/bullet/broadphases.hpp>
 #include <tests/support/out_of_memory.hpp>
 #include <tests/support/random.hpp>
 
@@ -24,7 +25,7 @@ using Couple = std::pair<btBroadphaseProxy*, btBroadphaseProxy*>;
 struct Proxies {
     explicit Proxies(int count, PairOrder order = PairOrder::arrival, int group = 1,
                      bool hasGhosts = false)
-        : cache(order), broadphase(&cache) {
+        : cache(order), broadphase(&cache, eagerCharactersAndSensors()) {
         cache.setInternalGhostPairCallback(hasGhosts ? &ghosts : nullptr);
         createSome(count, group);
     }

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Zlib
+
+// What queries read between updates, and when they file what has changed.
+
+#include <broadphase/grid.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace hashphase {
+namespace {
+
+// So few changes are read by each query without further ado.
+constexpr std::size_t kFewWait = 64;
+
+}  // namespace
+
+// Changes and queries may come in turn: filing for each query would cost far more than reading the
+// list, and reading it for millions of queries far more than filing. So they read it until that has
+// cost a quarter of what filing does, and then file: at most 1.25 times the cost of whichever is right
+// for queries without a change in between, and about the least there is for changes and queries in
+// turn, of which filing more or less often saves one kind of work at the price of the other.
+template <class Scalar>
+std::uint64_t Grid<Scalar>::worthFiling() const noexcept {
+    // Filing costs a proxy as much as reading twenty entries of the list.
+    return 1024 + 5 * std::uint64_t{mobile_.size()};
+}
+
+template <class Scalar>
+auto Grid<Scalar>::presentReading() const noexcept -> Reading {
+    return isFresh_.load(std::memory_order_acquire) ? Reading{fresh_, freshTree_, true}
+                                                    : Reading{mobile_, mobileTree_, false};
+}
+
+template <class Scalar>
+auto Grid<Scalar>::beginReading() const -> Reading {
+    mendTables();
+    const std::size_t count = waiting_.size();
+    if (count > kFewWait && !isFresh_.load(std::memory_order_acquire) &&
+        waitingRead_.fetch_add(count, std::memory_order_relaxed) + count > worthFiling()) {
+        fileFresh();
+    }
+    return presentReading();
+}
+
+template <class Scalar>
+void Grid<Scalar>::expectQueries(std::size_t count) const {
+    mendTables();
+    if (waiting_.size() > kFewWait && !isFresh_.load(std::memory_order_acquire)) {
+        const std::uint64_t read = waitingRead_.load(std::memory_order_relaxed);
+        if (count > (worthFiling() - std::min(worthFiling(), read)) / waiting_.size()) {
+            fileFresh();
+        }
+    }
+}
+
+// Two writes on behalf of readers. The grid itself is never a const object: it is created by its owner,
+// and only seen as const by readers.
+
+// No reader has passed this point while the table is torn, and the first to come here files for all.
+template <class Scalar>
+void Grid<Scalar>::mendTables() const {
+    if (!isTableTorn_.load(std::memory_order_acquire)) {
+        return;
+    }
+    auto& self = const_cast<Grid&>(*this);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+    const std::lock_guard lock(self.filing_);
+    if (isTableTorn_.load(std::memory_order_relaxed)) {
+        self.stage(serialFor);
+        self.fileMobile(serialFor);
+        if (!hasPairs_) {
+            self.settle();
+        }
+    }
+}
+
+// Others may be reading mobile_ and the list, and go on with them. None reads fresh_: since it was last
+// in use, something has changed. From within a query that is not so, and nothing is filed.
+template <class Scalar>
+void Grid<Scalar>::fileFresh() const {
+    auto& self = const_cast<Grid&>(*this);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+    const std::unique_lock lock(self.filing_, std::try_to_lock);
+    if (!lock.owns_lock() || isFresh_.load(std::memory_order_relaxed) ||
+        detail::QueryScope::isWithin(this)) {
+        return;
+    }
+    self.stage(serialFor);
+    self.fresh_.build(mobileSlots_, staged_, fixedSizes_);
+    self.freshTree_.isStale.store(true, std::memory_order_relaxed);
+    ++self.filingCount_;
+    self.cost_.filed += fresh_.size();
+    self.isFresh_.store(true, std::memory_order_release);
+}
+
+// Before a change: what is fresh will not be so any more.
+template <class Scalar>
+void Grid<Scalar>::takeFresh() noexcept {
+    isFresh_.store(false, std::memory_order_relaxed);
+    if (detail::QueryScope::isWithin(this)) {
+        return;
+    }
+    std::swap(mobile_, fresh_);
+    std::swap(mobileTree_.tree, freshTree_.tree);
+    mobileTree_.isStale.store(freshTree_.isStale.load(std::memory_order_relaxed),
+                              std::memory_order_relaxed);
+    dropList();
+    if (!hasPairs_) {
+        settle();
+    }
+}
+
+// As mendTables(): no ray passes before it is done.
+template <class Scalar>
+void Grid<Scalar>::growTrees(const Reading& reading) const {
+    auto& self = const_cast<Grid&>(*this);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+    const std::lock_guard lock(self.filing_);
+    const auto grow = [](TableTree& tree, const detail::Table<Scalar>& table) {
+        if (tree.isStale.load(std::memory_order_relaxed)) {
+            tree.tree.build(table);
+            tree.isStale.store(false, std::memory_order_release);
+        }
+    };
+    grow(reading.isFresh ? self.freshTree_ : self.mobileTree_, reading.mobile);
+    grow(self.restingTree_, resting_);
+}
+
+template auto Grid<float>::presentReading() const noexcept -> Reading;
+template auto Grid<float>::beginReading() const -> Reading;
+template std::uint64_t Grid<float>::worthFiling() const noexcept;
+template void Grid<float>::expectQueries(std::size_t) const;
+template void Grid<float>::mendTables() const;
+template void Grid<float>::fileFresh() const;
+template void Grid<float>::takeFresh() noexcept;
+template void Grid<float>::growTrees(const Reading&) const;
+template auto Grid<double>::presentReading() const noexcept -> Reading;
+template auto Grid<double>::beginReading() const -> Reading;
+template std::uint64_t Grid<double>::worthFiling() const noexcept;
+template void Grid<double>::expectQueries(std::size_t) const;
+template void Grid<double>::mendTables() const;
+template void Grid<double>::fileFresh() const;
+template void Grid<double>::takeFresh() noexcept;
+template void Grid<double>::growTrees(const Reading&) const;
+
+}  // namespace hashphase
