@@ -148,8 +148,8 @@ void Grid<Scalar>::noteChange(std::uint32_t slot) noexcept {
     if (record.place == Place::resting) {
         leaveRest(slot);
     }
-    if (!record.isWaiting) {
-        record.isWaiting = true;
+    if (!isWaiting(record)) {
+        record.listedIn = listNumber_;
         waiting_.push_back(slot);
     }
 }
@@ -265,7 +265,7 @@ std::string Grid<Scalar>::validate() const {
     std::size_t alive = 0;
     for (std::uint32_t slot = 0; slot < records_.size(); ++slot) {
         alive += isAlive(slot) ? 1 : 0;
-        const bool isNan = records_[slot].isNan && (reading.isFresh || !records_[slot].isWaiting);
+        const bool isNan = records_[slot].isNan && (reading.isFresh || !isWaiting(records_[slot]));
         if (timesFound[slot] != (isAlive(slot) && !isNan ? 1U : 0U)) {
             return "Every proxy alive is filed in exactly one table, or waits in the list of "
                    "changes, or is NaN: broken.";

@@ -6,9 +6,8 @@
 // A frame    move() whatever moved (or everything: an unchanged box costs a comparison), then
 //            update() once, or Pairs::update(), which does it for you.
 // Reads      Every change is visible to queries at once, with no call in between. Changes are kept in
-//            a list that queries read beside the tables. When they have read about as much of it as
-//            filing would cost, a query files everything anew: changes and queries in turn never cost
-//            much more than the better of the two.
+//            a list that queries read beside the tables. When that has cost a third of what filing does,
+//            a query files everything anew: changes and queries in turn cost about the least there is.
 // Threads    Queries are const and may run on any number of threads at the same time, and from
 //            within a collector. Everything else needs the grid for itself.
 // Units      metres, or any other unit of length used throughout.
@@ -257,7 +256,7 @@ private:
         std::uint32_t changedAt = 0;  // number of the update that will see, or saw, the last change
         std::uint32_t restingEntry = 0;  // or, of a slot without a proxy, the next one of those
         Place place = Place::nowhere;
-        bool isWaiting = false;    // changed since mobile_ was built: listed in waiting_
+        std::uint8_t listedIn = 0;  // number of the list of changes that has it
         bool restsAtOnce = false;  // Mobility::resting, or rested, and has not moved since but by a
                                    // shift of the origin
         bool isNan = false;        // has a NaN; of a proxy alive
@@ -297,10 +296,13 @@ private:
         bool isFresh;  // filed since the last change, so that nothing waits
     };
 
+    [[nodiscard]] bool isWaiting(const Record& record) const noexcept {
+        return record.listedIn == listNumber_;
+    }
     /// Whether a slot that is listed in a table is still filed there.
     [[nodiscard]] bool isFiled(std::uint32_t slot, const Reading& reading) const noexcept {
         const Record& record = records_[slot];
-        return record.place != Place::nowhere && (reading.isFresh || !record.isWaiting);
+        return record.place != Place::nowhere && (reading.isFresh || !isWaiting(record));
     }
     [[nodiscard]] bool standsIn(Place place, std::uint32_t slot,
                                 const Reading& reading) const noexcept {
@@ -404,6 +406,7 @@ private:
 
     // What changed since mobile_ was built, and how much of that queries have read since.
     std::vector<std::uint32_t> waiting_;
+    std::uint8_t listNumber_ = 1;
     mutable std::atomic<std::uint64_t> waitingRead_{0};
     // mobile_ cannot be read: a shift of the origin, or want of memory, has left it as it is.
     std::atomic<bool> isTableTorn_{false};

@@ -17,13 +17,13 @@ constexpr std::size_t kFewWait = 64;
 
 // Changes and queries may come in turn: filing for each query would cost far more than reading the
 // list, and reading it for millions of queries far more than filing. So they read it until that has
-// cost a quarter of what filing does, and then file: at most 1.25 times the cost of whichever is right
-// for queries without a change in between, and about the least there is for changes and queries in
-// turn, of which filing more or less often saves one kind of work at the price of the other.
+// cost a third of what filing does, and then file: at most a third more than to file at once, which is
+// right for many queries without a change in between, and a sixth more than the least there is for changes
+// and queries in turn.
 template <class Scalar>
 std::uint64_t Grid<Scalar>::worthFiling() const noexcept {
-    // Filing costs a proxy as much as reading twenty entries of the list.
-    return 1024 + 5 * std::uint64_t{mobile_.size()};
+    constexpr std::uint64_t kThirdOfFiling = 3;  // entries of the list, for each proxy
+    return 1024 + kThirdOfFiling * mobile_.size();
 }
 
 template <class Scalar>

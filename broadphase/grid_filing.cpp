@@ -115,10 +115,13 @@ void Grid<Scalar>::fileMobile(ParallelFor parallelFor) {
 
 template <class Scalar>
 void Grid<Scalar>::dropList() noexcept {
-    for (const std::uint32_t slot : waiting_) {
-        records_[slot].isWaiting = false;
-    }
     waiting_.clear();
+    if (++listNumber_ == 0) {  // nothing is left of those who have the numbers that come again
+        listNumber_ = 1;
+        for (Record& record : records_) {
+            record.listedIn = 0;
+        }
+    }
     waitingRead_.store(0, std::memory_order_relaxed);
 }
 

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -55,6 +56,78 @@ TEST(GridCost, OfWritesAndQueriesInTurnIsNotThatOfARebuildEach) {
     EXPECT_LT(tested / 1000, 1000U);
     // Filed a few times, not a thousand.
     EXPECT_LT(crowd.grid.update().filed, 20 * 30000U);
+}
+
+// What filing costs a proxy, in boxes that a query tests in the list of changes.
+constexpr double kFiling = 9;
+
+// With c changes before each query and a filing after every k, a query reads c * k / 2 of the list and
+// has its share of the filing, kFiling * n / k: the least is at k * k = 2 * kFiling * n / c.
+TEST(GridCost, OfChangesAndQueriesInTurnIsLittleMoreThanTheLeast) {
+    constexpr std::uint32_t kCount = 10000;
+    constexpr std::uint32_t kQueries = 1200;
+    for (const std::uint32_t changes : {1U, 6U, 100U}) {
+        Crowd<float> crowd(kCount, 400, 0x5eed0702);
+        crowd.grid.update();
+        const std::uint64_t filings = crowd.grid.filingCount();
+        std::uint64_t tested = 0;
+        std::size_t next = 0;
+        for (std::uint32_t i = 0; i < kQueries; ++i) {
+            for (std::uint32_t j = 0; j < changes; ++j) {
+                crowd.move(next++ % kCount);
+            }
+            const BoxRegion<float> region{crowd.proxies[next % kCount].box};
+            CollectCount count;
+            tested += crowd.grid.visit(region, count).boxesTested;
+        }
+        const auto filed = static_cast<double>((crowd.grid.filingCount() - filings) * kCount);
+        const double least = std::sqrt(2 * kFiling * kCount * changes);
+        EXPECT_LT((static_cast<double>(tested) + kFiling * filed) / kQueries, 1.4 * least + 20)
+            << changes << " changes a query";
+    }
+}
+
+TEST(GridCost, OfManyQueriesAfterAChangeOfAllIsAFilingAndLittleMore) {
+    Crowd<float> crowd(10000, 400, 0x5eed0703);
+    crowd.grid.update();
+    for (const bool together : {false, true}) {
+        for (std::size_t i = 0; i < crowd.proxies.size(); ++i) {
+            crowd.move(i);
+        }
+        std::vector<BoxRegion<float>> regions;
+        for (std::size_t i = 0; i < 1000; ++i) {
+            regions.push_back({crowd.proxies[7 * i].box});
+        }
+        std::vector<CollectCount> counts(regions.size());
+        const std::uint64_t filings = crowd.grid.filingCount();
+        std::uint64_t tested = 0;
+        if (together) {
+            tested =
+                crowd.grid.visitEach<BoxRegion<float>, CollectCount>(regions, counts).boxesTested;
+        }
+        for (std::size_t i = 0; i < regions.size() && !together; ++i) {
+            tested += crowd.grid.visit(regions[i], counts[i]).boxesTested;
+        }
+        EXPECT_EQ(crowd.grid.filingCount(), filings + 1);
+        EXPECT_LT(tested, together ? 40000U : 80000U);
+        expectLikeBruteForce<float>(crowd.grid, crowd.proxies, regions.front());
+        EXPECT_EQ(crowd.grid.validate(), "");
+    }
+}
+
+TEST(GridCost, OfExpectedQueriesIsOneFilingIfTheyAreWorthIt) {
+    Crowd<float> crowd(3000, 200, 0x5eed0704);
+    crowd.grid.update();
+    for (std::size_t i = 0; i < 1000; ++i) {
+        crowd.move(i);
+    }
+    const std::uint64_t filings = crowd.grid.filingCount();
+    crowd.grid.expectQueries(3);
+    EXPECT_EQ(crowd.grid.filingCount(), filings) << "reading the list three times is cheaper";
+    crowd.grid.expectQueries(1000);
+    crowd.grid.expectQueries(1000);
+    EXPECT_EQ(crowd.grid.filingCount(), filings + 1);
+    EXPECT_EQ(crowd.grid.validate(), "");
 }
 
 TEST(GridCost, OfASmallRegionDoesNotFollowThePopulation) {

@@ -220,14 +220,25 @@ TEST(GridProxies, AreVisitedWithoutThoseThatAreAddedOnTheWay) {
     EXPECT_EQ(grid.size(), 6U);
 }
 
-// After so many changes that they are not listed any more.
-TEST(GridCallback, IsOfferedWhatItHasMovedWhereItIsNow) {
-    Grid<float> grid;
+/// Cubes along a line. Whether all are filed by an update, or by queries after changes.
+std::vector<ProxyId> fileCubes(Grid<float>& grid, bool byQueries) {
     std::vector<ProxyId> ids;
     for (int i = 0; i < 300; ++i) {
         ids.push_back(grid.add(cubeAt(2 * i)));
     }
     grid.update();
+    for (std::size_t i = 0; i < ids.size() && byQueries; ++i) {
+        grid.move(ids[i], cubeAt(2 * static_cast<double>(i) + 0.5));
+    }
+    const std::uint64_t filings = grid.filingCount();
+    for (int i = 0; i < 1000 && byQueries && grid.filingCount() == filings; ++i) {
+        countIn(grid, cubeAt(0));
+    }
+    EXPECT_EQ(grid.filingCount(), filings + (byQueries ? 1 : 0));
+    return ids;
+}
+
+TEST(GridCallback, IsOfferedWhatItHasMovedWhereItIsNow) {
     struct MoveAllButTheLast {
         void add(ProxyId id, float /*key*/) {
             found.push_back(id);
@@ -242,10 +253,16 @@ TEST(GridCallback, IsOfferedWhatItHasMovedWhereItIsNow) {
         const std::vector<ProxyId>& ids;
         std::vector<ProxyId> found = {};
     };
-    MoveAllButTheLast collector{grid, ids};
-    grid.visit(BoxRegion<float>{makeBox<float>(-10, -10, -10, 1000, 10, 10)}, collector);
-    EXPECT_LE(collector.found.size(), 2U);
-    EXPECT_EQ(collector.found.back(), ids.back());
+    for (const bool byQueries : {false, true}) {
+        Grid<float> grid;
+        const std::vector<ProxyId> ids = fileCubes(grid, byQueries);
+        MoveAllButTheLast collector{grid, ids};
+        grid.visit(BoxRegion<float>{makeBox<float>(-10, -10, -10, 1000, 10, 10)}, collector);
+        EXPECT_LE(collector.found.size(), 2U);
+        EXPECT_EQ(collector.found.back(), ids.back());
+        EXPECT_EQ(countIn(grid, makeBox<float>(-10, -10, -10, 1000, 10, 10)), 1U);
+        EXPECT_EQ(grid.validate(), "");
+    }
 }
 
 TEST(GridCallback, IsOfferedTheKeyOfWhereThingsAreNow) {
@@ -264,15 +281,14 @@ TEST(GridCallback, IsOfferedTheKeyOfWhereThingsAreNow) {
         SphereRegion<float> region{{0, 0, 0}, 1000};
         std::size_t offered = 0;
     };
-    Grid<float> grid;
-    std::vector<ProxyId> ids;
-    for (int i = 0; i < 300; ++i) {
-        ids.push_back(grid.add(cubeAt(2 * i)));
+    for (const bool byQueries : {false, true}) {
+        Grid<float> grid;
+        const std::vector<ProxyId> ids = fileCubes(grid, byQueries);
+        MoveAll collector{grid, ids};
+        grid.visit(SphereRegion<float>({0, 0, 0}, 1000), collector);
+        EXPECT_GT(collector.offered, 100U);
+        EXPECT_EQ(grid.validate(), "");
     }
-    grid.update();
-    MoveAll collector{grid, ids};
-    grid.visit(SphereRegion<float>({0, 0, 0}, 1000), collector);
-    EXPECT_GT(collector.offered, 100U);
 }
 
 TEST(GridUpdate, TellsHowManyShareACell) {

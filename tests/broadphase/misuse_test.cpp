@@ -184,9 +184,20 @@ TEST(GridCallbacks, MayChangeTheGridInAQueryOfTheirOwn) {
     }
 }
 
-// So much has changed that it is not listed any more, and the tables are being read.
-TEST(GridCallbacks, MayAskAfterManyChangesAndFindWhatIsThere) {
+// The tables are being read, and nothing is filed for the queries within: what an update has filed, or
+// queries before this one.
+class GridCallbacksAfterFiling : public testing::TestWithParam<bool> {};
+
+TEST_P(GridCallbacksAfterFiling, MayChangeMuchAndAskAndFindWhatIsThere) {
     Changed changed(500);
+    changed.grid.update();
+    for (int i = 0; i < 100 && GetParam(); ++i) {
+        changed.add();
+    }
+    const std::uint64_t filings = changed.grid.filingCount();
+    for (int i = 0; i < 1000 && GetParam() && changed.grid.filingCount() == filings; ++i) {
+        changed.checkQuery(BoxRegion<float>{cube(0, 3)});
+    }
     const BoxRegion<float> asked{cube(0, 2)};
     std::set<ProxyId> spared;  // every second of those who are asked for
     for (const auto& [id, box] : changed.alive) {
@@ -222,7 +233,11 @@ TEST(GridCallbacks, MayAskAfterManyChangesAndFindWhatIsThere) {
     EXPECT_GT(spared.size(), 5U);
     EXPECT_EQ(changed.grid.validate(), "");
     changed.checkQuery(BoxRegion<float>{cube(0, 3)});
+    changed.grid.update();
+    changed.checkQuery(BoxRegion<float>{cube(0, 3)});
 }
+
+INSTANTIATE_TEST_SUITE_P(ByUpdateOrQueries, GridCallbacksAfterFiling, testing::Bool());
 
 TEST(SweepsCallbacks, MayChangeWhatSweeps) {
     Grid<float> grid;
