@@ -141,19 +141,6 @@ void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& a
     }
 }
 
-// Bullet, too, takes a client for a btCollisionObject when it tells ghosts, or a dispatcher, of a pair: what
-// can have none may be anything. What a client is never changes.
-bool SpatialHashBroadphase::isGhost(Proxy& proxy, const btDispatcher* dispatcher) {
-    const bool mayPair = proxy.m_collisionFilterGroup != 0 && proxy.m_collisionFilterMask != 0;
-    if (proxy.client == Client::unknown && dispatcher != nullptr && mayPair &&
-        proxy.m_clientObject != nullptr) {
-        const auto& object = *static_cast<const btCollisionObject*>(proxy.m_clientObject);
-        const bool isGhost = object.getInternalType() == btCollisionObject::CO_GHOST_OBJECT;
-        proxy.client = isGhost ? Client::ghost : Client::other;
-    }
-    return proxy.client == Client::ghost;
-}
-
 void SpatialHashBroadphase::move(const Proxy& proxy) {
     const std::optional<MovingBox<btScalar>> motion =
         sweeps_ != nullptr ? detail::fastMotion(proxy, config_.fastFrom) : std::nullopt;
@@ -307,34 +294,6 @@ void SpatialHashBroadphase::refilter(btBroadphaseProxy* proxy, btDispatcher* dis
     const PairChanges changes = pairs_.refilter(own->id, cacheFilter());
     apply(changes, changes.born.size(), dispatcher);
     removeDeferred(own, dispatcher);
-}
-
-void SpatialHashBroadphase::shapeChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
-    checkMayChange();
-    Proxy* own = checkedProxy(proxy);
-    if (batchCache_ != nullptr) {
-        batchCache_->renewPairsContainingProxy(own, dispatcher);
-        return;
-    }
-    if (pairCache_->hasDeferredRemoval()) {
-        pairCache_->cleanProxyFromPairs(own, dispatcher);
-        return;
-    }
-    std::vector<ProxyCouple> couples;
-    const btBroadphasePairArray& pairs = pairCache_->getOverlappingPairArray();
-    for (int i = 0; i < pairs.size(); ++i) {
-        if (pairs[i].m_pProxy0 == own || pairs[i].m_pProxy1 == own) {
-            couples.emplace_back(*pairs[i].m_pProxy0, *pairs[i].m_pProxy1);
-        }
-    }
-    for (const ProxyCouple& couple : couples) {
-        if (couple.isUpToDate()) {  // a callback may have destroyed one of the two
-            pairCache_->removeOverlappingPair(couple.lower(), couple.upper(), dispatcher);
-        }
-        if (couple.isUpToDate()) {
-            pairCache_->addOverlappingPair(couple.lower(), couple.upper());
-        }
-    }
 }
 
 // Caches with deferred removal ignore removeOverlappingPair() and keep duplicates; their user is to
