@@ -61,11 +61,10 @@ struct SpatialHashConfig {
     GridConfig grid{};
 
     /// Ghost objects get their pairs at once, in createProxy() and setAabb(), as Bullet's character
-    /// controller expects: wherever the pair cache has an internal ghost pair callback, through which
-    /// they hear of pairs, or is not a PairCache given as one, and does not say whether it has. Only
-    /// then, and in calls that hand in a dispatcher, as a btCollisionWorld's do, is a client that may
-    /// have pairs taken for a btCollisionObject. For programs whose clients are something else even
-    /// then: false.
+    /// controller expects, wherever the pair cache has an internal ghost pair callback, through which
+    /// ghosts hear of pairs. (A cache that is not given as a PairCache counts as having one.) To find
+    /// them, a client that may have pairs is taken for a btCollisionObject then, in calls that hand in a
+    /// dispatcher, as a btCollisionWorld's do. False is for programs whose clients are something else.
     bool eagerGhosts = true;
 
     /// Proxies of these groups get theirs at once as well; none by default, for what a bit means is up
