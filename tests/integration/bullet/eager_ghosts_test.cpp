@@ -136,8 +136,8 @@ struct GhostByHand {
         ghost.setWorldTransform(GhostWorld::at({x, 0, 0}));
         world.updateSingleAabb(&ghost);
     }
-    void watchBy(btOverlappingPairCallback* callback) {
-        world.getPairCache()->setInternalGhostPairCallback(callback);
+    void watchBy(btOverlappingPairCallback* watcher) {
+        world.getPairCache()->setInternalGhostPairCallback(watcher);
     }
     int pairCount() { return world.getPairCache()->getNumOverlappingPairs(); }
 
@@ -149,14 +149,14 @@ struct GhostByHand {
     btGhostObject ghost;
     btCollisionObject body;
     btCollisionObject far;
-    btGhostPairCallback callback;
+    btGhostPairCallback bullets;
 };
 
 TEST(EagerGhosts, ListWhatIsThereWhenTheyComeAndMove) {
     ForwardingCallback forwarding;
     GhostByHand scene;
     for (btOverlappingPairCallback* callback :
-         {static_cast<btOverlappingPairCallback*>(&scene.callback),
+         {static_cast<btOverlappingPairCallback*>(&scene.bullets),
           static_cast<btOverlappingPairCallback*>(&forwarding)}) {
         scene.watchBy(callback);
         scene.world.addCollisionObject(&scene.body);
@@ -181,7 +181,7 @@ TEST(EagerGhosts, MakePairsInTheStepWhereNobodyIsTold) {
     scene.world.addCollisionObject(&scene.body);
     scene.world.addCollisionObject(&scene.ghost);
     EXPECT_EQ(scene.pairCount(), 0);
-    scene.watchBy(&scene.callback);
+    scene.watchBy(&scene.bullets);
     scene.moveTo(btScalar(0.1));
     EXPECT_EQ(scene.pairCount(), 1) << "The callback was set after the ghost was added.";
     scene.watchBy(nullptr);
@@ -196,7 +196,7 @@ TEST(EagerGhosts, MakePairsInTheStepWhenTheyAreNotToBeEager) {
     SpatialHashConfig config;
     config.eagerGhosts = false;
     GhostByHand scene(config);
-    scene.watchBy(&scene.callback);
+    scene.watchBy(&scene.bullets);
     scene.world.addCollisionObject(&scene.body);
     scene.world.addCollisionObject(&scene.ghost);
     EXPECT_EQ(scene.pairCount(), 0);

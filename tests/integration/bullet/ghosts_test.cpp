@@ -111,9 +111,9 @@ INSTANTIATE_TEST_SUITE_P(Scenes, GhostCallbacks, testing::ValuesIn(allScenes()),
 
 // --- Eager groups --------------------------------------------------------------------------------
 
-const Box kHere = boxAround({0, 0, 0}, {1, 1, 1});
-const Box kBeside = boxAround({1, 0, 0}, {1, 1, 1});
-const Box kThere = boxAround({9, 0, 0}, {1, 1, 1});
+const Box kOrigin = boxAround({0, 0, 0}, {1, 1, 1});
+const Box kNearby = boxAround({1, 0, 0}, {1, 1, 1});
+const Box kAway = boxAround({9, 0, 0}, {1, 1, 1});
 
 class EagerGroups : public testing::TestWithParam<int> {
 protected:
@@ -127,26 +127,26 @@ protected:
 };
 
 TEST_P(EagerGroups, HaveTheirPairsDirectlyAfterCreateProxy) {
-    create(0, kHere, Proxy::DefaultFilter);
-    create(1, kBeside, Proxy::DefaultFilter);
+    create(0, kOrigin, Proxy::DefaultFilter);
+    create(1, kNearby, Proxy::DefaultFilter);
     EXPECT_EQ(player.pairs(), none) << "Others have theirs after calculateOverlappingPairs.";
-    create(2, kHere, GetParam());
+    create(2, kOrigin, GetParam());
     EXPECT_EQ(player.pairs(), (ObjectPairs{{0, 2}, {1, 2}}));
     player.calculate();
     EXPECT_EQ(player.pairs(), (ObjectPairs{{0, 1}, {0, 2}, {1, 2}}));
 }
 
 TEST_P(EagerGroups, HaveTheirPairsDirectlyAfterSetAabb) {
-    create(0, kHere, Proxy::DefaultFilter);
-    create(1, kThere, Proxy::DefaultFilter);
-    create(2, kThere, Proxy::DefaultFilter);
-    create(3, kHere, GetParam());
+    create(0, kOrigin, Proxy::DefaultFilter);
+    create(1, kAway, Proxy::DefaultFilter);
+    create(2, kAway, Proxy::DefaultFilter);
+    create(3, kOrigin, GetParam());
     player.calculate();
     ASSERT_EQ(player.pairs(), (ObjectPairs{{0, 3}, {1, 2}}));
-    set(3, kThere);
+    set(3, kAway);
     EXPECT_EQ(player.pairs(), (ObjectPairs{{0, 3}, {1, 2}, {1, 3}, {2, 3}}))
         << "New pairs at once; old ones stay until calculateOverlappingPairs.";
-    set(2, kHere);
+    set(2, kOrigin);
     EXPECT_EQ(player.pairs(), (ObjectPairs{{0, 3}, {1, 2}, {1, 3}, {2, 3}}))
         << "What is not eager neither gains nor loses pairs before calculateOverlappingPairs.";
     player.calculate();
@@ -154,27 +154,27 @@ TEST_P(EagerGroups, HaveTheirPairsDirectlyAfterSetAabb) {
 }
 
 TEST_P(EagerGroups, KeepThePairsOfAPlaceTheyPassedUntilTheStepEnds) {
-    create(0, kHere, Proxy::DefaultFilter);
-    create(1, kThere, GetParam());
+    create(0, kOrigin, Proxy::DefaultFilter);
+    create(1, kAway, GetParam());
     player.calculate();
-    set(1, kHere);
-    set(1, kThere);
+    set(1, kOrigin);
+    set(1, kAway);
     EXPECT_EQ(player.pairs(), (ObjectPairs{{0, 1}}));
     player.calculate();
     EXPECT_EQ(player.pairs(), none);
-    set(1, kHere);
-    set(1, kBeside);
+    set(1, kOrigin);
+    set(1, kNearby);
     EXPECT_EQ(player.pairs(), (ObjectPairs{{0, 1}}));
     player.calculate();
     EXPECT_EQ(player.pairs(), (ObjectPairs{{0, 1}}));
 }
 
 TEST_P(EagerGroups, MayBeDestroyedBeforeTheStepEnds) {
-    create(0, kHere, Proxy::DefaultFilter);
-    create(1, kHere, GetParam());
+    create(0, kOrigin, Proxy::DefaultFilter);
+    create(1, kOrigin, GetParam());
     player.play({Action::destroy, 1, {}, 0, 0});
     EXPECT_EQ(player.pairs(), none);
-    create(1, kHere, GetParam());
+    create(1, kOrigin, GetParam());
     player.play({Action::destroy, 0, {}, 0, 0});
     EXPECT_EQ(player.pairs(), none);
     player.calculate();

@@ -95,7 +95,7 @@ void step(World& world, int count) {
     }
 }
 
-constexpr btScalar kFar = 1024;
+constexpr btScalar kKilometre = 1024;
 
 // --- The broadphase ------------------------------------------------------------------------------
 
@@ -117,11 +117,11 @@ TEST(SpatialHashBroadphaseOriginShift, MovesEveryBoxAndNoPair) {
     ASSERT_GT(pairCount, 100);
     const btVector3 low = proxies[7]->m_aabbMin;
 
-    const btVector3 shift(kFar, -3, 5);
+    const btVector3 shift(kKilometre, -3, 5);
     EXPECT_EQ(broadphase.shiftOrigin(shift), 0U);
     EXPECT_EQ(proxies[7]->m_aabbMin, low - shift);
     EXPECT_EQ(broadphase.grid().box(SpatialHashBroadphase::idOf(proxies[7])).min()[0],
-              low[0] - kFar);
+              low[0] - kKilometre);
     // What is set as it is has not moved.
     broadphase.setAabb(proxies[7], low - shift, proxies[7]->m_aabbMax, nullptr);
     broadphase.calculateOverlappingPairs(nullptr);
@@ -134,7 +134,7 @@ TEST(SpatialHashBroadphaseOriginShift, MovesEveryBoxAndNoPair) {
 
 TEST(WorldOriginShift, KeepsContactsPairsAndManifolds) {
     World world;
-    buildWall(world, {kFar, 0, 0});
+    buildWall(world, {kKilometre, 0, 0});
     step(world, 30);
     const std::set<Pair> pairs = pairsOf(world);
     const int manifolds = world.dispatcher().getNumManifolds();
@@ -145,7 +145,7 @@ TEST(WorldOriginShift, KeepsContactsPairsAndManifolds) {
         before.push_back(world.dispatcher().getManifoldByIndexInternal(i));
     }
 
-    world.shift({kFar, 0, 0});
+    world.shift({kKilometre, 0, 0});
     EXPECT_EQ(pairsOf(world), pairs);
     EXPECT_EQ(contactCount(world), contacts);
     for (int i = 0; i < manifolds; ++i) {
@@ -167,13 +167,13 @@ TEST(WorldOriginShift, ThereAndBackLeavesNoTrace) {
     World shifted;
     World untouched;
     for (World* world : {&shifted, &untouched}) {
-        buildWall(*world, {kFar, kFar, -kFar});
+        buildWall(*world, {kKilometre, kKilometre, -kKilometre});
     }
     for (int frame = 0; frame < 60; ++frame) {
         if (frame % 10 == 5) {
-            shifted.shift({kFar, kFar, -kFar});
+            shifted.shift({kKilometre, kKilometre, -kKilometre});
             EXPECT_LT(shifted.body(3).getWorldTransform().getOrigin().length(), 20);
-            shifted.shift({-kFar, -kFar, kFar});
+            shifted.shift({-kKilometre, -kKilometre, kKilometre});
         }
         shifted.step();
         untouched.step();
@@ -214,7 +214,7 @@ TEST(WorldOriginShift, LeavesWhatFliesOnItsWay) {
 
 TEST(WorldOriginShift, LetsWhatSleepsSleep) {
     World world;
-    buildWall(world, {kFar, 0, 0}, 4);
+    buildWall(world, {kKilometre, 0, 0}, 4);
     for (int i = 0; i < 900 && world.sleepingCount() < world.bodyCount() - 1; ++i) {
         world.step();
     }
@@ -223,7 +223,7 @@ TEST(WorldOriginShift, LetsWhatSleepsSleep) {
     for (int i = 0; i < world.bodyCount(); ++i) {
         places.push_back(world.body(i).getWorldTransform().getOrigin());
     }
-    const btVector3 by(kFar, 0, 0);
+    const btVector3 by(kKilometre, 0, 0);
     world.shift(by);
     step(world, 30);
     EXPECT_EQ(world.sleepingCount(), world.bodyCount() - 1);
@@ -290,9 +290,9 @@ TEST(WorldOriginShift, TellsMotionStates) {
     world.body(1).setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
     world.body(1).setActivationState(DISABLE_DEACTIVATION);
     world.step();
-    world.shift({kFar, 0, 0});
+    world.shift({kKilometre, 0, 0});
     world.step();
-    EXPECT_EQ(world.body(1).getWorldTransform().getOrigin(), btVector3(5 - kFar, 6, 7));
+    EXPECT_EQ(world.body(1).getWorldTransform().getOrigin(), btVector3(5 - kKilometre, 6, 7));
     EXPECT_EQ(world.body(1).getLinearVelocity(), btVector3(0, 0, 0));
 }
 
@@ -309,9 +309,9 @@ TEST(WorldOriginShift, MovesGhostsAndWhatTheyOverlap) {
     world.step();
     const int overlapping = ghost.getNumOverlappingObjects();
     EXPECT_GT(overlapping, 3);
-    world.shift({kFar, kFar, 0});
+    world.shift({kKilometre, kKilometre, 0});
     world.step();
-    EXPECT_EQ(ghost.getWorldTransform().getOrigin(), btVector3(1 - kFar, 1 - kFar, 0));
+    EXPECT_EQ(ghost.getWorldTransform().getOrigin(), btVector3(1 - kKilometre, 1 - kKilometre, 0));
     EXPECT_EQ(ghost.getNumOverlappingObjects(), overlapping);
     world.world().removeCollisionObject(&ghost);
 }
@@ -345,16 +345,16 @@ TEST(WorldOriginShift, MovesJointsThatHoldABodyToTheWorld) {
         World world;
         world.world().setGravity({0, 0, 0});
         btCollisionShape* const ball = world.keep(std::make_unique<btSphereShape>(btScalar(0.5)));
-        world.add(ball, 1, at({kFar, 3, 0}));
+        world.add(ball, 1, at({kKilometre, 3, 0}));
         const std::unique_ptr<btTypedConstraint> joint = make(world.body(0), pivot);
         SCOPED_TRACE(joint->getConstraintType());
         world.world().addConstraint(joint.get());
         step(world, 5);
         const btVector3 place = world.body(0).getWorldTransform().getOrigin();
-        world.shift({kFar, 0, 0});
+        world.shift({kKilometre, 0, 0});
         step(world, 30);
         const btVector3 off = world.body(0).getWorldTransform().getOrigin() - place;
-        EXPECT_NEAR(off.x(), -kFar, 1e-3);
+        EXPECT_NEAR(off.x(), -kKilometre, 1e-3);
         EXPECT_NEAR(off.y(), 0, 1e-3);
         EXPECT_NEAR(off.z(), 0, 1e-3);
         world.world().removeConstraint(joint.get());
