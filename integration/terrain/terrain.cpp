@@ -52,12 +52,13 @@ AddedTriangles Terrain<Scalar>::addAll(std::size_t count, const CornersOf& corne
     added.first = size();
     const Aabb<Scalar> boundsBefore = bounds_;
     const Point tilesBefore = tilesPerMetre_;
+    Aabb<Scalar> box;
     try {
         grid_->reserve(grid_->size() + count);
         detail::ensureCapacity(triangles_, triangles_.size() + count);
         detail::ensureCapacity(proxies_, proxies_.size() + count);
         for (std::size_t i = 0; i < count; ++i) {
-            addOne(cornersOf(i), added);
+            addOne(cornersOf(i), added, box);
         }
     } catch (...) {
         removeFrom(added.first);
@@ -65,11 +66,20 @@ AddedTriangles Terrain<Scalar>::addAll(std::size_t count, const CornersOf& corne
         tilesPerMetre_ = tilesBefore;
         throw;
     }
+    if (!box.isEmpty()) {
+        const double heights = std::max(std::abs(static_cast<double>(box.min()[up_])),
+                                        std::abs(static_cast<double>(box.max()[up_])));
+        const double extent =
+            (box.max().template cast<double>() - box.min().template cast<double>()).maxCoeff();
+        meshReach_ = std::max(meshReach_, std::min(extent + heights, kLargestMesh));
+        seamScale_ = static_cast<Scalar>(meshReach_ + shifted_.cwiseAbs().maxCoeff());
+    }
     return added;
 }
 
 template <class Scalar>
-void Terrain<Scalar>::addOne(const Corners& corners, AddedTriangles& added) {
+void Terrain<Scalar>::addOne(const Corners& corners, AddedTriangles& added,
+                             Aabb<Scalar>& boxOfAll) {
     HASHPHASE_ASSERT(size() < kNone, "A terrain holds fewer than 2^32 - 1 triangles.");
     const std::uint32_t number = size();
     ++added.count;
@@ -89,6 +99,7 @@ void Terrain<Scalar>::addOne(const Corners& corners, AddedTriangles& added) {
         proxies_.emplace_back();
         return;
     }
+    boxOfAll.extend(box);
     bounds_.extend(box);
     tilesPerMetre_ = bounds_.sizes().cwiseInverse() * Scalar(kTilesPerSide);
     triangles_.push_back(groundTriangle(corners));
@@ -114,6 +125,7 @@ detail::GroundTriangle<Scalar> Terrain<Scalar>::groundTriangle(const Corners& co
         triangle.y[i] = corner[up_];
     }
     if (triangle.hasHeights) {
+        triangle.sizeExponent = detail::sizeExponentOf(triangle);
         triangle.normal = detail::normalOf(triangle);
         triangle.hasNormal = triangle.normal != Vector3<double>::Zero();
     }
@@ -125,6 +137,9 @@ void Terrain<Scalar>::clear() {
     removeFrom(0);
     triangleOfProxy_.clear();
     bounds_.setEmpty();
+    seamScale_ = 0;
+    meshReach_ = 0;
+    shifted_.setZero();
 }
 
 template <class Scalar>
@@ -157,6 +172,8 @@ void Terrain<Scalar>::shiftOrigin(const Point& shift) {
         triangles_[number] = groundTriangle(shifted);
     }
     bounds_.translate(-shift);
+    shifted_ += shift.template cast<double>();
+    seamScale_ = static_cast<Scalar>(meshReach_ + shifted_.cwiseAbs().maxCoeff());
 }
 
 template <class Scalar>

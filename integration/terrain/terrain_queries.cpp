@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -43,6 +44,58 @@ struct Terrain<Scalar>::Candidates {
     detail::FixedList<std::uint32_t, kMost> numbers;
 };
 
+/// The highest of the triangles beside which a point lies, no farther than its tolerance: where two
+/// meshes meet, rounding may leave a point in neither.
+template <class Scalar>
+class Terrain<Scalar>::Seam {
+public:
+    void begin(double tolerance) noexcept {
+        tolerance_ = tolerance;
+        triangle_ = kNone;
+    }
+
+    [[gnu::noinline]] void lookAt(const Terrain& terrain, std::uint32_t number,
+                                  const detail::Point2& point, Scalar from) noexcept {
+        const detail::GroundTriangle<Scalar>& triangle = terrain.triangles_[number];
+        if (!triangle.hasHeights) {
+            return;
+        }
+        const double height = detail::heightBeside(triangle, point, tolerance_);
+        const bool isBetter =
+            triangle_ == kNone || height > height_ || (height == height_ && number < triangle_);
+        if (height > detail::kNoHeight && static_cast<Scalar>(height) <= from && isBetter) {
+            triangle_ = number;
+            height_ = height;
+        }
+    }
+
+    /// Whether there is one, and what is below, at `height`, is none or another surface: lower by more
+    /// than the two rise on either side of the point.
+    [[nodiscard]] bool isAbove(const Terrain& terrain, std::uint32_t below,
+                               double height) const noexcept {
+        if (triangle_ == kNone) [[likely]] {
+            return false;
+        }
+        return below == kNone ||
+               height_ > height + 2 * tolerance_ *
+                                      (1 + slopeOf(terrain, triangle_) + slopeOf(terrain, below));
+    }
+
+    [[nodiscard]] double tolerance() const noexcept { return tolerance_; }
+    [[nodiscard]] std::uint32_t triangle() const noexcept { return triangle_; }
+    [[nodiscard]] double height() const noexcept { return height_; }
+
+private:
+    static double slopeOf(const Terrain& terrain, std::uint32_t number) noexcept {
+        const Vector3<double>& normal = terrain.triangles_[number].normal;
+        return std::hypot(normal.x(), normal.z()) / normal.y();  // infinite or NaN without a normal
+    }
+
+    double tolerance_ = 0;
+    std::uint32_t triangle_ = kNone;
+    double height_ = 0;  // of the triangle
+};
+
 /// The highest surface among the triangles below a point.
 template <class Scalar>
 struct Terrain<Scalar>::SurfaceSearch : Candidates<SurfaceSearch> {
@@ -50,11 +103,14 @@ struct Terrain<Scalar>::SurfaceSearch : Candidates<SurfaceSearch> {
     detail::Point2 point;
     Scalar from = 0;  // no surface above counts
     Ground<Scalar> best{kNone, -std::numeric_limits<Scalar>::infinity()};
+    Seam seam;
 
-    void begin(const Terrain& itsTerrain, const detail::Point2& itsPoint, Scalar itsFrom) noexcept {
+    void begin(const Terrain& itsTerrain, const detail::Point2& itsPoint, Scalar itsFrom,
+               double tolerance) noexcept {
         terrain = &itsTerrain;
         point = itsPoint;
         from = itsFrom;
+        seam.begin(tolerance);
         best = {kNone, -std::numeric_limits<Scalar>::infinity()};
     }
 
@@ -68,6 +124,9 @@ struct Terrain<Scalar>::SurfaceSearch : Candidates<SurfaceSearch> {
             (height > best.height) | ((height == best.height) & (number < best.triangle));
         const std::array<Ground<Scalar>, 2> choice{best, Ground<Scalar>{number, height}};
         best = choice[static_cast<std::size_t>(counts & isBetter)];
+        if (weights.mayBeBeside(detail::slackOf(triangle, seam.tolerance()))) [[unlikely]] {
+            seam.lookAt(*terrain, number, point, from);
+        }
     }
 
     void lookAtNoted() noexcept {
@@ -78,6 +137,9 @@ struct Terrain<Scalar>::SurfaceSearch : Candidates<SurfaceSearch> {
 
     [[nodiscard]] Found result() noexcept {
         this->lookAtAll();
+        if (seam.isAbove(*terrain, best.triangle, static_cast<double>(best.height))) {
+            return Ground<Scalar>{seam.triangle(), static_cast<Scalar>(seam.height())};
+        }
         return best.triangle == kNone ? std::nullopt : Found(best);
     }
 };
@@ -96,15 +158,17 @@ struct Terrain<Scalar>::RestSearch : Candidates<RestSearch> {
     Scalar from = 0;  // no triangle that is touched above counts
     std::uint32_t best = kNone;
     double height = detail::kNoHeight;
+    Seam seam;
 
     void begin(const Terrain& itsTerrain, const detail::Point2& itsCenter, double itsRadius,
-               Scalar itsFrom) noexcept {
+               Scalar itsFrom, double tolerance) noexcept {
         terrain = &itsTerrain;
         center = itsCenter;
         radius = itsRadius;
         from = itsFrom;
         best = kNone;
         height = detail::kNoHeight;
+        seam.begin(tolerance);
     }
 
     // Faces first: most spheres rest on one, high enough to be clear of all edges.
@@ -120,10 +184,16 @@ struct Terrain<Scalar>::RestSearch : Candidates<RestSearch> {
                 outside[outsideCount++] = {number, weights};
             }
         }
+        // What is clear of an edge is left out, unless rounding might decide that for so small a sphere.
+        const bool isTiny = radius * static_cast<double>(kSeamRoundings) < 1e-6 * seam.tolerance();
         for (std::size_t i = 0; i < outsideCount; ++i) {
             const auto& [number, weights] = outside[i];
-            take(number,
-                 detail::restOnEdges(terrain->triangles_[number], weights, center, radius, height));
+            take(number, detail::restOnEdges(terrain->triangles_[number], weights, center, radius,
+                                             isTiny ? detail::kNoHeight : height));
+        }
+        // A larger sphere does not fall between two edges.
+        for (std::size_t i = 0; radius < seam.tolerance() && i < outsideCount; ++i) {
+            seam.lookAt(*terrain, outside[i].triangle, center, from);
         }
     }
 
@@ -138,6 +208,9 @@ struct Terrain<Scalar>::RestSearch : Candidates<RestSearch> {
 
     [[nodiscard]] Found result() noexcept {
         this->lookAtAll();
+        if (seam.isAbove(*terrain, best, height - radius)) {
+            return Ground<Scalar>{seam.triangle(), static_cast<Scalar>(seam.height() + radius)};
+        }
         return best == kNone ? std::nullopt : Found({best, static_cast<Scalar>(height)});
     }
 };
@@ -247,9 +320,9 @@ QueryCost Terrain<Scalar>::surfacesBelow(std::span<const Point> points, std::spa
         points, found, parallelFor,
         [&](std::size_t i, Aabb<Scalar>& column, SurfaceSearch& search) {
             const Point& point = points[i];
-            column = {point, point};
-            column.min()[up_] = -std::numeric_limits<Scalar>::infinity();
-            search.begin(*this, above(point), point[up_]);
+            const Scalar tolerance = seamTolerance(point);
+            column = columnBelow(point, Scalar(1.5) * tolerance);
+            search.begin(*this, above(point), point[up_], static_cast<double>(tolerance));
         });
 }
 
@@ -266,16 +339,11 @@ QueryCost Terrain<Scalar>::restingHeights(std::span<const Point> centers,
             const bool isGood = radii[i] >= 0 && radii[i] <= Limits::max() &&
                                 static_cast<double>(radii[i]) <= kFarthest;
             const Scalar radius = isGood ? radii[i] : Limits::quiet_NaN();
-            for (const Eigen::Index axis : {alongX_, alongZ_}) {
-                // Rounded outward.
-                const Scalar reach =
-                    radius + 2 * Limits::epsilon() * (std::abs(center[axis]) + radius);
-                column.min()[axis] = center[axis] - reach;
-                column.max()[axis] = center[axis] + reach;
-            }
-            column.min()[up_] = -Limits::infinity();
-            column.max()[up_] = center[up_];
-            search.begin(*this, above(center), static_cast<double>(radius), center[up_]);
+            const Scalar tolerance = seamTolerance(center);
+            const Scalar reach = std::max(radius, tolerance);  // NaN of a bad radius
+            column = columnBelow(center, reach + 2 * Limits::epsilon() * (along(center) + reach));
+            search.begin(*this, above(center), static_cast<double>(radius), center[up_],
+                         static_cast<double>(tolerance));
         });
 }
 

@@ -85,6 +85,30 @@ struct Candidate {
     return candidate;
 }
 
+/// A triangle with an area beside which the point lies, as seen from above, by at most the tolerance:
+/// may count where meshes meet.
+[[nodiscard]] inline Candidate besideOf(const RealTriangle& triangle, const RealPoint& p,
+                                        Real tolerance) {
+    Candidate candidate;
+    const auto flat = [](const RealPoint& v) { return RealPoint(v[0], 0, v[2]); };
+    if ((flat(triangle[1] - triangle[0])).cross(flat(triangle[2] - triangle[0]))[1] == 0) {
+        return candidate;
+    }
+    Real closest = tolerance * (1 + Real(1e-6));
+    for (std::size_t i = 0; i < 3; ++i) {
+        const RealPoint& from = triangle[i];
+        const RealPoint way = triangle[(i + 1) % 3] - from;
+        const Real length = flat(way).squaredNorm();
+        const Real share =
+            length > 0 ? std::clamp<Real>(flat(p - from).dot(flat(way)) / length, 0, 1) : 0;
+        if (const Real away = flat(from + share * way - p).norm(); away <= closest) {
+            closest = away;
+            candidate = {Claim::perhaps, from[1] + share * way[1], from[1] + share * way[1]};
+        }
+    }
+    return candidate;
+}
+
 /// The highest place of the centre at which it is `radius` away from the triangle. How far away it is
 /// is a convex function of its height.
 [[nodiscard]] inline Candidate restOf(const RealTriangle& triangle, const RealPoint& center,
@@ -124,7 +148,7 @@ template <class Scalar>
 class TerrainOracle {
 public:
     explicit TerrainOracle(const Terrain<Scalar>& terrain, UpAxis up = UpAxis::y)
-        : up_(static_cast<int>(up)) {
+        : terrain_(terrain), up_(static_cast<int>(up)) {
         for (std::uint32_t i = 0; i < terrain.size(); ++i) {
             const auto corners = terrain.corners(i);
             triangles_.push_back({turned(corners[0]), turned(corners[1]), turned(corners[2])});
@@ -135,7 +159,10 @@ public:
     [[nodiscard]] std::string checkSurface(const Vector3<Scalar>& point,
                                            const std::optional<Ground<Scalar>>& found) const {
         const RealPoint p = turned(point);
-        return check(found, p, [&](const RealTriangle& t) { return surfaceOf(t, p); });
+        return check(found, p, [&](const RealTriangle& t) {
+            const Candidate below = surfaceOf(t, p);
+            return below.claim == Claim::no ? besideOf(t, p, toleranceAt(point)) : below;
+        });
     }
 
     /// The same for restingHeight(center, radius).
@@ -148,11 +175,20 @@ public:
                                std::max({t[0][0], t[1][0], t[2][0]}) < p[0] - r - 1 ||
                                std::min({t[0][2], t[1][2], t[2][2]}) > p[2] + r + 1 ||
                                std::max({t[0][2], t[1][2], t[2][2]}) < p[2] - r - 1;
-            return isFar ? Candidate{} : restOf(t, p, r);
+            Candidate rest = isFar ? Candidate{} : restOf(t, p, r);
+            if (rest.claim == Claim::no && r < toleranceAt(center)) {
+                rest = besideOf(t, p, toleranceAt(center));
+                rest.height += r;
+            }
+            return rest;
         });
     }
 
 private:
+    [[nodiscard]] Real toleranceAt(const Vector3<Scalar>& point) const {
+        return static_cast<Real>(terrain_.seamTolerance(point));
+    }
+
     template <class CandidateOf>
     std::string check(const std::optional<Ground<Scalar>>& found, const RealPoint& p,
                       const CandidateOf& candidateOf) const {
@@ -194,6 +230,7 @@ private:
                 static_cast<Real>(v[(up_ + 1) % 3])};
     }
 
+    const Terrain<Scalar>& terrain_;
     int up_;
     std::vector<RealTriangle> triangles_;
 };

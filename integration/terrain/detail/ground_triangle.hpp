@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -27,9 +28,10 @@ struct alignas(64) GroundTriangle {
     std::array<Scalar, 3> x;
     std::array<Scalar, 3> z;
     std::array<Scalar, 3> y;
-    bool hasHeights = false;  // not vertical, nor without an area
-    bool hasNormal = false;   // and not so thin that rounding hides where its plane is
-    bool isTurned = false;    // the last two corners were exchanged
+    bool hasHeights = false;        // not vertical, nor without an area
+    bool hasNormal = false;         // and not so thin that rounding hides where its plane is
+    bool isTurned = false;          // the last two corners were exchanged
+    std::uint8_t sizeExponent = 0;  // seen from above, no edge is longer than 2 to this - 128 [m]
 
     [[nodiscard]] Point2 above(std::size_t corner) const noexcept {
         return {static_cast<double>(x[corner]), static_cast<double>(z[corner])};
@@ -53,7 +55,13 @@ struct Weights {
     double b;
     double c;
 
-    [[nodiscard]] bool areInside() const noexcept { return ((a >= 0) & (b >= 0) & (c >= 0)) != 0; }
+    [[nodiscard]] double least() const noexcept { return std::min(std::min(a, b), c); }
+    [[nodiscard]] bool areInside() const noexcept { return least() >= 0; }
+    /// Whether the point may be outside by no more than the tolerance of which slackOf() is this. One
+    /// comparison: least() is from -2 * slack to 0, but for rounding.
+    [[nodiscard]] bool mayBeBeside(double slack) const noexcept {
+        return std::abs(least() + slack) <= slack;
+    }
 };
 
 template <class Scalar>
@@ -83,6 +91,31 @@ template <class Scalar>
         (weights.b * (b - a) + weights.c * (c - a)) / (weights.a + weights.b + weights.c);
     // Rounding must not lead out of the triangle's box.
     return std::clamp(a + rise, std::min({a, b, c}), std::max({a, b, c}));
+}
+
+/// 2 to the powers from -129 to 126.
+inline constexpr auto kPowersOfTwo = [] {
+    std::array<double, 256> powers{};
+    for (std::size_t i = 0; i < powers.size(); ++i) {
+        powers[i] = std::bit_cast<double>((1023 - 129 + std::uint64_t{i}) << 52);
+    }
+    return powers;
+}();
+
+/// The area of the largest triangle that a point at most `tolerance` beside an edge has with it.
+template <class Scalar>
+[[nodiscard]] double slackOf(const GroundTriangle<Scalar>& triangle, double tolerance) noexcept {
+    return tolerance * kPowersOfTwo[triangle.sizeExponent];
+}
+
+/// The exponent of GroundTriangle: edges of more than 2^127 m, in double precision, count as so long.
+template <class Scalar>
+[[nodiscard]] std::uint8_t sizeExponentOf(const GroundTriangle<Scalar>& triangle) noexcept {
+    const auto [lowX, highX] = std::minmax_element(triangle.x.begin(), triangle.x.end());
+    const auto [lowZ, highZ] = std::minmax_element(triangle.z.begin(), triangle.z.end());
+    const double longest = (static_cast<double>(*highX) - static_cast<double>(*lowX)) +
+                           (static_cast<double>(*highZ) - static_cast<double>(*lowZ));
+    return static_cast<std::uint8_t>(std::clamp(std::ilogb(longest) + 1 + 128, 0, 255));
 }
 
 /// The normal of a triangle that has heights; 0 where rounding hides it.
@@ -166,6 +199,29 @@ struct Edge {
                              : std::clamp(edge.low + share * rise, std::min(edge.low, edge.high),
                                           std::max(edge.low, edge.high));
     return {touch + std::sqrt(left), touch};
+}
+
+/// How high a triangle is at its point nearest to one outside, as seen from above; kNoHeight where that
+/// is more than `tolerance` away.
+template <class Scalar>
+[[nodiscard]] double heightBeside(const GroundTriangle<Scalar>& triangle, const Point2& point,
+                                  double tolerance) noexcept {
+    double height = kNoHeight;
+    double least = tolerance * tolerance;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Edge edge(triangle, i, (i + 1) % 3, point);
+        const double lengthSquared = edge.lengthSquared();
+        const double share =
+            lengthSquared > 0 ? std::clamp(edge.ahead() / lengthSquared, 0.0, 1.0) : 0;
+        const double x = edge.from.x + share * edge.way.x;
+        const double z = edge.from.z + share * edge.way.z;
+        if (const double squared = x * x + z * z; squared <= least) {
+            least = squared;
+            height = std::clamp(edge.low + share * edge.rise(), std::min(edge.low, edge.high),
+                                std::max(edge.low, edge.high));
+        }
+    }
+    return height;
 }
 
 // At what height a triangle carries a sphere whose centre is on a vertical line: the largest

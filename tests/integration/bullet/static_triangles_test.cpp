@@ -15,6 +15,7 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -262,6 +263,74 @@ TEST(StaticTriangles, AreNotToBeHadFromPlanesAndConvexShapes) {
     endless.getChildList()[1].m_childShape = &endless;
     EXPECT_NE(errorOf(endless).find("one contains itself"), std::string::npos);
     endless.getChildList()[1].m_childShape = &box;
+}
+
+/// Four heightfields of hills side by side around the origin, 23 m each, and as one scaled mesh each
+/// where `areMeshes`, all turned as one.
+void addChunks(Terrain<btScalar>& terrain, const btTransform& turned, bool areMeshes) {
+    constexpr int kQuads = kSide - 1;
+    for (const int row : {-1, 0}) {
+        for (const int column : {-1, 0}) {
+            std::vector<float> heights;
+            for (int i = 0; i < kSide * kSide; ++i) {
+                heights.push_back(static_cast<float>(
+                    hill(column * kQuads + i % kSide, row * kQuads + i / kSide)));
+            }
+            const btHeightfieldTerrainShape field(kSide, kSide, heights.data(), btScalar(-3),
+                                                  btScalar(5), 1, column == 0);
+            const btVector3 middle(btScalar((column + 0.5) * kQuads), 0,
+                                   btScalar((row + 0.5) * kQuads));
+            const btTransform place(btQuaternion::getIdentity(), middle);
+            Corners corners;
+            if (areMeshes) {
+                const btScalar scale = btScalar(1.5);
+                ASSERT_EQ(appendTriangles(field, btTransform::getIdentity(), corners), "");
+                btTriangleMesh mesh;
+                for (std::size_t i = 0; i < corners.size(); i += 3) {
+                    mesh.addTriangle(toBullet(corners[i]) / scale, toBullet(corners[i + 1]) / scale,
+                                     toBullet(corners[i + 2]) / scale);
+                }
+                corners.clear();
+                btBvhTriangleMeshShape shape(&mesh, true);
+                const btScaledBvhTriangleMeshShape scaled(&shape, btVector3(scale, scale, scale));
+                ASSERT_EQ(appendTriangles(scaled, turned * place, corners), "");
+            } else {
+                ASSERT_EQ(appendTriangles(field, turned * place, corners), "");
+            }
+            terrain.add(corners);
+        }
+    }
+}
+
+TEST(StaticTriangles, OfTurnedNeighboursLeaveNoPointOnTheirSeamsWithoutGround) {
+    Random random(0x5eed2502);
+    for (int turn = 0; turn < 12; ++turn) {
+        const auto tilt = static_cast<btScalar>(turn % 2 == 0 ? 0 : random.between(-0.2, 0.2));
+        const btTransform turned(
+            btQuaternion(btVector3(tilt, 1, -tilt).normalized(), btScalar(turn) + btScalar(0.3)),
+            toBullet(random.pointIn(-1, 1).cast<btScalar>() * btScalar(turn % 3 == 0 ? 0 : 500)));
+        Grid<btScalar> grid;
+        Terrain<btScalar> terrain(grid);
+        addChunks(terrain, turned, turn % 4 == 3);
+        grid.update();
+        std::vector<Vector3<btScalar>> points;
+        for (int i = 0; i < 4000; ++i) {
+            const double along = i == 0 ? 0.0 : random.between(-20, 20);
+            const double x = i % 2 == 0 ? 0 : along;
+            const double z = i % 2 == 0 ? along : 0;
+            points.push_back(toEigen(turned * btVector3(btScalar(x), btScalar(9), btScalar(z))));
+        }
+        std::vector<std::optional<Ground<btScalar>>> below(points.size());
+        std::vector<std::optional<Ground<btScalar>>> resting(points.size());
+        const std::vector<btScalar> radii(points.size(), btScalar(1e-7));
+        terrain.surfacesBelow(points, below);
+        terrain.restingHeights(points, radii, resting);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            ASSERT_TRUE(below[i] && resting[i]) << "turn " << turn << ", point " << i;
+            ASSERT_EQ(below[i], terrain.surfaceBelow(points[i]));
+            ASSERT_NEAR(below[i]->height, resting[i]->height, 1e-2);
+        }
+    }
 }
 
 }  // namespace
