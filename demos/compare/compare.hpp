@@ -35,7 +35,7 @@ struct CompareOptions {
 
 /// Runs the comparison, writes the table and the verdict to console.out, and returns the exit code:
 /// kExitCheckFailed when a broadphase of ours missed or invented a pair, or the time limit left no frame
-/// to verify. Throws InputError for unknown names, broken files, and files that cannot be
+/// of it to verify. Throws InputError for unknown names, broken files, and files that cannot be
 /// written.
 int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> kinds,
                Console& console);

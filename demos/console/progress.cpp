@@ -24,7 +24,11 @@ ProgressStyle progressStyle(const Console& console, bool quiet) {
 }
 
 Progress::Progress(std::ostream& out, ProgressStyle style, std::string task, std::size_t total)
-    : out_(out), style_(style), task_(std::move(task)), total_(std::max<std::size_t>(total, 1)) {}
+    : out_(out), style_(style), task_(std::move(task)), total_(std::max<std::size_t>(total, 1)) {
+    if (style_ == ProgressStyle::kBar) {
+        lastDrawn_ -= kBarInterval;  // the first step may take long
+    }
+}
 
 void Progress::clear() {
     if (drawnWidth_ > 0) {

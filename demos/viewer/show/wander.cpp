@@ -108,10 +108,10 @@ Run::Run(const WanderOptions& options, Console& console) : options_(options), co
         throw InputError("--screenshot is for --headless; in a window press F12.");
     }
     if (!options.replayFile.empty()) {
-        playback_.emplace(CommandLog::parse(readFile(options.replayFile), options.replayFile));
+        playback_.emplace(CommandLog::parse(readText(options.replayFile), options.replayFile));
     }
     if (!options.scriptFile.empty()) {
-        script_.emplace(readFile(options.scriptFile), options.scriptFile);
+        script_.emplace(readText(options.scriptFile), options.scriptFile);
     }
     const auto [width, height] = parseSize(options.size);
     session_ = std::make_unique<Session>(playback_ ? playback_->log().choice() : chosen(options),
