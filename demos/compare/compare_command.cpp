@@ -26,13 +26,14 @@ void declare(CLI::App& app, CompareOptions& options) {
     app.add_option("--broadphases", options.broadphases,
                    "which to compare, separated by commas (see --list)")
         ->delimiter(',');
-    app.add_option("--seed", options.seed, "seed of the scene")
-        ->transform(seedUpTo())
-        ->capture_default_str();
+    app.add_option("--seed", options.seed, "seed of the scene, or of the boxes' drift (default: 1)")
+        ->transform(seedUpTo());
     app.add_option("--reference", options.reference,
                    "how the exact pairs are found: sweep (along one axis) or brute (all pairs)")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, ReferenceMethod>{
-            {"sweep", ReferenceMethod::kSweep}, {"brute", ReferenceMethod::kBrute}}))
+        ->transform(CLI::CheckedTransformer(
+                        std::map<std::string, ReferenceMethod>{{"sweep", ReferenceMethod::kSweep},
+                                                               {"brute", ReferenceMethod::kBrute}})
+                        .description(""))
         ->type_name("sweep|brute");
     addFileToWrite(app, "--json", options.jsonFile, "write everything measured to this file");
     addFileToWrite(app, "--csv", options.csvFile, "write the rows of all frames to this file");

@@ -50,7 +50,6 @@ Result fill(Trial& trial, const BroadphaseKind& kind, double seconds,
             const ComparisonSettings& settings) {
     Progress progress(settings.err, settings.progress, "filling " + std::string(kind.name),
                       trial.objectCount());
-    progress.update(0);
     touch(kind);
     const Stopwatch watch;
     Result result;

@@ -21,7 +21,8 @@ OpenedTrial openScene(const CompareOptions& options, const TellWaiting& tell) {
     std::vector<std::string> names;
     for (const BoxSceneKind& kind : boxSceneKinds()) {
         if (kind.name == options.scene) {
-            auto scene = kind.make(options.objects.value_or(kind.defaultObjects), options.seed);
+            auto scene =
+                kind.make(options.objects.value_or(kind.defaultObjects), options.sceneSeed());
             return {std::string(kind.name), std::string(kind.description), std::string(kind.noun),
                     std::make_unique<BoxTrial>(std::move(scene), options.reference)};
         }
@@ -30,7 +31,7 @@ OpenedTrial openScene(const CompareOptions& options, const TellWaiting& tell) {
     for (const WorldSceneKind& kind : worldSceneKinds()) {
         if (kind.name == options.scene) {
             const std::size_t objects = options.objects.value_or(kind.defaultObjects);
-            auto fill = [fillScene = kind.fill, objects, seed = options.seed](
+            auto fill = [fillScene = kind.fill, objects, seed = options.sceneSeed()](
                             WorldContents& contents) { fillScene(contents, objects, seed); };
             return {std::string(kind.name), std::string(kind.description), "bodies",
                     std::make_unique<WorldTrial>(std::move(fill), options.reference, tell)};
@@ -48,13 +49,19 @@ OpenedTrial openTextBoxes(const CompareOptions& options, const TellWaiting& tell
                          withThousands(objects) + " were asked for.");
     }
     boxes.resize(objects);
-    auto scene = std::make_unique<BrownianScene>(driftingBoxes(boxes), options.seed);
+    auto scene = std::make_unique<BrownianScene>(driftingBoxes(boxes), options.sceneSeed());
     return {options.file, "boxes from a text file, drifting", "boxes",
             std::make_unique<BoxTrial>(std::move(scene), options.reference)};
 }
 
 OpenedTrial openFile(const CompareOptions& options, const TellWaiting& tell) {
-    if (hasExtension(options.file, ".bullet")) {
+    const bool isWorld = hasExtension(options.file, ".bullet");
+    const bool isRecording = hasExtension(options.file, ".aabbs");
+    if (options.seed && (isWorld || isRecording)) {
+        throw InputError("--seed is for scenes and boxes as text; no seed changes " + options.file +
+                         ".");
+    }
+    if (isWorld) {
         if (options.objects) {
             throw InputError(
                 "--objects cannot be chosen for a .bullet file, which is one whole "
@@ -70,7 +77,7 @@ OpenedTrial openFile(const CompareOptions& options, const TellWaiting& tell) {
             std::make_unique<WorldTrial>([file](WorldContents& contents) { file->fill(contents); },
                                          options.reference, tell)};
     }
-    if (hasExtension(options.file, ".aabbs")) {
+    if (isRecording) {
         auto scene =
             std::make_unique<RecordingScene>(options.file, options.objects.value_or(0), tell);
         return {options.file, "a Broadmark recording", "boxes",

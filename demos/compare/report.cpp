@@ -74,7 +74,7 @@ void printSetting(const Report& report, std::ostream& out) {
     out << report.scene << ": " << report.description << '\n'
         << withThousands(report.objects) << ' ' << report.noun << ", "
         << report.comparison.framesDone << " frames (the first " << report.comparison.warmUpFrames
-        << " verified, not timed), seed " << report.options.seed << '\n';
+        << " verified, not timed), seed " << report.options.sceneSeed() << '\n';
     printProvenance(report.provenance, out);
     if (report.comparison.timeLimitHit) {
         out << "The time limit of " << *report.options.timeLimit << " s was reached after "

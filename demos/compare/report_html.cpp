@@ -93,7 +93,7 @@ std::string settingsOf(const Report& report) {
     return report.scene + ", " + withThousands(report.objects) + " " + report.noun + ", " +
            std::to_string(report.comparison.framesDone - report.comparison.warmUpFrames) +
            " frames timed after " + std::to_string(report.comparison.warmUpFrames) +
-           " to warm up, seed " + std::to_string(report.options.seed) + ", one thread.";
+           " to warm up, seed " + std::to_string(report.options.sceneSeed()) + ", one thread.";
 }
 
 Chart mediansChart(const Report& report) {

@@ -87,7 +87,7 @@ Json settingsJson(const Report& report) {
             {"objects", report.objects},
             {"frames", report.framesAsked},
             {"warmUpFrames", report.comparison.warmUpFrames},
-            {"seed", options.seed},
+            {"seed", options.sceneSeed()},
             {"reference", options.reference == ReferenceMethod::kBrute ? "brute" : "sweep"},
             {"timeLimitSeconds", orNull(options.timeLimit)}};
 }

@@ -73,6 +73,15 @@ void warnOfSlowBuild(Console& console) {
 #endif
 }
 
+// Instead of how many values CLI11 wants.
+std::string countSentence(const CLI::ArgumentMismatch& error) {
+    const std::string sentence = error.what();
+    const std::size_t end = std::min(sentence.find(": "), sentence.size());
+    return sentence.substr(0, end) + (sentence.find("At Most") == std::string::npos
+                                          ? ": its value is missing"
+                                          : ": it is given more than once");
+}
+
 // The exit code where parsing ends the program.
 std::optional<int> parse(CLI::App& app, const std::vector<std::string>& arguments,
                          Console& console) {
@@ -85,6 +94,8 @@ std::optional<int> parse(CLI::App& app, const std::vector<std::string>& argument
     } catch (const CLI::CallForVersion& version) {
         console.out << version.what() << '\n';
         return kExitOk;
+    } catch (const CLI::ArgumentMismatch& error) {
+        return refuse(console, countSentence(error));
     } catch (const CLI::ParseError& error) {
         return refuse(console, error.what());
     }
