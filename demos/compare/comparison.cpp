@@ -134,7 +134,9 @@ void runFrames(Trial& trial, const ComparisonSettings& settings, ReplayRecording
                                                                withThousands(frames) + ", " +
                                                                std::string(what));
         };
-        tell(0, "exact pairs");
+        if (trial.sharesBoxes()) {
+            tell(0, "exact pairs");
+        }
         trial.beginFrame();
         const bool isReplayed = replay != nullptr && !replay->isFull();
         for (std::size_t turn = 0; turn < results.size(); ++turn) {
