@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/accuracy_command.hpp>
 
-#include <demos/console/option_checks.hpp>
+#include <demos/console/options.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -16,14 +16,14 @@ void declare(CLI::App& app, AccuracyOptions& options) {
         ->delimiter(',');
     app.add_flag("--quick", options.effort.isQuick,
                  "measure less: under a minute for all, in place of some ten");
-    app.add_option("--output", options.folder,
-                   "write the report (accuracy.html) and its data (JSON, CSV) to this folder");
+    addFolderToWrite(app, "--output", options.folder,
+                     "write the report (accuracy.html) and its data (JSON, CSV) to this folder");
     app.add_option("--seed", options.effort.seed, "seed of all random numbers")
-        ->check(seedFault)
+        ->transform(seedUpTo())
         ->capture_default_str();
     app.add_option("--time-limit", options.timeLimit,
                    "after so many seconds begin no other experiment")
-        ->check(positiveSecondsFault);
+        ->transform(positiveSeconds());
     app.add_flag("--quiet", options.quiet, "no progress on stderr");
     app.add_flag("--list", options.list, "say which experiments there are");
 }

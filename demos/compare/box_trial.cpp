@@ -12,16 +12,22 @@ BoxTrial::BoxTrial(std::unique_ptr<BoxScene> scene, ReferenceMethod reference)
     toBulletBoxes(scene_->boxes(), boxes_);
 }
 
-void BoxTrial::add(const BroadphaseKind& kind) {
+std::optional<double> BoxTrial::add(const BroadphaseKind& kind, const GoOn& goOn) {
+    const Stopwatch watch;
     auto filled =
         std::make_unique<FilledBroadphase>(kind, BroadphaseNeeds{scene_->bounds(), boxes_.size()});
     {
         const HeapScope scope(filled->heap());
         for (std::size_t i = 0; i < boxes_.size(); ++i) {
+            if (i % kObjectsBetweenLooks == 0 && !goOn(i)) {
+                return std::nullopt;
+            }
             filled->create(static_cast<std::uint32_t>(i), boxes_[i], filterOf(*scene_, i));
         }
     }
+    const double taken = watch.milliseconds();
     contestants_.push_back(std::move(filled));
+    return taken;
 }
 
 void BoxTrial::beginFrame() {
@@ -52,9 +58,13 @@ Observation BoxTrial::runFrame(std::size_t contestant) {
     return seen;
 }
 
-std::optional<double> BoxTrial::removeObjects(std::size_t contestant, std::size_t count) {
+std::optional<double> BoxTrial::removeObjects(std::size_t contestant, std::size_t count,
+                                              const GoOn& goOn) {
     const Stopwatch watch;
     for (std::size_t i = 0; i < count; ++i) {
+        if (i % kObjectsBetweenLooks == 0 && !goOn(i)) {
+            return std::nullopt;
+        }
         contestants_[contestant]->destroy(static_cast<std::uint32_t>(i * boxes_.size() / count));
     }
     return watch.milliseconds();

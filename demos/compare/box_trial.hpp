@@ -16,10 +16,11 @@ class BoxTrial : public Trial {
 public:
     BoxTrial(std::unique_ptr<BoxScene> scene, ReferenceMethod reference);
 
-    void add(const BroadphaseKind& kind) override;
+    std::optional<double> add(const BroadphaseKind& kind, const GoOn& goOn) override;
     void beginFrame() override;
     Observation runFrame(std::size_t contestant) override;
-    std::optional<double> removeObjects(std::size_t contestant, std::size_t count) override;
+    std::optional<double> removeObjects(std::size_t contestant, std::size_t count,
+                                        const GoOn& goOn) override;
     [[nodiscard]] std::optional<std::int64_t> memoryBytes(std::size_t contestant) const override;
     [[nodiscard]] std::size_t objectCount() const override { return boxes_.size(); }
     [[nodiscard]] Aabb<float> bounds() const override { return scene_->bounds(); }

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <ostream>
+#include <string_view>
 #include <utility>
 
 namespace hashphase::demos {
@@ -108,6 +109,12 @@ std::optional<ReplayRecording> replayFor(const CompareOptions& options, const Op
     return ReplayRecording(std::move(settings));
 }
 
+OpenedTrial open(const CompareOptions& options, Console& console) {
+    Progress progress(console.err, progressStyle(console, options.quiet),
+                      "opening " + (options.file.empty() ? options.scene : options.file), 1);
+    return openTrial(options, [&progress](std::string_view what) { progress.update(0, what); });
+}
+
 }  // namespace
 
 int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> kinds,
@@ -117,7 +124,8 @@ int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> ki
         return kExitOk;
     }
     std::vector<const BroadphaseKind*> chosen = chosenKinds(options.broadphases, kinds);
-    OpenedTrial opened = openTrial(options);
+    const TimeLimit limit(options.timeLimit);
+    OpenedTrial opened = open(options, console);
     if (chosen.empty()) {
         chosen = defaultKinds(kinds, opened.trial->objectCount());
     }
@@ -134,19 +142,23 @@ int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> ki
     ResultFile csv(options.csvFile);
     ResultFile html(options.htmlFile);
 
-    report.replay = replayFor(options, opened, chosen,
+    const ComparisonSettings settings{report.framesAsked, limit,
+                                      progressStyle(console, options.quiet), console.err};
+    report.comparison = fillBroadphases(*opened.trial, chosen, settings);
+    report.replay = replayFor(options, opened, contestantsOf(report.comparison),
                               !options.htmlFile.empty() || static_cast<bool>(console.takePage));
-    report.comparison =
-        runComparison(*opened.trial, chosen,
-                      {report.framesAsked, options.timeLimit, progressStyle(console, options.quiet),
-                       report.replay ? &*report.replay : nullptr},
-                      console.err);
+    runFrames(*opened.trial, settings, report.replay ? &*report.replay : nullptr,
+              report.comparison);
 
     printReport(report, console.out);
     json.write([&report](std::ostream& file) { writeJson(report, file); });
     csv.write([&report](std::ostream& file) { writeCsv(report, file); });
     deliverPage(pageOf(report), html, console);
-    const bool isVerified = report.comparison.framesDone > 0 && oursWereExact(report) != false;
+    const std::vector<Result>& results = report.comparison.results;
+    const bool isVerified = report.comparison.framesDone > 0 && oursWereExact(report) != false &&
+                            std::none_of(results.begin(), results.end(), [](const Result& result) {
+                                return result.kind->ours && result.leftOutAfter;
+                            });
     return isVerified ? kExitOk : kExitCheckFailed;
 }
 

@@ -22,7 +22,7 @@ struct CompareOptions {
     std::optional<std::size_t> objects;    // the scene's own number otherwise
     std::optional<int> frames;             // 120, or all that a recording holds, otherwise
     std::vector<std::string> broadphases;  // empty: the default choice
-    std::uint64_t seed = 1;
+    std::optional<std::uint64_t> seed;     // 1 otherwise
     ReferenceMethod reference = ReferenceMethod::kSweep;
     std::string jsonFile;             // empty: none
     std::string csvFile;              // empty: none
@@ -31,11 +31,13 @@ struct CompareOptions {
     std::optional<double> timeLimit;  // [s]
     bool quiet = false;               // no progress
     bool list = false;                // only say which scenes and broadphases there are
+
+    [[nodiscard]] std::uint64_t sceneSeed() const noexcept { return seed.value_or(1); }
 };
 
 /// Runs the comparison, writes the table and the verdict to console.out, and returns the exit code:
 /// kExitCheckFailed when a broadphase of ours missed or invented a pair, or the time limit left no frame
-/// to verify. Throws InputError for unknown names, broken files, and files that cannot be
+/// of it to verify. Throws InputError for unknown names, broken files, and files that cannot be
 /// written.
 int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> kinds,
                Console& console);

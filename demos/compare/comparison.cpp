@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/compare/comparison.hpp>
 
+#include <demos/compare/filled_broadphase.hpp>
+#include <demos/console/format.hpp>
+
 #include <algorithm>
 #include <string>
 
@@ -36,63 +39,123 @@ void record(int frame, bool measured, const Observation& seen, Verifier& verifie
     result.rows.push_back(row);
 }
 
-std::vector<Result> fillAll(Trial& trial, const std::vector<const BroadphaseKind*>& kinds,
-                            ProgressStyle style, std::ostream& err) {
-    std::vector<Result> results;
-    Progress progress(err, style, "filling the broadphases", kinds.size());
-    for (const BroadphaseKind* kind : kinds) {
-        const Stopwatch watch;
-        trial.add(*kind);
-        Result result;
-        result.kind = kind;
-        result.fillMs = watch.milliseconds();
-        results.push_back(std::move(result));
-        progress.update(results.size());
+// Brings its code into memory, so that its filling tells nothing of that.
+void touch(const BroadphaseKind& kind) {
+    const Aabb<float> box(Vector3<float>::Zero(), Vector3<float>::Ones());
+    FilledBroadphase once(kind, {box, 1});
+    once.create(0, {btVector3(0, 0, 0), btVector3(1, 1, 1)}, {});
+}
+
+Result fill(Trial& trial, const BroadphaseKind& kind, double seconds,
+            const ComparisonSettings& settings) {
+    Progress progress(settings.err, settings.progress, "filling " + std::string(kind.name),
+                      trial.objectCount());
+    touch(kind);
+    const Stopwatch watch;
+    Result result;
+    result.kind = &kind;
+    result.fillMs = trial.add(kind, [&](std::size_t filled) {
+        progress.update(filled);
+        return watch.milliseconds() <= seconds * 1000;
+    });
+    if (!result.fillMs) {
+        result.leftOutAfter = seconds;
     }
-    return results;
+    return result;
+}
+
+// The results of those that take part, by their numbers in the trial.
+std::vector<Result*> contestants(Comparison& comparison) {
+    std::vector<Result*> filled;
+    for (Result& result : comparison.results) {
+        if (!result.leftOutAfter) {
+            filled.push_back(&result);
+        }
+    }
+    return filled;
+}
+
+void removeFromAll(Trial& trial, const ComparisonSettings& settings,
+                   const std::vector<Result*>& results, Comparison& comparison) {
+    comparison.objectsRemoved = std::min(kObjectsToRemove, (trial.objectCount() + 1) / 2);
+    for (std::size_t i = 0; i < results.size(); ++i) {
+        Progress progress(settings.err, settings.progress,
+                          "removing from " + std::string(results[i]->kind->name),
+                          comparison.objectsRemoved);
+        results[i]->memoryBytes = trial.memoryBytes(i);
+        results[i]->removeMs =
+            trial.removeObjects(i, comparison.objectsRemoved, [&](std::size_t removed) {
+                progress.update(removed);
+                return !settings.limit.isOver();
+            });
+    }
 }
 
 }  // namespace
 
-Comparison runComparison(Trial& trial, const std::vector<const BroadphaseKind*>& kinds,
-                         const ComparisonSettings& settings, std::ostream& err) {
+Comparison fillBroadphases(Trial& trial, const std::vector<const BroadphaseKind*>& kinds,
+                           const ComparisonSettings& settings) {
+    const double seconds = settings.limit.secondsLeft() / 2;
     const Stopwatch watch;
     Comparison comparison;
-    comparison.results = fillAll(trial, kinds, settings.progress, err);
-    comparison.warmUpFrames = std::min(kMostWarmUpFrames, settings.frames / 4);
-    std::vector<Verifier> verifiers(kinds.size());
-    Progress progress(err, settings.progress, "frame", static_cast<std::size_t>(settings.frames));
+    for (std::size_t i = 0; i < kinds.size(); ++i) {
+        const double left = std::max(0.0, seconds - watch.milliseconds() / 1000);
+        const double share = left / static_cast<double>(kinds.size() - i);
+        comparison.results.push_back(fill(trial, *kinds[i], share, settings));
+    }
+    return comparison;
+}
 
-    for (int frame = 0; frame < settings.frames; ++frame) {
-        if (settings.timeLimit && watch.milliseconds() > *settings.timeLimit * 1000) {
+std::vector<const BroadphaseKind*> contestantsOf(const Comparison& comparison) {
+    std::vector<const BroadphaseKind*> kinds;
+    for (const Result& result : comparison.results) {
+        if (!result.leftOutAfter) {
+            kinds.push_back(result.kind);
+        }
+    }
+    return kinds;
+}
+
+void runFrames(Trial& trial, const ComparisonSettings& settings, ReplayRecording* replay,
+               Comparison& comparison) {
+    const std::vector<Result*> results = contestants(comparison);
+    comparison.warmUpFrames = std::min(kMostWarmUpFrames, settings.frames / 4);
+    std::vector<Verifier> verifiers(results.size());
+    const auto frames = static_cast<std::size_t>(settings.frames);
+    Progress progress(settings.err, settings.progress, "frame", frames * results.size());
+
+    for (std::size_t frame = 0; frame < frames; ++frame) {
+        if (results.empty() || settings.limit.isOver()) {
             comparison.timeLimitHit = true;
             break;
         }
+        const auto tell = [&](std::size_t turn, std::string_view what) {
+            progress.update(frame * results.size() + turn, withThousands(frame + 1) + " of " +
+                                                               withThousands(frames) + ", " +
+                                                               std::string(what));
+        };
+        if (trial.sharesBoxes()) {
+            tell(0, "exact pairs");
+        }
         trial.beginFrame();
-        ReplayRecording* const replay =
-            settings.replay != nullptr && !settings.replay->isFull() ? settings.replay : nullptr;
-        for (std::size_t turn = 0; turn < kinds.size(); ++turn) {
-            const std::size_t i = (turn + static_cast<std::size_t>(frame)) % kinds.size();
+        const bool isReplayed = replay != nullptr && !replay->isFull();
+        for (std::size_t turn = 0; turn < results.size(); ++turn) {
+            const std::size_t i = (turn + frame) % results.size();
+            tell(turn, results[i]->kind->name);
             const Observation seen = trial.runFrame(i);
-            record(frame, frame >= comparison.warmUpFrames, seen, verifiers[i],
-                   comparison.results[i]);
-            if (replay != nullptr) {
+            const int number = static_cast<int>(frame);
+            record(number, number >= comparison.warmUpFrames, seen, verifiers[i], *results[i]);
+            if (isReplayed) {
                 replay->add(i, {seen.boxes, seen.exact, verifiers[i].missing(),
                                 verifiers[i].extra(), seen.cellSize});
             }
         }
-        if (replay != nullptr) {
+        if (isReplayed) {
             replay->finishFrame();
         }
-        comparison.framesDone = frame + 1;
-        progress.update(static_cast<std::size_t>(comparison.framesDone));
+        comparison.framesDone = static_cast<int>(frame) + 1;
     }
-    comparison.objectsRemoved = std::min(kObjectsToRemove, (trial.objectCount() + 1) / 2);
-    for (std::size_t i = 0; i < kinds.size(); ++i) {
-        comparison.results[i].memoryBytes = trial.memoryBytes(i);
-        comparison.results[i].removeMs = trial.removeObjects(i, comparison.objectsRemoved);
-    }
-    return comparison;
+    removeFromAll(trial, settings, results, comparison);
 }
 
 std::optional<Timing> timingOf(const Result& result) {

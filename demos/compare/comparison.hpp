@@ -6,6 +6,7 @@
 #include <demos/compare/trial.hpp>
 #include <demos/compare/verifier.hpp>
 #include <demos/console/progress.hpp>
+#include <demos/console/time_limit.hpp>
 #include <demos/replay/replay_recording.hpp>
 #include <demos/report/statistics.hpp>
 #include <demos/report/stopwatch.hpp>
@@ -36,15 +37,16 @@ struct Fault {
 /// One broadphase's record.
 struct Result {
     const BroadphaseKind* kind = nullptr;
-    double fillMs = 0;               // creating it and all its proxies
-    std::optional<double> removeMs;  // destroying Comparison::objectsRemoved of them at the end
+    std::optional<double> fillMs;        // creating it and all its proxies
+    std::optional<double> leftOutAfter;  // [s]: not filled by then, so it takes no further part
+    std::optional<double> removeMs;      // destroying Comparison::objectsRemoved of them at the end
     std::vector<FrameRow> rows;
     std::optional<std::int64_t> memoryBytes;
     std::optional<Fault> firstFault;
 };
 
 struct Comparison {
-    std::vector<Result> results;
+    std::vector<Result> results;  // of all that were asked for
     int warmUpFrames = 0;
     int framesDone = 0;
     std::size_t objectsRemoved = 0;
@@ -53,16 +55,26 @@ struct Comparison {
 
 struct ComparisonSettings {
     int frames = 0;
-    std::optional<double> timeLimit;  // [s]
+    TimeLimit limit{std::nullopt};
     ProgressStyle progress = ProgressStyle::kSilent;
-    ReplayRecording* replay = nullptr;  // gets the first frames, between what is timed; null: none
+    std::ostream& err;  // for the progress
 };
 
-/// Runs all the broadphases through the frames, one after another in each frame and in an order that
-/// rotates, so that none has the machine at its best. Beyond the time limit no frame begins.
-[[nodiscard]] Comparison runComparison(Trial& trial,
-                                       const std::vector<const BroadphaseKind*>& kinds,
-                                       const ComparisonSettings& settings, std::ostream& err);
+/// Fills all the broadphases, within half of the time that is left, of which each has an even share;
+/// leaves out which is not full by then.
+[[nodiscard]] Comparison fillBroadphases(Trial& trial,
+                                         const std::vector<const BroadphaseKind*>& kinds,
+                                         const ComparisonSettings& settings);
+
+/// Those that take part: which were filled.
+[[nodiscard]] std::vector<const BroadphaseKind*> contestantsOf(const Comparison& comparison);
+
+/// Runs the contestants through the frames, one after another in each frame and in an order that
+/// rotates, so that none has the machine at its best; at last removes objects. Beyond the time limit
+/// no frame begins, and nothing is removed. `replay` gets the first frames, between what is timed;
+/// null: nobody does.
+void runFrames(Trial& trial, const ComparisonSettings& settings, ReplayRecording* replay,
+               Comparison& comparison);
 
 /// Figures of one record over its measured frames; nothing when there is none.
 struct Timing {

@@ -21,8 +21,15 @@ void ObservedWorld::reserve(std::size_t objects) {
 }
 
 void ObservedWorld::addCollisionObject(btCollisionObject* object, int group, int mask) {
-    const HeapScope scope(heap_);
-    btDiscreteDynamicsWorld::addCollisionObject(object, group, mask);
+    {
+        const HeapScope scope(heap_);
+        const Stopwatch watch;
+        btDiscreteDynamicsWorld::addCollisionObject(object, group, mask);
+        additionMs_ += watch.milliseconds();
+    }
+    if (additionObserver_) {
+        additionObserver_(static_cast<std::size_t>(m_collisionObjects.size()));
+    }
 }
 
 void ObservedWorld::updateAabbs() {

@@ -25,6 +25,14 @@ public:
     /// Called in each step when the pairs are complete, before anything uses them.
     void setPairObserver(std::function<void()> observer) { observer_ = std::move(observer); }
 
+    /// Called with the number of objects whenever one has been added; may throw.
+    void setAdditionObserver(std::function<void(std::size_t objects)> observer) {
+        additionObserver_ = std::move(observer);
+    }
+
+    /// The time in which objects were put into the broadphase, their boxes included [ms].
+    [[nodiscard]] double additionMs() const noexcept { return additionMs_; }
+
     /// Simulates exactly one step of that length [s].
     StepTimes stepOnce(btScalar seconds);
 
@@ -42,6 +50,8 @@ public:
 
 private:
     std::function<void()> observer_;
+    std::function<void(std::size_t)> additionObserver_;
+    double additionMs_ = 0;
     HeapMeter heap_;
     StepTimes times_;
     double observerMs_ = 0;

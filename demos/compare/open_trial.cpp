@@ -6,22 +6,23 @@
 #include <demos/console/format.hpp>
 #include <demos/console/nearest_name.hpp>
 #include <demos/scenes/bullet_world_file.hpp>
+#include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <demos/scenes/recording_scene.hpp>
 #include <demos/scenes/text_boxes.hpp>
 #include <demos/scenes/world_scenes.hpp>
 
-#include <filesystem>
 #include <utility>
 
 namespace hashphase::demos {
 namespace {
 
-OpenedTrial openScene(const CompareOptions& options) {
+OpenedTrial openScene(const CompareOptions& options, const TellWaiting& tell) {
     std::vector<std::string> names;
     for (const BoxSceneKind& kind : boxSceneKinds()) {
         if (kind.name == options.scene) {
-            auto scene = kind.make(options.objects.value_or(kind.defaultObjects), options.seed);
+            auto scene =
+                kind.make(options.objects.value_or(kind.defaultObjects), options.sceneSeed());
             return {std::string(kind.name), std::string(kind.description), std::string(kind.noun),
                     std::make_unique<BoxTrial>(std::move(scene), options.reference)};
         }
@@ -30,54 +31,65 @@ OpenedTrial openScene(const CompareOptions& options) {
     for (const WorldSceneKind& kind : worldSceneKinds()) {
         if (kind.name == options.scene) {
             const std::size_t objects = options.objects.value_or(kind.defaultObjects);
-            auto fill = [fillScene = kind.fill, objects, seed = options.seed](
+            auto fill = [fillScene = kind.fill, objects, seed = options.sceneSeed()](
                             WorldContents& contents) { fillScene(contents, objects, seed); };
             return {std::string(kind.name), std::string(kind.description), "bodies",
-                    std::make_unique<WorldTrial>(std::move(fill), options.reference)};
+                    std::make_unique<WorldTrial>(std::move(fill), options.reference, tell)};
         }
         names.emplace_back(kind.name);
     }
     throw InputError(unknownNameSentence("scene", options.scene, names));
 }
 
-OpenedTrial openTextBoxes(const CompareOptions& options) {
-    std::vector<Aabb<float>> boxes = readTextBoxes(options.file);
+OpenedTrial openTextBoxes(const CompareOptions& options, const TellWaiting& tell) {
+    std::vector<Aabb<float>> boxes = readTextBoxes(options.file, tell);
     const std::size_t objects = options.objects.value_or(boxes.size());
     if (objects > boxes.size()) {
         throw InputError(options.file + " holds " + withThousands(boxes.size()) + " boxes, but " +
                          withThousands(objects) + " were asked for.");
     }
     boxes.resize(objects);
-    auto scene = std::make_unique<BrownianScene>(driftingBoxes(boxes), options.seed);
+    auto scene = std::make_unique<BrownianScene>(driftingBoxes(boxes), options.sceneSeed());
     return {options.file, "boxes from a text file, drifting", "boxes",
             std::make_unique<BoxTrial>(std::move(scene), options.reference)};
 }
 
-OpenedTrial openFile(const CompareOptions& options) {
-    const std::string extension = std::filesystem::path(options.file).extension().string();
-    if (extension == ".bullet") {
+OpenedTrial openFile(const CompareOptions& options, const TellWaiting& tell) {
+    const bool isWorld = hasExtension(options.file, ".bullet");
+    const bool isRecording = hasExtension(options.file, ".aabbs");
+    if (options.seed && (isWorld || isRecording)) {
+        throw InputError("--seed is for scenes and boxes as text; no seed changes " + options.file +
+                         ".");
+    }
+    if (isWorld) {
         if (options.objects) {
             throw InputError(
                 "--objects cannot be chosen for a .bullet file, which is one whole "
                 "world; leave it out.");
         }
-        auto file = std::make_shared<const BulletWorldFile>(options.file);
-        return {options.file, "a world serialised by Bullet", "bodies",
-                std::make_unique<WorldTrial>(
-                    [file](WorldContents& contents) { file->fill(contents); }, options.reference)};
+        auto file = std::make_shared<const BulletWorldFile>(options.file, tell);
+        std::string description = "a world serialised by Bullet";
+        if (!file->omissions().empty()) {
+            description += ", without " + file->omissions() + ", which its importer passes over";
+        }
+        return {
+            options.file, std::move(description), "bodies",
+            std::make_unique<WorldTrial>([file](WorldContents& contents) { file->fill(contents); },
+                                         options.reference, tell)};
     }
-    if (extension == ".aabbs") {
-        auto scene = std::make_unique<RecordingScene>(options.file, options.objects.value_or(0));
+    if (isRecording) {
+        auto scene =
+            std::make_unique<RecordingScene>(options.file, options.objects.value_or(0), tell);
         return {options.file, "a Broadmark recording", "boxes",
                 std::make_unique<BoxTrial>(std::move(scene), options.reference)};
     }
-    return openTextBoxes(options);
+    return openTextBoxes(options, tell);
 }
 
 }  // namespace
 
-OpenedTrial openTrial(const CompareOptions& options) {
-    return options.file.empty() ? openScene(options) : openFile(options);
+OpenedTrial openTrial(const CompareOptions& options, const TellWaiting& tell) {
+    return options.file.empty() ? openScene(options, tell) : openFile(options, tell);
 }
 
 }  // namespace hashphase::demos

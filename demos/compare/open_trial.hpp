@@ -5,6 +5,7 @@
 
 #include <demos/compare/compare.hpp>
 #include <demos/compare/trial.hpp>
+#include <demos/scenes/tell_waiting.hpp>
 
 #include <memory>
 #include <string>
@@ -19,6 +20,6 @@ struct OpenedTrial {
 };
 
 /// Throws InputError for unknown scenes, broken files, and more objects than a file has.
-[[nodiscard]] OpenedTrial openTrial(const CompareOptions& options);
+[[nodiscard]] OpenedTrial openTrial(const CompareOptions& options, const TellWaiting& tell = {});
 
 }  // namespace hashphase::demos

@@ -74,11 +74,16 @@ void printSetting(const Report& report, std::ostream& out) {
     out << report.scene << ": " << report.description << '\n'
         << withThousands(report.objects) << ' ' << report.noun << ", "
         << report.comparison.framesDone << " frames (the first " << report.comparison.warmUpFrames
-        << " verified, not timed), seed " << report.options.seed << '\n';
+        << " verified, not timed), seed " << report.options.sceneSeed() << '\n';
     printProvenance(report.provenance, out);
     if (report.comparison.timeLimitHit) {
         out << "The time limit of " << *report.options.timeLimit << " s was reached after "
             << report.comparison.framesDone << " of " << report.framesAsked << " frames.\n";
+    }
+    for (const Result& result : report.comparison.results) {
+        if (result.leftOutAfter) {
+            out << leftOutSentence(report, result) << '\n';
+        }
     }
 }
 
@@ -97,11 +102,19 @@ std::optional<double> speedAgainstDbvt(const Report& report, const Result& resul
 std::optional<bool> oursWereExact(const Report& report) {
     std::optional<bool> exact;
     for (const Result& result : report.comparison.results) {
-        if (result.kind->ours && report.comparison.framesDone > 0) {
+        if (result.kind->ours && !result.rows.empty()) {
             exact = exact.value_or(true) && !result.firstFault;
         }
     }
     return exact;
+}
+
+std::string leftOutSentence(const Report& report, const Result& result) {
+    if (!result.leftOutAfter) {
+        return {};
+    }
+    return std::string(result.kind->name) + ": left out, filling " + withThousands(report.objects) +
+           " " + report.noun + " was not done within " + fixed(*result.leftOutAfter, 1) + " s.";
 }
 
 std::string verdictLine(const Report& report) {
@@ -135,7 +148,7 @@ void printReport(const Report& report, std::ostream& out) {
     });
     out << "\nTimes in ms a frame: median (5th-95th percentile). Speed: against dbvt, by setAabb + "
            "calculate.\nPairs: mean of all frames. Missing, extra and stale pairs: sum of all "
-           "frames (most in one).\nFill: ms to create all objects.";
+           "frames (most in one).\nFill: ms to make the broadphase and create all objects in it.";
     if (removes) {
         out << " Remove: ms to destroy " << withThousands(report.comparison.objectsRemoved)
             << " of them at the end.";
@@ -164,11 +177,13 @@ void printReport(const Report& report, std::ostream& out) {
             cells.push_back(spreadText(timing ? timing->step : std::nullopt));
         }
         cells.push_back(meanPairsText(result));
-        cells.push_back(tallyText(result, &FrameVerdict::missing));
-        cells.push_back(tallyText(result, &FrameVerdict::extra));
-        cells.push_back(tallyText(result, &FrameVerdict::stale));
-        cells.push_back(result.memoryBytes ? byteSize(*result.memoryBytes) : "n/a");
-        cells.push_back(milliseconds(result.fillMs));
+        for (std::size_t FrameVerdict::*count :
+             {&FrameVerdict::missing, &FrameVerdict::extra, &FrameVerdict::stale}) {
+            cells.push_back(result.rows.empty() ? "-" : tallyText(result, count));
+        }
+        cells.push_back(result.memoryBytes ? byteSize(*result.memoryBytes)
+                                           : (result.leftOutAfter ? "-" : "n/a"));
+        cells.push_back(result.fillMs ? milliseconds(*result.fillMs) : "-");
         if (removes) {
             cells.push_back(result.removeMs ? milliseconds(*result.removeMs) : "-");
         }

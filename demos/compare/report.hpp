@@ -34,6 +34,9 @@ struct Report {
 /// frame was run.
 [[nodiscard]] std::optional<bool> oursWereExact(const Report& report);
 
+/// What became of a broadphase that was not filled in time, in a sentence; empty for the others.
+[[nodiscard]] std::string leftOutSentence(const Report& report, const Result& result);
+
 /// One sentence: objects, frames, times, ratio, and whether the pair sets were exact.
 [[nodiscard]] std::string verdictLine(const Report& report);
 

@@ -75,6 +75,10 @@ PageSection correctness(const Report& report) {
                      {"stale", "of these stale"}},
                     {}};
     for (const Result& result : report.comparison.results) {
+        if (result.leftOutAfter) {
+            section.sentences.push_back(leftOutSentence(report, result));
+            continue;
+        }
         table.add({nameOf(result), classOf(result),
                    number(tallyOf(result, &FrameVerdict::pairs).total),
                    number(tallyOf(result, &FrameVerdict::missing).total),
@@ -89,7 +93,7 @@ std::string settingsOf(const Report& report) {
     return report.scene + ", " + withThousands(report.objects) + " " + report.noun + ", " +
            std::to_string(report.comparison.framesDone - report.comparison.warmUpFrames) +
            " frames timed after " + std::to_string(report.comparison.warmUpFrames) +
-           " to warm up, seed " + std::to_string(report.options.seed) + ", one thread.";
+           " to warm up, seed " + std::to_string(report.options.sceneSeed()) + ", one thread.";
 }
 
 Chart mediansChart(const Report& report) {
@@ -108,6 +112,9 @@ Chart mediansChart(const Report& report) {
                 "p5_ms",
                 "p95_ms"};
     for (const Result& result : report.comparison.results) {
+        if (result.leftOutAfter) {
+            continue;
+        }
         std::vector<Value> row{classOf(result)};
         const std::optional<Timing> timing = timingOf(result);
         addSpread(row, timing ? std::optional(timing->both) : std::nullopt);
@@ -207,14 +214,17 @@ PageSection times(const Report& report) {
                      {"memory_mib", "memory [MiB]"}},
                     {}};
     for (const Result& result : report.comparison.results) {
+        if (result.leftOutAfter) {
+            continue;
+        }
         const std::optional<Timing> timing = timingOf(result);
         const auto median = [&timing](Spread Timing::*part) {
             return timing ? Value(((*timing).*part).median) : Value();
         };
         table.add({nameOf(result), median(&Timing::setAabb), median(&Timing::calculate),
                    median(&Timing::both), numberOrNothing(speedAgainstDbvt(report, result)),
-                   timing && timing->step ? Value(timing->step->median) : Value(), result.fillMs,
-                   numberOrNothing(result.removeMs),
+                   timing && timing->step ? Value(timing->step->median) : Value(),
+                   numberOrNothing(result.fillMs), numberOrNothing(result.removeMs),
                    result.memoryBytes ? Value(static_cast<double>(*result.memoryBytes) / (1 << 20))
                                       : Value()});
     }

@@ -62,7 +62,8 @@ Json resultJson(const Report& report, const Result& result) {
     return {{"name", result.kind->name},
             {"title", result.kind->title},
             {"ours", result.kind->ours},
-            {"fillMs", result.fillMs},
+            {"fillMs", orNull(result.fillMs)},
+            {"leftOutAfterSeconds", orNull(result.leftOutAfter)},
             {"removeMs", orNull(result.removeMs)},
             {"setAabbMs", part(&Timing::setAabb)},
             {"calculateMs", part(&Timing::calculate)},
@@ -86,7 +87,7 @@ Json settingsJson(const Report& report) {
             {"objects", report.objects},
             {"frames", report.framesAsked},
             {"warmUpFrames", report.comparison.warmUpFrames},
-            {"seed", options.seed},
+            {"seed", options.sceneSeed()},
             {"reference", options.reference == ReferenceMethod::kBrute ? "brute" : "sweep"},
             {"timeLimitSeconds", orNull(options.timeLimit)}};
 }

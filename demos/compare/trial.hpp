@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -27,6 +28,12 @@ struct Observation {
     std::optional<float> cellSize;       // of its finest cells [m], where it has cells
 };
 
+/// Called now and then with the number of objects that have been dealt with; false: stop.
+using GoOn = std::function<bool(std::size_t done)>;
+
+/// So many objects are dealt with between two calls of GoOn, which look at the clock.
+inline constexpr std::size_t kObjectsBetweenLooks = 64;
+
 class Trial {
 public:
     Trial() = default;
@@ -34,8 +41,9 @@ public:
     Trial& operator=(const Trial&) = delete;
     virtual ~Trial() = default;
 
-    /// Makes the broadphase and fills it with the scene's objects.
-    virtual void add(const BroadphaseKind& kind) = 0;
+    /// Makes the broadphase, the next contestant, and fills it with the scene's objects. Returns the
+    /// time of that alone [ms]; nothing where it was to stop: then it is no contestant.
+    virtual std::optional<double> add(const BroadphaseKind& kind, const GoOn& goOn) = 0;
 
     /// Moves on to the next frame; the first call shows the initial state.
     virtual void beginFrame() = 0;
@@ -44,8 +52,9 @@ public:
     virtual Observation runFrame(std::size_t contestant) = 0;
 
     /// Destroys `count` objects of this broadphase, spread over all, and returns the time [ms];
-    /// nothing where the trial cannot tell. For after the last frame.
-    virtual std::optional<double> removeObjects(std::size_t contestant, std::size_t count) = 0;
+    /// nothing where the trial cannot tell, or was to stop. For after the last frame.
+    virtual std::optional<double> removeObjects(std::size_t contestant, std::size_t count,
+                                                const GoOn& goOn) = 0;
 
     /// Heap that the broadphase took so far [bytes], where that can be told.
     [[nodiscard]] virtual std::optional<std::int64_t> memoryBytes(std::size_t contestant) const = 0;

@@ -3,6 +3,8 @@
 
 #include <demos/compare/filled_broadphase.hpp>
 #include <demos/compare/observed_world.hpp>
+#include <demos/console/format.hpp>
+#include <demos/report/stopwatch.hpp>
 
 #include <utility>
 
@@ -25,15 +27,20 @@ Aabb<float> boxOf(const btBroadphaseProxy& proxy) {
             Vector3<float>(proxy.m_aabbMax.x(), proxy.m_aabbMax.y(), proxy.m_aabbMax.z())};
 }
 
+/// Ends the filling of a world from within.
+struct FillingStopped {};
+
 }  // namespace
 
 struct WorldTrial::World {
     World(const BroadphaseKind& kind, const BroadphaseNeeds& needs)
-        : configuration(roomyPools()), dispatcher(&configuration) {
+        : freesProxies(kind.freesProxies), configuration(roomyPools()), dispatcher(&configuration) {
         HeapMeter construction;
         {
             const HeapScope scope(construction);
+            const Stopwatch watch;
             broadphase = kind.make(needs);
+            makingMs = watch.milliseconds();
         }
         world =
             std::make_unique<ObservedWorld>(&dispatcher, broadphase.get(), &solver, &configuration);
@@ -41,16 +48,36 @@ struct WorldTrial::World {
         world->reserve(needs.objects);
         contents = std::make_unique<WorldContents>(*world);
     }
+    World(const World&) = delete;
+    World& operator=(const World&) = delete;
 
+    // What frees its proxies all at once is spared to remove them one by one, each of which takes
+    // Bullet's axis sweep a walk past all the others.
+    ~World() {
+        if (!freesProxies) {
+            return;
+        }
+        btOverlappingPairCache& cache = *broadphase->getOverlappingPairCache();
+        for (int i = 0; i < cache.getNumOverlappingPairs(); ++i) {
+            cache.cleanOverlappingPair(cache.getOverlappingPairArray()[i], &dispatcher);
+        }
+        btCollisionObjectArray& objects = world->getCollisionObjectArray();
+        for (int i = 0; i < objects.size(); ++i) {
+            objects[i]->setBroadphaseHandle(nullptr);
+        }
+    }
+
+    bool freesProxies;
     btDefaultCollisionConfiguration configuration;
     btCollisionDispatcher dispatcher;
     btSequentialImpulseConstraintSolver solver;
     std::unique_ptr<btBroadphaseInterface> broadphase;
     std::unique_ptr<ObservedWorld> world;
     std::unique_ptr<WorldContents> contents;
+    double makingMs = 0;  // of the broadphase
 };
 
-WorldTrial::WorldTrial(FillWorld fill, ReferenceMethod reference)
+WorldTrial::WorldTrial(FillWorld fill, ReferenceMethod reference, const TellWaiting& tell)
     : fill_(std::move(fill)), reference_(reference) {
     constexpr BroadphaseKind kTree{
         {},
@@ -63,6 +90,11 @@ WorldTrial::WorldTrial(FillWorld fill, ReferenceMethod reference)
             return std::make_unique<btDbvtBroadphase>();
         }};
     World measured(kTree, {});
+    measured.world->setAdditionObserver([&tell](std::size_t bodies) {
+        if (tell && bodies % kObjectsBetweenLooks == 0) {
+            tell(withThousands(bodies) + " bodies");
+        }
+    });
     fill_(*measured.contents);
 
     const btCollisionObjectArray& objects = measured.world->getCollisionObjectArray();
@@ -86,11 +118,23 @@ WorldTrial::WorldTrial(FillWorld fill, ReferenceMethod reference)
 
 WorldTrial::~WorldTrial() = default;
 
-void WorldTrial::add(const BroadphaseKind& kind) {
-    worlds_.push_back(std::make_unique<World>(kind, needs_));
+std::optional<double> WorldTrial::add(const BroadphaseKind& kind, const GoOn& goOn) {
+    auto filled = std::make_unique<World>(kind, needs_);
+    filled->world->setAdditionObserver([&goOn](std::size_t bodies) {
+        if (bodies % kObjectsBetweenLooks == 0 && !goOn(bodies)) {
+            throw FillingStopped();
+        }
+    });
+    try {
+        fill_(*filled->contents);
+    } catch (const FillingStopped&) {
+        return std::nullopt;
+    }
+    filled->world->setAdditionObserver({});
+    worlds_.push_back(std::move(filled));
     World& world = *worlds_.back();
-    fill_(*world.contents);
     world.world->setPairObserver([this, &world] { observe(world); });
+    return world.makingMs + world.world->additionMs();
 }
 
 Observation WorldTrial::runFrame(std::size_t contestant) {

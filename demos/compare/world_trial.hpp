@@ -6,6 +6,7 @@
 
 #include <demos/compare/heap_meter.hpp>
 #include <demos/compare/trial.hpp>
+#include <demos/scenes/tell_waiting.hpp>
 #include <demos/scenes/world_contents.hpp>
 
 #include <functional>
@@ -19,16 +20,18 @@ using FillWorld = std::function<void(WorldContents&)>;
 
 class WorldTrial : public Trial {
 public:
-    /// Makes one world to learn its size. Throws what `fill` throws.
-    WorldTrial(FillWorld fill, ReferenceMethod reference);
+    /// Makes one world to learn its size, and tells how far that is. Throws what `fill` throws.
+    WorldTrial(FillWorld fill, ReferenceMethod reference, const TellWaiting& tell = {});
     ~WorldTrial() override;
 
-    void add(const BroadphaseKind& kind) override;
+    /// The time is that of the broadphase, and of the boxes of what is put into it: nothing else of
+    /// the world's.
+    std::optional<double> add(const BroadphaseKind& kind, const GoOn& goOn) override;
     void beginFrame() override {}
     Observation runFrame(std::size_t contestant) override;
     /// Nothing: in a world the time is that of more than the broadphase.
-    std::optional<double> removeObjects(std::size_t /*contestant*/,
-                                        std::size_t /*count*/) override {
+    std::optional<double> removeObjects(std::size_t /*contestant*/, std::size_t /*count*/,
+                                        const GoOn& /*goOn*/) override {
         return std::nullopt;
     }
     [[nodiscard]] std::optional<std::int64_t> memoryBytes(std::size_t contestant) const override;

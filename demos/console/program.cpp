@@ -2,6 +2,7 @@
 #include <demos/console/program.hpp>
 
 #include <demos/console/nearest_name.hpp>
+#include <demos/console/options.hpp>
 #include <demos/scenes/input_error.hpp>
 
 #include <CLI/CLI.hpp>
@@ -72,6 +73,15 @@ void warnOfSlowBuild(Console& console) {
 #endif
 }
 
+// Instead of how many values CLI11 wants.
+std::string countSentence(const CLI::ArgumentMismatch& error) {
+    const std::string sentence = error.what();
+    const std::size_t end = std::min(sentence.find(": "), sentence.size());
+    return sentence.substr(0, end) + (sentence.find("At Most") == std::string::npos
+                                          ? ": its value is missing"
+                                          : ": it is given more than once");
+}
+
 // The exit code where parsing ends the program.
 std::optional<int> parse(CLI::App& app, const std::vector<std::string>& arguments,
                          Console& console) {
@@ -84,13 +94,18 @@ std::optional<int> parse(CLI::App& app, const std::vector<std::string>& argument
     } catch (const CLI::CallForVersion& version) {
         console.out << version.what() << '\n';
         return kExitOk;
+    } catch (const CLI::ArgumentMismatch& error) {
+        return refuse(console, countSentence(error));
     } catch (const CLI::ParseError& error) {
         return refuse(console, error.what());
     }
     return std::nullopt;
 }
 
-int runGuarded(const Subcommand& command, Console& console) {
+int runGuarded(const Subcommand& command, const CLI::App& parsed, Console& console) {
+    if (const std::string fault = pathClash(parsed); !fault.empty()) {
+        return refuse(console, fault);
+    }
     warnOfSlowBuild(console);
     try {
         return command.run(console);
@@ -119,6 +134,7 @@ int runProgram(std::vector<std::string> arguments, std::span<const Subcommand> s
         CLI::App* parsed = app.add_subcommand(subcommand.name, subcommand.description);
         parsed->allow_extras();
         subcommand.declareOptions(*parsed);
+        checkValues(*parsed);
         names.push_back(subcommand.name);
     }
 
@@ -146,7 +162,7 @@ int runProgram(std::vector<std::string> arguments, std::span<const Subcommand> s
     if (subcommand->takeRest) {
         subcommand->takeRest(std::move(rest));
     }
-    return runGuarded(*subcommand, console);
+    return runGuarded(*subcommand, *chosen.front(), console);
 }
 
 int runSingleCommand(const std::vector<std::string>& arguments, const Subcommand& command,
@@ -155,13 +171,14 @@ int runSingleCommand(const std::vector<std::string>& arguments, const Subcommand
     app.set_version_flag("--version", versionText());
     app.allow_extras();
     command.declareOptions(app);
+    checkValues(app);
     if (const std::optional<int> ended = parse(app, arguments, console)) {
         return *ended;
     }
     if (const std::vector<std::string> extras = app.remaining(); !extras.empty()) {
         return refuse(console, unknownWordSentence(app, command.name, extras.front(), false));
     }
-    return runGuarded(command, console);
+    return runGuarded(command, app, console);
 }
 
 const char* programVersion() noexcept {

@@ -24,7 +24,12 @@ ProgressStyle progressStyle(const Console& console, bool quiet) {
 }
 
 Progress::Progress(std::ostream& out, ProgressStyle style, std::string task, std::size_t total)
-    : out_(out), style_(style), task_(std::move(task)), total_(std::max<std::size_t>(total, 1)) {}
+    : out_(out), style_(style), task_(std::move(task)), total_(std::max<std::size_t>(total, 1)) {
+    if (style_ == ProgressStyle::kBar) {
+        drawBar(0, task_);
+        lastDrawn_ -= kBarInterval;  // the first step may take long
+    }
+}
 
 void Progress::clear() {
     if (drawnWidth_ > 0) {
@@ -47,6 +52,10 @@ void Progress::update(std::size_t done, std::string_view what) {
         }
         return;
     }
+    drawBar(done, line);
+}
+
+void Progress::drawBar(std::size_t done, const std::string& line) {
     const std::size_t filled = std::min(done, total_) * kBarWidth / total_;
     const std::string bar =
         '[' + std::string(filled, '#') + std::string(kBarWidth - filled, '.') + "] " + line;

@@ -24,7 +24,7 @@ enum class ProgressStyle {
 
 class Progress {
 public:
-    /// Tells `out` about `total` steps of the task.
+    /// Tells `out` about `total` steps of the task; a bar is drawn at once.
     Progress(std::ostream& out, ProgressStyle style, std::string task, std::size_t total);
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
@@ -40,6 +40,8 @@ public:
     void update(std::size_t done, std::string_view what = {});
 
 private:
+    void drawBar(std::size_t done, const std::string& line);
+
     using Clock = std::chrono::steady_clock;
 
     [[nodiscard]] std::string text(std::size_t done, std::string_view what,

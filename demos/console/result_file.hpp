@@ -5,8 +5,10 @@
 
 #include <demos/scenes/input_error.hpp>
 
+#include <filesystem>
 #include <fstream>
 #include <string>
+#include <system_error>
 
 namespace hashphase::demos {
 
@@ -33,7 +35,10 @@ public:
 private:
     void refuseIfBad() const {
         if (!file_) {
-            throw InputError(path_ + " cannot be written.");
+            std::error_code error;
+            throw InputError(path_ + (std::filesystem::is_directory(path_, error)
+                                          ? " is a folder, not a file."
+                                          : " cannot be written."));
         }
     }
 

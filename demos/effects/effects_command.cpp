@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/effects/effects_command.hpp>
 
-#include <demos/console/option_checks.hpp>
+#include <demos/console/options.hpp>
 #include <demos/effects/effects.hpp>
 
 #include <CLI/CLI.hpp>
@@ -15,20 +15,19 @@ namespace {
 void declareEffects(CLI::App& app, EffectsOptions& options) {
     CLI::Option* scene = app.add_option("--scene", options.scene, "built-in scene (see --list)")
                              ->capture_default_str();
-    app.add_option("--file", options.file, "instead of a scene: a scene file of yours (JSON)")
+    addFileToRead(app, "--file", options.file, "instead of a scene: a scene file of yours (JSON)")
         ->excludes(scene);
     app.add_option("--objects", options.objects, "number of bodies (default: the scene's)")
-        ->check(CLI::Range(1, 1'000'000));
+        ->transform(wholeFrom(1, 1'000'000));
     app.add_option("--frames", options.frames, "number of frames (default: the scene's)")
-        ->check(CLI::Range(1, 1'000'000));
+        ->transform(wholeFrom(1, 1'000'000));
     app.add_option("--seed", options.seed, "seed of the scene")
-        ->check(
-            CLI::Range(std::int64_t{0}, std::int64_t{std::numeric_limits<std::uint32_t>::max()}));
-    app.add_option("--json", options.jsonFile, "write everything measured to this file");
-    app.add_option("--csv", options.csvFile, "write a row for each variant to this file");
-    app.add_option("--html", options.htmlFile, "write a page with charts to this file");
+        ->transform(seedUpTo(std::numeric_limits<std::uint32_t>::max()));
+    addFileToWrite(app, "--json", options.jsonFile, "write everything measured to this file");
+    addFileToWrite(app, "--csv", options.csvFile, "write a row for each variant to this file");
+    addFileToWrite(app, "--html", options.htmlFile, "write a page with charts to this file");
     app.add_option("--time-limit", options.timeLimit, "stop after so many seconds")
-        ->check(positiveSecondsFault);
+        ->transform(positiveSeconds());
     app.add_flag("--quiet", options.quiet, "no progress on stderr");
     app.add_flag("--list", options.list, "say which scenes there are");
     app.add_flag("--show", options.show, "write the scene as a file, to begin one of yours with");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/paper/paper_command.hpp>
 
-#include <demos/console/option_checks.hpp>
+#include <demos/console/options.hpp>
 #include <demos/paper/paper.hpp>
 
 #include <CLI/CLI.hpp>
@@ -11,15 +11,6 @@
 namespace hashphase::demos {
 namespace {
 
-/// CLI11's own check lets NaN through.
-std::string radiusFault(const std::string& text) {
-    double radius = 0;
-    if (!CLI::detail::lexical_cast(text, radius) || !(radius >= 0 && radius <= 1000)) {
-        return "'" + text + "' is no radius, which is a number of metres from 0 to 1000";
-    }
-    return {};
-}
-
 void declarePaper(CLI::App& app, PaperOptions& options) {
     app.add_flag("--quick", options.quick,
                  "measure less: 20 seconds, in place of a minute and a half");
@@ -27,25 +18,26 @@ void declarePaper(CLI::App& app, PaperOptions& options) {
                    "numbers of objects, separated by commas (default: the paper's, 500 to 50,000; "
                    "the domain of more than 50,000 grows so that they stay as dense)")
         ->delimiter(',')
-        ->check(CLI::Range(2, 1'000'000));
+        ->transform(wholeFrom(2, 1'000'000));
     app.add_option("--frames", options.frames,
                    "most frames of each method (default: 60, with --quick 6)")
-        ->check(CLI::Range(1, 100'000));
+        ->transform(wholeFrom(1, 100'000));
     app.add_option("--radius", options.aiRadius,
                    "within which AI counts colours, in metres; the paper does not give it")
-        ->check(radiusFault)
+        ->transform(metresFrom(0, 1000))
         ->capture_default_str();
     app.add_option("--seed", options.seed, "seed of all random numbers")
-        ->check(seedFault)
+        ->transform(seedUpTo())
         ->capture_default_str();
-    app.add_option("--json", options.jsonFile, "write everything measured to this file");
-    app.add_option("--csv", options.csvFile, "write a row for each measurement to this file");
-    app.add_option("--html", options.htmlFile, "write a page with tables and charts to this file");
+    addFileToWrite(app, "--json", options.jsonFile, "write everything measured to this file");
+    addFileToWrite(app, "--csv", options.csvFile, "write a row for each measurement to this file");
+    addFileToWrite(app, "--html", options.htmlFile,
+                   "write a page with tables and charts to this file");
     app.add_option(
            "--time-limit", options.timeLimit,
            "after so many seconds leave out what is not measured yet; hashphase then runs before "
            "the rivals")
-        ->check(positiveSecondsFault);
+        ->transform(positiveSeconds());
     app.add_flag("--ms", options.showMilliseconds,
                  "print milliseconds a frame, in place of frames a second");
     app.add_flag("--quiet", options.quiet, "no progress on stderr");

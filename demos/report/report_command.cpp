@@ -3,7 +3,7 @@
 
 #include <demos/console/format.hpp>
 #include <demos/console/nearest_name.hpp>
-#include <demos/console/option_checks.hpp>
+#include <demos/console/options.hpp>
 #include <demos/report/page.hpp>
 #include <demos/report/report_text.hpp>
 #include <demos/report/stopwatch.hpp>
@@ -39,15 +39,14 @@ void declareReport(CLI::App& app, ReportOptions& options) {
     app.add_flag("--quick", options.isQuick,
                  "measure less: a minute and a half, in place of a quarter of an hour");
     app.add_option("--only", options.only, "join these parts, separated by commas")->delimiter(',');
-    app.add_option("--html", options.htmlFile, "write the page to this file")
+    addFileToWrite(app, "--html", options.htmlFile, "write the page to this file")
         ->capture_default_str();
     app.add_option("--seed", options.seed, "seed of all random numbers")
-        ->check(
-            CLI::Range(std::int64_t{0}, std::int64_t{std::numeric_limits<std::uint32_t>::max()}))
+        ->transform(seedUpTo(std::numeric_limits<std::uint32_t>::max()))
         ->capture_default_str();
     app.add_option("--time-limit", options.timeLimit,
                    "so many seconds for all parts; the page says what was left out")
-        ->check(positiveSecondsFault);
+        ->transform(positiveSeconds());
     app.add_flag("--quiet", options.quiet, "no progress on stderr");
 }
 
@@ -148,8 +147,7 @@ void ReportRun::runPart(std::size_t index) {
         inShort_.checks.push_back({done.verdict, *done.holds, evidence});
     } else {
         notChecked_.push_back(name);
-        inShort_.conclusions.push_back("Not checked: " + done.verdict + " (" + evidence +
-                                       ")");
+        inShort_.conclusions.push_back("Not checked: " + done.verdict + " (" + evidence + ")");
     }
     console_.out << name << ": " << done.verdict << '\n' << std::flush;
 }
@@ -194,8 +192,7 @@ void ReportRun::conclude() {
         page_.verdict += broken == 0 ? ": all checks hold"
                                      : ": checks of " + std::to_string(broken) + " are BROKEN";
     }
-    page_.verdict +=
-        namesText("; not checked: ", notChecked_) + leftOutText(leftOut_) + ".";
+    page_.verdict += namesText("; not checked: ", notChecked_) + leftOutText(leftOut_) + ".";
     inShort_.heading = "In short";
     if (options_.isQuick) {
         inShort_.sentences = {"Measured with --quick: fewer objects, fewer frames."};

@@ -75,13 +75,16 @@ struct Chunk {
     std::size_t place;
     std::size_t start;  // of its data
     std::int32_t length;
-    std::int32_t structure;  // its type, an index into the DNA
+    std::int32_t structure;  // its type, an index into the DNA; negative for what is no structure
     std::int32_t count;
 };
 
-struct Dna {
-    std::vector<std::int16_t> structLengths;  // [bytes]
+struct Structure {
+    std::string_view name;
+    std::int16_t length;  // [bytes]
 };
+
+using Dna = std::vector<Structure>;
 
 std::size_t pointerBytes(std::string_view bytes) {
     return bytes[7] == '-' ? 8 : 4;
@@ -165,8 +168,9 @@ Dna readDna(std::string_view bytes, const Chunk& chunk) {
     cursor.align();
     cursor.expect("TYPE", kWhat);
     const std::size_t types = readCount(cursor, kWhat);
+    std::vector<std::string_view> typeNames;
     for (std::size_t i = 0; i < types; ++i) {
-        cursor.takeText(kWhat);
+        typeNames.push_back(cursor.takeText(kWhat));
     }
     cursor.align();
     cursor.expect("TLEN", kWhat);
@@ -186,7 +190,8 @@ Dna readDna(std::string_view bytes, const Chunk& chunk) {
         if (type < 0 || static_cast<std::size_t>(type) >= types || fields < 0) {
             fail(place, "a structure of the type table (DNA1) names no type");
         }
-        dna.structLengths.push_back(lengths[static_cast<std::size_t>(type)]);
+        dna.push_back(
+            {typeNames[static_cast<std::size_t>(type)], lengths[static_cast<std::size_t>(type)]});
         for (std::int16_t field = 0; field < fields; ++field) {
             const auto fieldType = cursor.read<std::int16_t>(kWhat);
             const auto fieldName = cursor.read<std::int16_t>(kWhat);
@@ -199,37 +204,81 @@ Dna readDna(std::string_view bytes, const Chunk& chunk) {
     return dna;
 }
 
-void checkChunk(const Chunk& chunk, const Dna& dna) {
+// What is no structure, which Bullet leaves as it is: names, and arrays of plain numbers.
+bool isPlain(const Chunk& chunk) {
+    return chunk.structure < 0;
+}
+
+// Of one element [bytes].
+std::int64_t elementLength(std::string_view bytes, const Chunk& chunk, const Dna& dna) {
     const auto structure = static_cast<std::size_t>(chunk.structure);
-    if (chunk.structure < 0 || structure >= dna.structLengths.size()) {
+    if (isPlain(chunk)) {
+        return 1;  // at least
+    }
+    if (structure >= dna.size()) {
         fail(chunk.place, "the chunk's type is not in the type table");
     }
-    if (chunk.count > 0 && dna.structLengths[structure] <= 0) {
+    // Bullet writes pointers to a soft body's materials, and calls them materials.
+    if (chunk.code == "ARAY" && dna[structure].name == "SoftBodyMaterialData") {
+        return static_cast<std::int64_t>(pointerBytes(bytes));
+    }
+    return dna[structure].length;
+}
+
+void checkChunk(std::string_view bytes, const Chunk& chunk, const Dna& dna) {
+    const std::int64_t length = elementLength(bytes, chunk, dna);
+    if (chunk.count > 0 && length <= 0) {
         fail(chunk.place, "the chunk's type has no size, but the chunk has " +
                               std::to_string(chunk.count) + " elements");
     }
-    const std::int64_t needed =
-        std::int64_t{chunk.count} * std::int64_t{dna.structLengths[structure]};
+    const std::int64_t needed = std::int64_t{chunk.count} * length;
     if (needed > chunk.length) {
         fail(chunk.place, "the chunk holds " + std::to_string(chunk.length) + " bytes, but its " +
                               std::to_string(chunk.count) + " elements need " +
                               std::to_string(needed));
     }
+    const auto size = static_cast<std::size_t>(chunk.length);
+    const bool isText = isPlain(chunk) && chunk.count > 0 && chunk.count == chunk.length;
+    if (isText && bytes.substr(chunk.start, size).find('\0') == std::string_view::npos) {
+        fail(chunk.place, "the name in the chunk has no end");
+    }
+}
+
+// Codes of what Bullet's importer makes objects of, and of what it passes over.
+bool isObject(const Chunk& chunk) {
+    return !isPlain(chunk) && (chunk.code == "RBDY" || chunk.code == "COBJ");
+}
+
+std::string passedOver(const std::vector<Chunk>& chunks) {
+    std::string words;
+    const auto add = [&](std::string_view code, const char* one, const char* many) {
+        const auto count = std::count_if(chunks.begin(), chunks.end(),
+                                         [code](const Chunk& chunk) { return chunk.code == code; });
+        if (count > 0) {
+            words +=
+                (words.empty() ? "" : " and ") + std::to_string(count) + (count == 1 ? one : many);
+        }
+    };
+    add("MBDY", " multi-body", " multi-bodies");
+    add("SBDY", " soft body", " soft bodies");
+    return words;
 }
 
 void checkBulletFile(std::string_view bytes) {
     checkHeader(bytes);
     const std::vector<Chunk> chunks = readChunks(bytes);
     const Dna dna = readDna(bytes, chunks.back());
-    bool hasObjects = false;
     for (const Chunk& chunk : chunks) {
         if (chunk.code != "DNA1") {
-            checkChunk(chunk, dna);
+            checkChunk(bytes, chunk, dna);
         }
-        hasObjects = hasObjects || chunk.code == "RBDY" || chunk.code == "COBJ";
     }
-    if (!hasObjects) {
-        throw InputError("the world in it holds no collision object");
+    if (std::none_of(chunks.begin(), chunks.end(), isObject)) {
+        const std::string others = passedOver(chunks);
+        throw InputError(others.empty() ? "the world in it holds no collision object"
+                                        : "the world in it holds " + others +
+                                              ", which Bullet's importer passes over, and no "
+                                              "collision object besides");
     }
 }
 
@@ -242,6 +291,10 @@ std::string bulletFileFault(std::string_view bytes) {
         return fault.what();
     }
     return {};
+}
+
+std::string bulletFileOmissions(std::string_view bytes) {
+    return passedOver(readChunks(bytes));
 }
 
 }  // namespace hashphase::demos

@@ -9,6 +9,9 @@
 #include <BulletWorldImporter/btBulletWorldImporter.h>
 #endif
 
+#include <algorithm>
+#include <chrono>
+#include <thread>
 #include <utility>
 
 #include <fcntl.h>
@@ -60,7 +63,7 @@ void importAndStep(const BulletWorldFile& file) {
 
 // Damage inside the chunks (pointers, indices, sizes of shapes) passes every check of the outer
 // shape and may crash Bullet or keep it busy for ever. So the file is tried in a process of its own.
-bool survivesImport(const BulletWorldFile& file) {
+bool survivesImport(const BulletWorldFile& file, const TellWaiting& tell) {
     constexpr unsigned kPatience = 30;  // [s]
     const pid_t child = fork();
     if (child == 0) {
@@ -75,15 +78,26 @@ bool survivesImport(const BulletWorldFile& file) {
         }
         _exit(0);
     }
+    if (child < 0) {
+        return true;
+    }
     int status = 0;
-    return child < 0 || waitpid(child, &status, 0) != child || status == 0;
+    pid_t ended = 0;
+    for (std::chrono::microseconds nap{100}; (ended = waitpid(child, &status, WNOHANG)) == 0;) {
+        std::this_thread::sleep_for(nap);
+        nap = std::min(2 * nap, std::chrono::microseconds{20'000});
+        if (tell) {
+            tell("Bullet's importer tries it");
+        }
+    }
+    return ended != child || status == 0;
 }
 
 }  // namespace
 
-BulletWorldFile::BulletWorldFile(const std::filesystem::path& path)
-    : path_(path.string()), bytes_(readChecked(path)) {
-    if (!survivesImport(*this)) {
+BulletWorldFile::BulletWorldFile(const std::filesystem::path& path, const TellWaiting& tell)
+    : path_(path.string()), bytes_(readChecked(path)), omissions_(bulletFileOmissions(bytes_)) {
+    if (!survivesImport(*this, tell)) {
         throw InputError(path_ +
                          ": Bullet's importer crashes on the file or does not come to an end: the "
                          "file is damaged inside its chunks.");
@@ -105,8 +119,8 @@ void BulletWorldFile::fill(WorldContents& contents) const {
 
 #else
 
-BulletWorldFile::BulletWorldFile(const std::filesystem::path& path)
-    : path_(path.string()), bytes_(readChecked(path)) {}
+BulletWorldFile::BulletWorldFile(const std::filesystem::path& path, const TellWaiting& /*tell*/)
+    : path_(path.string()), bytes_(readChecked(path)), omissions_(bulletFileOmissions(bytes_)) {}
 
 void BulletWorldFile::fill(WorldContents& /*contents*/) const {
     throw InputError(path_ +

@@ -219,7 +219,7 @@ EffectsFile parseEffectsFile(std::string_view text, const std::string& name) {
 }
 
 EffectsFile readEffectsFile(const std::filesystem::path& path) {
-    return parseEffectsFile(readFile(path), path.string());
+    return parseEffectsFile(readText(path), path.string());
 }
 
 }  // namespace hashphase::demos

@@ -34,7 +34,7 @@ struct EffectsFile {
 /// column, names the field, and says what would be right; what it returns has no effectsError().
 [[nodiscard]] EffectsFile parseEffectsFile(std::string_view text, const std::string& name);
 
-/// The same of a file, by its path. Throws InputError as readFile() does, too.
+/// The same of a file, by its path. Throws InputError as readText() does, too.
 [[nodiscard]] EffectsFile readEffectsFile(const std::filesystem::path& path);
 
 /// A text that is read back as equal: all settings of what is declared. There must be no

@@ -3,10 +3,21 @@
 
 #include <demos/scenes/input_error.hpp>
 
+#include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <system_error>
 
 namespace hashphase::demos {
+namespace {
+
+// By its mark, or by the zero in one of the first two bytes that a letter of ours has there.
+bool isWideText(std::string_view bytes) {
+    return bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff") ||
+           (bytes.size() > 1 && (bytes[0] == '\0') != (bytes[1] == '\0'));
+}
+
+}  // namespace
 
 void requireFile(const std::filesystem::path& path) {
     std::error_code error;
@@ -41,6 +52,26 @@ std::string readFile(const std::filesystem::path& path) {
         throw InputError(path.string() + " cannot be read.");
     }
     return bytes;
+}
+
+std::string readText(const std::filesystem::path& path) {
+    constexpr std::string_view kMark = "\xef\xbb\xbf";
+    std::string text = readFile(path);
+    if (isWideText(text)) {
+        throw InputError(path.string() +
+                         " is no plain text but UTF-16 or UTF-32: save it again as UTF-8.");
+    }
+    if (text.starts_with(kMark)) {
+        text.erase(0, kMark.size());
+    }
+    return text;
+}
+
+bool hasExtension(const std::filesystem::path& path, std::string_view extension) {
+    const std::string own = path.extension().string();
+    return std::equal(
+        own.begin(), own.end(), extension.begin(), extension.end(),
+        [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); });
 }
 
 }  // namespace hashphase::demos

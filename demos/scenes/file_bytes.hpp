@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace hashphase::demos {
 
@@ -19,5 +20,12 @@ void requireFile(const std::filesystem::path& path);
 /// The bytes of the file. Throws InputError, naming the path, as requireFile() does, and when the file
 /// cannot be read or is larger than kLargestFile. Memory: the file's size.
 [[nodiscard]] std::string readFile(const std::filesystem::path& path);
+
+/// The same of a text, without the byte-order mark that some editors put in front of UTF-8. Throws
+/// InputError for UTF-16 and UTF-32, too, which nothing here reads.
+[[nodiscard]] std::string readText(const std::filesystem::path& path);
+
+/// Whether the name of the file ends so, in capital letters or small ones: ".bullet".
+[[nodiscard]] bool hasExtension(const std::filesystem::path& path, std::string_view extension);
 
 }  // namespace hashphase::demos

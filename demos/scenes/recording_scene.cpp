@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/scenes/recording_scene.hpp>
 
+#include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/input_error.hpp>
 
 #include <array>
@@ -26,13 +27,11 @@ std::array<float, 8> floatsOfBox(const char* bytes) {
 
 }  // namespace
 
-RecordingScene::RecordingScene(const std::filesystem::path& path, std::size_t objects)
+RecordingScene::RecordingScene(const std::filesystem::path& path, std::size_t objects,
+                               const TellWaiting& tell)
     : path_(path.string()) {
-    // Not opened before: to open a pipe may take for ever.
-    std::error_code error;
-    if (std::filesystem::is_regular_file(path, error)) {
-        file_.open(path, std::ios::binary);
-    }
+    requireFile(path);
+    file_.open(path, std::ios::binary);
     if (!file_.is_open()) {
         throw InputError(path_ + " cannot be opened for reading.");
     }
@@ -47,6 +46,9 @@ RecordingScene::RecordingScene(const std::filesystem::path& path, std::size_t ob
     raw_.resize(played * kBoxBytes);
     for (int frame = frames_; frame >= 0; --frame) {
         readFrame(frame);
+        if (tell) {
+            tell("reading, " + std::to_string(frame) + " frames to go");
+        }
         for (const Aabb<float>& box : boxes_) {
             bounds_.extend(box);
         }

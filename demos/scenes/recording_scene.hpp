@@ -8,6 +8,7 @@
 // four floats each, of which the fourth is padding.
 
 #include <demos/scenes/box_scene.hpp>
+#include <demos/scenes/tell_waiting.hpp>
 
 #include <filesystem>
 #include <fstream>
@@ -20,7 +21,8 @@ public:
     /// Throws InputError that names the path, the byte and the fault: too short or too long for its
     /// counts, impossible counts, a coordinate that is not finite, min above max. Only the first
     /// `objects` boxes are played; 0 plays all. Memory: one frame.
-    RecordingScene(const std::filesystem::path& path, std::size_t objects);
+    RecordingScene(const std::filesystem::path& path, std::size_t objects,
+                   const TellWaiting& tell = {});
 
     /// Past the last frame it stays on it.
     void advance() override;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/scenes/text_boxes.hpp>
 
+#include <demos/console/format.hpp>
 #include <demos/console/quoted_word.hpp>
 #include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/input_error.hpp>
@@ -89,7 +90,7 @@ Aabb<float> readBox(LineReader& line) {
 
 }  // namespace
 
-std::vector<Aabb<float>> parseTextBoxes(std::string_view text) {
+std::vector<Aabb<float>> parseTextBoxes(std::string_view text, const TellWaiting& tell) {
     std::vector<Aabb<float>> boxes;
     std::size_t number = 0;
     while (!text.empty()) {
@@ -100,6 +101,10 @@ std::vector<Aabb<float>> parseTextBoxes(std::string_view text) {
         if (!comment && !line.atEnd()) {
             boxes.push_back(readBox(line));
         }
+        constexpr std::size_t kLinesBetweenWords = 10'000;
+        if (tell && number % kLinesBetweenWords == 0) {
+            tell("reading, " + withThousands(boxes.size()) + " boxes so far");
+        }
     }
     if (boxes.empty()) {
         throw InputError("no boxes found; each line should be: min x y z max x y z.");
@@ -107,10 +112,10 @@ std::vector<Aabb<float>> parseTextBoxes(std::string_view text) {
     return boxes;
 }
 
-std::vector<Aabb<float>> readTextBoxes(const std::filesystem::path& path) {
-    const std::string text = readFile(path);
+std::vector<Aabb<float>> readTextBoxes(const std::filesystem::path& path, const TellWaiting& tell) {
+    const std::string text = readText(path);
     try {
-        return parseTextBoxes(text);
+        return parseTextBoxes(text, tell);
     } catch (const InputError& error) {
         throw InputError(path.string() + ": " + error.what());
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/stability/stability_command.hpp>
 
-#include <demos/console/option_checks.hpp>
+#include <demos/console/options.hpp>
 #include <demos/stability/stability.hpp>
 
 #include <CLI/CLI.hpp>
@@ -21,19 +21,19 @@ void declareStability(CLI::App& app, StabilityOptions& options) {
     app.add_flag("--explain", options.isExplained,
                  "tell of each case what is handed in, what is required, and what each one does");
     app.add_option("--seed", options.seed, "seed of all random numbers")
-        ->check(seedFault)
+        ->transform(seedUpTo())
         ->capture_default_str();
     app.add_option("--case-time-limit", options.caseSeconds,
                    "seconds of processor time that a broadphase has for a case (ours ten times "
                    "that)")
-        ->check(positiveSecondsFault)
+        ->transform(positiveSeconds())
         ->capture_default_str();
     app.add_option("--time-limit", options.timeLimit, "after so many seconds begin no other case")
-        ->check(positiveSecondsFault);
-    app.add_option("--json", options.jsonFile, "write everything found to this file");
-    app.add_option("--csv", options.csvFile,
+        ->transform(positiveSeconds());
+    addFileToWrite(app, "--json", options.jsonFile, "write everything found to this file");
+    addFileToWrite(app, "--csv", options.csvFile,
                    "write a row for each case and broadphase to this file");
-    app.add_option("--html", options.htmlFile, "write a page with the table to this file");
+    addFileToWrite(app, "--html", options.htmlFile, "write a page with the table to this file");
     app.add_flag("--quiet", options.quiet, "no progress on stderr");
     app.add_flag("--list", options.list, "say which cases and broadphases there are");
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/try/try_command.hpp>
 
-#include <demos/console/option_checks.hpp>
+#include <demos/console/options.hpp>
 #include <demos/try/try.hpp>
 
 #include <CLI/CLI.hpp>
@@ -27,12 +27,12 @@ void declare(CLI::App& app, TryOptions& options) {
         "exact ones in every step");
     app.add_option("--runs", options.runs, "so many runs with each broadphase, by turns")
         ->capture_default_str()
-        ->check(CLI::Range(1, 1000))
+        ->transform(wholeFrom(1, 1000))
         ->excludes(verify);
     app.add_option("--steps", options.steps, "end the program after so many steps")
-        ->check(CLI::Range(std::uint32_t{1}, tryout::Record::kMaxRows));
+        ->transform(wholeFrom(1, tryout::Record::kMaxRows));
     app.add_option("--seconds", options.seconds, "end the program after so many seconds")
-        ->check(positiveSecondsFault);
+        ->transform(positiveSeconds());
     app.add_option_function<std::string>(
            "--precision",
            [&options](const std::string& name) {
@@ -42,7 +42,7 @@ void declare(CLI::App& app, TryOptions& options) {
            "of the Bullet that the program loads as it runs")
         ->check(CLI::IsMember({"single", "double"}))
         ->type_name("NAME");
-    app.add_option("--json", options.jsonFile, "write everything measured to this file");
+    addFileToWrite(app, "--json", options.jsonFile, "write everything measured to this file");
     app.add_flag("--quiet", options.quiet, "say nothing but the results and what is waited for");
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <tests/benchmarks/benchmark_command.hpp>
 
-#include <demos/console/option_checks.hpp>
+#include <demos/console/options.hpp>
 #include <demos/console/progress.hpp>
 #include <demos/console/result_file.hpp>
 #include <demos/report/stopwatch.hpp>
@@ -33,19 +33,20 @@ void declare(CLI::App& app, BenchmarkOptions& options) {
     app.add_option("--sizes", options.sizes,
                    "numbers of objects, separated by commas, for all that come in any size")
         ->delimiter(',')
-        ->check(CLI::Range(std::int64_t{1}, std::int64_t{10'000'000}));
+        ->transform(demos::wholeFrom(1, 10'000'000));
     app.add_option("--contestants", options.contestants,
                    "who takes part, separated by commas (see --list); without dbvt no ratios")
         ->delimiter(',');
     app.add_option("--frames", options.frames,
                    "measured frames a case (default: 60; of effects: 1000)")
-        ->check(CLI::Range(1, 1'000'000));
+        ->transform(demos::wholeFrom(1, 1'000'000));
     app.add_option("--seed", options.seed, "seed of all scenes")
-        ->check(CLI::NonNegativeNumber)
+        ->transform(demos::seedUpTo())
         ->capture_default_str();
     app.add_option("--time-limit", options.timeLimit, "stop after so many seconds")
-        ->check(demos::positiveSecondsFault);
-    app.add_option("--json", options.jsonFile, "write everything measured to this file");
+        ->transform(demos::positiveSeconds());
+    demos::addFileToWrite(app, "--json", options.jsonFile,
+                          "write everything measured to this file");
     app.add_flag("--quick", options.quick,
                  "at most 300 objects and 5 frames: checks the answers, measures nothing");
     app.add_flag("--quiet", options.quiet, "no progress on stderr");

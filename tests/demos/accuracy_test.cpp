@@ -185,7 +185,7 @@ TEST(Accuracy, RefusesAFolderThatCannotBeWrittenBeforeItMeasures) {
     const Ran taken = run({"--output", folder.file("taken")}, experiments);
     EXPECT_EQ(taken.exitCode, kExitUsage);
     EXPECT_EQ(taken.err,
-              "hashphase: " + folder.file("taken") + "/accuracy.html cannot be written.\n");
+              "hashphase: " + folder.file("taken") + "/accuracy.html is a folder, not a file.\n");
     EXPECT_FALSE(measured);
 }
 

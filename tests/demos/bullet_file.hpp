@@ -20,7 +20,7 @@ struct SmallWorld {
     btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
 };
 
-/// The bytes of a world of so many unit boxes stacked on a static one.
+/// The bytes of a world of so many unit boxes stacked on a static one, of which the first has a name.
 inline std::string serialisedWorld(int bodies) {
     SmallWorld small;
     WorldContents contents(small.world);
@@ -29,6 +29,9 @@ inline std::string serialisedWorld(int bodies) {
         contents.addBody(box, i == 0 ? 0 : 1, btVector3(0, static_cast<btScalar>(i), 0));
     }
     btDefaultSerializer serializer;
+    if (bodies > 0) {
+        serializer.registerNameForPointer(contents.bodies().front().get(), "ground");
+    }
     small.world.serialize(&serializer);
     return {reinterpret_cast<const char*>(serializer.getBufferPointer()),
             static_cast<std::size_t>(serializer.getCurrentBufferSize())};

@@ -9,10 +9,32 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <random>
+#include <sstream>
 
 namespace hashphase::demos {
 namespace {
+
+// What a program without a line of ours saves by Bullet's serializer, in each precision.
+std::vector<std::string> savedLevels(const std::string& kind) {
+    const TemporaryFolder folder;
+    std::vector<std::string> levels;
+    for (const char* writer : {HASHPHASE_LEVEL_WRITERS}) {
+        const std::string path = folder.file("level.bullet");
+        const std::string command = std::string(writer) + " " + kind + " " + path;
+        EXPECT_EQ(std::system(command.c_str()), 0) << command;
+        std::ostringstream bytes;
+        bytes << std::ifstream(path, std::ios::binary).rdbuf();
+        levels.push_back(bytes.str());
+    }
+    return levels;
+}
+
+// The place of the first chunk without a structure that holds these bytes; its header has 24.
+std::size_t placeOfPlainChunk(const std::string& bytes, std::string_view content) {
+    return bytes.find(content) - 24;
+}
 
 TEST(BulletFile, IsAcceptedAsBulletWritesIt) {
     EXPECT_EQ(bulletFileFault(serialisedWorld(3)), "");
@@ -63,7 +85,78 @@ TEST(BulletFile, IsRefusedForChunksThatDoNotFit) {
               std::string::npos);
 }
 
+TEST(BulletFile, IsAcceptedAsEditorsSaveItWithNamesAndPlainNumbers) {
+    for (const char* kind : {"names", "mesh", "multibody", "softbody"}) {
+        for (const std::string& level : savedLevels(kind)) {
+            EXPECT_EQ(bulletFileFault(level), "") << kind << ' ' << level.substr(0, 8);
+            EXPECT_NE(level.find("the floor of the hall"), std::string::npos);
+        }
+    }
+}
+
+TEST(BulletFile, SaysWhatTheImporterPassesOver) {
+    for (const std::string& level : savedLevels("multibody")) {
+        EXPECT_EQ(bulletFileOmissions(level), "1 multi-body");
+    }
+    for (const std::string& level : savedLevels("softbody")) {
+        EXPECT_EQ(bulletFileOmissions(level), "1 soft body");
+    }
+    for (const std::string& level : savedLevels("names")) {
+        EXPECT_EQ(bulletFileOmissions(level), "");
+    }
+}
+
+TEST(BulletFile, OfNothingButMultiBodiesIsRefusedInThoseWords) {
+    for (std::string level : savedLevels("multibody")) {
+        for (std::size_t at = 0; (at = level.find("RBDY", at)) != std::string::npos;) {
+            level.replace(at, 4, "NONE");
+        }
+        EXPECT_EQ(bulletFileFault(level),
+                  "the world in it holds 1 multi-body, which Bullet's importer passes over, and no "
+                  "collision object besides");
+    }
+}
+
+TEST(BulletFile, IsRefusedForANameWithoutAnEnd) {
+    for (std::string level : savedLevels("names")) {
+        const std::size_t place = placeOfPlainChunk(level, "crate");
+        level.replace(level.find("crate"), 8, "crateful");
+        EXPECT_EQ(bulletFileFault(level),
+                  "byte " + std::to_string(place) + ": the name in the chunk has no end");
+    }
+}
+
+TEST(BulletFile, IsRefusedForPlainNumbersThatDoNotFitTheirChunk) {
+    for (std::string level : savedLevels("names")) {
+        const std::size_t place = placeOfPlainChunk(level, "crate");
+        const std::int32_t count = 9;
+        std::memcpy(level.data() + place + 20, &count, sizeof count);
+        EXPECT_EQ(bulletFileFault(level),
+                  "byte " + std::to_string(place) +
+                      ": the chunk holds 8 bytes, but its 9 elements need 9");
+    }
+}
+
 #if HASHPHASE_HAS_BULLET_IMPORTER
+
+TEST(BulletFile, SavedByAnEditorFillsAWorld) {
+    const TemporaryFolder folder;
+    for (const auto& [kind, objects] : std::vector<std::pair<std::string, int>>{
+             {"names", 3}, {"mesh", 4}, {"multibody", 3}, {"softbody", 3}}) {
+        for (const std::string& level : savedLevels(kind)) {
+            const BulletWorldFile file(folder.write("w.bullet", level));
+            EXPECT_EQ(file.omissions(), bulletFileOmissions(level));
+            SmallWorld small;
+            WorldContents contents(small.world);
+            file.fill(contents);
+            EXPECT_EQ(small.world.getNumCollisionObjects(), objects) << kind;
+            EXPECT_EQ(small.world.getNumConstraints(), 1) << kind;
+            for (int step = 0; step < 10; ++step) {
+                small.world.stepSimulation(btScalar(1) / btScalar(60), 0);
+            }
+        }
+    }
+}
 
 TEST(BulletFile, FillsAnyNumberOfWorldsAlike) {
     const TemporaryFolder folder;

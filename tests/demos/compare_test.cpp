@@ -290,6 +290,8 @@ TEST(Compare, ReadsARecordingToItsEndAndNoFurther) {
     EXPECT_NE(outcome.out.find("1 boxes, 3 frames"), std::string::npos) << outcome.out;
     EXPECT_EQ(run({"compare", "--file", path, "--frames", "4"}).err,
               "hashphase: " + path + " holds 3 frames, but 4 were asked for.\n");
+    EXPECT_EQ(run({"compare", "--file", path, "--seed", "7"}).err,
+              "hashphase: --seed is for scenes and boxes as text; no seed changes " + path + ".\n");
 }
 
 #if HASHPHASE_HAS_BULLET_IMPORTER
@@ -299,6 +301,9 @@ TEST(Compare, RunsAWorldFromAFileInEveryBroadphase) {
     const Outcome outcome = run({"compare", "--file", path, "--frames", "20"});
     EXPECT_EQ(outcome.exitCode, kExitOk) << outcome.err;
     EXPECT_NE(outcome.out.find("6 bodies, 20 frames: "), std::string::npos) << outcome.out;
+    const Outcome capitals =
+        run({"compare", "--file", folder.write("W.BULLET", serialisedWorld(6)), "--frames", "2"});
+    EXPECT_NE(capitals.out.find("6 bodies, 2 frames: "), std::string::npos) << capitals.err;
     EXPECT_EQ(run({"compare", "--file", path, "--objects", "3"}).exitCode, kExitUsage);
 }
 #endif

@@ -19,13 +19,13 @@
 namespace hashphase::demos {
 namespace {
 
-using nlohmann::json;
+using SchemaJson = nlohmann::json;
 
-json schemaOfFiles() {
-    return json::parse(effectsFileSchema());
+SchemaJson schemaOfFiles() {
+    return SchemaJson::parse(effectsFileSchema());
 }
 
-bool isOfType(const json& value, const std::string& type) {
+bool isOfType(const SchemaJson& value, const std::string& type) {
     return (type == "object" && value.is_object()) || (type == "array" && value.is_array()) ||
            (type == "string" && value.is_string()) || (type == "boolean" && value.is_boolean()) ||
            (type == "number" && value.is_number()) ||
@@ -33,26 +33,27 @@ bool isOfType(const json& value, const std::string& type) {
             value.get<double>() == std::trunc(value.get<double>()));
 }
 
-bool hasType(const json& value, const json& rule) {
-    const json types = rule["type"].is_array() ? rule["type"] : json::array({rule["type"]});
+bool hasType(const SchemaJson& value, const SchemaJson& rule) {
+    const SchemaJson types =
+        rule["type"].is_array() ? rule["type"] : SchemaJson::array({rule["type"]});
     return std::any_of(types.begin(), types.end(),
-                       [&](const json& type) { return isOfType(value, type); });
+                       [&](const SchemaJson& type) { return isOfType(value, type); });
 }
 
-bool isInRange(const json& number, const json& rule) {
+bool isInRange(const SchemaJson& number, const SchemaJson& rule) {
     return number >= rule.value("minimum", number) && number <= rule.value("maximum", number);
 }
 
-bool isValid(const json& value, const json& rule);
+bool isValid(const SchemaJson& value, const SchemaJson& rule);
 
-bool hasValidElements(const json& array, const json& rule) {
+bool hasValidElements(const SchemaJson& array, const SchemaJson& rule) {
     return array.size() >= rule["minItems"] && array.size() <= rule["maxItems"] &&
            std::all_of(array.begin(), array.end(),
-                       [&](const json& element) { return isValid(element, rule["items"]); });
+                       [&](const SchemaJson& element) { return isValid(element, rule["items"]); });
 }
 
 // No object may have other members than those.
-bool hasValidMembers(const json& object, const json& rule) {
+bool hasValidMembers(const SchemaJson& object, const SchemaJson& rule) {
     EXPECT_EQ(rule["additionalProperties"], false);
     const auto members = object.items();
     return std::all_of(members.begin(), members.end(), [&](const auto& member) {
@@ -61,10 +62,10 @@ bool hasValidMembers(const json& object, const json& rule) {
     });
 }
 
-bool isValid(const json& value, const json& rule) {
+bool isValid(const SchemaJson& value, const SchemaJson& rule) {
     if (rule.contains("anyOf")) {
         return std::any_of(rule["anyOf"].begin(), rule["anyOf"].end(),
-                           [&](const json& each) { return isValid(value, each); });
+                           [&](const SchemaJson& each) { return isValid(value, each); });
     }
     if (rule.contains("const")) {
         return value == rule["const"];
@@ -82,15 +83,15 @@ TEST(EffectsSchema, IsOfTheDraftOf2020) {
 }
 
 TEST(EffectsSchema, DescribesEveryField) {
-    const json schema = schemaOfFiles();
+    const SchemaJson schema = schemaOfFiles();
     for (const EffectsField& field : effectsFields()) {
         std::string place;
         std::istringstream path(pathOf(field.section, field.name));
         for (std::string name; std::getline(path, name, '.');) {
             place += "/properties/" + name;
         }
-        ASSERT_TRUE(schema.contains(json::json_pointer(place))) << place;
-        const json& rule = schema[json::json_pointer(place)];
+        ASSERT_TRUE(schema.contains(SchemaJson::json_pointer(place))) << place;
+        const SchemaJson& rule = schema[SchemaJson::json_pointer(place)];
         EXPECT_EQ(rule["description"].get<std::string>().rfind(field.meaning, 0), 0U) << place;
         const bool hasFields = std::holds_alternative<SectionField>(field.kind) ||
                                std::holds_alternative<EffectField>(field.kind);
@@ -101,21 +102,21 @@ TEST(EffectsSchema, DescribesEveryField) {
 }
 
 TEST(EffectsSchema, HoldsForTheExamplesAndForWhatIsWritten) {
-    const json schema = schemaOfFiles();
+    const SchemaJson schema = schemaOfFiles();
     for (const char* name : {"paper", "projectiles", "lookers", "budget"}) {
         const std::string text =
             readFile(std::string(HASHPHASE_SCENE_EXAMPLES "/") + name + ".json");
-        EXPECT_TRUE(isValid(json::parse(text), schema)) << name;
+        EXPECT_TRUE(isValid(SchemaJson::parse(text), schema)) << name;
     }
     EffectsFile file;
     for (const Effect effect : kAllEffects) {
         file.effects.declare(effect);
     }
-    EXPECT_TRUE(isValid(json::parse(effectsFileText(file)), schema));
+    EXPECT_TRUE(isValid(SchemaJson::parse(effectsFileText(file)), schema));
 }
 
 TEST(EffectsSchema, RefusesWhatTheReaderRefuses) {
-    const json schema = schemaOfFiles();
+    const SchemaJson schema = schemaOfFiles();
     for (const char* text : {
              "[]",
              R"({"titel": ""})",
@@ -135,7 +136,7 @@ TEST(EffectsSchema, RefusesWhatTheReaderRefuses) {
              R"({"effects": {"sleeping": {"slowBelow": -1}}})",
              R"({"effects": {"radar": {"cellSize": 0}}})",
          }) {
-        EXPECT_FALSE(isValid(json::parse(text), schema)) << text;
+        EXPECT_FALSE(isValid(SchemaJson::parse(text), schema)) << text;
         EXPECT_THROW(static_cast<void>(parseEffectsFile(text, "scene.json")), InputError) << text;
     }
 }

@@ -81,6 +81,38 @@ TEST(HostileFiles, ThatAreTooLargeAreNotRead) {
     expectRefused(path);
 }
 
+// As editors and spreadsheets of Windows write it.
+TEST(TextFiles, MayBeginWithAByteOrderMarkAndEndLinesInAnyWay) {
+    const TemporaryFolder folder;
+    const std::string mark = "\xef\xbb\xbf";
+    EXPECT_EQ(readText(folder.write("text", mark + "a\r\nb")), "a\r\nb");
+    EXPECT_EQ(readText(folder.write("none", mark)), "");
+    EXPECT_EQ(readTextBoxes(folder.write("boxes", mark + "0 0 0 1 1 1\r\n2 2 2 3 3 3\r\n")).size(),
+              2U);
+    EXPECT_EQ(messageOf<InputError>([&] {
+                  static_cast<void>(readTextBoxes(folder.write("bad", mark + "zero 0 0 1 1 1")));
+              }),
+              folder.file("bad") + ": line 1, column 1: expected a number, found 'zero'.")
+        << "columns are counted behind the mark";
+    EXPECT_EQ(readEffectsFile(folder.write("scene", mark + "{\"scene\":\r\n{\"objects\": 7}}\r\n"))
+                  .scene.objects,
+              7U);
+}
+
+TEST(TextFiles, OfWideLettersAreRefusedByName) {
+    const TemporaryFolder folder;
+    const std::string why = " is no plain text but UTF-16 or UTF-32: save it again as UTF-8.";
+    using namespace std::string_literals;
+    for (const std::string& bytes :
+         {"\xff\xfe\x30\0"s, "\xfe\xff\0\x30"s, "0\0 \0"s, "\0{\0}"s, "\xff\xfe\0\0{\0\0\0"s}) {
+        const std::string path = folder.write("wide", bytes);
+        EXPECT_EQ(messageOf<InputError>([&] { static_cast<void>(readTextBoxes(path)); }),
+                  path + why);
+        EXPECT_EQ(messageOf<InputError>([&] { static_cast<void>(readEffectsFile(path)); }),
+                  path + why);
+    }
+}
+
 TEST(HostileFiles, ThatHoldSomethingElseAreRefused) {
     const TemporaryFolder folder;
     expectRefused(folder.write("zeros", std::string(5000, '\0')));

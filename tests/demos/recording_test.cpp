@@ -141,10 +141,12 @@ TEST(Recording, IsRefusedForInvertedBoxesAndNamesTheAxis) {
 
 TEST(Recording, IsRefusedWhenThereIsNoFile) {
     const TemporaryFolder folder;
-    for (const std::string& path : {folder.file("none.aabbs"), folder.file("")}) {
-        EXPECT_EQ(messageOf<InputError>([&path] { const RecordingScene scene(path, 0); }),
-                  path + " cannot be opened for reading.");
-    }
+    const auto faultOf = [](const std::string& path) {
+        return messageOf<InputError>([&path] { const RecordingScene scene(path, 0); });
+    };
+    const std::string none = folder.file("none.aabbs");
+    EXPECT_EQ(faultOf(none), none + " cannot be opened for reading.");
+    EXPECT_EQ(faultOf(folder.file("")), folder.file("") + " is a folder, not a file.");
 }
 
 }  // namespace

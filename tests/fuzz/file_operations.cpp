@@ -274,6 +274,7 @@ private:
         if (!fault.empty()) {
             return;
         }
+        EXPECT_LT(demos::bulletFileOmissions(bytes_).size(), 100U);
         const std::size_t table = bytes_.rfind("DNA1");
         ASSERT_NE(table, std::string::npos);
         for (const std::size_t length :

@@ -3,21 +3,32 @@
 
 #include <demos/console/format.hpp>
 #include <demos/console/nearest_name.hpp>
+#include <demos/console/number_words.hpp>
 #include <demos/console/quoted_word.hpp>
 #include <demos/scenes/input_error.hpp>
 
-#include <charconv>
-#include <cmath>
+#include <limits>
+#include <optional>
 #include <sstream>
 #include <variant>
 
 namespace hashphase::demos {
 namespace {
 
-template <class Number>
-bool isNumber(const std::string& word, Number& number) {
-    const char* const end = word.data() + word.size();
-    return std::from_chars(word.data(), end, number) == std::from_chars_result{end, std::errc()};
+bool isNumber(const std::string& word, double& number) {
+    const std::optional<double> read = finiteNumber(word);
+    number = read.value_or(0);
+    return read.has_value();
+}
+
+bool isNumber(const std::string& word, long long& number) {
+    const bool isNegative = word.starts_with('-');
+    const std::optional<std::uint64_t> read = wholeNumber(word.substr(isNegative ? 1 : 0));
+    if (!read || *read > std::uint64_t{std::numeric_limits<long long>::max()}) {
+        return false;
+    }
+    number = static_cast<long long>(*read) * (isNegative ? -1 : 1);
+    return true;
 }
 
 }  // namespace

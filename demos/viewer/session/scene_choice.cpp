@@ -3,6 +3,7 @@
 
 #include <demos/console/format.hpp>
 #include <demos/console/nearest_name.hpp>
+#include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <demos/viewer/stage/bullet_stage.hpp>
 #include <demos/viewer/stage/paper_stage.hpp>
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <stdexcept>
 
@@ -66,15 +66,11 @@ std::unique_ptr<Stage> makePaperStage(EffectsFile file, const SceneChoice& choic
     }
 }
 
-bool hasExtension(const SceneChoice& choice, std::string_view extension) {
-    return std::filesystem::path(choice.file).extension() == extension;
-}
-
 std::unique_ptr<Stage> openFile(const SceneChoice& choice) {
     if (isBoxRecording(choice)) {
         return std::make_unique<RecordingStage>(choice.file, choice.objects.value_or(0));
     }
-    if (hasExtension(choice, ".json")) {
+    if (hasExtension(choice.file, ".json")) {
         return makePaperStage(readEffectsFile(choice.file), choice);
     }
     throw InputError(choice.file +
@@ -101,12 +97,12 @@ const std::string& titleOf(const SceneChoice& choice) {
 }
 
 bool isBoxRecording(const SceneChoice& choice) {
-    return hasExtension(choice, ".aabbs");
+    return hasExtension(choice.file, ".aabbs");
 }
 
 std::uint64_t ownSeed(const SceneChoice& choice) {
-    return hasExtension(choice, ".json") ? readEffectsFile(choice.file).scene.seed
-                                         : SceneChoice().seed;
+    return hasExtension(choice.file, ".json") ? readEffectsFile(choice.file).scene.seed
+                                              : SceneChoice().seed;
 }
 
 std::size_t objectCount(const SceneChoice& choice) {

@@ -15,6 +15,10 @@ Script::Script(std::string_view text, std::string name) : name_(std::move(name))
     for (std::string line; std::getline(lines, line);) {
         lines_.push_back(line);
     }
+    if (std::all_of(lines_.begin(), lines_.end(),
+                    [](const std::string& line) { return firstWord(line).empty(); })) {
+        throw InputError(name_ + " holds no command.");
+    }
 }
 
 void Script::feed(Session& session) {

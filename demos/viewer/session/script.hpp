@@ -15,7 +15,7 @@ namespace hashphase::demos {
 /// Lines of commands, one after the other.
 class Script {
 public:
-    /// `name` is what errors begin with.
+    /// `name` is what errors begin with. Throws InputError where there is no command.
     Script(std::string_view text, std::string name);
 
     /// Runs lines until the session waits for steps, or for a picture to be taken, or there are no more. Throws

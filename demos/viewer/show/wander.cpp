@@ -108,14 +108,18 @@ Run::Run(const WanderOptions& options, Console& console) : options_(options), co
         throw InputError("--screenshot is for --headless; in a window press F12.");
     }
     if (!options.replayFile.empty()) {
-        playback_.emplace(CommandLog::parse(readFile(options.replayFile), options.replayFile));
+        playback_.emplace(CommandLog::parse(readText(options.replayFile), options.replayFile));
     }
     if (!options.scriptFile.empty()) {
-        script_.emplace(readFile(options.scriptFile), options.scriptFile);
+        script_.emplace(readText(options.scriptFile), options.scriptFile);
     }
     const auto [width, height] = parseSize(options.size);
-    session_ = std::make_unique<Session>(playback_ ? playback_->log().choice() : chosen(options),
-                                         width, height);
+    {
+        const SceneChoice choice = playback_ ? playback_->log().choice() : chosen(options);
+        Progress opening(console.err, progressStyle(console, options.quiet),
+                         "opening " + titleOf(choice), 1);
+        session_ = std::make_unique<Session>(choice, width, height);
+    }
     record_.emplace(options.recordFile);
     json_.emplace(options.jsonFile);
     const ResultFile screenshot(options.screenshotFile);  // as a wrong path is to cost no waiting

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/console/option_checks.hpp>
+#include <demos/console/options.hpp>
 #include <demos/viewer/show/wander.hpp>
 
 #include <CLI/CLI.hpp>
@@ -16,15 +16,15 @@ std::vector<CLI::Option*> declareScene(CLI::App& app, WanderOptions& options) {
     CLI::Option* scene =
         app.add_option("--scene", options.scene.name, "scene (see --list)")->capture_default_str();
     CLI::Option* file =
-        app.add_option("--file", options.scene.file,
-                       "instead of a scene: a scene file (.json), or a recording of boxes (.aabbs)")
+        addFileToRead(app, "--file", options.scene.file,
+                      "instead of a scene: a scene file (.json), or a recording of boxes (.aabbs)")
             ->excludes(scene);
     CLI::Option* objects = app.add_option("--objects", options.scene.objects,
                                           "number of bodies (default: the scene's)");
-    objects->check(CLI::Range(1, 1'000'000));
+    objects->transform(wholeFrom(1, kMostObjects));
     CLI::Option* seed =
         app.add_option("--seed", options.seed, "seed of the scene (default: 1, or a scene file's)");
-    seed->check(CLI::Range(std::int64_t{0}, std::int64_t{4'294'967'295}));
+    seed->transform(seedUpTo(kMostSeed));
     CLI::Option* commands =
         app.add_option("--do", options.commands, "run a command at the start; may be given again");
     commands->allow_extra_args(false);
@@ -35,9 +35,9 @@ std::vector<CLI::Option*> declareScene(CLI::App& app, WanderOptions& options) {
 void declareRun(CLI::App& app, WanderOptions& options,
                 const std::vector<CLI::Option*>& sceneOptions) {
     CLI::Option* script =
-        app.add_option("--script", options.scriptFile, "then run the commands of this file");
-    CLI::Option* replay = app.add_option(
-        "--replay", options.replayFile,
+        addFileToRead(app, "--script", options.scriptFile, "then run the commands of this file");
+    CLI::Option* replay = addFileToRead(
+        app, "--replay", options.replayFile,
         "play back a recording, and compare what comes out; a window pauses it (P), steps "
         "(O) and begins it again (R), but takes no command that would change it");
     replay->excludes(script);
@@ -47,15 +47,15 @@ void declareRun(CLI::App& app, WanderOptions& options,
     app.add_option("--frames", options.frames,
                    "so many frames (default: until the window is closed; 300 without a window, or "
                    "fewer where a command pauses it)")
-        ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000}))
+        ->transform(wholeFrom(1, 1'000'000'000))
         ->excludes(script)
         ->excludes(replay);
     app.add_option("--time-limit", options.timeLimit,
                    "stop after so many seconds; a script or a replay that this cuts off has failed")
-        ->check(positiveSecondsFault);
+        ->transform(positiveSeconds());
     app.add_option("--threads", options.threads,
                    "simulate on so many threads at most (default: all; Bullet's scenes on one)")
-        ->check(CLI::Range(1, 1024));
+        ->transform(wholeFrom(1, 1024));
 }
 
 void declareWander(CLI::App& app, WanderOptions& options) {
@@ -65,9 +65,9 @@ void declareWander(CLI::App& app, WanderOptions& options) {
         ->capture_default_str();
     app.add_flag("--headless", options.isHeadless,
                  "without a window: pictures by screenshots only");
-    app.add_option("--record", options.recordFile, "write a recording at the end");
-    app.add_option("--screenshot", options.screenshotFile, "write a picture at the end (PNG)");
-    app.add_option("--json", options.jsonFile, "write all numbers at the end to this file");
+    addFileToWrite(app, "--record", options.recordFile, "write a recording at the end");
+    addFileToWrite(app, "--screenshot", options.screenshotFile, "write a picture at the end (PNG)");
+    addFileToWrite(app, "--json", options.jsonFile, "write all numbers at the end to this file");
     app.add_flag("--quiet", options.quiet, "no progress on stderr");
     app.add_flag("--list", options.list, "say which scenes, commands, keys and readings there are");
 }

@@ -119,6 +119,13 @@ TEST(Commands, SayWhatIsWrongAndWhatWouldBeRight) {
               "Without culling there is no frustum to freeze: run \"effect culling on\".");
 }
 
+TEST(Commands, TakeNumbersHoweverTheyAreWritten) {
+    Session session = smallSession();
+    EXPECT_TRUE(runScript(session, "step 1e1\r\nexpect frame = 1e1\n").empty());
+    EXPECT_TRUE(runScript(session, "step +5\nexpect frame = 15.0\n").empty());
+    EXPECT_NE(faultOf(session, "step 0x10").find("N is a whole number from "), std::string::npos);
+}
+
 TEST(Commands, ChangeNothingWhereTheyFail) {
     Session session = smallSession();
     step(session, 3);

@@ -324,6 +324,12 @@ TEST_F(Wander, SaysWhatIsWrong) {
     EXPECT_EQ(faultOf({"--file", "a.txt"}),
               "hashphase: a.txt is neither a scene file (.json) nor a recording of boxes "
               "(.aabbs).\n");
+    for (const char* nothing : {" \r\n", "# a comment\n"}) {
+        EXPECT_EQ(faultOf({"--script", file("nothing", nothing)}),
+                  "hashphase: " + file("nothing") + " holds no command.\n");
+    }
+    EXPECT_NE(faultOf({"--objects", "2e6"}).find("from 1 to 1,000,000"), std::string::npos);
+    EXPECT_NE(faultOf({"--do", ""}).find("--do: the value is empty"), std::string::npos);
     EXPECT_NE(faultOf({"--replay", file("empty", "{}")}).find("cannot be read as a recording"),
               std::string::npos);
 }

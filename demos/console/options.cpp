@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/console/options.hpp>
+
+#include <demos/console/format.hpp>
+#include <demos/console/number_words.hpp>
+#include <demos/console/quoted_word.hpp>
+
+#include <charconv>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace hashphase::demos {
+namespace {
+
+// What options are called in the help tells, too, what is done with their values.
+constexpr const char* kFileToRead = "FILE";
+constexpr const char* kFileToWrite = "NEW-FILE";
+constexpr const char* kFolderToWrite = "FOLDER";
+
+std::string limitText(std::uint64_t limit) {
+    return limit == std::numeric_limits<std::uint64_t>::max() ? "2^64 - 1" : withThousands(limit);
+}
+
+// As CLI11 reads it: without separators and exponents, and not as octal.
+CLI::Validator wholeValidator(const std::string& whatItIs, std::uint64_t least, std::uint64_t most,
+                              const std::string& help) {
+    return {[whatItIs, least, most](std::string& text) {
+                const std::optional<std::uint64_t> number = wholeNumber(text);
+                if (!number || *number < least || *number > most) {
+                    return quotedWord(text) + " is not " + whatItIs + " from " + limitText(least) +
+                           " to " + limitText(most);
+                }
+                text = std::to_string(*number);
+                return std::string();
+            },
+            help};
+}
+
+template <class IsRight>
+CLI::Validator numberValidator(const std::string& whatItIs, const IsRight& isRight) {
+    return {[whatItIs, isRight](std::string& text) {
+                const std::optional<double> number = finiteNumber(text);
+                if (!number || !isRight(*number)) {
+                    return quotedWord(text) + " is not " + whatItIs;
+                }
+                // All its digits, as CLI11 reads them.
+                std::array<char, 32> digits{};
+                text.assign(
+                    digits.data(),
+                    std::to_chars(digits.data(), digits.data() + digits.size(), *number).ptr);
+                return std::string();
+            },
+            ""};
+}
+
+CLI::Option* addPath(CLI::App& app, const std::string& name, std::string& path,
+                     const std::string& description, const char* type, std::string instead) {
+    return app.add_option(name, path, description)
+        ->type_name(type)
+        ->check([instead = std::move(instead)](const std::string& text) {
+            return text == "-" ? "'-' names no file here; " + instead : std::string();
+        });
+}
+
+bool writes(const CLI::Option& option) {
+    return option.get_type_name() == kFileToWrite;
+}
+
+bool namesFile(const CLI::Option& option) {
+    return writes(option) || option.get_type_name() == kFileToRead;
+}
+
+// Devices are no files that anything is lost in.
+bool isSameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
+    std::error_code error;
+    if (std::filesystem::exists(a, error) && std::filesystem::exists(b, error)) {
+        return std::filesystem::equivalent(a, b, error) &&
+               std::filesystem::is_regular_file(a, error);
+    }
+    return std::filesystem::weakly_canonical(a, error) ==
+           std::filesystem::weakly_canonical(b, error);
+}
+
+std::string clashOf(const CLI::Option& a, const CLI::Option& b) {
+    const auto path = a.as<std::string>();
+    if (!(writes(a) || writes(b)) || !isSameFile(path, b.as<std::string>())) {
+        return {};
+    }
+    if (writes(a) && writes(b)) {
+        return a.get_name() + " and " + b.get_name() + " would both be written to " + path + ".";
+    }
+    const bool readsFirst = writes(b);
+    return (readsFirst ? b : a).get_name() + " would be written over what " +
+           (readsFirst ? a : b).get_name() + " reads: " + path + ".";
+}
+
+}  // namespace
+
+CLI::Validator wholeFrom(std::uint64_t least, std::uint64_t most) {
+    return wholeValidator("a whole number", least, most,
+                          limitText(least) + " to " + limitText(most));
+}
+
+CLI::Validator seedUpTo(std::uint64_t most) {
+    return wholeValidator("a seed, which is a whole number", 0, most, "");
+}
+
+CLI::Validator positiveSeconds() {
+    return numberValidator("a number of seconds above 0",
+                           [](double seconds) { return seconds > 0; });
+}
+
+CLI::Validator metresFrom(double least, double most) {
+    return numberValidator(
+        "a number of metres from " + plain(least) + " to " + plain(most),
+        [least, most](double metres) { return metres >= least && metres <= most; });
+}
+
+CLI::Option* addFileToRead(CLI::App& app, const std::string& name, std::string& path,
+                           const std::string& description) {
+    return addPath(app, name, path, description, kFileToRead,
+                   "nothing is read from the standard input: save it to a file first");
+}
+
+CLI::Option* addFileToWrite(CLI::App& app, const std::string& name, std::string& path,
+                            const std::string& description) {
+    return addPath(app, name, path, description, kFileToWrite, "name one, such as /dev/stdout");
+}
+
+CLI::Option* addFolderToWrite(CLI::App& app, const std::string& name, std::string& path,
+                              const std::string& description) {
+    return addPath(app, name, path, description, kFolderToWrite, "name a folder");
+}
+
+void checkValues(CLI::App& app) {
+    for (CLI::Option* option : app.get_options()) {
+        if (option->get_items_expected_max() == 0) {
+            continue;  // a flag
+        }
+        const bool isList = option->get_delimiter() != '\0';
+        // Before all that looks at the value.
+        option->transform(CLI::Validator(
+            [isList](std::string& text) {
+                const std::string_view word = withoutBlanks(text);
+                if (word.empty()) {
+                    return std::string("the value is empty");
+                }
+                if (isList) {
+                    text = std::string(word);
+                }
+                return std::string();
+            },
+            ""));
+    }
+}
+
+std::string pathClash(const CLI::App& app) {
+    const std::vector<const CLI::Option*> options =
+        app.get_options([](const CLI::Option* option) { return option->count() > 0; });
+    for (std::size_t b = 0; b < options.size(); ++b) {
+        for (std::size_t a = 0; a < b; ++a) {
+            if (namesFile(*options[a]) && namesFile(*options[b])) {
+                if (std::string fault = clashOf(*options[a], *options[b]); !fault.empty()) {
+                    return fault;
+                }
+            }
+        }
+    }
+    return {};
+}
+
+}  // namespace hashphase::demos

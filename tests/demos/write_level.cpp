@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Zlib
+
+// Writes a world as an editor saves it, by Bullet's own serializer: write-level KIND FILE. It knows
+// nothing of hashphase, and is built in each precision of Bullet.
+
+#include <BulletCollision/CollisionDispatch/btInternalEdgeUtility.h>
+#include <BulletCollision/CollisionShapes/btTriangleInfoMap.h>
+#include <BulletDynamics/Featherstone/btMultiBody.h>
+#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
+#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
+#include <BulletSoftBody/btSoftBody.h>
+#include <BulletSoftBody/btSoftBodyHelpers.h>
+#include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
+#include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
+#include <btBulletDynamicsCommon.h>
+
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+namespace {
+
+bool save(btDiscreteDynamicsWorld& world, btDefaultSerializer& serializer, const char* path) {
+    world.serialize(&serializer);
+    std::FILE* const file = std::fopen(path, "wb");
+    const auto size = static_cast<std::size_t>(serializer.getCurrentBufferSize());
+    const bool isWritten =
+        file != nullptr && std::fwrite(serializer.getBufferPointer(), 1, size, file) == size;
+    return file != nullptr && std::fclose(file) == 0 && isWritten;
+}
+
+// A floor, two crates and a hinge between them, of which each has a name, and so have the shapes.
+struct Crates {
+    btBoxShape floorShape{btVector3(50, 1, 50)};
+    btBoxShape crateShape{btVector3(1, 1, 1)};
+    btRigidBody floor{body(0, floorShape, {0, -1, 0})};
+    btRigidBody first{body(1, crateShape, {0, 1, 0})};
+    btRigidBody second{body(1, crateShape, {0, 4, 0})};
+    btHingeConstraint hinge{first, second, {0, 1.5, 0}, {0, -1.5, 0}, {1, 0, 0}, {1, 0, 0}};
+
+    explicit Crates(btDiscreteDynamicsWorld& world) {
+        for (btRigidBody* each : {&floor, &first, &second}) {
+            world.addRigidBody(each);
+        }
+        world.addConstraint(&hinge);
+    }
+
+    static btRigidBody::btRigidBodyConstructionInfo body(btScalar mass, btCollisionShape& shape,
+                                                         const btVector3& place) {
+        btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, &shape, btVector3(1, 1, 1));
+        info.m_startWorldTransform.setOrigin(place);
+        return info;
+    }
+
+    void name(btDefaultSerializer& serializer) const {
+        static const char* const kCrate = "crate";  // of two bodies: it is written once
+        serializer.registerNameForPointer(&floor, "the floor of the hall");
+        serializer.registerNameForPointer(&first, kCrate);
+        serializer.registerNameForPointer(&second, kCrate);
+        serializer.registerNameForPointer(&floorShape, "f");
+        serializer.registerNameForPointer(&crateShape, "Kiste (gro\xc3\x9f)");
+        serializer.registerNameForPointer(&hinge, "door hinge");
+    }
+};
+
+template <class World, class Configuration = btDefaultCollisionConfiguration,
+          class Solver = btSequentialImpulseConstraintSolver>
+struct Place {
+    Configuration configuration;
+    btCollisionDispatcher dispatcher{&configuration};
+    btDbvtBroadphase broadphase;
+    Solver solver;
+    World world{&dispatcher, &broadphase, &solver, &configuration};
+};
+
+bool writeNames(const char* path) {
+    Place<btDiscreteDynamicsWorld> place;
+    const Crates crates(place.world);
+    btDefaultSerializer serializer;
+    crates.name(serializer);
+    return save(place.world, serializer, path);
+}
+
+// A ground of triangles, whose edges Bullet keeps as arrays of plain numbers.
+bool writeMesh(const char* path) {
+    Place<btDiscreteDynamicsWorld> place;
+    const Crates crates(place.world);
+    btTriangleMesh mesh;
+    for (int i = 0; i < 20; ++i) {
+        const btScalar x(i);
+        mesh.addTriangle({x, 0, 0}, {x + 1, 0, 0}, {x, 0, 1});
+        mesh.addTriangle({x + 1, 0, 0}, {x + 1, 0, 1}, {x, 0, 1});
+    }
+    btBvhTriangleMeshShape shape(&mesh, true);
+    btTriangleInfoMap edges;
+    btGenerateInternalEdgeInfo(&shape, &edges);
+    btRigidBody ground(Crates::body(0, shape, {0, 0, 0}));
+    place.world.addRigidBody(&ground);
+    btDefaultSerializer serializer;
+    crates.name(serializer);
+    serializer.registerNameForPointer(&ground, "ground");
+    const bool isSaved = save(place.world, serializer, path);
+    place.world.removeRigidBody(&ground);
+    return isSaved;
+}
+
+bool writeMultiBody(const char* path) {
+    Place<btMultiBodyDynamicsWorld, btDefaultCollisionConfiguration, btMultiBodyConstraintSolver>
+        place;
+    const Crates crates(place.world);
+    constexpr int kLinks = 3;
+    btMultiBody arm(kLinks, 0, btVector3(0, 0, 0), true, false);
+    arm.setBaseName("base");
+    for (int i = 0; i < kLinks; ++i) {
+        arm.setupRevolute(i, 1, btVector3(1, 1, 1), i - 1, btQuaternion(0, 0, 0, 1),
+                          btVector3(1, 0, 0), btVector3(0, 1, 0), btVector3(0, 1, 0));
+        arm.getLink(i).m_linkName = "link";
+        arm.getLink(i).m_jointName = "joint";
+    }
+    arm.finalizeMultiDof();
+    place.world.addMultiBody(&arm);
+    btBoxShape shape(btVector3(1, 1, 1));
+    btMultiBodyLinkCollider collider(&arm, 0);
+    collider.setCollisionShape(&shape);
+    arm.getLink(0).m_collider = &collider;
+    place.world.addCollisionObject(&collider);
+    btDefaultSerializer serializer;
+    crates.name(serializer);
+    for (const char* name :
+         {arm.getBaseName(), arm.getLink(0).m_linkName, arm.getLink(0).m_jointName}) {
+        serializer.registerNameForPointer(name, name);
+    }
+    const bool isSaved = save(place.world, serializer, path);
+    place.world.removeCollisionObject(&collider);
+    place.world.removeMultiBody(&arm);
+    return isSaved;
+}
+
+bool writeSoftBody(const char* path) {
+    Place<btSoftRigidDynamicsWorld, btSoftBodyRigidBodyCollisionConfiguration> place;
+    const Crates crates(place.world);
+    const std::unique_ptr<btSoftBody> sheet(btSoftBodyHelpers::CreatePatch(
+        place.world.getWorldInfo(), {-4, 6, -4}, {4, 6, -4}, {-4, 6, 4}, {4, 6, 4}, 5, 5, 0, true));
+    sheet->setPose(true, true);
+    place.world.addSoftBody(sheet.get());
+    btDefaultSerializer serializer;
+    crates.name(serializer);
+    const bool isSaved = save(place.world, serializer, path);
+    place.world.removeSoftBody(sheet.get());
+    return isSaved;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const struct {
+        const char* name;
+        bool (*write)(const char* path);
+    } kinds[] = {{"names", writeNames},
+                 {"mesh", writeMesh},
+                 {"multibody", writeMultiBody},
+                 {"softbody", writeSoftBody}};
+    for (const auto& kind : kinds) {
+        if (argc == 3 && std::strcmp(argv[1], kind.name) == 0) {
+            return kind.write(argv[2]) ? 0 : 1;
+        }
+    }
+    return 2;
+}
