@@ -135,7 +135,7 @@ struct GroupQuery : Query<Scalar> {
     GroupQuery(const LevelView<Scalar>& level, const GroupsView& groups, const Query<Scalar>& query)
         : Query<Scalar>(query),
           view(&groups),
-          slots(level.slots),
+          slots(level.entrySlots),
           own(groups.groups[2 * std::size_t{groups.slotOfQuery[query.number]}]) {}
 
     [[nodiscard]] bool isFor(const ProxyGroups& other) const {

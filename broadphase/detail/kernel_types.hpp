@@ -220,8 +220,8 @@ struct Kernels {
                       const Scalar* const* queries, std::uint32_t first, std::uint32_t last,
                       PairSink& found, KernelCost& cost);
 
-    /// The same for all groups, but for entries that are not within reach of ways[wayOf[i]] between the times 0 and
-    /// 1; some that it just misses may be found.
+    /// The same for all groups, but for entries that are not within reach of ways[wayOf[i]] between
+    /// the times 0 and 1; some that it just misses may be found.
     void (*walkWays)(const LevelView<Scalar>& level, const Scalar* const* queries,
                      const Way<Scalar>* ways, const std::uint32_t* wayOf, std::uint32_t first,
                      std::uint32_t last, PairSink& found, KernelCost& cost);
