@@ -42,8 +42,11 @@ Grid<Scalar>::~Grid() {
 // --- Proxies -------------------------------------------------------------------------------------
 
 template <class Scalar>
-ProxyId Grid<Scalar>::add(const Box& box, Mobility mobility) {
+ProxyId Grid<Scalar>::add(const Box& box, Mobility mobility, const ProxyGroups& groups) {
     HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(this), detail::kMustNotChange);
+    if (groups != ProxyGroups{}) {
+        makeGroups();
+    }
     beforeChange();  // before anything is listed that it does not have
     // It may be that of another proxy, which moves. NOLINTNEXTLINE(*-unnecessary-copy-initialization)
     const Box own = box;
@@ -54,6 +57,12 @@ ProxyId Grid<Scalar>::add(const Box& box, Mobility mobility) {
         records_.emplace_back();
     } else {
         firstFree_ = records_[slot].restingEntry;
+    }
+    if (!groups_.empty()) {
+        groups_.resize(2 * records_.size());
+        kindOfSlot_.resize(records_.size());
+        noteGroups(slot, groups);
+        groups_[2 * std::size_t{slot} + 1] = groups;
     }
     Record& record = records_[slot];
     ++record.generation;
@@ -86,6 +95,10 @@ void Grid<Scalar>::reserveSlots(std::size_t slotCount) {
     mobileSlots_.reserve(room);
     woken_.reserve(room);
     waiting_.reserve(room);
+    if (!groups_.empty()) {
+        groups_.reserve(2 * room);
+        kindOfSlot_.reserve(room);
+    }
     records_.reserve(room);  // last: the others have room for as many
 }
 
@@ -124,6 +137,51 @@ void Grid<Scalar>::remove(ProxyId id) {
 }
 
 template <class Scalar>
+void Grid<Scalar>::setGroups(ProxyId id, const ProxyGroups& groups) {
+    HASHPHASE_ASSERT(contains(id), "Only a proxy of this grid that was not removed has groups.");
+    HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(this), detail::kMustNotChange);
+    if (groups == groupsNow(id.index)) {
+        return;
+    }
+    makeGroups();
+    noteGroups(id.index, groups);
+    areRegrouped_ = true;
+    Record& record = records_[id.index];
+    if (hasPairs_ && record.place == Place::mobile) {
+        countChange(record);  // where its box is filed, there it is
+    } else if (hasPairs_) {
+        noteChange(id.index);
+    }
+}
+
+template <class Scalar>
+ProxyGroups Grid<Scalar>::groups(ProxyId id) const {
+    HASHPHASE_ASSERT(contains(id), "Only a proxy of this grid that was not removed has groups.");
+    return groupsNow(id.index);
+}
+
+// For all that are there, with room for as many as records_ has room for.
+template <class Scalar>
+void Grid<Scalar>::makeGroups() {
+    if (groups_.empty()) {
+        reserveSlots(1);
+        const std::size_t count = std::max<std::size_t>(records_.size(), 1);
+        kindOfSlot_.reserve(records_.capacity());
+        groups_.reserve(2 * records_.capacity());
+        kindOfSlot_.resize(count, 0);
+        groups_.resize(2 * count);
+    }
+}
+
+template <class Scalar>
+void Grid<Scalar>::noteGroups(std::uint32_t slot, const ProxyGroups& groups) noexcept {
+    const std::uint8_t kind = kindOfSlot_[slot];
+    const bool isKnown = kind != detail::GroupKinds::kOther && groupKinds_[kind] == groups;
+    kindOfSlot_[slot] = isKnown ? kind : groupKinds_.numberOf(groups);
+    groups_[2 * std::size_t{slot}] = groups;
+}
+
+template <class Scalar>
 bool Grid<Scalar>::contains(ProxyId id) const noexcept {
     return !id.isNull() && id.index < records_.size() &&
            records_[id.index].generation == id.generation;
@@ -140,17 +198,22 @@ template <class Scalar>
 void Grid<Scalar>::noteChange(std::uint32_t slot) noexcept {
     beforeChange();
     Record& record = records_[slot];
-    if (record.changedAt != updateNumber_) {
-        record.before = record.box;
-        record.changedAt = updateNumber_;
-        ++cost_.changed;
-    }
+    countChange(record);
     if (record.place == Place::resting) {
         leaveRest(slot);
     }
     if (!isWaiting(record)) {
         record.listedIn = listNumber_;
         waiting_.push_back(slot);
+    }
+}
+
+template <class Scalar>
+void Grid<Scalar>::countChange(Record& record) noexcept {
+    if (record.changedAt != updateNumber_) {
+        record.before = record.box;
+        record.changedAt = updateNumber_;
+        ++cost_.changed;
     }
 }
 
@@ -208,7 +271,8 @@ std::size_t Grid<Scalar>::memoryBytes() const noexcept {
            (waiting_.capacity() + mobileSlots_.capacity() + woken_.capacity() +
             restSlots_.capacity() + nanSlots_.capacity()) *
                sizeof(std::uint32_t) +
-           boxesAtUpdate_.capacity() * sizeof(Box) +
+           boxesAtUpdate_.capacity() * sizeof(Box) + groups_.capacity() * sizeof(ProxyGroups) +
+           kindOfSlot_.capacity() +
            (staged_.capacity() + stagedBefore_.capacity() + restBoxes_.capacity()) *
                sizeof(detail::PaddedBox<Scalar>) +
            mobile_.memoryBytes() + fresh_.memoryBytes() + resting_.memoryBytes() + rayMemoryBytes();

@@ -36,6 +36,7 @@
 #include <broadphase/collectors.hpp>
 #include <broadphase/detail/box_columns.hpp>
 #include <broadphase/detail/box_tree.hpp>
+#include <broadphase/detail/group_kinds.hpp>
 #include <broadphase/detail/kernels.hpp>
 #include <broadphase/detail/query_scope.hpp>
 #include <broadphase/detail/table.hpp>
@@ -43,6 +44,7 @@
 #include <broadphase/export.hpp>
 #include <broadphase/grid_config.hpp>
 #include <broadphase/parallel_for.hpp>
+#include <broadphase/proxy_groups.hpp>
 #include <broadphase/proxy_id.hpp>
 #include <broadphase/query_cost.hpp>
 #include <broadphase/regions.hpp>
@@ -112,9 +114,10 @@ public:
 
     // --- Proxies ---------------------------------------------------------------------------------
 
-    /// Adds a proxy. The hint saves work for what will not move. Throws std::length_error, and adds
-    /// nothing, when there are 2^28 already. Cost: O(1) amortised.
-    [[nodiscard]] ProxyId add(const Box& box, Mobility mobility = Mobility::mobile);
+    /// Adds a proxy. The hint saves work for what will not move; for `groups` see setGroups(). Throws
+    /// std::length_error, and adds nothing, when there are 2^28 already. Cost: O(1) amortised.
+    [[nodiscard]] ProxyId add(const Box& box, Mobility mobility = Mobility::mobile,
+                              const ProxyGroups& groups = {});
 
     /// Makes room for `count` proxies altogether, so that adding many neither moves anything on the
     /// way nor fails for want of memory. Throws std::length_error for more than 2^28. Cost: O(count) where
@@ -124,6 +127,17 @@ public:
     /// Sets the proxy's box. Bit-equal to the present one: a comparison, and nothing is marked.
     /// Cost: O(1) amortised.
     void move(ProxyId id, const Box& box);
+
+    /// Says with whom the proxy may pair, for Pairs; queries find it as before. Pairs neither tests nor
+    /// remembers two that may not, and does not ask its filter about them: where hundreds share a cell,
+    /// too, the cost follows those that may. Groups count from the next Pairs::update() on, for which
+    /// the proxy counts as changed: what may pair by then begins to, and a pair that stands stays one
+    /// until its boxes part, or until Pairs::refilter(). Where memory runs out, nothing has changed.
+    /// Cost: O(1); the first call for other groups than ProxyGroups{}, O(proxies).
+    void setGroups(ProxyId id, const ProxyGroups& groups);
+
+    /// As last set.
+    [[nodiscard]] ProxyGroups groups(ProxyId id) const;
 
     /// Removes the proxy; its id is never valid again. Cost: O(1).
     void remove(ProxyId id);
@@ -328,9 +342,36 @@ private:
                (record.restsAtOnce || updateNumber_ - record.changedAt > config_.updatesBeforeRest);
     }
 
+    [[nodiscard]] ProxyGroups groupsNow(std::uint32_t slot) const noexcept {
+        return groups_.empty() ? ProxyGroups{} : groups_[2 * std::size_t{slot}];
+    }
+    [[nodiscard]] bool mayPairNow(std::uint32_t a, std::uint32_t b) const noexcept {
+        return groups_.empty() || mayPair(groupsNow(a), groupsNow(b));
+    }
+    /// At the last update.
+    [[nodiscard]] bool couldPair(std::uint32_t a, std::uint32_t b) const noexcept {
+        return groups_.empty() ||
+               mayPair(groups_[2 * std::size_t{a} + 1], groups_[2 * std::size_t{b} + 1]);
+    }
+    /// For searches among all proxies: null where all may pair.
+    [[nodiscard]] const ProxyGroups* groupsOfAll() const noexcept {
+        return groupKinds_.someRefuse() ? groups_.data() : nullptr;
+    }
+    /// The same as of the last update.
+    [[nodiscard]] const ProxyGroups* groupsOfAllAtUpdate() const noexcept {
+        const ProxyGroups* const now = groupsOfAll();
+        return now != nullptr ? now + 1 : nullptr;
+    }
+    void makeGroups();
+    void noteGroups(std::uint32_t slot, const ProxyGroups& groups) noexcept;
+    [[nodiscard]] detail::GroupKinds::Set kindOf(std::uint32_t slot) const noexcept {
+        return kindOfSlot_.empty() ? 1 : detail::GroupKinds::bit(kindOfSlot_[slot]);
+    }
+
     // None of these allocates: reserve() has made room for all of it.
     void reserveSlots(std::size_t slotCount);
     void noteChange(std::uint32_t slot) noexcept;
+    void countChange(Record& record) noexcept;
     void leaveRest(std::uint32_t slot) noexcept;
     void setBox(Record& record, const Box& box);
 
@@ -400,9 +441,22 @@ private:
     bool hasPairs_ = false;
     bool isTorn_ = false;  // by wakeAll(): what Pairs watches is to be found anew
 
+    // Of each slot now, and at the last update: 2 * slot, and one behind. Empty until somebody has others
+    // than ProxyGroups{}; as long as records_ then.
+    std::vector<ProxyGroups> groups_;
+    bool areRegrouped_ = false;  // some, since the last update
+    // The same as numbers, and which of them there are among those that are mobile, that have changed,
+    // and that rest; and perhaps more.
+    detail::GroupKinds groupKinds_;
+    std::vector<std::uint8_t> kindOfSlot_;
+    std::atomic<detail::GroupKinds::Set> mobileKinds_{0};
+    std::atomic<detail::GroupKinds::Set> changedKinds_{0};
+    detail::GroupKinds::Set restingKinds_ = 0;
+
     std::uint32_t updateNumber_ = 1;             // of the update that ends the present frame
     UpdateCost cost_;                            // of the present frame
     std::atomic<std::uint64_t> filingCount_{0};  // a query may file while others ask
+    std::uint64_t shiftCount_ = 0;               // of the origin
 
     // What changed since mobile_ was built, and how much of that queries have read since.
     std::vector<std::uint32_t> waiting_;

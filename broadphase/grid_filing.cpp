@@ -35,8 +35,12 @@ void Grid<Scalar>::stage(ParallelFor parallelFor) {
     stagedBefore_.resize(hasPairs_ ? count : 0);
     detail::ensureCapacity(nanSlots_, nanCount_);  // for settle()
     quietCount_ = 0;
+    mobileKinds_ = 0;
+    changedKinds_ = 0;
     parallelFor(count, kGrain, [&](std::size_t begin, std::size_t end) {
         std::uint32_t quietCount = 0;
+        detail::GroupKinds::Set mobileKinds = 0;
+        detail::GroupKinds::Set changedKinds = 0;
         for (std::size_t i = begin; i < end; ++i) {
             if (i + kAhead < count) {
                 detail::prefetch(&records_[mobileSlots_[i + kAhead]]);
@@ -47,8 +51,13 @@ void Grid<Scalar>::stage(ParallelFor parallelFor) {
                 stagedBefore_[i] = detail::padded(boxAtUpdate(mobileSlots_[i]));
             }
             quietCount += isQuiet(record) ? 1 : 0;
+            const detail::GroupKinds::Set kind = kindOf(mobileSlots_[i]);
+            mobileKinds |= kind;
+            changedKinds |= record.changedAt == updateNumber_ ? kind : 0;
         }
         quietCount_ += quietCount;
+        mobileKinds_ |= mobileKinds;
+        changedKinds_ |= changedKinds;
     });
 }
 
@@ -92,9 +101,11 @@ void Grid<Scalar>::listResting() {
 
 template <class Scalar>
 void Grid<Scalar>::fileResting(ParallelFor parallelFor) {
-    resting_.build(restSlots_, restBoxes_, fixedSizes_, parallelFor);
+    resting_.build(restSlots_, restBoxes_, fixedSizes_, parallelFor, groupsOfAll());
+    restingKinds_ = 0;
     for (std::uint32_t entry = 0; entry < resting_.size(); ++entry) {
         records_[resting_.slot(entry)].restingEntry = entry;
+        restingKinds_ |= kindOf(resting_.slot(entry));
     }
     restingErased_ = 0;
     restingTree_.isStale.store(true, std::memory_order_relaxed);
@@ -105,7 +116,7 @@ template <class Scalar>
 void Grid<Scalar>::fileMobile(ParallelFor parallelFor) {
     isFresh_.store(false, std::memory_order_relaxed);
     isTableTorn_.store(true, std::memory_order_relaxed);  // should it fail, the next one files anew
-    mobile_.build(mobileSlots_, staged_, fixedSizes_, parallelFor);
+    mobile_.build(mobileSlots_, staged_, fixedSizes_, parallelFor, groupsOfAll());
     ++filingCount_;
     mobileTree_.isStale.store(true, std::memory_order_relaxed);
     cost_.filed += mobile_.size();
@@ -150,6 +161,11 @@ UpdateCost Grid<Scalar>::endUpdate() noexcept {
     cost_.largestCell = std::max(mobile_.largestCell(), resting_.largestCell());
     woken_.clear();
     boxesAtUpdate_.clear();
+    if (std::exchange(areRegrouped_, false)) {
+        for (std::size_t i = 0; i < groups_.size(); i += 2) {
+            groups_[i + 1] = groups_[i];
+        }
+    }
     if (++updateNumber_ == std::numeric_limits<std::uint32_t>::max()) {
         countUpdatesAnew();
     }

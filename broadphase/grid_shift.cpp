@@ -24,6 +24,7 @@ std::size_t Grid<Scalar>::shiftOrigin(const Point& shift) {
     if (hasPairs_ && boxesAtUpdate_.empty()) {
         keepBoxesAtUpdate(shift);
     }
+    ++shiftCount_;
     std::size_t roundedCount = 0;
     for (std::uint32_t slot = 0; slot < records_.size(); ++slot) {
         roundedCount += shiftRecord(slot, shift) ? 1 : 0;

@@ -11,6 +11,26 @@
 #include <iterator>
 
 namespace hashphase {
+namespace {
+
+// Where only a few share a cell, what may not pair is sooner taken out of what a search has found, where
+// it is little, than left out by the search, which has to look at the groups of all.
+template <class Scalar>
+bool isCrowded(const detail::Table<Scalar>& table) {
+    constexpr std::uint32_t kFew = 32;
+    const auto levels = table.levels();
+    const std::uint32_t listed = levels.empty() ? 0 : levels.back().count();
+    return table.largestCell() > kFew || listed > kFew;
+}
+
+template <class IsOut>
+void takeOut(detail::PairList& pairs, const IsOut& isOut) {
+    detail::IndexPair* const begin = pairs.resize(pairs.size());
+    detail::IndexPair* const end = std::remove_if(begin, begin + pairs.size(), isOut);
+    static_cast<void>(pairs.resize(static_cast<std::size_t>(end - begin)));
+}
+
+}  // namespace
 
 template <class Scalar>
 Pairs<Scalar>::Pairs(Grid<Scalar>& grid, Sweeps<Scalar>* sweeps) : grid_(grid), sweeps_(sweeps) {
@@ -52,6 +72,9 @@ void Pairs<Scalar>::beginCall() {
     asked_.clear();
     unknown_.clear();
     standing_.clear();
+    keptNow_.clear();
+    notKept_.clear();
+    lapsed_.clear();
     bornCouples_.clear();
     diedCouples_.clear();
 }
@@ -64,11 +87,14 @@ void Pairs<Scalar>::recover() {
         return;
     }
     refused_.reserve(refused_.size() + refusedAtRest_.size());
+    tableOfUpdate_ = nullptr;
     grid_.stage(serialFor);
-    wokenTable_.build(grid_.mobileSlots_, grid_.stagedBefore_, grid_.fixedSizes_);
+    const ProxyGroups* const groups = grid_.groupsOfAllAtUpdate();
+    wokenTable_.build(grid_.mobileSlots_, grid_.stagedBefore_, grid_.fixedSizes_, serialFor,
+                      groups);
     detail::KernelCost cost;
     selected_.clear();
-    detail::joinTable(wokenTable_, serialFor, parts_, selected_, cost);
+    detail::joinTable(wokenTable_, serialFor, parts_, selected_, cost, groups);
     amongMobile_.clear();
     for (const auto [a, b] : selected_.pairs()) {
         amongMobile_.push({wokenTable_.order()[a], wokenTable_.order()[b]});
@@ -79,7 +105,9 @@ void Pairs<Scalar>::recover() {
     toResting_.clear();
     refusedAtRest_.clear();
     grid_.woken_.clear();
-    watchedMobileCount_ = grid_.mobileSlots_.size();
+    tableOfUpdate_ = &wokenTable_;
+    indexedCount_ = grid_.mobileSlots_.size();
+    shiftOfUpdate_ = grid_.shiftCount_;
     grid_.isTorn_ = false;
 }
 
@@ -91,6 +119,7 @@ void Pairs<Scalar>::findChanges(ParallelFor parallelFor) {
     if (grid_.cost_.changed == 0) {
         return;
     }
+    tableOfUpdate_ = nullptr;
     grid_.stage(parallelFor);
     findDeaths(parallelFor);
     const bool someCameToRest = grid_.putQuietToRest(parallelFor);
@@ -103,14 +132,27 @@ void Pairs<Scalar>::findChanges(ParallelFor parallelFor) {
 }
 
 template <class Scalar>
-void Pairs<Scalar>::endUpdate() noexcept {
+void Pairs<Scalar>::endUpdate() noexcept {  // NOLINT(bugprone-exception-escape)
     for (const Couple c : lost_) {
         lose(c);
+    }
+    for (const Couple c : keptNow_) {
+        kept_.findOrInsert(c);
+    }
+    for (const Couple c : notKept_) {
+        kept_.erase(c);
+    }
+    for (const Couple c : lapsed_) {
+        forgetRefused(c);
     }
     if (grid_.cost_.changed > 0) {
         swept_.swap(sweptNow_);
         grid_.settle();
-        watchedMobileCount_ = grid_.mobileSlots_.size();
+        tableOfUpdate_ = &grid_.mobile_;
+        indexedCount_ = grid_.mobileSlots_.size();
+        filingOfUpdate_ = grid_.filingCount_;
+        shiftOfUpdate_ = grid_.shiftCount_;
+        sweptBySecond_.clear();
     }
     announced_.clear();
     decide();
@@ -145,7 +187,40 @@ void Pairs<Scalar>::findDeaths(ParallelFor parallelFor) {
     for (const Couple c : announced_.keys()) {
         loseIfApart(c);
     }
+    for (const Couple c : kept_.keys()) {
+        loseIfApart(c);
+    }
     findDeathsOfWoken(parallelFor);
+    if (grid_.areRegrouped_) {
+        findKept();
+    }
+}
+
+// Pairs whose groups have been set, and do not let them pair any more, are kept as long as they overlap.
+// Those that may pair again are watched as the others are.
+template <class Scalar>
+void Pairs<Scalar>::findKept() {
+    for (const auto [a, b] : amongMobile_.pairs()) {
+        keepIfPair(couple(grid_.mobileSlots_[a], grid_.mobileSlots_[b]));
+    }
+    for (const auto [place, slot] : toResting_.pairs()) {
+        keepIfPair(couple(grid_.mobileSlots_[place], slot));
+    }
+    for (const Couple c : announced_.keys()) {
+        keepIfPair(c);
+    }
+    for (const Couple c : kept_.keys()) {
+        if (mayPairNow(c)) {
+            notKept_.push_back(c);
+        }
+    }
+}
+
+template <class Scalar>
+void Pairs<Scalar>::keepIfPair(Couple c) {
+    if (!mayPairNow(c) && overlapNow(c) && !isRefused(c)) {
+        keptNow_.push_back(c);
+    }
 }
 
 // Couples of two that rest are not watched. When one wakes, its couples are those of its box before:
@@ -163,24 +238,39 @@ void Pairs<Scalar>::findDeathsOfWoken(ParallelFor parallelFor) {
             refusedAtRest_.erase(c);
         }
         loseIfApart(c);
+        if (grid_.areRegrouped_) {
+            keepIfPair(c);
+        }
     };
     wokenBoxes_.clear();
     wokenBounds_.clear();
+    detail::GroupKinds::Set wokenKinds = 0;
+    const ProxyGroups* const groups = grid_.groupsOfAllAtUpdate();
     for (const std::uint32_t slot : grid_.woken_) {
         wokenBoxes_.push_back(detail::padded(grid_.boxAtUpdate(slot)));
         wokenBounds_.push(grid_.before(slot));
+        if (groups != nullptr) {
+            wokenKinds |=
+                detail::GroupKinds::bit(grid_.groupKinds_.numberOf(groups[2 * std::size_t{slot}]));
+        }
     }
+    const detail::GroupsView view{groups, grid_.woken_.data(),
+                                  grid_.groupKinds_.together(grid_.restingKinds_)};
+    const bool areToldApart = grid_.groupKinds_.refuse(wokenKinds, grid_.restingKinds_);
     detail::KernelCost cost;
     selected_.clear();
     detail::walkTable(grid_.resting_, wokenBounds_.columns(), wokenBounds_.size(), parallelFor,
-                      parts_, selected_, cost);
+                      parts_, selected_, cost, areToldApart ? &view : nullptr);
     for (const auto [woken, entry] : selected_.pairs()) {
         wake(grid_.woken_[woken], grid_.resting_.slot(entry));
     }
     if (grid_.woken_.size() > 1) {
-        wokenTable_.build(grid_.woken_, wokenBoxes_, grid_.fixedSizes_, parallelFor);
+        const ProxyGroups* own =
+            grid_.groupKinds_.refuse(wokenKinds, wokenKinds) ? groups : nullptr;
+        wokenTable_.build(grid_.woken_, wokenBoxes_, grid_.fixedSizes_, parallelFor, own);
         selected_.clear();
-        detail::joinTable(wokenTable_, parallelFor, parts_, selected_, cost);
+        detail::joinTable(wokenTable_, parallelFor, parts_, selected_, cost, own,
+                          grid_.groupKinds_.together(wokenKinds));
         for (const auto [a, b] : selected_.pairs()) {
             wake(wokenTable_.slot(a), wokenTable_.slot(b));
         }
@@ -206,8 +296,28 @@ void Pairs<Scalar>::findBirths(bool someCameToRest, ParallelFor parallelFor) {
     carryToRest(someCameToRest);
     joinMobile(parallelFor);
     walkResting(parallelFor);
+    if (grid_.areRegrouped_) {
+        askAboutRegrouped();
+    }
     if (announced_.size() > 0) {
         std::erase_if(asked_, [this](Couple c) { return announced_.contains(c); });
+    }
+}
+
+// What overlapped at the last update, but could not pair, and may now.
+template <class Scalar>
+void Pairs<Scalar>::askAboutRegrouped() {
+    const auto askIfNew = [this](std::uint32_t a, std::uint32_t b) {
+        if (grid_.overlappedAtUpdate(a, b) && !wasKnown(a, b)) {
+            asked_.push_back(couple(a, b));
+        }
+    };
+    const detail::Table<Scalar>& table = grid_.mobile_;
+    for (const auto [a, b] : amongMobile_.pairs()) {
+        askIfNew(table.slot(a), table.slot(b));
+    }
+    for (const auto [entry, slot] : toResting_.pairs()) {
+        askIfNew(table.slot(entry), slot);
     }
 }
 
@@ -247,7 +357,17 @@ void Pairs<Scalar>::joinMobile(ParallelFor parallelFor) {
     const detail::Table<Scalar>& table = grid_.mobile_;
     detail::KernelCost cost;
     amongMobile_.clear();
-    detail::joinTable(table, parallelFor, parts_, amongMobile_, cost);
+    const detail::GroupKinds::Set kinds = grid_.mobileKinds_;
+    const bool someRefuse = grid_.groupKinds_.refuse(kinds, kinds);
+    const bool areToldApart = someRefuse && isCrowded(table);
+    detail::joinTable(table, parallelFor, parts_, amongMobile_, cost,
+                      areToldApart ? grid_.groups_.data() : nullptr,
+                      grid_.groupKinds_.together(kinds));
+    if (someRefuse && !areToldApart) {
+        takeOut(amongMobile_, [&](const detail::IndexPair& pair) {
+            return doRefuse(table.slot(pair.a), table.slot(pair.b));
+        });
+    }
     cost_.boxesTested += cost.boxesTested;
     const auto fresh = selectApart(amongMobile_.pairs(), table.order().data(),
                                    grid_.stagedBefore_.data(), parallelFor);
@@ -284,18 +404,32 @@ void Pairs<Scalar>::walkResting(ParallelFor parallelFor) {
     }
     const detail::Table<Scalar>& table = grid_.mobile_;
     walkers_.clear();
+    walkerSlots_.clear();
     walkerBounds_.clear();
+    const bool someRefuse = grid_.groupKinds_.refuse(grid_.changedKinds_, grid_.restingKinds_);
+    const bool areToldApart = someRefuse && isCrowded(grid_.resting_);
     for (std::uint32_t entry = 0; entry < table.size(); ++entry) {
-        if (grid_.changedNow(table.slot(entry))) {
+        const std::uint32_t slot = table.slot(entry);
+        if (grid_.changedNow(slot)) {
             walkers_.push_back(entry);
             walkerBounds_.push(table.box(entry));
+            if (areToldApart) {
+                walkerSlots_.push_back(slot);
+            }
         }
     }
+    const detail::GroupsView view{grid_.groups_.data(), walkerSlots_.data(),
+                                  grid_.groupKinds_.together(grid_.restingKinds_)};
     detail::KernelCost cost;
     selected_.clear();
     detail::walkTable(grid_.resting_, walkerBounds_.columns(), walkerBounds_.size(), parallelFor,
-                      parts_, selected_, cost);
+                      parts_, selected_, cost, areToldApart ? &view : nullptr);
     cost_.boxesTested += cost.boxesTested;
+    if (someRefuse && !areToldApart) {
+        takeOut(selected_, [&](const detail::IndexPair& pair) {
+            return doRefuse(table.slot(walkers_[pair.a]), grid_.resting_.slot(pair.b));
+        });
+    }
     const bool isShifted = !grid_.boxesAtUpdate_.empty();
     for (const auto [walker, restingEntry] : selected_.pairs()) {
         const std::uint32_t entry = walkers_[walker];
@@ -315,10 +449,13 @@ void Pairs<Scalar>::walkResting(ParallelFor parallelFor) {
 template <class Scalar>
 void Pairs<Scalar>::findSwept(ParallelFor parallelFor) {
     sweeps_->findContacts(parallelFor);
-    const auto now = sweeps_->contacts();
-    sweptNow_.assign(now.begin(), now.end());
+    sweptNow_.assign(sweeps_->contacts().begin(), sweeps_->contacts().end());
+    std::vector<Couple>& now = sweptNow_;
     if (now.empty() && swept_.empty()) {
         return;
+    }
+    if (grid_.groupsOfAll() != nullptr) {
+        leaveOutSweptByGroups();
     }
     std::set_difference(swept_.begin(), swept_.end(), now.begin(), now.end(),
                         std::back_inserter(lost_));
@@ -329,11 +466,47 @@ void Pairs<Scalar>::findSwept(ParallelFor parallelFor) {
     gone_.clear();
     std::set_difference(lost_.begin(), lost_.end(), asked_.begin(), asked_.end(),
                         std::back_inserter(gone_));
+    std::erase_if(gone_, [this](Couple c) {
+        return std::binary_search(keptNow_.begin(), keptNow_.end(), c);
+    });
     fresh_.clear();
     std::set_difference(asked_.begin(), asked_.end(), lost_.begin(), lost_.end(),
                         std::back_inserter(fresh_));
     lost_.swap(gone_);
     asked_.swap(fresh_);
+}
+
+// Of what touches on its way, what may not pair is left out, but for pairs that stand. A pair that met
+// on its way, and overlaps now, is kept if need be; one that is swept is not among those that are kept.
+template <class Scalar>
+void Pairs<Scalar>::leaveOutSweptByGroups() {
+    sortCouples(lost_);
+    std::erase_if(sweptNow_, [this](Couple c) {
+        const bool isPair =
+            !isRefused(c) && (isSwept(c) || std::binary_search(lost_.begin(), lost_.end(), c));
+        return !mayPairNow(c) && !isPair;
+    });
+    for (const Couple c : swept_) {
+        keepIfPair(c);
+    }
+    std::sort(keptNow_.begin(), keptNow_.end());
+    for (const Couple c : kept_.keys()) {
+        if (std::binary_search(sweptNow_.begin(), sweptNow_.end(), c)) {
+            notKept_.push_back(c);
+        }
+    }
+}
+
+template <class Scalar>
+bool Pairs<Scalar>::doRefuse(std::uint32_t a, std::uint32_t b) const noexcept {
+    return grid_.groupKinds_.refuse(grid_.kindOfSlot_[a], grid_.kindOfSlot_[b]) &&
+           !grid_.mayPairNow(a, b);  // of the kinds that share a number some may
+}
+
+template <class Scalar>
+bool Pairs<Scalar>::wasKnown(std::uint32_t a, std::uint32_t b) const noexcept {
+    return grid_.overlappedAtUpdate(a, b) &&
+           (grid_.couldPair(a, b) || kept_.contains(couple(a, b)));
 }
 
 template <class Scalar>
@@ -364,16 +537,19 @@ std::size_t Pairs<Scalar>::memoryBytes() const noexcept {
            walkerBounds_.memoryBytes() + wokenBounds_.memoryBytes() +
            (asked_.capacity() + standing_.capacity() + bornCouples_.capacity() +
             diedCouples_.capacity() + sorted_.capacity() + restedCouples_.capacity() +
-            announcedBefore_.capacity() + lost_.capacity() + swept_.capacity() + gone_.capacity() +
-            fresh_.capacity() + unknown_.capacity() + sweptNow_.capacity()) *
+            sweptBySecond_.capacity() + lost_.capacity() + swept_.capacity() + gone_.capacity() +
+            fresh_.capacity() + unknown_.capacity() + sweptNow_.capacity() + keptNow_.capacity() +
+            notKept_.capacity() + lapsed_.capacity()) *
                sizeof(Couple) +
            (toldByUpdate_.born.capacity() + toldByUpdate_.died.capacity() +
             toldBetween_.born.capacity() + toldBetween_.died.capacity() + askedPairs_.capacity()) *
                sizeof(ProxyPair) +
-           accepted_.capacity() +
-           (entryOf_.capacity() + walkers_.capacity()) * sizeof(std::uint32_t) +
+           accepted_.capacity() + isNamed_.capacity() +
+           (entryOf_.capacity() + walkers_.capacity() + walkerSlots_.capacity()) *
+               sizeof(std::uint32_t) +
            wokenBoxes_.capacity() * sizeof(detail::PaddedBox<Scalar>) + wokenTable_.memoryBytes() +
-           announced_.memoryBytes() + refused_.memoryBytes() + refusedAtRest_.memoryBytes();
+           announced_.memoryBytes() + kept_.memoryBytes() + refused_.memoryBytes() +
+           refusedAtRest_.memoryBytes();
 }
 
 template class Pairs<float>;

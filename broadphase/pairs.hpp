@@ -3,8 +3,8 @@
 
 // The exact set of overlapping pairs of a grid, as the changes from one update to the next.
 //
-// A pair is two proxies whose closed boxes overlap and which the filter accepts; with Sweeps, whose
-// boxes overlap now or touch on their ways. update() tells which pairs were born and which died since
+// A pair is two proxies whose closed boxes overlap, whose groups let them (Grid::setGroups()), and which
+// the filter accepts; with Sweeps, whose boxes overlap now or touch on their ways. update() tells which pairs were born and which died since
 // the last one, each once, sorted; what persists is not touched. Nothing is remembered of a pair but
 // what boxes and ways tell: a pair is new when they touch now and did not at the last update.
 //
@@ -18,6 +18,7 @@
 // Misuse    one Pairs per grid at a time; and no call from within the filter; asserted.
 
 #include <broadphase/detail/box_columns.hpp>
+#include <broadphase/detail/couple_set.hpp>
 #include <broadphase/detail/flat_set.hpp>
 #include <broadphase/detail/kernels.hpp>
 #include <broadphase/detail/pair_parts.hpp>
@@ -39,7 +40,8 @@ namespace hashphase {
 /// Says which overlapping proxies make a pair: a function that is asked about two of them, or one
 /// that is asked about many at once and sets accepted[i], given as 0, to 1 where asked[i] make a
 /// pair. Asked once when two proxies begin to overlap, in ascending order of ids; again, for couples
-/// that it refused, whenever one of them has changed or refilter() is called. May ask the grid, and
+/// that it refused, whenever one of them has changed or refilter() is called; not about two that may not
+/// pair by their groups. May ask the grid, and
 /// must not change it (asserted). For parameters only, as FunctionRef.
 class PairFilter {
 public:
@@ -119,9 +121,19 @@ public:
     PairChanges announce(ProxyId id, PairFilter filter) &;
 
     /// Asks the filter again about everything that the proxy, which is alive (asserted), overlaps, or
-    /// met on its way at the last update, refused or not, at once. Cost: that of a box query, and a
-    /// look at all watched couples.
+    /// met on its way at the last update, refused or not, at once. Cost: that of a few box queries.
+    /// Where many proxies have changed since the last update, the first call after it files their boxes
+    /// of that update once for all calls up to the next one.
     PairChanges refilter(ProxyId id, PairFilter filter) &;
+
+    /// The same for many proxies, in one pass: the filter is asked once about each couple, in ascending
+    /// order. A proxy may be named more than once. Cost: as refilter() for each proxy; at most that of
+    /// finding all pairs from scratch, and a box query for each proxy that has changed.
+    PairChanges refilter(std::span<const ProxyId> ids, PairFilter filter) &;
+
+    /// The same for all proxies: the filter has changed. Cost: that of finding all pairs from scratch,
+    /// and a box query for each proxy that has changed since the last update.
+    PairChanges refilterAll(PairFilter filter) &;
 
     /// The whole set as of the last update, sorted, appended to `pairs`. The grid must not have
     /// changed since (asserted). Cost: that of finding all pairs from scratch.
@@ -130,7 +142,8 @@ public:
     /// Number of pairs in the set.
     [[nodiscard]] std::size_t count() const noexcept { return count_; }
 
-    /// Number of overlapping couples that the filter refused.
+    /// Number of overlapping couples that the filter refused; those that may not pair by their groups are
+    /// not counted.
     [[nodiscard]] std::size_t refusedCount() const noexcept {
         return refused_.size() + refusedAtRest_.size();
     }
@@ -139,9 +152,11 @@ public:
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
     /// Says which invariant is broken, in a sentence; empty when all hold (ask after update()):
-    /// - The watched couples are the overlapping ones of which one is mobile, each once.
-    /// - count() is the number of overlapping and swept couples less the refused ones.
+    /// - The watched couples are the overlapping ones that may pair and of which one is mobile, each once.
+    /// - count() is the number of overlapping and swept couples that may pair, less the refused ones, and
+    ///   of the pairs that are kept.
     /// - What is swept does not overlap.
+    /// - The pairs that are kept overlap and may not pair.
     [[nodiscard]] std::string validate() const;
 
 private:
@@ -179,6 +194,18 @@ private:
     void findDeaths(ParallelFor parallelFor);
     void findDeathsOfWoken(ParallelFor parallelFor);
     void loseIfApart(Couple c);
+    [[nodiscard]] bool mayPairNow(Couple c) const noexcept {
+        return grid_.mayPairNow(first(c), second(c));
+    }
+    [[nodiscard]] bool couldPair(Couple c) const noexcept {
+        return grid_.couldPair(first(c), second(c));
+    }
+    [[nodiscard]] bool doRefuse(std::uint32_t a, std::uint32_t b) const noexcept;
+    [[nodiscard]] bool wasKnown(std::uint32_t a, std::uint32_t b) const noexcept;
+    void findKept();
+    void keepIfPair(Couple c);
+    void askAboutRegrouped();
+    void leaveOutSweptByGroups();
     void findSwept(ParallelFor parallelFor);
     void findBirths(bool someCameToRest, ParallelFor parallelFor);
     void carryToRest(bool someCameToRest);
@@ -192,15 +219,30 @@ private:
     void ask(PairFilter filter, Told& told);
 
     // The rest of a call, which takes no more memory, and so cannot throw: ask() has made room.
-    void endUpdate() noexcept;
+    void endUpdate() noexcept;        // NOLINT(bugprone-exception-escape)
     void announceUnknown() noexcept;  // NOLINT(bugprone-exception-escape)
     void lose(Couple c) noexcept;
     void decide() noexcept;  // NOLINT(bugprone-exception-escape)
+    [[nodiscard]] bool isToBeRefused(Couple c) const noexcept;
     bool forgetRefused(Couple c) noexcept;
     PairChanges tell(Told& told) noexcept;
 
+    // What was known at the last update, or has been announced since.
+    void indexLastUpdate(std::size_t mostUnindexed);
     template <class Visit>
-    void forKnownCouples(std::uint32_t slot, const Visit& visit) const;
+    void forKnownCouples(std::uint32_t slot, const Visit& visit);
+    template <class Visit>
+    void forOverlapsAtUpdate(std::uint32_t slot, const Visit& visit);
+    template <class Visit>
+    void forSwept(std::uint32_t slot, const Visit& visit);
+    template <class Visit>
+    void forAllKnown(const Visit& visit);
+    template <class IsNamed>
+    void askAgainAboutMany(const IsNamed& isNamed);
+    void askAgain(Couple c);
+    PairChanges decideBetween(PairFilter filter);
+    template <class IsNamed>
+    void findUnknown(std::uint32_t slot, const IsNamed& isNamed);
     void findUnknown(std::uint32_t slot);
     void forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const;
 
@@ -210,16 +252,23 @@ private:
     // refused ones included. `a`, and among the mobile ones `b`, is a place in the grid's
     // mobileSlots_, which are in spatial order, so that boxes of a couple are near in memory.
     detail::PairList amongMobile_;
-    detail::PairList toResting_;          // b is a slot
-    std::size_t watchedMobileCount_ = 0;  // how many mobileSlots_ there were at the last update
+    detail::PairList toResting_;  // b is a slot
 
     detail::FlatSet refused_;        // couples that the filter refused, unless they are ...
     detail::FlatSet refusedAtRest_;  // ... both at rest
-    detail::FlatSet announced_;      // couples decided since the last update
+    detail::CoupleSet announced_;    // couples decided since the last update
+
+    // Pairs whose groups have been set since, so that they may not pair any more: they overlap.
+    detail::FlatSet kept_;
 
     Sweeps<Scalar>* sweeps_;
     std::vector<Couple> swept_;     // couples that touched on their ways at the last update; sorted
     std::vector<Couple> sweptNow_;  // the same of the update under way
+
+    // What endUpdate() changes, besides: kept_ by the first two, and what is not refused any more.
+    std::vector<Couple> keptNow_;
+    std::vector<Couple> notKept_;
+    std::vector<Couple> lapsed_;
 
     std::vector<Couple> lost_;      // what overlapped and does not any more, refused or not
     std::vector<Couple> asked_;     // what the filter is to be asked about
@@ -236,7 +285,8 @@ private:
     // Scratch.
     std::vector<Couple> sorted_;
     std::vector<Couple> restedCouples_;
-    std::vector<Couple> announcedBefore_;
+    std::vector<Couple>
+        sweptBySecond_;            // swept_ with the halves exchanged, sorted, when it is asked for
     std::vector<Couple> unknown_;  // what is announced by the call under way
     std::vector<Couple> gone_;
     std::vector<Couple> fresh_;
@@ -245,8 +295,17 @@ private:
     detail::PairList carried_;
     std::vector<std::uint32_t> entryOf_;  // of places in mobileSlots_, in the mobile table
     std::vector<std::uint32_t> walkers_;  // entries that changed
+    std::vector<std::uint32_t> walkerSlots_;
     detail::BoxColumns<Scalar> walkerBounds_;
     detail::Table<Scalar> wokenTable_;
+    std::vector<char> isNamed_;  // by slot
+
+    // A table of boxes as of the last update: of the first indexedCount_ of mobileSlots_. Either the
+    // grid's own, until it is filed again, or wokenTable_; null when neither is.
+    const detail::Table<Scalar>* tableOfUpdate_ = nullptr;
+    std::size_t indexedCount_ = 0;
+    std::uint64_t filingOfUpdate_ = 0;  // Grid::filingCount_ and ...
+    std::uint64_t shiftOfUpdate_ = 0;   // ... Grid::shiftCount_ at that time
     std::vector<detail::PaddedBox<Scalar>> wokenBoxes_;
     detail::BoxColumns<Scalar> wokenBounds_;
 };

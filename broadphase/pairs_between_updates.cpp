@@ -34,31 +34,90 @@ PairChanges Pairs<Scalar>::announce(ProxyId id, PairFilter filter) & {
     HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(&grid_), kMustNotAsk);
     beginCall();
     findUnknown(id.index);
-    unknown_ = asked_;
-    ask(filter, toldBetween_);
-    announceUnknown();
-    decide();
-    return tell(toldBetween_);
+    return decideBetween(filter);
 }
 
 template <class Scalar>
 PairChanges Pairs<Scalar>::refilter(ProxyId id, PairFilter filter) & {
-    HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid can be filtered again.");
+    return refilter(std::span(&id, 1), filter);
+}
+
+// Of a large part of all proxies, all couples are found in one pass.
+template <class Scalar>
+PairChanges Pairs<Scalar>::refilter(std::span<const ProxyId> ids, PairFilter filter) & {
+    for ([[maybe_unused]] const ProxyId id : ids) {
+        HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid can be filtered again.");
+    }
     HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(&grid_), kMustNotAsk);
     beginCall();
     recover();
-    announcedBefore_.assign(announced_.keys().begin(), announced_.keys().end());
-    findUnknown(id.index);
-    unknown_ = asked_;
-    forKnownCouples(id.index, [this](Couple c) {
-        if (!isRefused(c) && grid_.isAlive(first(c)) && grid_.isAlive(second(c))) {
-            standing_.push_back(c);
-            asked_.push_back(c);
-        } else if (isRefused(c) && (overlapNow(c) || isSwept(c))) {
-            // Those apart for the moment are asked about by update(), should they meet again.
-            asked_.push_back(c);
+    constexpr std::size_t kLargePart = 8;
+    if (ids.size() > 1 && ids.size() > grid_.size() / kLargePart) {
+        isNamed_.assign(grid_.records_.size(), 0);
+        for (const ProxyId id : ids) {
+            isNamed_[id.index] = 1;
+        }
+        askAgainAboutMany([this](std::uint32_t slot) { return isNamed_[slot] != 0; });
+        return decideBetween(filter);
+    }
+    for (const ProxyId id : ids) {
+        if (grid_.cost_.changed > 0) {
+            findUnknown(id.index);
+        }
+        forKnownCouples(id.index, [this](Couple c) { askAgain(c); });
+    }
+    return decideBetween(filter);
+}
+
+template <class Scalar>
+PairChanges Pairs<Scalar>::refilterAll(PairFilter filter) & {
+    HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(&grid_), kMustNotAsk);
+    beginCall();
+    recover();
+    askAgainAboutMany([](std::uint32_t) { return true; });
+    return decideBetween(filter);
+}
+
+// What is not known yet is of one that has changed.
+template <class Scalar>
+template <class IsNamed>
+void Pairs<Scalar>::askAgainAboutMany(const IsNamed& isNamed) {
+    if (grid_.cost_.changed > 0) {
+        for (const std::uint32_t slot : grid_.mobileSlots_) {
+            if (grid_.changedNow(slot) && grid_.isAlive(slot)) {
+                findUnknown(slot, isNamed);
+            }
+        }
+    }
+    forAllKnown([&](Couple c) {
+        if (isNamed(first(c)) || isNamed(second(c))) {
+            askAgain(c);
         }
     });
+}
+
+// Asks about a couple that is known. One that is refused and apart for the moment is asked about by
+// update(), should they meet again.
+template <class Scalar>
+void Pairs<Scalar>::askAgain(Couple c) {
+    if (!grid_.isAlive(first(c)) || !grid_.isAlive(second(c))) {
+        return;
+    }
+    if (!isRefused(c)) {
+        standing_.push_back(c);
+        asked_.push_back(c);
+    } else if (overlapNow(c) || isSwept(c)) {
+        asked_.push_back(c);
+    }
+}
+
+// A couple may have been found from either of the two.
+template <class Scalar>
+PairChanges Pairs<Scalar>::decideBetween(PairFilter filter) {
+    for (std::vector<Couple>* couples : {&asked_, &standing_, &unknown_}) {
+        sortCouples(*couples);
+        couples->erase(std::unique(couples->begin(), couples->end()), couples->end());
+    }
     ask(filter, toldBetween_);
     announceUnknown();
     decide();
@@ -68,64 +127,148 @@ PairChanges Pairs<Scalar>::refilter(ProxyId id, PairFilter filter) & {
 template <class Scalar>
 void Pairs<Scalar>::announceUnknown() noexcept {  // NOLINT(bugprone-exception-escape)
     for (const Couple c : unknown_) {
-        announced_.findOrInsert(c);
+        announced_.insert(c);
     }
 }
 
-// Calls visit for each of the proxy's couples that overlapped at the last update or were announced
-// since.
+// --- What is known -------------------------------------------------------------------------------
+
+// Afterwards tableOfUpdate_ has all but `mostUnindexed` of the proxies that are mobile now, and that
+// were there at the last update. Each time that it is filed for more of them it has a quarter more, so
+// that this costs each of them little.
+template <class Scalar>
+void Pairs<Scalar>::indexLastUpdate(std::size_t mostUnindexed) {
+    const bool isStale =
+        shiftOfUpdate_ != grid_.shiftCount_ ||
+        (tableOfUpdate_ == &grid_.mobile_ && filingOfUpdate_ != grid_.filingCount_);
+    if (isStale) {
+        tableOfUpdate_ = nullptr;
+    }
+    const std::span<const std::uint32_t> slots = grid_.mobileSlots_;
+    if (tableOfUpdate_ != nullptr && slots.size() - indexedCount_ <= mostUnindexed) {
+        return;
+    }
+    wokenBoxes_.clear();
+    for (const std::uint32_t slot : slots) {
+        wokenBoxes_.push_back(detail::padded(grid_.boxAtUpdate(slot)));
+    }
+    tableOfUpdate_ = nullptr;
+    wokenTable_.build(slots, wokenBoxes_, grid_.fixedSizes_, serialFor,
+                      grid_.groupsOfAllAtUpdate());
+    tableOfUpdate_ = &wokenTable_;
+    indexedCount_ = slots.size();
+    shiftOfUpdate_ = grid_.shiftCount_;
+}
+
+// Calls visit for each of the proxy's couples that overlapped at the last update, or met on their ways
+// then, or were announced since.
 template <class Scalar>
 template <class Visit>
-void Pairs<Scalar>::forKnownCouples(std::uint32_t slot, const Visit& visit) const {
-    const auto visitIfIts = [&](std::uint32_t a, std::uint32_t b) {
-        if (a == slot || b == slot) {
+void Pairs<Scalar>::forKnownCouples(std::uint32_t slot, const Visit& visit) {
+    forOverlapsAtUpdate(slot, visit);
+    announced_.forEachOf(slot, visit);
+    forSwept(slot, visit);
+}
+
+template <class Scalar>
+template <class Visit>
+void Pairs<Scalar>::forOverlapsAtUpdate(std::uint32_t slot, const Visit& visit) {
+    constexpr std::size_t kFew = 64;
+    indexLastUpdate(kFew + indexedCount_ / 4);
+    const auto visitIfTheyDid = [&](std::uint32_t other) {
+        if (other != slot && wasKnown(slot, other)) {
+            visit(couple(slot, other));
+        }
+    };
+    const auto walk = [&](const detail::Table<Scalar>& table, const Box& box) {
+        wokenBounds_.clear();
+        wokenBounds_.push(box);
+        detail::FewPairs found;
+        detail::KernelCost cost;
+        found.assign([&](detail::PairSink& sink) {
+            detail::walkTogether(table, wokenBounds_.columns(), 1, sink, cost);
+        });
+        for (const auto [query, entry] : found.pairs()) {
+            visitIfTheyDid(table.slot(entry));
+        }
+    };
+    const bool isOwn = tableOfUpdate_ == &wokenTable_;  // in the coordinates of then
+    walk(*tableOfUpdate_, isOwn ? grid_.boxAtUpdate(slot) : grid_.before(slot));
+    walk(grid_.resting_, grid_.before(slot));
+    for (std::size_t i = indexedCount_; i < grid_.mobileSlots_.size(); ++i) {
+        visitIfTheyDid(grid_.mobileSlots_[i]);
+    }
+}
+
+template <class Scalar>
+template <class Visit>
+void Pairs<Scalar>::forSwept(std::uint32_t slot, const Visit& visit) {
+    if (swept_.empty()) {
+        return;
+    }
+    if (sweptBySecond_.empty()) {
+        std::vector<Couple> turned(swept_.size());
+        std::transform(swept_.begin(), swept_.end(), turned.begin(),
+                       [](Couple c) { return c << 32 | c >> 32; });
+        sortCouples(turned);
+        sweptBySecond_.swap(turned);
+    }
+    for (const auto* couples : {&swept_, &sweptBySecond_}) {
+        auto at = std::lower_bound(couples->begin(), couples->end(), Couple{slot} << 32);
+        for (; at != couples->end() && *at >> 32 == slot; ++at) {
+            visit(couple(first(*at), second(*at)));
+        }
+    }
+}
+
+// forKnownCouples() of all.
+template <class Scalar>
+template <class Visit>
+void Pairs<Scalar>::forAllKnown(const Visit& visit) {
+    indexLastUpdate(0);
+    const ProxyGroups* const groups = grid_.groupsOfAllAtUpdate();
+    const auto visitIfTheyDid = [&](std::uint32_t a, std::uint32_t b) {
+        if (wasKnown(a, b)) {
             visit(couple(a, b));
         }
     };
-    const auto& places = grid_.mobileSlots_;
-    for (const auto [a, b] : amongMobile_.pairs()) {
-        visitIfIts(places[a], places[b]);
-    }
-    for (const auto [place, resting] : toResting_.pairs()) {
-        visitIfIts(places[place], resting);
-    }
-    for (const auto* couples : {&announcedBefore_, &swept_}) {
-        for (const Couple c : *couples) {
-            visitIfIts(first(c), second(c));
-        }
-    }
-    const auto watchedEnd = places.begin() + static_cast<std::ptrdiff_t>(watchedMobileCount_);
-    if (std::find(places.begin(), watchedEnd, slot) != watchedEnd) {
-        return;
-    }
-    // It rested at the last update: couples with others that did are not watched.
-    const Box& before = grid_.before(slot);
-    detail::BoxColumns<Scalar> bounds;
-    bounds.push(before);
-    detail::PairParts parts;
-    detail::PairList found;
     detail::KernelCost cost;
-    detail::walkTable(grid_.resting_, bounds.columns(), 1, serialFor, parts, found, cost);
-    for (const auto [query, entry] : found.pairs()) {
-        const std::uint32_t other = grid_.resting_.slot(entry);
-        if (other != slot && grid_.overlappedAtUpdate(slot, other)) {
-            visit(couple(slot, other));
+    const detail::Table<Scalar>* const restingTable = &grid_.resting_;
+    for (const detail::Table<Scalar>* table : {tableOfUpdate_, restingTable}) {
+        selected_.clear();
+        detail::joinTable(*table, serialFor, parts_, selected_, cost, groups);
+        for (const auto [a, b] : selected_.pairs()) {
+            visitIfTheyDid(table->slot(a), table->slot(b));
         }
     }
-    for (const std::uint32_t other : grid_.woken_) {
-        if (other != slot && grid_.overlappedAtUpdate(slot, other)) {
-            visit(couple(slot, other));
-        }
+    wokenBounds_.clear();
+    for (const std::uint32_t slot : tableOfUpdate_->entrySlots()) {
+        wokenBounds_.push(grid_.before(slot));
+    }
+    selected_.clear();
+    const detail::GroupsView view{groups, tableOfUpdate_->entrySlots().data(), {}};
+    detail::walkTable(grid_.resting_, wokenBounds_.columns(), wokenBounds_.size(), serialFor,
+                      parts_, selected_, cost, groups != nullptr ? &view : nullptr);
+    for (const auto [entry, resting] : selected_.pairs()) {
+        visitIfTheyDid(tableOfUpdate_->slot(entry), grid_.resting_.slot(resting));
+    }
+    for (const std::span<const Couple> couples :
+         {announced_.keys(), kept_.keys(), std::span<const Couple>(swept_)}) {
+        std::for_each(couples.begin(), couples.end(), visit);
     }
 }
 
-// The proxy's couples that overlap now, did not at the last update, and were not announced since.
+// The proxy's couples that overlap now, did not at the last update, and were not announced since; those
+// of which one is named.
 template <class Scalar>
-void Pairs<Scalar>::findUnknown(std::uint32_t slot) {
+template <class IsNamed>
+void Pairs<Scalar>::findUnknown(std::uint32_t slot, const IsNamed& isNamed) {
     const auto add = [&](ProxyId other) {
-        if (other.index != slot && !grid_.overlappedAtUpdate(slot, other.index)) {
+        if (other.index != slot && (isNamed(slot) || isNamed(other.index)) &&
+            !wasKnown(slot, other.index) && grid_.mayPairNow(slot, other.index)) {
             const Couple c = couple(slot, other.index);
             if (!announced_.contains(c) && !isSwept(c)) {
+                unknown_.push_back(c);
                 asked_.push_back(c);
             }
         }
@@ -134,10 +277,19 @@ void Pairs<Scalar>::findUnknown(std::uint32_t slot) {
     grid_.visit(BoxRegion<Scalar>{grid_.records_[slot].box}, collector);
 }
 
+template <class Scalar>
+void Pairs<Scalar>::findUnknown(std::uint32_t slot) {
+    findUnknown(slot, [](std::uint32_t) { return true; });
+}
+
 template PairChanges Pairs<float>::announce(ProxyId, PairFilter) &;
 template PairChanges Pairs<double>::announce(ProxyId, PairFilter) &;
 template PairChanges Pairs<float>::refilter(ProxyId, PairFilter) &;
 template PairChanges Pairs<double>::refilter(ProxyId, PairFilter) &;
+template PairChanges Pairs<float>::refilter(std::span<const ProxyId>, PairFilter) &;
+template PairChanges Pairs<double>::refilter(std::span<const ProxyId>, PairFilter) &;
+template PairChanges Pairs<float>::refilterAll(PairFilter) &;
+template PairChanges Pairs<double>::refilterAll(PairFilter) &;
 template void Pairs<float>::announceUnknown() noexcept;
 template void Pairs<double>::announceUnknown() noexcept;
 template void Pairs<float>::findUnknown(std::uint32_t);

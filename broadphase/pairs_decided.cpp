@@ -16,7 +16,9 @@ template <class Scalar>
 void Pairs<Scalar>::askRefusedAgain() {
     restedCouples_.clear();
     for (const Couple c : refused_.keys()) {
-        if (isAtRest(c)) {
+        if (grid_.areRegrouped_ && !mayPairNow(c)) {
+            lapsed_.push_back(c);
+        } else if (isAtRest(c)) {
             restedCouples_.push_back(c);
         } else if ((grid_.changedNow(first(c)) || grid_.changedNow(second(c))) &&
                    (overlapNow(c) || std::binary_search(sweptNow_.begin(), sweptNow_.end(), c))) {
@@ -33,15 +35,21 @@ void Pairs<Scalar>::askRefusedAgain() {
 template <class Scalar>
 void Pairs<Scalar>::ask(PairFilter filter, Told& told) {
     sortCouples(asked_);
-    std::sort(standing_.begin(), standing_.end());
+    sortCouples(standing_);
     askedPairs_.clear();
     for (const Couple c : asked_) {
-        askedPairs_.push_back(pairOf(c));
+        if (mayPairNow(c)) {
+            askedPairs_.push_back(pairOf(c));
+        }
     }
     accepted_.assign(asked_.size(), 0);
+    std::size_t answers = askedPairs_.size();
     {
         const detail::QueryScope scope(&grid_, detail::QueryScope::Changes::forbidden);
-        filter(askedPairs_, accepted_);
+        filter(askedPairs_, std::span(accepted_).first(answers));
+    }
+    for (std::size_t i = asked_.size(); i-- > 0 && answers < asked_.size();) {
+        accepted_[i] = mayPairNow(asked_[i]) ? accepted_[--answers] : char{0};
     }
     const auto refused =
         static_cast<std::size_t>(std::count(accepted_.begin(), accepted_.end(), 0));
@@ -49,7 +57,10 @@ void Pairs<Scalar>::ask(PairFilter filter, Told& told) {
         refused_.reserve(refused_.size() + refused);
     }
     if (!unknown_.empty()) {
-        announced_.reserve(announced_.size() + unknown_.size());
+        announced_.reserve(announced_.size() + unknown_.size(), grid_.records_.size());
+    }
+    if (!keptNow_.empty()) {
+        kept_.reserve(kept_.size() + keptNow_.size());
     }
     const std::size_t mayDie = lost_.size() + standing_.size();
     detail::ensureCapacity(bornCouples_, asked_.size());
@@ -63,15 +74,16 @@ void Pairs<Scalar>::ask(PairFilter filter, Told& told) {
 // aside by the next update.
 template <class Scalar>
 void Pairs<Scalar>::decide() noexcept {  // NOLINT(bugprone-exception-escape)
+    std::size_t nextStanding = 0;
     for (std::size_t i = 0; i < asked_.size(); ++i) {
         const Couple c = asked_[i];
-        const bool wasPair =
-            !standing_.empty() && std::binary_search(standing_.begin(), standing_.end(), c);
+        const bool wasPair = nextStanding < standing_.size() && standing_[nextStanding] == c;
+        nextStanding += wasPair ? 1 : 0;
         if (accepted_[i] == 0) {
             if (wasPair) {
                 lose(c);
             }
-            if (!refusedAtRest_.contains(c)) {
+            if (isToBeRefused(c) && !refusedAtRest_.contains(c)) {
                 refused_.findOrInsert(c);
             }
         } else if (!wasPair) {
@@ -80,6 +92,13 @@ void Pairs<Scalar>::decide() noexcept {  // NOLINT(bugprone-exception-escape)
             ++count_;
         }
     }
+}
+
+// What may not pair is not noted down, unless it is known, so that it counts as refused until the next
+// update, which forgets it.
+template <class Scalar>
+bool Pairs<Scalar>::isToBeRefused(Couple c) const noexcept {
+    return mayPairNow(c) || couldPair(c) || announced_.contains(c) || isSwept(c);
 }
 
 // Returns whether the couple was refused.
@@ -94,6 +113,9 @@ void Pairs<Scalar>::lose(Couple c) noexcept {
     if (!forgetRefused(c)) {
         diedCouples_.push_back(c);
         --count_;
+        if (kept_.size() > 0) {
+            kept_.erase(c);
+        }
     }
 }
 
@@ -115,12 +137,14 @@ template void Pairs<float>::askRefusedAgain();
 template void Pairs<float>::ask(PairFilter, Told&);
 template void Pairs<float>::decide() noexcept;
 template void Pairs<float>::lose(Couple) noexcept;
+template bool Pairs<float>::isToBeRefused(Couple) const noexcept;
 template bool Pairs<float>::forgetRefused(Couple) noexcept;
 template PairChanges Pairs<float>::tell(Told&) noexcept;
 template void Pairs<double>::askRefusedAgain();
 template void Pairs<double>::ask(PairFilter, Told&);
 template void Pairs<double>::decide() noexcept;
 template void Pairs<double>::lose(Couple) noexcept;
+template bool Pairs<double>::isToBeRefused(Couple) const noexcept;
 template bool Pairs<double>::forgetRefused(Couple) noexcept;
 template PairChanges Pairs<double>::tell(Told&) noexcept;
 

@@ -13,19 +13,21 @@ namespace hashphase {
 template <class Scalar>
 void Pairs<Scalar>::forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const {
     grid_.mendTables();
+    const ProxyGroups* const groups = grid_.groupsOfAll();
     detail::PairParts parts;
     detail::PairList found;
     detail::KernelCost cost;
     for (const detail::Table<Scalar>* table : {&grid_.mobile_, &grid_.resting_}) {
         found.clear();
-        detail::joinTable(*table, serialFor, parts, found, cost);
+        detail::joinTable(*table, serialFor, parts, found, cost, groups);
         for (const auto [a, b] : found.pairs()) {
             visit(table->slot(a), table->slot(b));
         }
     }
     found.clear();
+    const detail::GroupsView view{groups, grid_.mobile_.entrySlots().data(), {}};
     detail::walkTable(grid_.resting_, grid_.mobile_.columns(), grid_.mobile_.size(), serialFor,
-                      parts, found, cost);
+                      parts, found, cost, groups != nullptr ? &view : nullptr);
     for (const auto [a, b] : found.pairs()) {
         visit(grid_.mobile_.slot(a), grid_.resting_.slot(b));
     }
@@ -41,9 +43,11 @@ void Pairs<Scalar>::collect(std::vector<ProxyPair>& pairs) const {
             pairs.push_back(pairOf(couple(a, b)));
         }
     });
-    for (const Couple c : swept_) {
-        if (!isRefused(c)) {
-            pairs.push_back(pairOf(c));
+    for (const std::span<const Couple> couples : {kept_.keys(), std::span<const Couple>(swept_)}) {
+        for (const Couple c : couples) {
+            if (!isRefused(c)) {
+                pairs.push_back(pairOf(c));
+            }
         }
     }
     std::sort(pairs.begin() + begin, pairs.end());
@@ -69,12 +73,16 @@ std::string Pairs<Scalar>::validate() const {
     });
     std::sort(expected.begin(), expected.end());
     if (!grid_.isTorn_ && watched != expected) {
-        return "The watched couples are the overlapping ones of which one is mobile, each once: "
-               "broken.";
+        return "The watched couples are the overlapping ones that may pair and of which one is "
+               "mobile, each once: broken.";
     }
-    if (count_ + refusedCount() != overlapping + swept_.size()) {
-        return "count() is the number of overlapping and swept couples less the refused ones: "
-               "broken.";
+    if (count_ + refusedCount() != overlapping + swept_.size() + kept_.size()) {
+        return "count() is the number of overlapping and swept couples that may pair, less the "
+               "refused ones, and of the pairs that are kept: broken.";
+    }
+    const auto isKept = [this](Couple c) { return overlapNow(c) && !mayPairNow(c); };
+    if (!std::all_of(kept_.keys().begin(), kept_.keys().end(), isKept)) {
+        return "The pairs that are kept overlap and may not pair: broken.";
     }
     const bool isApart =
         std::none_of(swept_.begin(), swept_.end(), [this](Couple c) { return overlapNow(c); });

@@ -45,17 +45,16 @@ Search<Scalar> searchOf(const Level<Scalar>& a, const Level<Scalar>& b) {
 }
 
 template <class Scalar>
-void run(const Table<Scalar>& table, const Search<Scalar>& search, std::uint32_t first,
-         std::uint32_t last, PairSink& sink, KernelCost& cost) {
+void run(const Table<Scalar>& table, const Search<Scalar>& search, const GroupsView* groups,
+         std::uint32_t first, std::uint32_t last, PairSink& sink, KernelCost& cost) {
     const Kernels<Scalar>& kernel = kernels<Scalar>();
-    const Level<Scalar>& from = *search.from;
-    const Columns<Scalar> columns = table.columns();
+    const LevelView<Scalar> among = table.view(*search.among);
     if (search.from != search.among) {
-        kernel.walkLevel(table.view(*search.among), columns.data(), first, last, sink, cost);
-    } else if (from.hasCells) {
-        kernel.joinLevel(table.view(from), first, last, sink, cost);
+        kernel.walkLevel(among, groups, table.columns().data(), first, last, sink, cost);
+    } else if (among.hasCells) {
+        kernel.joinLevel(among, groups, first, last, sink, cost);
     } else {
-        kernel.joinList(columns.data(), first, last, from.lastEntry, sink, cost);
+        kernel.joinList(among, groups, first, last, sink, cost);
     }
 }
 
@@ -66,7 +65,9 @@ constexpr std::size_t kJoinGrain = 2048;
 
 template <class Scalar>
 void joinTable(const Table<Scalar>& table, ParallelFor parallelFor, PairParts& parts,
-               PairList& found, KernelCost& cost) {
+               PairList& found, KernelCost& cost, const ProxyGroups* groups,
+               const ProxyGroups& together) {
+    const GroupsView view{groups, table.entrySlots().data(), together};
     constexpr std::size_t kMost = 2 * kMaxLevels + 1;
     std::array<Search<Scalar>, kMost*(kMost + 1) / 2> searches;  // the first searchCount
     std::size_t searchCount = 0;
@@ -91,7 +92,8 @@ void joinTable(const Table<Scalar>& table, ParallelFor parallelFor, PairParts& p
                           const std::size_t count = searches[i].from->count();
                           if (first < count) {
                               const std::uint32_t base = searches[i].from->firstEntry;
-                              run(table, searches[i], base + static_cast<std::uint32_t>(first),
+                              run(table, searches[i], groups != nullptr ? &view : nullptr,
+                                  base + static_cast<std::uint32_t>(first),
                                   base + static_cast<std::uint32_t>(std::min(last, count)), sink,
                                   own);
                           }
@@ -113,12 +115,13 @@ void walkTogether(const Table<Scalar>& table, const Columns<Scalar>& queries, st
 
 template <class Scalar>
 void walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t count,
-               ParallelFor parallelFor, PairParts& parts, PairList& found, KernelCost& cost) {
+               ParallelFor parallelFor, PairParts& parts, PairList& found, KernelCost& cost,
+               const GroupsView* groups) {
     parts.collect(parallelFor, count, kJoinGrain, found, cost,
                   [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost& own) {
                       for (const Level<Scalar>& level : table.levels()) {
                           if (level.count() > 0) {
-                              kernels<Scalar>().walkLevel(table.view(level), queries.data(),
+                              kernels<Scalar>().walkLevel(table.view(level), groups, queries.data(),
                                                           static_cast<std::uint32_t>(first),
                                                           static_cast<std::uint32_t>(last), sink,
                                                           own);
@@ -127,14 +130,14 @@ void walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::
                   });
 }
 
-template void joinTable<float>(const Table<float>&, ParallelFor, PairParts&, PairList&,
-                               KernelCost&);
+template void joinTable<float>(const Table<float>&, ParallelFor, PairParts&, PairList&, KernelCost&,
+                               const ProxyGroups*, const ProxyGroups&);
 template void joinTable<double>(const Table<double>&, ParallelFor, PairParts&, PairList&,
-                                KernelCost&);
+                                KernelCost&, const ProxyGroups*, const ProxyGroups&);
 template void walkTable<float>(const Table<float>&, const Columns<float>&, std::uint32_t,
-                               ParallelFor, PairParts&, PairList&, KernelCost&);
+                               ParallelFor, PairParts&, PairList&, KernelCost&, const GroupsView*);
 template void walkTable<double>(const Table<double>&, const Columns<double>&, std::uint32_t,
-                                ParallelFor, PairParts&, PairList&, KernelCost&);
+                                ParallelFor, PairParts&, PairList&, KernelCost&, const GroupsView*);
 
 template void walkTogether<float>(const Table<float>&, const Columns<float>&, std::uint32_t,
                                   PairSink&, KernelCost&);

@@ -115,6 +115,39 @@ struct Query {
     [[nodiscard]] Lanes<Pack, Scalar> lanes() const {
         return Lanes<Pack, Scalar>(columns, number);
     }
+
+    /// Whether an entry that overlaps it is to be found, whether any is, and whether any of a part of a
+    /// bucket is.
+    [[nodiscard]] static constexpr bool finds(std::uint32_t /*entry*/) { return true; }
+    [[nodiscard]] static constexpr bool findsAny() { return true; }
+    [[nodiscard]] static constexpr bool findsAny(const SortedBucket<Scalar>& /*part*/) {
+        return true;
+    }
+};
+
+/// The same for one that finds only what it may pair with.
+template <class Scalar>
+struct GroupQuery : Query<Scalar> {
+    const GroupsView* view;
+    const std::uint32_t* slots;  // of entries
+    ProxyGroups own;
+
+    GroupQuery(const LevelView<Scalar>& level, const GroupsView& groups, const Query<Scalar>& query)
+        : Query<Scalar>(query),
+          view(&groups),
+          slots(level.entrySlots),
+          own(groups.groups[2 * std::size_t{groups.slotOfQuery[query.number]}]) {}
+
+    [[nodiscard]] bool isFor(const ProxyGroups& other) const {
+        return ((own.group & other.mask) != 0) & ((other.group & own.mask) != 0);
+    }
+    [[nodiscard]] bool finds(std::uint32_t entry) const {
+        return isFor(view->groups[2 * std::size_t{slots[entry]}]);
+    }
+    [[nodiscard]] bool findsAny() const { return isFor(view->together); }
+    [[nodiscard]] bool findsAny(const SortedBucket<Scalar>& part) const {
+        return !part.haveSameGroups || isFor(part.groups);
+    }
 };
 
 /// The same for a part of a way, of which the box is around.
@@ -170,13 +203,13 @@ std::uint32_t scanAll(const LevelView<Scalar>& level, const Query& query, Run ru
         for (; mask != 0; mask &= mask - 1) {
             const std::uint32_t hit = first + static_cast<std::uint32_t>(__builtin_ctz(mask));
             *found.next = {query.number, hit};
-            found.next += isInRow<kIsDense>(level, hit, row) ? 1 : 0;
+            found.next += isInRow<kIsDense>(level, hit, row) && query.finds(hit) ? 1 : 0;
         }
     }
     return run.last - run.first;
 }
 
-/// Null when the bucket, counted over all levels, is not sorted.
+/// The first part of the bucket, counted over all levels; null when it is not sorted.
 template <class Scalar>
 const SortedBucket<Scalar>* sortedBucket(const LevelView<Scalar>& level, std::uint32_t bucket) {
     std::uint32_t first = 0;
@@ -193,6 +226,25 @@ const SortedBucket<Scalar>* sortedBucket(const LevelView<Scalar>& level, std::ui
     return first < level.sortedCount && found->bucket == bucket ? found : nullptr;
 }
 
+// Tests those entries of a run that are in a part of a bucket.
+template <bool kIsDense, class Scalar, class Query>
+std::uint32_t sweepPart(const LevelView<Scalar>& level, const Query& query,
+                        const SortedBucket<Scalar>& sorted, Run run, Row row, PairSink& found) {
+    run = {highest(run.first, sorted.first), lowest(run.last, sorted.last)};
+    if (run.last <= run.first || !query.findsAny(sorted)) {
+        return 0;
+    }
+    const Scalar* const column = level.columns[sorted.axis];
+    const Scalar low = query.columns[sorted.axis][query.number];
+    const Scalar high = query.columns[sorted.axis + 3][query.number];
+    const Run longOnes = {highest(run.first, sorted.firstLong), run.last};
+    run.last = lowest(run.last, sorted.firstLong);
+    const Run near = {firstNear(sorted, column, run.first, run.last, low),
+                      endOfNear(column, run.first, run.last, high)};
+    return scanAll<kIsDense>(level, query, longOnes, row, found) +
+           scanAll<kIsDense>(level, query, near, row, found);
+}
+
 // Tests the entries of a run on a level of which some crowded buckets are sorted along an axis: of
 // these, those that begin before the box ends, and no farther before it than the longest of them
 // reaches, and the long ones. Returns how many it tested.
@@ -204,21 +256,18 @@ template <bool kIsDense, class Scalar, class Query>
         const std::uint32_t bucket = level.bucketOfEntry[run.first];
         const std::uint32_t begin = level.bucketStart[bucket - level.firstBucket];
         const std::uint32_t end = level.bucketStart[bucket - level.firstBucket + 1];
-        const SortedBucket<Scalar>* const sorted =
+        const SortedBucket<Scalar>* sorted =
             end - begin > kCrowd ? sortedBucket(level, bucket) : nullptr;
-        Run part = {run.first, lowest(end, run.last)};
+        const Run part = {run.first, lowest(end, run.last)};
         run.first = part.last;
-        if (sorted != nullptr) {
-            const Scalar* const column = level.columns[sorted->axis];
-            const Scalar low = query.columns[sorted->axis][query.number];
-            const Scalar high = query.columns[sorted->axis + 3][query.number];
-            const Run longOnes = {highest(part.first, sorted->firstLong), part.last};
-            part.last = lowest(part.last, sorted->firstLong);
-            tested += scanAll<kIsDense>(level, query, longOnes, row, found);
-            part = {firstNear(*sorted, column, part.first, part.last, low),
-                    endOfNear(column, part.first, part.last, high)};
+        if (sorted == nullptr) {
+            tested += scanAll<kIsDense>(level, query, part, row, found);
+            continue;
         }
-        tested += scanAll<kIsDense>(level, query, part, row, found);
+        const SortedBucket<Scalar>* const endOfSorted = level.sortedBuckets + level.sortedCount;
+        for (; sorted != endOfSorted && sorted->bucket == bucket; ++sorted) {
+            tested += sweepPart<kIsDense>(level, query, *sorted, part, row, found);
+        }
     }
     return tested;
 }

@@ -76,15 +76,37 @@ struct Neighbourhood {
     }
 };
 
+/// The queries of a join: for all that overlaps an entry, or for what it may pair with.
+struct ForAll {
+    template <class Scalar>
+    [[nodiscard]] Query<Scalar> operator()(const LevelView<Scalar>& level,
+                                           std::uint32_t entry) const {
+        return {level.columns, entry};
+    }
+};
+struct ForGroups {
+    const GroupsView* view;
+
+    template <class Scalar>
+    [[nodiscard]] GroupQuery<Scalar> operator()(const LevelView<Scalar>& level,
+                                                std::uint32_t entry) const {
+        return {level, *view, Query<Scalar>{level.columns, entry}};
+    }
+};
+
 // Flattened, because compilers leave calls in this loop otherwise.
-template <class Scalar, bool kIsDense, int kRows>
+template <class Scalar, bool kIsDense, int kRows, class QueryOf>
 [[gnu::flatten]] void joinRows(const LevelView<Scalar>& level, const Row* steps,
-                               std::uint32_t firstEntry, std::uint32_t lastEntry, PairSink& found,
-                               KernelCost& cost) {
+                               const QueryOf& queryOf, std::uint32_t firstEntry,
+                               std::uint32_t lastEntry, PairSink& found, KernelCost& cost) {
     constexpr int kUnbranchedHits = 2;
     const Neighbourhood<Scalar, kIsDense, kRows> around(level, steps);
     std::uint64_t boxesTested = 0;
     for (std::uint32_t entry = firstEntry; entry < lastEntry; ++entry) {
+        const auto query = queryOf(level, entry);
+        if (!query.findsAny()) {
+            continue;
+        }
         Run runs[kRows + 1];
         runs[kRows] = {0, 0};
         const bool wraps = around.read(entry, runs);
@@ -118,7 +140,8 @@ template <class Scalar, bool kIsDense, int kRows>
             *next = {entry, hit};
             const bool isHit =
                 hits != 0 &&
-                isInRow<kIsDense>(level, hit, around.row(entry, static_cast<int>(k % kRows)));
+                isInRow<kIsDense>(level, hit, around.row(entry, static_cast<int>(k % kRows))) &&
+                query.finds(hit);
             next += isHit ? 1 : 0;
             hits &= hits - 1;
         };
@@ -130,7 +153,6 @@ template <class Scalar, bool kIsDense, int kRows>
         }
         found.next = next;
 
-        const Query<Scalar> query{level.columns, entry};
         if (longest >= kWidth) {
             for (int k = 0; k < kRows; ++k) {
                 if (runs[k].last - runs[k].first > kWidth) {
@@ -151,41 +173,60 @@ template <class Scalar, bool kIsDense, int kRows>
     cost.rowsVisited += std::uint64_t{lastEntry - firstEntry} * kRows;
 }
 
-template <class Scalar, bool kIsDense>
-void joinDenseOrHashed(const LevelView<Scalar>& level, std::uint32_t firstEntry,
-                       std::uint32_t lastEntry, PairSink& found, KernelCost& cost) {
+template <class Scalar, bool kIsDense, class QueryOf>
+void joinDenseOrHashed(const LevelView<Scalar>& level, const QueryOf& queryOf, std::uint32_t first,
+                       std::uint32_t last, PairSink& found, KernelCost& cost) {
     const bool isOneRow = level.low[1] == level.high[1];
     const bool isOneLayer = level.low[2] == level.high[2];
     if (isOneRow && isOneLayer) {
-        joinRows<Scalar, kIsDense, 1>(level, kRowsOfSpace, firstEntry, lastEntry, found, cost);
+        joinRows<Scalar, kIsDense, 1>(level, kRowsOfSpace, queryOf, first, last, found, cost);
     } else if (isOneLayer) {
-        joinRows<Scalar, kIsDense, 2>(level, kRowsOfLayer, firstEntry, lastEntry, found, cost);
+        joinRows<Scalar, kIsDense, 2>(level, kRowsOfLayer, queryOf, first, last, found, cost);
     } else if (isOneRow) {
-        joinRows<Scalar, kIsDense, 2>(level, kRowsOfWall, firstEntry, lastEntry, found, cost);
+        joinRows<Scalar, kIsDense, 2>(level, kRowsOfWall, queryOf, first, last, found, cost);
     } else {
-        joinRows<Scalar, kIsDense, 5>(level, kRowsOfSpace, firstEntry, lastEntry, found, cost);
+        joinRows<Scalar, kIsDense, 5>(level, kRowsOfSpace, queryOf, first, last, found, cost);
     }
 }
 
-template <class Scalar>
-void joinLevel(const LevelView<Scalar>& level, std::uint32_t firstEntry, std::uint32_t lastEntry,
-               PairSink& found, KernelCost& cost) {
+template <class Scalar, class QueryOf>
+void joinLevelFor(const LevelView<Scalar>& level, const QueryOf& queryOf, std::uint32_t first,
+                  std::uint32_t last, PairSink& found, KernelCost& cost) {
     if (level.isDense) {
-        joinDenseOrHashed<Scalar, true>(level, firstEntry, lastEntry, found, cost);
+        joinDenseOrHashed<Scalar, true>(level, queryOf, first, last, found, cost);
     } else {
-        joinDenseOrHashed<Scalar, false>(level, firstEntry, lastEntry, found, cost);
+        joinDenseOrHashed<Scalar, false>(level, queryOf, first, last, found, cost);
     }
 }
 
 template <class Scalar>
-void joinList(const Scalar* const* columns, std::uint32_t first, std::uint32_t last,
-              std::uint32_t end, PairSink& found, KernelCost& cost) {
-    LevelView<Scalar> list{};
-    for (int column = 0; column < 6; ++column) {
-        list.columns[column] = columns[column];
+void joinLevel(const LevelView<Scalar>& level, const GroupsView* groups, std::uint32_t firstEntry,
+               std::uint32_t lastEntry, PairSink& found, KernelCost& cost) {
+    if (groups == nullptr) {
+        joinLevelFor(level, ForAll{}, firstEntry, lastEntry, found, cost);
+    } else {
+        joinLevelFor(level, ForGroups{groups}, firstEntry, lastEntry, found, cost);
     }
-    for (std::uint32_t entry = first; entry < last; ++entry) {
-        cost.boxesTested += end - entry - 1;
-        scanAll<true>(list, Query<Scalar>{columns, entry}, Run{entry + 1, end}, Row{}, found);
+}
+
+template <class Scalar, class QueryOf>
+void joinListFor(const LevelView<Scalar>& level, const QueryOf& queryOf, std::uint32_t firstEntry,
+                 std::uint32_t lastEntry, PairSink& found, KernelCost& cost) {
+    for (std::uint32_t entry = firstEntry; entry < lastEntry; ++entry) {
+        const auto query = queryOf(level, entry);
+        if (query.findsAny()) {
+            cost.boxesTested +=
+                scan<true>(level, query, Run{entry + 1, level.lastEntry}, Row{}, found);
+        }
+    }
+}
+
+template <class Scalar>
+void joinList(const LevelView<Scalar>& level, const GroupsView* groups, std::uint32_t firstEntry,
+              std::uint32_t lastEntry, PairSink& found, KernelCost& cost) {
+    if (groups == nullptr) {
+        joinListFor(level, ForAll{}, firstEntry, lastEntry, found, cost);
+    } else {
+        joinListFor(level, ForGroups{groups}, firstEntry, lastEntry, found, cost);
     }
 }

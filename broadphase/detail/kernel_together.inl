@@ -135,7 +135,7 @@ void walkTogether(const LevelView<Scalar>& level, const Scalar* const* queries, 
                          : walkBoxes<Scalar, false>(level, queries, first, end, found, cost);
         }
         if (!isDone) {
-            walkLevel(level, queries, first, end, found, cost);
+            walkLevel(level, nullptr, queries, first, end, found, cost);
         }
     }
 }

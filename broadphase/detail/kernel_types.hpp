@@ -6,6 +6,7 @@
 // could be the copy that the linker keeps for the whole program.
 
 #include <broadphase/detail/sorted_bucket.hpp>
+#include <broadphase/proxy_groups.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -128,6 +129,13 @@ struct LevelView {
     std::uint32_t sortedCount;
 };
 
+/// Who may pair with whom, for searches that are to find no others.
+struct GroupsView {
+    const ProxyGroups* groups;         // of a slot: groups[2 * slot]
+    const std::uint32_t* slotOfQuery;  // by the number of what is looked for
+    ProxyGroups together;              // all bits of those that are looked through
+};
+
 /// A hash of a row's number whose lower bits are well mixed.
 [[nodiscard, gnu::always_inline]] inline std::uint32_t mixRow(std::uint32_t row) noexcept {
     std::uint32_t hash = row ^ (row >> 16);
@@ -200,17 +208,20 @@ struct Kernels {
                       const PaddedBox<Scalar>* boxes, std::size_t count, std::uint32_t* buckets);
 
     /// Finds every two entries of a level with cells that overlap, the first one from firstEntry
-    /// to lastEntry; over the whole level each couple once.
-    void (*joinLevel)(const LevelView<Scalar>& level, std::uint32_t firstEntry,
-                      std::uint32_t lastEntry, PairSink& found, KernelCost& cost);
+    /// to lastEntry; over the whole level each couple once. Where `groups` is not null, this and the next
+    /// one leave out those that may not pair.
+    void (*joinLevel)(const LevelView<Scalar>& level, const GroupsView* groups,
+                      std::uint32_t firstEntry, std::uint32_t lastEntry, PairSink& found,
+                      KernelCost& cost);
 
     /// Finds (i, entry) for every box i from first to last of `queries`, which has columns like the
     /// level's, and every entry of the level that overlaps it.
-    void (*walkLevel)(const LevelView<Scalar>& level, const Scalar* const* queries,
-                      std::uint32_t first, std::uint32_t last, PairSink& found, KernelCost& cost);
+    void (*walkLevel)(const LevelView<Scalar>& level, const GroupsView* groups,
+                      const Scalar* const* queries, std::uint32_t first, std::uint32_t last,
+                      PairSink& found, KernelCost& cost);
 
-    /// The same, but for entries that are not within reach of ways[wayOf[i]] between the times 0 and
-    /// 1; some that it just misses may be found.
+    /// The same for all groups, but for entries that are not within reach of ways[wayOf[i]] between
+    /// the times 0 and 1; some that it just misses may be found.
     void (*walkWays)(const LevelView<Scalar>& level, const Scalar* const* queries,
                      const Way<Scalar>* ways, const std::uint32_t* wayOf, std::uint32_t first,
                      std::uint32_t last, PairSink& found, KernelCost& cost);
@@ -225,9 +236,10 @@ struct Kernels {
     bool (*walkVolume)(const LevelView<Scalar>& level, const Volume<Scalar>& volume,
                        SlotSink& found, KernelCost& cost);
 
-    /// Finds each of the entries first to last that overlaps another one behind it, up to `end`.
-    void (*joinList)(const Scalar* const* columns, std::uint32_t first, std::uint32_t last,
-                     std::uint32_t end, PairSink& found, KernelCost& cost);
+    /// As joinLevel(), of a level without cells.
+    void (*joinList)(const LevelView<Scalar>& level, const GroupsView* groups,
+                     std::uint32_t firstEntry, std::uint32_t lastEntry, PairSink& found,
+                     KernelCost& cost);
 
     /// The least and the greatest number of a column, from entry first to last.
     void (*findRange)(const Scalar* column, std::uint32_t first, std::uint32_t last, Scalar* least,

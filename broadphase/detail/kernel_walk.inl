@@ -93,7 +93,7 @@ void scanRows(const LevelView<Scalar>& level, const Query& query, const Lanes& b
         const std::uint32_t k = bit / kWidth;
         const std::uint32_t hit = runs[k].first + bit % kWidth;
         *found.next = {query.number, hit};
-        found.next += isInRow<kIsDense>(level, hit, rows[k]) ? 1 : 0;
+        found.next += isInRow<kIsDense>(level, hit, rows[k]) && query.finds(hit) ? 1 : 0;
     }
     for (std::uint32_t k = 0; longest >= kWidth && k < rowCount; ++k) {
         if (runs[k].last - runs[k].first > kWidth) {
@@ -170,10 +170,17 @@ void walk(const LevelView<Scalar>& level, const Query& query, PairSink& found, K
 }
 
 template <class Scalar>
-void walkLevel(const LevelView<Scalar>& level, const Scalar* const* queries, std::uint32_t first,
-               std::uint32_t last, PairSink& found, KernelCost& cost) {
-    for (std::uint32_t number = first; number < last; ++number) {
+void walkLevel(const LevelView<Scalar>& level, const GroupsView* groups,
+               const Scalar* const* queries, std::uint32_t first, std::uint32_t last,
+               PairSink& found, KernelCost& cost) {
+    for (std::uint32_t number = first; number < last && groups == nullptr; ++number) {
         walk(level, Query<Scalar>{queries, number}, found, cost);
+    }
+    for (std::uint32_t number = first; number < last && groups != nullptr; ++number) {
+        const GroupQuery<Scalar> query(level, *groups, Query<Scalar>{queries, number});
+        if (query.findsAny()) {
+            walk(level, query, found, cost);
+        }
     }
 }
 

@@ -5,6 +5,8 @@
 // and into queries that no kernel answers: what stands here may call only what is always inlined, as
 // kernels.inl says.
 
+#include <broadphase/proxy_groups.hpp>
+
 #include <cstdint>
 
 namespace hashphase::detail {
@@ -12,14 +14,19 @@ namespace hashphase::detail {
 /// A bucket with more entries than this is crowded, and may be sorted along an axis.
 inline constexpr std::uint32_t kCrowd = 256;
 
-/// A crowded bucket whose entries are sorted by their min corners along an axis, so that not all have
-/// to be read; but for the last ones, which are long.
+/// A crowded bucket, or those of its entries that have the same groups: sorted by their min corners along
+/// an axis, so that not all have to be read, but for the last ones, which are long. Where groups tell
+/// apart, the parts of a bucket follow each other, and there are no entries between them.
 template <class Scalar>
 struct SortedBucket {
-    std::uint32_t bucket;  // counted over all levels
-    std::uint32_t axis;
+    std::uint32_t bucket;     // counted over all levels
+    std::uint32_t first;      // entry
     std::uint32_t firstLong;  // entry from which on they are long
-    Scalar reach;             // none of the others is longer along the axis
+    std::uint32_t last;       // one past
+    std::uint32_t axis;
+    Scalar reach;  // none of the others is longer along the axis
+    ProxyGroups groups;
+    bool haveSameGroups;
 };
 
 // Of its entries first to last, of which none is long, only some can overlap a box that extends from

@@ -10,6 +10,7 @@
 #include <broadphase/diagnostics.hpp>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <limits>
 #include <numeric>
@@ -21,6 +22,44 @@ namespace {
 
 // Boxes that one thread deals with at a time.
 constexpr std::size_t kTableGrain = 4096;
+
+// So few of a crowd are not worth sorting along an axis.
+constexpr std::size_t kFewest = 64;
+
+// Sorts the crowd by the groups of its boxes; does nothing, and returns false, where so many kinds of
+// them are there that telling them apart takes longer than it spares.
+template <class GroupsOf>
+bool sortByGroups(std::span<std::uint32_t> crowd, const GroupsOf& groupsOf) {
+    constexpr std::size_t kMostKinds = 32;
+    std::array<ProxyGroups, kMostKinds> kinds;  // the first kindCount
+    std::size_t kindCount = 0;
+    ProxyGroups last = groupsOf(crowd[0]);
+    for (const std::uint32_t i : crowd) {
+        const ProxyGroups groups = groupsOf(i);
+        if (kindCount > 0 && groups == last) {
+            continue;
+        }
+        last = groups;
+        const auto end = kinds.begin() + static_cast<std::ptrdiff_t>(kindCount);
+        if (std::find(kinds.begin(), end, groups) != end) {
+            continue;
+        }
+        if (kindCount == kMostKinds) {
+            return false;
+        }
+        kinds[kindCount++] = groups;
+    }
+    if (kindCount > 1) {
+        const auto key = [&](std::uint32_t i) {
+            const ProxyGroups groups = groupsOf(i);
+            return std::uint64_t{groups.group} << 32 | groups.mask;
+        };
+        std::sort(crowd.begin(), crowd.end(), [&](std::uint32_t a, std::uint32_t b) {
+            return key(a) != key(b) ? key(a) < key(b) : a < b;
+        });
+    }
+    return true;
+}
 
 }  // namespace
 
@@ -64,7 +103,8 @@ std::size_t Table<Scalar>::countBuckets(std::span<const PaddedBox<Scalar>> boxes
 // sequence.
 template <class Scalar>
 void Table<Scalar>::sortEntries(std::span<const std::uint32_t> boxSlots,
-                                std::span<const PaddedBox<Scalar>> boxes, ParallelFor parallelFor) {
+                                std::span<const PaddedBox<Scalar>> boxes, const ProxyGroups* groups,
+                                ParallelFor parallelFor) {
     std::uint32_t sum = 0;
     largestBucket_ = 0;
     const std::size_t listBucket = bucketStart_.size() - 2;  // and behind it the end
@@ -93,7 +133,7 @@ void Table<Scalar>::sortEntries(std::span<const std::uint32_t> boxSlots,
     }
     std::copy_backward(bucketStart_.begin(), bucketStart_.end() - 1, bucketStart_.end());
     bucketStart_[0] = 0;
-    sortCrowds(boxes);
+    sortCrowds(boxSlots, boxes, groups);
 
     parallelFor(count, kTableGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t entry = begin; entry < end; ++entry) {
@@ -124,38 +164,85 @@ void Table<Scalar>::forCrowds(const Level<Scalar>& level, const Visit& visit) {
 }
 
 // Where many boxes share a cell, because it is much larger than they are, a search would have to
-// read them all; when they are sorted, only what is near along the axis.
+// read them all; when they are sorted, only what is near along the axis. Those that lie at one place,
+// where no axis tells them apart, are mostly some that may not pair: by groups, a search need not read
+// what it cannot pair with.
 template <class Scalar>
-void Table<Scalar>::sortCrowds(std::span<const PaddedBox<Scalar>> boxes) {
+void Table<Scalar>::sortCrowds(std::span<const std::uint32_t> boxSlots,
+                               std::span<const PaddedBox<Scalar>> boxes,
+                               const ProxyGroups* groups) {
     sortedBuckets_.clear();
     for (Level<Scalar>& level : levels_) {
         level.firstSorted = static_cast<std::uint32_t>(sortedBuckets_.size());
         level.sortedCount = 0;
-        if (largestBucket_ <= kCrowd || !level.hasCells || level.count() <= kCrowd) {
+        const bool mayBeCrowded = level.hasCells ? largestBucket_ > kCrowd : groups != nullptr;
+        if (!mayBeCrowded || level.count() <= kCrowd) {
             continue;
         }
         forCrowds(level, [&](std::uint32_t bucket, std::span<std::uint32_t> crowd) {
-            const CrowdCensus<Scalar> census(crowd, boxes);
-            const std::optional<std::uint32_t> axis = census.sweepAxis();
-            if (!axis) {
-                return;
+            const auto groupsOf = [&](std::uint32_t i) {
+                return groups[2 * std::size_t{boxSlots[i]}];
+            };
+            const bool haveGroups = groups != nullptr && sortByGroups(crowd, groupsOf);
+            std::uint32_t first = bucketStart_[bucket];
+            while (!crowd.empty()) {
+                std::size_t count = crowd.size();
+                if (haveGroups) {
+                    count = 1;
+                    while (count < crowd.size() && groupsOf(crowd[count]) == groupsOf(crowd[0])) {
+                        ++count;
+                    }
+                }
+                const auto last = first + static_cast<std::uint32_t>(count);
+                std::optional<SortedBucket<Scalar>> sorted;
+                if (level.hasCells && count > kFewest) {
+                    sorted = sortedAlong(crowd.first(count), boxes);
+                }
+                if (!sorted && haveGroups) {
+                    sorted = SortedBucket<Scalar>{};  // all count as long
+                }
+                if (sorted) {
+                    sorted->bucket = bucket;
+                    sorted->first = first;
+                    sorted->firstLong += first;
+                    sorted->last = last;
+                    sorted->haveSameGroups = haveGroups;
+                    sorted->groups = haveGroups ? groupsOf(crowd[0]) : ProxyGroups{};
+                    sortedBuckets_.push_back(*sorted);
+                }
+                first = last;
+                crowd = crowd.subspan(count);
             }
-            const auto isLong = [&](std::uint32_t i) { return census.isLong(boxes[i], *axis); };
-            longOnes_.clear();
-            std::copy_if(crowd.begin(), crowd.end(), std::back_inserter(longOnes_), isLong);
-            const auto shortEnd = std::remove_if(crowd.begin(), crowd.end(), isLong);
-            std::copy(longOnes_.begin(), longOnes_.end(), shortEnd);
-            const auto shortCount = static_cast<std::uint32_t>(shortEnd - crowd.begin());
-            std::sort(crowd.begin(), shortEnd, [&](std::uint32_t a, std::uint32_t b) {
-                const Scalar lowA = boxes[a].low[*axis];
-                const Scalar lowB = boxes[b].low[*axis];
-                return lowA != lowB ? lowA < lowB : a < b;
-            });
-            sortedBuckets_.push_back({bucket, *axis, bucketStart_[bucket] + shortCount,
-                                      census.reach(crowd.first(shortCount), boxes, *axis)});
-            ++level.sortedCount;
         });
+        level.sortedCount = static_cast<std::uint32_t>(sortedBuckets_.size()) - level.firstSorted;
     }
+}
+
+// Sorts the crowd along the axis that serves best; none where none does. Sets the axis, the reach, and
+// how many are not long.
+template <class Scalar>
+std::optional<SortedBucket<Scalar>> Table<Scalar>::sortedAlong(
+    std::span<std::uint32_t> crowd, std::span<const PaddedBox<Scalar>> boxes) {
+    const CrowdCensus<Scalar> census(crowd, boxes);
+    const std::optional<std::uint32_t> axis = census.sweepAxis();
+    if (!axis) {
+        return std::nullopt;
+    }
+    const auto isLong = [&](std::uint32_t i) { return census.isLong(boxes[i], *axis); };
+    longOnes_.clear();
+    std::copy_if(crowd.begin(), crowd.end(), std::back_inserter(longOnes_), isLong);
+    const auto shortEnd = std::remove_if(crowd.begin(), crowd.end(), isLong);
+    std::copy(longOnes_.begin(), longOnes_.end(), shortEnd);
+    std::sort(crowd.begin(), shortEnd, [&](std::uint32_t a, std::uint32_t b) {
+        const Scalar lowA = boxes[a].low[*axis];
+        const Scalar lowB = boxes[b].low[*axis];
+        return lowA != lowB ? lowA < lowB : a < b;
+    });
+    SortedBucket<Scalar> sorted{};
+    sorted.axis = *axis;
+    sorted.firstLong = static_cast<std::uint32_t>(shortEnd - crowd.begin());
+    sorted.reach = census.reach(crowd.first(sorted.firstLong), boxes, *axis);
+    return sorted;
 }
 
 // Hashed rows are told apart by their coordinates, and no search need look beyond them.
@@ -206,11 +293,11 @@ void Table<Scalar>::noteHeights() {
 template <class Scalar>
 void Table<Scalar>::build(std::span<const std::uint32_t> boxSlots,
                           std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed,
-                          ParallelFor parallelFor) {
+                          ParallelFor parallelFor, const ProxyGroups* groups) {
     HASHPHASE_ASSERT(boxSlots.size() == boxes.size(), "Every box has a slot.");
     try {
         findBuckets(boxes, fixed, parallelFor);
-        sortEntries(boxSlots, boxes, parallelFor);
+        sortEntries(boxSlots, boxes, groups, parallelFor);
     } catch (...) {
         clear();
         throw;
@@ -304,9 +391,21 @@ std::size_t Table<Scalar>::memoryBytes() const noexcept {
 }
 
 template <class Scalar>
-bool Table<Scalar>::isSorted(const SortedBucket<Scalar>& sorted) const {
-    const Scalar* column = bounds_[sorted.axis].data();
-    return std::is_sorted(column + bucketStart_[sorted.bucket], column + sorted.firstLong);
+bool Table<Scalar>::areSorted() const {
+    for (std::size_t i = 0; i < sortedBuckets_.size(); ++i) {
+        const SortedBucket<Scalar>& sorted = sortedBuckets_[i];
+        const Scalar* column = bounds_[sorted.axis].data();
+        const bool isFirst = i == 0 || sortedBuckets_[i - 1].bucket != sorted.bucket;
+        const bool isLast =
+            i + 1 == sortedBuckets_.size() || sortedBuckets_[i + 1].bucket != sorted.bucket;
+        if (sorted.first != (isFirst ? bucketStart_[sorted.bucket] : sortedBuckets_[i - 1].last) ||
+            (isLast && sorted.last != bucketStart_[sorted.bucket + 1]) ||
+            sorted.firstLong < sorted.first || sorted.firstLong > sorted.last ||
+            !std::is_sorted(column + sorted.first, column + sorted.firstLong)) {
+            return false;
+        }
+    }
+    return true;
 }
 
 template <class Scalar>
@@ -346,11 +445,9 @@ std::string Table<Scalar>::validate() const {
     if (entry != slots_.size()) {
         return "Buckets partition the entries in order: broken.";
     }
-    if (!std::all_of(sortedBuckets_.begin(), sortedBuckets_.end(),
-                     [this](const auto& sorted) { return isSorted(sorted); })) {
-        return "A sorted bucket is sorted along its axis: broken.";
-    }
-    return {};
+    return areSorted() ? std::string()
+                       : "A sorted bucket is sorted along its axis, and its parts follow each "
+                         "other: broken.";
 }
 
 template class Table<float>;

@@ -25,6 +25,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -58,9 +59,11 @@ public:
     /// Files boxes[i], of boxSlots[i], for every i, anew; boxes with a NaN are left out. Cell sizes
     /// follow the population, or are fixed when `fixed.count` > 0. Where it throws, for want of
     /// memory, nothing is filed. Cost: a few passes over the boxes; least when they come in about the
-    /// order of the last time, see order().
+    /// order of the last time, see order(). With groups[2 * slot] of every slot, what shares a crowded
+    /// bucket is kept apart by groups, so that a search passes by all with which it cannot pair.
     void build(std::span<const std::uint32_t> boxSlots, std::span<const PaddedBox<Scalar>> boxes,
-               const LevelSizes& fixed, ParallelFor parallelFor = serialFor);
+               const LevelSizes& fixed, ParallelFor parallelFor = serialFor,
+               const ProxyGroups* groups = nullptr);
 
     /// Leaves nothing filed.
     void clear() noexcept;
@@ -143,7 +146,7 @@ public:
     /// - Every entry lies in the bucket of the cell of its min corner.
     /// - Every entry spans at most two cells of its level an axis, or is listed without cells.
     /// - Buckets partition the entries in order.
-    /// - A sorted bucket is sorted along its axis.
+    /// - A sorted bucket is sorted along its axis, and its parts follow each other.
     [[nodiscard]] std::string validate() const;
 
 private:
@@ -153,11 +156,15 @@ private:
     [[nodiscard]] std::size_t countBuckets(std::span<const PaddedBox<Scalar>> boxes,
                                            ParallelFor parallelFor);
     void sortEntries(std::span<const std::uint32_t> boxSlots,
-                     std::span<const PaddedBox<Scalar>> boxes, ParallelFor parallelFor);
+                     std::span<const PaddedBox<Scalar>> boxes, const ProxyGroups* groups,
+                     ParallelFor parallelFor);
     template <class Visit>
     void forCrowds(const Level<Scalar>& level, const Visit& visit);
-    void sortCrowds(std::span<const PaddedBox<Scalar>> boxes);
-    [[nodiscard]] bool isSorted(const SortedBucket<Scalar>& sorted) const;
+    void sortCrowds(std::span<const std::uint32_t> boxSlots,
+                    std::span<const PaddedBox<Scalar>> boxes, const ProxyGroups* groups);
+    [[nodiscard]] std::optional<SortedBucket<Scalar>> sortedAlong(
+        std::span<std::uint32_t> crowd, std::span<const PaddedBox<Scalar>> boxes);
+    [[nodiscard]] bool areSorted() const;
     void noteRows();
     void noteHeights();
 
@@ -190,13 +197,12 @@ void Table<Scalar>::forNear(const Level<Scalar>& level, EntryRange range,
     };
     const std::span<const SortedBucket<Scalar>> buckets =
         std::span(sortedBuckets_).subspan(level.firstSorted, level.sortedCount);
-    auto sorted = std::partition_point(buckets.begin(), buckets.end(), [&](const auto& one) {
-        return bucketStart_[one.bucket] < range.first;
-    });
-    for (; sorted != buckets.end() && bucketStart_[sorted->bucket] < range.last; ++sorted) {
+    auto sorted = std::partition_point(buckets.begin(), buckets.end(),
+                                       [&](const auto& one) { return one.first < range.first; });
+    for (; sorted != buckets.end() && sorted->first < range.last; ++sorted) {
         const Scalar* const column = bounds_[sorted->axis].data();
         const auto axis = static_cast<Eigen::Index>(sorted->axis);
-        const std::uint32_t begin = bucketStart_[sorted->bucket];
+        const std::uint32_t begin = sorted->first;
         const std::uint32_t end = sorted->firstLong;
         visitSome(range.first, begin);
         visitSome(firstNear(*sorted, column, begin, end, bounds.min()[axis]),

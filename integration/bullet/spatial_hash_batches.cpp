@@ -76,6 +76,7 @@ std::size_t SpatialHashBroadphase::shiftOrigin(const btVector3& shift) {
                      "The origin is not shifted by callbacks of calculateOverlappingPairs().");
     const Vector3<btScalar> by = toEigen(shift);
     const std::size_t roundedCount = grid_.shiftOrigin(by);
+    mustNoteGroups_ = mustNoteGroups_ || roundedCount > 0;
     if (by.allFinite()) {
         for (std::uint32_t slot = 0; slot < uniqueIds_.size(); ++slot) {
             if (uniqueIds_[slot] != 0) {

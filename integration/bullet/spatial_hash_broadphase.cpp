@@ -14,6 +14,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <typeinfo>
 #include <utility>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
@@ -72,6 +73,7 @@ SpatialHashBroadphase::SpatialHashBroadphase(btOverlappingPairCache* pairCache,
         batchCache_ = ownCache_.get();
         pairCache_ = ownCache_.get();
     }
+    groupsDecide_ = doGroupsDecide();
     HASHPHASE_ASSERT(pairCache_->getNumOverlappingPairs() == 0,
                      "A pair cache has no pairs yet when it is given to a broadphase.");
 }
@@ -87,17 +89,22 @@ btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
     detail::ensureCapacity(uniqueIds_, uniqueIds_.size() + 1);
     proxies_.reserve(uniqueIds_.size() + 1);
     const bool isStatic = (collisionFilterGroup & btBroadphaseProxy::StaticFilter) != 0;
-    const ProxyId id =
-        grid_.add(toAabb(aabbMin, aabbMax), isStatic ? Mobility::resting : Mobility::mobile);
+    const btBroadphaseProxy made(aabbMin, aabbMax, userPtr, collisionFilterGroup,
+                                 collisionFilterMask);
+    const ProxyGroups groups = groupsOf(made);
+    const ProxyId id = grid_.add(toAabb(aabbMin, aabbMax),
+                                 isStatic ? Mobility::resting : Mobility::mobile, groups);
     if (id.index >= uniqueIds_.size()) {
         uniqueIds_.resize(id.index + 1, 0);
     }
     Proxy& proxy = *proxyAt(id.index);
-    static_cast<btBroadphaseProxy&>(proxy) =
-        btBroadphaseProxy(aabbMin, aabbMax, userPtr, collisionFilterGroup, collisionFilterMask);
+    static_cast<btBroadphaseProxy&>(proxy) = made;
+    proxy.kind = groupKinds_.numberOf(groups);
+    changedKinds_ |= detail::GroupKinds::bit(proxy.kind);
     proxy.m_uniqueId = ++lastUniqueId_;
     proxy.id = id;
     proxy.client = Client::unknown;
+    noteSeen(proxy);
     uniqueIds_[id.index] = proxy.m_uniqueId;
     if (isEager(proxy, dispatcher)) {
         try {
@@ -118,6 +125,7 @@ void SpatialHashBroadphase::destroyProxy(btBroadphaseProxy* proxy, btDispatcher*
 
 void SpatialHashBroadphase::removeFromGrid(Proxy* proxy) {
     grid_.remove(proxy->id);
+    noteUnseen(*proxy);
     uniqueIds_[proxy->id.index] = 0;
     proxy->id = {};
     proxy->m_uniqueId = 0;
@@ -130,13 +138,17 @@ void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& a
     Proxy* own = checkedProxy(proxy);
     const bool isSame = isSameBits(own->m_aabbMin, aabbMin) && isSameBits(own->m_aabbMax, aabbMax);
     // A body that flies back may have the same box as when it came.
-    if (isSame && sweeps_ == nullptr) {
-        return;
+    if (!isSame || sweeps_ != nullptr) {
+        own->m_aabbMin = aabbMin;
+        own->m_aabbMax = aabbMax;
+        move(*own);
+        changedKinds_ |= detail::GroupKinds::bit(own->kind);
     }
-    own->m_aabbMin = aabbMin;
-    own->m_aabbMax = aabbMax;
-    move(*own);
-    if (!isSame && isEager(*own, dispatcher)) {
+    const bool isRegrouped = noteGroups(*own);
+    if (!seen_.empty()) {
+        noteSeen(*own);
+    }
+    if ((!isSame || isRegrouped) && isEager(*own, dispatcher)) {
         announce(*own, dispatcher);
     }
 }
@@ -156,6 +168,94 @@ void SpatialHashBroadphase::getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin
     const Proxy* own = checkedProxy(proxy);
     aabbMin = own->m_aabbMin;
     aabbMax = own->m_aabbMax;
+}
+
+// --- Groups --------------------------------------------------------------------------------------
+
+// Not where a callback decides, nor in a cache that may decide as it likes.
+bool SpatialHashBroadphase::doGroupsDecide() const {
+    const std::type_info& cache = typeid(*pairCache_);
+    const bool isUsual = cache == typeid(PairCache) ||
+                         cache == typeid(btHashedOverlappingPairCache) ||
+                         cache == typeid(btSortedOverlappingPairCache);
+    return isUsual &&
+           (config_.callbackRefusesMore || pairCache_->getOverlapFilterCallback() == nullptr);
+}
+
+// A callback may come and go at any time. It may answer otherwise than group and mask.
+void SpatialHashBroadphase::followFilter() {
+    const bool decide = doGroupsDecide();
+    if (decide != groupsDecide_) {
+        groupsDecide_ = decide;
+        noteGroupsOfAll();
+    }
+}
+
+// Group and mask are Bullet's fields, and may be written at any time. Returns whether they were.
+bool SpatialHashBroadphase::noteGroups(Proxy& proxy) {
+    const ProxyGroups groups = groupsOf(proxy);
+    const bool isOther = proxy.kind == detail::GroupKinds::kOther;
+    if (groups == (isOther ? grid_.groups(proxy.id) : groupKinds_[proxy.kind])) {
+        return false;
+    }
+    grid_.setGroups(proxy.id, groups);
+    proxy.kind = groupKinds_.numberOf(groups);
+    changedKinds_ |= detail::GroupKinds::bit(proxy.kind);
+    return true;
+}
+
+void SpatialHashBroadphase::noteSeen(const Proxy& proxy) noexcept {
+    const std::size_t word = proxy.id.index / 64;
+    const std::uint64_t bit = std::uint64_t{1} << proxy.id.index % 64;
+    if (word < seen_.size() && (seen_[word] & bit) == 0) {
+        seen_[word] |= bit;
+        ++seenCount_;
+    }
+}
+
+void SpatialHashBroadphase::noteUnseen(const Proxy& proxy) noexcept {
+    const std::size_t word = proxy.id.index / 64;
+    const std::uint64_t bit = std::uint64_t{1} << proxy.id.index % 64;
+    if (word < seen_.size() && (seen_[word] & bit) != 0) {
+        seen_[word] &= ~bit;
+        --seenCount_;
+    }
+}
+
+// A proxy that nobody has set may have got other groups, and what moves may touch it. That matters only
+// where what has moved may not pair with some kind of proxies; mostly all may, or all have been set.
+void SpatialHashBroadphase::noteGroupsIfTheyMatter() {
+    using Kinds = detail::GroupKinds::Set;
+    const bool someSweep = sweeps_ != nullptr && sweeps_->size() > 0;
+    const bool doMatter =
+        groupsDecide_ && groupKinds_.refuse(someSweep ? ~Kinds{0} : changedKinds_, ~Kinds{0});
+    if (mustNoteGroups_ || (doMatter && (seen_.empty() || seenCount_ < grid_.size()))) {
+        noteGroupsOfAll();
+    }
+    seen_.assign(doMatter ? uniqueIds_.size() / 64 + 1 : 0, 0);
+    seenCount_ = 0;
+    mustNoteGroups_ = false;
+    changedKinds_ = 0;
+}
+
+void SpatialHashBroadphase::noteGroupsOfAll() {
+    for (std::uint32_t slot = 0; slot < uniqueIds_.size(); ++slot) {
+        if (uniqueIds_[slot] != 0) {
+            noteGroups(*proxyAt(slot));
+        }
+    }
+}
+
+// Of what the proxy touches, and of the proxy.
+void SpatialHashBroadphase::noteGroupsAround(const Proxy& proxy) {
+    std::vector<ProxyId> found{proxy.id};
+    CollectAll collector(found);
+    const Aabb<btScalar> bounds =
+        sweeps_ != nullptr ? wayBounds(sweeps_->motion(proxy.id)) : grid_.box(proxy.id);
+    visit(BoxRegion<btScalar>{bounds}, collector);
+    for (const ProxyId id : found) {
+        noteGroups(*proxyAt(id.index));
+    }
 }
 
 // --- Pairs ---------------------------------------------------------------------------------------
@@ -183,6 +283,8 @@ void SpatialHashBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) 
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
                      "calculateOverlappingPairs() is not called by its own callbacks.");
     const detail::QueryScope scope(this, detail::QueryScope::Changes::allowed);
+    followFilter();
+    noteGroupsIfTheyMatter();
     const PairChanges changes = config_.parallelFor
                                     ? pairs_.update(cacheFilter(), config_.parallelFor)
                                     : pairs_.update(cacheFilter());
@@ -192,7 +294,10 @@ void SpatialHashBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) 
         constexpr std::size_t kBirthsAtOnce = 4096;
         apply(changes, kBirthsAtOnce, dispatcher);
     }
-    removeDeferred(nullptr, dispatcher);
+    const auto meets = [this](const btBroadphasePair& pair) {
+        return doMeet(*pair.m_pProxy0, *pair.m_pProxy1);
+    };
+    removeDeferred(meets, dispatcher);
 }
 
 // A destroyed proxy has taken its pairs with it.
@@ -285,34 +390,60 @@ void SpatialHashBroadphase::catchUp(btDispatcher* dispatcher) {
 
 // All births at once: should memory run out, there are none.
 void SpatialHashBroadphase::announce(const Proxy& proxy, btDispatcher* dispatcher) {
+    followFilter();
     const PairChanges changes = pairs_.announce(proxy.id, cacheFilter());
     apply(changes, changes.born.size(), dispatcher);
 }
 
 void SpatialHashBroadphase::refilter(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
-    const Proxy* own = checkedProxy(proxy);
-    const PairChanges changes = pairs_.refilter(own->id, cacheFilter());
+    refilter(std::span(&proxy, 1), dispatcher);
+}
+
+void SpatialHashBroadphase::refilter(std::span<btBroadphaseProxy* const> proxies,
+                                     btDispatcher* dispatcher) {
+    std::vector<ProxyId> ids;
+    ids.reserve(proxies.size());
+    for (btBroadphaseProxy* proxy : proxies) {
+        ids.push_back(checkedProxy(proxy)->id);
+    }
+    checkMayChange();
+    followFilter();
+    constexpr std::size_t kLargePart = 8;
+    if (proxies.size() > grid_.size() / kLargePart) {
+        noteGroupsOfAll();
+    } else if (groupsDecide_) {
+        for (btBroadphaseProxy* proxy : proxies) {
+            noteGroupsAround(*checkedProxy(proxy));
+        }
+    }
+    const PairChanges changes = pairs_.refilter(ids, cacheFilter());
     apply(changes, changes.born.size(), dispatcher);
-    removeDeferred(own, dispatcher);
+    std::sort(ids.begin(), ids.end());
+    const auto isNamed = [&](const btBroadphaseProxy* proxy) {
+        return std::binary_search(ids.begin(), ids.end(), idOf(proxy));
+    };
+    const auto isPair = [&](const btBroadphasePair& pair) {
+        return (!isNamed(pair.m_pProxy0) && !isNamed(pair.m_pProxy1)) || isAccepted(pair);
+    };
+    removeDeferred(isPair, dispatcher);
+}
+
+void SpatialHashBroadphase::refilterAll(btDispatcher* dispatcher) {
+    checkMayChange();
+    followFilter();
+    noteGroupsOfAll();
+    const PairChanges changes = pairs_.refilterAll(cacheFilter());
+    apply(changes, changes.born.size(), dispatcher);
+    removeDeferred([this](const btBroadphasePair& pair) { return isAccepted(pair); }, dispatcher);
 }
 
 // Caches with deferred removal ignore removeOverlappingPair() and keep duplicates; their user is to
 // sort the array, free what is doubled or no pair any more, and cut it off: at the end of a step what
-// is apart, after recacheFilter() what the filter refuses of that proxy.
-void SpatialHashBroadphase::removeDeferred(const btBroadphaseProxy* refiltered,
-                                           btDispatcher* dispatcher) {
+// is apart, after recacheFilter() what the filter refuses.
+void SpatialHashBroadphase::removeDeferred(IsPair isPair, btDispatcher* dispatcher) {
     if (!pairCache_->hasDeferredRemoval()) {
         return;
     }
-    const auto isPair = [&](const btBroadphasePair& pair) {
-        const btBroadphaseProxy& a = *pair.m_pProxy0;
-        const btBroadphaseProxy& b = *pair.m_pProxy1;
-        if (refiltered == nullptr) {
-            return doMeet(a, b);
-        }
-        return (&a != refiltered && &b != refiltered) ||
-               pairCache_->needsBroadphaseCollision(pair.m_pProxy0, pair.m_pProxy1);
-    };
     btBroadphasePairArray& pairs = pairCache_->getOverlappingPairArray();
     pairs.quickSort(btBroadphasePairSortPredicate());
     int kept = 0;
@@ -367,6 +498,7 @@ std::size_t SpatialHashBroadphase::memoryBytes() const noexcept {
     return grid_.memoryBytes() + pairs_.memoryBytes() + proxies_.memoryBytes() +
            (sweeps_ != nullptr ? sweeps_->memoryBytes() : 0) + uniqueIds_.capacity() * sizeof(int) +
            (died_.capacity() + born_.capacity()) * sizeof(ProxyCouple) +
+           seen_.capacity() * sizeof(seen_[0]) +
            (ownCache_ != nullptr ? ownCache_->memoryBytes() : 0);
 }
 

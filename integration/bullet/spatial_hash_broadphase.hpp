@@ -33,6 +33,7 @@
 // Misuse    Proxies that are not alive, proxies of other broadphases, spans of different lengths in a
 //           batch, and rays without a callback are asserted.
 
+#include <broadphase/detail/group_kinds.hpp>
 #include <broadphase/detail/stable_array.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/pairs.hpp>
@@ -88,6 +89,12 @@ struct SpatialHashConfig {
     /// A body is fast in a step in which it moves by more than this share of the smallest edge of its
     /// box. The others keep the box that Bullet hands in. Valid: 0 or more.
     btScalar fastFrom = 1;
+
+    /// Bullet asks an overlap filter callback in place of groups and masks: who has one is asked about all
+    /// that overlap, and each two that it refuses are remembered. Where it refuses whatever groups and
+    /// masks refuse, set this: it is asked about the others only, and what is parked with a mask of 0, or
+    /// otherwise filtered out, costs nothing. For Bullet's own caches and PairCache.
+    bool callbackRefusesMore = false;
 
     /// Ends a query when process() of its callback returns false. Off by default: Bullet's own
     /// broadphases ignore the result, and programs return false for other reasons.
@@ -153,6 +160,7 @@ public:
     /// with PairCache the number of the proxy's pairs.
     void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
 
+    /// Notices, also when the box is the same, that the proxy's group or mask has been written.
     /// Cost: O(1); a comparison when the box is the same, with SpatialHashConfig::sweep a look at the
     /// body, and of ghosts and eagerGroups as in createProxy().
     void setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin, const btVector3& aabbMax,
@@ -180,7 +188,9 @@ public:
 
     /// Makes the cache's pairs exact: afterwards it holds precisely the overlapping proxies that
     /// its filter accepts, and with SpatialHashConfig::sweep those that meet on their ways. Pairs that
-    /// did so before are not touched. Cost: that of Pairs::update(), and of the cache for each pair that
+    /// did so before are not touched. Groups and masks may be written at any time: what may pair begins to
+    /// where one of the two was moved, or its setAabb() called, since; a pair stays one until its boxes
+    /// part. Cost: that of Pairs::update(), and of the cache for each pair that
     /// comes or goes.
     void calculateOverlappingPairs(btDispatcher* dispatcher) override;
 
@@ -249,6 +259,14 @@ public:
     /// pairs of any other cache.
     void shapeChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
+    /// The same for many proxies in one pass: the filter is asked once about each two of them. Cost: that
+    /// of Pairs::refilter() for many, and of their pairs.
+    void refilter(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher);
+
+    /// The same for all: for use after a change of the filter callback, or of what it goes by. Cost: that
+    /// of Pairs::refilterAll(), and of the pairs that come and go.
+    void refilterAll(btDispatcher* dispatcher);
+
     /// Moves the origin of all coordinates to `shift`: subtracts it from the box of every proxy, in one
     /// call, with what Grid::shiftOrigin() says. Pairs stay as they are; should rounding have brought
     /// boxes together, the next calculateOverlappingPairs() makes them pairs. The objects are not
@@ -284,6 +302,7 @@ private:
     struct Proxy : btBroadphaseProxy {
         ProxyId id;
         Client client = Client::unknown;
+        std::uint8_t kind = 0;  // of its groups, as the grid knows them, in groupKinds_
     };
     struct Couples;
     template <class Callback>
@@ -297,6 +316,19 @@ private:
             askFilter(asked, accepted);
         };
     }
+    [[nodiscard]] ProxyGroups groupsOf(const btBroadphaseProxy& proxy) const noexcept {
+        return groupsDecide_ ? ProxyGroups{static_cast<std::uint32_t>(proxy.m_collisionFilterGroup),
+                                           static_cast<std::uint32_t>(proxy.m_collisionFilterMask)}
+                             : ProxyGroups{};
+    }
+    [[nodiscard]] bool doGroupsDecide() const;
+    void followFilter();
+    bool noteGroups(Proxy& proxy);
+    void noteGroupsOfAll();
+    void noteGroupsIfTheyMatter();
+    void noteSeen(const Proxy& proxy) noexcept;
+    void noteUnseen(const Proxy& proxy) noexcept;
+    void noteGroupsAround(const Proxy& proxy);
     void removeFromGrid(Proxy* proxy);
     void findCouples(std::span<const ProxyPair> pairs, std::vector<ProxyCouple>& couples) const;
     void apply(const PairChanges& changes, std::size_t birthsAtOnce, btDispatcher* dispatcher);
@@ -319,7 +351,11 @@ private:
         return sweeps_ != nullptr ? sweeps_->visit(region, collector)
                                   : grid_.visit(region, collector);
     }
-    void removeDeferred(const btBroadphaseProxy* refiltered, btDispatcher* dispatcher);
+    using IsPair = FunctionRef<bool(const btBroadphasePair& pair)>;
+    void removeDeferred(IsPair isPair, btDispatcher* dispatcher);
+    [[nodiscard]] bool isAccepted(const btBroadphasePair& pair) const {
+        return pairCache_->needsBroadphaseCollision(pair.m_pProxy0, pair.m_pProxy1);
+    }
     // Before anything is changed: who breaks it may be stopped by an exception.
     void checkMayChange() const {
         HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(&grid_), detail::kMustNotChange);
@@ -343,6 +379,14 @@ private:
     std::unique_ptr<PairCache> ownCache_;  // if none was given
     PairCache* batchCache_ = nullptr;      // the cache, if it is known to be a PairCache
     btOverlappingPairCache* pairCache_ = nullptr;
+    bool groupsDecide_ = false;    // who may pair, and no callback
+    bool mustNoteGroups_ = false;  // of all
+    detail::GroupKinds groupKinds_;
+    // Of what was created or moved since pairs were calculated.
+    detail::GroupKinds::Set changedKinds_ = 0;
+    // Whose groups have been looked at since then, a bit for each slot; empty while nobody needs to know.
+    std::vector<std::uint64_t> seen_;
+    std::size_t seenCount_ = 0;
     bool isCacheBehind_ = false;     // of changes that did not all reach it
     std::vector<ProxyCouple> died_;  // scratch of Couples
     std::vector<ProxyCouple> born_;

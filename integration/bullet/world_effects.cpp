@@ -185,14 +185,13 @@ void WorldConfigurator::setFilter() {
 }
 
 void WorldConfigurator::askAboutPairsAgain() {
-    auto* const hash = dynamic_cast<SpatialHashBroadphase*>(world_->getBroadphase());
+    if (auto* const hash = dynamic_cast<SpatialHashBroadphase*>(world_->getBroadphase())) {
+        hash->refilterAll(world_->getDispatcher());
+        return;
+    }
     forEachObject(*world_, [&](btCollisionObject& object) {
-        if (hash != nullptr) {
-            hash->refilter(object.getBroadphaseHandle(), world_->getDispatcher());
-        } else {
-            world_->refreshBroadphaseProxy(&object);
-            fileResting(*world_, object);
-        }
+        world_->refreshBroadphaseProxy(&object);
+        fileResting(*world_, object);
     });
 }
 

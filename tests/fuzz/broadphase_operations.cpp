@@ -7,6 +7,9 @@
 #include <tests/fuzz/subjects.hpp>
 #include <tests/integration/bullet/queries.hpp>
 
+#include <algorithm>
+#include <iterator>
+
 namespace hashphase::test {
 namespace {
 
@@ -34,7 +37,7 @@ public:
 
     void play(const Operation& operation) {
         Arguments arguments(operation);
-        constexpr std::uint32_t kOwn = 14;
+        constexpr std::uint32_t kOwn = 16;
         const std::uint32_t kind = operation.kind % (life_.kKinds + kOwn);
         if (kind < life_.kKinds || life_.proxies().empty()) {
             life_.change(kind, arguments);
@@ -88,6 +91,12 @@ private:
             case 12:
                 askClosest(arguments);
                 break;
+            case 13:
+                regroupMany(arguments);
+                break;
+            case 14:
+                writeGroups(arguments);
+                break;
             default:
                 cleanAndSort(arguments);
                 break;
@@ -117,14 +126,82 @@ private:
         world_.truth.play({{Action::regroup, world_.numberOf(id), {}, group, mask}});
     }
 
+    void writeTo(ProxyId id, int group, int mask) {
+        world_.proxyOf(id)->m_collisionFilterGroup = group;
+        world_.proxyOf(id)->m_collisionFilterMask = mask;
+        world_.truth.play({{Action::regroup, world_.numberOf(id), {}, group, mask}});
+    }
+
+    void regroupMany(Arguments& arguments) {
+        const std::uint32_t each = 1 + arguments.below(12);
+        const int group = 1 << arguments.below(6);
+        const int mask = arguments.flag() ? btBroadphaseProxy::AllFilter : arguments.byte() % 64;
+        const bool areAll = arguments.flag();
+        if (world_.hash() == nullptr) {
+            return;
+        }
+        story_.tell("group ", group, " and mask ", mask, " for each ", each, "th at once",
+                    areAll ? ", and all filtered again" : "");
+        std::vector<btBroadphaseProxy*> proxies;
+        for (std::size_t i = 0; i < life_.list().size(); i += each) {
+            writeTo(life_.list()[i].id, group, mask);
+            proxies.push_back(world_.proxyOf(life_.list()[i].id));
+        }
+        if (areAll) {
+            world_.hash()->refilterAll(nullptr);
+        } else {
+            world_.hash()->refilter(proxies, nullptr);
+        }
+    }
+
+    // Without a word: what may pair now is a pair when pairs are calculated, what may not any more stays
+    // one.
+    void writeGroups(Arguments& arguments) {
+        const std::size_t count = 1 + arguments.below(4);
+        if (world_.hash() == nullptr) {
+            return;
+        }
+        const ObjectPairs before = world_.pairs();
+        std::vector<btBroadphaseProxy*> proxies;
+        for (std::size_t i = 0; i < count; ++i) {
+            const Placed<btScalar> placed = life_.proxies()[life_.any(arguments)];
+            btBroadphaseProxy* const proxy = world_.proxyOf(placed.id);
+            const int group = 1 << arguments.below(6);
+            writeTo(placed.id, group, arguments.below(3) == 0 ? 0 : arguments.byte() % 64);
+            story_.tell("group ", group, " and mask ", proxy->m_collisionFilterMask, " for ",
+                        placed.id.index, "; ");
+            world_.broadphase().setAabb(proxy, toBullet(placed.box.min()),
+                                        toBullet(placed.box.max()), nullptr);
+            proxies.push_back(proxy);
+        }
+        world_.broadphase().calculateOverlappingPairs(nullptr);
+        EXPECT_EQ(world_.hash()->validate(), "");
+        const ObjectPairs pairs = world_.pairs();
+        const ObjectPairs expected = world_.truth.pairs();
+        EXPECT_TRUE(world_.filter.divisor != 0 ||
+                    std::includes(pairs.begin(), pairs.end(), expected.begin(), expected.end()))
+            << difference(pairs, expected);
+        ObjectPairs others;
+        std::set_difference(pairs.begin(), pairs.end(), expected.begin(), expected.end(),
+                            std::back_inserter(others));
+        EXPECT_TRUE(std::includes(before.begin(), before.end(), others.begin(), others.end()))
+            << "what may not pair begins to";
+        world_.hash()->refilter(proxies, nullptr);
+        EXPECT_EQ(difference(world_.pairs(), expected), "");
+    }
+
     void changeFilter(Arguments& arguments) {
         const int divisor = static_cast<int>(arguments.below(4));
         story_.tell("filter with the divisor ", divisor);
         world_.filter.divisor = divisor;
         world_.cache().setOverlapFilterCallback(divisor != 0 ? &world_.filter : nullptr);
-        for (btBroadphaseProxy* const proxy : world_.proxies) {
-            if (proxy != nullptr) {
-                askFilterAgain(world_.broadphase(), proxy);
+        if (world_.hash() != nullptr && arguments.flag()) {
+            world_.hash()->refilterAll(nullptr);
+        } else {
+            for (btBroadphaseProxy* const proxy : world_.proxies) {
+                if (proxy != nullptr) {
+                    askFilterAgain(world_.broadphase(), proxy);
+                }
             }
         }
         world_.truth.play({{Action::changeFilter, 0, {}, 0, divisor}});

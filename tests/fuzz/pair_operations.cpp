@@ -28,7 +28,7 @@ public:
 
     void play(const Operation& operation) {
         Arguments arguments(operation);
-        constexpr std::uint32_t kOwn = 10;
+        constexpr std::uint32_t kOwn = 14;
         const std::uint32_t kind = operation.kind % (life_.kKinds + kOwn);
         noteColours();
         if (kind < life_.kKinds || life_.proxies().empty()) {
@@ -71,6 +71,16 @@ private:
             case 8:
                 sweep(arguments);
                 break;
+            case 9:
+            case 10:
+                regroup(arguments);
+                break;
+            case 11:
+                regroupMany(arguments);
+                break;
+            case 12:
+                refilterMany(arguments);
+                break;
             default:
                 ask(arguments);
                 break;
@@ -82,6 +92,50 @@ private:
         for (std::uint32_t i = 0; i < count; ++i) {
             world_.update();
             world_.checkThoroughly(life_.proxies());
+        }
+    }
+
+    static ProxyGroups anyGroups(Arguments& arguments) {
+        constexpr std::array<std::uint32_t, 4> kGroups{1, 2, 4, 0};
+        constexpr std::array<std::uint32_t, 6> kMasks{~0U, 0, ~2U, 1, 2, 5};
+        const std::uint32_t group = kGroups[arguments.below(4)];
+        return arguments.below(5) == 0 ? ProxyGroups{}
+                                       : ProxyGroups{group, kMasks[arguments.below(6)]};
+    }
+
+    void regroup(Arguments& arguments) {
+        const ProxyId id = life_.proxies()[life_.any(arguments)].id;
+        const ProxyGroups groups = anyGroups(arguments);
+        story_.tell("groups ", groups.group, " ", groups.mask, " for ", id.index);
+        world_.setGroups(id, groups);
+    }
+
+    void regroupMany(Arguments& arguments) {
+        const std::uint32_t each = 1 + arguments.below(4);
+        const ProxyGroups groups = anyGroups(arguments);
+        story_.tell("groups ", groups.group, " ", groups.mask, " for each ", each, "th");
+        for (std::size_t i = 0; i < life_.proxies().size(); i += each) {
+            world_.setGroups(life_.proxies()[i].id, groups);
+        }
+    }
+
+    void refilterMany(Arguments& arguments) {
+        const std::uint32_t each = 1 + arguments.below(20);
+        const std::uint32_t colour = arguments.below(4);
+        std::vector<ProxyId> ids;
+        for (std::size_t i = 0; i < life_.list().size(); i += each) {
+            Placed<Scalar>& proxy = life_.list()[i];
+            proxy.colour = colour < 3 ? colour : proxy.colour;
+            ids.push_back(proxy.id);
+        }
+        noteColours();
+        const bool areAll = arguments.flag();
+        story_.tell("colour each ", each, "th with ", colour, areAll ? ", filter all" : ", filter",
+                    " again");
+        if (areAll) {
+            world_.refilterAll();
+        } else {
+            world_.refilter(ids);
         }
     }
 

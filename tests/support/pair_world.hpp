@@ -50,6 +50,15 @@ public:
     void remove(ProxyId id) {
         grid.remove(id);
         ways_.erase(id);
+        groups_.erase(id);
+    }
+    void setGroups(ProxyId id, const ProxyGroups& groups) {
+        if (!(groupsOf(id) == groups)) {
+            changed_.insert(id);
+        }
+        groups_[id] = groups;
+        grid.setGroups(id, groups);
+        EXPECT_TRUE(grid.groups(id) == groups);
     }
     void sweep(ProxyId id, const Vector3<Scalar>& displacement, Sweep mode) {
         sweeps.set(id, displacement, mode);
@@ -79,7 +88,7 @@ public:
             grid.update();
         }
         std::construct_at(&pairs, grid, &sweeps);
-        for (std::set<ProxyPair>* of : {&set_, &met_, &refused_, &decided_}) {
+        for (std::set<ProxyPair>* of : {&set_, &met_, &refused_, &decided_, &before_}) {
             of->clear();
         }
         grid.forEach([this](ProxyId id, const Aabb<Scalar>& /*box*/) { changed_.insert(id); });
@@ -87,9 +96,15 @@ public:
 
     void refilter(ProxyId id) {
         asked_.clear();
-        apply(pairs.refilter(id, recordingFilter()));
-        noteDecided();
-        EXPECT_TRUE(isAscending(asked_)) << "refilter asks in ascending order, each couple once";
+        noteRefiltered(pairs.refilter(id, recordingFilter()));
+    }
+    void refilter(std::span<const ProxyId> ids) {
+        asked_.clear();
+        noteRefiltered(pairs.refilter(ids, recordingFilter()));
+    }
+    void refilterAll() {
+        asked_.clear();
+        noteRefiltered(pairs.refilterAll(recordingFilter()));
     }
 
     void announce(ProxyId id) {
@@ -104,6 +119,7 @@ public:
     /// Ends the frame. What the filter was asked is in asked() afterwards.
     PairChanges update() {
         asked_.clear();
+        before_ = set_;
         const PairChanges changes = pairs.update(recordingFilter());
         apply(changes);
         EXPECT_TRUE(isAscending(asked_)) << "update asks in ascending order, each couple once";
@@ -112,9 +128,11 @@ public:
 
     /// To be called after update(): the pairs are those of brute force, and all accounts agree.
     void check(std::span<const Placed<Scalar>> proxies) {
-        const std::vector<ProxyPair> expected = pairsByBruteForce(
-            proxies,
-            [this](const Placed<Scalar>& a, const Placed<Scalar>& b) { return doMeet(a, b); });
+        const std::vector<ProxyPair> expected =
+            pairsByBruteForce(proxies, [this](const Placed<Scalar>& a, const Placed<Scalar>& b) {
+                const ProxyPair pair = makePair(a.id, b.id);
+                return doMeet(a, b) && (mayPair(pair) || before_.contains(pair));
+            });
         const std::vector<ProxyPair> actual(set_.begin(), set_.end());
         ASSERT_EQ(differences(actual, expected), "");
         ASSERT_EQ(pairs.count(), expected.size());
@@ -144,6 +162,7 @@ private:
         return [this](ProxyId a, ProxyId b) {
             EXPECT_TRUE(grid.contains(a) && grid.contains(b))
                 << "the filter is asked about the dead";
+            EXPECT_TRUE(mayPair(makePair(a, b))) << "the filter is asked where groups decide";
             asked_.push_back({a, b});
             return filter_(a, b);
         };
@@ -165,6 +184,22 @@ private:
 
     static bool isAscending(std::span<const ProxyPair> list) {
         return std::adjacent_find(list.begin(), list.end(), std::greater_equal<>()) == list.end();
+    }
+
+    [[nodiscard]] ProxyGroups groupsOf(ProxyId id) const {
+        const auto groups = groups_.find(id);
+        return groups != groups_.end() ? groups->second : ProxyGroups{};
+    }
+    [[nodiscard]] bool mayPair(const ProxyPair& pair) const {
+        return hashphase::mayPair(groupsOf(pair.first), groupsOf(pair.second));
+    }
+
+    // Pairs that may not be any more by their groups end without a question.
+    void noteRefiltered(const PairChanges& changes) {
+        refused_.insert(changes.died.begin(), changes.died.end());
+        apply(changes);
+        noteDecided();
+        EXPECT_TRUE(isAscending(asked_)) << "refilter asks in ascending order, each couple once";
     }
 
     // What was asked before the update needs not be asked by it.
@@ -208,8 +243,8 @@ private:
                firstContactByRationals(moving(a), moving(b)).has_value();
     }
 
-    // Asked must be: couples that meet now and did not before, unless decided already, and refused
-    // ones that still meet and of which one has changed.
+    // Asked must be: couples that may pair and meet now and did not before, or could not, unless decided
+    // already, and refused ones that still meet and of which one has changed.
     void checkAsked(std::span<const Placed<Scalar>> proxies) {
         std::set<ProxyPair> meeting;
         std::vector<ProxyPair> expected;
@@ -219,7 +254,13 @@ private:
                     continue;
                 }
                 const ProxyPair pair = makePair(proxies[i].id, proxies[j].id);
+                if (!mayPair(pair) && !set_.contains(pair)) {
+                    continue;
+                }
                 meeting.insert(pair);
+                if (!mayPair(pair)) {
+                    continue;  // a pair, as long as they meet
+                }
                 const bool isNew = !met_.contains(pair) && !decided_.contains(pair);
                 const bool isRefused = refused_.contains(pair) && hasChanged(pair);
                 if (isNew || isRefused) {
@@ -248,6 +289,8 @@ private:
     std::vector<ProxyPair> asked_;
 
     std::map<ProxyId, Vector3<Scalar>> ways_;  // of what sweeps
+    std::map<ProxyId, ProxyGroups> groups_;
+    std::set<ProxyPair> before_;  // the set before the last update
 
     // As of the last update, or since.
     std::set<ProxyPair> met_;
