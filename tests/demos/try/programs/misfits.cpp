@@ -10,6 +10,7 @@
 #include <cstring>
 #include <ctime>
 #include <functional>
+#include <thread>
 #include <utility>
 
 #include <sys/wait.h>
@@ -37,6 +38,18 @@ int crashing() {
     Scene<> scene;
     addPile(scene);
     scene.step(5);
+    std::abort();
+}
+
+// With bodies in its world, of which no pair was calculated.
+int crashingEarly() {
+    Scene<> scene;
+    addPile(scene);
+    std::abort();
+}
+
+// Before it has made anything.
+int crashingAtOnce() {
     std::abort();
 }
 
@@ -354,11 +367,66 @@ int bareSweep() {
     return 0;
 }
 
-// Says how long its steps are.
+// Works for so long, whoever else is busy.
+void workFor(double milliseconds) {
+    const double begin = threadMilliseconds();
+    while (threadMilliseconds() < begin + milliseconds) {
+    }
+}
+
+// Steps in which it has something else to do, by a callback.
+int stepsWith(btInternalTickCallback callback) {
+    Scene<> scene;
+    addPile(scene);
+    scene.world.setInternalTickCallback(callback);
+    scene.step(80);
+    return 0;
+}
+
+// As a step does during which others have the processor, or which waits for something.
+int waitsInSteps() {
+    return stepsWith([](btDynamicsWorld*, btScalar) { usleep(3000); });
+}
+
+// Waits, in a step, for another thread that works for it.
+int worksOnThreads() {
+    return stepsWith([](btDynamicsWorld*, btScalar) { std::thread(workFor, 3.0).join(); });
+}
+
+// Two objects in each place, one of which goes on to the next place: trees keep the pairs of many steps.
+int leavesPairs() {
+    constexpr int kPlaces = 200;
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher(&configuration);
+    btDbvtBroadphase broadphase;
+    btCollisionWorld world(&dispatcher, &broadphase, &configuration);
+    btSphereShape sphere(1);
+    std::vector<std::unique_ptr<btCollisionObject>> objects;
+    for (int i = 0; i < 2 * kPlaces; ++i) {
+        objects.push_back(std::make_unique<btCollisionObject>());
+        objects.back()->setCollisionShape(&sphere);
+        world.addCollisionObject(objects.back().get());
+    }
+    for (int step = 0; step < 60; ++step) {
+        for (int i = 0; i < 2 * kPlaces; ++i) {
+            const int place = (i / 2 + i % 2 * step) % kPlaces;
+            objects[i]->setWorldTransform(btTransform(btQuaternion::getIdentity(),
+                                                      {btScalar(5 * place), btScalar(i % 2), 0}));
+        }
+        world.performDiscreteCollisionDetection();
+    }
+    for (const auto& object : objects) {
+        world.removeCollisionObject(object.get());
+    }
+    return 0;
+}
+
+// Says how long its steps are, in which it waits for a millisecond.
 int timedSteps() {
     using Clock = std::chrono::steady_clock;
     Scene<> scene;
     addPile(scene);
+    scene.world.setInternalTickCallback([](btDynamicsWorld*, btScalar) { usleep(1000); });
     Clock::duration all{};
     for (int i = 0; i < 200; ++i) {
         const Clock::time_point begin = Clock::now();
@@ -525,6 +593,8 @@ const std::vector<Program>& misfitPrograms() {
         {"exit-at-once", [] { return exitAtOnce(_exit); }},
         {"quick-exit", [] { return exitAtOnce(std::quick_exit); }},
         {"crashing", crashing},
+        {"crashing-early", crashingEarly},
+        {"crashing-at-once", crashingAtOnce},
         {"endless", endless},
         {"interruptible", interruptible},
         {"endless-by-hand", endlessByHand},
@@ -542,6 +612,9 @@ const std::vector<Program>& misfitPrograms() {
         {"derived-sweep-beside", derivedSweepBeside},
         {"derived-sweep", derivedSweep},
         {"bare-sweep", bareSweep},
+        {"waits-in-steps", waitsInSteps},
+        {"works-on-threads", worksOnThreads},
+        {"leaves-pairs", leavesPairs},
         {"timed-steps", timedSteps},
         {"reads-input", readsInput},
         {"waits-for-input", waitsForInput},
