@@ -24,4 +24,7 @@ struct Moment {
 [[nodiscard]] Moment beginMoment() noexcept;
 [[nodiscard]] Moment endMoment() noexcept;
 
+/// What these looks have taken this thread so far: to be taken from what they were made in the midst of.
+[[nodiscard]] std::int64_t nanosecondsOfLooks() noexcept;
+
 }  // namespace hashphase::tryout

@@ -76,6 +76,7 @@ constexpr std::int64_t kNotTaken = -1;
 
 struct Step {
     Moment begin;
+    std::int64_t looksBefore = 0;
     std::int64_t allBegin = kNotTaken;  // of all threads
     Span aside;                         // what looking at pairs took
     std::array<Span, kPartCount> parts;
@@ -137,10 +138,11 @@ std::uint32_t countTruePairs(btOverlappingPairCache& cache) {
 }
 
 // Looks at the pairs if that keeps looking below 5 ms, for short programs, and a two-hundredth of all time so far.
-void countPairs(btOverlappingPairCache& cache, const Moment& now) {
+void countPairs(btOverlappingPairCache& cache) {
     constexpr std::int64_t kShare = 200;
     constexpr std::int64_t kFree = 5'000'000;
     current.pairCount += static_cast<std::uint32_t>(cache.getNumOverlappingPairs());
+    const Moment now = beginMoment();
     std::int64_t none = 0;
     firstCalculation.compare_exchange_strong(none, now.wall);
     if (current.truePairCount == StepRow::kNotCounted ||
@@ -208,6 +210,7 @@ void beginStep() noexcept {
             current.allBegin = allProcessorNanoseconds();
         }
         current.begin = beginMoment();
+        current.looksBefore = nanosecondsOfLooks();
     }
 }
 
@@ -218,8 +221,10 @@ void endStep() noexcept {
     }
     Record* into = ownRecord.load(std::memory_order_relaxed);
     if (into != nullptr && current.calculations > 0) {
+        const std::int64_t looks = nanosecondsOfLooks() - current.looksBefore;
         Span step = between(current.begin, endMoment());
         step -= current.aside;
+        step -= {looks, looks};
         const float all = current.allBegin == kNotTaken
                               ? StepRow::kNotTaken
                               : milliseconds(allProcessorNanoseconds() - current.allBegin -
@@ -234,15 +239,13 @@ PartBegin beginPart() noexcept {
 }
 
 // Rays take the same share of either clock: callbacks of a part may cast some, and parts add up.
-Moment endPart(Part part, const PartBegin& begin) noexcept {
-    const Moment end = endMoment();
-    Span took = between(begin.moment, end);
+void endPart(Part part, const PartBegin& begin) noexcept {
+    Span took = between(begin.moment, endMoment());
     if (const std::int64_t rays = rayTime - begin.rays; rays > 0 && took.wall > 0) {
         const double share = static_cast<double>(rays) / static_cast<double>(took.wall);
         took -= {rays, static_cast<std::int64_t>(share * static_cast<double>(took.processor))};
     }
     current.part(part) += took;
-    return end;
 }
 
 std::uint64_t calculationsOfThread() noexcept {
@@ -260,10 +263,10 @@ CalculateScope::~CalculateScope() {
         }
         return;
     }
-    const Moment end = endPart(Part::calculate, begin_);
+    endPart(Part::calculate, begin_);
     ++current.calculations;
     ++calculationCount;
-    countPairs(cache_, end);
+    countPairs(cache_);
     if (stepDepth == 0) {
         writeRow(*into, false, {}, StepRow::kNotTaken);
     }

@@ -57,9 +57,9 @@ private:
 void beginStep() noexcept;
 void endStep() noexcept;
 
-/// Says to endPart() when it began, and that when it has ended.
+/// Says to endPart() when it began.
 [[nodiscard]] PartBegin beginPart() noexcept;
-Moment endPart(Part part, const PartBegin& begin) noexcept;
+void endPart(Part part, const PartBegin& begin) noexcept;
 
 /// How many CalculateScopes have ended.
 [[nodiscard]] std::uint64_t calculationsOfThread() noexcept;
