@@ -54,8 +54,9 @@ std::string narrowPhaseText(const StepSummary& stock, const StepSummary& ours) {
     if (saved < 1) {
         return text;
     }
-    return (text.empty() ? "as long " + where : text) + ", which no longer visits " + count(saved) +
-           " pairs that do not overlap";
+    return (text.empty() ? "as long " + where : text) + ", which visits " + count(ours.pairCount) +
+           " pairs instead of " + count(stock.pairCount) + ", " + count(saved) +
+           " of which do not overlap";
 }
 
 // What the change of a step consists of.
