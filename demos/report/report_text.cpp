@@ -69,6 +69,14 @@ std::string cautionOf(const Provenance& provenance) {
            "). Measure with the build that demos/run makes.";
 }
 
+std::string overloadText(const Provenance& provenance) {
+    const auto& load = provenance.loadAverage;
+    return load && load->front() > provenance.cores
+               ? "load " + fixed(load->front(), 1) + " on " + std::to_string(provenance.cores) +
+                     " cores"
+               : std::string();
+}
+
 void printProvenance(const Provenance& provenance, std::ostream& out) {
     out << "hashphase " << provenance.hashphaseVersion << ", Bullet " << provenance.bulletVersion
         << " (" << provenance.precision << " precision), " << provenance.compiler << ", "
@@ -78,10 +86,9 @@ void printProvenance(const Provenance& provenance, std::ostream& out) {
     if (!caution.empty()) {
         out << caution << '\n';
     }
-    if (provenance.loadAverage && (*provenance.loadAverage)[0] > provenance.cores) {
-        out << "Other programs kept the processor busy (load "
-            << fixed((*provenance.loadAverage)[0], 1) << " on " << provenance.cores
-            << " cores), so the times are too long.\n";
+    if (const std::string overload = overloadText(provenance); !overload.empty()) {
+        out << "Other programs kept the processor busy (" << overload
+            << "), so the times are too long.\n";
     }
 }
 

@@ -38,6 +38,9 @@ namespace hashphase::demos {
 /// A sentence that begins "Times mean little"; empty for a build that is meant for measuring.
 [[nodiscard]] std::string cautionOf(const Provenance& provenance);
 
+/// "load 3.7 on 2 cores", where programs wanted more cores than there are; else empty.
+[[nodiscard]] std::string overloadText(const Provenance& provenance);
+
 /// A line with versions, compiler and processor, and warnings where times mean little: in a build for
 /// tests, or when the processor was busy.
 void printProvenance(const Provenance& provenance, std::ostream& out);

@@ -9,7 +9,7 @@
 //          Bullet is linked so that its functions cannot be stood in for (-Bsymbolic-functions), one of
 //          these sub-steps; and a performDiscreteCollisionDetection() outside of both.
 // Threads  the counters are atomic, a row is one thread's; the verification is added up under a lock.
-// Units    milliseconds.
+// Units    milliseconds. Rays are timed by the clock on the wall alone: to look at the other takes longer.
 
 #include <array>
 #include <atomic>
@@ -27,15 +27,25 @@ enum class Broadphase : std::uint32_t {
     verifying,  // ours in its place, Bullet's beside it, both compared with the exact pairs
 };
 
+/// How long something took one thread, by two clocks.
+struct Times {
+    float wall;
+    float processor;  // the thread's own: stands still while others run, or the thread waits
+};
+
 /// A step of one thread, over all worlds in it; or pairs that were calculated outside of any.
 struct StepRow {
     static constexpr std::uint32_t kNotCounted = 0xffffffffU;
+    static constexpr float kNotTaken = -1;
 
-    float step;  // 0: pairs were calculated outside of steps
-    float updateAabbs;
-    float calculate;
-    float rays;         // in the step, what their callbacks do included
-    float raysBetween;  // since the last row, outside of steps or on threads that make none
+    std::uint32_t isStep;  // 0: pairs were calculated outside of steps, and `step` is 0
+    Times step;
+    Times updateAabbs;
+    Times calculate;
+    Times narrowPhase;   // dispatchAllCollisionPairs()
+    float allProcessor;  // of all threads during the step; kNotTaken in most steps: it takes time
+    float rays;          // in the step, what their callbacks do included; on the wall
+    float raysBetween;   // since the last row, outside of steps or on threads that make none
     std::uint32_t rayCount;
     std::uint32_t rayBetweenCount;
     std::uint32_t objectCount;
@@ -61,7 +71,7 @@ struct Verification {
 
 struct Record {
     static constexpr std::uint32_t kMaxRows = 200'000;
-    static constexpr std::uint32_t kFormat = 3;
+    static constexpr std::uint32_t kFormat = 4;
 
     // Asked for.
     std::uint32_t format;

@@ -10,6 +10,7 @@ namespace {
 
 using tryout::Broadphase;
 using tryout::StepRow;
+using tryout::Times;
 
 template <class Number>
 double mean(const std::vector<StepRow>& rows, Number StepRow::*field) {
@@ -20,8 +21,28 @@ double mean(const std::vector<StepRow>& rows, Number StepRow::*field) {
     return sum / static_cast<double>(rows.size());
 }
 
-float lengthOf(const StepRow& row) {
-    return row.step > 0 ? row.step : row.updateAabbs + row.calculate;
+double meanTime(const std::vector<StepRow>& rows, Times StepRow::*part, float Times::*clock) {
+    double sum = 0;
+    for (const StepRow& row : rows) {
+        sum += static_cast<double>(row.*part.*clock);
+    }
+    return sum / static_cast<double>(rows.size());
+}
+
+// Without a look at the clock itself, which is not in the time on the wall: that is shorter then.
+double processorTime(const std::vector<StepRow>& rows, Times StepRow::*part) {
+    constexpr double kLook = 0.002;
+    const double processor = meanTime(rows, part, &Times::processor);
+    return std::clamp(meanTime(rows, part, &Times::wall), std::max(0.0, processor - kLook),
+                      processor);
+}
+
+bool hasSteps(const std::vector<StepRow>& rows) {
+    return rows.front().isStep != 0;
+}
+
+float lengthOf(const StepRow& row, float Times::*clock) {
+    return row.isStep != 0 ? row.step.*clock : row.updateAabbs.*clock + row.calculate.*clock;
 }
 
 /// Steps by their length: a twentieth of them on either side is set apart, of few none.
@@ -30,17 +51,30 @@ struct SortedSteps {
     std::vector<StepRow> slowest;
 };
 
-SortedSteps sortByLength(std::vector<StepRow> rows) {
+SortedSteps sortByLength(std::vector<StepRow> rows, float Times::*clock) {
     constexpr std::ptrdiff_t kShare = 20;
-    std::stable_sort(rows.begin(), rows.end(),
-                     [](const StepRow& a, const StepRow& b) { return lengthOf(a) < lengthOf(b); });
+    std::stable_sort(rows.begin(), rows.end(), [clock](const StepRow& a, const StepRow& b) {
+        return lengthOf(a, clock) < lengthOf(b, clock);
+    });
     const std::ptrdiff_t cut = static_cast<std::ptrdiff_t>(rows.size()) / kShare;
     return {{rows.begin() + cut, rows.end() - cut}, {rows.end() - cut, rows.end()}};
 }
 
-double timeOf(const std::vector<StepRow>& rows) {
-    return std::accumulate(rows.begin(), rows.end(), 0.0,
-                           [](double sum, const StepRow& row) { return sum + lengthOf(row); });
+double timeOf(const std::vector<StepRow>& rows, float Times::*clock) {
+    return std::accumulate(rows.begin(), rows.end(), 0.0, [clock](double sum, const StepRow& row) {
+        return sum + lengthOf(row, clock);
+    });
+}
+
+// Where a step is on threads, in what waits for none of them.
+double processorShare(const std::vector<StepRow>& rows, bool onThreads) {
+    const auto time = [&](float Times::*clock) {
+        return hasSteps(rows) && !onThreads ? meanTime(rows, &StepRow::step, clock)
+                                            : meanTime(rows, &StepRow::updateAabbs, clock) +
+                                                  meanTime(rows, &StepRow::calculate, clock);
+    };
+    const double wall = time(&Times::wall);
+    return wall > 0 ? std::min(1.0, time(&Times::processor) / wall) : 1;
 }
 
 // Of a calculation, on average.
@@ -72,20 +106,50 @@ std::optional<double> truePairs(const std::vector<StepRow>& rows, double pairCou
 
 }  // namespace
 
-StepSummary summaryOf(const std::vector<StepRow>& all) {
-    const SortedSteps sorted = sortByLength(all);
+bool isOnThreads(const std::vector<StepRow>& rows) {
+    constexpr double kShareOfOthers = 0.1;
+    constexpr double kLook = 0.02;  // [ms], at the clock itself, the first time
+    double own = 0;
+    double others = 0;
+    for (const StepRow& row : rows) {
+        if (row.allProcessor != StepRow::kNotTaken) {
+            own += row.step.processor;
+            others += row.allProcessor - row.step.processor - kLook;
+        }
+    }
+    return others > kShareOfOthers * own;
+}
+
+std::optional<double> StepSummary::stalePairCount() const {
+    return truePairCount ? std::optional(std::max(0.0, pairCount - *truePairCount)) : std::nullopt;
+}
+
+StepSummary summaryOf(const std::vector<StepRow>& all, bool onThreads) {
+    const auto clock = onThreads ? &Times::wall : &Times::processor;
+    const SortedSteps sorted = sortByLength(all, clock);
     const std::vector<StepRow>& usual = sorted.usual;
+    const auto wholeTime = [&](Times StepRow::*part) {
+        return onThreads ? meanTime(usual, part, clock) : processorTime(usual, part);
+    };
     StepSummary summary;
     summary.stepCount = all.size();
-    summary.updateAabbs = mean(usual, &StepRow::updateAabbs);
-    summary.calculate = mean(usual, &StepRow::calculate);
-    summary.rays = mean(usual, &StepRow::rays);
-    if (const double step = mean(usual, &StepRow::step); step > 0) {
-        summary.step = step;
+    summary.updateAabbs = processorTime(usual, &StepRow::updateAabbs);
+    summary.calculate = processorTime(usual, &StepRow::calculate);
+    if (const double time = wholeTime(&StepRow::narrowPhase); time > 0) {
+        summary.narrowPhase = time;
     }
-    summary.raysBetween = mean(usual, &StepRow::raysBetween);
-    summary.slowestShare = timeOf(sorted.slowest) / timeOf(all);
-    summary.slowest = timeOf(sorted.slowest) / std::max(1.0, double(sorted.slowest.size()));
+    if (hasSteps(usual)) {
+        summary.step = wholeTime(&StepRow::step);
+    }
+    summary.stepOnWall = meanTime(usual, &StepRow::step, &Times::wall);
+    summary.processorShare = processorShare(onThreads ? all : usual, onThreads);
+    const double shareOfRays = onThreads ? 1 : summary.processorShare;
+    summary.rays = mean(usual, &StepRow::rays) * shareOfRays;
+    summary.raysBetween = mean(usual, &StepRow::raysBetween) * shareOfRays;
+    const double time = timeOf(all, clock);
+    summary.slowestShare = time > 0 ? timeOf(sorted.slowest, clock) / time : 0;
+    summary.slowest =
+        timeOf(sorted.slowest, clock) / std::max(1.0, static_cast<double>(sorted.slowest.size()));
     summary.rayCount = mean(all, &StepRow::rayCount);
     summary.rayBetweenCount = mean(all, &StepRow::rayBetweenCount);
     for (const StepRow& row : all) {
@@ -124,8 +188,9 @@ std::optional<StepComparison> compareSteps(const Trial& trial) {
     if (stockRows.empty()) {
         return std::nullopt;
     }
-    comparison.stock = summaryOf(stockRows);
-    comparison.ours = summaryOf(ourRows);
+    comparison.onThreads = isOnThreads(stockRows) || isOnThreads(ourRows);
+    comparison.stock = summaryOf(stockRows, comparison.onThreads);
+    comparison.ours = summaryOf(ourRows, comparison.onThreads);
     return comparison;
 }
 

@@ -183,7 +183,7 @@ RunEnd waitFor(RunningProgram& program, const TriedRunSettings& settings, const 
 // them are before the next step, too.
 std::vector<tryout::StepRow> stepsOf(const Record& record) {
     const auto isUnwritten = [](const tryout::StepRow& row) { return row.calculations == 0; };
-    const auto isNoStep = [](const tryout::StepRow& row) { return row.step == 0; };
+    const auto isNoStep = [](const tryout::StepRow& row) { return row.isStep == 0; };
     const std::uint32_t count = std::min(record.rowCount.load(), Record::kMaxRows);
     std::vector<tryout::StepRow> rows(record.rows.begin(), record.rows.begin() + count);
     std::erase_if(rows, isUnwritten);

@@ -95,6 +95,12 @@ void sayWhatRuns(const TryOptions& options, Broadphase broadphase, std::size_t n
 
 // A program that makes none of the broadphases that are taken over runs as ever.
 [[noreturn]] void refuse(const Trial& trial, const TriedRun& run) {
+    if (run.isLoaded && run.end.isCrash) {
+        throw InputError(trial.program.path +
+                         " had made no btDbvtBroadphase and no axis sweep, and so nothing to "
+                         "compare, when it " +
+                         textOf(run.end));
+    }
     if (!run.isLoaded) {
         throw InputError(trial.program.path + " " + textOf(run.end) +
                          ", and has not loaded what was preloaded: programs with rights of their "
@@ -179,8 +185,9 @@ int runTry(const TryOptions& options, Console& console) {
     if (trial.runs.empty()) {
         return kExitInterrupted + interruption;
     }
+    trial.provenance = gatherProvenance(console.commandLine);
     printTrial(trial, console.out);
-    json.write([&](std::ostream& out) { writeTrialJson(trial, console.commandLine, out); });
+    json.write([&](std::ostream& out) { writeTrialJson(trial, out); });
     if (interruption != 0) {
         return kExitInterrupted + interruption;
     }

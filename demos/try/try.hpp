@@ -5,6 +5,7 @@
 // steps; or once with both, to verify the pairs.
 
 #include <demos/console/program.hpp>
+#include <demos/report/provenance.hpp>
 #include <demos/try/program_file.hpp>
 #include <demos/try/tried_run.hpp>
 
@@ -31,6 +32,7 @@ struct Trial {
     std::string commandLine;
     TriedProgram program;
     std::vector<TriedRun> runs;
+    Provenance provenance;  // after them: how busy the machine was
 };
 
 /// Exit codes: kExitCheckFailed when pairs of ours were wrong, when nothing was verified or a verified run ended

@@ -20,7 +20,9 @@ void declare(CLI::App& app, TryOptions& options) {
         "PROGRAM links Bullet's shared libraries, and makes its broadphase from btDbvtBroadphase, "
         "btAxisSweep3 or\nbt32BitAxisSweep3. With ours in place, the trees in "
         "btDbvtBroadphase::m_sets are empty for programs that\nwalk them themselves. "
-        "Ctrl-C ends the program, and further runs.");
+        "Ctrl-C ends the program, and further runs.\n"
+        "Times are the processor time of the thread that makes the steps: other programs do not "
+        "lengthen it.");
     CLI::Option* verify = app.add_flag(
         "--verify", options.verify,
         "one run with ours at work and Bullet's beside it: compare the pairs of both with the "

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -146,6 +147,34 @@ TEST(Benchmarks, TakeSizesSeedFramesAndContestants) {
                                                "S6-piles/70", "tiny/10", "tiny/32", "tiny/100",
                                                "tiny/300", "tiny/1000"}));
     EXPECT_EQ(report["settings"]["seed"], 9);
+}
+
+// Where others may be faster than we are.
+TEST(Benchmarks, MeasureEverySceneAtAThousandAndAtThreeThousandObjects) {
+    const std::set<std::string> withSizesOfTheirOwn{"tiny", "threads", "sizes-one",
+                                                    "sizes-trillion"};
+    for (const Benchmark& benchmark : pairBenchmarks()) {
+        if (withSizesOfTheirOwn.count(benchmark.name) == 0) {
+            const std::vector<std::size_t>& sizes = benchmark.sizes;
+            EXPECT_EQ(std::count(sizes.begin(), sizes.end(), 1'000), 1) << benchmark.name;
+            EXPECT_EQ(std::count(sizes.begin(), sizes.end(), 3'000), 1) << benchmark.name;
+        }
+    }
+}
+
+TEST(Benchmarks, MeasureMoreFramesWhereFramesAreShort) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("r.json");
+    const auto framesDone = [&](const std::string& size, std::vector<std::string> more) {
+        std::vector<std::string> arguments{"--only", "S2", "--sizes", size, "--json", path};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        EXPECT_EQ(run(arguments, {fakeKind("hash", true, [](auto& /*pairs*/) {})}).exitCode,
+                  demos::kExitOk);
+        return json::parse(std::ifstream(path))["cases"][0]["framesDone"].get<int>();
+    };
+    EXPECT_EQ(framesDone("1000", {}), 300);
+    EXPECT_EQ(framesDone("3001", {}), 60);
+    EXPECT_EQ(framesDone("1000", {"--frames", "7"}), 7);
 }
 
 TEST(Benchmarks, StopAtTheTimeLimitAndSayWhatIsLeftOut) {

@@ -42,7 +42,7 @@ Benchmark stillBenchmark(std::string name, std::string description, Setting sett
     benchmark.name = std::move(name);
     benchmark.group = "pairs";
     benchmark.description = std::move(description);
-    benchmark.sizes = {100'000};
+    benchmark.sizes = {1'000, 3'000, 100'000};
     benchmark.admits = takesPartInFrames;
     benchmark.make = [setting](std::size_t objects, std::uint64_t seed) {
         demos::ScatterPlan plan;
@@ -105,7 +105,7 @@ bool takesPartInFrames(const ContestantKind& kind, std::size_t objects) {
 }
 
 std::vector<Benchmark> pairBenchmarks() {
-    const std::vector<std::size_t> sizes{10'000, 30'000, 100'000};
+    const std::vector<std::size_t> sizes{1'000, 3'000, 10'000, 30'000, 100'000};
     std::vector<Benchmark> all;
     all.push_back(pairsOf("S1-paper", "paper", sizes));
     // At a million every sphere would overlap a hundred others.
@@ -116,7 +116,7 @@ std::vector<Benchmark> pairBenchmarks() {
     all.push_back(pairsOf("S4-moving-2", "moving-2", sizes));
     all.push_back(pairsOf("S5-static-90", "static-90", sizes));
     all.push_back(pairsOf("S6-piles", "piles", sizes));
-    all.push_back(pairsOf("terdiman", "terdiman", {10'000, 100'000}));
+    all.push_back(pairsOf("terdiman", "terdiman", {1'000, 3'000, 10'000, 100'000}));
     // In its fixed cube, pairs grow with the square of the boxes.
     all.back().takesOtherSizes = false;
     all.push_back(pairsOf("brownian", "brownian", sizes));
@@ -170,7 +170,7 @@ std::vector<Benchmark> populationBenchmarks() {
     creation.name = "creation";
     creation.group = "population";
     creation.description = "uniform boxes are created, until the pairs are complete";
-    creation.sizes = {10'000};
+    creation.sizes = {1'000, 3'000, 10'000};
     creation.admits = [](const ContestantKind& kind, std::size_t objects) {
         return isFastEnough(kind, objects) && objects <= kind.fillsUpTo && !kind.onThreads;
     };

@@ -24,7 +24,7 @@ struct Benchmark {
     bool takesOtherSizes = true;     // --sizes replaces them
     std::size_t largest = 1'000'000;
 
-    /// Measured, unless asked otherwise; 0: as many as of others.
+    /// Measured, unless asked otherwise; 0: as many as of others of that size.
     int frames = 0;
 
     /// Only measured when it is asked for by name.

@@ -45,7 +45,7 @@ std::atomic<bool> isWatching = false;
 
 // --- Zones ---------------------------------------------------------------------------------------
 
-enum class Zone : std::uint8_t { other, step, updateAabbs, calculate };
+enum class Zone : std::uint8_t { other, step, updateAabbs, calculate, narrowPhase };
 
 Zone zoneOf(const char* name) noexcept {
     const auto is = [name](const char* zone) { return std::strcmp(name, zone) == 0; };
@@ -56,6 +56,8 @@ Zone zoneOf(const char* name) noexcept {
             return is("performDiscreteCollisionDetection") ? Zone::step : Zone::other;
         case 'u':
             return is("updateAabbs") ? Zone::updateAabbs : Zone::other;
+        case 'd':
+            return is("dispatchAllCollisionPairs") ? Zone::narrowPhase : Zone::other;
         case 'c':
             return is("calculateOverlappingPairs") ? Zone::calculate : Zone::other;
         default:
@@ -65,7 +67,7 @@ Zone zoneOf(const char* name) noexcept {
 
 struct OpenZone {
     Zone zone = Zone::other;
-    std::int64_t begin = 0;          // of updateAabbs
+    PartBegin begin;                 // of updateAabbs and narrowPhase
     std::uint64_t calculations = 0;  // before calculate
 };
 
@@ -82,8 +84,8 @@ void beginZone(const char* name) noexcept {
     open.zone = zoneOf(name);
     if (open.zone == Zone::step) {
         beginStep();
-    } else if (open.zone == Zone::updateAabbs) {
-        open.begin = beginUpdateOfAabbs();
+    } else if (open.zone == Zone::updateAabbs || open.zone == Zone::narrowPhase) {
+        open.begin = beginPart();
     } else if (open.zone == Zone::calculate) {
         open.calculations = calculationsOfThread();
     }
@@ -97,7 +99,9 @@ void endZone() noexcept {
     if (open.zone == Zone::step) {
         endStep();
     } else if (open.zone == Zone::updateAabbs) {
-        endUpdateOfAabbs(open.begin);
+        endPart(Part::updateAabbs, open.begin);
+    } else if (open.zone == Zone::narrowPhase) {
+        endPart(Part::narrowPhase, open.begin);
     } else if (open.zone == Zone::calculate && open.calculations == calculationsOfThread()) {
         if (Record* into = record()) {
             into->foreignCalculations.fetch_add(1, std::memory_order_relaxed);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Sub-steps, and updateAabbs() in them, by Bullet's own profile zones; and whole steps by the worlds'
-// stepSimulation(), which has none: where Bullet is linked so that this library can stand in for it.
+// Sub-steps, updateAabbs() and the narrow phase in them, by Bullet's own profile zones; and whole steps by
+// the worlds' stepSimulation(), which has none: where Bullet is linked so that this library can stand in
+// for it.
 
 namespace hashphase::tryout {
 

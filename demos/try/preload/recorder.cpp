@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/try/preload/recorder.hpp>
 
+#include <demos/try/preload/clocks.hpp>
 #include <demos/try/preload/overlap.hpp>
 #include <demos/try/preload/profile_zones.hpp>
 #include <demos/try/preload/program_end.hpp>
@@ -8,8 +9,9 @@
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 
+#include <array>
 #include <atomic>
-#include <chrono>
+#include <cstddef>
 
 #include <pthread.h>
 #include <unistd.h>
@@ -17,12 +19,32 @@
 namespace hashphase::tryout {
 namespace {
 
-std::int64_t nanoseconds() noexcept {
-    return std::chrono::steady_clock::now().time_since_epoch().count();
-}
-
 float milliseconds(std::int64_t nanoseconds) noexcept {
     return static_cast<float>(static_cast<double>(nanoseconds) * 1e-6);
+}
+
+/// How long something took, by the two clocks [ns].
+struct Span {
+    std::int64_t wall = 0;
+    std::int64_t processor = 0;
+
+    Span& operator+=(const Span& other) noexcept {
+        wall += other.wall;
+        processor += other.processor;
+        return *this;
+    }
+    Span& operator-=(const Span& other) noexcept {
+        wall -= other.wall;
+        processor -= other.processor;
+        return *this;
+    }
+    [[nodiscard]] Times times() const noexcept {
+        return {milliseconds(wall), milliseconds(processor)};
+    }
+};
+
+Span between(const Moment& begin, const Moment& end) noexcept {
+    return {end.wall - begin.wall, end.processor - begin.processor};
 }
 
 std::atomic<Record*> ownRecord = nullptr;
@@ -50,16 +72,21 @@ Record* claimRecord() {
 
 // --- The step under way, of each thread ----------------------------------------------------------
 
+constexpr std::int64_t kNotTaken = -1;
+
 struct Step {
-    std::int64_t begin = 0;
-    std::int64_t aside = 0;  // what looking at pairs took
-    std::int64_t updateAabbs = 0;
-    std::int64_t calculate = 0;
+    Moment begin;
+    std::int64_t looksBefore = 0;
+    std::int64_t allBegin = kNotTaken;  // of all threads
+    Span aside;                         // what looking at pairs took
+    std::array<Span, kPartCount> parts;
     std::int64_t rays = 0;
     std::uint32_t rayCount = 0;
     std::uint32_t calculations = 0;
     std::uint32_t pairCount = 0;
     std::uint32_t truePairCount = 0;
+
+    [[nodiscard]] Span& part(Part which) noexcept { return parts[static_cast<std::size_t>(which)]; }
 };
 
 thread_local Step current;
@@ -73,19 +100,17 @@ std::atomic<std::uint32_t> rayCountBetween = 0;
 std::atomic<std::int64_t> firstCalculation = 0;
 std::atomic<std::int64_t> lookTime = 0;
 
-// Stands still while rays are cast: callbacks of updateAabbs and calculate may do so, and parts add up.
-std::int64_t nanosecondsWithoutRays() noexcept {
-    return nanoseconds() - rayTime;
-}
-
-void writeRow(Record& into, float stepTime) noexcept {
+void writeRow(Record& into, bool isStep, const Span& step, float allProcessor) noexcept {
     const float between = milliseconds(rayTimeBetween.exchange(0));
     const std::uint32_t countBetween = rayCountBetween.exchange(0);
     const std::uint32_t index = into.rowCount.fetch_add(1);
     if (index < Record::kMaxRows) {
-        into.rows[index] = {stepTime,
-                            milliseconds(current.updateAabbs),
-                            milliseconds(current.calculate),
+        into.rows[index] = {isStep ? 1U : 0U,
+                            step.times(),
+                            current.part(Part::updateAabbs).times(),
+                            current.part(Part::calculate).times(),
+                            current.part(Part::narrowPhase).times(),
+                            allProcessor,
                             milliseconds(current.rays),
                             between,
                             current.rayCount,
@@ -95,7 +120,7 @@ void writeRow(Record& into, float stepTime) noexcept {
                             current.pairCount,
                             current.truePairCount};
     }
-    if (stepTime > 0) {
+    if (isStep) {
         into.stepCount.fetch_add(1, std::memory_order_release);
     }
     current = {};
@@ -112,20 +137,22 @@ std::uint32_t countTruePairs(btOverlappingPairCache& cache) {
     return overlapping;
 }
 
-// Looks at the pairs if that keeps looking below a two-hundredth of all time so far.
-void countPairs(btOverlappingPairCache& cache, std::int64_t now) {
+// Looks at the pairs if that keeps looking below 5 ms, for short programs, and a two-hundredth of all time so far.
+void countPairs(btOverlappingPairCache& cache) {
     constexpr std::int64_t kShare = 200;
+    constexpr std::int64_t kFree = 5'000'000;
     current.pairCount += static_cast<std::uint32_t>(cache.getNumOverlappingPairs());
+    const Moment now = beginMoment();
     std::int64_t none = 0;
-    firstCalculation.compare_exchange_strong(none, now);
+    firstCalculation.compare_exchange_strong(none, now.wall);
     if (current.truePairCount == StepRow::kNotCounted ||
-        lookTime.load() * kShare > now - firstCalculation.load()) {
+        (lookTime.load() - kFree) * kShare > now.wall - firstCalculation.load()) {
         current.truePairCount = StepRow::kNotCounted;
         return;
     }
     current.truePairCount += countTruePairs(cache);
-    const std::int64_t took = nanoseconds() - now;
-    lookTime += took;
+    const Span took = between(now, endMoment());
+    lookTime += took.wall;
     current.aside += took;
 }
 
@@ -175,9 +202,15 @@ void noteObjects(int change) noexcept {
 }
 
 void beginStep() noexcept {
+    constexpr std::uint32_t kStepsBetweenLooks = 8;
+    thread_local std::uint32_t stepNumber = 0;
     if (stepDepth++ == 0) {
         current = {};
-        current.begin = nanoseconds();
+        if (stepNumber++ % kStepsBetweenLooks == 0) {
+            current.allBegin = allProcessorNanoseconds();
+        }
+        current.begin = beginMoment();
+        current.looksBefore = nanosecondsOfLooks();
     }
 }
 
@@ -188,17 +221,31 @@ void endStep() noexcept {
     }
     Record* into = ownRecord.load(std::memory_order_relaxed);
     if (into != nullptr && current.calculations > 0) {
-        writeRow(*into, milliseconds(nanoseconds() - current.begin - current.aside));
+        const std::int64_t looks = nanosecondsOfLooks() - current.looksBefore;
+        Span step = between(current.begin, endMoment());
+        step -= current.aside;
+        step -= {looks, looks};
+        const float all = current.allBegin == kNotTaken
+                              ? StepRow::kNotTaken
+                              : milliseconds(allProcessorNanoseconds() - current.allBegin -
+                                             current.aside.processor);
+        writeRow(*into, true, step, all);
     }
     current = {};
 }
 
-std::int64_t beginUpdateOfAabbs() noexcept {
-    return nanosecondsWithoutRays();
+PartBegin beginPart() noexcept {
+    return {beginMoment(), rayTime};
 }
 
-void endUpdateOfAabbs(std::int64_t begin) noexcept {
-    current.updateAabbs += nanosecondsWithoutRays() - begin;
+// Rays take the same share of either clock: callbacks of a part may cast some, and parts add up.
+void endPart(Part part, const PartBegin& begin) noexcept {
+    Span took = between(begin.moment, endMoment());
+    if (const std::int64_t rays = rayTime - begin.rays; rays > 0 && took.wall > 0) {
+        const double share = static_cast<double>(rays) / static_cast<double>(took.wall);
+        took -= {rays, static_cast<std::int64_t>(share * static_cast<double>(took.processor))};
+    }
+    current.part(part) += took;
 }
 
 std::uint64_t calculationsOfThread() noexcept {
@@ -206,7 +253,7 @@ std::uint64_t calculationsOfThread() noexcept {
 }
 
 CalculateScope::CalculateScope(btOverlappingPairCache& cache) noexcept
-    : cache_(cache), begin_(record() != nullptr ? nanosecondsWithoutRays() : 0) {}
+    : cache_(cache), begin_(record() != nullptr ? beginPart() : PartBegin{}) {}
 
 CalculateScope::~CalculateScope() {
     Record* into = record();
@@ -216,24 +263,23 @@ CalculateScope::~CalculateScope() {
         }
         return;
     }
-    const std::int64_t now = nanoseconds();
-    current.calculate += now - rayTime - begin_;
+    endPart(Part::calculate, begin_);
     ++current.calculations;
     ++calculationCount;
-    countPairs(cache_, now);
+    countPairs(cache_);
     if (stepDepth == 0) {
-        writeRow(*into, 0);
+        writeRow(*into, false, {}, StepRow::kNotTaken);
     }
 }
 
 RayScope::RayScope() noexcept
-    : begin_(rayDepth++ == 0 && record() != nullptr ? nanoseconds() : 0) {}
+    : begin_(rayDepth++ == 0 && record() != nullptr ? wallNanoseconds() : 0) {}
 
 RayScope::~RayScope() {
     if (--rayDepth > 0 || begin_ == 0) {
         return;
     }
-    const std::int64_t took = nanoseconds() - begin_;
+    const std::int64_t took = wallNanoseconds() - begin_;
     rayTime += took;
     if (stepDepth > 0) {
         current.rays += took;

@@ -6,8 +6,10 @@
 //
 // Threads  any, at once: worlds may be stepped on several, and rays cast from any.
 
+#include <demos/try/preload/clocks.hpp>
 #include <demos/try/record.hpp>
 
+#include <cstddef>
 #include <cstdint>
 
 class btOverlappingPairCache;
@@ -26,8 +28,17 @@ void noteAxisSweep();
 void noteDerivedSweep();
 void noteObjects(int change) noexcept;
 
-/// Around calculateOverlappingPairs() of one broadphase. Cost: two looks at the clock, and now and
-/// then one at each pair, to count those that overlap: at most a two-hundredth of the time.
+/// What is timed in a step, on the thread that makes it. Rays in it are counted elsewhere.
+enum class Part : std::uint8_t { updateAabbs, calculate, narrowPhase };
+inline constexpr std::size_t kPartCount = 3;
+
+struct PartBegin {
+    Moment moment;
+    std::int64_t rays = 0;  // what this thread's have taken before
+};
+
+/// Around calculateOverlappingPairs() of one broadphase. Cost: two looks at the clocks, and now and
+/// then one at each pair, to count those that overlap: at most 5 ms and a two-hundredth of the time.
 class CalculateScope {
 public:
     explicit CalculateScope(btOverlappingPairCache& cache) noexcept;
@@ -37,7 +48,7 @@ public:
 
 private:
     btOverlappingPairCache& cache_;
-    std::int64_t begin_;
+    PartBegin begin_;
 };
 
 // Of what is watched around the broadphases (profile_zones.hpp), on the caller's thread.
@@ -46,9 +57,9 @@ private:
 void beginStep() noexcept;
 void endStep() noexcept;
 
-/// Says to endUpdateOfAabbs() when it began.
-[[nodiscard]] std::int64_t beginUpdateOfAabbs() noexcept;
-void endUpdateOfAabbs(std::int64_t begin) noexcept;
+/// Says to endPart() when it began.
+[[nodiscard]] PartBegin beginPart() noexcept;
+void endPart(Part part, const PartBegin& begin) noexcept;
 
 /// How many CalculateScopes have ended.
 [[nodiscard]] std::uint64_t calculationsOfThread() noexcept;

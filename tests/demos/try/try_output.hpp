@@ -73,6 +73,13 @@ inline std::size_t countOf(const std::string& text, const std::string& part) {
     return count;
 }
 
+/// The last line, without its end.
+inline std::string lastLineOf(const std::string& text) {
+    const std::size_t end = text.find_last_not_of('\n') + 1;
+    const std::size_t before = text.find_last_of('\n', end - 1);
+    return text.substr(before + 1, end - before - 1);
+}
+
 inline bool has(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
 }

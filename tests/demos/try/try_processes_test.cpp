@@ -258,7 +258,7 @@ TEST(Try, WaitsWhereWhoStartedItIgnoresTheEndOfItsChildren) {
         "env --ignore-signal=CHLD $try --quiet -- $stock failing\n"
         "HASHPHASE_TRY_RECORD=/no/such/file $try --quiet -- $stock failing\n",
         folder);
-    EXPECT_EQ(countOf(output.out, "With hashphase a step of "), 2U) << output.out << output.err;
+    EXPECT_EQ(countOf(output.out, "With hashphase a step takes "), 2U) << output.out << output.err;
 }
 
 }  // namespace

@@ -61,6 +61,16 @@ TEST(TryRefuses, ProgramsThatMakeNoBroadphaseOfThese) {
                   "ended with status 0, and has made no btDbvtBroadphase and no axis sweep");
 }
 
+TEST(TryRefuses, ProgramsThatCrashBeforeTheyMakeABroadphase) {
+    for (const std::string mode : {"", "--verify "}) {
+        const Output output =
+            tryProgram("--quiet " + mode + "-- " + stock("stock-programs") + " crashing-at-once");
+        EXPECT_EQ(output.status, kExitUsage);
+        EXPECT_TRUE(lastLineOf(output.err).ends_with("when it was ended by signal 6 (Aborted)"))
+            << output.err;
+    }
+}
+
 TEST(TryRefuses, ClassesDerivedFromASweep) {
     expectRefused("-- " + stock("stock-programs") + " derived-sweep",
                   "has made no btDbvtBroadphase and no axis sweep that can be taken over");

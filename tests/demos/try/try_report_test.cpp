@@ -13,6 +13,16 @@
 namespace hashphase::demos {
 namespace {
 
+/// That has taken so long by either clock.
+tryout::StepRow stepOf(float milliseconds) {
+    tryout::StepRow row{};
+    row.isStep = 1;
+    row.step = {milliseconds, milliseconds};
+    row.calculations = 1;
+    row.allProcessor = tryout::StepRow::kNotTaken;
+    return row;
+}
+
 TEST(TryReport, ProjectsWhatAStepTakes) {
     StepSummary stock;
     stock.updateAabbs = 4;
@@ -31,16 +41,14 @@ TEST(TryReport, ProjectsWhatAStepTakes) {
 TEST(TryReport, ComparesTheStepsThatBothRunsHave) {
     Trial trial;
     TriedRun run;
-    tryout::StepRow row{};
-    row.step = 2;
-    row.calculations = 1;
-    row.calculate = 1;
+    tryout::StepRow row = stepOf(2);
+    row.calculate = {1, 1};
     row.pairCount = 10;
     run.rows.assign(100, row);
     trial.runs.push_back(run);
     run.broadphase = tryout::Broadphase::hash;
-    row.step = 1;
-    row.calculate = 0.25F;
+    row.step = {1, 1};
+    row.calculate = {0.25F, 0.25F};
     row.pairCount = 8;
     run.rows.assign(60, row);
     trial.runs.push_back(run);
@@ -59,10 +67,9 @@ TEST(TryReport, TakesMeans) {
     Trial trial;
     TriedRun run;
     for (int i = 0; i < 300; ++i) {
-        tryout::StepRow row{};
-        row.calculations = 1;
-        row.rays = i % 3 == 0 ? 3.0F : 0.0F;
-        row.step = 1 + row.rays;
+        const float rays = i % 3 == 0 ? 3.0F : 0.0F;
+        tryout::StepRow row = stepOf(1 + rays);
+        row.rays = rays;
         run.rows.push_back(row);
     }
     trial.runs.push_back(run);
@@ -76,11 +83,9 @@ TEST(TryReport, TakesMeans) {
 // Counts are those of all steps, and what the rare ones took is said.
 TEST(TryReport, SaysWhenRareStepsTakeLong) {
     TriedRun run;
-    tryout::StepRow row{};
-    row.step = 1;
-    row.calculations = 1;
+    tryout::StepRow row = stepOf(1);
     run.rows.assign(98, row);
-    row.step = 50;
+    row.step = {50, 50};
     row.rays = 40;
     row.rayCount = 200;
     run.rows.insert(run.rows.end(), 2, row);
@@ -101,9 +106,7 @@ TEST(TryReport, SaysWhenRareStepsTakeLong) {
 
 TEST(TryReport, CountsPairsByTheCalculation) {
     TriedRun run;
-    tryout::StepRow row{};
-    row.step = 1;
-    row.calculations = 1;
+    tryout::StepRow row = stepOf(1);
     row.pairCount = 10;
     row.truePairCount = 5;
     run.rows.push_back(row);
@@ -118,7 +121,118 @@ TEST(TryReport, CountsPairsByTheCalculation) {
     const StepSummary step = compareSteps(trial).value().stock;
     EXPECT_DOUBLE_EQ(step.pairCount, 10);
     EXPECT_DOUBLE_EQ(step.truePairCount.value(), 5);
+    EXPECT_DOUBLE_EQ(step.stalePairCount().value(), 5);
 }
+
+// --- The verdict ---------------------------------------------------------------------------------
+
+std::string textOf(const Trial& trial) {
+    std::ostringstream out;
+    printTrial(trial, out);
+    return out.str();
+}
+
+/// A run of a hundred such steps with either broadphase.
+Trial trialOf(const tryout::StepRow& stock, const tryout::StepRow& ours) {
+    Trial trial;
+    TriedRun run;
+    run.rows.assign(100, stock);
+    trial.runs.push_back(run);
+    run.broadphase = tryout::Broadphase::hash;
+    run.rows.assign(100, ours);
+    trial.runs.push_back(run);
+    return trial;
+}
+
+TEST(TryReport, SaysOfWhatTheChangeOfAStepConsists) {
+    tryout::StepRow stock = stepOf(202);
+    stock.calculate = {12, 12};
+    stock.narrowPhase = {180, 180};
+    stock.pairCount = 50'000;
+    stock.truePairCount = 1000;
+    tryout::StepRow ours = stepOf(42.3F);
+    ours.calculate = {6, 6};
+    ours.narrowPhase = {28, 28};
+    ours.pairCount = 1000;
+    ours.truePairCount = 1000;
+    EXPECT_EQ(lastLineOf(textOf(trialOf(stock, ours))),
+              "With hashphase a step takes 42.3 ms instead of 202 (4.78x): 6.00 ms less in the "
+              "broadphase, 152 ms less in the narrow phase, which visits 1,000 pairs instead of "
+              "50,000, 49,000 of which do not overlap, and 1.70 ms less elsewhere.");
+    ours.narrowPhase = stock.narrowPhase;
+    EXPECT_TRUE(has(textOf(trialOf(stock, ours)),
+                    "as long in the narrow phase, which visits 1,000 pairs instead of 50,000"));
+}
+
+// Who has no processor works no slower for it.
+TEST(TryReport, TakesTheProcessorsTimeWhereOthersAreBusy) {
+    tryout::StepRow stock = stepOf(2.38F);
+    stock.step.wall = 6.2F;
+    stock.calculate = {3, 1};
+    stock.rays = 0.62F;
+    tryout::StepRow ours = stepOf(2);
+    ours.step.wall = 10;
+    ours.calculate = {0.5F, 0.5F};
+    const Trial trial = trialOf(stock, ours);
+    const StepSummary step = compareSteps(trial).value().stock;
+    EXPECT_NEAR(step.step.value(), 2.38, 1e-6);
+    EXPECT_NEAR(step.calculate, 1, 1e-6);
+    EXPECT_NEAR(step.rays, 0.238, 1e-6);  // of which only that clock is known
+    const std::string text = textOf(trial);
+    EXPECT_TRUE(has(text, "a step takes 2.00 ms instead of 2.38 (1.19x)")) << text;
+    EXPECT_EQ(lastLineOf(text),
+              "Other programs were busy, or the program waited for something: the calling thread "
+              "had it for 38 % of the time with Bullet's, and for 20 % with hashphase. Trust the "
+              "times above, and not those by the clock on the wall: 6.20 and 10.0 ms a step "
+              "(0.62x).");
+}
+
+// Of which the time of the processor is that of one.
+TEST(TryReport, TakesTheTimeOnTheWallWhereSeveralThreadsWorkInAStep) {
+    tryout::StepRow stock = stepOf(2);
+    stock.step.wall = 8;
+    stock.narrowPhase = {7, 1};
+    stock.calculate = {0.5F, 0.5F};
+    stock.allProcessor = 12;
+    tryout::StepRow ours = stock;
+    ours.step.wall = 4;
+    ours.narrowPhase.wall = 3;
+    const Trial trial = trialOf(stock, ours);
+    const StepComparison steps = compareSteps(trial).value();
+    EXPECT_TRUE(steps.onThreads);
+    EXPECT_DOUBLE_EQ(steps.stock.step.value(), 8);
+    EXPECT_DOUBLE_EQ(steps.stock.narrowPhase.value(), 7);
+    const std::string text = textOf(trial);
+    EXPECT_TRUE(has(text, "in which several threads work, they are those on the wall.")) << text;
+    EXPECT_TRUE(has(text, "a step takes 4.00 ms instead of 8.00 (2.00x)")) << text;
+    EXPECT_FALSE(has(text, "busy")) << text;  // the thread has only waited for others of its own
+}
+
+TEST(TryReport, TakesWhatTheClockItselfTakesForNoThread) {
+    tryout::StepRow row = stepOf(0.05F);
+    row.allProcessor = 0.065F;
+    EXPECT_FALSE(compareSteps(trialOf(row, row)).value().onThreads);
+}
+
+TEST(TryReport, SaysWhenProgramsWantMoreCoresThanThereAre) {
+    Trial trial = trialOf(stepOf(2), stepOf(1));
+    trial.provenance.cores = 2;
+    trial.provenance.loadAverage = {1.5, 9, 9};
+    EXPECT_FALSE(has(textOf(trial), "busy"));
+    trial.provenance.loadAverage = {5.25, 0, 0};
+    EXPECT_EQ(lastLineOf(textOf(trial)),
+              "Other programs kept the processor busy (load 5.2 on 2 cores), which these times are "
+              "without.");
+}
+
+// As where a program has made the clocks stand still.
+TEST(TryReport, TellsStepsByWhatTheyAreAndNotByTheirTime) {
+    const std::string text = textOf(trialOf(stepOf(0), stepOf(0)));
+    EXPECT_TRUE(has(text, "With hashphase a step takes ")) << text;
+    EXPECT_FALSE(has(text, "nan")) << text;
+}
+
+// --- How programs end ----------------------------------------------------------------------------
 
 std::string endsOf(const std::vector<RunEnd>& ends) {
     Trial trial;
@@ -129,9 +243,7 @@ std::string endsOf(const std::vector<RunEnd>& ends) {
             trial.runs.size() % 2 == 0 ? tryout::Broadphase::stock : tryout::Broadphase::hash;
         trial.runs.push_back(run);
     }
-    std::ostringstream out;
-    printTrial(trial, out);
-    return out.str();
+    return textOf(trial);
 }
 
 TEST(TryReport, SaysAllEndsThatDiffer) {
@@ -146,6 +258,45 @@ TEST(TryReport, SaysAllEndsThatDiffer) {
     EXPECT_TRUE(has(endsOf({crash, one, one, one}),
                     "ended with status 1 or was ended by signal 11 (Segmentation fault) with "
                     "Bullet's broadphase, and ended with status 1 with hashphase.\n"));
+}
+
+TEST(TryReport, EndsWithHowTheProgramEndedWhereThatIsNotWithStatusZero) {
+    const RunEnd crash{.isCrash = true, .code = 11};
+    const auto lastLine = [](const RunEnd& stock, const RunEnd& ours) {
+        Trial trial = trialOf(stepOf(2), stepOf(1));
+        trial.runs[0].end = stock;
+        trial.runs[1].end = ours;
+        return lastLineOf(textOf(trial));
+    };
+    EXPECT_EQ(lastLine(crash, crash),
+              "The program was ended by signal 11 (Segmentation fault), whichever the broadphase.");
+    EXPECT_EQ(lastLine({}, crash),
+              "The program ended with status 0 with Bullet's broadphase, and was ended by signal "
+              "11 (Segmentation fault) with hashphase.");
+    EXPECT_EQ(lastLine({.code = 3}, {.code = 3}),
+              "The program ended with status 3, whichever the broadphase.");
+    EXPECT_TRUE(has(lastLine({}, {}), "With hashphase a step takes "));
+    EXPECT_TRUE(has(lastLine({.isStopped = true}, {}), "With hashphase a step takes "));
+}
+
+TEST(TryReport, EndsWithHowAVerifiedProgramEnded) {
+    Trial trial;
+    trial.runs.emplace_back();
+    TriedRun& run = trial.runs.front();
+    run.broadphase = tryout::Broadphase::verifying;
+    EXPECT_EQ(lastLineOf(textOf(trial)),
+              "Nothing was verified: no pairs were calculated, and the program ended with status "
+              "0.");
+    run.end = {.isCrash = true, .code = 11};
+    EXPECT_EQ(lastLineOf(textOf(trial)),
+              "The program was ended by signal 11 (Segmentation fault) before any pairs were "
+              "calculated.");
+    run.verification.calculations = 5;
+    EXPECT_EQ(lastLineOf(textOf(trial)),
+              "The program was ended by signal 11 (Segmentation fault).");
+    run.end = {};
+    EXPECT_EQ(lastLineOf(textOf(trial)),
+              "5 calculations of pairs verified: the pairs of hashphase are exact in each.");
 }
 
 }  // namespace

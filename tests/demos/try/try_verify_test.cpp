@@ -57,6 +57,7 @@ TEST(Try, IsNotContentWithPairsOfAProgramThatCrashes) {
     const auto [output, json] = measure("--verify", stock("stock-programs") + " crashing");
     EXPECT_EQ(output.status, kExitCheckFailed);
     EXPECT_EQ(json["verification"]["missing"], 0) << output.out;
+    EXPECT_EQ(lastLineOf(output.out), "The program was ended by signal 6 (Aborted).");
 }
 
 TEST(Try, FindsPairsThatAreExtra) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 
 //     stock-programs NAME     runs that program
-//     stock-programs          lists all but the misfits
+//     stock-programs          lists all but the last three kinds
 
 #include "program.hpp"
 
@@ -26,6 +26,14 @@ btRigidBody* Things::body(btCollisionShape* shape, btScalar mass, const btVector
     return bodies.back().get();
 }
 
+void addPile(Scene<>& scene) {
+    scene.addGround();
+    auto* box = scene.things.shape<btBoxShape>(btVector3(0.5, 0.5, 0.5));
+    for (int i = 0; i < 20; ++i) {
+        scene.add(box, 1, {btScalar(i % 5 * 2), btScalar(1 + i / 5), 0});
+    }
+}
+
 int countNear(const Things& things, const btVector3& place, btScalar distance) {
     int count = 0;
     for (const auto& body : things.bodies) {
@@ -35,8 +43,9 @@ int countNear(const Things& things, const btVector3& place, btScalar distance) {
 }
 
 int run(const std::string& name) {
-    for (const auto* list : {&rigidBodyPrograms(), &broadphasePrograms(), &queryPrograms(),
-                             &softBodyPrograms(), &lifetimePrograms(), &misfitPrograms()}) {
+    for (const auto* list :
+         {&rigidBodyPrograms(), &broadphasePrograms(), &queryPrograms(), &softBodyPrograms(),
+          &lifetimePrograms(), &measuredPrograms(), &processPrograms(), &misfitPrograms()}) {
         for (const Program& program : *list) {
             if (program.name == name) {
                 return program.run();

@@ -1,30 +1,19 @@
 // SPDX-License-Identifier: Zlib
 
+// Programs that go wrong, or that cannot be taken over.
+
 #include "program.hpp"
 
-#include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
-#include <ctime>
 #include <functional>
 #include <utility>
 
-#include <sys/wait.h>
 #include <unistd.h>
 
 namespace programs {
 namespace {
-
-void addPile(Scene<>& scene) {
-    scene.addGround();
-    auto* box = scene.things.shape<btBoxShape>(btVector3(0.5, 0.5, 0.5));
-    for (int i = 0; i < 20; ++i) {
-        scene.add(box, 1, {btScalar(i % 5 * 2), btScalar(1 + i / 5), 0});
-    }
-}
 
 int failing() {
     Scene<> scene;
@@ -37,6 +26,18 @@ int crashing() {
     Scene<> scene;
     addPile(scene);
     scene.step(5);
+    std::abort();
+}
+
+// With bodies in its world, of which no pair was calculated.
+int crashingEarly() {
+    Scene<> scene;
+    addPile(scene);
+    std::abort();
+}
+
+// Before it has made anything.
+int crashingAtOnce() {
     std::abort();
 }
 
@@ -87,52 +88,6 @@ int endlessByHand() {
         scene.world.performDiscreteCollisionDetection();
         scene.broadphase.calculateOverlappingPairs(&scene.dispatcher);
     }
-}
-
-// The processor's time of this thread, in milliseconds: others may be busy.
-double threadMilliseconds() {
-    timespec time{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) * 1e3 + static_cast<double>(time.tv_nsec) * 1e-6;
-}
-
-// Times its own steps, with a ray from each tenth body: 4,000 spheres that fly about in a box without
-// weight.
-int traffic() {
-    constexpr int kCount = 4000;
-    constexpr int kSteps = 150;
-    Scene<> scene;
-    scene.world.setGravity({0, 0, 0});
-    for (int axis = 0; axis < 3; ++axis) {
-        for (const btScalar side : {btScalar(1), btScalar(-1)}) {
-            btVector3 normal(0, 0, 0);
-            normal[axis] = side;
-            scene.add(scene.things.shape<btStaticPlaneShape>(normal, btScalar(-30)), 0, {0, 0, 0});
-        }
-    }
-    auto* sphere = scene.things.shape<btSphereShape>(btScalar(0.5));
-    for (int i = 0; i < kCount; ++i) {
-        const btVector3 place(btScalar(i % 16 * 3 - 24), btScalar(i / 16 % 16 * 3 - 24),
-                              btScalar(i / 256 * 3 - 24));
-        btRigidBody* body = scene.add(sphere, 1, place);
-        body->setLinearVelocity({btScalar(i % 13 - 6), btScalar(i % 7 - 3), btScalar(i % 11 - 5)});
-        body->setActivationState(DISABLE_DEACTIVATION);
-        body->setRestitution(1);
-    }
-    std::vector<double> times;
-    for (int i = 0; i < kSteps; ++i) {
-        const double begin = threadMilliseconds();
-        scene.step(1);
-        for (int ray = 0; ray < kCount; ray += 10) {
-            const btVector3 from = scene.things.bodies[6 + ray]->getWorldTransform().getOrigin();
-            btCollisionWorld::ClosestRayResultCallback hit(from, from + btVector3(20, 0, 0));
-            scene.world.rayTest(hit.m_rayFromWorld, hit.m_rayToWorld, hit);
-        }
-        times.push_back(threadMilliseconds() - begin);
-    }
-    std::sort(times.begin(), times.end());
-    std::printf("milliseconds a step: %.4f\n", times[times.size() / 2]);
-    return 0;
 }
 
 // Relies on the class of the pair cache, which another broadphase need not have.
@@ -281,25 +236,6 @@ int noStepsWithoutTrees() {
     return 0;
 }
 
-// Its parent ends first; then it steps for a second, under another name.
-int renamedOrphan() {
-    if (fork() != 0) {
-        return 0;
-    }
-    std::fill(environ[0], environ[0] + std::strlen(environ[0]), 'x');
-    for (char** variable = environ + 1; *variable != nullptr; ++variable) {
-        std::fill(*variable, *variable + std::strlen(*variable), 'x');
-    }
-    Scene<> scene;
-    addPile(scene);
-    for (int i = 0; i < 100; ++i) {
-        scene.step(1);
-        usleep(5000);
-    }
-    std::puts("the orphan has ended");
-    return 9;
-}
-
 struct DerivedSweep : btAxisSweep3 {
     DerivedSweep() : btAxisSweep3(btVector3(-100, -100, -100), btVector3(100, 100, 100)) {}
     void calculateOverlappingPairs(btDispatcher* dispatcher) override {
@@ -354,69 +290,6 @@ int bareSweep() {
     return 0;
 }
 
-// Says how long its steps are.
-int timedSteps() {
-    using Clock = std::chrono::steady_clock;
-    Scene<> scene;
-    addPile(scene);
-    Clock::duration all{};
-    for (int i = 0; i < 200; ++i) {
-        const Clock::time_point begin = Clock::now();
-        scene.step(1);
-        all += Clock::now() - begin;
-    }
-    std::printf("milliseconds: %.6f\n", std::chrono::duration<double, std::milli>(all).count());
-    return 0;
-}
-
-int readsInput() {
-    Scene<> scene;
-    addPile(scene);
-    scene.step(1);
-    char line[64] = "";
-    std::printf("read %s", std::fgets(line, sizeof(line), stdin) != nullptr ? line : "nothing\n");
-    return 0;
-}
-
-// Waits for a line before it makes a world.
-int waitsForInput() {
-    char line[64] = "";
-    return std::fgets(line, sizeof(line), stdin) != nullptr ? readsInput() : 1;
-}
-
-// Becomes another program, after some steps.
-int restarts() {
-    {
-        Scene<> scene;
-        addPile(scene);
-        scene.step(5);
-    }
-    std::fflush(stdout);
-    return execl("/proc/self/exe", "stock-programs", "started", nullptr);
-}
-
-// Starts another program and ends, at once or while that takes its time to begin.
-int launcher(const char* program, unsigned milliseconds) {
-    if (fork() == 0) {
-        usleep(milliseconds * 1000);
-        execl("/proc/self/exe", "stock-programs", program, nullptr);
-    }
-    return 0;
-}
-
-// Goes on in a process of its own after some steps.
-int forksWithAWorld() {
-    Scene<> scene;
-    addPile(scene);
-    scene.step(5);
-    if (fork() == 0) {
-        scene.step(5);
-        _exit(0);
-    }
-    wait(nullptr);
-    return 0;
-}
-
 // Crashes where the broadphase has no trees.
 int crashesWithoutTrees() {
     Scene<> scene;
@@ -426,58 +299,6 @@ int crashesWithoutTrees() {
         std::abort();
     }
     return 0;
-}
-
-// Says whether its broadphase has trees, and starts itself once more to say so.
-int starter(bool isFirst) {
-    Scene<> scene;
-    addPile(scene);
-    scene.step(5);
-    std::printf("%s has %s\n", isFirst ? "first" : "second",
-                scene.broadphase.m_sets[0].m_root != nullptr ? "trees" : "none");
-    std::fflush(stdout);
-    if (isFirst && fork() == 0) {
-        execl("/proc/self/exe", "stock-programs", "started", nullptr);
-    }
-    wait(nullptr);
-    return 0;
-}
-
-// Steps a world of another broadphase, and starts one whose broadphase can be taken over.
-int simpleStarter() {
-    Scene<btSimpleBroadphase> scene;
-    scene.add(scene.things.shape<btSphereShape>(btScalar(1)), 1, {0, 0, 0});
-    scene.step(10);
-    std::fflush(stdout);
-    if (fork() == 0) {
-        execl("/proc/self/exe", "stock-programs", "started", nullptr);
-    }
-    wait(nullptr);
-    return 0;
-}
-
-// Leaves behind a process, for a minute, whose child has stepped a world, is dead, and never waited for.
-int leavesZombie() {
-    int ends[2];
-    if (pipe(ends) != 0) {
-        return 1;
-    }
-    if (fork() == 0) {
-        if (fork() == 0) {
-            Scene<> scene;
-            addPile(scene);
-            scene.step(5);
-            _exit(0);
-        }
-        for (int file : {0, 1, 2, ends[0], ends[1]}) {
-            close(file);
-        }
-        sleep(60);
-        _exit(0);
-    }
-    close(ends[1]);
-    char byte = 0;
-    return static_cast<int>(read(ends[0], &byte, 1));  // returns when the grandchild has ended
 }
 
 // Changes a group without a word to the broadphase, while nothing moves.
@@ -525,10 +346,11 @@ const std::vector<Program>& misfitPrograms() {
         {"exit-at-once", [] { return exitAtOnce(_exit); }},
         {"quick-exit", [] { return exitAtOnce(std::quick_exit); }},
         {"crashing", crashing},
+        {"crashing-early", crashingEarly},
+        {"crashing-at-once", crashingAtOnce},
         {"endless", endless},
         {"interruptible", interruptible},
         {"endless-by-hand", endlessByHand},
-        {"traffic", traffic},
         {"casts-cache", castsCache},
         {"tampering", tampering},
         {"removes-pairs", removesPairs},
@@ -538,23 +360,10 @@ const std::vector<Program>& misfitPrograms() {
         {"moves-from-callback", movesFromCallback},
         {"rays-from-callback", raysFromCallback},
         {"no-steps-without-trees", noStepsWithoutTrees},
-        {"renamed-orphan", renamedOrphan},
         {"derived-sweep-beside", derivedSweepBeside},
         {"derived-sweep", derivedSweep},
         {"bare-sweep", bareSweep},
-        {"timed-steps", timedSteps},
-        {"reads-input", readsInput},
-        {"waits-for-input", waitsForInput},
-        {"restarts", restarts},
-        {"launcher", [] { return launcher("started", 0); }},
-        {"slow-launcher", [] { return launcher("started", 300); }},
-        {"crash-launcher", [] { return launcher("crashes-without-trees", 100); }},
         {"crashes-without-trees", crashesWithoutTrees},
-        {"forks-with-a-world", forksWithAWorld},
-        {"starter", [] { return starter(true); }},
-        {"started", [] { return starter(false); }},
-        {"simple-starter", simpleStarter},
-        {"leaves-zombie", leavesZombie},
         {"changes-group", changesGroup},
         {"mixed", mixed},
         {"simple-broadphase", simpleBroadphase}};

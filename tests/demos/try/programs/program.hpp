@@ -25,7 +25,9 @@ const std::vector<Program>& queryPrograms();
 const std::vector<Program>& softBodyPrograms();
 const std::vector<Program>& lifetimePrograms();
 
-/// Those that go wrong, or on for ever, or print times: what is said of them is tested, not their outcome.
+// Of these, what is said of them is tested, not their outcome: they print times, or go wrong, or on for ever.
+const std::vector<Program>& measuredPrograms();
+const std::vector<Program>& processPrograms();
 const std::vector<Program>& misfitPrograms();
 
 /// Runs the program of that name.
@@ -97,6 +99,9 @@ struct Scene {
     Broadphase broadphase;
     World world;
 };
+
+/// Twenty boxes on a ground.
+void addPile(Scene<>& scene);
 
 /// How many of the bodies are nearer to their places than that.
 int countNear(const Things& things, const btVector3& place, btScalar distance);

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Zlib
+
+// Programs whose steps are measured: what they take, and what is in them.
+
+#include "program.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <thread>
+
+#include <unistd.h>
+
+namespace programs {
+namespace {
+
+// The processor's time of this thread, in milliseconds: others may be busy.
+double threadMilliseconds() {
+    timespec time{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) * 1e3 + static_cast<double>(time.tv_nsec) * 1e-6;
+}
+
+// Times its own steps, with a ray from each tenth body: 4,000 spheres that fly about in a box without
+// weight.
+int traffic() {
+    constexpr int kCount = 4000;
+    constexpr int kSteps = 150;
+    Scene<> scene;
+    scene.world.setGravity({0, 0, 0});
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const btScalar side : {btScalar(1), btScalar(-1)}) {
+            btVector3 normal(0, 0, 0);
+            normal[axis] = side;
+            scene.add(scene.things.shape<btStaticPlaneShape>(normal, btScalar(-30)), 0, {0, 0, 0});
+        }
+    }
+    auto* sphere = scene.things.shape<btSphereShape>(btScalar(0.5));
+    for (int i = 0; i < kCount; ++i) {
+        const btVector3 place(btScalar(i % 16 * 3 - 24), btScalar(i / 16 % 16 * 3 - 24),
+                              btScalar(i / 256 * 3 - 24));
+        btRigidBody* body = scene.add(sphere, 1, place);
+        body->setLinearVelocity({btScalar(i % 13 - 6), btScalar(i % 7 - 3), btScalar(i % 11 - 5)});
+        body->setActivationState(DISABLE_DEACTIVATION);
+        body->setRestitution(1);
+    }
+    std::vector<double> times;
+    for (int i = 0; i < kSteps; ++i) {
+        const double begin = threadMilliseconds();
+        scene.step(1);
+        for (int ray = 0; ray < kCount; ray += 10) {
+            const btVector3 from = scene.things.bodies[6 + ray]->getWorldTransform().getOrigin();
+            btCollisionWorld::ClosestRayResultCallback hit(from, from + btVector3(20, 0, 0));
+            scene.world.rayTest(hit.m_rayFromWorld, hit.m_rayToWorld, hit);
+        }
+        times.push_back(threadMilliseconds() - begin);
+    }
+    std::sort(times.begin(), times.end());
+    std::printf("milliseconds a step: %.4f\n", times[times.size() / 2]);
+    return 0;
+}
+
+// Works for so long, whoever else is busy.
+void workFor(double milliseconds) {
+    const double begin = threadMilliseconds();
+    while (threadMilliseconds() < begin + milliseconds) {
+    }
+}
+
+// Steps in which it has something else to do, by a callback.
+int stepsWith(btInternalTickCallback callback) {
+    Scene<> scene;
+    addPile(scene);
+    scene.world.setInternalTickCallback(callback);
+    scene.step(80);
+    return 0;
+}
+
+// As a step does during which others have the processor, or which waits for something.
+int waitsInSteps() {
+    return stepsWith([](btDynamicsWorld*, btScalar) { usleep(3000); });
+}
+
+// Waits, in a step, for another thread that works for it.
+int worksOnThreads() {
+    return stepsWith([](btDynamicsWorld*, btScalar) { std::thread(workFor, 3.0).join(); });
+}
+
+// Two objects in each place, one of which goes on to the next place: trees keep the pairs of many steps.
+int leavesPairs() {
+    constexpr int kPlaces = 200;
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher(&configuration);
+    btDbvtBroadphase broadphase;
+    btCollisionWorld world(&dispatcher, &broadphase, &configuration);
+    btSphereShape sphere(1);
+    std::vector<std::unique_ptr<btCollisionObject>> objects;
+    for (int i = 0; i < 2 * kPlaces; ++i) {
+        objects.push_back(std::make_unique<btCollisionObject>());
+        objects.back()->setCollisionShape(&sphere);
+        world.addCollisionObject(objects.back().get());
+    }
+    for (int step = 0; step < 60; ++step) {
+        for (int i = 0; i < 2 * kPlaces; ++i) {
+            const int place = (i / 2 + i % 2 * step) % kPlaces;
+            objects[i]->setWorldTransform(btTransform(btQuaternion::getIdentity(),
+                                                      {btScalar(5 * place), btScalar(i % 2), 0}));
+        }
+        world.performDiscreteCollisionDetection();
+    }
+    for (const auto& object : objects) {
+        world.removeCollisionObject(object.get());
+    }
+    return 0;
+}
+
+// Says how long its steps are, in which it waits for a millisecond.
+int timedSteps() {
+    using Clock = std::chrono::steady_clock;
+    Scene<> scene;
+    addPile(scene);
+    scene.world.setInternalTickCallback([](btDynamicsWorld*, btScalar) { usleep(1000); });
+    Clock::duration all{};
+    for (int i = 0; i < 200; ++i) {
+        const Clock::time_point begin = Clock::now();
+        scene.step(1);
+        all += Clock::now() - begin;
+    }
+    std::printf("milliseconds: %.6f\n", std::chrono::duration<double, std::milli>(all).count());
+    return 0;
+}
+
+}  // namespace
+
+const std::vector<Program>& measuredPrograms() {
+    static const std::vector<Program> list{{"traffic", traffic},
+                                           {"waits-in-steps", waitsInSteps},
+                                           {"works-on-threads", worksOnThreads},
+                                           {"leaves-pairs", leavesPairs},
+                                           {"timed-steps", timedSteps}};
+    return list;
+}
+
+}  // namespace programs
