@@ -251,14 +251,6 @@ public:
     /// that of Pairs::refilter(), and of the proxy's pairs.
     void refilter(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
-    /// Frees what the proxy's pairs have kept of its shape, algorithms and contacts, here and in the ghosts
-    /// that list it; the pairs stay. For use after a change of shape, scale, margin or of anything else
-    /// by which contacts were made, beside btCollisionWorld::updateSingleAabb(), before the next step. Where
-    /// a ghost callback is set, it is told that each pair has ended and begun; a cache with deferred
-    /// removal tells ghosts nothing. Cost: that of PairCache::renewPairsContainingProxy(); a pass over all
-    /// pairs of any other cache.
-    void shapeChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
-
     /// The same for many proxies in one pass: the filter is asked once about each two of them. Cost: that
     /// of Pairs::refilter() for many, and of their pairs.
     void refilter(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher);
@@ -266,6 +258,14 @@ public:
     /// The same for all: for use after a change of the filter callback, or of what it goes by. Cost: that
     /// of Pairs::refilterAll(), and of the pairs that come and go.
     void refilterAll(btDispatcher* dispatcher);
+
+    /// Frees what the proxy's pairs have kept of its shape, algorithms and contacts, here and in the ghosts
+    /// that list it; the pairs stay. For use after a change of shape, scale, margin or of anything else
+    /// by which contacts were made, beside btCollisionWorld::updateSingleAabb(), before the next step. Where
+    /// a ghost callback is set, it is told that each pair has ended and begun; a cache with deferred
+    /// removal tells ghosts nothing. Cost: that of PairCache::renewPairsContainingProxy(); a pass over all
+    /// pairs of any other cache.
+    void shapeChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
     /// Moves the origin of all coordinates to `shift`: subtracts it from the box of every proxy, in one
     /// call, with what Grid::shiftOrigin() says. Pairs stay as they are; should rounding have brought
