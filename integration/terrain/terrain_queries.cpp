@@ -321,7 +321,7 @@ QueryCost Terrain<Scalar>::surfacesBelow(std::span<const Point> points, std::spa
         [&](std::size_t i, Aabb<Scalar>& column, SurfaceSearch& search) {
             const Point& point = points[i];
             const Scalar tolerance = seamTolerance(point);
-            column = columnBelow(point, Scalar(1.5) * tolerance);
+            column = columnBelow(point, Scalar(1.125) * tolerance);  // an eighth for rounding
             search.begin(*this, above(point), point[up_], static_cast<double>(tolerance));
         });
 }
