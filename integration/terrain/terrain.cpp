@@ -139,6 +139,7 @@ void Terrain<Scalar>::clear() {
     bounds_.setEmpty();
     meshReach_ = 0;
     shifted_.setZero();
+    isShifted_ = false;
 }
 
 template <class Scalar>
@@ -172,6 +173,7 @@ void Terrain<Scalar>::shiftOrigin(const Point& shift) {
     }
     bounds_.translate(-shift);
     shifted_ += shift;
+    isShifted_ = !shifted_.isZero(0);
 }
 
 template <class Scalar>

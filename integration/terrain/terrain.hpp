@@ -114,8 +114,11 @@ public:
     /// axes, each off by half an epsilon of them. In single precision a twentieth of a millimetre for
     /// chunks of 32 m near the origin, 1 mm at 1 km; in double precision 2 pm.
     [[nodiscard]] Scalar seamTolerance(const Point& point) const noexcept {
-        const Point before = point + shifted_;
-        return kSeamRoundings * (std::max(along(point), along(before)) + meshReach_);
+        Scalar farthest = along(point);
+        if (isShifted_) {
+            farthest = std::max(farthest, along(point + shifted_));
+        }
+        return kSeamRoundings * (farthest + meshReach_);
     }
 
     // --- Queries ---------------------------------------------------------------------------------
@@ -200,13 +203,13 @@ private:
     [[nodiscard]] Scalar along(const Point& point) const noexcept {
         return std::max(std::abs(point[alongX_]), std::abs(point[alongZ_]));
     }
-    /// All that is no higher than the point, and no farther beside it than `reach`, which has room for rounding.
-    [[nodiscard]] Aabb<Scalar> columnBelow(const Point& point, Scalar reach) const noexcept {
-        const Point half = Point::Constant(reach);
-        Aabb<Scalar> column(point - half, point + half);
+    /// Sets the column to all that is no higher than the point, and no farther beside it than `reach`,
+    /// which has room for rounding.
+    void setColumn(Aabb<Scalar>& column, const Point& point, Scalar reach) const noexcept {
+        column.min() = point.array() - reach;
+        column.max() = point.array() + reach;
         column.min()[up_] = -std::numeric_limits<Scalar>::infinity();
         column.max()[up_] = point[up_];
-        return column;
     }
 
     /// The triangle of a proxy, or kNone where it is someone else's.
@@ -222,6 +225,7 @@ private:
     Point tilesPerMetre_ = Point::Zero();
     Scalar meshReach_ = 0;           // the largest extent and height of what one add() has brought
     Point shifted_ = Point::Zero();  // by all shifts of the origin
+    bool isShifted_ = false;
     std::vector<detail::GroundTriangle<Scalar>> triangles_;
     std::vector<ProxyId> proxies_;  // by triangle; null of refused ones
     std::vector<std::uint32_t>
