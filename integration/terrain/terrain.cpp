@@ -71,8 +71,8 @@ AddedTriangles Terrain<Scalar>::addAll(std::size_t count, const CornersOf& corne
                                         std::abs(static_cast<double>(box.max()[up_])));
         const double extent =
             (box.max().template cast<double>() - box.min().template cast<double>()).maxCoeff();
-        meshReach_ = std::max(meshReach_, std::min(extent + heights, kLargestMesh));
-        seamScale_ = static_cast<Scalar>(meshReach_ + shifted_.cwiseAbs().maxCoeff());
+        meshReach_ =
+            std::max(meshReach_, static_cast<Scalar>(std::min(extent + heights, kLargestMesh)));
     }
     return added;
 }
@@ -137,9 +137,9 @@ void Terrain<Scalar>::clear() {
     removeFrom(0);
     triangleOfProxy_.clear();
     bounds_.setEmpty();
-    seamScale_ = 0;
     meshReach_ = 0;
     shifted_.setZero();
+    isShifted_ = false;
 }
 
 template <class Scalar>
@@ -172,8 +172,8 @@ void Terrain<Scalar>::shiftOrigin(const Point& shift) {
         triangles_[number] = groundTriangle(shifted);
     }
     bounds_.translate(-shift);
-    shifted_ += shift.template cast<double>();
-    seamScale_ = static_cast<Scalar>(meshReach_ + shifted_.cwiseAbs().maxCoeff());
+    shifted_ += shift;
+    isShifted_ = !shifted_.isZero(0);
 }
 
 template <class Scalar>

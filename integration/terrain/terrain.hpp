@@ -108,13 +108,17 @@ public:
 
     /// How far beside a triangle a point may lie, as seen from above, and still belong to it where no
     /// other one is there [m]. That is what rounding may take away from an edge near the point: 8
-    /// epsilon of Scalar times the sum of the point's larger coordinate along the ground, the origin's
-    /// shift since the ground was empty, and the largest extent and height of what one add() has
-    /// brought, at most 16 km. A corner that a transform placed is six sums and products of numbers of
-    /// that size, and two axes, each off by half an epsilon of them. In single precision a twentieth
-    /// of a millimetre for chunks of 32 m near the origin, 1 mm at 1 km; in double precision 2 pm.
+    /// epsilon of Scalar times the point's larger coordinate along the ground, now or before the shifts
+    /// of the origin, and the largest extent and height of what one add() has brought, at most 16 km.
+    /// A corner that a transform placed is six sums and products of numbers of that size, along two
+    /// axes, each off by half an epsilon of them. In single precision a twentieth of a millimetre for
+    /// chunks of 32 m near the origin, 1 mm at 1 km; in double precision 2 pm.
     [[nodiscard]] Scalar seamTolerance(const Point& point) const noexcept {
-        return kSeamRoundings * (along(point) + seamScale_);
+        Scalar farthest = along(point);
+        if (isShifted_) {
+            farthest = std::max(farthest, along(point + shifted_));
+        }
+        return kSeamRoundings * (farthest + meshReach_);
     }
 
     // --- Queries ---------------------------------------------------------------------------------
@@ -199,13 +203,13 @@ private:
     [[nodiscard]] Scalar along(const Point& point) const noexcept {
         return std::max(std::abs(point[alongX_]), std::abs(point[alongZ_]));
     }
-    /// All that is no higher than the point, and no farther beside it than `reach`, which has room for rounding.
-    [[nodiscard]] Aabb<Scalar> columnBelow(const Point& point, Scalar reach) const noexcept {
-        const Point half = Point::Constant(reach);
-        Aabb<Scalar> column(point - half, point + half);
+    /// Sets the column to all that is no higher than the point, and no farther beside it than `reach`,
+    /// which has room for rounding.
+    void setColumn(Aabb<Scalar>& column, const Point& point, Scalar reach) const noexcept {
+        column.min() = point.array() - reach;
+        column.max() = point.array() + reach;
         column.min()[up_] = -std::numeric_limits<Scalar>::infinity();
         column.max()[up_] = point[up_];
-        return column;
     }
 
     /// The triangle of a proxy, or kNone where it is someone else's.
@@ -219,9 +223,9 @@ private:
     Eigen::Index alongZ_;
     Aabb<Scalar> bounds_;  // of all triangles
     Point tilesPerMetre_ = Point::Zero();
-    Scalar seamScale_ = 0;  // what seamTolerance() adds to a point's own coordinate
-    double meshReach_ = 0;  // of it, the largest extent and height of what one add() has brought
-    Vector3<double> shifted_ = Vector3<double>::Zero();  // all shifts of the origin
+    Scalar meshReach_ = 0;           // the largest extent and height of what one add() has brought
+    Point shifted_ = Point::Zero();  // by all shifts of the origin
+    bool isShifted_ = false;
     std::vector<detail::GroundTriangle<Scalar>> triangles_;
     std::vector<ProxyId> proxies_;  // by triangle; null of refused ones
     std::vector<std::uint32_t>

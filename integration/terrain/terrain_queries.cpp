@@ -321,7 +321,7 @@ QueryCost Terrain<Scalar>::surfacesBelow(std::span<const Point> points, std::spa
         [&](std::size_t i, Aabb<Scalar>& column, SurfaceSearch& search) {
             const Point& point = points[i];
             const Scalar tolerance = seamTolerance(point);
-            column = columnBelow(point, Scalar(1.5) * tolerance);
+            setColumn(column, point, Scalar(1.125) * tolerance);  // an eighth for rounding
             search.begin(*this, above(point), point[up_], static_cast<double>(tolerance));
         });
 }
@@ -341,7 +341,7 @@ QueryCost Terrain<Scalar>::restingHeights(std::span<const Point> centers,
             const Scalar radius = isGood ? radii[i] : Limits::quiet_NaN();
             const Scalar tolerance = seamTolerance(center);
             const Scalar reach = std::max(radius, tolerance);  // NaN of a bad radius
-            column = columnBelow(center, reach + 2 * Limits::epsilon() * (along(center) + reach));
+            setColumn(column, center, reach + 2 * Limits::epsilon() * (along(center) + reach));
             search.begin(*this, above(center), static_cast<double>(radius), center[up_],
                          static_cast<double>(tolerance));
         });
