@@ -79,8 +79,8 @@ struct CaseResult {
                                                  const ContestantResult& own);
 
 struct MeasurementSettings {
-    static constexpr std::size_t kSmall =
-        1'000;  // objects, whose frames are short and soon disturbed
+    // Frames of so few objects are short and soon disturbed: more of them are measured.
+    static constexpr std::size_t kSmall = 1'000;
     static constexpr int kFramesOfSmall = 300;
 
     int frames = 60;        // measured, of what is not small
