@@ -21,8 +21,6 @@ constexpr const char* kDescription =
     "table for each case and one for all; takes half an hour. Above 100,000 objects (--sizes)\n"
     "btDbvtBroadphase takes seconds a frame.";
 
-constexpr std::size_t kSmall = 3'000;  // objects, whose frames are short and soon disturbed
-constexpr int kFramesOfSmall = 300;
 constexpr int kQuickFrames = 5;
 constexpr int kQuickWarmUpFrames = 3;
 
@@ -39,9 +37,8 @@ void declare(CLI::App& app, BenchmarkOptions& options) {
     app.add_option("--contestants", options.contestants,
                    "who takes part, separated by commas (see --list); without dbvt no ratios")
         ->delimiter(',');
-    app.add_option(
-           "--frames", options.frames,
-           "measured frames a case (default: 60; of at most 3,000 objects 300; of effects 1000)")
+    app.add_option("--frames", options.frames,
+                   "measured frames a case (default: 60; up to 1,000 objects 300; of effects 1000)")
         ->transform(demos::wholeFrom(1, 1'000'000));
     app.add_option("--seed", options.seed, "seed of all scenes")
         ->transform(demos::seedUpTo())
@@ -76,12 +73,11 @@ void printLists(const std::vector<Benchmark>& benchmarks, const std::vector<Cont
 // As many as were asked for, else as the case needs.
 int framesOf(const Case& toRun, const BenchmarkReport& report) {
     const bool areAskedFor = report.options.frames || report.options.quick;
-    const int needed = toRun.benchmark->frames;
     if (areAskedFor) {
         return report.settings.frames;
     }
-    const int usual = toRun.objects <= kSmall ? kFramesOfSmall : report.settings.frames;
-    return needed != 0 ? needed : usual;
+    const int needed = toRun.benchmark->frames;
+    return needed != 0 ? needed : report.settings.framesOf(toRun.objects);
 }
 
 // What a frame of the case roughly costs, for foretelling how long all will take.

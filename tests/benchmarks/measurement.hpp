@@ -7,6 +7,7 @@
 #include <demos/report/statistics.hpp>
 #include <tests/benchmarks/catalog.hpp>
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <string>
@@ -78,11 +79,20 @@ struct CaseResult {
                                                  const ContestantResult& own);
 
 struct MeasurementSettings {
-    int frames = 60;        // measured
+    // Frames of so few objects are short and soon disturbed: more of them are measured.
+    static constexpr std::size_t kSmall = 1'000;
+    static constexpr int kFramesOfSmall = 300;
+
+    int frames = 60;        // measured, of what is not small
     int warmUpFrames = 10;  // checked, but not timed
     std::uint64_t seed = 1;
     std::function<bool()> isTimeUp = [] { return false; };  // asked before each frame
     std::function<void(int framesDone)> tellProgress = [](int) {};
+
+    /// As many as a case has of itself.
+    [[nodiscard]] int framesOf(std::size_t objects) const {
+        return objects <= kSmall ? std::max(frames, kFramesOfSmall) : frames;
+    }
 };
 
 [[nodiscard]] CaseResult measure(const Case& toRun, const MeasurementSettings& settings);

@@ -190,7 +190,12 @@ void printSetting(const BenchmarkReport& report, const std::vector<ContestantKin
         out << "QUICK: scenes so small and frames so few that the times mean nothing.\n";
     }
     out << '\n'
-        << report.settings.frames << " different frames after " << report.settings.warmUpFrames
+        << report.settings.frames << " different frames"
+        << (report.options.frames || report.options.quick
+                ? ""
+                : " (" + std::to_string(MeasurementSettings::kFramesOfSmall) + " up to " +
+                      withThousands(MeasurementSettings::kSmall) + " objects)")
+        << " after " << report.settings.warmUpFrames
         << " to warm up, the contestants in turn in each; seed " << report.options.seed << ".\n"
         << "Times: median (5th-95th percentile). Answers, missing, extra and twice: mean of a "
            "frame.\nHeap: bytes an object. Own: bytes an object + a pair by our own account.\n\n";
