@@ -24,6 +24,11 @@ const GridConfig& checked(const GridConfig& config) {
     return config;
 }
 
+template <class Element>
+void release(std::vector<Element>& memory) noexcept {
+    std::vector<Element>().swap(memory);
+}
+
 }  // namespace
 
 template <class Scalar>
@@ -50,13 +55,14 @@ ProxyId Grid<Scalar>::add(const Box& box, Mobility mobility, const ProxyGroups& 
     beforeChange();  // before anything is listed that it does not have
     // It may be that of another proxy, which moves. NOLINTNEXTLINE(*-unnecessary-copy-initialization)
     const Box own = box;
-    std::uint32_t slot = firstFree_;
+    std::uint32_t slot = free_.first;
     if (slot == kNoSlot) {
         reserveSlots(records_.size() + 1);
         slot = static_cast<std::uint32_t>(records_.size());
         records_.emplace_back();
     } else {
-        firstFree_ = records_[slot].restingEntry;
+        free_.first = records_[slot].listedAt;
+        --free_.count;
     }
     if (!groups_.empty()) {
         groups_.resize(2 * records_.size());
@@ -67,8 +73,7 @@ ProxyId Grid<Scalar>::add(const Box& box, Mobility mobility, const ProxyGroups& 
     Record& record = records_[slot];
     ++record.generation;
     record.place = Place::mobile;
-    record.changedAt = 0;
-    mobileSlots_.push_back(slot);
+    listMobile(slot);
     ++size_;
     noteChange(slot);
     setBox(record, own);
@@ -80,7 +85,7 @@ template <class Scalar>
 void Grid<Scalar>::reserve(std::size_t count) {
     HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(this), detail::kMustNotChange);
     checkProxyCount(count);
-    reserveSlots(count + removedCount_);
+    reserveSlots(count + removed_.count + removedAnnounced_.count);
 }
 
 template <class Scalar>
@@ -120,6 +125,10 @@ void Grid<Scalar>::remove(ProxyId id) {
     HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(this), detail::kMustNotChange);
     const std::uint32_t slot = id.index;
     noteChange(slot);
+    const bool cameAndWent = isUnseen(slot);
+    if (cameAndWent) {
+        unlistMobile(slot);
+    }
     Record& record = records_[slot];
     nanCount_ -= record.isNan ? 1 : 0;
     record.isNan = false;
@@ -130,10 +139,98 @@ void Grid<Scalar>::remove(ProxyId id) {
     if (record.generation == detail::kLastGeneration) {
         return;  // nobody gets the slot any more, or an id would name two proxies
     }
-    record.restingEntry = firstRemoved_;
-    lastRemoved_ = firstRemoved_ == kNoSlot ? slot : lastRemoved_;
-    firstRemoved_ = slot;
-    ++removedCount_;
+    append(slot, !cameAndWent ? removed_ : record.isAnnounced ? removedAnnounced_ : free_);
+}
+
+template <class Scalar>
+void Grid<Scalar>::clear() {
+    HASHPHASE_ASSERT(!hasPairs_, "Where there are Pairs, Pairs::clear() clears the grid.");
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), "A grid is not cleared within a query.");
+    // Slots in the order in which a new grid makes them. What tells their ids apart stays.
+    free_ = removed_ = removedAnnounced_ = {};
+    for (auto slot = static_cast<std::uint32_t>(records_.size()); slot-- > 0;) {
+        const std::uint32_t generation = records_[slot].generation;
+        records_[slot] = {};
+        records_[slot].generation = generation + (generation & 1);
+        if (records_[slot].generation != detail::kLastGeneration) {
+            append(slot, free_);
+        }
+    }
+    size_ = nanCount_ = 0;
+    nanReported_ = isTorn_ = false;
+    updateNumber_ = 1;
+    cost_ = {};
+    // Room is kept in what changes append to.
+    for (std::vector<std::uint32_t>* list : {&waiting_, &mobileSlots_, &woken_}) {
+        list->clear();
+    }
+    listedAtUpdate_ = 0;
+    restingErased_ = 0;
+    for (detail::Table<Scalar>* table : {&mobile_, &resting_, &fresh_}) {
+        *table = {};
+    }
+    listNumber_ = 1;
+    waitingRead_.store(0, std::memory_order_relaxed);
+    isTableTorn_.store(false, std::memory_order_relaxed);
+    isFresh_.store(false, std::memory_order_relaxed);
+    releaseRayMemory();
+    for (auto* boxes : {&staged_, &stagedBefore_, &restBoxes_}) {
+        release(*boxes);
+    }
+    release(restSlots_);
+    release(nanSlots_);
+    release(boxesAtUpdate_);
+    release(groups_);
+    release(kindOfSlot_);
+    groupKinds_ = {};
+    areRegrouped_ = false;
+    cellSize_ = config_.cellSize > 0 ? static_cast<Scalar>(config_.cellSize) : Scalar(1);
+}
+
+// Lists the slot among the mobile ones, and notes where.
+template <class Scalar>
+void Grid<Scalar>::listMobile(std::uint32_t slot) noexcept {
+    records_[slot].listedAt = static_cast<std::uint32_t>(mobileSlots_.size());
+    mobileSlots_.push_back(slot);
+}
+
+// The last one takes its place: no order holds among those that have joined since the last update.
+template <class Scalar>
+void Grid<Scalar>::unlistMobile(std::uint32_t slot) noexcept {
+    const std::uint32_t last = mobileSlots_.back();
+    mobileSlots_[records_[slot].listedAt] = last;
+    if (isAlive(last)) {
+        records_[last].listedAt = records_[slot].listedAt;
+    }
+    mobileSlots_.pop_back();
+}
+
+// What is listed at its place behind those of the last update was at rest then, or was not yet.
+template <class Scalar>
+bool Grid<Scalar>::isUnseen(std::uint32_t slot) const noexcept {
+    const Record& record = records_[slot];
+    return record.listedAt >= listedAtUpdate_ && record.listedAt < mobileSlots_.size() &&
+           mobileSlots_[record.listedAt] == slot && hasNan(record.before);
+}
+
+template <class Scalar>
+void Grid<Scalar>::append(std::uint32_t slot, SlotList& list) noexcept {
+    records_[slot].listedAt = list.first;
+    list.last = list.first == kNoSlot ? slot : list.last;
+    list.first = slot;
+    ++list.count;
+}
+
+// Only now may the slots be given away again: nobody has to tell their old proxies from the next ones
+// any more.
+template <class Scalar>
+void Grid<Scalar>::giveBack(SlotList& list) noexcept {
+    if (list.first != kNoSlot) {
+        records_[list.last].listedAt = free_.first;
+        free_.first = list.first;
+        free_.count += list.count;
+        list = {};
+    }
 }
 
 template <class Scalar>
@@ -220,10 +317,10 @@ void Grid<Scalar>::countChange(Record& record) noexcept {
 template <class Scalar>
 void Grid<Scalar>::leaveRest(std::uint32_t slot) noexcept {
     Record& record = records_[slot];
-    resting_.erase(record.restingEntry);
+    resting_.erase(record.listedAt);
     ++restingErased_;
     record.place = Place::mobile;
-    mobileSlots_.push_back(slot);
+    listMobile(slot);
     woken_.push_back(slot);
 }
 

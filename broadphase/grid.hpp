@@ -8,6 +8,8 @@
 // Reads      Every change is visible to queries at once, with no call in between. Changes are kept in
 //            a list that queries read beside the tables. When that has cost a third of what filing does,
 //            a query files everything anew: changes and queries in turn cost about the least there is.
+//            Grids that are never updated, as in editors and servers, hold no more than there is, and at
+//            the last update was.
 // Threads    Queries are const and may run on any number of threads at the same time, and from
 //            within a collector. Everything else needs the grid for itself.
 // Units      metres, or any other unit of length used throughout.
@@ -142,6 +144,13 @@ public:
     /// Removes the proxy; its id is never valid again. Cost: O(1).
     void remove(ProxyId id);
 
+    /// Removes every proxy and forgets all that came before: what is done next has the same results,
+    /// in the same order and at the same cost, as with a new grid, indices of ids included. Ids of
+    /// before stay invalid. Frees what is held but for 64 bytes an index (128 of doubles). Not for a
+    /// grid with Pairs: their clear() does it (asserted), nor within a query (asserted).
+    /// Cost: O(indexLimit()).
+    void clear();
+
     /// Moves the origin of all coordinates to `shift` [m]: subtracts it from every box. What could be
     /// subtracted without rounding, or is so large that the shift is lost in it, stays as it was: at
     /// rest, or not, and in its pairs. The others count as moved, by what they were rounded; such
@@ -256,6 +265,8 @@ private:
     friend class Sweeps<Scalar>;
     friend class detail::ContactSearch<Scalar>;
 
+    static constexpr std::uint32_t kNoSlot = ~std::uint32_t{0};
+
     enum class Place : std::uint8_t {
         nowhere,  // no proxy
         mobile,   // listed in mobileSlots_, and filed in mobile_ unless it waits or is NaN
@@ -268,12 +279,21 @@ private:
         Box before = nanBox();         // at the last update, when it has changed since
         std::uint32_t generation = 0;  // odd while the slot has a proxy
         std::uint32_t changedAt = 0;  // number of the update that will see, or saw, the last change
-        std::uint32_t restingEntry = 0;  // or, of a slot without a proxy, the next one of those
+        std::uint32_t listedAt = 0;   // where in resting_; in mobileSlots_, if it has joined these
+                                      // since the last update; or the next slot without a proxy
         Place place = Place::nowhere;
         std::uint8_t listedIn = 0;  // number of the list of changes that has it
-        bool restsAtOnce = false;  // Mobility::resting, or rested, and has not moved since but by a
-                                   // shift of the origin
-        bool isNan = false;        // has a NaN; of a proxy alive
+        // Mobility::resting, or rested, and has not moved since but by a shift of the origin
+        bool restsAtOnce : 1 = false;
+        bool isNan : 1 = false;        // has a NaN; of a proxy alive
+        bool isAnnounced : 1 = false;  // Pairs told of a couple of the slot's since the last update
+    };
+
+    /// Slots without a proxy, one after the other by Record::listedAt.
+    struct SlotList {
+        std::uint32_t first = kNoSlot;
+        std::uint32_t last = kNoSlot;
+        std::uint32_t count = 0;
     };
 
     template <class Region, class Collector>
@@ -283,8 +303,6 @@ private:
     template <class Region, class Collector>
     struct VolumeReader;
     struct CellRegion;
-
-    static constexpr std::uint32_t kNoSlot = ~std::uint32_t{0};
 
     /// The proxy in the slot, or the last one that was.
     [[nodiscard]] ProxyId idOf(std::uint32_t slot) const noexcept {
@@ -370,6 +388,12 @@ private:
 
     // None of these allocates: reserve() has made room for all of it.
     void reserveSlots(std::size_t slotCount);
+    void listMobile(std::uint32_t slot) noexcept;
+    void unlistMobile(std::uint32_t slot) noexcept;
+    /// Whether the slot's proxy, which is marked as changed, was added since the last update.
+    [[nodiscard]] bool isUnseen(std::uint32_t slot) const noexcept;
+    void append(std::uint32_t slot, SlotList& list) noexcept;
+    void giveBack(SlotList& list) noexcept;
     void noteChange(std::uint32_t slot) noexcept;
     void countChange(Record& record) noexcept;
     void leaveRest(std::uint32_t slot) noexcept;
@@ -406,6 +430,7 @@ private:
         }
     }
     void takeFresh() noexcept;
+    void forgetErased() noexcept;
     void dropList() noexcept;
 
     template <class Visit>
@@ -431,10 +456,11 @@ private:
 
     // What a change appends to, mobileSlots_, woken_ and waiting_, has room for as many.
     std::vector<Record> records_;
-    std::uint32_t firstFree_ = kNoSlot;     // the next ones follow by restingEntry
-    std::uint32_t firstRemoved_ = kNoSlot;  // since the tables were last settled
-    std::uint32_t lastRemoved_ = kNoSlot;
-    std::uint32_t removedCount_ = 0;  // of these
+    SlotList free_;
+    // Those whose proxies were removed since the tables were last settled: the next update has to tell
+    // these from the next ones. What came and went in between is free at once, unless Pairs told of it.
+    SlotList removed_;
+    SlotList removedAnnounced_;
     std::size_t size_ = 0;
     std::size_t nanCount_ = 0;
     bool nanReported_ = false;
@@ -467,8 +493,9 @@ private:
     std::mutex filing_;
 
     // In the table's order as of the last update, then what has joined since. What has left since
-    // is still listed, with a NaN box.
+    // is still listed, with a NaN box, unless it had joined since.
     std::vector<std::uint32_t> mobileSlots_;
+    std::size_t listedAtUpdate_ = 0;  // how many there were at the last update
     detail::Table<Scalar> mobile_;
 
     std::vector<std::uint32_t> woken_;  // slots that have left resting_ since the last update

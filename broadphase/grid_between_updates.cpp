@@ -107,6 +107,18 @@ void Grid<Scalar>::takeFresh() noexcept {
     if (!hasPairs_) {
         settle();
     }
+    forgetErased();
+}
+
+// What was at rest and has left it is listed until the next update, which may never come. Where all
+// have left, as with a level, no query need look at them any more.
+template <class Scalar>
+void Grid<Scalar>::forgetErased() noexcept {
+    if (restingErased_ > 0 && restingErased_ == resting_.size()) {
+        resting_.clear();
+        restingErased_ = 0;
+        restingTree_.isStale.store(true, std::memory_order_relaxed);
+    }
 }
 
 // As mendTables(): no ray passes before it is done.
@@ -131,6 +143,7 @@ template void Grid<float>::expectQueries(std::size_t) const;
 template void Grid<float>::mendTables() const;
 template void Grid<float>::fileFresh() const;
 template void Grid<float>::takeFresh() noexcept;
+template void Grid<float>::forgetErased() noexcept;
 template void Grid<float>::growTrees(const Reading&) const;
 template auto Grid<double>::presentReading() const noexcept -> Reading;
 template auto Grid<double>::beginReading() const -> Reading;
@@ -139,6 +152,7 @@ template void Grid<double>::expectQueries(std::size_t) const;
 template void Grid<double>::mendTables() const;
 template void Grid<double>::fileFresh() const;
 template void Grid<double>::takeFresh() noexcept;
+template void Grid<double>::forgetErased() noexcept;
 template void Grid<double>::growTrees(const Reading&) const;
 
 }  // namespace hashphase

@@ -104,7 +104,7 @@ void Grid<Scalar>::fileResting(ParallelFor parallelFor) {
     resting_.build(restSlots_, restBoxes_, fixedSizes_, parallelFor, groupsOfAll());
     restingKinds_ = 0;
     for (std::uint32_t entry = 0; entry < resting_.size(); ++entry) {
-        records_[resting_.slot(entry)].restingEntry = entry;
+        records_[resting_.slot(entry)].listedAt = entry;
         restingKinds_ |= kindOf(resting_.slot(entry));
     }
     restingErased_ = 0;
@@ -137,8 +137,7 @@ void Grid<Scalar>::dropList() noexcept {
 }
 
 // Lists the mobile proxies in the order of their table, for the next time, and forgets those that
-// have left. Only now may a slot be given away again: nobody has to tell its old proxy from the
-// next one any more.
+// have left, whose slots may be given away again.
 template <class Scalar>
 void Grid<Scalar>::settle() noexcept {
     nanSlots_.clear();
@@ -148,11 +147,9 @@ void Grid<Scalar>::settle() noexcept {
     }
     mobileSlots_.assign(mobile_.entrySlots().begin(), mobile_.entrySlots().end());
     mobileSlots_.insert(mobileSlots_.end(), nanSlots_.begin(), nanSlots_.end());
-    if (firstRemoved_ != kNoSlot) {
-        records_[lastRemoved_].restingEntry = firstFree_;
-        firstFree_ = std::exchange(firstRemoved_, kNoSlot);
-        removedCount_ = 0;
-    }
+    listedAtUpdate_ = mobileSlots_.size();
+    giveBack(removed_);
+    giveBack(removedAnnounced_);
 }
 
 template <class Scalar>
@@ -213,6 +210,7 @@ void Grid<Scalar>::forgetLastUpdate() noexcept {
             noteChange(slot);
         }
         records_[slot].before = nanBox();
+        records_[slot].isAnnounced = false;
     }
     boxesAtUpdate_.clear();
     isTorn_ = false;
@@ -228,7 +226,7 @@ void Grid<Scalar>::wakeAll() noexcept {
     for (std::uint32_t slot = 0; slot < records_.size(); ++slot) {
         if (records_[slot].place == Place::resting) {
             records_[slot].place = Place::mobile;
-            mobileSlots_.push_back(slot);
+            listMobile(slot);
             woken_.push_back(slot);
         }
     }

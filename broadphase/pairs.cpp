@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <memory>
 
 namespace hashphase {
 namespace {
@@ -44,6 +45,22 @@ Pairs<Scalar>::Pairs(Grid<Scalar>& grid, Sweeps<Scalar>* sweeps) : grid_(grid), 
 template <class Scalar>
 Pairs<Scalar>::~Pairs() {
     grid_.hasPairs_ = false;
+}
+
+template <class Scalar>
+void Pairs<Scalar>::clear() {
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(&grid_),
+                     "Pairs and their grid are not cleared within a query, or within the filter.");
+    // Made again, so that nothing is left of what was.
+    Grid<Scalar>& grid = grid_;
+    Sweeps<Scalar>* const sweeps = sweeps_;
+    std::destroy_at(this);
+    grid.clear();
+    if (sweeps != nullptr) {
+        std::destroy_at(sweeps);
+        std::construct_at(sweeps, grid);
+    }
+    std::construct_at(this, grid, sweeps);
 }
 
 // --- An update -----------------------------------------------------------------------------------
@@ -105,8 +122,9 @@ void Pairs<Scalar>::recover() {
     toResting_.clear();
     refusedAtRest_.clear();
     grid_.woken_.clear();
+    grid_.listedAtUpdate_ = grid_.mobileSlots_.size();
     tableOfUpdate_ = &wokenTable_;
-    indexedCount_ = grid_.mobileSlots_.size();
+    indexedWoken_ = 0;
     shiftOfUpdate_ = grid_.shiftCount_;
     grid_.isTorn_ = false;
 }
@@ -149,12 +167,14 @@ void Pairs<Scalar>::endUpdate() noexcept {  // NOLINT(bugprone-exception-escape)
         swept_.swap(sweptNow_);
         grid_.settle();
         tableOfUpdate_ = &grid_.mobile_;
-        indexedCount_ = grid_.mobileSlots_.size();
+        indexedWoken_ = 0;
         filingOfUpdate_ = grid_.filingCount_;
         shiftOfUpdate_ = grid_.shiftCount_;
         sweptBySecond_.clear();
     }
+    markAnnounced(announced_.keys(), false);
     announced_.clear();
+    fewAnnounced_ = kFewAnnounced;
     decide();
     cost_.grid = grid_.endUpdate();
 }
@@ -538,14 +558,16 @@ std::size_t Pairs<Scalar>::memoryBytes() const noexcept {
            (asked_.capacity() + standing_.capacity() + bornCouples_.capacity() +
             diedCouples_.capacity() + sorted_.capacity() + restedCouples_.capacity() +
             sweptBySecond_.capacity() + lost_.capacity() + swept_.capacity() + gone_.capacity() +
-            fresh_.capacity() + unknown_.capacity() + sweptNow_.capacity() + keptNow_.capacity() +
-            notKept_.capacity() + lapsed_.capacity()) *
+            fresh_.capacity() + unknown_.capacity() + sweptNow_.capacity() +
+            stillAnnounced_.capacity() + keptNow_.capacity() + notKept_.capacity() +
+            lapsed_.capacity()) *
                sizeof(Couple) +
            (toldByUpdate_.born.capacity() + toldByUpdate_.died.capacity() +
             toldBetween_.born.capacity() + toldBetween_.died.capacity() + askedPairs_.capacity()) *
                sizeof(ProxyPair) +
            accepted_.capacity() + isNamed_.capacity() +
-           (entryOf_.capacity() + walkers_.capacity() + walkerSlots_.capacity()) *
+           (entryOf_.capacity() + walkers_.capacity() + walkerSlots_.capacity() +
+            indexedSlots_.capacity()) *
                sizeof(std::uint32_t) +
            wokenBoxes_.capacity() * sizeof(detail::PaddedBox<Scalar>) + wokenTable_.memoryBytes() +
            announced_.memoryBytes() + kept_.memoryBytes() + refused_.memoryBytes() +

@@ -116,12 +116,14 @@ public:
     PairChanges update(PairFilter filter = acceptAllPairs, ParallelFor parallelFor = serialFor) &;
 
     /// Pairs of one proxy, which is alive (asserted), that have come to overlap since the last update,
-    /// at once; update() will not report them again. Returns births only; not what it meets on its
-    /// way. Cost: that of a box query.
+    /// at once; update() will not report them again. Returns these births, but not what it meets on its
+    /// way. Deaths, now and then, of pairs announced since the last update of which a proxy was
+    /// removed since: they do not gather where nobody updates. update() reports the rest of them.
+    /// Cost: that of a box query.
     PairChanges announce(ProxyId id, PairFilter filter) &;
 
     /// Asks the filter again about everything that the proxy, which is alive (asserted), overlaps, or
-    /// met on its way at the last update, refused or not, at once. Cost: that of a few box queries.
+    /// met on its way at the last update, refused or not, at once; and deaths as announce() does. Cost: that of a few box queries.
     /// Where many proxies have changed since the last update, the first call after it files their boxes
     /// of that update once for all calls up to the next one.
     PairChanges refilter(ProxyId id, PairFilter filter) &;
@@ -134,6 +136,10 @@ public:
     /// The same for all proxies: the filter has changed. Cost: that of finding all pairs from scratch,
     /// and a box query for each proxy that has changed since the last update.
     PairChanges refilterAll(PairFilter filter) &;
+
+    /// Grid::clear(), and all that is known of pairs and of sweeps with it: as new ones, over a new grid.
+    /// No deaths are reported. Cost: O(Grid::indexLimit()).
+    void clear();
 
     /// The whole set as of the last update, sorted, appended to `pairs`. The grid must not have
     /// changed since (asserted). Cost: that of finding all pairs from scratch.
@@ -219,7 +225,11 @@ private:
     void ask(PairFilter filter, Told& told);
 
     // The rest of a call, which takes no more memory, and so cannot throw: ask() has made room.
-    void endUpdate() noexcept;        // NOLINT(bugprone-exception-escape)
+    void endUpdate() noexcept;  // NOLINT(bugprone-exception-escape)
+    [[nodiscard]] bool areManyAnnounced() const noexcept;
+    void findAnnouncedOfRemoved();
+    void markAnnounced(std::span<const Couple> couples, bool are) noexcept;
+    void endAnnouncedOfRemoved() noexcept;
     void announceUnknown() noexcept;  // NOLINT(bugprone-exception-escape)
     void lose(Couple c) noexcept;
     void decide() noexcept;  // NOLINT(bugprone-exception-escape)
@@ -246,6 +256,8 @@ private:
     void findUnknown(std::uint32_t slot);
     void forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const;
 
+    static constexpr std::size_t kFewAnnounced = 64;
+
     Grid<Scalar>& grid_;
 
     // The watched couples: all that overlapped at the last update and of which one is mobile, the
@@ -257,6 +269,9 @@ private:
     detail::FlatSet refused_;        // couples that the filter refused, unless they are ...
     detail::FlatSet refusedAtRest_;  // ... both at rest
     detail::CoupleSet announced_;    // couples decided since the last update
+    // Until there are more, those of removed proxies stay.
+    std::size_t fewAnnounced_ = kFewAnnounced;
+    std::vector<Couple> stillAnnounced_;  // scratch
 
     // Pairs whose groups have been set since, so that they may not pair any more: they overlap.
     detail::FlatSet kept_;
@@ -300,12 +315,13 @@ private:
     detail::Table<Scalar> wokenTable_;
     std::vector<char> isNamed_;  // by slot
 
-    // A table of boxes as of the last update: of the first indexedCount_ of mobileSlots_. Either the
-    // grid's own, until it is filed again, or wokenTable_; null when neither is.
+    // A table of boxes as of the last update: of what was mobile then, and of the first indexedWoken_ of
+    // what has left rest since. Either the grid's own, until it is filed again, or wokenTable_; null when neither is.
     const detail::Table<Scalar>* tableOfUpdate_ = nullptr;
-    std::size_t indexedCount_ = 0;
-    std::uint64_t filingOfUpdate_ = 0;  // Grid::filingCount_ and ...
-    std::uint64_t shiftOfUpdate_ = 0;   // ... Grid::shiftCount_ at that time
+    std::size_t indexedWoken_ = 0;
+    std::vector<std::uint32_t> indexedSlots_;  // scratch
+    std::uint64_t filingOfUpdate_ = 0;         // Grid::filingCount_ and ...
+    std::uint64_t shiftOfUpdate_ = 0;          // ... Grid::shiftCount_ at that time
     std::vector<detail::PaddedBox<Scalar>> wokenBoxes_;
     detail::BoxColumns<Scalar> wokenBounds_;
 };

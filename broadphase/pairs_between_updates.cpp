@@ -33,6 +33,7 @@ PairChanges Pairs<Scalar>::announce(ProxyId id, PairFilter filter) & {
     HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid can announce its pairs.");
     HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(&grid_), kMustNotAsk);
     beginCall();
+    findAnnouncedOfRemoved();
     findUnknown(id.index);
     return decideBetween(filter);
 }
@@ -51,6 +52,7 @@ PairChanges Pairs<Scalar>::refilter(std::span<const ProxyId> ids, PairFilter fil
     HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(&grid_), kMustNotAsk);
     beginCall();
     recover();
+    findAnnouncedOfRemoved();
     constexpr std::size_t kLargePart = 8;
     if (ids.size() > 1 && ids.size() > grid_.size() / kLargePart) {
         isNamed_.assign(grid_.records_.size(), 0);
@@ -74,6 +76,7 @@ PairChanges Pairs<Scalar>::refilterAll(PairFilter filter) & {
     HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(&grid_), kMustNotAsk);
     beginCall();
     recover();
+    findAnnouncedOfRemoved();
     askAgainAboutMany([](std::uint32_t) { return true; });
     return decideBetween(filter);
 }
@@ -119,6 +122,7 @@ PairChanges Pairs<Scalar>::decideBetween(PairFilter filter) {
         couples->erase(std::unique(couples->begin(), couples->end()), couples->end());
     }
     ask(filter, toldBetween_);
+    endAnnouncedOfRemoved();
     announceUnknown();
     decide();
     return tell(toldBetween_);
@@ -129,6 +133,53 @@ void Pairs<Scalar>::announceUnknown() noexcept {  // NOLINT(bugprone-exception-e
     for (const Couple c : unknown_) {
         announced_.insert(c);
     }
+    markAnnounced(unknown_, true);
+}
+
+// The grid keeps the slots of those that are removed apart, until their couples are ended.
+template <class Scalar>
+void Pairs<Scalar>::markAnnounced(std::span<const Couple> couples, bool are) noexcept {
+    for (const Couple c : couples) {
+        grid_.records_[first(c)].isAnnounced = are;
+        grid_.records_[second(c)].isAnnounced = are;
+    }
+}
+
+// Where proxies come, are announced and go, and there is no update: whenever twice as many couples are
+// announced as were left the last time, so that each is looked at about once.
+template <class Scalar>
+bool Pairs<Scalar>::areManyAnnounced() const noexcept {
+    return announced_.size() > fewAnnounced_ && grid_.removedAnnounced_.count > 0;
+}
+
+template <class Scalar>
+void Pairs<Scalar>::findAnnouncedOfRemoved() {
+    if (!areManyAnnounced()) {
+        return;
+    }
+    stillAnnounced_.clear();
+    for (const Couple c : announced_.keys()) {
+        const bool areAlive = grid_.isAlive(first(c)) && grid_.isAlive(second(c));
+        (areAlive ? stillAnnounced_ : lost_).push_back(c);
+    }
+}
+
+template <class Scalar>
+void Pairs<Scalar>::endAnnouncedOfRemoved() noexcept {
+    if (!areManyAnnounced()) {
+        return;
+    }
+    markAnnounced(announced_.keys(), false);
+    announced_.clear();
+    for (const Couple c : stillAnnounced_) {
+        announced_.insert(c);
+    }
+    markAnnounced(announced_.keys(), true);
+    for (const Couple c : lost_) {
+        lose(c);
+    }
+    fewAnnounced_ = kFewAnnounced + 2 * announced_.size();
+    grid_.giveBack(grid_.removedAnnounced_);
 }
 
 // --- What is known -------------------------------------------------------------------------------
@@ -144,10 +195,14 @@ void Pairs<Scalar>::indexLastUpdate(std::size_t mostUnindexed) {
     if (isStale) {
         tableOfUpdate_ = nullptr;
     }
-    const std::span<const std::uint32_t> slots = grid_.mobileSlots_;
-    if (tableOfUpdate_ != nullptr && slots.size() - indexedCount_ <= mostUnindexed) {
+    if (tableOfUpdate_ != nullptr && grid_.woken_.size() - indexedWoken_ <= mostUnindexed) {
         return;
     }
+    // What has come since the last update had no box then.
+    const auto listed = grid_.mobileSlots_.begin();
+    std::vector<std::uint32_t>& slots = indexedSlots_;
+    slots.assign(listed, listed + static_cast<std::ptrdiff_t>(grid_.listedAtUpdate_));
+    slots.insert(slots.end(), grid_.woken_.begin(), grid_.woken_.end());
     wokenBoxes_.clear();
     for (const std::uint32_t slot : slots) {
         wokenBoxes_.push_back(detail::padded(grid_.boxAtUpdate(slot)));
@@ -156,7 +211,7 @@ void Pairs<Scalar>::indexLastUpdate(std::size_t mostUnindexed) {
     wokenTable_.build(slots, wokenBoxes_, grid_.fixedSizes_, serialFor,
                       grid_.groupsOfAllAtUpdate());
     tableOfUpdate_ = &wokenTable_;
-    indexedCount_ = slots.size();
+    indexedWoken_ = grid_.woken_.size();
     shiftOfUpdate_ = grid_.shiftCount_;
 }
 
@@ -174,7 +229,7 @@ template <class Scalar>
 template <class Visit>
 void Pairs<Scalar>::forOverlapsAtUpdate(std::uint32_t slot, const Visit& visit) {
     constexpr std::size_t kFew = 64;
-    indexLastUpdate(kFew + indexedCount_ / 4);
+    indexLastUpdate(kFew + (grid_.listedAtUpdate_ + indexedWoken_) / 4);
     const auto visitIfTheyDid = [&](std::uint32_t other) {
         if (other != slot && wasKnown(slot, other)) {
             visit(couple(slot, other));
@@ -195,8 +250,8 @@ void Pairs<Scalar>::forOverlapsAtUpdate(std::uint32_t slot, const Visit& visit) 
     const bool isOwn = tableOfUpdate_ == &wokenTable_;  // in the coordinates of then
     walk(*tableOfUpdate_, isOwn ? grid_.boxAtUpdate(slot) : grid_.before(slot));
     walk(grid_.resting_, grid_.before(slot));
-    for (std::size_t i = indexedCount_; i < grid_.mobileSlots_.size(); ++i) {
-        visitIfTheyDid(grid_.mobileSlots_[i]);
+    for (std::size_t i = indexedWoken_; i < grid_.woken_.size(); ++i) {
+        visitIfTheyDid(grid_.woken_[i]);
     }
 }
 
@@ -292,6 +347,8 @@ template PairChanges Pairs<float>::refilterAll(PairFilter) &;
 template PairChanges Pairs<double>::refilterAll(PairFilter) &;
 template void Pairs<float>::announceUnknown() noexcept;
 template void Pairs<double>::announceUnknown() noexcept;
+template void Pairs<float>::markAnnounced(std::span<const Couple>, bool) noexcept;
+template void Pairs<double>::markAnnounced(std::span<const Couple>, bool) noexcept;
 template void Pairs<float>::findUnknown(std::uint32_t);
 template void Pairs<double>::findUnknown(std::uint32_t);
 

@@ -13,8 +13,9 @@
 namespace hashphase {
 
 /// A value that names one proxy of one grid. Zero is null. `index` is small and dense (below the
-/// largest number of proxies that were ever alive at once), so callers keep their own data in an
-/// array by it; `generation` tells a proxy from earlier ones with the same index.
+/// largest number of proxies that were ever alive at once, those removed since the last update
+/// included that it had seen), so callers keep their own data in an array by it; `generation` tells a
+/// proxy from earlier ones with the same index.
 struct ProxyId {
     std::uint32_t index = 0;
     std::uint32_t generation = 0;

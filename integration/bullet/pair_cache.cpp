@@ -142,6 +142,9 @@ void PairCache::fill(std::uint32_t index) noexcept {
         links_.resize(links_.size() - 2);
     }
     pairs_.pop_back();
+    if (pairs_.size() == 0) {
+        dropChains();  // an empty cache is as good as new: no order follows from what it held
+    }
 }
 
 btBroadphasePair* PairCache::findPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1) {

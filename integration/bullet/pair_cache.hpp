@@ -46,12 +46,14 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 /// In which order the array lists the pairs.
 enum class PairOrder {
-    /// As pairs came and went: the same calls give the same order, that of Bullet's cache unless
-    /// they are batches. Costs nothing.
+    /// As pairs came and went: the same calls, from when the cache was empty, give the same order, that
+    /// of Bullet's cache unless they are batches. Where a pair stands depends on what was there
+    /// before: boxes that are set back to an earlier frame bring back its pairs, not their places.
+    /// Costs nothing.
     arrival,
     /// Ascending by the key of the first proxy, then of the second, whenever the whole array is
     /// looked at: the same set of pairs gives the same order, whatever the broadphase and the
-    /// history. Algorithms are freed in that order, too, so that the dispatcher's manifolds, and
+    /// history. This is what rollback stands on. Algorithms are freed in that order, too, so that the dispatcher's manifolds, and
     /// with them whole trajectories, are the same under all exact broadphases. Costs a sort when
     /// the set has changed.
     canonical,

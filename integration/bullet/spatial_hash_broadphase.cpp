@@ -479,8 +479,21 @@ void SpatialHashBroadphase::getBroadphaseAabb(btVector3& aabbMin, btVector3& aab
 }
 
 void SpatialHashBroadphase::resetPool(btDispatcher* /*dispatcher*/) {
-    if (grid_.size() == 0) {
+    if (grid_.size() > 0) {
+        return;
+    }
+    const bool isWithin =
+        detail::QueryScope::isWithin(this) || detail::QueryScope::isWithin(&grid_);
+    HASHPHASE_ASSERT(!isWithin, "resetPool() is not called by callbacks.");
+    if (!isWithin) {
+        pairs_.clear();
         lastUniqueId_ = 0;
+        groupKinds_ = {};
+        changedKinds_ = 0;
+        seen_ = std::vector<std::uint64_t>();
+        seenCount_ = 0;
+        mustNoteGroups_ = false;
+        isCacheBehind_ = isCacheBehind_ && pairCache_->getNumOverlappingPairs() > 0;
     }
 }
 

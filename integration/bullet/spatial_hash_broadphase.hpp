@@ -24,8 +24,8 @@
 //           may create, move and destroy proxies, and ask. What is destroyed is not reported any
 //           more; what is moved or created may be reported, once more, or not. Bullet itself must be
 //           able to bear it: it cannot where an object is removed that it is at work on. The overlap
-//           filter may ask but not change anything, and calculateOverlappingPairs() and
-//           shiftOrigin() are not called from within any of them; asserted.
+//           filter may ask but not change anything, and calculateOverlappingPairs(), shiftOrigin() and
+//           resetPool() are not called from within any of them; asserted.
 // Memory    Where it runs out, std::bad_alloc is passed on and the call may be repeated:
 //           createProxy() has created nothing, shiftOrigin() has shifted nothing, setAabb() has moved
 //           the proxy, and the first calculateOverlappingPairs() that returns brings the cache up to
@@ -190,7 +190,9 @@ public:
     /// its filter accepts, and with SpatialHashConfig::sweep those that meet on their ways. Pairs that
     /// did so before are not touched. Groups and masks may be written at any time: what may pair begins to
     /// where one of the two was moved, or its setAabb() called, since; a pair stays one until its boxes
-    /// part. Cost: that of Pairs::update(), and of the cache for each pair that
+    /// part. First those that have parted go, then those that have met come, each in the order of their
+    /// proxies: what changes, and in which order, follows from the boxes before and now, not from
+    /// how they came there. Cost: that of Pairs::update(), and of the cache for each pair that
     /// comes or goes.
     void calculateOverlappingPairs(btDispatcher* dispatcher) override;
 
@@ -202,7 +204,10 @@ public:
     /// The box around all boxes, and all ways; zero when there is none. Cost: O(proxies).
     void getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax) const override;
 
-    /// Counts m_uniqueId from 1 again when no proxy is alive; else does nothing.
+    /// When no proxy is alive, forgets all that came before: m_uniqueId counts from 1 again, and the same
+    /// calls lead to the same pairs in the same order, and the same frees of algorithms, as with a new
+    /// broadphase. What Bullet itself remembers is for its user: the solver's reset(). Frees memory, as
+    /// Grid::clear(). Does nothing while a proxy is alive. Not called by callbacks (asserted).
     void resetPool(btDispatcher* dispatcher) override;
 
     /// Does nothing, as in Bullet; ask lastCost() and memoryBytes().

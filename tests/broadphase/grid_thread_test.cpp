@@ -36,13 +36,13 @@ void runOnThreads(Work&& work) {
     }
 }
 
-struct Crowd {
+struct SharedCrowd {
     Grid<float> grid;
     std::vector<Placed<float>> proxies;
     Random random{0x5eed0801};
 
     /// Added, not filed yet.
-    Crowd() {
+    SharedCrowd() {
         const BoxScene<float> scene = spreadScene<float>("evenly spread", 1, 0);
         for (int i = 0; i < 1000; ++i) {
             const Aabb<float> box = scene.draw(random);
@@ -59,7 +59,7 @@ struct Crowd {
 };
 
 TEST(GridThreads, QueriesRightAfterManyChangesAllSeeThem) {
-    Crowd crowd;
+    SharedCrowd crowd;
     for (int round = 0; round < 20; ++round) {
         crowd.moveMany();
         std::vector<std::vector<std::string>> wrong(kThreads);
@@ -92,7 +92,7 @@ TEST(GridThreads, QueriesRightAfterManyChangesAllSeeThem) {
 }
 
 TEST(GridThreads, RaysRightAfterAnUpdateAllFindTheTreesMade) {
-    Crowd crowd;
+    SharedCrowd crowd;
     for (int round = 0; round < 20; ++round) {
         crowd.moveMany();
         crowd.grid.update();  // nothing waits: only the trees are to be made
@@ -115,7 +115,7 @@ TEST(GridThreads, RaysRightAfterAnUpdateAllFindTheTreesMade) {
 
 TEST(GridThreads, WhateverIsConstMayBeAskedBesideTheQueryThatFiles) {
     for (int round = 0; round < 10; ++round) {
-        Crowd crowd;
+        SharedCrowd crowd;
         std::atomic<int> wrong{0};
         runOnThreads([&](int t) {
             const Placed<float>& proxy = crowd.proxies[static_cast<std::size_t>(t) * 100];

@@ -29,7 +29,10 @@ struct AskedRay : btCollisionWorld::RayResultCallback {
 class BroadphasePlay {
 public:
     BroadphasePlay(const Operation& first, Story& story)
-        : story_(story), world_(first), life_(first, world_, story) {
+        : story_(story),
+          world_(first),
+          life_(first, world_, story),
+          isSeldomStepped_(first.arguments[7] % 4 == 3) {
         if (world_.hash() == nullptr) {
             life_.palette().calm();
         }
@@ -61,10 +64,10 @@ private:
             case 0:
             case 1:
             case 2:
-                calculate(1);
+                calculate(1, arguments);
                 break;
             case 3:
-                calculate(1 + arguments.below(12));
+                calculate(1 + arguments.below(12), arguments);
                 break;
             case 4:
                 regroup(arguments);
@@ -103,7 +106,11 @@ private:
         }
     }
 
-    void calculate(std::uint32_t count) {
+    void calculate(std::uint32_t count, Arguments& arguments) {
+        if (isSeldomStepped_ && arguments.byte() % 16 != 15) {
+            story_.tell("nothing");
+            return;
+        }
         story_.tell("calculate ", count, " times");
         for (std::uint32_t i = 0; i < count; ++i) {
             world_.broadphase().calculateOverlappingPairs(nullptr);
@@ -378,6 +385,7 @@ private:
     Story& story_;
     BulletLifeWorld world_;
     BoxLife<btScalar, BulletLifeWorld> life_;
+    bool isSeldomStepped_;
 };
 
 }  // namespace

@@ -20,7 +20,10 @@ template <class Scalar>
 class GridPlay {
 public:
     GridPlay(const Operation& first, Story& story)
-        : story_(story), world_(configOf(first)), life_(first, world_, story) {}
+        : story_(story),
+          world_(configOf(first)),
+          life_(first, world_, story),
+          isNeverUpdated_(first.arguments[7] % 4 == 3) {}
 
     void play(const Operation& operation) {
         Arguments arguments(operation);
@@ -34,6 +37,7 @@ public:
         expectHolds<Scalar>(world_.grid, life_.proxies(), life_.dead());
         const auto everything = Vector3<Scalar>::Constant(std::numeric_limits<Scalar>::infinity());
         expectFinds(BoxRegion<Scalar>{{-everything, everything}});
+        EXPECT_LE(world_.grid.indexLimit(), 2 * kMostProxies) << "of what is, and was last filed";
     }
 
 private:
@@ -42,15 +46,13 @@ private:
             case 0:
             case 1:
             case 2:
-                story_.tell("update");
-                world_.grid.update(anyFor(arguments));
+                update(arguments);
                 break;
             case 3:
                 rest(arguments);
                 break;
             case 4:
-                world_.grid.reserve(arguments.byte());
-                story_.tell("reserve");
+                reserveOrClear(arguments);
                 break;
             case 5:
                 askBox(arguments);
@@ -102,7 +104,30 @@ private:
         }
     }
 
+    void update(Arguments& arguments) {
+        if (isNeverUpdated_) {
+            story_.tell("nothing");
+            return;
+        }
+        story_.tell("update");
+        world_.grid.update(anyFor(arguments));
+    }
+
+    void reserveOrClear(Arguments& arguments) {
+        const std::uint32_t count = arguments.byte();
+        if (arguments.flag()) {
+            life_.clear();
+        } else {
+            world_.grid.reserve(count);
+            story_.tell("reserve");
+        }
+    }
+
     void rest(Arguments& arguments) {
+        if (isNeverUpdated_) {
+            story_.tell("nothing");
+            return;
+        }
         const std::uint32_t updates = 1 + arguments.below(12);
         story_.tell(updates, " updates");
         for (std::uint32_t i = 0; i < updates; ++i) {
@@ -384,6 +409,7 @@ private:
     Story& story_;
     GridWorld<Scalar> world_;
     BoxLife<Scalar, GridWorld<Scalar>> life_;
+    bool isNeverUpdated_;
     Neighbours<Scalar> neighbours_;
     Crowd<Scalar> crowd_;
 };

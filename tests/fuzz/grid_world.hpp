@@ -97,6 +97,15 @@ public:
         proxies_.pop_back();
     }
 
+    void clear() {
+        story_.tell("clear");
+        world_.clear();
+        for (const Placed<Scalar>& proxy : proxies_) {
+            dead_.push_back(proxy.id);
+        }
+        proxies_.clear();
+    }
+
 private:
     // A few dozen boxes of one size on a lattice, of which neighbours touch.
     void addMany(Arguments& arguments) {

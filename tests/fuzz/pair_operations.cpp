@@ -21,6 +21,7 @@ public:
           life_(first, world_, story) {
         // Contacts of moving boxes are exact in double precision but for the extremes.
         maySweep_ = first.arguments[5] % 2 == 1;
+        isSeldomUpdated_ = first.arguments[7] % 4 == 3;
         if (maySweep_ && sizeof(Scalar) == sizeof(double)) {
             life_.palette().tame();
         }
@@ -47,11 +48,17 @@ private:
             case 0:
             case 1:
             case 2:
+                update(1, arguments);
+                break;
             case 3:
-                update(1);
+                if (arguments.flag()) {
+                    life_.clear();
+                } else {
+                    update(1, arguments);
+                }
                 break;
             case 4:
-                update(1 + arguments.below(12));
+                update(1 + arguments.below(12), arguments);
                 break;
             case 5: {
                 Placed<Scalar>& proxy = life_.list()[life_.any(arguments)];
@@ -87,7 +94,11 @@ private:
         }
     }
 
-    void update(std::uint32_t count) {
+    void update(std::uint32_t count, Arguments& arguments) {
+        if (isSeldomUpdated_ && arguments.byte() % 16 != 15) {
+            story_.tell("nothing");
+            return;
+        }
         story_.tell(count, " updates");
         for (std::uint32_t i = 0; i < count; ++i) {
             world_.update();
@@ -197,6 +208,7 @@ private:
     std::vector<std::uint32_t> colours_;  // by index of proxy
     std::map<ProxyId, Vector3<Scalar>> ways_;
     bool maySweep_ = false;
+    bool isSeldomUpdated_ = false;
     PairWorld<Scalar> world_;
     BoxLife<Scalar, PairWorld<Scalar>> life_;
 };

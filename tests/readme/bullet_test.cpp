@@ -55,13 +55,20 @@ TEST_F(BulletPage, GroupsGoAlong) {
     EXPECT_EQ(found, std::vector{SpatialHashBroadphase::idOf(body.getBroadphaseProxy())});
 }
 
-TEST_F(BulletPage, OriginIsShifted) {
+TEST_F(BulletPage, EmptyWorldIsReset) {
+    world.removeRigidBody(&body);
 #include <bullet_6.inl>
+    world.addRigidBody(&body);
+    EXPECT_EQ(body.getBroadphaseProxy()->getUid(), 1);
+}
+
+TEST_F(BulletPage, OriginIsShifted) {
+#include <bullet_7.inl>
     EXPECT_EQ(body.getWorldTransform().getOrigin().x(), -1024);
 }
 
 TEST(BulletPageAlone, CacheOfYoursIsUsed) {
-#include <bullet_7.inl>
+#include <bullet_8.inl>
     EXPECT_EQ(broadphase.getOverlappingPairCache(), &pairCache);
 }
 

@@ -94,6 +94,16 @@ public:
         grid.forEach([this](ProxyId id, const Aabb<Scalar>& /*box*/) { changed_.insert(id); });
     }
 
+    /// Removes every proxy, and nothing is reported of any pair.
+    void clear() {
+        pairs.clear();
+        for (std::set<ProxyPair>* of : {&set_, &met_, &refused_, &decided_}) {
+            of->clear();
+        }
+        changed_.clear();
+        ways_.clear();
+    }
+
     void refilter(ProxyId id) {
         asked_.clear();
         noteRefiltered(pairs.refilter(id, recordingFilter()));
@@ -110,7 +120,10 @@ public:
     void announce(ProxyId id) {
         asked_.clear();
         const PairChanges changes = pairs.announce(id, recordingFilter());
-        EXPECT_TRUE(changes.died.empty());
+        for (const ProxyPair& pair : changes.died) {
+            EXPECT_FALSE(grid.contains(pair.first) && grid.contains(pair.second))
+                << testing::PrintToString(pair) << " dies though both are alive";
+        }
         apply(changes);
         noteDecided();
         EXPECT_TRUE(isAscending(asked_)) << "announce asks in ascending order, each couple once";

@@ -27,6 +27,7 @@ struct GridWorld {
     ProxyId add(const Aabb<Scalar>& box, Mobility mobility) { return grid.add(box, mobility); }
     void move(ProxyId id, const Aabb<Scalar>& box) { grid.move(id, box); }
     void remove(ProxyId id) { grid.remove(id); }
+    void clear() { grid.clear(); }
     static void refilter(ProxyId /*id*/) {}
 };
 
