@@ -31,7 +31,7 @@ public:
         if (known != end) {
             return static_cast<std::uint8_t>(known - kinds_.begin());
         }
-        const auto number = static_cast<std::uint8_t>(count_);
+        const std::uint8_t number = count_;
         if (number == kOther) {
             refused_.fill(~Set{0});
             someRefuse_ = true;
