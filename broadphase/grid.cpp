@@ -309,6 +309,9 @@ template <class Scalar>
 void Grid<Scalar>::countChange(Record& record) noexcept {
     if (record.changedAt != updateNumber_) {
         record.before = record.box;
+        if (record.place == Place::sweeping) {
+            record.before = nowhere_;  // as standingBox(), which copies more slowly
+        }
         record.changedAt = updateNumber_;
         ++cost_.changed;
     }
@@ -322,6 +325,31 @@ void Grid<Scalar>::leaveRest(std::uint32_t slot) noexcept {
     record.place = Place::mobile;
     listMobile(slot);
     woken_.push_back(slot);
+}
+
+// It sweeps as of the update that begins here.
+template <class Scalar>
+void Grid<Scalar>::beginSweep(std::uint32_t slot) noexcept {
+    noteChange(slot);
+    records_[slot].place = Place::sweeping;
+    sweepingSlots_.push_back(slot);
+}
+
+template <class Scalar>
+void Grid<Scalar>::endSweep(std::uint32_t slot) noexcept {
+    noteChange(slot);
+    Record& record = records_[slot];
+    record.place = record.place == Place::sweeping ? Place::mobile : record.place;
+}
+
+// Without Pairs nothing does.
+template <class Scalar>
+void Grid<Scalar>::endSweeps() noexcept {
+    for (const std::uint32_t slot : sweepingSlots_) {
+        if (records_[slot].place == Place::sweeping) {
+            endSweep(slot);
+        }
+    }
 }
 
 template <class Scalar>
@@ -366,26 +394,28 @@ template <class Scalar>
 std::size_t Grid<Scalar>::memoryBytes() const noexcept {
     return sizeof(*this) + records_.capacity() * sizeof(Record) +
            (waiting_.capacity() + mobileSlots_.capacity() + woken_.capacity() +
-            restSlots_.capacity() + nanSlots_.capacity()) *
+            restSlots_.capacity() + nanSlots_.capacity() + sweepingSlots_.capacity()) *
                sizeof(std::uint32_t) +
            boxesAtUpdate_.capacity() * sizeof(Box) + groups_.capacity() * sizeof(ProxyGroups) +
            kindOfSlot_.capacity() +
-           (staged_.capacity() + stagedBefore_.capacity() + restBoxes_.capacity()) *
+           (staged_.capacity() + stagedBefore_.capacity() + restBoxes_.capacity() +
+            sweepingBoxes_.capacity()) *
                sizeof(detail::PaddedBox<Scalar>) +
-           mobile_.memoryBytes() + fresh_.memoryBytes() + resting_.memoryBytes() + rayMemoryBytes();
+           mobile_.memoryBytes() + fresh_.memoryBytes() + resting_.memoryBytes() +
+           sweeping_.memoryBytes() + rayMemoryBytes();
 }
 
 template <class Scalar>
 std::size_t Grid<Scalar>::rayMemoryBytes() const noexcept {
     return mobileTree_.tree.memoryBytes() + freshTree_.tree.memoryBytes() +
-           restingTree_.tree.memoryBytes();
+           restingTree_.tree.memoryBytes() + sweepingTree_.tree.memoryBytes();
 }
 
 template <class Scalar>
 void Grid<Scalar>::releaseRayMemory() noexcept {
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
                      "What rays read is not freed within a query.");
-    for (TableTree* table : {&mobileTree_, &freshTree_, &restingTree_}) {
+    for (TableTree* table : {&mobileTree_, &freshTree_, &restingTree_, &sweepingTree_}) {
         table->tree = {};
         table->isStale.store(true, std::memory_order_relaxed);
     }
@@ -397,7 +427,7 @@ std::string Grid<Scalar>::validate() const {
     const Reading reading = presentReading();
     // How often each proxy stands where a query would look for it.
     std::vector<std::uint32_t> timesFound(records_.size(), 0);
-    for (const detail::Table<Scalar>* table : {&reading.mobile, &resting_}) {
+    for (const auto& [table, tree, isResting] : reading.filings()) {
         if (std::string error = table->validate(); !error.empty()) {
             return error;
         }
@@ -412,11 +442,11 @@ std::string Grid<Scalar>::validate() const {
             }
         }
     }
-    for (const TableTree* table : {&reading.tree, &std::as_const(restingTree_)}) {
-        if (table->isStale.load(std::memory_order_relaxed)) {
+    for (const auto& [table, tree, isResting] : reading.filings()) {
+        if (tree->isStale.load(std::memory_order_relaxed)) {
             continue;
         }
-        if (std::string error = table->tree.validate(); !error.empty()) {
+        if (std::string error = tree->tree.validate(); !error.empty()) {
             return error;
         }
     }

@@ -51,6 +51,7 @@
 #include <broadphase/query_cost.hpp>
 #include <broadphase/regions.hpp>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -268,15 +269,16 @@ private:
     static constexpr std::uint32_t kNoSlot = ~std::uint32_t{0};
 
     enum class Place : std::uint8_t {
-        nowhere,  // no proxy
-        mobile,   // listed in mobileSlots_, and filed in mobile_ unless it waits or is NaN
-        resting,  // filed in resting_
+        nowhere,   // no proxy
+        mobile,    // listed in mobileSlots_, and filed in mobile_ unless it waits or is NaN
+        resting,   // filed in resting_
+        sweeping,  // as mobile, but filed in sweeping_: its way, and not its box, makes its pairs
     };
 
     /// All about a slot, in one cache line for single precision and two for double.
     struct alignas(16 * sizeof(Scalar)) Record {
         Box box = nanBox();            // NaN while the slot has no proxy
-        Box before = nanBox();         // at the last update, when it has changed since
+        Box before = nanBox();         // standingBox() at the last update, if it has changed since
         std::uint32_t generation = 0;  // odd while the slot has a proxy
         std::uint32_t changedAt = 0;  // number of the update that will see, or saw, the last change
         std::uint32_t listedAt = 0;   // where in resting_; in mobileSlots_, if it has joined these
@@ -294,6 +296,31 @@ private:
         std::uint32_t first = kNoSlot;
         std::uint32_t last = kNoSlot;
         std::uint32_t count = 0;
+    };
+
+    /// What rays read of a table; made by the first ray after the table was built.
+    struct TableTree {
+        detail::BoxTree tree;
+        std::atomic<bool> isStale{false};
+    };
+    /// A table that queries read.
+    struct Filing {
+        const detail::Table<Scalar>* table;
+        const TableTree* tree;
+        bool isResting;
+    };
+    /// All that a query reads: the tables of what stands, then that of what sweeps.
+    struct Reading {
+        std::array<Filing, 3> all;
+        bool
+            isFresh;  // filed since the last change, so that nothing waits, what sweeps with the rest
+
+        [[nodiscard]] std::span<const Filing> filings() const noexcept {
+            return std::span(all).first(isFresh ? 2 : 3);
+        }
+        [[nodiscard]] std::span<const Filing> standing() const noexcept {
+            return std::span(all).first(2);
+        }
     };
 
     template <class Region, class Collector>
@@ -315,18 +342,6 @@ private:
         const Point nan = Point::Constant(std::numeric_limits<Scalar>::quiet_NaN());
         return {nan, nan};
     }
-    /// What rays read of a table; made by the first ray after the table was built.
-    struct TableTree {
-        detail::BoxTree tree;
-        std::atomic<bool> isStale{false};
-    };
-
-    /// What a query reads beside the resting proxies.
-    struct Reading {
-        const detail::Table<Scalar>& mobile;
-        const TableTree& tree;
-        bool isFresh;  // filed since the last change, so that nothing waits
-    };
 
     [[nodiscard]] bool isWaiting(const Record& record) const noexcept {
         return record.listedIn == listNumber_;
@@ -336,17 +351,22 @@ private:
         const Record& record = records_[slot];
         return record.place != Place::nowhere && (reading.isFresh || !isWaiting(record));
     }
-    [[nodiscard]] bool standsIn(Place place, std::uint32_t slot,
+    [[nodiscard]] bool standsIn(const Filing& filing, std::uint32_t slot,
                                 const Reading& reading) const noexcept {
-        return records_[slot].place == place && isFiled(slot, reading);
+        const bool rests = records_[slot].place == Place::resting;
+        return rests == filing.isResting && isFiled(slot, reading);
     }
     [[nodiscard]] bool changedNow(std::uint32_t slot) const noexcept {
         return records_[slot].changedAt == updateNumber_;
     }
 
-    /// The slot's box at the last update, in present coordinates; NaN when it had no proxy.
+    /// The box by which a slot makes pairs: NaN of what sweeps, which makes them on its way.
+    [[nodiscard]] const Box& standingBox(const Record& record) const noexcept {
+        return record.place == Place::sweeping ? nowhere_ : record.box;
+    }
+    /// The same at the last update, in present coordinates; NaN when it had no proxy.
     [[nodiscard]] const Box& before(std::uint32_t slot) const noexcept {
-        return changedNow(slot) ? records_[slot].before : records_[slot].box;
+        return changedNow(slot) ? records_[slot].before : standingBox(records_[slot]);
     }
     /// The same in coordinates in which such boxes may be compared with each other.
     [[nodiscard]] const Box& boxAtUpdate(std::uint32_t slot) const noexcept {
@@ -397,6 +417,9 @@ private:
     void noteChange(std::uint32_t slot) noexcept;
     void countChange(Record& record) noexcept;
     void leaveRest(std::uint32_t slot) noexcept;
+    void beginSweep(std::uint32_t slot) noexcept;
+    void endSweep(std::uint32_t slot) noexcept;
+    void endSweeps() noexcept;
     void setBox(Record& record, const Box& box);
 
     void keepBoxesAtUpdate(const Point& shift);
@@ -404,11 +427,12 @@ private:
     void shiftTables(const Point& shift);
 
     // The passes of an update. Between them, Pairs finds what was born and what died.
-    void stage(ParallelFor parallelFor);
+    void stage(ParallelFor parallelFor, bool isForQueries = false);
     [[nodiscard]] bool putQuietToRest(ParallelFor parallelFor);
     void listResting();
     void fileResting(ParallelFor parallelFor);
     void fileMobile(ParallelFor parallelFor);
+    void fileSweeping(ParallelFor parallelFor);
     void settle() noexcept;
     UpdateCost endUpdate() noexcept;
     void countUpdatesAnew() noexcept;
@@ -437,8 +461,9 @@ private:
     void forEachFiled(Visit&& visit) const;
     void growTrees(const Reading& reading) const;
     [[nodiscard]] bool treesAreStale(const Reading& reading) const noexcept {
-        return reading.tree.isStale.load(std::memory_order_acquire) ||
-               restingTree_.isStale.load(std::memory_order_acquire);
+        return std::ranges::any_of(reading.filings(), [](const Filing& filing) {
+            return filing.tree->isStale.load(std::memory_order_acquire);
+        });
     }
     template <class Region, class Collector>
     QueryCost visit(const Reading& reading, const Region& region, Collector& collector) const;
@@ -448,8 +473,8 @@ private:
     QueryCost visitTogether(const Reading& reading, std::span<const Region> regions,
                             std::span<Collector> collectors, detail::FewPairs& found) const;
     template <class Region, class Collector>
-    bool visitTables(const Reading& reading, const Region& region, Collector& collector,
-                     QueryCost& cost) const;
+    bool visitTables(const Reading& reading, std::span<const Filing> filings, const Region& region,
+                     Collector& collector, QueryCost& cost) const;
 
     GridConfig config_;
     detail::LevelSizes fixedSizes_;
@@ -502,8 +527,13 @@ private:
     std::uint32_t restingErased_ = 0;
     detail::Table<Scalar> resting_;
 
+    std::vector<std::uint32_t> sweepingSlots_;  // when the last update began; in mobileSlots_, too
+    std::vector<detail::PaddedBox<Scalar>> sweepingBoxes_;  // scratch of fileSweeping()
+    detail::Table<Scalar> sweeping_;
+
     TableTree mobileTree_;
     TableTree restingTree_;
+    TableTree sweepingTree_;
 
     // What a query has filed while others went on with mobile_ and waiting_. The next change makes it
     // mobile_, or drops it where it is made within a query, which may be reading either.
@@ -525,6 +555,7 @@ private:
     std::vector<std::uint32_t> nanSlots_;  // scratch of settle()
 
     Scalar cellSize_ = 1;
+    const Box nowhere_ = nanBox();
 };
 
 extern template class Grid<float>;

@@ -28,8 +28,11 @@ std::uint64_t Grid<Scalar>::worthFiling() const noexcept {
 
 template <class Scalar>
 auto Grid<Scalar>::presentReading() const noexcept -> Reading {
-    return isFresh_.load(std::memory_order_acquire) ? Reading{fresh_, freshTree_, true}
-                                                    : Reading{mobile_, mobileTree_, false};
+    const bool isFresh = isFresh_.load(std::memory_order_acquire);
+    return {{{{isFresh ? &fresh_ : &mobile_, isFresh ? &freshTree_ : &mobileTree_, false},
+              {&resting_, &restingTree_, true},
+              {&sweeping_, &sweepingTree_, false}}},
+            isFresh};
 }
 
 template <class Scalar>
@@ -84,7 +87,7 @@ void Grid<Scalar>::fileFresh() const {
         detail::QueryScope::isWithin(this)) {
         return;
     }
-    self.stage(serialFor);
+    self.stage(serialFor, true);
     self.fresh_.build(mobileSlots_, staged_, fixedSizes_, serialFor, groupsOfAll());
     self.freshTree_.isStale.store(true, std::memory_order_relaxed);
     ++self.filingCount_;
@@ -103,6 +106,8 @@ void Grid<Scalar>::takeFresh() noexcept {
     std::swap(mobileTree_.tree, freshTree_.tree);
     mobileTree_.isStale.store(freshTree_.isStale.load(std::memory_order_relaxed),
                               std::memory_order_relaxed);
+    sweeping_.clear();
+    sweepingTree_.isStale.store(true, std::memory_order_relaxed);
     dropList();
     if (!hasPairs_) {
         settle();
@@ -132,8 +137,9 @@ void Grid<Scalar>::growTrees(const Reading& reading) const {
             tree.isStale.store(false, std::memory_order_release);
         }
     };
-    grow(reading.isFresh ? self.freshTree_ : self.mobileTree_, reading.mobile);
+    reading.isFresh ? grow(self.freshTree_, fresh_) : grow(self.mobileTree_, mobile_);
     grow(self.restingTree_, resting_);
+    grow(self.sweepingTree_, sweeping_);
 }
 
 template auto Grid<float>::presentReading() const noexcept -> Reading;

@@ -27,7 +27,7 @@ std::size_t worthRefiling(std::size_t restingCount) {
 // Copies the mobile boxes side by side. Slots that are near each other in space are near each other
 // in mobileSlots_, but anywhere in records_.
 template <class Scalar>
-void Grid<Scalar>::stage(ParallelFor parallelFor) {
+void Grid<Scalar>::stage(ParallelFor parallelFor, bool isForQueries) {
     constexpr std::size_t kGrain = 4096;
     constexpr std::size_t kAhead = 12;
     const std::size_t count = mobileSlots_.size();
@@ -46,7 +46,7 @@ void Grid<Scalar>::stage(ParallelFor parallelFor) {
                 detail::prefetch(&records_[mobileSlots_[i + kAhead]]);
             }
             const Record& record = records_[mobileSlots_[i]];
-            staged_[i] = detail::padded(record.box);
+            staged_[i] = detail::padded(isForQueries ? record.box : standingBox(record));
             if (hasPairs_) {
                 stagedBefore_[i] = detail::padded(boxAtUpdate(mobileSlots_[i]));
             }
@@ -120,6 +120,7 @@ void Grid<Scalar>::fileMobile(ParallelFor parallelFor) {
     ++filingCount_;
     mobileTree_.isStale.store(true, std::memory_order_relaxed);
     cost_.filed += mobile_.size();
+    fileSweeping(parallelFor);
     dropList();
     isTableTorn_.store(false, std::memory_order_release);
 }
@@ -136,6 +137,24 @@ void Grid<Scalar>::dropList() noexcept {
     waitingRead_.store(0, std::memory_order_relaxed);
 }
 
+// What sweeps is filed apart, for queries: their boxes may be many times as large as those of what
+// stands, and no pair is looked for by them.
+template <class Scalar>
+void Grid<Scalar>::fileSweeping(ParallelFor parallelFor) {
+    std::erase_if(sweepingSlots_,
+                  [this](std::uint32_t slot) { return records_[slot].place != Place::sweeping; });
+    if (sweepingSlots_.empty() && sweeping_.size() == 0) {
+        return;
+    }
+    sweepingBoxes_.clear();
+    for (const std::uint32_t slot : sweepingSlots_) {
+        sweepingBoxes_.push_back(detail::padded(records_[slot].box));
+    }
+    sweeping_.build(sweepingSlots_, sweepingBoxes_, fixedSizes_, parallelFor);
+    sweepingTree_.isStale.store(true, std::memory_order_relaxed);
+    cost_.filed += sweeping_.size();
+}
+
 // Lists the mobile proxies in the order of their table, for the next time, and forgets those that
 // have left, whose slots may be given away again.
 template <class Scalar>
@@ -145,7 +164,9 @@ void Grid<Scalar>::settle() noexcept {
         std::copy_if(mobileSlots_.begin(), mobileSlots_.end(), std::back_inserter(nanSlots_),
                      [this](std::uint32_t slot) { return records_[slot].isNan; });
     }
+    const std::span<const std::uint32_t> sweeping = sweeping_.entrySlots();
     mobileSlots_.assign(mobile_.entrySlots().begin(), mobile_.entrySlots().end());
+    mobileSlots_.insert(mobileSlots_.end(), sweeping.begin(), sweeping.end());
     mobileSlots_.insert(mobileSlots_.end(), nanSlots_.begin(), nanSlots_.end());
     listedAtUpdate_ = mobileSlots_.size();
     giveBack(removed_);
@@ -155,7 +176,8 @@ void Grid<Scalar>::settle() noexcept {
 template <class Scalar>
 UpdateCost Grid<Scalar>::endUpdate() noexcept {
     cost_.resting = resting_.size() - restingErased_;
-    cost_.largestCell = std::max(mobile_.largestCell(), resting_.largestCell());
+    cost_.largestCell =
+        std::max({mobile_.largestCell(), resting_.largestCell(), sweeping_.largestCell()});
     woken_.clear();
     boxesAtUpdate_.clear();
     if (std::exchange(areRegrouped_, false)) {
@@ -167,7 +189,8 @@ UpdateCost Grid<Scalar>::endUpdate() noexcept {
         countUpdatesAnew();
     }
     if (config_.cellSize == 0 && !isTableTorn_.load(std::memory_order_relaxed)) {
-        const double finest = std::min(mobile_.finestCellSize(), resting_.finestCellSize());
+        const double finest = std::min(
+            {mobile_.finestCellSize(), resting_.finestCellSize(), sweeping_.finestCellSize()});
         cellSize_ = std::isinf(finest) ? Scalar(1) : static_cast<Scalar>(finest);
     }
     return std::exchange(cost_, {});
@@ -238,11 +261,12 @@ void Grid<Scalar>::wakeAll() noexcept {
     isTableTorn_.store(true, std::memory_order_relaxed);
 }
 
-template void Grid<float>::stage(ParallelFor);
+template void Grid<float>::stage(ParallelFor, bool);
 template bool Grid<float>::putQuietToRest(ParallelFor);
 template void Grid<float>::listResting();
 template void Grid<float>::fileResting(ParallelFor);
 template void Grid<float>::fileMobile(ParallelFor);
+template void Grid<float>::fileSweeping(ParallelFor);
 template void Grid<float>::settle() noexcept;
 template UpdateCost Grid<float>::endUpdate() noexcept;
 template void Grid<float>::countUpdatesAnew() noexcept;
@@ -250,11 +274,12 @@ template UpdateCost Grid<float>::update(ParallelFor);
 template void Grid<float>::wakeAll() noexcept;
 template void Grid<float>::forgetLastUpdate() noexcept;
 template void Grid<float>::dropList() noexcept;
-template void Grid<double>::stage(ParallelFor);
+template void Grid<double>::stage(ParallelFor, bool);
 template bool Grid<double>::putQuietToRest(ParallelFor);
 template void Grid<double>::listResting();
 template void Grid<double>::fileResting(ParallelFor);
 template void Grid<double>::fileMobile(ParallelFor);
+template void Grid<double>::fileSweeping(ParallelFor);
 template void Grid<double>::settle() noexcept;
 template UpdateCost Grid<double>::endUpdate() noexcept;
 template void Grid<double>::countUpdatesAnew() noexcept;

@@ -72,9 +72,11 @@ bool Grid<Scalar>::shiftRecord(std::uint32_t slot, const Point& shift) noexcept 
 template <class Scalar>
 void Grid<Scalar>::shiftTables(const Point& shift) {
     const bool isRestFiled = resting_.shiftOrigin(shift);
-    const bool isMobileFiled = mobile_.shiftOrigin(shift);
-    mobileTree_.isStale.store(true, std::memory_order_relaxed);
-    restingTree_.isStale.store(true, std::memory_order_relaxed);
+    const bool isSweepingFiled = sweeping_.shiftOrigin(shift);
+    const bool isMobileFiled = mobile_.shiftOrigin(shift) && isSweepingFiled;
+    for (TableTree* tree : {&mobileTree_, &restingTree_, &sweepingTree_}) {
+        tree->isStale.store(true, std::memory_order_relaxed);
+    }
     if (!isMobileFiled) {
         isTableTorn_.store(true, std::memory_order_release);
     }

@@ -44,6 +44,7 @@ Pairs<Scalar>::Pairs(Grid<Scalar>& grid, Sweeps<Scalar>* sweeps) : grid_(grid), 
 
 template <class Scalar>
 Pairs<Scalar>::~Pairs() {
+    grid_.endSweeps();
     grid_.hasPairs_ = false;
 }
 
@@ -185,7 +186,7 @@ void Pairs<Scalar>::sortCouples(std::vector<Couple>& couples) {
 }
 
 // A couple dies when its boxes overlapped at the last update, or were announced since, and do not
-// now. All those that are not watched are found here before their boxes are lost.
+// now, or when one of the two sweeps now, unless they touch on their ways, see findSwept(). All those that are not watched are found here before their boxes are lost.
 template <class Scalar>
 void Pairs<Scalar>::findDeaths(ParallelFor parallelFor) {
     const auto watched = amongMobile_.pairs();
@@ -200,7 +201,8 @@ void Pairs<Scalar>::findDeaths(ParallelFor parallelFor) {
             detail::prefetch(&grid_.records_[toResting[i + kAhead].b]);
         }
         const auto [place, slot] = toResting[i];
-        if (!overlaps(detail::unpadded(grid_.staged_[place]), grid_.records_[slot].box)) {
+        const Box& resting = grid_.standingBox(grid_.records_[slot]);
+        if (!overlaps(detail::unpadded(grid_.staged_[place]), resting)) {
             lost_.push_back(couple(grid_.mobileSlots_[place], slot));
         }
     }
@@ -464,8 +466,8 @@ void Pairs<Scalar>::walkResting(ParallelFor parallelFor) {
     }
 }
 
-// A couple that has touched on its way and overlaps now, or the other way round, is neither lost nor
-// new. What is asked about so far has come to overlap.
+// A couple that has touched on its way and stands and overlaps now, or the other way round, is neither
+// lost nor new. What is asked about so far has come to overlap.
 template <class Scalar>
 void Pairs<Scalar>::findSwept(ParallelFor parallelFor) {
     sweeps_->findContacts(parallelFor);
@@ -541,7 +543,8 @@ bool Pairs<Scalar>::isRefused(Couple c) const noexcept {
 
 template <class Scalar>
 bool Pairs<Scalar>::overlapNow(Couple c) const noexcept {
-    return overlaps(grid_.records_[first(c)].box, grid_.records_[second(c)].box);
+    return overlaps(grid_.standingBox(grid_.records_[first(c)]),
+                    grid_.standingBox(grid_.records_[second(c)]));
 }
 
 template <class Scalar>

@@ -4,9 +4,10 @@
 // The exact set of overlapping pairs of a grid, as the changes from one update to the next.
 //
 // A pair is two proxies whose closed boxes overlap, whose groups let them (Grid::setGroups()), and which
-// the filter accepts; with Sweeps, whose boxes overlap now or touch on their ways. update() tells which pairs were born and which died since
-// the last one, each once, sorted; what persists is not touched. Nothing is remembered of a pair but
-// what boxes and ways tell: a pair is new when they touch now and did not at the last update.
+// the filter accepts; where one of them sweeps, which touch on their ways. update() tells which pairs
+// were born and which died since the last one, each once, sorted; what persists is not touched. Nothing
+// is remembered of a pair but what boxes and ways tell: a pair is new when they touch now and did not at
+// the last update.
 //
 // A frame   move proxies in the grid, then update() here (it updates the grid).
 // Threads   every member needs the grid and this object for itself.
@@ -116,9 +117,10 @@ public:
     PairChanges update(PairFilter filter = acceptAllPairs, ParallelFor parallelFor = serialFor) &;
 
     /// Pairs of one proxy, which is alive (asserted), that have come to overlap since the last update,
-    /// at once; update() will not report them again. Returns these births, but not what it meets on its
-    /// way. Deaths, now and then, of pairs announced since the last update of which a proxy was
-    /// removed since: they do not gather where nobody updates. update() reports the rest of them.
+    /// at once; update() will not report them again. Returns these births; of what sweeps, itself or
+    /// another one, not what it meets on its way, but what it touches where that begins. Deaths, now and
+    /// then, of pairs announced since the last update of which a proxy was removed since: they do not
+    /// gather where nobody updates. update() reports the rest of them.
     /// Cost: that of a box query.
     PairChanges announce(ProxyId id, PairFilter filter) &;
 
@@ -161,7 +163,7 @@ public:
     /// - The watched couples are the overlapping ones that may pair and of which one is mobile, each once.
     /// - count() is the number of overlapping and swept couples that may pair, less the refused ones, and
     ///   of the pairs that are kept.
-    /// - What is swept does not overlap.
+    /// - Of each swept couple one sweeps.
     /// - The pairs that are kept overlap and may not pair.
     [[nodiscard]] std::string validate() const;
 
@@ -190,6 +192,8 @@ private:
         return {grid_.idOf(first(c)), grid_.idOf(second(c))};
     }
     [[nodiscard]] bool overlapNow(Couple c) const noexcept;
+    [[nodiscard]] bool touchAtStart(std::uint32_t a, std::uint32_t b) const;
+    [[nodiscard]] Box boxAtStart(std::uint32_t slot) const;
     [[nodiscard]] bool isAtRest(Couple c) const noexcept;
     [[nodiscard]] bool isRefused(Couple c) const noexcept;
     [[nodiscard]] bool isSwept(Couple c) const noexcept;
@@ -277,7 +281,9 @@ private:
     detail::FlatSet kept_;
 
     Sweeps<Scalar>* sweeps_;
-    std::vector<Couple> swept_;     // couples that touched on their ways at the last update; sorted
+    // Couples of which one swept at the last update, and that touched on their ways; sorted. All the
+    // others follow from boxes: what sweeps has none there, see Grid::standingBox().
+    std::vector<Couple> swept_;
     std::vector<Couple> sweptNow_;  // the same of the update under way
 
     // What endUpdate() changes, besides: kept_ by the first two, and what is not refused any more.

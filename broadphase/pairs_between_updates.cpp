@@ -5,6 +5,7 @@
 #include <broadphase/pairs.hpp>
 
 #include <broadphase/detail/join.hpp>
+#include <broadphase/sweeps.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -109,7 +110,7 @@ void Pairs<Scalar>::askAgain(Couple c) {
     if (!isRefused(c)) {
         standing_.push_back(c);
         asked_.push_back(c);
-    } else if (overlapNow(c) || isSwept(c)) {
+    } else if (isSwept(c) || touchAtStart(first(c), second(c))) {
         asked_.push_back(c);
     }
 }
@@ -320,7 +321,8 @@ template <class IsNamed>
 void Pairs<Scalar>::findUnknown(std::uint32_t slot, const IsNamed& isNamed) {
     const auto add = [&](ProxyId other) {
         if (other.index != slot && (isNamed(slot) || isNamed(other.index)) &&
-            !wasKnown(slot, other.index) && grid_.mayPairNow(slot, other.index)) {
+            !wasKnown(slot, other.index) && grid_.mayPairNow(slot, other.index) &&
+            touchAtStart(slot, other.index)) {
             const Couple c = couple(slot, other.index);
             if (!announced_.contains(c) && !isSwept(c)) {
                 unknown_.push_back(c);
@@ -329,7 +331,18 @@ void Pairs<Scalar>::findUnknown(std::uint32_t slot, const IsNamed& isNamed) {
         }
     };
     CollectInto<decltype(add)> collector{add};
-    grid_.visit(BoxRegion<Scalar>{grid_.records_[slot].box}, collector);
+    grid_.visit(BoxRegion<Scalar>{boxAtStart(slot)}, collector);
+}
+
+// Where a proxy alive is now, of what sweeps where its way begins.
+template <class Scalar>
+Aabb<Scalar> Pairs<Scalar>::boxAtStart(std::uint32_t slot) const {
+    return sweeps_ != nullptr ? sweeps_->motion(grid_.idOf(slot)).box : grid_.records_[slot].box;
+}
+
+template <class Scalar>
+bool Pairs<Scalar>::touchAtStart(std::uint32_t a, std::uint32_t b) const {
+    return overlaps(boxAtStart(a), boxAtStart(b));
 }
 
 template <class Scalar>
@@ -350,6 +363,10 @@ template void Pairs<double>::announceUnknown() noexcept;
 template void Pairs<float>::markAnnounced(std::span<const Couple>, bool) noexcept;
 template void Pairs<double>::markAnnounced(std::span<const Couple>, bool) noexcept;
 template void Pairs<float>::findUnknown(std::uint32_t);
+template Aabb<float> Pairs<float>::boxAtStart(std::uint32_t) const;
+template bool Pairs<float>::touchAtStart(std::uint32_t, std::uint32_t) const;
 template void Pairs<double>::findUnknown(std::uint32_t);
+template Aabb<double> Pairs<double>::boxAtStart(std::uint32_t) const;
+template bool Pairs<double>::touchAtStart(std::uint32_t, std::uint32_t) const;
 
 }  // namespace hashphase

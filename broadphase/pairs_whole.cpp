@@ -84,9 +84,13 @@ std::string Pairs<Scalar>::validate() const {
     if (!std::all_of(kept_.keys().begin(), kept_.keys().end(), isKept)) {
         return "The pairs that are kept overlap and may not pair: broken.";
     }
-    const bool isApart =
-        std::none_of(swept_.begin(), swept_.end(), [this](Couple c) { return overlapNow(c); });
-    return isApart ? std::string() : "What is swept does not overlap: broken.";
+    const auto sweeps = [this](std::uint32_t slot) {
+        return grid_.records_[slot].place == Grid<Scalar>::Place::sweeping;
+    };
+    const bool oneSweeps = std::all_of(swept_.begin(), swept_.end(), [&](Couple c) {
+        return sweeps(first(c)) || sweeps(second(c));
+    });
+    return oneSweeps ? std::string() : "Of each swept couple one sweeps: broken.";
 }
 
 template void Pairs<float>::forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)>) const;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/sweeps.hpp>
 
+#include <broadphase/detail/ensure_capacity.hpp>
+#include <broadphase/detail/origin_shift.hpp>
 #include <broadphase/diagnostics.hpp>
 
 #include <utility>
@@ -9,8 +11,19 @@ namespace hashphase {
 
 template <class Scalar>
 void Sweeps<Scalar>::set(ProxyId id, const Vector3<Scalar>& displacement, Sweep sweep) {
-    HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid can sweep.");
+    set(Motion{id, {{}, displacement}, sweep, true});
+}
+
+template <class Scalar>
+void Sweeps<Scalar>::set(ProxyId id, const MovingBox<Scalar>& way, Sweep sweep) {
+    set(Motion{id, way, sweep, false});
+}
+
+template <class Scalar>
+void Sweeps<Scalar>::set(const Motion& motion) {
+    HASHPHASE_ASSERT(grid_.contains(motion.id), "Only a proxy of the grid can sweep.");
     HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(&grid_), detail::kMustNotChange);
+    const Vector3<Scalar>& displacement = motion.way.displacement;
     const bool isUsable = displacement.allFinite();
     if (!isUsable && !reportedBadData_) {
         reportedBadData_ = true;
@@ -18,29 +31,30 @@ void Sweeps<Scalar>::set(ProxyId id, const Vector3<Scalar>& displacement, Sweep 
             "A proxy was to sweep by a displacement that is NaN or infinite. It counts as "
             "standing; further ones do so silently.");
     }
-    const std::uint32_t known = motionOf(id.index);
-    if (!isUsable || sweep == Sweep::none || displacement.isZero(0)) {
+    const std::uint32_t slot = motion.id.index;
+    const std::uint32_t known = motionOf(slot);
+    if (!isUsable || motion.sweep == Sweep::none || displacement.isZero(0)) {
         if (known != kNone) {
             end(known);
-            grid_.noteChange(id.index);  // what it has met is to be given up
+            grid_.endSweep(slot);  // what it has met is to be given up
         }
         return;
     }
     if (known != kNone) {
-        motions_[known] = {id, displacement, sweep};
+        motions_[known] = motion;
         return;
     }
     makeRoom();
     auto place = static_cast<std::uint32_t>(motions_.size());
     if (firstVacant_ == kNone) {
-        motions_.push_back({id, displacement, sweep});
+        motions_.push_back(motion);
     } else {
         place = std::exchange(firstVacant_, motions_[firstVacant_].id.index);
         --vacantCount_;
-        motions_[place] = {id, displacement, sweep};
+        motions_[place] = motion;
     }
-    motionOfSlot_[id.index] = place;
-    grid_.noteChange(id.index);
+    motionOfSlot_[slot] = place;
+    grid_.noteChange(slot);
 }
 
 template <class Scalar>
@@ -48,7 +62,18 @@ MovingBox<Scalar> Sweeps<Scalar>::motion(ProxyId id) const {
     if (!sweeps(id)) {
         return {grid_.box(id)};
     }
-    return {grid_.box(id), motions_[motionOf(id.index)].displacement};
+    return wayOf(motions_[motionOf(id.index)]);
+}
+
+template <class Scalar>
+void Sweeps<Scalar>::shiftOrigin(const Vector3<Scalar>& shift) {
+    HASHPHASE_ASSERT(shift.allFinite(), "The origin is shifted by what is finite.");
+    if (!shift.allFinite()) {
+        return;
+    }
+    for (Motion& motion : motions_) {
+        motion.way.box = detail::shiftedBox(motion.way.box, shift);
+    }
 }
 
 // Its place stays, for the next one that begins: a query whose collector ends motions goes on where
@@ -88,9 +113,12 @@ void Sweeps<Scalar>::beginUpdate() {
     if (!motions_.empty()) {
         makeRoom();
     }
+    detail::ensureCapacity(grid_.sweepingSlots_, motions_.size());
+    grid_.sweepingSlots_.clear();
     for (std::uint32_t i = 0; i < motions_.size();) {
         if (grid_.contains(motions_[i].id)) {
-            grid_.noteChange(motions_[i].id.index);
+            grid_.beginSweep(motions_[i].id.index);
+            motions_[i].way = wayOf(motions_[i]);
             ++i;
         } else {
             drop(i);

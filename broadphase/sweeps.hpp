@@ -7,6 +7,9 @@
 //
 // A frame   Grid::move() to where the proxy is when the frame begins, set() how far it moves until
 //           the frame ends, then Pairs::update(). Both hold until they are set again.
+// Queries   of the grid find the proxy by its box in the grid, which may be another one than that which
+//           moves: as large as the way, for those who ask while the proxy is anywhere on it. visit()
+//           finds it on its way, more exactly.
 // Modes     cost differently and find the same: pairs are confirmed by firstContact(), which is
 //           exact.
 // Cost      what sweeps costs time, whatever its speed, but for Sweep::box, which reads all that is in
@@ -50,12 +53,23 @@ public:
     Sweeps(const Sweeps&) = delete;
     Sweeps& operator=(const Sweeps&) = delete;
 
-    /// Lets the proxy move by `displacement` [m] in this frame, from where it is. No displacement, or
-    /// Sweep::none, ends that. Where memory runs out, nothing has changed. Cost: O(1) amortised.
+    /// Lets the proxy's box move by `displacement` [m] in this frame, from where it is. No
+    /// displacement, or Sweep::none, ends that. Where memory runs out, nothing has changed.
+    /// Cost: O(1) amortised.
     void set(ProxyId id, const Vector3<Scalar>& displacement, Sweep sweep = Sweep::automatic);
 
-    /// The proxy's box and displacement; none when it does not sweep.
+    /// The same for a box of its own, from which alone the pairs of the proxy follow as long as it
+    /// sweeps. The proxy's box in the grid is what queries see.
+    void set(ProxyId id, const MovingBox<Scalar>& way, Sweep sweep = Sweep::automatic);
+
+    /// The box that moves, where it begins, and its displacement; when the proxy does not sweep, its
+    /// box, and none.
     [[nodiscard]] MovingBox<Scalar> motion(ProxyId id) const;
+
+    /// Moves the origin of all coordinates to `shift` [m]: for the boxes of their own that motions have,
+    /// as Grid::shiftOrigin() for those of the grid. A shift that is not finite is asserted, and does
+    /// nothing. Cost: O(proxies that sweep).
+    void shiftOrigin(const Vector3<Scalar>& shift);
 
     /// Number of proxies that sweep, those included that were removed since the last update.
     [[nodiscard]] std::size_t size() const noexcept { return motions_.size() - vacantCount_; }
@@ -83,7 +97,7 @@ private:
     using Box = Aabb<Scalar>;
     using Motion = detail::Motion<Scalar>;
 
-    static constexpr std::uint32_t kNone = detail::kNoMotion;
+    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
     [[nodiscard]] std::uint32_t motionOf(std::uint32_t slot) const noexcept {
         return slot < motionOfSlot_.size() ? motionOfSlot_[slot] : kNone;
@@ -93,15 +107,18 @@ private:
         const std::uint32_t known = motionOf(id.index);
         return known != kNone && motions_[known].id == id;
     }
+    /// As it is now.
+    [[nodiscard]] MovingBox<Scalar> wayOf(const Motion& motion) const {
+        return {motion.isFromGrid ? grid_.box(motion.id) : motion.way.box, motion.way.displacement};
+    }
     [[nodiscard]] std::optional<Scalar> keyOnTheWay(const auto& region, const Motion& motion) const;
+    void set(const Motion& motion);
     void end(std::uint32_t motion) noexcept;
     void drop(std::uint32_t motion) noexcept;
     void makeRoom();
 
     void beginUpdate();
-    void findContacts(ParallelFor parallelFor) {
-        search_.find(motions_, motionOfSlot_, parallelFor);
-    }
+    void findContacts(ParallelFor parallelFor) { search_.find(motions_, parallelFor); }
     /// What findContacts() found.
     [[nodiscard]] std::span<const std::uint64_t> contacts() const noexcept {
         return search_.contacts();
@@ -119,7 +136,7 @@ private:
 
 template <class Scalar>
 std::optional<Scalar> Sweeps<Scalar>::keyOnTheWay(const auto& region, const Motion& motion) const {
-    const MovingBox<Scalar> way{grid_.box(motion.id), motion.displacement};
+    const MovingBox<Scalar> way = wayOf(motion);
     const auto keyOf = [&](const Box& box) -> std::optional<Scalar> {
         const Scalar key = region.key(box);
         return key >= 0 ? std::optional(key) : std::nullopt;

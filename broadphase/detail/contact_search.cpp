@@ -9,7 +9,6 @@
 
 #include <broadphase/detail/join.hpp>
 #include <broadphase/detail/padded_box.hpp>
-#include <broadphase/detail/prefetch.hpp>
 #include <broadphase/detail/radix_sort.hpp>
 #include <broadphase/grid.hpp>
 
@@ -125,16 +124,8 @@ Way<Scalar> wayOf(const MovingBox<Scalar>& moving) {
 }  // namespace
 
 template <class Scalar>
-const Aabb<Scalar>& ContactSearch<Scalar>::boxOf(std::uint32_t slot) const noexcept {
-    return grid_.records_[slot].box;
-}
-
-template <class Scalar>
-void ContactSearch<Scalar>::find(std::span<const Motion<Scalar>> motions,
-                                 std::span<const std::uint32_t> motionOfSlot,
-                                 ParallelFor parallelFor) {
+void ContactSearch<Scalar>::find(std::span<const Motion<Scalar>> motions, ParallelFor parallelFor) {
     motions_ = motions;
-    motionOfSlot_ = motionOfSlot;
     cost_ = {};
     cost_.sweeping = static_cast<std::uint32_t>(motions_.size());
     contacts_.clear();
@@ -167,7 +158,7 @@ void ContactSearch<Scalar>::cutIntoSegments() {
     const auto cellSize = static_cast<Scalar>(
         std::min(grid_.mobile_.finestCellSize(), grid_.resting_.finestCellSize()));
     for (std::uint32_t i = 0; i < motions_.size(); ++i) {
-        ways_.push_back(wayOf(moving(motions_[i])));
+        ways_.push_back(wayOf(motions_[i].way));
         cut(i, world, cellSize);
     }
     cutFewRays();
@@ -178,7 +169,7 @@ void ContactSearch<Scalar>::cutIntoSegments() {
 // Beyond the world there is nothing to be met.
 template <class Scalar>
 void ContactSearch<Scalar>::cut(std::uint32_t motion, const Aabb<double>& world, Scalar cellSize) {
-    const MovingBox<Scalar> way = moving(motions_[motion]);
+    const MovingBox<Scalar>& way = motions_[motion].way;
     const Part within = partWithin(way, world);
     if (within.from > within.to) {
         return;
@@ -213,7 +204,7 @@ void ContactSearch<Scalar>::cutFewRays() {
         return;
     }
     for (const LongWay& ray : rays_) {
-        addSegments(ray.motion, moving(motions_[ray.motion]), ray.within,
+        addSegments(ray.motion, motions_[ray.motion].way, ray.within,
                     static_cast<int>(ray.segments));
     }
     rays_.clear();
@@ -231,7 +222,7 @@ void ContactSearch<Scalar>::addSegments(std::uint32_t motion, const MovingBox<Sc
     }
 }
 
-// Those that sweep do not stand. A few segments at a time: what is found around them is then still in
+// A few segments at a time: what is found around them is then still in
 // the processor's cache.
 template <class Scalar>
 void ContactSearch<Scalar>::meetStanding(ParallelFor parallelFor) {
@@ -277,19 +268,11 @@ template <class Scalar>
 void ContactSearch<Scalar>::addTouching(const Table<Scalar>& table,
                                         std::span<const IndexPair> candidates,
                                         PairSink& sink) const {
-    constexpr std::size_t kAhead = 8;  // the slots are all over the memory
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-        if (i + kAhead < candidates.size()) {
-            prefetch(&motionOfSlot_[table.slot(candidates[i + kAhead].b)]);
-        }
-        const auto [segment, entry] = candidates[i];
+    for (const auto [segment, entry] : candidates) {
         const Motion<Scalar>& motion = motions_[motionOfSegment_[segment]];
-        const std::uint32_t slot = table.slot(entry);
-        const MovingBox<Scalar> way = moving(motion);
-        const MovingBox<Scalar> standing{table.box(entry)};
-        if (!sweeps(slot) && !overlaps(way.box, standing.box) && firstContact(way, standing)) {
+        if (firstContact(motion.way, MovingBox<Scalar>{table.box(entry)})) {
             makeRoom(sink, 1);
-            *sink.next++ = {motion.id.index, slot};
+            *sink.next++ = {motion.id.index, table.slot(entry)};
         }
     }
 }
@@ -297,16 +280,12 @@ void ContactSearch<Scalar>::addTouching(const Table<Scalar>& table,
 /// Takes what a ray finds: key() has asked firstContact() already.
 template <class Scalar>
 struct ContactSearch<Scalar>::ContactsOfRay {
-    const ContactSearch& search;
     const Motion<Scalar>& motion;
     PairSink& sink;
 
     void add(ProxyId id, Scalar /*time*/) {
-        const Box& own = search.boxOf(motion.id.index);
-        if (!search.sweeps(id.index) && !overlaps(own, search.boxOf(id.index))) {
-            makeRoom(sink, 1);
-            *sink.next++ = {motion.id.index, id.index};
-        }
+        makeRoom(sink, 1);
+        *sink.next++ = {motion.id.index, id.index};
     }
     static constexpr Scalar limit() { return 1; }
 };
@@ -314,15 +293,18 @@ struct ContactSearch<Scalar>::ContactsOfRay {
 template <class Scalar>
 void ContactSearch<Scalar>::meetStandingByRay(ParallelFor parallelFor) {
     constexpr std::size_t kGrain = 16;
+    const auto reading = grid_.presentReading();
     KernelCost cost;
     touchingNow_.clear();
     parts_.collect(parallelFor, rays_.size(), kGrain, touchingNow_, cost,
                    [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost& own) {
                        for (std::size_t i = first; i < last; ++i) {
                            const Motion<Scalar>& motion = motions_[rays_[i].motion];
-                           ContactsOfRay contacts{*this, motion, sink};
-                           const MovingBoxRegion<Scalar> region(moving(motion));
-                           own.boxesTested += grid_.visit(region, contacts).boxesTested;
+                           ContactsOfRay contacts{motion, sink};
+                           const MovingBoxRegion<Scalar> region(motion.way);
+                           QueryCost read;
+                           grid_.visitTables(reading, reading.standing(), region, contacts, read);
+                           own.boxesTested += read.boxesTested;
                        }
                    });
     cost_.boxesTested += cost.boxesTested;
@@ -336,7 +318,7 @@ double ContactSearch<Scalar>::quantile(double share, const ValueOf& valueOf) {
     constexpr std::size_t kSample = 64;
     sample_.clear();
     for (std::size_t i = 0; i < motions_.size(); i += motions_.size() / kSample + 1) {
-        const auto value = static_cast<double>(valueOf(moving(motions_[i])));
+        const auto value = static_cast<double>(valueOf(motions_[i].way));
         if (!std::isnan(value)) {
             sample_.push_back(value);
         }
@@ -384,7 +366,7 @@ void ContactSearch<Scalar>::meetEachOther(ParallelFor parallelFor) {
         const double to = static_cast<double>(slice + 1) / count;
         slice_.clear();
         for (const Motion<Scalar>& motion : motions_) {
-            slice_.push_back(padded(wayBounds(moving(motion), from, to)));
+            slice_.push_back(padded(wayBounds(motion.way, from, to)));
         }
         sliceTable_.build(motionNumbers_, slice_, {}, parallelFor);
         KernelCost cost;
@@ -407,9 +389,7 @@ void ContactSearch<Scalar>::addMeeting(ParallelFor parallelFor) {
                        for (const auto [i, j] : candidates_.pairs().subspan(first, last - first)) {
                            const Motion<Scalar>& a = motions_[sliceTable_.slot(i)];
                            const Motion<Scalar>& b = motions_[sliceTable_.slot(j)];
-                           const MovingBox<Scalar> wayOfA = moving(a);
-                           const MovingBox<Scalar> wayOfB = moving(b);
-                           if (!overlaps(wayOfA.box, wayOfB.box) && firstContact(wayOfA, wayOfB)) {
+                           if (firstContact(a.way, b.way)) {
                                *sink.next++ = {a.id.index, b.id.index};
                            }
                        }

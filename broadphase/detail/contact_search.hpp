@@ -29,11 +29,10 @@ namespace hashphase::detail {
 template <class Scalar>
 struct Motion {
     ProxyId id;
-    Vector3<Scalar> displacement;
+    MovingBox<Scalar> way;
     Sweep sweep;
+    bool isFromGrid;  // it begins at the proxy's box; way.box is that of the update under way
 };
-
-inline constexpr std::uint32_t kNoMotion = ~std::uint32_t{0};
 
 /// A part of a frame.
 struct Part {
@@ -46,10 +45,9 @@ class ContactSearch {
 public:
     explicit ContactSearch(const Grid<Scalar>& grid) : grid_(grid) {}
 
-    /// Looks for everything that the motions' proxies touch on their ways but not yet at the start.
-    /// `motionOfSlot` says which of them, if any, is a slot's.
-    void find(std::span<const Motion<Scalar>> motions, std::span<const std::uint32_t> motionOfSlot,
-              ParallelFor parallelFor);
+    /// Looks for everything that the motions' proxies touch on their ways, from the start on: what
+    /// stands in the grid's tables of it, and each other.
+    void find(std::span<const Motion<Scalar>> motions, ParallelFor parallelFor);
 
     /// What find() found: two slots each, the smaller one on top; sorted.
     [[nodiscard]] std::span<const std::uint64_t> contacts() const noexcept { return contacts_; }
@@ -57,7 +55,6 @@ public:
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
 private:
-    using Box = Aabb<Scalar>;
     using Point = Vector3<Scalar>;
 
     struct ContactsOfRay;
@@ -68,14 +65,6 @@ private:
         Part within;
         double segments;
     };
-
-    [[nodiscard]] bool sweeps(std::uint32_t slot) const noexcept {
-        return motionOfSlot_[slot] != kNoMotion;
-    }
-    [[nodiscard]] const Box& boxOf(std::uint32_t slot) const noexcept;
-    [[nodiscard]] MovingBox<Scalar> moving(const Motion<Scalar>& motion) const noexcept {
-        return {boxOf(motion.id.index), motion.displacement};
-    }
 
     void cutIntoSegments();
     void cut(std::uint32_t motion, const Aabb<double>& world, Scalar cellSize);
@@ -95,8 +84,7 @@ private:
                      PairSink& sink) const;
 
     const Grid<Scalar>& grid_;
-    std::span<const Motion<Scalar>> motions_;      // of the present find()
-    std::span<const std::uint32_t> motionOfSlot_;  // the same
+    std::span<const Motion<Scalar>> motions_;  // of the present find()
     SweepCost cost_;
     std::vector<std::uint64_t> contacts_;
 

@@ -71,13 +71,13 @@ struct Grid<Scalar>::RayReader {
     const Region& region;
     Collector& collector;
     QueryCost& cost;
-    Place place;
+    const Filing& filing;
 
     [[nodiscard]] auto limit() const { return collector.limit(); }
 
     bool read(std::uint32_t slot) {
         // The tree is as old as its table: who stands there may have left.
-        if (!grid.standsIn(place, slot, reading)) {
+        if (!grid.standsIn(filing, slot, reading)) {
             return true;
         }
         const Scalar key = region.key(grid.records_[slot].box);
@@ -95,7 +95,7 @@ template <class Scalar>
 template <class Region, class Collector>
 struct Grid<Scalar>::VolumeReader {
     VisitReader<Region, Collector> reader;
-    Place place;
+    const Filing& filing;
     bool mayHaveLeft = false;  // some that are filed in the table
     detail::KernelCost walk{};
 
@@ -139,7 +139,7 @@ private:
         bool goesOn = true;
         for (std::size_t i = 0; i < taken.size() && goesOn; ++i) {
             // Who is listed may have left: erased, or waiting.
-            if (!kMayHaveLeft || reader.grid.standsIn(place, taken[i], reader.reading)) {
+            if (!kMayHaveLeft || reader.grid.standsIn(filing, taken[i], reader.reading)) {
                 ++hits;
                 reader.collector.add(reader.grid.idOf(taken[i]), Scalar(0));
                 goesOn = reader.limit() >= 0;
@@ -152,41 +152,35 @@ private:
 
 template <class Scalar>
 template <class Region, class Collector>
-bool Grid<Scalar>::visitTables(const Reading& reading, const Region& region, Collector& collector,
-                               QueryCost& cost) const {
+bool Grid<Scalar>::visitTables(const Reading& reading, std::span<const Filing> filings,
+                               const Region& region, Collector& collector, QueryCost& cost) const {
     if constexpr (requires { region.segment(); }) {
         const RayRegion<Scalar>& ray = region.segment();
         if (treesAreStale(reading)) {
             growTrees(reading);
         }
-        using Reader = RayReader<Region, Collector>;
-        Reader mobile{*this, reading, region, collector, cost, Place::mobile};
-        Reader resting{*this, reading, region, collector, cost, Place::resting};
-        return detail::walkTree(reading.tree.tree, ray, cost, mobile) &&
-               detail::walkTree(restingTree_.tree, ray, cost, resting);
+        return std::ranges::all_of(filings, [&](const Filing& filing) {
+            RayReader<Region, Collector> reader{*this, reading, region, collector, cost, filing};
+            return detail::walkTree(filing.tree->tree, ray, cost, reader);
+        });
     } else if constexpr (requires { region.volume(); }) {
-        for (const detail::Table<Scalar>* table : {&reading.mobile, &resting_}) {
-            const bool mayHaveLeft = (!reading.isFresh && !waiting_.empty()) ||
-                                     (table == &resting_ && restingErased_ > 0);
+        return std::ranges::all_of(filings, [&](const Filing& filing) {
+            const bool mayHaveLeft =
+                (!reading.isFresh && !waiting_.empty()) || (filing.isResting && restingErased_ > 0);
             VolumeReader<Region, Collector> reader{
-                {*this, reading, *table, region, collector, cost},
-                table == &resting_ ? Place::resting : Place::mobile,
-                mayHaveLeft};
+                {*this, reading, *filing.table, region, collector, cost}, filing, mayHaveLeft};
             const bool goesOn = region.isEmpty() || reader.read();
             cost.rowsVisited += reader.walk.rowsVisited;
             cost.boxesTested += reader.walk.boxesTested;
-            if (!goesOn) {
-                return false;
-            }
-        }
-        return true;
+            return goesOn;
+        });
     } else {
-        using Reader = VisitReader<Region, Collector>;
-        Reader mobile{*this, reading, reading.mobile, region, collector, cost};
-        Reader resting{*this, reading, resting_, region, collector, cost};
         const Box bounds = region.bounds();
-        return detail::walkTable(reading.mobile, bounds, cost, mobile) &&
-               detail::walkTable(resting_, bounds, cost, resting);
+        return std::ranges::all_of(filings, [&](const Filing& filing) {
+            VisitReader<Region, Collector> reader{*this,  reading,   *filing.table,
+                                                  region, collector, cost};
+            return detail::walkTable(*filing.table, bounds, cost, reader);
+        });
     }
 }
 
@@ -229,7 +223,7 @@ QueryCost Grid<Scalar>::visit(const Reading& reading, const Region& region,
     };
     const detail::QueryScope scope(this, kReadsRows ? Changes::forbidden : Changes::allowed);
     QueryCost cost;
-    if (visitTables(reading, region, collector, cost) && !reading.isFresh) {
+    if (visitTables(reading, reading.filings(), region, collector, cost) && !reading.isFresh) {
         visitWaiting(region, collector, cost);
     }
     return cost;
@@ -246,7 +240,7 @@ QueryCost Grid<Scalar>::visitTogether(const Reading& reading, std::span<const Re
     // Where nothing waits, all that the tables list is filed there.
     const bool isAllFiled = reading.isFresh || waiting_.empty();
     QueryCost cost;
-    for (const detail::Table<Scalar>* table : {&reading.mobile, &resting_}) {
+    for (const auto& [table, tree, isResting] : reading.filings()) {
         if (table->size() == 0) {
             continue;
         }
@@ -365,7 +359,7 @@ template <class Scalar>
 template <class Visit>
 void Grid<Scalar>::forEachFiled(Visit&& visit) const {
     const Reading reading = beginReading();
-    for (const detail::Table<Scalar>* table : {&reading.mobile, &resting_}) {
+    for (const auto& [table, tree, isResting] : reading.filings()) {
         for (std::uint32_t entry = 0; entry < table->size(); ++entry) {
             const Box box = table->box(entry);
             if (isFiled(table->slot(entry), reading) && !hasNan(box)) {

@@ -55,6 +55,9 @@ constexpr double kCellsPerBox = 4;
 
 template <class Scalar>
 void SizeCensus::add(const Aabb<Scalar>& box) {
+    if (hasNan(box)) {
+        return;  // it is not filed
+    }
     isConcluded_ = false;
     ++total_;
     const auto extent = static_cast<double>(box.sizes().maxCoeff());

@@ -35,7 +35,8 @@ struct LevelSizes {
 /// it meets more samples or size classes than ever before.
 class SizeCensus {
 public:
-    /// Counts one box. Boxes with an infinite, NaN or negative edge count as fitting no level.
+    /// Counts one box, unless it has a NaN coordinate. Boxes with an infinite or negative edge count
+    /// as fitting no level.
     /// Min corners are sampled to learn how far the population spreads, and how unevenly.
     template <class Scalar>
     void add(const Aabb<Scalar>& box);

@@ -77,6 +77,9 @@ std::size_t SpatialHashBroadphase::shiftOrigin(const btVector3& shift) {
     const Vector3<btScalar> by = toEigen(shift);
     const std::size_t roundedCount = grid_.shiftOrigin(by);
     mustNoteGroups_ = mustNoteGroups_ || roundedCount > 0;
+    if (sweeps_ != nullptr) {
+        sweeps_->shiftOrigin(by);
+    }
     if (by.allFinite()) {
         for (std::uint32_t slot = 0; slot < uniqueIds_.size(); ++slot) {
             if (uniqueIds_[slot] != 0) {

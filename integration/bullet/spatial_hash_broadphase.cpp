@@ -153,13 +153,16 @@ void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& a
     }
 }
 
+// The grid has the box that Bullet has handed in, which holds the body at start and end of the step, and
+// wherever it stops on its way: queries see it there. It is Bullet's choice whether it does.
 void SpatialHashBroadphase::move(const Proxy& proxy) {
-    const std::optional<MovingBox<btScalar>> motion =
-        sweeps_ != nullptr ? detail::fastMotion(proxy, config_.fastFrom) : std::nullopt;
-    grid_.move(proxy.id, motion ? motion->box : toAabb(proxy.m_aabbMin, proxy.m_aabbMax));
+    Aabb<btScalar> box = toAabb(proxy.m_aabbMin, proxy.m_aabbMax);
+    const std::optional<detail::BodyMotion> motion =
+        sweeps_ != nullptr && !hasNan(box) ? detail::fastMotion(proxy, config_.fastFrom)
+                                           : std::nullopt;
+    grid_.move(proxy.id, motion ? box.merged(motion->bounds) : box);
     if (sweeps_ != nullptr) {
-        sweeps_->set(proxy.id, motion ? motion->displacement : Vector3<btScalar>(0, 0, 0),
-                     config_.sweep);
+        sweeps_->set(proxy.id, motion ? motion->way : MovingBox<btScalar>{box}, config_.sweep);
     }
 }
 
@@ -250,9 +253,12 @@ void SpatialHashBroadphase::noteGroupsOfAll() {
 void SpatialHashBroadphase::noteGroupsAround(const Proxy& proxy) {
     std::vector<ProxyId> found{proxy.id};
     CollectAll collector(found);
-    const Aabb<btScalar> bounds =
-        sweeps_ != nullptr ? wayBounds(sweeps_->motion(proxy.id)) : grid_.box(proxy.id);
-    visit(BoxRegion<btScalar>{bounds}, collector);
+    if (sweeps_ != nullptr) {
+        const Aabb<btScalar> bounds = wayBounds(sweeps_->motion(proxy.id));
+        sweeps_->visit(BoxRegion<btScalar>{bounds}, collector);
+    } else {
+        grid_.visit(BoxRegion<btScalar>{grid_.box(proxy.id)}, collector);
+    }
     for (const ProxyId id : found) {
         noteGroups(*proxyAt(id.index));
     }
@@ -467,11 +473,9 @@ bool SpatialHashBroadphase::doMeet(const btBroadphaseProxy& a, const btBroadphas
 
 void SpatialHashBroadphase::getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax) const {
     Aabb<btScalar> all;
-    grid_.forEach([&](ProxyId id, const Aabb<btScalar>& box) {
+    grid_.forEach([&](ProxyId /*id*/, const Aabb<btScalar>& box) {
         if (!hasNan(box)) {
-            const bool doesSweep =
-                sweeps_ != nullptr && !sweeps_->motion(id).displacement.isZero(0);
-            all.extend(doesSweep ? wayBounds(sweeps_->motion(id)) : box);
+            all.extend(box);
         }
     });
     aabbMin = all.isEmpty() ? btVector3(0, 0, 0) : toBullet(all.min());

@@ -77,13 +77,14 @@ struct SpatialHashConfig {
     /// integration/tbb/tbb_parallel_for.hpp. Called with count, grain and body, see ParallelFor.
     std::function<void(std::size_t count, std::size_t grain, LoopBody body)> parallelFor{};
 
-    /// How to find what a fast rigid body passes in a step; by default not at all. In place of the box
-    /// that Bullet hands in, which with m_useContinuous covers start and end and all that lies
-    /// between its corners, such a body is filed where it is, and sweeps along the way that Bullet has
-    /// predicted: its pairs are exactly what it touches at some time of the step, and queries find it
-    /// anywhere on its way. For worlds whose clients are btCollisionObjects. What sweeps does so until
-    /// its next setAabb(): after moving a body by hand between steps, set its interpolation transform
-    /// too. Costs a look at the shape of each body that moves.
+    /// How to find what a fast rigid body passes in a step; by default not at all. The box that Bullet
+    /// hands in covers such a body at start and end, with m_useContinuous, and all that lies between
+    /// its corners. It makes no pairs any more: the body sweeps along the way that Bullet has predicted,
+    /// and its pairs are exactly what it touches at some time of the step. Queries see it by its box, as
+    /// without a sweep, wherever on its way they ask; without m_useContinuous the box is extended to
+    /// the end for that. For worlds whose clients are btCollisionObjects. What sweeps does so until its
+    /// next setAabb(): after moving a body by hand between steps, set its interpolation transform too.
+    /// Costs a look at the shape of each body that moves.
     Sweep sweep = Sweep::none;
 
     /// A body is fast in a step in which it moves by more than this share of the smallest edge of its
@@ -201,7 +202,7 @@ public:
         return pairCache_;
     }
 
-    /// The box around all boxes, and all ways; zero when there is none. Cost: O(proxies).
+    /// The box around all boxes; zero when there is none. Cost: O(proxies).
     void getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax) const override;
 
     /// When no proxy is alive, forgets all that came before: m_uniqueId counts from 1 again, and the same
@@ -286,8 +287,8 @@ public:
     [[nodiscard]] btBroadphaseProxy* proxyOf(ProxyId id) const;
     [[nodiscard]] static ProxyId idOf(const btBroadphaseProxy* proxy);
 
-    /// What sweeps, and how far; nullptr unless SpatialHashConfig::sweep is set. The grid has what
-    /// sweeps where the step begins; Sweeps::visit() finds it on its way as well.
+    /// What sweeps, and how far; nullptr unless SpatialHashConfig::sweep is set. The grid has the box
+    /// around the way; Sweeps::visit() asks for the way itself, and Sweeps::motion() tells it.
     [[nodiscard]] const Sweeps<btScalar>* sweeps() const noexcept { return sweeps_.get(); }
 
     /// What the last calculateOverlappingPairs() cost.
@@ -351,11 +352,6 @@ private:
     void announce(const Proxy& proxy, btDispatcher* dispatcher);
     void move(const Proxy& proxy);
     [[nodiscard]] bool doMeet(const btBroadphaseProxy& a, const btBroadphaseProxy& b) const;
-    template <class Region, class Collector>
-    QueryCost visit(const Region& region, Collector& collector) const {
-        return sweeps_ != nullptr ? sweeps_->visit(region, collector)
-                                  : grid_.visit(region, collector);
-    }
     using IsPair = FunctionRef<bool(const btBroadphasePair& pair)>;
     void removeDeferred(IsPair isPair, btDispatcher* dispatcher);
     [[nodiscard]] bool isAccepted(const btBroadphasePair& pair) const {

@@ -143,7 +143,7 @@ void SpatialHashBroadphase::rayTest(const btVector3& rayFrom, const btVector3& r
                                     const btVector3& aabbMax) {
     const CallbackRayRegion region(rayFrom, rayTo, rayCallback, aabbMin, aabbMax);
     ProcessCollector<btBroadphaseRayCallback> collector{*this, rayCallback};
-    visit(region, collector);
+    grid_.visit(region, collector);
 }
 
 void SpatialHashBroadphase::rayTests(std::span<const BroadphaseRay> rays, ParallelFor parallelFor) {
@@ -161,8 +161,9 @@ QueryCost SpatialHashBroadphase::closestRay(const btVector3& from, const btVecto
     const btVector3 none(0, 0, 0);
     const RayFields fields(from, to);
     ShapeCaster caster(*this, from, to, callback);
-    return caster.limit() >= 0 ? visit(CallbackRayRegion(from, to, fields, none, none), caster)
-                               : QueryCost{};
+    return caster.limit() >= 0
+               ? grid_.visit(CallbackRayRegion(from, to, fields, none, none), caster)
+               : QueryCost{};
 }
 
 void SpatialHashBroadphase::closestRays(std::span<const ClosestRay> rays,
@@ -179,7 +180,7 @@ void SpatialHashBroadphase::closestRays(std::span<const ClosestRay> rays,
 void SpatialHashBroadphase::aabbTest(const btVector3& aabbMin, const btVector3& aabbMax,
                                      btBroadphaseAabbCallback& callback) {
     ProcessCollector<btBroadphaseAabbCallback> collector{*this, callback};
-    visit(BoxRegion<btScalar>{toAabb(aabbMin, aabbMax)}, collector);
+    grid_.visit(BoxRegion<btScalar>{toAabb(aabbMin, aabbMax)}, collector);
 }
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

@@ -53,7 +53,14 @@ void playSwept(const BoxScene<Scalar>& scene, const GridConfig& config, std::uin
         for (const Placed<Scalar>& proxy : script.proxies()) {
             if (random.chance(0.04)) {
                 const Sweep mode = random.chance(0.4) ? Sweep::none : kSweepModes[random.below(3)];
-                world.sweep(proxy.id, drawWay(scene, random, proxy.box), mode);
+                const Aabb<Scalar> start =
+                    random.chance(0.5) ? scene.nudge(random, proxy.box) : scene.draw(random);
+                const Vector3<Scalar> way = drawWay(scene, random, start);
+                if (random.chance(0.5)) {
+                    world.sweep(proxy.id, MovingBox<Scalar>{start, way}, mode);
+                } else {
+                    world.sweep(proxy.id, way, mode);
+                }
             } else if (random.chance(0.01)) {
                 world.announce(proxy.id);
             }

@@ -154,7 +154,9 @@ private:
         const Placed<Scalar>& proxy = life_.proxies()[life_.any(arguments)];
         constexpr std::array<Sweep, 4> kModes{Sweep::automatic, Sweep::line, Sweep::box,
                                               Sweep::none};
-        const Sweep mode = kModes[arguments.below(4)];
+        const std::uint32_t drawn = arguments.below(8);
+        const Sweep mode = kModes[drawn % 4];
+        const bool hasOwnBox = drawn >= 4;
         Vector3<Scalar> way;
         for (int axis = 0; axis < 3; ++axis) {
             const std::uint8_t byte = arguments.byte();
@@ -166,8 +168,13 @@ private:
         }
         story_.tell("sweep ", proxy.id.index, " in mode ", static_cast<int>(mode), " by ",
                     story_.isTold() ? textOf(way) : std::string());
-        ways_[proxy.id] = mode == Sweep::none ? Vector3<Scalar>(Vector3<Scalar>::Zero()) : way;
-        world_.sweep(proxy.id, way, mode);
+        if (hasOwnBox) {
+            const Aabb<Scalar> start = life_.proxies()[life_.any(arguments)].box;
+            story_.tell("from ", story_.isTold() ? textOf(start) : std::string());
+            world_.sweep(proxy.id, MovingBox<Scalar>{start, way}, mode);
+        } else {
+            world_.sweep(proxy.id, way, mode);
+        }
     }
 
     // Nothing that is touched on a way is left out; nothing is found that no box around a way touches.
@@ -180,13 +187,11 @@ private:
         std::sort(found.begin(), found.end());
         EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end()) << "each once";
         for (const Placed<Scalar>& proxy : life_.proxies()) {
-            const auto way = ways_.find(proxy.id);
-            const bool sweeps = way != ways_.end() && !way->second.isZero(0);
-            const MovingBox<Scalar> moving{
-                proxy.box, sweeps ? way->second : Vector3<Scalar>(Vector3<Scalar>::Zero())};
+            const bool sweeps = world_.doesSweep(proxy.id);
+            const MovingBox<Scalar> moving = world_.motion(proxy);
             const bool isFound = std::binary_search(found.begin(), found.end(), proxy.id);
             const bool touches =
-                sweeps ? overlaps(proxy.box, box) ||
+                sweeps ? overlaps(moving.box, box) ||
                              firstContactByRationals(moving, MovingBox<Scalar>{box}).has_value()
                        : overlaps(proxy.box, box);
             EXPECT_TRUE(isFound || !touches) << proxy.id.index << " is left out";
@@ -206,7 +211,6 @@ private:
 
     Story& story_;
     std::vector<std::uint32_t> colours_;  // by index of proxy
-    std::map<ProxyId, Vector3<Scalar>> ways_;
     bool maySweep_ = false;
     bool isSeldomUpdated_ = false;
     PairWorld<Scalar> world_;

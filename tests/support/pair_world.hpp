@@ -17,6 +17,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -62,11 +63,19 @@ public:
     }
     void sweep(ProxyId id, const Vector3<Scalar>& displacement, Sweep mode) {
         sweeps.set(id, displacement, mode);
-        if (mode != Sweep::none && displacement.allFinite() && !displacement.isZero(0)) {
-            ways_[id] = displacement;
-        } else if (ways_.erase(id) > 0) {
-            changed_.insert(id);
-        }
+        noteWay(id, {std::nullopt, displacement}, mode);
+    }
+    /// The same from a box of its own.
+    void sweep(ProxyId id, const MovingBox<Scalar>& way, Sweep mode) {
+        sweeps.set(id, way, mode);
+        noteWay(id, {way.box, way.displacement}, mode);
+    }
+    [[nodiscard]] bool doesSweep(ProxyId id) const { return ways_.contains(id); }
+    [[nodiscard]] MovingBox<Scalar> motion(const Placed<Scalar>& proxy) const {
+        const auto way = ways_.find(proxy.id);
+        return way == ways_.end() ? MovingBox<Scalar>{proxy.box}
+                                  : MovingBox<Scalar>{way->second.box.value_or(proxy.box),
+                                                      way->second.displacement};
     }
 
     /// Shifts the origin, and notes whose boxes that changes, as Grid::shiftOrigin() says.
@@ -79,6 +88,12 @@ public:
             }
         });
         ASSERT_EQ(grid.shiftOrigin(shift), count);
+        sweeps.shiftOrigin(shift);
+        for (auto& [id, way] : ways_) {
+            if (way.box) {
+                way.box = Aabb<Scalar>(way.box->min() - shift, way.box->max() - shift);
+            }
+        }
     }
 
     /// Gives the grid other pairs, for which everybody is new; before that it may have none for an update.
@@ -171,6 +186,19 @@ public:
     Pairs<Scalar> pairs;
 
 private:
+    struct Way {
+        std::optional<Aabb<Scalar>> box;  // none where it begins at the proxy's box
+        Vector3<Scalar> displacement;
+    };
+
+    void noteWay(ProxyId id, const Way& way, Sweep mode) {
+        if (mode != Sweep::none && way.displacement.allFinite() && !way.displacement.isZero(0)) {
+            ways_[id] = way;
+        } else if (ways_.erase(id) > 0) {
+            changed_.insert(id);
+        }
+    }
+
     auto recordingFilter() {
         return [this](ProxyId a, ProxyId b) {
             EXPECT_TRUE(grid.contains(a) && grid.contains(b))
@@ -244,16 +272,13 @@ private:
     }
 
     [[nodiscard]] bool doMeet(const Placed<Scalar>& a, const Placed<Scalar>& b) const {
-        if (overlaps(a.box, b.box) || ways_.empty()) {
+        if (!doesSweep(a.id) && !doesSweep(b.id)) {
             return overlaps(a.box, b.box);
         }
-        const auto moving = [this](const Placed<Scalar>& proxy) {
-            const auto way = ways_.find(proxy.id);
-            return way != ways_.end() ? MovingBox<Scalar>{proxy.box, way->second}
-                                      : MovingBox<Scalar>{proxy.box};
-        };
-        return (ways_.contains(a.id) || ways_.contains(b.id)) &&
-               firstContactByRationals(moving(a), moving(b)).has_value();
+        const MovingBox<Scalar> wayOfA = motion(a);
+        const MovingBox<Scalar> wayOfB = motion(b);
+        return overlaps(wayOfA.box, wayOfB.box) ||
+               firstContactByRationals(wayOfA, wayOfB).has_value();
     }
 
     // Asked must be: couples that may pair and meet now and did not before, or could not, unless decided
@@ -301,7 +326,7 @@ private:
     std::set<ProxyPair> set_;
     std::vector<ProxyPair> asked_;
 
-    std::map<ProxyId, Vector3<Scalar>> ways_;  // of what sweeps
+    std::map<ProxyId, Way> ways_;  // of what sweeps
     std::map<ProxyId, ProxyGroups> groups_;
     std::set<ProxyPair> before_;  // the set before the last update
 

@@ -23,7 +23,7 @@ Aabb<btScalar> boxAt(const btCollisionObject& object, const btTransform& transfo
 
 }  // namespace
 
-std::optional<MovingBox<btScalar>> fastMotion(const btBroadphaseProxy& proxy, btScalar share) {
+std::optional<BodyMotion> fastMotion(const btBroadphaseProxy& proxy, btScalar share) {
     const auto* object = static_cast<const btCollisionObject*>(proxy.m_clientObject);
     if (object == nullptr || object->getInternalType() != btCollisionObject::CO_RIGID_BODY ||
         object->isStaticOrKinematicObject()) {
@@ -47,7 +47,7 @@ std::optional<MovingBox<btScalar>> fastMotion(const btBroadphaseProxy& proxy, bt
     MovingBox<btScalar> moving{first, way};
     moving.box.extend(last.min() - way - rounding);
     moving.box.extend(last.max() - way + rounding);
-    return moving;
+    return BodyMotion{moving, first.merged(last)};
 }
 
 }  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

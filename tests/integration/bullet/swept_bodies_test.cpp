@@ -2,12 +2,7 @@
 
 // SpatialHashConfig::sweep: fast bodies make pairs with what they pass, and with nothing else.
 
-#include <integration/bullet/conversions.hpp>
-#include <integration/bullet/detail/body_motion.hpp>
-#include <integration/bullet/spatial_hash_broadphase.hpp>
-#include <tests/support/random.hpp>
-
-#include <btBulletDynamicsCommon.h>
+#include <tests/integration/bullet/shooting_range.hpp>
 
 #include <gtest/gtest.h>
 
@@ -21,125 +16,15 @@
 namespace hashphase::test {
 namespace {
 
-constexpr btScalar kStep = btScalar(1) / 60;
-
-SpatialHashConfig withSweep(Sweep sweep) {
-    SpatialHashConfig config;
-    config.sweep = sweep;
-    return config;
-}
-
-/// Walls that stand, and balls that fly through them without touching: no response.
-struct Range {
-    using Couple = std::pair<const btBroadphaseProxy*, const btBroadphaseProxy*>;
-
-    explicit Range(std::unique_ptr<btBroadphaseInterface> ofWhat)
-        : broadphase(std::move(ofWhat)),
-          world(&dispatcher, broadphase.get(), &solver, &configuration) {
-        world.setGravity(btVector3(0, 0, 0));
-    }
-    ~Range() {
-        for (const auto& body : bodies) {
-            world.removeRigidBody(body.get());
-        }
-    }
-
-    btRigidBody& add(btCollisionShape& shape, btScalar mass, const btVector3& position,
-                     const btVector3& velocity = btVector3(0, 0, 0)) {
-        btVector3 inertia(0, 0, 0);
-        if (mass > 0) {
-            shape.calculateLocalInertia(mass, inertia);
-        }
-        auto body = std::make_unique<btRigidBody>(mass, nullptr, &shape, inertia);
-        body->setWorldTransform(btTransform(btMatrix3x3::getIdentity(), position));
-        body->setInterpolationWorldTransform(body->getWorldTransform());
-        body->setLinearVelocity(velocity);
-        body->setDamping(0, 0);
-        body->setActivationState(DISABLE_DEACTIVATION);
-        body->setCollisionFlags(body->getCollisionFlags() |
-                                btCollisionObject::CF_NO_CONTACT_RESPONSE);
-        world.addRigidBody(body.get());
-        bodies.push_back(std::move(body));
-        return *bodies.back();
-    }
-
-    /// 200 walls here and there, 60 balls and rods of which two in three are fast; all so far from
-    /// the origin, along each axis.
-    void fill(Random& random, double reach = 9, double offset = 0, double speed = 400) {
-        for (int i = 0; i < 200; ++i) {
-            const Vector3<double> place = random.pointIn(offset - reach, offset + reach);
-            add(wall, 0, btVector3(btScalar(place.x()), btScalar(place.y()), btScalar(place.z())));
-        }
-        for (int i = 0; i < 60; ++i) {
-            const Vector3<double> place = random.pointIn(offset - reach, offset + reach);
-            const Vector3<double> way =
-                random.pointIn(-1, 1).normalized() * (i % 3 == 0 ? 2 : speed);
-            btRigidBody& body =
-                add(i % 2 == 0 ? static_cast<btCollisionShape&>(ball)
-                               : static_cast<btCollisionShape&>(rod),
-                    1, btVector3(btScalar(place.x()), btScalar(place.y()), btScalar(place.z())),
-                    btVector3(btScalar(way.x()), btScalar(way.y()), btScalar(way.z())));
-            body.setAngularVelocity(btVector3(0, btScalar(i), 0));
-        }
-    }
-
-    /// What a broadphase must know of the step that begins, by looking at every two bodies.
-    [[nodiscard]] std::set<Couple> expectedPairs(btScalar share) const {
-        std::vector<MovingBox<btScalar>> motions;
-        for (const auto& body : bodies) {
-            const btBroadphaseProxy& proxy = *body->getBroadphaseProxy();
-            motions.push_back(
-                detail::fastMotion(proxy, share)
-                    .value_or(MovingBox<btScalar>{toAabb(proxy.m_aabbMin, proxy.m_aabbMax)}));
-        }
-        std::set<Couple> pairs;
-        for (std::size_t i = 0; i < bodies.size(); ++i) {
-            for (std::size_t j = i + 1; j < bodies.size(); ++j) {
-                const bool doStand = bodies[i]->isStaticObject() && bodies[j]->isStaticObject();
-                if (!doStand && firstContact(motions[i], motions[j])) {
-                    pairs.insert(std::minmax<const btBroadphaseProxy*>(
-                        bodies[i]->getBroadphaseProxy(), bodies[j]->getBroadphaseProxy()));
-                }
-            }
-        }
-        return pairs;
-    }
-
-    [[nodiscard]] std::set<Couple> pairs() const {
-        const btBroadphasePairArray& listed =
-            broadphase->getOverlappingPairCache()->getOverlappingPairArray();
-        std::set<Couple> pairs;
-        for (int i = 0; i < listed.size(); ++i) {
-            pairs.insert(
-                std::minmax<const btBroadphaseProxy*>(listed[i].m_pProxy0, listed[i].m_pProxy1));
-        }
-        return pairs;
-    }
-
-    btBoxShape wall{btVector3(1, 1, btScalar(0.01))};
-    btSphereShape ball{btScalar(0.1)};
-    btCapsuleShape rod{btScalar(0.05), 1};
-    btDefaultCollisionConfiguration configuration;
-    btCollisionDispatcher dispatcher{&configuration};
-    std::unique_ptr<btBroadphaseInterface> broadphase;
-    btSequentialImpulseConstraintSolver solver;
-    btDiscreteDynamicsWorld world;
-    std::vector<std::unique_ptr<btRigidBody>> bodies;
-};
-
-std::unique_ptr<SpatialHashBroadphase> swept(Sweep sweep) {
-    return std::make_unique<SpatialHashBroadphase>(withSweep(sweep));
-}
-
 void expectPairsOfWhatIsPassed(double offset, double speed = 400) {
     for (const Sweep sweep : {Sweep::box, Sweep::line, Sweep::automatic}) {
         Random random(0x5eed0e01);
-        Range range(swept(sweep));
+        ShootingRange range(swept(sweep));
         range.fill(random, 9, offset, speed);
         const auto& broadphase = static_cast<const SpatialHashBroadphase&>(*range.broadphase);
         std::size_t most = 0;
         struct Check {
-            Range& range;
+            ShootingRange& range;
             std::size_t& most;
         } check{range, most};
         // Before each step, with the same prediction.
@@ -185,7 +70,7 @@ TEST(SweptBodies, HaveFewerPairsThanBoxesAroundStartAndEnd) {
     std::vector<std::size_t> counts;
     for (const Sweep sweep : {Sweep::none, Sweep::automatic}) {
         Random random(0x5eed0e02);
-        Range range(swept(sweep));
+        ShootingRange range(swept(sweep));
         range.fill(random);
         range.world.stepSimulation(kStep, 0);
         counts.push_back(range.pairs().size());
@@ -197,7 +82,7 @@ TEST(SweptBodies, HaveFewerPairsThanBoxesAroundStartAndEnd) {
 // m_useContinuous off: Bullet hands in where a body is, and no more.
 TEST(SweptBodies, PassNoThinWallUnnoticedWithoutBulletsOwnBoxes) {
     for (const Sweep sweep : {Sweep::none, Sweep::line}) {
-        Range range(swept(sweep));
+        ShootingRange range(swept(sweep));
         range.world.getDispatchInfo().m_useContinuous = false;
         range.add(range.wall, 0, btVector3(0, 0, 0));
         range.add(range.ball, 1, btVector3(0, 0, -2), btVector3(0, 0, 240));
@@ -215,10 +100,10 @@ TEST(SweptBodies, PassNoThinWallUnnoticedWhereverInTheirStepItStands) {
     constexpr int kPhases = 1000;
     for (const double thickness : {0.1, 0.01, 0.001}) {
         for (const Sweep sweep : {Sweep::none, Sweep::box, Sweep::line, Sweep::automatic}) {
-            Range range(swept(sweep));
+            ShootingRange range(swept(sweep));
             range.world.getDispatchInfo().m_useContinuous = false;
             btBoxShape thinWall(btVector3(1, 1, btScalar(thickness / 2)));
-            std::set<Range::Couple> expected;
+            std::set<ShootingRange::Couple> expected;
             for (int i = 0; i < kPhases; ++i) {
                 const auto x = btScalar(3 * i);
                 const btRigidBody& wall = range.add(thinWall, 0, btVector3(x, 0, 0));
@@ -240,7 +125,7 @@ TEST(SweptBodies, PassNoThinWallUnnoticedWhereverInTheirStepItStands) {
 }
 
 TEST(SweptBodies, AreFoundByRaysWhereTheStepHasLeftThem) {
-    Range range(swept(Sweep::automatic));
+    ShootingRange range(swept(Sweep::automatic));
     btRigidBody& ball = range.add(range.ball, 1, btVector3(0, 0, 0), btVector3(300, 300, 0));
     range.add(range.wall, 0, btVector3(0, 50, 0));
     range.world.stepSimulation(kStep, 0);
@@ -271,7 +156,7 @@ TEST(SweptBodies, AreFoundByRaysWhereTheStepHasLeftThem) {
 TEST(SweptBodies, AreMetByConvexSweepsAsUnderBulletsTree) {
     const auto hits = [](std::unique_ptr<btBroadphaseInterface> broadphase) {
         Random random(0x5eed0e03);
-        Range range(std::move(broadphase));
+        ShootingRange range(std::move(broadphase));
         range.fill(random);
         range.world.stepSimulation(kStep, 0);
         std::vector<std::pair<int, btScalar>> found;
@@ -302,7 +187,7 @@ TEST(SweptBodies, AreMetByConvexSweepsAsUnderBulletsTree) {
 TEST(SweptBodies, MoveAsWithoutSweeps) {
     const auto finalPlaces = [](Sweep sweep) {
         Random random(0x5eed0e04);
-        Range range(swept(sweep));
+        ShootingRange range(swept(sweep));
         // So far apart that nothing touches two others: Bullet's solver heeds the order of contacts.
         range.fill(random, 15);
         for (const auto& body : range.bodies) {
@@ -326,7 +211,7 @@ TEST(SweptBodies, MoveAsWithoutSweeps) {
 }
 
 TEST(SweptBodies, AreDynamicRigidBodiesThatMoveFarForTheirSize) {
-    Range range(swept(Sweep::automatic));
+    ShootingRange range(swept(Sweep::automatic));
     btRigidBody& ball = range.add(range.ball, 1, btVector3(0, 0, 0));
     const auto predictBy = [](btCollisionObject& object, btScalar way) {
         object.setInterpolationWorldTransform(
@@ -340,7 +225,7 @@ TEST(SweptBodies, AreDynamicRigidBodiesThatMoveFarForTheirSize) {
     EXPECT_TRUE(detail::fastMotion(proxy, btScalar(0.5)));
     predictBy(ball, btScalar(0.3));
     ASSERT_TRUE(detail::fastMotion(proxy, 1));
-    EXPECT_FLOAT_EQ(static_cast<float>(detail::fastMotion(proxy, 1)->displacement.x()), 0.3F);
+    EXPECT_FLOAT_EQ(static_cast<float>(detail::fastMotion(proxy, 1)->way.displacement.x()), 0.3F);
     predictBy(ball, std::numeric_limits<btScalar>::quiet_NaN());
     EXPECT_FALSE(detail::fastMotion(proxy, 1));
 
