@@ -206,7 +206,7 @@ void beginStep() noexcept {
     thread_local std::uint32_t stepNumber = 0;
     if (stepDepth++ == 0) {
         current = {};
-        if (stepNumber++ % kStepsBetweenLooks == 0) {
+        if (stepNumber++ % kStepsBetweenLooks == 1) {  // not at first, when a look takes longest
             current.allBegin = allProcessorNanoseconds();
         }
         current.begin = beginMoment();
