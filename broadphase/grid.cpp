@@ -166,7 +166,7 @@ void Grid<Scalar>::clear() {
     }
     listedAtUpdate_ = 0;
     restingErased_ = 0;
-    for (detail::Table<Scalar>* table : {&mobile_, &resting_, &fresh_}) {
+    for (detail::Table<Scalar>* table : {&mobile_, &resting_, &fresh_, &sweeping_}) {
         *table = {};
     }
     listNumber_ = 1;
@@ -174,11 +174,12 @@ void Grid<Scalar>::clear() {
     isTableTorn_.store(false, std::memory_order_relaxed);
     isFresh_.store(false, std::memory_order_relaxed);
     releaseRayMemory();
-    for (auto* boxes : {&staged_, &stagedBefore_, &restBoxes_}) {
+    for (auto* boxes : {&staged_, &stagedBefore_, &restBoxes_, &sweepingBoxes_}) {
         release(*boxes);
     }
     release(restSlots_);
     release(nanSlots_);
+    release(sweepingSlots_);
     release(boxesAtUpdate_);
     release(groups_);
     release(kindOfSlot_);
