@@ -135,6 +135,12 @@ void Pairs<Scalar>::findChanges(ParallelFor parallelFor) {
     if (sweeps_ != nullptr) {
         sweeps_->beginUpdate();
     }
+    for (const Couple c : kept_.keys()) {
+        if (isRefused(c) && !mayPairNow(c)) {  // filtered again
+            notKept_.push_back(c);
+            lapsed_.push_back(c);
+        }
+    }
     if (grid_.cost_.changed == 0) {
         return;
     }
@@ -154,6 +160,7 @@ template <class Scalar>
 void Pairs<Scalar>::endUpdate() noexcept {  // NOLINT(bugprone-exception-escape)
     for (const Couple c : lost_) {
         lose(c);
+        kept_.erase(c);
     }
     for (const Couple c : keptNow_) {
         kept_.findOrInsert(c);
@@ -209,19 +216,23 @@ void Pairs<Scalar>::findDeaths(ParallelFor parallelFor) {
     for (const Couple c : announced_.keys()) {
         loseIfApart(c);
     }
-    for (const Couple c : kept_.keys()) {
-        loseIfApart(c);
-    }
     findDeathsOfWoken(parallelFor);
-    if (grid_.areRegrouped_) {
-        findKept();
-    }
+    findKept();
 }
 
 // Pairs whose groups have been set, and do not let them pair any more, are kept as long as they overlap.
 // Those that may pair again are watched as the others are.
 template <class Scalar>
 void Pairs<Scalar>::findKept() {
+    for (const Couple c : kept_.keys()) {
+        loseIfApart(c);
+        if (mayPairNow(c)) {
+            notKept_.push_back(c);
+        }
+    }
+    if (!grid_.areRegrouped_) {
+        return;
+    }
     for (const auto [a, b] : amongMobile_.pairs()) {
         keepIfPair(couple(grid_.mobileSlots_[a], grid_.mobileSlots_[b]));
     }
@@ -230,11 +241,6 @@ void Pairs<Scalar>::findKept() {
     }
     for (const Couple c : announced_.keys()) {
         keepIfPair(c);
-    }
-    for (const Couple c : kept_.keys()) {
-        if (mayPairNow(c)) {
-            notKept_.push_back(c);
-        }
     }
 }
 

@@ -277,7 +277,8 @@ private:
     std::size_t fewAnnounced_ = kFewAnnounced;
     std::vector<Couple> stillAnnounced_;  // scratch
 
-    // Pairs whose groups have been set since, so that they may not pair any more: they overlap.
+    // Pairs whose groups have been set since, so that they may not pair any more: they overlap. Those
+    // that were filtered again count as refused until the next update.
     detail::FlatSet kept_;
 
     Sweeps<Scalar>* sweeps_;

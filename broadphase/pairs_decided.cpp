@@ -16,7 +16,7 @@ template <class Scalar>
 void Pairs<Scalar>::askRefusedAgain() {
     restedCouples_.clear();
     for (const Couple c : refused_.keys()) {
-        if (grid_.areRegrouped_ && !mayPairNow(c)) {
+        if (!mayPairNow(c)) {
             lapsed_.push_back(c);
         } else if (isAtRest(c)) {
             restedCouples_.push_back(c);
@@ -98,7 +98,8 @@ void Pairs<Scalar>::decide() noexcept {  // NOLINT(bugprone-exception-escape)
 // update, which forgets it.
 template <class Scalar>
 bool Pairs<Scalar>::isToBeRefused(Couple c) const noexcept {
-    return mayPairNow(c) || couldPair(c) || announced_.contains(c) || isSwept(c);
+    return mayPairNow(c) || couldPair(c) || kept_.contains(c) || announced_.contains(c) ||
+           isSwept(c);
 }
 
 // Returns whether the couple was refused.
@@ -113,9 +114,6 @@ void Pairs<Scalar>::lose(Couple c) noexcept {
     if (!forgetRefused(c)) {
         diedCouples_.push_back(c);
         --count_;
-        if (kept_.size() > 0) {
-            kept_.erase(c);
-        }
     }
 }
 

@@ -144,7 +144,11 @@ void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& a
         move(*own);
         changedKinds_ |= detail::GroupKinds::bit(own->kind);
     }
-    const bool isRegrouped = noteGroups(*own);
+    // Mostly they are what they were: then this is but a comparison.
+    constexpr std::uint8_t kOther = detail::GroupKinds::kOther;
+    const bool isKnown =
+        !groupsDecide_ || (own->kind != kOther && groupKinds_[own->kind] == groupsOf(*own));
+    const bool isRegrouped = !isKnown && noteGroups(*own);
     if (!seen_.empty()) {
         noteSeen(*own);
     }

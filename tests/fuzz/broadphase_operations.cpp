@@ -177,9 +177,12 @@ private:
             writeTo(placed.id, group, arguments.below(3) == 0 ? 0 : arguments.byte() % 64);
             story_.tell("group ", group, " and mask ", proxy->m_collisionFilterMask, " for ",
                         placed.id.index, "; ");
-            world_.broadphase().setAabb(proxy, toBullet(placed.box.min()),
-                                        toBullet(placed.box.max()), nullptr);
             proxies.push_back(proxy);
+        }
+        for (btBroadphaseProxy* const proxy : proxies) {
+            const btVector3 min = proxy->m_aabbMin;
+            const btVector3 max = proxy->m_aabbMax;
+            world_.broadphase().setAabb(proxy, min, max, nullptr);
         }
         world_.broadphase().calculateOverlappingPairs(nullptr);
         EXPECT_EQ(world_.hash()->validate(), "");

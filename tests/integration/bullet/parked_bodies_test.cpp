@@ -182,7 +182,9 @@ TEST(WrittenMasks, CountWhenTheBoxIsSetToWhatItWas) {
 }
 
 TEST(WrittenMasks, BringEagerPairsAtOnce) {
-    Player player = hashPlayer(6);
+    SpatialHashConfig config;
+    config.eagerGroups = Proxy::SensorTrigger;
+    Player player = hashPlayer(6, nullptr, config);
     player.play({Action::create, 0, kHere, Proxy::SensorTrigger, 0});
     player.play({Action::create, 1, kBeside, 1, kAll});
     player.calculate();
