@@ -34,7 +34,6 @@ void release(std::vector<Element>& memory) noexcept {
 template <class Scalar>
 Grid<Scalar>::Grid(const GridConfig& config) : config_(checked(config)) {
     if (config_.cellSize > 0) {
-        fixedSizes_ = detail::fixedLevels(config_.cellSize, config_.levelRatio);
         cellSize_ = static_cast<Scalar>(config_.cellSize);
     }
 }

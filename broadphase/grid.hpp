@@ -407,6 +407,11 @@ private:
     }
 
     // None of these allocates: reserve() has made room for all of it.
+    /// None where cell sizes follow the population.
+    [[nodiscard]] detail::LevelSizes fixedSizes() const {
+        return config_.cellSize > 0 ? detail::fixedLevels(config_.cellSize, config_.levelRatio)
+                                    : detail::LevelSizes{};
+    }
     void reserveSlots(std::size_t slotCount);
     void listMobile(std::uint32_t slot) noexcept;
     void unlistMobile(std::uint32_t slot) noexcept;
@@ -477,7 +482,6 @@ private:
                      Collector& collector, QueryCost& cost) const;
 
     GridConfig config_;
-    detail::LevelSizes fixedSizes_;
 
     // What a change appends to, mobileSlots_, woken_ and waiting_, has room for as many.
     std::vector<Record> records_;

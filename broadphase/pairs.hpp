@@ -29,6 +29,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -203,6 +204,7 @@ private:
     void findChanges(ParallelFor parallelFor);
     void findDeaths(ParallelFor parallelFor);
     void findDeathsOfWoken(ParallelFor parallelFor);
+    [[nodiscard]] detail::Table<Scalar>& wokenTable();
     void loseIfApart(Couple c);
     [[nodiscard]] bool mayPairNow(Couple c) const noexcept {
         return grid_.mayPairNow(first(c), second(c));
@@ -317,9 +319,9 @@ private:
     std::vector<std::uint32_t> entryOf_;  // of places in mobileSlots_, in the mobile table
     std::vector<std::uint32_t> walkers_;  // entries that changed
     std::vector<std::uint32_t> walkerSlots_;
-    detail::BoxColumns<Scalar> walkerBounds_;
-    detail::Table<Scalar> wokenTable_;
-    std::vector<char> isNamed_;  // by slot
+    detail::BoxColumns<Scalar> bounds_;                  // of what is looked for in a table
+    std::unique_ptr<detail::Table<Scalar>> wokenTable_;  // made when it is first needed
+    std::vector<char> isNamed_;                          // by slot
 
     // A table of boxes as of the last update: of what was mobile then, and of the first indexedWoken_ of
     // what has left rest since. Either the grid's own, until it is filed again, or wokenTable_; null when neither is.
@@ -329,7 +331,6 @@ private:
     std::uint64_t filingOfUpdate_ = 0;         // Grid::filingCount_ and ...
     std::uint64_t shiftOfUpdate_ = 0;          // ... Grid::shiftCount_ at that time
     std::vector<detail::PaddedBox<Scalar>> wokenBoxes_;
-    detail::BoxColumns<Scalar> wokenBounds_;
 };
 
 extern template class Pairs<float>;

@@ -65,7 +65,7 @@ bool sortByGroups(std::span<std::uint32_t> crowd, const GroupsOf& groupsOf) {
 
 template <class Scalar>
 void Table<Scalar>::layOut(std::span<const PaddedBox<Scalar>> boxes) {
-    layout_.layOut(boxes, levels_);
+    layout_->layOut(boxes, levels_);
     bucketStart_.resize(levels_.back().firstBucket + levels_.back().bucketCount + 1);
 }
 
@@ -295,7 +295,14 @@ void Table<Scalar>::build(std::span<const std::uint32_t> boxSlots,
                           std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed,
                           ParallelFor parallelFor, const ProxyGroups* groups) {
     HASHPHASE_ASSERT(boxSlots.size() == boxes.size(), "Every box has a slot.");
+    if (boxes.empty()) {
+        clear();
+        return;
+    }
     try {
+        if (layout_ == nullptr) {
+            layout_ = std::make_unique<LevelLayout<Scalar>>();
+        }
         findBuckets(boxes, fixed, parallelFor);
         sortEntries(boxSlots, boxes, groups, parallelFor);
     } catch (...) {
@@ -313,12 +320,12 @@ void Table<Scalar>::findBuckets(std::span<const PaddedBox<Scalar>> boxes, const 
         return strays > 2 * usual + Layout::kThinLevel + boxes.size() / Layout::kStrays;
     };
     const auto choose = [&] {
-        layout_.choose(boxes, fixed);
+        layout_->choose(boxes, fixed);
         layOut(boxes);
         strayCount_ = countBuckets(boxes, parallelFor);
         straysWhenChosen_ = strayCount_;
     };
-    if (layout_.isTimeToChoose(boxes.size()) || levels_.empty()) {
+    if (layout_->isTimeToChoose(boxes.size()) || levels_.empty()) {
         choose();
     } else if (areMany(countBuckets(boxes, parallelFor), strayCount_)) {
         layOut(boxes);
@@ -387,7 +394,8 @@ std::size_t Table<Scalar>::memoryBytes() const noexcept {
                sizeof(std::uint32_t) +
            6 * bounds_[0].capacity() * sizeof(Scalar) + rowOfEntry_.capacity() * sizeof(Row) +
            views_.capacity() * sizeof(LevelView<Scalar>) +
-           sortedBuckets_.capacity() * sizeof(SortedBucket<Scalar>) + layout_.memoryBytes();
+           sortedBuckets_.capacity() * sizeof(SortedBucket<Scalar>) +
+           (layout_ != nullptr ? layout_->memoryBytes() : 0);
 }
 
 template <class Scalar>

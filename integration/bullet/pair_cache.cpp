@@ -305,7 +305,7 @@ std::uint32_t PairCache::indexOf(const Note& note) const {
 }
 
 std::size_t PairCache::memoryBytes() const noexcept {
-    return static_cast<std::size_t>(pairs_.capacity()) * sizeof(btBroadphasePair) +
+    return sizeof(*this) + static_cast<std::size_t>(pairs_.capacity()) * sizeof(btBroadphasePair) +
            ids_.memoryBytes() + links_.capacity() * sizeof(Link) + firstEdge_.memoryBytes() +
            retired_.capacity() * sizeof(Retired) + vacant_.capacity() * sizeof(std::uint32_t) +
            ranks_.memoryBytes() + scratch_.capacity() * sizeof(Note) +

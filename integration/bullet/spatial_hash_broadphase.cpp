@@ -512,7 +512,8 @@ ProxyId SpatialHashBroadphase::idOf(const btBroadphaseProxy* proxy) {
 }
 
 std::size_t SpatialHashBroadphase::memoryBytes() const noexcept {
-    return grid_.memoryBytes() + pairs_.memoryBytes() + proxies_.memoryBytes() +
+    return sizeof(*this) - sizeof(grid_) - sizeof(pairs_) + grid_.memoryBytes() +
+           pairs_.memoryBytes() + proxies_.memoryBytes() +
            (sweeps_ != nullptr ? sweeps_->memoryBytes() : 0) + uniqueIds_.capacity() * sizeof(int) +
            (died_.capacity() + born_.capacity()) * sizeof(ProxyCouple) +
            seen_.capacity() * sizeof(seen_[0]) +

@@ -7,11 +7,13 @@
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 #include <tests/support/count_allocations.hpp>
 
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <LinearMath/btAlignedAllocator.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <cstdlib>
 #include <vector>
 
@@ -60,6 +62,14 @@ private:
     std::vector<btBroadphaseProxy*> proxies_;
 };
 
+struct AllHits : btBroadphaseAabbCallback {
+    int count = 0;
+    bool process(const btBroadphaseProxy* /*proxy*/) override {
+        ++count;
+        return true;
+    }
+};
+
 TEST(SteadyFrame, AllocatesNothing) {
     if (!kCountsAllocations) {
         GTEST_SKIP() << "allocations are not counted under a sanitizer";
@@ -83,6 +93,53 @@ TEST(SteadyFrame, AllocatesNothing) {
         EXPECT_EQ(swing.broadphase.validate(), "");
     }
     btAlignedAllocSetCustom(nullptr, nullptr);
+}
+
+/// Counts what Bullet's own arrays take, too.
+class CountedBullet {
+public:
+    CountedBullet() { btAlignedAllocSetCustom(countedAllocate, std::free); }
+    ~CountedBullet() { btAlignedAllocSetCustom(nullptr, nullptr); }
+    CountedBullet(const CountedBullet&) = delete;
+    CountedBullet& operator=(const CountedBullet&) = delete;
+};
+
+TEST(SmallWorld, IsMadeInAFewBytesAndAllocations) {
+    if (!kCountsAllocations) {
+        GTEST_SKIP() << "allocations are not counted under a sanitizer";
+    }
+    const CountedBullet counted;
+    const std::size_t bytes = bytesHeld();
+    std::size_t allocations = allocationCount();
+    const btDbvtBroadphase dbvt;
+    const std::size_t ofDbvt = allocationCount() - allocations;
+    const std::size_t bytesBefore = bytesHeld();
+    allocations = allocationCount();
+    const SpatialHashBroadphase broadphase;
+    EXPECT_LE(allocationCount() - allocations, ofDbvt);
+    EXPECT_LT(sizeof(broadphase) + bytesHeld() - bytesBefore, 6144U);
+    EXPECT_LT(broadphase.memoryBytes(), 6144U);
+    EXPECT_GE(broadphase.memoryBytes(), sizeof(broadphase) + bytesHeld() - bytesBefore);
+    EXPECT_GT(bytesBefore, bytes);
+}
+
+TEST(SmallWorld, OfTenBodiesTakesAFewKilobytes) {
+    if (!kCountsAllocations) {
+        GTEST_SKIP() << "allocations are not counted under a sanitizer";
+    }
+    const CountedBullet counted;
+    const std::size_t before = bytesHeld();
+    Swing swing(10);
+    for (int number = 0; number < 20; ++number) {
+        swing.frame(number);
+    }
+    AllHits hits;
+    swing.broadphase.aabbTest({-9, -9, -9}, {9, 9, 9}, hits);
+    EXPECT_EQ(hits.count, 10);
+    const std::size_t told = swing.broadphase.memoryBytes();
+    EXPECT_LT(told, (sizeof(btScalar) == sizeof(float) ? 22U : 28U) * 1024U);
+    EXPECT_GE(told + sizeof(Swing) + 16 * (sizeof(Box) + sizeof(btVector3) + sizeof(void*)),
+              bytesHeld() - before);
 }
 
 }  // namespace
