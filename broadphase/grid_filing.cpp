@@ -180,6 +180,7 @@ UpdateCost Grid<Scalar>::endUpdate() noexcept {
         std::max({mobile_.largestCell(), resting_.largestCell(), sweeping_.largestCell()});
     woken_.clear();
     boxesAtUpdate_.clear();
+    slotsAtUpdate_.clear();
     if (std::exchange(areRegrouped_, false)) {
         for (std::size_t i = 0; i < groups_.size(); i += 2) {
             groups_[i + 1] = groups_[i];
@@ -212,6 +213,7 @@ template <class Scalar>
 UpdateCost Grid<Scalar>::update(ParallelFor parallelFor) {
     HASHPHASE_ASSERT(!hasPairs_, "Where there are Pairs, Pairs::update() ends the frame.");
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), "An update is not begun within a query.");
+    releaseAfterPeak();
     if (cost_.changed > 0) {
         try {
             stage(parallelFor);
@@ -228,14 +230,15 @@ UpdateCost Grid<Scalar>::update(ParallelFor parallelFor) {
 
 template <class Scalar>
 void Grid<Scalar>::forgetLastUpdate() noexcept {
-    for (std::uint32_t slot = 0; slot < records_.size(); ++slot) {
+    forEachListed([this](std::uint32_t slot) {
         if (isAlive(slot)) {
             noteChange(slot);
         }
         records_[slot].before = nanBox();
         records_[slot].isAnnounced = false;
-    }
+    });
     boxesAtUpdate_.clear();
+    slotsAtUpdate_.clear();
     isTorn_ = false;
 }
 

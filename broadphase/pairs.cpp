@@ -72,6 +72,8 @@ PairChanges Pairs<Scalar>::update(PairFilter filter, ParallelFor parallelFor) & 
                      "An update is not begun within a query, or within the filter.");
     beginCall();
     cost_ = {};
+    grid_.releaseAfterPeak();
+    releaseAfterPeak();
     try {
         recover();
         findChanges(parallelFor);
@@ -560,31 +562,6 @@ template <class Scalar>
 bool Pairs<Scalar>::isAtRest(Couple c) const noexcept {
     return grid_.records_[first(c)].place == Grid<Scalar>::Place::resting &&
            grid_.records_[second(c)].place == Grid<Scalar>::Place::resting;
-}
-
-template <class Scalar>
-std::size_t Pairs<Scalar>::memoryBytes() const noexcept {
-    return sizeof(*this) + amongMobile_.memoryBytes() + toResting_.memoryBytes() +
-           selected_.memoryBytes() + parts_.memoryBytes() + carried_.memoryBytes() +
-           bounds_.memoryBytes() +
-           (asked_.capacity() + standing_.capacity() + bornCouples_.capacity() +
-            diedCouples_.capacity() + sorted_.capacity() + restedCouples_.capacity() +
-            sweptBySecond_.capacity() + lost_.capacity() + swept_.capacity() + gone_.capacity() +
-            fresh_.capacity() + unknown_.capacity() + sweptNow_.capacity() +
-            stillAnnounced_.capacity() + keptNow_.capacity() + notKept_.capacity() +
-            lapsed_.capacity()) *
-               sizeof(Couple) +
-           (toldByUpdate_.born.capacity() + toldByUpdate_.died.capacity() +
-            toldBetween_.born.capacity() + toldBetween_.died.capacity() + askedPairs_.capacity()) *
-               sizeof(ProxyPair) +
-           accepted_.capacity() + isNamed_.capacity() +
-           (entryOf_.capacity() + walkers_.capacity() + walkerSlots_.capacity() +
-            indexedSlots_.capacity()) *
-               sizeof(std::uint32_t) +
-           wokenBoxes_.capacity() * sizeof(detail::PaddedBox<Scalar>) +
-           (wokenTable_ != nullptr ? sizeof(*wokenTable_) + wokenTable_->memoryBytes() : 0) +
-           announced_.memoryBytes() + kept_.memoryBytes() + refused_.memoryBytes() +
-           refusedAtRest_.memoryBytes();
 }
 
 template class Pairs<float>;

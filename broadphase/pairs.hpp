@@ -160,6 +160,13 @@ public:
     [[nodiscard]] const PairCost& lastCost() const noexcept { return cost_; }
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
+    /// Gives back what is not used, but nothing of the grid's, which has a call of its own: room for more
+    /// couples than there are, and what only the next call would use, which takes it again. What calls
+    /// have returned is not valid any more. update() does it by itself when there has been room for more
+    /// than eight times as many in 256 updates in a row. Not within the filter (asserted). Cost: moving
+    /// what is left.
+    void releaseUnusedMemory() noexcept;
+
     /// Says which invariant is broken, in a sentence; empty when all hold (ask after update()):
     /// - The watched couples are the overlapping ones that may pair and of which one is mobile, each once.
     /// - count() is the number of overlapping and swept couples that may pair, less the refused ones, and
@@ -260,6 +267,7 @@ private:
     template <class IsNamed>
     void findUnknown(std::uint32_t slot, const IsNamed& isNamed);
     void findUnknown(std::uint32_t slot);
+    void releaseAfterPeak() noexcept;
     void forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const;
 
     static constexpr std::size_t kFewAnnounced = 64;
@@ -304,6 +312,7 @@ private:
     Told toldBetween_;
     std::size_t count_ = 0;
     PairCost cost_;
+    detail::PeakWatch peaks_;
 
     // Scratch.
     std::vector<Couple> sorted_;

@@ -121,6 +121,16 @@ void PairList::grow(PairSink& sink, std::size_t count) {
     sink.end = list.data_.get() + capacity;
 }
 
+void PairList::shrink() {
+    if (size_ < capacity_) {
+        PairList fresh;
+        if (size_ > 0) {
+            std::copy_n(data_.get(), size_, fresh.resize(size_));
+        }
+        swap(fresh);
+    }
+}
+
 IndexPair* PairList::resize(std::size_t count) {
     if (capacity_ < count) {
         append([&](PairSink& sink) { grow(sink, count); });

@@ -61,6 +61,7 @@ public:
     void shiftOrigin(const Vector3<Scalar>& shift) noexcept;
 
     [[nodiscard]] const LevelSizes& sizes() const noexcept { return sizes_; }
+    void releaseUnusedMemory() noexcept { census_ = {}; }
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         return sizeof(*this) + census_.memoryBytes();
     }

@@ -60,7 +60,7 @@ private:
     void addBlocks() {
         const std::size_t first = blocks_.size();
         const std::size_t count = first < kBlocksAtOnce ? 1 : kBlocksAtOnce;
-        blocks_.reserve(std::max(first + count, first + first / 2));
+        blocks_.reserve(std::max<std::size_t>(first + count, first + first / 2));
         owners_.push_back({std::make_unique<Block[]>(count), first});
         for (std::size_t i = 0; i < count; ++i) {
             blocks_.push_back(&owners_.back().blocks[i]);

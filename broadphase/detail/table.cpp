@@ -6,6 +6,7 @@
 #include <broadphase/detail/table.hpp>
 
 #include <broadphase/detail/crowd_census.hpp>
+#include <broadphase/detail/ensure_capacity.hpp>
 #include <broadphase/detail/kernels.hpp>
 #include <broadphase/diagnostics.hpp>
 
@@ -396,6 +397,25 @@ std::size_t Table<Scalar>::memoryBytes() const noexcept {
            views_.capacity() * sizeof(LevelView<Scalar>) +
            sortedBuckets_.capacity() * sizeof(SortedBucket<Scalar>) +
            (layout_ != nullptr ? layout_->memoryBytes() : 0);
+}
+
+template <class Scalar>
+void Table<Scalar>::releaseUnusedMemory() noexcept {
+    if (slots_.empty()) {
+        *this = {};
+        return;
+    }
+    layout_->releaseUnusedMemory();
+    levels_.shrink_to_fit();
+    for (auto* numbers : {&bucketStart_, &slots_, &order_, &bucketOfEntry_}) {
+        numbers->shrink_to_fit();
+    }
+    rowOfEntry_.shrink_to_fit();
+    sortedBuckets_.shrink_to_fit();
+    for (auto& column : bounds_) {
+        column.shrink_to_fit();
+    }
+    freeArrays(buckets_, longOnes_, views_);
 }
 
 template <class Scalar>

@@ -93,6 +93,8 @@ public:
                    : std::numeric_limits<double>::infinity();
     }
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
+    /// Gives back what only build() uses, and room for more entries than there are.
+    void releaseUnusedMemory() noexcept;
 
     /// The entry's box, or NaN when it was erased.
     [[nodiscard]] Aabb<Scalar> box(std::uint32_t entry) const noexcept {

@@ -304,6 +304,7 @@ void SpatialHashBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) 
         return doMeet(*pair.m_pProxy0, *pair.m_pProxy1);
     };
     removeDeferred(meets, dispatcher);
+    releaseAfterPeak();
 }
 
 // A destroyed proxy has taken its pairs with it.
@@ -509,6 +510,43 @@ btBroadphaseProxy* SpatialHashBroadphase::proxyOf(ProxyId id) const {
 ProxyId SpatialHashBroadphase::idOf(const btBroadphaseProxy* proxy) {
     HASHPHASE_ASSERT(proxy != nullptr, "Only a proxy has an id.");
     return static_cast<const Proxy*>(proxy)->id;
+}
+
+void SpatialHashBroadphase::releaseUnusedMemory() noexcept {
+    checkMayChange();
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
+                     "Memory is not given back within a callback.");
+    grid_.releaseUnusedMemory();
+    pairs_.releaseUnusedMemory();
+    if (sweeps_ != nullptr) {
+        sweeps_->releaseUnusedMemory();
+    }
+    detail::freeArrays(died_, born_);
+    dropLastProxies();
+    if (batchCache_ != nullptr) {
+        batchCache_->releaseUnusedMemory();
+    }
+}
+
+// Those whose indices the grid has given back. A cache that is behind may still name some.
+void SpatialHashBroadphase::dropLastProxies() noexcept {
+    if (!isCacheBehind_ && grid_.indexLimit() < uniqueIds_.size()) {
+        uniqueIds_.resize(grid_.indexLimit());
+        uniqueIds_.shrink_to_fit();
+        proxies_.shrink(uniqueIds_.size());
+    }
+}
+
+// The grid and its pairs look after themselves.
+void SpatialHashBroadphase::releaseAfterPeak() noexcept {
+    dropLastProxies();
+    const std::size_t room = batchCache_ != nullptr ? batchCache_->capacity() : died_.capacity();
+    if (peaks_.isPast(pairs_.count(), room)) {
+        detail::freeArrays(died_, born_);
+        if (batchCache_ != nullptr) {
+            batchCache_->releaseUnusedMemory();
+        }
+    }
 }
 
 std::size_t SpatialHashBroadphase::memoryBytes() const noexcept {

@@ -59,18 +59,18 @@ struct SharedCrowd {
 };
 
 TEST(GridThreads, QueriesRightAfterManyChangesAllSeeThem) {
-    SharedCrowd throng;
+    SharedCrowd crowd;
     for (int round = 0; round < 20; ++round) {
-        throng.moveMany();
+        crowd.moveMany();
         std::vector<std::vector<std::string>> wrong(kThreads);
         runOnThreads([&](int t) {
             Random random(0x5eed0802U + static_cast<std::uint64_t>(t));
-            RegionMaker<float> make(random, throng.proxies);
+            RegionMaker<float> make(random, crowd.proxies);
             const auto check = [&](const auto& region) {
                 CollectKeys<float> found;
                 CollectKeys<float> expected;
-                throng.grid.visit(region, found);
-                visitByBruteForce<float>(throng.proxies, region, expected);
+                crowd.grid.visit(region, found);
+                visitByBruteForce<float>(crowd.proxies, region, expected);
                 if (found.sorted() != expected.sorted()) {
                     wrong[static_cast<std::size_t>(t)].push_back(
                         differences(found.sorted(), expected.sorted()));
@@ -86,26 +86,26 @@ TEST(GridThreads, QueriesRightAfterManyChangesAllSeeThem) {
             ASSERT_EQ(ofThread, std::vector<std::string>{});
         }
         if (round % 3 == 0) {
-            throng.grid.update();
+            crowd.grid.update();
         }
     }
 }
 
 TEST(GridThreads, RaysRightAfterAnUpdateAllFindTheTreesMade) {
-    SharedCrowd throng;
+    SharedCrowd crowd;
     for (int round = 0; round < 20; ++round) {
-        throng.moveMany();
-        throng.grid.update();  // nothing waits: only the trees are to be made
+        crowd.moveMany();
+        crowd.grid.update();  // nothing waits: only the trees are to be made
         std::atomic<int> wrong{0};
         runOnThreads([&](int t) {
             Random random(0x5eed0803U + static_cast<std::uint64_t>(t));
-            RegionMaker<float> make(random, throng.proxies);
+            RegionMaker<float> make(random, crowd.proxies);
             for (int i = 0; i < 5; ++i) {
                 const RayRegion<float> ray = make.ray();
                 CollectKeys<float> found;
                 CollectKeys<float> expected;
-                throng.grid.visit(ray, found);
-                visitByBruteForce<float>(throng.proxies, ray, expected);
+                crowd.grid.visit(ray, found);
+                visitByBruteForce<float>(crowd.proxies, ray, expected);
                 wrong += found.sorted() == expected.sorted() ? 0 : 1;
             }
         });
@@ -115,11 +115,11 @@ TEST(GridThreads, RaysRightAfterAnUpdateAllFindTheTreesMade) {
 
 TEST(GridThreads, WhateverIsConstMayBeAskedBesideTheQueryThatFiles) {
     for (int round = 0; round < 10; ++round) {
-        SharedCrowd throng;
+        SharedCrowd crowd;
         std::atomic<int> wrong{0};
         runOnThreads([&](int t) {
-            const Placed<float>& proxy = throng.proxies[static_cast<std::size_t>(t) * 100];
-            const Grid<float>& grid = throng.grid;
+            const Placed<float>& proxy = crowd.proxies[static_cast<std::size_t>(t) * 100];
+            const Grid<float>& grid = crowd.grid;
             if (t == 0) {
                 CollectCount count;
                 grid.visit(BoxRegion<float>{proxy.box}, count);
