@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/crowd.hpp>
 
+#include <broadphase/detail/ensure_capacity.hpp>
 #include <broadphase/detail/kernels.hpp>
 #include <broadphase/detail/prefetch.hpp>
 #include <broadphase/detail/query_scope.hpp>
@@ -119,16 +120,16 @@ void Crowd<Scalar>::chooseCells(const Grid<Scalar>& grid, Scalar radius, ProxyFi
     }
     const detail::QueryScope gridScope(&grid);
     const detail::QueryScope scope(this);
-    const std::size_t count = grid.records_.size();
+    const std::size_t count = placeCount_;
     const std::size_t wanted = std::clamp(count / kSampledShare, kLeastSample, kMostSample);
     const std::size_t step = std::max<std::size_t>(count / wanted, 1);
     std::size_t examined = 0;
-    for (std::size_t slot = 0; slot < count; slot += step) {
+    for (std::size_t place = 0; place < count; place += step) {
         // Where others than agents stand, the next agent.
-        for (; slot < count; ++slot) {
+        for (; place < count; ++place) {
             ++examined;
             Staged staged;
-            if (stageSlot(grid, static_cast<std::uint32_t>(slot), filter, staged)) {
+            if (stageSlot(grid, slotAt(place), filter, staged)) {
                 for (std::size_t axis = 0; axis < 3; ++axis) {
                     sample_[axis].push_back(static_cast<double>(staged.position[axis]));
                 }
@@ -144,8 +145,8 @@ void Crowd<Scalar>::chooseCells(const Grid<Scalar>& grid, Scalar radius, ProxyFi
 // Reads where the proxies are, in the order of their slots, which is that of memory.
 template <class Scalar>
 void Crowd<Scalar>::stage(const Grid<Scalar>& grid, ProxyFilter filter, ParallelFor parallelFor) {
-    staged_.resize(grid.records_.size());
-    cellOfSlot_.resize(staged_.size());
+    staged_.resize(placeCount_);
+    cellOfPlace_.resize(placeCount_);
     std::atomic<std::uint32_t> agentCount{0};
     std::atomic<std::uint32_t> leftOut{0};
     parallelFor(staged_.size(), kCrowdGrain, [&](std::size_t begin, std::size_t end) {
@@ -154,14 +155,14 @@ void Crowd<Scalar>::stage(const Grid<Scalar>& grid, ProxyFilter filter, Parallel
         const detail::Torus torus = torus_;
         std::uint32_t agents = 0;
         std::uint32_t others = 0;
-        for (std::size_t slot = begin; slot < end; ++slot) {
-            Staged& staged = staged_[slot];
-            if (stageSlot(grid, static_cast<std::uint32_t>(slot), filter, staged)) {
+        for (std::size_t place = begin; place < end; ++place) {
+            Staged& staged = staged_[place];
+            if (stageSlot(grid, slotAt(place), filter, staged)) {
                 const auto& [x, y, z] = staged.position;
-                cellOfSlot_[slot] = torus.cellOf(x, y, z);
+                cellOfPlace_[place] = torus.cellOf(x, y, z);
                 ++agents;
             } else {
-                cellOfSlot_[slot] = kNoCell;
+                cellOfPlace_[place] = kNoCell;
                 others += staged.generation != 0 ? 1 : 0;
             }
         }
@@ -176,7 +177,7 @@ void Crowd<Scalar>::stage(const Grid<Scalar>& grid, ProxyFilter filter, Parallel
 template <class Scalar>
 void Crowd<Scalar>::sort(ParallelFor parallelFor) {
     cellStart_.assign(torus_.cellCount() + 1, 0);
-    for (const std::uint32_t cell : cellOfSlot_) {
+    for (const std::uint32_t cell : cellOfPlace_) {
         if (cell != kNoCell) {
             ++cellStart_[cell];
         }
@@ -186,10 +187,10 @@ void Crowd<Scalar>::sort(ParallelFor parallelFor) {
         sum += std::exchange(start, sum);
     }
     // Each start moves to its cell's end, which is where the next one starts.
-    slots_.resize(agentCount_);
-    for (std::size_t slot = 0; slot < cellOfSlot_.size(); ++slot) {
-        if (cellOfSlot_[slot] != kNoCell) {
-            slots_[cellStart_[cellOfSlot_[slot]]++] = static_cast<std::uint32_t>(slot);
+    places_.resize(agentCount_);
+    for (std::size_t place = 0; place < cellOfPlace_.size(); ++place) {
+        if (cellOfPlace_[place] != kNoCell) {
+            places_[cellStart_[cellOfPlace_[place]]++] = static_cast<std::uint32_t>(place);
         }
     }
     std::copy_backward(cellStart_.begin(), cellStart_.end() - 1, cellStart_.end());
@@ -202,10 +203,10 @@ void Crowd<Scalar>::sort(ParallelFor parallelFor) {
     parallelFor(agentCount_, kCrowdGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t agent = begin; agent < end; ++agent) {
             if (agent + kAhead < end) {
-                detail::prefetch(&staged_[slots_[agent + kAhead]]);
+                detail::prefetch(&staged_[places_[agent + kAhead]]);
             }
-            const Staged& staged = staged_[slots_[agent]];
-            ids_[agent] = {slots_[agent], staged.generation};
+            const Staged& staged = staged_[places_[agent]];
+            ids_[agent] = {slotAt(places_[agent]), staged.generation};
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 columns_[axis][agent] = staged.position[axis];
             }
@@ -249,7 +250,11 @@ template <class Scalar>
 void Crowd<Scalar>::take(const Grid<Scalar>& grid, Scalar radius, ProxyFilter filter,
                          ParallelFor parallelFor) {
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kIsAsked);
+    if (peaks_.isPast(std::max(grid.listedCount(), placeCount_), staged_.capacity())) {
+        releaseMemory();
+    }
     try {
+        placeCount_ = grid.size() == 0 ? 0 : grid.listFew(few_);
         chooseCells(grid, radius, filter);
         stage(grid, filter, parallelFor);
         sort(parallelFor);
@@ -355,7 +360,8 @@ template <class Scalar>
 std::size_t Crowd<Scalar>::memoryBytes() const noexcept {
     std::size_t bytes =
         sizeof(*this) + staged_.capacity() * sizeof(Staged) +
-        (cellOfSlot_.capacity() + cellStart_.capacity() + slots_.capacity() + numbers_.capacity()) *
+        (few_.capacity() + cellOfPlace_.capacity() + cellStart_.capacity() + places_.capacity() +
+         numbers_.capacity()) *
             sizeof(std::uint32_t) +
         ids_.capacity() * sizeof(ProxyId) +
         3 * (columns_[0].capacity() * sizeof(Scalar) + sample_[0].capacity() * sizeof(double)) +
@@ -364,6 +370,18 @@ std::size_t Crowd<Scalar>::memoryBytes() const noexcept {
         bytes += tile->memoryBytes();
     }
     return bytes;
+}
+
+template <class Scalar>
+void Crowd<Scalar>::releaseMemory() noexcept {
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kIsAsked);
+    detail::freeArrays(few_, staged_, cellOfPlace_, cellStart_, places_, ids_, numbers_, groups_,
+                       tiles_);
+    sample_ = {};
+    columns_ = {};
+    placeCount_ = 0;
+    agentCount_ = 0;
+    leftOut_ = 0;
 }
 
 template class Crowd<float>;

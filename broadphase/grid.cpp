@@ -16,6 +16,12 @@ void checkProxyCount(std::size_t count) {
     detail::checkCount(count, detail::kMostProxies, "A grid holds at most 268,435,456 proxies.");
 }
 
+// At least doubled, or a program that asks for a few more each time would move all each time.
+std::size_t roomFor(std::size_t count, std::size_t present) {
+    const std::size_t twice = std::min(2 * present, detail::kMostProxies);
+    return std::max<std::size_t>({count, twice, 8});
+}
+
 const GridConfig& checked(const GridConfig& config) {
     const std::string error = configError(config);
     if (!error.empty()) {
@@ -34,7 +40,6 @@ void release(std::vector<Element>& memory) noexcept {
 template <class Scalar>
 Grid<Scalar>::Grid(const GridConfig& config) : config_(checked(config)) {
     if (config_.cellSize > 0) {
-        fixedSizes_ = detail::fixedLevels(config_.cellSize, config_.levelRatio);
         cellSize_ = static_cast<Scalar>(config_.cellSize);
     }
 }
@@ -58,9 +63,11 @@ ProxyId Grid<Scalar>::add(const Box& box, Mobility mobility, const ProxyGroups& 
     std::uint32_t slot = free_.first;
     if (slot == kNoSlot) {
         reserveSlots(records_.size() + 1);
+        reserveLists(listedCount() + 1);
         slot = static_cast<std::uint32_t>(records_.size());
-        records_.emplace_back();
+        records_.emplace_back().generation = firstGeneration_;
     } else {
+        reserveLists(listedCount() + 1);
         free_.first = records_[slot].listedAt;
         --free_.count;
     }
@@ -86,6 +93,8 @@ void Grid<Scalar>::reserve(std::size_t count) {
     HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(this), detail::kMustNotChange);
     checkProxyCount(count);
     reserveSlots(count + removed_.count + removedAnnounced_.count);
+    reserveLists(count + removed_.count + removedAnnounced_.count);
+    reservedCount_ = count;
 }
 
 template <class Scalar>
@@ -94,17 +103,23 @@ void Grid<Scalar>::reserveSlots(std::size_t slotCount) {
     if (slotCount <= records_.capacity()) {
         return;
     }
-    // At least doubled, or a program that asks for a few more each time would move all each time.
-    const std::size_t twice = std::min(2 * records_.capacity(), detail::kMostProxies);
-    const auto room = std::max<std::size_t>({slotCount, twice, 8});
-    mobileSlots_.reserve(room);
-    woken_.reserve(room);
-    waiting_.reserve(room);
+    const std::size_t room = roomFor(slotCount, records_.capacity());
     if (!groups_.empty()) {
         groups_.reserve(2 * room);
         kindOfSlot_.reserve(room);
     }
     records_.reserve(room);  // last: the others have room for as many
+}
+
+template <class Scalar>
+void Grid<Scalar>::reserveLists(std::size_t count) {
+    if (count <= mobileSlots_.capacity()) {
+        return;
+    }
+    const std::size_t room = roomFor(count, mobileSlots_.capacity());
+    woken_.reserve(room);
+    waiting_.reserve(room);
+    mobileSlots_.reserve(room);  // last: the others have room for as many
 }
 
 template <class Scalar>
@@ -390,37 +405,6 @@ CellRange Grid<Scalar>::cellsOf(ProxyId id) const {
 }
 
 // --- Accounts ------------------------------------------------------------------------------------
-
-template <class Scalar>
-std::size_t Grid<Scalar>::memoryBytes() const noexcept {
-    return sizeof(*this) + records_.capacity() * sizeof(Record) +
-           (waiting_.capacity() + mobileSlots_.capacity() + woken_.capacity() +
-            restSlots_.capacity() + nanSlots_.capacity() + sweepingSlots_.capacity()) *
-               sizeof(std::uint32_t) +
-           boxesAtUpdate_.capacity() * sizeof(Box) + groups_.capacity() * sizeof(ProxyGroups) +
-           kindOfSlot_.capacity() +
-           (staged_.capacity() + stagedBefore_.capacity() + restBoxes_.capacity() +
-            sweepingBoxes_.capacity()) *
-               sizeof(detail::PaddedBox<Scalar>) +
-           mobile_.memoryBytes() + fresh_.memoryBytes() + resting_.memoryBytes() +
-           sweeping_.memoryBytes() + rayMemoryBytes();
-}
-
-template <class Scalar>
-std::size_t Grid<Scalar>::rayMemoryBytes() const noexcept {
-    return mobileTree_.tree.memoryBytes() + freshTree_.tree.memoryBytes() +
-           restingTree_.tree.memoryBytes() + sweepingTree_.tree.memoryBytes();
-}
-
-template <class Scalar>
-void Grid<Scalar>::releaseRayMemory() noexcept {
-    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
-                     "What rays read is not freed within a query.");
-    for (TableTree* table : {&mobileTree_, &freshTree_, &restingTree_, &sweepingTree_}) {
-        table->tree = {};
-        table->isStale.store(true, std::memory_order_relaxed);
-    }
-}
 
 template <class Scalar>
 std::string Grid<Scalar>::validate() const {

@@ -38,8 +38,10 @@
 #include <broadphase/collectors.hpp>
 #include <broadphase/detail/box_columns.hpp>
 #include <broadphase/detail/box_tree.hpp>
+#include <broadphase/detail/flat_set.hpp>
 #include <broadphase/detail/group_kinds.hpp>
 #include <broadphase/detail/kernels.hpp>
+#include <broadphase/detail/peak_watch.hpp>
 #include <broadphase/detail/query_scope.hpp>
 #include <broadphase/detail/table.hpp>
 #include <broadphase/diagnostics.hpp>
@@ -57,6 +59,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <span>
 #include <string>
@@ -123,8 +126,8 @@ public:
                               const ProxyGroups& groups = {});
 
     /// Makes room for `count` proxies altogether, so that adding many neither moves anything on the
-    /// way nor fails for want of memory. Throws std::length_error for more than 2^28. Cost: O(count) where
-    /// there is not room already.
+    /// way nor fails for want of memory, until releaseUnusedMemory() gives it back. Throws
+    /// std::length_error for more than 2^28. Cost: O(count) where there is not room already.
     void reserve(std::size_t count);
 
     /// Sets the proxy's box. Bit-equal to the present one: a comparison, and nothing is marked.
@@ -171,7 +174,8 @@ public:
     /// Number of proxies alive, those with a NaN box included.
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
-    /// ProxyId::index of every proxy, present and past, is below it: the length of an array by index.
+    /// ProxyId::index of every proxy, present and past, is below it: the length of an array by index. Falls
+    /// only where memory is given back, as far as there are no proxies: see releaseUnusedMemory().
     [[nodiscard]] std::uint32_t indexLimit() const noexcept {
         return static_cast<std::uint32_t>(records_.size());
     }
@@ -186,7 +190,7 @@ public:
     [[nodiscard]] std::size_t nanCount() const noexcept { return nanCount_; }
 
     /// Calls visit(ProxyId, const Box&) for every proxy alive, in the order of their indices; it may
-    /// change the grid. Cost: O(proxies).
+    /// change the grid. Cost: O(proxies); after a peak of eight times as many, O(n log n) and a list.
     template <class Visit>
     void forEach(Visit&& visit) const;
 
@@ -252,6 +256,15 @@ public:
 
     /// Frees these; the next ray makes them anew.
     void releaseRayMemory() noexcept;
+
+    /// Gives back what is not used: room for more proxies than there are, or than were reserved, and what
+    /// only the next update, shift or query would use, which takes it again. Indices at the end without a
+    /// proxy go, too: indexLimit() falls, and their old ids stay invalid; from then on new proxies take
+    /// the lowest free index first. A proxy with a high index keeps a record (64 bytes, or 128 in double
+    /// precision) for each index below. An update does it by itself when there has been room for more than
+    /// eight times as many, or eight times those reserved, in 256 updates in a row. Not within a query
+    /// (asserted). Cost: O(indexLimit()), and moving what is left.
+    void releaseUnusedMemory() noexcept;
 
     /// Says which invariant is broken, in a sentence; empty when all hold:
     /// - Every proxy alive is filed in exactly one table, or waits in the list of changes, or is NaN.
@@ -370,7 +383,11 @@ private:
     }
     /// The same in coordinates in which such boxes may be compared with each other.
     [[nodiscard]] const Box& boxAtUpdate(std::uint32_t slot) const noexcept {
-        return slot < boxesAtUpdate_.size() ? boxesAtUpdate_[slot] : before(slot);
+        if (boxesAtUpdate_.empty()) {
+            return before(slot);
+        }
+        const std::size_t place = slotsAtUpdate_.size() == 0 ? slot : slotsAtUpdate_.find(slot);
+        return place < boxesAtUpdate_.size() ? boxesAtUpdate_[place] : before(slot);
     }
     [[nodiscard]] bool overlappedAtUpdate(std::uint32_t a, std::uint32_t b) const noexcept {
         return overlaps(boxAtUpdate(a), boxAtUpdate(b));
@@ -406,7 +423,25 @@ private:
         return kindOfSlot_.empty() ? 1 : detail::GroupKinds::bit(kindOfSlot_[slot]);
     }
 
-    // None of these allocates: reserve() has made room for all of it.
+    /// How many slots are listed, in mobileSlots_ or in the table of those at rest.
+    [[nodiscard]] std::size_t listedCount() const noexcept {
+        return mobileSlots_.size() + (resting_.size() - restingErased_);
+    }
+    /// Whether so few slots have proxies that their lists are read sooner than all slots.
+    [[nodiscard]] bool isSparse() const noexcept { return 8 * listedCount() < records_.size(); }
+    /// Calls visit(slot) once for each slot that has a proxy or had one at the last update, and perhaps for
+    /// others; in any order. visit() may wake proxies, and not add any.
+    template <class Visit>
+    void forEachListed(const Visit& visit) const;
+    /// Where proxies are few among the slots, lists their slots in ascending order; else none. Returns how
+    /// many slots are to be looked at: those listed, or all.
+    std::size_t listFew(std::vector<std::uint32_t>& few) const;
+
+    /// None where cell sizes follow the population.
+    [[nodiscard]] detail::LevelSizes fixedSizes() const {
+        return config_.cellSize > 0 ? detail::fixedLevels(config_.cellSize, config_.levelRatio)
+                                    : detail::LevelSizes{};
+    }
     void reserveSlots(std::size_t slotCount);
     void listMobile(std::uint32_t slot) noexcept;
     void unlistMobile(std::uint32_t slot) noexcept;
@@ -414,6 +449,12 @@ private:
     [[nodiscard]] bool isUnseen(std::uint32_t slot) const noexcept;
     void append(std::uint32_t slot, SlotList& list) noexcept;
     void giveBack(SlotList& list) noexcept;
+    void reserveLists(std::size_t count);
+    void releaseAfterPeak() noexcept;
+    void releaseMemory() noexcept;
+    void dropLastSlots();
+
+    // None of these allocates: reserveLists() has made room for all of it.
     void noteChange(std::uint32_t slot) noexcept;
     void countChange(Record& record) noexcept;
     void leaveRest(std::uint32_t slot) noexcept;
@@ -477,10 +518,9 @@ private:
                      Collector& collector, QueryCost& cost) const;
 
     GridConfig config_;
-    detail::LevelSizes fixedSizes_;
 
-    // What a change appends to, mobileSlots_, woken_ and waiting_, has room for as many.
     std::vector<Record> records_;
+    std::uint32_t firstGeneration_ = 0;  // of new slots; even
     SlotList free_;
     // Those whose proxies were removed since the tables were last settled: the next update has to tell
     // these from the next ones. What came and went in between is free at once, unless Pairs told of it.
@@ -490,6 +530,8 @@ private:
     std::size_t nanCount_ = 0;
     bool nanReported_ = false;
     bool hasPairs_ = false;
+    std::size_t reservedCount_ = 0;  // of proxies, by reserve()
+    detail::PeakWatch peaks_;
     bool isTorn_ = false;  // by wakeAll(): what Pairs watches is to be found anew
 
     // Of each slot now, and at the last update: 2 * slot, and one behind. Empty until somebody has others
@@ -518,7 +560,8 @@ private:
     std::mutex filing_;
 
     // In the table's order as of the last update, then what has joined since. What has left since
-    // is still listed, with a NaN box, unless it had joined since.
+    // is still listed, with a NaN box, unless it had joined since. What a change appends to, this, woken_
+    // and waiting_, has room for all that are listed here or rest.
     std::vector<std::uint32_t> mobileSlots_;
     std::size_t listedAtUpdate_ = 0;  // how many there were at the last update
     detail::Table<Scalar> mobile_;
@@ -546,9 +589,11 @@ private:
     std::vector<detail::PaddedBox<Scalar>> stagedBefore_;
     std::atomic<std::uint32_t> quietCount_{0};
 
-    // By slot, when a shift of the origin has rounded boxes since the last update: the boxes of that
-    // update in the coordinates of then. Those at the end that are missing had no proxy.
+    // When a shift of the origin has rounded boxes since the last update: the boxes of that update in the
+    // coordinates of then. By slot, or where proxies are few among the slots by place in slotsAtUpdate_.
+    // Those that are missing had no proxy.
     std::vector<Box> boxesAtUpdate_;
+    detail::FlatSet slotsAtUpdate_;
 
     std::vector<std::uint32_t> restSlots_;  // scratch of listResting()
     std::vector<detail::PaddedBox<Scalar>> restBoxes_;

@@ -88,7 +88,7 @@ void Grid<Scalar>::fileFresh() const {
         return;
     }
     self.stage(serialFor, true);
-    self.fresh_.build(mobileSlots_, staged_, fixedSizes_, serialFor, groupsOfAll());
+    self.fresh_.build(mobileSlots_, staged_, fixedSizes(), serialFor, groupsOfAll());
     self.freshTree_.isStale.store(true, std::memory_order_relaxed);
     ++self.filingCount_;
     self.cost_.filed += fresh_.size();

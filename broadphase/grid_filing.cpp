@@ -101,7 +101,7 @@ void Grid<Scalar>::listResting() {
 
 template <class Scalar>
 void Grid<Scalar>::fileResting(ParallelFor parallelFor) {
-    resting_.build(restSlots_, restBoxes_, fixedSizes_, parallelFor, groupsOfAll());
+    resting_.build(restSlots_, restBoxes_, fixedSizes(), parallelFor, groupsOfAll());
     restingKinds_ = 0;
     for (std::uint32_t entry = 0; entry < resting_.size(); ++entry) {
         records_[resting_.slot(entry)].listedAt = entry;
@@ -116,7 +116,7 @@ template <class Scalar>
 void Grid<Scalar>::fileMobile(ParallelFor parallelFor) {
     isFresh_.store(false, std::memory_order_relaxed);
     isTableTorn_.store(true, std::memory_order_relaxed);  // should it fail, the next one files anew
-    mobile_.build(mobileSlots_, staged_, fixedSizes_, parallelFor, groupsOfAll());
+    mobile_.build(mobileSlots_, staged_, fixedSizes(), parallelFor, groupsOfAll());
     ++filingCount_;
     mobileTree_.isStale.store(true, std::memory_order_relaxed);
     cost_.filed += mobile_.size();
@@ -150,7 +150,7 @@ void Grid<Scalar>::fileSweeping(ParallelFor parallelFor) {
     for (const std::uint32_t slot : sweepingSlots_) {
         sweepingBoxes_.push_back(detail::padded(records_[slot].box));
     }
-    sweeping_.build(sweepingSlots_, sweepingBoxes_, fixedSizes_, parallelFor);
+    sweeping_.build(sweepingSlots_, sweepingBoxes_, fixedSizes(), parallelFor);
     sweepingTree_.isStale.store(true, std::memory_order_relaxed);
     cost_.filed += sweeping_.size();
 }
@@ -180,6 +180,7 @@ UpdateCost Grid<Scalar>::endUpdate() noexcept {
         std::max({mobile_.largestCell(), resting_.largestCell(), sweeping_.largestCell()});
     woken_.clear();
     boxesAtUpdate_.clear();
+    slotsAtUpdate_.clear();
     if (std::exchange(areRegrouped_, false)) {
         for (std::size_t i = 0; i < groups_.size(); i += 2) {
             groups_[i + 1] = groups_[i];
@@ -212,6 +213,7 @@ template <class Scalar>
 UpdateCost Grid<Scalar>::update(ParallelFor parallelFor) {
     HASHPHASE_ASSERT(!hasPairs_, "Where there are Pairs, Pairs::update() ends the frame.");
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), "An update is not begun within a query.");
+    releaseAfterPeak();
     if (cost_.changed > 0) {
         try {
             stage(parallelFor);
@@ -228,14 +230,15 @@ UpdateCost Grid<Scalar>::update(ParallelFor parallelFor) {
 
 template <class Scalar>
 void Grid<Scalar>::forgetLastUpdate() noexcept {
-    for (std::uint32_t slot = 0; slot < records_.size(); ++slot) {
+    forEachListed([this](std::uint32_t slot) {
         if (isAlive(slot)) {
             noteChange(slot);
         }
         records_[slot].before = nanBox();
         records_[slot].isAnnounced = false;
-    }
+    });
     boxesAtUpdate_.clear();
+    slotsAtUpdate_.clear();
     isTorn_ = false;
 }
 

@@ -7,7 +7,6 @@
 
 #include <broadphase/detail/origin_shift.hpp>
 
-#include <algorithm>
 #include <new>
 
 namespace hashphase {
@@ -26,9 +25,7 @@ std::size_t Grid<Scalar>::shiftOrigin(const Point& shift) {
     }
     ++shiftCount_;
     std::size_t roundedCount = 0;
-    for (std::uint32_t slot = 0; slot < records_.size(); ++slot) {
-        roundedCount += shiftRecord(slot, shift) ? 1 : 0;
-    }
+    forEachListed([&](std::uint32_t slot) { roundedCount += shiftRecord(slot, shift) ? 1 : 0; });
     shiftTables(shift);
     return roundedCount;
 }
@@ -37,18 +34,27 @@ std::size_t Grid<Scalar>::shiftOrigin(const Point& shift) {
 // nothing is lost, and they compare as they did.
 template <class Scalar>
 void Grid<Scalar>::keepBoxesAtUpdate(const Point& shift) {
-    const bool someAreRounded =
-        std::any_of(records_.begin(), records_.end(), [&](const Record& record) {
-            return detail::isRounded(record.box, shift) ||
-                   (record.changedAt == updateNumber_ && detail::isRounded(record.before, shift));
-        });
+    bool someAreRounded = false;
+    forEachListed([&](std::uint32_t slot) {
+        const Record& record = records_[slot];
+        someAreRounded =
+            someAreRounded || detail::isRounded(record.box, shift) ||
+            (record.changedAt == updateNumber_ && detail::isRounded(record.before, shift));
+    });
     if (!someAreRounded) {
         return;
     }
-    boxesAtUpdate_.reserve(records_.size());
-    for (std::uint32_t slot = 0; slot < records_.size(); ++slot) {
-        boxesAtUpdate_.push_back(before(slot));
+    const bool areFew = isSparse();
+    const std::size_t count = areFew ? listedCount() : records_.size();
+    boxesAtUpdate_.reserve(count);
+    if (areFew) {
+        slotsAtUpdate_.reserve(count);
     }
+    forEachListed([&](std::uint32_t slot) {
+        if (!areFew || slotsAtUpdate_.findOrInsert(slot) == boxesAtUpdate_.size()) {
+            boxesAtUpdate_.push_back(before(slot));
+        }
+    });
 }
 
 // Returns whether the slot's box was rounded.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/neighbours.hpp>
 
+#include <broadphase/detail/ensure_capacity.hpp>
 #include <broadphase/detail/padded_box.hpp>
 #include <broadphase/detail/unit_scale.hpp>
 
@@ -52,6 +53,10 @@ Scalar squaredGap(const detail::PaddedBox<Scalar>& a, const detail::PaddedBox<Sc
 template <class Scalar>
 std::span<const ProxyPair> Neighbours<Scalar>::find(const Grid<Scalar>& grid, Scalar distance,
                                                     ParallelFor parallelFor) & {
+    const std::size_t lastCount = std::max(ids_.size(), candidates_.size());
+    if (peaks_.isPast(lastCount, std::max(ids_.capacity(), found_.capacity()))) {
+        releaseMemory();
+    }
     ids_.clear();
     boxes_.clear();
     grown_.clear();
@@ -102,6 +107,14 @@ std::size_t Neighbours<Scalar>::memoryBytes() const noexcept {
            ids_.capacity() * sizeof(ProxyId) +
            (boxes_.capacity() + grown_.capacity()) * sizeof(boxes_[0]) + table_.memoryBytes() +
            parts_.memoryBytes() + candidates_.memoryBytes() + found_.capacity() * sizeof(ProxyPair);
+}
+
+template <class Scalar>
+void Neighbours<Scalar>::releaseMemory() noexcept {
+    detail::freeArrays(ids_, boxes_, grown_, slots_, found_);
+    table_ = {};
+    parts_ = {};
+    candidates_ = {};
 }
 
 template class Neighbours<float>;

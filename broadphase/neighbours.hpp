@@ -26,13 +26,17 @@ public:
     /// straight line between the nearest points; 0 apart where they overlap), each couple once, in
     /// any order. Valid until the next call. None for a negative or NaN distance. The result does
     /// not depend on `parallelFor`. Cost: that of an update of the grid, and of the couples; at most
-    /// that of comparing all with all.
+    /// that of comparing all with all. Gives back memory that has been room for more than eight times as
+    /// many proxies, or couples, in 256 calls in a row.
     [[nodiscard]] std::span<const ProxyPair> find(const Grid<Scalar>& grid, Scalar distance,
                                                   ParallelFor parallelFor = serialFor) &;
 
     /// What the last find() cost; hits are couples.
     [[nodiscard]] const QueryCost& lastCost() const noexcept { return cost_; }
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
+
+    /// Gives back all memory; what was found is not valid any more.
+    void releaseMemory() noexcept;
 
 private:
     std::vector<ProxyId> ids_;
@@ -44,6 +48,7 @@ private:
     detail::PairList candidates_;
     std::vector<ProxyPair> found_;  // never shrinks
     QueryCost cost_;
+    detail::PeakWatch peaks_;
 };
 
 extern template class Neighbours<float>;

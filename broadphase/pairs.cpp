@@ -72,6 +72,8 @@ PairChanges Pairs<Scalar>::update(PairFilter filter, ParallelFor parallelFor) & 
                      "An update is not begun within a query, or within the filter.");
     beginCall();
     cost_ = {};
+    grid_.releaseAfterPeak();
+    releaseAfterPeak();
     try {
         recover();
         findChanges(parallelFor);
@@ -107,15 +109,15 @@ void Pairs<Scalar>::recover() {
     refused_.reserve(refused_.size() + refusedAtRest_.size());
     tableOfUpdate_ = nullptr;
     grid_.stage(serialFor);
+    detail::Table<Scalar>& table = wokenTable();
     const ProxyGroups* const groups = grid_.groupsOfAllAtUpdate();
-    wokenTable_.build(grid_.mobileSlots_, grid_.stagedBefore_, grid_.fixedSizes_, serialFor,
-                      groups);
+    table.build(grid_.mobileSlots_, grid_.stagedBefore_, grid_.fixedSizes(), serialFor, groups);
     detail::KernelCost cost;
     selected_.clear();
-    detail::joinTable(wokenTable_, serialFor, parts_, selected_, cost, groups);
+    detail::joinTable(table, serialFor, parts_, selected_, cost, groups);
     amongMobile_.clear();
     for (const auto [a, b] : selected_.pairs()) {
-        amongMobile_.push({wokenTable_.order()[a], wokenTable_.order()[b]});
+        amongMobile_.push({table.order()[a], table.order()[b]});
     }
     for (const Couple c : refusedAtRest_.keys()) {
         refused_.findOrInsert(c);
@@ -124,7 +126,7 @@ void Pairs<Scalar>::recover() {
     refusedAtRest_.clear();
     grid_.woken_.clear();
     grid_.listedAtUpdate_ = grid_.mobileSlots_.size();
-    tableOfUpdate_ = &wokenTable_;
+    tableOfUpdate_ = wokenTable_.get();
     indexedWoken_ = 0;
     shiftOfUpdate_ = grid_.shiftCount_;
     grid_.isTorn_ = false;
@@ -271,12 +273,12 @@ void Pairs<Scalar>::findDeathsOfWoken(ParallelFor parallelFor) {
         }
     };
     wokenBoxes_.clear();
-    wokenBounds_.clear();
+    bounds_.clear();
     detail::GroupKinds::Set wokenKinds = 0;
     const ProxyGroups* const groups = grid_.groupsOfAllAtUpdate();
     for (const std::uint32_t slot : grid_.woken_) {
         wokenBoxes_.push_back(detail::padded(grid_.boxAtUpdate(slot)));
-        wokenBounds_.push(grid_.before(slot));
+        bounds_.push(grid_.before(slot));
         if (groups != nullptr) {
             wokenKinds |=
                 detail::GroupKinds::bit(grid_.groupKinds_.numberOf(groups[2 * std::size_t{slot}]));
@@ -287,23 +289,32 @@ void Pairs<Scalar>::findDeathsOfWoken(ParallelFor parallelFor) {
     const bool areToldApart = grid_.groupKinds_.refuse(wokenKinds, grid_.restingKinds_);
     detail::KernelCost cost;
     selected_.clear();
-    detail::walkTable(grid_.resting_, wokenBounds_.columns(), wokenBounds_.size(), parallelFor,
-                      parts_, selected_, cost, areToldApart ? &view : nullptr);
+    detail::walkTable(grid_.resting_, bounds_.columns(), bounds_.size(), parallelFor, parts_,
+                      selected_, cost, areToldApart ? &view : nullptr);
     for (const auto [woken, entry] : selected_.pairs()) {
         wake(grid_.woken_[woken], grid_.resting_.slot(entry));
     }
     if (grid_.woken_.size() > 1) {
+        detail::Table<Scalar>& table = wokenTable();
         const ProxyGroups* own =
             grid_.groupKinds_.refuse(wokenKinds, wokenKinds) ? groups : nullptr;
-        wokenTable_.build(grid_.woken_, wokenBoxes_, grid_.fixedSizes_, parallelFor, own);
+        table.build(grid_.woken_, wokenBoxes_, grid_.fixedSizes(), parallelFor, own);
         selected_.clear();
-        detail::joinTable(wokenTable_, parallelFor, parts_, selected_, cost, own,
+        detail::joinTable(table, parallelFor, parts_, selected_, cost, own,
                           grid_.groupKinds_.together(wokenKinds));
         for (const auto [a, b] : selected_.pairs()) {
-            wake(wokenTable_.slot(a), wokenTable_.slot(b));
+            wake(table.slot(a), table.slot(b));
         }
     }
     cost_.boxesTested += cost.boxesTested;
+}
+
+template <class Scalar>
+detail::Table<Scalar>& Pairs<Scalar>::wokenTable() {
+    if (wokenTable_ == nullptr) {
+        wokenTable_ = std::make_unique<detail::Table<Scalar>>();
+    }
+    return *wokenTable_;
 }
 
 template <class Scalar>
@@ -433,14 +444,14 @@ void Pairs<Scalar>::walkResting(ParallelFor parallelFor) {
     const detail::Table<Scalar>& table = grid_.mobile_;
     walkers_.clear();
     walkerSlots_.clear();
-    walkerBounds_.clear();
+    bounds_.clear();
     const bool someRefuse = grid_.groupKinds_.refuse(grid_.changedKinds_, grid_.restingKinds_);
     const bool areToldApart = someRefuse && isCrowded(grid_.resting_);
     for (std::uint32_t entry = 0; entry < table.size(); ++entry) {
         const std::uint32_t slot = table.slot(entry);
         if (grid_.changedNow(slot)) {
             walkers_.push_back(entry);
-            walkerBounds_.push(table.box(entry));
+            bounds_.push(table.box(entry));
             if (areToldApart) {
                 walkerSlots_.push_back(slot);
             }
@@ -450,8 +461,8 @@ void Pairs<Scalar>::walkResting(ParallelFor parallelFor) {
                                   grid_.groupKinds_.together(grid_.restingKinds_)};
     detail::KernelCost cost;
     selected_.clear();
-    detail::walkTable(grid_.resting_, walkerBounds_.columns(), walkerBounds_.size(), parallelFor,
-                      parts_, selected_, cost, areToldApart ? &view : nullptr);
+    detail::walkTable(grid_.resting_, bounds_.columns(), bounds_.size(), parallelFor, parts_,
+                      selected_, cost, areToldApart ? &view : nullptr);
     cost_.boxesTested += cost.boxesTested;
     if (someRefuse && !areToldApart) {
         takeOut(selected_, [&](const detail::IndexPair& pair) {
@@ -557,30 +568,6 @@ template <class Scalar>
 bool Pairs<Scalar>::isAtRest(Couple c) const noexcept {
     return grid_.records_[first(c)].place == Grid<Scalar>::Place::resting &&
            grid_.records_[second(c)].place == Grid<Scalar>::Place::resting;
-}
-
-template <class Scalar>
-std::size_t Pairs<Scalar>::memoryBytes() const noexcept {
-    return sizeof(*this) + amongMobile_.memoryBytes() + toResting_.memoryBytes() +
-           selected_.memoryBytes() + parts_.memoryBytes() + carried_.memoryBytes() +
-           walkerBounds_.memoryBytes() + wokenBounds_.memoryBytes() +
-           (asked_.capacity() + standing_.capacity() + bornCouples_.capacity() +
-            diedCouples_.capacity() + sorted_.capacity() + restedCouples_.capacity() +
-            sweptBySecond_.capacity() + lost_.capacity() + swept_.capacity() + gone_.capacity() +
-            fresh_.capacity() + unknown_.capacity() + sweptNow_.capacity() +
-            stillAnnounced_.capacity() + keptNow_.capacity() + notKept_.capacity() +
-            lapsed_.capacity()) *
-               sizeof(Couple) +
-           (toldByUpdate_.born.capacity() + toldByUpdate_.died.capacity() +
-            toldBetween_.born.capacity() + toldBetween_.died.capacity() + askedPairs_.capacity()) *
-               sizeof(ProxyPair) +
-           accepted_.capacity() + isNamed_.capacity() +
-           (entryOf_.capacity() + walkers_.capacity() + walkerSlots_.capacity() +
-            indexedSlots_.capacity()) *
-               sizeof(std::uint32_t) +
-           wokenBoxes_.capacity() * sizeof(detail::PaddedBox<Scalar>) + wokenTable_.memoryBytes() +
-           announced_.memoryBytes() + kept_.memoryBytes() + refused_.memoryBytes() +
-           refusedAtRest_.memoryBytes();
 }
 
 template class Pairs<float>;

@@ -29,6 +29,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -159,6 +160,13 @@ public:
     [[nodiscard]] const PairCost& lastCost() const noexcept { return cost_; }
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
+    /// Gives back what is not used, but nothing of the grid's, which has a call of its own: room for more
+    /// couples than there are, and what only the next call would use, which takes it again. What calls
+    /// have returned is not valid any more. update() does it by itself when there has been room for more
+    /// than eight times as many in 256 updates in a row. Not within the filter (asserted). Cost: moving
+    /// what is left.
+    void releaseUnusedMemory() noexcept;
+
     /// Says which invariant is broken, in a sentence; empty when all hold (ask after update()):
     /// - The watched couples are the overlapping ones that may pair and of which one is mobile, each once.
     /// - count() is the number of overlapping and swept couples that may pair, less the refused ones, and
@@ -203,6 +211,7 @@ private:
     void findChanges(ParallelFor parallelFor);
     void findDeaths(ParallelFor parallelFor);
     void findDeathsOfWoken(ParallelFor parallelFor);
+    [[nodiscard]] detail::Table<Scalar>& wokenTable();
     void loseIfApart(Couple c);
     [[nodiscard]] bool mayPairNow(Couple c) const noexcept {
         return grid_.mayPairNow(first(c), second(c));
@@ -258,6 +267,7 @@ private:
     template <class IsNamed>
     void findUnknown(std::uint32_t slot, const IsNamed& isNamed);
     void findUnknown(std::uint32_t slot);
+    void releaseAfterPeak() noexcept;
     void forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const;
 
     static constexpr std::size_t kFewAnnounced = 64;
@@ -303,6 +313,7 @@ private:
     Told toldBetween_;
     std::size_t count_ = 0;
     PairCost cost_;
+    detail::PeakWatch peaks_;
 
     // Scratch.
     std::vector<Couple> sorted_;
@@ -318,9 +329,9 @@ private:
     std::vector<std::uint32_t> entryOf_;  // of places in mobileSlots_, in the mobile table
     std::vector<std::uint32_t> walkers_;  // entries that changed
     std::vector<std::uint32_t> walkerSlots_;
-    detail::BoxColumns<Scalar> walkerBounds_;
-    detail::Table<Scalar> wokenTable_;
-    std::vector<char> isNamed_;  // by slot
+    detail::BoxColumns<Scalar> bounds_;                  // of what is looked for in a table
+    std::unique_ptr<detail::Table<Scalar>> wokenTable_;  // made when it is first needed
+    std::vector<char> isNamed_;                          // by slot
 
     // A table of boxes as of the last update: of what was mobile then, and of the first indexedWoken_ of
     // what has left rest since. Either the grid's own, until it is filed again, or wokenTable_; null when neither is.
@@ -330,7 +341,6 @@ private:
     std::uint64_t filingOfUpdate_ = 0;         // Grid::filingCount_ and ...
     std::uint64_t shiftOfUpdate_ = 0;          // ... Grid::shiftCount_ at that time
     std::vector<detail::PaddedBox<Scalar>> wokenBoxes_;
-    detail::BoxColumns<Scalar> wokenBounds_;
 };
 
 extern template class Pairs<float>;

@@ -209,9 +209,9 @@ void Pairs<Scalar>::indexLastUpdate(std::size_t mostUnindexed) {
         wokenBoxes_.push_back(detail::padded(grid_.boxAtUpdate(slot)));
     }
     tableOfUpdate_ = nullptr;
-    wokenTable_.build(slots, wokenBoxes_, grid_.fixedSizes_, serialFor,
-                      grid_.groupsOfAllAtUpdate());
-    tableOfUpdate_ = &wokenTable_;
+    wokenTable().build(slots, wokenBoxes_, grid_.fixedSizes(), serialFor,
+                       grid_.groupsOfAllAtUpdate());
+    tableOfUpdate_ = wokenTable_.get();
     indexedWoken_ = grid_.woken_.size();
     shiftOfUpdate_ = grid_.shiftCount_;
 }
@@ -237,18 +237,18 @@ void Pairs<Scalar>::forOverlapsAtUpdate(std::uint32_t slot, const Visit& visit) 
         }
     };
     const auto walk = [&](const detail::Table<Scalar>& table, const Box& box) {
-        wokenBounds_.clear();
-        wokenBounds_.push(box);
+        bounds_.clear();
+        bounds_.push(box);
         detail::FewPairs found;
         detail::KernelCost cost;
         found.assign([&](detail::PairSink& sink) {
-            detail::walkTogether(table, wokenBounds_.columns(), 1, sink, cost);
+            detail::walkTogether(table, bounds_.columns(), 1, sink, cost);
         });
         for (const auto [query, entry] : found.pairs()) {
             visitIfTheyDid(table.slot(entry));
         }
     };
-    const bool isOwn = tableOfUpdate_ == &wokenTable_;  // in the coordinates of then
+    const bool isOwn = tableOfUpdate_ == wokenTable_.get();  // in the coordinates of then
     walk(*tableOfUpdate_, isOwn ? grid_.boxAtUpdate(slot) : grid_.before(slot));
     walk(grid_.resting_, grid_.before(slot));
     for (std::size_t i = indexedWoken_; i < grid_.woken_.size(); ++i) {
@@ -297,14 +297,14 @@ void Pairs<Scalar>::forAllKnown(const Visit& visit) {
             visitIfTheyDid(table->slot(a), table->slot(b));
         }
     }
-    wokenBounds_.clear();
+    bounds_.clear();
     for (const std::uint32_t slot : tableOfUpdate_->entrySlots()) {
-        wokenBounds_.push(grid_.before(slot));
+        bounds_.push(grid_.before(slot));
     }
     selected_.clear();
     const detail::GroupsView view{groups, tableOfUpdate_->entrySlots().data(), {}};
-    detail::walkTable(grid_.resting_, wokenBounds_.columns(), wokenBounds_.size(), serialFor,
-                      parts_, selected_, cost, groups != nullptr ? &view : nullptr);
+    detail::walkTable(grid_.resting_, bounds_.columns(), bounds_.size(), serialFor, parts_,
+                      selected_, cost, groups != nullptr ? &view : nullptr);
     for (const auto [entry, resting] : selected_.pairs()) {
         visitIfTheyDid(tableOfUpdate_->slot(entry), grid_.resting_.slot(resting));
     }

@@ -5,6 +5,7 @@
 #include <broadphase/detail/origin_shift.hpp>
 #include <broadphase/diagnostics.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace hashphase {
@@ -110,6 +111,11 @@ void Sweeps<Scalar>::makeRoom() {
 // rest, and what it meets is looked for anew.
 template <class Scalar>
 void Sweeps<Scalar>::beginUpdate() {
+    const std::size_t slotCount = grid_.records_.size();
+    const std::size_t dropped = std::max(motionOfSlot_.size(), slotCount) - slotCount;
+    if (peaks_.isPast(motions_.size(), std::max(motions_.capacity(), dropped))) {
+        releaseUnusedMemory();
+    }
     if (!motions_.empty()) {
         makeRoom();
     }
@@ -132,6 +138,21 @@ template <class Scalar>
 std::size_t Sweeps<Scalar>::memoryBytes() const noexcept {
     return sizeof(*this) + motions_.capacity() * sizeof(Motion) +
            motionOfSlot_.capacity() * sizeof(std::uint32_t) + search_.memoryBytes();
+}
+
+template <class Scalar>
+void Sweeps<Scalar>::releaseUnusedMemory() noexcept {
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(&grid_),
+                     "Memory is not given back within a query.");
+    while (motionOfSlot_.size() > grid_.records_.size() && motionOfSlot_.back() == kNone) {
+        motionOfSlot_.pop_back();
+    }
+    if (motions_.empty()) {
+        motionOfSlot_.clear();
+    }
+    motionOfSlot_.shrink_to_fit();
+    motions_.shrink_to_fit();
+    search_.releaseUnusedMemory();
 }
 
 template <class Scalar>

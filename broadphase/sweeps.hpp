@@ -87,6 +87,11 @@ public:
     [[nodiscard]] const SweepCost& lastCost() const noexcept { return search_.cost(); }
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
+    /// Gives back what is not used: room for more than sweep, and for indices that the grid has given back.
+    /// The next update takes again what it needs. Not within a query (asserted). Cost: O(indices that the
+    /// grid has given back), and moving what is left.
+    void releaseUnusedMemory() noexcept;
+
     /// Says which invariant is broken, in a sentence; empty when all hold:
     /// - Every motion is listed by its slot, and no other slot is.
     [[nodiscard]] std::string validate() const;
@@ -131,6 +136,7 @@ private:
     std::uint32_t vacantCount_ = 0;
     std::vector<std::uint32_t> motionOfSlot_;  // kNone where a slot does not sweep
     bool reportedBadData_ = false;
+    detail::PeakWatch peaks_;
     detail::ContactSearch<Scalar> search_;
 };
 

@@ -4,6 +4,8 @@
 // Lauterbach et al., "Fast BVH construction on GPUs", 2009, with eight children a node.
 
 #include <broadphase/detail/box_tree.hpp>
+
+#include <broadphase/detail/ensure_capacity.hpp>
 #include <broadphase/detail/hilbert.hpp>
 
 #include <algorithm>
@@ -246,6 +248,12 @@ std::size_t BoxTree::memoryBytes() const noexcept {
     return levels_.capacity() * sizeof(BoxTreeLevel) + blocks_.capacity() * sizeof(BoxBlock) +
            (boxes_.capacity() + unsorted_.capacity()) * sizeof(Box) +
            (places_.capacity() + places2_.capacity()) * sizeof(Place);
+}
+
+void BoxTree::releaseUnusedMemory() noexcept {
+    levels_.shrink_to_fit();
+    blocks_.shrink_to_fit();
+    freeArrays(boxes_, unsorted_, places_, places2_);
 }
 
 std::string BoxTree::validate() const {

@@ -44,6 +44,8 @@ public:
     [[nodiscard]] std::span<const BoxTreeLevel> levels() const noexcept { return levels_; }
     [[nodiscard]] const BoxBlock* blocks() const noexcept { return blocks_.data(); }
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
+    /// Gives back what only build() uses, and room for more boxes than there are.
+    void releaseUnusedMemory() noexcept;
 
     /// Says which invariant is broken, in a sentence; empty when all hold:
     /// - Every block but the roots stands below one lane of one block, in the lane's box.

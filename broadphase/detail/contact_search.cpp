@@ -7,6 +7,7 @@
 
 #include <broadphase/detail/contact_search.hpp>
 
+#include <broadphase/detail/ensure_capacity.hpp>
 #include <broadphase/detail/join.hpp>
 #include <broadphase/detail/padded_box.hpp>
 #include <broadphase/detail/radix_sort.hpp>
@@ -395,6 +396,17 @@ void ContactSearch<Scalar>::addMeeting(ParallelFor parallelFor) {
                        }
                    });
     touching_.append(touchingNow_.pairs());
+}
+
+template <class Scalar>
+void ContactSearch<Scalar>::releaseUnusedMemory() noexcept {
+    freeArrays(contacts_, ways_, motionOfSegment_, rays_, sample_, sorted_, motionNumbers_, slice_);
+    segments_ = {};
+    parts_ = {};
+    candidates_ = {};
+    touchingNow_ = {};
+    touching_ = {};
+    sliceTable_ = {};
 }
 
 template <class Scalar>

@@ -53,6 +53,8 @@ public:
     [[nodiscard]] std::span<const std::uint64_t> contacts() const noexcept { return contacts_; }
     [[nodiscard]] const SweepCost& cost() const noexcept { return cost_; }
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
+    /// Gives back all that only find() uses, and what it found.
+    void releaseUnusedMemory() noexcept;
 
 private:
     using Point = Vector3<Scalar>;

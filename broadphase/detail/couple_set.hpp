@@ -57,6 +57,15 @@ public:
         next_.clear();
     }
 
+    [[nodiscard]] std::size_t capacity() const noexcept { return couples_.capacity(); }
+
+    /// Gives its memory back when it is empty.
+    void shrink() {
+        if (couples_.size() == 0) {
+            *this = CoupleSet();
+        }
+    }
+
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         return couples_.memoryBytes() +
                (next_.capacity() + firstOf_.capacity()) * sizeof(std::uint32_t);

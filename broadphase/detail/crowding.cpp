@@ -52,7 +52,7 @@ void Crowding::measure(std::span<const std::array<double, 3>> points,
                 keys_.push_back(key);
             }
         }
-        shares_[flat] = count(points.size());
+        shares_[flat >> 1] = count(points.size());
     }
 }
 
@@ -91,7 +91,7 @@ double Crowding::shareInCell(double size, AxisSet flat) const {
     if (!(size < edge_)) {
         return 1;
     }
-    const Shares& shares = shares_[flat];
+    const Shares& shares = shares_[flat >> 1];
     const double scale = std::log2(edge_) - std::log2(size);
     const auto last = static_cast<double>(shares.last);
     if (scale >= last) {

@@ -14,7 +14,7 @@
 
 namespace hashphase::detail {
 
-/// A set of axes: bit i for axis i.
+/// A set of axes: bit i for axis i. Rows run along x, which is never flat.
 using AxisSet = std::uint8_t;
 
 class Crowding {
@@ -45,8 +45,8 @@ private:
 
     [[nodiscard]] Shares count(std::size_t pointCount);
 
-    double edge_ = 0;  // [m] of the cell that holds all
-    std::array<Shares, 8> shares_{};
+    double edge_ = 0;                  // [m] of the cell that holds all
+    std::array<Shares, 4> shares_{};   // by flat axes, without x
     std::vector<std::uint64_t> keys_;  // scratch
 };
 

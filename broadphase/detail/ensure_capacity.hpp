@@ -15,4 +15,10 @@ void ensureCapacity(Array& array, std::size_t count) {
     }
 }
 
+/// Empties arrays and gives their memory back, which `array = {}` does not.
+template <class... Arrays>
+void freeArrays(Arrays&... arrays) noexcept {
+    (Arrays().swap(arrays), ...);
+}
+
 }  // namespace hashphase::detail

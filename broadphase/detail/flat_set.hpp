@@ -9,7 +9,7 @@
 // after a million frames as after the first. After Bronson and Shi, "Open-sourcing F14 for faster,
 // more memory-efficient hash tables", 2019.
 //
-// Memory    Grows by doubling and never shrinks: a steady population allocates nothing. The table
+// Memory    Grows by doubling and shrinks by shrink() alone: a steady population allocates nothing. The table
 //           takes 7 to 14 bytes a key, the keys themselves eight.
 // Order     A function of the calls so far, and nothing that means anything.
 // Threads   Everything const may run anywhere, the rest needs the container for itself.
@@ -162,6 +162,27 @@ public:
         }
         if (groupCount != groups_.size()) {
             rehash(groupCount);
+        }
+    }
+
+    [[nodiscard]] std::size_t capacity() const noexcept { return sizeLimit_; }
+
+    /// Gives back room for more keys than there are. Where memory runs out, nothing has changed.
+    void shrink() {
+        if (keys_.empty()) {
+            *this = FlatSet();
+            return;
+        }
+        std::size_t groupCount = groups_.size();
+        while (groupCount > 1 && groupCount / 2 * kFullGroup >= keys_.size()) {
+            groupCount /= 2;
+        }
+        if (groupCount != groups_.size()) {
+            std::vector<std::uint64_t> keys;
+            keys.reserve(groupCount * kFullGroup);
+            keys.assign(keys_.begin(), keys_.end());
+            rehash(groupCount);
+            keys_.swap(keys);
         }
     }
 

@@ -377,9 +377,31 @@ void Grid<Scalar>::forEachFiled(Visit&& visit) const {
 
 template <class Scalar>
 template <class Visit>
+void Grid<Scalar>::forEachListed(const Visit& visit) const {
+    if (!isSparse()) {
+        for (std::uint32_t slot = 0; slot < records_.size(); ++slot) {
+            visit(slot);
+        }
+        return;
+    }
+    const std::size_t mobileCount = mobileSlots_.size();  // not those that `visit` wakes
+    for (std::size_t i = 0; i < mobileCount; ++i) {
+        visit(mobileSlots_[i]);
+    }
+    for (const std::uint32_t slot : resting_.entrySlots()) {
+        if (records_[slot].place == Place::resting) {
+            visit(slot);
+        }
+    }
+}
+
+template <class Scalar>
+template <class Visit>
 void Grid<Scalar>::forEach(Visit&& visit) const {
-    const std::size_t count = records_.size();  // not those that `visit` adds
-    for (std::uint32_t slot = 0; slot < count; ++slot) {
+    std::vector<std::uint32_t> few;
+    const auto count = static_cast<std::uint32_t>(listFew(few));  // not those that `visit` adds
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint32_t slot = few.empty() ? i : few[i];
         if (isAlive(slot)) {
             const Box box = records_[slot].box;  // a copy: `visit` may move the records
             visit(idOf(slot), box);

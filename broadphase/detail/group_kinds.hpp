@@ -8,6 +8,8 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <new>
 
 namespace hashphase::detail {
 
@@ -20,29 +22,39 @@ public:
 
     static constexpr std::uint8_t kOther = 63;
 
-    GroupKinds() noexcept { static_cast<void>(numberOf(ProxyGroups{})); }
-
     static constexpr Set bit(std::uint8_t kind) noexcept { return Set{1} << kind; }
 
-    /// Numbers them, if that has not been done yet. ProxyGroups{} has the number 0. Cost: O(kinds).
+    /// Numbers them, if that has not been done yet. ProxyGroups{} has the number 0; where there is no
+    /// memory for more, all others have kOther. Cost: O(kinds).
     std::uint8_t numberOf(const ProxyGroups& groups) noexcept {
-        const auto end = kinds_.begin() + count_;
-        const auto known = std::find(kinds_.begin(), end, groups);
-        if (known != end) {
-            return static_cast<std::uint8_t>(known - kinds_.begin());
+        if (groups == ProxyGroups{}) {
+            return 0;
         }
-        const std::uint8_t number = count_;
-        if (number == kOther) {
-            refused_.fill(~Set{0});
+        if (known_ == nullptr) {
+            known_.reset(new (std::nothrow) Known);
+        }
+        if (known_ == nullptr) {
             someRefuse_ = true;
             return kOther;
         }
-        kinds_[number] = groups;
+        auto& [kinds, refused] = *known_;
+        const auto end = kinds.begin() + count_;
+        const auto known = std::find(kinds.begin(), end, groups);
+        if (known != end) {
+            return static_cast<std::uint8_t>(known - kinds.begin());
+        }
+        const std::uint8_t number = count_;
+        if (number == kOther) {
+            refused.fill(~Set{0});
+            someRefuse_ = true;
+            return kOther;
+        }
+        kinds[number] = groups;
         ++count_;
         for (std::uint8_t other = 0; other <= number; ++other) {
-            if (!mayPair(kinds_[other], groups)) {
-                refused_[other] |= bit(number);
-                refused_[number] |= bit(other);
+            if (!mayPair(kinds[other], groups)) {
+                refused[other] |= bit(number);
+                refused[number] |= bit(other);
                 someRefuse_ = true;
             }
         }
@@ -50,22 +62,22 @@ public:
     }
 
     /// Of a number below kOther.
-    [[nodiscard]] const ProxyGroups& operator[](std::uint8_t kind) const noexcept {
-        return kinds_[kind];
+    [[nodiscard]] ProxyGroups operator[](std::uint8_t kind) const noexcept {
+        return known_ != nullptr ? known_->kinds[kind] : ProxyGroups{};
     }
 
     /// True when some of the one may not pair with some of the other; or when there are so many that
     /// nothing is known.
     [[nodiscard]] bool refuse(Set some, Set others) const noexcept {
         for (; some != 0 && someRefuse_; some &= some - 1) {
-            if ((refused_[static_cast<std::size_t>(std::countr_zero(some))] & others) != 0) {
+            if ((refusedBy(static_cast<std::size_t>(std::countr_zero(some))) & others) != 0) {
                 return true;
             }
         }
         return false;
     }
     [[nodiscard]] bool refuse(std::uint8_t a, std::uint8_t b) const noexcept {
-        return (refused_[a] & bit(b)) != 0;
+        return someRefuse_ && (refusedBy(a) & bit(b)) != 0;
     }
 
     /// Among all that were ever numbered.
@@ -78,15 +90,23 @@ public:
             const auto kind = static_cast<std::uint8_t>(std::countr_zero(some));
             all = kind >= count_
                       ? ProxyGroups{}
-                      : ProxyGroups{all.group | kinds_[kind].group, all.mask | kinds_[kind].mask};
+                      : ProxyGroups{all.group | (*this)[kind].group, all.mask | (*this)[kind].mask};
         }
         return all;
     }
 
 private:
-    std::array<ProxyGroups, kOther> kinds_{};  // the first count_
-    std::array<Set, kOther + 1> refused_{};    // by each, which it may not pair with
-    std::uint8_t count_ = 0;
+    struct Known {
+        std::array<ProxyGroups, kOther> kinds{};  // the first count_
+        std::array<Set, kOther + 1> refused{};    // by each, which it may not pair with
+    };
+
+    [[nodiscard]] Set refusedBy(std::size_t kind) const noexcept {
+        return known_ != nullptr ? known_->refused[kind] : ~Set{0};
+    }
+
+    std::unique_ptr<Known> known_;  // made for the first that are not ProxyGroups{}
+    std::uint8_t count_ = 1;
     bool someRefuse_ = false;
 };
 

@@ -112,13 +112,23 @@ const Kernels<double>& kernels<double>() noexcept {
 void PairList::grow(PairSink& sink, std::size_t count) {
     auto& list = *static_cast<PairList*>(sink.owner);
     const auto size = static_cast<std::size_t>(sink.next - list.data_.get());
-    const auto capacity = std::max<std::size_t>({2 * list.capacity_, size + count, 64});
+    const auto capacity = std::max<std::size_t>({2 * list.capacity_, size + count, 16});
     auto data = std::make_unique_for_overwrite<IndexPair[]>(capacity);
     std::copy_n(list.data_.get(), size, data.get());
     list.data_ = std::move(data);
     list.capacity_ = capacity;
     sink.next = list.data_.get() + size;
     sink.end = list.data_.get() + capacity;
+}
+
+void PairList::shrink() {
+    if (size_ < capacity_) {
+        PairList fresh;
+        if (size_ > 0) {
+            std::copy_n(data_.get(), size_, fresh.resize(size_));
+        }
+        swap(fresh);
+    }
 }
 
 IndexPair* PairList::resize(std::size_t count) {

@@ -72,6 +72,9 @@ public:
     [[nodiscard]] IndexPair* resize(std::size_t count);
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept { return capacity_ * sizeof(IndexPair); }
+    [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
+    /// Gives back room for more couples than there are. Where memory runs out, nothing has changed.
+    void shrink();
 
     void swap(PairList& other) noexcept {
         data_.swap(other.data_);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/detail/level_layout.hpp>
 
+#include <broadphase/detail/origin_shift.hpp>
+
 #include <bit>
 #include <limits>
 #include <optional>
@@ -122,6 +124,7 @@ void LevelLayout<Scalar>::choose(std::span<const PaddedBox<Scalar>> boxes,
     for (std::size_t axis = 0; axis < 3; ++axis) {
         origin_[axis] = static_cast<Scalar>(middle[axis]);
     }
+    middle_ = census_.range(0.5 / kStrays);
 }
 
 template <class Scalar>
@@ -150,10 +153,9 @@ void LevelLayout<Scalar>::layOutDense(Level<Scalar>& level, const CellReach& rea
     if (numberThrough(level, reach.count)) {
         return;
     }
-    const auto [low, high] = census_.range(0.5 / kStrays);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        level.low[axis] = level.cell(static_cast<Scalar>(low[axis]), axis);
-        level.high[axis] = level.cell(static_cast<Scalar>(high[axis]), axis);
+        level.low[axis] = level.cell(static_cast<Scalar>(middle_.low[axis]), axis);
+        level.high[axis] = level.cell(static_cast<Scalar>(middle_.high[axis]), axis);
     }
     if (!numberThrough(level, reach.count)) {
         level.low.fill(1);
@@ -178,7 +180,10 @@ void LevelLayout<Scalar>::layOut(std::span<const PaddedBox<Scalar>> boxes,
             }
         }
     }
-    if (isThinned) {
+    const auto hasCells = [](const Level<Scalar>& level) { return level.hasCells; };
+    if (std::none_of(levels.begin(), levels.end(), hasCells)) {
+        levels.assign(1, {});
+    } else if (isThinned) {
         reaches = measure<Scalar>(boxes, levels);
     }
     std::uint32_t firstBucket = 0;
@@ -199,11 +204,13 @@ void LevelLayout<Scalar>::layOut(std::span<const PaddedBox<Scalar>> boxes,
 }
 
 template <class Scalar>
-void LevelLayout<Scalar>::shiftOrigin(const Vector3<Scalar>& shift) {
+void LevelLayout<Scalar>::shiftOrigin(const Vector3<Scalar>& shift) noexcept {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        origin_[axis] -= shift[static_cast<Eigen::Index>(axis)];
+        const Scalar by = shift[static_cast<Eigen::Index>(axis)];
+        origin_[axis] = shiftedWithin<Scalar>(origin_[axis], by);
+        middle_.low[axis] = shiftedWithin<Scalar>(middle_.low[axis], by);
+        middle_.high[axis] = shiftedWithin<Scalar>(middle_.high[axis], by);
     }
-    census_.shiftOrigin({double{shift[0]}, double{shift[1]}, double{shift[2]}});
 }
 
 template class LevelLayout<float>;

@@ -53,24 +53,29 @@ public:
 
     /// Lays the levels out for the boxes as they are now, and a little further: two for each cell
     /// size, finest first, one numbered through, for most, and a hashed one for what lies beyond it.
-    /// The last one is the list without cells. Cost: a pass or two over the boxes.
+    /// The last one, the only one for a few boxes, is the list without cells. Cost: a pass or two over the
+    /// boxes.
     void layOut(std::span<const PaddedBox<Scalar>> boxes, std::vector<Level<Scalar>>& levels);
 
     /// To be told when `shift` is subtracted from all coordinates.
-    void shiftOrigin(const Vector3<Scalar>& shift);
+    void shiftOrigin(const Vector3<Scalar>& shift) noexcept;
 
     [[nodiscard]] const LevelSizes& sizes() const noexcept { return sizes_; }
-    [[nodiscard]] std::size_t memoryBytes() const noexcept { return census_.memoryBytes(); }
+    void releaseUnusedMemory() noexcept { census_ = {}; }
+    [[nodiscard]] std::size_t memoryBytes() const noexcept {
+        return sizeof(*this) + census_.memoryBytes();
+    }
 
 private:
     void makeLevels(std::vector<Level<Scalar>>& levels) const;
     void layOutDense(Level<Scalar>& level, const CellReach& reach);
 
     LevelSizes sizes_;
-    std::array<Scalar, 3> origin_{};
+    std::array<Scalar, 3> origin_{};  // finite
+    SizeCensus::Range middle_;  // where all but a few of the boxes began, when sizes were chosen
     std::uint64_t countWhenChosen_ = 0;
     std::uint32_t buildsSinceChosen_ = 0;
-    SizeCensus census_;
+    SizeCensus census_;  // scratch of choose()
 };
 
 }  // namespace hashphase::detail

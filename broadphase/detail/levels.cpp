@@ -66,9 +66,7 @@ void SizeCensus::add(const Aabb<Scalar>& box) {
     }
     const auto bits =
         static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(extent) >> kFractionShift);
-    const std::int64_t index =
-        std::clamp<std::int64_t>(bits - kFirstClassBits, 0, kQuarterOctaves - 1);
-    Bin& bin = histogram_[static_cast<std::size_t>(index)];
+    Bin& bin = binOf(std::clamp<std::int64_t>(bits - kFirstClassBits, 0, kQuarterOctaves - 1));
     ++bin.count;
     bin.largest = std::max(bin.largest, extent);
     if (total_ % sampleStep_ != 0 || !box.min().allFinite()) {
@@ -89,9 +87,23 @@ void SizeCensus::add(const Aabb<Scalar>& box) {
 template void SizeCensus::add<float>(const Aabb<float>&);
 template void SizeCensus::add<double>(const Aabb<double>&);
 
+SizeCensus::Bin& SizeCensus::binOf(std::int64_t sizeClass) {
+    firstClass_ = histogram_.empty() ? sizeClass : firstClass_;
+    if (sizeClass < firstClass_) {
+        histogram_.insert(histogram_.begin(), static_cast<std::size_t>(firstClass_ - sizeClass),
+                          Bin{});
+        firstClass_ = sizeClass;
+    }
+    const auto place = static_cast<std::size_t>(sizeClass - firstClass_);
+    if (place >= histogram_.size()) {
+        histogram_.resize(place + 1);
+    }
+    return histogram_[place];
+}
+
 void SizeCensus::clear() {
     isConcluded_ = false;
-    histogram_.fill({});
+    histogram_.clear();
     total_ = 0;
     sampleStep_ = 1;
     samples_.clear();
@@ -284,18 +296,10 @@ std::array<double, 3> SizeCensus::middle() {
     return middle_;
 }
 
-void SizeCensus::shiftOrigin(const std::array<double, 3>& shift) noexcept {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        middle_[axis] -= shift[axis];
-        for (auto& sample : samples_) {
-            sample[axis] -= shift[axis];
-        }
-    }
-}
-
 std::size_t SizeCensus::memoryBytes() const noexcept {
-    return samples_.capacity() * sizeof(samples_[0]) + classes_.capacity() * sizeof(SizeClass) +
-           column_.capacity() * sizeof(double) + crowding_.memoryBytes();
+    return histogram_.capacity() * sizeof(Bin) + samples_.capacity() * sizeof(samples_[0]) +
+           classes_.capacity() * sizeof(SizeClass) + column_.capacity() * sizeof(double) +
+           crowding_.memoryBytes();
 }
 
 LevelSizes fixedLevels(double cellSize, double ratio) {

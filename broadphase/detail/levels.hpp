@@ -56,9 +56,6 @@ public:
     /// The middle of the population: the median min corner on each axis; finite.
     [[nodiscard]] std::array<double, 3> middle();
 
-    /// Subtracts `shift` from what is known of where the population is.
-    void shiftOrigin(const std::array<double, 3>& shift) noexcept;
-
     /// Between which coordinates [m] the min corners lie, but for `share` of them at either end of
     /// each axis; finite.
     struct Range {
@@ -100,7 +97,10 @@ private:
     static constexpr int kQuarterOctaves = 4 * 256;
     static constexpr std::size_t kMaxSamples = 2048;
 
-    std::array<Bin, kQuarterOctaves> histogram_{};
+    [[nodiscard]] Bin& binOf(std::int64_t sizeClass);
+
+    std::vector<Bin> histogram_;  // of the size classes from the smallest one met to the largest
+    std::int64_t firstClass_ = 0;
     std::uint64_t total_ = 0;
     std::uint64_t sampleStep_ = 1;
     std::vector<std::array<double, 3>> samples_;

@@ -7,7 +7,10 @@
 
 #include <broadphase/aabb.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include <broadphase/detail/hide_macros.hpp>
 
@@ -24,7 +27,15 @@ template <class Scalar>
 /// no exact difference can then have got past it.
 template <class Scalar>
 [[nodiscard]] inline bool isLostIn(Scalar x, Scalar shift) noexcept {
-    return x - 2 * shift == x;
+    return x - 2 * shift == x || std::isinf(x);
+}
+
+/// x - shift within what Scalar can tell: of that from which others are measured, and which shifts that
+/// add up must not make infinite.
+template <class Scalar, class Wide>
+[[nodiscard]] inline Wide shiftedWithin(Wide x, Scalar shift) noexcept {
+    constexpr auto most = static_cast<Wide>(std::numeric_limits<Scalar>::max());
+    return std::clamp(x - static_cast<Wide>(shift), -most, most);
 }
 
 template <class Scalar>

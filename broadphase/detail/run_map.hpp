@@ -51,6 +51,12 @@ public:
         values_.clear();
     }
 
+    /// Gives back room for more values than there are. Where memory runs out, all values are as they were.
+    void shrink() {
+        blocks_.shrink();
+        values_.shrink_to_fit();
+    }
+
     /// Calls visit(key, value) for every key that has a value.
     template <class Visit>
     void forEach(Visit&& visit) const {

@@ -6,6 +6,7 @@
 #include <broadphase/detail/table.hpp>
 
 #include <broadphase/detail/crowd_census.hpp>
+#include <broadphase/detail/ensure_capacity.hpp>
 #include <broadphase/detail/kernels.hpp>
 #include <broadphase/diagnostics.hpp>
 
@@ -65,7 +66,7 @@ bool sortByGroups(std::span<std::uint32_t> crowd, const GroupsOf& groupsOf) {
 
 template <class Scalar>
 void Table<Scalar>::layOut(std::span<const PaddedBox<Scalar>> boxes) {
-    layout_.layOut(boxes, levels_);
+    layout_->layOut(boxes, levels_);
     bucketStart_.resize(levels_.back().firstBucket + levels_.back().bucketCount + 1);
 }
 
@@ -295,7 +296,14 @@ void Table<Scalar>::build(std::span<const std::uint32_t> boxSlots,
                           std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed,
                           ParallelFor parallelFor, const ProxyGroups* groups) {
     HASHPHASE_ASSERT(boxSlots.size() == boxes.size(), "Every box has a slot.");
+    if (boxes.empty()) {
+        clear();
+        return;
+    }
     try {
+        if (layout_ == nullptr) {
+            layout_ = std::make_unique<LevelLayout<Scalar>>();
+        }
         findBuckets(boxes, fixed, parallelFor);
         sortEntries(boxSlots, boxes, groups, parallelFor);
     } catch (...) {
@@ -313,12 +321,12 @@ void Table<Scalar>::findBuckets(std::span<const PaddedBox<Scalar>> boxes, const 
         return strays > 2 * usual + Layout::kThinLevel + boxes.size() / Layout::kStrays;
     };
     const auto choose = [&] {
-        layout_.choose(boxes, fixed);
+        layout_->choose(boxes, fixed);
         layOut(boxes);
         strayCount_ = countBuckets(boxes, parallelFor);
         straysWhenChosen_ = strayCount_;
     };
-    if (layout_.isTimeToChoose(boxes.size()) || levels_.empty()) {
+    if (layout_->isTimeToChoose(boxes.size()) || levels_.empty()) {
         choose();
     } else if (areMany(countBuckets(boxes, parallelFor), strayCount_)) {
         layOut(boxes);
@@ -387,7 +395,27 @@ std::size_t Table<Scalar>::memoryBytes() const noexcept {
                sizeof(std::uint32_t) +
            6 * bounds_[0].capacity() * sizeof(Scalar) + rowOfEntry_.capacity() * sizeof(Row) +
            views_.capacity() * sizeof(LevelView<Scalar>) +
-           sortedBuckets_.capacity() * sizeof(SortedBucket<Scalar>) + layout_.memoryBytes();
+           sortedBuckets_.capacity() * sizeof(SortedBucket<Scalar>) +
+           (layout_ != nullptr ? layout_->memoryBytes() : 0);
+}
+
+template <class Scalar>
+void Table<Scalar>::releaseUnusedMemory() noexcept {
+    if (slots_.empty()) {
+        *this = {};
+        return;
+    }
+    layout_->releaseUnusedMemory();
+    levels_.shrink_to_fit();
+    for (auto* numbers : {&bucketStart_, &slots_, &order_, &bucketOfEntry_}) {
+        numbers->shrink_to_fit();
+    }
+    rowOfEntry_.shrink_to_fit();
+    sortedBuckets_.shrink_to_fit();
+    for (auto& column : bounds_) {
+        column.shrink_to_fit();
+    }
+    freeArrays(buckets_, longOnes_, views_);
 }
 
 template <class Scalar>

@@ -25,6 +25,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -87,11 +88,13 @@ public:
     [[nodiscard]] std::uint32_t largestCell() const noexcept { return largestBucket_; }
     /// Edge of the finest cells [m]; infinity when nothing is filed by cells.
     [[nodiscard]] double finestCellSize() const noexcept {
-        return layout_.sizes().count > 0 && !slots_.empty()
-                   ? layout_.sizes().cellSize[0]
+        return !slots_.empty() && layout_->sizes().count > 0
+                   ? layout_->sizes().cellSize[0]
                    : std::numeric_limits<double>::infinity();
     }
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
+    /// Gives back what only build() uses, and room for more entries than there are.
+    void releaseUnusedMemory() noexcept;
 
     /// The entry's box, or NaN when it was erased.
     [[nodiscard]] Aabb<Scalar> box(std::uint32_t entry) const noexcept {
@@ -168,10 +171,10 @@ private:
     void noteRows();
     void noteHeights();
 
-    LevelLayout<Scalar> layout_;
-    std::uint32_t largestBucket_ = 0;   // of those that are cells
-    std::size_t strayCount_ = 0;        // when the levels were laid out
-    std::size_t straysWhenChosen_ = 0;  // when the cell sizes were chosen
+    std::unique_ptr<LevelLayout<Scalar>> layout_;  // made when the first box is filed
+    std::uint32_t largestBucket_ = 0;              // of those that are cells
+    std::size_t strayCount_ = 0;                   // when the levels were laid out
+    std::size_t straysWhenChosen_ = 0;             // when the cell sizes were chosen
     std::vector<Level<Scalar>> levels_;
     std::vector<std::uint32_t> bucketStart_;
     std::vector<std::uint32_t> slots_;

@@ -28,7 +28,7 @@ bool Table<Scalar>::shiftOrigin(const Vector3<Scalar>& shift) {
     for (Level<Scalar>& level : levels_) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const Scalar by = shift[static_cast<Eigen::Index>(axis)];
-            const Scalar origin = level.origin[axis] - by;
+            const Scalar origin = shiftedWithin(level.origin[axis], by);
             bool isExact = isExactDifference(level.origin[axis], by, origin);
             level.origin[axis] = origin;
             level.lowest[axis] -= by;
@@ -40,7 +40,9 @@ bool Table<Scalar>::shiftOrigin(const Vector3<Scalar>& shift) {
             isFiled &= isExact || !level.hasCells || level.count() == 0;
         }
     }
-    layout_.shiftOrigin(shift);
+    if (layout_ != nullptr) {
+        layout_->shiftOrigin(shift);
+    }
     return isFiled;
 }
 

@@ -49,6 +49,10 @@ public:
     /// ray passes them by.
     bool clipTo(double radius) {
         constexpr double much = 64;
+        if (!std::isfinite(reach_)) {
+            isExpressible_ = false;
+            return true;
+        }
         if (reach_ <= much * radius) {
             if (isClipped_) {
                 isClipped_ = false;

@@ -8,6 +8,7 @@
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
@@ -305,11 +306,38 @@ std::uint32_t PairCache::indexOf(const Note& note) const {
 }
 
 std::size_t PairCache::memoryBytes() const noexcept {
-    return static_cast<std::size_t>(pairs_.capacity()) * sizeof(btBroadphasePair) +
+    return sizeof(*this) + static_cast<std::size_t>(pairs_.capacity()) * sizeof(btBroadphasePair) +
            ids_.memoryBytes() + links_.capacity() * sizeof(Link) + firstEdge_.memoryBytes() +
            retired_.capacity() * sizeof(Retired) + vacant_.capacity() * sizeof(std::uint32_t) +
            ranks_.memoryBytes() + scratch_.capacity() * sizeof(Note) +
            newIndex_.capacity() * sizeof(std::uint32_t);
+}
+
+// Bullet's arrays give memory back only when they are emptied. Chains are made anew when they are
+// needed.
+void PairCache::releaseUnusedMemory() noexcept {
+    checkMayChange();
+    if (pairs_.capacity() > pairs_.size()) {
+        btBroadphasePairArray fresh;
+        fresh.reserve(pairs_.size());
+        for (int i = 0; i < pairs_.size(); ++i) {
+            fresh.push_back(pairs_[i]);
+        }
+        pairs_.clear();
+        pairs_.reserve(fresh.size());
+        for (int i = 0; i < fresh.size(); ++i) {
+            pairs_.push_back(fresh[i]);
+        }
+    }
+    dropChains();
+    retired_.shrink_to_fit();
+    detail::freeArrays(links_, vacant_, scratch_, newIndex_);
+    try {
+        ranks_ = {};
+        firstEdge_.shrink();
+        ids_.shrink();
+    } catch (const std::bad_alloc&) {  // it is kept as it is
+    }
 }
 
 std::string PairCache::validate() const {

@@ -13,8 +13,8 @@
 //
 // Threads   needsBroadphaseCollision() and the const members may run anywhere. Everything else
 //           needs the cache for itself, as in Bullet.
-// Pointers  A pair stays where it is until a pair is added or removed, in canonical order also
-//           until the next look at the whole array. Others must not resize or reorder the array.
+// Pointers  A pair stays where it is until a pair is added or removed, or memory is given back, in
+//           canonical order also until the next look at the whole array. Others must not resize or reorder the array.
 // Batches   update() and removeOverlappingPairsContainingProxies() do in a pass what single calls do
 //           one by one, at a fraction of the cost.
 // Callbacks See the cache as it is after the change that they are told of, and may change it: those of
@@ -236,11 +236,20 @@ public:
 
     // --- Beyond Bullet ---------------------------------------------------------------------------
 
+    /// For how many pairs there is room.
+    [[nodiscard]] std::size_t capacity() const noexcept {
+        return static_cast<std::size_t>(pairs_.capacity());
+    }
+
     /// How many pairs were looked at so far to serve single proxies: the work of
     /// removeOverlappingPairsContainingProxy() and cleanProxyFromPairs().
     [[nodiscard]] std::uint64_t pairsVisited() const noexcept { return pairsVisited_; }
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
+
+    /// Gives back room for more pairs than there are. Pairs move, as where one is added. A
+    /// SpatialHashBroadphase does it by itself: see its own. Not within the filter (asserted). Cost: O(pairs).
+    void releaseUnusedMemory() noexcept;
 
     /// Says which invariant is broken, in a sentence; empty when all hold:
     /// - Every pair is found by the unique ids of its proxies.

@@ -75,18 +75,23 @@ std::size_t SpatialHashBroadphase::shiftOrigin(const btVector3& shift) {
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
                      "The origin is not shifted by callbacks of calculateOverlappingPairs().");
     const Vector3<btScalar> by = toEigen(shift);
+    std::vector<std::uint32_t> few;  // of the proxies, where many more have gone
+    if (8 * grid_.size() < uniqueIds_.size()) {
+        few.reserve(grid_.size());
+        grid_.forEach([&](ProxyId id, const Aabb<btScalar>&) { few.push_back(id.index); });
+    }
     const std::size_t roundedCount = grid_.shiftOrigin(by);
     mustNoteGroups_ = mustNoteGroups_ || roundedCount > 0;
     if (sweeps_ != nullptr) {
         sweeps_->shiftOrigin(by);
     }
-    if (by.allFinite()) {
-        for (std::uint32_t slot = 0; slot < uniqueIds_.size(); ++slot) {
-            if (uniqueIds_[slot] != 0) {
-                Proxy& proxy = *proxyAt(slot);
-                proxy.m_aabbMin -= shift;
-                proxy.m_aabbMax -= shift;
-            }
+    const std::size_t count = few.empty() ? uniqueIds_.size() : few.size();
+    for (std::size_t i = 0; i < count && by.allFinite(); ++i) {
+        const std::uint32_t slot = few.empty() ? static_cast<std::uint32_t>(i) : few[i];
+        if (uniqueIds_[slot] != 0) {
+            Proxy& proxy = *proxyAt(slot);
+            proxy.m_aabbMin -= shift;
+            proxy.m_aabbMax -= shift;
         }
     }
     return roundedCount;

@@ -308,6 +308,7 @@ void SpatialHashBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) 
         return doMeet(*pair.m_pProxy0, *pair.m_pProxy1);
     };
     removeDeferred(meets, dispatcher);
+    releaseAfterPeak();
 }
 
 // A destroyed proxy has taken its pairs with it.
@@ -515,8 +516,46 @@ ProxyId SpatialHashBroadphase::idOf(const btBroadphaseProxy* proxy) {
     return static_cast<const Proxy*>(proxy)->id;
 }
 
+void SpatialHashBroadphase::releaseUnusedMemory() noexcept {
+    checkMayChange();
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
+                     "Memory is not given back within a callback.");
+    grid_.releaseUnusedMemory();
+    pairs_.releaseUnusedMemory();
+    if (sweeps_ != nullptr) {
+        sweeps_->releaseUnusedMemory();
+    }
+    detail::freeArrays(died_, born_);
+    dropLastProxies();
+    if (batchCache_ != nullptr) {
+        batchCache_->releaseUnusedMemory();
+    }
+}
+
+// Those whose indices the grid has given back. A cache that is behind may still name some.
+void SpatialHashBroadphase::dropLastProxies() noexcept {
+    if (!isCacheBehind_ && grid_.indexLimit() < uniqueIds_.size()) {
+        uniqueIds_.resize(grid_.indexLimit());
+        uniqueIds_.shrink_to_fit();
+        proxies_.shrink(uniqueIds_.size());
+    }
+}
+
+// The grid and its pairs look after themselves.
+void SpatialHashBroadphase::releaseAfterPeak() noexcept {
+    dropLastProxies();
+    const std::size_t room = batchCache_ != nullptr ? batchCache_->capacity() : died_.capacity();
+    if (peaks_.isPast(pairs_.count(), room)) {
+        detail::freeArrays(died_, born_);
+        if (batchCache_ != nullptr) {
+            batchCache_->releaseUnusedMemory();
+        }
+    }
+}
+
 std::size_t SpatialHashBroadphase::memoryBytes() const noexcept {
-    return grid_.memoryBytes() + pairs_.memoryBytes() + proxies_.memoryBytes() +
+    return sizeof(*this) - sizeof(grid_) - sizeof(pairs_) + grid_.memoryBytes() +
+           pairs_.memoryBytes() + proxies_.memoryBytes() +
            (sweeps_ != nullptr ? sweeps_->memoryBytes() : 0) + uniqueIds_.capacity() * sizeof(int) +
            (died_.capacity() + born_.capacity()) * sizeof(ProxyCouple) +
            seen_.capacity() * sizeof(seen_[0]) +

@@ -297,6 +297,14 @@ public:
     /// Bytes held, Bullet's own proxies included, the pair cache excluded unless it is our own.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
+    /// Gives back what is not used, after a level was left, say: that of the grid, its pairs and sweeps, see
+    /// Grid::releaseUnusedMemory(), of a PairCache, and of the proxies at the end that are destroyed, whose
+    /// addresses must not be used any more, not even for an assertion to tell of it.
+    /// calculateOverlappingPairs() does it by itself when there has been room for more than eight times as
+    /// many proxies, or pairs, in 256 calls in a row. Not within a callback (asserted). Cost:
+    /// O(grid().indexLimit()), and moving what is left.
+    void releaseUnusedMemory() noexcept;
+
     /// Grid::validate(), Sweeps::validate(), Pairs::validate() and PairCache::validate(), and:
     /// - The cache holds as many pairs as the set of pairs (for a cache of our own).
     [[nodiscard]] std::string validate() const;
@@ -336,6 +344,8 @@ private:
     void noteUnseen(const Proxy& proxy) noexcept;
     void noteGroupsAround(const Proxy& proxy);
     void removeFromGrid(Proxy* proxy);
+    void dropLastProxies() noexcept;
+    void releaseAfterPeak() noexcept;
     void findCouples(std::span<const ProxyPair> pairs, std::vector<ProxyCouple>& couples) const;
     void apply(const PairChanges& changes, std::size_t birthsAtOnce, btDispatcher* dispatcher);
     void applyToCache(const Couples& couples, btDispatcher* dispatcher);
@@ -388,6 +398,7 @@ private:
     // Whose groups have been looked at since then, a bit for each slot; empty while nobody needs to know.
     std::vector<std::uint64_t> seen_;
     std::size_t seenCount_ = 0;
+    detail::PeakWatch peaks_;        // of the cache
     bool isCacheBehind_ = false;     // of changes that did not all reach it
     std::vector<ProxyCouple> died_;  // scratch of Couples
     std::vector<ProxyCouple> born_;

@@ -76,7 +76,10 @@ bool Culler<Scalar>::begin(const View& view, Scalar moved) {
     ++findCount_;
     grown_ = margin_ > 0 ? view_.grownBy(margin_) : view_;
     moved_ = std::numeric_limits<Scalar>::infinity();
-    std::fill(bits_.begin(), bits_.end(), 0);
+    if (peaks_.isPast(bits_.size(), bits_.capacity())) {
+        std::vector<std::uint64_t>().swap(bits_);
+    }
+    bits_.clear();
     return true;
 }
 

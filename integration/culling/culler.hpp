@@ -16,9 +16,11 @@
 // Threads   look() reads the grid, as queries do, and needs this object for itself.
 // Units     metres
 // Bad data  A volume without a point, or with a NaN, has nothing; frustumError() says why.
-// Memory    A bit for each proxy; a frame like the last one allocates nothing.
+// Memory    A bit for each index up to the highest that is visible; a frame like the last one allocates
+//           nothing. Room for more than eight times as many goes after 256 frames.
 
 #include <broadphase/convex_region.hpp>
+#include <broadphase/detail/peak_watch.hpp>
 #include <broadphase/detail/query_scope.hpp>
 #include <broadphase/frustum.hpp>
 #include <broadphase/grid.hpp>
@@ -91,13 +93,14 @@ public:
         return id.index / 64 < bits_.size() && (bits_[id.index / 64] >> (id.index % 64) & 1) != 0;
     }
 
-    /// Bit i % 64 of word i / 64 tells about the proxy with index i.
+    /// Bit i % 64 of word i / 64 tells about the proxy with index i; beyond the end there is none.
     [[nodiscard]] std::span<const std::uint64_t> bits() const noexcept { return bits_; }
 
     [[nodiscard]] std::size_t count() const noexcept;
 
     /// Calls visit(index) for the ProxyId::index of every proxy in the set, ascending; Grid::idAt() has
-    /// its id. It does not look anew (asserted). Cost: a 64th of the proxies, and the calls.
+    /// its id. It does not look anew (asserted). Cost: a 64th of the highest index in the set, and the
+    /// calls.
     template <class Visit>
     void forEach(Visit&& visit) const {
         const detail::QueryScope scope(this);
@@ -131,6 +134,7 @@ private:
     bool isFrozen_ = false;
     std::uint64_t findCount_ = 0;
     std::vector<std::uint64_t> bits_;
+    detail::PeakWatch peaks_;
 };
 
 extern template class Culler<float>;

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <initializer_list>
 #include <limits>
 #include <span>
 #include <utility>
@@ -299,6 +300,103 @@ TYPED_TEST(OriginShift, IsSeenByEveryQueryAtOnce) {
             }
         }
     }
+}
+
+// --- Shifts that add up --------------------------------------------------------------------------
+
+// Rays through each of the last boxes and along its edges, as far as they are finite, meet what they
+// meet of all.
+template <class Scalar>
+std::size_t expectRaysLikeBruteForce(const Grid<Scalar>& grid,
+                                     std::span<const Placed<Scalar>> proxies, std::size_t last) {
+    const auto finite = [](const Vector3<Scalar>& corner) -> Vector3<Scalar> {
+        const Scalar most = std::numeric_limits<Scalar>::max();
+        return corner.cwiseMax(-most).cwiseMin(most);
+    };
+    std::size_t met = 0;
+    for (const Placed<Scalar>& proxy : proxies.last(last)) {
+        const Vector3<Scalar> from = finite(proxy.box.min());
+        const Vector3<Scalar> to = finite(proxy.box.max());
+        met += expectLikeBruteForce(grid, proxies, RayRegion<Scalar>(from, to));
+        for (int axis = 0; axis < 3; ++axis) {
+            Vector3<Scalar> along = from;
+            along[axis] = to[axis];
+            met += expectLikeBruteForce(grid, proxies, RayRegion<Scalar>(from, along));
+            along[axis] = from[axis] / 2;
+            met += expectLikeBruteForce(grid, proxies, RayRegion<Scalar>(from, along));
+        }
+    }
+    return met;
+}
+
+// Boxes of a usual size, and such as end at the ends of numbers.
+template <class Scalar>
+std::vector<Aabb<Scalar>> boxesUpToInfinity(int usualCount) {
+    Random random(0x5eed2005);
+    using Limits = std::numeric_limits<Scalar>;
+    std::vector<Aabb<Scalar>> boxes;
+    for (int i = 0; i < usualCount; ++i) {
+        const Vector3<Scalar> low = random.pointIn(0, 9).array().floor().template cast<Scalar>();
+        boxes.emplace_back(low, low + Vector3<Scalar>::Ones());
+    }
+    for (const Scalar far : {Scalar(1e18), Limits::max() / 2, Limits::max(), Limits::infinity()}) {
+        boxes.emplace_back(Vector3<Scalar>(-far, 0, 0), Vector3<Scalar>(1, 1, 1));
+        boxes.emplace_back(Vector3<Scalar>(-1, 2, 2), Vector3<Scalar>(far, 3, 3));
+        boxes.emplace_back(Vector3<Scalar>(-far, 4, 0), Vector3<Scalar>(far, 5, 1));
+        boxes.emplace_back(Vector3<Scalar>(far, 0, 0), Vector3<Scalar>(far, 9, 9));
+    }
+    return boxes;
+}
+
+// Two finite shifts may take what is finite to infinity, and what cells and trees are measured from
+// with it; or each be lost in the next.
+TYPED_TEST(OriginShift, ThatAddUpBeyondAllNumbersLoseNoBox) {
+    using Limits = std::numeric_limits<TypeParam>;
+    constexpr TypeParam most = Limits::max();
+    constexpr TypeParam least = Limits::denorm_min();
+    const std::vector<std::vector<TypeParam>> courses{
+        {most, most},         {most, most, -most, -most}, {-most, -most, most},
+        {most, -most},        {most / 2, most, 1, most},  {least, least, -1},
+        {-most / 2, -most, 7}};
+    for (const int usualCount : {6, 150}) {
+        for (const double cellSize : {0.0, 1.5}) {
+            for (const std::vector<TypeParam>& course : courses) {
+                SCOPED_TRACE(testing::Message() << usualCount << " boxes, cell size " << cellSize
+                                                << ", from " << testing::PrintToString(course));
+                GridConfig config;
+                config.cellSize = cellSize;
+                PairWorld<TypeParam> world(config);
+                std::vector<Placed<TypeParam>> proxies;
+                for (const Aabb<TypeParam>& box : boxesUpToInfinity<TypeParam>(usualCount)) {
+                    const bool isResting = proxies.size() % 3 == 0;
+                    const auto mobility = isResting ? Mobility::resting : Mobility::mobile;
+                    proxies.push_back({world.add(box, mobility), box});
+                }
+                updateDisturbed<TypeParam>(world, proxies);
+                for (const TypeParam x : course) {
+                    shift(world, proxies, Vector3<TypeParam>(x, 0, 0));
+                    EXPECT_GT(expectRaysLikeBruteForce<TypeParam>(world.grid, proxies, 22), 0U);
+                    EXPECT_EQ(world.grid.validate(), "");
+                    world.update();
+                    ASSERT_NO_FATAL_FAILURE(world.checkThoroughly(proxies));
+                    ASSERT_FALSE(this->HasFailure());
+                }
+            }
+        }
+    }
+}
+
+TYPED_TEST(OriginShift, LeavesWhatIsInfiniteAtRestHoweverFarItIs) {
+    constexpr TypeParam infinity = std::numeric_limits<TypeParam>::infinity();
+    PairWorld<TypeParam> world;
+    const Aabb<TypeParam> box(Vector3<TypeParam>::Constant(-infinity),
+                              Vector3<TypeParam>::Constant(infinity));
+    std::vector<Placed<TypeParam>> proxies{{world.add(box, Mobility::resting), box}};
+    const Vector3<TypeParam> far(std::numeric_limits<TypeParam>::max(), 1, 0);
+    EXPECT_EQ(world.grid.shiftOrigin(far), 0U);
+    EXPECT_EQ(world.grid.shiftOrigin(far), 0U);
+    world.update();
+    ASSERT_NO_FATAL_FAILURE(world.checkThoroughly(proxies));
 }
 
 // --- Cost and misuse -----------------------------------------------------------------------------

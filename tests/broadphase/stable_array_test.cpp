@@ -31,5 +31,27 @@ TEST(StableArray, MovesNoElementWhenItGrows) {
     EXPECT_EQ(array.capacity(), capacity);
 }
 
+TEST(StableArray, BeginsSmallAndGivesBackItsEnd) {
+    StableArray<int> array;
+    array.reserve(1);
+    EXPECT_LT(array.memoryBytes(), 256U);
+    array.reserve(1000);
+    const int* const first = array.at(0);
+    *array.at(99) = 7;
+    array.shrink(100);
+    EXPECT_LT(array.memoryBytes(), 1024U);
+    EXPECT_GE(array.capacity(), 100U);
+    EXPECT_LT(array.capacity(), 200U);
+    EXPECT_EQ(array.at(0), first);
+    EXPECT_EQ(*array.at(99), 7);
+    array.reserve(1000);
+    EXPECT_EQ(*array.at(999), 0);
+    array.shrink(0);
+    EXPECT_EQ(array.capacity(), 0U);
+    EXPECT_EQ(array.memoryBytes(), 0U);
+    array.reserve(20);
+    EXPECT_EQ(*array.at(19), 0);
+}
+
 }  // namespace
 }  // namespace hashphase::detail

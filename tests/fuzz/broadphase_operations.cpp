@@ -111,6 +111,10 @@ private:
             story_.tell("nothing");
             return;
         }
+        if (count % 4 == 3 && world_.hash() != nullptr) {
+            story_.tell("release unused memory; ");
+            world_.hash()->releaseUnusedMemory();
+        }
         story_.tell("calculate ", count, " times");
         for (std::uint32_t i = 0; i < count; ++i) {
             world_.broadphase().calculateOverlappingPairs(nullptr);

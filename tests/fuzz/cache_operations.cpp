@@ -228,6 +228,7 @@ private:
                     b->m_uniqueId);
         if (sorts) {
             cache_.sortOverlappingPairs(nullptr);
+            cache_.releaseUnusedMemory();
         } else {
             cache_.cleanProxyFromPairs(a, nullptr);
         }

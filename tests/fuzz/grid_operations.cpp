@@ -51,9 +51,14 @@ private:
             case 3:
                 rest(arguments);
                 break;
-            case 4:
+            case 4: {
+                if (arguments.byte() % 2 == 1) {
+                    world_.grid.releaseUnusedMemory();
+                    story_.tell("release unused memory; ");
+                }
                 reserveOrClear(arguments);
                 break;
+            }
             case 5:
                 askBox(arguments);
                 break;

@@ -57,9 +57,14 @@ private:
                     update(1, arguments);
                 }
                 break;
-            case 4:
-                update(1 + arguments.below(12), arguments);
+            case 4: {
+                const std::uint32_t count = 1 + arguments.below(12);
+                if (count % 2 == 0) {
+                    release(count % 4 == 0);
+                }
+                update(count, arguments);
                 break;
+            }
             case 5: {
                 Placed<Scalar>& proxy = life_.list()[life_.any(arguments)];
                 proxy.colour = arguments.below(3);
@@ -147,6 +152,15 @@ private:
             world_.refilterAll();
         } else {
             world_.refilter(ids);
+        }
+    }
+
+    void release(bool isAll) {
+        story_.tell("release unused memory; ");
+        world_.grid.releaseUnusedMemory();
+        if (isAll) {
+            world_.pairs.releaseUnusedMemory();
+            world_.sweeps.releaseUnusedMemory();
         }
     }
 

@@ -217,7 +217,7 @@ private:
                 const Scalar difference = x - shift[axis];
                 const bool isExact = std::isfinite(difference) &&
                                      mpq_class(x) - mpq_class(shift[axis]) == mpq_class(difference);
-                isRounded = isRounded || (!isExact && x - 2 * shift[axis] != x);
+                isRounded = isRounded || (!isExact && std::isfinite(x) && x - 2 * shift[axis] != x);
             }
         }
         return isRounded && !hasNan(box);

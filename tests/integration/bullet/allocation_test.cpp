@@ -7,12 +7,16 @@
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 #include <tests/support/count_allocations.hpp>
 
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
+#include <LinearMath/btAabbUtil2.h>
 #include <LinearMath/btAlignedAllocator.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <cstdlib>
+#include <span>
 #include <vector>
 
 namespace hashphase::test {
@@ -60,6 +64,14 @@ private:
     std::vector<btBroadphaseProxy*> proxies_;
 };
 
+struct AllHits : btBroadphaseAabbCallback {
+    int count = 0;
+    bool process(const btBroadphaseProxy* /*proxy*/) override {
+        ++count;
+        return true;
+    }
+};
+
 TEST(SteadyFrame, AllocatesNothing) {
     if (!kCountsAllocations) {
         GTEST_SKIP() << "allocations are not counted under a sanitizer";
@@ -83,6 +95,134 @@ TEST(SteadyFrame, AllocatesNothing) {
         EXPECT_EQ(swing.broadphase.validate(), "");
     }
     btAlignedAllocSetCustom(nullptr, nullptr);
+}
+
+/// Counts what Bullet's own arrays take, too.
+class CountedBullet {
+public:
+    CountedBullet() { btAlignedAllocSetCustom(countedAllocate, std::free); }
+    ~CountedBullet() { btAlignedAllocSetCustom(nullptr, nullptr); }
+    CountedBullet(const CountedBullet&) = delete;
+    CountedBullet& operator=(const CountedBullet&) = delete;
+};
+
+TEST(SmallWorld, IsMadeInAFewBytesAndAllocations) {
+    if (!kCountsAllocations) {
+        GTEST_SKIP() << "allocations are not counted under a sanitizer";
+    }
+    const CountedBullet counted;
+    const std::size_t bytes = bytesHeld();
+    std::size_t allocations = allocationCount();
+    const btDbvtBroadphase dbvt;
+    const std::size_t ofDbvt = allocationCount() - allocations;
+    const std::size_t bytesBefore = bytesHeld();
+    allocations = allocationCount();
+    const SpatialHashBroadphase broadphase;
+    EXPECT_LE(allocationCount() - allocations, ofDbvt);
+    EXPECT_LT(sizeof(broadphase) + bytesHeld() - bytesBefore, 6144U);
+    EXPECT_LT(broadphase.memoryBytes(), 6144U);
+    EXPECT_GE(broadphase.memoryBytes(), sizeof(broadphase) + bytesHeld() - bytesBefore);
+    EXPECT_GT(bytesBefore, bytes);
+}
+
+TEST(SmallWorld, OfTenBodiesTakesAFewKilobytes) {
+    if (!kCountsAllocations) {
+        GTEST_SKIP() << "allocations are not counted under a sanitizer";
+    }
+    const CountedBullet counted;
+    const std::size_t before = bytesHeld();
+    Swing swing(10);
+    for (int number = 0; number < 20; ++number) {
+        swing.frame(number);
+    }
+    AllHits hits;
+    swing.broadphase.aabbTest({-9, -9, -9}, {9, 9, 9}, hits);
+    EXPECT_EQ(hits.count, 10);
+    const std::size_t told = swing.broadphase.memoryBytes();
+    EXPECT_LT(told, (sizeof(btScalar) == sizeof(float) ? 22U : 28U) * 1024U);
+    EXPECT_GE(told + sizeof(Swing) + 16 * (sizeof(Box) + sizeof(btVector3) + sizeof(void*)),
+              bytesHeld() - before);
+}
+
+/// A heap of boxes at a broadphase, of which all but some are destroyed.
+class Heap {
+public:
+    void create(int count) {
+        for (int i = 0; i < count; ++i) {
+            const Box box = boxAround(random_.vector(-8, 8), {1, 1, 1});
+            proxies.push_back(broadphase.createProxy(
+                box.min, box.max, BOX_SHAPE_PROXYTYPE, nullptr,
+                i % 3 == 0 ? btBroadphaseProxy::StaticFilter : btBroadphaseProxy::DefaultFilter,
+                btBroadphaseProxy::AllFilter, nullptr));
+        }
+    }
+    void destroyAllBut(std::size_t count) {
+        const std::span<btBroadphaseProxy* const> rest = std::span(proxies).subspan(count);
+        broadphase.destroyProxies(rest, nullptr);
+        proxies.resize(count);
+    }
+    void frames(int count) {
+        for (int frame = 0; frame < count; ++frame) {
+            const Box box = boxAround(random_.vector(-8, 8), {1, 1, 1});
+            broadphase.setAabb(proxies.back(), box.min, box.max, nullptr);
+            broadphase.calculateOverlappingPairs(nullptr);
+        }
+    }
+    [[nodiscard]] int overlaps() const {
+        int count = 0;
+        for (std::size_t i = 0; i < proxies.size(); ++i) {
+            for (std::size_t k = 0; k < i; ++k) {
+                count += TestAabbAgainstAabb2(proxies[i]->m_aabbMin, proxies[i]->m_aabbMax,
+                                              proxies[k]->m_aabbMin, proxies[k]->m_aabbMax)
+                             ? 1
+                             : 0;
+            }
+        }
+        return count;
+    }
+
+    SpatialHashBroadphase broadphase;
+    std::vector<btBroadphaseProxy*> proxies;
+
+private:
+    BulletRandom random_{3};
+};
+
+TEST(AfterAPeak, TheBroadphaseGivesBackWhatWasNotUsedForAWhile) {
+    for (const bool byCall : {false, true}) {
+        Heap alone;
+        alone.create(60);
+        alone.frames(20);
+        Heap heap;
+        heap.create(4000);
+        heap.frames(3);
+        ASSERT_GT(heap.broadphase.getOverlappingPairCache()->getNumOverlappingPairs(), 20000);
+        const std::size_t atPeak = heap.broadphase.memoryBytes();
+        heap.destroyAllBut(60);
+        heap.frames(2);
+        EXPECT_GT(heap.broadphase.memoryBytes(), atPeak / 2);
+        const std::vector<btBroadphaseProxy*> left = heap.proxies;
+        if (byCall) {
+            heap.broadphase.releaseUnusedMemory();
+        } else {
+            heap.frames(300);
+        }
+        heap.frames(2);
+        EXPECT_LT(heap.broadphase.memoryBytes(), 3 * alone.broadphase.memoryBytes());
+        EXPECT_EQ(heap.proxies, left) << "proxies stay where they are";
+        for (int round = 0; round < 2; ++round) {
+            EXPECT_EQ(heap.broadphase.getOverlappingPairCache()->getNumOverlappingPairs(),
+                      heap.overlaps());
+            EXPECT_EQ(heap.broadphase.validate(), "");
+            heap.create(300);  // another peak
+            heap.frames(2);
+        }
+        heap.destroyAllBut(0);
+        alone.destroyAllBut(0);
+        heap.broadphase.calculateOverlappingPairs(nullptr);
+        heap.broadphase.releaseUnusedMemory();
+        EXPECT_LT(heap.broadphase.memoryBytes(), std::size_t{6} * 1024);
+    }
 }
 
 }  // namespace
