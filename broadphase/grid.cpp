@@ -196,6 +196,7 @@ void Grid<Scalar>::clear() {
     release(nanSlots_);
     release(sweepingSlots_);
     release(boxesAtUpdate_);
+    slotsAtUpdate_ = {};
     release(groups_);
     release(kindOfSlot_);
     groupKinds_ = {};

@@ -21,7 +21,7 @@ namespace {
 
 using Box = Aabb<float>;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNanCoordinate = std::numeric_limits<float>::quiet_NaN();
 
 Box cubeAt(double x) {
     return makeBox<float>(x, 0, 0, x + 1, 1, 1);
@@ -29,7 +29,7 @@ Box cubeAt(double x) {
 
 Box nanCube() {
     Box box = cubeAt(0);
-    box.min()[2] = kNan;
+    box.min()[2] = kNanCoordinate;
     return box;
 }
 
@@ -414,7 +414,7 @@ TEST(GridNan, InAnyFieldHidesTheBoxAndHarmsNoOther) {
         const ProxyId bad = grid.add(cubeAt(0));
         for (int phase = 0; phase < 3; ++phase) {
             Box box = cubeAt(0);
-            (field < 3 ? box.min() : box.max())[field % 3] = kNan;
+            (field < 3 ? box.min() : box.max())[field % 3] = kNanCoordinate;
             grid.move(bad, box);
             EXPECT_EQ(countIn(grid, makeBox<float>(-9, -9, -9, 9, 9, 9)), 1U);
             if (phase > 0) {
@@ -484,7 +484,7 @@ TEST(Grid, CellsOfWhatIsNotFiniteAreAsserted) {
     Grid<float> grid;
     const ProxyId nan = grid.add(nanCube());
     EXPECT_THROW(static_cast<void>(grid.cellsOf(nan)), BrokenAssert);
-    EXPECT_THROW(static_cast<void>(grid.cellAt({kNan, 0, 0})), BrokenAssert);
+    EXPECT_THROW(static_cast<void>(grid.cellAt({kNanCoordinate, 0, 0})), BrokenAssert);
     EXPECT_THROW(static_cast<void>(grid.cellAt({0, std::numeric_limits<float>::infinity(), 0})),
                  BrokenAssert);
 }
