@@ -38,7 +38,7 @@ int pairCount(btBroadphaseInterface& broadphase) {
     return broadphase.getOverlappingPairCache()->getNumOverlappingPairs();
 }
 
-bool isSameBits(const btVector3& a, const btVector3& b) {
+bool haveSameBits(const btVector3& a, const btVector3& b) {
     return std::memcmp(a.m_floats, b.m_floats, 3 * sizeof(btScalar)) == 0;
 }
 
@@ -109,8 +109,8 @@ TEST(SpatialHashBroadphase, KeepsABoxToTheLastBit) {
         btVector3 min;
         btVector3 max;
         broadphase.getAabb(proxy, min, max);
-        EXPECT_TRUE(isSameBits(proxy->m_aabbMin, box.min) && isSameBits(min, box.min));
-        EXPECT_TRUE(isSameBits(proxy->m_aabbMax, box.max) && isSameBits(max, box.max));
+        EXPECT_TRUE(haveSameBits(proxy->m_aabbMin, box.min) && haveSameBits(min, box.min));
+        EXPECT_TRUE(haveSameBits(proxy->m_aabbMax, box.max) && haveSameBits(max, box.max));
     }
 }
 
