@@ -240,7 +240,8 @@ QueryCost Grid<Scalar>::visitTogether(const Reading& reading, std::span<const Re
     // Where nothing waits, all that the tables list is filed there.
     const bool isAllFiled = reading.isFresh || waiting_.empty();
     QueryCost cost;
-    for (const auto& [table, tree, isResting] : reading.filings()) {
+    for (const Filing& filing : reading.filings()) {
+        const detail::Table<Scalar>* const table = filing.table;
         if (table->size() == 0) {
             continue;
         }

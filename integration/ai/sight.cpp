@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hashphase {
 namespace {
@@ -154,6 +155,8 @@ QueryCost Sight<Scalar>::look(const Grid<Scalar>& grid, std::span<const Viewer<S
     constexpr std::size_t grain = 16;
     viewerCount_ = 0;  // nobody has seen anybody, should memory run out
     views_.resize(std::max(views_.size(), viewers.size()));
+    // A query for each viewer, and one for each that it may see.
+    grid.expectQueries(viewers.empty() ? 0 : std::numeric_limits<std::size_t>::max());
     parallelFor(viewers.size(), grain, [&](std::size_t begin, std::size_t end) {
         const detail::QueryScope scope(this);
         for (std::size_t i = begin; i < end; ++i) {

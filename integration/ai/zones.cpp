@@ -112,6 +112,7 @@ ZoneEvents Zones<Scalar>::update(const Grid<Scalar>& grid, ZoneFilter filter, Zo
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kMustNotChange);
     // Who is where.
     constexpr std::size_t grain = 8;
+    grid.expectQueries(slots_.size());
     parallelFor(slots_.size(), grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const detail::QueryScope scope(this);

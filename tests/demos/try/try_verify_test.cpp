@@ -80,7 +80,7 @@ TEST(Try, TellsPairsThatTheProgramRemovedFromMissingOnes) {
 }
 
 TEST(Try, TellsPairsThatWaitForAMoveFromMissingOnes) {
-    const auto [output, json] = measure("--verify", stock("stock-programs") + " changes-group");
+    const auto [output, json] = measure("--verify", stock("stock-programs") + " changes-filter");
     EXPECT_EQ(output.status, kExitOk) << output.out;
     EXPECT_EQ(json["verification"]["missing"], 0);
     EXPECT_GT(json["verification"]["waitForAMove"], 0) << output.out;

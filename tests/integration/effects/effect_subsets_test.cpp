@@ -95,7 +95,7 @@ void readFrame(const Simulation<float>& simulation, EffectSet declared, SceneRun
 SceneRun runScene(EffectSet declared, EffectSet forced = {}) {
     constexpr int kFrames = 4;
     Simulation<float> simulation(smallSceneEffects(declared | forced));
-    fill(simulation);
+    fill(simulation, 120);  // so many that cells are worth while
     SceneRun run;
     for (int frame = 0; frame < kFrames; ++frame) {
         askWhenAsked(simulation, declared | forced, run);
