@@ -351,20 +351,32 @@ void Pairs<Scalar>::findUnknown(std::uint32_t slot) {
 }
 
 template PairChanges Pairs<float>::announce(ProxyId, PairFilter) &;
-template PairChanges Pairs<double>::announce(ProxyId, PairFilter) &;
 template PairChanges Pairs<float>::refilter(ProxyId, PairFilter) &;
-template PairChanges Pairs<double>::refilter(ProxyId, PairFilter) &;
 template PairChanges Pairs<float>::refilter(std::span<const ProxyId>, PairFilter) &;
-template PairChanges Pairs<double>::refilter(std::span<const ProxyId>, PairFilter) &;
 template PairChanges Pairs<float>::refilterAll(PairFilter) &;
-template PairChanges Pairs<double>::refilterAll(PairFilter) &;
+template void Pairs<float>::askAgain(Couple);
+template PairChanges Pairs<float>::decideBetween(PairFilter);
 template void Pairs<float>::announceUnknown() noexcept;
-template void Pairs<double>::announceUnknown() noexcept;
 template void Pairs<float>::markAnnounced(std::span<const Couple>, bool) noexcept;
-template void Pairs<double>::markAnnounced(std::span<const Couple>, bool) noexcept;
+template bool Pairs<float>::areManyAnnounced() const noexcept;
+template void Pairs<float>::findAnnouncedOfRemoved();
+template void Pairs<float>::endAnnouncedOfRemoved() noexcept;
+template void Pairs<float>::indexLastUpdate(std::size_t);
 template void Pairs<float>::findUnknown(std::uint32_t);
 template Aabb<float> Pairs<float>::boxAtStart(std::uint32_t) const;
 template bool Pairs<float>::touchAtStart(std::uint32_t, std::uint32_t) const;
+template PairChanges Pairs<double>::announce(ProxyId, PairFilter) &;
+template PairChanges Pairs<double>::refilter(ProxyId, PairFilter) &;
+template PairChanges Pairs<double>::refilter(std::span<const ProxyId>, PairFilter) &;
+template PairChanges Pairs<double>::refilterAll(PairFilter) &;
+template void Pairs<double>::askAgain(Couple);
+template PairChanges Pairs<double>::decideBetween(PairFilter);
+template void Pairs<double>::announceUnknown() noexcept;
+template void Pairs<double>::markAnnounced(std::span<const Couple>, bool) noexcept;
+template bool Pairs<double>::areManyAnnounced() const noexcept;
+template void Pairs<double>::findAnnouncedOfRemoved();
+template void Pairs<double>::endAnnouncedOfRemoved() noexcept;
+template void Pairs<double>::indexLastUpdate(std::size_t);
 template void Pairs<double>::findUnknown(std::uint32_t);
 template Aabb<double> Pairs<double>::boxAtStart(std::uint32_t) const;
 template bool Pairs<double>::touchAtStart(std::uint32_t, std::uint32_t) const;
