@@ -325,8 +325,8 @@ private:
     /// All that a query reads: the tables of what stands, then that of what sweeps.
     struct Reading {
         std::array<Filing, 3> all;
-        bool
-            isFresh;  // filed since the last change, so that nothing waits, what sweeps with the rest
+        // Filed since the last change, so that nothing waits, what sweeps with the rest.
+        bool isFresh;
 
         [[nodiscard]] std::span<const Filing> filings() const noexcept {
             return std::span(all).first(isFresh ? 2 : 3);
