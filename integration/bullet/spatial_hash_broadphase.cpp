@@ -14,7 +14,6 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
-#include <typeinfo>
 #include <utility>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
@@ -157,17 +156,22 @@ void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& a
     }
 }
 
+void SpatialHashBroadphase::move(const Proxy& proxy) {
+    const Aabb<btScalar> box = toAabb(proxy.m_aabbMin, proxy.m_aabbMax);
+    if (sweeps_ == nullptr) {
+        grid_.move(proxy.id, box);
+    } else {
+        moveOnItsWay(proxy, box);
+    }
+}
+
 // The grid has the box that Bullet has handed in, which holds the body at start and end of the step, and
 // wherever it stops on its way: queries see it there. It is Bullet's choice whether it does.
-void SpatialHashBroadphase::move(const Proxy& proxy) {
-    Aabb<btScalar> box = toAabb(proxy.m_aabbMin, proxy.m_aabbMax);
+void SpatialHashBroadphase::moveOnItsWay(const Proxy& proxy, const Aabb<btScalar>& box) {
     const std::optional<detail::BodyMotion> motion =
-        sweeps_ != nullptr && !hasNan(box) ? detail::fastMotion(proxy, config_.fastFrom)
-                                           : std::nullopt;
+        hasNan(box) ? std::nullopt : detail::fastMotion(proxy, config_.fastFrom);
     grid_.move(proxy.id, motion ? box.merged(motion->bounds) : box);
-    if (sweeps_ != nullptr) {
-        sweeps_->set(proxy.id, motion ? motion->way : MovingBox<btScalar>{box}, config_.sweep);
-    }
+    sweeps_->set(proxy.id, motion ? motion->way : MovingBox<btScalar>{box}, config_.sweep);
 }
 
 void SpatialHashBroadphase::getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin,
@@ -179,14 +183,11 @@ void SpatialHashBroadphase::getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin
 
 // --- Groups --------------------------------------------------------------------------------------
 
-// Not where a callback decides, nor in a cache that may decide as it likes.
+// Not where a callback decides, nor in a cache that may decide as it likes, unless these accept nothing
+// that group and mask refuse.
 bool SpatialHashBroadphase::doGroupsDecide() const {
-    const std::type_info& cache = typeid(*pairCache_);
-    const bool isUsual = cache == typeid(PairCache) ||
-                         cache == typeid(btHashedOverlappingPairCache) ||
-                         cache == typeid(btSortedOverlappingPairCache);
-    return isUsual &&
-           (config_.callbackRefusesMore || pairCache_->getOverlapFilterCallback() == nullptr);
+    return config_.filterRefusesMore ||
+           (batchCache_ != nullptr && batchCache_->getOverlapFilterCallback() == nullptr);
 }
 
 // A callback may come and go at any time. It may answer otherwise than group and mask.

@@ -91,11 +91,12 @@ struct SpatialHashConfig {
     /// box. The others keep the box that Bullet hands in. Valid: 0 or more.
     btScalar fastFrom = 1;
 
-    /// Bullet asks an overlap filter callback in place of groups and masks: who has one is asked about all
-    /// that overlap, and each two that it refuses are remembered. Where it refuses whatever groups and
-    /// masks refuse, set this: it is asked about the others only, and what is parked with a mask of 0, or
-    /// otherwise filtered out, costs nothing. For Bullet's own caches and PairCache.
-    bool callbackRefusesMore = false;
+    /// An overlap filter callback decides in place of groups and masks, and so may a pair cache other than
+    /// PairCache: either is asked about all that overlap, and each two that it refuses are remembered.
+    /// Where it refuses whatever groups and masks refuse, as Bullet's own caches do, set this: it is
+    /// asked about the others only, and what is parked with a mask of 0, or otherwise filtered out, costs
+    /// nothing.
+    bool filterRefusesMore = false;
 
     /// Ends a query when process() of its callback returns false. Off by default: Bullet's own
     /// broadphases ignore the result, and programs return false for other reasons.
@@ -361,6 +362,7 @@ private:
     [[nodiscard]] static bool isGhost(Proxy& proxy, const btDispatcher* dispatcher);
     void announce(const Proxy& proxy, btDispatcher* dispatcher);
     void move(const Proxy& proxy);
+    void moveOnItsWay(const Proxy& proxy, const Aabb<btScalar>& box);
     [[nodiscard]] bool doMeet(const btBroadphaseProxy& a, const btBroadphaseProxy& b) const;
     using IsPair = FunctionRef<bool(const btBroadphasePair& pair)>;
     void removeDeferred(IsPair isPair, btDispatcher* dispatcher);

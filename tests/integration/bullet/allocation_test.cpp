@@ -118,8 +118,8 @@ TEST(SmallWorld, IsMadeInAFewBytesAndAllocations) {
     allocations = allocationCount();
     const SpatialHashBroadphase broadphase;
     EXPECT_LE(allocationCount() - allocations, ofDbvt);
-    EXPECT_LT(sizeof(broadphase) + bytesHeld() - bytesBefore, 6144U);
-    EXPECT_LT(broadphase.memoryBytes(), 6144U);
+    EXPECT_LT(sizeof(broadphase) + bytesHeld() - bytesBefore, 4096U);
+    EXPECT_LT(broadphase.memoryBytes(), 4096U);
     EXPECT_GE(broadphase.memoryBytes(), sizeof(broadphase) + bytesHeld() - bytesBefore);
 }
 

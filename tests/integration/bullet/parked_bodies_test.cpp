@@ -114,7 +114,7 @@ TEST(ParkedBodies, AreFoundByQueries) {
 
 TEST(ParkedBodies, CostNothingUnderACallbackThatRefusesMoreThanMasksDo) {
     SpatialHashConfig config;
-    config.callbackRefusesMore = true;
+    config.filterRefusesMore = true;
     constexpr int kCount = 10000;
     AcceptAll filter;
     Pool pool(0, kKinds[0], 0, config);
@@ -211,7 +211,7 @@ TEST(LateCallbacks, DecideInPlaceOfGroupsAndMasks) {
         player.calculate();
         EXPECT_EQ(player.pairs(), (ObjectPairs{{1, 2}}));
         player.cache().setOverlapFilterCallback(&accept);
-        player.calculate();
+        hashOf(player).refilterAll(nullptr);
         EXPECT_EQ(player.pairs(), (ObjectPairs{{0, 1}, {0, 2}, {1, 2}}));
         player.cache().setOverlapFilterCallback(&refuse);
         hashOf(player).refilterAll(nullptr);
