@@ -73,7 +73,6 @@ ProxyId Grid<Scalar>::add(const Box& box, Mobility mobility, const ProxyGroups& 
     }
     if (!groups_.empty()) {
         groups_.resize(2 * records_.size());
-        kindOfSlot_.resize(records_.size());
         noteGroups(slot, groups);
         groups_[2 * std::size_t{slot} + 1] = groups;
     }
@@ -106,7 +105,6 @@ void Grid<Scalar>::reserveSlots(std::size_t slotCount) {
     const std::size_t room = roomFor(slotCount, records_.capacity());
     if (!groups_.empty()) {
         groups_.reserve(2 * room);
-        kindOfSlot_.reserve(room);
     }
     records_.reserve(room);  // last: the others have room for as many
 }
@@ -181,9 +179,10 @@ void Grid<Scalar>::clear() {
     }
     listedAtUpdate_ = 0;
     restingErased_ = 0;
-    for (detail::Table<Scalar>* table : {&mobile_, &resting_, &fresh_, &sweeping_}) {
-        *table = {};
-    }
+    mobile_ = {};
+    resting_ = {};
+    sweeping_.reset();
+    fresh_.reset();
     listNumber_ = 1;
     waitingRead_.store(0, std::memory_order_relaxed);
     isTableTorn_.store(false, std::memory_order_relaxed);
@@ -198,7 +197,6 @@ void Grid<Scalar>::clear() {
     release(boxesAtUpdate_);
     slotsAtUpdate_ = {};
     release(groups_);
-    release(kindOfSlot_);
     groupKinds_ = {};
     areRegrouped_ = false;
     cellSize_ = config_.cellSize > 0 ? static_cast<Scalar>(config_.cellSize) : Scalar(1);
@@ -280,18 +278,16 @@ void Grid<Scalar>::makeGroups() {
     if (groups_.empty()) {
         reserveSlots(1);
         const std::size_t count = std::max<std::size_t>(records_.size(), 1);
-        kindOfSlot_.reserve(records_.capacity());
         groups_.reserve(2 * records_.capacity());
-        kindOfSlot_.resize(count, 0);
         groups_.resize(2 * count);
     }
 }
 
 template <class Scalar>
 void Grid<Scalar>::noteGroups(std::uint32_t slot, const ProxyGroups& groups) noexcept {
-    const std::uint8_t kind = kindOfSlot_[slot];
+    std::uint8_t& kind = records_[slot].kind;
     const bool isKnown = kind != detail::GroupKinds::kOther && groupKinds_[kind] == groups;
-    kindOfSlot_[slot] = isKnown ? kind : groupKinds_.numberOf(groups);
+    kind = isKnown ? kind : groupKinds_.numberOf(groups);
     groups_[2 * std::size_t{slot}] = groups;
 }
 

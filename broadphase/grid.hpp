@@ -298,6 +298,7 @@ private:
                                       // since the last update; or the next slot without a proxy
         Place place = Place::nowhere;
         std::uint8_t listedIn = 0;  // number of the list of changes that has it
+        std::uint8_t kind = 0;      // of its groups, in groupKinds_
         // Mobility::resting, or rested, and has not moved since but by a shift of the origin
         bool restsAtOnce : 1 = false;
         bool isNan : 1 = false;        // has a NaN; of a proxy alive
@@ -316,20 +317,36 @@ private:
         detail::BoxTree tree;
         std::atomic<bool> isStale{false};
     };
+    /// A table that few grids need, made when the first thing is filed in it.
+    struct LateTable {
+        detail::Table<Scalar> table;
+        TableTree tree;
+    };
+    /// Calls visit(table, tree) for all of `grid` that are there, in use or not.
+    template <class Self, class Visit>
+    static void forTables(Self& grid, const Visit& visit) {
+        visit(grid.mobile_, grid.mobileTree_);
+        visit(grid.resting_, grid.restingTree_);
+        for (auto* late : {grid.sweeping_.get(), grid.fresh_.get()}) {
+            if (late != nullptr) {
+                visit(late->table, late->tree);
+            }
+        }
+    }
     /// A table that queries read.
     struct Filing {
         const detail::Table<Scalar>* table;
         const TableTree* tree;
         bool isResting;
     };
-    /// All that a query reads: the tables of what stands, then that of what sweeps.
+    /// All that a query reads: the tables of what stands, then that of what sweeps, if there is one.
     struct Reading {
         std::array<Filing, 3> all;
         // Filed since the last change, so that nothing waits, what sweeps with the rest.
         bool isFresh;
 
         [[nodiscard]] std::span<const Filing> filings() const noexcept {
-            return std::span(all).first(isFresh ? 2 : 3);
+            return std::span(all).first(isFresh || all[2].table == nullptr ? 2 : 3);
         }
         [[nodiscard]] std::span<const Filing> standing() const noexcept {
             return std::span(all).first(2);
@@ -420,7 +437,7 @@ private:
     void makeGroups();
     void noteGroups(std::uint32_t slot, const ProxyGroups& groups) noexcept;
     [[nodiscard]] detail::GroupKinds::Set kindOf(std::uint32_t slot) const noexcept {
-        return kindOfSlot_.empty() ? 1 : detail::GroupKinds::bit(kindOfSlot_[slot]);
+        return detail::GroupKinds::bit(records_[slot].kind);
     }
 
     /// How many slots are listed, in mobileSlots_ or in the table of those at rest.
@@ -474,6 +491,7 @@ private:
     void fileResting(ParallelFor parallelFor);
     void fileMobile(ParallelFor parallelFor);
     void fileSweeping(ParallelFor parallelFor);
+    void clearSweeping() noexcept;
     void settle() noexcept;
     UpdateCost endUpdate() noexcept;
     void countUpdatesAnew() noexcept;
@@ -485,10 +503,12 @@ private:
 
     /// How queries begin. The tables may be read from then on.
     [[nodiscard]] Reading beginReading() const;
+    [[nodiscard]] Reading beginReadingInOrder() const;
     [[nodiscard]] Reading presentReading() const noexcept;
     [[nodiscard]] std::uint64_t worthFiling() const noexcept;
     void mendTables() const;
-    void fileFresh() const;
+    enum class Lock : std::uint8_t { tryOnce, waitFor };
+    void fileFresh(Lock how) const;
     void beforeChange() noexcept {
         if (isFresh_.load(std::memory_order_relaxed)) {
             takeFresh();
@@ -541,7 +561,6 @@ private:
     // The same as numbers, and which of them there are among those that are mobile, that have changed,
     // and that rest; and perhaps more.
     detail::GroupKinds groupKinds_;
-    std::vector<std::uint8_t> kindOfSlot_;
     std::atomic<detail::GroupKinds::Set> mobileKinds_{0};
     std::atomic<detail::GroupKinds::Set> changedKinds_{0};
     detail::GroupKinds::Set restingKinds_ = 0;
@@ -572,16 +591,14 @@ private:
 
     std::vector<std::uint32_t> sweepingSlots_;  // when the last update began; in mobileSlots_, too
     std::vector<detail::PaddedBox<Scalar>> sweepingBoxes_;  // scratch of fileSweeping()
-    detail::Table<Scalar> sweeping_;
+    std::unique_ptr<LateTable> sweeping_;
 
     TableTree mobileTree_;
     TableTree restingTree_;
-    TableTree sweepingTree_;
 
     // What a query has filed while others went on with mobile_ and waiting_. The next change makes it
     // mobile_, or drops it where it is made within a query, which may be reading either.
-    detail::Table<Scalar> fresh_;
-    TableTree freshTree_;
+    std::unique_ptr<LateTable> fresh_;
     std::atomic<bool> isFresh_{false};
 
     // Boxes by their place in mobileSlots_: as they are now, and as of the last update.

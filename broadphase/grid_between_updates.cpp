@@ -28,10 +28,13 @@ std::uint64_t Grid<Scalar>::worthFiling() const noexcept {
 
 template <class Scalar>
 auto Grid<Scalar>::presentReading() const noexcept -> Reading {
+    const auto late = [](const LateTable* table) -> Filing {
+        return table != nullptr ? Filing{&table->table, &table->tree, false} : Filing{};
+    };
     const bool isFresh = isFresh_.load(std::memory_order_acquire);
-    return {{{{isFresh ? &fresh_ : &mobile_, isFresh ? &freshTree_ : &mobileTree_, false},
+    return {{{isFresh ? late(fresh_.get()) : Filing{&mobile_, &mobileTree_, false},
               {&resting_, &restingTree_, true},
-              {&sweeping_, &sweepingTree_, false}}},
+              late(sweeping_.get())}},
             isFresh};
 }
 
@@ -41,7 +44,19 @@ auto Grid<Scalar>::beginReading() const -> Reading {
     const std::size_t count = waiting_.size();
     if (count > kFewWait && !isFresh_.load(std::memory_order_acquire) &&
         waitingRead_.fetch_add(count, std::memory_order_relaxed) + count > worthFiling()) {
-        fileFresh();
+        fileFresh(Lock::tryOnce);
+    }
+    return presentReading();
+}
+
+// What goes from near to far offers all that is filed first, then the list: a short one. How long is
+// decided by the changes alone, so that the order is the same, whoever else asks and however often.
+template <class Scalar>
+auto Grid<Scalar>::beginReadingInOrder() const -> Reading {
+    mendTables();
+    if (waiting_.size() > kFewWait + mobile_.size() / 128 &&
+        !isFresh_.load(std::memory_order_acquire)) {
+        fileFresh(Lock::waitFor);
     }
     return presentReading();
 }
@@ -52,7 +67,7 @@ void Grid<Scalar>::expectQueries(std::size_t count) const {
     if (waiting_.size() > kFewWait && !isFresh_.load(std::memory_order_acquire)) {
         const std::uint64_t read = waitingRead_.load(std::memory_order_relaxed);
         if (count > (worthFiling() - std::min(worthFiling(), read)) / waiting_.size()) {
-            fileFresh();
+            fileFresh(Lock::tryOnce);
         }
     }
 }
@@ -80,18 +95,28 @@ void Grid<Scalar>::mendTables() const {
 // Others may be reading mobile_ and the list, and go on with them. None reads fresh_: since it was last
 // in use, something has changed. From within a query that is not so, and nothing is filed.
 template <class Scalar>
-void Grid<Scalar>::fileFresh() const {
-    auto& self = const_cast<Grid&>(*this);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
-    const std::unique_lock lock(self.filing_, std::try_to_lock);
-    if (!lock.owns_lock() || isFresh_.load(std::memory_order_relaxed) ||
-        detail::QueryScope::isWithin(this)) {
+void Grid<Scalar>::fileFresh(Lock how) const {
+    if (detail::QueryScope::isWithin(this)) {
         return;
     }
+    auto& self = const_cast<Grid&>(*this);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+    std::unique_lock lock(self.filing_, std::defer_lock);
+    if (how == Lock::waitFor) {
+        lock.lock();
+    } else if (!lock.try_lock()) {
+        return;
+    }
+    if (isFresh_.load(std::memory_order_relaxed)) {
+        return;
+    }
+    if (fresh_ == nullptr) {
+        self.fresh_ = std::make_unique<LateTable>();
+    }
     self.stage(serialFor, true);
-    self.fresh_.build(mobileSlots_, staged_, fixedSizes(), serialFor, groupsOfAll());
-    self.freshTree_.isStale.store(true, std::memory_order_relaxed);
+    fresh_->table.build(mobileSlots_, staged_, fixedSizes(), serialFor, groupsOfAll());
+    fresh_->tree.isStale.store(true, std::memory_order_relaxed);
     ++self.filingCount_;
-    self.cost_.filed += fresh_.size();
+    self.cost_.filed += fresh_->table.size();
     self.isFresh_.store(true, std::memory_order_release);
 }
 
@@ -102,12 +127,14 @@ void Grid<Scalar>::takeFresh() noexcept {
     if (detail::QueryScope::isWithin(this)) {
         return;
     }
-    std::swap(mobile_, fresh_);
-    std::swap(mobileTree_.tree, freshTree_.tree);
-    mobileTree_.isStale.store(freshTree_.isStale.load(std::memory_order_relaxed),
+    std::swap(mobile_, fresh_->table);
+    std::swap(mobileTree_.tree, fresh_->tree.tree);
+    mobileTree_.isStale.store(fresh_->tree.isStale.load(std::memory_order_relaxed),
                               std::memory_order_relaxed);
-    sweeping_.clear();
-    sweepingTree_.isStale.store(true, std::memory_order_relaxed);
+    if (fresh_->table.memoryBytes() == 0) {  // the first filing of all
+        fresh_.reset();
+    }
+    clearSweeping();
     dropList();
     if (!hasPairs_) {
         settle();
@@ -137,26 +164,30 @@ void Grid<Scalar>::growTrees(const Reading& reading) const {
             tree.isStale.store(false, std::memory_order_release);
         }
     };
-    reading.isFresh ? grow(self.freshTree_, fresh_) : grow(self.mobileTree_, mobile_);
+    reading.isFresh ? grow(fresh_->tree, fresh_->table) : grow(self.mobileTree_, mobile_);
     grow(self.restingTree_, resting_);
-    grow(self.sweepingTree_, sweeping_);
+    if (sweeping_ != nullptr) {
+        grow(sweeping_->tree, sweeping_->table);
+    }
 }
 
 template auto Grid<float>::presentReading() const noexcept -> Reading;
 template auto Grid<float>::beginReading() const -> Reading;
+template auto Grid<float>::beginReadingInOrder() const -> Reading;
 template std::uint64_t Grid<float>::worthFiling() const noexcept;
 template void Grid<float>::expectQueries(std::size_t) const;
 template void Grid<float>::mendTables() const;
-template void Grid<float>::fileFresh() const;
+template void Grid<float>::fileFresh(Lock) const;
 template void Grid<float>::takeFresh() noexcept;
 template void Grid<float>::forgetErased() noexcept;
 template void Grid<float>::growTrees(const Reading&) const;
 template auto Grid<double>::presentReading() const noexcept -> Reading;
 template auto Grid<double>::beginReading() const -> Reading;
+template auto Grid<double>::beginReadingInOrder() const -> Reading;
 template std::uint64_t Grid<double>::worthFiling() const noexcept;
 template void Grid<double>::expectQueries(std::size_t) const;
 template void Grid<double>::mendTables() const;
-template void Grid<double>::fileFresh() const;
+template void Grid<double>::fileFresh(Lock) const;
 template void Grid<double>::takeFresh() noexcept;
 template void Grid<double>::forgetErased() noexcept;
 template void Grid<double>::growTrees(const Reading&) const;

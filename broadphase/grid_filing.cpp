@@ -51,7 +51,7 @@ void Grid<Scalar>::stage(ParallelFor parallelFor, bool isForQueries) {
                 stagedBefore_[i] = detail::padded(boxAtUpdate(mobileSlots_[i]));
             }
             quietCount += isQuiet(record) ? 1 : 0;
-            const detail::GroupKinds::Set kind = kindOf(mobileSlots_[i]);
+            const detail::GroupKinds::Set kind = detail::GroupKinds::bit(record.kind);
             mobileKinds |= kind;
             changedKinds |= record.changedAt == updateNumber_ ? kind : 0;
         }
@@ -143,16 +143,28 @@ template <class Scalar>
 void Grid<Scalar>::fileSweeping(ParallelFor parallelFor) {
     std::erase_if(sweepingSlots_,
                   [this](std::uint32_t slot) { return records_[slot].place != Place::sweeping; });
-    if (sweepingSlots_.empty() && sweeping_.size() == 0) {
+    if (sweepingSlots_.empty()) {
+        clearSweeping();
         return;
+    }
+    if (sweeping_ == nullptr) {
+        sweeping_ = std::make_unique<LateTable>();
     }
     sweepingBoxes_.clear();
     for (const std::uint32_t slot : sweepingSlots_) {
         sweepingBoxes_.push_back(detail::padded(records_[slot].box));
     }
-    sweeping_.build(sweepingSlots_, sweepingBoxes_, fixedSizes(), parallelFor);
-    sweepingTree_.isStale.store(true, std::memory_order_relaxed);
-    cost_.filed += sweeping_.size();
+    sweeping_->table.build(sweepingSlots_, sweepingBoxes_, fixedSizes(), parallelFor);
+    sweeping_->tree.isStale.store(true, std::memory_order_relaxed);
+    cost_.filed += sweeping_->table.size();
+}
+
+template <class Scalar>
+void Grid<Scalar>::clearSweeping() noexcept {
+    if (sweeping_ != nullptr) {
+        sweeping_->table.clear();
+        sweeping_->tree.isStale.store(true, std::memory_order_relaxed);
+    }
 }
 
 // Lists the mobile proxies in the order of their table, for the next time, and forgets those that
@@ -164,9 +176,11 @@ void Grid<Scalar>::settle() noexcept {
         std::copy_if(mobileSlots_.begin(), mobileSlots_.end(), std::back_inserter(nanSlots_),
                      [this](std::uint32_t slot) { return records_[slot].isNan; });
     }
-    const std::span<const std::uint32_t> sweeping = sweeping_.entrySlots();
     mobileSlots_.assign(mobile_.entrySlots().begin(), mobile_.entrySlots().end());
-    mobileSlots_.insert(mobileSlots_.end(), sweeping.begin(), sweeping.end());
+    if (sweeping_ != nullptr) {
+        const std::span<const std::uint32_t> sweeping = sweeping_->table.entrySlots();
+        mobileSlots_.insert(mobileSlots_.end(), sweeping.begin(), sweeping.end());
+    }
     mobileSlots_.insert(mobileSlots_.end(), nanSlots_.begin(), nanSlots_.end());
     listedAtUpdate_ = mobileSlots_.size();
     giveBack(removed_);
@@ -176,8 +190,11 @@ void Grid<Scalar>::settle() noexcept {
 template <class Scalar>
 UpdateCost Grid<Scalar>::endUpdate() noexcept {
     cost_.resting = resting_.size() - restingErased_;
-    cost_.largestCell =
-        std::max({mobile_.largestCell(), resting_.largestCell(), sweeping_.largestCell()});
+    double finest = std::numeric_limits<double>::infinity();
+    for (const Filing& filing : presentReading().filings()) {
+        cost_.largestCell = std::max(cost_.largestCell, filing.table->largestCell());
+        finest = std::min(finest, filing.table->finestCellSize());
+    }
     woken_.clear();
     boxesAtUpdate_.clear();
     slotsAtUpdate_.clear();
@@ -190,8 +207,6 @@ UpdateCost Grid<Scalar>::endUpdate() noexcept {
         countUpdatesAnew();
     }
     if (config_.cellSize == 0 && !isTableTorn_.load(std::memory_order_relaxed)) {
-        const double finest = std::min(
-            {mobile_.finestCellSize(), resting_.finestCellSize(), sweeping_.finestCellSize()});
         cellSize_ = std::isinf(finest) ? Scalar(1) : static_cast<Scalar>(finest);
     }
     return std::exchange(cost_, {});
@@ -270,6 +285,7 @@ template void Grid<float>::listResting();
 template void Grid<float>::fileResting(ParallelFor);
 template void Grid<float>::fileMobile(ParallelFor);
 template void Grid<float>::fileSweeping(ParallelFor);
+template void Grid<float>::clearSweeping() noexcept;
 template void Grid<float>::settle() noexcept;
 template UpdateCost Grid<float>::endUpdate() noexcept;
 template void Grid<float>::countUpdatesAnew() noexcept;
@@ -283,6 +299,7 @@ template void Grid<double>::listResting();
 template void Grid<double>::fileResting(ParallelFor);
 template void Grid<double>::fileMobile(ParallelFor);
 template void Grid<double>::fileSweeping(ParallelFor);
+template void Grid<double>::clearSweeping() noexcept;
 template void Grid<double>::settle() noexcept;
 template UpdateCost Grid<double>::endUpdate() noexcept;
 template void Grid<double>::countUpdatesAnew() noexcept;

@@ -32,33 +32,41 @@ void shrink(Array& array, std::size_t count) noexcept {
 
 template <class Scalar>
 std::size_t Grid<Scalar>::memoryBytes() const noexcept {
+    std::size_t tableBytes = 0;
+    forTables(*this,
+              [&](const auto& table, const auto& /*tree*/) { tableBytes += table.memoryBytes(); });
+    for (const LateTable* late : {sweeping_.get(), fresh_.get()}) {
+        tableBytes += late != nullptr ? sizeof(*late) : 0;
+    }
     return sizeof(*this) + records_.capacity() * sizeof(Record) +
            (waiting_.capacity() + mobileSlots_.capacity() + woken_.capacity() +
             restSlots_.capacity() + nanSlots_.capacity() + sweepingSlots_.capacity()) *
                sizeof(std::uint32_t) +
            boxesAtUpdate_.capacity() * sizeof(Box) + slotsAtUpdate_.memoryBytes() +
-           groups_.capacity() * sizeof(ProxyGroups) + kindOfSlot_.capacity() +
+           groups_.capacity() * sizeof(ProxyGroups) +
            (staged_.capacity() + stagedBefore_.capacity() + restBoxes_.capacity() +
             sweepingBoxes_.capacity()) *
                sizeof(detail::PaddedBox<Scalar>) +
-           mobile_.memoryBytes() + fresh_.memoryBytes() + resting_.memoryBytes() +
-           sweeping_.memoryBytes() + rayMemoryBytes();
+           tableBytes + rayMemoryBytes();
 }
 
 template <class Scalar>
 std::size_t Grid<Scalar>::rayMemoryBytes() const noexcept {
-    return mobileTree_.tree.memoryBytes() + freshTree_.tree.memoryBytes() +
-           restingTree_.tree.memoryBytes() + sweepingTree_.tree.memoryBytes();
+    std::size_t bytes = 0;
+    forTables(*this, [&](const auto& /*table*/, const TableTree& tree) {
+        bytes += tree.tree.memoryBytes();
+    });
+    return bytes;
 }
 
 template <class Scalar>
 void Grid<Scalar>::releaseRayMemory() noexcept {
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
                      "What rays read is not freed within a query.");
-    for (TableTree* table : {&mobileTree_, &freshTree_, &restingTree_, &sweepingTree_}) {
-        table->tree = {};
-        table->isStale.store(true, std::memory_order_relaxed);
-    }
+    forTables(*this, [](auto& /*table*/, TableTree& tree) {
+        tree.tree = {};
+        tree.isStale.store(true, std::memory_order_relaxed);
+    });
 }
 
 template <class Scalar>
@@ -82,8 +90,10 @@ void Grid<Scalar>::releaseAfterPeak() noexcept {
 template <class Scalar>
 void Grid<Scalar>::releaseMemory() noexcept {
     beforeChange();
-    fresh_ = {};
-    freshTree_.tree = {};
+    fresh_.reset();
+    if (sweeping_ != nullptr && sweeping_->table.size() == 0) {
+        sweeping_.reset();
+    }
     if (restingErased_ > 0) {  // and is still listed in the table
         try {
             listResting();
@@ -98,7 +108,6 @@ void Grid<Scalar>::releaseMemory() noexcept {
     }
     shrink(records_, reservedCount_);
     shrink(groups_, groups_.empty() ? 0 : 2 * records_.capacity());
-    shrink(kindOfSlot_, groups_.empty() ? 0 : records_.capacity());
     shrink(mobileSlots_, std::max(listedCount(), reservedCount_));
     shrink(woken_, mobileSlots_.capacity());
     shrink(waiting_, mobileSlots_.capacity());
@@ -107,16 +116,14 @@ void Grid<Scalar>::releaseMemory() noexcept {
         detail::freeArrays(boxesAtUpdate_);
         slotsAtUpdate_ = {};
     }
-    for (detail::Table<Scalar>* table : {&mobile_, &resting_, &sweeping_}) {
-        table->releaseUnusedMemory();
-    }
-    for (TableTree* table : {&mobileTree_, &restingTree_, &sweepingTree_}) {
-        if (table->isStale.load(std::memory_order_relaxed)) {
-            table->tree = {};
+    forTables(*this, [](detail::Table<Scalar>& table, TableTree& tree) {
+        table.releaseUnusedMemory();
+        if (tree.isStale.load(std::memory_order_relaxed)) {
+            tree.tree = {};
         } else {
-            table->tree.releaseUnusedMemory();
+            tree.tree.releaseUnusedMemory();
         }
-    }
+    });
 }
 
 // Slots at the end of which nothing tells any more go. Of the others, the lowest are given away first, so
@@ -140,7 +147,6 @@ void Grid<Scalar>::dropLastSlots() {
     }
     if (!groups_.empty()) {  // nor are they afterwards
         groups_.resize(2 * std::max<std::size_t>(records_.size(), 1));
-        kindOfSlot_.resize(std::max<std::size_t>(records_.size(), 1));
     }
     free_ = {};
     for (; !slots.empty(); slots.pop_back()) {

@@ -78,11 +78,11 @@ bool Grid<Scalar>::shiftRecord(std::uint32_t slot, const Point& shift) noexcept 
 template <class Scalar>
 void Grid<Scalar>::shiftTables(const Point& shift) {
     const bool isRestFiled = resting_.shiftOrigin(shift);
-    const bool isSweepingFiled = sweeping_.shiftOrigin(shift);
+    const bool isSweepingFiled = sweeping_ == nullptr || sweeping_->table.shiftOrigin(shift);
     const bool isMobileFiled = mobile_.shiftOrigin(shift) && isSweepingFiled;
-    for (TableTree* tree : {&mobileTree_, &restingTree_, &sweepingTree_}) {
-        tree->isStale.store(true, std::memory_order_relaxed);
-    }
+    forTables(*this, [](auto& /*table*/, TableTree& tree) {
+        tree.isStale.store(true, std::memory_order_relaxed);
+    });
     if (!isMobileFiled) {
         isTableTorn_.store(true, std::memory_order_release);
     }

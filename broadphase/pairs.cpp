@@ -443,7 +443,7 @@ void Pairs<Scalar>::walkResting(ParallelFor parallelFor) {
     }
     const detail::Table<Scalar>& table = grid_.mobile_;
     walkers_.clear();
-    walkerSlots_.clear();
+    searchedSlots_.clear();
     bounds_.clear();
     const bool someRefuse = grid_.groupKinds_.refuse(grid_.changedKinds_, grid_.restingKinds_);
     const bool areToldApart = someRefuse && isCrowded(grid_.resting_);
@@ -453,11 +453,11 @@ void Pairs<Scalar>::walkResting(ParallelFor parallelFor) {
             walkers_.push_back(entry);
             bounds_.push(table.box(entry));
             if (areToldApart) {
-                walkerSlots_.push_back(slot);
+                searchedSlots_.push_back(slot);
             }
         }
     }
-    const detail::GroupsView view{grid_.groups_.data(), walkerSlots_.data(),
+    const detail::GroupsView view{grid_.groups_.data(), searchedSlots_.data(),
                                   grid_.groupKinds_.together(grid_.restingKinds_)};
     detail::KernelCost cost;
     selected_.clear();
@@ -538,7 +538,7 @@ void Pairs<Scalar>::leaveOutSweptByGroups() {
 
 template <class Scalar>
 bool Pairs<Scalar>::doRefuse(std::uint32_t a, std::uint32_t b) const noexcept {
-    return grid_.groupKinds_.refuse(grid_.kindOfSlot_[a], grid_.kindOfSlot_[b]) &&
+    return grid_.groupKinds_.refuse(grid_.records_[a].kind, grid_.records_[b].kind) &&
            !grid_.mayPairNow(a, b);  // of the kinds that share a number some may
 }
 

@@ -326,10 +326,10 @@ private:
     detail::PairList selected_;
     detail::PairParts parts_;
     detail::PairList carried_;
-    std::vector<std::uint32_t> entryOf_;  // of places in mobileSlots_, in the mobile table
-    std::vector<std::uint32_t> walkers_;  // entries that changed
-    std::vector<std::uint32_t> walkerSlots_;
-    detail::BoxColumns<Scalar> bounds_;                  // of what is looked for in a table
+    std::vector<std::uint32_t> entryOf_;        // of places in mobileSlots_, in the mobile table
+    std::vector<std::uint32_t> walkers_;        // entries that changed
+    std::vector<std::uint32_t> searchedSlots_;  // what is looked for, or filed to be found
+    detail::BoxColumns<Scalar> bounds_;         // of what is looked for in a table
     std::unique_ptr<detail::Table<Scalar>> wokenTable_;  // made when it is first needed
     std::vector<char> isNamed_;                          // by slot
 
@@ -337,9 +337,8 @@ private:
     // what has left rest since. Either the grid's own, until it is filed again, or wokenTable_; null when neither is.
     const detail::Table<Scalar>* tableOfUpdate_ = nullptr;
     std::size_t indexedWoken_ = 0;
-    std::vector<std::uint32_t> indexedSlots_;  // scratch
-    std::uint64_t filingOfUpdate_ = 0;         // Grid::filingCount_ and ...
-    std::uint64_t shiftOfUpdate_ = 0;          // ... Grid::shiftCount_ at that time
+    std::uint64_t filingOfUpdate_ = 0;  // Grid::filingCount_ and ...
+    std::uint64_t shiftOfUpdate_ = 0;   // ... Grid::shiftCount_ at that time
     std::vector<detail::PaddedBox<Scalar>> wokenBoxes_;
 };
 

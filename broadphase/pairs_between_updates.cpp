@@ -201,7 +201,7 @@ void Pairs<Scalar>::indexLastUpdate(std::size_t mostUnindexed) {
     }
     // What has come since the last update had no box then.
     const auto listed = grid_.mobileSlots_.begin();
-    std::vector<std::uint32_t>& slots = indexedSlots_;
+    std::vector<std::uint32_t>& slots = searchedSlots_;
     slots.assign(listed, listed + static_cast<std::ptrdiff_t>(grid_.listedAtUpdate_));
     slots.insert(slots.end(), grid_.woken_.begin(), grid_.woken_.end());
     wokenBoxes_.clear();

@@ -26,8 +26,7 @@ std::size_t Pairs<Scalar>::memoryBytes() const noexcept {
             toldBetween_.born.capacity() + toldBetween_.died.capacity() + askedPairs_.capacity()) *
                sizeof(ProxyPair) +
            accepted_.capacity() + isNamed_.capacity() +
-           (entryOf_.capacity() + walkers_.capacity() + walkerSlots_.capacity() +
-            indexedSlots_.capacity()) *
+           (entryOf_.capacity() + walkers_.capacity() + searchedSlots_.capacity()) *
                sizeof(std::uint32_t) +
            wokenBoxes_.capacity() * sizeof(detail::PaddedBox<Scalar>) +
            (wokenTable_ != nullptr ? sizeof(*wokenTable_) + wokenTable_->memoryBytes() : 0) +
@@ -44,7 +43,7 @@ void Pairs<Scalar>::releaseUnusedMemory() noexcept {
                        diedCouples_, toldByUpdate_.born, toldByUpdate_.died, toldBetween_.born,
                        toldBetween_.died, sorted_, restedCouples_, sweptBySecond_, unknown_, gone_,
                        fresh_, keptNow_, notKept_, lapsed_, isNamed_, entryOf_, walkers_,
-                       walkerSlots_, wokenBoxes_);
+                       searchedSlots_, wokenBoxes_);
     selected_ = {};
     parts_ = {};
     carried_ = {};

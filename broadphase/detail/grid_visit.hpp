@@ -210,7 +210,11 @@ void Grid<Scalar>::visitWaiting(const Region& region, Collector& collector, Quer
 template <class Scalar>
 template <class Region, class Collector>
 QueryCost Grid<Scalar>::visit(const Region& region, Collector& collector) const {
-    return visit(beginReading(), region, collector);
+    if constexpr (requires { region.segment(); }) {
+        return visit(beginReadingInOrder(), region, collector);
+    } else {
+        return visit(beginReading(), region, collector);
+    }
 }
 
 template <class Scalar>
