@@ -128,7 +128,12 @@ bool RunningProgram::isRunning() {
     if (!status_) {
         return true;
     }
-    return record_.process.load() != 0 ? isAlive(findRecorded()) : !processes().empty();
+    const bool isAnyAlive =
+        record_.process.load() != 0 ? isAlive(findRecorded()) : !processes().empty();
+    if (!isAnyAlive) {
+        reap();  // what has ended since
+    }
+    return isAnyAlive;
 }
 
 bool RunningProgram::hasProcesses() {
