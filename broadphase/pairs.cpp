@@ -19,9 +19,7 @@ namespace {
 template <class Scalar>
 bool isCrowded(const detail::Table<Scalar>& table) {
     constexpr std::uint32_t kFew = 32;
-    const auto levels = table.levels();
-    const std::uint32_t listed = levels.empty() ? 0 : levels.back().count();
-    return table.largestCell() > kFew || listed > kFew;
+    return detail::mostTogether(table) > kFew;
 }
 
 template <class IsOut>
@@ -76,22 +74,45 @@ PairChanges Pairs<Scalar>::update(PairFilter filter, ParallelFor parallelFor) & 
     releaseAfterPeak();
     try {
         recover();
-        findChanges(parallelFor);
-        ask(filter, toldByUpdate_);
+        if (!remembersPairs() && !findChanges(filter, parallelFor)) {
+            beginSearch();
+            grid_.wakeAll();
+            recover();
+            rememberPairs();
+        }
+        if (remembersPairs()) {
+            findChangesOfPairs(filter, parallelFor);
+        } else {
+            ask(filter);
+        }
+        makeRoom(toldByUpdate_);
     } catch (...) {
         grid_.wakeAll();
         throw;
     }
     endUpdate();
+    chooseSide(true);
     return tell(toldByUpdate_);
 }
 
 template <class Scalar>
 void Pairs<Scalar>::beginCall() {
+    if (heap_ != nullptr) {
+        heap_->early.clear();
+        heap_->earlyAccepted.clear();
+    }
+    beginSearch();
+}
+
+template <class Scalar>
+void Pairs<Scalar>::beginSearch() {
     lost_.clear();
     asked_.clear();
     unknown_.clear();
     standing_.clear();
+    if (heap_ != nullptr) {
+        heap_->turned.clear();
+    }
     keptNow_.clear();
     notKept_.clear();
     lapsed_.clear();
@@ -112,12 +133,14 @@ void Pairs<Scalar>::recover() {
     detail::Table<Scalar>& table = wokenTable();
     const ProxyGroups* const groups = grid_.groupsOfAllAtUpdate();
     table.build(grid_.mobileSlots_, grid_.stagedBefore_, grid_.fixedSizes(), serialFor, groups);
-    detail::KernelCost cost;
-    selected_.clear();
-    detail::joinTable(table, serialFor, parts_, selected_, cost, groups);
     amongMobile_.clear();
-    for (const auto [a, b] : selected_.pairs()) {
-        amongMobile_.push({table.order()[a], table.order()[b]});
+    if (!remembersPairs()) {
+        detail::KernelCost cost;
+        selected_.clear();
+        detail::joinTable(table, serialFor, parts_, selected_, cost, groups);
+        for (const auto [a, b] : selected_.pairs()) {
+            amongMobile_.push({table.order()[a], table.order()[b]});
+        }
     }
     for (const Couple c : refusedAtRest_.keys()) {
         refused_.findOrInsert(c);
@@ -132,8 +155,9 @@ void Pairs<Scalar>::recover() {
     grid_.isTorn_ = false;
 }
 
+// Returns false where the pairs had better be remembered: then it has changed nothing that is of use.
 template <class Scalar>
-void Pairs<Scalar>::findChanges(ParallelFor parallelFor) {
+bool Pairs<Scalar>::findChanges(PairFilter filter, ParallelFor parallelFor) {
     if (sweeps_ != nullptr) {
         sweeps_->beginUpdate();
     }
@@ -144,18 +168,22 @@ void Pairs<Scalar>::findChanges(ParallelFor parallelFor) {
         }
     }
     if (grid_.cost_.changed == 0) {
-        return;
+        return true;
     }
     tableOfUpdate_ = nullptr;
     grid_.stage(parallelFor);
     findDeaths(parallelFor);
     const bool someCameToRest = grid_.putQuietToRest(parallelFor);
     grid_.fileMobile(parallelFor);
+    if (isRefusedHeap(filter)) {
+        return false;
+    }
     findBirths(someCameToRest, parallelFor);
     if (sweeps_ != nullptr) {
         findSwept(parallelFor);
     }
     askRefusedAgain();
+    return true;
 }
 
 template <class Scalar>
@@ -194,136 +222,6 @@ void Pairs<Scalar>::sortCouples(std::vector<Couple>& couples) {
     detail::radixSort(couples, static_cast<std::uint32_t>(grid_.records_.size()), sorted_);
 }
 
-// A couple dies when its boxes overlapped at the last update, or were announced since, and do not
-// now, or when one of the two sweeps now, unless they touch on their ways, see findSwept(). All those that are not watched are found here before their boxes are lost.
-template <class Scalar>
-void Pairs<Scalar>::findDeaths(ParallelFor parallelFor) {
-    const auto watched = amongMobile_.pairs();
-    cost_.couplesWatched = watched.size() + toResting_.size();
-    for (const auto [a, b] : selectApart(watched, nullptr, grid_.staged_.data(), parallelFor)) {
-        lost_.push_back(couple(grid_.mobileSlots_[a], grid_.mobileSlots_[b]));
-    }
-    constexpr std::size_t kAhead = 12;
-    const auto toResting = toResting_.pairs();
-    for (std::size_t i = 0; i < toResting.size(); ++i) {
-        if (i + kAhead < toResting.size()) {
-            detail::prefetch(&grid_.records_[toResting[i + kAhead].b]);
-        }
-        const auto [place, slot] = toResting[i];
-        const Box& resting = grid_.standingBox(grid_.records_[slot]);
-        if (!overlaps(detail::unpadded(grid_.staged_[place]), resting)) {
-            lost_.push_back(couple(grid_.mobileSlots_[place], slot));
-        }
-    }
-    for (const Couple c : announced_.keys()) {
-        loseIfApart(c);
-    }
-    findDeathsOfWoken(parallelFor);
-    findKept();
-}
-
-// Pairs whose groups have been set, and do not let them pair any more, are kept as long as they overlap.
-// Those that may pair again are watched as the others are.
-template <class Scalar>
-void Pairs<Scalar>::findKept() {
-    for (const Couple c : kept_.keys()) {
-        loseIfApart(c);
-        if (mayPairNow(c)) {
-            notKept_.push_back(c);
-        }
-    }
-    if (!grid_.areRegrouped_) {
-        return;
-    }
-    for (const auto [a, b] : amongMobile_.pairs()) {
-        keepIfPair(couple(grid_.mobileSlots_[a], grid_.mobileSlots_[b]));
-    }
-    for (const auto [place, slot] : toResting_.pairs()) {
-        keepIfPair(couple(grid_.mobileSlots_[place], slot));
-    }
-    for (const Couple c : announced_.keys()) {
-        keepIfPair(c);
-    }
-}
-
-template <class Scalar>
-void Pairs<Scalar>::keepIfPair(Couple c) {
-    if (!mayPairNow(c) && overlapNow(c) && !isRefused(c)) {
-        keptNow_.push_back(c);
-    }
-}
-
-// Couples of two that rest are not watched. When one wakes, its couples are those of its box before:
-// found in the resting table where the other one has not changed, and among the woken otherwise.
-template <class Scalar>
-void Pairs<Scalar>::findDeathsOfWoken(ParallelFor parallelFor) {
-    const bool isShifted = !grid_.boxesAtUpdate_.empty();
-    const auto wake = [this, isShifted](std::uint32_t a, std::uint32_t b) {
-        const Couple c = couple(a, b);
-        if (isShifted && !grid_.overlappedAtUpdate(a, b)) {
-            return;  // a shift of the origin has rounded them together
-        }
-        if (refusedAtRest_.contains(c)) {
-            refused_.findOrInsert(c);
-            refusedAtRest_.erase(c);
-        }
-        loseIfApart(c);
-        if (grid_.areRegrouped_) {
-            keepIfPair(c);
-        }
-    };
-    wokenBoxes_.clear();
-    bounds_.clear();
-    detail::GroupKinds::Set wokenKinds = 0;
-    const ProxyGroups* const groups = grid_.groupsOfAllAtUpdate();
-    for (const std::uint32_t slot : grid_.woken_) {
-        wokenBoxes_.push_back(detail::padded(grid_.boxAtUpdate(slot)));
-        bounds_.push(grid_.before(slot));
-        if (groups != nullptr) {
-            wokenKinds |=
-                detail::GroupKinds::bit(grid_.groupKinds_.numberOf(groups[2 * std::size_t{slot}]));
-        }
-    }
-    const detail::GroupsView view{groups, grid_.woken_.data(),
-                                  grid_.groupKinds_.together(grid_.restingKinds_)};
-    const bool areToldApart = grid_.groupKinds_.refuse(wokenKinds, grid_.restingKinds_);
-    detail::KernelCost cost;
-    selected_.clear();
-    detail::walkTable(grid_.resting_, bounds_.columns(), bounds_.size(), parallelFor, parts_,
-                      selected_, cost, areToldApart ? &view : nullptr);
-    for (const auto [woken, entry] : selected_.pairs()) {
-        wake(grid_.woken_[woken], grid_.resting_.slot(entry));
-    }
-    if (grid_.woken_.size() > 1) {
-        detail::Table<Scalar>& table = wokenTable();
-        const ProxyGroups* own =
-            grid_.groupKinds_.refuse(wokenKinds, wokenKinds) ? groups : nullptr;
-        table.build(grid_.woken_, wokenBoxes_, grid_.fixedSizes(), parallelFor, own);
-        selected_.clear();
-        detail::joinTable(table, parallelFor, parts_, selected_, cost, own,
-                          grid_.groupKinds_.together(wokenKinds));
-        for (const auto [a, b] : selected_.pairs()) {
-            wake(table.slot(a), table.slot(b));
-        }
-    }
-    cost_.boxesTested += cost.boxesTested;
-}
-
-template <class Scalar>
-detail::Table<Scalar>& Pairs<Scalar>::wokenTable() {
-    if (wokenTable_ == nullptr) {
-        wokenTable_ = std::make_unique<detail::Table<Scalar>>();
-    }
-    return *wokenTable_;
-}
-
-template <class Scalar>
-void Pairs<Scalar>::loseIfApart(Couple c) {
-    if (!overlapNow(c)) {
-        lost_.push_back(c);
-    }
-}
-
 // A couple is born when its boxes overlap now and did not at the last update.
 template <class Scalar>
 void Pairs<Scalar>::findBirths(bool someCameToRest, ParallelFor parallelFor) {
@@ -340,23 +238,6 @@ void Pairs<Scalar>::findBirths(bool someCameToRest, ParallelFor parallelFor) {
     }
     if (announced_.size() > 0) {
         std::erase_if(asked_, [this](Couple c) { return announced_.contains(c); });
-    }
-}
-
-// What overlapped at the last update, but could not pair, and may now.
-template <class Scalar>
-void Pairs<Scalar>::askAboutRegrouped() {
-    const auto askIfNew = [this](std::uint32_t a, std::uint32_t b) {
-        if (grid_.overlappedAtUpdate(a, b) && !wasKnown(a, b)) {
-            asked_.push_back(couple(a, b));
-        }
-    };
-    const detail::Table<Scalar>& table = grid_.mobile_;
-    for (const auto [a, b] : amongMobile_.pairs()) {
-        askIfNew(table.slot(a), table.slot(b));
-    }
-    for (const auto [entry, slot] : toResting_.pairs()) {
-        askIfNew(table.slot(entry), slot);
     }
 }
 
@@ -483,79 +364,9 @@ void Pairs<Scalar>::walkResting(ParallelFor parallelFor) {
     }
 }
 
-// A couple that has touched on its way and stands and overlaps now, or the other way round, is neither
-// lost nor new. What is asked about so far has come to overlap.
-template <class Scalar>
-void Pairs<Scalar>::findSwept(ParallelFor parallelFor) {
-    sweeps_->findContacts(parallelFor);
-    sweptNow_.assign(sweeps_->contacts().begin(), sweeps_->contacts().end());
-    std::vector<Couple>& now = sweptNow_;
-    if (now.empty() && swept_.empty()) {
-        return;
-    }
-    if (grid_.groupsOfAll() != nullptr) {
-        leaveOutSweptByGroups();
-    }
-    std::set_difference(swept_.begin(), swept_.end(), now.begin(), now.end(),
-                        std::back_inserter(lost_));
-    std::set_difference(now.begin(), now.end(), swept_.begin(), swept_.end(),
-                        std::back_inserter(asked_));
-    sortCouples(asked_);
-    sortCouples(lost_);
-    gone_.clear();
-    std::set_difference(lost_.begin(), lost_.end(), asked_.begin(), asked_.end(),
-                        std::back_inserter(gone_));
-    std::erase_if(gone_, [this](Couple c) {
-        return std::binary_search(keptNow_.begin(), keptNow_.end(), c);
-    });
-    fresh_.clear();
-    std::set_difference(asked_.begin(), asked_.end(), lost_.begin(), lost_.end(),
-                        std::back_inserter(fresh_));
-    lost_.swap(gone_);
-    asked_.swap(fresh_);
-}
-
-// Of what touches on its way, what may not pair is left out, but for pairs that stand. A pair that met
-// on its way, and overlaps now, is kept if need be; one that is swept is not among those that are kept.
-template <class Scalar>
-void Pairs<Scalar>::leaveOutSweptByGroups() {
-    sortCouples(lost_);
-    std::erase_if(sweptNow_, [this](Couple c) {
-        const bool isPair =
-            !isRefused(c) && (isSwept(c) || std::binary_search(lost_.begin(), lost_.end(), c));
-        return !mayPairNow(c) && !isPair;
-    });
-    for (const Couple c : swept_) {
-        keepIfPair(c);
-    }
-    std::sort(keptNow_.begin(), keptNow_.end());
-    for (const Couple c : kept_.keys()) {
-        if (std::binary_search(sweptNow_.begin(), sweptNow_.end(), c)) {
-            notKept_.push_back(c);
-        }
-    }
-}
-
-template <class Scalar>
-bool Pairs<Scalar>::doRefuse(std::uint32_t a, std::uint32_t b) const noexcept {
-    return grid_.groupKinds_.refuse(grid_.records_[a].kind, grid_.records_[b].kind) &&
-           !grid_.mayPairNow(a, b);  // of the kinds that share a number some may
-}
-
-template <class Scalar>
-bool Pairs<Scalar>::wasKnown(std::uint32_t a, std::uint32_t b) const noexcept {
-    return grid_.overlappedAtUpdate(a, b) &&
-           (grid_.couldPair(a, b) || kept_.contains(couple(a, b)));
-}
-
-template <class Scalar>
-bool Pairs<Scalar>::isSwept(Couple c) const noexcept {
-    return std::binary_search(swept_.begin(), swept_.end(), c);
-}
-
 template <class Scalar>
 bool Pairs<Scalar>::isRefused(Couple c) const noexcept {
-    return refused_.contains(c) || refusedAtRest_.contains(c);
+    return remembersPairs() ? !isRemembered(c) : refused_.contains(c) || refusedAtRest_.contains(c);
 }
 
 template <class Scalar>

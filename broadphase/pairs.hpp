@@ -14,6 +14,9 @@
 // Failure   An exception, of the filter or for want of memory, is passed on. After one from announce()
 //           or refilter() nothing has happened; one from update() has ended nothing: the frame goes
 //           on, and the next update() tells all that has changed since the last one that returned.
+// Memory    follows proxies and pairs. Of what overlaps, that which the filter refused is remembered,
+//           up to 32 couples for each proxy and four for each pair; where it refuses more, the pairs
+//           are, and the update follows all that what has changed overlaps.
 // Late      created over a grid that has proxies already, they begin as if these were all new; they may
 //           go, and others come, between two updates.
 // Misuse    one Pairs per grid at a time; and no call from within the filter; asserted.
@@ -43,8 +46,8 @@ namespace hashphase {
 /// that is asked about many at once and sets accepted[i], given as 0, to 1 where asked[i] make a
 /// pair. Asked once when two proxies begin to overlap, in ascending order of ids; again, for couples
 /// that it refused, whenever one of them has changed or refilter() is called; not about two that may not
-/// pair by their groups. May ask the grid, and
-/// must not change it (asserted). For parameters only, as FunctionRef.
+/// pair by their groups. Thousands at once may be asked about in parts, each in that order. May ask the
+/// grid, and must not change it (asserted). For parameters only, as FunctionRef.
 class PairFilter {
 public:
     using OfOne = FunctionRef<bool(ProxyId, ProxyId)>;
@@ -126,9 +129,9 @@ public:
     PairChanges announce(ProxyId id, PairFilter filter) &;
 
     /// Asks the filter again about everything that the proxy, which is alive (asserted), overlaps, or
-    /// met on its way at the last update, refused or not, at once; and deaths as announce() does. Cost: that of a few box queries.
-    /// Where many proxies have changed since the last update, the first call after it files their boxes
-    /// of that update once for all calls up to the next one.
+    /// met on its way at the last update, refused or not, at once; and deaths as announce() does. Cost:
+    /// that of a few box queries. Where many proxies have changed since the last update, the first call
+    /// after it files their boxes of that update once for all calls up to the next one.
     PairChanges refilter(ProxyId id, PairFilter filter) &;
 
     /// The same for many proxies, in one pass: the filter is asked once about each couple, in ascending
@@ -151,10 +154,16 @@ public:
     /// Number of pairs in the set.
     [[nodiscard]] std::size_t count() const noexcept { return count_; }
 
-    /// Number of overlapping couples that the filter refused; those that may not pair by their groups are
-    /// not counted.
+    /// Number of overlapping couples that the filter refused, as they are remembered: none while the pairs
+    /// are, instead. Those that may not pair by their groups are not counted.
     [[nodiscard]] std::size_t refusedCount() const noexcept {
         return refused_.size() + refusedAtRest_.size();
+    }
+
+    /// Whether so many overlap, of which the filter refuses most, that the pairs are remembered in their
+    /// place; up to 256 updates longer.
+    [[nodiscard]] bool remembersPairs() const noexcept {
+        return heap_ != nullptr && heap_->hasPairs;
     }
 
     [[nodiscard]] const PairCost& lastCost() const noexcept { return cost_; }
@@ -173,6 +182,7 @@ public:
     ///   of the pairs that are kept.
     /// - Of each swept couple one sweeps.
     /// - The pairs that are kept overlap and may not pair.
+    /// While the pairs are remembered, that count() is their number, and each overlaps or is swept.
     [[nodiscard]] std::string validate() const;
 
 private:
@@ -181,6 +191,26 @@ private:
     struct Told {
         std::vector<ProxyPair> born;
         std::vector<ProxyPair> died;
+    };
+
+    /// What is known where many share a cell.
+    struct Heap {
+        // In place of the couples that are watched, refused or kept, where those would be too many.
+        detail::FlatSet pairs;
+        bool hasPairs = false;
+        std::uint32_t updatesUntilLook = 0;  // whether they still would
+        std::uint32_t updatesOfLook = 0;
+
+        // Of what this call has asked in parts, whose answer makes or ends a pair.
+        std::vector<std::uint64_t> turned;
+        // What this call has asked as a sample, and the answers by their numbers.
+        detail::FlatSet early;
+        std::vector<char> earlyAccepted;
+
+        [[nodiscard]] std::size_t memoryBytes() const noexcept {
+            return sizeof(*this) + pairs.memoryBytes() + early.memoryBytes() +
+                   turned.capacity() * sizeof(std::uint64_t) + earlyAccepted.capacity();
+        }
     };
 
     /// Two slots, the smaller one on top, so that couples sort by slots.
@@ -205,10 +235,15 @@ private:
     [[nodiscard]] bool isAtRest(Couple c) const noexcept;
     [[nodiscard]] bool isRefused(Couple c) const noexcept;
     [[nodiscard]] bool isSwept(Couple c) const noexcept;
+    /// While the pairs are remembered.
+    [[nodiscard]] bool isRemembered(Couple c) const noexcept {
+        return remembersPairs() && heap_->pairs.contains(c);
+    }
 
     void beginCall();
+    void beginSearch();
     void recover();
-    void findChanges(ParallelFor parallelFor);
+    [[nodiscard]] bool findChanges(PairFilter filter, ParallelFor parallelFor);
     void findDeaths(ParallelFor parallelFor);
     void findDeathsOfWoken(ParallelFor parallelFor);
     [[nodiscard]] detail::Table<Scalar>& wokenTable();
@@ -235,9 +270,26 @@ private:
         const detail::PaddedBox<Scalar>* boxes, ParallelFor parallelFor);
     void askRefusedAgain();
     void sortCouples(std::vector<Couple>& couples);
-    void ask(PairFilter filter, Told& told);
+    void ask(PairFilter filter);
+    void makeRoom(Told& told);
 
-    // The rest of a call, which takes no more memory, and so cannot throw: ask() has made room.
+    // Which side is remembered.
+    [[nodiscard]] std::size_t mostCouples() const noexcept;
+    Heap& heap();
+    [[nodiscard]] bool isRefusedHeap(PairFilter filter);
+    [[nodiscard]] double countRefused(PairFilter filter, double weight);
+    [[nodiscard]] double sampleOverlaps(const detail::Table<Scalar>& table,
+                                        detail::KernelCost& cost);
+    void chooseSide(bool isUpdated) noexcept;
+    void rememberPairs();
+    void forgetWatched() noexcept;
+    void rememberRefusedIfFew();
+    void findChangesOfPairs(PairFilter filter, ParallelFor parallelFor);
+    void askAboutChanged(PairFilter filter);
+    void askInParts(PairFilter filter, std::size_t size);
+    void takeTurned();
+
+    // The rest of a call, which takes no more memory, and so cannot throw: makeRoom() has made room.
     void endUpdate() noexcept;  // NOLINT(bugprone-exception-escape)
     [[nodiscard]] bool areManyAnnounced() const noexcept;
     void findAnnouncedOfRemoved();
@@ -251,26 +303,24 @@ private:
     PairChanges tell(Told& told) noexcept;
 
     // What was known at the last update, or has been announced since.
+    using VisitCouple = FunctionRef<void(Couple)>;
     void indexLastUpdate(std::size_t mostUnindexed);
-    template <class Visit>
-    void forKnownCouples(std::uint32_t slot, const Visit& visit);
-    template <class Visit>
-    void forOverlapsAtUpdate(std::uint32_t slot, const Visit& visit);
-    template <class Visit>
-    void forSwept(std::uint32_t slot, const Visit& visit);
-    template <class Visit>
-    void forAllKnown(const Visit& visit);
+    void forKnownCouples(std::uint32_t slot, VisitCouple visit);
+    void forOverlapsAtUpdate(std::uint32_t slot, VisitCouple visit);
+    void forSwept(std::uint32_t slot, VisitCouple visit);
+    void forAllKnown(VisitCouple visit);
     template <class IsNamed>
-    void askAgainAboutMany(const IsNamed& isNamed);
+    void askAgainAboutMany(PairFilter filter, const IsNamed& isNamed);
+    [[nodiscard]] bool isFoundByOther(std::uint32_t slot, std::uint32_t other) const noexcept;
     void askAgain(Couple c);
     PairChanges decideBetween(PairFilter filter);
-    template <class IsNamed>
-    void findUnknown(std::uint32_t slot, const IsNamed& isNamed);
+    void findUnknown(std::uint32_t slot, FunctionRef<bool(std::uint32_t)> isWanted);
     void findUnknown(std::uint32_t slot);
     void releaseAfterPeak() noexcept;
     void forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const;
 
     static constexpr std::size_t kFewAnnounced = 64;
+    static constexpr std::size_t kPart = 8192;  // couples that are asked about at once, some twice
 
     Grid<Scalar>& grid_;
 
@@ -282,6 +332,7 @@ private:
 
     detail::FlatSet refused_;        // couples that the filter refused, unless they are ...
     detail::FlatSet refusedAtRest_;  // ... both at rest
+    std::unique_ptr<Heap> heap_;     // made when many share a cell
     detail::CoupleSet announced_;    // couples decided since the last update
     // Until there are more, those of removed proxies stay.
     std::size_t fewAnnounced_ = kFewAnnounced;
@@ -334,7 +385,8 @@ private:
     std::vector<char> isNamed_;                          // by slot
 
     // A table of boxes as of the last update: of what was mobile then, and of the first indexedWoken_ of
-    // what has left rest since. Either the grid's own, until it is filed again, or wokenTable_; null when neither is.
+    // what has left rest since. Either the grid's own, until it is filed again, or wokenTable_; null when
+    // neither is.
     const detail::Table<Scalar>* tableOfUpdate_ = nullptr;
     std::size_t indexedWoken_ = 0;
     std::uint64_t filingOfUpdate_ = 0;  // Grid::filingCount_ and ...

@@ -4,25 +4,13 @@
 
 #include <broadphase/pairs.hpp>
 
-#include <broadphase/detail/join.hpp>
 #include <broadphase/sweeps.hpp>
 
 #include <algorithm>
-#include <limits>
+#include <iterator>
 
 namespace hashphase {
 namespace {
-
-template <class Add>
-struct CollectInto {
-    Add& addTo;
-
-    template <class Scalar>
-    void add(ProxyId id, Scalar /*key*/) {
-        addTo(id);
-    }
-    static constexpr double limit() { return std::numeric_limits<double>::infinity(); }
-};
 
 [[maybe_unused]] constexpr const char* kMustNotAsk =
     "Pairs are not announced, nor filtered again, from within the filter.";
@@ -55,12 +43,12 @@ PairChanges Pairs<Scalar>::refilter(std::span<const ProxyId> ids, PairFilter fil
     recover();
     findAnnouncedOfRemoved();
     constexpr std::size_t kLargePart = 8;
-    if (ids.size() > 1 && ids.size() > grid_.size() / kLargePart) {
+    if (ids.size() > 1 && (remembersPairs() || ids.size() > grid_.size() / kLargePart)) {
         isNamed_.assign(grid_.records_.size(), 0);
         for (const ProxyId id : ids) {
             isNamed_[id.index] = 1;
         }
-        askAgainAboutMany([this](std::uint32_t slot) { return isNamed_[slot] != 0; });
+        askAgainAboutMany(filter, [this](std::uint32_t slot) { return isNamed_[slot] != 0; });
         return decideBetween(filter);
     }
     for (const ProxyId id : ids) {
@@ -78,26 +66,39 @@ PairChanges Pairs<Scalar>::refilterAll(PairFilter filter) & {
     beginCall();
     recover();
     findAnnouncedOfRemoved();
-    askAgainAboutMany([](std::uint32_t) { return true; });
+    askAgainAboutMany(filter, [](std::uint32_t) { return true; });
     return decideBetween(filter);
 }
 
 // What is not known yet is of one that has changed.
 template <class Scalar>
 template <class IsNamed>
-void Pairs<Scalar>::askAgainAboutMany(const IsNamed& isNamed) {
+void Pairs<Scalar>::askAgainAboutMany(PairFilter filter, const IsNamed& isNamed) {
     if (grid_.cost_.changed > 0) {
         for (const std::uint32_t slot : grid_.mobileSlots_) {
             if (grid_.changedNow(slot) && grid_.isAlive(slot)) {
-                findUnknown(slot, isNamed);
+                findUnknown(slot, [&](std::uint32_t other) {
+                    return (isNamed(slot) || isNamed(other)) && !isFoundByOther(slot, other);
+                });
+                askInParts(filter, kPart);
             }
         }
     }
     forAllKnown([&](Couple c) {
         if (isNamed(first(c)) || isNamed(second(c))) {
             askAgain(c);
+            askInParts(filter, kPart);
         }
     });
+}
+
+// Of two that have changed each would find the other; by its way, only what sweeps.
+template <class Scalar>
+bool Pairs<Scalar>::isFoundByOther(std::uint32_t slot, std::uint32_t other) const noexcept {
+    const auto sweeps = [this](std::uint32_t of) {
+        return sweeps_ != nullptr && sweeps_->sweeps(grid_.idOf(of));
+    };
+    return grid_.changedNow(other) && !sweeps(slot) && (other < slot || sweeps(other));
 }
 
 // Asks about a couple that is known. One that is refused and apart for the moment is asked about by
@@ -118,14 +119,25 @@ void Pairs<Scalar>::askAgain(Couple c) {
 // A couple may have been found from either of the two.
 template <class Scalar>
 PairChanges Pairs<Scalar>::decideBetween(PairFilter filter) {
-    for (std::vector<Couple>* couples : {&asked_, &standing_, &unknown_}) {
-        sortCouples(*couples);
-        couples->erase(std::unique(couples->begin(), couples->end()), couples->end());
+    if (remembersPairs()) {
+        askInParts(filter, 1);
+        takeTurned();
+        unknown_.clear();
+        std::copy_if(asked_.begin(), asked_.end(), std::back_inserter(unknown_), [this](Couple c) {
+            return isRefused(c) && !wasKnown(first(c), second(c)) && !isSwept(c);
+        });
+    } else {
+        for (std::vector<Couple>* couples : {&asked_, &standing_, &unknown_}) {
+            sortCouples(*couples);
+            couples->erase(std::unique(couples->begin(), couples->end()), couples->end());
+        }
+        ask(filter);
     }
-    ask(filter, toldBetween_);
+    makeRoom(toldBetween_);
     endAnnouncedOfRemoved();
     announceUnknown();
     decide();
+    chooseSide(false);
     return tell(toldBetween_);
 }
 
@@ -183,177 +195,11 @@ void Pairs<Scalar>::endAnnouncedOfRemoved() noexcept {
     grid_.giveBack(grid_.removedAnnounced_);
 }
 
-// --- What is known -------------------------------------------------------------------------------
-
-// Afterwards tableOfUpdate_ has all but `mostUnindexed` of the proxies that are mobile now, and that
-// were there at the last update. Each time that it is filed for more of them it has a quarter more, so
-// that this costs each of them little.
-template <class Scalar>
-void Pairs<Scalar>::indexLastUpdate(std::size_t mostUnindexed) {
-    const bool isStale =
-        shiftOfUpdate_ != grid_.shiftCount_ ||
-        (tableOfUpdate_ == &grid_.mobile_ && filingOfUpdate_ != grid_.filingCount_);
-    if (isStale) {
-        tableOfUpdate_ = nullptr;
-    }
-    if (tableOfUpdate_ != nullptr && grid_.woken_.size() - indexedWoken_ <= mostUnindexed) {
-        return;
-    }
-    // What has come since the last update had no box then.
-    const auto listed = grid_.mobileSlots_.begin();
-    std::vector<std::uint32_t>& slots = searchedSlots_;
-    slots.assign(listed, listed + static_cast<std::ptrdiff_t>(grid_.listedAtUpdate_));
-    slots.insert(slots.end(), grid_.woken_.begin(), grid_.woken_.end());
-    wokenBoxes_.clear();
-    for (const std::uint32_t slot : slots) {
-        wokenBoxes_.push_back(detail::padded(grid_.boxAtUpdate(slot)));
-    }
-    tableOfUpdate_ = nullptr;
-    wokenTable().build(slots, wokenBoxes_, grid_.fixedSizes(), serialFor,
-                       grid_.groupsOfAllAtUpdate());
-    tableOfUpdate_ = wokenTable_.get();
-    indexedWoken_ = grid_.woken_.size();
-    shiftOfUpdate_ = grid_.shiftCount_;
-}
-
-// Calls visit for each of the proxy's couples that overlapped at the last update, or met on their ways
-// then, or were announced since.
-template <class Scalar>
-template <class Visit>
-void Pairs<Scalar>::forKnownCouples(std::uint32_t slot, const Visit& visit) {
-    forOverlapsAtUpdate(slot, visit);
-    announced_.forEachOf(slot, visit);
-    forSwept(slot, visit);
-}
-
-template <class Scalar>
-template <class Visit>
-void Pairs<Scalar>::forOverlapsAtUpdate(std::uint32_t slot, const Visit& visit) {
-    constexpr std::size_t kFew = 64;
-    indexLastUpdate(kFew + (grid_.listedAtUpdate_ + indexedWoken_) / 4);
-    const auto visitIfTheyDid = [&](std::uint32_t other) {
-        if (other != slot && wasKnown(slot, other)) {
-            visit(couple(slot, other));
-        }
-    };
-    const auto walk = [&](const detail::Table<Scalar>& table, const Box& box) {
-        bounds_.clear();
-        bounds_.push(box);
-        detail::FewPairs found;
-        detail::KernelCost cost;
-        found.assign([&](detail::PairSink& sink) {
-            detail::walkTogether(table, bounds_.columns(), 1, sink, cost);
-        });
-        for (const auto [query, entry] : found.pairs()) {
-            visitIfTheyDid(table.slot(entry));
-        }
-    };
-    const bool isOwn = tableOfUpdate_ == wokenTable_.get();  // in the coordinates of then
-    walk(*tableOfUpdate_, isOwn ? grid_.boxAtUpdate(slot) : grid_.before(slot));
-    walk(grid_.resting_, grid_.before(slot));
-    for (std::size_t i = indexedWoken_; i < grid_.woken_.size(); ++i) {
-        visitIfTheyDid(grid_.woken_[i]);
-    }
-}
-
-template <class Scalar>
-template <class Visit>
-void Pairs<Scalar>::forSwept(std::uint32_t slot, const Visit& visit) {
-    if (swept_.empty()) {
-        return;
-    }
-    if (sweptBySecond_.empty()) {
-        std::vector<Couple> turned(swept_.size());
-        std::transform(swept_.begin(), swept_.end(), turned.begin(),
-                       [](Couple c) { return c << 32 | c >> 32; });
-        sortCouples(turned);
-        sweptBySecond_.swap(turned);
-    }
-    for (const auto* couples : {&swept_, &sweptBySecond_}) {
-        auto at = std::lower_bound(couples->begin(), couples->end(), Couple{slot} << 32);
-        for (; at != couples->end() && *at >> 32 == slot; ++at) {
-            visit(couple(first(*at), second(*at)));
-        }
-    }
-}
-
-// forKnownCouples() of all.
-template <class Scalar>
-template <class Visit>
-void Pairs<Scalar>::forAllKnown(const Visit& visit) {
-    indexLastUpdate(0);
-    const ProxyGroups* const groups = grid_.groupsOfAllAtUpdate();
-    const auto visitIfTheyDid = [&](std::uint32_t a, std::uint32_t b) {
-        if (wasKnown(a, b)) {
-            visit(couple(a, b));
-        }
-    };
-    detail::KernelCost cost;
-    const detail::Table<Scalar>* const restingTable = &grid_.resting_;
-    for (const detail::Table<Scalar>* table : {tableOfUpdate_, restingTable}) {
-        selected_.clear();
-        detail::joinTable(*table, serialFor, parts_, selected_, cost, groups);
-        for (const auto [a, b] : selected_.pairs()) {
-            visitIfTheyDid(table->slot(a), table->slot(b));
-        }
-    }
-    bounds_.clear();
-    for (const std::uint32_t slot : tableOfUpdate_->entrySlots()) {
-        bounds_.push(grid_.before(slot));
-    }
-    selected_.clear();
-    const detail::GroupsView view{groups, tableOfUpdate_->entrySlots().data(), {}};
-    detail::walkTable(grid_.resting_, bounds_.columns(), bounds_.size(), serialFor, parts_,
-                      selected_, cost, groups != nullptr ? &view : nullptr);
-    for (const auto [entry, resting] : selected_.pairs()) {
-        visitIfTheyDid(tableOfUpdate_->slot(entry), grid_.resting_.slot(resting));
-    }
-    for (const std::span<const Couple> couples :
-         {announced_.keys(), kept_.keys(), std::span<const Couple>(swept_)}) {
-        std::for_each(couples.begin(), couples.end(), visit);
-    }
-}
-
-// The proxy's couples that overlap now, did not at the last update, and were not announced since; those
-// of which one is named.
-template <class Scalar>
-template <class IsNamed>
-void Pairs<Scalar>::findUnknown(std::uint32_t slot, const IsNamed& isNamed) {
-    const auto add = [&](ProxyId other) {
-        if (other.index != slot && (isNamed(slot) || isNamed(other.index)) &&
-            !wasKnown(slot, other.index) && grid_.mayPairNow(slot, other.index) &&
-            touchAtStart(slot, other.index)) {
-            const Couple c = couple(slot, other.index);
-            if (!announced_.contains(c) && !isSwept(c)) {
-                unknown_.push_back(c);
-                asked_.push_back(c);
-            }
-        }
-    };
-    CollectInto<decltype(add)> collector{add};
-    grid_.visit(BoxRegion<Scalar>{boxAtStart(slot)}, collector);
-}
-
-// Where a proxy alive is now, of what sweeps where its way begins.
-template <class Scalar>
-Aabb<Scalar> Pairs<Scalar>::boxAtStart(std::uint32_t slot) const {
-    return sweeps_ != nullptr ? sweeps_->motion(grid_.idOf(slot)).box : grid_.records_[slot].box;
-}
-
-template <class Scalar>
-bool Pairs<Scalar>::touchAtStart(std::uint32_t a, std::uint32_t b) const {
-    return overlaps(boxAtStart(a), boxAtStart(b));
-}
-
-template <class Scalar>
-void Pairs<Scalar>::findUnknown(std::uint32_t slot) {
-    findUnknown(slot, [](std::uint32_t) { return true; });
-}
-
 template PairChanges Pairs<float>::announce(ProxyId, PairFilter) &;
 template PairChanges Pairs<float>::refilter(ProxyId, PairFilter) &;
 template PairChanges Pairs<float>::refilter(std::span<const ProxyId>, PairFilter) &;
 template PairChanges Pairs<float>::refilterAll(PairFilter) &;
+template bool Pairs<float>::isFoundByOther(std::uint32_t, std::uint32_t) const noexcept;
 template void Pairs<float>::askAgain(Couple);
 template PairChanges Pairs<float>::decideBetween(PairFilter);
 template void Pairs<float>::announceUnknown() noexcept;
@@ -361,14 +207,11 @@ template void Pairs<float>::markAnnounced(std::span<const Couple>, bool) noexcep
 template bool Pairs<float>::areManyAnnounced() const noexcept;
 template void Pairs<float>::findAnnouncedOfRemoved();
 template void Pairs<float>::endAnnouncedOfRemoved() noexcept;
-template void Pairs<float>::indexLastUpdate(std::size_t);
-template void Pairs<float>::findUnknown(std::uint32_t);
-template Aabb<float> Pairs<float>::boxAtStart(std::uint32_t) const;
-template bool Pairs<float>::touchAtStart(std::uint32_t, std::uint32_t) const;
 template PairChanges Pairs<double>::announce(ProxyId, PairFilter) &;
 template PairChanges Pairs<double>::refilter(ProxyId, PairFilter) &;
 template PairChanges Pairs<double>::refilter(std::span<const ProxyId>, PairFilter) &;
 template PairChanges Pairs<double>::refilterAll(PairFilter) &;
+template bool Pairs<double>::isFoundByOther(std::uint32_t, std::uint32_t) const noexcept;
 template void Pairs<double>::askAgain(Couple);
 template PairChanges Pairs<double>::decideBetween(PairFilter);
 template void Pairs<double>::announceUnknown() noexcept;
@@ -376,9 +219,5 @@ template void Pairs<double>::markAnnounced(std::span<const Couple>, bool) noexce
 template bool Pairs<double>::areManyAnnounced() const noexcept;
 template void Pairs<double>::findAnnouncedOfRemoved();
 template void Pairs<double>::endAnnouncedOfRemoved() noexcept;
-template void Pairs<double>::indexLastUpdate(std::size_t);
-template void Pairs<double>::findUnknown(std::uint32_t);
-template Aabb<double> Pairs<double>::boxAtStart(std::uint32_t) const;
-template bool Pairs<double>::touchAtStart(std::uint32_t, std::uint32_t) const;
 
 }  // namespace hashphase

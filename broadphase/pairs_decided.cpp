@@ -31,14 +31,17 @@ void Pairs<Scalar>::askRefusedAgain() {
     }
 }
 
-// Asks the filter about what is to be asked, and makes room for all that may come of it.
+// Asks the filter about what is to be asked and has not been asked by this call.
 template <class Scalar>
-void Pairs<Scalar>::ask(PairFilter filter, Told& told) {
+void Pairs<Scalar>::ask(PairFilter filter) {
     sortCouples(asked_);
     sortCouples(standing_);
     askedPairs_.clear();
+    const auto numberIfEarly = [this](Couple c) {
+        return heap_ != nullptr ? heap_->early.find(c) : detail::FlatSet::kNone;
+    };
     for (const Couple c : asked_) {
-        if (mayPairNow(c)) {
+        if (mayPairNow(c) && numberIfEarly(c) == detail::FlatSet::kNone) {
             askedPairs_.push_back(pairOf(c));
         }
     }
@@ -49,11 +52,23 @@ void Pairs<Scalar>::ask(PairFilter filter, Told& told) {
         filter(askedPairs_, std::span(accepted_).first(answers));
     }
     for (std::size_t i = asked_.size(); i-- > 0 && answers < asked_.size();) {
-        accepted_[i] = mayPairNow(asked_[i]) ? accepted_[--answers] : char{0};
+        const std::uint32_t number = numberIfEarly(asked_[i]);
+        if (number != detail::FlatSet::kNone) {
+            accepted_[i] = heap_->earlyAccepted[number];
+        } else {
+            accepted_[i] = mayPairNow(asked_[i]) ? accepted_[--answers] : char{0};
+        }
     }
+}
+
+// For all that may come of the answers.
+template <class Scalar>
+void Pairs<Scalar>::makeRoom(Told& told) {
     const auto refused =
         static_cast<std::size_t>(std::count(accepted_.begin(), accepted_.end(), 0));
-    if (refused > 0) {
+    if (remembersPairs()) {
+        heap_->pairs.reserve(heap_->pairs.size() + asked_.size());
+    } else if (refused > 0) {
         refused_.reserve(refused_.size() + refused);
     }
     if (!unknown_.empty()) {
@@ -83,11 +98,15 @@ void Pairs<Scalar>::decide() noexcept {  // NOLINT(bugprone-exception-escape)
             if (wasPair) {
                 lose(c);
             }
-            if (isToBeRefused(c) && !refusedAtRest_.contains(c)) {
+            if (!remembersPairs() && isToBeRefused(c) && !refusedAtRest_.contains(c)) {
                 refused_.findOrInsert(c);
             }
         } else if (!wasPair) {
-            forgetRefused(c);
+            if (remembersPairs()) {
+                heap_->pairs.findOrInsert(c);
+            } else {
+                forgetRefused(c);
+            }
             bornCouples_.push_back(c);
             ++count_;
         }
@@ -111,7 +130,9 @@ bool Pairs<Scalar>::forgetRefused(Couple c) noexcept {
 
 template <class Scalar>
 void Pairs<Scalar>::lose(Couple c) noexcept {
-    if (!forgetRefused(c)) {
+    const bool wasPair =
+        remembersPairs() ? heap_->pairs.erase(c) != detail::FlatSet::kNone : !forgetRefused(c);
+    if (wasPair) {
         diedCouples_.push_back(c);
         --count_;
     }
@@ -132,14 +153,16 @@ PairChanges Pairs<Scalar>::tell(Told& told) noexcept {
 }
 
 template void Pairs<float>::askRefusedAgain();
-template void Pairs<float>::ask(PairFilter, Told&);
+template void Pairs<float>::ask(PairFilter);
+template void Pairs<float>::makeRoom(Told&);
 template void Pairs<float>::decide() noexcept;
 template void Pairs<float>::lose(Couple) noexcept;
 template bool Pairs<float>::isToBeRefused(Couple) const noexcept;
 template bool Pairs<float>::forgetRefused(Couple) noexcept;
 template PairChanges Pairs<float>::tell(Told&) noexcept;
 template void Pairs<double>::askRefusedAgain();
-template void Pairs<double>::ask(PairFilter, Told&);
+template void Pairs<double>::ask(PairFilter);
+template void Pairs<double>::makeRoom(Told&);
 template void Pairs<double>::decide() noexcept;
 template void Pairs<double>::lose(Couple) noexcept;
 template bool Pairs<double>::isToBeRefused(Couple) const noexcept;

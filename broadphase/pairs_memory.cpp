@@ -50,6 +50,9 @@ void Pairs<Scalar>::releaseUnusedMemory() noexcept {
     bounds_ = {};
     tableOfUpdate_ = tableOfUpdate_ == wokenTable_.get() ? nullptr : tableOfUpdate_;
     wokenTable_.reset();
+    if (!remembersPairs()) {
+        heap_.reset();
+    }
     // What is kept.
     swept_.shrink_to_fit();
     try {
@@ -60,6 +63,12 @@ void Pairs<Scalar>::releaseUnusedMemory() noexcept {
             couples->shrink();
         }
         announced_.shrink();
+        if (heap_ != nullptr) {
+            heap_->turned = {};
+            heap_->early = {};
+            heap_->earlyAccepted = {};
+            heap_->pairs.shrink();
+        }
     } catch (const std::bad_alloc&) {  // what is left is kept as it is
     }
 }

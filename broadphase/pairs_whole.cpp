@@ -14,23 +14,15 @@ template <class Scalar>
 void Pairs<Scalar>::forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const {
     grid_.mendTables();
     const ProxyGroups* const groups = grid_.groupsOfAll();
-    detail::PairParts parts;
-    detail::PairList found;
     detail::KernelCost cost;
-    for (const detail::Table<Scalar>* table : {&grid_.mobile_, &grid_.resting_}) {
-        found.clear();
-        detail::joinTable(*table, serialFor, parts, found, cost, groups);
-        for (const auto [a, b] : found.pairs()) {
-            visit(table->slot(a), table->slot(b));
-        }
-    }
-    found.clear();
+    detail::forOverlaps(grid_.mobile_, groups, cost, visit);
+    detail::forOverlaps(grid_.resting_, groups, cost, visit);
     const detail::GroupsView view{groups, grid_.mobile_.entrySlots().data(), {}};
-    detail::walkTable(grid_.resting_, grid_.mobile_.columns(), grid_.mobile_.size(), serialFor,
-                      parts, found, cost, groups != nullptr ? &view : nullptr);
-    for (const auto [a, b] : found.pairs()) {
-        visit(grid_.mobile_.slot(a), grid_.resting_.slot(b));
-    }
+    detail::forOverlaps(grid_.mobile_.columns(), grid_.mobile_.size(), grid_.resting_,
+                        groups != nullptr ? &view : nullptr, cost,
+                        [&](std::uint32_t entry, std::uint32_t resting) {
+                            visit(grid_.mobile_.slot(entry), resting);
+                        });
 }
 
 template <class Scalar>
@@ -38,23 +30,32 @@ void Pairs<Scalar>::collect(std::vector<ProxyPair>& pairs) const {
     HASHPHASE_ASSERT(grid_.cost_.changed == 0,
                      "The set of pairs is asked for directly after an update.");
     const auto begin = static_cast<std::ptrdiff_t>(pairs.size());
-    forEachOverlap([&](std::uint32_t a, std::uint32_t b) {
-        if (!isRefused(couple(a, b))) {
-            pairs.push_back(pairOf(couple(a, b)));
+    const auto add = [&](Couple c) {
+        if (!isRefused(c)) {
+            pairs.push_back(pairOf(c));
         }
-    });
-    for (const std::span<const Couple> couples : {kept_.keys(), std::span<const Couple>(swept_)}) {
-        for (const Couple c : couples) {
-            if (!isRefused(c)) {
-                pairs.push_back(pairOf(c));
-            }
-        }
+    };
+    if (remembersPairs()) {
+        const std::span<const Couple> couples = heap_->pairs.keys();
+        std::for_each(couples.begin(), couples.end(), add);
+    } else {
+        forEachOverlap([&](std::uint32_t a, std::uint32_t b) { add(couple(a, b)); });
+        std::for_each(kept_.keys().begin(), kept_.keys().end(), add);
+        std::for_each(swept_.begin(), swept_.end(), add);
     }
     std::sort(pairs.begin() + begin, pairs.end());
 }
 
 template <class Scalar>
 std::string Pairs<Scalar>::validate() const {
+    if (remembersPairs()) {
+        const std::span<const Couple> couples = heap_->pairs.keys();
+        const auto meet = [this](Couple c) { return overlapNow(c) || isSwept(c); };
+        return count_ == couples.size() && std::all_of(couples.begin(), couples.end(), meet)
+                   ? std::string()
+                   : "While the pairs are remembered, count() is their number, and each overlaps "
+                     "or is swept: broken.";
+    }
     std::vector<Couple> watched;
     for (const auto [a, b] : amongMobile_.pairs()) {
         watched.push_back(couple(grid_.mobileSlots_[a], grid_.mobileSlots_[b]));

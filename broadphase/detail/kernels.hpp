@@ -17,6 +17,7 @@
 #include <memory>
 #include <span>
 #include <utility>
+#include <vector>
 
 namespace hashphase::detail {
 
@@ -120,5 +121,30 @@ private:
     std::size_t size_ = 0;
     std::size_t capacity_ = kFew;
 };
+
+/// Calls search(PairSink&), and use(couples) with what it finds, block by block, in the order in which it
+/// is found: however many there are, they take the memory of a block.
+template <std::invocable<PairSink&> Search, std::invocable<std::span<const IndexPair>> Use>
+void findInBlocks(const Search& search, const Use& use) {
+    struct Blocks {
+        const Use& use;
+        std::vector<IndexPair> block;
+
+        void handOn(PairSink& sink, std::size_t room) {
+            use({block.data(), static_cast<std::size_t>(sink.next - block.data())});
+            block.resize(std::max(block.size(), room));
+            sink.next = block.data();
+            sink.end = block.data() + block.size();
+        }
+    };
+    constexpr std::size_t kBlock = 4096;
+    Blocks blocks{use, std::vector<IndexPair>(kBlock)};
+    const auto grow = [](PairSink& sink, std::size_t count) {
+        static_cast<Blocks*>(sink.owner)->handOn(sink, count);
+    };
+    PairSink sink{blocks.block.data(), blocks.block.data() + kBlock, grow, &blocks};
+    search(sink);
+    blocks.handOn(sink, 0);
+}
 
 }  // namespace hashphase::detail

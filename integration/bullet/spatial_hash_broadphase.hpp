@@ -92,10 +92,10 @@ struct SpatialHashConfig {
     btScalar fastFrom = 1;
 
     /// An overlap filter callback decides in place of groups and masks, and so may a pair cache other than
-    /// PairCache: either is asked about all that overlap, and each two that it refuses are remembered.
-    /// Where it refuses whatever groups and masks refuse, as Bullet's own caches do, set this: it is
-    /// asked about the others only, and what is parked with a mask of 0, or otherwise filtered out, costs
-    /// nothing.
+    /// PairCache: either is asked about each two that overlap, and again about those that it refuses when
+    /// one of them has changed. Where it refuses whatever groups and masks refuse, as Bullet's own caches
+    /// do, set this: it is asked about the others only, and what is parked with a mask of 0, or otherwise
+    /// filtered out, costs nothing.
     bool filterRefusesMore = false;
 
     /// Ends a query when process() of its callback returns false. Off by default: Bullet's own

@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: Zlib
+
+// Which side Pairs remember of what overlaps: what the filter refused, which mostly is little, or the pairs.
+//
+// Where the pairs are, an update is what it would be without all that is kept to make it fast: a pair dies
+// when the two are apart; and of all that what has changed overlaps, the filter is asked about what is no
+// pair, in parts.
+
+#include <broadphase/pairs.hpp>
+
+#include <broadphase/detail/join.hpp>
+#include <broadphase/sweeps.hpp>
+
+#include <algorithm>
+#include <memory>
+#include <new>
+#include <utility>
+
+namespace hashphase {
+
+namespace {
+
+// Of `count` searches, how many tell what all find: so few that they cost little, and find little more than
+// may be watched.
+template <class Scalar>
+std::size_t sampleSize(const detail::Table<Scalar>& table, std::size_t count) {
+    constexpr std::size_t kMost = 1024;
+    return std::min({kMost, 1 + count / 32, 1 + 16 * count / detail::mostTogether(table), count});
+}
+
+}  // namespace
+
+// That are remembered of the refused ones.
+template <class Scalar>
+std::size_t Pairs<Scalar>::mostCouples() const noexcept {
+    return 32 * grid_.listedCount() + 4 * count_;
+}
+
+template <class Scalar>
+auto Pairs<Scalar>::heap() -> Heap& {
+    if (heap_ == nullptr) {
+        heap_ = std::make_unique<Heap>();
+    }
+    return *heap_;
+}
+
+// Where many share a cell, a sample of what overlaps tells what the filter says to all of it. What is asked
+// for that is not asked again.
+template <class Scalar>
+bool Pairs<Scalar>::isRefusedHeap(PairFilter filter) {
+    constexpr std::uint32_t kMany = 128;
+    const ProxyGroups* const groups = grid_.groupsOfAll();
+    const detail::Table<Scalar>& mobile = grid_.mobile_;
+    const detail::Table<Scalar>& resting = grid_.resting_;
+    detail::KernelCost cost;
+    double refused = 0;
+    if (std::max(detail::mostTogether(mobile), detail::mostTogether(resting)) > kMany) {
+        static_cast<void>(heap());
+    }
+    if (detail::mostTogether(mobile) > kMany) {
+        const double weight = sampleOverlaps(mobile, cost);
+        for (const auto [a, b] : selected_.pairs()) {
+            asked_.push_back(couple(mobile.slot(a), mobile.slot(b)));
+        }
+        refused += countRefused(filter, weight);
+    }
+    if (detail::mostTogether(resting) > kMany) {
+        walkers_.clear();
+        for (std::uint32_t entry = 0; entry < mobile.size(); ++entry) {
+            if (grid_.changedNow(mobile.slot(entry))) {
+                walkers_.push_back(entry);
+            }
+        }
+        const std::size_t size = sampleSize(resting, walkers_.size());
+        searchedSlots_.clear();
+        bounds_.clear();
+        for (std::size_t i = 0; i < size; ++i) {
+            const std::uint32_t entry = walkers_[walkers_.size() * i / size];
+            searchedSlots_.push_back(mobile.slot(entry));
+            bounds_.push(mobile.box(entry));
+        }
+        const detail::GroupsView view{groups, searchedSlots_.data(), {}};
+        detail::forOverlaps(bounds_.columns(), bounds_.size(), resting,
+                            groups != nullptr ? &view : nullptr, cost,
+                            [this](std::uint32_t searched, std::uint32_t slot) {
+                                asked_.push_back(couple(searchedSlots_[searched], slot));
+                            });
+        refused += countRefused(filter, static_cast<double>(walkers_.size()) /
+                                            static_cast<double>(std::max<std::size_t>(size, 1)));
+    }
+    cost_.boxesTested += cost.boxesTested;
+    return refused > static_cast<double>(mostCouples());
+}
+
+// Finds some of what overlaps in a table that is not empty, see selected_. Returns for how many couples each
+// of them stands.
+template <class Scalar>
+double Pairs<Scalar>::sampleOverlaps(const detail::Table<Scalar>& table, detail::KernelCost& cost) {
+    const std::size_t size = sampleSize(table, table.size());
+    std::size_t searches = 0;
+    selected_.clear();
+    selected_.append([&](detail::PairSink& sink) {
+        searches = detail::joinSample(table, size, sink, cost, grid_.groupsOfAll());
+    });
+    return static_cast<double>(searches) / static_cast<double>(size);
+}
+
+// About how many of those are refused of which asked_ is a sample, each for `weight` of them. It is asked
+// about only where so many are new that it may be asked in parts.
+template <class Scalar>
+double Pairs<Scalar>::countRefused(PairFilter filter, double weight) {
+    std::size_t refused = 0;
+    std::erase_if(asked_, [&](Couple c) {
+        const bool isKnown = wasKnown(first(c), second(c)) || announced_.contains(c) || isSwept(c);
+        refused += isKnown && isRefused(c) ? 1 : 0;
+        return isKnown || !mayPairNow(c);
+    });
+    if (weight * static_cast<double>(asked_.size()) > kPart) {
+        ask(filter);
+        for (std::size_t i = 0; i < asked_.size(); ++i) {
+            heap_->early.findOrInsert(asked_[i]);
+            heap_->earlyAccepted.push_back(accepted_[i]);
+            refused += accepted_[i] == 0 ? 1 : 0;
+        }
+    }
+    asked_.clear();
+    return weight * static_cast<double>(refused);
+}
+
+// Whether the refused ones have become few again is looked at after 1, 2, 4, 8 ... updates: it costs as much
+// as finding all that overlap.
+template <class Scalar>
+void Pairs<Scalar>::chooseSide(bool isUpdated) noexcept {
+    constexpr std::uint32_t kSeldom = 256;
+    try {
+        if (!remembersPairs()) {
+            if (refusedCount() + announced_.size() > mostCouples() && !grid_.isTorn_) {
+                rememberPairs();
+            }
+        } else if (isUpdated && cost_.grid.changed > 0 && --heap_->updatesUntilLook == 0) {
+            heap_->updatesOfLook = std::min(2 * heap_->updatesOfLook, kSeldom);
+            heap_->updatesUntilLook = heap_->updatesOfLook;
+            rememberRefusedIfFew();
+        }
+    } catch (const std::bad_alloc&) {  // what is remembered so far will do
+        if (remembersPairs()) {
+            forgetWatched();
+        }
+    }
+}
+
+template <class Scalar>
+void Pairs<Scalar>::forgetWatched() noexcept {
+    amongMobile_ = {};
+    toResting_ = {};
+    refused_ = {};
+    refusedAtRest_ = {};
+    kept_ = {};
+}
+
+// As of the last update, and what has been announced since.
+template <class Scalar>
+void Pairs<Scalar>::rememberPairs() {
+    detail::FlatSet pairs;
+    forAllKnown([&](Couple c) {
+        if (!isRefused(c)) {
+            pairs.findOrInsert(c);
+        }
+    });
+    heap().pairs = std::move(pairs);
+    heap_->hasPairs = true;
+    heap_->updatesUntilLook = 1;
+    heap_->updatesOfLook = 1;
+    forgetWatched();
+}
+
+// Directly after an update.
+template <class Scalar>
+void Pairs<Scalar>::rememberRefusedIfFew() {
+    const std::size_t most = mostCouples() / 2;  // not to come back with the next few
+    detail::KernelCost cost;
+    for (const detail::Table<Scalar>* table : {&grid_.mobile_, &grid_.resting_}) {
+        const double weight = table->size() > 0 ? sampleOverlaps(*table, cost) : 0;
+        if (weight * static_cast<double>(selected_.size()) > static_cast<double>(most)) {
+            return;
+        }
+    }
+    std::size_t count = 0;
+    forEachOverlap([&](std::uint32_t, std::uint32_t) { ++count; });
+    if (count > most) {
+        return;
+    }
+    const ProxyGroups* const groups = grid_.groupsOfAll();
+    const detail::GroupsView view{groups, grid_.mobile_.entrySlots().data(), {}};
+    amongMobile_.clear();
+    carried_.clear();
+    selected_.clear();
+    detail::joinTable(grid_.mobile_, serialFor, parts_, amongMobile_, cost, groups);
+    detail::walkTable(grid_.resting_, grid_.mobile_.columns(), grid_.mobile_.size(), serialFor,
+                      parts_, carried_, cost, groups != nullptr ? &view : nullptr);
+    detail::joinTable(grid_.resting_, serialFor, parts_, selected_, cost, groups);
+    const auto refuse = [this](Couple c) {
+        if (!isRemembered(c)) {
+            refused_.findOrInsert(c);
+        }
+    };
+    for (const auto [a, b] : amongMobile_.pairs()) {
+        refuse(couple(grid_.mobile_.slot(a), grid_.mobile_.slot(b)));
+    }
+    toResting_.clear();
+    for (const auto [entry, resting] : carried_.pairs()) {
+        toResting_.push({entry, grid_.resting_.slot(resting)});
+        refuse(couple(grid_.mobile_.slot(entry), grid_.resting_.slot(resting)));
+    }
+    for (const auto [a, b] : selected_.pairs()) {
+        refuse(couple(grid_.resting_.slot(a), grid_.resting_.slot(b)));
+    }
+    std::for_each(swept_.begin(), swept_.end(), refuse);
+    for (const Couple c : heap_->pairs.keys()) {
+        if (!mayPairNow(c) && overlapNow(c)) {
+            kept_.findOrInsert(c);
+        }
+    }
+    heap_->hasPairs = false;
+    heap_->pairs = {};
+}
+
+template <class Scalar>
+void Pairs<Scalar>::findChangesOfPairs(PairFilter filter, ParallelFor parallelFor) {
+    if (sweeps_ != nullptr) {
+        sweeps_->beginUpdate();
+    }
+    if (grid_.cost_.changed == 0) {
+        return;
+    }
+    tableOfUpdate_ = nullptr;
+    grid_.stage(parallelFor);
+    static_cast<void>(grid_.putQuietToRest(parallelFor));
+    grid_.fileMobile(parallelFor);
+    sweptNow_.clear();
+    if (sweeps_ != nullptr) {
+        sweeps_->findContacts(parallelFor);
+        for (const Couple c : sweeps_->contacts()) {
+            const bool isPair = isRemembered(c);
+            if (isPair || mayPairNow(c)) {
+                sweptNow_.push_back(c);
+                if (!isPair) {
+                    asked_.push_back(c);
+                }
+            }
+        }
+    }
+    cost_.couplesWatched = heap_->pairs.size();
+    for (const Couple c : heap_->pairs.keys()) {
+        if (!overlapNow(c) && !std::binary_search(sweptNow_.begin(), sweptNow_.end(), c)) {
+            lost_.push_back(c);
+        }
+    }
+    askAboutChanged(filter);
+    askInParts(filter, 1);
+    takeTurned();
+}
+
+template <class Scalar>
+void Pairs<Scalar>::askAboutChanged(PairFilter filter) {
+    const detail::Table<Scalar>& mobile = grid_.mobile_;
+    searchedSlots_.clear();
+    bounds_.clear();
+    for (std::uint32_t entry = 0; entry < mobile.size(); ++entry) {
+        if (grid_.changedNow(mobile.slot(entry))) {
+            searchedSlots_.push_back(mobile.slot(entry));
+            bounds_.push(mobile.box(entry));
+        }
+    }
+    const auto askUnlessPair = [&](std::uint32_t searched, std::uint32_t other) {
+        const std::uint32_t slot = searchedSlots_[searched];
+        const bool isFoundByOther = grid_.changedNow(other) && other <= slot;
+        if (!isFoundByOther && !isRemembered(couple(slot, other))) {
+            asked_.push_back(couple(slot, other));
+            askInParts(filter, kPart);
+        }
+    };
+    const ProxyGroups* const groups = grid_.groupsOfAll();
+    const detail::GroupsView view{groups, searchedSlots_.data(), {}};
+    detail::KernelCost cost;
+    for (const detail::Table<Scalar>* table : {&mobile, &std::as_const(grid_.resting_)}) {
+        detail::forOverlaps(bounds_.columns(), bounds_.size(), *table,
+                            groups != nullptr ? &view : nullptr, cost, askUnlessPair);
+    }
+    cost_.boxesTested += cost.boxesTested;
+}
+
+// Where the pairs are remembered, asks about what there is to be asked, when that is `size` or more, and
+// notes down what the answers change.
+template <class Scalar>
+void Pairs<Scalar>::askInParts(PairFilter filter, std::size_t size) {
+    if (!remembersPairs() || asked_.size() < size) {
+        return;
+    }
+    sortCouples(asked_);
+    asked_.erase(std::unique(asked_.begin(), asked_.end()), asked_.end());
+    ask(filter);
+    for (std::size_t i = 0; i < asked_.size(); ++i) {
+        if ((accepted_[i] != 0) != isRemembered(asked_[i])) {
+            heap_->turned.push_back(asked_[i]);
+        }
+    }
+    asked_.clear();
+    standing_.clear();
+    unknown_.clear();
+}
+
+// As if only what the answers change had been asked.
+template <class Scalar>
+void Pairs<Scalar>::takeTurned() {
+    asked_.swap(heap_->turned);
+    sortCouples(asked_);
+    asked_.erase(std::unique(asked_.begin(), asked_.end()), asked_.end());
+    accepted_.clear();
+    for (const Couple c : asked_) {
+        const bool isPair = isRemembered(c);
+        accepted_.push_back(isPair ? 0 : 1);
+        if (isPair) {
+            standing_.push_back(c);
+        }
+    }
+}
+
+template bool Pairs<float>::isRefusedHeap(PairFilter);
+template double Pairs<float>::countRefused(PairFilter, double);
+template double Pairs<float>::sampleOverlaps(const detail::Table<float>&, detail::KernelCost&);
+template void Pairs<float>::rememberRefusedIfFew();
+template auto Pairs<float>::heap() -> Heap&;
+template void Pairs<float>::askAboutChanged(PairFilter);
+template void Pairs<float>::chooseSide(bool) noexcept;
+template void Pairs<float>::forgetWatched() noexcept;
+template std::size_t Pairs<float>::mostCouples() const noexcept;
+template void Pairs<float>::rememberPairs();
+template void Pairs<float>::findChangesOfPairs(PairFilter, ParallelFor);
+template void Pairs<float>::askInParts(PairFilter, std::size_t);
+template void Pairs<float>::takeTurned();
+template bool Pairs<double>::isRefusedHeap(PairFilter);
+template double Pairs<double>::countRefused(PairFilter, double);
+template double Pairs<double>::sampleOverlaps(const detail::Table<double>&, detail::KernelCost&);
+template void Pairs<double>::rememberRefusedIfFew();
+template auto Pairs<double>::heap() -> Heap&;
+template void Pairs<double>::askAboutChanged(PairFilter);
+template void Pairs<double>::chooseSide(bool) noexcept;
+template void Pairs<double>::forgetWatched() noexcept;
+template std::size_t Pairs<double>::mostCouples() const noexcept;
+template void Pairs<double>::rememberPairs();
+template void Pairs<double>::findChangesOfPairs(PairFilter, ParallelFor);
+template void Pairs<double>::askInParts(PairFilter, std::size_t);
+template void Pairs<double>::takeTurned();
+
+}  // namespace hashphase

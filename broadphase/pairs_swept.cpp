@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Zlib
+
+// Couples that touch on their ways.
+
+#include <broadphase/pairs.hpp>
+
+#include <broadphase/sweeps.hpp>
+
+#include <algorithm>
+#include <iterator>
+
+namespace hashphase {
+
+// A couple that has touched on its way and stands and overlaps now, or the other way round, is neither
+// lost nor new. What is asked about so far has come to overlap.
+template <class Scalar>
+void Pairs<Scalar>::findSwept(ParallelFor parallelFor) {
+    sweeps_->findContacts(parallelFor);
+    sweptNow_.assign(sweeps_->contacts().begin(), sweeps_->contacts().end());
+    std::vector<Couple>& now = sweptNow_;
+    if (now.empty() && swept_.empty()) {
+        return;
+    }
+    if (grid_.groupsOfAll() != nullptr) {
+        leaveOutSweptByGroups();
+    }
+    std::set_difference(swept_.begin(), swept_.end(), now.begin(), now.end(),
+                        std::back_inserter(lost_));
+    std::set_difference(now.begin(), now.end(), swept_.begin(), swept_.end(),
+                        std::back_inserter(asked_));
+    sortCouples(asked_);
+    sortCouples(lost_);
+    gone_.clear();
+    std::set_difference(lost_.begin(), lost_.end(), asked_.begin(), asked_.end(),
+                        std::back_inserter(gone_));
+    std::erase_if(gone_, [this](Couple c) {
+        return std::binary_search(keptNow_.begin(), keptNow_.end(), c);
+    });
+    fresh_.clear();
+    std::set_difference(asked_.begin(), asked_.end(), lost_.begin(), lost_.end(),
+                        std::back_inserter(fresh_));
+    lost_.swap(gone_);
+    asked_.swap(fresh_);
+}
+
+// Of what touches on its way, what may not pair is left out, but for pairs that stand. A pair that met
+// on its way, and overlaps now, is kept if need be; one that is swept is not among those that are kept.
+template <class Scalar>
+void Pairs<Scalar>::leaveOutSweptByGroups() {
+    sortCouples(lost_);
+    std::erase_if(sweptNow_, [this](Couple c) {
+        const bool isPair =
+            !isRefused(c) && (isSwept(c) || std::binary_search(lost_.begin(), lost_.end(), c));
+        return !mayPairNow(c) && !isPair;
+    });
+    for (const Couple c : swept_) {
+        keepIfPair(c);
+    }
+    std::sort(keptNow_.begin(), keptNow_.end());
+    for (const Couple c : kept_.keys()) {
+        if (std::binary_search(sweptNow_.begin(), sweptNow_.end(), c)) {
+            notKept_.push_back(c);
+        }
+    }
+}
+
+template <class Scalar>
+bool Pairs<Scalar>::isSwept(Couple c) const noexcept {
+    return std::binary_search(swept_.begin(), swept_.end(), c);
+}
+
+template void Pairs<float>::findSwept(ParallelFor);
+template void Pairs<float>::leaveOutSweptByGroups();
+template bool Pairs<float>::isSwept(Couple) const noexcept;
+template void Pairs<double>::findSwept(ParallelFor);
+template void Pairs<double>::leaveOutSweptByGroups();
+template bool Pairs<double>::isSwept(Couple) const noexcept;
+
+}  // namespace hashphase
