@@ -5,6 +5,7 @@
 #include <broadphase/detail/query_scope.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -30,6 +31,12 @@ const GridConfig& checked(const GridConfig& config) {
     return config;
 }
 
+// Grids have those above, of 2^32 numbers each.
+std::uint64_t firstPopulationNumber() noexcept {
+    static std::atomic<std::uint64_t> gridCount{0};
+    return ++gridCount << 32;
+}
+
 template <class Element>
 void release(std::vector<Element>& memory) noexcept {
     std::vector<Element>().swap(memory);
@@ -38,7 +45,8 @@ void release(std::vector<Element>& memory) noexcept {
 }  // namespace
 
 template <class Scalar>
-Grid<Scalar>::Grid(const GridConfig& config) : config_(checked(config)) {
+Grid<Scalar>::Grid(const GridConfig& config)
+    : config_(checked(config)), populationNumber_(firstPopulationNumber()) {
     if (config_.cellSize > 0) {
         cellSize_ = static_cast<Scalar>(config_.cellSize);
     }
@@ -81,6 +89,7 @@ ProxyId Grid<Scalar>::add(const Box& box, Mobility mobility, const ProxyGroups& 
     record.place = Place::mobile;
     listMobile(slot);
     ++size_;
+    ++populationNumber_;
     noteChange(slot);
     setBox(record, own);
     record.restsAtOnce = mobility == Mobility::resting;
@@ -149,6 +158,7 @@ void Grid<Scalar>::remove(ProxyId id) {
     record.place = Place::nowhere;
     ++record.generation;
     --size_;
+    ++populationNumber_;
     if (record.generation == detail::kLastGeneration) {
         return;  // nobody gets the slot any more, or an id would name two proxies
     }
@@ -170,6 +180,7 @@ void Grid<Scalar>::clear() {
         }
     }
     size_ = nanCount_ = 0;
+    ++populationNumber_;
     nanReported_ = isTorn_ = false;
     updateNumber_ = 1;
     cost_ = {};

@@ -186,6 +186,10 @@ public:
         return index < indexLimit() && isAlive(index) ? idOf(index) : ProxyId{};
     }
 
+    /// Which proxies there are, as a number: another one after each add(), remove(), clear() and shift of the
+    /// origin, and never that of another grid. For who keeps what a query has found.
+    [[nodiscard]] std::uint64_t populationNumber() const noexcept { return populationNumber_; }
+
     /// Number of proxies whose box has a NaN now.
     [[nodiscard]] std::size_t nanCount() const noexcept { return nanCount_; }
 
@@ -548,16 +552,17 @@ private:
     SlotList removedAnnounced_;
     std::size_t size_ = 0;
     std::size_t nanCount_ = 0;
+    std::size_t reservedCount_ = 0;  // of proxies, by reserve()
+    std::uint64_t populationNumber_;
+    detail::PeakWatch peaks_;
     bool nanReported_ = false;
     bool hasPairs_ = false;
-    std::size_t reservedCount_ = 0;  // of proxies, by reserve()
-    detail::PeakWatch peaks_;
-    bool isTorn_ = false;  // by wakeAll(): what Pairs watches is to be found anew
+    bool isTorn_ = false;        // by wakeAll(): what Pairs watches is to be found anew
+    bool areRegrouped_ = false;  // groups of some, since the last update
 
     // Of each slot now, and at the last update: 2 * slot, and one behind. Empty until somebody has others
     // than ProxyGroups{}; as long as records_ then.
     std::vector<ProxyGroups> groups_;
-    bool areRegrouped_ = false;  // some, since the last update
     // The same as numbers, and which of them there are among those that are mobile, that have changed,
     // and that rest; and perhaps more.
     detail::GroupKinds groupKinds_;

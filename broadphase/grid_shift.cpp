@@ -24,6 +24,7 @@ std::size_t Grid<Scalar>::shiftOrigin(const Point& shift) {
         keepBoxesAtUpdate(shift);
     }
     ++shiftCount_;
+    ++populationNumber_;
     std::size_t roundedCount = 0;
     forEachListed([&](std::uint32_t slot) { roundedCount += shiftRecord(slot, shift) ? 1 : 0; });
     shiftTables(shift);

@@ -125,10 +125,10 @@ void shiftJoint(btTypedConstraint& joint, const btVector3& shift) {
 
 }  // namespace
 
-void shiftWorldOrigin(btCollisionWorld& world, SpatialHashBroadphase& broadphase,
+bool shiftWorldOrigin(btCollisionWorld& world, SpatialHashBroadphase& broadphase,
                       const btVector3& shift) {
     if (!canShift(world, broadphase, shift)) {
-        return;
+        return false;
     }
     broadphase.shiftOrigin(shift);  // first: nothing else takes memory
     shiftObjects(world, shift);
@@ -138,6 +138,7 @@ void shiftWorldOrigin(btCollisionWorld& world, SpatialHashBroadphase& broadphase
             shiftJoint(*dynamics->getConstraint(i), shift);
         }
     }
+    return true;
 }
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

@@ -11,8 +11,7 @@
 // Threads   needs the world for itself.
 // Memory    Where it runs out, std::bad_alloc is passed on, and nothing is shifted.
 // Misuse    Soft bodies and multibodies keep coordinates of their own, which are not known here: a
-//           world that has any is asserted. A shift that is not finite is asserted, too. Either does
-//           nothing.
+//           world that has any is not shifted, nor by what is not finite. Asserted, and returned.
 
 #include <integration/bullet/export.hpp>
 #include <integration/bullet/precision.hpp>
@@ -29,9 +28,10 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 /// world's (asserted). Velocities, sleep, contacts and pairs stay. What the program keeps itself is
 /// its own to shift: bodies that are in no world, zones, cameras, terrains. A motion state is asked for
 /// its place and told the new one, whether its body moves or not. Cost: a look at each object,
-/// contact and joint, and SpatialHashBroadphase::shiftOrigin().
-HASHPHASE_BULLET_EXPORT void shiftWorldOrigin(btCollisionWorld& world,
-                                              SpatialHashBroadphase& broadphase,
-                                              const btVector3& shift);
+/// contact and joint, and SpatialHashBroadphase::shiftOrigin(). Returns whether the world was shifted;
+/// if not, nothing has changed.
+[[nodiscard]] HASHPHASE_BULLET_EXPORT bool shiftWorldOrigin(btCollisionWorld& world,
+                                                            SpatialHashBroadphase& broadphase,
+                                                            const btVector3& shift);
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

@@ -63,16 +63,17 @@ bool Culler<Scalar>::keepsSet() const {
 // Returns whether the set is to be found anew, and empties it if so. It is not to be kept before it is
 // found: should the query throw, it has not all that is visible.
 template <class Scalar>
-bool Culler<Scalar>::begin(const View& view, Scalar moved) {
+bool Culler<Scalar>::begin(const Grid<Scalar>& grid, const View& view, Scalar moved) {
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
                      "A culler does not look from within its own filter or forEach().");
     if (!isFrozen_) {
         view_ = view;
     }
     noteMoves(moved);
-    if (keepsSet()) {
+    if (population_ == grid.populationNumber() && keepsSet()) {
         return false;
     }
+    population_ = grid.populationNumber();
     ++findCount_;
     grown_ = margin_ > 0 ? view_.grownBy(margin_) : view_;
     moved_ = std::numeric_limits<Scalar>::infinity();
@@ -85,7 +86,7 @@ bool Culler<Scalar>::begin(const View& view, Scalar moved) {
 
 template <class Scalar>
 QueryCost Culler<Scalar>::look(const Grid<Scalar>& grid, const View& view, Scalar moved) {
-    if (!begin(view, moved)) {
+    if (!begin(grid, view, moved)) {
         return {};
     }
     CollectBits bits(bits_);
@@ -97,7 +98,7 @@ QueryCost Culler<Scalar>::look(const Grid<Scalar>& grid, const View& view, Scala
 template <class Scalar>
 QueryCost Culler<Scalar>::look(const Grid<Scalar>& grid, const View& view, ProxyFilter filter,
                                Scalar moved) {
-    if (!begin(view, moved)) {
+    if (!begin(grid, view, moved)) {
         return {};
     }
     const detail::QueryScope scope(this);

@@ -55,12 +55,11 @@ public:
     // --- Once a frame ----------------------------------------------------------------------------
 
     /// Finds what touches `view` and passes the filter, unless what was found the last time is known
-    /// to have it all: when `view` lies within that time's volume, grown by the margin, and nothing
-    /// can have come in since. `moved` [m] says how far any corner of a box of the grid may have moved
-    /// since the last call; infinite when anything was added, or nobody knows. A Touch::byPlanes
-    /// region takes less time than an exact one; of one for what lies inside no set is kept. Give
-    /// infinity after a change of the grid object or the filter, or a shift of the origin, as well.
-    /// Returns the query's cost, none when the set was kept. Cost: the cells at the surface of the
+    /// to have it all: when `view` lies within that time's volume, grown by the margin, nothing was added or
+    /// removed since (Grid::populationNumber()), and nothing can have come in. `moved` [m] says how far any
+    /// corner of a box of the grid may have moved since the last call; infinite when nobody knows, or
+    /// the filter has changed. A Touch::byPlanes region takes less time than an exact one; of one for
+    /// what lies inside no set is kept. Returns the query's cost, none when the set was kept. Cost: the cells at the surface of the
     /// volume; at most one test for each proxy (Grid::visit()).
     QueryCost look(const Grid<Scalar>& grid, const View& view,
                    Scalar moved = std::numeric_limits<Scalar>::infinity());
@@ -70,7 +69,8 @@ public:
     /// Says that corners of boxes may have moved so far [m] in a frame without a look().
     void noteMoves(Scalar moved) noexcept;
 
-    /// Takes the proxy with that index out of the set, because it is removed.
+    /// Takes the proxy with that index out of the set, because it is removed, for whoever reads the set
+    /// before the next look().
     void forget(std::uint32_t index) noexcept {
         if (index / 64 < bits_.size()) {
             bits_[index / 64] &= ~(std::uint64_t{1} << index % 64);
@@ -87,8 +87,8 @@ public:
 
     // --- The visible set -------------------------------------------------------------------------
 
-    /// True when the proxy is in the set. A proxy that was removed since stays in until the next one is
-    /// found, unless it is forgotten, and whoever has got its index is taken for it.
+    /// True when the proxy is in the set. A proxy that was removed since stays in until the next look(),
+    /// unless it is forgotten, and whoever has got its index is taken for it.
     [[nodiscard]] bool isVisible(ProxyId id) const noexcept {
         return id.index / 64 < bits_.size() && (bits_[id.index / 64] >> (id.index % 64) & 1) != 0;
     }
@@ -124,7 +124,7 @@ public:
     }
 
 private:
-    [[nodiscard]] bool begin(const View& view, Scalar moved);
+    [[nodiscard]] bool begin(const Grid<Scalar>& grid, const View& view, Scalar moved);
     [[nodiscard]] bool keepsSet() const;
 
     Scalar margin_;
@@ -133,6 +133,7 @@ private:
     View grown_;  // in which the set was found
     bool isFrozen_ = false;
     std::uint64_t findCount_ = 0;
+    std::uint64_t population_ = 0;  // of which the set was found
     std::vector<std::uint64_t> bits_;
     detail::PeakWatch peaks_;
 };

@@ -63,8 +63,10 @@ TEST_F(BulletPage, EmptyWorldIsReset) {
 }
 
 TEST_F(BulletPage, OriginIsShifted) {
+    btVector3 myCamera(0, 2, 0);
 #include <bullet_7.inl>
     EXPECT_EQ(body.getWorldTransform().getOrigin().x(), -1024);
+    EXPECT_EQ(myCamera, btVector3(-1024, 2, 0));
 }
 
 TEST(BulletPageAlone, CacheOfYoursIsUsed) {

@@ -128,6 +128,33 @@ TEST(ParkedBodies, CostNothingUnderACallbackThatRefusesMoreThanMasksDo) {
     EXPECT_EQ(pool.pairs(), 0);
 }
 
+TEST(ParkedBodies, ThatOnlyACallbackRefusesTakeNoMemoryForThat) {
+    constexpr int kCount = 3000;
+    struct RefuseAndCount : RefuseAll {
+        bool needBroadphaseCollision(Proxy* a, Proxy* b) const override {
+            ++count;
+            return RefuseAll::needBroadphaseCollision(a, b);
+        }
+        mutable std::size_t count = 0;
+    } filter;
+    Pool pool(0, kKinds[0], 0);
+    pool.broadphase.getOverlappingPairCache()->setOverlapFilterCallback(&filter);
+    for (int i = 0; i < kCount; ++i) {
+        pool.proxies.push_back(
+            pool.broadphase.createProxy({0, 0, 0}, {2, 2, 2}, 0, nullptr, 1, kAll, nullptr));
+    }
+    pool.step();
+    EXPECT_LE(pool.broadphase.memoryBytes(), 8U << 20);
+    EXPECT_EQ(filter.count, std::size_t{kCount} * (kCount - 1) / 2);
+    filter.count = 0;
+    pool.broadphase.setAabb(pool.proxies[5], {0, 0, 0}, {2, 3, 2}, nullptr);
+    pool.step();
+    EXPECT_EQ(filter.count, kCount - 1U);
+    EXPECT_LE(pool.broadphase.lastCost().boxesTested, 20U * kCount);
+    EXPECT_EQ(pool.pairs(), 0);
+    EXPECT_EQ(pool.broadphase.validate(), "");
+}
+
 // --- Written without a word ----------------------------------------------------------------------
 
 const Box kHere = boxAround({0, 0, 0}, {1, 1, 1});

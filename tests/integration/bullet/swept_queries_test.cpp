@@ -217,7 +217,7 @@ TEST(SweptQueries, FollowAShiftOfTheOriginInFlight) {
     }
     const auto pairs = range.pairs();
     const btVector3 shift(1024, btScalar(-0.3), 64);
-    shiftWorldOrigin(range.world, broadphase, shift);
+    ASSERT_TRUE(shiftWorldOrigin(range.world, broadphase, shift));
     for (std::size_t i = 0; i < ways.size(); ++i) {
         const btRigidBody& body = *range.bodies[i];
         const MovingBox<btScalar> way =

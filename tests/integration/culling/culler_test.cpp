@@ -12,6 +12,7 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <vector>
 
 namespace hashphase::test {
@@ -197,6 +198,39 @@ TYPED_TEST(CullerTest, AddsUpWhatMovesInFramesWithoutALook) {
     culler.forget(1'000'000);
     culler.look(grid, everywhere, 0);
     EXPECT_EQ(culler.count(), 0U) << "until the next set is found";
+}
+
+TYPED_TEST(CullerTest, LooksAnewWhenProxiesComeAndGoAndInAnotherGrid) {
+    using Point = Vector3<TypeParam>;
+    Grid<TypeParam> grid;
+    Culler<TypeParam> culler(1);
+    const ConvexRegion<TypeParam> everywhere({});
+    const auto look = [&](Grid<TypeParam>& in, std::size_t expected) {
+        const std::uint64_t found = culler.findCount();
+        culler.look(in, everywhere, 0);
+        EXPECT_EQ(culler.count(), expected);
+        const bool hasLooked = culler.findCount() > found;
+        culler.look(in, everywhere, 0);
+        EXPECT_EQ(culler.findCount(), found + (hasLooked ? 1 : 0)) << "and then it is kept";
+        return hasLooked;
+    };
+    EXPECT_TRUE(look(grid, 0));
+    const ProxyId id = grid.add({Point(0, 0, 0), Point(1, 1, 1)});
+    EXPECT_TRUE(look(grid, 1));
+    grid.remove(id);
+    EXPECT_EQ(grid.add({Point(3, 0, 0), Point(4, 1, 1)}).index, id.index);
+    EXPECT_TRUE(look(grid, 1));
+    grid.update();
+    EXPECT_FALSE(look(grid, 1));
+    grid.shiftOrigin(Point(8, 0, 0));
+    EXPECT_TRUE(look(grid, 1));
+    grid.clear();
+    EXPECT_TRUE(look(grid, 0));
+    for (int i = 0; i < 3; ++i) {  // where the one before has been, perhaps
+        const auto other = std::make_unique<Grid<TypeParam>>();
+        EXPECT_FALSE(other->add({Point(0, 0, 0), Point(1, 1, 1)}).isNull());
+        EXPECT_TRUE(look(*other, 1));
+    }
 }
 
 TYPED_TEST(CullerTest, StaysWithAFrozenViewAndStillSeesWhatMoves) {
