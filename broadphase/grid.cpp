@@ -133,6 +133,9 @@ template <class Scalar>
 void Grid<Scalar>::move(ProxyId id, const Box& box) {
     HASHPHASE_ASSERT(contains(id), "Only a proxy of this grid that was not removed can be moved.");
     HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(this), detail::kMustNotChange);
+    if (!contains(id)) {
+        return;
+    }
     Record& record = records_[id.index];
     if (!isSameBits(record.box, box)) {
         noteChange(id.index);
@@ -145,6 +148,9 @@ void Grid<Scalar>::remove(ProxyId id) {
     HASHPHASE_ASSERT(contains(id),
                      "Only a proxy of this grid that was not removed can be removed.");
     HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(this), detail::kMustNotChange);
+    if (!contains(id)) {
+        return;
+    }
     const std::uint32_t slot = id.index;
     noteChange(slot);
     const bool cameAndWent = isUnseen(slot);
@@ -263,7 +269,7 @@ template <class Scalar>
 void Grid<Scalar>::setGroups(ProxyId id, const ProxyGroups& groups) {
     HASHPHASE_ASSERT(contains(id), "Only a proxy of this grid that was not removed has groups.");
     HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(this), detail::kMustNotChange);
-    if (groups == groupsNow(id.index)) {
+    if (!contains(id) || groups == groupsNow(id.index)) {
         return;
     }
     makeGroups();
@@ -280,7 +286,7 @@ void Grid<Scalar>::setGroups(ProxyId id, const ProxyGroups& groups) {
 template <class Scalar>
 ProxyGroups Grid<Scalar>::groups(ProxyId id) const {
     HASHPHASE_ASSERT(contains(id), "Only a proxy of this grid that was not removed has groups.");
-    return groupsNow(id.index);
+    return contains(id) ? groupsNow(id.index) : ProxyGroups{};
 }
 
 // For all that are there, with room for as many as records_ has room for.
@@ -311,7 +317,7 @@ bool Grid<Scalar>::contains(ProxyId id) const noexcept {
 template <class Scalar>
 const Aabb<Scalar>& Grid<Scalar>::box(ProxyId id) const {
     HASHPHASE_ASSERT(contains(id), "Only a proxy of this grid that was not removed has a box.");
-    return records_[id.index].box;
+    return contains(id) ? records_[id.index].box : nowhere_;
 }
 
 // To be called before every change of a slot's box.

@@ -31,8 +31,9 @@
 //            queries that file or grow; nothing is lost, and the call may be repeated. move() and
 //            remove() allocate nothing. Who asks much between changes and updates has a second table of
 //            what moves.
-// Misuse     An id that is null or stale is asserted. One of another grid is too, unless this grid has a
-//            proxy of the same index and generation, for which it is taken.
+// Misuse     An id that is null or stale is asserted, and does nothing; its box is NaN. So is one of
+//            another grid, unless this grid has a proxy of the same index and generation, for which it
+//            is taken.
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/collectors.hpp>

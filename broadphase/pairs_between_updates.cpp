@@ -21,6 +21,9 @@ template <class Scalar>
 PairChanges Pairs<Scalar>::announce(ProxyId id, PairFilter filter) & {
     HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid can announce its pairs.");
     HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(&grid_), kMustNotAsk);
+    if (!grid_.contains(id)) {
+        return {};
+    }
     beginCall();
     findAnnouncedOfRemoved();
     findUnknown(id.index);
@@ -46,12 +49,17 @@ PairChanges Pairs<Scalar>::refilter(std::span<const ProxyId> ids, PairFilter fil
     if (ids.size() > 1 && (remembersPairs() || ids.size() > grid_.size() / kLargePart)) {
         isNamed_.assign(grid_.records_.size(), 0);
         for (const ProxyId id : ids) {
-            isNamed_[id.index] = 1;
+            if (grid_.contains(id)) {
+                isNamed_[id.index] = 1;
+            }
         }
         askAgainAboutMany(filter, [this](std::uint32_t slot) { return isNamed_[slot] != 0; });
         return decideBetween(filter);
     }
     for (const ProxyId id : ids) {
+        if (!grid_.contains(id)) {
+            continue;
+        }
         if (grid_.cost_.changed > 0) {
             findUnknown(id.index);
         }

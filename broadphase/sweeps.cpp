@@ -24,6 +24,9 @@ template <class Scalar>
 void Sweeps<Scalar>::set(const Motion& motion) {
     HASHPHASE_ASSERT(grid_.contains(motion.id), "Only a proxy of the grid can sweep.");
     HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(&grid_), detail::kMustNotChange);
+    if (!grid_.contains(motion.id)) {
+        return;
+    }
     const Vector3<Scalar>& displacement = motion.way.displacement;
     const bool isUsable = displacement.allFinite();
     if (!isUsable && !reportedBadData_) {

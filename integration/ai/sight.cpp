@@ -24,7 +24,7 @@ Scalar angleBetween(const Vector3<Scalar>& a, const Vector3<Scalar>& b) noexcept
     return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// Stops at the first blocker found on a ray, whichever it is.
+/// Stops at the first blocker found on a ray, whichever it is; not at what holds its beginning.
 class CollectBlocker {
 public:
     CollectBlocker(ProxyFilter blockers, ProxyId viewer, ProxyId target) noexcept
@@ -32,7 +32,8 @@ public:
 
     template <class Scalar>
     void add(ProxyId id, Scalar key) {
-        isBlocked_ = isBlocked_ || (key < 1 && id != viewer_ && id != target_ && blockers_(id));
+        isBlocked_ =
+            isBlocked_ || (key > 0 && key < 1 && id != viewer_ && id != target_ && blockers_(id));
     }
     [[nodiscard]] double limit() const noexcept { return isBlocked_ ? -1.0 : 1.0; }
     [[nodiscard]] bool isBlocked() const noexcept { return isBlocked_; }

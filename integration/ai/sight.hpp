@@ -7,8 +7,9 @@
 //           straight line from the eye to it meets no blocker's box before its end. Only boxes are
 //           looked at: where exact shapes are to block, ask Bullet for the closest hit along the
 //           same line (SpatialHashBroadphase::closestRay()).
-// Blockers  are chosen by a filter. The viewer's own proxy and the target's never block. A blocker
-//           around the eye blocks everything.
+// Blockers  are chosen by a filter. The viewer's own proxy and the target's never block, nor does a
+//           box that holds the eye: from within, a box does not tell what stands in the way, and the
+//           ground, a terrain or a house is around many an eye.
 // Closed    The cone contains its surface, and a line that grazes a box meets it; both but for
 //           rounding.
 // Threads   Reads the grid, as queries do; the filters are asked on all threads.

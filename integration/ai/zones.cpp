@@ -60,13 +60,18 @@ template <class Scalar>
 void Zones<Scalar>::set(ZoneId id, const Zone<Scalar>& zone) {
     HASHPHASE_ASSERT(contains(id), "Only a zone that was not removed can be set.");
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kMustNotChange);
-    slots_[id.index].zone = zone;
+    if (contains(id)) {
+        slots_[id.index].zone = zone;
+    }
 }
 
 template <class Scalar>
 void Zones<Scalar>::remove(ZoneId id) {
     HASHPHASE_ASSERT(contains(id), "Only a zone that was not removed can be removed.");
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kMustNotChange);
+    if (!contains(id)) {
+        return;
+    }
     Slot& slot = slots_[id.index];
     detail::ensureCapacity(abandoned_, abandoned_.size() + slot.occupants.size());
     for (const ProxyId proxy : slot.occupants) {
@@ -96,7 +101,8 @@ bool Zones<Scalar>::contains(ZoneId id) const noexcept {
 template <class Scalar>
 const typename Zones<Scalar>::Slot& Zones<Scalar>::slot(ZoneId id) const {
     HASHPHASE_ASSERT(contains(id), "Only a zone that was not removed can be asked about.");
-    return slots_[id.index];
+    static const Slot none{};
+    return contains(id) ? slots_[id.index] : none;
 }
 
 template <class Scalar>

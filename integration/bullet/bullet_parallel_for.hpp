@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Loops of the broadphase on the threads of Bullet's task scheduler, see btSetTaskScheduler(). A
-// Bullet that was built without threads, as Debian's is, runs them on the caller's thread.
+// Loops of the broadphase on the threads of Bullet's task scheduler, see btSetTaskScheduler(). Where there
+// is none, as in a Bullet that was built without threads, they run on the caller's thread.
 
 #include <broadphase/parallel_for.hpp>
 
@@ -27,9 +27,12 @@ inline void bulletFor(std::size_t count, std::size_t grain, LoopBody body) {
         }
     };
     constexpr std::size_t kMost = std::numeric_limits<int>::max();
-    if (count > kMost) {
-        body(0, count);  // more than Bullet can count
-    } else if (count > 0) {
+    if (count == 0) {
+        return;
+    }
+    if (btGetTaskScheduler() == nullptr || count > kMost) {  // more than Bullet can count
+        body(0, count);
+    } else {
         btParallelFor(0, static_cast<int>(count),
                       static_cast<int>(std::clamp<std::size_t>(grain, 1, kMost)), Body(body));
     }

@@ -105,7 +105,7 @@ btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
     proxy.client = Client::unknown;
     noteSeen(proxy);
     uniqueIds_[id.index] = proxy.m_uniqueId;
-    if (isEager(proxy, dispatcher)) {
+    if (isEager(proxy, dispatcher) || hasGhosts_) {  // who may stand where it has come to
         try {
             announce(proxy, dispatcher);
         } catch (...) {
@@ -118,8 +118,12 @@ btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
 
 void SpatialHashBroadphase::destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
     checkMayChange();
-    pairCache_->removeOverlappingPairsContainingProxy(checkedProxy(proxy), dispatcher);
-    removeFromGrid(checkedProxy(proxy));
+    Proxy* const own = checkedProxy(proxy);
+    if (own->id.isNull()) {  // destroyed before
+        return;
+    }
+    pairCache_->removeOverlappingPairsContainingProxy(own, dispatcher);
+    removeFromGrid(own);
 }
 
 void SpatialHashBroadphase::removeFromGrid(Proxy* proxy) {
@@ -134,7 +138,10 @@ void SpatialHashBroadphase::removeFromGrid(Proxy* proxy) {
 void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin,
                                     const btVector3& aabbMax, btDispatcher* dispatcher) {
     checkMayChange();
-    Proxy* own = checkedProxy(proxy);
+    Proxy* const own = checkedProxy(proxy);
+    if (own->id.isNull()) {  // destroyed before
+        return;
+    }
     const bool isSame = isSameBits(own->m_aabbMin, aabbMin) && isSameBits(own->m_aabbMax, aabbMax);
     // A body that flies back may have the same box as when it came.
     if (!isSame || sweeps_ != nullptr) {
@@ -498,6 +505,7 @@ void SpatialHashBroadphase::resetPool(btDispatcher* /*dispatcher*/) {
     if (!isWithin) {
         pairs_.clear();
         lastUniqueId_ = 0;
+        hasGhosts_ = false;
         groupKinds_ = {};
         changedKinds_ = 0;
         seen_ = std::vector<std::uint64_t>();
@@ -509,7 +517,7 @@ void SpatialHashBroadphase::resetPool(btDispatcher* /*dispatcher*/) {
 
 btBroadphaseProxy* SpatialHashBroadphase::proxyOf(ProxyId id) const {
     HASHPHASE_ASSERT(grid_.contains(id), "Only an id of a proxy alive leads to a proxy.");
-    return proxyAt(id.index);
+    return grid_.contains(id) ? proxyAt(id.index) : nullptr;
 }
 
 ProxyId SpatialHashBroadphase::idOf(const btBroadphaseProxy* proxy) {

@@ -62,7 +62,8 @@ struct SpatialHashConfig {
     GridConfig grid{};
 
     /// Ghost objects get their pairs at once, in createProxy() and setAabb(), as Bullet's character
-    /// controller expects, wherever the pair cache has an internal ghost pair callback, through which
+    /// controller expects, and what is created in a world with ghosts does, so that a ghost that stands
+    /// there hears of it; wherever the pair cache has an internal ghost pair callback, through which
     /// ghosts hear of pairs. (A cache that is not given as a PairCache counts as having one.) To find
     /// them, a client that may have pairs is taken for a btCollisionObject then, in calls that hand in a
     /// dispatcher, as a btCollisionWorld's do. False is for programs whose clients are something else.
@@ -152,8 +153,8 @@ public:
 
     /// The proxy's address is fixed for its life, m_uniqueId counts 1, 2, 3 ... and is never used
     /// again: after 2^31 - 1 of them std::length_error is thrown until resetPool(); likewise where there
-    /// are 2^28 proxies. `shapeType` is ignored. Cost: O(1); of ghosts and of
-    /// SpatialHashConfig::eagerGroups that of Pairs::announce() and of its pairs, too.
+    /// are 2^28 proxies. `shapeType` is ignored. Cost: O(1); of ghosts, of all as soon as there has been
+    /// a ghost, and of SpatialHashConfig::eagerGroups that of Pairs::announce() and of its pairs, too.
     btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
                                    int shapeType, void* userPtr, int collisionFilterGroup,
                                    int collisionFilterMask, btDispatcher* dispatcher) override;
@@ -351,7 +352,7 @@ private:
     void apply(const PairChanges& changes, std::size_t birthsAtOnce, btDispatcher* dispatcher);
     void applyToCache(const Couples& couples, btDispatcher* dispatcher);
     void catchUp(btDispatcher* dispatcher);
-    [[nodiscard]] bool isEager(Proxy& proxy, const btDispatcher* dispatcher) const {
+    [[nodiscard]] bool isEager(Proxy& proxy, const btDispatcher* dispatcher) {
         return (proxy.m_collisionFilterGroup & config_.eagerGroups) != 0 ||
                (proxy.client != Client::other && mayHaveGhosts() && isGhost(proxy, dispatcher));
     }
@@ -359,7 +360,7 @@ private:
         return config_.eagerGhosts &&
                (batchCache_ == nullptr || batchCache_->getInternalGhostPairCallback() != nullptr);
     }
-    [[nodiscard]] static bool isGhost(Proxy& proxy, const btDispatcher* dispatcher);
+    [[nodiscard]] bool isGhost(Proxy& proxy, const btDispatcher* dispatcher);
     void announce(const Proxy& proxy, btDispatcher* dispatcher);
     void move(const Proxy& proxy);
     void moveOnItsWay(const Proxy& proxy, const Aabb<btScalar>& box);
@@ -394,6 +395,7 @@ private:
     btOverlappingPairCache* pairCache_ = nullptr;
     bool groupsDecide_ = false;    // who may pair, and no callback
     bool mustNoteGroups_ = false;  // of all
+    bool hasGhosts_ = false;       // has had
     detail::GroupKinds groupKinds_;
     // Of what was created or moved since pairs were calculated.
     detail::GroupKinds::Set changedKinds_ = 0;

@@ -19,6 +19,7 @@ bool SpatialHashBroadphase::isGhost(Proxy& proxy, const btDispatcher* dispatcher
         const auto& object = *static_cast<const btCollisionObject*>(proxy.m_clientObject);
         const bool isGhost = object.getInternalType() == btCollisionObject::CO_GHOST_OBJECT;
         proxy.client = isGhost ? Client::ghost : Client::other;
+        hasGhosts_ = hasGhosts_ || isGhost;
     }
     return proxy.client == Client::ghost;
 }

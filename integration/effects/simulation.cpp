@@ -233,7 +233,11 @@ bool Simulation<Scalar>::contains(BodyId id) const noexcept {
 
 template <class Scalar>
 std::size_t Simulation<Scalar>::indexOf(BodyId id) const {
-    HASHPHASE_ASSERT(contains(id), "Only a body that was not removed can be asked about.");
+    constexpr const char* kSentence = "Only a body that was not removed can be asked about.";
+    HASHPHASE_ASSERT(contains(id), kSentence);
+    if (!contains(id)) {
+        throw std::out_of_range(kSentence);
+    }
     return id.index;
 }
 

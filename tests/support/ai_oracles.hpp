@@ -44,7 +44,7 @@ bool hasLineOfSightByBruteForce(std::span<const Placed<Scalar>> proxies,
     return !line.isEmpty() &&
            std::none_of(proxies.begin(), proxies.end(), [&](const Placed<Scalar>& proxy) {
                const Scalar key = line.key(proxy.box);
-               return key >= 0 && key < 1 && proxy.id != viewer && proxy.id != target &&
+               return key > 0 && key < 1 && proxy.id != viewer && proxy.id != target &&
                       blockers(proxy.id);
            });
 }

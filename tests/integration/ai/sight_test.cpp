@@ -238,7 +238,9 @@ TYPED_TEST(SightTest, StopsAtAWallAndNotAtWhatIsBehindOrBeside) {
     this->grid.move(wall, makeBox<TypeParam>(5, 0, -1, 6, 2, 1));
     EXPECT_FALSE(this->sees(viewer, target)) << "grazed";
     this->grid.move(wall, makeBox<TypeParam>(-1, -1, -1, 1, 1, 1));
-    EXPECT_FALSE(this->sees(viewer, target)) << "around the eye";
+    EXPECT_TRUE(this->sees(viewer, target)) << "around the eye";
+    this->grid.move(wall, makeBox<TypeParam>(TypeParam(0.5), -1, -1, 1, 1, 1));
+    EXPECT_FALSE(this->sees(viewer, target)) << "before the eye";
     viewer.self = wall;
     EXPECT_TRUE(this->sees(viewer, target)) << "the viewer's own body";
     EXPECT_FALSE(canSee(this->grid, viewer, wall)) << "itself";

@@ -294,6 +294,24 @@ TYPED_TEST(ZonesTest, WithBadShapesHoldNobody) {
     EXPECT_EQ(found, (std::vector{huge, endless, all}));
 }
 
+TEST(ZonesMisuse, OfWhatWasRemovedChangesNobodyWithoutAssertions) {
+    const CaughtAsserts caught;
+    Zones<float> zones;
+    const ZoneId first = zones.add({SphereRegion<float>({0, 0, 0}, 1)});
+    const ZoneId removed = zones.add({SphereRegion<float>({5, 0, 0}, 1)});
+    zones.remove(removed);
+    for (const ZoneId id : {removed, ZoneId{}, ZoneId{99, 1}}) {
+        zones.set(id, {SphereRegion<float>({9, 0, 0}, 1)});
+        zones.remove(id);
+        EXPECT_TRUE(zones.occupants(id).empty());
+        static_cast<void>(zones.zone(id));
+    }
+    std::vector<ZoneId> found;
+    zones.zonesAt({0, 0, 0}, found);
+    EXPECT_EQ(found, std::vector{first});
+    EXPECT_GE(caught.count(), HASHPHASE_ENABLE_ASSERTS ? 9 : 0);
+}
+
 #if HASHPHASE_ENABLE_ASSERTS
 TEST(ZonesDeathTest, OnlyAZoneThatWasNotRemovedCanBeUsed) {
     const ThrowingAsserts throwing;

@@ -102,6 +102,26 @@ TEST(KinematicCharacter, KnowsItsNeighboursOverBulletsPairCaches) {
     }
 }
 
+// As a trigger does of what is spawned into it.
+TEST(EagerGhosts, HearAtOnceOfWhatIsCreatedWhereTheyStand) {
+    for (const bool isOurs : {false, true}) {
+        SCOPED_TRACE(isOurs);
+        std::unique_ptr<btBroadphaseInterface> broadphase = std::make_unique<btDbvtBroadphase>();
+        if (isOurs) {
+            broadphase = std::make_unique<SpatialHashBroadphase>();
+        }
+        GhostWorld scene(std::move(broadphase));
+        scene.world.performDiscreteCollisionDetection();
+        btRigidBody spawned(1, nullptr, &scene.small);
+        spawned.setWorldTransform(GhostWorld::at({btScalar(0.5), 0, 0}));
+        scene.world.addRigidBody(&spawned);
+        EXPECT_TRUE(GhostWorld::doesList(scene.ghost, spawned));
+        EXPECT_TRUE(GhostWorld::doesList(scene.cachingGhost, spawned));
+        scene.world.removeRigidBody(&spawned);
+        EXPECT_FALSE(GhostWorld::doesList(scene.ghost, spawned));
+    }
+}
+
 /// A program's own callback, which tells ghosts by the one of Bullet.
 struct ForwardingCallback : btOverlappingPairCallback {
     btBroadphasePair* addOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b) override {

@@ -97,6 +97,33 @@ TEST(BroadphaseMisuse, OfProxiesThatAreNotAliveIsAsserted) {
     EXPECT_THROW(static_cast<void>(SpatialHashBroadphase::idOf(nullptr)), BrokenAssert);
 }
 
+TEST(BroadphaseMisuse, OfProxiesThatAreNotAliveChangesNobodyWithoutAssertions) {
+    const CaughtAsserts caught;
+    SpatialHashBroadphase broadphase;
+    std::vector<btBroadphaseProxy*> proxies;
+    for (int i = 0; i < 3; ++i) {
+        proxies.push_back(broadphase.createProxy({0, 0, 0}, {1, 1, 1}, 0, nullptr, 1, 1, nullptr));
+    }
+    broadphase.calculateOverlappingPairs(nullptr);
+    const ProxyId destroyed = SpatialHashBroadphase::idOf(proxies[1]);
+    broadphase.destroyProxy(proxies[1], nullptr);
+    broadphase.destroyProxy(proxies[1], nullptr);
+    broadphase.setAabb(proxies[1], {5, 5, 5}, {6, 6, 6}, nullptr);
+    broadphase.refilter(proxies[1], nullptr);
+    EXPECT_EQ(broadphase.proxyOf(destroyed), nullptr);
+    EXPECT_EQ(broadphase.proxyOf(ProxyId{}), nullptr);
+    broadphase.calculateOverlappingPairs(nullptr);
+    EXPECT_EQ(broadphase.getOverlappingPairCache()->getNumOverlappingPairs(), 1);
+    for (const int alive : {0, 2}) {
+        btVector3 low;
+        btVector3 high;
+        broadphase.getAabb(proxies[static_cast<std::size_t>(alive)], low, high);
+        EXPECT_EQ(high, btVector3(1, 1, 1));
+    }
+    EXPECT_EQ(broadphase.validate(), "");
+    EXPECT_GE(caught.count(), HASHPHASE_ENABLE_ASSERTS ? 5 : 0);
+}
+
 TEST(BroadphaseMisuse, OfRaysWithoutACallbackIsAsserted) {
     const ThrowingAsserts throwing;
     SpatialHashBroadphase broadphase;
