@@ -130,6 +130,16 @@ void Grid<Scalar>::reserveLists(std::size_t count) {
 }
 
 template <class Scalar>
+void Grid<Scalar>::setBox(Record& record, const Box& box) {
+    record.box = box;
+    record.restsAtOnce = false;
+    const bool isNan = hasNan(box);
+    if (isNan || record.isNan) {
+        noteNan(record, isNan);
+    }
+}
+
+template <class Scalar>
 void Grid<Scalar>::move(ProxyId id, const Box& box) {
     HASHPHASE_ASSERT(contains(id), "Only a proxy of this grid that was not removed can be moved.");
     HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(this), detail::kMustNotChange);
@@ -383,12 +393,9 @@ void Grid<Scalar>::endSweeps() noexcept {
 }
 
 template <class Scalar>
-void Grid<Scalar>::setBox(Record& record, const Box& box) {
-    record.box = box;
-    record.restsAtOnce = false;
-    const bool isNan = hasNan(box);
-    nanCount_ += isNan && !record.isNan ? 1 : 0;
-    nanCount_ -= record.isNan && !isNan ? 1 : 0;
+void Grid<Scalar>::noteNan(Record& record, bool isNan) {
+    nanCount_ += isNan ? 1 : 0;
+    nanCount_ -= record.isNan ? 1 : 0;
     record.isNan = isNan;
     if (isNan && !nanReported_) {
         nanReported_ = true;

@@ -484,6 +484,7 @@ private:
     void endSweep(std::uint32_t slot) noexcept;
     void endSweeps() noexcept;
     void setBox(Record& record, const Box& box);
+    void noteNan(Record& record, bool isNan);
 
     void keepBoxesAtUpdate(const Point& shift);
     bool shiftRecord(std::uint32_t slot, const Point& shift) noexcept;
@@ -572,6 +573,7 @@ private:
     detail::GroupKinds::Set restingKinds_ = 0;
 
     std::uint32_t updateNumber_ = 1;             // of the update that ends the present frame
+    std::uint32_t restingErased_ = 0;            // entries of resting_
     UpdateCost cost_;                            // of the present frame
     std::atomic<std::uint64_t> filingCount_{0};  // a query may file while others ask
     std::uint64_t shiftCount_ = 0;               // of the origin
@@ -592,7 +594,6 @@ private:
     detail::Table<Scalar> mobile_;
 
     std::vector<std::uint32_t> woken_;  // slots that have left resting_ since the last update
-    std::uint32_t restingErased_ = 0;
     detail::Table<Scalar> resting_;
 
     std::vector<std::uint32_t> sweepingSlots_;  // when the last update began; in mobileSlots_, too

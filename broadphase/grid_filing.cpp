@@ -35,6 +35,7 @@ void Grid<Scalar>::stage(ParallelFor parallelFor, bool isForQueries) {
     stagedBefore_.resize(hasPairs_ ? count : 0);
     detail::ensureCapacity(nanSlots_, nanCount_);  // for settle()
     quietCount_ = 0;
+    const bool someRefuse = groupKinds_.someRefuse();  // else nobody asks for kinds
     mobileKinds_ = 0;
     changedKinds_ = 0;
     parallelFor(count, kGrain, [&](std::size_t begin, std::size_t end) {
@@ -51,9 +52,11 @@ void Grid<Scalar>::stage(ParallelFor parallelFor, bool isForQueries) {
                 stagedBefore_[i] = detail::padded(boxAtUpdate(mobileSlots_[i]));
             }
             quietCount += isQuiet(record) ? 1 : 0;
-            const detail::GroupKinds::Set kind = detail::GroupKinds::bit(record.kind);
-            mobileKinds |= kind;
-            changedKinds |= record.changedAt == updateNumber_ ? kind : 0;
+            if (someRefuse) {
+                const detail::GroupKinds::Set kind = detail::GroupKinds::bit(record.kind);
+                mobileKinds |= kind;
+                changedKinds |= record.changedAt == updateNumber_ ? kind : 0;
+            }
         }
         quietCount_ += quietCount;
         mobileKinds_ |= mobileKinds;

@@ -127,7 +127,7 @@ double Pairs<Scalar>::countRefused(PairFilter filter, double weight) {
     return weight * static_cast<double>(refused);
 }
 
-// Whether the refused ones have become few again is looked at after 1, 2, 4, 8 ... updates: it costs as much
+// Whether the refused ones have become few again is looked at after 1, 2, 4, 8 ... updates: it may cost as much
 // as finding all that overlap.
 template <class Scalar>
 void Pairs<Scalar>::chooseSide(bool isUpdated) noexcept {

@@ -105,13 +105,13 @@ btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
     proxy.client = Client::unknown;
     noteSeen(proxy);
     uniqueIds_[id.index] = proxy.m_uniqueId;
-    if (isEager(proxy, dispatcher) || hasGhosts_) {  // who may stand where it has come to
-        try {
+    try {
+        if (isEager(proxy, dispatcher) || mayMeetGhosts(proxy)) {
             announce(proxy, dispatcher);
-        } catch (...) {
-            destroyProxy(&proxy, dispatcher);
-            throw;
         }
+    } catch (...) {
+        destroyProxy(&proxy, dispatcher);
+        throw;
     }
     return &proxy;
 }
@@ -129,6 +129,9 @@ void SpatialHashBroadphase::destroyProxy(btBroadphaseProxy* proxy, btDispatcher*
 void SpatialHashBroadphase::removeFromGrid(Proxy* proxy) {
     grid_.remove(proxy->id);
     noteUnseen(*proxy);
+    if (proxy->client == Client::ghost) {
+        forgetGhost(*proxy);
+    }
     uniqueIds_[proxy->id.index] = 0;
     proxy->id = {};
     proxy->m_uniqueId = 0;
@@ -188,37 +191,6 @@ void SpatialHashBroadphase::getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin
     aabbMax = own->m_aabbMax;
 }
 
-// --- Groups --------------------------------------------------------------------------------------
-
-// Not where a callback decides, nor in a cache that may decide as it likes, unless these accept nothing
-// that group and mask refuse.
-bool SpatialHashBroadphase::doGroupsDecide() const {
-    return config_.filterRefusesMore ||
-           (batchCache_ != nullptr && batchCache_->getOverlapFilterCallback() == nullptr);
-}
-
-// A callback may come and go at any time. It may answer otherwise than group and mask.
-void SpatialHashBroadphase::followFilter() {
-    const bool decide = doGroupsDecide();
-    if (decide != groupsDecide_) {
-        groupsDecide_ = decide;
-        noteGroupsOfAll();
-    }
-}
-
-// Group and mask are Bullet's fields, and may be written at any time. Returns whether they were.
-bool SpatialHashBroadphase::noteGroups(Proxy& proxy) {
-    const ProxyGroups groups = groupsOf(proxy);
-    const bool isOther = proxy.kind == detail::GroupKinds::kOther;
-    if (groups == (isOther ? grid_.groups(proxy.id) : groupKinds_[proxy.kind])) {
-        return false;
-    }
-    grid_.setGroups(proxy.id, groups);
-    proxy.kind = groupKinds_.numberOf(groups);
-    changedKinds_ |= detail::GroupKinds::bit(proxy.kind);
-    return true;
-}
-
 void SpatialHashBroadphase::noteSeen(const Proxy& proxy) noexcept {
     const std::size_t word = proxy.id.index / 64;
     const std::uint64_t bit = std::uint64_t{1} << proxy.id.index % 64;
@@ -234,45 +206,6 @@ void SpatialHashBroadphase::noteUnseen(const Proxy& proxy) noexcept {
     if (word < seen_.size() && (seen_[word] & bit) != 0) {
         seen_[word] &= ~bit;
         --seenCount_;
-    }
-}
-
-// A proxy that nobody has set may have got other groups, and what moves may touch it. That matters only
-// where what has moved may not pair with some kind of proxies; mostly all may, or all have been set.
-void SpatialHashBroadphase::noteGroupsIfTheyMatter() {
-    using Kinds = detail::GroupKinds::Set;
-    const bool someSweep = sweeps_ != nullptr && sweeps_->size() > 0;
-    const bool doMatter =
-        groupsDecide_ && groupKinds_.refuse(someSweep ? ~Kinds{0} : changedKinds_, ~Kinds{0});
-    if (mustNoteGroups_ || (doMatter && (seen_.empty() || seenCount_ < grid_.size()))) {
-        noteGroupsOfAll();
-    }
-    seen_.assign(doMatter ? uniqueIds_.size() / 64 + 1 : 0, 0);
-    seenCount_ = 0;
-    mustNoteGroups_ = false;
-    changedKinds_ = 0;
-}
-
-void SpatialHashBroadphase::noteGroupsOfAll() {
-    for (std::uint32_t slot = 0; slot < uniqueIds_.size(); ++slot) {
-        if (uniqueIds_[slot] != 0) {
-            noteGroups(*proxyAt(slot));
-        }
-    }
-}
-
-// Of what the proxy touches, and of the proxy.
-void SpatialHashBroadphase::noteGroupsAround(const Proxy& proxy) {
-    std::vector<ProxyId> found{proxy.id};
-    CollectAll collector(found);
-    if (sweeps_ != nullptr) {
-        const Aabb<btScalar> bounds = wayBounds(sweeps_->motion(proxy.id));
-        sweeps_->visit(BoxRegion<btScalar>{bounds}, collector);
-    } else {
-        grid_.visit(BoxRegion<btScalar>{grid_.box(proxy.id)}, collector);
-    }
-    for (const ProxyId id : found) {
-        noteGroups(*proxyAt(id.index));
     }
 }
 
@@ -505,7 +438,6 @@ void SpatialHashBroadphase::resetPool(btDispatcher* /*dispatcher*/) {
     if (!isWithin) {
         pairs_.clear();
         lastUniqueId_ = 0;
-        hasGhosts_ = false;
         groupKinds_ = {};
         changedKinds_ = 0;
         seen_ = std::vector<std::uint64_t>();
@@ -523,68 +455,6 @@ btBroadphaseProxy* SpatialHashBroadphase::proxyOf(ProxyId id) const {
 ProxyId SpatialHashBroadphase::idOf(const btBroadphaseProxy* proxy) {
     HASHPHASE_ASSERT(proxy != nullptr, "Only a proxy has an id.");
     return static_cast<const Proxy*>(proxy)->id;
-}
-
-void SpatialHashBroadphase::releaseUnusedMemory() noexcept {
-    checkMayChange();
-    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
-                     "Memory is not given back within a callback.");
-    grid_.releaseUnusedMemory();
-    pairs_.releaseUnusedMemory();
-    if (sweeps_ != nullptr) {
-        sweeps_->releaseUnusedMemory();
-    }
-    detail::freeArrays(died_, born_);
-    dropLastProxies();
-    if (batchCache_ != nullptr) {
-        batchCache_->releaseUnusedMemory();
-    }
-}
-
-// Those whose indices the grid has given back. A cache that is behind may still name some.
-void SpatialHashBroadphase::dropLastProxies() noexcept {
-    if (!isCacheBehind_ && grid_.indexLimit() < uniqueIds_.size()) {
-        uniqueIds_.resize(grid_.indexLimit());
-        uniqueIds_.shrink_to_fit();
-        proxies_.shrink(uniqueIds_.size());
-    }
-}
-
-// The grid and its pairs look after themselves.
-void SpatialHashBroadphase::releaseAfterPeak() noexcept {
-    dropLastProxies();
-    const std::size_t room = batchCache_ != nullptr ? batchCache_->capacity() : died_.capacity();
-    if (peaks_.isPast(pairs_.count(), room)) {
-        detail::freeArrays(died_, born_);
-        if (batchCache_ != nullptr) {
-            batchCache_->releaseUnusedMemory();
-        }
-    }
-}
-
-std::size_t SpatialHashBroadphase::memoryBytes() const noexcept {
-    return sizeof(*this) - sizeof(grid_) - sizeof(pairs_) + grid_.memoryBytes() +
-           pairs_.memoryBytes() + proxies_.memoryBytes() +
-           (sweeps_ != nullptr ? sweeps_->memoryBytes() : 0) + uniqueIds_.capacity() * sizeof(int) +
-           (died_.capacity() + born_.capacity()) * sizeof(ProxyCouple) +
-           seen_.capacity() * sizeof(seen_[0]) +
-           (ownCache_ != nullptr ? ownCache_->memoryBytes() : 0);
-}
-
-std::string SpatialHashBroadphase::validate() const {
-    const std::string ofSweeps = sweeps_ != nullptr ? sweeps_->validate() : std::string();
-    for (const std::string& error : {grid_.validate(), ofSweeps, pairs_.validate()}) {
-        if (!error.empty()) {
-            return error;
-        }
-    }
-    if (ownCache_ == nullptr) {
-        return {};
-    }
-    if (static_cast<std::size_t>(ownCache_->getNumOverlappingPairs()) != pairs_.count()) {
-        return "The cache holds as many pairs as the set of pairs: broken.";
-    }
-    return ownCache_->validate();
 }
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

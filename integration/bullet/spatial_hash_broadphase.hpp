@@ -62,8 +62,7 @@ struct SpatialHashConfig {
     GridConfig grid{};
 
     /// Ghost objects get their pairs at once, in createProxy() and setAabb(), as Bullet's character
-    /// controller expects, and what is created in a world with ghosts does, so that a ghost that stands
-    /// there hears of it; wherever the pair cache has an internal ghost pair callback, through which
+    /// controller expects, and so does what is created where a ghost stands, wherever the pair cache has an internal ghost pair callback, through which
     /// ghosts hear of pairs. (A cache that is not given as a PairCache counts as having one.) To find
     /// them, a client that may have pairs is taken for a btCollisionObject then, in calls that hand in a
     /// dispatcher, as a btCollisionWorld's do. False is for programs whose clients are something else.
@@ -153,8 +152,9 @@ public:
 
     /// The proxy's address is fixed for its life, m_uniqueId counts 1, 2, 3 ... and is never used
     /// again: after 2^31 - 1 of them std::length_error is thrown until resetPool(); likewise where there
-    /// are 2^28 proxies. `shapeType` is ignored. Cost: O(1); of ghosts, of all as soon as there has been
-    /// a ghost, and of SpatialHashConfig::eagerGroups that of Pairs::announce() and of its pairs, too.
+    /// are 2^28 proxies. `shapeType` is ignored. Cost: O(1), and a look at up to 1,024 ghosts; of ghosts, of
+    /// what touches them, or of all where there are more, and of SpatialHashConfig::eagerGroups that of
+    /// Pairs::announce() and of its pairs, too.
     btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
                                    int shapeType, void* userPtr, int collisionFilterGroup,
                                    int collisionFilterMask, btDispatcher* dispatcher) override;
@@ -318,7 +318,8 @@ private:
     struct Proxy : btBroadphaseProxy {
         ProxyId id;
         Client client = Client::unknown;
-        std::uint8_t kind = 0;  // of its groups, as the grid knows them, in groupKinds_
+        std::uint8_t kind = 0;      // of its groups, as the grid knows them, in groupKinds_
+        std::uint32_t ghostAt = 0;  // a ghost's place in ghosts_
     };
     struct Couples;
     template <class Callback>
@@ -361,6 +362,8 @@ private:
                (batchCache_ == nullptr || batchCache_->getInternalGhostPairCallback() != nullptr);
     }
     [[nodiscard]] bool isGhost(Proxy& proxy, const btDispatcher* dispatcher);
+    [[nodiscard]] bool mayMeetGhosts(const Proxy& proxy) const;
+    void forgetGhost(Proxy& proxy) noexcept;
     void announce(const Proxy& proxy, btDispatcher* dispatcher);
     void move(const Proxy& proxy);
     void moveOnItsWay(const Proxy& proxy, const Aabb<btScalar>& box);
@@ -390,21 +393,22 @@ private:
     std::vector<int> uniqueIds_;          // by ProxyId::index; 0 where no proxy is alive
     int lastUniqueId_ = 0;
 
+    bool groupsDecide_ = false;    // who may pair, and no callback
+    bool mustNoteGroups_ = false;  // of all
+    bool isCacheBehind_ = false;   // of changes that did not all reach it
+
     std::unique_ptr<PairCache> ownCache_;  // if none was given
     PairCache* batchCache_ = nullptr;      // the cache, if it is known to be a PairCache
     btOverlappingPairCache* pairCache_ = nullptr;
-    bool groupsDecide_ = false;    // who may pair, and no callback
-    bool mustNoteGroups_ = false;  // of all
-    bool hasGhosts_ = false;       // has had
     detail::GroupKinds groupKinds_;
     // Of what was created or moved since pairs were calculated.
     detail::GroupKinds::Set changedKinds_ = 0;
     // Whose groups have been looked at since then, a bit for each slot; empty while nobody needs to know.
     std::vector<std::uint64_t> seen_;
     std::size_t seenCount_ = 0;
-    detail::PeakWatch peaks_;        // of the cache
-    bool isCacheBehind_ = false;     // of changes that did not all reach it
-    std::vector<ProxyCouple> died_;  // scratch of Couples
+    std::vector<std::uint32_t> ghosts_;  // their slots
+    detail::PeakWatch peaks_;            // of the cache
+    std::vector<ProxyCouple> died_;      // scratch of Couples
     std::vector<ProxyCouple> born_;
 };
 

@@ -6,6 +6,7 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
@@ -18,10 +19,28 @@ bool SpatialHashBroadphase::isGhost(Proxy& proxy, const btDispatcher* dispatcher
         proxy.m_clientObject != nullptr) {
         const auto& object = *static_cast<const btCollisionObject*>(proxy.m_clientObject);
         const bool isGhost = object.getInternalType() == btCollisionObject::CO_GHOST_OBJECT;
+        if (isGhost) {
+            proxy.ghostAt = static_cast<std::uint32_t>(ghosts_.size());
+            ghosts_.push_back(proxy.id.index);
+        }
         proxy.client = isGhost ? Client::ghost : Client::other;
-        hasGhosts_ = hasGhosts_ || isGhost;
     }
     return proxy.client == Client::ghost;
+}
+
+void SpatialHashBroadphase::forgetGhost(Proxy& proxy) noexcept {
+    proxyAt(ghosts_.back())->ghostAt = proxy.ghostAt;
+    ghosts_[proxy.ghostAt] = ghosts_.back();
+    ghosts_.pop_back();
+}
+
+// Where there are many, to ask about its pairs is sooner than to look at each.
+bool SpatialHashBroadphase::mayMeetGhosts(const Proxy& proxy) const {
+    constexpr std::size_t kFew = 1024;
+    return ghosts_.size() > kFew ||
+           std::any_of(ghosts_.begin(), ghosts_.end(), [&](std::uint32_t slot) {
+               return overlaps(grid_.box(proxyAt(slot)->id), grid_.box(proxy.id));
+           });
 }
 
 void SpatialHashBroadphase::shapeChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {

@@ -59,15 +59,10 @@ void combineMaterials(btPersistentManifold& manifold) {
 
 }  // namespace
 
-WorldConfigurator::WorldConfigurator(btDiscreteDynamicsWorld& world)
-    : world_(&world), hadForcedBoxes_(world.getForceUpdateAllAabbs()) {
-    world.setForceUpdateAllAabbs(false);
-    forEachObject(world, [&](btCollisionObject& object) { fileResting(world, object); });
-}
+WorldConfigurator::WorldConfigurator(btDiscreteDynamicsWorld& world) : world_(&world) {}
 
 WorldConfigurator::~WorldConfigurator() {
     apply({});
-    world_->setForceUpdateAllAabbs(hadForcedBoxes_);
 }
 
 void WorldConfigurator::apply(const WorldEffects& effects) {
@@ -84,6 +79,9 @@ void WorldConfigurator::apply(const WorldEffects& effects) {
         arePairsOld_ = false;
     }
     forEachObject(*world_, [&](btCollisionObject& object) {
+        if (!effects_.restingBoxes) {
+            fileResting(*world_, object);
+        }
         const bool isChanged = configure(object, effectsOf(object), effects_);
         areBodiesChanged_ = areBodiesChanged_ || isChanged;
     });
@@ -97,7 +95,9 @@ void WorldConfigurator::apply(const WorldEffects& effects) {
 
 void WorldConfigurator::prepare(btCollisionObject& object) {
     HASHPHASE_ASSERT(object.getWorldArrayIndex() >= 0, "The object is in the world.");
-    fileResting(*world_, object);
+    if (!effects_.restingBoxes) {
+        fileResting(*world_, object);
+    }
     if (configure(object, effectsOf(object), effects_)) {
         object.activate();
     }
@@ -189,10 +189,8 @@ void WorldConfigurator::askAboutPairsAgain() {
         hash->refilterAll(world_->getDispatcher());
         return;
     }
-    forEachObject(*world_, [&](btCollisionObject& object) {
-        world_->refreshBroadphaseProxy(&object);
-        fileResting(*world_, object);
-    });
+    forEachObject(*world_,
+                  [&](btCollisionObject& object) { world_->refreshBroadphaseProxy(&object); });
 }
 
 void WorldConfigurator::configureWorld() {
@@ -203,6 +201,9 @@ void WorldConfigurator::configureWorld() {
         useContinuous = !isWithoutSweep;
     }
     info.m_useContinuous = useContinuous_.next(info.m_useContinuous, useContinuous);
+    world_->setForceUpdateAllAabbs(
+        forcesBoxes_.next(world_->getForceUpdateAllAabbs(),
+                          effects_.restingBoxes ? std::nullopt : std::optional(false)));
 
     const bool isWithoutFriction = !effects_.friction || !effects_.response || !effects_.pairs;
     int& mode = world_->getSolverInfo().m_solverMode;

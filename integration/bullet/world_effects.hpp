@@ -2,13 +2,13 @@
 #pragma once
 
 // Lets Bullet compute only what a scene calls for. Everything is declared by default, and then nothing
-// is changed but for the boxes of what rests.
+// is changed.
 //
 //     WorldConfigurator configurator(world);
 //     configurator.apply({.rotation = false, .friction = false});
 //
 // effect     without it                                       what is lost
-// (always)   setForceUpdateAllAabbs(false)                    who moves a body that is static or asleep by
+// restingBoxes  setForceUpdateAllAabbs(false)                 who moves a body that is static or asleep by
 //                                                             hand calls updateSingleAabb()
 // pairs      an overlap filter that refuses every pair        contacts, ghost objects' lists, response,
 //                                                             sweep; rays and sweeps by hand are not
@@ -24,7 +24,8 @@
 //
 // In instructions per step, a heap of 250 bodies saves 76 % without pairs, 58 % without response, 16 %
 // without rotation, and 2 % without friction, for which Bullet has a row in its solver all the same; one
-// that has come to rest costs twice as much without sleeping. 2000 static bodies cost a fifteenth less.
+// that has come to rest costs twice as much without sleeping. 2000 static bodies cost a fifteenth less
+// without restingBoxes.
 //
 // response and sweep need pairs, friction and sweep need response: without it they are off, too.
 //
@@ -69,7 +70,8 @@ struct BodyEffects {
 
 /// What is declared for a world.
 struct WorldEffects {
-    bool motion = true;  ///< heeded by WorldConfigurator::step() alone
+    bool motion = true;        ///< heeded by WorldConfigurator::step() alone
+    bool restingBoxes = true;  ///< looked at in each step, as Bullet does by default
     bool pairs = true;
     bool response = true;
     bool sweep = true;
@@ -182,7 +184,7 @@ private:
     btDiscreteDynamicsWorld* world_;
     WorldEffects effects_;
     Filter filter_{*this};
-    bool hadForcedBoxes_;
+    detail::KeptSetting<bool> forcesBoxes_;
     detail::KeptSetting<bool> useContinuous_;
     detail::KeptSetting<int> frictionDirections_;
     std::unordered_map<const btCollisionObject*, KeptBody> kept_;  // of those that are overridden

@@ -28,6 +28,7 @@ WorldEffects subset(int number) {
         bit *= 2;
     }
     effects.fastFrom = btScalar(0.5);
+    effects.restingBoxes = number % 3 != 0;
     return effects;
 }
 
@@ -50,6 +51,7 @@ std::vector<btScalar> settingsOf(DynamicsWorld& scene) {
         }
         note(body.getActivationState() == DISABLE_DEACTIVATION);
     }
+    note(scene.world().getForceUpdateAllAabbs());
     note(scene.world().getDispatchInfo().m_useContinuous);
     note(scene.world().getSolverInfo().m_solverMode);
     note(scene.world().getPairCache()->getOverlapFilterCallback() != nullptr);
@@ -104,7 +106,27 @@ TEST(WorldConfigurator, CostNothingWhereUndeclaredAndGiveBackAllSettingsInAllSub
         configurator.apply(effects);
     }
     EXPECT_EQ(settingsOf(*room.scene), own) << "given back by the destructor";
-    EXPECT_TRUE(room.world().getForceUpdateAllAabbs());
+}
+
+TEST(WorldConfigurator, FindBodiesWhereTheyRestUnlessTheirBoxesAreNotDeclared) {
+    for (const bool areDeclared : {true, false}) {
+        EffectsRoom room;
+        btRigidBody& cube = room.addCube({0, 2, 0});
+        cube.setMassProps(0, {0, 0, 0});
+        WorldConfigurator configurator(room.world());
+        configurator.apply({.restingBoxes = areDeclared});
+        cube.forceActivationState(ISLAND_SLEEPING);
+        cube.setWorldTransform(btTransform(btQuaternion(0, 0, 0, 1), {40, 2, 0}));
+        configurator.step(btScalar(1) / 64);
+        const btVector3 from(40, 9, 0);
+        const btVector3 to(40, 1, 0);
+        btCollisionWorld::ClosestRayResultCallback hit(from, to);
+        room.world().rayTest(from, to, hit);
+        EXPECT_EQ(hit.hasHit(), areDeclared);
+        room.world().updateSingleAabb(&cube);
+        room.world().rayTest(from, to, hit);
+        EXPECT_TRUE(hit.hasHit());
+    }
 }
 
 TEST(WorldConfigurator, BelieveWhoChangesASettingMeanwhile) {
@@ -181,6 +203,7 @@ TEST(WorldConfigurator, FileBodiesThatRestOnce) {
     EffectsRoom room;
     btRigidBody& floor = room.scene->body(0);
     WorldConfigurator configurator(room.world());
+    configurator.apply({.restingBoxes = false});
     const auto top = [&] { return floor.getBroadphaseProxy()->m_aabbMax.y(); };
     EXPECT_EQ(top(), gContactBreakingThreshold) << "with the margin that Bullet adds in a step";
     floor.setWorldTransform(upAt({0, 4, 0}));

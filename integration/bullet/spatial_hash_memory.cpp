@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Zlib
+
+// What the broadphase holds, and gives back; and whether all is as it should be.
+
+#include <integration/bullet/spatial_hash_broadphase.hpp>
+
+#include <broadphase/detail/ensure_capacity.hpp>
+#include <integration/bullet/pair_cache.hpp>
+
+#include <string>
+
+namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+
+void SpatialHashBroadphase::releaseUnusedMemory() noexcept {
+    checkMayChange();
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
+                     "Memory is not given back within a callback.");
+    grid_.releaseUnusedMemory();
+    pairs_.releaseUnusedMemory();
+    if (sweeps_ != nullptr) {
+        sweeps_->releaseUnusedMemory();
+    }
+    detail::freeArrays(died_, born_);
+    dropLastProxies();
+    if (batchCache_ != nullptr) {
+        batchCache_->releaseUnusedMemory();
+    }
+}
+
+// Those whose indices the grid has given back. A cache that is behind may still name some.
+void SpatialHashBroadphase::dropLastProxies() noexcept {
+    if (!isCacheBehind_ && grid_.indexLimit() < uniqueIds_.size()) {
+        uniqueIds_.resize(grid_.indexLimit());
+        uniqueIds_.shrink_to_fit();
+        proxies_.shrink(uniqueIds_.size());
+    }
+}
+
+// The grid and its pairs look after themselves.
+void SpatialHashBroadphase::releaseAfterPeak() noexcept {
+    dropLastProxies();
+    const std::size_t room = batchCache_ != nullptr ? batchCache_->capacity() : died_.capacity();
+    if (peaks_.isPast(pairs_.count(), room)) {
+        detail::freeArrays(died_, born_);
+        if (batchCache_ != nullptr) {
+            batchCache_->releaseUnusedMemory();
+        }
+    }
+}
+
+std::size_t SpatialHashBroadphase::memoryBytes() const noexcept {
+    return sizeof(*this) - sizeof(grid_) - sizeof(pairs_) + grid_.memoryBytes() +
+           pairs_.memoryBytes() + proxies_.memoryBytes() +
+           (sweeps_ != nullptr ? sweeps_->memoryBytes() : 0) + uniqueIds_.capacity() * sizeof(int) +
+           (died_.capacity() + born_.capacity()) * sizeof(ProxyCouple) +
+           seen_.capacity() * sizeof(seen_[0]) + ghosts_.capacity() * sizeof(ghosts_[0]) +
+           (ownCache_ != nullptr ? ownCache_->memoryBytes() : 0);
+}
+
+std::string SpatialHashBroadphase::validate() const {
+    const std::string ofSweeps = sweeps_ != nullptr ? sweeps_->validate() : std::string();
+    for (const std::string& error : {grid_.validate(), ofSweeps, pairs_.validate()}) {
+        if (!error.empty()) {
+            return error;
+        }
+    }
+    if (ownCache_ == nullptr) {
+        return {};
+    }
+    if (static_cast<std::size_t>(ownCache_->getNumOverlappingPairs()) != pairs_.count()) {
+        return "The cache holds as many pairs as the set of pairs: broken.";
+    }
+    return ownCache_->validate();
+}
+
+}  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE
