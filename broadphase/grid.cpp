@@ -422,7 +422,8 @@ std::array<std::int64_t, 3> Grid<Scalar>::cellAt(const Point& point) const {
 
 template <class Scalar>
 CellRange Grid<Scalar>::cellsOf(ProxyId id) const {
-    return {cellAt(box(id).min()), cellAt(box(id).max())};
+    const Box& own = box(id);
+    return contains(id) ? CellRange{cellAt(own.min()), cellAt(own.max())} : CellRange{};
 }
 
 // --- Accounts ------------------------------------------------------------------------------------

@@ -49,8 +49,8 @@ auto Grid<Scalar>::beginReading() const -> Reading {
     return presentReading();
 }
 
-// What goes from near to far offers all that is filed first, then the list: a short one. How long is
-// decided by the changes alone, so that the order is the same, whoever else asks and however often.
+// What goes from near to far offers all that is filed first, then the list: a short one. How long does not
+// depend on how many of them ask, so that each of many finds in the order in which it finds alone.
 template <class Scalar>
 auto Grid<Scalar>::beginReadingInOrder() const -> Reading {
     mendTables();

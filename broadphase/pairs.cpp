@@ -97,9 +97,9 @@ PairChanges Pairs<Scalar>::update(PairFilter filter, ParallelFor parallelFor) & 
 
 template <class Scalar>
 void Pairs<Scalar>::beginCall() {
-    if (heap_ != nullptr) {
-        heap_->early.clear();
-        heap_->earlyAccepted.clear();
+    if (pile_ != nullptr) {
+        pile_->sampled.clear();
+        pile_->sampledAccepted.clear();
     }
     beginSearch();
 }
@@ -110,8 +110,8 @@ void Pairs<Scalar>::beginSearch() {
     asked_.clear();
     unknown_.clear();
     standing_.clear();
-    if (heap_ != nullptr) {
-        heap_->turned.clear();
+    if (pile_ != nullptr) {
+        pile_->turned.clear();
     }
     keptNow_.clear();
     notKept_.clear();
@@ -175,7 +175,7 @@ bool Pairs<Scalar>::findChanges(PairFilter filter, ParallelFor parallelFor) {
     findDeaths(parallelFor);
     const bool someCameToRest = grid_.putQuietToRest(parallelFor);
     grid_.fileMobile(parallelFor);
-    if (isRefusedHeap(filter)) {
+    if (doesRefuseMost(filter)) {
         return false;
     }
     findBirths(someCameToRest, parallelFor);

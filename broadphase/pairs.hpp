@@ -5,9 +5,9 @@
 //
 // A pair is two proxies whose closed boxes overlap, whose groups let them (Grid::setGroups()), and which
 // the filter accepts; where one of them sweeps, which touch on their ways. update() tells which pairs
-// were born and which died since the last one, each once, sorted; what persists is not touched. Nothing
-// is remembered of a pair but what boxes and ways tell: a pair is new when they touch now and did not at
-// the last update.
+// were born and which died since the last one, each once, sorted; what persists is not touched. Mostly
+// nothing is remembered of a pair but what boxes and ways tell: a pair is new when they touch now and did
+// not at the last update.
 //
 // A frame   move proxies in the grid, then update() here (it updates the grid).
 // Threads   every member needs the grid and this object for itself.
@@ -163,7 +163,7 @@ public:
     /// Whether so many overlap, of which the filter refuses most, that the pairs are remembered in their
     /// place; up to 256 updates longer.
     [[nodiscard]] bool remembersPairs() const noexcept {
-        return heap_ != nullptr && heap_->hasPairs;
+        return pile_ != nullptr && pile_->hasPairs;
     }
 
     [[nodiscard]] const PairCost& lastCost() const noexcept { return cost_; }
@@ -182,7 +182,8 @@ public:
     ///   of the pairs that are kept.
     /// - Of each swept couple one sweeps.
     /// - The pairs that are kept overlap and may not pair.
-    /// While the pairs are remembered, that count() is their number, and each overlaps or is swept.
+    /// While the pairs are remembered, that count() is their number, and each overlaps or is swept; not that
+    /// none is missing.
     [[nodiscard]] std::string validate() const;
 
 private:
@@ -194,22 +195,22 @@ private:
     };
 
     /// What is known where many share a cell.
-    struct Heap {
+    struct Pile {
         // In place of the couples that are watched, refused or kept, where those would be too many.
         detail::FlatSet pairs;
         bool hasPairs = false;
         std::uint32_t updatesUntilLook = 0;  // whether they still would
-        std::uint32_t updatesOfLook = 0;
+        std::uint32_t lookInterval = 0;
 
         // Of what this call has asked in parts, whose answer makes or ends a pair.
         std::vector<std::uint64_t> turned;
         // What this call has asked as a sample, and the answers by their numbers.
-        detail::FlatSet early;
-        std::vector<char> earlyAccepted;
+        detail::FlatSet sampled;
+        std::vector<char> sampledAccepted;
 
         [[nodiscard]] std::size_t memoryBytes() const noexcept {
-            return sizeof(*this) + pairs.memoryBytes() + early.memoryBytes() +
-                   turned.capacity() * sizeof(std::uint64_t) + earlyAccepted.capacity();
+            return sizeof(*this) + pairs.memoryBytes() + sampled.memoryBytes() +
+                   turned.capacity() * sizeof(std::uint64_t) + sampledAccepted.capacity();
         }
     };
 
@@ -237,7 +238,7 @@ private:
     [[nodiscard]] bool isSwept(Couple c) const noexcept;
     /// While the pairs are remembered.
     [[nodiscard]] bool isRemembered(Couple c) const noexcept {
-        return remembersPairs() && heap_->pairs.contains(c);
+        return remembersPairs() && pile_->pairs.contains(c);
     }
 
     void beginCall();
@@ -275,8 +276,8 @@ private:
 
     // Which side is remembered.
     [[nodiscard]] std::size_t mostCouples() const noexcept;
-    Heap& heap();
-    [[nodiscard]] bool isRefusedHeap(PairFilter filter);
+    Pile& pile();
+    [[nodiscard]] bool doesRefuseMost(PairFilter filter);
     [[nodiscard]] double countRefused(PairFilter filter, double weight);
     [[nodiscard]] double sampleOverlaps(const detail::Table<Scalar>& table,
                                         detail::KernelCost& cost);
@@ -312,6 +313,7 @@ private:
     template <class IsNamed>
     void askAgainAboutMany(PairFilter filter, const IsNamed& isNamed);
     [[nodiscard]] bool isFoundByOther(std::uint32_t slot, std::uint32_t other) const noexcept;
+    [[nodiscard]] bool sweepsNow(std::uint32_t slot) const noexcept;
     void askAgain(Couple c);
     PairChanges decideBetween(PairFilter filter);
     void findUnknown(std::uint32_t slot, FunctionRef<bool(std::uint32_t)> isWanted);
@@ -332,7 +334,7 @@ private:
 
     detail::FlatSet refused_;        // couples that the filter refused, unless they are ...
     detail::FlatSet refusedAtRest_;  // ... both at rest
-    std::unique_ptr<Heap> heap_;     // made when many share a cell
+    std::unique_ptr<Pile> pile_;     // made when many share a cell
     detail::CoupleSet announced_;    // couples decided since the last update
     // Until there are more, those of removed proxies stay.
     std::size_t fewAnnounced_ = kFewAnnounced;

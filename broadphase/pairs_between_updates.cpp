@@ -46,7 +46,7 @@ PairChanges Pairs<Scalar>::refilter(std::span<const ProxyId> ids, PairFilter fil
     recover();
     findAnnouncedOfRemoved();
     constexpr std::size_t kLargePart = 8;
-    if (ids.size() > 1 && (remembersPairs() || ids.size() > grid_.size() / kLargePart)) {
+    if (ids.size() > 1 && ids.size() > grid_.size() / kLargePart) {
         isNamed_.assign(grid_.records_.size(), 0);
         for (const ProxyId id : ids) {
             if (grid_.contains(id)) {
@@ -56,14 +56,29 @@ PairChanges Pairs<Scalar>::refilter(std::span<const ProxyId> ids, PairFilter fil
         askAgainAboutMany(filter, [this](std::uint32_t slot) { return isNamed_[slot] != 0; });
         return decideBetween(filter);
     }
+    // Where they are asked about in parts, those with a proxy that has been dealt with are left out.
+    isNamed_.assign(remembersPairs() ? grid_.records_.size() : 0, 0);
+    const auto isDone = [this](std::uint32_t slot) {
+        return slot < isNamed_.size() && isNamed_[slot] != 0;
+    };
     for (const ProxyId id : ids) {
-        if (!grid_.contains(id)) {
+        if (!grid_.contains(id) || isDone(id.index)) {
             continue;
         }
         if (grid_.cost_.changed > 0) {
-            findUnknown(id.index);
+            findUnknown(id.index, [&](std::uint32_t other) {
+                return !isDone(other) || sweepsNow(id.index) || sweepsNow(other);
+            });
         }
-        forKnownCouples(id.index, [this](Couple c) { askAgain(c); });
+        forKnownCouples(id.index, [&](Couple c) {
+            if (!isDone(first(c)) && !isDone(second(c))) {
+                askAgain(c);
+            }
+        });
+        askInParts(filter, kPart);
+        if (!isNamed_.empty()) {
+            isNamed_[id.index] = 1;
+        }
     }
     return decideBetween(filter);
 }
@@ -103,10 +118,12 @@ void Pairs<Scalar>::askAgainAboutMany(PairFilter filter, const IsNamed& isNamed)
 // Of two that have changed each would find the other; by its way, only what sweeps.
 template <class Scalar>
 bool Pairs<Scalar>::isFoundByOther(std::uint32_t slot, std::uint32_t other) const noexcept {
-    const auto sweeps = [this](std::uint32_t of) {
-        return sweeps_ != nullptr && sweeps_->sweeps(grid_.idOf(of));
-    };
-    return grid_.changedNow(other) && !sweeps(slot) && (other < slot || sweeps(other));
+    return grid_.changedNow(other) && !sweepsNow(slot) && (other < slot || sweepsNow(other));
+}
+
+template <class Scalar>
+bool Pairs<Scalar>::sweepsNow(std::uint32_t slot) const noexcept {
+    return sweeps_ != nullptr && sweeps_->sweeps(grid_.idOf(slot));
 }
 
 // Asks about a couple that is known. One that is refused and apart for the moment is asked about by
@@ -208,6 +225,7 @@ template PairChanges Pairs<float>::refilter(ProxyId, PairFilter) &;
 template PairChanges Pairs<float>::refilter(std::span<const ProxyId>, PairFilter) &;
 template PairChanges Pairs<float>::refilterAll(PairFilter) &;
 template bool Pairs<float>::isFoundByOther(std::uint32_t, std::uint32_t) const noexcept;
+template bool Pairs<float>::sweepsNow(std::uint32_t) const noexcept;
 template void Pairs<float>::askAgain(Couple);
 template PairChanges Pairs<float>::decideBetween(PairFilter);
 template void Pairs<float>::announceUnknown() noexcept;
@@ -220,6 +238,7 @@ template PairChanges Pairs<double>::refilter(ProxyId, PairFilter) &;
 template PairChanges Pairs<double>::refilter(std::span<const ProxyId>, PairFilter) &;
 template PairChanges Pairs<double>::refilterAll(PairFilter) &;
 template bool Pairs<double>::isFoundByOther(std::uint32_t, std::uint32_t) const noexcept;
+template bool Pairs<double>::sweepsNow(std::uint32_t) const noexcept;
 template void Pairs<double>::askAgain(Couple);
 template PairChanges Pairs<double>::decideBetween(PairFilter);
 template void Pairs<double>::announceUnknown() noexcept;

@@ -37,11 +37,11 @@ void Pairs<Scalar>::ask(PairFilter filter) {
     sortCouples(asked_);
     sortCouples(standing_);
     askedPairs_.clear();
-    const auto numberIfEarly = [this](Couple c) {
-        return heap_ != nullptr ? heap_->early.find(c) : detail::FlatSet::kNone;
+    const auto numberIfSampled = [this](Couple c) {
+        return pile_ != nullptr ? pile_->sampled.find(c) : detail::FlatSet::kNone;
     };
     for (const Couple c : asked_) {
-        if (mayPairNow(c) && numberIfEarly(c) == detail::FlatSet::kNone) {
+        if (mayPairNow(c) && numberIfSampled(c) == detail::FlatSet::kNone) {
             askedPairs_.push_back(pairOf(c));
         }
     }
@@ -52,9 +52,9 @@ void Pairs<Scalar>::ask(PairFilter filter) {
         filter(askedPairs_, std::span(accepted_).first(answers));
     }
     for (std::size_t i = asked_.size(); i-- > 0 && answers < asked_.size();) {
-        const std::uint32_t number = numberIfEarly(asked_[i]);
+        const std::uint32_t number = numberIfSampled(asked_[i]);
         if (number != detail::FlatSet::kNone) {
-            accepted_[i] = heap_->earlyAccepted[number];
+            accepted_[i] = pile_->sampledAccepted[number];
         } else {
             accepted_[i] = mayPairNow(asked_[i]) ? accepted_[--answers] : char{0};
         }
@@ -67,7 +67,7 @@ void Pairs<Scalar>::makeRoom(Told& told) {
     const auto refused =
         static_cast<std::size_t>(std::count(accepted_.begin(), accepted_.end(), 0));
     if (remembersPairs()) {
-        heap_->pairs.reserve(heap_->pairs.size() + asked_.size());
+        pile_->pairs.reserve(pile_->pairs.size() + asked_.size());
     } else if (refused > 0) {
         refused_.reserve(refused_.size() + refused);
     }
@@ -103,7 +103,7 @@ void Pairs<Scalar>::decide() noexcept {  // NOLINT(bugprone-exception-escape)
             }
         } else if (!wasPair) {
             if (remembersPairs()) {
-                heap_->pairs.findOrInsert(c);
+                pile_->pairs.findOrInsert(c);
             } else {
                 forgetRefused(c);
             }
@@ -131,7 +131,7 @@ bool Pairs<Scalar>::forgetRefused(Couple c) noexcept {
 template <class Scalar>
 void Pairs<Scalar>::lose(Couple c) noexcept {
     const bool wasPair =
-        remembersPairs() ? heap_->pairs.erase(c) != detail::FlatSet::kNone : !forgetRefused(c);
+        remembersPairs() ? pile_->pairs.erase(c) != detail::FlatSet::kNone : !forgetRefused(c);
     if (wasPair) {
         diedCouples_.push_back(c);
         --count_;

@@ -144,7 +144,7 @@ void Pairs<Scalar>::forAllKnown(VisitCouple visit) {
         std::for_each(couples.begin(), couples.end(), visit);
     }
     const std::span<const Couple> pairs =
-        remembersPairs() ? heap_->pairs.keys() : std::span<const Couple>();
+        remembersPairs() ? pile_->pairs.keys() : std::span<const Couple>();
     for (const Couple c : pairs) {  // that are kept
         if (!couldPair(c) && !announced_.contains(c) && !isSwept(c)) {
             visit(c);

@@ -31,7 +31,7 @@ std::size_t Pairs<Scalar>::memoryBytes() const noexcept {
            wokenBoxes_.capacity() * sizeof(detail::PaddedBox<Scalar>) +
            (wokenTable_ != nullptr ? sizeof(*wokenTable_) + wokenTable_->memoryBytes() : 0) +
            announced_.memoryBytes() + kept_.memoryBytes() + refused_.memoryBytes() +
-           refusedAtRest_.memoryBytes();
+           refusedAtRest_.memoryBytes() + (pile_ != nullptr ? pile_->memoryBytes() : 0);
 }
 
 template <class Scalar>
@@ -51,7 +51,7 @@ void Pairs<Scalar>::releaseUnusedMemory() noexcept {
     tableOfUpdate_ = tableOfUpdate_ == wokenTable_.get() ? nullptr : tableOfUpdate_;
     wokenTable_.reset();
     if (!remembersPairs()) {
-        heap_.reset();
+        pile_.reset();
     }
     // What is kept.
     swept_.shrink_to_fit();
@@ -63,11 +63,10 @@ void Pairs<Scalar>::releaseUnusedMemory() noexcept {
             couples->shrink();
         }
         announced_.shrink();
-        if (heap_ != nullptr) {
-            heap_->turned = {};
-            heap_->early = {};
-            heap_->earlyAccepted = {};
-            heap_->pairs.shrink();
+        if (pile_ != nullptr) {
+            detail::freeArrays(pile_->turned, pile_->sampledAccepted);
+            pile_->sampled = {};
+            pile_->pairs.shrink();
         }
     } catch (const std::bad_alloc&) {  // what is left is kept as it is
     }
@@ -77,9 +76,11 @@ template <class Scalar>
 void Pairs<Scalar>::releaseAfterPeak() noexcept {
     // Searches make room for some couples of each proxy.
     const std::size_t count = grid_.listedCount() + amongMobile_.size() + toResting_.size() +
-                              refusedCount() + announced_.size();
+                              refusedCount() + announced_.size() +
+                              (pile_ != nullptr ? pile_->pairs.size() : 0);
     const std::size_t room = amongMobile_.capacity() + toResting_.capacity() + refused_.capacity() +
-                             refusedAtRest_.capacity() + announced_.capacity();
+                             refusedAtRest_.capacity() + announced_.capacity() +
+                             (pile_ != nullptr ? pile_->pairs.capacity() : 0);
     if (peaks_.isPast(count, room)) {
         releaseUnusedMemory();
     }

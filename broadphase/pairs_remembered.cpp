@@ -37,17 +37,17 @@ std::size_t Pairs<Scalar>::mostCouples() const noexcept {
 }
 
 template <class Scalar>
-auto Pairs<Scalar>::heap() -> Heap& {
-    if (heap_ == nullptr) {
-        heap_ = std::make_unique<Heap>();
+auto Pairs<Scalar>::pile() -> Pile& {
+    if (pile_ == nullptr) {
+        pile_ = std::make_unique<Pile>();
     }
-    return *heap_;
+    return *pile_;
 }
 
 // Where many share a cell, a sample of what overlaps tells what the filter says to all of it. What is asked
 // for that is not asked again.
 template <class Scalar>
-bool Pairs<Scalar>::isRefusedHeap(PairFilter filter) {
+bool Pairs<Scalar>::doesRefuseMost(PairFilter filter) {
     constexpr std::uint32_t kMany = 128;
     const ProxyGroups* const groups = grid_.groupsOfAll();
     const detail::Table<Scalar>& mobile = grid_.mobile_;
@@ -55,7 +55,7 @@ bool Pairs<Scalar>::isRefusedHeap(PairFilter filter) {
     detail::KernelCost cost;
     double refused = 0;
     if (std::max(detail::mostTogether(mobile), detail::mostTogether(resting)) > kMany) {
-        static_cast<void>(heap());
+        static_cast<void>(pile());
     }
     if (detail::mostTogether(mobile) > kMany) {
         const double weight = sampleOverlaps(mobile, cost);
@@ -118,8 +118,8 @@ double Pairs<Scalar>::countRefused(PairFilter filter, double weight) {
     if (weight * static_cast<double>(asked_.size()) > kPart) {
         ask(filter);
         for (std::size_t i = 0; i < asked_.size(); ++i) {
-            heap_->early.findOrInsert(asked_[i]);
-            heap_->earlyAccepted.push_back(accepted_[i]);
+            pile_->sampled.findOrInsert(asked_[i]);
+            pile_->sampledAccepted.push_back(accepted_[i]);
             refused += accepted_[i] == 0 ? 1 : 0;
         }
     }
@@ -137,9 +137,9 @@ void Pairs<Scalar>::chooseSide(bool isUpdated) noexcept {
             if (refusedCount() + announced_.size() > mostCouples() && !grid_.isTorn_) {
                 rememberPairs();
             }
-        } else if (isUpdated && cost_.grid.changed > 0 && --heap_->updatesUntilLook == 0) {
-            heap_->updatesOfLook = std::min(2 * heap_->updatesOfLook, kSeldom);
-            heap_->updatesUntilLook = heap_->updatesOfLook;
+        } else if (isUpdated && cost_.grid.changed > 0 && --pile_->updatesUntilLook == 0) {
+            pile_->lookInterval = std::min(2 * pile_->lookInterval, kSeldom);
+            pile_->updatesUntilLook = pile_->lookInterval;
             rememberRefusedIfFew();
         }
     } catch (const std::bad_alloc&) {  // what is remembered so far will do
@@ -167,10 +167,11 @@ void Pairs<Scalar>::rememberPairs() {
             pairs.findOrInsert(c);
         }
     });
-    heap().pairs = std::move(pairs);
-    heap_->hasPairs = true;
-    heap_->updatesUntilLook = 1;
-    heap_->updatesOfLook = 1;
+    pile().pairs = std::move(pairs);
+    pile_->hasPairs = true;
+    // Seldomer each time, should it go to and fro.
+    pile_->lookInterval = std::max(pile_->lookInterval, 1U);
+    pile_->updatesUntilLook = pile_->lookInterval;
     forgetWatched();
 }
 
@@ -181,6 +182,7 @@ void Pairs<Scalar>::rememberRefusedIfFew() {
     detail::KernelCost cost;
     for (const detail::Table<Scalar>* table : {&grid_.mobile_, &grid_.resting_}) {
         const double weight = table->size() > 0 ? sampleOverlaps(*table, cost) : 0;
+        cost_.boxesTested += std::exchange(cost, {}).boxesTested;
         if (weight * static_cast<double>(selected_.size()) > static_cast<double>(most)) {
             return;
         }
@@ -199,6 +201,7 @@ void Pairs<Scalar>::rememberRefusedIfFew() {
     detail::walkTable(grid_.resting_, grid_.mobile_.columns(), grid_.mobile_.size(), serialFor,
                       parts_, carried_, cost, groups != nullptr ? &view : nullptr);
     detail::joinTable(grid_.resting_, serialFor, parts_, selected_, cost, groups);
+    cost_.boxesTested += cost.boxesTested;
     const auto refuse = [this](Couple c) {
         if (!isRemembered(c)) {
             refused_.findOrInsert(c);
@@ -216,13 +219,13 @@ void Pairs<Scalar>::rememberRefusedIfFew() {
         refuse(couple(grid_.resting_.slot(a), grid_.resting_.slot(b)));
     }
     std::for_each(swept_.begin(), swept_.end(), refuse);
-    for (const Couple c : heap_->pairs.keys()) {
+    for (const Couple c : pile_->pairs.keys()) {
         if (!mayPairNow(c) && overlapNow(c)) {
             kept_.findOrInsert(c);
         }
     }
-    heap_->hasPairs = false;
-    heap_->pairs = {};
+    pile_->hasPairs = false;
+    pile_->pairs = {};
 }
 
 template <class Scalar>
@@ -250,8 +253,8 @@ void Pairs<Scalar>::findChangesOfPairs(PairFilter filter, ParallelFor parallelFo
             }
         }
     }
-    cost_.couplesWatched = heap_->pairs.size();
-    for (const Couple c : heap_->pairs.keys()) {
+    cost_.couplesWatched = pile_->pairs.size();
+    for (const Couple c : pile_->pairs.keys()) {
         if (!overlapNow(c) && !std::binary_search(sweptNow_.begin(), sweptNow_.end(), c)) {
             lost_.push_back(c);
         }
@@ -302,7 +305,7 @@ void Pairs<Scalar>::askInParts(PairFilter filter, std::size_t size) {
     ask(filter);
     for (std::size_t i = 0; i < asked_.size(); ++i) {
         if ((accepted_[i] != 0) != isRemembered(asked_[i])) {
-            heap_->turned.push_back(asked_[i]);
+            pile_->turned.push_back(asked_[i]);
         }
     }
     asked_.clear();
@@ -313,7 +316,7 @@ void Pairs<Scalar>::askInParts(PairFilter filter, std::size_t size) {
 // As if only what the answers change had been asked.
 template <class Scalar>
 void Pairs<Scalar>::takeTurned() {
-    asked_.swap(heap_->turned);
+    asked_.swap(pile_->turned);
     sortCouples(asked_);
     asked_.erase(std::unique(asked_.begin(), asked_.end()), asked_.end());
     accepted_.clear();
@@ -326,11 +329,11 @@ void Pairs<Scalar>::takeTurned() {
     }
 }
 
-template bool Pairs<float>::isRefusedHeap(PairFilter);
+template bool Pairs<float>::doesRefuseMost(PairFilter);
 template double Pairs<float>::countRefused(PairFilter, double);
 template double Pairs<float>::sampleOverlaps(const detail::Table<float>&, detail::KernelCost&);
 template void Pairs<float>::rememberRefusedIfFew();
-template auto Pairs<float>::heap() -> Heap&;
+template auto Pairs<float>::pile() -> Pile&;
 template void Pairs<float>::askAboutChanged(PairFilter);
 template void Pairs<float>::chooseSide(bool) noexcept;
 template void Pairs<float>::forgetWatched() noexcept;
@@ -339,11 +342,11 @@ template void Pairs<float>::rememberPairs();
 template void Pairs<float>::findChangesOfPairs(PairFilter, ParallelFor);
 template void Pairs<float>::askInParts(PairFilter, std::size_t);
 template void Pairs<float>::takeTurned();
-template bool Pairs<double>::isRefusedHeap(PairFilter);
+template bool Pairs<double>::doesRefuseMost(PairFilter);
 template double Pairs<double>::countRefused(PairFilter, double);
 template double Pairs<double>::sampleOverlaps(const detail::Table<double>&, detail::KernelCost&);
 template void Pairs<double>::rememberRefusedIfFew();
-template auto Pairs<double>::heap() -> Heap&;
+template auto Pairs<double>::pile() -> Pile&;
 template void Pairs<double>::askAboutChanged(PairFilter);
 template void Pairs<double>::chooseSide(bool) noexcept;
 template void Pairs<double>::forgetWatched() noexcept;

@@ -36,7 +36,7 @@ void Pairs<Scalar>::collect(std::vector<ProxyPair>& pairs) const {
         }
     };
     if (remembersPairs()) {
-        const std::span<const Couple> couples = heap_->pairs.keys();
+        const std::span<const Couple> couples = pile_->pairs.keys();
         std::for_each(couples.begin(), couples.end(), add);
     } else {
         forEachOverlap([&](std::uint32_t a, std::uint32_t b) { add(couple(a, b)); });
@@ -49,7 +49,7 @@ void Pairs<Scalar>::collect(std::vector<ProxyPair>& pairs) const {
 template <class Scalar>
 std::string Pairs<Scalar>::validate() const {
     if (remembersPairs()) {
-        const std::span<const Couple> couples = heap_->pairs.keys();
+        const std::span<const Couple> couples = pile_->pairs.keys();
         const auto meet = [this](Couple c) { return overlapNow(c) || isSwept(c); };
         return count_ == couples.size() && std::all_of(couples.begin(), couples.end(), meet)
                    ? std::string()

@@ -14,6 +14,8 @@
 #include <cstdint>
 #include <span>
 
+#include <broadphase/detail/hide_macros.hpp>
+
 namespace hashphase::detail {
 
 /// How many entries of the table share a cell, or its list, at most.
@@ -85,3 +87,5 @@ void forOverlaps(const Columns<Scalar>& queries, std::uint32_t count, const Tabl
 }
 
 }  // namespace hashphase::detail
+
+#include <broadphase/detail/restore_macros.hpp>

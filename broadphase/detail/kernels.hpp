@@ -19,6 +19,8 @@
 #include <utility>
 #include <vector>
 
+#include <broadphase/detail/hide_macros.hpp>
+
 namespace hashphase::detail {
 
 enum class InstructionSet { scalar, sse2, avx2, avx512 };
@@ -148,3 +150,5 @@ void findInBlocks(const Search& search, const Use& use) {
 }
 
 }  // namespace hashphase::detail
+
+#include <broadphase/detail/restore_macros.hpp>

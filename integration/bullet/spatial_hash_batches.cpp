@@ -7,6 +7,10 @@
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
+#include <algorithm>
+#include <iterator>
+#include <vector>
+
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 namespace {
 
@@ -49,8 +53,15 @@ void SpatialHashBroadphase::setAabbs(std::span<btBroadphaseProxy* const> proxies
 void SpatialHashBroadphase::destroyProxies(std::span<btBroadphaseProxy* const> proxies,
                                            btDispatcher* dispatcher) {
     checkMayChange();
-    for (btBroadphaseProxy* proxy : proxies) {
-        static_cast<void>(checkedProxy(proxy));
+    const auto isDestroyed = [this](btBroadphaseProxy* proxy) {
+        return checkedProxy(proxy)->id.isNull();
+    };
+    if (std::any_of(proxies.begin(), proxies.end(), isDestroyed)) {
+        std::vector<btBroadphaseProxy*> others;
+        std::remove_copy_if(proxies.begin(), proxies.end(), std::back_inserter(others),
+                            isDestroyed);
+        destroyProxies(others, dispatcher);
+        return;
     }
     if (batchCache_ != nullptr) {
         try {

@@ -58,6 +58,7 @@ SpatialHashBroadphase::SpatialHashBroadphase(std::nullptr_t, const SpatialHashCo
 SpatialHashBroadphase::SpatialHashBroadphase(PairCache* pairCache, const SpatialHashConfig& config)
     : SpatialHashBroadphase(static_cast<btOverlappingPairCache*>(pairCache), config) {
     batchCache_ = pairCache != nullptr ? pairCache : ownCache_.get();
+    groupsDecide_ = doGroupsDecide();
 }
 
 SpatialHashBroadphase::SpatialHashBroadphase(btOverlappingPairCache* pairCache,
@@ -119,14 +120,16 @@ btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
 void SpatialHashBroadphase::destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
     checkMayChange();
     Proxy* const own = checkedProxy(proxy);
-    if (own->id.isNull()) {  // destroyed before
-        return;
+    if (!own->id.isNull()) {  // else destroyed before
+        pairCache_->removeOverlappingPairsContainingProxy(own, dispatcher);
+        removeFromGrid(own);
     }
-    pairCache_->removeOverlappingPairsContainingProxy(own, dispatcher);
-    removeFromGrid(own);
 }
 
 void SpatialHashBroadphase::removeFromGrid(Proxy* proxy) {
+    if (proxy->id.isNull()) {  // destroyed before
+        return;
+    }
     grid_.remove(proxy->id);
     noteUnseen(*proxy);
     if (proxy->client == Client::ghost) {

@@ -10,7 +10,8 @@
 //     hashphase::SpatialHashBroadphase broadphase;
 //
 // What changes: pairs are exact (no fat boxes, no stale pairs) and are made and removed in
-// calculateOverlappingPairs() only, but for ghost objects, which have theirs at once.
+// calculateOverlappingPairs() only, but for those of ghost objects and of what is created where one
+// stands: these come at once.
 //
 // Batches   createProxies(), setAabbs() and destroyProxies() do what as many single calls do, at less
 //           cost.
@@ -62,9 +63,10 @@ struct SpatialHashConfig {
     GridConfig grid{};
 
     /// Ghost objects get their pairs at once, in createProxy() and setAabb(), as Bullet's character
-    /// controller expects, and so does what is created where a ghost stands, wherever the pair cache has an internal ghost pair callback, through which
-    /// ghosts hear of pairs. (A cache that is not given as a PairCache counts as having one.) To find
-    /// them, a client that may have pairs is taken for a btCollisionObject then, in calls that hand in a
+    /// controller expects, wherever the pair cache has an internal ghost pair callback, through which
+    /// ghosts hear of pairs. (A cache that is not given as a PairCache counts as having one.) What is
+    /// created where a ghost stands gets all of its pairs at once as well, so that the ghost hears of
+    /// it. To find ghosts, a client that may have pairs is taken for a btCollisionObject then, in calls that hand in a
     /// dispatcher, as a btCollisionWorld's do. False is for programs whose clients are something else.
     bool eagerGhosts = true;
 

@@ -8,8 +8,8 @@
 //     configurator.apply({.rotation = false, .friction = false});
 //
 // effect     without it                                       what is lost
-// restingBoxes  setForceUpdateAllAabbs(false)                 who moves a body that is static or asleep by
-//                                                             hand calls updateSingleAabb()
+// resting    setForceUpdateAllAabbs(false)                    who moves a body that is static or asleep by
+//   Boxes                                                    hand calls updateSingleAabb()
 // pairs      an overlap filter that refuses every pair        contacts, ghost objects' lists, response,
 //                                                             sweep; rays and sweeps by hand are not
 // response   CF_NO_CONTACT_RESPONSE on every object           bodies fall through each other; contacts are
@@ -85,7 +85,8 @@ struct WorldEffects {
     /// Convex bodies that move by more than this share of the smallest edge of their shape's box in a step
     /// are swept; without it those with CCD thresholds of their own. Up to 0.5 nothing passes a thin
     /// wall; from there on who moves by more than half its width, and is not swept, may have its
-    /// middle beyond the wall when Bullet sees it, and is pushed out on the far side. Cost: a cast for each of them, twice a step.
+    /// middle beyond the wall when Bullet sees it, and is pushed out on the far side. Cost: a cast for
+    /// each of them, twice a step.
     std::optional<btScalar> fastFrom{};
 
     /// Bodies slower than this may fall asleep [m/s]; without it each has its own threshold.

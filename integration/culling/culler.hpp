@@ -59,8 +59,8 @@ public:
     /// removed since (Grid::populationNumber()), and nothing can have come in. `moved` [m] says how far any
     /// corner of a box of the grid may have moved since the last call; infinite when nobody knows, or
     /// the filter has changed. A Touch::byPlanes region takes less time than an exact one; of one for
-    /// what lies inside no set is kept. Returns the query's cost, none when the set was kept. Cost: the cells at the surface of the
-    /// volume; at most one test for each proxy (Grid::visit()).
+    /// what lies inside no set is kept. Returns the query's cost, none when the set was kept. Cost: the
+    /// cells at the surface of the volume; at most one test for each proxy (Grid::visit()).
     QueryCost look(const Grid<Scalar>& grid, const View& view,
                    Scalar moved = std::numeric_limits<Scalar>::infinity());
     QueryCost look(const Grid<Scalar>& grid, const View& view, ProxyFilter filter,

@@ -190,8 +190,8 @@ TYPED_TEST(PairsOfRefusedCrowds, EqualBruteForceWhereTheyComeToRestOneByOne) {
 }
 
 /// So many in one place, of which the filter lets none pair.
-struct Heap {
-    explicit Heap(std::uint32_t count) {
+struct RefusedPileWorld {
+    explicit RefusedPileWorld(std::uint32_t count) {
         for (std::uint32_t i = 0; i < count; ++i) {
             ids.push_back(grid.add(box));
         }
@@ -213,118 +213,156 @@ struct Heap {
     std::size_t bytesOfBoxes = 0;
 };
 
-TEST(RefusedHeap, TakesNoMemoryBeyondItsBoxes) {
+TEST(RefusedPile, TakesNoMemoryBeyondItsBoxes) {
     constexpr std::uint32_t kCount = 4000;
-    Heap heap(kCount);
+    RefusedPileWorld pile(kCount);
     for (int i = 0; i < 3; ++i) {
-        heap.update();
-        EXPECT_LT(heap.pairs.memoryBytes(), std::size_t{4} << 20);
+        pile.update();
+        EXPECT_LT(pile.pairs.memoryBytes(), std::size_t{4} << 20);
     }
-    EXPECT_EQ(heap.asked, std::size_t{kCount} * (kCount - 1) / 2);
-    heap.pairs.releaseUnusedMemory();
-    EXPECT_LT(heap.pairs.memoryBytes(), std::size_t{128} << 10);
+    EXPECT_EQ(pile.asked, std::size_t{kCount} * (kCount - 1) / 2);
+    pile.pairs.releaseUnusedMemory();
+    EXPECT_LT(pile.pairs.memoryBytes(), std::size_t{128} << 10);
 }
 
-TEST(RefusedHeap, AsksAboutWhatHasChangedOnly) {
+TEST(RefusedPile, CountsThePairsItRemembersAndGivesBackTheirRoomWhenTheyHaveGone) {
+    constexpr std::uint32_t kCount = 1500;
+    RefusedPileWorld pile(kCount);
+    pile.accept = [](ProxyId a, ProxyId /*b*/) { return a.index < 200; };
+    pile.update();
+    ASSERT_TRUE(pile.pairs.remembersPairs());
+    const std::size_t many = pile.pairs.count();
+    ASSERT_GT(many, 200'000U);
+    pile.pairs.releaseUnusedMemory();
+    EXPECT_GT(pile.pairs.memoryBytes(), 15 * many);
+    EXPECT_LT(pile.pairs.memoryBytes(), 40 * many);
+    pile.accept = [](ProxyId, ProxyId) { return false; };
+    pile.pairs.refilterAll(pile.accept);
+    EXPECT_EQ(pile.pairs.count(), 0U);
+    for (int i = 0; i < 300; ++i) {
+        pile.grid.move(pile.ids[5], makeBox<float>(0, 0, 0, 1, 1, 1 + 0.001 * i));
+        pile.update();
+    }
+    EXPECT_TRUE(pile.pairs.remembersPairs());
+    EXPECT_LT(pile.pairs.memoryBytes(), 2 * many);
+}
+
+TEST(RefusedPile, RefiltersAFewAtTheirOwnCost) {
+    constexpr std::uint32_t kCount = 1000;
+    RefusedPileWorld pile(kCount);
+    pile.update();
+    ASSERT_TRUE(pile.pairs.remembersPairs());
+    std::size_t asked = 0;
+    const auto acceptAndCount = [&](ProxyId, ProxyId) {
+        ++asked;
+        return true;
+    };
+    const std::array ids{pile.ids[3], pile.ids[7], pile.ids[3]};
+    EXPECT_EQ(pile.pairs.refilter(ids, acceptAndCount).born.size(), 2 * kCount - 3);
+    EXPECT_EQ(asked, 2 * kCount - 3) << "each once";
+    EXPECT_EQ(pile.pairs.validate(), "");
+}
+
+TEST(RefusedPile, AsksAboutWhatHasChangedOnly) {
     constexpr std::uint32_t kCount = 2000;
-    Heap heap(kCount);
-    heap.update();
+    RefusedPileWorld pile(kCount);
+    pile.update();
     for (const bool isBack : {false, true, false}) {
-        heap.asked = 0;
-        heap.grid.move(heap.ids[5], isBack ? heap.box : makeBox<float>(9, 0, 0, 10, 1, 1));
-        heap.update();
-        EXPECT_EQ(heap.asked, isBack ? kCount - 1 : 0U);
-        EXPECT_EQ(heap.pairs.validate(), "");
+        pile.asked = 0;
+        pile.grid.move(pile.ids[5], isBack ? pile.box : makeBox<float>(9, 0, 0, 10, 1, 1));
+        pile.update();
+        EXPECT_EQ(pile.asked, isBack ? kCount - 1 : 0U);
+        EXPECT_EQ(pile.pairs.validate(), "");
     }
 }
 
-TEST(RefusedHeap, BeginsAndEndsPairsByRefilter) {
+TEST(RefusedPile, BeginsAndEndsPairsByRefilter) {
     constexpr std::uint32_t kCount = 300;
-    Heap heap(kCount);
-    heap.update();
-    ASSERT_TRUE(heap.pairs.remembersPairs());
-    heap.accept = [&](ProxyId a, ProxyId /*b*/) { return a == heap.ids[0]; };
-    const auto filter = [&](ProxyId a, ProxyId b) { return heap.accept(a, b); };
-    EXPECT_EQ(heap.pairs.refilter(heap.ids[3], filter).born.size(), 1U);
-    EXPECT_EQ(heap.pairs.refilterAll(filter).born.size(), kCount - 2);
-    EXPECT_EQ(heap.pairs.count(), kCount - 1);
-    heap.grid.remove(heap.ids[9]);
-    EXPECT_EQ(heap.update().died.size(), 1U);
-    heap.accept = [](ProxyId, ProxyId) { return false; };
-    EXPECT_EQ(heap.pairs.refilterAll(filter).died.size(), kCount - 2);
-    EXPECT_EQ(heap.pairs.validate(), "");
+    RefusedPileWorld pile(kCount);
+    pile.update();
+    ASSERT_TRUE(pile.pairs.remembersPairs());
+    pile.accept = [&](ProxyId a, ProxyId /*b*/) { return a == pile.ids[0]; };
+    const auto filter = [&](ProxyId a, ProxyId b) { return pile.accept(a, b); };
+    EXPECT_EQ(pile.pairs.refilter(pile.ids[3], filter).born.size(), 1U);
+    EXPECT_EQ(pile.pairs.refilterAll(filter).born.size(), kCount - 2);
+    EXPECT_EQ(pile.pairs.count(), kCount - 1);
+    pile.grid.remove(pile.ids[9]);
+    EXPECT_EQ(pile.update().died.size(), 1U);
+    pile.accept = [](ProxyId, ProxyId) { return false; };
+    EXPECT_EQ(pile.pairs.refilterAll(filter).died.size(), kCount - 2);
+    EXPECT_EQ(pile.pairs.validate(), "");
 }
 
-// A heap of pairs is asked in parts once; what follows is as fast as ever.
-TEST(RefusedHeap, WhoseRefusedAreFewRemembersThem) {
-    Heap heap(300);
-    heap.accept = [](ProxyId, ProxyId) { return true; };
-    EXPECT_EQ(heap.update().born.size(), 300U * 299 / 2);
-    EXPECT_FALSE(heap.pairs.remembersPairs());
-    EXPECT_EQ(heap.pairs.validate(), "");
-    heap.asked = 0;
-    heap.grid.move(heap.ids[7], makeBox<float>(0.5F, 0, 0, 1.5F, 1, 1));
-    EXPECT_TRUE(heap.update().born.empty());
-    EXPECT_EQ(heap.asked, 0U);
+// A pile of pairs is asked in parts once; what follows is as fast as ever.
+TEST(RefusedPile, WhoseRefusedAreFewRemembersThem) {
+    RefusedPileWorld pile(300);
+    pile.accept = [](ProxyId, ProxyId) { return true; };
+    EXPECT_EQ(pile.update().born.size(), 300U * 299 / 2);
+    EXPECT_FALSE(pile.pairs.remembersPairs());
+    EXPECT_EQ(pile.pairs.validate(), "");
+    pile.asked = 0;
+    pile.grid.move(pile.ids[7], makeBox<float>(0.5F, 0, 0, 1.5F, 1, 1));
+    EXPECT_TRUE(pile.update().born.empty());
+    EXPECT_EQ(pile.asked, 0U);
 }
 
-TEST(RefusedHeap, OfWhichPairsAreAnnouncedIsBounded) {
-    Heap heap(0);
+TEST(RefusedPile, OfWhichPairsAreAnnouncedIsBounded) {
+    RefusedPileWorld pile(0);
     constexpr std::uint32_t kCount = 2000;
     std::size_t asked = 0;
     for (std::uint32_t i = 0; i < kCount; ++i) {
-        heap.ids.push_back(heap.grid.add(heap.box));
-        heap.pairs.announce(heap.ids.back(), [&](ProxyId, ProxyId) {
+        pile.ids.push_back(pile.grid.add(pile.box));
+        pile.pairs.announce(pile.ids.back(), [&](ProxyId, ProxyId) {
             ++asked;
             return false;
         });
     }
     EXPECT_GE(asked, std::size_t{kCount} * (kCount - 1) / 2);
-    EXPECT_LT(heap.pairs.memoryBytes(), std::size_t{6} << 20);
-    heap.update();
-    EXPECT_EQ(heap.pairs.validate(), "");
-    EXPECT_EQ(heap.pairs.count(), 0U);
+    EXPECT_LT(pile.pairs.memoryBytes(), std::size_t{6} << 20);
+    pile.update();
+    EXPECT_EQ(pile.pairs.validate(), "");
+    EXPECT_EQ(pile.pairs.count(), 0U);
 }
 
-TEST(RefusedHeap, IsRepeatedWhereMemoryRunsOut) {
+TEST(RefusedPile, IsRepeatedWhereMemoryRunsOut) {
     if (!kCountsAllocations) {
         GTEST_SKIP() << "this program has another `new`";
     }
     const std::size_t failures = runOutOfMemory(
         [] {
-            auto heap = std::make_unique<Heap>(90);
-            heap->accept = [](ProxyId a, ProxyId b) { return (a.index + b.index) % 16 == 0; };
-            heap->update();
+            auto pile = std::make_unique<RefusedPileWorld>(90);
+            pile->accept = [](ProxyId a, ProxyId b) { return (a.index + b.index) % 16 == 0; };
+            pile->update();
             for (std::uint32_t i = 0; i < 90; i += 3) {
-                heap->grid.move(heap->ids[i], makeBox<float>(0.25F, 0, 0, 1.25F, 1, 1));
+                pile->grid.move(pile->ids[i], makeBox<float>(0.25F, 0, 0, 1.25F, 1, 1));
             }
             for (int i = 0; i < 60; ++i) {
-                heap->ids.push_back(heap->grid.add(heap->box));
+                pile->ids.push_back(pile->grid.add(pile->box));
             }
-            heap->grid.remove(heap->ids[1]);
-            return heap;
+            pile->grid.remove(pile->ids[1]);
+            return pile;
         },
-        [](Heap& heap) {
-            heap.update();
-            heap.grid.move(heap.ids[2], makeBox<float>(5, 0, 0, 6, 1, 1));
-            heap.update();
+        [](RefusedPileWorld& pile) {
+            pile.update();
+            pile.grid.move(pile.ids[2], makeBox<float>(5, 0, 0, 6, 1, 1));
+            pile.update();
         },
-        [](Heap& heap, std::size_t) {
-            heap.update();
-            heap.update();
-            EXPECT_EQ(heap.pairs.validate(), "");
+        [](RefusedPileWorld& pile, std::size_t) {
+            pile.update();
+            pile.update();
+            EXPECT_EQ(pile.pairs.validate(), "");
             std::size_t expected = 0;
-            for (std::size_t a = 0; a < heap.ids.size(); ++a) {
-                for (std::size_t b = a + 1; b < heap.ids.size(); ++b) {
+            for (std::size_t a = 0; a < pile.ids.size(); ++a) {
+                for (std::size_t b = a + 1; b < pile.ids.size(); ++b) {
                     expected +=
-                        heap.grid.contains(heap.ids[a]) && heap.grid.contains(heap.ids[b]) &&
-                                overlaps(heap.grid.box(heap.ids[a]), heap.grid.box(heap.ids[b])) &&
-                                heap.accept(heap.ids[a], heap.ids[b])
+                        pile.grid.contains(pile.ids[a]) && pile.grid.contains(pile.ids[b]) &&
+                                overlaps(pile.grid.box(pile.ids[a]), pile.grid.box(pile.ids[b])) &&
+                                pile.accept(pile.ids[a], pile.ids[b])
                             ? 1
                             : 0;
                 }
             }
-            EXPECT_EQ(heap.pairs.count(), expected);
+            EXPECT_EQ(pile.pairs.count(), expected);
         });
     EXPECT_GE(failures, 30U);
 }

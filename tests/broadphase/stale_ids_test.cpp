@@ -57,10 +57,11 @@ TEST_F(StaleIds, ChangeNobodyWithoutAssertions) {
         sweeps.set(id, Vector3<double>(9, 0, 0));
         EXPECT_TRUE(grid.groups(id) == ProxyGroups{});
         EXPECT_TRUE(hasNan(grid.box(id)));
+        static_cast<void>(grid.cellsOf(id));
         EXPECT_TRUE(hasNan(sweeps.motion(id).box));
         EXPECT_TRUE(pairs.announce(id, acceptAllPairs).born.empty());
         EXPECT_TRUE(pairs.refilter(id, refuse).died.empty());
-        calls += 9;
+        calls += 10;
     }
     EXPECT_TRUE(pairs.refilter(stale, refuse).died.empty());
     EXPECT_GE(caught.count(), HASHPHASE_ENABLE_ASSERTS ? calls : 0);

@@ -198,7 +198,7 @@ std::string BulletStage::faultOf(const SceneEffects& effects) const {
 
 void BulletStage::follow(const SceneEffects& before) {
     observers_.declare(effects());
-    world_->configurator().apply(worldEffectsOf(effects()));
+    world_->apply(worldEffectsOf(effects()));
     if (effects().grid != before.grid) {
         fileAnew(*kind_);
     }

@@ -14,6 +14,13 @@ BulletWorld::BulletWorld(const BroadphaseKind& kind, const WorldSceneKind& scene
       contents_(world_) {
     scene.fill(contents_, objects, seed);
     configurator_ = std::make_unique<WorldConfigurator>(world_);
+    apply({});
+}
+
+// Nobody moves what rests by hand.
+void BulletWorld::apply(WorldEffects effects) {
+    effects.restingBoxes = false;
+    configurator_->apply(effects);
 }
 
 std::uint64_t BulletWorld::memoryBytes() const noexcept {

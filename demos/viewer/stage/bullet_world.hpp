@@ -25,6 +25,8 @@ public:
     [[nodiscard]] ObservedWorld& world() noexcept { return world_; }
     [[nodiscard]] const WorldContents& contents() const noexcept { return contents_; }
     [[nodiscard]] WorldConfigurator& configurator() noexcept { return *configurator_; }
+    /// Sets what Bullet computes.
+    void apply(WorldEffects effects);
     [[nodiscard]] btBroadphaseInterface& broadphase() noexcept { return *broadphase_; }
 
     /// Of the broadphase.

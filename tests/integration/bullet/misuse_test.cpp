@@ -5,7 +5,12 @@
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 #include <tests/support/handlers.hpp>
 
+#include <BulletCollision/CollisionDispatch/btGhostObject.h>
+#include <btBulletCollisionCommon.h>
 #include <gtest/gtest.h>
+
+#include <array>
+#include <vector>
 
 namespace hashphase::test {
 namespace {
@@ -122,6 +127,31 @@ TEST(BroadphaseMisuse, OfProxiesThatAreNotAliveChangesNobodyWithoutAssertions) {
     }
     EXPECT_EQ(broadphase.validate(), "");
     EXPECT_GE(caught.count(), HASHPHASE_ENABLE_ASSERTS ? 5 : 0);
+}
+
+TEST(BroadphaseMisuse, OfProxiesThatAreNotAliveInABatchChangesNobodyWithoutAssertions) {
+    const CaughtAsserts caught;
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher(&configuration);
+    btGhostPairCallback ghostCallback;
+    SpatialHashBroadphase broadphase;
+    broadphase.getOverlappingPairCache()->setInternalGhostPairCallback(&ghostCallback);
+    std::vector<btGhostObject> ghosts(3);
+    std::vector<btBroadphaseProxy*> proxies;
+    for (btGhostObject& ghost : ghosts) {
+        proxies.push_back(
+            broadphase.createProxy({0, 0, 0}, {1, 1, 1}, 0, &ghost, 1, -1, &dispatcher));
+        ghost.setBroadphaseHandle(proxies.back());
+    }
+    broadphase.destroyProxies(std::array{proxies[2], proxies[2]}, &dispatcher);
+    broadphase.destroyProxies(std::array{proxies[2]}, &dispatcher);
+    broadphase.destroyProxy(proxies[2], &dispatcher);
+    broadphase.calculateOverlappingPairs(&dispatcher);
+    EXPECT_EQ(broadphase.getOverlappingPairCache()->getNumOverlappingPairs(), 1);
+    EXPECT_EQ(broadphase.validate(), "");
+    EXPECT_GE(caught.count(), HASHPHASE_ENABLE_ASSERTS ? 2 : 0);
+    broadphase.destroyProxies(std::array{proxies[2], proxies[0], proxies[1]}, &dispatcher);
+    EXPECT_EQ(broadphase.grid().size(), 0U);
 }
 
 TEST(BroadphaseMisuse, OfRaysWithoutACallbackIsAsserted) {
