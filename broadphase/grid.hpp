@@ -163,7 +163,7 @@ public:
     /// rounds least: a kilometre, say, or 1024 m, towards where things are.) Queries see it at once.
     /// Returns how many boxes were rounded. A shift that is not finite is asserted, and does nothing.
     /// Everything else that has coordinates of its own is for the caller to shift: regions, zones,
-    /// terrains. Where it throws, for want of memory, nothing has changed. Cost: up to three passes
+    /// terrains, Sweeps with boxes of their own. Where it throws, for want of memory, nothing has changed. Cost: up to three passes
     /// over all boxes; when cells had to change, an update(), or the next one's.
     std::size_t shiftOrigin(const Point& shift);
 
@@ -350,10 +350,13 @@ private:
         // Filed since the last change, so that nothing waits, what sweeps with the rest.
         bool isFresh;
 
-        [[nodiscard]] std::span<const Filing> filings() const noexcept {
+        // Not of a Reading that ends with the expression.
+        std::span<const Filing> filings() const&& = delete;
+        std::span<const Filing> standing() const&& = delete;
+        [[nodiscard]] std::span<const Filing> filings() const& noexcept {
             return std::span(all).first(isFresh || all[2].table == nullptr ? 2 : 3);
         }
-        [[nodiscard]] std::span<const Filing> standing() const noexcept {
+        [[nodiscard]] std::span<const Filing> standing() const& noexcept {
             return std::span(all).first(2);
         }
     };

@@ -194,7 +194,8 @@ template <class Scalar>
 UpdateCost Grid<Scalar>::endUpdate() noexcept {
     cost_.resting = resting_.size() - restingErased_;
     double finest = std::numeric_limits<double>::infinity();
-    for (const Filing& filing : presentReading().filings()) {
+    const Reading reading = presentReading();
+    for (const Filing& filing : reading.filings()) {
         cost_.largestCell = std::max(cost_.largestCell, filing.table->largestCell());
         finest = std::min(finest, filing.table->finestCellSize());
     }
