@@ -163,8 +163,8 @@ public:
     /// rounds least: a kilometre, say, or 1024 m, towards where things are.) Queries see it at once.
     /// Returns how many boxes were rounded. A shift that is not finite is asserted, and does nothing.
     /// Everything else that has coordinates of its own is for the caller to shift: regions, zones,
-    /// terrains, Sweeps with boxes of their own. Where it throws, for want of memory, nothing has changed. Cost: up to three passes
-    /// over all boxes; when cells had to change, an update(), or the next one's.
+    /// terrains, Sweeps with boxes of their own. Where it throws, for want of memory, nothing has changed.
+    /// Cost: up to three passes over all boxes; when cells had to change, an update(), or the next one's.
     std::size_t shiftOrigin(const Point& shift);
 
     [[nodiscard]] bool contains(ProxyId id) const noexcept;

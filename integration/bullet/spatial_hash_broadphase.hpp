@@ -66,8 +66,9 @@ struct SpatialHashConfig {
     /// controller expects, wherever the pair cache has an internal ghost pair callback, through which
     /// ghosts hear of pairs. (A cache that is not given as a PairCache counts as having one.) What is
     /// created where a ghost stands gets all of its pairs at once as well, so that the ghost hears of
-    /// it. To find ghosts, a client that may have pairs is taken for a btCollisionObject then, in calls that hand in a
-    /// dispatcher, as a btCollisionWorld's do. False is for programs whose clients are something else.
+    /// it. To find ghosts, a client that may have pairs is taken for a btCollisionObject then, in calls
+    /// that hand in a dispatcher, as a btCollisionWorld's do. False is for programs whose clients are
+    /// something else.
     bool eagerGhosts = true;
 
     /// Proxies of these groups get theirs at once as well; none by default, for what a bit means is up

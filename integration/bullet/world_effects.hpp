@@ -8,8 +8,9 @@
 //     configurator.apply({.rotation = false, .friction = false});
 //
 // effect     without it                                       what is lost
-// resting    setForceUpdateAllAabbs(false)                    who moves a body that is static or asleep by
-//   Boxes                                                    hand calls updateSingleAabb()
+// restingBoxes
+//            setForceUpdateAllAabbs(false)                    who moves a body that is static or asleep by
+//                                                             hand calls updateSingleAabb()
 // pairs      an overlap filter that refuses every pair        contacts, ghost objects' lists, response,
 //                                                             sweep; rays and sweeps by hand are not
 // response   CF_NO_CONTACT_RESPONSE on every object           bodies fall through each other; contacts are
