@@ -430,8 +430,10 @@ private:
     }
     /// At the last update.
     [[nodiscard]] bool couldPair(std::uint32_t a, std::uint32_t b) const noexcept {
-        return groups_.empty() ||
-               mayPair(groups_[2 * std::size_t{a} + 1], groups_[2 * std::size_t{b} + 1]);
+        const auto groupsAtUpdate = [this](std::uint32_t slot) {
+            return groups_[2 * std::size_t{slot} + 1];
+        };
+        return groups_.empty() || mayPair(groupsAtUpdate(a), groupsAtUpdate(b));
     }
     /// For searches among all proxies: null where all may pair.
     [[nodiscard]] const ProxyGroups* groupsOfAll() const noexcept {

@@ -112,11 +112,12 @@ void Grid<Scalar>::fileFresh(Lock how) const {
     if (fresh_ == nullptr) {
         self.fresh_ = std::make_unique<LateTable>();
     }
+    LateTable& fresh = *self.fresh_;
     self.stage(serialFor, true);
-    fresh_->table.build(mobileSlots_, staged_, fixedSizes(), serialFor, groupsOfAll());
-    fresh_->tree.isStale.store(true, std::memory_order_relaxed);
+    fresh.table.build(mobileSlots_, staged_, fixedSizes(), serialFor, groupsOfAll());
+    fresh.tree.isStale.store(true, std::memory_order_relaxed);
     ++self.filingCount_;
-    self.cost_.filed += fresh_->table.size();
+    self.cost_.filed += fresh.table.size();
     self.isFresh_.store(true, std::memory_order_release);
 }
 

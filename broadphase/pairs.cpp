@@ -41,6 +41,18 @@ Pairs<Scalar>::Pairs(Grid<Scalar>& grid, Sweeps<Scalar>* sweeps) : grid_(grid), 
 }
 
 template <class Scalar>
+void Pairs<Scalar>::setSweeps(Sweeps<Scalar>* sweeps) {
+    HASHPHASE_ASSERT(sweeps == nullptr || &sweeps->grid_ == &grid_,
+                     "Sweeps and Pairs are of the same grid.");
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(&grid_),
+                     "Sweeps are not given within a query, or within the filter.");
+    if (sweeps != sweeps_) {
+        grid_.endSweeps();
+        sweeps_ = sweeps;
+    }
+}
+
+template <class Scalar>
 Pairs<Scalar>::~Pairs() {
     grid_.endSweeps();
     grid_.hasPairs_ = false;
@@ -179,9 +191,7 @@ bool Pairs<Scalar>::findChanges(PairFilter filter, ParallelFor parallelFor) {
         return false;
     }
     findBirths(someCameToRest, parallelFor);
-    if (sweeps_ != nullptr) {
-        findSwept(parallelFor);
-    }
+    findSwept(parallelFor);
     askRefusedAgain();
     return true;
 }

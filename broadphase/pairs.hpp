@@ -111,6 +111,11 @@ public:
     Pairs(const Pairs&) = delete;
     Pairs& operator=(const Pairs&) = delete;
 
+    /// Takes other sweeps for those given, or with nullptr none: pairs stay, and the next update() tells
+    /// what it changes. They are of the same grid, and this is not called within a query (both
+    /// asserted). What was given before is not used any more. Cost: O(proxies that swept).
+    void setSweeps(Sweeps<Scalar>* sweeps);
+
     /// Ends the frame: updates the grid and returns all pairs born and died since the last call.
     /// The result does not depend on `parallelFor`; the filter is asked on the caller's thread.
     /// Cost: follows what changed, and the pairs of what changed lately. Where more than 256 share a

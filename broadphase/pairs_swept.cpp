@@ -15,9 +15,12 @@ namespace hashphase {
 // lost nor new. What is asked about so far has come to overlap.
 template <class Scalar>
 void Pairs<Scalar>::findSwept(ParallelFor parallelFor) {
-    sweeps_->findContacts(parallelFor);
-    sweptNow_.assign(sweeps_->contacts().begin(), sweeps_->contacts().end());
     std::vector<Couple>& now = sweptNow_;
+    now.clear();
+    if (sweeps_ != nullptr) {
+        sweeps_->findContacts(parallelFor);
+        now.assign(sweeps_->contacts().begin(), sweeps_->contacts().end());
+    }
     if (now.empty() && swept_.empty()) {
         return;
     }

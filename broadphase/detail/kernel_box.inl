@@ -132,6 +132,7 @@ struct GroupQuery : Query<Scalar> {
     const std::uint32_t* slots;  // of entries
     ProxyGroups own;
 
+    // cppcheck-suppress uninitDerivedMemberVar  // the copied query has them
     GroupQuery(const LevelView<Scalar>& level, const GroupsView& groups, const Query<Scalar>& query)
         : Query<Scalar>(query),
           view(&groups),

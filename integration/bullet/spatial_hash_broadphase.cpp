@@ -149,6 +149,8 @@ void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& a
         return;
     }
     const bool isSame = isSameBits(own->m_aabbMin, aabbMin) && isSameBits(own->m_aabbMax, aabbMax);
+    const bool jumps = !ghosts_.empty() &&
+                       !overlaps(toAabb(own->m_aabbMin, own->m_aabbMax), toAabb(aabbMin, aabbMax));
     // A body that flies back may have the same box as when it came.
     if (!isSame || sweeps_ != nullptr) {
         own->m_aabbMin = aabbMin;
@@ -164,7 +166,8 @@ void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& a
     if (!seen_.empty()) {
         noteSeen(*own);
     }
-    if ((!isSame || isRegrouped) && isEager(*own, dispatcher)) {
+    const bool isChanged = !isSame || isRegrouped;
+    if ((isChanged && isEager(*own, dispatcher)) || (jumps && mayMeetGhosts(*own))) {
         announce(*own, dispatcher);
     }
 }

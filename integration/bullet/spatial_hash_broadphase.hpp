@@ -10,8 +10,8 @@
 //     hashphase::SpatialHashBroadphase broadphase;
 //
 // What changes: pairs are exact (no fat boxes, no stale pairs) and are made and removed in
-// calculateOverlappingPairs() only, but for those of ghost objects and of what is created where one
-// stands: these come at once.
+// calculateOverlappingPairs() only, but for those of ghost objects, and of what is created or put where
+// one stands: these come at once.
 //
 // Batches   createProxies(), setAabbs() and destroyProxies() do what as many single calls do, at less
 //           cost.
@@ -65,8 +65,8 @@ struct SpatialHashConfig {
     /// Ghost objects get their pairs at once, in createProxy() and setAabb(), as Bullet's character
     /// controller expects, wherever the pair cache has an internal ghost pair callback, through which
     /// ghosts hear of pairs. (A cache that is not given as a PairCache counts as having one.) What is
-    /// created where a ghost stands gets all of its pairs at once as well, so that the ghost hears of
-    /// it. To find ghosts, a client that may have pairs is taken for a btCollisionObject then, in calls
+    /// created where a ghost stands, or jumps there, out of the box that it had, gets all of its pairs at
+    /// once as well, so that the ghost hears of it. To find ghosts, a client that may have pairs is taken for a btCollisionObject then, in calls
     /// that hand in a dispatcher, as a btCollisionWorld's do. False is for programs whose clients are
     /// something else.
     bool eagerGhosts = true;
@@ -168,7 +168,7 @@ public:
 
     /// Notices, also when the box is the same, that the proxy's group or mask has been written.
     /// Cost: O(1); a comparison when the box is the same, with SpatialHashConfig::sweep a look at the
-    /// body, and of ghosts and eagerGroups as in createProxy().
+    /// body, and of ghosts, eagerGroups, and what jumps where there are ghosts, as in createProxy().
     void setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin, const btVector3& aabbMax,
                  btDispatcher* dispatcher) override;
 

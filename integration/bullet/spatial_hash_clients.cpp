@@ -37,10 +37,11 @@ void SpatialHashBroadphase::forgetGhost(Proxy& proxy) noexcept {
 // Where there are many, to ask about its pairs is sooner than to look at each.
 bool SpatialHashBroadphase::mayMeetGhosts(const Proxy& proxy) const {
     constexpr std::size_t kFew = 1024;
-    return ghosts_.size() > kFew ||
-           std::any_of(ghosts_.begin(), ghosts_.end(), [&](std::uint32_t slot) {
-               return overlaps(grid_.box(proxyAt(slot)->id), grid_.box(proxy.id));
-           });
+    const auto touches = [&](std::uint32_t slot) {
+        return overlaps(grid_.box(proxyAt(slot)->id), grid_.box(proxy.id));
+    };
+    return mayHaveGhosts() &&
+           (ghosts_.size() > kFew || std::any_of(ghosts_.begin(), ghosts_.end(), touches));
 }
 
 void SpatialHashBroadphase::shapeChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {

@@ -70,7 +70,6 @@ void WorldConfigurator::apply(const WorldEffects& effects) {
     arePairsOld_ = arePairsOld_ || haveMasks || effects.pairs != effects_.pairs;
     WorldEffects copy = effects;  // takes memory
     effects_ = std::move(copy);
-    ++applyCount_;
     setFilter();
     configureWorld();
     if (arePairsOld_) {
@@ -85,7 +84,6 @@ void WorldConfigurator::apply(const WorldEffects& effects) {
         const bool isChanged = configure(object, effectsOf(object), effects_);
         areBodiesChanged_ = areBodiesChanged_ || isChanged;
     });
-    std::erase_if(kept_, [&](const auto& entry) { return entry.second.lastSeen != applyCount_; });
     if (areBodiesChanged_) {
         renewContacts();
         wakeAll();

@@ -37,11 +37,14 @@
 //           body that is given DISABLE_DEACTIVATION while sleeping is not declared, as it has that then.)
 //           Angular velocities are not given back, nor what happened meanwhile.
 // Lifetime  The world, its broadphase, the pair cache and its former filter outlive the configurator, and
-//           nobody wraps the filter that it sets. Only objects that are in the world are touched. One that
-//           is removed without release() keeps what is set, and is forgotten in the next apply(); a new
-//           object made at its address before that may be taken for it.
+//           nobody wraps the filter that it sets. Only objects that are in the world are touched: one that
+//           is removed without release(), as pools do, keeps what is set until it is back and apply() or
+//           prepare() meets it, which then treat it as if it had been there all the time. So release() one
+//           before it is deleted: a new object at its address that has the very setting that was set is
+//           taken for it.
 // Other     Soft bodies and multibodies solve contacts of their own, and are left alone but for pairs.
-// Memory    Nothing is held for an object whose settings are its own. Where memory runs out,
+// Memory    Nothing is held for an object whose settings are its own, but for one that was removed without
+//           release(): until it is back, or another one at its address. Where memory runs out,
 //           std::bad_alloc is passed on, and the call may be repeated; pairs are complete in the next step
 //           that returns.
 
@@ -52,7 +55,6 @@
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
-#include <cstdint>
 #include <functional>
 #include <optional>
 #include <unordered_map>
@@ -133,7 +135,7 @@ public:
     /// nothing.
     void step(btScalar timeStep);
 
-    /// Objects whose settings are overridden.
+    /// Objects whose settings are overridden, those included that were removed without release().
     [[nodiscard]] std::size_t heldCount() const noexcept { return kept_.size(); }
 
 private:
@@ -149,7 +151,6 @@ private:
         detail::KeptSetting<btScalar> ccdRadius;
         detail::KeptSetting<btScalar> slowBelow;
         bool isKeptAwake = false;
-        std::uint64_t lastSeen = 0;
 
         [[nodiscard]] bool isHeld() const noexcept;
     };
@@ -190,7 +191,6 @@ private:
     detail::KeptSetting<bool> useContinuous_;
     detail::KeptSetting<int> frictionDirections_;
     std::unordered_map<const btCollisionObject*, KeptBody> kept_;  // of those that are overridden
-    std::uint64_t applyCount_ = 0;
     bool arePairsOld_ = false;       // until every couple has been asked about again
     bool areBodiesChanged_ = false;  // until all have been woken
 };

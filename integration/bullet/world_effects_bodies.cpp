@@ -80,7 +80,6 @@ bool WorldConfigurator::configure(btCollisionObject& object, const BodyEffects& 
         found = kept_.try_emplace(&object).first;  // before anything is written: it takes memory
     }
     KeptBody& kept = found->second;
-    kept.lastSeen = applyCount_;
     bool isChanged = setContacts(object, kept, effects, ofWorld);
     if (btRigidBody* const body = btRigidBody::upcast(&object)) {
         const bool isTurned =

@@ -60,17 +60,18 @@ std::unique_ptr<typename Simulation<Scalar>::Index> Simulation<Scalar>::makeInde
 // For new ones, everybody is new.
 template <class Scalar>
 void Simulation<Scalar>::setPairing(bool isWanted) {
-    const bool withSweeps = effects_.sweep.has_value();
-    if (pairing_ && !(isWanted && (pairing_->sweeps != nullptr) == withSweeps)) {
+    if (!isWanted) {
         pairing_ = nullptr;
+        return;
     }
-    if (isWanted && !pairing_) {
-        pairing_ = std::make_unique<Pairing>(index_->grid, withSweeps);
+    if (!pairing_) {
+        pairing_ = std::make_unique<Pairing>(index_->grid);
         if (contacts_) {
             contacts_->present.clear();
             contacts_->isCurrent = true;
         }
     }
+    pairing_->setSweeps(index_->grid, effects_.sweep.has_value());
 }
 
 // While nobody looks, nobody is filed; the first who does finds all where they are.

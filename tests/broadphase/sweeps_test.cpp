@@ -50,7 +50,16 @@ void playSwept(const BoxScene<Scalar>& scene, const GridConfig& config, std::uin
         SCOPED_TRACE(testing::Message() << "frame " << frame);
         script.playFrame(world);
         Random& random = script.random();
+        const bool doesNobodySweep = frame % 5 == 2 || frame % 5 == 3;
+        if (doesNobodySweep || random.chance(0.2)) {
+            world.renewSweeps(!doesNobodySweep);
+        } else {
+            world.pairs.setSweeps(&world.sweeps);
+        }
         for (const Placed<Scalar>& proxy : script.proxies()) {
+            if (doesNobodySweep) {
+                continue;
+            }
             if (random.chance(0.04)) {
                 const Sweep mode = random.chance(0.4) ? Sweep::none : kSweepModes[random.below(3)];
                 const Aabb<Scalar> start =

@@ -70,6 +70,17 @@ public:
         sweeps.set(id, way, mode);
         noteWay(id, {way.box, way.displacement}, mode);
     }
+    /// Gives the pairs other sweeps, or none: what swept does so no more.
+    void renewSweeps(bool areThere) {
+        pairs.setSweeps(nullptr);
+        std::destroy_at(&sweeps);
+        std::construct_at(&sweeps, grid);
+        pairs.setSweeps(areThere ? &sweeps : nullptr);
+        for (const auto& [id, way] : ways_) {
+            changed_.insert(id);
+        }
+        ways_.clear();
+    }
     [[nodiscard]] bool doesSweep(ProxyId id) const { return ways_.contains(id); }
     [[nodiscard]] MovingBox<Scalar> motion(const Placed<Scalar>& proxy) const {
         const auto way = ways_.find(proxy.id);

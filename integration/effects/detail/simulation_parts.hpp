@@ -6,7 +6,9 @@
 #include <broadphase/sweeps.hpp>
 #include <integration/effects/simulation.hpp>
 
+#include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace hashphase {
@@ -60,9 +62,15 @@ struct Simulation<Scalar>::Index {
 
 template <class Scalar>
 struct Simulation<Scalar>::Pairing {
-    Pairing(Grid<Scalar>& grid, bool withSweeps)
-        : sweeps(withSweeps ? std::make_unique<Sweeps<Scalar>>(grid) : nullptr),
-          pairs(grid, sweeps.get()) {}
+    explicit Pairing(Grid<Scalar>& grid) : pairs(grid) {}
+
+    void setSweeps(Grid<Scalar>& grid, bool areWanted) {
+        if (areWanted != (sweeps != nullptr)) {
+            auto wanted = areWanted ? std::make_unique<Sweeps<Scalar>>(grid) : nullptr;
+            pairs.setSweeps(wanted.get());
+            sweeps = std::move(wanted);
+        }
+    }
 
     std::unique_ptr<Sweeps<Scalar>> sweeps;
     Pairs<Scalar> pairs;

@@ -94,13 +94,14 @@ template <class Scalar>
 }
 
 /// 2 to the powers from -129 to 126.
-inline constexpr auto kPowersOfTwo = [] {
+constexpr std::array<double, 256> powersOfTwo() {
     std::array<double, 256> powers{};
     for (std::size_t i = 0; i < powers.size(); ++i) {
         powers[i] = std::bit_cast<double>((1023 - 129 + std::uint64_t{i}) << 52);
     }
     return powers;
-}();
+}
+inline constexpr std::array<double, 256> kPowersOfTwo = powersOfTwo();
 
 /// The area of the largest triangle that a point at most `tolerance` beside an edge has with it.
 template <class Scalar>

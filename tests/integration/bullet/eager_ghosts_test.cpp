@@ -122,6 +122,29 @@ TEST(EagerGhosts, HearAtOnceOfWhatIsCreatedWhereTheyStand) {
     }
 }
 
+// As of what a program puts into a trigger.
+TEST(EagerGhosts, HearAtOnceOfWhatIsPutWhereTheyStand) {
+    for (const bool isOurs : {false, true}) {
+        SCOPED_TRACE(isOurs);
+        std::unique_ptr<btBroadphaseInterface> broadphase = std::make_unique<btDbvtBroadphase>();
+        if (isOurs) {
+            broadphase = std::make_unique<SpatialHashBroadphase>();
+        }
+        GhostWorld scene(std::move(broadphase));
+        btRigidBody carried(1, nullptr, &scene.small);
+        carried.setCenterOfMassTransform(GhostWorld::at({50, 0, 0}));
+        scene.world.addRigidBody(&carried);
+        scene.world.performDiscreteCollisionDetection();
+        EXPECT_FALSE(GhostWorld::doesList(scene.ghost, carried));
+        carried.setCenterOfMassTransform(GhostWorld::at({btScalar(0.5), 0, 0}));
+        scene.world.updateSingleAabb(&carried);
+        EXPECT_TRUE(GhostWorld::doesList(scene.ghost, carried));
+        EXPECT_TRUE(GhostWorld::doesList(scene.cachingGhost, carried));
+        scene.world.removeRigidBody(&carried);
+        EXPECT_FALSE(GhostWorld::doesList(scene.ghost, carried));
+    }
+}
+
 /// A program's own callback, which tells ghosts by the one of Bullet.
 struct ForwardingCallback : btOverlappingPairCallback {
     btBroadphasePair* addOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b) override {

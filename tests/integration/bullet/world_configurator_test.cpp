@@ -146,6 +146,7 @@ TEST(WorldConfigurator, FollowBodiesThatComeAndGo) {
     btRigidBody& first = room.addCube({0, 2, 0});
     WorldConfigurator configurator(room.world());
     configurator.apply({.rotation = false});
+    EXPECT_EQ(first.getAngularFactor(), btVector3(0, 0, 0));
     btRigidBody& second = room.addCube({5, 2, 0});
     EXPECT_EQ(second.getAngularFactor(), btVector3(1, 1, 1));
     configurator.prepare(second);
@@ -153,12 +154,30 @@ TEST(WorldConfigurator, FollowBodiesThatComeAndGo) {
     EXPECT_EQ(configurator.heldCount(), 2U);
     configurator.release(second);
     EXPECT_EQ(second.getAngularFactor(), btVector3(1, 1, 1));
-    // Without being released: it is not touched any more.
-    room.world().removeRigidBody(&first);
-    configurator.apply({});
-    EXPECT_EQ(first.getAngularFactor(), btVector3(0, 0, 0));
-    EXPECT_EQ(configurator.heldCount(), 0U);
-    room.world().addRigidBody(&first);
+}
+
+// As pools do, which nobody reminds of release().
+TEST(WorldConfigurator, GiveBackWhatABodyHadThatWasAway) {
+    for (const bool isPrepared : {true, false}) {
+        EffectsRoom room;
+        btRigidBody& pooled = room.addCube({0, 2, 0});
+        pooled.setFriction(btScalar(0.7));
+        WorldConfigurator configurator(room.world());
+        configurator.apply({.sleeping = false, .rotation = false, .friction = false});
+        room.world().removeRigidBody(&pooled);
+        configurator.apply({});  // it is not in the world, and may be gone
+        EXPECT_EQ(pooled.getFriction(), 0);
+        room.world().addRigidBody(&pooled);
+        if (isPrepared) {
+            configurator.prepare(pooled);
+        } else {
+            configurator.apply({});
+        }
+        EXPECT_EQ(pooled.getFriction(), btScalar(0.7));
+        EXPECT_EQ(pooled.getAngularFactor(), btVector3(1, 1, 1));
+        EXPECT_EQ(pooled.getActivationState(), ACTIVE_TAG);
+        EXPECT_EQ(configurator.heldCount(), 0U);
+    }
 }
 
 TEST(WorldConfigurator, TakeABodyMadeWhereAnotherWasForWhatItIs) {

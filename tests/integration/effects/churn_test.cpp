@@ -114,7 +114,7 @@ private:
         simulation_.declare(effects);
         const bool hadGrid = before.set().containsAny(kGridEffects);
         const bool isFiledAnew = !hadGrid || !(before.grid == effects.grid);
-        if (isFiledAnew || !before.pairs || before.sweep.has_value() != effects.sweep.has_value()) {
+        if (isFiledAnew || !before.pairs) {
             pairs_.clear();
         }
         if (effects.zones && !before.zones) {

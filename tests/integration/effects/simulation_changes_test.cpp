@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -79,24 +80,52 @@ TEST(Simulation, KeepsItsProxiesWhenPairsAndSweepComeAndGo) {
     simulation.advance(kStep);
     const ProxyId hit = simulation.pick(ray).id;
     EXPECT_EQ(simulation.observers().zones().occupants(zone).size(), 2U);
-    for (const std::size_t pairs : {1U, 0U, 1U, 1U}) {
+    struct Round {
+        bool arePairs;
+        bool doesSweep;
+        std::size_t births;
+    };
+    for (const auto& [arePairs, doesSweep, births] :
+         std::initializer_list<Round>{{true, false, 1},
+                                      {false, false, 0},
+                                      {true, false, 1},
+                                      {true, true, 0},
+                                      {true, false, 0}}) {
         effects.pairs.reset();
-        if (pairs > 0) {
+        if (arePairs) {
             effects.pairs.emplace();
         }
         effects.sweep.reset();
-        if (pairs > 0 && simulation.declared().pairs) {
-            effects.sweep.emplace();  // in the last round
+        if (doesSweep) {
+            effects.sweep.emplace();
         }
         simulation.declare(effects);
         simulation.advance(kStep);
         EXPECT_EQ(simulation.pick(ray).id, hit);
         EXPECT_TRUE(simulation.observers().zoneEvents().entered.empty());
         EXPECT_EQ(simulation.observers().zoneEvents().stayed.size(), 2U);
-        if (pairs > 0) {
-            EXPECT_EQ(simulation.pairChanges().born.size(), pairs);
+        if (arePairs) {
+            EXPECT_EQ(simulation.pairChanges().born.size(), births);
+            EXPECT_TRUE(simulation.pairChanges().died.empty());
+            EXPECT_EQ(simulation.pairCount(), 1U);
         }
     }
+}
+
+TEST(Simulation, TellsTheEndOfWhatWasMetOnAWayWhenSweepGoes) {
+    SceneEffects effects = declared({Effect::motion, Effect::pairs, Effect::sweep});
+    Simulation<float> simulation(effects);
+    simulation.add({.position = {0, 0, 0}, .velocity = {50 / kStep, 0, 0}});
+    simulation.add({.position = {25, 0, 0}});
+    simulation.advance(kStep);
+    EXPECT_EQ(simulation.pairChanges().born.size(), 1U);
+    effects.sweep.reset();
+    simulation.declare(effects);
+    EXPECT_EQ(simulation.pairCount(), 1U);
+    simulation.advance(kStep);
+    EXPECT_EQ(simulation.pairChanges().died.size(), 1U);
+    EXPECT_EQ(simulation.pairCount(), 0U);
+    EXPECT_EQ(simulation.validate(), "");
 }
 
 TEST(Simulation, LooksForPairsWhileSomebodyTakesPart) {
