@@ -162,8 +162,9 @@ public:
     /// boxes may come to touch, but none that overlap can part. (A shift by multiples of a power of two
     /// rounds least: a kilometre, say, or 1024 m, towards where things are.) Queries see it at once.
     /// Returns how many boxes were rounded. A shift that is not finite is asserted, and does nothing.
-    /// Everything else that has coordinates of its own is for the caller to shift: regions, zones,
-    /// terrains, Sweeps with boxes of their own. Where it throws, for want of memory, nothing has changed.
+    /// Sweeps over this grid are shifted with it. Everything else that has coordinates of its own is for
+    /// the caller to shift: regions, zones, terrains. Where it throws, for want of memory, nothing has
+    /// changed.
     /// Cost: up to three passes over all boxes; when cells had to change, an update(), or the next one's.
     std::size_t shiftOrigin(const Point& shift);
 
@@ -585,8 +586,8 @@ private:
 
     // What changed since mobile_ was built, and how much of that queries have read since.
     std::vector<std::uint32_t> waiting_;
-    std::uint8_t listNumber_ = 1;
     mutable std::atomic<std::uint64_t> waitingRead_{0};
+    std::uint8_t listNumber_ = 1;
     // mobile_ cannot be read: a shift of the origin, or want of memory, has left it as it is.
     std::atomic<bool> isTableTorn_{false};
     std::mutex filing_;
@@ -628,6 +629,7 @@ private:
     std::vector<detail::PaddedBox<Scalar>> restBoxes_;
     std::vector<std::uint32_t> nanSlots_;  // scratch of settle()
 
+    Sweeps<Scalar>* firstSweeps_ = nullptr;
     Scalar cellSize_ = 1;
     const Box nowhere_ = nanBox();
 };

@@ -6,6 +6,7 @@
 #include <broadphase/grid.hpp>
 
 #include <broadphase/detail/origin_shift.hpp>
+#include <broadphase/sweeps.hpp>
 
 #include <new>
 
@@ -27,6 +28,9 @@ std::size_t Grid<Scalar>::shiftOrigin(const Point& shift) {
     ++populationNumber_;
     std::size_t roundedCount = 0;
     forEachListed([&](std::uint32_t slot) { roundedCount += shiftRecord(slot, shift) ? 1 : 0; });
+    for (auto* sweeps = firstSweeps_; sweeps != nullptr; sweeps = sweeps->next_) {
+        sweeps->shiftOrigin(shift);
+    }
     shiftTables(shift);
     return roundedCount;
 }

@@ -11,6 +11,19 @@
 namespace hashphase {
 
 template <class Scalar>
+Sweeps<Scalar>::Sweeps(Grid<Scalar>& grid)
+    : grid_(grid), next_(std::exchange(grid.firstSweeps_, this)), search_(grid) {}
+
+template <class Scalar>
+Sweeps<Scalar>::~Sweeps() {
+    Sweeps** place = &grid_.firstSweeps_;
+    while (*place != this) {
+        place = &(*place)->next_;
+    }
+    *place = next_;
+}
+
+template <class Scalar>
 void Sweeps<Scalar>::set(ProxyId id, const Vector3<Scalar>& displacement, Sweep sweep) {
     set(Motion{id, {{}, displacement}, sweep, true});
 }
@@ -70,11 +83,7 @@ MovingBox<Scalar> Sweeps<Scalar>::motion(ProxyId id) const {
 }
 
 template <class Scalar>
-void Sweeps<Scalar>::shiftOrigin(const Vector3<Scalar>& shift) {
-    HASHPHASE_ASSERT(shift.allFinite(), "The origin is shifted by what is finite.");
-    if (!shift.allFinite()) {
-        return;
-    }
+void Sweeps<Scalar>::shiftOrigin(const Vector3<Scalar>& shift) noexcept {
     for (Motion& motion : motions_) {
         motion.way.box = detail::shiftedBox(motion.way.box, shift);
     }

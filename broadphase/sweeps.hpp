@@ -48,7 +48,8 @@ template <class Scalar>
 class HASHPHASE_BROADPHASE_EXPORT Sweeps {
 public:
     /// Keeps a reference to the grid, which must outlive this object. Hand it to Pairs.
-    explicit Sweeps(Grid<Scalar>& grid) : grid_(grid), search_(grid) {}
+    explicit Sweeps(Grid<Scalar>& grid);
+    ~Sweeps();
 
     Sweeps(const Sweeps&) = delete;
     Sweeps& operator=(const Sweeps&) = delete;
@@ -59,17 +60,12 @@ public:
     void set(ProxyId id, const Vector3<Scalar>& displacement, Sweep sweep = Sweep::automatic);
 
     /// The same for a box of its own, from which alone the pairs of the proxy follow as long as it
-    /// sweeps. The proxy's box in the grid is what queries see.
+    /// sweeps. The proxy's box in the grid is what queries see. Grid::shiftOrigin() shifts both.
     void set(ProxyId id, const MovingBox<Scalar>& way, Sweep sweep = Sweep::automatic);
 
     /// The box that moves, where it begins, and its displacement; when the proxy does not sweep, its
     /// box, and none.
     [[nodiscard]] MovingBox<Scalar> motion(ProxyId id) const;
-
-    /// Moves the origin of all coordinates to `shift` [m]: for the boxes of their own that motions have,
-    /// as Grid::shiftOrigin() for those of the grid. A shift that is not finite is asserted, and does
-    /// nothing. Cost: O(proxies that sweep).
-    void shiftOrigin(const Vector3<Scalar>& shift);
 
     /// Number of proxies that sweep, those included that were removed since the last update.
     [[nodiscard]] std::size_t size() const noexcept { return motions_.size() - vacantCount_; }
@@ -97,6 +93,7 @@ public:
     [[nodiscard]] std::string validate() const;
 
 private:
+    friend class Grid<Scalar>;
     friend class Pairs<Scalar>;
 
     using Box = Aabb<Scalar>;
@@ -122,6 +119,7 @@ private:
     void drop(std::uint32_t motion) noexcept;
     void makeRoom();
 
+    void shiftOrigin(const Vector3<Scalar>& shift) noexcept;
     void beginUpdate();
     void findContacts(ParallelFor parallelFor) { search_.find(motions_, parallelFor); }
     /// What findContacts() found.
@@ -130,6 +128,7 @@ private:
     }
 
     Grid<Scalar>& grid_;
+    Sweeps* next_;  // over the same grid
     std::vector<Motion> motions_;
     // The places of what has ended since the last update: null ids, whose index is the next place.
     std::uint32_t firstVacant_ = kNone;

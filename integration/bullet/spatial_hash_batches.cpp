@@ -93,9 +93,6 @@ std::size_t SpatialHashBroadphase::shiftOrigin(const btVector3& shift) {
     }
     const std::size_t roundedCount = grid_.shiftOrigin(by);
     mustNoteGroups_ = mustNoteGroups_ || roundedCount > 0;
-    if (sweeps_ != nullptr) {
-        sweeps_->shiftOrigin(by);
-    }
     const std::size_t count = few.empty() ? uniqueIds_.size() : few.size();
     for (std::size_t i = 0; i < count && by.allFinite(); ++i) {
         const std::uint32_t slot = few.empty() ? static_cast<std::uint32_t>(i) : few[i];

@@ -98,7 +98,6 @@ TYPED_TEST(SweptBoxes, AreWhatTheGridsQueriesSee) {
     expectQueriesByBoxes(world.grid, random);
     const Vector3<TypeParam> shift(0.3F, 1024, -7);
     world.grid.shiftOrigin(shift);
-    world.sweeps.shiftOrigin(shift);
     expectQueriesByBoxes(world.grid, random);
     EXPECT_EQ(world.sweeps.motion(world.ids[0]).box.min(),
               Vector3<TypeParam>(bullets.boxes[0].min() - shift));

@@ -99,7 +99,6 @@ public:
             }
         });
         ASSERT_EQ(grid.shiftOrigin(shift), count);
-        sweeps.shiftOrigin(shift);
         for (auto& [id, way] : ways_) {
             if (way.box) {
                 way.box = Aabb<Scalar>(way.box->min() - shift, way.box->max() - shift);
