@@ -317,8 +317,7 @@ private:
     void forAllKnown(VisitCouple visit);
     template <class IsNamed>
     void askAgainAboutMany(PairFilter filter, const IsNamed& isNamed);
-    [[nodiscard]] bool isFoundByOther(std::uint32_t slot, std::uint32_t other) const noexcept;
-    [[nodiscard]] bool sweepsNow(std::uint32_t slot) const noexcept;
+    [[nodiscard]] bool wouldFind(std::uint32_t slot, std::uint32_t other) const;
     void askAgain(Couple c);
     PairChanges decideBetween(PairFilter filter);
     void findUnknown(std::uint32_t slot, FunctionRef<bool(std::uint32_t)> isWanted);

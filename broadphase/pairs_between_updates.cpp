@@ -67,7 +67,7 @@ PairChanges Pairs<Scalar>::refilter(std::span<const ProxyId> ids, PairFilter fil
         }
         if (grid_.cost_.changed > 0) {
             findUnknown(id.index, [&](std::uint32_t other) {
-                return !isDone(other) || sweepsNow(id.index) || sweepsNow(other);
+                return !(isDone(other) && wouldFind(other, id.index));
             });
         }
         forKnownCouples(id.index, [&](Couple c) {
@@ -101,7 +101,9 @@ void Pairs<Scalar>::askAgainAboutMany(PairFilter filter, const IsNamed& isNamed)
         for (const std::uint32_t slot : grid_.mobileSlots_) {
             if (grid_.changedNow(slot) && grid_.isAlive(slot)) {
                 findUnknown(slot, [&](std::uint32_t other) {
-                    return (isNamed(slot) || isNamed(other)) && !isFoundByOther(slot, other);
+                    const bool isFoundByOther =
+                        other < slot && grid_.changedNow(other) && wouldFind(other, slot);
+                    return (isNamed(slot) || isNamed(other)) && !isFoundByOther;
                 });
                 askInParts(filter, kPart);
             }
@@ -115,15 +117,10 @@ void Pairs<Scalar>::askAgainAboutMany(PairFilter filter, const IsNamed& isNamed)
     });
 }
 
-// Of two that have changed each would find the other; by its way, only what sweeps.
+// Whether findUnknown() of one comes upon the other, which it looks for by its box in the grid.
 template <class Scalar>
-bool Pairs<Scalar>::isFoundByOther(std::uint32_t slot, std::uint32_t other) const noexcept {
-    return grid_.changedNow(other) && !sweepsNow(slot) && (other < slot || sweepsNow(other));
-}
-
-template <class Scalar>
-bool Pairs<Scalar>::sweepsNow(std::uint32_t slot) const noexcept {
-    return sweeps_ != nullptr && sweeps_->sweeps(grid_.idOf(slot));
+bool Pairs<Scalar>::wouldFind(std::uint32_t slot, std::uint32_t other) const {
+    return overlaps(boxAtStart(slot), grid_.records_[other].box);
 }
 
 // Asks about a couple that is known. One that is refused and apart for the moment is asked about by
@@ -224,8 +221,7 @@ template PairChanges Pairs<float>::announce(ProxyId, PairFilter) &;
 template PairChanges Pairs<float>::refilter(ProxyId, PairFilter) &;
 template PairChanges Pairs<float>::refilter(std::span<const ProxyId>, PairFilter) &;
 template PairChanges Pairs<float>::refilterAll(PairFilter) &;
-template bool Pairs<float>::isFoundByOther(std::uint32_t, std::uint32_t) const noexcept;
-template bool Pairs<float>::sweepsNow(std::uint32_t) const noexcept;
+template bool Pairs<float>::wouldFind(std::uint32_t, std::uint32_t) const;
 template void Pairs<float>::askAgain(Couple);
 template PairChanges Pairs<float>::decideBetween(PairFilter);
 template void Pairs<float>::announceUnknown() noexcept;
@@ -237,8 +233,7 @@ template PairChanges Pairs<double>::announce(ProxyId, PairFilter) &;
 template PairChanges Pairs<double>::refilter(ProxyId, PairFilter) &;
 template PairChanges Pairs<double>::refilter(std::span<const ProxyId>, PairFilter) &;
 template PairChanges Pairs<double>::refilterAll(PairFilter) &;
-template bool Pairs<double>::isFoundByOther(std::uint32_t, std::uint32_t) const noexcept;
-template bool Pairs<double>::sweepsNow(std::uint32_t) const noexcept;
+template bool Pairs<double>::wouldFind(std::uint32_t, std::uint32_t) const;
 template void Pairs<double>::askAgain(Couple);
 template PairChanges Pairs<double>::decideBetween(PairFilter);
 template void Pairs<double>::announceUnknown() noexcept;

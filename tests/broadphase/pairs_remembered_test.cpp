@@ -293,6 +293,32 @@ TEST(RefusedPile, BeginsAndEndsPairsByRefilter) {
     EXPECT_EQ(pile.pairs.validate(), "");
 }
 
+// Two that sweep may each find the other, one of them, or neither, by the boxes that they have in the grid.
+TEST(RefusedPile, AsksOnceAboutTwoThatSweep) {
+    PairWorld<float> world({}, [](ProxyId, ProxyId) { return false; });
+    Random random(0x5eed0d31);
+    const auto box = [&] {
+        return boxAround<float>(random.pointIn(-0.7, 0.7), random.pointIn(0.8, 1.2));
+    };
+    for (int i = 0; i < 200; ++i) {
+        world.add(box());
+    }
+    world.update();
+    ASSERT_TRUE(world.pairs.remembersPairs());
+    std::vector<ProxyId> sweepers;
+    for (int i = 0; i < 300; ++i) {
+        sweepers.push_back(world.add(box()));
+        if (random.chance(0.8)) {
+            const MovingBox<float> way{box(), {5, 0, 0}};
+            world.sweep(sweepers.back(), way, Sweep::automatic);
+        }
+    }
+    world.refilterAll();
+    EXPECT_GT(world.asked().size(), 100'000U);
+    world.refilter(std::span(sweepers).first(50));
+    EXPECT_GT(world.asked().size(), 20'000U);
+}
+
 // A pile of pairs is asked in parts once; what follows is as fast as ever.
 TEST(RefusedPile, WhoseRefusedAreFewRemembersThem) {
     RefusedPileWorld pile(300);
