@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <memory>
 #include <new>
+#include <span>
 
 namespace hashphase::detail {
 
@@ -38,10 +39,10 @@ public:
             return kOther;
         }
         auto& [kinds, refused] = *known_;
-        const auto end = kinds.begin() + count_;
-        const auto known = std::find(kinds.begin(), end, groups);
-        if (known != end) {
-            return static_cast<std::uint8_t>(known - kinds.begin());
+        const std::span<const ProxyGroups> present = std::span(kinds).first(count_);
+        const auto known = std::find(present.begin(), present.end(), groups);
+        if (known != present.end()) {
+            return static_cast<std::uint8_t>(known - present.begin());
         }
         const std::uint8_t number = count_;
         if (number == kOther) {

@@ -16,6 +16,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace hashphase::detail {
@@ -41,8 +42,8 @@ bool sortByGroups(std::span<std::uint32_t> crowd, const GroupsOf& groupsOf) {
             continue;
         }
         last = groups;
-        const auto end = kinds.begin() + static_cast<std::ptrdiff_t>(kindCount);
-        if (std::find(kinds.begin(), end, groups) != end) {
+        const auto known = std::span(kinds).first(kindCount);
+        if (std::find(known.begin(), known.end(), groups) != known.end()) {
             continue;
         }
         if (kindCount == kMostKinds) {
