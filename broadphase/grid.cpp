@@ -55,6 +55,7 @@ Grid<Scalar>::Grid(const GridConfig& config)
 template <class Scalar>
 Grid<Scalar>::~Grid() {
     HASHPHASE_ASSERT(!hasPairs_, "A grid outlives its Pairs.");
+    HASHPHASE_ASSERT(firstSweeps_ == nullptr, "A grid outlives its Sweeps.");
 }
 
 // --- Proxies -------------------------------------------------------------------------------------

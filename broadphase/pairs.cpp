@@ -46,9 +46,10 @@ void Pairs<Scalar>::setSweeps(Sweeps<Scalar>* sweeps) {
                      "Sweeps and Pairs are of the same grid.");
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(&grid_),
                      "Sweeps are not given within a query, or within the filter.");
-    if (sweeps != sweeps_) {
-        grid_.endSweeps();
-        sweeps_ = sweeps;
+    grid_.endSweeps();
+    sweeps_ = sweeps;
+    if (sweeps_ != nullptr) {
+        sweeps_->noteAllChanged();
     }
 }
 

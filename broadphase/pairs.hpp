@@ -102,18 +102,19 @@ struct PairCost {
 template <class Scalar>
 class HASHPHASE_BROADPHASE_EXPORT Pairs {
 public:
-    /// Keeps a reference to the grid, and to the sweeps over it if there are any, which must outlive
-    /// this object. They are of the same grid, which has no other Pairs (asserted). The first update()
-    /// tells all pairs as born. Cost: O(proxies), and all that rested wakes.
+    /// Keeps a reference to the grid, which must outlive this object, and to the sweeps over it if there
+    /// are any, until others are given. They are of the same grid, which has no other Pairs (asserted).
+    /// The first update() tells all pairs as born. Cost: O(proxies), and all that rested wakes.
     explicit Pairs(Grid<Scalar>& grid, Sweeps<Scalar>* sweeps = nullptr);
     ~Pairs();
 
     Pairs(const Pairs&) = delete;
     Pairs& operator=(const Pairs&) = delete;
 
-    /// Takes other sweeps for those given, or with nullptr none: pairs stay, and the next update() tells
-    /// what it changes. They are of the same grid, and this is not called within a query (both
-    /// asserted). What was given before is not used any more. Cost: O(proxies that swept).
+    /// From now on follows these sweeps in place of those given before, or with nullptr none: pairs stay,
+    /// and the next update() tells what that changes. They are of the same grid, and this is not called
+    /// within a query (both asserted). Sweeps that are to end are taken out first. Cost: O(proxies that
+    /// swept, and that do now).
     void setSweeps(Sweeps<Scalar>* sweeps);
 
     /// Ends the frame: updates the grid and returns all pairs born and died since the last call.
@@ -132,6 +133,10 @@ public:
     /// gather where nobody updates. update() reports the rest of them.
     /// Cost: that of a box query.
     PairChanges announce(ProxyId id, PairFilter filter) &;
+
+    /// The same of its pairs with others alone, each named once; those that are not alive are passed
+    /// over. Cost: O(others).
+    PairChanges announce(ProxyId id, std::span<const ProxyId> others, PairFilter filter) &;
 
     /// Asks the filter again about everything that the proxy, which is alive (asserted), overlaps, or
     /// met on its way at the last update, refused or not, at once; and deaths as announce() does. Cost:
@@ -322,6 +327,7 @@ private:
     PairChanges decideBetween(PairFilter filter);
     void findUnknown(std::uint32_t slot, FunctionRef<bool(std::uint32_t)> isWanted);
     void findUnknown(std::uint32_t slot);
+    void addIfUnknown(std::uint32_t slot, std::uint32_t other);
     void releaseAfterPeak() noexcept;
     void forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const;
 

@@ -31,6 +31,24 @@ PairChanges Pairs<Scalar>::announce(ProxyId id, PairFilter filter) & {
 }
 
 template <class Scalar>
+PairChanges Pairs<Scalar>::announce(ProxyId id, std::span<const ProxyId> others,
+                                    PairFilter filter) & {
+    HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid can announce its pairs.");
+    HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(&grid_), kMustNotAsk);
+    if (!grid_.contains(id)) {
+        return {};
+    }
+    beginCall();
+    findAnnouncedOfRemoved();
+    for (const ProxyId other : others) {
+        if (other != id && grid_.contains(other)) {
+            addIfUnknown(id.index, other.index);
+        }
+    }
+    return decideBetween(filter);
+}
+
+template <class Scalar>
 PairChanges Pairs<Scalar>::refilter(ProxyId id, PairFilter filter) & {
     return refilter(std::span(&id, 1), filter);
 }
@@ -218,6 +236,7 @@ void Pairs<Scalar>::endAnnouncedOfRemoved() noexcept {
 }
 
 template PairChanges Pairs<float>::announce(ProxyId, PairFilter) &;
+template PairChanges Pairs<float>::announce(ProxyId, std::span<const ProxyId>, PairFilter) &;
 template PairChanges Pairs<float>::refilter(ProxyId, PairFilter) &;
 template PairChanges Pairs<float>::refilter(std::span<const ProxyId>, PairFilter) &;
 template PairChanges Pairs<float>::refilterAll(PairFilter) &;
@@ -230,6 +249,7 @@ template bool Pairs<float>::areManyAnnounced() const noexcept;
 template void Pairs<float>::findAnnouncedOfRemoved();
 template void Pairs<float>::endAnnouncedOfRemoved() noexcept;
 template PairChanges Pairs<double>::announce(ProxyId, PairFilter) &;
+template PairChanges Pairs<double>::announce(ProxyId, std::span<const ProxyId>, PairFilter) &;
 template PairChanges Pairs<double>::refilter(ProxyId, PairFilter) &;
 template PairChanges Pairs<double>::refilter(std::span<const ProxyId>, PairFilter) &;
 template PairChanges Pairs<double>::refilterAll(PairFilter) &;

@@ -157,17 +157,22 @@ void Pairs<Scalar>::forAllKnown(VisitCouple visit) {
 template <class Scalar>
 void Pairs<Scalar>::findUnknown(std::uint32_t slot, FunctionRef<bool(std::uint32_t)> isWanted) {
     const auto add = [&](ProxyId other) {
-        if (other.index != slot && isWanted(other.index) && !wasKnown(slot, other.index) &&
-            grid_.mayPairNow(slot, other.index) && touchAtStart(slot, other.index)) {
-            const Couple c = couple(slot, other.index);
-            if (!announced_.contains(c) && !isSwept(c)) {
-                unknown_.push_back(c);
-                asked_.push_back(c);
-            }
+        if (other.index != slot && isWanted(other.index)) {
+            addIfUnknown(slot, other.index);
         }
     };
     CollectInto<decltype(add)> collector{add};
     grid_.visit(BoxRegion<Scalar>{boxAtStart(slot)}, collector);
+}
+
+template <class Scalar>
+void Pairs<Scalar>::addIfUnknown(std::uint32_t slot, std::uint32_t other) {
+    const Couple c = couple(slot, other);
+    if (!wasKnown(slot, other) && grid_.mayPairNow(slot, other) && touchAtStart(slot, other) &&
+        !announced_.contains(c) && !isSwept(c)) {
+        unknown_.push_back(c);
+        asked_.push_back(c);
+    }
 }
 
 // Where a proxy alive is now, of what sweeps where its way begins.
@@ -193,6 +198,7 @@ template void Pairs<float>::forSwept(std::uint32_t, VisitCouple);
 template void Pairs<float>::forAllKnown(VisitCouple);
 template void Pairs<float>::findUnknown(std::uint32_t, FunctionRef<bool(std::uint32_t)>);
 template void Pairs<float>::findUnknown(std::uint32_t);
+template void Pairs<float>::addIfUnknown(std::uint32_t, std::uint32_t);
 template Aabb<float> Pairs<float>::boxAtStart(std::uint32_t) const;
 template bool Pairs<float>::touchAtStart(std::uint32_t, std::uint32_t) const;
 template void Pairs<double>::indexLastUpdate(std::size_t);
@@ -202,6 +208,7 @@ template void Pairs<double>::forSwept(std::uint32_t, VisitCouple);
 template void Pairs<double>::forAllKnown(VisitCouple);
 template void Pairs<double>::findUnknown(std::uint32_t, FunctionRef<bool(std::uint32_t)>);
 template void Pairs<double>::findUnknown(std::uint32_t);
+template void Pairs<double>::addIfUnknown(std::uint32_t, std::uint32_t);
 template Aabb<double> Pairs<double>::boxAtStart(std::uint32_t) const;
 template bool Pairs<double>::touchAtStart(std::uint32_t, std::uint32_t) const;
 

@@ -11,8 +11,9 @@
 namespace hashphase {
 
 template <class Scalar>
-Sweeps<Scalar>::Sweeps(Grid<Scalar>& grid)
-    : grid_(grid), next_(std::exchange(grid.firstSweeps_, this)), search_(grid) {}
+Sweeps<Scalar>::Sweeps(Grid<Scalar>& grid) : grid_(grid), next_(grid.firstSweeps_), search_(grid) {
+    grid.firstSweeps_ = this;
+}
 
 template <class Scalar>
 Sweeps<Scalar>::~Sweeps() {
@@ -80,6 +81,16 @@ MovingBox<Scalar> Sweeps<Scalar>::motion(ProxyId id) const {
         return {grid_.box(id)};
     }
     return wayOf(motions_[motionOf(id.index)]);
+}
+
+// For pairs that have not heard of them.
+template <class Scalar>
+void Sweeps<Scalar>::noteAllChanged() noexcept {
+    for (const Motion& motion : motions_) {
+        if (grid_.contains(motion.id)) {
+            grid_.noteChange(motion.id.index);
+        }
+    }
 }
 
 template <class Scalar>

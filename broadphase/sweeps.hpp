@@ -119,6 +119,7 @@ private:
     void drop(std::uint32_t motion) noexcept;
     void makeRoom();
 
+    void noteAllChanged() noexcept;
     void shiftOrigin(const Vector3<Scalar>& shift) noexcept;
     void beginUpdate();
     void findContacts(ParallelFor parallelFor) { search_.find(motions_, parallelFor); }

@@ -39,7 +39,7 @@ public:
     }
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
-        return blocks_.size() * sizeof(Block) + blocks_.capacity() * sizeof(blocks_[0]) +
+        return blocks_.size() * sizeof(Block) + blocks_.capacity() * sizeof(void*) +
                owners_.capacity() * sizeof(owners_[0]);
     }
 

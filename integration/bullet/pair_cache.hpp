@@ -14,7 +14,8 @@
 // Threads   needsBroadphaseCollision() and the const members may run anywhere. Everything else
 //           needs the cache for itself, as in Bullet.
 // Pointers  A pair stays where it is until a pair is added or removed, or memory is given back, in
-//           canonical order also until the next look at the whole array. Others must not resize or reorder the array.
+//           canonical order also until the next look at the whole array. Others must not resize or
+//           reorder the array.
 // Batches   update() and removeOverlappingPairsContainingProxies() do in a pass what single calls do
 //           one by one, at a fraction of the cost.
 // Callbacks See the cache as it is after the change that they are told of, and may change it: those of
@@ -53,9 +54,9 @@ enum class PairOrder {
     arrival,
     /// Ascending by the key of the first proxy, then of the second, whenever the whole array is
     /// looked at: the same set of pairs gives the same order, whatever the broadphase and the
-    /// history. This is what rollback stands on. Algorithms are freed in that order, too, so that the dispatcher's manifolds, and
-    /// with them whole trajectories, are the same under all exact broadphases. Costs a sort when
-    /// the set has changed.
+    /// history. This is what rollback stands on. Algorithms are freed in that order, too, so that the
+    /// dispatcher's manifolds, and with them whole trajectories, are the same under all exact
+    /// broadphases. Costs a sort when the set has changed.
     canonical,
 };
 

@@ -107,8 +107,10 @@ btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
     noteSeen(proxy);
     uniqueIds_[id.index] = proxy.m_uniqueId;
     try {
-        if (isEager(proxy, dispatcher) || mayMeetGhosts(proxy)) {
+        if (isEager(proxy, dispatcher)) {
             announce(proxy, dispatcher);
+        } else {
+            announceToGhosts(proxy, dispatcher);
         }
     } catch (...) {
         destroyProxy(&proxy, dispatcher);
@@ -149,7 +151,7 @@ void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& a
         return;
     }
     const bool isSame = isSameBits(own->m_aabbMin, aabbMin) && isSameBits(own->m_aabbMax, aabbMax);
-    const bool jumps = !ghosts_.empty() &&
+    const bool jumps = !isSame && !ghosts_.empty() &&
                        !overlaps(toAabb(own->m_aabbMin, own->m_aabbMax), toAabb(aabbMin, aabbMax));
     // A body that flies back may have the same box as when it came.
     if (!isSame || sweeps_ != nullptr) {
@@ -166,9 +168,10 @@ void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& a
     if (!seen_.empty()) {
         noteSeen(*own);
     }
-    const bool isChanged = !isSame || isRegrouped;
-    if ((isChanged && isEager(*own, dispatcher)) || (jumps && mayMeetGhosts(*own))) {
+    if ((!isSame || isRegrouped) && isEager(*own, dispatcher)) {
         announce(*own, dispatcher);
+    } else if (jumps) {
+        announceToGhosts(*own, dispatcher);
     }
 }
 
@@ -351,6 +354,15 @@ void SpatialHashBroadphase::announce(const Proxy& proxy, btDispatcher* dispatche
     followFilter();
     const PairChanges changes = pairs_.announce(proxy.id, cacheFilter());
     apply(changes, changes.born.size(), dispatcher);
+}
+
+void SpatialHashBroadphase::announceToGhosts(const Proxy& proxy, btDispatcher* dispatcher) {
+    const std::vector<ProxyId> met = ghostsAt(proxy);
+    if (!met.empty()) {
+        followFilter();
+        const PairChanges changes = pairs_.announce(proxy.id, met, cacheFilter());
+        apply(changes, changes.born.size(), dispatcher);
+    }
 }
 
 void SpatialHashBroadphase::refilter(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {

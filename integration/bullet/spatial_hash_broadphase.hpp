@@ -10,8 +10,8 @@
 //     hashphase::SpatialHashBroadphase broadphase;
 //
 // What changes: pairs are exact (no fat boxes, no stale pairs) and are made and removed in
-// calculateOverlappingPairs() only, but for those of ghost objects, and of what is created or put where
-// one stands: these come at once.
+// calculateOverlappingPairs() only, but for those of ghost objects: theirs come at once, when they are
+// created or moved, and when something else is created where they stand, or jumps there.
 //
 // Batches   createProxies(), setAabbs() and destroyProxies() do what as many single calls do, at less
 //           cost.
@@ -65,10 +65,10 @@ struct SpatialHashConfig {
     /// Ghost objects get their pairs at once, in createProxy() and setAabb(), as Bullet's character
     /// controller expects, wherever the pair cache has an internal ghost pair callback, through which
     /// ghosts hear of pairs. (A cache that is not given as a PairCache counts as having one.) What is
-    /// created where a ghost stands, or jumps there, out of the box that it had, gets all of its pairs at
-    /// once as well, so that the ghost hears of it. To find ghosts, a client that may have pairs is taken for a btCollisionObject then, in calls
-    /// that hand in a dispatcher, as a btCollisionWorld's do. False is for programs whose clients are
-    /// something else.
+    /// created where a ghost stands, or jumps there, out of the box that it had, is a pair with it at once
+    /// as well. To find ghosts, a client that may have pairs is taken for a btCollisionObject then, in
+    /// calls that hand in a dispatcher, as a btCollisionWorld's do. False is for programs whose clients
+    /// are something else.
     bool eagerGhosts = true;
 
     /// Proxies of these groups get theirs at once as well; none by default, for what a bit means is up
@@ -155,9 +155,9 @@ public:
 
     /// The proxy's address is fixed for its life, m_uniqueId counts 1, 2, 3 ... and is never used
     /// again: after 2^31 - 1 of them std::length_error is thrown until resetPool(); likewise where there
-    /// are 2^28 proxies. `shapeType` is ignored. Cost: O(1), and a look at up to 1,024 ghosts; of ghosts, of
-    /// what touches them, or of all where there are more, and of SpatialHashConfig::eagerGroups that of
-    /// Pairs::announce() and of its pairs, too.
+    /// are 2^28 proxies. `shapeType` is ignored. Cost: O(1), and a look at up to 1,024 ghosts, or a box
+    /// query where there are more; of ghosts and SpatialHashConfig::eagerGroups that of Pairs::announce()
+    /// and of its pairs, too.
     btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
                                    int shapeType, void* userPtr, int collisionFilterGroup,
                                    int collisionFilterMask, btDispatcher* dispatcher) override;
@@ -167,8 +167,9 @@ public:
     void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
 
     /// Notices, also when the box is the same, that the proxy's group or mask has been written.
-    /// Cost: O(1); a comparison when the box is the same, with SpatialHashConfig::sweep a look at the
-    /// body, and of ghosts, eagerGroups, and what jumps where there are ghosts, as in createProxy().
+    /// Cost: O(1), or a comparison when the box is the same, and with SpatialHashConfig::sweep a look at
+    /// the body; for ghosts and eagerGroups, and where the box is another one that does not touch the last
+    /// one, as in createProxy().
     void setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin, const btVector3& aabbMax,
                  btDispatcher* dispatcher) override;
 
@@ -365,9 +366,10 @@ private:
                (batchCache_ == nullptr || batchCache_->getInternalGhostPairCallback() != nullptr);
     }
     [[nodiscard]] bool isGhost(Proxy& proxy, const btDispatcher* dispatcher);
-    [[nodiscard]] bool mayMeetGhosts(const Proxy& proxy) const;
+    [[nodiscard]] std::vector<ProxyId> ghostsAt(const Proxy& proxy) const;
     void forgetGhost(Proxy& proxy) noexcept;
     void announce(const Proxy& proxy, btDispatcher* dispatcher);
+    void announceToGhosts(const Proxy& proxy, btDispatcher* dispatcher);
     void move(const Proxy& proxy);
     void moveOnItsWay(const Proxy& proxy, const Aabb<btScalar>& box);
     [[nodiscard]] bool doMeet(const btBroadphaseProxy& a, const btBroadphaseProxy& b) const;

@@ -4,6 +4,9 @@
 
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
+#include <broadphase/collectors.hpp>
+#include <broadphase/regions.hpp>
+
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
 #include <algorithm>
@@ -34,14 +37,28 @@ void SpatialHashBroadphase::forgetGhost(Proxy& proxy) noexcept {
     ghosts_.pop_back();
 }
 
-// Where there are many, to ask about its pairs is sooner than to look at each.
-bool SpatialHashBroadphase::mayMeetGhosts(const Proxy& proxy) const {
+// Those that the proxy touches. Where there are many, to ask who is there is sooner than to look at each.
+std::vector<ProxyId> SpatialHashBroadphase::ghostsAt(const Proxy& proxy) const {
     constexpr std::size_t kFew = 1024;
-    const auto touches = [&](std::uint32_t slot) {
-        return overlaps(grid_.box(proxyAt(slot)->id), grid_.box(proxy.id));
-    };
-    return mayHaveGhosts() &&
-           (ghosts_.size() > kFew || std::any_of(ghosts_.begin(), ghosts_.end(), touches));
+    std::vector<ProxyId> found;
+    if (!mayHaveGhosts()) {
+        return found;
+    }
+    const Aabb<btScalar> box = grid_.box(proxy.id);
+    if (ghosts_.size() > kFew) {
+        CollectAll all(found);
+        grid_.visit(BoxRegion<btScalar>{box}, all);
+        std::erase_if(found,
+                      [this](ProxyId id) { return proxyAt(id.index)->client != Client::ghost; });
+        return found;
+    }
+    for (const std::uint32_t slot : ghosts_) {
+        const ProxyId ghost = proxyAt(slot)->id;
+        if (overlaps(grid_.box(ghost), box)) {
+            found.push_back(ghost);
+        }
+    }
+    return found;
 }
 
 void SpatialHashBroadphase::shapeChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
@@ -58,8 +75,9 @@ void SpatialHashBroadphase::shapeChanged(btBroadphaseProxy* proxy, btDispatcher*
     std::vector<ProxyCouple> couples;
     const btBroadphasePairArray& pairs = pairCache_->getOverlappingPairArray();
     for (int i = 0; i < pairs.size(); ++i) {
-        if (pairs[i].m_pProxy0 == own || pairs[i].m_pProxy1 == own) {
-            couples.emplace_back(*pairs[i].m_pProxy0, *pairs[i].m_pProxy1);
+        const btBroadphasePair& pair = pairs[i];
+        if (pair.m_pProxy0 == own || pair.m_pProxy1 == own) {
+            couples.emplace_back(*own, pair.m_pProxy0 == own ? *pair.m_pProxy1 : *pair.m_pProxy0);
         }
     }
     for (const ProxyCouple& couple : couples) {

@@ -70,6 +70,7 @@ void WorldConfigurator::apply(const WorldEffects& effects) {
     arePairsOld_ = arePairsOld_ || haveMasks || effects.pairs != effects_.pairs;
     WorldEffects copy = effects;  // takes memory
     effects_ = std::move(copy);
+    ++applyCount_;
     setFilter();
     configureWorld();
     if (arePairsOld_) {
@@ -84,6 +85,9 @@ void WorldConfigurator::apply(const WorldEffects& effects) {
         const bool isChanged = configure(object, effectsOf(object), effects_);
         areBodiesChanged_ = areBodiesChanged_ || isChanged;
     });
+    for (auto& [object, kept] : kept_) {
+        kept.wasAway = kept.wasAway || kept.lastSeen != applyCount_;
+    }
     if (areBodiesChanged_) {
         renewContacts();
         wakeAll();

@@ -39,9 +39,9 @@
 // Lifetime  The world, its broadphase, the pair cache and its former filter outlive the configurator, and
 //           nobody wraps the filter that it sets. Only objects that are in the world are touched: one that
 //           is removed without release(), as pools do, keeps what is set until it is back and apply() or
-//           prepare() meets it, which then treat it as if it had been there all the time. So release() one
-//           before it is deleted: a new object at its address that has the very setting that was set is
-//           taken for it.
+//           prepare() meets it, which then treat it as if it had been there all the time; where the
+//           configurator ends before that, for good. So release() one before it is deleted: a new object
+//           at its address that has something of what was set, by chance, is taken for it.
 // Other     Soft bodies and multibodies solve contacts of their own, and are left alone but for pairs.
 // Memory    Nothing is held for an object whose settings are its own, but for one that was removed without
 //           release(): until it is back, or another one at its address. Where memory runs out,
@@ -55,6 +55,7 @@
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <unordered_map>
@@ -151,8 +152,11 @@ private:
         detail::KeptSetting<btScalar> ccdRadius;
         detail::KeptSetting<btScalar> slowBelow;
         bool isKeptAwake = false;
+        bool wasAway = false;  // in an apply()
+        std::uint64_t lastSeen = 0;
 
         [[nodiscard]] bool isHeld() const noexcept;
+        [[nodiscard]] bool mayBeOf(const btCollisionObject& object) const;
     };
 
     /// Refuses what is not declared, and asks the former filter for the rest.
@@ -191,6 +195,7 @@ private:
     detail::KeptSetting<bool> useContinuous_;
     detail::KeptSetting<int> frictionDirections_;
     std::unordered_map<const btCollisionObject*, KeptBody> kept_;  // of those that are overridden
+    std::uint64_t applyCount_ = 0;
     bool arePairsOld_ = false;       // until every couple has been asked about again
     bool areBodiesChanged_ = false;  // until all have been woken
 };

@@ -67,12 +67,32 @@ bool WorldConfigurator::KeptBody::isHeld() const noexcept {
            slowBelow.isHeld() || isKeptAwake;
 }
 
+// Whether the object may be the one of which this is kept: some of what was set is to be seen, though
+// its owner may have set the rest. What Bullet sets by itself tells nothing: neither rolling friction nor
+// a motion to sweep from.
+bool WorldConfigurator::KeptBody::mayBeOf(const btCollisionObject& object) const {
+    const btRigidBody* const body = btRigidBody::upcast(&object);
+    const bool isAnythingSet = noResponse.isHeld() || friction.isHeld() || restitution.isHeld() ||
+                               angularFactor.isHeld() || slowBelow.isHeld();
+    return !isAnythingSet ||
+           noResponse.isAsWritten(object.getCollisionFlags() &
+                                  btCollisionObject::CF_NO_CONTACT_RESPONSE) ||
+           friction.isAsWritten(object.getFriction()) ||
+           restitution.isAsWritten(object.getRestitution()) ||
+           (body != nullptr && (angularFactor.isAsWritten(body->getAngularFactor()) ||
+                                slowBelow.isAsWritten(body->getLinearSleepingThreshold())));
+}
+
 bool WorldConfigurator::configure(btCollisionObject& object, const BodyEffects& effects,
                                   const WorldEffects& ofWorld) {
     if (solvesContactsOfItsOwn(object)) {
         return false;
     }
     auto found = kept_.find(&object);
+    if (found != kept_.end() && found->second.wasAway && !found->second.mayBeOf(object)) {
+        kept_.erase(found);  // that was another one
+        found = kept_.end();
+    }
     if (found == kept_.end()) {
         if (areAllItsOwn(effects, ofWorld)) {
             return false;
@@ -80,6 +100,8 @@ bool WorldConfigurator::configure(btCollisionObject& object, const BodyEffects& 
         found = kept_.try_emplace(&object).first;  // before anything is written: it takes memory
     }
     KeptBody& kept = found->second;
+    kept.wasAway = false;
+    kept.lastSeen = applyCount_;
     bool isChanged = setContacts(object, kept, effects, ofWorld);
     if (btRigidBody* const body = btRigidBody::upcast(&object)) {
         const bool isTurned =

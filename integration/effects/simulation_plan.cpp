@@ -57,7 +57,7 @@ std::unique_ptr<typename Simulation<Scalar>::Index> Simulation<Scalar>::makeInde
     return index;
 }
 
-// For new ones, everybody is new.
+// For those that are made, everybody is new.
 template <class Scalar>
 void Simulation<Scalar>::setPairing(bool isWanted) {
     if (!isWanted) {

@@ -26,6 +26,11 @@ public:
         return written_;
     }
 
+    /// Whether it is overridden, and `present` is what was written.
+    [[nodiscard]] bool isAsWritten(const Value& present) const {
+        return isHeld_ && present == written_;
+    }
+
     /// Whether the setting is overridden.
     [[nodiscard]] bool isHeld() const noexcept { return isHeld_; }
 

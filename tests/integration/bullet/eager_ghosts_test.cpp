@@ -11,6 +11,7 @@
 #include <BulletDynamics/Character/btKinematicCharacterController.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -233,6 +234,72 @@ TEST(EagerGhosts, MakePairsInTheStepWhereNobodyIsTold) {
     EXPECT_EQ(scene.pairCount(), 1) << "The callback was taken away.";
     scene.world.performDiscreteCollisionDetection();
     EXPECT_EQ(scene.pairCount(), 1);
+}
+
+TEST(EagerGhosts, HearInTheStepOfWhatMovesIntoThemOrWhileNobodyWasTold) {
+    GhostByHand scene;
+    scene.watchBy(&scene.bullets);
+    scene.world.addCollisionObject(&scene.ghost);
+    scene.world.addCollisionObject(&scene.far);
+    const auto put = [&](btScalar x) {
+        scene.far.setWorldTransform(GhostWorld::at({x, 0, 0}));
+        scene.world.updateSingleAabb(&scene.far);
+    };
+    put(3);
+    put(btScalar(1.5));  // as far as it may be from where it was, and touch that
+    EXPECT_EQ(scene.pairCount(), 0);
+    scene.world.performDiscreteCollisionDetection();
+    EXPECT_EQ(scene.ghost.getNumOverlappingObjects(), 1);
+    put(50);
+    scene.world.performDiscreteCollisionDetection();
+    scene.watchBy(nullptr);
+    put(1);
+    scene.world.addCollisionObject(&scene.body);
+    EXPECT_EQ(scene.pairCount(), 0);
+}
+
+// A ghost around all of them hears of each jump; what they are to each other waits for the step, so that
+// its order follows from where they are.
+TEST(EagerGhosts, LeaveTheOrderOfOtherPairsToTheStep) {
+    std::vector<std::vector<int>> orders;
+    for (const bool doJump : {false, true}) {
+        GhostByHand scene;
+        scene.watchBy(&scene.bullets);
+        btBoxShape around(btVector3(200, 200, 200));
+        scene.ghost.setCollisionShape(&around);
+        scene.world.addCollisionObject(&scene.ghost);
+        std::array<btCollisionObject, 4> bodies;
+        const auto put = [&](std::size_t i, btScalar x) {
+            bodies.at(i).setWorldTransform(GhostWorld::at({x, 0, 0}));
+            scene.world.updateSingleAabb(&bodies.at(i));
+        };
+        for (std::size_t i = 0; i < bodies.size(); ++i) {
+            bodies.at(i).setCollisionShape(&scene.box);
+            bodies.at(i).setWorldTransform(GhostWorld::at({btScalar(i) * 20, 0, 0}));
+            scene.world.addCollisionObject(&bodies.at(i));
+        }
+        scene.world.performDiscreteCollisionDetection();
+        for (btScalar x = 60; x > btScalar(20.5); x -= doJump ? btScalar(39.5) : btScalar(0.5)) {
+            put(3, x - (doJump ? btScalar(39.5) : btScalar(0.5)));
+        }
+        for (btScalar x = 40; x > btScalar(0.5); x -= doJump ? btScalar(39.5) : btScalar(0.5)) {
+            put(2, x - (doJump ? btScalar(39.5) : btScalar(0.5)));
+        }
+        EXPECT_EQ(scene.pairCount(), 4);
+        scene.world.performDiscreteCollisionDetection();
+        EXPECT_EQ(scene.pairCount(), 6);
+        std::vector<int>& order = orders.emplace_back();
+        btBroadphasePairArray& pairs = scene.world.getPairCache()->getOverlappingPairArray();
+        for (int i = 0; i < pairs.size(); ++i) {
+            order.push_back(pairs[i].m_pProxy0->m_uniqueId);
+            order.push_back(pairs[i].m_pProxy1->m_uniqueId);
+        }
+        for (btCollisionObject& body : bodies) {
+            scene.world.removeCollisionObject(&body);
+        }
+        scene.world.removeCollisionObject(&scene.ghost);
+    }
+    EXPECT_EQ(orders[0], orders[1]);
 }
 
 TEST(EagerGhosts, MakePairsInTheStepWhenTheyAreNotToBeEager) {

@@ -134,5 +134,32 @@ TEST(NeverSteppedWorld, HoldsNoMoreWhereObjectsAreDragged) {
     world.unload();
 }
 
+TEST(NeverSteppedWorld, HoldsThePairsOfAGhostAroundAllOfThemAlone) {
+    AskedWorld world;
+    btBoxShape around(btVector3(100, 100, 100));
+    btGhostObject ghost;
+    ghost.setCollisionShape(&around);
+    world.world.addCollisionObject(&ghost);
+    btCollisionObject objects[50];
+    for (btCollisionObject& object : objects) {
+        object.setCollisionShape(&world.small);
+        world.world.addCollisionObject(&object);
+    }
+    world.world.performDiscreteCollisionDetection();
+    const int before = world.cache.getNumOverlappingPairs();
+    for (int turn = 0; turn < 20; ++turn) {
+        for (int i = 0; i < 50; ++i) {
+            objects[i].getWorldTransform().setOrigin(
+                {btScalar((i * 7 + turn * 13) % 50), btScalar(i % (turn + 2)), 0});
+            world.world.updateSingleAabb(&objects[i]);
+        }
+        EXPECT_EQ(world.cache.getNumOverlappingPairs(), before);
+    }
+    for (btCollisionObject& object : objects) {
+        world.world.removeCollisionObject(&object);
+    }
+    world.world.removeCollisionObject(&ghost);
+}
+
 }  // namespace
 }  // namespace hashphase::test

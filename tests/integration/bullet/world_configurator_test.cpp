@@ -167,6 +167,7 @@ TEST(WorldConfigurator, GiveBackWhatABodyHadThatWasAway) {
         room.world().removeRigidBody(&pooled);
         configurator.apply({});  // it is not in the world, and may be gone
         EXPECT_EQ(pooled.getFriction(), 0);
+        pooled.setRollingFriction(btScalar(0.2));  // its own from now on
         room.world().addRigidBody(&pooled);
         if (isPrepared) {
             configurator.prepare(pooled);
@@ -174,6 +175,7 @@ TEST(WorldConfigurator, GiveBackWhatABodyHadThatWasAway) {
             configurator.apply({});
         }
         EXPECT_EQ(pooled.getFriction(), btScalar(0.7));
+        EXPECT_EQ(pooled.getRollingFriction(), btScalar(0.2));
         EXPECT_EQ(pooled.getAngularFactor(), btVector3(1, 1, 1));
         EXPECT_EQ(pooled.getActivationState(), ACTIVE_TAG);
         EXPECT_EQ(configurator.heldCount(), 0U);
@@ -198,6 +200,34 @@ TEST(WorldConfigurator, TakeABodyMadeWhereAnotherWasForWhatItIs) {
         }
         room.world().removeRigidBody(body);
         body->~btRigidBody();
+    }
+}
+
+// Some of what is set is what Bullet sets by itself.
+TEST(WorldConfigurator, TakeABodyMadeAfterAnotherThatWasNeverReleasedForANewOne) {
+    EffectsRoom room;
+    btSphereShape shape(1);
+    alignas(btRigidBody) std::array<std::byte, sizeof(btRigidBody)> memory;
+    WorldConfigurator configurator(room.world());
+    configurator.apply({.sweep = false, .friction = false});
+    for (const bool isFirst : {true, false}) {
+        auto* const body = new (memory.data()) btRigidBody(1, nullptr, &shape, {1, 1, 1});
+        if (isFirst) {
+            body->setRollingFriction(btScalar(0.1));
+            body->setCcdMotionThreshold(btScalar(0.5));
+        }
+        room.world().addRigidBody(body);
+        configurator.prepare(*body);
+        EXPECT_EQ(body->getFriction(), 0);
+        if (!isFirst) {
+            configurator.apply({});
+            EXPECT_EQ(body->getFriction(), btScalar(0.5));
+            EXPECT_EQ(body->getRollingFriction(), 0);
+            EXPECT_EQ(body->getCcdMotionThreshold(), 0);
+        }
+        room.world().removeRigidBody(body);
+        body->~btRigidBody();
+        configurator.apply(configurator.effects());
     }
 }
 
