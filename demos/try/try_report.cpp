@@ -119,8 +119,8 @@ void printVerified(const Trial& trial, const TriedRun& run, std::ostream& out) {
     }
     if (pairs.removed > 0) {
         out << withThousands(pairs.removed)
-            << " times a pair was missing that the program had taken out of the cache itself: with "
-               "hashphase it comes back when the two meet again, or by refilter().\n";
+            << " times a pair was missing that the program had taken out of its own cache itself: "
+               "with hashphase it comes back when the two meet again.\n";
     }
     if (pairs.late > 0) {
         out << withThousands(pairs.late)

@@ -90,7 +90,7 @@ btBroadphasePair* PairCache::add(const ProxyCouple& couple) {
 
 void* PairCache::removeOverlappingPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1,
                                        btDispatcher* dispatcher) {
-    return remove(idsOf(*proxy0, *proxy1), dispatcher, freeingNow());
+    return remove(idsOf(*proxy0, *proxy1), dispatcher, freeingNow(), Remover::other);
 }
 
 // A callback of processAllOverlappingPairs() is called in canonical order itself.
@@ -101,7 +101,8 @@ PairCache::Freeing PairCache::freeingNow() const noexcept {
 
 // Callbacks come when everything is in order again, and get a copy, so that they may change the
 // cache.
-void* PairCache::remove(std::uint64_t ids, btDispatcher* dispatcher, Freeing freeing) {
+void* PairCache::remove(std::uint64_t ids, btDispatcher* dispatcher, Freeing freeing,
+                        Remover remover) {
     checkMayChange();
     if (freeing == Freeing::inTurn) {
         detail::ensureCapacity(retired_, retired_.size() + 1);
@@ -113,6 +114,9 @@ void* PairCache::remove(std::uint64_t ids, btDispatcher* dispatcher, Freeing fre
     btBroadphasePair removed = pairs_[static_cast<int>(index)];
     unchainPair(index, ids);
     fill(index);
+    if (remover == Remover::other) {
+        noteTakenOut(removed);
+    }
     if (freeing == Freeing::now) {
         cleanOverlappingPair(removed, dispatcher);
     } else {
@@ -122,6 +126,21 @@ void* PairCache::remove(std::uint64_t ids, btDispatcher* dispatcher, Freeing fre
         ghosts_->removeOverlappingPair(removed.m_pProxy0, removed.m_pProxy1, dispatcher);
     }
     return removed.m_internalInfo1;
+}
+
+// Where nobody asks, those of which a proxy is gone do not gather.
+void PairCache::noteTakenOut(const btBroadphasePair& pair) noexcept {
+    if (!isWatched_) {
+        return;
+    }
+    if (takenOut_.size() == takenOut_.capacity()) {
+        std::erase_if(takenOut_, [](const ProxyCouple& couple) { return !couple.isUpToDate(); });
+    }
+    try {
+        takenOut_.emplace_back(*pair.m_pProxy0, *pair.m_pProxy1);
+    } catch (const std::exception&) {
+        isMoreTakenOut_ = true;
+    }
 }
 
 // The last pair takes a place that is vacant, unless that is the last itself. If it was not chained
@@ -203,7 +222,7 @@ void PairCache::processByUniqueId(btOverlapCallback& callback, btDispatcher* dis
     for (const Note& note : notes) {
         const std::uint32_t index = indexOf(note);
         if (index != kNone && callback.processOverlap(pairs_[static_cast<int>(index)])) {
-            remove(note.uniqueIds, dispatcher, Freeing::now);
+            remove(note.uniqueIds, dispatcher, Freeing::now, Remover::other);
         }
     }
     scratch_ = std::move(notes);
@@ -261,11 +280,11 @@ void PairCache::freeRetiredAsListed() {
 void PairCache::sort() {
     noteAll(scratch_);
     std::sort(scratch_.begin(), scratch_.end());
-    newIndex_.resize(scratch_.size());
+    places_.resize(scratch_.size());
     for (std::uint32_t i = 0; i < scratch_.size(); ++i) {
-        newIndex_[scratch_[i].index] = i;
+        places_[scratch_[i].index] = i;
     }
-    ids_.renumber(newIndex_, [this](std::uint32_t i, std::uint32_t j) {
+    ids_.renumber(places_, [this](std::uint32_t i, std::uint32_t j) {
         pairs_.swap(static_cast<int>(i), static_cast<int>(j));
     });
     dropChains();
@@ -308,9 +327,9 @@ std::uint32_t PairCache::indexOf(const Note& note) const {
 std::size_t PairCache::memoryBytes() const noexcept {
     return sizeof(*this) + static_cast<std::size_t>(pairs_.capacity()) * sizeof(btBroadphasePair) +
            ids_.memoryBytes() + links_.capacity() * sizeof(Link) + firstEdge_.memoryBytes() +
-           retired_.capacity() * sizeof(Retired) + vacant_.capacity() * sizeof(std::uint32_t) +
+           retired_.capacity() * sizeof(Retired) + places_.capacity() * sizeof(std::uint32_t) +
            ranks_.memoryBytes() + scratch_.capacity() * sizeof(Note) +
-           newIndex_.capacity() * sizeof(std::uint32_t);
+           takenOut_.capacity() * sizeof(ProxyCouple);
 }
 
 // Bullet's arrays give memory back only when they are emptied. Chains are made anew when they are
@@ -331,7 +350,7 @@ void PairCache::releaseUnusedMemory() noexcept {
     }
     dropChains();
     retired_.shrink_to_fit();
-    detail::freeArrays(links_, vacant_, scratch_, newIndex_);
+    detail::freeArrays(links_, places_, scratch_);
     try {
         ranks_ = {};
         firstEdge_.shrink();

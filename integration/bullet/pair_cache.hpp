@@ -260,6 +260,8 @@ public:
     [[nodiscard]] std::string validate() const;
 
 private:
+    friend class SpatialHashBroadphase;
+
     // A pair has two edges: 2 * its index for the proxy with the lower unique id, and that + 1. The
     // edges of a proxy are chained, those of the first so many pairs, that is.
     struct Link {
@@ -280,6 +282,9 @@ private:
     };
 
     enum class Freeing { now, inTurn };
+
+    // Who removes a pair: what others take out, the broadphase wants to know.
+    enum class Remover { broadphase, other };
 
     class Processing;
 
@@ -305,7 +310,14 @@ private:
     }
     void name(const ProxyCouple& couple, btBroadphasePair& pair) const;
     btBroadphasePair* add(const ProxyCouple& couple);
-    void* remove(std::uint64_t ids, btDispatcher* dispatcher, Freeing freeing);
+    void* remove(std::uint64_t ids, btDispatcher* dispatcher, Freeing freeing, Remover remover);
+    void noteTakenOut(const btBroadphasePair& pair) noexcept;
+    [[nodiscard]] bool isAnythingTakenOut() const noexcept {
+        return isMoreTakenOut_ || !takenOut_.empty();
+    }
+    void removePairsOf(btBroadphaseProxy& proxy, btDispatcher* dispatcher, Remover remover);
+    void removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher,
+                       Remover remover);
     void retire(const btBroadphasePair& pair, std::uint64_t ids, btDispatcher* dispatcher) {
         if (pair.m_algorithm != nullptr && dispatcher != nullptr) {
             retired_.push_back({{keysOf(pair, ids), ids, kNone}, pair, dispatcher});
@@ -317,7 +329,7 @@ private:
     void updateOneByOne(std::span<const ProxyCouple> died, std::span<const ProxyCouple> born,
                         btDispatcher* dispatcher);
     void prefetchAhead(std::span<const ProxyCouple> couples, std::size_t i) const;
-    void vacate(std::uint64_t ids, btDispatcher* dispatcher);
+    void vacate(std::uint64_t ids, btDispatcher* dispatcher, Remover remover);
     void vacateAll(std::span<const ProxyCouple> died, btDispatcher* dispatcher);
     void makeRoomFor(std::size_t bornCount);
     std::size_t settle(std::span<const ProxyCouple> born);
@@ -345,7 +357,7 @@ private:
     void noteUnchained(std::uint32_t id, std::vector<Note>& notes) const;
     [[nodiscard]] std::vector<Note> notesOf(const btBroadphaseProxy& proxy);
     void tellGhostsAgain(std::uint64_t ids, const btBroadphasePair& pair, btDispatcher* dispatcher);
-    void removeUnnoted(const btBroadphaseProxy& proxy, btDispatcher* dispatcher);
+    void removeUnnoted(const btBroadphaseProxy& proxy, btDispatcher* dispatcher, Remover remover);
     void processByUniqueId(btOverlapCallback& callback, btDispatcher* dispatcher);
     void prepareWholeArray();
     void sort();
@@ -365,14 +377,17 @@ private:
     std::size_t pairsScanned_ = 0;  // in place of chaining them, since some were last chained
     std::uint64_t pairsVisited_ = 0;
     bool isSorted_ = true;
-    int processDepth_ = 0;  // processAllOverlappingPairs() calls under way
+    bool isWatched_ = false;       // a SpatialHashBroadphase wants to know what others take out
+    bool isMoreTakenOut_ = false;  // than is noted, as there was no memory
+    int processDepth_ = 0;         // processAllOverlappingPairs() calls under way
 
     std::vector<Retired> retired_;
 
-    std::vector<std::uint32_t> vacant_;  // scratch of update(): places whose pairs have died
+    std::vector<ProxyCouple> takenOut_;
+
+    std::vector<std::uint32_t> places_;  // scratch of batches, vacant ones; and of sort(), new ones
     detail::ProxyRanks ranks_;           // scratch of removals
     std::vector<Note> scratch_;
-    std::vector<std::uint32_t> newIndex_;  // scratch of sort()
 };
 
 // Not by Bullet's constructor for two proxies: that one orients by unique id.

@@ -31,8 +31,8 @@ void PairCache::update(std::span<const ProxyCouple> died, std::span<const ProxyC
         return;
     }
     dropChainsIfMany(died.size());
-    vacant_.clear();
-    detail::ensureCapacity(vacant_, died.size());
+    places_.clear();
+    detail::ensureCapacity(places_, died.size());
     try {
         vacateAll(died, dispatcher);
         makeRoomFor(born.size());
@@ -53,7 +53,7 @@ void PairCache::updateOneByOne(std::span<const ProxyCouple> died, std::span<cons
         if (kNear < ids_.size()) {
             ids_.prefetch(ids_.keys()[ids_.size() - 1 - kNear]);  // is soon to take a place
         }
-        remove(died[i].ids(), dispatcher, freeingNow());
+        remove(died[i].ids(), dispatcher, freeingNow(), Remover::broadphase);
     }
     for (std::size_t i = 0; i < born.size(); ++i) {
         prefetchAhead(born, i);
@@ -76,12 +76,12 @@ void PairCache::prefetchAhead(std::span<const ProxyCouple> couples, std::size_t 
 void PairCache::vacateAll(std::span<const ProxyCouple> died, btDispatcher* dispatcher) {
     for (std::size_t i = 0; i < died.size(); ++i) {
         prefetchAhead(died, i);
-        vacate(died[i].ids(), dispatcher);
+        vacate(died[i].ids(), dispatcher, Remover::broadphase);
     }
 }
 
 // Removes the pair, if it is there, and leaves its place vacant.
-void PairCache::vacate(std::uint64_t ids, btDispatcher* dispatcher) {
+void PairCache::vacate(std::uint64_t ids, btDispatcher* dispatcher, Remover remover) {
     if (dispatcher != nullptr) {
         detail::ensureCapacity(retired_, retired_.size() + 1);
     }
@@ -91,16 +91,19 @@ void PairCache::vacate(std::uint64_t ids, btDispatcher* dispatcher) {
     }
     btBroadphasePair& pair = pairs_[static_cast<int>(index)];
     unchainPair(index, ids);
+    if (remover == Remover::other) {
+        noteTakenOut(pair);
+    }
     retire(pair, ids, dispatcher);
     pair.m_pProxy0 = nullptr;
-    vacant_.push_back(index);
+    places_.push_back(index);
     isSorted_ = false;
 }
 
 // So that settle() takes no more memory.
 void PairCache::makeRoomFor(std::size_t bornCount) {
     if (bornCount > 0) {
-        const std::size_t more = bornCount - std::min(bornCount, vacant_.size());
+        const std::size_t more = bornCount - std::min(bornCount, places_.size());
         ids_.reserve(ids_.size() + std::max<std::size_t>(more, 1));
     }
 }
@@ -113,7 +116,7 @@ std::size_t PairCache::settle(std::span<const ProxyCouple> born) {
             ids_.prefetch(born[i + kFar].ids());
         }
         const auto end = static_cast<std::uint32_t>(pairs_.size());
-        const std::uint32_t index = taken < vacant_.size() ? vacant_[taken] : end;
+        const std::uint32_t index = taken < places_.size() ? places_[taken] : end;
         if (const std::uint32_t known = ids_.insert(born[i].ids(), index); known != index) {
             HASHPHASE_ASSERT(isNamedBy(born[i], pairs_[static_cast<int>(known)]),
                              "Proxies that are alive have different unique ids.");
@@ -133,12 +136,12 @@ std::size_t PairCache::settle(std::span<const ProxyCouple> born) {
 
 // Pairs from the end take the places that are still vacant.
 void PairCache::closeVacant(std::size_t firstVacant) noexcept {
-    for (std::size_t i = firstVacant; i < vacant_.size(); ++i) {
+    for (std::size_t i = firstVacant; i < places_.size(); ++i) {
         while (pairs_.size() > 0 && pairs_[pairs_.size() - 1].m_pProxy0 == nullptr) {
             fill(static_cast<std::uint32_t>(pairs_.size()) - 1);
         }
-        if (vacant_[i] < static_cast<std::uint32_t>(pairs_.size())) {
-            fill(vacant_[i]);
+        if (places_[i] < static_cast<std::uint32_t>(pairs_.size())) {
+            fill(places_[i]);
         }
     }
 }
@@ -147,11 +150,16 @@ void PairCache::closeVacant(std::size_t firstVacant) noexcept {
 
 void PairCache::removeOverlappingPairsContainingProxies(std::span<btBroadphaseProxy* const> proxies,
                                                         btDispatcher* dispatcher) {
+    removePairsOf(proxies, dispatcher, Remover::other);
+}
+
+void PairCache::removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher,
+                              Remover remover) {
     checkMayChange();
     constexpr std::size_t kFew = 4;  // so many single scans cost what one for many does
     if (isTold() || proxies.size() < kFew) {
         for (btBroadphaseProxy* proxy : proxies) {
-            removeOverlappingPairsContainingProxy(proxy, dispatcher);
+            removePairsOf(*proxy, dispatcher, remover);
         }
         return;
     }
@@ -159,14 +167,14 @@ void PairCache::removeOverlappingPairsContainingProxies(std::span<btBroadphasePr
     dropChainsIfMany(proxies.size());
     chainIfWorth();
     std::vector<Note> notes = notesOfAll(proxies);
-    vacant_.clear();
-    detail::ensureCapacity(vacant_, notes.size());
+    places_.clear();
+    detail::ensureCapacity(places_, notes.size());
     try {
         for (std::size_t i = 0; i < notes.size(); ++i) {
             if (i + kFar < notes.size()) {
                 ids_.prefetch(notes[i + kFar].uniqueIds);
             }
-            vacate(notes[i].uniqueIds, dispatcher);
+            vacate(notes[i].uniqueIds, dispatcher, remover);
         }
     } catch (...) {
         closeVacant(0);

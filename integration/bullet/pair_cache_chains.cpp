@@ -147,23 +147,27 @@ std::vector<PairCache::Note> PairCache::notesOf(const btBroadphaseProxy& proxy) 
 
 void PairCache::removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy,
                                                       btDispatcher* dispatcher) {
+    removePairsOf(*proxy, dispatcher, Remover::other);
+}
+
+void PairCache::removePairsOf(btBroadphaseProxy& proxy, btDispatcher* dispatcher, Remover remover) {
     std::vector<Note> notes;
     try {
-        notes = notesOf(*proxy);
+        notes = notesOf(proxy);
     } catch (const std::bad_alloc&) {
-        removeUnnoted(*proxy, dispatcher);
+        removeUnnoted(proxy, dispatcher, remover);
         return;
     }
     std::size_t first = 0;
     std::size_t last = notes.size();
     auto count = static_cast<std::uint32_t>(pairs_.size());
     while (first < last) {
-        remove(notes[first++].uniqueIds, dispatcher, Freeing::now);
+        remove(notes[first++].uniqueIds, dispatcher, Freeing::now, remover);
         --count;
         // As in a scan of the whole array, which is Bullet's way: the pair at the end has moved to
         // where the scan is, and if it is one of the proxy's it is the next to go.
         while (order_ == PairOrder::arrival && first < last && notes[last - 1].index == count) {
-            remove(notes[--last].uniqueIds, dispatcher, Freeing::now);
+            remove(notes[--last].uniqueIds, dispatcher, Freeing::now, remover);
             --count;
         }
     }
@@ -171,10 +175,11 @@ void PairCache::removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy,
 }
 
 // Without memory to note pairs down: from the end, for the last pair takes the place of one that goes.
-void PairCache::removeUnnoted(const btBroadphaseProxy& proxy, btDispatcher* dispatcher) {
+void PairCache::removeUnnoted(const btBroadphaseProxy& proxy, btDispatcher* dispatcher,
+                              Remover remover) {
     for (int i = pairs_.size() - 1; i >= 0; i = std::min(i, pairs_.size()) - 1) {
         if (pairs_[i].m_pProxy0 == &proxy || pairs_[i].m_pProxy1 == &proxy) {
-            remove(ids_.keys()[static_cast<std::size_t>(i)], dispatcher, Freeing::now);
+            remove(ids_.keys()[static_cast<std::size_t>(i)], dispatcher, Freeing::now, remover);
         }
     }
 }

@@ -63,22 +63,27 @@ void SpatialHashBroadphase::destroyProxies(std::span<btBroadphaseProxy* const> p
         destroyProxies(others, dispatcher);
         return;
     }
-    if (batchCache_ != nullptr) {
-        try {
-            batchCache_->removeOverlappingPairsContainingProxies(proxies, dispatcher);
-        } catch (...) {
-            isCacheBehind_ = true;  // for nobody is destroyed
-            throw;
-        }
-    } else {
-        for (btBroadphaseProxy* proxy : proxies) {
-            pairCache_->removeOverlappingPairsContainingProxy(proxy, dispatcher);
-        }
-    }
+    removePairsOf(proxies, dispatcher);
     // The second time that a proxy is named it is not alive any more, which is asserted.
     for (std::size_t i = 0; i < proxies.size(); ++i) {
         prefetchAhead(proxies, i);
         removeFromGrid(checkedProxy(proxies[i]));
+    }
+}
+
+void SpatialHashBroadphase::removePairsOf(std::span<btBroadphaseProxy* const> proxies,
+                                          btDispatcher* dispatcher) {
+    if (batchCache_ == nullptr) {
+        for (btBroadphaseProxy* proxy : proxies) {
+            pairCache_->removeOverlappingPairsContainingProxy(proxy, dispatcher);
+        }
+        return;
+    }
+    try {
+        batchCache_->removePairsOf(proxies, dispatcher, PairCache::Remover::broadphase);
+    } catch (...) {
+        isCacheBehind_ = true;  // for nobody is destroyed
+        throw;
     }
 }
 

@@ -59,6 +59,7 @@ SpatialHashBroadphase::SpatialHashBroadphase(PairCache* pairCache, const Spatial
     : SpatialHashBroadphase(static_cast<btOverlappingPairCache*>(pairCache), config) {
     batchCache_ = pairCache != nullptr ? pairCache : ownCache_.get();
     groupsDecide_ = doGroupsDecide();
+    watchCache();
 }
 
 SpatialHashBroadphase::SpatialHashBroadphase(btOverlappingPairCache* pairCache,
@@ -74,6 +75,7 @@ SpatialHashBroadphase::SpatialHashBroadphase(btOverlappingPairCache* pairCache,
         pairCache_ = ownCache_.get();
     }
     groupsDecide_ = doGroupsDecide();
+    watchCache();
     HASHPHASE_ASSERT(pairCache_->getNumOverlappingPairs() == 0,
                      "A pair cache has no pairs yet when it is given to a broadphase.");
 }
@@ -123,7 +125,7 @@ void SpatialHashBroadphase::destroyProxy(btBroadphaseProxy* proxy, btDispatcher*
     checkMayChange();
     Proxy* const own = checkedProxy(proxy);
     if (!own->id.isNull()) {  // else destroyed before
-        pairCache_->removeOverlappingPairsContainingProxy(own, dispatcher);
+        removePairsOf({&proxy, 1}, dispatcher);
         removeFromGrid(own);
     }
 }
@@ -245,6 +247,7 @@ void SpatialHashBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) 
     const detail::QueryScope scope(this, detail::QueryScope::Changes::allowed);
     followFilter();
     noteGroupsIfTheyMatter();
+    putBackWhatWasTakenOut(dispatcher);
     const PairChanges changes = config_.parallelFor
                                     ? pairs_.update(cacheFilter(), config_.parallelFor)
                                     : pairs_.update(cacheFilter());
@@ -347,64 +350,6 @@ void SpatialHashBroadphase::catchUp(btDispatcher* dispatcher) {
     }
     applyToCache(couples, dispatcher);
     isCacheBehind_ = false;
-}
-
-// All births at once: should memory run out, there are none.
-void SpatialHashBroadphase::announce(const Proxy& proxy, btDispatcher* dispatcher) {
-    followFilter();
-    const PairChanges changes = pairs_.announce(proxy.id, cacheFilter());
-    apply(changes, changes.born.size(), dispatcher);
-}
-
-void SpatialHashBroadphase::announceToGhosts(const Proxy& proxy, btDispatcher* dispatcher) {
-    const std::vector<ProxyId> met = ghostsAt(proxy);
-    if (!met.empty()) {
-        followFilter();
-        const PairChanges changes = pairs_.announce(proxy.id, met, cacheFilter());
-        apply(changes, changes.born.size(), dispatcher);
-    }
-}
-
-void SpatialHashBroadphase::refilter(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
-    refilter(std::span(&proxy, 1), dispatcher);
-}
-
-void SpatialHashBroadphase::refilter(std::span<btBroadphaseProxy* const> proxies,
-                                     btDispatcher* dispatcher) {
-    std::vector<ProxyId> ids;
-    ids.reserve(proxies.size());
-    for (btBroadphaseProxy* proxy : proxies) {
-        ids.push_back(checkedProxy(proxy)->id);
-    }
-    checkMayChange();
-    followFilter();
-    constexpr std::size_t kLargePart = 8;
-    if (proxies.size() > grid_.size() / kLargePart) {
-        noteGroupsOfAll();
-    } else if (groupsDecide_) {
-        for (btBroadphaseProxy* proxy : proxies) {
-            noteGroupsAround(*checkedProxy(proxy));
-        }
-    }
-    const PairChanges changes = pairs_.refilter(ids, cacheFilter());
-    apply(changes, changes.born.size(), dispatcher);
-    std::sort(ids.begin(), ids.end());
-    const auto isNamed = [&](const btBroadphaseProxy* proxy) {
-        return std::binary_search(ids.begin(), ids.end(), idOf(proxy));
-    };
-    const auto isPair = [&](const btBroadphasePair& pair) {
-        return (!isNamed(pair.m_pProxy0) && !isNamed(pair.m_pProxy1)) || isAccepted(pair);
-    };
-    removeDeferred(isPair, dispatcher);
-}
-
-void SpatialHashBroadphase::refilterAll(btDispatcher* dispatcher) {
-    checkMayChange();
-    followFilter();
-    noteGroupsOfAll();
-    const PairChanges changes = pairs_.refilterAll(cacheFilter());
-    apply(changes, changes.born.size(), dispatcher);
-    removeDeferred([this](const btBroadphasePair& pair) { return isAccepted(pair); }, dispatcher);
 }
 
 // Caches with deferred removal ignore removeOverlappingPair() and keep duplicates; their user is to

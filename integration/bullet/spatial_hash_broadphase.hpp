@@ -199,8 +199,10 @@ public:
     /// where one of the two was moved, or its setAabb() called, since; a pair stays one until its boxes
     /// part. First those that have parted go, then those that have met come, each in the order of their
     /// proxies: what changes, and in which order, follows from the boxes before and now, not from
-    /// how they came there. Cost: that of Pairs::update(), and of the cache for each pair that
-    /// comes or goes.
+    /// how they came there. Before that, pairs that the program itself has taken out of the cache come
+    /// back, unless the filter refuses them by now; out of a cache that was not given as a PairCache they
+    /// stay out until the two meet again. Cost: that of Pairs::update(), and of the cache for each pair
+    /// that comes or goes.
     void calculateOverlappingPairs(btDispatcher* dispatcher) override;
 
     btOverlappingPairCache* getOverlappingPairCache() override { return pairCache_; }
@@ -312,7 +314,8 @@ public:
     void releaseUnusedMemory() noexcept;
 
     /// Grid::validate(), Sweeps::validate(), Pairs::validate() and PairCache::validate(), and:
-    /// - The cache holds as many pairs as the set of pairs (for a cache of our own).
+    /// - The cache holds as many pairs as the set of pairs (for a cache of our own, out of which the
+    ///   program has taken none since pairs were calculated).
     [[nodiscard]] std::string validate() const;
 
 private:
@@ -350,6 +353,7 @@ private:
     void noteSeen(const Proxy& proxy) noexcept;
     void noteUnseen(const Proxy& proxy) noexcept;
     void noteGroupsAround(const Proxy& proxy);
+    void removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher);
     void removeFromGrid(Proxy* proxy);
     void dropLastProxies() noexcept;
     void releaseAfterPeak() noexcept;
@@ -357,6 +361,8 @@ private:
     void apply(const PairChanges& changes, std::size_t birthsAtOnce, btDispatcher* dispatcher);
     void applyToCache(const Couples& couples, btDispatcher* dispatcher);
     void catchUp(btDispatcher* dispatcher);
+    void watchCache() noexcept;
+    void putBackWhatWasTakenOut(btDispatcher* dispatcher);
     [[nodiscard]] bool isEager(Proxy& proxy, const btDispatcher* dispatcher) {
         return (proxy.m_collisionFilterGroup & config_.eagerGroups) != 0 ||
                (proxy.client != Client::other && mayHaveGhosts() && isGhost(proxy, dispatcher));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-// What the broadphase does for the objects behind its proxies: ghosts, and shapes that change.
+// Which of the objects behind the proxies are ghosts, and where they are.
 
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
@@ -59,35 +59,6 @@ std::vector<ProxyId> SpatialHashBroadphase::ghostsAt(const Proxy& proxy) const {
         }
     }
     return found;
-}
-
-void SpatialHashBroadphase::shapeChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
-    checkMayChange();
-    Proxy* own = checkedProxy(proxy);
-    if (batchCache_ != nullptr) {
-        batchCache_->renewPairsContainingProxy(own, dispatcher);
-        return;
-    }
-    if (pairCache_->hasDeferredRemoval()) {
-        pairCache_->cleanProxyFromPairs(own, dispatcher);
-        return;
-    }
-    std::vector<ProxyCouple> couples;
-    const btBroadphasePairArray& pairs = pairCache_->getOverlappingPairArray();
-    for (int i = 0; i < pairs.size(); ++i) {
-        const btBroadphasePair& pair = pairs[i];
-        if (pair.m_pProxy0 == own || pair.m_pProxy1 == own) {
-            couples.emplace_back(*own, pair.m_pProxy0 == own ? *pair.m_pProxy1 : *pair.m_pProxy0);
-        }
-    }
-    for (const ProxyCouple& couple : couples) {
-        if (couple.isUpToDate()) {  // a callback may have destroyed one of the two
-            pairCache_->removeOverlappingPair(couple.lower(), couple.upper(), dispatcher);
-        }
-        if (couple.isUpToDate()) {
-            pairCache_->addOverlappingPair(couple.lower(), couple.upper());
-        }
-    }
 }
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

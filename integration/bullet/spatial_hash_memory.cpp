@@ -27,9 +27,12 @@ void SpatialHashBroadphase::releaseUnusedMemory() noexcept {
     }
 }
 
-// Those whose indices the grid has given back. A cache that is behind may still name some.
+// Those whose indices the grid has given back. A cache that is behind, or from which somebody has taken
+// pairs, may still name some.
 void SpatialHashBroadphase::dropLastProxies() noexcept {
-    if (!isCacheBehind_ && grid_.indexLimit() < uniqueIds_.size()) {
+    const bool mayBeNamed =
+        isCacheBehind_ || (batchCache_ != nullptr && batchCache_->isAnythingTakenOut());
+    if (!mayBeNamed && grid_.indexLimit() < uniqueIds_.size()) {
         uniqueIds_.resize(grid_.indexLimit());
         uniqueIds_.shrink_to_fit();
         proxies_.shrink(uniqueIds_.size());
@@ -67,7 +70,8 @@ std::string SpatialHashBroadphase::validate() const {
     if (ownCache_ == nullptr) {
         return {};
     }
-    if (static_cast<std::size_t>(ownCache_->getNumOverlappingPairs()) != pairs_.count()) {
+    if (static_cast<std::size_t>(ownCache_->getNumOverlappingPairs()) != pairs_.count() &&
+        !ownCache_->isAnythingTakenOut()) {
         return "The cache holds as many pairs as the set of pairs: broken.";
     }
     return ownCache_->validate();

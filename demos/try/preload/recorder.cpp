@@ -243,7 +243,9 @@ void endPart(Part part, const PartBegin& begin) noexcept {
     Span took = between(begin.moment, endMoment());
     if (const std::int64_t rays = rayTime - begin.rays; rays > 0 && took.wall > 0) {
         const double share = static_cast<double>(rays) / static_cast<double>(took.wall);
-        took -= {rays, static_cast<std::int64_t>(share * static_cast<double>(took.processor))};
+        const auto processor =
+            static_cast<std::int64_t>(share * static_cast<double>(took.processor));
+        took -= {rays, processor};
     }
     current.part(part) += took;
 }

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Zlib
+
+// What happens to pairs between two calculations: some are announced or asked about again, of some the
+// shape changes, and some are taken out by the program.
+
+#include <integration/bullet/spatial_hash_broadphase.hpp>
+
+#include <integration/bullet/pair_cache.hpp>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+
+// All births at once: should memory run out, there are none.
+void SpatialHashBroadphase::announce(const Proxy& proxy, btDispatcher* dispatcher) {
+    followFilter();
+    const PairChanges changes = pairs_.announce(proxy.id, cacheFilter());
+    apply(changes, changes.born.size(), dispatcher);
+}
+
+void SpatialHashBroadphase::announceToGhosts(const Proxy& proxy, btDispatcher* dispatcher) {
+    const std::vector<ProxyId> met = ghostsAt(proxy);
+    if (!met.empty()) {
+        followFilter();
+        const PairChanges changes = pairs_.announce(proxy.id, met, cacheFilter());
+        apply(changes, changes.born.size(), dispatcher);
+    }
+}
+
+void SpatialHashBroadphase::refilter(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
+    refilter(std::span(&proxy, 1), dispatcher);
+}
+
+void SpatialHashBroadphase::refilter(std::span<btBroadphaseProxy* const> proxies,
+                                     btDispatcher* dispatcher) {
+    std::vector<ProxyId> ids;
+    ids.reserve(proxies.size());
+    for (btBroadphaseProxy* proxy : proxies) {
+        ids.push_back(checkedProxy(proxy)->id);
+    }
+    checkMayChange();
+    followFilter();
+    constexpr std::size_t kLargePart = 8;
+    if (proxies.size() > grid_.size() / kLargePart) {
+        noteGroupsOfAll();
+    } else if (groupsDecide_) {
+        for (btBroadphaseProxy* proxy : proxies) {
+            noteGroupsAround(*checkedProxy(proxy));
+        }
+    }
+    const PairChanges changes = pairs_.refilter(ids, cacheFilter());
+    apply(changes, changes.born.size(), dispatcher);
+    std::sort(ids.begin(), ids.end());
+    const auto isNamed = [&](const btBroadphaseProxy* proxy) {
+        return std::binary_search(ids.begin(), ids.end(), idOf(proxy));
+    };
+    const auto isPair = [&](const btBroadphasePair& pair) {
+        return (!isNamed(pair.m_pProxy0) && !isNamed(pair.m_pProxy1)) || isAccepted(pair);
+    };
+    removeDeferred(isPair, dispatcher);
+}
+
+void SpatialHashBroadphase::refilterAll(btDispatcher* dispatcher) {
+    checkMayChange();
+    followFilter();
+    noteGroupsOfAll();
+    const PairChanges changes = pairs_.refilterAll(cacheFilter());
+    apply(changes, changes.born.size(), dispatcher);
+    removeDeferred([this](const btBroadphasePair& pair) { return isAccepted(pair); }, dispatcher);
+}
+
+// From the first pair on.
+void SpatialHashBroadphase::watchCache() noexcept {
+    if (batchCache_ != nullptr) {
+        batchCache_->takenOut_.clear();
+        batchCache_->isMoreTakenOut_ = false;
+        batchCache_->isWatched_ = true;
+    }
+}
+
+// A pair that the program has taken out of the cache is one as before, if the filter still says so.
+void SpatialHashBroadphase::putBackWhatWasTakenOut(btDispatcher* dispatcher) {
+    if (batchCache_ == nullptr || !batchCache_->isAnythingTakenOut()) {
+        return;
+    }
+    std::vector<ProxyCouple> couples = std::exchange(batchCache_->takenOut_, {});
+    const bool isMore = std::exchange(batchCache_->isMoreTakenOut_, false);
+    try {
+        std::vector<btBroadphaseProxy*> proxies;
+        for (const ProxyCouple& couple : couples) {
+            if (couple.isUpToDate()) {
+                proxies.push_back(couple.lower());
+                proxies.push_back(couple.upper());
+            }
+        }
+        isMore ? refilterAll(dispatcher) : refilter(proxies, dispatcher);
+        std::erase_if(couples, [this](const ProxyCouple& couple) {
+            return !couple.isUpToDate() || !doMeet(*couple.lower(), *couple.upper()) ||
+                   !batchCache_->needsBroadphaseCollision(couple.lower(), couple.upper());
+        });
+        batchCache_->update({}, couples, dispatcher);
+    } catch (...) {
+        isCacheBehind_ = true;
+        throw;
+    }
+    isCacheBehind_ = isCacheBehind_ || isMore;
+}
+
+void SpatialHashBroadphase::shapeChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
+    checkMayChange();
+    Proxy* own = checkedProxy(proxy);
+    if (batchCache_ != nullptr) {
+        batchCache_->renewPairsContainingProxy(own, dispatcher);
+        return;
+    }
+    if (pairCache_->hasDeferredRemoval()) {
+        pairCache_->cleanProxyFromPairs(own, dispatcher);
+        return;
+    }
+    std::vector<ProxyCouple> couples;
+    const btBroadphasePairArray& pairs = pairCache_->getOverlappingPairArray();
+    for (int i = 0; i < pairs.size(); ++i) {
+        const btBroadphasePair& pair = pairs[i];
+        if (pair.m_pProxy0 == own || pair.m_pProxy1 == own) {
+            couples.emplace_back(*own, pair.m_pProxy0 == own ? *pair.m_pProxy1 : *pair.m_pProxy0);
+        }
+    }
+    for (const ProxyCouple& couple : couples) {
+        if (couple.isUpToDate()) {  // a callback may have destroyed one of the two
+            pairCache_->removeOverlappingPair(couple.lower(), couple.upper(), dispatcher);
+        }
+        if (couple.isUpToDate()) {
+            pairCache_->addOverlappingPair(couple.lower(), couple.upper());
+        }
+    }
+}
+
+}  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE
