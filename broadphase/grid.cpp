@@ -186,6 +186,9 @@ template <class Scalar>
 void Grid<Scalar>::clear() {
     HASHPHASE_ASSERT(!hasPairs_, "Where there are Pairs, Pairs::clear() clears the grid.");
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), "A grid is not cleared within a query.");
+    if (hasPairs_ || detail::QueryScope::isWithin(this)) {
+        return;
+    }
     // Slots in the order in which a new grid makes them. What tells their ids apart stays.
     free_ = removed_ = removedAnnounced_ = {};
     for (auto slot = static_cast<std::uint32_t>(records_.size()); slot-- > 0;) {

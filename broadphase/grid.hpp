@@ -152,7 +152,7 @@ public:
     /// Removes every proxy and forgets all that came before: what is done next has the same results,
     /// in the same order and at the same cost, as with a new grid, indices of ids included. Ids of
     /// before stay invalid. Frees what is held but for 64 bytes an index (128 of doubles). Not for a
-    /// grid with Pairs: their clear() does it (asserted), nor within a query (asserted).
+    /// grid with Pairs, whose clear() does it, nor within a query: asserted, and does nothing.
     /// Cost: O(indexLimit()).
     void clear();
 
@@ -246,8 +246,8 @@ public:
 
     /// Ends a frame: files what changed, and puts to rest what has not changed for a while.
     /// Cost: a rebuild of the mobile proxies when one of them changed, nothing otherwise; at worst
-    /// O(n log n), which is that of sorting crowds. Not for a grid with Pairs: their update() does it
-    /// (asserted). The result does not depend on `parallelFor`.
+    /// O(n log n), which is that of sorting crowds. Not for a grid with Pairs, whose update() does it, nor
+    /// within a query: asserted, and does nothing. The result does not depend on `parallelFor`.
     UpdateCost update(ParallelFor parallelFor = serialFor);
 
     /// How often the mobile proxies have been filed: once by each update that found a change, and

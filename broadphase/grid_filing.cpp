@@ -232,6 +232,9 @@ template <class Scalar>
 UpdateCost Grid<Scalar>::update(ParallelFor parallelFor) {
     HASHPHASE_ASSERT(!hasPairs_, "Where there are Pairs, Pairs::update() ends the frame.");
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), "An update is not begun within a query.");
+    if (hasPairs_ || detail::QueryScope::isWithin(this)) {
+        return {};
+    }
     releaseAfterPeak();
     if (cost_.changed > 0) {
         try {

@@ -227,7 +227,8 @@ public:
         filter_ = callback;
     }
 
-    /// Told of each pair added and of each pair removed, once; NULL for none.
+    /// Told of each pair added and of each pair removed, once; NULL for none. As in Bullet's caches, it is
+    /// not told of the pairs that there are.
     void setInternalGhostPairCallback(btOverlappingPairCallback* callback) override {
         ghosts_ = callback;
     }

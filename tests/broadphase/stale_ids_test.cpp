@@ -86,5 +86,19 @@ TEST_F(StaleIds, AmongOthersAreLeftOut) {
     EXPECT_EQ(pairs.count(), 0U);
 }
 
+// What belongs to the pairs' own calls.
+TEST_F(StaleIds, LoseNoPairWhereTheGridIsUpdatedOrClearedBesideItsPairs) {
+    const CaughtAsserts caught;
+    const std::size_t pairCount = pairs.count();
+    const ProxyId fresh = grid.add(cubeAt(0));
+    EXPECT_EQ(grid.update().changed, 0U);
+    grid.clear();
+    EXPECT_TRUE(grid.contains(fresh));
+    EXPECT_EQ(pairs.update().born.size(), 3U);
+    EXPECT_EQ(pairs.count(), pairCount + 3);
+    EXPECT_EQ(pairs.validate(), "");
+    EXPECT_EQ(caught.count(), 2);
+}
+
 }  // namespace
 }  // namespace hashphase::test

@@ -25,9 +25,13 @@ TEST(TerrainPage, GroundLiesBelow) {
     EXPECT_EQ(warned, 1U);
 #include <terrain_2.inl>
     EXPECT_FLOAT_EQ(stoodAt, 5);
+    stoodAt = 0;
+    const float mostClimb = 0.5F;
 #include <terrain_3.inl>
-    EXPECT_GT(settledAt, 6);
+    EXPECT_FLOAT_EQ(stoodAt, 5);
 #include <terrain_4.inl>
+    EXPECT_GT(settledAt, 6);
+#include <terrain_5.inl>
     ASSERT_TRUE(found[0]);
     EXPECT_EQ(found[0]->height, settledAt);
 }
@@ -37,7 +41,7 @@ TEST(TerrainPage, BulletsTrianglesAreTaken) {
     const btHeightfieldTerrainShape shape(2, 2, heights.data(), btScalar(0), btScalar(1), 1, false);
     Grid<btScalar> ground;
     Terrain<btScalar> terrain(ground);
-#include <terrain_5.inl>
+#include <terrain_6.inl>
     EXPECT_EQ(error, "");
     EXPECT_EQ(terrain.size(), 2U);
 }
