@@ -71,7 +71,7 @@ void SpatialHashBroadphase::refilterAll(btDispatcher* dispatcher) {
     removeDeferred([this](const btBroadphasePair& pair) { return isAccepted(pair); }, dispatcher);
 }
 
-// From the first pair on.
+// It notes what others take out of it, from now on.
 void SpatialHashBroadphase::watchCache() noexcept {
     if (batchCache_ != nullptr) {
         batchCache_->takenOut_.clear();
@@ -80,7 +80,8 @@ void SpatialHashBroadphase::watchCache() noexcept {
     }
 }
 
-// A pair that the program has taken out of the cache is one as before, if the filter still says so.
+// A pair that the program has taken out of the cache is one as before, unless the filter refuses it by now.
+// Where not all are noted, catchUp() finds them.
 void SpatialHashBroadphase::putBackWhatWasTakenOut(btDispatcher* dispatcher) {
     if (batchCache_ == nullptr || !batchCache_->isAnythingTakenOut()) {
         return;
@@ -95,7 +96,11 @@ void SpatialHashBroadphase::putBackWhatWasTakenOut(btDispatcher* dispatcher) {
                 proxies.push_back(couple.upper());
             }
         }
-        isMore ? refilterAll(dispatcher) : refilter(proxies, dispatcher);
+        if (isMore) {
+            refilterAll(dispatcher);
+        } else {
+            refilter(proxies, dispatcher);
+        }
         std::erase_if(couples, [this](const ProxyCouple& couple) {
             return !couple.isUpToDate() || !doMeet(*couple.lower(), *couple.upper()) ||
                    !batchCache_->needsBroadphaseCollision(couple.lower(), couple.upper());

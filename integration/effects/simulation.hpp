@@ -85,11 +85,11 @@ public:
     /// Goes on with another declaration: tables of what is new appear, those of what is not declared
     /// any more are gone. Bodies are where they are; if motion is new they stand still, if sleeping is they
     /// are awake, if the radar is they are in group 0, and on an axis TerrainEffect::up that is another one
-    /// there are no triangles. Where pairs are new, all of them are told as born.
-    /// Where there was no grid, or one with another GridConfig, all bodies are filed anew: ProxyIds of
-    /// before name nobody, pairs are told as born, and who is in a zone enters it again. Throws as above,
-    /// and then nothing has changed; std::bad_alloc, and then nothing has changed, or the next call makes
-    /// what is missing. Cost: up to that of adding all bodies.
+    /// there are no triangles. Where pairs are new, all of them are told as born. Where there was no grid,
+    /// or one with another GridConfig, all bodies are filed anew: ProxyIds of before name nobody, pairs
+    /// are told as born, and who is in a zone enters it again. Throws as above, and then nothing has
+    /// changed; std::bad_alloc, and then nothing has changed, or the next call makes what is missing.
+    /// Cost: up to that of adding all bodies.
     void declare(const SceneEffects& effects);
 
     [[nodiscard]] const SceneEffects& declared() const noexcept { return effects_; }
