@@ -149,6 +149,9 @@ public:
     /// finding all pairs from scratch, and a box query for each proxy that has changed.
     PairChanges refilter(std::span<const ProxyId> ids, PairFilter filter) &;
 
+    /// The same about these pairs alone; what is none is passed over. Cost: O(pairs).
+    PairChanges refilter(std::span<const ProxyPair> pairs, PairFilter filter) &;
+
     /// The same for all proxies: the filter has changed. Cost: that of finding all pairs from scratch,
     /// and a box query for each proxy that has changed since the last update.
     PairChanges refilterAll(PairFilter filter) &;
@@ -160,6 +163,10 @@ public:
     /// The whole set as of the last update, sorted, appended to `pairs`. The grid must not have
     /// changed since (asserted). Cost: that of finding all pairs from scratch.
     void collect(std::vector<ProxyPair>& pairs) const;
+
+    /// Whether the two are a pair, as of the last update, or as was told since. Not of one that is not
+    /// alive. Cost: O(1).
+    [[nodiscard]] bool isPair(const ProxyPair& pair) const noexcept;
 
     /// Number of pairs in the set.
     [[nodiscard]] std::size_t count() const noexcept { return count_; }

@@ -102,6 +102,30 @@ PairChanges Pairs<Scalar>::refilter(std::span<const ProxyId> ids, PairFilter fil
 }
 
 template <class Scalar>
+PairChanges Pairs<Scalar>::refilter(std::span<const ProxyPair> pairs, PairFilter filter) & {
+    HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(&grid_), kMustNotAsk);
+    beginCall();
+    recover();
+    findAnnouncedOfRemoved();
+    for (const ProxyPair& pair : pairs) {
+        if (isPair(pair)) {
+            askAgain(couple(pair.first.index, pair.second.index));
+        }
+    }
+    return decideBetween(filter);
+}
+
+template <class Scalar>
+bool Pairs<Scalar>::isPair(const ProxyPair& pair) const noexcept {
+    const auto [a, b] = pair;
+    if (a == b || !grid_.contains(a) || !grid_.contains(b)) {
+        return false;
+    }
+    const Couple c = couple(a.index, b.index);
+    return !isRefused(c) && (wasKnown(a.index, b.index) || announced_.contains(c) || isSwept(c));
+}
+
+template <class Scalar>
 PairChanges Pairs<Scalar>::refilterAll(PairFilter filter) & {
     HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(&grid_), kMustNotAsk);
     beginCall();
@@ -239,6 +263,8 @@ template PairChanges Pairs<float>::announce(ProxyId, PairFilter) &;
 template PairChanges Pairs<float>::announce(ProxyId, std::span<const ProxyId>, PairFilter) &;
 template PairChanges Pairs<float>::refilter(ProxyId, PairFilter) &;
 template PairChanges Pairs<float>::refilter(std::span<const ProxyId>, PairFilter) &;
+template PairChanges Pairs<float>::refilter(std::span<const ProxyPair>, PairFilter) &;
+template bool Pairs<float>::isPair(const ProxyPair&) const noexcept;
 template PairChanges Pairs<float>::refilterAll(PairFilter) &;
 template bool Pairs<float>::wouldFind(std::uint32_t, std::uint32_t) const;
 template void Pairs<float>::askAgain(Couple);
@@ -252,6 +278,8 @@ template PairChanges Pairs<double>::announce(ProxyId, PairFilter) &;
 template PairChanges Pairs<double>::announce(ProxyId, std::span<const ProxyId>, PairFilter) &;
 template PairChanges Pairs<double>::refilter(ProxyId, PairFilter) &;
 template PairChanges Pairs<double>::refilter(std::span<const ProxyId>, PairFilter) &;
+template PairChanges Pairs<double>::refilter(std::span<const ProxyPair>, PairFilter) &;
+template bool Pairs<double>::isPair(const ProxyPair&) const noexcept;
 template PairChanges Pairs<double>::refilterAll(PairFilter) &;
 template bool Pairs<double>::wouldFind(std::uint32_t, std::uint32_t) const;
 template void Pairs<double>::askAgain(Couple);

@@ -3,6 +3,7 @@
 
 #include <broadphase/detail/ensure_capacity.hpp>
 #include <broadphase/detail/limits.hpp>
+#include <integration/bullet/spatial_hash_broadphase.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
@@ -44,6 +45,12 @@ public:
 private:
     int& depth_;
 };
+
+PairCache::~PairCache() {
+    if (watcher_ != nullptr) {
+        watcher_->forgetCache();
+    }
+}
 
 // --- One pair ------------------------------------------------------------------------------------
 
@@ -128,18 +135,30 @@ void* PairCache::remove(std::uint64_t ids, btDispatcher* dispatcher, Freeing fre
     return removed.m_internalInfo1;
 }
 
-// Where nobody asks, those of which a proxy is gone do not gather.
 void PairCache::noteTakenOut(const btBroadphasePair& pair) noexcept {
-    if (!isWatched_) {
+    if (watcher_ == nullptr) {
         return;
     }
-    if (takenOut_.size() == takenOut_.capacity()) {
-        std::erase_if(takenOut_, [](const ProxyCouple& couple) { return !couple.isUpToDate(); });
-    }
     try {
-        takenOut_.emplace_back(*pair.m_pProxy0, *pair.m_pProxy1);
+        if (takenOut_ == nullptr) {
+            takenOut_ = std::make_unique<std::vector<ProxyCouple>>();
+        }
+        if (takenOut_->size() == takenOut_->capacity()) {
+            pruneTakenOut();
+            takenOut_->reserve(2 * takenOut_->size() + 8);
+        }
+        takenOut_->emplace_back(*pair.m_pProxy0, *pair.m_pProxy1);
     } catch (const std::exception&) {
         isMoreTakenOut_ = true;
+    }
+}
+
+// Where nobody asks, those of which a proxy is gone do not gather, nor those that are back.
+void PairCache::pruneTakenOut() noexcept {
+    if (takenOut_ != nullptr) {
+        std::erase_if(*takenOut_, [this](const ProxyCouple& couple) {
+            return !couple.isUpToDate() || ids_.find(couple.ids()) != kNone;
+        });
     }
 }
 
@@ -329,13 +348,18 @@ std::size_t PairCache::memoryBytes() const noexcept {
            ids_.memoryBytes() + links_.capacity() * sizeof(Link) + firstEdge_.memoryBytes() +
            retired_.capacity() * sizeof(Retired) + places_.capacity() * sizeof(std::uint32_t) +
            ranks_.memoryBytes() + scratch_.capacity() * sizeof(Note) +
-           takenOut_.capacity() * sizeof(ProxyCouple);
+           (takenOut_ != nullptr ? sizeof(*takenOut_) + takenOut_->capacity() * sizeof(ProxyCouple)
+                                 : 0);
 }
 
 // Bullet's arrays give memory back only when they are emptied. Chains are made anew when they are
 // needed.
 void PairCache::releaseUnusedMemory() noexcept {
     checkMayChange();
+    pruneTakenOut();
+    if (takenOut_ != nullptr && takenOut_->empty()) {
+        takenOut_ = nullptr;
+    }
     if (pairs_.capacity() > pairs_.size()) {
         btBroadphasePairArray fresh;
         fresh.reserve(pairs_.size());

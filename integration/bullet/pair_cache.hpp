@@ -39,11 +39,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+
+class SpatialHashBroadphase;
 
 /// In which order the array lists the pairs.
 enum class PairOrder {
@@ -106,6 +109,7 @@ public:
         HASHPHASE_ASSERT(key != nullptr, "There is a key to order proxies by.");
     }
 
+    ~PairCache() override;
     PairCache(const PairCache&) = delete;
     PairCache& operator=(const PairCache&) = delete;
 
@@ -313,8 +317,13 @@ private:
     btBroadphasePair* add(const ProxyCouple& couple);
     void* remove(std::uint64_t ids, btDispatcher* dispatcher, Freeing freeing, Remover remover);
     void noteTakenOut(const btBroadphasePair& pair) noexcept;
+    void pruneTakenOut() noexcept;
     [[nodiscard]] bool isAnythingTakenOut() const noexcept {
-        return isMoreTakenOut_ || !takenOut_.empty();
+        return isMoreTakenOut_ || (takenOut_ != nullptr && !takenOut_->empty());
+    }
+    void dropTakenOut() noexcept {
+        takenOut_ = nullptr;
+        isMoreTakenOut_ = false;
     }
     void removePairsOf(btBroadphaseProxy& proxy, btDispatcher* dispatcher, Remover remover);
     void removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher,
@@ -378,13 +387,13 @@ private:
     std::size_t pairsScanned_ = 0;  // in place of chaining them, since some were last chained
     std::uint64_t pairsVisited_ = 0;
     bool isSorted_ = true;
-    bool isWatched_ = false;       // a SpatialHashBroadphase wants to know what others take out
     bool isMoreTakenOut_ = false;  // than is noted, as there was no memory
     int processDepth_ = 0;         // processAllOverlappingPairs() calls under way
 
     std::vector<Retired> retired_;
 
-    std::vector<ProxyCouple> takenOut_;
+    SpatialHashBroadphase* watcher_ = nullptr;            // wants to know what others take out
+    std::unique_ptr<std::vector<ProxyCouple>> takenOut_;  // since it last asked
 
     std::vector<std::uint32_t> places_;  // scratch of batches, vacant ones; and of sort(), new ones
     detail::ProxyRanks ranks_;           // scratch of removals

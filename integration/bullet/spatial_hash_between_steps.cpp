@@ -71,46 +71,42 @@ void SpatialHashBroadphase::refilterAll(btDispatcher* dispatcher) {
     removeDeferred([this](const btBroadphasePair& pair) { return isAccepted(pair); }, dispatcher);
 }
 
-// It notes what others take out of it, from now on.
-void SpatialHashBroadphase::watchCache() noexcept {
-    if (batchCache_ != nullptr) {
-        batchCache_->takenOut_.clear();
-        batchCache_->isMoreTakenOut_ = false;
-        batchCache_->isWatched_ = true;
+// A pair that the program has taken out of the cache is one as before, unless the filter refuses it by now.
+void SpatialHashBroadphase::putBackWhatWasTakenOut(btDispatcher* dispatcher) {
+    if (batchCache_ == nullptr || batchCache_->takenOut_ == nullptr) {
+        return;
+    }
+    try {
+        batchCache_->pruneTakenOut();
+        std::vector<ProxyCouple> couples = *batchCache_->takenOut_;
+        const auto pairOf = [](const ProxyCouple& couple) {
+            const ProxyId a = idOf(couple.lower());
+            const ProxyId b = idOf(couple.upper());
+            return a < b ? ProxyPair{a, b} : ProxyPair{b, a};
+        };
+        std::vector<ProxyPair> pairs;
+        for (const ProxyCouple& couple : couples) {
+            pairs.push_back(pairOf(couple));
+        }
+        static_cast<void>(pairs_.refilter(pairs, cacheFilter()));
+        std::erase_if(couples,
+                      [&](const ProxyCouple& couple) { return !pairs_.isPair(pairOf(couple)); });
+        batchCache_->takenOut_ = nullptr;
+        const Applying applying(*this, true);
+        batchCache_->update({}, couples, dispatcher);
+    } catch (...) {
+        batchCache_->isMoreTakenOut_ = true;
+        throw;
     }
 }
 
-// A pair that the program has taken out of the cache is one as before, unless the filter refuses it by now.
-// Where not all are noted, catchUp() finds them.
-void SpatialHashBroadphase::putBackWhatWasTakenOut(btDispatcher* dispatcher) {
-    if (batchCache_ == nullptr || !batchCache_->isAnythingTakenOut()) {
-        return;
-    }
-    std::vector<ProxyCouple> couples = std::exchange(batchCache_->takenOut_, {});
-    const bool isMore = std::exchange(batchCache_->isMoreTakenOut_, false);
-    try {
-        std::vector<btBroadphaseProxy*> proxies;
-        for (const ProxyCouple& couple : couples) {
-            if (couple.isUpToDate()) {
-                proxies.push_back(couple.lower());
-                proxies.push_back(couple.upper());
-            }
-        }
-        if (isMore) {
-            refilterAll(dispatcher);
-        } else {
-            refilter(proxies, dispatcher);
-        }
-        std::erase_if(couples, [this](const ProxyCouple& couple) {
-            return !couple.isUpToDate() || !doMeet(*couple.lower(), *couple.upper()) ||
-                   !batchCache_->needsBroadphaseCollision(couple.lower(), couple.upper());
-        });
-        batchCache_->update({}, couples, dispatcher);
-    } catch (...) {
+// Where not all are noted, for want of memory: all are asked about, and then compared.
+void SpatialHashBroadphase::askIfMoreWasTakenOut(btDispatcher* dispatcher) {
+    if (batchCache_ != nullptr && batchCache_->isMoreTakenOut_) {
+        refilterAll(dispatcher);
         isCacheBehind_ = true;
-        throw;
+        batchCache_->dropTakenOut();
     }
-    isCacheBehind_ = isCacheBehind_ || isMore;
 }
 
 void SpatialHashBroadphase::shapeChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {

@@ -62,6 +62,26 @@ SpatialHashBroadphase::SpatialHashBroadphase(PairCache* pairCache, const Spatial
     watchCache();
 }
 
+SpatialHashBroadphase::~SpatialHashBroadphase() {
+    if (batchCache_ != nullptr) {
+        batchCache_->watcher_ = nullptr;
+        batchCache_->dropTakenOut();
+    }
+}
+
+// It notes what others take out of it, from now on.
+void SpatialHashBroadphase::watchCache() noexcept {
+    if (batchCache_ != nullptr) {
+        batchCache_->watcher_ = this;
+        batchCache_->dropTakenOut();
+    }
+}
+
+// It has ended before the broadphase.
+void SpatialHashBroadphase::forgetCache() noexcept {
+    batchCache_ = nullptr;
+}
+
 SpatialHashBroadphase::SpatialHashBroadphase(btOverlappingPairCache* pairCache,
                                              const SpatialHashConfig& config)
     : config_(checked(config)),
@@ -247,7 +267,7 @@ void SpatialHashBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) 
     const detail::QueryScope scope(this, detail::QueryScope::Changes::allowed);
     followFilter();
     noteGroupsIfTheyMatter();
-    putBackWhatWasTakenOut(dispatcher);
+    askIfMoreWasTakenOut(dispatcher);
     const PairChanges changes = config_.parallelFor
                                     ? pairs_.update(cacheFilter(), config_.parallelFor)
                                     : pairs_.update(cacheFilter());
@@ -257,6 +277,7 @@ void SpatialHashBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) 
         constexpr std::size_t kBirthsAtOnce = 4096;
         apply(changes, kBirthsAtOnce, dispatcher);
     }
+    putBackWhatWasTakenOut(dispatcher);
     const auto meets = [this](const btBroadphasePair& pair) {
         return doMeet(*pair.m_pProxy0, *pair.m_pProxy1);
     };
@@ -317,6 +338,7 @@ void SpatialHashBroadphase::apply(const PairChanges& changes, std::size_t births
 }
 
 void SpatialHashBroadphase::applyToCache(const Couples& couples, btDispatcher* dispatcher) {
+    const Applying applying(*this, !couples.died.empty() || !couples.born.empty());
     if (batchCache_ != nullptr) {
         batchCache_->update(couples.died, couples.born, dispatcher);
         return;
@@ -348,8 +370,13 @@ void SpatialHashBroadphase::catchUp(btDispatcher* dispatcher) {
             couples.died.emplace_back(*present[i].m_pProxy0, *present[i].m_pProxy1);
         }
     }
-    applyToCache(couples, dispatcher);
     isCacheBehind_ = false;
+    try {
+        applyToCache(couples, dispatcher);
+    } catch (...) {
+        isCacheBehind_ = true;
+        throw;
+    }
 }
 
 // Caches with deferred removal ignore removeOverlappingPair() and keep duplicates; their user is to
@@ -401,6 +428,9 @@ void SpatialHashBroadphase::resetPool(btDispatcher* /*dispatcher*/) {
     if (!isWithin) {
         pairs_.clear();
         lastUniqueId_ = 0;
+        if (batchCache_ != nullptr) {
+            batchCache_->dropTakenOut();
+        }
         groupKinds_ = {};
         changedKinds_ = 0;
         seen_ = std::vector<std::uint64_t>();

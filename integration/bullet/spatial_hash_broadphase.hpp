@@ -148,6 +148,7 @@ public:
                                    const SpatialHashConfig& config = {});
     explicit SpatialHashBroadphase(std::nullptr_t, const SpatialHashConfig& config = {});
 
+    ~SpatialHashBroadphase() override;
     SpatialHashBroadphase(const SpatialHashBroadphase&) = delete;
     SpatialHashBroadphase& operator=(const SpatialHashBroadphase&) = delete;
 
@@ -199,10 +200,10 @@ public:
     /// where one of the two was moved, or its setAabb() called, since; a pair stays one until its boxes
     /// part. First those that have parted go, then those that have met come, each in the order of their
     /// proxies: what changes, and in which order, follows from the boxes before and now, not from
-    /// how they came there. Before that, pairs that the program itself has taken out of the cache come
-    /// back, unless the filter refuses them by now; out of a cache that was not given as a PairCache they
-    /// stay out until the two meet again. Cost: that of Pairs::update(), and of the cache for each pair
-    /// that comes or goes.
+    /// how they came there. At last pairs that the program itself has taken out of the cache come back,
+    /// unless the filter refuses them by now; out of a cache that was not given as a PairCache they stay
+    /// out until the two meet again. Cost: that of Pairs::update(), and of the cache for each pair that
+    /// comes or goes.
     void calculateOverlappingPairs(btDispatcher* dispatcher) override;
 
     btOverlappingPairCache* getOverlappingPairCache() override { return pairCache_; }
@@ -319,6 +320,8 @@ public:
     [[nodiscard]] std::string validate() const;
 
 private:
+    friend class PairCache;
+
     /// What is known of a client.
     enum class Client : std::uint8_t { unknown, ghost, other };
 
@@ -329,6 +332,27 @@ private:
         std::uint32_t ghostAt = 0;  // a ghost's place in ghosts_
     };
     struct Couples;
+
+    /// While couples are applied. What a callback applies meanwhile may come too early: of a pair that it
+    /// begins anew, or ends, the former end or beginning may follow.
+    class Applying {
+    public:
+        Applying(SpatialHashBroadphase& owner, bool isAny) noexcept
+            : owner_(owner), isWithin_(owner.isApplying_), isAny_(isAny) {
+            owner.isApplying_ = true;
+        }
+        ~Applying() {
+            owner_.isApplying_ = isWithin_;
+            owner_.isCacheBehind_ = owner_.isCacheBehind_ || (isWithin_ && isAny_);
+        }
+        Applying(const Applying&) = delete;
+        Applying& operator=(const Applying&) = delete;
+
+    private:
+        SpatialHashBroadphase& owner_;
+        bool isWithin_;
+        bool isAny_;
+    };
     template <class Callback>
     struct ProcessCollector;
 
@@ -362,7 +386,9 @@ private:
     void applyToCache(const Couples& couples, btDispatcher* dispatcher);
     void catchUp(btDispatcher* dispatcher);
     void watchCache() noexcept;
+    void forgetCache() noexcept;
     void putBackWhatWasTakenOut(btDispatcher* dispatcher);
+    void askIfMoreWasTakenOut(btDispatcher* dispatcher);
     [[nodiscard]] bool isEager(Proxy& proxy, const btDispatcher* dispatcher) {
         return (proxy.m_collisionFilterGroup & config_.eagerGroups) != 0 ||
                (proxy.client != Client::other && mayHaveGhosts() && isGhost(proxy, dispatcher));
@@ -407,6 +433,7 @@ private:
     bool groupsDecide_ = false;    // who may pair, and no callback
     bool mustNoteGroups_ = false;  // of all
     bool isCacheBehind_ = false;   // of changes that did not all reach it
+    bool isApplying_ = false;      // changes to the cache
 
     std::unique_ptr<PairCache> ownCache_;  // if none was given
     PairCache* batchCache_ = nullptr;      // the cache, if it is known to be a PairCache

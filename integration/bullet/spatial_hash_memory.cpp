@@ -30,6 +30,9 @@ void SpatialHashBroadphase::releaseUnusedMemory() noexcept {
 // Those whose indices the grid has given back. A cache that is behind, or from which somebody has taken
 // pairs, may still name some.
 void SpatialHashBroadphase::dropLastProxies() noexcept {
+    if (batchCache_ != nullptr) {
+        batchCache_->pruneTakenOut();
+    }
     const bool mayBeNamed =
         isCacheBehind_ || (batchCache_ != nullptr && batchCache_->isAnythingTakenOut());
     if (!mayBeNamed && grid_.indexLimit() < uniqueIds_.size()) {

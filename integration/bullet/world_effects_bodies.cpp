@@ -73,12 +73,13 @@ bool WorldConfigurator::KeptBody::isHeld() const noexcept {
 bool WorldConfigurator::KeptBody::mayBeOf(const btCollisionObject& object) const {
     const btRigidBody* const body = btRigidBody::upcast(&object);
     const bool isAnythingSet = noResponse.isHeld() || friction.isHeld() || restitution.isHeld() ||
-                               angularFactor.isHeld() || slowBelow.isHeld();
+                               angularFactor.isHeld() || slowBelow.isHeld() || isKeptAwake;
     return !isAnythingSet ||
            noResponse.isAsWritten(object.getCollisionFlags() &
                                   btCollisionObject::CF_NO_CONTACT_RESPONSE) ||
            friction.isAsWritten(object.getFriction()) ||
            restitution.isAsWritten(object.getRestitution()) ||
+           (isKeptAwake && object.getActivationState() == DISABLE_DEACTIVATION) ||
            (body != nullptr && (angularFactor.isAsWritten(body->getAngularFactor()) ||
                                 slowBelow.isAsWritten(body->getLinearSleepingThreshold())));
 }
