@@ -20,7 +20,8 @@
 //           one by one, at a fraction of the cost.
 // Callbacks See the cache as it is after the change that they are told of, and may change it: those of
 //           ghosts, of processAllOverlappingPairs(), and of algorithms that are freed. The filter
-//           may not.
+//           may not. Under a SpatialHashBroadphase, what is taken out comes back in its next
+//           calculation, and so into the callback, unless the filter refuses it.
 // Memory    Where it runs out, std::bad_alloc is passed on: a single call has changed nothing, a batch
 //           has removed some of its pairs or all, and added none. The pairs of one proxy go without
 //           any, in time proportional to all. Bullet's own arrays do not tell.
