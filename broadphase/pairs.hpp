@@ -329,7 +329,7 @@ private:
     void forAllKnown(VisitCouple visit);
     template <class IsNamed>
     void askAgainAboutMany(PairFilter filter, const IsNamed& isNamed);
-    [[nodiscard]] bool wouldFind(std::uint32_t slot, std::uint32_t other) const;
+    [[nodiscard]] bool wouldFind(std::uint32_t finder, std::uint32_t found) const;
     void askAgain(Couple c);
     PairChanges decideBetween(PairFilter filter);
     void findUnknown(std::uint32_t slot, FunctionRef<bool(std::uint32_t)> isWanted);

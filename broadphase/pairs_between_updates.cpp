@@ -161,8 +161,8 @@ void Pairs<Scalar>::askAgainAboutMany(PairFilter filter, const IsNamed& isNamed)
 
 // Whether findUnknown() of one comes upon the other, which it looks for by its box in the grid.
 template <class Scalar>
-bool Pairs<Scalar>::wouldFind(std::uint32_t slot, std::uint32_t other) const {
-    return overlaps(boxAtStart(slot), grid_.records_[other].box);
+bool Pairs<Scalar>::wouldFind(std::uint32_t finder, std::uint32_t found) const {
+    return overlaps(boxAtStart(finder), grid_.records_[found].box);
 }
 
 // Asks about a couple that is known. One that is refused and apart for the moment is asked about by

@@ -348,8 +348,9 @@ std::size_t PairCache::memoryBytes() const noexcept {
            ids_.memoryBytes() + links_.capacity() * sizeof(Link) + firstEdge_.memoryBytes() +
            retired_.capacity() * sizeof(Retired) + places_.capacity() * sizeof(std::uint32_t) +
            ranks_.memoryBytes() + scratch_.capacity() * sizeof(Note) +
-           (takenOut_ != nullptr ? sizeof(*takenOut_) + takenOut_->capacity() * sizeof(ProxyCouple)
-                                 : 0);
+           (takenOut_ != nullptr
+                ? sizeof(std::vector<ProxyCouple>) + takenOut_->capacity() * sizeof(ProxyCouple)
+                : 0);
 }
 
 // Bullet's arrays give memory back only when they are emptied. Chains are made anew when they are

@@ -85,6 +85,7 @@ void SpatialHashBroadphase::putBackWhatWasTakenOut(btDispatcher* dispatcher) {
             return a < b ? ProxyPair{a, b} : ProxyPair{b, a};
         };
         std::vector<ProxyPair> pairs;
+        pairs.reserve(couples.size());
         for (const ProxyCouple& couple : couples) {
             pairs.push_back(pairOf(couple));
         }
