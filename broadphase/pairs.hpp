@@ -334,6 +334,8 @@ private:
     PairChanges decideBetween(PairFilter filter);
     void findUnknown(std::uint32_t slot, FunctionRef<bool(std::uint32_t)> isWanted);
     void findUnknown(std::uint32_t slot);
+    template <class Find>
+    PairChanges announceFound(ProxyId id, PairFilter filter, const Find& find);
     void addIfUnknown(std::uint32_t slot, std::uint32_t other);
     void releaseAfterPeak() noexcept;
     void forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const;

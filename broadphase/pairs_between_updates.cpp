@@ -18,7 +18,8 @@ namespace {
 }  // namespace
 
 template <class Scalar>
-PairChanges Pairs<Scalar>::announce(ProxyId id, PairFilter filter) & {
+template <class Find>
+PairChanges Pairs<Scalar>::announceFound(ProxyId id, PairFilter filter, const Find& find) {
     HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid can announce its pairs.");
     HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(&grid_), kMustNotAsk);
     if (!grid_.contains(id)) {
@@ -26,26 +27,25 @@ PairChanges Pairs<Scalar>::announce(ProxyId id, PairFilter filter) & {
     }
     beginCall();
     findAnnouncedOfRemoved();
-    findUnknown(id.index);
+    find(id.index);
     return decideBetween(filter);
+}
+
+template <class Scalar>
+PairChanges Pairs<Scalar>::announce(ProxyId id, PairFilter filter) & {
+    return announceFound(id, filter, [this](std::uint32_t slot) { findUnknown(slot); });
 }
 
 template <class Scalar>
 PairChanges Pairs<Scalar>::announce(ProxyId id, std::span<const ProxyId> others,
                                     PairFilter filter) & {
-    HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid can announce its pairs.");
-    HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(&grid_), kMustNotAsk);
-    if (!grid_.contains(id)) {
-        return {};
-    }
-    beginCall();
-    findAnnouncedOfRemoved();
-    for (const ProxyId other : others) {
-        if (other != id && grid_.contains(other)) {
-            addIfUnknown(id.index, other.index);
+    return announceFound(id, filter, [&](std::uint32_t slot) {
+        for (const ProxyId other : others) {
+            if (other != id && grid_.contains(other)) {
+                addIfUnknown(slot, other.index);
+            }
         }
-    }
-    return decideBetween(filter);
+    });
 }
 
 template <class Scalar>
