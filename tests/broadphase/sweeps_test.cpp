@@ -16,8 +16,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <utility>
 #include <vector>
 
 namespace hashphase::test {
@@ -25,10 +23,6 @@ namespace {
 
 template <class Scalar>
 class SweptPairs : public testing::Test {
-protected:
-    std::vector<ProxyPair> now_;
-
-private:
     CaughtMessages aboutNan_;
 };
 
@@ -94,48 +88,6 @@ TYPED_TEST(SweptPairs, EqualBruteForceInEveryScene) {
             }
         }
     }
-}
-
-// Each of them knows its own ways; those of the ones that are given count.
-TYPED_TEST(SweptPairs, FollowTheSweepsThatAreGiven) {
-    Grid<TypeParam> grid;
-    const auto place = [](TypeParam x) { return makeBox<TypeParam>(x, 0, 0, x + 1, 1, 1); };
-    const ProxyId mover = grid.add(place(0));
-    const ProxyId near = grid.add(place(10));
-    const ProxyId far = grid.add(place(20));
-    Sweeps<TypeParam> first(grid);
-    Sweeps<TypeParam> second(grid);
-    auto third = std::make_unique<Sweeps<TypeParam>>(grid);
-    first.set(mover, {10, 0, 0});
-    second.set(mover, MovingBox<TypeParam>{place(20), {5, 0, 0}});
-    third->set(mover, {0, 5, 0});
-    Pairs<TypeParam> pairs(grid);
-    EXPECT_TRUE(pairs.update().born.empty());
-    const auto partner = [&](const std::vector<ProxyId>& expected) {
-        const std::vector<ProxyPair> before = std::exchange(this->now_, {});
-        for (const ProxyId id : expected) {
-            this->now_.push_back(makePair(mover, id));
-        }
-        const PairChanges changes = pairs.update();
-        EXPECT_TRUE(std::ranges::equal(changes.born, this->now_));
-        EXPECT_TRUE(std::ranges::equal(changes.died, before));
-        EXPECT_EQ(pairs.validate(), "");
-    };
-    pairs.setSweeps(&first);
-    partner({near});
-    pairs.setSweeps(&second);
-    EXPECT_TRUE(pairs.announce(mover, acceptAllPairs).died.empty());
-    grid.shiftOrigin({8, 0, 0});
-    EXPECT_EQ(second.motion(mover).box.min().x(), 12);
-    this->now_ = {makePair(mover, near), makePair(mover, far)};
-    pairs.setSweeps(nullptr);  // before it has been heard of: only its announced pair
-    partner({});
-    pairs.setSweeps(third.get());
-    partner({});
-    pairs.setSweeps(nullptr);
-    third = nullptr;  // neither the first nor the last that the grid knows
-    pairs.setSweeps(&first);
-    partner({near});
 }
 
 TYPED_TEST(SweptPairs, AreTheSameInEveryMode) {

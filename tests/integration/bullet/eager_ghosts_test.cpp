@@ -103,15 +103,19 @@ TEST(KinematicCharacter, KnowsItsNeighboursOverBulletsPairCaches) {
     }
 }
 
+/// Ours, or Bullet's.
+std::unique_ptr<btBroadphaseInterface> makeBroadphase(bool isOurs) {
+    if (isOurs) {
+        return std::make_unique<SpatialHashBroadphase>();
+    }
+    return std::make_unique<btDbvtBroadphase>();
+}
+
 // As a trigger does of what is spawned into it.
 TEST(EagerGhosts, HearAtOnceOfWhatIsCreatedWhereTheyStand) {
     for (const bool isOurs : {false, true}) {
         SCOPED_TRACE(isOurs);
-        std::unique_ptr<btBroadphaseInterface> broadphase = std::make_unique<btDbvtBroadphase>();
-        if (isOurs) {
-            broadphase = std::make_unique<SpatialHashBroadphase>();
-        }
-        GhostWorld scene(std::move(broadphase));
+        GhostWorld scene(makeBroadphase(isOurs));
         scene.world.performDiscreteCollisionDetection();
         btRigidBody spawned(1, nullptr, &scene.small);
         spawned.setWorldTransform(GhostWorld::at({btScalar(0.5), 0, 0}));
@@ -127,11 +131,7 @@ TEST(EagerGhosts, HearAtOnceOfWhatIsCreatedWhereTheyStand) {
 TEST(EagerGhosts, HearAtOnceOfWhatIsPutWhereTheyStand) {
     for (const bool isOurs : {false, true}) {
         SCOPED_TRACE(isOurs);
-        std::unique_ptr<btBroadphaseInterface> broadphase = std::make_unique<btDbvtBroadphase>();
-        if (isOurs) {
-            broadphase = std::make_unique<SpatialHashBroadphase>();
-        }
-        GhostWorld scene(std::move(broadphase));
+        GhostWorld scene(makeBroadphase(isOurs));
         btRigidBody carried(1, nullptr, &scene.small);
         carried.setCenterOfMassTransform(GhostWorld::at({50, 0, 0}));
         scene.world.addRigidBody(&carried);
