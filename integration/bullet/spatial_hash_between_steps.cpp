@@ -71,6 +71,26 @@ void SpatialHashBroadphase::refilterAll(btDispatcher* dispatcher) {
     removeDeferred([this](const btBroadphasePair& pair) { return isAccepted(pair); }, dispatcher);
 }
 
+SpatialHashBroadphase::~SpatialHashBroadphase() {
+    if (batchCache_ != nullptr && batchCache_->watcher_ == this) {
+        batchCache_->watcher_ = nullptr;
+        batchCache_->dropTakenOut();
+    }
+}
+
+// It notes what others take out of it, from now on.
+void SpatialHashBroadphase::watchCache() noexcept {
+    if (batchCache_ != nullptr) {
+        batchCache_->watcher_ = this;
+        batchCache_->dropTakenOut();
+    }
+}
+
+// It has ended before the broadphase.
+void SpatialHashBroadphase::forgetCache() noexcept {
+    batchCache_ = nullptr;
+}
+
 // A pair that the program has taken out of the cache is one as before, unless the filter refuses it by now.
 void SpatialHashBroadphase::putBackWhatWasTakenOut(btDispatcher* dispatcher) {
     if (batchCache_ == nullptr || batchCache_->takenOut_ == nullptr) {
@@ -93,8 +113,7 @@ void SpatialHashBroadphase::putBackWhatWasTakenOut(btDispatcher* dispatcher) {
         std::erase_if(couples,
                       [&](const ProxyCouple& couple) { return !pairs_.isPair(pairOf(couple)); });
         batchCache_->takenOut_ = nullptr;
-        const Applying applying(*this, true);
-        batchCache_->update({}, couples, dispatcher);
+        applyToCache({}, couples, dispatcher);
     } catch (...) {
         batchCache_->isMoreTakenOut_ = true;
         throw;

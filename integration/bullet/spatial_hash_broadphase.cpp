@@ -62,26 +62,6 @@ SpatialHashBroadphase::SpatialHashBroadphase(PairCache* pairCache, const Spatial
     watchCache();
 }
 
-SpatialHashBroadphase::~SpatialHashBroadphase() {
-    if (batchCache_ != nullptr) {
-        batchCache_->watcher_ = nullptr;
-        batchCache_->dropTakenOut();
-    }
-}
-
-// It notes what others take out of it, from now on.
-void SpatialHashBroadphase::watchCache() noexcept {
-    if (batchCache_ != nullptr) {
-        batchCache_->watcher_ = this;
-        batchCache_->dropTakenOut();
-    }
-}
-
-// It has ended before the broadphase.
-void SpatialHashBroadphase::forgetCache() noexcept {
-    batchCache_ = nullptr;
-}
-
 SpatialHashBroadphase::SpatialHashBroadphase(btOverlappingPairCache* pairCache,
                                              const SpatialHashConfig& config)
     : config_(checked(config)),
@@ -326,7 +306,7 @@ void SpatialHashBroadphase::apply(const PairChanges& changes, std::size_t births
         std::size_t count = std::min(born.size(), std::max(couples.died.size(), birthsAtOnce));
         do {
             findCouples(born.first(count), couples.born);
-            applyToCache(couples, dispatcher);
+            applyToCache(couples.died, couples.born, dispatcher);
             couples.died.clear();
             born = born.subspan(count);
             count = std::min(born.size(), birthsAtOnce);
@@ -337,16 +317,37 @@ void SpatialHashBroadphase::apply(const PairChanges& changes, std::size_t births
     }
 }
 
-void SpatialHashBroadphase::applyToCache(const Couples& couples, btDispatcher* dispatcher) {
-    const Applying applying(*this, !couples.died.empty() || !couples.born.empty());
+/// While changes reach the cache. What a callback changes meanwhile may come too early: of a pair that it
+/// begins anew, or ends, the former end or beginning may follow.
+class SpatialHashBroadphase::Applying {
+public:
+    Applying(SpatialHashBroadphase& owner, bool isAny) noexcept
+        : owner_(owner), isWithin_(std::exchange(owner.isApplying_, true)), isAny_(isAny) {}
+    ~Applying() {
+        owner_.isApplying_ = isWithin_;
+        owner_.isCacheBehind_ = owner_.isCacheBehind_ || (isWithin_ && isAny_);
+    }
+    Applying(const Applying&) = delete;
+    Applying& operator=(const Applying&) = delete;
+
+private:
+    SpatialHashBroadphase& owner_;
+    bool isWithin_;
+    bool isAny_;
+};
+
+void SpatialHashBroadphase::applyToCache(std::span<const ProxyCouple> died,
+                                         std::span<const ProxyCouple> born,
+                                         btDispatcher* dispatcher) {
+    const Applying applying(*this, !died.empty() || !born.empty());
     if (batchCache_ != nullptr) {
-        batchCache_->update(couples.died, couples.born, dispatcher);
+        batchCache_->update(died, born, dispatcher);
         return;
     }
-    for (const ProxyCouple& couple : couples.died) {
+    for (const ProxyCouple& couple : died) {
         pairCache_->removeOverlappingPair(couple.lower(), couple.upper(), dispatcher);
     }
-    for (const ProxyCouple& couple : couples.born) {
+    for (const ProxyCouple& couple : born) {
         if (couple.isUpToDate()) {  // a callback may have destroyed one of the two
             pairCache_->addOverlappingPair(couple.lower(), couple.upper());
         }
@@ -372,7 +373,7 @@ void SpatialHashBroadphase::catchUp(btDispatcher* dispatcher) {
     }
     isCacheBehind_ = false;
     try {
-        applyToCache(couples, dispatcher);
+        applyToCache(couples.died, couples.born, dispatcher);
     } catch (...) {
         isCacheBehind_ = true;
         throw;
@@ -416,28 +417,6 @@ void SpatialHashBroadphase::getBroadphaseAabb(btVector3& aabbMin, btVector3& aab
     });
     aabbMin = all.isEmpty() ? btVector3(0, 0, 0) : toBullet(all.min());
     aabbMax = all.isEmpty() ? btVector3(0, 0, 0) : toBullet(all.max());
-}
-
-void SpatialHashBroadphase::resetPool(btDispatcher* /*dispatcher*/) {
-    if (grid_.size() > 0) {
-        return;
-    }
-    const bool isWithin =
-        detail::QueryScope::isWithin(this) || detail::QueryScope::isWithin(&grid_);
-    HASHPHASE_ASSERT(!isWithin, "resetPool() is not called by callbacks.");
-    if (!isWithin) {
-        pairs_.clear();
-        lastUniqueId_ = 0;
-        if (batchCache_ != nullptr) {
-            batchCache_->dropTakenOut();
-        }
-        groupKinds_ = {};
-        changedKinds_ = 0;
-        seen_ = std::vector<std::uint64_t>();
-        seenCount_ = 0;
-        mustNoteGroups_ = false;
-        isCacheBehind_ = isCacheBehind_ && pairCache_->getNumOverlappingPairs() > 0;
-    }
 }
 
 btBroadphaseProxy* SpatialHashBroadphase::proxyOf(ProxyId id) const {

@@ -332,27 +332,7 @@ private:
         std::uint32_t ghostAt = 0;  // a ghost's place in ghosts_
     };
     struct Couples;
-
-    /// While couples are applied. What a callback applies meanwhile may come too early: of a pair that it
-    /// begins anew, or ends, the former end or beginning may follow.
-    class Applying {
-    public:
-        Applying(SpatialHashBroadphase& owner, bool isAny) noexcept
-            : owner_(owner), isWithin_(owner.isApplying_), isAny_(isAny) {
-            owner.isApplying_ = true;
-        }
-        ~Applying() {
-            owner_.isApplying_ = isWithin_;
-            owner_.isCacheBehind_ = owner_.isCacheBehind_ || (isWithin_ && isAny_);
-        }
-        Applying(const Applying&) = delete;
-        Applying& operator=(const Applying&) = delete;
-
-    private:
-        SpatialHashBroadphase& owner_;
-        bool isWithin_;
-        bool isAny_;
-    };
+    class Applying;
     template <class Callback>
     struct ProcessCollector;
 
@@ -383,7 +363,8 @@ private:
     void releaseAfterPeak() noexcept;
     void findCouples(std::span<const ProxyPair> pairs, std::vector<ProxyCouple>& couples) const;
     void apply(const PairChanges& changes, std::size_t birthsAtOnce, btDispatcher* dispatcher);
-    void applyToCache(const Couples& couples, btDispatcher* dispatcher);
+    void applyToCache(std::span<const ProxyCouple> died, std::span<const ProxyCouple> born,
+                      btDispatcher* dispatcher);
     void catchUp(btDispatcher* dispatcher);
     void watchCache() noexcept;
     void forgetCache() noexcept;

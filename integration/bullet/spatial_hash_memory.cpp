@@ -7,7 +7,9 @@
 #include <broadphase/detail/ensure_capacity.hpp>
 #include <integration/bullet/pair_cache.hpp>
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
@@ -51,6 +53,28 @@ void SpatialHashBroadphase::releaseAfterPeak() noexcept {
         if (batchCache_ != nullptr) {
             batchCache_->releaseUnusedMemory();
         }
+    }
+}
+
+void SpatialHashBroadphase::resetPool(btDispatcher* /*dispatcher*/) {
+    if (grid_.size() > 0) {
+        return;
+    }
+    const bool isWithin =
+        detail::QueryScope::isWithin(this) || detail::QueryScope::isWithin(&grid_);
+    HASHPHASE_ASSERT(!isWithin, "resetPool() is not called by callbacks.");
+    if (!isWithin) {
+        pairs_.clear();
+        lastUniqueId_ = 0;
+        if (batchCache_ != nullptr) {
+            batchCache_->dropTakenOut();
+        }
+        groupKinds_ = {};
+        changedKinds_ = 0;
+        seen_ = std::vector<std::uint64_t>();
+        seenCount_ = 0;
+        mustNoteGroups_ = false;
+        isCacheBehind_ = isCacheBehind_ && pairCache_->getNumOverlappingPairs() > 0;
     }
 }
 

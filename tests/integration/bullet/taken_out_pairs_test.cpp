@@ -13,8 +13,12 @@
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <functional>
 #include <memory>
+#include <new>
 #include <optional>
 #include <vector>
 
@@ -336,10 +340,28 @@ TEST(TakenOutPairs, AreNotNotedForABroadphaseThatHasEnded) {
     EXPECT_LE(cache.memoryBytes(), bytes);
 }
 
-TEST(TakenOutPairs, DoNotOutliveTheCache) {
-    auto cache = std::make_unique<PairCache>();
-    SpatialHashBroadphase broadphase(cache.get());
-    cache.reset();  // in the wrong order, as some programs end
+// In the wrong order, as some programs end.
+TEST(TakenOutPairs, AreNotWrittenToACacheThatHasEnded) {
+    alignas(PairCache) std::array<std::byte, sizeof(PairCache)> memory;
+    auto* const cache = new (memory.data()) PairCache();
+    std::optional<SpatialHashBroadphase> broadphase(std::in_place, cache);
+    cache->~PairCache();
+    memory.fill(std::byte{0xab});
+    broadphase.reset();
+    EXPECT_TRUE(std::all_of(memory.begin(), memory.end(),
+                            [](std::byte each) { return each == std::byte{0xab}; }));
+}
+
+// As by `broadphase = std::make_unique<SpatialHashBroadphase>(&cache)`.
+TEST(TakenOutPairs, ComeBackWhereTheCacheHadAnotherBroadphaseUntilThen) {
+    PairCache cache;
+    auto former = std::make_unique<SpatialHashBroadphase>(&cache);
+    SpatialHashBroadphase broadphase(&cache);
+    former.reset();
+    LyingBox scene(broadphase);
+    removePairsOfBox(scene);
+    scene.step(1);
+    EXPECT_EQ(cache.getNumOverlappingPairs(), 1);
 }
 
 /// Forwards to nobody, and does something about one pair.
