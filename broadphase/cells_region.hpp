@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <broadphase/detail/hide_macros.hpp>
+#include <broadphase/core/hide_macros.hpp>
 
 namespace hashphase {
 
@@ -48,4 +48,4 @@ private:
 
 }  // namespace hashphase
 
-#include <broadphase/detail/restore_macros.hpp>
+#include <broadphase/core/restore_macros.hpp>

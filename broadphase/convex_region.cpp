@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/convex_region.hpp>
 
-#include <broadphase/detail/polyhedron.hpp>
 #include <broadphase/diagnostics.hpp>
+#include <broadphase/geometry/polyhedron.hpp>
 
 #include <algorithm>
 #include <array>
@@ -70,7 +70,7 @@ ConvexRegion<Scalar>::ConvexRegion(std::span<const Plane> planes, Containment co
     ownPlaneCount_ = static_cast<std::uint32_t>(ownCount);
 }
 
-// The arithmetic of the kernels (detail/kernel_volume.inl), and a rule for infinite boxes.
+// The arithmetic of the kernels (simd/kernel_volume.inl), and a rule for infinite boxes.
 template <class Scalar>
 Scalar ConvexRegion<Scalar>::key(const Aabb<Scalar>& box) const noexcept {
     if (isEmpty_ || hasNan(box)) {

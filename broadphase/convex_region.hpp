@@ -2,9 +2,9 @@
 #pragma once
 
 #include <broadphase/aabb.hpp>
-#include <broadphase/detail/fixed_list.hpp>
-#include <broadphase/detail/kernel_types.hpp>
+#include <broadphase/core/fixed_list.hpp>
 #include <broadphase/export.hpp>
+#include <broadphase/simd/kernel_types.hpp>
 
 #include <cstddef>
 #include <cstdint>

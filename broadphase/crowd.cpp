@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/crowd.hpp>
 
-#include <broadphase/detail/ensure_capacity.hpp>
-#include <broadphase/detail/kernels.hpp>
-#include <broadphase/detail/prefetch.hpp>
-#include <broadphase/detail/query_scope.hpp>
-#include <broadphase/detail/unit_scale.hpp>
+#include <broadphase/core/ensure_capacity.hpp>
+#include <broadphase/core/prefetch.hpp>
+#include <broadphase/core/query_scope.hpp>
+#include <broadphase/geometry/unit_scale.hpp>
+#include <broadphase/simd/kernels.hpp>
 
 #include <algorithm>
 #include <atomic>

@@ -23,12 +23,12 @@
 //
 // Neighbours (neighbours.hpp) lists couples of boxes instead.
 
-#include <broadphase/detail/kernel_types.hpp>
-#include <broadphase/detail/torus.hpp>
 #include <broadphase/export.hpp>
 #include <broadphase/grid.hpp>
+#include <broadphase/hash/torus.hpp>
 #include <broadphase/position_region.hpp>
 #include <broadphase/proxy_filter.hpp>
+#include <broadphase/simd/kernel_types.hpp>
 
 #include <array>
 #include <concepts>

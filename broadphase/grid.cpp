@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/grid.hpp>
 
-#include <broadphase/detail/limits.hpp>
-#include <broadphase/detail/query_scope.hpp>
+#include <broadphase/core/limits.hpp>
+#include <broadphase/core/query_scope.hpp>
 
 #include <algorithm>
 #include <atomic>

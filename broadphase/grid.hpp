@@ -37,22 +37,22 @@
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/collectors.hpp>
-#include <broadphase/detail/box_columns.hpp>
-#include <broadphase/detail/box_tree.hpp>
-#include <broadphase/detail/flat_set.hpp>
-#include <broadphase/detail/group_kinds.hpp>
-#include <broadphase/detail/kernels.hpp>
-#include <broadphase/detail/peak_watch.hpp>
-#include <broadphase/detail/query_scope.hpp>
-#include <broadphase/detail/table.hpp>
+#include <broadphase/core/flat_set.hpp>
+#include <broadphase/core/group_kinds.hpp>
+#include <broadphase/core/peak_watch.hpp>
+#include <broadphase/core/query_scope.hpp>
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/export.hpp>
+#include <broadphase/geometry/box_columns.hpp>
 #include <broadphase/grid_config.hpp>
+#include <broadphase/hash/table.hpp>
 #include <broadphase/parallel_for.hpp>
 #include <broadphase/proxy_groups.hpp>
 #include <broadphase/proxy_id.hpp>
 #include <broadphase/query_cost.hpp>
 #include <broadphase/regions.hpp>
+#include <broadphase/simd/kernels.hpp>
+#include <broadphase/tree/box_tree.hpp>
 
 #include <algorithm>
 #include <array>
@@ -275,7 +275,7 @@ public:
     /// Says which invariant is broken, in a sentence; empty when all hold:
     /// - Every proxy alive is filed in exactly one table, or waits in the list of changes, or is NaN.
     /// - A filed proxy's entry has the proxy's box.
-    /// - The tables' own invariants (detail/table.hpp), and those of their trees (detail/box_tree.hpp).
+    /// - The tables' own invariants (hash/table.hpp), and those of their trees (tree/box_tree.hpp).
     [[nodiscard]] std::string validate() const;
 
 private:
@@ -639,4 +639,4 @@ extern template class Grid<double>;
 
 }  // namespace hashphase
 
-#include <broadphase/detail/grid_visit.hpp>
+#include <broadphase/search/grid_visit.hpp>

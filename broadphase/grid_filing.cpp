@@ -4,8 +4,8 @@
 
 #include <broadphase/grid.hpp>
 
-#include <broadphase/detail/ensure_capacity.hpp>
-#include <broadphase/detail/prefetch.hpp>
+#include <broadphase/core/ensure_capacity.hpp>
+#include <broadphase/core/prefetch.hpp>
 
 #include <algorithm>
 #include <cmath>

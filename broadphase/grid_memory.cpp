@@ -5,7 +5,7 @@
 
 #include <broadphase/grid.hpp>
 
-#include <broadphase/detail/ensure_capacity.hpp>
+#include <broadphase/core/ensure_capacity.hpp>
 
 #include <algorithm>
 #include <new>

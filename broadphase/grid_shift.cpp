@@ -5,7 +5,7 @@
 
 #include <broadphase/grid.hpp>
 
-#include <broadphase/detail/origin_shift.hpp>
+#include <broadphase/geometry/origin_shift.hpp>
 #include <broadphase/sweeps.hpp>
 
 #include <new>

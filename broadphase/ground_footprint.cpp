@@ -5,7 +5,7 @@
 
 #include <broadphase/ground_footprint.hpp>
 
-#include <broadphase/detail/camera_inverse.hpp>
+#include <broadphase/geometry/camera_inverse.hpp>
 
 #include <algorithm>
 #include <array>

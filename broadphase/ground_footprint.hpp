@@ -17,7 +17,7 @@
 //            seen.
 
 #include <broadphase/convex_region.hpp>
-#include <broadphase/detail/fixed_list.hpp>
+#include <broadphase/core/fixed_list.hpp>
 #include <broadphase/export.hpp>
 #include <broadphase/frustum.hpp>
 #include <broadphase/up_axis.hpp>

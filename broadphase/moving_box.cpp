@@ -7,7 +7,7 @@
 
 #include <broadphase/moving_box.hpp>
 
-#include <broadphase/detail/expansion.hpp>
+#include <broadphase/geometry/expansion.hpp>
 
 #include <algorithm>
 #include <array>

@@ -18,7 +18,7 @@
 #include <limits>
 #include <optional>
 
-#include <broadphase/detail/hide_macros.hpp>
+#include <broadphase/core/hide_macros.hpp>
 
 namespace hashphase {
 
@@ -122,4 +122,4 @@ extern template class MovingBoxRegion<double>;
 
 }  // namespace hashphase
 
-#include <broadphase/detail/restore_macros.hpp>
+#include <broadphase/core/restore_macros.hpp>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/neighbours.hpp>
 
-#include <broadphase/detail/ensure_capacity.hpp>
-#include <broadphase/detail/padded_box.hpp>
-#include <broadphase/detail/unit_scale.hpp>
+#include <broadphase/core/ensure_capacity.hpp>
+#include <broadphase/geometry/padded_box.hpp>
+#include <broadphase/geometry/unit_scale.hpp>
 
 #include <algorithm>
 #include <array>

@@ -7,9 +7,9 @@
 //
 // Threads   find() reads the grid, as queries do, and needs this object for itself.
 
-#include <broadphase/detail/join.hpp>
 #include <broadphase/export.hpp>
 #include <broadphase/grid.hpp>
+#include <broadphase/search/join.hpp>
 
 #include <cstddef>
 #include <cstdint>

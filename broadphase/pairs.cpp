@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/pairs.hpp>
 
-#include <broadphase/detail/join.hpp>
-#include <broadphase/detail/padded_box.hpp>
-#include <broadphase/detail/prefetch.hpp>
-#include <broadphase/detail/radix_sort.hpp>
+#include <broadphase/core/prefetch.hpp>
+#include <broadphase/core/radix_sort.hpp>
+#include <broadphase/geometry/padded_box.hpp>
+#include <broadphase/search/join.hpp>
 #include <broadphase/sweeps.hpp>
 
 #include <algorithm>

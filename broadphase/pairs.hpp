@@ -21,14 +21,14 @@
 //           go, and others come, between two updates.
 // Misuse    one Pairs per grid at a time; and no call from within the filter; asserted.
 
-#include <broadphase/detail/box_columns.hpp>
-#include <broadphase/detail/couple_set.hpp>
-#include <broadphase/detail/flat_set.hpp>
-#include <broadphase/detail/kernels.hpp>
-#include <broadphase/detail/pair_parts.hpp>
+#include <broadphase/core/couple_set.hpp>
+#include <broadphase/core/flat_set.hpp>
 #include <broadphase/export.hpp>
 #include <broadphase/function_ref.hpp>
+#include <broadphase/geometry/box_columns.hpp>
 #include <broadphase/grid.hpp>
+#include <broadphase/search/pair_parts.hpp>
+#include <broadphase/simd/kernels.hpp>
 
 #include <concepts>
 #include <cstdint>

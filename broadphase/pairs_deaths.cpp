@@ -4,9 +4,9 @@
 
 #include <broadphase/pairs.hpp>
 
-#include <broadphase/detail/join.hpp>
-#include <broadphase/detail/padded_box.hpp>
-#include <broadphase/detail/prefetch.hpp>
+#include <broadphase/core/prefetch.hpp>
+#include <broadphase/geometry/padded_box.hpp>
+#include <broadphase/search/join.hpp>
 
 #include <memory>
 

@@ -4,7 +4,7 @@
 
 #include <broadphase/pairs.hpp>
 
-#include <broadphase/detail/ensure_capacity.hpp>
+#include <broadphase/core/ensure_capacity.hpp>
 
 #include <algorithm>
 

@@ -8,7 +8,7 @@
 
 #include <broadphase/pairs.hpp>
 
-#include <broadphase/detail/join.hpp>
+#include <broadphase/search/join.hpp>
 #include <broadphase/sweeps.hpp>
 
 #include <algorithm>

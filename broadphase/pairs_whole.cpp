@@ -4,7 +4,7 @@
 
 #include <broadphase/pairs.hpp>
 
-#include <broadphase/detail/join.hpp>
+#include <broadphase/search/join.hpp>
 
 #include <algorithm>
 

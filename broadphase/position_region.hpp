@@ -5,13 +5,13 @@
 // SphereRegion measures to the box.
 
 #include <broadphase/aabb.hpp>
-#include <broadphase/detail/unit_scale.hpp>
+#include <broadphase/geometry/unit_scale.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include <broadphase/detail/hide_macros.hpp>
+#include <broadphase/core/hide_macros.hpp>
 
 namespace hashphase {
 
@@ -92,4 +92,4 @@ private:
 
 }  // namespace hashphase
 
-#include <broadphase/detail/restore_macros.hpp>
+#include <broadphase/core/restore_macros.hpp>

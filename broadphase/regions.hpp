@@ -17,15 +17,15 @@
 // Threads  values; use them from any thread
 
 #include <broadphase/aabb.hpp>
-#include <broadphase/detail/unit_scale.hpp>
-#include <broadphase/detail/walk.hpp>
+#include <broadphase/geometry/unit_scale.hpp>
+#include <broadphase/search/walk.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include <broadphase/detail/hide_macros.hpp>
+#include <broadphase/core/hide_macros.hpp>
 
 namespace hashphase {
 
@@ -176,4 +176,4 @@ private:
 
 }  // namespace hashphase
 
-#include <broadphase/detail/restore_macros.hpp>
+#include <broadphase/core/restore_macros.hpp>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/sweeps.hpp>
 
-#include <broadphase/detail/ensure_capacity.hpp>
-#include <broadphase/detail/origin_shift.hpp>
+#include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/diagnostics.hpp>
+#include <broadphase/geometry/origin_shift.hpp>
 
 #include <algorithm>
 #include <utility>

@@ -23,12 +23,12 @@
 // After Hastings, Mesit and Guha, "Optimization of Large-Scale, Real-Time Simulations by Spatial
 // Hashing", 2005: hashing over time, by a box or by a line of cells, chosen by behaviour.
 
-#include <broadphase/detail/contact_search.hpp>
-#include <broadphase/detail/query_scope.hpp>
+#include <broadphase/core/query_scope.hpp>
 #include <broadphase/export.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/moving_box.hpp>
 #include <broadphase/proxy_filter.hpp>
+#include <broadphase/search/contact_search.hpp>
 #include <broadphase/sweep_mode.hpp>
 
 #include <algorithm>
@@ -39,7 +39,7 @@
 #include <string>
 #include <vector>
 
-#include <broadphase/detail/hide_macros.hpp>
+#include <broadphase/core/hide_macros.hpp>
 
 namespace hashphase {
 
@@ -200,4 +200,4 @@ extern template class Sweeps<double>;
 
 }  // namespace hashphase
 
-#include <broadphase/detail/restore_macros.hpp>
+#include <broadphase/core/restore_macros.hpp>

@@ -9,16 +9,9 @@ namespace hashphase::demos {
 
 std::span<const Experiment> experiments() {
     static const std::vector<Experiment> all{
-        sweepExperiment(),
-        cellSizeExperiment(),
-        proximityExperiment(),
-        cullingExperiment(),
-        pickingExperiment(),
-        originExperiment(),
-        timeStepExperiment(),
-        trajectoryExperiment(),
-        terrainExperiment(),
-        updateExperiment(),
+        sweepExperiment(),   cellSizeExperiment(), proximityExperiment(), cullingExperiment(),
+        pickingExperiment(), originExperiment(),   timeStepExperiment(),  trajectoryExperiment(),
+        terrainExperiment(), updateExperiment(),
     };
     return all;
 }

@@ -3,8 +3,8 @@
 
 #include <demos/console/program.hpp>
 
-#include <broadphase/detail/kernels.hpp>
 #include <broadphase/diagnostics.hpp>
+#include <broadphase/simd/kernels.hpp>
 
 #include <LinearMath/btScalar.h>
 

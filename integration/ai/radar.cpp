@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/ai/radar.hpp>
 
-#include <broadphase/detail/query_scope.hpp>
+#include <broadphase/core/query_scope.hpp>
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/position_region.hpp>
 

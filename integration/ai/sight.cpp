@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/ai/sight.hpp>
 
-#include <broadphase/detail/query_scope.hpp>
-#include <broadphase/detail/unit_scale.hpp>
+#include <broadphase/core/query_scope.hpp>
 #include <broadphase/diagnostics.hpp>
+#include <broadphase/geometry/unit_scale.hpp>
 
 #include <algorithm>
 #include <cmath>

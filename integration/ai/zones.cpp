@@ -2,9 +2,9 @@
 #include <integration/ai/zones.hpp>
 
 #include <broadphase/collectors.hpp>
-#include <broadphase/detail/ensure_capacity.hpp>
-#include <broadphase/detail/limits.hpp>
-#include <broadphase/detail/query_scope.hpp>
+#include <broadphase/core/ensure_capacity.hpp>
+#include <broadphase/core/limits.hpp>
+#include <broadphase/core/query_scope.hpp>
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/proxy_filter.hpp>
 

@@ -12,7 +12,7 @@
 #include <cstddef>
 #include <limits>
 
-#include <broadphase/detail/hide_macros.hpp>
+#include <broadphase/core/hide_macros.hpp>
 
 namespace hashphase {
 
@@ -40,4 +40,4 @@ inline void bulletFor(std::size_t count, std::size_t grain, LoopBody body) {
 
 }  // namespace hashphase
 
-#include <broadphase/detail/restore_macros.hpp>
+#include <broadphase/core/restore_macros.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/bullet/pair_cache.hpp>
 
-#include <broadphase/detail/ensure_capacity.hpp>
-#include <broadphase/detail/limits.hpp>
+#include <broadphase/core/ensure_capacity.hpp>
+#include <broadphase/core/limits.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>

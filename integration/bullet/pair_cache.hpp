@@ -29,9 +29,9 @@
 // Misuse    Pairs of a proxy with itself, proxies alive with the same or with negative unique ids,
 //           no key, and a filter that changes the cache; asserted.
 
-#include <broadphase/detail/flat_set.hpp>
-#include <broadphase/detail/query_scope.hpp>
-#include <broadphase/detail/run_map.hpp>
+#include <broadphase/core/flat_set.hpp>
+#include <broadphase/core/query_scope.hpp>
+#include <broadphase/core/run_map.hpp>
 #include <integration/bullet/detail/proxy_ranks.hpp>
 #include <integration/bullet/export.hpp>
 #include <integration/bullet/precision.hpp>

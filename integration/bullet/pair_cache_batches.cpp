@@ -6,7 +6,7 @@
 
 #include <integration/bullet/pair_cache.hpp>
 
-#include <broadphase/detail/ensure_capacity.hpp>
+#include <broadphase/core/ensure_capacity.hpp>
 
 #include <algorithm>
 #include <utility>

@@ -2,8 +2,8 @@
 //
 // Many proxies at once, with the result of as many single calls.
 
-#include <broadphase/detail/ensure_capacity.hpp>
-#include <broadphase/detail/prefetch.hpp>
+#include <broadphase/core/ensure_capacity.hpp>
+#include <broadphase/core/prefetch.hpp>
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
-#include <broadphase/detail/ensure_capacity.hpp>
-#include <broadphase/detail/limits.hpp>
-#include <broadphase/detail/prefetch.hpp>
+#include <broadphase/core/ensure_capacity.hpp>
+#include <broadphase/core/limits.hpp>
+#include <broadphase/core/prefetch.hpp>
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/detail/body_motion.hpp>
 #include <integration/bullet/pair_cache.hpp>

@@ -34,8 +34,8 @@
 // Misuse    Proxies that are not alive, proxies of other broadphases, spans of different lengths in a
 //           batch, and rays without a callback are asserted.
 
-#include <broadphase/detail/group_kinds.hpp>
-#include <broadphase/detail/stable_array.hpp>
+#include <broadphase/core/group_kinds.hpp>
+#include <broadphase/core/stable_array.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/pairs.hpp>
 #include <broadphase/sweeps.hpp>

@@ -4,7 +4,7 @@
 
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
-#include <broadphase/detail/ensure_capacity.hpp>
+#include <broadphase/core/ensure_capacity.hpp>
 #include <integration/bullet/pair_cache.hpp>
 
 #include <cstdint>

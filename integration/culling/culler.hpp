@@ -20,8 +20,8 @@
 //           nothing. Room for more than eight times as many goes after 256 frames.
 
 #include <broadphase/convex_region.hpp>
-#include <broadphase/detail/peak_watch.hpp>
-#include <broadphase/detail/query_scope.hpp>
+#include <broadphase/core/peak_watch.hpp>
+#include <broadphase/core/query_scope.hpp>
 #include <broadphase/frustum.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/proxy_filter.hpp>

@@ -38,14 +38,14 @@
 // gDeactivationTime, 2 s. motion.bounds and sleeping.interestRadius, where they are finite, are errors:
 // put static planes at the bounds, and deactivate what is far.
 
-#include <broadphase/detail/raise.hpp>
+#include <broadphase/core/raise.hpp>
 #include <integration/bullet/world_effects.hpp>
 #include <integration/effects/scene_effects.hpp>
 
 #include <limits>
 #include <string>
 
-#include <broadphase/detail/hide_macros.hpp>
+#include <broadphase/core/hide_macros.hpp>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
@@ -93,4 +93,4 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE
 
-#include <broadphase/detail/restore_macros.hpp>
+#include <broadphase/core/restore_macros.hpp>

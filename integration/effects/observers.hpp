@@ -22,7 +22,7 @@
 // Failure     Where memory runs out, frames go on after it; the one under way has not all answers.
 
 #include <broadphase/convex_region.hpp>
-#include <broadphase/detail/fixed_list.hpp>
+#include <broadphase/core/fixed_list.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/parallel_for.hpp>
 #include <integration/ai/zones.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <broadphase/detail/ensure_capacity.hpp>
+#include <broadphase/core/ensure_capacity.hpp>
 #include <integration/effects/detail/parts.hpp>
 #include <integration/effects/detail/simulation_parts.hpp>
 #include <integration/effects/simulation.hpp>

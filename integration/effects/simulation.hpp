@@ -27,7 +27,7 @@
 // Units       metres, seconds
 // Misuse      An id of no body and a time step that is negative or not finite are asserted.
 
-#include <broadphase/detail/fixed_list.hpp>
+#include <broadphase/core/fixed_list.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/pairs.hpp>
 #include <broadphase/parallel_for.hpp>

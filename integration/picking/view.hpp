@@ -13,8 +13,8 @@
 //           viewError() says why. So are those of pixels that are NaN.
 // Threads   values; use them from any thread
 
-#include <broadphase/detail/camera_inverse.hpp>
 #include <broadphase/frustum.hpp>
+#include <broadphase/geometry/camera_inverse.hpp>
 #include <broadphase/ground_footprint.hpp>
 #include <broadphase/regions.hpp>
 #include <integration/picking/export.hpp>

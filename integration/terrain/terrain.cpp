@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/terrain/terrain.hpp>
 
-#include <broadphase/detail/ensure_capacity.hpp>
+#include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/diagnostics.hpp>
 
 #include <limits>

@@ -36,7 +36,7 @@
 #include <span>
 #include <vector>
 
-#include <broadphase/detail/hide_macros.hpp>
+#include <broadphase/core/hide_macros.hpp>
 
 namespace hashphase {
 
@@ -237,4 +237,4 @@ extern template class Terrain<double>;
 
 }  // namespace hashphase
 
-#include <broadphase/detail/restore_macros.hpp>
+#include <broadphase/core/restore_macros.hpp>

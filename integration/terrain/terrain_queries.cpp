@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/terrain/terrain.hpp>
 
-#include <broadphase/detail/fixed_list.hpp>
-#include <broadphase/detail/prefetch.hpp>
+#include <broadphase/core/fixed_list.hpp>
+#include <broadphase/core/prefetch.hpp>
 
 #include <algorithm>
 #include <atomic>

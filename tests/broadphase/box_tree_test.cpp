@@ -2,7 +2,7 @@
 
 // The tree that rays read, its kernel, and the ray as it reads it.
 
-#include <broadphase/detail/ray_walk.hpp>
+#include <broadphase/tree/ray_walk.hpp>
 #include <tests/support/box_scenes.hpp>
 #include <tests/support/fill_table.hpp>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-#include <broadphase/detail/crowding.hpp>
+#include <broadphase/hash/crowding.hpp>
 #include <tests/support/random.hpp>
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <broadphase/detail/flat_set.hpp>
+#include <broadphase/core/flat_set.hpp>
 #include <tests/support/random_keys.hpp>
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 // Crowds that have broken broadphases: all in one cell, all at one place, in any order, and none at
 // all. Costs are counted.
 
-#include <broadphase/detail/limits.hpp>
+#include <broadphase/core/limits.hpp>
 #include <tests/support/box_scenes.hpp>
 #include <tests/support/pair_sweep.hpp>
 #include <tests/support/pair_world.hpp>

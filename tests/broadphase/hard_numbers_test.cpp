@@ -3,7 +3,7 @@
 // Boxes of numbers that have broken broadphases: huge, infinite, NaN, inverted, of both zeroes, on
 // the borders of cells as these are rounded, and where numbers are sparser than boxes.
 
-#include <broadphase/detail/join.hpp>
+#include <broadphase/search/join.hpp>
 #include <tests/support/box_scenes.hpp>
 #include <tests/support/fill_table.hpp>
 #include <tests/support/handlers.hpp>

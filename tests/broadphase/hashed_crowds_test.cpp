@@ -3,7 +3,7 @@
 // Crowds that are all in one bucket of the hash though far apart, and regions of more cells than
 // there are buckets. Pairs and queries are exact, and costs are counted.
 
-#include <broadphase/detail/limits.hpp>
+#include <broadphase/core/limits.hpp>
 #include <tests/support/box_scenes.hpp>
 #include <tests/support/fill_table.hpp>
 #include <tests/support/pair_sweep.hpp>

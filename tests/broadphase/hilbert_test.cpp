@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-#include <broadphase/detail/hilbert.hpp>
+#include <broadphase/tree/hilbert.hpp>
 
 #include <gtest/gtest.h>
 

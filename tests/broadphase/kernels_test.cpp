@@ -2,7 +2,7 @@
 
 // Every instruction set gives the couples of the scalar kernels, in the same order.
 
-#include <broadphase/detail/join.hpp>
+#include <broadphase/search/join.hpp>
 #include <tests/support/box_scenes.hpp>
 
 #include <gtest/gtest.h>

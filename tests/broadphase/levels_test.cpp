@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-#include <broadphase/detail/levels.hpp>
+#include <broadphase/hash/levels.hpp>
 #include <tests/support/box_scenes.hpp>
 
 #include <gtest/gtest.h>

@@ -2,8 +2,8 @@
 
 // How many of anything there may be, and what happens beyond.
 
-#include <broadphase/detail/flat_set.hpp>
-#include <broadphase/detail/limits.hpp>
+#include <broadphase/core/flat_set.hpp>
+#include <broadphase/core/limits.hpp>
 #include <broadphase/pairs.hpp>
 #include <tests/support/box_scenes.hpp>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-#include <broadphase/detail/quantise.hpp>
+#include <broadphase/geometry/quantise.hpp>
 #include <tests/support/random.hpp>
 
 #include <gtest/gtest.h>

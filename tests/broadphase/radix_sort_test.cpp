@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <broadphase/detail/radix_sort.hpp>
+#include <broadphase/core/radix_sort.hpp>
 #include <tests/support/random.hpp>
 
 #include <gtest/gtest.h>

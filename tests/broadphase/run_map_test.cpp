@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <broadphase/detail/run_map.hpp>
+#include <broadphase/core/run_map.hpp>
 #include <tests/support/random_keys.hpp>
 
 #include <gtest/gtest.h>

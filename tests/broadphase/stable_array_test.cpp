@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <broadphase/detail/stable_array.hpp>
+#include <broadphase/core/stable_array.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-#include <broadphase/detail/join.hpp>
+#include <broadphase/search/join.hpp>
 #include <tests/support/box_scenes.hpp>
 #include <tests/support/fill_table.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <broadphase/detail/tag_kernel.hpp>
+#include <broadphase/simd/tag_kernel.hpp>
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <demos/report/report_text.hpp>
 #include <tests/demos/sample_experiments.hpp>
 
-#include <broadphase/detail/kernels.hpp>
 #include <broadphase/diagnostics.hpp>
+#include <broadphase/simd/kernels.hpp>
 
 #include <gtest/gtest.h>
 

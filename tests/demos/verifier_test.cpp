@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/compare/comparison.hpp>
 #include <demos/compare/reference_pairs.hpp>
-#include <demos/report/statistics.hpp>
 #include <demos/compare/verifier.hpp>
+#include <demos/report/statistics.hpp>
 #include <demos/scenes/random.hpp>
 
 #include <gtest/gtest.h>

@@ -8,8 +8,8 @@
 //
 // tests/check golden builds it in many ways and compares them all.
 
-#include <broadphase/detail/kernels.hpp>
 #include <broadphase/diagnostics.hpp>
+#include <broadphase/simd/kernels.hpp>
 #include <tests/golden/golden_results.hpp>
 #include <tests/support/denormal_mode.hpp>
 

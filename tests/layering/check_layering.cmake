@@ -4,12 +4,14 @@
 #
 # Who may include whom, checked on every #include below broadphase/ and integration/:
 #   broadphase/             itself, Eigen, the standard library
-#   broadphase/detail/      the compiler's SIMD intrinsics as well, and it alone
-#   integration/<client>/   itself, broadphase/, Eigen, the standard library
+#   broadphase/simd/        the compiler's SIMD intrinsics as well, and it alone
+#   integration/<client>/   itself, what broadphase/ offers, Eigen, the standard library
 #   integration/bullet/     Bullet as well, and it alone
 #   integration/tbb/        oneTBB as well, and it alone
 #   integration/effects/    the other clients as well
 #   integration/package/    whatever users include: its sources are their programs
+# What broadphase/ offers are the headers in the folder itself, and its helpers in core/ and geometry/. The
+# other folders are its own.
 # demos/ and tests/ may include everything, and nobody else includes them. Names every breach by
 # file, line and rule.
 
@@ -18,33 +20,34 @@ cmake_minimum_required(VERSION 3.22)
 set(standard "[a-z_0-9]+")
 set(simd "([a-z]+intrin|arm_neon)\\.h")
 set(eigen "Eigen/[A-Za-z]+")
+set(offered "broadphase/((core|geometry)/)?[^/]+")
 set(bullet "(bt[A-Z][A-Za-z0-9]*\\.h|(LinearMath|Bullet[A-Z][A-Za-z]*)/.+)")
 
 # Sets `allowed`, a regular expression for what stands between < and >, and `rule`, a sentence.
 macro(get_rule file)
-    if("${file}" MATCHES "^broadphase/detail/")
+    if("${file}" MATCHES "^broadphase/simd/")
         set(allowed "(broadphase/.+|${simd}|${eigen}|${standard})")
-        set(rule "broadphase/detail/ includes only broadphase/, SIMD intrinsics, Eigen and the \
+        set(rule "broadphase/simd/ includes only broadphase/, SIMD intrinsics, Eigen and the \
 standard library")
     elseif("${file}" MATCHES "^broadphase/")
         set(allowed "(broadphase/.+|${eigen}|${standard})")
         set(rule "broadphase/ includes only itself, Eigen and the standard library")
     elseif("${file}" MATCHES "^integration/bullet/")
-        set(allowed "((broadphase|integration/bullet)/.+|${bullet}|${eigen}|${standard})")
-        set(rule "integration/bullet/ includes only itself, broadphase/, Bullet, Eigen and the \
-standard library")
+        set(allowed "(${offered}|integration/bullet/.+|${bullet}|${eigen}|${standard})")
+        set(rule "integration/bullet/ includes only itself, what broadphase/ offers, Bullet, Eigen and \
+the standard library")
     elseif("${file}" MATCHES "^integration/tbb/")
-        set(allowed "((broadphase|integration/tbb|tbb)/.+|${standard})")
+        set(allowed "(${offered}|(integration/tbb|tbb)/.+|${standard})")
         set(rule "integration/tbb/ includes only itself, broadphase/, oneTBB and the standard library")
     elseif("${file}" MATCHES "^integration/package/")
-        set(allowed "((broadphase|integration)/.+|${bullet}|${eigen}|${standard})")
+        set(allowed "(${offered}|integration/.+|${bullet}|${eigen}|${standard})")
         set(rule "integration/package/ includes only what users of hashphase include")
     elseif("${file}" MATCHES "^integration/effects/")
-        set(allowed "((broadphase|integration)/.+|${eigen}|${standard})")
+        set(allowed "(${offered}|integration/.+|${eigen}|${standard})")
         set(rule "integration/effects/ includes only the clients, broadphase/, Eigen and the \
 standard library")
     elseif("${file}" MATCHES "^integration/([^/]+)/")
-        set(allowed "((broadphase|integration/${CMAKE_MATCH_1})/.+|${eigen}|${standard})")
+        set(allowed "(${offered}|integration/${CMAKE_MATCH_1}/.+|${eigen}|${standard})")
         set(rule "integration/${CMAKE_MATCH_1}/ includes only itself, broadphase/, Eigen and the \
 standard library")
     else()

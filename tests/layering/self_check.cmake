@@ -19,14 +19,15 @@ function(make_good_tree)
     file(REMOVE_RECURSE ${SCRATCH})
     file(WRITE ${SCRATCH}/broadphase/grid.hpp
          "#include <Eigen/Geometry>\n#include <vector>\n"
-         "  # include <broadphase/detail/table.hpp>// x\n")
-    file(WRITE ${SCRATCH}/broadphase/detail/kernel.hpp "#include <emmintrin.h>\n")
+         "  # include <broadphase/hash/table.hpp>// x\n")
+    file(WRITE ${SCRATCH}/broadphase/simd/kernel.hpp "#include <emmintrin.h>\n")
     file(WRITE ${SCRATCH}/integration/bullet/broadphase.hpp
          "#include <BulletCollision/BroadphaseCollision/btBroadphaseInterface.h>\n"
          "#include <LinearMath/btVector3.h>\n#include <btBulletCollisionCommon.h>\n"
          "#include <broadphase/grid.hpp>\n#include <integration/bullet/pair_cache.hpp>\n")
     file(WRITE ${SCRATCH}/integration/picking/pick.cpp
-         "#include <integration/picking/pick.hpp>\n#include <broadphase/grid.hpp>\n")
+         "#include <integration/picking/pick.hpp>\n#include <broadphase/grid.hpp>\n"
+         "#include <broadphase/core/limits.hpp>\n")
     file(WRITE ${SCRATCH}/integration/tbb/loops.hpp
          "#include <tbb/parallel_for.h>\n#include <broadphase/parallel_for.hpp>\n")
     file(WRITE ${SCRATCH}/integration/effects/plan.cpp
@@ -58,14 +59,17 @@ expect_breach(broadphase/grid.hpp 4 "${core}" "#include <integration/picking/pic
 expect_breach(broadphase/grid.hpp 4 "${core}" "#include <btBulletCollisionCommon.h>\n")
 expect_breach(broadphase/grid.hpp 5 "${core}" "\n#include <LinearMath/btVector3.h>\n")
 expect_breach(broadphase/grid.hpp 4 "${core}" "#include <emmintrin.h>\n")
-expect_breach(broadphase/detail/deep.cpp 2 "broadphase/detail/ includes only broadphase/"
+expect_breach(broadphase/simd/deep.cpp 2 "broadphase/simd/ includes only broadphase/"
               "// one\n#include <demos/scene.hpp>\n")
 expect_breach(broadphase/grid.hpp 4 "${core}" "#include <broadphase/../demos/scene.hpp>\n")
-expect_breach(broadphase/grid.hpp 4 "in angle brackets" "#include \"detail/table.hpp\"\n")
+expect_breach(broadphase/grid.hpp 4 "in angle brackets" "#include \"hash/table.hpp\"\n")
 set(client "integration/picking/ includes only itself")
-expect_breach(integration/picking/pick.cpp 3 "${client}" "#include <integration/bullet/b.hpp>\n")
-expect_breach(integration/picking/pick.cpp 3 "${client}" "#include <btBulletCollisionCommon.h>\n")
-expect_breach(integration/picking/pick.cpp 3 "${client}" "#include <tests/support/oracle.hpp>\n")
+expect_breach(integration/picking/pick.cpp 4 "${client}" "#include <integration/bullet/b.hpp>\n")
+expect_breach(integration/picking/pick.cpp 4 "${client}" "#include <btBulletCollisionCommon.h>\n")
+expect_breach(integration/picking/pick.cpp 4 "${client}" "#include <broadphase/hash/table.hpp>\n")
+expect_breach(integration/bullet/broadphase.hpp 6 "integration/bullet/ includes only itself"
+              "#include <broadphase/store/population.hpp>\n")
+expect_breach(integration/picking/pick.cpp 4 "${client}" "#include <tests/support/oracle.hpp>\n")
 expect_breach(integration/bullet/broadphase.hpp 6 "integration/bullet/ includes only itself"
               "#include <integration/picking/pick.hpp>\n")
 expect_breach(integration/effects/plan.cpp 3 "integration/effects/ includes only the clients"

@@ -4,7 +4,7 @@
 // Who is within a radius of whom, by looking at every two agents: the definition of
 // broadphase/crowd.hpp.
 
-#include <broadphase/detail/unit_scale.hpp>
+#include <broadphase/geometry/unit_scale.hpp>
 #include <broadphase/position_region.hpp>
 #include <tests/support/oracles.hpp>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-#include <broadphase/detail/table.hpp>
+#include <broadphase/hash/table.hpp>
 
 #include <cstdint>
 #include <numeric>

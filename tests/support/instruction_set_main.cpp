@@ -6,7 +6,7 @@
 //
 // Tests are skipped where the processor or the build lacks the instructions.
 
-#include <broadphase/detail/kernels.hpp>
+#include <broadphase/simd/kernels.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/pairs/cell_size.hpp>
 
+#include <demos/accuracy/baselines/paper_grid.hpp>
+#include <demos/accuracy/experiments.hpp>
 #include <demos/accuracy/pairs/cell_size_charts.hpp>
 #include <demos/accuracy/pairs/cell_size_findings.hpp>
-#include <demos/accuracy/experiments.hpp>
-#include <demos/accuracy/baselines/paper_grid.hpp>
 #include <demos/accuracy/timing.hpp>
 #include <demos/console/format.hpp>
 

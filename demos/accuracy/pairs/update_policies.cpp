@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/pairs/update_policies.hpp>
 
+#include <demos/accuracy/baselines/paper_grid.hpp>
 #include <demos/accuracy/experiments.hpp>
 #include <demos/accuracy/pairs/pair_findings.hpp>
-#include <demos/accuracy/baselines/paper_grid.hpp>
 #include <demos/accuracy/pairs/update_policy.hpp>
 #include <demos/console/format.hpp>
 #include <demos/scenes/scatter.hpp>

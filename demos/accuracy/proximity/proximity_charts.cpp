@@ -2,8 +2,8 @@
 #include <demos/accuracy/proximity/proximity_charts.hpp>
 
 #include <demos/accuracy/binomial.hpp>
-#include <demos/accuracy/proximity/estimate_formula.hpp>
 #include <demos/accuracy/pairs/pair_findings.hpp>
+#include <demos/accuracy/proximity/estimate_formula.hpp>
 
 #include <algorithm>
 

@@ -5,9 +5,9 @@
 #include <demos/stability/cases/cases.hpp>
 
 #include <broadphase/crowd.hpp>
-#include <broadphase/detail/kernels.hpp>
 #include <broadphase/frustum.hpp>
 #include <broadphase/pairs.hpp>
+#include <broadphase/simd/kernels.hpp>
 #include <broadphase/sweeps.hpp>
 #include <demos/scenes/random.hpp>
 #include <demos/stability/grid_scene.hpp>

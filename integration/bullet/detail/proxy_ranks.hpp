@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-#include <broadphase/detail/flat_set.hpp>
+#include <broadphase/core/flat_set.hpp>
 #include <integration/bullet/precision.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include <broadphase/detail/hide_macros.hpp>
+#include <broadphase/core/hide_macros.hpp>
 
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 
@@ -58,4 +58,4 @@ private:
 
 }  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE
 
-#include <broadphase/detail/restore_macros.hpp>
+#include <broadphase/core/restore_macros.hpp>

@@ -14,7 +14,7 @@
 #include <cstdint>
 #include <limits>
 
-#include <broadphase/detail/hide_macros.hpp>
+#include <broadphase/core/hide_macros.hpp>
 
 namespace hashphase::detail {
 
@@ -270,4 +270,4 @@ template <class Scalar>
 
 }  // namespace hashphase::detail
 
-#include <broadphase/detail/restore_macros.hpp>
+#include <broadphase/core/restore_macros.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/terrain/detail/orientation.hpp>
 
-#include <broadphase/detail/expansion.hpp>
+#include <broadphase/geometry/expansion.hpp>
 
 namespace hashphase::detail {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/pairs/cell_size.hpp>
 #include <demos/accuracy/baselines/paper_grid.hpp>
+#include <demos/accuracy/pairs/cell_size.hpp>
 #include <tests/demos/accuracy/broken_pairs.hpp>
 #include <tests/demos/accuracy/findings_checks.hpp>
 

@@ -1,0 +1,485 @@
+// SPDX-License-Identifier: Zlib
+
+// Building follows Hastings, Mesit and Guha, "Optimization of Large-Scale, Real-Time Simulations by
+// Spatial Hashing" (wipe and refile everything), as a counting sort.
+
+#include <broadphase/hash/table.hpp>
+
+#include <broadphase/core/ensure_capacity.hpp>
+#include <broadphase/diagnostics.hpp>
+#include <broadphase/hash/crowd_census.hpp>
+#include <broadphase/simd/kernels.hpp>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <utility>
+
+namespace hashphase::detail {
+namespace {
+
+// Boxes that one thread deals with at a time.
+constexpr std::size_t kTableGrain = 4096;
+
+// So few of a crowd are not worth sorting along an axis.
+constexpr std::size_t kFewest = 64;
+
+// Sorts the crowd by the groups of its boxes; does nothing, and returns false, where so many kinds of
+// them are there that telling them apart takes longer than it spares.
+template <class GroupsOf>
+bool sortByGroups(std::span<std::uint32_t> crowd, const GroupsOf& groupsOf) {
+    constexpr std::size_t kMostKinds = 32;
+    std::array<ProxyGroups, kMostKinds> kinds;  // the first kindCount
+    std::size_t kindCount = 0;
+    ProxyGroups last = groupsOf(crowd[0]);
+    for (const std::uint32_t i : crowd) {
+        const ProxyGroups groups = groupsOf(i);
+        if (kindCount > 0 && groups == last) {
+            continue;
+        }
+        last = groups;
+        const auto known = std::span(kinds).first(kindCount);
+        if (std::find(known.begin(), known.end(), groups) != known.end()) {
+            continue;
+        }
+        if (kindCount == kMostKinds) {
+            return false;
+        }
+        kinds[kindCount++] = groups;
+    }
+    if (kindCount > 1) {
+        const auto key = [&](std::uint32_t i) {
+            const ProxyGroups groups = groupsOf(i);
+            return std::uint64_t{groups.group} << 32 | groups.mask;
+        };
+        std::sort(crowd.begin(), crowd.end(), [&](std::uint32_t a, std::uint32_t b) {
+            return key(a) != key(b) ? key(a) < key(b) : a < b;
+        });
+    }
+    return true;
+}
+
+}  // namespace
+
+template <class Scalar>
+void Table<Scalar>::layOut(std::span<const PaddedBox<Scalar>> boxes) {
+    layout_->layOut(boxes, levels_);
+    bucketStart_.resize(levels_.back().firstBucket + levels_.back().bucketCount + 1);
+}
+
+// Finds every box's bucket and counts how many each has. Returns how many boxes lie where it takes
+// longer to find them: listed without cells, or beyond the cells that are numbered through.
+template <class Scalar>
+std::size_t Table<Scalar>::countBuckets(std::span<const PaddedBox<Scalar>> boxes,
+                                        ParallelFor parallelFor) {
+    buckets_.resize(boxes.size());
+    views_.clear();
+    for (const Level<Scalar>& level : levels_) {
+        views_.push_back(view(level));
+    }
+    parallelFor(boxes.size(), kTableGrain, [&](std::size_t begin, std::size_t end) {
+        kernels<Scalar>().fileBoxes(views_.data(), views_.size(), boxes.data() + begin, end - begin,
+                                    buckets_.data() + begin);
+    });
+    std::fill(bucketStart_.begin(), bucketStart_.end(), 0);
+    for (const std::uint32_t bucket : buckets_) {
+        if (bucket != kNoBucket) {
+            ++bucketStart_[bucket];
+        }
+    }
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+        const bool isStray = i % 2 == 1 || i + 1 == levels_.size();
+        const auto first = bucketStart_.begin() + levels_[i].firstBucket;
+        count +=
+            isStray ? std::accumulate(first, first + levels_[i].bucketCount, std::size_t{0}) : 0;
+    }
+    return count;
+}
+
+// A counting sort. Boxes that come in the order of the last time are read and written nearly in
+// sequence.
+template <class Scalar>
+void Table<Scalar>::sortEntries(std::span<const std::uint32_t> boxSlots,
+                                std::span<const PaddedBox<Scalar>> boxes, const ProxyGroups* groups,
+                                ParallelFor parallelFor) {
+    std::uint32_t sum = 0;
+    largestBucket_ = 0;
+    const std::size_t listBucket = bucketStart_.size() - 2;  // and behind it the end
+    for (std::size_t bucket = 0; bucket < listBucket; ++bucket) {
+        largestBucket_ = std::max(largestBucket_, bucketStart_[bucket]);
+        sum += std::exchange(bucketStart_[bucket], sum);
+    }
+    sum += std::exchange(bucketStart_[listBucket], sum);
+    bucketStart_.back() = sum;
+    const std::uint32_t count = sum;
+    slots_.resize(count);
+    order_.resize(count);
+    bucketOfEntry_.resize(count);
+    for (auto& column : bounds_) {
+        column.resize(count + kColumnPadding);
+    }
+    for (Level<Scalar>& level : levels_) {
+        level.firstEntry = bucketStart_[level.firstBucket];
+        level.lastEntry = bucketStart_[level.firstBucket + level.bucketCount];
+    }
+    // Each start moves to its bucket's end, which is where the next one starts.
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        if (buckets_[i] != kNoBucket) {
+            order_[bucketStart_[buckets_[i]]++] = static_cast<std::uint32_t>(i);
+        }
+    }
+    std::copy_backward(bucketStart_.begin(), bucketStart_.end() - 1, bucketStart_.end());
+    bucketStart_[0] = 0;
+    sortCrowds(boxSlots, boxes, groups);
+
+    parallelFor(count, kTableGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t entry = begin; entry < end; ++entry) {
+            const std::uint32_t i = order_[entry];
+            slots_[entry] = boxSlots[i];
+            bucketOfEntry_[entry] = buckets_[i];
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                bounds_[axis][entry] = boxes[i].low[axis];
+                bounds_[axis + 3][entry] = boxes[i].high[axis];
+            }
+        }
+    });
+    noteRows();
+    noteHeights();
+}
+
+// Calls visit(bucket, span of entries in order_) for the crowded buckets of the level.
+template <class Scalar>
+template <class Visit>
+void Table<Scalar>::forCrowds(const Level<Scalar>& level, const Visit& visit) {
+    const std::uint32_t* starts = bucketStart_.data() + level.firstBucket;
+    for (std::uint32_t bucket = 0; bucket < level.bucketCount; ++bucket) {
+        const std::uint32_t count = starts[bucket + 1] - starts[bucket];
+        if (count > kCrowd) {
+            visit(level.firstBucket + bucket, std::span(order_).subspan(starts[bucket], count));
+        }
+    }
+}
+
+// Where many boxes share a cell, because it is much larger than they are, a search would have to
+// read them all; when they are sorted, only what is near along the axis. Those that lie at one place,
+// where no axis tells them apart, are mostly some that may not pair: by groups, a search need not read
+// what it cannot pair with.
+template <class Scalar>
+void Table<Scalar>::sortCrowds(std::span<const std::uint32_t> boxSlots,
+                               std::span<const PaddedBox<Scalar>> boxes,
+                               const ProxyGroups* groups) {
+    sortedBuckets_.clear();
+    for (Level<Scalar>& level : levels_) {
+        level.firstSorted = static_cast<std::uint32_t>(sortedBuckets_.size());
+        level.sortedCount = 0;
+        const bool mayBeCrowded = level.hasCells ? largestBucket_ > kCrowd : groups != nullptr;
+        if (!mayBeCrowded || level.count() <= kCrowd) {
+            continue;
+        }
+        forCrowds(level, [&](std::uint32_t bucket, std::span<std::uint32_t> crowd) {
+            const auto groupsOf = [&](std::uint32_t i) {
+                return groups[2 * std::size_t{boxSlots[i]}];
+            };
+            const bool haveGroups = groups != nullptr && sortByGroups(crowd, groupsOf);
+            std::uint32_t first = bucketStart_[bucket];
+            while (!crowd.empty()) {
+                std::size_t count = crowd.size();
+                if (haveGroups) {
+                    count = 1;
+                    while (count < crowd.size() && groupsOf(crowd[count]) == groupsOf(crowd[0])) {
+                        ++count;
+                    }
+                }
+                const auto last = first + static_cast<std::uint32_t>(count);
+                std::optional<SortedBucket<Scalar>> sorted;
+                if (level.hasCells && count > kFewest) {
+                    sorted = sortedAlong(crowd.first(count), boxes);
+                }
+                if (!sorted && haveGroups) {
+                    sorted = SortedBucket<Scalar>{};  // all count as long
+                }
+                if (sorted) {
+                    sorted->bucket = bucket;
+                    sorted->first = first;
+                    sorted->firstLong += first;
+                    sorted->last = last;
+                    sorted->haveSameGroups = haveGroups;
+                    sorted->groups = haveGroups ? groupsOf(crowd[0]) : ProxyGroups{};
+                    sortedBuckets_.push_back(*sorted);
+                }
+                first = last;
+                crowd = crowd.subspan(count);
+            }
+        });
+        level.sortedCount = static_cast<std::uint32_t>(sortedBuckets_.size()) - level.firstSorted;
+    }
+}
+
+// Sorts the crowd along the axis that serves best; none where none does. Sets the axis, the reach, and
+// how many are not long.
+template <class Scalar>
+std::optional<SortedBucket<Scalar>> Table<Scalar>::sortedAlong(
+    std::span<std::uint32_t> crowd, std::span<const PaddedBox<Scalar>> boxes) {
+    const CrowdCensus<Scalar> census(crowd, boxes);
+    const std::optional<std::uint32_t> axis = census.sweepAxis();
+    if (!axis) {
+        return std::nullopt;
+    }
+    const auto isLong = [&](std::uint32_t i) { return census.isLong(boxes[i], *axis); };
+    longOnes_.clear();
+    std::copy_if(crowd.begin(), crowd.end(), std::back_inserter(longOnes_), isLong);
+    const auto shortEnd = std::remove_if(crowd.begin(), crowd.end(), isLong);
+    std::copy(longOnes_.begin(), longOnes_.end(), shortEnd);
+    std::sort(crowd.begin(), shortEnd, [&](std::uint32_t a, std::uint32_t b) {
+        const Scalar lowA = boxes[a].low[*axis];
+        const Scalar lowB = boxes[b].low[*axis];
+        return lowA != lowB ? lowA < lowB : a < b;
+    });
+    SortedBucket<Scalar> sorted{};
+    sorted.axis = *axis;
+    sorted.firstLong = static_cast<std::uint32_t>(shortEnd - crowd.begin());
+    sorted.reach = census.reach(crowd.first(sorted.firstLong), boxes, *axis);
+    return sorted;
+}
+
+// Hashed rows are told apart by their coordinates, and no search need look beyond them.
+template <class Scalar>
+void Table<Scalar>::noteRows() {
+    const auto isHashed = [](const Level<Scalar>& level) {
+        return level.hasCells && !level.isDense && level.count() > 0;
+    };
+    const bool isNeeded = std::any_of(levels_.begin(), levels_.end(), isHashed);
+    rowOfEntry_.resize(isNeeded ? slots_.size() : 0);
+    for (Level<Scalar>& level : levels_) {
+        if (!isHashed(level)) {
+            continue;
+        }
+        CellReach reach;
+        for (std::uint32_t i = level.firstEntry; i < level.lastEntry; ++i) {
+            const Cell cell{level.cell(bounds_[0][i], 0), level.cell(bounds_[1][i], 1),
+                            level.cell(bounds_[2][i], 2)};
+            reach.add(cell);
+            rowOfEntry_[i] = {cell[1], cell[2]};
+        }
+        level.low = reach.low;
+        level.high = reach.high;
+    }
+}
+
+// Along a flat axis, cells do not tell where the boxes are. Inverted ones end before they begin.
+template <class Scalar>
+void Table<Scalar>::noteHeights() {
+    const auto find = kernels<Scalar>().findRange;
+    for (Level<Scalar>& level : levels_) {
+        for (std::size_t axis = 0; level.hasCells && axis < 3; ++axis) {
+            if (level.inverseCellSize[axis] != 0 || level.count() == 0) {
+                continue;
+            }
+            std::array<Scalar, 2> least{};
+            std::array<Scalar, 2> greatest{};
+            for (std::size_t end = 0; end < 2; ++end) {
+                find(bounds_[axis + 3 * end].data(), level.firstEntry, level.lastEntry, &least[end],
+                     &greatest[end]);
+            }
+            level.lowest[axis] = std::min(least[0], least[1]);
+            level.highest[axis] = std::max(greatest[0], greatest[1]);
+        }
+    }
+}
+
+template <class Scalar>
+void Table<Scalar>::build(std::span<const std::uint32_t> boxSlots,
+                          std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed,
+                          ParallelFor parallelFor, const ProxyGroups* groups) {
+    HASHPHASE_ASSERT(boxSlots.size() == boxes.size(), "Every box has a slot.");
+    if (boxes.empty()) {
+        clear();
+        return;
+    }
+    try {
+        if (layout_ == nullptr) {
+            layout_ = std::make_unique<LevelLayout<Scalar>>();
+        }
+        findBuckets(boxes, fixed, parallelFor);
+        sortEntries(boxSlots, boxes, groups, parallelFor);
+    } catch (...) {
+        clear();
+        throw;
+    }
+}
+
+// In the cells of the last time, unless too many boxes have left them.
+template <class Scalar>
+void Table<Scalar>::findBuckets(std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed,
+                                ParallelFor parallelFor) {
+    const auto areMany = [&](std::size_t strays, std::size_t usual) {
+        using Layout = LevelLayout<Scalar>;
+        return strays > 2 * usual + Layout::kThinLevel + boxes.size() / Layout::kStrays;
+    };
+    const auto choose = [&] {
+        layout_->choose(boxes, fixed);
+        layOut(boxes);
+        strayCount_ = countBuckets(boxes, parallelFor);
+        straysWhenChosen_ = strayCount_;
+    };
+    if (layout_->isTimeToChoose(boxes.size()) || levels_.empty()) {
+        choose();
+    } else if (areMany(countBuckets(boxes, parallelFor), strayCount_)) {
+        layOut(boxes);
+        strayCount_ = countBuckets(boxes, parallelFor);
+        // Boxes that have outgrown their cells are strays wherever these lie.
+        if (areMany(strayCount_, straysWhenChosen_)) {
+            choose();
+        }
+    }
+}
+
+template <class Scalar>
+LevelView<Scalar> Table<Scalar>::view(const Level<Scalar>& level) const noexcept {
+    LevelView<Scalar> view{};
+    for (std::size_t i = 0; i < 6; ++i) {
+        view.columns[i] = bounds_[i].data();
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        view.origin[axis] = level.origin[axis];
+        view.inverseCellSize[axis] = level.inverseCellSize[axis];
+        view.lowest[axis] = level.lowest[axis];
+        view.highest[axis] = level.highest[axis];
+        view.low[axis] = level.low[axis];
+        view.high[axis] = level.high[axis];
+    }
+    view.largestEdge = level.largestEdge;
+    view.bucketStart = bucketStart_.data() + level.firstBucket;
+    view.bucketOfEntry = bucketOfEntry_.data();
+    view.rowOfEntry = rowOfEntry_.data();
+    view.entrySlots = slots_.data();
+    view.firstBucket = level.firstBucket;
+    view.firstEntry = level.firstEntry;
+    view.lastEntry = level.lastEntry;
+    view.bucketCount = level.bucketCount;
+    view.strideY = level.strideY;
+    view.strideZ = level.strideZ;
+    view.denseBase = level.denseBase;
+    view.isDense = level.isDense;
+    view.hasCells = level.hasCells;
+    view.sortedBuckets = sortedBuckets_.data() + level.firstSorted;
+    view.sortedCount = level.sortedCount;
+    return view;
+}
+
+template <class Scalar>
+void Table<Scalar>::clear() noexcept {
+    largestBucket_ = 0;
+    levels_.clear();
+    slots_.clear();
+    order_.clear();
+    sortedBuckets_.clear();
+}
+
+template <class Scalar>
+void Table<Scalar>::erase(std::uint32_t entry) noexcept {
+    for (auto& column : bounds_) {
+        column[entry] = std::numeric_limits<Scalar>::quiet_NaN();
+    }
+}
+
+template <class Scalar>
+std::size_t Table<Scalar>::memoryBytes() const noexcept {
+    return levels_.capacity() * sizeof(Level<Scalar>) +
+           (bucketStart_.capacity() + slots_.capacity() + order_.capacity() +
+            bucketOfEntry_.capacity() + buckets_.capacity() + longOnes_.capacity()) *
+               sizeof(std::uint32_t) +
+           6 * bounds_[0].capacity() * sizeof(Scalar) + rowOfEntry_.capacity() * sizeof(Row) +
+           views_.capacity() * sizeof(LevelView<Scalar>) +
+           sortedBuckets_.capacity() * sizeof(SortedBucket<Scalar>) +
+           (layout_ != nullptr ? layout_->memoryBytes() : 0);
+}
+
+template <class Scalar>
+void Table<Scalar>::releaseUnusedMemory() noexcept {
+    if (slots_.empty()) {
+        *this = {};
+        return;
+    }
+    layout_->releaseUnusedMemory();
+    levels_.shrink_to_fit();
+    for (auto* numbers : {&bucketStart_, &slots_, &order_, &bucketOfEntry_}) {
+        numbers->shrink_to_fit();
+    }
+    rowOfEntry_.shrink_to_fit();
+    sortedBuckets_.shrink_to_fit();
+    for (auto& column : bounds_) {
+        column.shrink_to_fit();
+    }
+    freeArrays(buckets_, longOnes_, views_);
+}
+
+template <class Scalar>
+bool Table<Scalar>::areSorted() const {
+    for (std::size_t i = 0; i < sortedBuckets_.size(); ++i) {
+        const SortedBucket<Scalar>& sorted = sortedBuckets_[i];
+        const Scalar* column = bounds_[sorted.axis].data();
+        const bool isFirst = i == 0 || sortedBuckets_[i - 1].bucket != sorted.bucket;
+        const bool isLast =
+            i + 1 == sortedBuckets_.size() || sortedBuckets_[i + 1].bucket != sorted.bucket;
+        if (sorted.first != (isFirst ? bucketStart_[sorted.bucket] : sortedBuckets_[i - 1].last) ||
+            (isLast && sorted.last != bucketStart_[sorted.bucket + 1]) ||
+            sorted.firstLong < sorted.first || sorted.firstLong > sorted.last ||
+            !std::is_sorted(column + sorted.first, column + sorted.firstLong)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+template <class Scalar>
+std::string Table<Scalar>::validate() const {
+    std::uint32_t entry = 0;
+    for (std::uint32_t i = 0; i < levels_.size(); ++i) {
+        const Level<Scalar>& level = levels_[i];
+        if (level.firstEntry != entry) {
+            return "Buckets partition the entries in order: broken.";
+        }
+        const std::uint32_t end = level.firstBucket + level.bucketCount;
+        for (std::uint32_t b = level.firstBucket; b < end; ++b) {
+            if (bucketStart_[b] != entry || bucketStart_[b] > bucketStart_[b + 1]) {
+                return "Buckets partition the entries in order: broken.";
+            }
+            for (; entry < bucketStart_[b + 1]; ++entry) {
+                const Aabb<Scalar> box = this->box(entry);
+                if (hasNan(box) || !level.hasCells) {
+                    continue;
+                }
+                Cell low{};
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    const auto at = static_cast<Eigen::Index>(axis);
+                    low[axis] = level.cell(box.min()[at], axis);
+                    const std::int32_t high = level.cell(box.max()[at], axis);
+                    if (high < low[axis] || high > low[axis] + 1) {
+                        return "Every entry spans at most two cells of its level an axis, or is "
+                               "listed without cells: broken.";
+                    }
+                }
+                if (level.firstBucket + level.bucket(low) != b || bucketOfEntry_[entry] != b) {
+                    return "Every entry lies in the bucket of the cell of its min corner: broken.";
+                }
+            }
+        }
+    }
+    if (entry != slots_.size()) {
+        return "Buckets partition the entries in order: broken.";
+    }
+    return areSorted() ? std::string()
+                       : "A sorted bucket is sorted along its axis, and its parts follow each "
+                         "other: broken.";
+}
+
+template class Table<float>;
+template class Table<double>;
+
+}  // namespace hashphase::detail

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// The hash table: boxes sorted by cell, each filed once.
+//
+// A box is filed under the cell of its min corner, on a level where it spans at most two cells an
+// axis. Whatever overlaps a region then lies in the region's cells or one step before.
+// Cells become buckets by rows: bucket = rowBase(y, z) + x, so that the cells of a run along x are
+// neighbours in memory, and entries are sorted by bucket. After the spatial hashing of Hastings,
+// Mesit and Guha, with rows in the place of single cells.
+//
+// Threads   Building and erasing need the table for themselves; everything const may run anywhere.
+
+#include <broadphase/aabb.hpp>
+#include <broadphase/export.hpp>
+#include <broadphase/geometry/padded_box.hpp>
+#include <broadphase/geometry/quantise.hpp>
+#include <broadphase/hash/level.hpp>
+#include <broadphase/hash/level_layout.hpp>
+#include <broadphase/hash/sorted_bucket.hpp>
+#include <broadphase/parallel_for.hpp>
+#include <broadphase/simd/kernel_types.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <broadphase/core/hide_macros.hpp>
+
+namespace hashphase::detail {
+
+/// Columns min x, y, z, max x, y, z of boxes.
+template <class Scalar>
+using Columns = std::array<const Scalar*, 6>;
+
+/// Part of a row of cells, from firstX to lastX inclusive.
+struct CellRun {
+    std::int32_t y = 0;
+    std::int32_t z = 0;
+    std::int32_t firstX = 0;
+    std::int32_t lastX = 0;
+};
+
+struct EntryRange {
+    std::uint32_t first = 0;
+    std::uint32_t last = 0;  // one past
+
+    [[nodiscard]] std::uint32_t count() const noexcept { return last - first; }
+};
+
+template <class Scalar>
+class HASHPHASE_BROADPHASE_EXPORT Table {
+public:
+    /// Files boxes[i], of boxSlots[i], for every i, anew; boxes with a NaN are left out. Cell sizes
+    /// follow the population, or are fixed when `fixed.count` > 0. Where it throws, for want of
+    /// memory, nothing is filed. Cost: a few passes over the boxes; least when they come in about the
+    /// order of the last time, see order(). With groups[2 * slot] of every slot, what shares a crowded
+    /// bucket is kept apart by groups, so that a search passes by all with which it cannot pair.
+    void build(std::span<const std::uint32_t> boxSlots, std::span<const PaddedBox<Scalar>> boxes,
+               const LevelSizes& fixed, ParallelFor parallelFor = serialFor,
+               const ProxyGroups* groups = nullptr);
+
+    /// Leaves nothing filed.
+    void clear() noexcept;
+
+    /// Takes the entry out of every later answer. Cost: O(1); its place is reclaimed by build().
+    void erase(std::uint32_t entry) noexcept;
+
+    /// Subtracts `shift` from every coordinate. Returns false when something was rounded, so that the
+    /// table has to be built again before it is read. Cost: a pass over the boxes.
+    [[nodiscard]] bool shiftOrigin(const Vector3<Scalar>& shift);
+
+    [[nodiscard]] std::uint32_t size() const noexcept {
+        return static_cast<std::uint32_t>(slots_.size());
+    }
+    [[nodiscard]] std::span<const Level<Scalar>> levels() const noexcept { return levels_; }
+    [[nodiscard]] std::span<const std::uint32_t> entrySlots() const noexcept { return slots_; }
+    [[nodiscard]] std::uint32_t slot(std::uint32_t entry) const noexcept { return slots_[entry]; }
+    /// For every entry the number under which build() was given it.
+    [[nodiscard]] std::span<const std::uint32_t> order() const noexcept { return order_; }
+    /// The most entries that share a bucket of cells.
+    [[nodiscard]] std::uint32_t largestCell() const noexcept { return largestBucket_; }
+    /// Edge of the finest cells [m]; infinity when nothing is filed by cells.
+    [[nodiscard]] double finestCellSize() const noexcept {
+        return !slots_.empty() && layout_->sizes().count > 0
+                   ? layout_->sizes().cellSize[0]
+                   : std::numeric_limits<double>::infinity();
+    }
+    [[nodiscard]] std::size_t memoryBytes() const noexcept;
+    /// Gives back what only build() uses, and room for more entries than there are.
+    void releaseUnusedMemory() noexcept;
+
+    /// The entry's box, or NaN when it was erased.
+    [[nodiscard]] Aabb<Scalar> box(std::uint32_t entry) const noexcept {
+        return {Vector3<Scalar>(bounds_[0][entry], bounds_[1][entry], bounds_[2][entry]),
+                Vector3<Scalar>(bounds_[3][entry], bounds_[4][entry], bounds_[5][entry])};
+    }
+
+    /// Coordinates of all entries, by column; readable kColumnPadding past any entry.
+    [[nodiscard]] Columns<Scalar> columns() const noexcept {
+        return {bounds_[0].data(), bounds_[1].data(), bounds_[2].data(),
+                bounds_[3].data(), bounds_[4].data(), bounds_[5].data()};
+    }
+
+    /// What kernels read of the level.
+    [[nodiscard]] LevelView<Scalar> view(const Level<Scalar>& level) const noexcept;
+
+    /// True when the entry, found by forRun(), lies in that row (y, z): hashed rows may share
+    /// buckets. Asked about hits only.
+    [[nodiscard]] bool isInRow(const Level<Scalar>& level, std::uint32_t entry, std::int32_t y,
+                               std::int32_t z) const noexcept {
+        return level.isDense || (rowOfEntry_[entry].y == y && rowOfEntry_[entry].z == z);
+    }
+
+    /// Calls visit(EntryRange) for the buckets of the run, which must lie in the level's low to
+    /// high: once, or twice where hashed buckets wrap around. Entries of other rows may be among
+    /// them where rows are hashed. Cost: O(1) + visits.
+    template <class Visit>
+    void forRun(const Level<Scalar>& level, const CellRun& run, Visit&& visit) const {
+        const std::uint32_t* starts = bucketStart_.data() + level.firstBucket;
+        const auto length = static_cast<std::uint32_t>(run.lastX - run.firstX) + 1;
+        if (length >= level.bucketCount) {
+            visit(EntryRange{starts[0], starts[level.bucketCount]});
+            return;
+        }
+        const std::uint32_t first = level.bucket({run.firstX, run.y, run.z});
+        const std::uint32_t last = first + length;
+        if (last <= level.bucketCount) {
+            visit(EntryRange{starts[first], starts[last]});
+        } else {
+            visit(EntryRange{starts[first], starts[level.bucketCount]});
+            visit(EntryRange{starts[0], starts[last - level.bucketCount]});
+        }
+    }
+
+    /// Calls visit(EntryRange) for those of a range of whole buckets that may overlap `bounds`: all but
+    /// what is far from it in a sorted bucket. Cost: O(log n) for each sorted bucket + visits.
+    template <class Visit>
+    void forNear(const Level<Scalar>& level, EntryRange range, const Aabb<Scalar>& bounds,
+                 Visit&& visit) const;
+
+    /// Says which invariant is broken, in a sentence; empty when all hold:
+    /// - Every entry lies in the bucket of the cell of its min corner.
+    /// - Every entry spans at most two cells of its level an axis, or is listed without cells.
+    /// - Buckets partition the entries in order.
+    /// - A sorted bucket is sorted along its axis, and its parts follow each other.
+    [[nodiscard]] std::string validate() const;
+
+private:
+    void findBuckets(std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed,
+                     ParallelFor parallelFor);
+    void layOut(std::span<const PaddedBox<Scalar>> boxes);
+    [[nodiscard]] std::size_t countBuckets(std::span<const PaddedBox<Scalar>> boxes,
+                                           ParallelFor parallelFor);
+    void sortEntries(std::span<const std::uint32_t> boxSlots,
+                     std::span<const PaddedBox<Scalar>> boxes, const ProxyGroups* groups,
+                     ParallelFor parallelFor);
+    template <class Visit>
+    void forCrowds(const Level<Scalar>& level, const Visit& visit);
+    void sortCrowds(std::span<const std::uint32_t> boxSlots,
+                    std::span<const PaddedBox<Scalar>> boxes, const ProxyGroups* groups);
+    [[nodiscard]] std::optional<SortedBucket<Scalar>> sortedAlong(
+        std::span<std::uint32_t> crowd, std::span<const PaddedBox<Scalar>> boxes);
+    [[nodiscard]] bool areSorted() const;
+    void noteRows();
+    void noteHeights();
+
+    std::unique_ptr<LevelLayout<Scalar>> layout_;  // made when the first box is filed
+    std::uint32_t largestBucket_ = 0;              // of those that are cells
+    std::size_t strayCount_ = 0;                   // when the levels were laid out
+    std::size_t straysWhenChosen_ = 0;             // when the cell sizes were chosen
+    std::vector<Level<Scalar>> levels_;
+    std::vector<std::uint32_t> bucketStart_;
+    std::vector<std::uint32_t> slots_;
+    std::vector<std::uint32_t> order_;
+    std::vector<std::uint32_t> bucketOfEntry_;
+    std::vector<Row> rowOfEntry_;  // where a level is hashed
+    std::vector<SortedBucket<Scalar>> sortedBuckets_;
+    std::array<std::vector<Scalar>, 6> bounds_;  // kColumnPadding longer than the entries
+
+    std::vector<std::uint32_t> buckets_;    // scratch of build()
+    std::vector<std::uint32_t> longOnes_;   // the same
+    std::vector<LevelView<Scalar>> views_;  // the same
+};
+
+template <class Scalar>
+template <class Visit>
+void Table<Scalar>::forNear(const Level<Scalar>& level, EntryRange range,
+                            const Aabb<Scalar>& bounds, Visit&& visit) const {
+    const auto visitSome = [&](std::uint32_t first, std::uint32_t last) {
+        if (first < last) {
+            visit(EntryRange{first, last});
+        }
+    };
+    const std::span<const SortedBucket<Scalar>> buckets =
+        std::span(sortedBuckets_).subspan(level.firstSorted, level.sortedCount);
+    auto sorted = std::partition_point(buckets.begin(), buckets.end(),
+                                       [&](const auto& one) { return one.first < range.first; });
+    for (; sorted != buckets.end() && sorted->first < range.last; ++sorted) {
+        const Scalar* const column = bounds_[sorted->axis].data();
+        const auto axis = static_cast<Eigen::Index>(sorted->axis);
+        const std::uint32_t begin = sorted->first;
+        const std::uint32_t end = sorted->firstLong;
+        visitSome(range.first, begin);
+        visitSome(firstNear(*sorted, column, begin, end, bounds.min()[axis]),
+                  endOfNear(column, begin, end, bounds.max()[axis]));
+        range.first = end;
+    }
+    visitSome(range.first, range.last);
+}
+
+extern template class Table<float>;
+extern template class Table<double>;
+
+}  // namespace hashphase::detail
+
+#include <broadphase/core/restore_macros.hpp>

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Finds what sweeping proxies touch on their ways, in a grid that has just been filed.
+
+#include <broadphase/geometry/box_columns.hpp>
+#include <broadphase/geometry/padded_box.hpp>
+#include <broadphase/hash/table.hpp>
+#include <broadphase/moving_box.hpp>
+#include <broadphase/parallel_for.hpp>
+#include <broadphase/proxy_id.hpp>
+#include <broadphase/search/pair_parts.hpp>
+#include <broadphase/simd/kernels.hpp>
+#include <broadphase/sweep_mode.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace hashphase {
+template <class Scalar>
+class Grid;
+}
+
+namespace hashphase::detail {
+
+/// What a proxy does that sweeps.
+template <class Scalar>
+struct Motion {
+    ProxyId id;
+    MovingBox<Scalar> way;
+    Sweep sweep;
+    bool isFromGrid;  // it begins at the proxy's box; way.box is that of the update under way
+};
+
+/// A part of a frame.
+struct Part {
+    double from = 0;
+    double to = 1;
+};
+
+template <class Scalar>
+class ContactSearch {
+public:
+    explicit ContactSearch(const Grid<Scalar>& grid) : grid_(grid) {}
+
+    /// Looks for everything that the motions' proxies touch on their ways, from the start on: what
+    /// stands in the grid's tables of it, and each other.
+    void find(std::span<const Motion<Scalar>> motions, ParallelFor parallelFor);
+
+    /// What find() found: two slots each, the smaller one on top; sorted.
+    [[nodiscard]] std::span<const std::uint64_t> contacts() const noexcept { return contacts_; }
+    [[nodiscard]] const SweepCost& cost() const noexcept { return cost_; }
+    [[nodiscard]] std::size_t memoryBytes() const noexcept;
+    /// Gives back all that only find() uses, and what it found.
+    void releaseUnusedMemory() noexcept;
+
+private:
+    using Point = Vector3<Scalar>;
+
+    struct ContactsOfRay;
+
+    /// A way that would take so many segments.
+    struct LongWay {
+        std::uint32_t motion;
+        Part within;
+        double segments;
+    };
+
+    void cutIntoSegments();
+    void cut(std::uint32_t motion, const Aabb<double>& world, Scalar cellSize);
+    void cutFewRays();
+    void addSegments(std::uint32_t motion, const MovingBox<Scalar>& way, const Part& part,
+                     int count);
+    void meetStanding(ParallelFor parallelFor);
+    void meetStandingByRay(ParallelFor parallelFor);
+    void meetEachOther(ParallelFor parallelFor);
+    void addMeeting(ParallelFor parallelFor);
+    template <class ValueOf>
+    [[nodiscard]] double quantile(double share, const ValueOf& valueOf);
+    [[nodiscard]] int sliceCount();
+    void walkSegments(const Table<Scalar>& table, std::size_t first, std::size_t last,
+                      PairSink& candidates, KernelCost& cost) const;
+    void addTouching(const Table<Scalar>& table, std::span<const IndexPair> candidates,
+                     PairSink& sink) const;
+
+    const Grid<Scalar>& grid_;
+    std::span<const Motion<Scalar>> motions_;  // of the present find()
+    SweepCost cost_;
+    std::vector<std::uint64_t> contacts_;
+
+    // Scratch.
+    BoxColumns<Scalar> segments_;
+    std::vector<Way<Scalar>> ways_;  // of the motions
+    std::vector<std::uint32_t> motionOfSegment_;
+    std::vector<LongWay> rays_;
+    std::vector<double> sample_;
+    PairParts parts_;
+    PairList candidates_;
+    PairList touchingNow_;
+    PairList touching_;  // two slots each
+    std::vector<std::uint64_t> sorted_;
+    std::vector<std::uint32_t> motionNumbers_;
+    std::vector<PaddedBox<Scalar>> slice_;
+    Table<Scalar> sliceTable_;
+};
+
+}  // namespace hashphase::detail

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What kernels read and write: plain arrays and nothing that has code. Kernels are compiled for
+// several instruction sets, and an inline function of the standard library that such a file emits
+// could be the copy that the linker keeps for the whole program.
+
+#include <broadphase/hash/sorted_bucket.hpp>
+#include <broadphase/proxy_groups.hpp>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace hashphase::detail {
+
+/// Columns are readable this many entries past the last one.
+inline constexpr std::uint32_t kColumnPadding = 16;
+
+/// A box of which each corner fills a vector register; the fourth numbers are 0.
+template <class Scalar>
+struct alignas(4 * sizeof(Scalar)) PaddedBox {
+    Scalar low[4];
+    Scalar high[4];
+};
+
+/// True when any of the six coordinates is NaN.
+template <class Scalar>
+[[nodiscard, gnu::always_inline]] inline bool isNan(const PaddedBox<Scalar>& box) noexcept {
+    bool result = false;
+    for (int axis = 0; axis < 3; ++axis) {
+        result |= (box.low[axis] != box.low[axis]) | (box.high[axis] != box.high[axis]);
+    }
+    return result;
+}
+
+/// Two entries whose boxes overlap, or two numbers of whatever else was asked about.
+struct IndexPair {
+    std::uint32_t a;
+    std::uint32_t b;
+
+    friend bool operator==(const IndexPair&, const IndexPair&) = default;
+};
+
+/// Where a kernel writes couples: grow(sink, count) makes room for at least `count` behind `next`.
+struct PairSink {
+    IndexPair* next;
+    IndexPair* end;
+    void (*grow)(PairSink& sink, std::size_t count);
+    void* owner;
+};
+
+/// Room for `count` more couples.
+[[gnu::always_inline]] inline void makeRoom(PairSink& sink, std::size_t count) {
+    if (static_cast<std::size_t>(sink.end - sink.next) < count) {
+        sink.grow(sink, count);
+    }
+}
+
+/// Where a kernel writes slots: flush(sink) takes those up to `next` away and makes room for at least
+/// 16; false ends the search.
+struct SlotSink {
+    std::uint32_t* begin;
+    std::uint32_t* next;
+    std::uint32_t* end;
+    bool (*flush)(SlotSink& sink);
+    void* owner;
+};
+
+inline constexpr std::uint32_t kMostOwnPlanes = 16;
+inline constexpr std::uint32_t kMostVolumePlanes = 64;
+
+/// A convex volume: the points p with slope . p + offset >= 0 for each plane. A box touches the volume
+/// unless a plane has all of it outside, or is inside unless a plane has a corner of it outside; less
+/// than `rounding` of the size of the sum's terms outside is not outside. Some planes may be there
+/// only to bound it as boxes see it: across the axes, and along one or two of them.
+template <class Scalar>
+struct Volume {
+    Scalar slope[3][kMostVolumePlanes];
+    Scalar offset[kMostVolumePlanes];
+    Scalar rounding;
+    Scalar tiny;  // the least number of which no bit is lost
+    std::uint32_t planeCount;
+    bool isInside;
+};
+
+/// A box on its way through others: with what it passes on three axes, and when, in a unit of time.
+/// On axis k it reaches a box when (columns[enterColumn[k]] - enterFrom[k]) * inverse[k] units have
+/// passed, and leaves it behind by leaveColumn and leaveFrom. Where `inverse` is 0, always.
+template <class Scalar>
+struct Way {
+    Scalar enterFrom[3];
+    Scalar leaveFrom[3];
+    Scalar inverse[3];
+    std::uint32_t enterColumn[3];
+    std::uint32_t leaveColumn[3];
+};
+
+/// A row of cells, along x.
+struct Row {
+    std::int32_t y;
+    std::int32_t z;
+};
+
+/// A level of a table (see table.hpp) as plain arrays.
+template <class Scalar>
+struct LevelView {
+    const Scalar* columns[6];            // min x, y, z, max x, y, z of the whole table
+    const std::uint32_t* bucketStart;    // first entry of each of the level's buckets, and the end
+    const std::uint32_t* bucketOfEntry;  // of the whole table, counted over all levels
+    const std::uint32_t* entrySlots;     // of the whole table's entries
+    std::uint32_t firstBucket;           // of the level
+    const Row* rowOfEntry;               // of the whole table, where a level is hashed
+    Scalar origin[4];
+    Scalar inverseCellSize[4];  // 0 along a flat axis
+    Scalar largestEdge;         // of boxes that are filed here
+    Scalar lowest[4];           // coordinates of boxes, known along flat axes
+    Scalar highest[4];
+    std::int32_t low[4];
+    std::int32_t high[4];
+    std::uint32_t firstEntry;
+    std::uint32_t lastEntry;
+    std::uint32_t bucketCount;
+    std::uint32_t strideY;
+    std::uint32_t strideZ;
+    std::uint32_t denseBase;
+    bool isDense;
+    bool hasCells;
+    const SortedBucket<Scalar>* sortedBuckets;  // of the level, in ascending order
+    std::uint32_t sortedCount;
+};
+
+/// Who may pair with whom, for searches that are to find no others.
+struct GroupsView {
+    const ProxyGroups* groups;         // of a slot: groups[2 * slot]
+    const std::uint32_t* slotOfQuery;  // by the number of what is looked for
+    ProxyGroups together;              // all bits of those that are looked through
+};
+
+/// A hash of a row's number whose lower bits are well mixed.
+[[nodiscard, gnu::always_inline]] inline std::uint32_t mixRow(std::uint32_t row) noexcept {
+    std::uint32_t hash = row ^ (row >> 16);
+    hash *= 0x7feb352dU;
+    return hash ^ (hash >> 15);
+}
+
+/// What a kernel did.
+struct KernelCost {
+    std::uint64_t rowsVisited = 0;
+    std::uint64_t boxesTested = 0;
+
+    KernelCost& operator+=(const KernelCost& other) noexcept {
+        rowsVisited += other.rowsVisited;
+        boxesTested += other.boxesTested;
+        return *this;
+    }
+};
+
+/// In the place of the bucket of a box that is not filed, because it has a NaN.
+inline constexpr std::uint32_t kNoBucket = ~std::uint32_t{0};
+
+/// Agents sorted by the cells of a torus (see torus.hpp), as plain arrays, and what they look for.
+template <class Scalar>
+struct CrowdView {
+    const Scalar* columns[3];  // positions, by axis; of two axes, what is the same along the third
+    int axisCount;             // columns that are to be compared: two or three
+    const std::uint32_t* numbers;    // 0, 1, 2 ...
+    const std::uint32_t* cellStart;  // the first agent of each cell, and the end
+    std::uint32_t extent[3];
+    std::uint32_t reach;
+    Scalar scale;  // of distances before they are squared; if it is not 1, there are three axes
+    Scalar mostSquared;  // of scaled distances; negative: nobody is near
+};
+
+/// Where a kernel keeps the candidates of a cell's agents, and what it finds: grow(tile, count)
+/// makes room for `count` candidates.
+template <class Scalar>
+struct CrowdTile {
+    Scalar* columns[3];
+    std::uint32_t* numbers;
+    std::uint8_t* groups;
+    std::uint64_t* hits;     // words of candidates, for eight agents
+    std::uint64_t* members;  // the same for kMostGroups groups
+    std::uint32_t* found;    // the neighbours of one agent
+    std::uint32_t capacity;
+    void (*grow)(CrowdTile& tile, std::size_t count);
+    void* owner;
+    std::uint32_t count;  // of candidates
+    std::uint32_t wordCount;
+    std::uint32_t own;  // the agent's place among them
+};
+
+/// Numbers of groups are below this.
+inline constexpr std::uint32_t kMostGroups = 32;
+
+/// Whom a kernel tells each agent's neighbours.
+struct CrowdVisitor {
+    void (*visit)(void* owner, std::uint32_t agent, const std::uint32_t* neighbours,
+                  std::size_t count);
+    void* owner;
+};
+
+template <class Scalar>
+struct Kernels {
+    /// Finds the bucket of each of `count` boxes, over all levels: two for each cell size, finest
+    /// first, a dense one for the cells from its low to its high and one for all others, and last
+    /// the list without cells.
+    void (*fileBoxes)(const LevelView<Scalar>* levels, std::size_t levelCount,
+                      const PaddedBox<Scalar>* boxes, std::size_t count, std::uint32_t* buckets);
+
+    /// Finds every two entries of a level with cells that overlap, the first one from firstEntry
+    /// to lastEntry; over the whole level each couple once. Where `groups` is not null, this and the next
+    /// one leave out those that may not pair.
+    void (*joinLevel)(const LevelView<Scalar>& level, const GroupsView* groups,
+                      std::uint32_t firstEntry, std::uint32_t lastEntry, PairSink& found,
+                      KernelCost& cost);
+
+    /// Finds (i, entry) for every box i from first to last of `queries`, which has columns like the
+    /// level's, and every entry of the level that overlaps it.
+    void (*walkLevel)(const LevelView<Scalar>& level, const GroupsView* groups,
+                      const Scalar* const* queries, std::uint32_t first, std::uint32_t last,
+                      PairSink& found, KernelCost& cost);
+
+    /// The same for all groups, but for entries that are not within reach of ways[wayOf[i]] between
+    /// the times 0 and 1; some that it just misses may be found.
+    void (*walkWays)(const LevelView<Scalar>& level, const Scalar* const* queries,
+                     const Way<Scalar>* ways, const std::uint32_t* wayOf, std::uint32_t first,
+                     std::uint32_t last, PairSink& found, KernelCost& cost);
+
+    /// As walkLevel(), sooner where boxes that follow each other are near each other.
+    void (*walkTogether)(const LevelView<Scalar>& level, const Scalar* const* queries,
+                         std::uint32_t first, std::uint32_t last, PairSink& found,
+                         KernelCost& cost);
+
+    /// Finds the slot of every entry of a level with cells that is in the volume, and perhaps of some
+    /// that were erased. Returns false when the sink has ended the search.
+    bool (*walkVolume)(const LevelView<Scalar>& level, const Volume<Scalar>& volume,
+                       SlotSink& found, KernelCost& cost);
+
+    /// As joinLevel(), of a level without cells.
+    void (*joinList)(const LevelView<Scalar>& level, const GroupsView* groups,
+                     std::uint32_t firstEntry, std::uint32_t lastEntry, PairSink& found,
+                     KernelCost& cost);
+
+    /// The least and the greatest number of a column, from entry first to last.
+    void (*findRange)(const Scalar* column, std::uint32_t first, std::uint32_t last, Scalar* least,
+                      Scalar* greatest);
+
+    /// Writes those of `count` couples whose boxes do not overlap, the boxes order[a] and order[b],
+    /// or a and b where order is null, to `apart`, which has room for all. Returns their number.
+    std::size_t (*selectApart)(const IndexPair* couples, std::size_t count,
+                               const std::uint32_t* order, const PaddedBox<Scalar>* boxes,
+                               IndexPair* apart);
+
+    /// Counts the neighbours of the agents first to last. This and the next two return how many
+    /// neighbours there are in all.
+    std::uint64_t (*countCrowd)(const CrowdView<Scalar>& crowd, std::uint32_t first,
+                                std::uint32_t last, CrowdTile<Scalar>& tile, std::uint32_t* counts,
+                                KernelCost& cost);
+
+    /// The same for each group: counts[agent * groupCount + group]. Groups that are not below
+    /// groupCount are left out.
+    std::uint64_t (*countCrowdGroups)(const CrowdView<Scalar>& crowd, std::uint32_t first,
+                                      std::uint32_t last, CrowdTile<Scalar>& tile,
+                                      const std::uint8_t* groups, std::uint32_t groupCount,
+                                      std::uint32_t* counts, KernelCost& cost);
+
+    /// Tells the visitor the neighbours of each of the agents first to last.
+    std::uint64_t (*listCrowd)(const CrowdView<Scalar>& crowd, std::uint32_t first,
+                               std::uint32_t last, CrowdTile<Scalar>& tile,
+                               const CrowdVisitor& visitor, KernelCost& cost);
+};
+
+}  // namespace hashphase::detail

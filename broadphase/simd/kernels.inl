@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Zlib
+
+// The kernels, for one instruction set. Included, after <broadphase/simd/kernel_types.hpp>, by the
+// file that is compiled for it, inside a namespace of its own, which has:
+//
+//   Pack<Scalar>       numbers side by side in a register
+//     kWidth           how many; up to eight
+//     Numbers          the register
+//     load(from)       the numbers from there on, of any alignment
+//     all(x)           the same number everywhere
+//     notAbove(a, b)   where a <= b, which NaN is not; of a type that ...
+//     both(hits, hits) ... and
+//     bits(hits)       ... take: bit k tells about number k
+//     minus, plus, times(a, b), magnitude(a)
+//     least, greatest(a, b)  b where one is NaN
+//     compress(mask, numbers, to)  where it is there, writes numbers[k] to `to` for every bit k of the
+//                      mask, which has kWidth, and may write so many; reads no others
+//   WidePack<Scalar>   the same for long runs, perhaps wider
+//   isApart(a, b)      whether two padded boxes do not overlap
+//   fitsEdge(level, box)  whether no edge of the padded box is longer than the level's largest
+//   quantiseCorners(level, box, low)  sets `low` to the cell of the box's min corner and returns
+//                      whether the box spans one or two cells an axis, none of them clamped
+//   bitCount(word)     how many of 64 bits are set
+//   equalBytes(bytes, value)  bit k tells whether byte k of 64 has the value
+//   writeHits(word, numbers, next)  writes numbers[k] for each bit k of 64 that is set, and perhaps
+//                      up to 16 more; returns the end
+//
+// Nothing in these files may call a function that is not defined in them or always inlined.
+
+template <class Scalar>
+std::int32_t cellOf(const LevelView<Scalar>& level, Scalar x, int axis) {
+    const Scalar inverse = level.inverseCellSize[axis];
+    return inverse == 0 ? 0 : quantise(x, level.origin[axis], inverse);
+}
+
+template <class Scalar>
+std::uint32_t rowBase(const LevelView<Scalar>& level, Row row) {
+    const std::uint32_t number = static_cast<std::uint32_t>(row.y) * level.strideY +
+                                 static_cast<std::uint32_t>(row.z) * level.strideZ;
+    return level.isDense ? number + level.denseBase : mixRow(number);
+}
+
+#include <broadphase/simd/kernel_box.inl>
+
+#include <broadphase/simd/kernel_crowd.inl>
+#include <broadphase/simd/kernel_file.inl>
+#include <broadphase/simd/kernel_join.inl>
+#include <broadphase/simd/kernel_volume.inl>
+#include <broadphase/simd/kernel_walk.inl>
+
+#include <broadphase/simd/kernel_together.inl>
+
+template <class Scalar>
+void findRange(const Scalar* column, std::uint32_t first, std::uint32_t last, Scalar* least,
+               Scalar* greatest) {
+    constexpr std::uint32_t width = 8;
+    Scalar low[width];
+    Scalar high[width];
+    for (std::uint32_t k = 0; k < width; ++k) {
+        low[k] = column[first];
+        high[k] = column[first];
+    }
+    for (; first + width <= last; first += width) {
+        for (std::uint32_t k = 0; k < width; ++k) {
+            low[k] = column[first + k] < low[k] ? column[first + k] : low[k];
+            high[k] = column[first + k] > high[k] ? column[first + k] : high[k];
+        }
+    }
+    for (; first < last; ++first) {
+        low[0] = column[first] < low[0] ? column[first] : low[0];
+        high[0] = column[first] > high[0] ? column[first] : high[0];
+    }
+    *least = low[0];
+    *greatest = high[0];
+    for (std::uint32_t k = 1; k < width; ++k) {
+        *least = low[k] < *least ? low[k] : *least;
+        *greatest = high[k] > *greatest ? high[k] : *greatest;
+    }
+}
+
+template <class Scalar>
+std::size_t selectApart(const IndexPair* couples, std::size_t count, const std::uint32_t* order,
+                        const PaddedBox<Scalar>* boxes, IndexPair* apart) {
+    std::size_t selected = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const IndexPair couple = couples[i];
+        const std::uint32_t a = order != nullptr ? order[couple.a] : couple.a;
+        const std::uint32_t b = order != nullptr ? order[couple.b] : couple.b;
+        apart[selected] = couple;
+        selected += isApart(boxes[a], boxes[b]) ? 1 : 0;
+    }
+    return selected;
+}
+
+template <class Scalar>
+constexpr Kernels<Scalar> kKernels{
+    &fileBoxes<Scalar>,    &joinLevel<Scalar>,  &walkLevel<Scalar>,        &walkWays<Scalar>,
+    &walkTogether<Scalar>, &walkVolume<Scalar>, &joinList<Scalar>,         &findRange<Scalar>,
+    &selectApart<Scalar>,  &countCrowd<Scalar>, &countCrowdGroups<Scalar>, &listCrowd<Scalar>};
