@@ -104,8 +104,9 @@ Crowd<Scalar>::~Crowd() = default;
 template <class Scalar>
 bool Crowd<Scalar>::stageSlot(const Grid<Scalar>& grid, std::uint32_t slot, ProxyFilter filter,
                               Staged& staged) {
-    const auto& record = grid.records_[slot];
-    const bool isAccepted = grid.isAlive(slot) && filter(grid.idOf(slot));
+    const detail::Population<Scalar>& proxies = grid.store().proxies;
+    const detail::Record<Scalar>& record = proxies.records[slot];
+    const bool isAccepted = proxies.isAlive(slot) && filter(proxies.idOf(slot));
     staged.generation = isAccepted ? record.generation : 0;
     const Vector3<Scalar> position = positionOf(record.box);
     staged.position = {position.x(), position.y(), position.z()};
@@ -118,7 +119,7 @@ void Crowd<Scalar>::chooseCells(const Grid<Scalar>& grid, Scalar radius, ProxyFi
     for (std::vector<double>& column : sample_) {
         column.clear();
     }
-    const detail::QueryScope gridScope(&grid);
+    const detail::QueryScope gridScope(&grid.store());
     const detail::QueryScope scope(this);
     const std::size_t count = placeCount_;
     const std::size_t wanted = std::clamp(count / kSampledShare, kLeastSample, kMostSample);
@@ -150,7 +151,7 @@ void Crowd<Scalar>::stage(const Grid<Scalar>& grid, ProxyFilter filter, Parallel
     std::atomic<std::uint32_t> agentCount{0};
     std::atomic<std::uint32_t> leftOut{0};
     parallelFor(staged_.size(), kCrowdGrain, [&](std::size_t begin, std::size_t end) {
-        const detail::QueryScope gridScope(&grid);
+        const detail::QueryScope gridScope(&grid.store());
         const detail::QueryScope scope(this);
         const detail::Torus torus = torus_;
         std::uint32_t agents = 0;
@@ -250,11 +251,11 @@ template <class Scalar>
 void Crowd<Scalar>::take(const Grid<Scalar>& grid, Scalar radius, ProxyFilter filter,
                          ParallelFor parallelFor) {
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kIsAsked);
-    if (peaks_.isPast(std::max(grid.listedCount(), placeCount_), staged_.capacity())) {
+    if (peaks_.isPast(std::max(grid.store().listedCount(), placeCount_), staged_.capacity())) {
         releaseMemory();
     }
     try {
-        placeCount_ = grid.size() == 0 ? 0 : grid.listFew(few_);
+        placeCount_ = grid.size() == 0 ? 0 : grid.store().listFew(few_);
         chooseCells(grid, radius, filter);
         stage(grid, filter, parallelFor);
         sort(parallelFor);

@@ -64,7 +64,7 @@ std::span<const ProxyPair> Neighbours<Scalar>::find(const Grid<Scalar>& grid, Sc
     if (!(distance >= 0)) {
         return {};
     }
-    grid.forEachFiled([this](ProxyId id, const Aabb<Scalar>& box) {
+    grid.store().forEachFiled([this](ProxyId id, const Aabb<Scalar>& box) {
         ids_.push_back(id);
         boxes_.push_back(detail::padded(box));
     });

@@ -49,8 +49,6 @@ class HASHPHASE_BROADPHASE_EXPORT Sweeps {
 public:
     /// Keeps a reference to the grid, which must outlive this object. Hand it to Pairs.
     explicit Sweeps(Grid<Scalar>& grid);
-    ~Sweeps();
-
     Sweeps(const Sweeps&) = delete;
     Sweeps& operator=(const Sweeps&) = delete;
 
@@ -68,7 +66,7 @@ public:
     [[nodiscard]] MovingBox<Scalar> motion(ProxyId id) const;
 
     /// Number of proxies that sweep, those included that were removed since the last update.
-    [[nodiscard]] std::size_t size() const noexcept { return motions_.size() - vacantCount_; }
+    [[nodiscard]] std::size_t size() const noexcept { return sweeping_.motions.size(); }
 
     /// Grid::visit(), but what sweeps is found wherever the box around its way, or around a part of
     /// it, has a key: nothing that it passes is left out, some that it just misses may be found.
@@ -80,7 +78,7 @@ public:
     QueryCost visit(const Region& region, Collector& collector) const;
 
     /// Of the last Pairs::update().
-    [[nodiscard]] const SweepCost& lastCost() const noexcept { return search_.cost(); }
+    [[nodiscard]] const SweepCost& lastCost() const noexcept { return sweeping_.search.cost(); }
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
     /// Gives back what is not used: room for more than sweep, and for indices that the grid has given back.
@@ -92,57 +90,24 @@ public:
     /// - Every motion is listed by its slot, and no other slot is.
     [[nodiscard]] std::string validate() const;
 
-private:
-    friend class Grid<Scalar>;
-    friend class Pairs<Scalar>;
+    /// What the library's own parts read.
+    [[nodiscard]] detail::Sweeping<Scalar>& sweeping() noexcept { return sweeping_; }
 
+private:
     using Box = Aabb<Scalar>;
     using Motion = detail::Motion<Scalar>;
 
-    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-
-    [[nodiscard]] std::uint32_t motionOf(std::uint32_t slot) const noexcept {
-        return slot < motionOfSlot_.size() ? motionOfSlot_[slot] : kNone;
-    }
-    /// Not of one that has taken the place of another one that swept.
-    [[nodiscard]] bool sweeps(ProxyId id) const noexcept {
-        const std::uint32_t known = motionOf(id.index);
-        return known != kNone && motions_[known].id == id;
-    }
-    /// As it is now.
-    [[nodiscard]] MovingBox<Scalar> wayOf(const Motion& motion) const {
-        return {motion.isFromGrid ? grid_.box(motion.id) : motion.way.box, motion.way.displacement};
-    }
     [[nodiscard]] std::optional<Scalar> keyOnTheWay(const auto& region, const Motion& motion) const;
     void set(const Motion& motion);
-    void end(std::uint32_t motion) noexcept;
-    void drop(std::uint32_t motion) noexcept;
-    void makeRoom();
-
-    void noteAllChanged() noexcept;
-    void shiftOrigin(const Vector3<Scalar>& shift) noexcept;
-    void beginUpdate();
-    void findContacts(ParallelFor parallelFor) { search_.find(motions_, parallelFor); }
-    /// What findContacts() found.
-    [[nodiscard]] std::span<const std::uint64_t> contacts() const noexcept {
-        return search_.contacts();
-    }
 
     Grid<Scalar>& grid_;
-    Sweeps* next_;  // over the same grid
-    std::vector<Motion> motions_;
-    // The places of what has ended since the last update: null ids, whose index is the next place.
-    std::uint32_t firstVacant_ = kNone;
-    std::uint32_t vacantCount_ = 0;
-    std::vector<std::uint32_t> motionOfSlot_;  // kNone where a slot does not sweep
+    detail::Sweeping<Scalar> sweeping_;
     bool reportedBadData_ = false;
-    detail::PeakWatch peaks_;
-    detail::ContactSearch<Scalar> search_;
 };
 
 template <class Scalar>
 std::optional<Scalar> Sweeps<Scalar>::keyOnTheWay(const auto& region, const Motion& motion) const {
-    const MovingBox<Scalar> way = wayOf(motion);
+    const MovingBox<Scalar> way = sweeping_.motions.wayOf(motion);
     const auto keyOf = [&](const Box& box) -> std::optional<Scalar> {
         const Scalar key = region.key(box);
         return key >= 0 ? std::optional(key) : std::nullopt;
@@ -173,15 +138,16 @@ std::optional<Scalar> Sweeps<Scalar>::keyOnTheWay(const auto& region, const Moti
 template <class Scalar>
 template <class Region, class Collector>
 QueryCost Sweeps<Scalar>::visit(const Region& region, Collector& collector) const {
-    const auto stands = [this](ProxyId id) { return !sweeps(id); };
+    const auto stands = [this](ProxyId id) { return !sweeping_.motions.sweeps(id); };
     CollectIf standing(collector, stands);
     QueryCost cost = grid_.visit(region, standing);
-    const detail::QueryScope scope(&grid_, detail::QueryScope::Changes::allowed);
+    const detail::QueryScope scope(&grid_.store(), detail::QueryScope::Changes::allowed);
     // Neither by iterators nor by reference: the collector may change what sweeps. What begins to is
     // not looked for.
-    const std::size_t count = motions_.size();
+    const std::vector<Motion>& motions = sweeping_.motions.all;
+    const std::size_t count = motions.size();
     for (std::size_t i = 0; i < count && collector.limit() >= 0; ++i) {
-        const Motion motion = motions_[i];
+        const Motion motion = motions[i];
         if (!grid_.contains(motion.id)) {
             continue;
         }

@@ -10,8 +10,8 @@
 #include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/core/radix_sort.hpp>
 #include <broadphase/geometry/padded_box.hpp>
-#include <broadphase/grid.hpp>
 #include <broadphase/search/join.hpp>
+#include <broadphase/tree/ray_walk.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -143,7 +143,7 @@ void ContactSearch<Scalar>::find(std::span<const Motion<Scalar>> motions, Parall
     std::transform(touching.begin(), touching.end(), contacts_.begin(), [](IndexPair slots) {
         return std::uint64_t{std::min(slots.a, slots.b)} << 32 | std::max(slots.a, slots.b);
     });
-    radixSort(contacts_, static_cast<std::uint32_t>(grid_.records_.size()), sorted_);
+    radixSort(contacts_, static_cast<std::uint32_t>(store_.proxies.records.size()), sorted_);
     contacts_.erase(std::unique(contacts_.begin(), contacts_.end()), contacts_.end());
 }
 
@@ -154,10 +154,10 @@ void ContactSearch<Scalar>::cutIntoSegments() {
     ways_.clear();
     rays_.clear();
     Aabb<double> world;
-    extendByTable(world, grid_.mobile_);
-    extendByTable(world, grid_.resting_);
+    extendByTable(world, store_.tables.mobile);
+    extendByTable(world, store_.tables.resting);
     const auto cellSize = static_cast<Scalar>(
-        std::min(grid_.mobile_.finestCellSize(), grid_.resting_.finestCellSize()));
+        std::min(store_.tables.mobile.finestCellSize(), store_.tables.resting.finestCellSize()));
     for (std::uint32_t i = 0; i < motions_.size(); ++i) {
         ways_.push_back(wayOf(motions_[i].way));
         cut(i, world, cellSize);
@@ -201,7 +201,7 @@ void ContactSearch<Scalar>::cutFewRays() {
     for (const LongWay& ray : rays_) {
         count += ray.segments;
     }
-    if (!(count * kBoxesPerSegment < static_cast<double>(grid_.mobile_.size()))) {
+    if (!(count * kBoxesPerSegment < static_cast<double>(store_.tables.mobile.size()))) {
         return;
     }
     for (const LongWay& ray : rays_) {
@@ -231,22 +231,23 @@ void ContactSearch<Scalar>::meetStanding(ParallelFor parallelFor) {
     std::atomic<std::uint64_t> contactsTested{0};
     KernelCost cost;
     touchingNow_.clear();
-    parts_.collect(parallelFor, segments_.size(), kAtOnce, touchingNow_, cost,
-                   [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost& own) {
-                       FewPairs found;
-                       std::uint64_t tested = 0;
-                       for (; first < last; first += kAtOnce) {
-                           const std::size_t end = std::min(first + kAtOnce, last);
-                           for (const Table<Scalar>* table : {&grid_.mobile_, &grid_.resting_}) {
-                               found.assign([&](PairSink& candidates) {
-                                   walkSegments(*table, first, end, candidates, own);
-                               });
-                               tested += found.pairs().size();
-                               addTouching(*table, found.pairs(), sink);
-                           }
-                       }
-                       contactsTested += tested;
-                   });
+    parts_.collect(
+        parallelFor, segments_.size(), kAtOnce, touchingNow_, cost,
+        [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost& own) {
+            FewPairs found;
+            std::uint64_t tested = 0;
+            for (; first < last; first += kAtOnce) {
+                const std::size_t end = std::min(first + kAtOnce, last);
+                for (const Table<Scalar>* table : {&store_.tables.mobile, &store_.tables.resting}) {
+                    found.assign([&](PairSink& candidates) {
+                        walkSegments(*table, first, end, candidates, own);
+                    });
+                    tested += found.pairs().size();
+                    addTouching(*table, found.pairs(), sink);
+                }
+            }
+            contactsTested += tested;
+        });
     cost_.boxesTested += cost.boxesTested;
     cost_.contactsTested += contactsTested;
     touching_.append(touchingNow_.pairs());
@@ -278,33 +279,49 @@ void ContactSearch<Scalar>::addTouching(const Table<Scalar>& table,
     }
 }
 
-/// Takes what a ray finds: key() has asked firstContact() already.
+/// Takes what a ray finds in a table, and meets.
 template <class Scalar>
 struct ContactSearch<Scalar>::ContactsOfRay {
-    const Motion<Scalar>& motion;
+    const Store<Scalar>& store;
+    const Reading<Scalar>& reading;
+    const Filing<Scalar>& filing;
+    const MovingBoxRegion<Scalar>& region;
+    std::uint32_t slot;
     PairSink& sink;
 
-    void add(ProxyId id, Scalar /*time*/) {
-        makeRoom(sink, 1);
-        *sink.next++ = {motion.id.index, id.index};
+    static constexpr double limit() { return 1; }
+
+    bool read(std::uint32_t other) {
+        if (store.standsIn(filing, other, reading) &&
+            region.key(store.proxies.records[other].box) >= 0) {
+            makeRoom(sink, 1);
+            *sink.next++ = {slot, other};
+        }
+        return true;
     }
-    static constexpr Scalar limit() { return 1; }
 };
 
 template <class Scalar>
 void ContactSearch<Scalar>::meetStandingByRay(ParallelFor parallelFor) {
     constexpr std::size_t kGrain = 16;
-    const auto reading = grid_.presentReading();
+    if (rays_.empty()) {
+        return;
+    }
+    const Reading<Scalar> reading = store_.tables.reading();
+    store_.growTrees(reading);
     KernelCost cost;
     touchingNow_.clear();
     parts_.collect(parallelFor, rays_.size(), kGrain, touchingNow_, cost,
                    [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost& own) {
                        for (std::size_t i = first; i < last; ++i) {
                            const Motion<Scalar>& motion = motions_[rays_[i].motion];
-                           ContactsOfRay contacts{motion, sink};
                            const MovingBoxRegion<Scalar> region(motion.way);
                            QueryCost read;
-                           grid_.visitTables(reading, reading.standing(), region, contacts, read);
+                           for (const Filing<Scalar>& filing : reading.standing()) {
+                               ContactsOfRay contacts{store_, reading,         filing,
+                                                      region, motion.id.index, sink};
+                               walkTree(filing.table->tree, region.segment(), read, contacts);
+                           }
                            own.boxesTested += read.boxesTested;
                        }
                    });

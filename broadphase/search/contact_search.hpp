@@ -3,14 +3,13 @@
 
 // Finds what sweeping proxies touch on their ways, in a grid that has just been filed.
 
+#include <broadphase/core/peak_watch.hpp>
 #include <broadphase/geometry/box_columns.hpp>
 #include <broadphase/geometry/padded_box.hpp>
-#include <broadphase/hash/table.hpp>
-#include <broadphase/moving_box.hpp>
 #include <broadphase/parallel_for.hpp>
-#include <broadphase/proxy_id.hpp>
 #include <broadphase/search/pair_parts.hpp>
 #include <broadphase/simd/kernels.hpp>
+#include <broadphase/store/motions.hpp>
 #include <broadphase/sweep_mode.hpp>
 
 #include <cstddef>
@@ -18,21 +17,7 @@
 #include <span>
 #include <vector>
 
-namespace hashphase {
-template <class Scalar>
-class Grid;
-}
-
 namespace hashphase::detail {
-
-/// What a proxy does that sweeps.
-template <class Scalar>
-struct Motion {
-    ProxyId id;
-    MovingBox<Scalar> way;
-    Sweep sweep;
-    bool isFromGrid;  // it begins at the proxy's box; way.box is that of the update under way
-};
 
 /// A part of a frame.
 struct Part {
@@ -43,10 +28,10 @@ struct Part {
 template <class Scalar>
 class ContactSearch {
 public:
-    explicit ContactSearch(const Grid<Scalar>& grid) : grid_(grid) {}
+    explicit ContactSearch(Store<Scalar>& store) : store_(store) {}
 
     /// Looks for everything that the motions' proxies touch on their ways, from the start on: what
-    /// stands in the grid's tables of it, and each other.
+    /// stands in the store's tables of it, and each other.
     void find(std::span<const Motion<Scalar>> motions, ParallelFor parallelFor);
 
     /// What find() found: two slots each, the smaller one on top; sorted.
@@ -85,7 +70,7 @@ private:
     void addTouching(const Table<Scalar>& table, std::span<const IndexPair> candidates,
                      PairSink& sink) const;
 
-    const Grid<Scalar>& grid_;
+    Store<Scalar>& store_;
     std::span<const Motion<Scalar>> motions_;  // of the present find()
     SweepCost cost_;
     std::vector<std::uint64_t> contacts_;
@@ -104,6 +89,29 @@ private:
     std::vector<std::uint32_t> motionNumbers_;
     std::vector<PaddedBox<Scalar>> slice_;
     Table<Scalar> sliceTable_;
+};
+
+/// All about what sweeps: see sweeps.hpp.
+template <class Scalar>
+struct Sweeping {
+    Motions<Scalar> motions;
+    ContactSearch<Scalar> search;
+    PeakWatch peaks;
+
+    explicit Sweeping(Store<Scalar>& store) : motions(store), search(store) {}
+
+    void beginUpdate() {
+        const std::size_t slotCount = motions.store.proxies.records.size();
+        const std::size_t dropped = std::max(motions.ofSlot.size(), slotCount) - slotCount;
+        if (peaks.isPast(motions.all.size(), std::max(motions.all.capacity(), dropped))) {
+            releaseUnusedMemory();
+        }
+        motions.beginUpdate();
+    }
+    void releaseUnusedMemory() noexcept {
+        motions.releaseUnusedMemory();
+        search.releaseUnusedMemory();
+    }
 };
 
 }  // namespace hashphase::detail

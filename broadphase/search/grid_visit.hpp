@@ -38,13 +38,13 @@ struct Grid<Scalar>::VisitReader {
                 continue;
             }
             const std::uint32_t slot = table.slot(entry);
-            if (!grid.isFiled(slot, reading)) {
+            if (!grid.store().isFiled(slot, reading)) {
                 continue;
             }
             // What is fresh has no list of what the collector has changed since: boxes are asked for
             // as they are now.
             if (reading.isFresh) {
-                key = region.key(grid.records_[slot].box);
+                key = region.key(grid.store().proxies.records[slot].box);
             }
             if (isWanted(key) && !offer(slot, key)) {
                 return false;
@@ -57,7 +57,7 @@ struct Grid<Scalar>::VisitReader {
 
     bool offer(std::uint32_t slot, Scalar key) {
         ++cost.hits;
-        collector.add(grid.idOf(slot), key);
+        collector.add(grid.store().proxies.idOf(slot), key);
         return limit() >= 0;
     }
 };
@@ -77,15 +77,15 @@ struct Grid<Scalar>::RayReader {
 
     bool read(std::uint32_t slot) {
         // The tree is as old as its table: who stands there may have left.
-        if (!grid.standsIn(filing, slot, reading)) {
+        if (!grid.store().standsIn(filing, slot, reading)) {
             return true;
         }
-        const Scalar key = region.key(grid.records_[slot].box);
+        const Scalar key = region.key(grid.store().proxies.records[slot].box);
         if (!detail::isWanted(key, collector)) {
             return true;
         }
         ++cost.hits;
-        collector.add(grid.idOf(slot), key);
+        collector.add(grid.store().proxies.idOf(slot), key);
         return limit() >= 0;
     }
 };
@@ -139,9 +139,9 @@ private:
         bool goesOn = true;
         for (std::size_t i = 0; i < taken.size() && goesOn; ++i) {
             // Who is listed may have left: erased, or waiting.
-            if (!kMayHaveLeft || reader.grid.standsIn(filing, taken[i], reader.reading)) {
+            if (!kMayHaveLeft || reader.grid.store().standsIn(filing, taken[i], reader.reading)) {
                 ++hits;
-                reader.collector.add(reader.grid.idOf(taken[i]), Scalar(0));
+                reader.collector.add(reader.grid.store().proxies.idOf(taken[i]), Scalar(0));
                 goesOn = reader.limit() >= 0;
             }
         }
@@ -156,17 +156,14 @@ bool Grid<Scalar>::visitTables(const Reading& reading, std::span<const Filing> f
                                const Region& region, Collector& collector, QueryCost& cost) const {
     if constexpr (requires { region.segment(); }) {
         const RayRegion<Scalar>& ray = region.segment();
-        if (treesAreStale(reading)) {
-            growTrees(reading);
-        }
         return std::ranges::all_of(filings, [&](const Filing& filing) {
             RayReader<Region, Collector> reader{*this, reading, region, collector, cost, filing};
-            return detail::walkTree(filing.tree->tree, ray, cost, reader);
+            return detail::walkTree(filing.table->tree, ray, cost, reader);
         });
     } else if constexpr (requires { region.volume(); }) {
         return std::ranges::all_of(filings, [&](const Filing& filing) {
-            const bool mayHaveLeft =
-                (!reading.isFresh && !waiting_.empty()) || (filing.isResting && restingErased_ > 0);
+            const bool mayHaveLeft = (!reading.isFresh && !store_.proxies.waiting.empty()) ||
+                                     (filing.isResting && store_.tables.restingErased > 0);
             VolumeReader<Region, Collector> reader{
                 {*this, reading, *filing.table, region, collector, cost}, filing, mayHaveLeft};
             const bool goesOn = region.isEmpty() || reader.read();
@@ -189,17 +186,17 @@ bool Grid<Scalar>::visitTables(const Reading& reading, std::span<const Filing> f
 template <class Scalar>
 template <class Region, class Collector>
 void Grid<Scalar>::visitWaiting(const Region& region, Collector& collector, QueryCost& cost) const {
-    const std::size_t count = waiting_.size();
+    const std::size_t count = store_.proxies.waiting.size();
     for (std::size_t i = 0; i < count; ++i) {
-        const std::uint32_t slot = waiting_[i];
-        if (!isAlive(slot)) {
+        const std::uint32_t slot = store_.proxies.waiting[i];
+        if (!store_.proxies.isAlive(slot)) {
             continue;
         }
         ++cost.boxesTested;
-        const Scalar key = region.key(records_[slot].box);
+        const Scalar key = region.key(store_.proxies.records[slot].box);
         if (detail::isWanted(key, collector)) {
             ++cost.hits;
-            collector.add(idOf(slot), key);
+            collector.add(store_.proxies.idOf(slot), key);
             if (!(collector.limit() >= 0)) {
                 return;
             }
@@ -211,9 +208,9 @@ template <class Scalar>
 template <class Region, class Collector>
 QueryCost Grid<Scalar>::visit(const Region& region, Collector& collector) const {
     if constexpr (requires { region.segment(); }) {
-        return visit(beginReadingInOrder(), region, collector);
+        return visit(store_.beginReadingInOrder(), region, collector);
     } else {
-        return visit(beginReading(), region, collector);
+        return visit(store_.beginReading(), region, collector);
     }
 }
 
@@ -225,7 +222,7 @@ QueryCost Grid<Scalar>::visit(const Reading& reading, const Region& region,
     constexpr bool kReadsRows = requires {
         region.volume();
     };
-    const detail::QueryScope scope(this, kReadsRows ? Changes::forbidden : Changes::allowed);
+    const detail::QueryScope scope(&store_, kReadsRows ? Changes::forbidden : Changes::allowed);
     QueryCost cost;
     if (visitTables(reading, reading.filings(), region, collector, cost) && !reading.isFresh) {
         visitWaiting(region, collector, cost);
@@ -242,7 +239,7 @@ QueryCost Grid<Scalar>::visitTogether(const Reading& reading, std::span<const Re
                                       detail::FewPairs& found) const {
     const detail::QueryColumns<Scalar> bounds(regions);
     // Where nothing waits, all that the tables list is filed there.
-    const bool isAllFiled = reading.isFresh || waiting_.empty();
+    const bool isAllFiled = reading.isFresh || store_.proxies.waiting.empty();
     QueryCost cost;
     for (const Filing& filing : reading.filings()) {
         const detail::Table<Scalar>* const table = filing.table;
@@ -262,9 +259,10 @@ QueryCost Grid<Scalar>::visitTogether(const Reading& reading, std::span<const Re
                 key = regions[i].key(table->box(entry));
             }
             const std::uint32_t slot = table->slot(entry);
-            if (detail::isWanted(key, collectors[i]) && (isAllFiled || isFiled(slot, reading))) {
+            if (detail::isWanted(key, collectors[i]) &&
+                (isAllFiled || store_.isFiled(slot, reading))) {
                 ++cost.hits;
-                collectors[i].add(idOf(slot), key);
+                collectors[i].add(store_.proxies.idOf(slot), key);
             }
         }
     }
@@ -282,16 +280,16 @@ QueryCost Grid<Scalar>::visitEach(std::span<const Region> regions, std::span<Col
                                   ParallelFor parallelFor) const {
     HASHPHASE_ASSERT(regions.size() == collectors.size(), "Each region has a collector.");
     constexpr std::size_t grain = 256;
-    expectQueries(regions.size());
-    const Reading reading = presentReading();
-    waitingRead_.fetch_add(reading.isFresh ? 0 : waiting_.size() * regions.size(),
-                           std::memory_order_relaxed);
+    const Reading reading = store_.beginReadings(regions.size());
+    if constexpr (requires { regions[0].segment(); }) {
+        store_.growTrees(reading);
+    }
     std::atomic<std::uint64_t> rowsVisited{0};
     std::atomic<std::uint64_t> boxesTested{0};
     std::atomic<std::uint64_t> hits{0};
     parallelFor(regions.size(), grain, [&](std::size_t begin, std::size_t end) {
         QueryCost cost;
-        const detail::QueryScope scope(this, detail::QueryScope::Changes::forbidden);
+        const detail::QueryScope scope(&store_, detail::QueryScope::Changes::forbidden);
         if constexpr (requires { regions[0].bounds(); }) {
             // So few that what they find has room, though each of them finds everything.
             constexpr std::size_t atOnce = detail::QueryColumns<Scalar>::kMost;
@@ -359,57 +357,18 @@ QueryCost Grid<Scalar>::visitCell(const std::array<std::int64_t, 3>& cell,
     return visit(CellRegion{*this, cell}, collector);
 }
 
-// Calls visit(ProxyId, box) for every proxy alive whose box has no NaN, in about the order of space.
-template <class Scalar>
-template <class Visit>
-void Grid<Scalar>::forEachFiled(Visit&& visit) const {
-    const Reading reading = beginReading();
-    for (const auto& [table, tree, isResting] : reading.filings()) {
-        for (std::uint32_t entry = 0; entry < table->size(); ++entry) {
-            const Box box = table->box(entry);
-            if (isFiled(table->slot(entry), reading) && !hasNan(box)) {
-                visit(idOf(table->slot(entry)), box);
-            }
-        }
-    }
-    for (std::size_t i = 0; i < waiting_.size() && !reading.isFresh; ++i) {
-        const std::uint32_t slot = waiting_[i];
-        if (isAlive(slot) && !records_[slot].isNan) {
-            visit(idOf(slot), records_[slot].box);
-        }
-    }
-}
-
-template <class Scalar>
-template <class Visit>
-void Grid<Scalar>::forEachListed(const Visit& visit) const {
-    if (!isSparse()) {
-        for (std::uint32_t slot = 0; slot < records_.size(); ++slot) {
-            visit(slot);
-        }
-        return;
-    }
-    const std::size_t mobileCount = mobileSlots_.size();  // not those that `visit` wakes
-    for (std::size_t i = 0; i < mobileCount; ++i) {
-        visit(mobileSlots_[i]);
-    }
-    for (const std::uint32_t slot : resting_.entrySlots()) {
-        if (records_[slot].place == Place::resting) {
-            visit(slot);
-        }
-    }
-}
-
 template <class Scalar>
 template <class Visit>
 void Grid<Scalar>::forEach(Visit&& visit) const {
     std::vector<std::uint32_t> few;
-    const auto count = static_cast<std::uint32_t>(listFew(few));  // not those that `visit` adds
+    const auto count =
+        static_cast<std::uint32_t>(store_.listFew(few));  // not those that `visit` adds
     for (std::uint32_t i = 0; i < count; ++i) {
         const std::uint32_t slot = few.empty() ? i : few[i];
-        if (isAlive(slot)) {
-            const Box box = records_[slot].box;  // a copy: `visit` may move the records
-            visit(idOf(slot), box);
+        if (store_.proxies.isAlive(slot)) {
+            const Box box =
+                store_.proxies.records[slot].box;  // a copy: `visit` may move the records
+            visit(store_.proxies.idOf(slot), box);
         }
     }
 }

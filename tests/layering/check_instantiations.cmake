@@ -2,8 +2,8 @@
 #
 # cmake -DROOT=<repository> -P check_instantiations.cmake
 #
-# The members of a class template may be defined in several sources. The one with "template class C<float>;"
-# instantiates those that stand above that line; each of the others has to name its own, one by one, or
+# The members of a class template may be defined in several sources. The one with "template class C<float>;",
+# or "template struct", instantiates those that stand above that line; each of the others has to name its own, one by one, or
 # they are missing in a library, while a build that compiles sources together has them by chance. Names
 # every member that is not named as often as it is defined, by file.
 
@@ -27,6 +27,9 @@ foreach(file IN LISTS files)
         string(REGEX MATCH "${word}<Scalar>::~?${word}\\($" member "${definition}")
         string(REGEX MATCH "^${word}" class "${member}")
         string(FIND "${text}" "\ntemplate class ${class}<float>," whole)
+        if(whole EQUAL -1)
+            string(FIND "${text}" "\ntemplate struct ${class}<float>," whole)
+        endif()
         math(EXPR memberCount "${memberCount} + 1")
         if(whole LESS place)
             list(APPEND members "${member}")

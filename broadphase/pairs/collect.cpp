@@ -2,33 +2,32 @@
 
 // The whole set of pairs, found from scratch: for those who ask for it, and to check what is kept.
 
-#include <broadphase/pairs.hpp>
+#include <broadphase/pairs/pair_tracker.hpp>
 
 #include <broadphase/search/join.hpp>
 
 #include <algorithm>
 
-namespace hashphase {
+namespace hashphase::detail {
 
 template <class Scalar>
-void Pairs<Scalar>::forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const {
-    grid_.mendTables();
-    const ProxyGroups* const groups = grid_.groupsOfAll();
-    detail::KernelCost cost;
-    detail::forOverlaps(grid_.mobile_, groups, cost, visit);
-    detail::forOverlaps(grid_.resting_, groups, cost, visit);
-    const detail::GroupsView view{groups, grid_.mobile_.entrySlots().data(), {}};
-    detail::forOverlaps(grid_.mobile_.columns(), grid_.mobile_.size(), grid_.resting_,
-                        groups != nullptr ? &view : nullptr, cost,
-                        [&](std::uint32_t entry, std::uint32_t resting) {
-                            visit(grid_.mobile_.slot(entry), resting);
-                        });
+void PairTracker<Scalar>::forEachOverlap(
+    FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const {
+    store_.mendTables();
+    const ProxyGroups* const groups = store_.proxies.groupsOfAll();
+    KernelCost cost;
+    forOverlaps(store_.tables.mobile, groups, cost, visit);
+    forOverlaps(store_.tables.resting, groups, cost, visit);
+    const GroupsView view{groups, store_.tables.mobile.entrySlots().data(), {}};
+    forOverlaps(store_.tables.mobile.columns(), store_.tables.mobile.size(), store_.tables.resting,
+                groups != nullptr ? &view : nullptr, cost,
+                [&](std::uint32_t entry, std::uint32_t resting) {
+                    visit(store_.tables.mobile.slot(entry), resting);
+                });
 }
 
 template <class Scalar>
-void Pairs<Scalar>::collect(std::vector<ProxyPair>& pairs) const {
-    HASHPHASE_ASSERT(grid_.cost_.changed == 0,
-                     "The set of pairs is asked for directly after an update.");
+void PairTracker<Scalar>::collect(std::vector<ProxyPair>& pairs) const {
     const auto begin = static_cast<std::ptrdiff_t>(pairs.size());
     const auto add = [&](Couple c) {
         if (!isRefused(c)) {
@@ -47,7 +46,7 @@ void Pairs<Scalar>::collect(std::vector<ProxyPair>& pairs) const {
 }
 
 template <class Scalar>
-std::string Pairs<Scalar>::validate() const {
+std::string PairTracker<Scalar>::validate() const {
     if (remembersPairs()) {
         const std::span<const Couple> couples = pile_->pairs.keys();
         const auto meet = [this](Couple c) { return overlapNow(c) || isSwept(c); };
@@ -58,10 +57,10 @@ std::string Pairs<Scalar>::validate() const {
     }
     std::vector<Couple> watched;
     for (const auto [a, b] : amongMobile_.pairs()) {
-        watched.push_back(couple(grid_.mobileSlots_[a], grid_.mobileSlots_[b]));
+        watched.push_back(couple(store_.proxies.mobile[a], store_.proxies.mobile[b]));
     }
     for (const auto [place, slot] : toResting_.pairs()) {
-        watched.push_back(couple(grid_.mobileSlots_[place], slot));
+        watched.push_back(couple(store_.proxies.mobile[place], slot));
     }
     std::sort(watched.begin(), watched.end());
     std::size_t overlapping = 0;
@@ -73,7 +72,7 @@ std::string Pairs<Scalar>::validate() const {
         }
     });
     std::sort(expected.begin(), expected.end());
-    if (!grid_.isTorn_ && watched != expected) {
+    if (!store_.isTorn && watched != expected) {
         return "The watched couples are the overlapping ones that may pair and of which one is "
                "mobile, each once: broken.";
     }
@@ -86,7 +85,7 @@ std::string Pairs<Scalar>::validate() const {
         return "The pairs that are kept overlap and may not pair: broken.";
     }
     const auto sweeps = [this](std::uint32_t slot) {
-        return grid_.records_[slot].place == Grid<Scalar>::Place::sweeping;
+        return store_.proxies.records[slot].place == Place::sweeping;
     };
     const bool oneSweeps = std::all_of(swept_.begin(), swept_.end(), [&](Couple c) {
         return sweeps(first(c)) || sweeps(second(c));
@@ -94,11 +93,13 @@ std::string Pairs<Scalar>::validate() const {
     return oneSweeps ? std::string() : "Of each swept couple one sweeps: broken.";
 }
 
-template void Pairs<float>::forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)>) const;
-template void Pairs<double>::forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)>) const;
-template void Pairs<float>::collect(std::vector<ProxyPair>&) const;
-template void Pairs<double>::collect(std::vector<ProxyPair>&) const;
-template std::string Pairs<float>::validate() const;
-template std::string Pairs<double>::validate() const;
+template void PairTracker<float>::forEachOverlap(
+    FunctionRef<void(std::uint32_t, std::uint32_t)>) const;
+template void PairTracker<double>::forEachOverlap(
+    FunctionRef<void(std::uint32_t, std::uint32_t)>) const;
+template void PairTracker<float>::collect(std::vector<ProxyPair>&) const;
+template void PairTracker<double>::collect(std::vector<ProxyPair>&) const;
+template std::string PairTracker<float>::validate() const;
+template std::string PairTracker<double>::validate() const;
 
-}  // namespace hashphase
+}  // namespace hashphase::detail

@@ -2,16 +2,16 @@
 
 // What Pairs hold, and what they give back after a peak.
 
-#include <broadphase/pairs.hpp>
+#include <broadphase/pairs/pair_tracker.hpp>
 
 #include <broadphase/core/ensure_capacity.hpp>
 
 #include <new>
 
-namespace hashphase {
+namespace hashphase::detail {
 
 template <class Scalar>
-std::size_t Pairs<Scalar>::memoryBytes() const noexcept {
+std::size_t PairTracker<Scalar>::memoryBytes() const noexcept {
     return sizeof(*this) + amongMobile_.memoryBytes() + toResting_.memoryBytes() +
            selected_.memoryBytes() + parts_.memoryBytes() + carried_.memoryBytes() +
            bounds_.memoryBytes() +
@@ -28,22 +28,20 @@ std::size_t Pairs<Scalar>::memoryBytes() const noexcept {
            accepted_.capacity() + isNamed_.capacity() +
            (entryOf_.capacity() + walkers_.capacity() + searchedSlots_.capacity()) *
                sizeof(std::uint32_t) +
-           wokenBoxes_.capacity() * sizeof(detail::PaddedBox<Scalar>) +
+           wokenBoxes_.capacity() * sizeof(PaddedBox<Scalar>) +
            (wokenTable_ != nullptr ? sizeof(*wokenTable_) + wokenTable_->memoryBytes() : 0) +
            announced_.memoryBytes() + kept_.memoryBytes() + refused_.memoryBytes() +
            refusedAtRest_.memoryBytes() + (pile_ != nullptr ? pile_->memoryBytes() : 0);
 }
 
 template <class Scalar>
-void Pairs<Scalar>::releaseUnusedMemory() noexcept {
-    HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(&grid_),
-                     "Memory is not given back within the filter.");
+void PairTracker<Scalar>::releaseUnusedMemory() noexcept {
     // What is found anew by each call.
-    detail::freeArrays(sweptNow_, lost_, asked_, standing_, askedPairs_, accepted_, bornCouples_,
-                       diedCouples_, toldByUpdate_.born, toldByUpdate_.died, toldBetween_.born,
-                       toldBetween_.died, sorted_, restedCouples_, sweptBySecond_, unknown_, gone_,
-                       fresh_, keptNow_, notKept_, lapsed_, isNamed_, entryOf_, walkers_,
-                       searchedSlots_, wokenBoxes_);
+    freeArrays(sweptNow_, lost_, asked_, standing_, askedPairs_, accepted_, bornCouples_,
+               diedCouples_, toldByUpdate_.born, toldByUpdate_.died, toldBetween_.born,
+               toldBetween_.died, sorted_, restedCouples_, sweptBySecond_, unknown_, gone_, fresh_,
+               keptNow_, notKept_, lapsed_, isNamed_, entryOf_, walkers_, searchedSlots_,
+               wokenBoxes_);
     selected_ = {};
     parts_ = {};
     carried_ = {};
@@ -56,15 +54,15 @@ void Pairs<Scalar>::releaseUnusedMemory() noexcept {
     // What is kept.
     swept_.shrink_to_fit();
     try {
-        for (detail::PairList* couples : {&amongMobile_, &toResting_}) {
+        for (PairList* couples : {&amongMobile_, &toResting_}) {
             couples->shrink();
         }
-        for (detail::FlatSet* couples : {&refused_, &refusedAtRest_, &kept_}) {
+        for (FlatSet* couples : {&refused_, &refusedAtRest_, &kept_}) {
             couples->shrink();
         }
         announced_.shrink();
         if (pile_ != nullptr) {
-            detail::freeArrays(pile_->turned, pile_->sampledAccepted);
+            freeArrays(pile_->turned, pile_->sampledAccepted);
             pile_->sampled = {};
             pile_->pairs.shrink();
         }
@@ -73,9 +71,9 @@ void Pairs<Scalar>::releaseUnusedMemory() noexcept {
 }
 
 template <class Scalar>
-void Pairs<Scalar>::releaseAfterPeak() noexcept {
+void PairTracker<Scalar>::releaseAfterPeak() noexcept {
     // Searches make room for some couples of each proxy.
-    const std::size_t count = grid_.listedCount() + amongMobile_.size() + toResting_.size() +
+    const std::size_t count = store_.listedCount() + amongMobile_.size() + toResting_.size() +
                               refusedCount() + announced_.size() +
                               (pile_ != nullptr ? pile_->pairs.size() : 0);
     const std::size_t room = amongMobile_.capacity() + toResting_.capacity() + refused_.capacity() +
@@ -86,11 +84,11 @@ void Pairs<Scalar>::releaseAfterPeak() noexcept {
     }
 }
 
-template std::size_t Pairs<float>::memoryBytes() const noexcept;
-template void Pairs<float>::releaseUnusedMemory() noexcept;
-template void Pairs<float>::releaseAfterPeak() noexcept;
-template std::size_t Pairs<double>::memoryBytes() const noexcept;
-template void Pairs<double>::releaseUnusedMemory() noexcept;
-template void Pairs<double>::releaseAfterPeak() noexcept;
+template std::size_t PairTracker<float>::memoryBytes() const noexcept;
+template void PairTracker<float>::releaseUnusedMemory() noexcept;
+template void PairTracker<float>::releaseAfterPeak() noexcept;
+template std::size_t PairTracker<double>::memoryBytes() const noexcept;
+template void PairTracker<double>::releaseUnusedMemory() noexcept;
+template void PairTracker<double>::releaseAfterPeak() noexcept;
 
-}  // namespace hashphase
+}  // namespace hashphase::detail

@@ -6,38 +6,37 @@
 // when the two are apart; and of all that what has changed overlaps, the filter is asked about what is no
 // pair, in parts.
 
-#include <broadphase/pairs.hpp>
+#include <broadphase/pairs/pair_tracker.hpp>
 
 #include <broadphase/search/join.hpp>
-#include <broadphase/sweeps.hpp>
 
 #include <algorithm>
 #include <memory>
 #include <new>
 #include <utility>
 
-namespace hashphase {
+namespace hashphase::detail {
 
 namespace {
 
 // Of `count` searches, how many tell what all find: so few that they cost little, and find little more than
 // may be watched.
 template <class Scalar>
-std::size_t sampleSize(const detail::Table<Scalar>& table, std::size_t count) {
+std::size_t sampleSize(const Table<Scalar>& table, std::size_t count) {
     constexpr std::size_t kMost = 1024;
-    return std::min({kMost, 1 + count / 32, 1 + 16 * count / detail::mostTogether(table), count});
+    return std::min({kMost, 1 + count / 32, 1 + 16 * count / mostTogether(table), count});
 }
 
 }  // namespace
 
 // That are remembered of the refused ones.
 template <class Scalar>
-std::size_t Pairs<Scalar>::mostCouples() const noexcept {
-    return 32 * grid_.listedCount() + 4 * count_;
+std::size_t PairTracker<Scalar>::mostCouples() const noexcept {
+    return 32 * store_.listedCount() + 4 * count_;
 }
 
 template <class Scalar>
-auto Pairs<Scalar>::pile() -> Pile& {
+auto PairTracker<Scalar>::pile() -> Pile& {
     if (pile_ == nullptr) {
         pile_ = std::make_unique<Pile>();
     }
@@ -47,27 +46,27 @@ auto Pairs<Scalar>::pile() -> Pile& {
 // Where many share a cell, a sample of what overlaps tells what the filter says to all of it. What is asked
 // for that is not asked again.
 template <class Scalar>
-bool Pairs<Scalar>::doesRefuseMost(PairFilter filter) {
+bool PairTracker<Scalar>::doesRefuseMost(PairFilter filter) {
     constexpr std::uint32_t kMany = 128;
-    const ProxyGroups* const groups = grid_.groupsOfAll();
-    const detail::Table<Scalar>& mobile = grid_.mobile_;
-    const detail::Table<Scalar>& resting = grid_.resting_;
-    detail::KernelCost cost;
+    const ProxyGroups* const groups = store_.proxies.groupsOfAll();
+    const Table<Scalar>& mobile = store_.tables.mobile;
+    const Table<Scalar>& resting = store_.tables.resting;
+    KernelCost cost;
     double refused = 0;
-    if (std::max(detail::mostTogether(mobile), detail::mostTogether(resting)) > kMany) {
+    if (std::max(mostTogether(mobile), mostTogether(resting)) > kMany) {
         static_cast<void>(pile());
     }
-    if (detail::mostTogether(mobile) > kMany) {
+    if (mostTogether(mobile) > kMany) {
         const double weight = sampleOverlaps(mobile, cost);
         for (const auto [a, b] : selected_.pairs()) {
             asked_.push_back(couple(mobile.slot(a), mobile.slot(b)));
         }
         refused += countRefused(filter, weight);
     }
-    if (detail::mostTogether(resting) > kMany) {
+    if (mostTogether(resting) > kMany) {
         walkers_.clear();
         for (std::uint32_t entry = 0; entry < mobile.size(); ++entry) {
-            if (grid_.changedNow(mobile.slot(entry))) {
+            if (store_.proxies.changedNow(mobile.slot(entry))) {
                 walkers_.push_back(entry);
             }
         }
@@ -79,12 +78,11 @@ bool Pairs<Scalar>::doesRefuseMost(PairFilter filter) {
             searchedSlots_.push_back(mobile.slot(entry));
             bounds_.push(mobile.box(entry));
         }
-        const detail::GroupsView view{groups, searchedSlots_.data(), {}};
-        detail::forOverlaps(bounds_.columns(), bounds_.size(), resting,
-                            groups != nullptr ? &view : nullptr, cost,
-                            [this](std::uint32_t searched, std::uint32_t slot) {
-                                asked_.push_back(couple(searchedSlots_[searched], slot));
-                            });
+        const GroupsView view{groups, searchedSlots_.data(), {}};
+        forOverlaps(bounds_.columns(), bounds_.size(), resting, groups != nullptr ? &view : nullptr,
+                    cost, [this](std::uint32_t searched, std::uint32_t slot) {
+                        asked_.push_back(couple(searchedSlots_[searched], slot));
+                    });
         refused += countRefused(filter, static_cast<double>(walkers_.size()) /
                                             static_cast<double>(std::max<std::size_t>(size, 1)));
     }
@@ -95,12 +93,12 @@ bool Pairs<Scalar>::doesRefuseMost(PairFilter filter) {
 // Finds some of what overlaps in a table that is not empty, see selected_. Returns for how many couples each
 // of them stands.
 template <class Scalar>
-double Pairs<Scalar>::sampleOverlaps(const detail::Table<Scalar>& table, detail::KernelCost& cost) {
+double PairTracker<Scalar>::sampleOverlaps(const Table<Scalar>& table, KernelCost& cost) {
     const std::size_t size = sampleSize(table, table.size());
     std::size_t searches = 0;
     selected_.clear();
-    selected_.append([&](detail::PairSink& sink) {
-        searches = detail::joinSample(table, size, sink, cost, grid_.groupsOfAll());
+    selected_.append([&](PairSink& sink) {
+        searches = joinSample(table, size, sink, cost, store_.proxies.groupsOfAll());
     });
     return static_cast<double>(searches) / static_cast<double>(size);
 }
@@ -108,7 +106,7 @@ double Pairs<Scalar>::sampleOverlaps(const detail::Table<Scalar>& table, detail:
 // About how many of those are refused of which asked_ is a sample, each for `weight` of them. It is asked
 // about only where so many are new that it may be asked in parts.
 template <class Scalar>
-double Pairs<Scalar>::countRefused(PairFilter filter, double weight) {
+double PairTracker<Scalar>::countRefused(PairFilter filter, double weight) {
     std::size_t refused = 0;
     std::erase_if(asked_, [&](Couple c) {
         const bool isKnown = wasKnown(first(c), second(c)) || announced_.contains(c) || isSwept(c);
@@ -130,11 +128,11 @@ double Pairs<Scalar>::countRefused(PairFilter filter, double weight) {
 // Whether the refused ones have become few again is looked at after 1, 2, 4, 8 ... updates: it may cost as much
 // as finding all that overlap.
 template <class Scalar>
-void Pairs<Scalar>::chooseSide(bool isUpdated) noexcept {
+void PairTracker<Scalar>::chooseSide(bool isUpdated) noexcept {
     constexpr std::uint32_t kSeldom = 256;
     try {
         if (!remembersPairs()) {
-            if (refusedCount() + announced_.size() > mostCouples() && !grid_.isTorn_) {
+            if (refusedCount() + announced_.size() > mostCouples() && !store_.isTorn) {
                 rememberPairs();
             }
         } else if (isUpdated && cost_.grid.changed > 0 && --pile_->updatesUntilLook == 0) {
@@ -150,7 +148,7 @@ void Pairs<Scalar>::chooseSide(bool isUpdated) noexcept {
 }
 
 template <class Scalar>
-void Pairs<Scalar>::forgetWatched() noexcept {
+void PairTracker<Scalar>::forgetWatched() noexcept {
     amongMobile_ = {};
     toResting_ = {};
     refused_ = {};
@@ -160,8 +158,8 @@ void Pairs<Scalar>::forgetWatched() noexcept {
 
 // As of the last update, and what has been announced since.
 template <class Scalar>
-void Pairs<Scalar>::rememberPairs() {
-    detail::FlatSet pairs;
+void PairTracker<Scalar>::rememberPairs() {
+    FlatSet pairs;
     forAllKnown([&](Couple c) {
         if (!isRefused(c)) {
             pairs.findOrInsert(c);
@@ -177,10 +175,10 @@ void Pairs<Scalar>::rememberPairs() {
 
 // Directly after an update.
 template <class Scalar>
-void Pairs<Scalar>::rememberRefusedIfFew() {
+void PairTracker<Scalar>::rememberRefusedIfFew() {
     const std::size_t most = mostCouples() / 2;  // not to come back with the next few
-    detail::KernelCost cost;
-    for (const detail::Table<Scalar>* table : {&grid_.mobile_, &grid_.resting_}) {
+    KernelCost cost;
+    for (const Table<Scalar>* table : {&store_.tables.mobile, &store_.tables.resting}) {
         const double weight = table->size() > 0 ? sampleOverlaps(*table, cost) : 0;
         cost_.boxesTested += std::exchange(cost, {}).boxesTested;
         if (weight * static_cast<double>(selected_.size()) > static_cast<double>(most)) {
@@ -192,15 +190,15 @@ void Pairs<Scalar>::rememberRefusedIfFew() {
     if (count > most) {
         return;
     }
-    const ProxyGroups* const groups = grid_.groupsOfAll();
-    const detail::GroupsView view{groups, grid_.mobile_.entrySlots().data(), {}};
+    const ProxyGroups* const groups = store_.proxies.groupsOfAll();
+    const GroupsView view{groups, store_.tables.mobile.entrySlots().data(), {}};
     amongMobile_.clear();
     carried_.clear();
     selected_.clear();
-    detail::joinTable(grid_.mobile_, serialFor, parts_, amongMobile_, cost, groups);
-    detail::walkTable(grid_.resting_, grid_.mobile_.columns(), grid_.mobile_.size(), serialFor,
-                      parts_, carried_, cost, groups != nullptr ? &view : nullptr);
-    detail::joinTable(grid_.resting_, serialFor, parts_, selected_, cost, groups);
+    joinTable(store_.tables.mobile, serialFor, parts_, amongMobile_, cost, groups);
+    walkTable(store_.tables.resting, store_.tables.mobile.columns(), store_.tables.mobile.size(),
+              serialFor, parts_, carried_, cost, groups != nullptr ? &view : nullptr);
+    joinTable(store_.tables.resting, serialFor, parts_, selected_, cost, groups);
     cost_.boxesTested += cost.boxesTested;
     const auto refuse = [this](Couple c) {
         if (!isRemembered(c)) {
@@ -208,15 +206,15 @@ void Pairs<Scalar>::rememberRefusedIfFew() {
         }
     };
     for (const auto [a, b] : amongMobile_.pairs()) {
-        refuse(couple(grid_.mobile_.slot(a), grid_.mobile_.slot(b)));
+        refuse(couple(store_.tables.mobile.slot(a), store_.tables.mobile.slot(b)));
     }
     toResting_.clear();
     for (const auto [entry, resting] : carried_.pairs()) {
-        toResting_.push({entry, grid_.resting_.slot(resting)});
-        refuse(couple(grid_.mobile_.slot(entry), grid_.resting_.slot(resting)));
+        toResting_.push({entry, store_.tables.resting.slot(resting)});
+        refuse(couple(store_.tables.mobile.slot(entry), store_.tables.resting.slot(resting)));
     }
     for (const auto [a, b] : selected_.pairs()) {
-        refuse(couple(grid_.resting_.slot(a), grid_.resting_.slot(b)));
+        refuse(couple(store_.tables.resting.slot(a), store_.tables.resting.slot(b)));
     }
     std::for_each(swept_.begin(), swept_.end(), refuse);
     for (const Couple c : pile_->pairs.keys()) {
@@ -229,21 +227,11 @@ void Pairs<Scalar>::rememberRefusedIfFew() {
 }
 
 template <class Scalar>
-void Pairs<Scalar>::findChangesOfPairs(PairFilter filter, ParallelFor parallelFor) {
-    if (sweeps_ != nullptr) {
-        sweeps_->beginUpdate();
-    }
-    if (grid_.cost_.changed == 0) {
-        return;
-    }
-    tableOfUpdate_ = nullptr;
-    grid_.stage(parallelFor);
-    static_cast<void>(grid_.putQuietToRest(parallelFor));
-    grid_.fileMobile(parallelFor);
+void PairTracker<Scalar>::findBegunOfPairs(PairFilter filter, ParallelFor parallelFor) {
     sweptNow_.clear();
-    if (sweeps_ != nullptr) {
-        sweeps_->findContacts(parallelFor);
-        for (const Couple c : sweeps_->contacts()) {
+    if (sweeping_ != nullptr) {
+        sweeping_->search.find(sweeping_->motions.all, parallelFor);
+        for (const Couple c : sweeping_->search.contacts()) {
             const bool isPair = isRemembered(c);
             if (isPair || mayPairNow(c)) {
                 sweptNow_.push_back(c);
@@ -265,30 +253,31 @@ void Pairs<Scalar>::findChangesOfPairs(PairFilter filter, ParallelFor parallelFo
 }
 
 template <class Scalar>
-void Pairs<Scalar>::askAboutChanged(PairFilter filter) {
-    const detail::Table<Scalar>& mobile = grid_.mobile_;
+void PairTracker<Scalar>::askAboutChanged(PairFilter filter) {
+    const Table<Scalar>& mobile = store_.tables.mobile;
     searchedSlots_.clear();
     bounds_.clear();
     for (std::uint32_t entry = 0; entry < mobile.size(); ++entry) {
-        if (grid_.changedNow(mobile.slot(entry))) {
+        if (store_.proxies.changedNow(mobile.slot(entry))) {
             searchedSlots_.push_back(mobile.slot(entry));
             bounds_.push(mobile.box(entry));
         }
     }
     const auto askUnlessPair = [&](std::uint32_t searched, std::uint32_t other) {
         const std::uint32_t slot = searchedSlots_[searched];
-        const bool isFoundByOther = grid_.changedNow(other) && other <= slot;
+        const bool isFoundByOther = store_.proxies.changedNow(other) && other <= slot;
         if (!isFoundByOther && !isRemembered(couple(slot, other))) {
             asked_.push_back(couple(slot, other));
             askInParts(filter, kPart);
         }
     };
-    const ProxyGroups* const groups = grid_.groupsOfAll();
-    const detail::GroupsView view{groups, searchedSlots_.data(), {}};
-    detail::KernelCost cost;
-    for (const detail::Table<Scalar>* table : {&mobile, &std::as_const(grid_.resting_)}) {
-        detail::forOverlaps(bounds_.columns(), bounds_.size(), *table,
-                            groups != nullptr ? &view : nullptr, cost, askUnlessPair);
+    const ProxyGroups* const groups = store_.proxies.groupsOfAll();
+    const GroupsView view{groups, searchedSlots_.data(), {}};
+    KernelCost cost;
+    for (const Table<Scalar>* table :
+         {&mobile, static_cast<const Table<Scalar>*>(&store_.tables.resting)}) {
+        forOverlaps(bounds_.columns(), bounds_.size(), *table, groups != nullptr ? &view : nullptr,
+                    cost, askUnlessPair);
     }
     cost_.boxesTested += cost.boxesTested;
 }
@@ -296,7 +285,7 @@ void Pairs<Scalar>::askAboutChanged(PairFilter filter) {
 // Where the pairs are remembered, asks about what there is to be asked, when that is `size` or more, and
 // notes down what the answers change.
 template <class Scalar>
-void Pairs<Scalar>::askInParts(PairFilter filter, std::size_t size) {
+void PairTracker<Scalar>::askInParts(PairFilter filter, std::size_t size) {
     if (!remembersPairs() || asked_.size() < size) {
         return;
     }
@@ -315,7 +304,7 @@ void Pairs<Scalar>::askInParts(PairFilter filter, std::size_t size) {
 
 // As if only what the answers change had been asked.
 template <class Scalar>
-void Pairs<Scalar>::takeTurned() {
+void PairTracker<Scalar>::takeTurned() {
     asked_.swap(pile_->turned);
     sortCouples(asked_);
     asked_.erase(std::unique(asked_.begin(), asked_.end()), asked_.end());
@@ -329,31 +318,31 @@ void Pairs<Scalar>::takeTurned() {
     }
 }
 
-template bool Pairs<float>::doesRefuseMost(PairFilter);
-template double Pairs<float>::countRefused(PairFilter, double);
-template double Pairs<float>::sampleOverlaps(const detail::Table<float>&, detail::KernelCost&);
-template void Pairs<float>::rememberRefusedIfFew();
-template auto Pairs<float>::pile() -> Pile&;
-template void Pairs<float>::askAboutChanged(PairFilter);
-template void Pairs<float>::chooseSide(bool) noexcept;
-template void Pairs<float>::forgetWatched() noexcept;
-template std::size_t Pairs<float>::mostCouples() const noexcept;
-template void Pairs<float>::rememberPairs();
-template void Pairs<float>::findChangesOfPairs(PairFilter, ParallelFor);
-template void Pairs<float>::askInParts(PairFilter, std::size_t);
-template void Pairs<float>::takeTurned();
-template bool Pairs<double>::doesRefuseMost(PairFilter);
-template double Pairs<double>::countRefused(PairFilter, double);
-template double Pairs<double>::sampleOverlaps(const detail::Table<double>&, detail::KernelCost&);
-template void Pairs<double>::rememberRefusedIfFew();
-template auto Pairs<double>::pile() -> Pile&;
-template void Pairs<double>::askAboutChanged(PairFilter);
-template void Pairs<double>::chooseSide(bool) noexcept;
-template void Pairs<double>::forgetWatched() noexcept;
-template std::size_t Pairs<double>::mostCouples() const noexcept;
-template void Pairs<double>::rememberPairs();
-template void Pairs<double>::findChangesOfPairs(PairFilter, ParallelFor);
-template void Pairs<double>::askInParts(PairFilter, std::size_t);
-template void Pairs<double>::takeTurned();
+template bool PairTracker<float>::doesRefuseMost(PairFilter);
+template double PairTracker<float>::countRefused(PairFilter, double);
+template double PairTracker<float>::sampleOverlaps(const Table<float>&, KernelCost&);
+template void PairTracker<float>::rememberRefusedIfFew();
+template auto PairTracker<float>::pile() -> Pile&;
+template void PairTracker<float>::askAboutChanged(PairFilter);
+template void PairTracker<float>::chooseSide(bool) noexcept;
+template void PairTracker<float>::forgetWatched() noexcept;
+template std::size_t PairTracker<float>::mostCouples() const noexcept;
+template void PairTracker<float>::rememberPairs();
+template void PairTracker<float>::findBegunOfPairs(PairFilter, ParallelFor);
+template void PairTracker<float>::askInParts(PairFilter, std::size_t);
+template void PairTracker<float>::takeTurned();
+template bool PairTracker<double>::doesRefuseMost(PairFilter);
+template double PairTracker<double>::countRefused(PairFilter, double);
+template double PairTracker<double>::sampleOverlaps(const Table<double>&, KernelCost&);
+template void PairTracker<double>::rememberRefusedIfFew();
+template auto PairTracker<double>::pile() -> Pile&;
+template void PairTracker<double>::askAboutChanged(PairFilter);
+template void PairTracker<double>::chooseSide(bool) noexcept;
+template void PairTracker<double>::forgetWatched() noexcept;
+template std::size_t PairTracker<double>::mostCouples() const noexcept;
+template void PairTracker<double>::rememberPairs();
+template void PairTracker<double>::findBegunOfPairs(PairFilter, ParallelFor);
+template void PairTracker<double>::askInParts(PairFilter, std::size_t);
+template void PairTracker<double>::takeTurned();
 
-}  // namespace hashphase
+}  // namespace hashphase::detail

@@ -2,29 +2,27 @@
 
 // Couples that touch on their ways.
 
-#include <broadphase/pairs.hpp>
-
-#include <broadphase/sweeps.hpp>
+#include <broadphase/pairs/pair_tracker.hpp>
 
 #include <algorithm>
 #include <iterator>
 
-namespace hashphase {
+namespace hashphase::detail {
 
 // A couple that has touched on its way and stands and overlaps now, or the other way round, is neither
 // lost nor new. What is asked about so far has come to overlap.
 template <class Scalar>
-void Pairs<Scalar>::findSwept(ParallelFor parallelFor) {
+void PairTracker<Scalar>::findSwept(ParallelFor parallelFor) {
     std::vector<Couple>& now = sweptNow_;
     now.clear();
-    if (sweeps_ != nullptr) {
-        sweeps_->findContacts(parallelFor);
-        now.assign(sweeps_->contacts().begin(), sweeps_->contacts().end());
+    if (sweeping_ != nullptr) {
+        sweeping_->search.find(sweeping_->motions.all, parallelFor);
+        now.assign(sweeping_->search.contacts().begin(), sweeping_->search.contacts().end());
     }
     if (now.empty() && swept_.empty()) {
         return;
     }
-    if (grid_.groupsOfAll() != nullptr) {
+    if (store_.proxies.groupsOfAll() != nullptr) {
         leaveOutSweptByGroups();
     }
     std::set_difference(swept_.begin(), swept_.end(), now.begin(), now.end(),
@@ -49,7 +47,7 @@ void Pairs<Scalar>::findSwept(ParallelFor parallelFor) {
 // Of what touches on its way, what may not pair is left out, but for pairs that stand. A pair that met
 // on its way, and overlaps now, is kept if need be; one that is swept is not among those that are kept.
 template <class Scalar>
-void Pairs<Scalar>::leaveOutSweptByGroups() {
+void PairTracker<Scalar>::leaveOutSweptByGroups() {
     sortCouples(lost_);
     std::erase_if(sweptNow_, [this](Couple c) {
         const bool isPair =
@@ -68,15 +66,15 @@ void Pairs<Scalar>::leaveOutSweptByGroups() {
 }
 
 template <class Scalar>
-bool Pairs<Scalar>::isSwept(Couple c) const noexcept {
+bool PairTracker<Scalar>::isSwept(Couple c) const noexcept {
     return std::binary_search(swept_.begin(), swept_.end(), c);
 }
 
-template void Pairs<float>::findSwept(ParallelFor);
-template void Pairs<float>::leaveOutSweptByGroups();
-template bool Pairs<float>::isSwept(Couple) const noexcept;
-template void Pairs<double>::findSwept(ParallelFor);
-template void Pairs<double>::leaveOutSweptByGroups();
-template bool Pairs<double>::isSwept(Couple) const noexcept;
+template void PairTracker<float>::findSwept(ParallelFor);
+template void PairTracker<float>::leaveOutSweptByGroups();
+template bool PairTracker<float>::isSwept(Couple) const noexcept;
+template void PairTracker<double>::findSwept(ParallelFor);
+template void PairTracker<double>::leaveOutSweptByGroups();
+template bool PairTracker<double>::isSwept(Couple) const noexcept;
 
-}  // namespace hashphase
+}  // namespace hashphase::detail

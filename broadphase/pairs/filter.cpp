@@ -2,25 +2,25 @@
 
 // What becomes of the couples that have come to touch, or touch no more: who is a pair, by the filter.
 
-#include <broadphase/pairs.hpp>
+#include <broadphase/pairs/pair_tracker.hpp>
 
 #include <broadphase/core/ensure_capacity.hpp>
 
 #include <algorithm>
 
-namespace hashphase {
+namespace hashphase::detail {
 
 // What the filter refused, and is not lost, is asked about again when one of the two has changed, and
 // put aside when both have come to rest.
 template <class Scalar>
-void Pairs<Scalar>::askRefusedAgain() {
+void PairTracker<Scalar>::askRefusedAgain() {
     restedCouples_.clear();
     for (const Couple c : refused_.keys()) {
         if (!mayPairNow(c)) {
             lapsed_.push_back(c);
         } else if (isAtRest(c)) {
             restedCouples_.push_back(c);
-        } else if ((grid_.changedNow(first(c)) || grid_.changedNow(second(c))) &&
+        } else if ((store_.proxies.changedNow(first(c)) || store_.proxies.changedNow(second(c))) &&
                    (overlapNow(c) || std::binary_search(sweptNow_.begin(), sweptNow_.end(), c))) {
             asked_.push_back(c);
         }
@@ -33,27 +33,27 @@ void Pairs<Scalar>::askRefusedAgain() {
 
 // Asks the filter about what is to be asked and has not been asked by this call.
 template <class Scalar>
-void Pairs<Scalar>::ask(PairFilter filter) {
+void PairTracker<Scalar>::ask(PairFilter filter) {
     sortCouples(asked_);
     sortCouples(standing_);
     askedPairs_.clear();
     const auto numberIfSampled = [this](Couple c) {
-        return pile_ != nullptr ? pile_->sampled.find(c) : detail::FlatSet::kNone;
+        return pile_ != nullptr ? pile_->sampled.find(c) : FlatSet::kNone;
     };
     for (const Couple c : asked_) {
-        if (mayPairNow(c) && numberIfSampled(c) == detail::FlatSet::kNone) {
+        if (mayPairNow(c) && numberIfSampled(c) == FlatSet::kNone) {
             askedPairs_.push_back(pairOf(c));
         }
     }
     accepted_.assign(asked_.size(), 0);
     std::size_t answers = askedPairs_.size();
     {
-        const detail::QueryScope scope(&grid_, detail::QueryScope::Changes::forbidden);
+        const QueryScope scope(&store_, QueryScope::Changes::forbidden);
         filter(askedPairs_, std::span(accepted_).first(answers));
     }
     for (std::size_t i = asked_.size(); i-- > 0 && answers < asked_.size();) {
         const std::uint32_t number = numberIfSampled(asked_[i]);
-        if (number != detail::FlatSet::kNone) {
+        if (number != FlatSet::kNone) {
             accepted_[i] = pile_->sampledAccepted[number];
         } else {
             accepted_[i] = mayPairNow(asked_[i]) ? accepted_[--answers] : char{0};
@@ -63,7 +63,7 @@ void Pairs<Scalar>::ask(PairFilter filter) {
 
 // For all that may come of the answers.
 template <class Scalar>
-void Pairs<Scalar>::makeRoom(Told& told) {
+void PairTracker<Scalar>::makeRoom(Told& told) {
     const auto refused =
         static_cast<std::size_t>(std::count(accepted_.begin(), accepted_.end(), 0));
     if (remembersPairs()) {
@@ -72,23 +72,23 @@ void Pairs<Scalar>::makeRoom(Told& told) {
         refused_.reserve(refused_.size() + refused);
     }
     if (!unknown_.empty()) {
-        announced_.reserve(announced_.size() + unknown_.size(), grid_.records_.size());
+        announced_.reserve(announced_.size() + unknown_.size(), store_.proxies.records.size());
     }
     if (!keptNow_.empty()) {
         kept_.reserve(kept_.size() + keptNow_.size());
     }
     const std::size_t mayDie = lost_.size() + standing_.size();
-    detail::ensureCapacity(bornCouples_, asked_.size());
-    detail::ensureCapacity(told.born, asked_.size());
-    detail::ensureCapacity(diedCouples_, mayDie);
-    detail::ensureCapacity(told.died, mayDie);
-    detail::ensureCapacity(sorted_, mayDie);
+    ensureCapacity(bornCouples_, asked_.size());
+    ensureCapacity(told.born, asked_.size());
+    ensureCapacity(diedCouples_, mayDie);
+    ensureCapacity(told.died, mayDie);
+    ensureCapacity(sorted_, mayDie);
 }
 
 // Of what was asked, the standing ones are pairs already. Couples at rest that are refused are put
 // aside by the next update.
 template <class Scalar>
-void Pairs<Scalar>::decide() noexcept {  // NOLINT(bugprone-exception-escape)
+void PairTracker<Scalar>::decide() noexcept {  // NOLINT(bugprone-exception-escape)
     std::size_t nextStanding = 0;
     for (std::size_t i = 0; i < asked_.size(); ++i) {
         const Couple c = asked_[i];
@@ -116,22 +116,21 @@ void Pairs<Scalar>::decide() noexcept {  // NOLINT(bugprone-exception-escape)
 // What may not pair is not noted down, unless it is known, so that it counts as refused until the next
 // update, which forgets it.
 template <class Scalar>
-bool Pairs<Scalar>::isToBeRefused(Couple c) const noexcept {
+bool PairTracker<Scalar>::isToBeRefused(Couple c) const noexcept {
     return mayPairNow(c) || couldPair(c) || kept_.contains(c) || announced_.contains(c) ||
            isSwept(c);
 }
 
 // Returns whether the couple was refused.
 template <class Scalar>
-bool Pairs<Scalar>::forgetRefused(Couple c) noexcept {
-    return refused_.erase(c) != detail::FlatSet::kNone ||
-           refusedAtRest_.erase(c) != detail::FlatSet::kNone;
+bool PairTracker<Scalar>::forgetRefused(Couple c) noexcept {
+    return refused_.erase(c) != FlatSet::kNone || refusedAtRest_.erase(c) != FlatSet::kNone;
 }
 
 template <class Scalar>
-void Pairs<Scalar>::lose(Couple c) noexcept {
+void PairTracker<Scalar>::lose(Couple c) noexcept {
     const bool wasPair =
-        remembersPairs() ? pile_->pairs.erase(c) != detail::FlatSet::kNone : !forgetRefused(c);
+        remembersPairs() ? pile_->pairs.erase(c) != FlatSet::kNone : !forgetRefused(c);
     if (wasPair) {
         diedCouples_.push_back(c);
         --count_;
@@ -139,7 +138,7 @@ void Pairs<Scalar>::lose(Couple c) noexcept {
 }
 
 template <class Scalar>
-PairChanges Pairs<Scalar>::tell(Told& told) noexcept {
+PairChanges PairTracker<Scalar>::tell(Told& told) noexcept {
     const auto list = [this](const std::vector<Couple>& couples, std::vector<ProxyPair>& pairs) {
         pairs.clear();
         for (const Couple c : couples) {
@@ -152,21 +151,21 @@ PairChanges Pairs<Scalar>::tell(Told& told) noexcept {
     return {told.born, told.died};
 }
 
-template void Pairs<float>::askRefusedAgain();
-template void Pairs<float>::ask(PairFilter);
-template void Pairs<float>::makeRoom(Told&);
-template void Pairs<float>::decide() noexcept;
-template void Pairs<float>::lose(Couple) noexcept;
-template bool Pairs<float>::isToBeRefused(Couple) const noexcept;
-template bool Pairs<float>::forgetRefused(Couple) noexcept;
-template PairChanges Pairs<float>::tell(Told&) noexcept;
-template void Pairs<double>::askRefusedAgain();
-template void Pairs<double>::ask(PairFilter);
-template void Pairs<double>::makeRoom(Told&);
-template void Pairs<double>::decide() noexcept;
-template void Pairs<double>::lose(Couple) noexcept;
-template bool Pairs<double>::isToBeRefused(Couple) const noexcept;
-template bool Pairs<double>::forgetRefused(Couple) noexcept;
-template PairChanges Pairs<double>::tell(Told&) noexcept;
+template void PairTracker<float>::askRefusedAgain();
+template void PairTracker<float>::ask(PairFilter);
+template void PairTracker<float>::makeRoom(Told&);
+template void PairTracker<float>::decide() noexcept;
+template void PairTracker<float>::lose(Couple) noexcept;
+template bool PairTracker<float>::isToBeRefused(Couple) const noexcept;
+template bool PairTracker<float>::forgetRefused(Couple) noexcept;
+template PairChanges PairTracker<float>::tell(Told&) noexcept;
+template void PairTracker<double>::askRefusedAgain();
+template void PairTracker<double>::ask(PairFilter);
+template void PairTracker<double>::makeRoom(Told&);
+template void PairTracker<double>::decide() noexcept;
+template void PairTracker<double>::lose(Couple) noexcept;
+template bool PairTracker<double>::isToBeRefused(Couple) const noexcept;
+template bool PairTracker<double>::forgetRefused(Couple) noexcept;
+template PairChanges PairTracker<double>::tell(Told&) noexcept;
 
-}  // namespace hashphase
+}  // namespace hashphase::detail

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Zlib
+
+// Which couples overlapped at the last update, or have been announced since, and which have come to
+// overlap: of one proxy, or of all.
+
+#include <broadphase/pairs/pair_tracker.hpp>
+
+#include <broadphase/search/join.hpp>
+
+#include <algorithm>
+
+namespace hashphase::detail {
+
+// Afterwards tableOfUpdate_ has all but `mostUnindexed` of the proxies that are mobile now, and that
+// were there at the last update. Each time that it is filed for more of them it has a quarter more, so
+// that this costs each of them little.
+template <class Scalar>
+void PairTracker<Scalar>::indexLastUpdate(std::size_t mostUnindexed) {
+    const bool isStale =
+        shiftOfUpdate_ != store_.shiftCount ||
+        (tableOfUpdate_ == &store_.tables.mobile && filingOfUpdate_ != store_.tables.filingCount);
+    if (isStale) {
+        tableOfUpdate_ = nullptr;
+    }
+    if (tableOfUpdate_ != nullptr && store_.proxies.woken.size() - indexedWoken_ <= mostUnindexed) {
+        return;
+    }
+    // What has come since the last update had no box then.
+    const auto listed = store_.proxies.mobile.begin();
+    std::vector<std::uint32_t>& slots = searchedSlots_;
+    slots.assign(listed, listed + static_cast<std::ptrdiff_t>(store_.proxies.mobileAtUpdate));
+    slots.insert(slots.end(), store_.proxies.woken.begin(), store_.proxies.woken.end());
+    wokenBoxes_.clear();
+    for (const std::uint32_t slot : slots) {
+        wokenBoxes_.push_back(padded(store_.proxies.boxAtUpdate(slot)));
+    }
+    tableOfUpdate_ = nullptr;
+    wokenTable().build(slots, wokenBoxes_, store_.fixedSizes(), serialFor,
+                       store_.proxies.groupsOfAllAtUpdate());
+    tableOfUpdate_ = wokenTable_.get();
+    indexedWoken_ = store_.proxies.woken.size();
+    shiftOfUpdate_ = store_.shiftCount;
+}
+
+// Calls visit for each of the proxy's couples that overlapped at the last update, or met on their ways
+// then, or were announced since.
+template <class Scalar>
+void PairTracker<Scalar>::forKnownCouples(std::uint32_t slot, VisitCouple visit) {
+    forOverlapsAtUpdate(slot, visit);
+    announced_.forEachOf(slot, visit);
+    forSwept(slot, visit);
+}
+
+template <class Scalar>
+void PairTracker<Scalar>::forOverlapsAtUpdate(std::uint32_t slot, VisitCouple visit) {
+    constexpr std::size_t kFew = 64;
+    indexLastUpdate(kFew + (store_.proxies.mobileAtUpdate + indexedWoken_) / 4);
+    const auto visitIfTheyDid = [&](std::uint32_t other) {
+        if (other != slot && wasKnown(slot, other)) {
+            visit(couple(slot, other));
+        }
+    };
+    const bool isOwn = tableOfUpdate_ == wokenTable_.get();  // in the coordinates of then
+    const Box& before = store_.proxies.before(slot);
+    forTouching(*tableOfUpdate_, isOwn ? store_.proxies.boxAtUpdate(slot) : before, visitIfTheyDid);
+    forTouching(store_.tables.resting, before, visitIfTheyDid);
+    for (std::size_t i = indexedWoken_; i < store_.proxies.woken.size(); ++i) {
+        visitIfTheyDid(store_.proxies.woken[i]);
+    }
+}
+
+template <class Scalar>
+void PairTracker<Scalar>::forSwept(std::uint32_t slot, VisitCouple visit) {
+    if (swept_.empty()) {
+        return;
+    }
+    if (sweptBySecond_.empty()) {
+        std::vector<Couple> turned(swept_.size());
+        std::transform(swept_.begin(), swept_.end(), turned.begin(),
+                       [](Couple c) { return c << 32 | c >> 32; });
+        sortCouples(turned);
+        sweptBySecond_.swap(turned);
+    }
+    for (const auto* couples : {&swept_, &sweptBySecond_}) {
+        auto at = std::lower_bound(couples->begin(), couples->end(), Couple{slot} << 32);
+        for (; at != couples->end() && *at >> 32 == slot; ++at) {
+            visit(couple(first(*at), second(*at)));
+        }
+    }
+}
+
+// forKnownCouples() of all; some twice, where they are announced or kept.
+template <class Scalar>
+void PairTracker<Scalar>::forAllKnown(VisitCouple visit) {
+    indexLastUpdate(0);
+    const ProxyGroups* const groups = store_.proxies.groupsOfAllAtUpdate();
+    const auto visitIfTheyDid = [&](std::uint32_t a, std::uint32_t b) {
+        if (wasKnown(a, b)) {
+            visit(couple(a, b));
+        }
+    };
+    KernelCost cost;
+    forOverlaps(*tableOfUpdate_, groups, cost, visitIfTheyDid);
+    forOverlaps(store_.tables.resting, groups, cost, visitIfTheyDid);
+    bounds_.clear();
+    for (const std::uint32_t slot : tableOfUpdate_->entrySlots()) {
+        bounds_.push(store_.proxies.before(slot));
+    }
+    const GroupsView view{groups, tableOfUpdate_->entrySlots().data(), {}};
+    forOverlaps(bounds_.columns(), bounds_.size(), store_.tables.resting,
+                groups != nullptr ? &view : nullptr, cost,
+                [&](std::uint32_t entry, std::uint32_t resting) {
+                    visitIfTheyDid(tableOfUpdate_->slot(entry), resting);
+                });
+    for (const std::span<const Couple> couples :
+         {announced_.keys(), kept_.keys(), std::span<const Couple>(swept_)}) {
+        std::for_each(couples.begin(), couples.end(), visit);
+    }
+    const std::span<const Couple> pairs =
+        remembersPairs() ? pile_->pairs.keys() : std::span<const Couple>();
+    for (const Couple c : pairs) {  // that are kept
+        if (!couldPair(c) && !announced_.contains(c) && !isSwept(c)) {
+            visit(c);
+        }
+    }
+}
+
+// The proxy's couples that overlap now, did not at the last update, and were not announced since; those
+// with others that are wanted.
+template <class Scalar>
+void PairTracker<Scalar>::findUnknown(std::uint32_t slot,
+                                      FunctionRef<bool(std::uint32_t)> isWanted) {
+    const Box box = boxAtStart(slot);
+    const auto add = [&](std::uint32_t other) {
+        if (other != slot && isWanted(other)) {
+            addIfUnknown(slot, other);
+        }
+    };
+    const Reading<Scalar> reading = store_.beginReading();
+    for (const Filing<Scalar>& filing : reading.filings()) {
+        forTouching(*filing.table, box, [&](std::uint32_t other) {
+            if (store_.isFiled(other, reading)) {
+                add(other);
+            }
+        });
+    }
+    for (std::size_t i = 0; i < store_.proxies.waiting.size() && !reading.isFresh; ++i) {
+        const std::uint32_t other = store_.proxies.waiting[i];
+        if (store_.proxies.isAlive(other) && overlaps(box, store_.proxies.records[other].box)) {
+            add(other);
+        }
+    }
+}
+
+// Calls visit(slot) for each entry of the table whose box overlaps.
+template <class Scalar>
+void PairTracker<Scalar>::forTouching(const Table<Scalar>& table, const Box& box,
+                                      FunctionRef<void(std::uint32_t)> visit) {
+    bounds_.clear();
+    bounds_.push(box);
+    FewPairs found;
+    KernelCost cost;
+    found.assign([&](PairSink& sink) { walkTogether(table, bounds_.columns(), 1, sink, cost); });
+    for (const auto [query, entry] : found.pairs()) {
+        visit(table.slot(entry));
+    }
+}
+
+template <class Scalar>
+void PairTracker<Scalar>::addIfUnknown(std::uint32_t slot, std::uint32_t other) {
+    const Couple c = couple(slot, other);
+    if (!wasKnown(slot, other) && store_.proxies.mayPairNow(slot, other) &&
+        touchAtStart(slot, other) && !announced_.contains(c) && !isSwept(c)) {
+        unknown_.push_back(c);
+        asked_.push_back(c);
+    }
+}
+
+// Where a proxy alive is now, of what sweeps where its way begins.
+template <class Scalar>
+Aabb<Scalar> PairTracker<Scalar>::boxAtStart(std::uint32_t slot) const {
+    return sweeping_ != nullptr ? sweeping_->motions.boxAtStart(slot)
+                                : store_.proxies.records[slot].box;
+}
+
+template <class Scalar>
+bool PairTracker<Scalar>::touchAtStart(std::uint32_t a, std::uint32_t b) const {
+    return overlaps(boxAtStart(a), boxAtStart(b));
+}
+
+template <class Scalar>
+void PairTracker<Scalar>::findUnknown(std::uint32_t slot) {
+    findUnknown(slot, [](std::uint32_t) { return true; });
+}
+
+template void PairTracker<float>::indexLastUpdate(std::size_t);
+template void PairTracker<float>::forKnownCouples(std::uint32_t, VisitCouple);
+template void PairTracker<float>::forOverlapsAtUpdate(std::uint32_t, VisitCouple);
+template void PairTracker<float>::forSwept(std::uint32_t, VisitCouple);
+template void PairTracker<float>::forAllKnown(VisitCouple);
+template void PairTracker<float>::findUnknown(std::uint32_t, FunctionRef<bool(std::uint32_t)>);
+template void PairTracker<float>::findUnknown(std::uint32_t);
+template void PairTracker<float>::forTouching(const Table<float>&, const Box&,
+                                              FunctionRef<void(std::uint32_t)>);
+template void PairTracker<float>::addIfUnknown(std::uint32_t, std::uint32_t);
+template Aabb<float> PairTracker<float>::boxAtStart(std::uint32_t) const;
+template bool PairTracker<float>::touchAtStart(std::uint32_t, std::uint32_t) const;
+template void PairTracker<double>::indexLastUpdate(std::size_t);
+template void PairTracker<double>::forKnownCouples(std::uint32_t, VisitCouple);
+template void PairTracker<double>::forOverlapsAtUpdate(std::uint32_t, VisitCouple);
+template void PairTracker<double>::forSwept(std::uint32_t, VisitCouple);
+template void PairTracker<double>::forAllKnown(VisitCouple);
+template void PairTracker<double>::findUnknown(std::uint32_t, FunctionRef<bool(std::uint32_t)>);
+template void PairTracker<double>::findUnknown(std::uint32_t);
+template void PairTracker<double>::forTouching(const Table<double>&, const Box&,
+                                               FunctionRef<void(std::uint32_t)>);
+template void PairTracker<double>::addIfUnknown(std::uint32_t, std::uint32_t);
+template Aabb<double> PairTracker<double>::boxAtStart(std::uint32_t) const;
+template bool PairTracker<double>::touchAtStart(std::uint32_t, std::uint32_t) const;
+
+}  // namespace hashphase::detail

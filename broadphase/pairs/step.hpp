@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+#include <broadphase/pairs/pair_tracker.hpp>
+
+namespace hashphase::detail {
+
+/// Ends a frame: files what has changed, puts to rest what has not changed for a while, and finds which
+/// pairs have begun and ended; of a grid without pairs `pairs` is null. Where it throws, for want of memory
+/// or out of the filter, everything is mobile, nothing is lost, and the next one goes on from there.
+template <class Scalar>
+UpdateCost step(Store<Scalar>& store, PairTracker<Scalar>* pairs, PairFilter filter,
+                ParallelFor parallelFor);
+
+}  // namespace hashphase::detail

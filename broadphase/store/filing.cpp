@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Zlib
+
+// How an update files what has changed, in passes.
+
+#include <broadphase/store/store.hpp>
+
+#include <broadphase/core/ensure_capacity.hpp>
+#include <broadphase/core/prefetch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+namespace hashphase::detail {
+namespace {
+
+// Resting proxies are refiled when this many want to join or have left: often enough to be of use,
+// and seldom enough to be cheap for each of them.
+std::size_t worthRefiling(std::size_t restingCount) {
+    return std::max<std::size_t>(32, restingCount / 8);
+}
+
+}  // namespace
+
+// Slots that are near each other in space are near each other
+// in proxies.mobile, but anywhere in proxies.records.
+template <class Scalar>
+void Store<Scalar>::stage(ParallelFor parallelFor, bool isForQueries) {
+    constexpr std::size_t kGrain = 4096;
+    constexpr std::size_t kAhead = 12;
+    const std::size_t count = proxies.mobile.size();
+    frame.now.resize(count);
+    frame.before.resize(hasPairs ? count : 0);
+    ensureCapacity(frame.slots, proxies.nanCount);  // for settle()
+    frame.quietCount = 0;
+    const bool someRefuse = proxies.groupKinds.someRefuse();  // else nobody asks for kinds
+    frame.mobileKinds = 0;
+    frame.changedKinds = 0;
+    parallelFor(count, kGrain, [&](std::size_t begin, std::size_t end) {
+        std::uint32_t quietCount = 0;
+        GroupKinds::Set mobileKinds = 0;
+        GroupKinds::Set changedKinds = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+            if (i + kAhead < count) {
+                prefetch(&proxies.records[proxies.mobile[i + kAhead]]);
+            }
+            const Record& record = proxies.records[proxies.mobile[i]];
+            frame.now[i] = padded(isForQueries ? record.box : proxies.standingBox(record));
+            if (hasPairs) {
+                frame.before[i] = padded(proxies.boxAtUpdate(proxies.mobile[i]));
+            }
+            quietCount += isQuiet(record) ? 1 : 0;
+            if (someRefuse) {
+                const GroupKinds::Set kind = GroupKinds::bit(record.kind);
+                mobileKinds |= kind;
+                changedKinds |= record.changedAt == proxies.updateNumber ? kind : 0;
+            }
+        }
+        frame.quietCount += quietCount;
+        frame.mobileKinds |= mobileKinds;
+        frame.changedKinds |= changedKinds;
+    });
+}
+
+template <class Scalar>
+bool Store<Scalar>::putQuietToRest(ParallelFor parallelFor) {
+    const std::size_t filedCount = tables.resting.size() - tables.restingErased;
+    if (std::max<std::uint32_t>(frame.quietCount, tables.restingErased) <
+        worthRefiling(filedCount)) {
+        return false;
+    }
+    // Those that stay at rest come first, then those that join.
+    ensureCapacity(frame.slots, filedCount + frame.quietCount);
+    ensureCapacity(frame.boxes, filedCount + frame.quietCount);
+    listResting();
+    for (std::size_t i = 0; frame.quietCount > 0 && i < proxies.mobile.size(); ++i) {
+        Record& record = proxies.records[proxies.mobile[i]];
+        if (record.place == Place::mobile && isQuiet(record)) {
+            record.place = Place::resting;
+            frame.slots.push_back(proxies.mobile[i]);
+            frame.boxes.push_back(frame.now[i]);
+            frame.now[i] = padded(nanBox<Scalar>());
+        }
+    }
+    fileResting(parallelFor);
+    return frame.quietCount > 0;
+}
+
+// Those that are at rest, in the order of their table.
+template <class Scalar>
+void Store<Scalar>::listResting() {
+    frame.slots.clear();
+    frame.boxes.clear();
+    for (const std::uint32_t slot : tables.resting.entrySlots()) {
+        if (proxies.records[slot].place == Place::resting) {
+            frame.slots.push_back(slot);
+            frame.boxes.push_back(padded(proxies.records[slot].box));
+        }
+    }
+}
+
+template <class Scalar>
+void Store<Scalar>::fileResting(ParallelFor parallelFor) {
+    tables.resting.file(frame.slots, frame.boxes, fixedSizes(), parallelFor, proxies.groupsOfAll());
+    tables.restingKinds = 0;
+    for (std::uint32_t entry = 0; entry < tables.resting.size(); ++entry) {
+        proxies.records[tables.resting.slot(entry)].listedAt = entry;
+        tables.restingKinds |= proxies.kindOf(tables.resting.slot(entry));
+    }
+    tables.restingErased = 0;
+    cost.filed += tables.resting.size();
+}
+
+template <class Scalar>
+void Store<Scalar>::fileMobile(ParallelFor parallelFor) {
+    tables.isFresh.store(false, std::memory_order_relaxed);
+    tables.isTorn.store(true,
+                        std::memory_order_relaxed);  // should it fail, the next one files anew
+    tables.mobile.file(proxies.mobile, frame.now, fixedSizes(), parallelFor, proxies.groupsOfAll());
+    ++tables.filingCount;
+    cost.filed += tables.mobile.size();
+    fileSweeping(parallelFor);
+    dropList();
+    tables.isTorn.store(false, std::memory_order_release);
+}
+
+// What sweeps is filed apart, for queries: their boxes may be many times as large as those of what
+// stands, and no pair is looked for by them.
+template <class Scalar>
+void Store<Scalar>::fileSweeping(ParallelFor parallelFor) {
+    std::erase_if(proxies.sweeping, [this](std::uint32_t slot) {
+        return proxies.records[slot].place != Place::sweeping;
+    });
+    if (proxies.sweeping.empty()) {
+        clearSweeping();
+        return;
+    }
+    if (tables.sweeping == nullptr) {
+        tables.sweeping = std::make_unique<FiledTable<Scalar>>();
+    }
+    frame.boxes.clear();
+    for (const std::uint32_t slot : proxies.sweeping) {
+        frame.boxes.push_back(padded(proxies.records[slot].box));
+    }
+    tables.sweeping->file(proxies.sweeping, frame.boxes, fixedSizes(), parallelFor);
+    cost.filed += tables.sweeping->size();
+}
+
+template <class Scalar>
+void Store<Scalar>::clearSweeping() noexcept {
+    if (tables.sweeping != nullptr) {
+        tables.sweeping->clear();
+        tables.sweeping->makeTreeStale();
+    }
+}
+
+template <class Scalar>
+void Store<Scalar>::settle() noexcept {
+    frame.slots.clear();
+    if (tables.mobile.size() != proxies.mobile.size() && proxies.nanCount > 0) {
+        std::copy_if(proxies.mobile.begin(), proxies.mobile.end(), std::back_inserter(frame.slots),
+                     [this](std::uint32_t slot) { return proxies.records[slot].isNan; });
+    }
+    proxies.mobile.assign(tables.mobile.entrySlots().begin(), tables.mobile.entrySlots().end());
+    if (tables.sweeping != nullptr) {
+        const std::span<const std::uint32_t> sweeping = tables.sweeping->entrySlots();
+        proxies.mobile.insert(proxies.mobile.end(), sweeping.begin(), sweeping.end());
+    }
+    proxies.mobile.insert(proxies.mobile.end(), frame.slots.begin(), frame.slots.end());
+    proxies.mobileAtUpdate = proxies.mobile.size();
+    proxies.giveBack(proxies.removed);
+    proxies.giveBack(proxies.removedAnnounced);
+}
+
+template <class Scalar>
+UpdateCost Store<Scalar>::endUpdate() noexcept {
+    cost.resting = tables.resting.size() - tables.restingErased;
+    double finest = std::numeric_limits<double>::infinity();
+    const Reading reading = tables.reading();
+    for (const Filing& filing : reading.filings()) {
+        cost.largestCell = std::max(cost.largestCell, filing.table->largestCell());
+        finest = std::min(finest, filing.table->finestCellSize());
+    }
+    proxies.woken.clear();
+    proxies.boxesAtUpdate.clear();
+    proxies.slotsAtUpdate.clear();
+    if (std::exchange(proxies.areRegrouped, false)) {
+        for (std::size_t i = 0; i < proxies.groups.size(); i += 2) {
+            proxies.groups[i + 1] = proxies.groups[i];
+        }
+    }
+    if (++proxies.updateNumber == std::numeric_limits<std::uint32_t>::max()) {
+        proxies.countUpdatesAnew(config.updatesBeforeRest);
+    }
+    if (config.cellSize == 0 && !tables.isTorn.load(std::memory_order_relaxed)) {
+        tables.cellSize = std::isinf(finest) ? Scalar(1) : static_cast<Scalar>(finest);
+    }
+    return std::exchange(cost, {});
+}
+
+template <class Scalar>
+void Store<Scalar>::forgetLastUpdate() noexcept {
+    forEachListed([this](std::uint32_t slot) {
+        if (proxies.isAlive(slot)) {
+            noteChange(slot);
+        }
+        proxies.records[slot].before = nanBox<Scalar>();
+        proxies.records[slot].isAnnounced = false;
+    });
+    proxies.boxesAtUpdate.clear();
+    proxies.slotsAtUpdate.clear();
+    isTorn = false;
+}
+
+// Whoever has been put to rest by now is still listed among the mobile ones; who rested before is not.
+template <class Scalar>
+void Store<Scalar>::wakeAll() noexcept {
+    for (const std::uint32_t slot : proxies.mobile) {
+        Record& record = proxies.records[slot];
+        record.place = record.place == Place::resting ? Place::mobile : record.place;
+    }
+    for (std::uint32_t slot = 0; slot < proxies.records.size(); ++slot) {
+        if (proxies.records[slot].place == Place::resting) {
+            proxies.records[slot].place = Place::mobile;
+            proxies.listMobile(slot);
+            proxies.woken.push_back(slot);
+        }
+    }
+    isTorn = true;
+    tables.resting.clear();
+    tables.restingErased = 0;
+    tables.resting.makeTreeStale();
+    tables.isFresh.store(false, std::memory_order_relaxed);
+    tables.isTorn.store(true, std::memory_order_relaxed);
+}
+
+template void Store<float>::stage(ParallelFor, bool);
+template bool Store<float>::putQuietToRest(ParallelFor);
+template void Store<float>::listResting();
+template void Store<float>::fileResting(ParallelFor);
+template void Store<float>::fileMobile(ParallelFor);
+template void Store<float>::fileSweeping(ParallelFor);
+template void Store<float>::clearSweeping() noexcept;
+template void Store<float>::settle() noexcept;
+template UpdateCost Store<float>::endUpdate() noexcept;
+template void Store<float>::wakeAll() noexcept;
+template void Store<float>::forgetLastUpdate() noexcept;
+template void Store<double>::stage(ParallelFor, bool);
+template bool Store<double>::putQuietToRest(ParallelFor);
+template void Store<double>::listResting();
+template void Store<double>::fileResting(ParallelFor);
+template void Store<double>::fileMobile(ParallelFor);
+template void Store<double>::fileSweeping(ParallelFor);
+template void Store<double>::clearSweeping() noexcept;
+template void Store<double>::settle() noexcept;
+template UpdateCost Store<double>::endUpdate() noexcept;
+template void Store<double>::wakeAll() noexcept;
+template void Store<double>::forgetLastUpdate() noexcept;
+
+}  // namespace hashphase::detail

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Zlib
+
+// What a grid holds, and what it gives back after a peak: what only an update, a shift or a ray needs,
+// room for more than there are, and slots at the end that have no proxy.
+
+#include <broadphase/store/store.hpp>
+
+#include <broadphase/core/ensure_capacity.hpp>
+
+#include <algorithm>
+#include <new>
+
+namespace hashphase::detail {
+namespace {
+
+// Leaves room for `count`, where there is memory to move what is left to.
+template <class Array>
+void shrink(Array& array, std::size_t count) noexcept {
+    if (array.capacity() <= std::max(count, array.size())) {
+        return;
+    }
+    try {
+        Array fresh;
+        fresh.reserve(std::max(count, array.size()));
+        fresh.insert(fresh.end(), array.begin(), array.end());
+        array.swap(fresh);
+    } catch (const std::bad_alloc&) {
+    }
+}
+
+}  // namespace
+
+template <class Scalar>
+std::size_t Store<Scalar>::memoryBytes() const noexcept {
+    std::size_t bytes = sizeof(*this) + proxies.memoryBytes() + frame.memoryBytes();
+    Tables<Scalar>::forAll(tables, [&](const FiledTable<Scalar>& table) {
+        bytes += table.memoryBytes() + table.tree.memoryBytes();
+    });
+    for (const FiledTable<Scalar>* late : {tables.sweeping.get(), tables.fresh.get()}) {
+        bytes += late != nullptr ? sizeof(*late) : 0;
+    }
+    return bytes;
+}
+
+template <class Scalar>
+std::size_t Store<Scalar>::rayMemoryBytes() const noexcept {
+    std::size_t bytes = 0;
+    Tables<Scalar>::forAll(
+        tables, [&](const FiledTable<Scalar>& table) { bytes += table.tree.memoryBytes(); });
+    return bytes;
+}
+
+template <class Scalar>
+void Store<Scalar>::releaseRayMemory() noexcept {
+    Tables<Scalar>::forAll(tables, [](FiledTable<Scalar>& table) {
+        table.tree = {};
+        table.makeTreeStale();
+    });
+}
+
+// Where the last slots have proxies, room for records cannot be given back.
+template <class Scalar>
+void Store<Scalar>::releaseAfterPeak() noexcept {
+    const auto& records = proxies.records;
+    const bool isLastFree = !records.empty() && records.back().generation % 2 == 0;
+    const std::size_t room = std::max(proxies.mobile.capacity(), isLastFree ? records.size() : 0);
+    if (peaks.isPast(std::max(listedCount(), proxies.reservedCount), room)) {
+        releaseMemory();
+    }
+}
+
+template <class Scalar>
+void Store<Scalar>::releaseMemory() noexcept {
+    beforeChange();
+    tables.fresh.reset();
+    if (tables.sweeping != nullptr && tables.sweeping->size() == 0) {
+        tables.sweeping.reset();
+    }
+    if (tables.restingErased > 0) {  // and is still listed in the table
+        try {
+            listResting();
+            fileResting(serialFor);
+        } catch (const std::bad_alloc&) {
+            wakeAll();
+        }
+    }
+    try {
+        proxies.dropLastSlots();
+    } catch (const std::bad_alloc&) {  // they are kept
+    }
+    shrink(proxies.records, proxies.reservedCount);
+    shrink(proxies.groups, proxies.groups.empty() ? 0 : 2 * proxies.records.capacity());
+    shrink(proxies.mobile, std::max(listedCount(), proxies.reservedCount));
+    shrink(proxies.woken, proxies.mobile.capacity());
+    shrink(proxies.waiting, proxies.mobile.capacity());
+    freeArrays(frame.now, frame.before, frame.slots, frame.boxes);
+    if (proxies.boxesAtUpdate.empty()) {
+        freeArrays(proxies.boxesAtUpdate);
+        proxies.slotsAtUpdate = {};
+    }
+    Tables<Scalar>::forAll(tables, [](FiledTable<Scalar>& table) {
+        table.releaseUnusedMemory();
+        if (table.isTreeStale.load(std::memory_order_relaxed)) {
+            table.tree = {};
+        } else {
+            table.tree.releaseUnusedMemory();
+        }
+    });
+}
+
+template std::size_t Store<float>::memoryBytes() const noexcept;
+template std::size_t Store<float>::rayMemoryBytes() const noexcept;
+template void Store<float>::releaseRayMemory() noexcept;
+template void Store<float>::releaseAfterPeak() noexcept;
+template void Store<float>::releaseMemory() noexcept;
+template std::size_t Store<double>::memoryBytes() const noexcept;
+template std::size_t Store<double>::rayMemoryBytes() const noexcept;
+template void Store<double>::releaseRayMemory() noexcept;
+template void Store<double>::releaseAfterPeak() noexcept;
+template void Store<double>::releaseMemory() noexcept;
+
+}  // namespace hashphase::detail

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// All proxies: their boxes now and at the last update, their groups, and who has changed since. Plain data
+// that the parts of the broadphase read and write in place; store.hpp has what changes it.
+
+#include <broadphase/aabb.hpp>
+#include <broadphase/core/flat_set.hpp>
+#include <broadphase/core/group_kinds.hpp>
+#include <broadphase/proxy_groups.hpp>
+#include <broadphase/proxy_id.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <broadphase/core/hide_macros.hpp>
+
+namespace hashphase::detail {
+
+inline constexpr std::uint32_t kNoSlot = ~std::uint32_t{0};
+
+enum class Place : std::uint8_t {
+    nowhere,  // no proxy
+    mobile,  // listed in Population::mobile, and filed with the mobile ones unless it waits or is NaN
+    resting,   // filed with the resting ones
+    sweeping,  // as mobile, but filed apart: its way, and not its box, makes its pairs
+};
+
+template <class Scalar>
+[[nodiscard]] Aabb<Scalar> nanBox() {
+    const auto nan = Vector3<Scalar>::Constant(std::numeric_limits<Scalar>::quiet_NaN());
+    return {nan, nan};
+}
+
+/// All about a slot, in one cache line for single precision and two for double.
+template <class Scalar>
+struct alignas(16 * sizeof(Scalar)) Record {
+    Aabb<Scalar> box = nanBox<Scalar>();  // NaN while the slot has no proxy
+    Aabb<Scalar> before =
+        nanBox<Scalar>();          // standingBox() at the last update, if it has changed since
+    std::uint32_t generation = 0;  // odd while the slot has a proxy
+    std::uint32_t changedAt = 0;   // number of the update that will see, or saw, the last change
+    std::uint32_t listedAt =
+        0;  // where in the resting table; in Population::mobile, if it has joined
+            // these since the last update; or the next slot without a proxy
+    Place place = Place::nowhere;
+    std::uint8_t listedIn = 0;  // number of the list of changes that has it
+    std::uint8_t kind = 0;      // of its groups, in Population::groupKinds
+    // Mobility::resting, or rested, and has not moved since but by a shift of the origin
+    bool restsAtOnce : 1 = false;
+    bool isNan : 1 = false;        // has a NaN; of a proxy alive
+    bool isAnnounced : 1 = false;  // a couple of the slot's has been told since the last update
+};
+
+/// Slots without a proxy, one after the other by Record::listedAt.
+struct SlotList {
+    std::uint32_t first = kNoSlot;
+    std::uint32_t last = kNoSlot;
+    std::uint32_t count = 0;
+};
+
+template <class Scalar>
+struct Population {
+    using Box = Aabb<Scalar>;
+
+    std::vector<Record<Scalar>> records;  // by slot
+    std::size_t size = 0;                 // proxies alive
+    std::size_t nanCount = 0;
+    std::size_t reservedCount = 0;      // of proxies, by Grid::reserve()
+    std::uint64_t number;               // see Grid::populationNumber()
+    std::uint32_t updateNumber = 1;     // of the update that ends the present frame
+    std::uint32_t firstGeneration = 0;  // of new slots; even
+    bool nanReported = false;
+    bool areRegrouped = false;    // groups of some, since the last update
+    std::uint8_t listNumber = 1;  // of `waiting`, so that marks of earlier lists do not count
+
+    SlotList free;
+    // Those whose proxies were removed since the tables were last settled: the next update has to tell
+    // these from the next ones. What came and went in between is free at once, unless it has been told.
+    SlotList removed;
+    SlotList removedAnnounced;
+
+    // Of each slot now, and at the last update: 2 * slot, and one behind. Empty until somebody has others
+    // than ProxyGroups{}; as long as records then. The same as numbers.
+    std::vector<ProxyGroups> groups;
+    GroupKinds groupKinds;
+
+    // In the table's order as of the last update, then what has joined since. What has left since
+    // is still listed, with a NaN box, unless it had joined since. What a change appends to, this, `woken`
+    // and `waiting`, has room for all that are listed here or rest.
+    std::vector<std::uint32_t> mobile;
+    std::size_t mobileAtUpdate = 0;       // how many there were at the last update
+    std::vector<std::uint32_t> woken;     // slots that have left rest since the last update
+    std::vector<std::uint32_t> waiting;   // what changed since the mobile table was built
+    std::vector<std::uint32_t> sweeping;  // when the last update began; in `mobile`, too
+
+    // When a shift of the origin has rounded boxes since the last update: the boxes of that update in the
+    // coordinates of then. By slot, or where proxies are few among the slots by place in slotsAtUpdate.
+    // Those that are missing had no proxy.
+    std::vector<Box> boxesAtUpdate;
+    FlatSet slotsAtUpdate;
+
+    // --- A slot ----------------------------------------------------------------------------------
+
+    /// The proxy in the slot, or the last one that was.
+    [[nodiscard]] ProxyId idOf(std::uint32_t slot) const noexcept {
+        return {slot, (records[slot].generation - 1) | 1};
+    }
+    [[nodiscard]] bool isAlive(std::uint32_t slot) const noexcept {
+        return (records[slot].generation & 1) != 0;
+    }
+    [[nodiscard]] bool contains(ProxyId id) const noexcept {
+        return !id.isNull() && id.index < records.size() &&
+               records[id.index].generation == id.generation;
+    }
+    [[nodiscard]] bool isWaiting(const Record<Scalar>& record) const noexcept {
+        return record.listedIn == listNumber;
+    }
+    [[nodiscard]] bool changedNow(std::uint32_t slot) const noexcept {
+        return records[slot].changedAt == updateNumber;
+    }
+    [[nodiscard]] bool rests(std::uint32_t slot) const noexcept {
+        return records[slot].place == Place::resting;
+    }
+
+    /// The box by which a slot makes pairs: NaN of what sweeps, which makes them on its way.
+    [[nodiscard]] const Box& standingBox(const Record<Scalar>& record) const noexcept {
+        return record.place == Place::sweeping ? nowhere() : record.box;
+    }
+    [[nodiscard]] static const Box& nowhere() noexcept {
+        static const Box box = nanBox<Scalar>();
+        return box;
+    }
+
+    // --- The last update -------------------------------------------------------------------------
+
+    /// standingBox() at the last update, in present coordinates; NaN when it had no proxy.
+    [[nodiscard]] const Box& before(std::uint32_t slot) const noexcept {
+        return changedNow(slot) ? records[slot].before : standingBox(records[slot]);
+    }
+    /// The same in coordinates in which such boxes may be compared with each other.
+    [[nodiscard]] const Box& boxAtUpdate(std::uint32_t slot) const noexcept {
+        if (boxesAtUpdate.empty()) {
+            return before(slot);
+        }
+        const std::size_t place = slotsAtUpdate.size() == 0 ? slot : slotsAtUpdate.find(slot);
+        return place < boxesAtUpdate.size() ? boxesAtUpdate[place] : before(slot);
+    }
+    [[nodiscard]] bool overlappedAtUpdate(std::uint32_t a, std::uint32_t b) const noexcept {
+        return overlaps(boxAtUpdate(a), boxAtUpdate(b));
+    }
+
+    // --- Groups ----------------------------------------------------------------------------------
+
+    [[nodiscard]] ProxyGroups groupsNow(std::uint32_t slot) const noexcept {
+        return groups.empty() ? ProxyGroups{} : groups[2 * std::size_t{slot}];
+    }
+    [[nodiscard]] bool mayPairNow(std::uint32_t a, std::uint32_t b) const noexcept {
+        return groups.empty() || mayPair(groupsNow(a), groupsNow(b));
+    }
+    /// At the last update.
+    [[nodiscard]] bool couldPair(std::uint32_t a, std::uint32_t b) const noexcept {
+        return groups.empty() ||
+               mayPair(groups[2 * std::size_t{a} + 1], groups[2 * std::size_t{b} + 1]);
+    }
+    /// For searches among all proxies: null where all may pair.
+    [[nodiscard]] const ProxyGroups* groupsOfAll() const noexcept {
+        return groupKinds.someRefuse() ? groups.data() : nullptr;
+    }
+    /// The same as of the last update.
+    [[nodiscard]] const ProxyGroups* groupsOfAllAtUpdate() const noexcept {
+        const ProxyGroups* const now = groupsOfAll();
+        return now != nullptr ? now + 1 : nullptr;
+    }
+    [[nodiscard]] GroupKinds::Set kindOf(std::uint32_t slot) const noexcept {
+        return GroupKinds::bit(records[slot].kind);
+    }
+    /// Whether the two may not pair, by their kinds first, which mostly tell.
+    [[nodiscard]] bool doRefuse(std::uint32_t a, std::uint32_t b) const noexcept {
+        return groupKinds.refuse(records[a].kind, records[b].kind) && !mayPairNow(a, b);
+    }
+
+    // --- Lists -----------------------------------------------------------------------------------
+
+    /// Makes room for records of so many slots. Throws std::length_error beyond 2^28.
+    void reserveSlots(std::size_t slotCount);
+    /// Makes room in `mobile`, `woken` and `waiting`.
+    void reserveLists(std::size_t count);
+    /// Makes groups for all that are there, with room for as many as records has room for.
+    void makeGroups();
+    void setGroups(std::uint32_t slot, const ProxyGroups& of) noexcept;
+
+    /// Lists the slot among the mobile ones, and notes where.
+    void listMobile(std::uint32_t slot) noexcept;
+    void unlistMobile(std::uint32_t slot) noexcept;
+    /// Whether the slot's proxy, which is marked as changed, was added since the last update.
+    [[nodiscard]] bool isUnseen(std::uint32_t slot) const noexcept;
+    void append(std::uint32_t slot, SlotList& list) noexcept;
+    /// From now on the slots may be given away again.
+    void giveBack(SlotList& list) noexcept;
+    /// As new, but for what tells ids of before apart, and room in what changes append to.
+    void clear() noexcept;
+    /// Begins an empty list of changes.
+    void dropWaiting() noexcept;
+    /// Begins to count updates at a small number: see Record::changedAt.
+    void countUpdatesAnew(std::uint32_t updatesBeforeRest) noexcept;
+    [[nodiscard]] std::size_t memoryBytes() const noexcept {
+        return records.capacity() * sizeof(records[0]) + groups.capacity() * sizeof(groups[0]) +
+               (mobile.capacity() + woken.capacity() + waiting.capacity() + sweeping.capacity()) *
+                   sizeof(mobile[0]) +
+               boxesAtUpdate.capacity() * sizeof(Box) + slotsAtUpdate.memoryBytes();
+    }
+    /// Drops slots at the end of which nothing tells any more, and sorts those that are free.
+    void dropLastSlots();
+};
+
+extern template struct Population<float>;
+extern template struct Population<double>;
+
+}  // namespace hashphase::detail
+
+#include <broadphase/core/restore_macros.hpp>

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Zlib
+
+// What queries read between updates, and what they build for that: the filing of many changes, and the
+// trees of rays. Each is built by the first query that needs it, under one lock.
+
+#include <broadphase/store/store.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace hashphase::detail {
+namespace {
+
+// So few changes are read by each query without further ado.
+constexpr std::size_t kFewWait = 64;
+
+// Where readers write: what they need and is not there yet is built, under a lock, or before any of them
+// has passed. The store is never a const object: it is created by its owner, and only seen as const.
+template <class Scalar>
+Store<Scalar>& writable(const Store<Scalar>& store) {
+    return const_cast<Store<Scalar>&>(store);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+}
+
+}  // namespace
+
+// Changes and queries may come in turn: filing for each query would cost far more than reading the
+// list, and reading it for millions of queries far more than filing. So they read it until that has
+// cost a third of what filing does, and then file: at most a third more than to file at once, which is
+// right for many queries without a change in between, and a sixth more than the least there is for changes
+// and queries in turn.
+template <class Scalar>
+std::uint64_t Store<Scalar>::worthFiling() const noexcept {
+    constexpr std::uint64_t kThirdOfFiling = 3;  // entries of the list, for each proxy
+    return 1024 + kThirdOfFiling * tables.mobile.size();
+}
+
+template <class Scalar>
+auto Store<Scalar>::beginReading() const -> Reading {
+    mendTables();
+    const std::size_t count = proxies.waiting.size();
+    if (count > kFewWait && !tables.isFresh.load(std::memory_order_acquire) &&
+        countRead(count) > worthFiling()) {
+        writable(*this).fileFresh(Lock::tryOnce);
+    }
+    return tables.reading();
+}
+
+// What goes from near to far offers all that is filed first, then the list: a short one. How long does not
+// depend on how many of them ask, so that each of many finds in the order in which it finds alone.
+template <class Scalar>
+auto Store<Scalar>::beginReadingInOrder() const -> Reading {
+    mendTables();
+    if (proxies.waiting.size() > kFewWait + tables.mobile.size() / 128 &&
+        !tables.isFresh.load(std::memory_order_acquire)) {
+        writable(*this).fileFresh(Lock::waitFor);
+    }
+    const Reading reading = tables.reading();
+    growTrees(reading);
+    return reading;
+}
+
+template <class Scalar>
+void Store<Scalar>::expectQueries(std::size_t count) const {
+    mendTables();
+    if (proxies.waiting.size() > kFewWait && !tables.isFresh.load(std::memory_order_acquire)) {
+        const std::uint64_t read = tables.waitingRead.load(std::memory_order_relaxed);
+        if (count > (worthFiling() - std::min(worthFiling(), read)) / proxies.waiting.size()) {
+            writable(*this).fileFresh(Lock::tryOnce);
+        }
+    }
+}
+
+template <class Scalar>
+auto Store<Scalar>::beginReadings(std::size_t count) const -> Reading {
+    expectQueries(count);
+    const Reading reading = tables.reading();
+    countRead(reading.isFresh ? 0 : proxies.waiting.size() * count);
+    return reading;
+}
+
+// Returns how much of the list of changes queries have read by now.
+template <class Scalar>
+std::uint64_t Store<Scalar>::countRead(std::size_t count) const noexcept {
+    auto& read = writable(*this).tables.waitingRead;
+    return read.fetch_add(count, std::memory_order_relaxed) + count;
+}
+
+// No reader has passed this point while the table is torn, and the first to come here files for all.
+template <class Scalar>
+void Store<Scalar>::mendTables() const {
+    if (!tables.isTorn.load(std::memory_order_acquire)) {
+        return;
+    }
+    auto& self = writable(*this);
+    const std::lock_guard lock(self.tables.mutex);
+    if (tables.isTorn.load(std::memory_order_relaxed)) {
+        self.stage(serialFor);
+        self.fileMobile(serialFor);
+        if (!hasPairs) {
+            self.settle();
+        }
+    }
+}
+
+// Others may be reading the mobile table and the list, and go on with them. None reads the fresh one: since
+// it was last in use, something has changed. From within a query that is not so, and nothing is filed.
+template <class Scalar>
+void Store<Scalar>::fileFresh(Lock how) {
+    if (QueryScope::isWithin(this)) {
+        return;
+    }
+    std::unique_lock lock(tables.mutex, std::defer_lock);
+    if (how == Lock::waitFor) {
+        lock.lock();
+    } else if (!lock.try_lock()) {
+        return;
+    }
+    if (tables.isFresh.load(std::memory_order_relaxed)) {
+        return;
+    }
+    if (tables.fresh == nullptr) {
+        tables.fresh = std::make_unique<FiledTable<Scalar>>();
+    }
+    stage(serialFor, true);
+    tables.fresh->file(proxies.mobile, frame.now, fixedSizes(), serialFor, proxies.groupsOfAll());
+    ++tables.filingCount;
+    cost.filed += tables.fresh->size();
+    tables.isFresh.store(true, std::memory_order_release);
+}
+
+// Before a change: what is fresh will not be so any more.
+template <class Scalar>
+void Store<Scalar>::takeFresh() noexcept {
+    tables.isFresh.store(false, std::memory_order_relaxed);
+    if (QueryScope::isWithin(this)) {
+        return;
+    }
+    tables.mobile.swap(*tables.fresh);
+    if (tables.fresh->memoryBytes() == 0) {  // the first filing of all
+        tables.fresh.reset();
+    }
+    clearSweeping();
+    dropList();
+    if (!hasPairs) {
+        settle();
+    }
+    forgetErased();
+}
+
+template <class Scalar>
+void Store<Scalar>::dropList() noexcept {
+    proxies.dropWaiting();
+    tables.waitingRead.store(0, std::memory_order_relaxed);
+}
+
+// What was at rest and has left it is listed until the next update, which may never come. Where all
+// have left, as with a level, no query need look at them any more.
+template <class Scalar>
+void Store<Scalar>::forgetErased() noexcept {
+    if (tables.restingErased > 0 && tables.restingErased == tables.resting.size()) {
+        tables.resting.clear();
+        tables.restingErased = 0;
+        tables.resting.makeTreeStale();
+    }
+}
+
+// As mendTables(): no ray passes before it is done.
+template <class Scalar>
+void Store<Scalar>::growTrees(const Reading& reading) const {
+    const auto isStale = [](const Filing& filing) {
+        return filing.table->isTreeStale.load(std::memory_order_acquire);
+    };
+    if (std::ranges::none_of(reading.filings(), isStale)) {
+        return;
+    }
+    auto& self = writable(*this);
+    const std::lock_guard lock(self.tables.mutex);
+    Tables<Scalar>::forAll(self.tables, [&](FiledTable<Scalar>& table) {
+        const auto isRead = [&](const Filing& filing) { return filing.table == &table; };
+        if (std::ranges::any_of(reading.all, isRead) &&
+            table.isTreeStale.load(std::memory_order_relaxed)) {
+            table.tree.build(table);
+            table.isTreeStale.store(false, std::memory_order_release);
+        }
+    });
+}
+
+template std::uint64_t Store<float>::worthFiling() const noexcept;
+template auto Store<float>::beginReading() const -> Reading;
+template auto Store<float>::beginReadingInOrder() const -> Reading;
+template auto Store<float>::beginReadings(std::size_t) const -> Reading;
+template std::uint64_t Store<float>::countRead(std::size_t) const noexcept;
+template void Store<float>::expectQueries(std::size_t) const;
+template void Store<float>::mendTables() const;
+template void Store<float>::fileFresh(Lock);
+template void Store<float>::takeFresh() noexcept;
+template void Store<float>::dropList() noexcept;
+template void Store<float>::forgetErased() noexcept;
+template void Store<float>::growTrees(const Reading&) const;
+template std::uint64_t Store<double>::worthFiling() const noexcept;
+template auto Store<double>::beginReading() const -> Reading;
+template auto Store<double>::beginReadingInOrder() const -> Reading;
+template auto Store<double>::beginReadings(std::size_t) const -> Reading;
+template std::uint64_t Store<double>::countRead(std::size_t) const noexcept;
+template void Store<double>::expectQueries(std::size_t) const;
+template void Store<double>::mendTables() const;
+template void Store<double>::fileFresh(Lock);
+template void Store<double>::takeFresh() noexcept;
+template void Store<double>::dropList() noexcept;
+template void Store<double>::forgetErased() noexcept;
+template void Store<double>::growTrees(const Reading&) const;
+
+}  // namespace hashphase::detail

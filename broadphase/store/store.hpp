@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What a grid is made of: all proxies, where they are filed, and the frame under way. Plain data: the
+// frame (step.hpp), queries, sweeps and pairs read it in place.
+
+#include <broadphase/core/peak_watch.hpp>
+#include <broadphase/core/query_scope.hpp>
+#include <broadphase/geometry/padded_box.hpp>
+#include <broadphase/grid_config.hpp>
+#include <broadphase/parallel_for.hpp>
+#include <broadphase/store/population.hpp>
+#include <broadphase/store/tables.hpp>
+#include <broadphase/update_cost.hpp>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <broadphase/core/hide_macros.hpp>
+
+namespace hashphase::detail {
+
+template <class Scalar>
+struct Motions;
+
+/// Boxes of the mobile proxies, by their place in Population::mobile, and what they have in common.
+template <class Scalar>
+struct Frame {
+    std::vector<PaddedBox<Scalar>> now;
+    std::vector<PaddedBox<Scalar>> before;  // as of the last update; where there are pairs
+    std::atomic<std::uint32_t> quietCount{0};
+    // Which kinds of groups there are among the mobile ones, and those that have changed; perhaps more.
+    std::atomic<GroupKinds::Set> mobileKinds{0};
+    std::atomic<GroupKinds::Set> changedKinds{0};
+
+    std::vector<std::uint32_t> slots;      // scratch: of what is filed, or has a NaN
+    std::vector<PaddedBox<Scalar>> boxes;  // scratch: of what is filed
+
+    [[nodiscard]] std::size_t memoryBytes() const noexcept {
+        return (now.capacity() + before.capacity() + boxes.capacity()) * sizeof(boxes[0]) +
+               slots.capacity() * sizeof(slots[0]);
+    }
+};
+
+template <class Scalar>
+struct HASHPHASE_BROADPHASE_EXPORT Store {
+    using Box = Aabb<Scalar>;
+    using Point = Vector3<Scalar>;
+    using Record = detail::Record<Scalar>;
+    using Filing = detail::Filing<Scalar>;
+    using Reading = detail::Reading<Scalar>;
+
+    GridConfig config;
+    Population<Scalar> proxies;
+    Tables<Scalar> tables;
+    Frame<Scalar> frame;
+    UpdateCost cost;               // of the present frame
+    std::uint64_t shiftCount = 0;  // of the origin
+    Motions<Scalar>* firstMotions = nullptr;
+    PeakWatch peaks;
+    bool hasPairs = false;
+    bool isTorn = false;  // by wakeAll(): what pairs watch is to be found anew
+
+    explicit Store(const GridConfig& itsConfig);
+
+    // --- Changes. None allocates but add() and reserve(), which make room for all of it. ---------
+
+    [[nodiscard]] std::uint32_t add(const Box& box, bool restsAtOnce, const ProxyGroups& groups);
+    [[nodiscard]] std::uint32_t takeSlot();
+    void reserve(std::size_t count);
+    void move(std::uint32_t slot, const Box& box);
+    void remove(std::uint32_t slot) noexcept;
+    void clear();
+    void setGroups(std::uint32_t slot, const ProxyGroups& groups);
+
+    /// To be called before every change of a slot's box.
+    void noteChange(std::uint32_t slot) noexcept;
+    /// The same where the box is not changed.
+    void countChange(Record& record) noexcept;
+    void leaveRest(std::uint32_t slot) noexcept;
+    void setBox(Record& record, const Box& box);
+    void noteNan(Record& record, bool isNan);
+
+    /// It sweeps as of the update that begins here.
+    void beginSweep(std::uint32_t slot) noexcept;
+    void endSweep(std::uint32_t slot) noexcept;
+    void endSweeps() noexcept;
+
+    /// See Grid::shiftOrigin().
+    std::size_t shiftOrigin(const Point& shift);
+    void keepBoxesAtUpdate(const Point& shift);
+    bool shiftRecord(std::uint32_t slot, const Point& shift) noexcept;
+    void shiftTables(const Point& shift);
+
+    // --- The passes of an update, see step.hpp ---------------------------------------------------
+
+    /// Copies the mobile boxes side by side.
+    void stage(ParallelFor parallelFor, bool isForQueries = false);
+    /// Quiet proxies leave the mobile ones when enough have gathered, or enough others have left rest, to
+    /// be worth filing the resting ones anew. Returns whether any did.
+    [[nodiscard]] bool putQuietToRest(ParallelFor parallelFor);
+    void listResting();
+    void fileResting(ParallelFor parallelFor);
+    void fileMobile(ParallelFor parallelFor);
+    void fileSweeping(ParallelFor parallelFor);
+    void clearSweeping() noexcept;
+    /// Lists the mobile proxies in the order of their table, for the next time, and forgets those that
+    /// have left, whose slots may be given away again.
+    void settle() noexcept;
+    UpdateCost endUpdate() noexcept;
+    /// What is left where memory ran out, and the next update can go on from: everything is mobile.
+    void wakeAll() noexcept;
+    /// What pairs begin with: as if all had been added since the last update.
+    void forgetLastUpdate() noexcept;
+    [[nodiscard]] bool isQuiet(const Record& record) const noexcept {
+        return record.changedAt != proxies.updateNumber && !record.isNan &&
+               (record.restsAtOnce ||
+                proxies.updateNumber - record.changedAt > config.updatesBeforeRest);
+    }
+
+    // --- What queries read -----------------------------------------------------------------------
+
+    /// How queries begin. The tables may be read from then on.
+    [[nodiscard]] Reading beginReading() const;
+    [[nodiscard]] Reading beginReadingInOrder() const;
+    /// The same for so many queries, which begin together.
+    [[nodiscard]] Reading beginReadings(std::size_t count) const;
+    void expectQueries(std::size_t count) const;
+    std::uint64_t countRead(std::size_t count) const noexcept;
+    void mendTables() const;
+    void growTrees(const Reading& reading) const;
+    [[nodiscard]] std::uint64_t worthFiling() const noexcept;
+    enum class Lock : std::uint8_t { tryOnce, waitFor };
+    void fileFresh(Lock how);
+    void beforeChange() noexcept {
+        if (tables.isFresh.load(std::memory_order_relaxed)) {
+            takeFresh();
+        }
+    }
+    void takeFresh() noexcept;
+    void forgetErased() noexcept;
+    void dropList() noexcept;
+
+    /// Whether a slot that is listed in a table is still filed there.
+    [[nodiscard]] bool isFiled(std::uint32_t slot, const Reading& reading) const noexcept {
+        const Record& record = proxies.records[slot];
+        return record.place != Place::nowhere && (reading.isFresh || !proxies.isWaiting(record));
+    }
+    [[nodiscard]] bool standsIn(const Filing& filing, std::uint32_t slot,
+                                const Reading& reading) const noexcept {
+        return proxies.rests(slot) == filing.isResting && isFiled(slot, reading);
+    }
+    /// Calls visit(ProxyId, box) for every proxy alive whose box has no NaN, in about the order of space.
+    template <class Visit>
+    void forEachFiled(const Visit& visit) const;
+
+    // --- All slots -------------------------------------------------------------------------------
+
+    /// How many slots are listed, among the mobile ones or in the table of those at rest.
+    [[nodiscard]] std::size_t listedCount() const noexcept {
+        return proxies.mobile.size() + (tables.resting.size() - tables.restingErased);
+    }
+    /// Whether so few slots have proxies that their lists are read sooner than all slots.
+    [[nodiscard]] bool isSparse() const noexcept {
+        return 8 * listedCount() < proxies.records.size();
+    }
+    /// Calls visit(slot) once for each slot that has a proxy or had one at the last update, and perhaps for
+    /// others; in any order. visit() may wake proxies, and not add any.
+    template <class Visit>
+    void forEachListed(const Visit& visit) const;
+    /// Where proxies are few among the slots, lists their slots in ascending order; else none. Returns how
+    /// many slots are to be looked at: those listed, or all.
+    std::size_t listFew(std::vector<std::uint32_t>& few) const;
+
+    /// None where cell sizes follow the population.
+    [[nodiscard]] LevelSizes fixedSizes() const {
+        return config.cellSize > 0 ? fixedLevels(config.cellSize, config.levelRatio) : LevelSizes{};
+    }
+
+    [[nodiscard]] std::size_t memoryBytes() const noexcept;
+    [[nodiscard]] std::size_t rayMemoryBytes() const noexcept;
+    void releaseRayMemory() noexcept;
+    void releaseAfterPeak() noexcept;
+    void releaseMemory() noexcept;
+    [[nodiscard]] std::string validate() const;
+};
+
+template <class Scalar>
+template <class Visit>
+void Store<Scalar>::forEachFiled(const Visit& visit) const {
+    const Reading reading = beginReading();
+    for (const auto& [table, isResting] : reading.filings()) {
+        for (std::uint32_t entry = 0; entry < table->size(); ++entry) {
+            const Box box = table->box(entry);
+            if (isFiled(table->slot(entry), reading) && !hasNan(box)) {
+                visit(proxies.idOf(table->slot(entry)), box);
+            }
+        }
+    }
+    for (std::size_t i = 0; i < proxies.waiting.size() && !reading.isFresh; ++i) {
+        const std::uint32_t slot = proxies.waiting[i];
+        if (proxies.isAlive(slot) && !proxies.records[slot].isNan) {
+            visit(proxies.idOf(slot), proxies.records[slot].box);
+        }
+    }
+}
+
+template <class Scalar>
+template <class Visit>
+void Store<Scalar>::forEachListed(const Visit& visit) const {
+    if (!isSparse()) {
+        for (std::uint32_t slot = 0; slot < proxies.records.size(); ++slot) {
+            visit(slot);
+        }
+        return;
+    }
+    const std::size_t mobileCount = proxies.mobile.size();  // not those that `visit` wakes
+    for (std::size_t i = 0; i < mobileCount; ++i) {
+        visit(proxies.mobile[i]);
+    }
+    for (const std::uint32_t slot : tables.resting.entrySlots()) {
+        if (proxies.rests(slot)) {
+            visit(slot);
+        }
+    }
+}
+
+extern template struct Store<float>;
+extern template struct Store<double>;
+
+}  // namespace hashphase::detail
+
+#include <broadphase/core/restore_macros.hpp>

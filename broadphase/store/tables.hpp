@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Where proxies are filed: the tables that searches read, each with its tree for rays.
+
+#include <broadphase/core/group_kinds.hpp>
+#include <broadphase/hash/table.hpp>
+#include <broadphase/tree/box_tree.hpp>
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <utility>
+
+namespace hashphase::detail {
+
+/// A table and what rays read of it; made by the first ray after the table was built.
+template <class Scalar>
+struct FiledTable : Table<Scalar> {
+    BoxTree tree;
+    std::atomic<bool> isTreeStale{false};
+
+    /// Table::build().
+    void file(std::span<const std::uint32_t> slots, std::span<const PaddedBox<Scalar>> boxes,
+              const LevelSizes& sizes, ParallelFor parallelFor,
+              const ProxyGroups* groups = nullptr) {
+        this->build(slots, boxes, sizes, parallelFor, groups);
+        makeTreeStale();
+    }
+    [[nodiscard]] std::string validateTree() const {
+        return isTreeStale.load(std::memory_order_relaxed) ? std::string() : tree.validate();
+    }
+    void makeTreeStale() noexcept { isTreeStale.store(true, std::memory_order_relaxed); }
+    void swap(FiledTable& other) noexcept {
+        std::swap(static_cast<Table<Scalar>&>(*this), static_cast<Table<Scalar>&>(other));
+        std::swap(tree, other.tree);
+        const bool isStale = isTreeStale.load(std::memory_order_relaxed);
+        isTreeStale.store(other.isTreeStale.load(std::memory_order_relaxed),
+                          std::memory_order_relaxed);
+        other.isTreeStale.store(isStale, std::memory_order_relaxed);
+    }
+};
+
+/// A table that queries read.
+template <class Scalar>
+struct Filing {
+    const FiledTable<Scalar>* table;
+    bool isResting;
+};
+
+/// All that a query reads: the tables of what stands, then that of what sweeps, if there is one.
+template <class Scalar>
+struct Reading {
+    std::array<Filing<Scalar>, 3> all;
+    // Filed since the last change, so that nothing waits, what sweeps with the rest.
+    bool isFresh;
+
+    // Not of a Reading that ends with the expression.
+    std::span<const Filing<Scalar>> filings() const&& = delete;
+    std::span<const Filing<Scalar>> standing() const&& = delete;
+    [[nodiscard]] std::span<const Filing<Scalar>> filings() const& noexcept {
+        return std::span(all).first(isFresh || all[2].table == nullptr ? 2 : 3);
+    }
+    [[nodiscard]] std::span<const Filing<Scalar>> standing() const& noexcept {
+        return std::span(all).first(2);
+    }
+};
+
+template <class Scalar>
+struct Tables {
+    FiledTable<Scalar> mobile;
+    FiledTable<Scalar> resting;
+    std::unique_ptr<FiledTable<Scalar>> sweeping;  // made when the first proxy sweeps
+    // What a query has filed while others went on with `mobile` and the list of changes. The next change
+    // makes it `mobile`, or drops it where it is made within a query, which may be reading either.
+    std::unique_ptr<FiledTable<Scalar>> fresh;
+    std::atomic<bool> isFresh{false};
+    // `mobile` cannot be read: a shift of the origin, or want of memory, has left it as it is.
+    std::atomic<bool> isTorn{false};
+    std::mutex mutex;  // of queries that file, or grow trees
+
+    std::uint32_t restingErased = 0;  // entries
+    GroupKinds::Set restingKinds = 0;
+    Scalar cellSize = 1;                        // see Grid::cellSize()
+    std::atomic<std::uint64_t> filingCount{0};  // a query may file while others ask
+    std::atomic<std::uint64_t> waitingRead{0};  // how much of the list of changes queries have read
+
+    /// Calls visit(table) for all of `tables` that are there, in use or not.
+    template <class Self, class Visit>
+    static void forAll(Self& tables, const Visit& visit) {
+        visit(tables.mobile);
+        visit(tables.resting);
+        for (auto* late : {tables.sweeping.get(), tables.fresh.get()}) {
+            if (late != nullptr) {
+                visit(*late);
+            }
+        }
+    }
+
+    /// Leaves nothing filed.
+    void clear() noexcept {
+        for (FiledTable<Scalar>* table : {&mobile, &resting}) {
+            static_cast<Table<Scalar>&>(*table) = {};
+            table->tree = {};
+            table->makeTreeStale();
+        }
+        sweeping.reset();
+        fresh.reset();
+        restingErased = 0;
+        waitingRead.store(0, std::memory_order_relaxed);
+        isTorn.store(false, std::memory_order_relaxed);
+        isFresh.store(false, std::memory_order_relaxed);
+    }
+
+    [[nodiscard]] Reading<Scalar> reading() const noexcept {
+        const bool readsFresh = isFresh.load(std::memory_order_acquire);
+        return {{{{readsFresh ? fresh.get() : &mobile, false},
+                  {&resting, true},
+                  {sweeping.get(), false}}},
+                readsFresh};
+    }
+};
+
+}  // namespace hashphase::detail
