@@ -4,7 +4,7 @@
 // drawn. You should see a map of 3,600 trees from above, 60 by 60, with the camera at its lower edge:
 // `#` is drawn, `.` is not. What is drawn opens from the camera like a fan, and ends at the far plane.
 
-#include <broadphase/frustum.hpp>
+#include <integration/camera/frustum.hpp>
 #include <integration/culling/culler.hpp>
 
 #include <cmath>

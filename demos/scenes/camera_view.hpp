@@ -3,7 +3,7 @@
 
 // A camera of a game, as those see it who cull.
 
-#include <broadphase/frustum.hpp>
+#include <integration/camera/frustum.hpp>
 
 #include <array>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 // Who is near an agent: exactly, or as an estimate by cells (paper, "AI proximity decisions"). The
-// nearest n: findNearest() in broadphase/nearest.hpp. All agents at once: broadphase/neighbours.hpp.
+// nearest n: findNearest() in integration/ai/nearest.hpp. All agents at once: broadphase/neighbours.hpp.
 //
 // Distance  from position to position, that is between the centres of boxes; the ball is closed.
 // Agent     `self` is a proxy to leave out, as a rule the one that asks; null for nobody.

@@ -22,9 +22,9 @@
 #include <broadphase/convex_region.hpp>
 #include <broadphase/core/peak_watch.hpp>
 #include <broadphase/core/query_scope.hpp>
-#include <broadphase/frustum.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/proxy_filter.hpp>
+#include <integration/camera/frustum.hpp>
 #include <integration/culling/export.hpp>
 
 #include <bit>

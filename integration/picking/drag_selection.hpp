@@ -13,8 +13,8 @@
 #include <broadphase/convex_region.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/proxy_filter.hpp>
+#include <integration/camera/view.hpp>
 #include <integration/picking/export.hpp>
-#include <integration/picking/view.hpp>
 
 #include <string>
 #include <vector>

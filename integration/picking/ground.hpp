@@ -9,10 +9,10 @@
 // Units     metres
 // Bad data  Empty rays and heights that are NaN or exchanged meet nothing.
 
-#include <broadphase/ground_footprint.hpp>
 #include <broadphase/regions.hpp>
+#include <integration/camera/ground_footprint.hpp>
+#include <integration/camera/view.hpp>
 #include <integration/picking/export.hpp>
-#include <integration/picking/view.hpp>
 
 #include <optional>
 #include <type_traits>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #include <tests/benchmarks/culling_workload.hpp>
 
-#include <broadphase/frustum.hpp>
 #include <demos/report/frame_clock.hpp>
 #include <integration/bullet/conversions.hpp>
+#include <integration/camera/frustum.hpp>
 #include <integration/culling/culler.hpp>
 #include <tests/support/cameras.hpp>
 

@@ -9,7 +9,7 @@
 
 #include <demos/scenes/brownian_scene.hpp>
 #include <demos/scenes/paper_scene.hpp>
-#include <integration/picking/view.hpp>
+#include <integration/camera/view.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 // Worlds far from the origin: where coordinates are exact everything is as at the origin, and where
 // they are rounded nothing that the rounded boxes touch is missed.
 
-#include <broadphase/nearest.hpp>
 #include <broadphase/pairs.hpp>
+#include <integration/ai/nearest.hpp>
 #include <tests/support/handlers.hpp>
 #include <tests/support/pair_world.hpp>
 #include <tests/support/query_checks.hpp>

@@ -4,8 +4,8 @@
 // each of them.
 
 #include <broadphase/cells_region.hpp>
-#include <broadphase/nearest.hpp>
 #include <broadphase/position_region.hpp>
+#include <integration/ai/nearest.hpp>
 #include <tests/support/box_scenes.hpp>
 #include <tests/support/query_checks.hpp>
 

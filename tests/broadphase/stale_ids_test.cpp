@@ -5,6 +5,7 @@
 
 #include <broadphase/pairs.hpp>
 #include <broadphase/sweeps.hpp>
+#include <tests/support/box_scenes.hpp>
 #include <tests/support/handlers.hpp>
 #include <tests/support/oracles.hpp>
 

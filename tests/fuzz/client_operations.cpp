@@ -2,11 +2,11 @@
 
 // The clients of the grid against a look at everything.
 
-#include <broadphase/frustum.hpp>
 #include <integration/ai/proximity.hpp>
 #include <integration/ai/radar.hpp>
 #include <integration/ai/sight.hpp>
 #include <integration/ai/zones.hpp>
+#include <integration/camera/frustum.hpp>
 #include <integration/culling/culler.hpp>
 #include <integration/picking/drag_selection.hpp>
 #include <integration/picking/pick.hpp>

@@ -5,9 +5,9 @@
 #include <broadphase/cells_region.hpp>
 #include <broadphase/crowd.hpp>
 #include <broadphase/moving_box.hpp>
-#include <broadphase/nearest.hpp>
 #include <broadphase/neighbours.hpp>
 #include <broadphase/position_region.hpp>
+#include <integration/ai/nearest.hpp>
 #include <tests/fuzz/grid_world.hpp>
 #include <tests/fuzz/subjects.hpp>
 #include <tests/support/crowd_oracle.hpp>

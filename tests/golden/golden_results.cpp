@@ -3,8 +3,8 @@
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/crowd.hpp>
-#include <broadphase/nearest.hpp>
 #include <broadphase/neighbours.hpp>
+#include <integration/ai/nearest.hpp>
 #include <integration/culling/culler.hpp>
 #include <integration/terrain/terrain.hpp>
 #include <tests/golden/golden_world.hpp>

@@ -6,12 +6,16 @@
 #   broadphase/             itself, Eigen, the standard library
 #   broadphase/simd/        the compiler's SIMD intrinsics as well, and it alone
 #   integration/<client>/   itself, what broadphase/ offers, Eigen, the standard library
+#   integration/culling/, integration/picking/
+#                           integration/camera/ as well
 #   integration/bullet/     Bullet as well, and it alone
 #   integration/tbb/        oneTBB as well, and it alone
 #   integration/effects/    the other clients as well
 #   integration/package/    whatever users include: its sources are their programs
 # What broadphase/ offers are the headers in the folder itself, and its helpers in core/ and geometry/. The
 # other folders are its own.
+# A few headers have moved, and forward from where they were to where they are: they include that one header,
+# and nobody here includes them.
 # demos/ and tests/ may include everything, and nobody else includes them. Names every breach by
 # file, line and rule.
 
@@ -21,11 +25,19 @@ set(standard "[a-z_0-9]+")
 set(simd "([a-z]+intrin|arm_neon)\\.h")
 set(eigen "Eigen/[A-Za-z]+")
 set(offered "broadphase/((core|geometry)/)?[^/]+")
+set(moved broadphase/frustum.hpp broadphase/ground_footprint.hpp broadphase/nearest.hpp
+          integration/picking/view.hpp)
+set(movedTo integration/camera/frustum.hpp integration/camera/ground_footprint.hpp
+            integration/ai/nearest.hpp integration/camera/view.hpp)
 set(bullet "(bt[A-Z][A-Za-z0-9]*\\.h|(LinearMath|Bullet[A-Z][A-Za-z]*)/.+)")
 
 # Sets `allowed`, a regular expression for what stands between < and >, and `rule`, a sentence.
 macro(get_rule file)
-    if("${file}" MATCHES "^broadphase/simd/")
+    list(FIND moved "${file}" place)
+    if(NOT place EQUAL -1)
+        list(GET movedTo ${place} allowed)
+        set(rule "what has moved to ${allowed} includes only that")
+    elseif("${file}" MATCHES "^broadphase/simd/")
         set(allowed "(broadphase/.+|${simd}|${eigen}|${standard})")
         set(rule "broadphase/simd/ includes only broadphase/, SIMD intrinsics, Eigen and the \
 standard library")
@@ -46,6 +58,10 @@ the standard library")
         set(allowed "(${offered}|integration/.+|${eigen}|${standard})")
         set(rule "integration/effects/ includes only the clients, broadphase/, Eigen and the \
 standard library")
+    elseif("${file}" MATCHES "^integration/(culling|picking)/")
+        set(allowed "(${offered}|integration/(camera|${CMAKE_MATCH_1})/.+|${eigen}|${standard})")
+        set(rule "integration/${CMAKE_MATCH_1}/ includes only itself, integration/camera/, broadphase/, \
+Eigen and the standard library")
     elseif("${file}" MATCHES "^integration/([^/]+)/")
         set(allowed "(${offered}|integration/${CMAKE_MATCH_1}/.+|${eigen}|${standard})")
         set(rule "integration/${CMAKE_MATCH_1}/ includes only itself, broadphase/, Eigen and the \
@@ -66,6 +82,7 @@ endfunction()
 
 file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/broadphase/*.[hci]* ${ROOT}/integration/*.[hci]*)
 list(FILTER files INCLUDE REGEX "\\.(h|hpp|hh|inl|ipp|c|cc|cpp|cxx)$")
+list(TRANSFORM moved REPLACE "(.+)" "<\\1>" OUTPUT_VARIABLE movedNames)
 set(breachCount 0)
 set(includeCount 0)
 foreach(file IN LISTS files)
@@ -81,6 +98,8 @@ foreach(file IN LISTS files)
             set(broken "our own headers are included from the repository root, in angle brackets")
         elseif(NOT name MATCHES "^<${allowed}>$" OR name MATCHES "\\.\\./")
             set(broken "${rule}")
+        elseif("${name}" IN_LIST movedNames)
+            set(broken "that header has moved")
         else()
             continue()
         endif()

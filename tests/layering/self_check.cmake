@@ -25,8 +25,13 @@ function(make_good_tree)
          "#include <BulletCollision/BroadphaseCollision/btBroadphaseInterface.h>\n"
          "#include <LinearMath/btVector3.h>\n#include <btBulletCollisionCommon.h>\n"
          "#include <broadphase/grid.hpp>\n#include <integration/bullet/pair_cache.hpp>\n")
+    file(WRITE ${SCRATCH}/broadphase/nearest.hpp "#include <integration/ai/nearest.hpp>\n")
+    file(WRITE ${SCRATCH}/integration/ai/sight.cpp "#include <integration/ai/nearest.hpp>\n")
+    file(WRITE ${SCRATCH}/integration/camera/view.cpp
+         "#include <integration/camera/view.hpp>\n#include <broadphase/regions.hpp>\n")
+    file(WRITE ${SCRATCH}/integration/culling/culler.hpp "#include <integration/camera/frustum.hpp>\n")
     file(WRITE ${SCRATCH}/integration/picking/pick.cpp
-         "#include <integration/picking/pick.hpp>\n#include <broadphase/grid.hpp>\n"
+         "#include <integration/picking/pick.hpp>\n#include <integration/camera/view.hpp>\n"
          "#include <broadphase/core/limits.hpp>\n")
     file(WRITE ${SCRATCH}/integration/tbb/loops.hpp
          "#include <tbb/parallel_for.h>\n#include <broadphase/parallel_for.hpp>\n")
@@ -67,8 +72,23 @@ set(client "integration/picking/ includes only itself")
 expect_breach(integration/picking/pick.cpp 4 "${client}" "#include <integration/bullet/b.hpp>\n")
 expect_breach(integration/picking/pick.cpp 4 "${client}" "#include <btBulletCollisionCommon.h>\n")
 expect_breach(integration/picking/pick.cpp 4 "${client}" "#include <broadphase/hash/table.hpp>\n")
+foreach(other IN ITEMS ai bullet effects picking)
+    expect_breach(integration/culling/culler.hpp 2 "integration/culling/ includes only itself"
+                  "#include <integration/${other}/other.hpp>\n")
+    expect_breach(integration/camera/view.cpp 3 "integration/camera/ includes only itself"
+                  "#include <integration/${other}/other.hpp>\n")
+endforeach()
+set(ai "integration/ai/ includes only itself")
+expect_breach(integration/ai/sight.cpp 2 "${ai}" "#include <integration/camera/frustum.hpp>\n")
+expect_breach(integration/ai/sight.cpp 2 "has moved" "#include <broadphase/frustum.hpp>\n")
+expect_breach(integration/picking/pick.cpp 4 "has moved" "#include <integration/picking/view.hpp>\n")
+expect_breach(broadphase/nearest.hpp 2 "what has moved" "#include <integration/ai/sight.hpp>\n")
+expect_breach(broadphase/nearest.hpp 2 "what has moved" "#include <broadphase/grid.hpp>\n")
+expect_breach(broadphase/grid.hpp 4 "has moved" "#include <broadphase/nearest.hpp>\n")
 expect_breach(integration/bullet/broadphase.hpp 6 "integration/bullet/ includes only itself"
               "#include <broadphase/store/population.hpp>\n")
+expect_breach(integration/bullet/broadphase.hpp 6 "integration/bullet/ includes only itself"
+              "#include <integration/camera/view.hpp>\n")
 expect_breach(integration/picking/pick.cpp 4 "${client}" "#include <tests/support/oracle.hpp>\n")
 expect_breach(integration/bullet/broadphase.hpp 6 "integration/bullet/ includes only itself"
               "#include <integration/picking/pick.hpp>\n")

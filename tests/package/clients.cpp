@@ -4,13 +4,13 @@
 // Prints the number of overlapping pairs, which is one.
 
 #include <broadphase/crowd.hpp>
-#include <broadphase/frustum.hpp>
-#include <broadphase/nearest.hpp>
 #include <broadphase/pairs.hpp>
+#include <integration/ai/nearest.hpp>
 #include <integration/ai/proximity.hpp>
 #include <integration/ai/radar.hpp>
 #include <integration/ai/sight.hpp>
 #include <integration/ai/zones.hpp>
+#include <integration/camera/frustum.hpp>
 #include <integration/culling/culler.hpp>
 #include <integration/effects/simulation.hpp>
 #include <integration/picking/drag_selection.hpp>

@@ -5,14 +5,14 @@
 
 #include <broadphase/cells_region.hpp>
 #include <broadphase/crowd.hpp>
-#include <broadphase/frustum.hpp>
-#include <broadphase/ground_footprint.hpp>
 #include <broadphase/neighbours.hpp>
 #include <broadphase/position_region.hpp>
 #include <broadphase/sweeps.hpp>
 #include <integration/ai/radar.hpp>
 #include <integration/ai/rarest_colour.hpp>
 #include <integration/ai/sight.hpp>
+#include <integration/camera/frustum.hpp>
+#include <integration/camera/ground_footprint.hpp>
 #include <integration/effects/observers.hpp>
 #include <integration/effects/simulation.hpp>
 

@@ -8,13 +8,11 @@
 #include <broadphase/collectors.hpp>
 #include <broadphase/convex_region.hpp>
 #include <broadphase/crowd.hpp>
-#include <broadphase/frustum.hpp>
-#include <broadphase/ground_footprint.hpp>
-#include <broadphase/nearest.hpp>
 #include <broadphase/neighbours.hpp>
 #include <broadphase/pairs.hpp>
 #include <broadphase/regions.hpp>
 #include <broadphase/sweeps.hpp>
+#include <integration/ai/nearest.hpp>
 #include <integration/ai/proximity.hpp>
 #include <integration/ai/radar.hpp>
 #include <integration/ai/sight.hpp>
@@ -26,13 +24,15 @@
 #include <integration/bullet/shape_pick.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 #include <integration/bullet/static_triangles.hpp>
+#include <integration/camera/frustum.hpp>
+#include <integration/camera/ground_footprint.hpp>
+#include <integration/camera/view.hpp>
 #include <integration/culling/culler.hpp>
 #include <integration/effects/bullet_frame.hpp>
 #include <integration/effects/observers.hpp>
 #include <integration/effects/simulation.hpp>
 #include <integration/picking/drag_selection.hpp>
 #include <integration/picking/pick.hpp>
-#include <integration/picking/view.hpp>
 #include <integration/terrain/terrain.hpp>
 
 #include <BulletCollision/CollisionDispatch/btGhostObject.h>

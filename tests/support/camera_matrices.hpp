@@ -3,7 +3,7 @@
 
 // The matrices of cameras of every kind, as graphics programs make them.
 
-#include <broadphase/frustum.hpp>
+#include <integration/camera/frustum.hpp>
 
 #include <cmath>
 

@@ -3,8 +3,8 @@
 
 // What picking must answer, found by looking at everything, in double precision where that helps.
 
+#include <integration/camera/view.hpp>
 #include <integration/picking/pick.hpp>
-#include <integration/picking/view.hpp>
 #include <tests/support/convex_oracle.hpp>
 #include <tests/support/oracles.hpp>
 

@@ -4,9 +4,9 @@
 
 #include <demos/accuracy/culling/culling_methods.hpp>
 
-#include <broadphase/ground_footprint.hpp>
 #include <demos/accuracy/baselines/dbvt_boxes.hpp>
 #include <integration/bullet/conversions.hpp>
+#include <integration/camera/ground_footprint.hpp>
 #include <integration/culling/culler.hpp>
 
 #include <array>

@@ -5,13 +5,13 @@
 #include <demos/stability/cases/cases.hpp>
 
 #include <broadphase/crowd.hpp>
-#include <broadphase/frustum.hpp>
 #include <broadphase/pairs.hpp>
 #include <broadphase/simd/kernels.hpp>
 #include <broadphase/sweeps.hpp>
 #include <demos/scenes/random.hpp>
 #include <demos/stability/grid_scene.hpp>
 #include <demos/stability/pair_scene.hpp>
+#include <integration/camera/frustum.hpp>
 
 #include <algorithm>
 #include <array>

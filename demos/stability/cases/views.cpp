@@ -4,11 +4,11 @@
 
 #include <demos/stability/cases/cases.hpp>
 
-#include <broadphase/frustum.hpp>
 #include <demos/scenes/random.hpp>
 #include <demos/stability/isolation.hpp>
 #include <demos/stability/pair_scene.hpp>
 #include <integration/bullet/conversions.hpp>
+#include <integration/camera/frustum.hpp>
 #include <integration/culling/culler.hpp>
 #include <integration/picking/drag_selection.hpp>
 

@@ -17,7 +17,7 @@ from conan.tools.files import copy, load, rmdir
 required_conan_version = ">=2.0"
 
 REPOSITORY = os.path.join("..", "..", "..")
-CLIENTS = ["ai", "culling", "picking", "terrain"]
+CLIENTS = {"ai": [], "camera": [], "culling": ["camera"], "picking": ["camera"], "terrain": []}
 
 
 class HashphaseConan(ConanFile):
@@ -86,9 +86,9 @@ class HashphaseConan(ConanFile):
         self.cpp_info.components["broadphase"].defines = [
             f"HASHPHASE_{name}={int(bool(value))}" for name, value in flags.items()
         ]
-        for client in CLIENTS:
-            self._add_library(client, ["broadphase"])
-        self._add_library("effects", CLIENTS)
+        for client, others in CLIENTS.items():
+            self._add_library(client, ["broadphase", *others])
+        self._add_library("effects", list(CLIENTS))
         is_double = self.dependencies["bullet3"].options.get_safe("double_precision")
         bullet = "bullet-float64" if is_double else "bullet"
         self._add_library(bullet, ["broadphase", "bullet3::bullet3"])

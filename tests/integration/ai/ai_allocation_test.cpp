@@ -2,7 +2,7 @@
 //
 // A frame like the last one takes no memory.
 
-#include <broadphase/nearest.hpp>
+#include <integration/ai/nearest.hpp>
 #include <integration/ai/proximity.hpp>
 #include <integration/ai/radar.hpp>
 #include <integration/ai/sight.hpp>

@@ -3,7 +3,7 @@
 // Agents ask on several threads at the same time, right after many changes, so that the first
 // question files them. What goes wrong here is mostly for the thread sanitizer to see.
 
-#include <broadphase/nearest.hpp>
+#include <integration/ai/nearest.hpp>
 #include <integration/ai/proximity.hpp>
 #include <integration/ai/radar.hpp>
 #include <integration/ai/sight.hpp>

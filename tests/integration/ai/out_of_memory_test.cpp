@@ -2,7 +2,7 @@
 
 // Memory runs out at every allocation, and then is there again: nothing is torn, and no event is lost.
 
-#include <broadphase/nearest.hpp>
+#include <integration/ai/nearest.hpp>
 #include <integration/ai/proximity.hpp>
 #include <integration/ai/radar.hpp>
 #include <integration/ai/rarest_colour.hpp>

@@ -5,7 +5,7 @@
 
 #include <tests/integration/bullet/dynamics.hpp>
 
-#include <broadphase/nearest.hpp>
+#include <integration/ai/nearest.hpp>
 #include <integration/ai/proximity.hpp>
 #include <integration/ai/radar.hpp>
 #include <integration/ai/sight.hpp>

@@ -8,8 +8,7 @@
 #include <tests/support/camera_matrices.hpp>
 #include <tests/support/count_allocations.hpp>
 
-#include <broadphase/frustum.hpp>
-#include <broadphase/nearest.hpp>
+#include <integration/ai/nearest.hpp>
 #include <integration/ai/proximity.hpp>
 #include <integration/ai/radar.hpp>
 #include <integration/ai/rarest_colour.hpp>
@@ -19,10 +18,11 @@
 #include <integration/bullet/group_filter.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 #include <integration/bullet/static_triangles.hpp>
+#include <integration/camera/frustum.hpp>
+#include <integration/camera/view.hpp>
 #include <integration/culling/culler.hpp>
 #include <integration/picking/drag_selection.hpp>
 #include <integration/picking/pick.hpp>
-#include <integration/picking/view.hpp>
 #include <integration/terrain/terrain.hpp>
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 
-#include <broadphase/frustum.hpp>
-#include <broadphase/ground_footprint.hpp>
+#include <integration/camera/frustum.hpp>
+#include <integration/camera/ground_footprint.hpp>
 #include <integration/culling/culler.hpp>
 #include <tests/support/cameras.hpp>
 #include <tests/support/handlers.hpp>

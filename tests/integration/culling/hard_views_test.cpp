@@ -2,7 +2,7 @@
 
 // Cameras and margins at the ends of what numbers can say: what is visible is never culled.
 
-#include <broadphase/frustum.hpp>
+#include <integration/camera/frustum.hpp>
 #include <integration/culling/culler.hpp>
 #include <tests/support/box_scenes.hpp>
 #include <tests/support/cameras.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-#include <integration/picking/view.hpp>
+#include <integration/camera/view.hpp>
 #include <tests/support/cameras.hpp>
 #include <tests/support/picking_oracle.hpp>
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-#include <broadphase/export.hpp>
+#include <integration/camera/export.hpp>
 
 #include <Eigen/Core>
 
 namespace hashphase::detail {
 
 /// The way from the screen back into the world, in double precision.
-class HASHPHASE_BROADPHASE_EXPORT CameraInverse {
+class HASHPHASE_CAMERA_EXPORT CameraInverse {
 public:
     CameraInverse() = default;
 

@@ -3,9 +3,9 @@
 // The view is a cube in normalised device coordinates. Its corners are carried into the world in
 // homogeneous coordinates, where points at infinity are like any others, clipped there, and projected.
 
-#include <broadphase/ground_footprint.hpp>
+#include <integration/camera/ground_footprint.hpp>
 
-#include <broadphase/geometry/camera_inverse.hpp>
+#include <integration/camera/detail/camera_inverse.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-#include <broadphase/ground_footprint.hpp>
+#include <integration/camera/ground_footprint.hpp>
 #include <tests/support/box_scenes.hpp>
 #include <tests/support/cameras.hpp>
 #include <tests/support/convex_oracle.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <integration/picking/view.hpp>
+#include <integration/camera/view.hpp>
 
 #include <algorithm>
 #include <cmath>

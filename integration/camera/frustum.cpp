@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <broadphase/frustum.hpp>
+#include <integration/camera/frustum.hpp>
 
 #include <limits>
 

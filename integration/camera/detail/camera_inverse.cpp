@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <broadphase/geometry/camera_inverse.hpp>
+#include <integration/camera/detail/camera_inverse.hpp>
 
 #include <Eigen/LU>
 

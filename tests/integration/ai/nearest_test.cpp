@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-#include <broadphase/nearest.hpp>
+#include <integration/ai/nearest.hpp>
 #include <tests/support/handlers.hpp>
 #include <tests/support/position_oracles.hpp>
 #include <tests/support/query_checks.hpp>

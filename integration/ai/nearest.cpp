@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <broadphase/nearest.hpp>
+#include <integration/ai/nearest.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,12 @@
 #include <limits>
 
 namespace hashphase {
+namespace {
+
+// What a row of cells costs, in tests of boxes.
+constexpr std::uint64_t kTestsPerRow = 4;
+
+}  // namespace
 
 template <class Scalar>
 QueryCost findNearest(const Grid<Scalar>& grid, const Vector3<std::type_identity_t<Scalar>>& point,
@@ -24,9 +30,8 @@ QueryCost findNearest(const Grid<Scalar>& grid, const Vector3<std::type_identity
     Scalar radius = std::max(grid.cellSize(), smallest);
     while (true) {
         // Smaller balls would find too few, or have cost as much as reading everything.
-        const bool isLast =
-            !(radius < maximalDistance) || count >= grid.size() ||
-            cost.boxesTested + detail::kBoxesPerRun * cost.rowsVisited >= grid.size();
+        const bool isLast = !(radius < maximalDistance) || count >= grid.size() ||
+                            cost.boxesTested + kTestsPerRow * cost.rowsVisited >= grid.size();
         radius = isLast ? maximalDistance : radius;
         CollectNearest<Scalar> collector(count, nearest);
         CollectIf accepted(collector, isWanted);

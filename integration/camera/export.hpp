@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What the shared library hashphase_camera offers: see broadphase/export.hpp.
+
+#include <broadphase/export.hpp>
+
+#ifdef hashphase_camera_EXPORTS
+#define HASHPHASE_CAMERA_EXPORT HASHPHASE_SYMBOL_EXPORT
+#else
+#define HASHPHASE_CAMERA_EXPORT HASHPHASE_SYMBOL_IMPORT
+#endif
