@@ -135,8 +135,8 @@ void LevelLayout<Scalar>::makeLevels(std::vector<Level<Scalar>>& levels) const {
         level.hasCells = true;
         level.isDense = i % 2 == 0;
         level.largestEdge = static_cast<Scalar>(sizes_.cellSize[i / 2]);
-        level.origin = origin_;
         for (std::size_t axis = 0; axis < 3; ++axis) {
+            level.origin[axis] = origin_[axis];
             const bool isFlat = ((sizes_.flatAxes[i / 2] >> axis) & 1) != 0;
             level.inverseCellSize[axis] =
                 isFlat ? Scalar(0) : static_cast<Scalar>(1 / sizes_.cellSize[i / 2]);
@@ -148,8 +148,10 @@ void LevelLayout<Scalar>::makeLevels(std::vector<Level<Scalar>>& levels) const {
 // is too sparse, its middle may be dense enough.
 template <class Scalar>
 void LevelLayout<Scalar>::layOutDense(Level<Scalar>& level, const CellReach& reach) {
-    level.low = reach.low;
-    level.high = reach.high;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        level.low[axis] = reach.low[axis];
+        level.high[axis] = reach.high[axis];
+    }
     if (numberThrough(level, reach.count)) {
         return;
     }
@@ -158,8 +160,8 @@ void LevelLayout<Scalar>::layOutDense(Level<Scalar>& level, const CellReach& rea
         level.high[axis] = level.cell(static_cast<Scalar>(middle_.high[axis]), axis);
     }
     if (!numberThrough(level, reach.count)) {
-        level.low.fill(1);
-        level.high.fill(0);
+        std::fill_n(level.low, 3, 1);
+        std::fill_n(level.high, 3, 0);
         level.bucketCount = 1;
     }
 }

@@ -108,9 +108,6 @@ public:
                 bounds_[3].data(), bounds_[4].data(), bounds_[5].data()};
     }
 
-    /// What kernels read of the level.
-    [[nodiscard]] LevelView<Scalar> view(const Level<Scalar>& level) const noexcept;
-
     /// True when the entry, found by forRun(), lies in that row (y, z): hashed rows may share
     /// buckets. Asked about hits only.
     [[nodiscard]] bool isInRow(const Level<Scalar>& level, std::uint32_t entry, std::int32_t y,
@@ -129,7 +126,7 @@ public:
             visit(EntryRange{starts[0], starts[level.bucketCount]});
             return;
         }
-        const std::uint32_t first = level.bucket({run.firstX, run.y, run.z});
+        const std::uint32_t first = level.bucket(run.firstX, Row{run.y, run.z});
         const std::uint32_t last = first + length;
         if (last <= level.bucketCount) {
             visit(EntryRange{starts[first], starts[last]});
@@ -170,6 +167,7 @@ private:
     [[nodiscard]] bool areSorted() const;
     void noteRows();
     void noteHeights();
+    void linkLevels() noexcept;
 
     std::unique_ptr<LevelLayout<Scalar>> layout_;  // made when the first box is filed
     std::uint32_t largestBucket_ = 0;              // of those that are cells
@@ -184,9 +182,8 @@ private:
     std::vector<SortedBucket<Scalar>> sortedBuckets_;
     std::array<std::vector<Scalar>, 6> bounds_;  // kColumnPadding longer than the entries
 
-    std::vector<std::uint32_t> buckets_;    // scratch of build()
-    std::vector<std::uint32_t> longOnes_;   // the same
-    std::vector<LevelView<Scalar>> views_;  // the same
+    std::vector<std::uint32_t> buckets_;   // scratch of build()
+    std::vector<std::uint32_t> longOnes_;  // the same
 };
 
 template <class Scalar>
@@ -198,8 +195,7 @@ void Table<Scalar>::forNear(const Level<Scalar>& level, EntryRange range,
             visit(EntryRange{first, last});
         }
     };
-    const std::span<const SortedBucket<Scalar>> buckets =
-        std::span(sortedBuckets_).subspan(level.firstSorted, level.sortedCount);
+    const std::span buckets(level.sortedBuckets, level.sortedCount);
     auto sorted = std::partition_point(buckets.begin(), buckets.end(),
                                        [&](const auto& one) { return one.first < range.first; });
     for (; sorted != buckets.end() && sorted->first < range.last; ++sorted) {

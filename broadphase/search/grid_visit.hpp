@@ -122,8 +122,7 @@ private:
         };
         std::array<std::uint32_t, 512> found;
         detail::SlotSink sink{found.data(), found.data(), found.data() + found.size(), flush, this};
-        return detail::kernels<Scalar>().walkVolume(reader.table.view(level),
-                                                    reader.region.volume(), sink, walk) &&
+        return detail::kernels<Scalar>().walkVolume(level, reader.region.volume(), sink, walk) &&
                take(sink);
     }
 

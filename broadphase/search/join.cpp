@@ -48,7 +48,7 @@ template <class Scalar>
 void run(const Table<Scalar>& table, const Search<Scalar>& search, const GroupsView* groups,
          std::uint32_t first, std::uint32_t last, PairSink& sink, KernelCost& cost) {
     const Kernels<Scalar>& kernel = kernels<Scalar>();
-    const LevelView<Scalar> among = table.view(*search.among);
+    const Level<Scalar>& among = *search.among;
     if (search.from != search.among) {
         kernel.walkLevel(among, groups, table.columns().data(), first, last, sink, cost);
     } else if (among.hasCells) {
@@ -147,7 +147,7 @@ void walkTogether(const Table<Scalar>& table, const Columns<Scalar>& queries, st
                   PairSink& sink, KernelCost& cost) {
     for (const Level<Scalar>& level : table.levels()) {
         if (level.count() > 0) {
-            kernels<Scalar>().walkTogether(table.view(level), queries.data(), 0, count, sink, cost);
+            kernels<Scalar>().walkTogether(level, queries.data(), 0, count, sink, cost);
         }
     }
 }
@@ -157,8 +157,7 @@ void walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::
                std::uint32_t last, PairSink& sink, KernelCost& cost, const GroupsView* groups) {
     for (const Level<Scalar>& level : table.levels()) {
         if (level.count() > 0) {
-            kernels<Scalar>().walkLevel(table.view(level), groups, queries.data(), first, last,
-                                        sink, cost);
+            kernels<Scalar>().walkLevel(level, groups, queries.data(), first, last, sink, cost);
         }
     }
 }

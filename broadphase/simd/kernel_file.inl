@@ -3,7 +3,7 @@
 // Kernel part: finds the buckets of boxes. See kernels.inl.
 
 template <class Scalar>
-bool isWithin(const LevelView<Scalar>& level, const std::int32_t* cell) {
+bool isWithin(const Level<Scalar>& level, const std::int32_t* cell) {
     bool result = true;
     for (int axis = 0; axis < 3; ++axis) {
         result &= (level.low[axis] <= cell[axis]) & (cell[axis] <= level.high[axis]);
@@ -12,8 +12,8 @@ bool isWithin(const LevelView<Scalar>& level, const std::int32_t* cell) {
 }
 
 template <class Scalar>
-void fileBoxes(const LevelView<Scalar>* levels, std::size_t levelCount,
-               const PaddedBox<Scalar>* boxes, std::size_t count, std::uint32_t* buckets) {
+void fileBoxes(const Level<Scalar>* levels, std::size_t levelCount, const PaddedBox<Scalar>* boxes,
+               std::size_t count, std::uint32_t* buckets) {
     const std::size_t listed = levelCount - 1;
     for (std::size_t i = 0; i < count; ++i) {
         const PaddedBox<Scalar>& box = boxes[i];
@@ -30,9 +30,7 @@ void fileBoxes(const LevelView<Scalar>* levels, std::size_t levelCount,
             buckets[i] = isNan(box) ? kNoBucket : levels[listed].firstBucket;
             continue;
         }
-        const LevelView<Scalar>& level = levels[number + (isWithin(levels[number], cell) ? 0 : 1)];
-        const std::uint32_t sum =
-            rowBase(level, Row{cell[1], cell[2]}) + static_cast<std::uint32_t>(cell[0]);
-        buckets[i] = level.firstBucket + (level.isDense ? sum : sum & (level.bucketCount - 1));
+        const Level<Scalar>& level = levels[number + (isWithin(levels[number], cell) ? 0 : 1)];
+        buckets[i] = level.firstBucket + level.bucket(cell[0], Row{cell[1], cell[2]});
     }
 }

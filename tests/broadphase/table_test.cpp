@@ -89,7 +89,7 @@ protected:
                 const std::int32_t x = level.cell(box.min()[0], 0);
                 const std::int32_t y = level.cell(box.min()[1], 1);
                 const std::int32_t z = level.cell(box.min()[2], 2);
-                const std::uint32_t bucket = level.bucket({x, y, z});
+                const std::uint32_t bucket = level.bucket(x, Row{y, z});
                 shared += rowOfBucket.try_emplace(bucket, y, z).first->second != std::pair(y, z);
             }
         }
