@@ -26,14 +26,19 @@ struct Row {
     return hash ^ (hash >> 15);
 }
 
+/// How a level files boxes. A dense one numbers a well-filled range of cells through (the paper's
+/// formula), with empty cells between rows and between layers. A hashed one hashes rows into a number of
+/// buckets that is a power of two. A list has no cells: it has one bucket, which every walk reads whole.
+enum class LevelKind : std::uint8_t { dense, hashed, list };
+
 /// Which entries a level has, how coordinates become its cells, and how its rows of cells become
 /// buckets.
 template <class Scalar>
 struct Level {
+    LevelKind kind = LevelKind::list;
     Scalar origin[4] = {};
     Scalar inverseCellSize[4] = {};  // 0 along a flat axis, which has one cell: 0
-    // Of boxes that are filed here; NaN, which nothing is below, where there are no cells.
-    Scalar largestEdge = 0;
+    Scalar largestEdge = 0;          // of boxes that are filed by their cells
     // Between which coordinates the boxes lie, along flat axes.
     Scalar lowest[4] = {};
     Scalar highest[4] = {};
@@ -41,15 +46,9 @@ struct Level {
     std::uint32_t lastEntry = 0;  // one past
     std::uint32_t firstBucket = 0;
     std::uint32_t bucketCount = 1;
-    // Every entry's cell lies from low to high. Of two levels of one cell size, a box is filed on
-    // the dense one where its cell lies within. A level without cells is a plain list: it has one
-    // bucket, and every walk reads it whole.
+    // Every entry's cell lies from low to high.
     std::int32_t low[4] = {};
     std::int32_t high[4] = {};
-    bool hasCells = false;
-    // A well-filled range of cells is numbered through (the paper's formula), with empty ones between
-    // rows and between layers; else rows are hashed into a number of buckets that is a power of two.
-    bool isDense = false;
     std::uint32_t strideY = 0;
     std::uint32_t strideZ = 0;
     std::uint32_t denseBase = 0;
@@ -63,6 +62,12 @@ struct Level {
     const Row* rowOfEntry = nullptr;                      // of all entries, where a level is hashed
     const SortedBucket<Scalar>* sortedBuckets = nullptr;  // the level's own, in ascending order
 
+    [[nodiscard, gnu::always_inline]] bool isDense() const noexcept {
+        return kind == LevelKind::dense;
+    }
+    [[nodiscard, gnu::always_inline]] bool hasCells() const noexcept {
+        return kind != LevelKind::list;
+    }
     [[nodiscard, gnu::always_inline]] std::uint32_t count() const noexcept {
         return lastEntry - firstEntry;
     }
@@ -76,14 +81,22 @@ struct Level {
     [[nodiscard, gnu::always_inline]] std::uint32_t rowBase(Row row) const noexcept {
         const std::uint32_t number = static_cast<std::uint32_t>(row.y) * strideY +
                                      static_cast<std::uint32_t>(row.z) * strideZ;
-        return isDense ? number + denseBase : mixRow(number);
+        return isDense() ? number + denseBase : mixRow(number);
     }
 
     /// Bucket of a cell from low to high, among the level's own.
     [[nodiscard, gnu::always_inline]] std::uint32_t bucket(std::int32_t x, Row row) const noexcept {
         const std::uint32_t sum = rowBase(row) + static_cast<std::uint32_t>(x);
-        return isDense ? sum : sum & (bucketCount - 1);
+        return isDense() ? sum : sum & (bucketCount - 1);
     }
+};
+
+/// The two levels of one cell size. A box whose cell lies from low to high of the dense one is filed there,
+/// the others on the hashed one.
+template <class Scalar>
+struct SizeClass {
+    const Level<Scalar>* dense;
+    const Level<Scalar>* hashed;
 };
 
 }  // namespace hashphase::detail

@@ -71,15 +71,30 @@ void Table<Scalar>::layOut(std::span<const PaddedBox<Scalar>> boxes) {
     bucketStart_.resize(levels_.back().firstBucket + levels_.back().bucketCount + 1);
 }
 
+template <class Scalar>
+FixedList<SizeClass<Scalar>, kMaxLevels> Table<Scalar>::sizeClasses() const {
+    FixedList<SizeClass<Scalar>, kMaxLevels> classes;
+    const Level<Scalar>* dense = nullptr;
+    for (const Level<Scalar>& level : levels_) {
+        if (level.kind == LevelKind::dense) {
+            dense = &level;
+        } else if (level.kind == LevelKind::hashed) {
+            classes.push({dense, &level});
+        }
+    }
+    return classes;
+}
+
 // Finds every box's bucket and counts how many each has. Returns how many boxes lie where it takes
 // longer to find them: listed without cells, or beyond the cells that are numbered through.
 template <class Scalar>
 std::size_t Table<Scalar>::countBuckets(std::span<const PaddedBox<Scalar>> boxes,
                                         ParallelFor parallelFor) {
     buckets_.resize(boxes.size());
+    const FixedList<SizeClass<Scalar>, kMaxLevels> classes = sizeClasses();
     parallelFor(boxes.size(), kTableGrain, [&](std::size_t begin, std::size_t end) {
-        kernels<Scalar>().fileBoxes(levels_.data(), levels_.size(), boxes.data() + begin,
-                                    end - begin, buckets_.data() + begin);
+        kernels<Scalar>().fileBoxes(classes.data(), classes.size(), levels_.back().firstBucket,
+                                    boxes.data() + begin, end - begin, buckets_.data() + begin);
     });
     std::fill(bucketStart_.begin(), bucketStart_.end(), 0);
     for (const std::uint32_t bucket : buckets_) {
@@ -88,11 +103,10 @@ std::size_t Table<Scalar>::countBuckets(std::span<const PaddedBox<Scalar>> boxes
         }
     }
     std::size_t count = 0;
-    for (std::size_t i = 0; i < levels_.size(); ++i) {
-        const bool isStray = i % 2 == 1 || i + 1 == levels_.size();
-        const auto first = bucketStart_.begin() + levels_[i].firstBucket;
+    for (const Level<Scalar>& level : levels_) {
+        const auto first = bucketStart_.begin() + level.firstBucket;
         count +=
-            isStray ? std::accumulate(first, first + levels_[i].bucketCount, std::size_t{0}) : 0;
+            level.isDense() ? 0 : std::accumulate(first, first + level.bucketCount, std::size_t{0});
     }
     return count;
 }
@@ -105,7 +119,7 @@ void Table<Scalar>::sortEntries(std::span<const std::uint32_t> boxSlots,
                                 ParallelFor parallelFor) {
     std::uint32_t sum = 0;
     largestBucket_ = 0;
-    const std::size_t listBucket = bucketStart_.size() - 2;  // and behind it the end
+    const std::size_t listBucket = levels_.back().firstBucket;
     for (std::size_t bucket = 0; bucket < listBucket; ++bucket) {
         largestBucket_ = std::max(largestBucket_, bucketStart_[bucket]);
         sum += std::exchange(bucketStart_[bucket], sum);
@@ -174,7 +188,7 @@ void Table<Scalar>::sortCrowds(std::span<const std::uint32_t> boxSlots,
     for (Level<Scalar>& level : levels_) {
         const std::size_t countBefore = sortedBuckets_.size();
         level.sortedCount = 0;
-        const bool mayBeCrowded = level.hasCells ? largestBucket_ > kCrowd : groups != nullptr;
+        const bool mayBeCrowded = level.hasCells() ? largestBucket_ > kCrowd : groups != nullptr;
         if (!mayBeCrowded || level.count() <= kCrowd) {
             continue;
         }
@@ -194,7 +208,7 @@ void Table<Scalar>::sortCrowds(std::span<const std::uint32_t> boxSlots,
                 }
                 const auto last = first + static_cast<std::uint32_t>(count);
                 std::optional<SortedBucket<Scalar>> sorted;
-                if (level.hasCells && count > kFewest) {
+                if (level.hasCells() && count > kFewest) {
                     sorted = sortedAlong(crowd.first(count), boxes);
                 }
                 if (!sorted && haveGroups) {
@@ -248,7 +262,7 @@ std::optional<SortedBucket<Scalar>> Table<Scalar>::sortedAlong(
 template <class Scalar>
 void Table<Scalar>::noteRows() {
     const auto isHashed = [](const Level<Scalar>& level) {
-        return level.hasCells && !level.isDense && level.count() > 0;
+        return level.hasCells() && !level.isDense() && level.count() > 0;
     };
     const bool isNeeded = std::any_of(levels_.begin(), levels_.end(), isHashed);
     rowOfEntry_.resize(isNeeded ? slots_.size() : 0);
@@ -275,7 +289,7 @@ template <class Scalar>
 void Table<Scalar>::noteHeights() {
     const auto find = kernels<Scalar>().findRange;
     for (Level<Scalar>& level : levels_) {
-        for (std::size_t axis = 0; level.hasCells && axis < 3; ++axis) {
+        for (std::size_t axis = 0; level.hasCells() && axis < 3; ++axis) {
             if (level.inverseCellSize[axis] != 0 || level.count() == 0) {
                 continue;
             }
@@ -435,7 +449,7 @@ std::string Table<Scalar>::validate() const {
             }
             for (; entry < bucketStart_[b + 1]; ++entry) {
                 const Aabb<Scalar> box = this->box(entry);
-                if (hasNan(box) || !level.hasCells) {
+                if (hasNan(box) || !level.hasCells()) {
                     continue;
                 }
                 Cell low{};

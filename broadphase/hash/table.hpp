@@ -12,6 +12,7 @@
 // Threads   Building and erasing need the table for themselves; everything const may run anywhere.
 
 #include <broadphase/aabb.hpp>
+#include <broadphase/core/fixed_list.hpp>
 #include <broadphase/export.hpp>
 #include <broadphase/geometry/padded_box.hpp>
 #include <broadphase/geometry/quantise.hpp>
@@ -79,6 +80,8 @@ public:
     [[nodiscard]] std::uint32_t size() const noexcept {
         return static_cast<std::uint32_t>(slots_.size());
     }
+    /// Those of each cell size, finest first, the dense one before the hashed one; and the list. None when
+    /// nothing is filed.
     [[nodiscard]] std::span<const Level<Scalar>> levels() const noexcept { return levels_; }
     [[nodiscard]] std::span<const std::uint32_t> entrySlots() const noexcept { return slots_; }
     [[nodiscard]] std::uint32_t slot(std::uint32_t entry) const noexcept { return slots_[entry]; }
@@ -112,7 +115,7 @@ public:
     /// buckets. Asked about hits only.
     [[nodiscard]] bool isInRow(const Level<Scalar>& level, std::uint32_t entry, std::int32_t y,
                                std::int32_t z) const noexcept {
-        return level.isDense || (rowOfEntry_[entry].y == y && rowOfEntry_[entry].z == z);
+        return level.isDense() || (rowOfEntry_[entry].y == y && rowOfEntry_[entry].z == z);
     }
 
     /// Calls visit(EntryRange) for the buckets of the run, which must lie in the level's low to
@@ -153,6 +156,7 @@ private:
     void findBuckets(std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed,
                      ParallelFor parallelFor);
     void layOut(std::span<const PaddedBox<Scalar>> boxes);
+    [[nodiscard]] FixedList<SizeClass<Scalar>, kMaxLevels> sizeClasses() const;
     [[nodiscard]] std::size_t countBuckets(std::span<const PaddedBox<Scalar>> boxes,
                                            ParallelFor parallelFor);
     void sortEntries(std::span<const std::uint32_t> boxSlots,

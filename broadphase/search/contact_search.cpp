@@ -61,10 +61,10 @@ void extendByCells(Aabb<double>& world, const Level<Scalar>& level) {
 template <class Scalar>
 void extendByTable(Aabb<double>& world, const Table<Scalar>& table) {
     for (const Level<Scalar>& level : table.levels()) {
-        if (level.count() > 0 && level.hasCells) {
+        if (level.count() > 0 && level.hasCells()) {
             extendByCells(world, level);
         }
-        for (std::uint32_t i = level.firstEntry; i < level.lastEntry && !level.hasCells; ++i) {
+        for (std::uint32_t i = level.firstEntry; i < level.lastEntry && !level.hasCells(); ++i) {
             const Aabb<Scalar> box = table.box(i);
             if (!hasNan(box)) {
                 world.extend(box.template cast<double>());

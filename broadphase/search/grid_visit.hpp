@@ -104,10 +104,10 @@ struct Grid<Scalar>::VolumeReader {
         if (!(reader.limit() >= 0)) {
             return false;
         }
-        return std::ranges::all_of(
-            reader.table.levels(), [this](const detail::Level<Scalar>& level) {
-                return level.count() == 0 || (level.hasCells ? readCells(level) : readList(level));
-            });
+        return std::ranges::all_of(reader.table.levels(), [this](
+                                                              const detail::Level<Scalar>& level) {
+            return level.count() == 0 || (level.hasCells() ? readCells(level) : readList(level));
+        });
     }
 
 private:

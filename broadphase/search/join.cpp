@@ -37,8 +37,8 @@ struct Search {
 // reads no more than the cells around it, where the other way round everyone would read all of them.
 template <class Scalar>
 Search<Scalar> searchOf(const Level<Scalar>& a, const Level<Scalar>& b) {
-    if (!a.hasCells || !b.hasCells) {
-        return a.hasCells ? Search<Scalar>{&b, &a} : Search<Scalar>{&a, &b};
+    if (!a.hasCells() || !b.hasCells()) {
+        return a.hasCells() ? Search<Scalar>{&b, &a} : Search<Scalar>{&a, &b};
     }
     const bool isFromA = a.count() * rowsLookedUp(a, b) <= b.count() * rowsLookedUp(b, a);
     return isFromA ? Search<Scalar>{&a, &b} : Search<Scalar>{&b, &a};
@@ -51,7 +51,7 @@ void run(const Table<Scalar>& table, const Search<Scalar>& search, const GroupsV
     const Level<Scalar>& among = *search.among;
     if (search.from != search.among) {
         kernel.walkLevel(among, groups, table.columns().data(), first, last, sink, cost);
-    } else if (among.hasCells) {
+    } else if (among.hasCells()) {
         kernel.joinLevel(among, groups, first, last, sink, cost);
     } else {
         kernel.joinList(among, groups, first, last, sink, cost);

@@ -2,7 +2,7 @@
 
 // The corners of boxes without vector instructions. See kernels.inl.
 
-// False for levels without cells, and for boxes with infinite edges or NaN.
+// False for boxes with infinite edges or NaN.
 template <class Scalar>
 bool fitsEdge(const Level<Scalar>& level, const PaddedBox<Scalar>& box) {
     return (box.high[0] - box.low[0] <= level.largestEdge) &

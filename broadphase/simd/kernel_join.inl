@@ -191,7 +191,7 @@ void joinDenseOrHashed(const Level<Scalar>& level, const QueryOf& queryOf, std::
 template <class Scalar, class QueryOf>
 void joinLevelFor(const Level<Scalar>& level, const QueryOf& queryOf, std::uint32_t first,
                   std::uint32_t last, PairSink& found, KernelCost& cost) {
-    if (level.isDense) {
+    if (level.isDense()) {
         joinDenseOrHashed<Scalar, true>(level, queryOf, first, last, found, cost);
     } else {
         joinDenseOrHashed<Scalar, false>(level, queryOf, first, last, found, cost);

@@ -129,8 +129,8 @@ void walkTogether(const Level<Scalar>& level, const Scalar* const* queries, std:
     for (std::uint32_t end = first; first < last; first = end) {
         end = first + lowest(kTogether, last - first);
         bool isDone = false;
-        if (level.hasCells && end - first > 1) {
-            isDone = level.isDense
+        if (level.hasCells() && end - first > 1) {
+            isDone = level.isDense()
                          ? walkBoxes<Scalar, true>(level, queries, first, end, found, cost)
                          : walkBoxes<Scalar, false>(level, queries, first, end, found, cost);
         }

@@ -160,11 +160,11 @@ struct CrowdVisitor {
 
 template <class Scalar>
 struct Kernels {
-    /// Finds the bucket of each of `count` boxes, over all levels: two for each cell size, finest
-    /// first, a dense one for the cells from its low to its high and one for all others, and last
-    /// the list without cells.
-    void (*fileBoxes)(const Level<Scalar>* levels, std::size_t levelCount,
-                      const PaddedBox<Scalar>* boxes, std::size_t count, std::uint32_t* buckets);
+    /// Finds the bucket of each of `count` boxes, counted over all levels: of the first cell size that is
+    /// no smaller, or that of the list.
+    void (*fileBoxes)(const SizeClass<Scalar>* classes, std::size_t classCount,
+                      std::uint32_t listBucket, const PaddedBox<Scalar>* boxes, std::size_t count,
+                      std::uint32_t* buckets);
 
     /// Finds every two entries of a level with cells that overlap, the first one from firstEntry
     /// to lastEntry; over the whole level each couple once. Where `groups` is not null, this and the next

@@ -227,7 +227,7 @@ bool coversBuckets(const VolumeView<Scalar>& view, PlaneSet crossing, CellInterv
                    CellInterval rows) {
     const Level<Scalar>& level = view.level;
     const std::uint64_t longest = CellInterval{level.low[0], level.high[0]}.count();
-    if (level.isDense || layers.count() * rows.count() * longest < level.bucketCount) {
+    if (level.isDense() || layers.count() * rows.count() * longest < level.bucketCount) {
         return false;
     }
     std::uint64_t cells = 0;

@@ -35,7 +35,7 @@ public:
         batch.clip();
         const int count = batch.count;
         batch.count = 0;
-        return view_.level.isDense ? readDense(batch, count) : readHashed(batch, count);
+        return view_.level.isDense() ? readDense(batch, count) : readHashed(batch, count);
     }
 
 private:

@@ -159,10 +159,10 @@ template <bool kIsDense, class Scalar, class Query>
 
 template <class Scalar, class Query>
 void walk(const Level<Scalar>& level, const Query& query, PairSink& found, KernelCost& cost) {
-    if (!level.hasCells) {
+    if (!level.hasCells()) {
         cost.boxesTested +=
             scan<true>(level, query, Run{level.firstEntry, level.lastEntry}, Row{}, found);
-    } else if (level.isDense) {
+    } else if (level.isDense()) {
         walkBox<true>(level, query, found, cost);
     } else {
         walkBox<false>(level, query, found, cost);
