@@ -1,66 +1,102 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-#include <broadphase/geometry/quantise.hpp>
-#include <broadphase/simd/kernel_types.hpp>
+// One level of a table, as the table keeps it and as kernels read it. Kernels are compiled for several
+// instruction sets: what stands here has plain arrays, and may call only what is always inlined, as
+// simd/kernel_types.hpp says.
 
-#include <array>
+#include <broadphase/geometry/quantise.hpp>
+#include <broadphase/hash/sorted_bucket.hpp>
+
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 
 namespace hashphase::detail {
 
-/// One level of a table: which entries it has, how coordinates become its cells, and how its rows
-/// of cells become buckets.
+/// A row of cells, along x.
+struct Row {
+    std::int32_t y;
+    std::int32_t z;
+};
+
+/// A hash of a row's number whose lower bits are well mixed.
+[[nodiscard, gnu::always_inline]] inline std::uint32_t mixRow(std::uint32_t row) noexcept {
+    std::uint32_t hash = row ^ (row >> 16);
+    hash *= 0x7feb352dU;
+    return hash ^ (hash >> 15);
+}
+
+/// How a level files boxes. A dense one numbers a well-filled range of cells through (the paper's
+/// formula), with empty cells between rows and between layers. A hashed one hashes rows into a number of
+/// buckets that is a power of two. A list has no cells: it has one bucket, which every walk reads whole.
+enum class LevelKind : std::uint8_t { dense, hashed, list };
+
+/// Which entries a level has, how coordinates become its cells, and how its rows of cells become
+/// buckets.
 template <class Scalar>
 struct Level {
-    std::array<Scalar, 3> origin{};
-    std::array<Scalar, 3> inverseCellSize{};  // 0 along a flat axis, which has one cell: 0
-    // Of boxes that are filed here; NaN, which nothing is below, where there are no cells.
-    Scalar largestEdge = std::numeric_limits<Scalar>::quiet_NaN();
+    LevelKind kind = LevelKind::list;
+    Scalar origin[4] = {};
+    Scalar inverseCellSize[4] = {};  // 0 along a flat axis, which has one cell: 0
+    Scalar largestEdge = 0;          // of boxes that are filed by their cells
     // Between which coordinates the boxes lie, along flat axes.
-    std::array<Scalar, 3> lowest{};
-    std::array<Scalar, 3> highest{};
+    Scalar lowest[4] = {};
+    Scalar highest[4] = {};
     std::uint32_t firstEntry = 0;
     std::uint32_t lastEntry = 0;  // one past
     std::uint32_t firstBucket = 0;
     std::uint32_t bucketCount = 1;
-    // Every entry's cell lies from low to high. Of two levels of one cell size, a box is filed on
-    // the dense one where its cell lies within. A level without cells is a plain list: it has one
-    // bucket, and every walk reads it whole.
-    Cell low{};
-    Cell high{};
-    bool hasCells = false;
-    // A well-filled range of cells is numbered through (the paper's formula), with empty ones between
-    // rows and between layers; else rows are hashed into a number of buckets that is a power of two.
-    bool isDense = false;
+    // Every entry's cell lies from low to high.
+    std::int32_t low[4] = {};
+    std::int32_t high[4] = {};
     std::uint32_t strideY = 0;
     std::uint32_t strideZ = 0;
     std::uint32_t denseBase = 0;
-    // Of the table's sorted buckets, those of this level.
-    std::uint32_t firstSorted = 0;
-    std::uint32_t sortedCount = 0;
+    std::uint32_t sortedCount = 0;  // of sortedBuckets
 
-    [[nodiscard]] std::uint32_t count() const noexcept { return lastEntry - firstEntry; }
+    // Into the arrays of the table, which sets them when these are complete.
+    const Scalar* columns[6] = {};                        // min x, y, z, max x, y, z of all entries
+    const std::uint32_t* bucketStart = nullptr;           // of the level's own buckets, and the end
+    const std::uint32_t* bucketOfEntry = nullptr;         // of all entries, counted over all levels
+    const std::uint32_t* entrySlots = nullptr;            // of all entries
+    const Row* rowOfEntry = nullptr;                      // of all entries, where a level is hashed
+    const SortedBucket<Scalar>* sortedBuckets = nullptr;  // the level's own, in ascending order
 
-    [[nodiscard]] std::int32_t cell(Scalar x, std::size_t axis) const noexcept {
+    [[nodiscard, gnu::always_inline]] bool isDense() const noexcept {
+        return kind == LevelKind::dense;
+    }
+    [[nodiscard, gnu::always_inline]] bool hasCells() const noexcept {
+        return kind != LevelKind::list;
+    }
+    [[nodiscard, gnu::always_inline]] std::uint32_t count() const noexcept {
+        return lastEntry - firstEntry;
+    }
+
+    [[nodiscard, gnu::always_inline]] std::int32_t cell(Scalar x, std::size_t axis) const noexcept {
         // Not 0 * infinity, along a flat axis.
         return inverseCellSize[axis] == 0 ? 0 : quantise(x, origin[axis], inverseCellSize[axis]);
     }
 
-    /// Bucket of cell x = 0 of row (y, z), among the level's own; hashed ones before the modulo.
-    [[nodiscard]] std::uint32_t rowBase(std::int32_t y, std::int32_t z) const noexcept {
-        const auto row =
-            static_cast<std::uint32_t>(y) * strideY + static_cast<std::uint32_t>(z) * strideZ;
-        return isDense ? row + denseBase : mixRow(row);
+    /// Bucket of cell x = 0 of a row, among the level's own; hashed ones before the modulo.
+    [[nodiscard, gnu::always_inline]] std::uint32_t rowBase(Row row) const noexcept {
+        const std::uint32_t number = static_cast<std::uint32_t>(row.y) * strideY +
+                                     static_cast<std::uint32_t>(row.z) * strideZ;
+        return isDense() ? number + denseBase : mixRow(number);
     }
 
     /// Bucket of a cell from low to high, among the level's own.
-    [[nodiscard]] std::uint32_t bucket(const Cell& cell) const noexcept {
-        const std::uint32_t sum = rowBase(cell[1], cell[2]) + static_cast<std::uint32_t>(cell[0]);
-        return isDense ? sum : sum & (bucketCount - 1);
+    [[nodiscard, gnu::always_inline]] std::uint32_t bucket(std::int32_t x, Row row) const noexcept {
+        const std::uint32_t sum = rowBase(row) + static_cast<std::uint32_t>(x);
+        return isDense() ? sum : sum & (bucketCount - 1);
     }
+};
+
+/// The two levels of one cell size. A box whose cell lies from low to high of the dense one is filed there,
+/// the others on the hashed one.
+template <class Scalar>
+struct SizeClass {
+    const Level<Scalar>* dense;
+    const Level<Scalar>* hashed;
 };
 
 }  // namespace hashphase::detail

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/hash/level_layout.hpp>
 
+#include <broadphase/core/fixed_list.hpp>
 #include <broadphase/geometry/origin_shift.hpp>
 
 #include <bit>
-#include <limits>
 #include <optional>
 
 namespace hashphase::detail {
@@ -40,25 +40,30 @@ std::optional<Cell> cellOn(const Level<Scalar>& level, const Aabb<Scalar>& box) 
     return low;
 }
 
-// By cell size.
-using Reaches = std::array<CellReach, kMaxLevels>;
-
-// How many boxes each cell size has, and the cells between which they are.
+/// A cell size on its way to become levels: what both of them have in common, and what will be filed there.
 template <class Scalar>
-Reaches measure(std::span<const PaddedBox<Scalar>> boxes, std::span<const Level<Scalar>> levels) {
-    Reaches reaches;
+struct Candidate {
+    Level<Scalar> level;
+    CellReach reach;
+};
+template <class Scalar>
+using Candidates = FixedList<Candidate<Scalar>, kMaxLevels>;
+
+// Finds how many boxes each cell size has, and the cells between which they are.
+template <class Scalar>
+void measure(std::span<const PaddedBox<Scalar>> boxes, Candidates<Scalar>& candidates) {
+    for (Candidate<Scalar>& candidate : candidates) {
+        candidate.reach = {};
+    }
     for (const PaddedBox<Scalar>& padded : boxes) {
         const Aabb<Scalar> box = unpadded(padded);
-        for (std::size_t i = 0; i < levels.size() / 2; ++i) {
-            const std::optional<Cell> cell = cellOn(levels[2 * i], box);
-            if (!cell) {
-                continue;
+        for (Candidate<Scalar>& candidate : candidates) {
+            if (const std::optional<Cell> cell = cellOn(candidate.level, box)) {
+                candidate.reach.add(*cell);
+                break;
             }
-            reaches[i].add(*cell);
-            break;
         }
     }
-    return reaches;
 }
 
 // Returns false when there are too many cells for so few boxes.
@@ -91,9 +96,43 @@ bool numberThrough(Level<Scalar>& level, std::uint32_t count) {
 
 template <class Scalar>
 void layOutHashed(Level<Scalar>& level, std::uint32_t count) {
+    level.kind = LevelKind::hashed;
     level.strideY = kHashStrideY;
     level.strideZ = kHashStrideZ;
     level.bucketCount = std::bit_ceil(std::max(2 * count, 64U));
+}
+
+// The cell sizes as they were chosen, but for those that few boxes have: what is of such a size goes to
+// the next larger cells, or to the list.
+template <class Scalar>
+Candidates<Scalar> candidatesFor(const LevelSizes& sizes, const std::array<Scalar, 3>& origin,
+                                 std::span<const PaddedBox<Scalar>> boxes) {
+    Candidates<Scalar> all;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(sizes.count); ++i) {
+        Candidate<Scalar> candidate;
+        candidate.level.largestEdge = static_cast<Scalar>(sizes.cellSize[i]);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const bool isFlat = ((sizes.flatAxes[i] >> axis) & 1) != 0;
+            candidate.level.origin[axis] = origin[axis];
+            candidate.level.inverseCellSize[axis] =
+                isFlat ? Scalar(0) : static_cast<Scalar>(1 / sizes.cellSize[i]);
+        }
+        all.push(candidate);
+    }
+    measure(boxes, all);
+    Candidates<Scalar> kept;
+    bool areFewElsewhere = false;
+    for (const Candidate<Scalar>& candidate : all) {
+        const bool areFew = candidate.reach.count < LevelLayout<Scalar>::kThinLevel;
+        areFewElsewhere = areFewElsewhere || (areFew && candidate.reach.count > 0);
+        if (!areFew) {
+            kept.push(candidate);
+        }
+    }
+    if (areFewElsewhere && !kept.empty()) {
+        measure(boxes, kept);
+    }
+    return kept;
 }
 
 }  // namespace
@@ -127,29 +166,15 @@ void LevelLayout<Scalar>::choose(std::span<const PaddedBox<Scalar>> boxes,
     middle_ = census_.range(0.5 / kStrays);
 }
 
-template <class Scalar>
-void LevelLayout<Scalar>::makeLevels(std::vector<Level<Scalar>>& levels) const {
-    levels.assign(2 * static_cast<std::size_t>(sizes_.count) + 1, {});
-    for (std::size_t i = 0; i + 1 < levels.size(); ++i) {
-        Level<Scalar>& level = levels[i];
-        level.hasCells = true;
-        level.isDense = i % 2 == 0;
-        level.largestEdge = static_cast<Scalar>(sizes_.cellSize[i / 2]);
-        level.origin = origin_;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const bool isFlat = ((sizes_.flatAxes[i / 2] >> axis) & 1) != 0;
-            level.inverseCellSize[axis] =
-                isFlat ? Scalar(0) : static_cast<Scalar>(1 / sizes_.cellSize[i / 2]);
-        }
-    }
-}
-
 // A few strays must not keep all the others from being numbered through: where the whole population
 // is too sparse, its middle may be dense enough.
 template <class Scalar>
-void LevelLayout<Scalar>::layOutDense(Level<Scalar>& level, const CellReach& reach) {
-    level.low = reach.low;
-    level.high = reach.high;
+void LevelLayout<Scalar>::layOutDense(Level<Scalar>& level, const CellReach& reach) const {
+    level.kind = LevelKind::dense;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        level.low[axis] = reach.low[axis];
+        level.high[axis] = reach.high[axis];
+    }
     if (numberThrough(level, reach.count)) {
         return;
     }
@@ -158,8 +183,8 @@ void LevelLayout<Scalar>::layOutDense(Level<Scalar>& level, const CellReach& rea
         level.high[axis] = level.cell(static_cast<Scalar>(middle_.high[axis]), axis);
     }
     if (!numberThrough(level, reach.count)) {
-        level.low.fill(1);
-        level.high.fill(0);
+        std::fill_n(level.low, 3, 1);
+        std::fill_n(level.high, 3, 0);
         level.bucketCount = 1;
     }
 }
@@ -167,38 +192,17 @@ void LevelLayout<Scalar>::layOutDense(Level<Scalar>& level, const CellReach& rea
 template <class Scalar>
 void LevelLayout<Scalar>::layOut(std::span<const PaddedBox<Scalar>> boxes,
                                  std::vector<Level<Scalar>>& levels) {
-    makeLevels(levels);
-    Reaches reaches = measure<Scalar>(boxes, levels);
-    // What is of a size that few have goes to the next larger cells, or to the list.
-    bool isThinned = false;
-    for (std::size_t i = 0; i < levels.size() / 2; ++i) {
-        if (reaches[i].count < kThinLevel) {
-            isThinned = isThinned || reaches[i].count > 0;
-            for (Level<Scalar>* level : {&levels[2 * i], &levels[2 * i + 1]}) {
-                level->hasCells = false;
-                level->largestEdge = std::numeric_limits<Scalar>::quiet_NaN();
-            }
-        }
+    levels.clear();
+    for (const auto& [level, reach] : candidatesFor(sizes_, origin_, boxes)) {
+        Level<Scalar>& dense = levels.emplace_back(level);
+        layOutDense(dense, reach);
+        const bool hasCells = dense.low[0] <= dense.high[0];
+        layOutHashed(levels.emplace_back(level), hasCells ? reach.count / kStrays : reach.count);
     }
-    const auto hasCells = [](const Level<Scalar>& level) { return level.hasCells; };
-    if (std::none_of(levels.begin(), levels.end(), hasCells)) {
-        levels.assign(1, {});
-    } else if (isThinned) {
-        reaches = measure<Scalar>(boxes, levels);
-    }
+    levels.emplace_back();
     std::uint32_t firstBucket = 0;
-    for (std::size_t i = 0; i < levels.size(); ++i) {
-        Level<Scalar>& level = levels[i];
+    for (Level<Scalar>& level : levels) {
         level.firstBucket = firstBucket;
-        if (!level.hasCells) {
-            level.isDense = false;
-            level.bucketCount = 1;
-        } else if (level.isDense) {
-            layOutDense(level, reaches[i / 2]);
-        } else {
-            const bool takesAll = levels[i - 1].low[0] > levels[i - 1].high[0];
-            layOutHashed(level, takesAll ? reaches[i / 2].count : reaches[i / 2].count / kStrays);
-        }
         firstBucket += level.bucketCount;
     }
 }

@@ -51,10 +51,9 @@ public:
     /// Chooses the cell sizes, or takes the fixed ones where there are any. Cost: a pass over the boxes.
     void choose(std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed);
 
-    /// Lays the levels out for the boxes as they are now, and a little further: two for each cell
-    /// size, finest first, one numbered through, for most, and a hashed one for what lies beyond it.
-    /// The last one, the only one for a few boxes, is the list without cells. Cost: a pass or two over the
-    /// boxes.
+    /// Lays the levels out for the boxes as they are now, and a little further: for each cell size, finest
+    /// first, a dense one, for most, and a hashed one for what lies beyond it. The last one, the only one
+    /// for a few boxes, is the list. Cost: a pass or two over the boxes.
     void layOut(std::span<const PaddedBox<Scalar>> boxes, std::vector<Level<Scalar>>& levels);
 
     /// To be told when `shift` is subtracted from all coordinates.
@@ -67,8 +66,7 @@ public:
     }
 
 private:
-    void makeLevels(std::vector<Level<Scalar>>& levels) const;
-    void layOutDense(Level<Scalar>& level, const CellReach& reach);
+    void layOutDense(Level<Scalar>& level, const CellReach& reach) const;
 
     LevelSizes sizes_;
     std::array<Scalar, 3> origin_{};  // finite

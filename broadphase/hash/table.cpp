@@ -71,19 +71,30 @@ void Table<Scalar>::layOut(std::span<const PaddedBox<Scalar>> boxes) {
     bucketStart_.resize(levels_.back().firstBucket + levels_.back().bucketCount + 1);
 }
 
+template <class Scalar>
+FixedList<SizeClass<Scalar>, kMaxLevels> Table<Scalar>::sizeClasses() const {
+    FixedList<SizeClass<Scalar>, kMaxLevels> classes;
+    const Level<Scalar>* dense = nullptr;
+    for (const Level<Scalar>& level : levels_) {
+        if (level.kind == LevelKind::dense) {
+            dense = &level;
+        } else if (level.kind == LevelKind::hashed) {
+            classes.push({dense, &level});
+        }
+    }
+    return classes;
+}
+
 // Finds every box's bucket and counts how many each has. Returns how many boxes lie where it takes
 // longer to find them: listed without cells, or beyond the cells that are numbered through.
 template <class Scalar>
 std::size_t Table<Scalar>::countBuckets(std::span<const PaddedBox<Scalar>> boxes,
                                         ParallelFor parallelFor) {
     buckets_.resize(boxes.size());
-    views_.clear();
-    for (const Level<Scalar>& level : levels_) {
-        views_.push_back(view(level));
-    }
+    const FixedList<SizeClass<Scalar>, kMaxLevels> classes = sizeClasses();
     parallelFor(boxes.size(), kTableGrain, [&](std::size_t begin, std::size_t end) {
-        kernels<Scalar>().fileBoxes(views_.data(), views_.size(), boxes.data() + begin, end - begin,
-                                    buckets_.data() + begin);
+        kernels<Scalar>().fileBoxes(classes.data(), classes.size(), levels_.back().firstBucket,
+                                    boxes.data() + begin, end - begin, buckets_.data() + begin);
     });
     std::fill(bucketStart_.begin(), bucketStart_.end(), 0);
     for (const std::uint32_t bucket : buckets_) {
@@ -92,11 +103,10 @@ std::size_t Table<Scalar>::countBuckets(std::span<const PaddedBox<Scalar>> boxes
         }
     }
     std::size_t count = 0;
-    for (std::size_t i = 0; i < levels_.size(); ++i) {
-        const bool isStray = i % 2 == 1 || i + 1 == levels_.size();
-        const auto first = bucketStart_.begin() + levels_[i].firstBucket;
+    for (const Level<Scalar>& level : levels_) {
+        const auto first = bucketStart_.begin() + level.firstBucket;
         count +=
-            isStray ? std::accumulate(first, first + levels_[i].bucketCount, std::size_t{0}) : 0;
+            level.isDense() ? 0 : std::accumulate(first, first + level.bucketCount, std::size_t{0});
     }
     return count;
 }
@@ -109,7 +119,7 @@ void Table<Scalar>::sortEntries(std::span<const std::uint32_t> boxSlots,
                                 ParallelFor parallelFor) {
     std::uint32_t sum = 0;
     largestBucket_ = 0;
-    const std::size_t listBucket = bucketStart_.size() - 2;  // and behind it the end
+    const std::size_t listBucket = levels_.back().firstBucket;
     for (std::size_t bucket = 0; bucket < listBucket; ++bucket) {
         largestBucket_ = std::max(largestBucket_, bucketStart_[bucket]);
         sum += std::exchange(bucketStart_[bucket], sum);
@@ -150,6 +160,7 @@ void Table<Scalar>::sortEntries(std::span<const std::uint32_t> boxSlots,
     });
     noteRows();
     noteHeights();
+    linkLevels();
 }
 
 // Calls visit(bucket, span of entries in order_) for the crowded buckets of the level.
@@ -175,9 +186,9 @@ void Table<Scalar>::sortCrowds(std::span<const std::uint32_t> boxSlots,
                                const ProxyGroups* groups) {
     sortedBuckets_.clear();
     for (Level<Scalar>& level : levels_) {
-        level.firstSorted = static_cast<std::uint32_t>(sortedBuckets_.size());
+        const std::size_t countBefore = sortedBuckets_.size();
         level.sortedCount = 0;
-        const bool mayBeCrowded = level.hasCells ? largestBucket_ > kCrowd : groups != nullptr;
+        const bool mayBeCrowded = level.hasCells() ? largestBucket_ > kCrowd : groups != nullptr;
         if (!mayBeCrowded || level.count() <= kCrowd) {
             continue;
         }
@@ -197,7 +208,7 @@ void Table<Scalar>::sortCrowds(std::span<const std::uint32_t> boxSlots,
                 }
                 const auto last = first + static_cast<std::uint32_t>(count);
                 std::optional<SortedBucket<Scalar>> sorted;
-                if (level.hasCells && count > kFewest) {
+                if (level.hasCells() && count > kFewest) {
                     sorted = sortedAlong(crowd.first(count), boxes);
                 }
                 if (!sorted && haveGroups) {
@@ -216,7 +227,7 @@ void Table<Scalar>::sortCrowds(std::span<const std::uint32_t> boxSlots,
                 crowd = crowd.subspan(count);
             }
         });
-        level.sortedCount = static_cast<std::uint32_t>(sortedBuckets_.size()) - level.firstSorted;
+        level.sortedCount = static_cast<std::uint32_t>(sortedBuckets_.size() - countBefore);
     }
 }
 
@@ -251,7 +262,7 @@ std::optional<SortedBucket<Scalar>> Table<Scalar>::sortedAlong(
 template <class Scalar>
 void Table<Scalar>::noteRows() {
     const auto isHashed = [](const Level<Scalar>& level) {
-        return level.hasCells && !level.isDense && level.count() > 0;
+        return level.hasCells() && !level.isDense() && level.count() > 0;
     };
     const bool isNeeded = std::any_of(levels_.begin(), levels_.end(), isHashed);
     rowOfEntry_.resize(isNeeded ? slots_.size() : 0);
@@ -266,8 +277,10 @@ void Table<Scalar>::noteRows() {
             reach.add(cell);
             rowOfEntry_[i] = {cell[1], cell[2]};
         }
-        level.low = reach.low;
-        level.high = reach.high;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            level.low[axis] = reach.low[axis];
+            level.high[axis] = reach.high[axis];
+        }
     }
 }
 
@@ -276,7 +289,7 @@ template <class Scalar>
 void Table<Scalar>::noteHeights() {
     const auto find = kernels<Scalar>().findRange;
     for (Level<Scalar>& level : levels_) {
-        for (std::size_t axis = 0; level.hasCells && axis < 3; ++axis) {
+        for (std::size_t axis = 0; level.hasCells() && axis < 3; ++axis) {
             if (level.inverseCellSize[axis] != 0 || level.count() == 0) {
                 continue;
             }
@@ -339,37 +352,21 @@ void Table<Scalar>::findBuckets(std::span<const PaddedBox<Scalar>> boxes, const 
     }
 }
 
+// Levels point into the table's arrays, which stay where they are when tables are moved or swapped.
 template <class Scalar>
-LevelView<Scalar> Table<Scalar>::view(const Level<Scalar>& level) const noexcept {
-    LevelView<Scalar> view{};
-    for (std::size_t i = 0; i < 6; ++i) {
-        view.columns[i] = bounds_[i].data();
+void Table<Scalar>::linkLevels() noexcept {
+    const SortedBucket<Scalar>* sorted = sortedBuckets_.data();
+    for (Level<Scalar>& level : levels_) {
+        for (std::size_t i = 0; i < bounds_.size(); ++i) {
+            level.columns[i] = bounds_[i].data();
+        }
+        level.bucketStart = bucketStart_.data() + level.firstBucket;
+        level.bucketOfEntry = bucketOfEntry_.data();
+        level.entrySlots = slots_.data();
+        level.rowOfEntry = rowOfEntry_.data();
+        level.sortedBuckets = sorted;
+        sorted += level.sortedCount;
     }
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        view.origin[axis] = level.origin[axis];
-        view.inverseCellSize[axis] = level.inverseCellSize[axis];
-        view.lowest[axis] = level.lowest[axis];
-        view.highest[axis] = level.highest[axis];
-        view.low[axis] = level.low[axis];
-        view.high[axis] = level.high[axis];
-    }
-    view.largestEdge = level.largestEdge;
-    view.bucketStart = bucketStart_.data() + level.firstBucket;
-    view.bucketOfEntry = bucketOfEntry_.data();
-    view.rowOfEntry = rowOfEntry_.data();
-    view.entrySlots = slots_.data();
-    view.firstBucket = level.firstBucket;
-    view.firstEntry = level.firstEntry;
-    view.lastEntry = level.lastEntry;
-    view.bucketCount = level.bucketCount;
-    view.strideY = level.strideY;
-    view.strideZ = level.strideZ;
-    view.denseBase = level.denseBase;
-    view.isDense = level.isDense;
-    view.hasCells = level.hasCells;
-    view.sortedBuckets = sortedBuckets_.data() + level.firstSorted;
-    view.sortedCount = level.sortedCount;
-    return view;
 }
 
 template <class Scalar>
@@ -395,7 +392,6 @@ std::size_t Table<Scalar>::memoryBytes() const noexcept {
             bucketOfEntry_.capacity() + buckets_.capacity() + longOnes_.capacity()) *
                sizeof(std::uint32_t) +
            6 * bounds_[0].capacity() * sizeof(Scalar) + rowOfEntry_.capacity() * sizeof(Row) +
-           views_.capacity() * sizeof(LevelView<Scalar>) +
            sortedBuckets_.capacity() * sizeof(SortedBucket<Scalar>) +
            (layout_ != nullptr ? layout_->memoryBytes() : 0);
 }
@@ -416,7 +412,8 @@ void Table<Scalar>::releaseUnusedMemory() noexcept {
     for (auto& column : bounds_) {
         column.shrink_to_fit();
     }
-    freeArrays(buckets_, longOnes_, views_);
+    freeArrays(buckets_, longOnes_);
+    linkLevels();
 }
 
 template <class Scalar>
@@ -452,7 +449,7 @@ std::string Table<Scalar>::validate() const {
             }
             for (; entry < bucketStart_[b + 1]; ++entry) {
                 const Aabb<Scalar> box = this->box(entry);
-                if (hasNan(box) || !level.hasCells) {
+                if (hasNan(box) || !level.hasCells()) {
                     continue;
                 }
                 Cell low{};
@@ -465,7 +462,8 @@ std::string Table<Scalar>::validate() const {
                                "listed without cells: broken.";
                     }
                 }
-                if (level.firstBucket + level.bucket(low) != b || bucketOfEntry_[entry] != b) {
+                if (level.firstBucket + level.bucket(low[0], Row{low[1], low[2]}) != b ||
+                    bucketOfEntry_[entry] != b) {
                     return "Every entry lies in the bucket of the cell of its min corner: broken.";
                 }
             }

@@ -12,6 +12,7 @@
 // Threads   Building and erasing need the table for themselves; everything const may run anywhere.
 
 #include <broadphase/aabb.hpp>
+#include <broadphase/core/fixed_list.hpp>
 #include <broadphase/export.hpp>
 #include <broadphase/geometry/padded_box.hpp>
 #include <broadphase/geometry/quantise.hpp>
@@ -79,6 +80,8 @@ public:
     [[nodiscard]] std::uint32_t size() const noexcept {
         return static_cast<std::uint32_t>(slots_.size());
     }
+    /// Those of each cell size, finest first, the dense one before the hashed one; and the list. None when
+    /// nothing is filed.
     [[nodiscard]] std::span<const Level<Scalar>> levels() const noexcept { return levels_; }
     [[nodiscard]] std::span<const std::uint32_t> entrySlots() const noexcept { return slots_; }
     [[nodiscard]] std::uint32_t slot(std::uint32_t entry) const noexcept { return slots_[entry]; }
@@ -108,14 +111,11 @@ public:
                 bounds_[3].data(), bounds_[4].data(), bounds_[5].data()};
     }
 
-    /// What kernels read of the level.
-    [[nodiscard]] LevelView<Scalar> view(const Level<Scalar>& level) const noexcept;
-
     /// True when the entry, found by forRun(), lies in that row (y, z): hashed rows may share
     /// buckets. Asked about hits only.
     [[nodiscard]] bool isInRow(const Level<Scalar>& level, std::uint32_t entry, std::int32_t y,
                                std::int32_t z) const noexcept {
-        return level.isDense || (rowOfEntry_[entry].y == y && rowOfEntry_[entry].z == z);
+        return level.isDense() || (rowOfEntry_[entry].y == y && rowOfEntry_[entry].z == z);
     }
 
     /// Calls visit(EntryRange) for the buckets of the run, which must lie in the level's low to
@@ -129,7 +129,7 @@ public:
             visit(EntryRange{starts[0], starts[level.bucketCount]});
             return;
         }
-        const std::uint32_t first = level.bucket({run.firstX, run.y, run.z});
+        const std::uint32_t first = level.bucket(run.firstX, Row{run.y, run.z});
         const std::uint32_t last = first + length;
         if (last <= level.bucketCount) {
             visit(EntryRange{starts[first], starts[last]});
@@ -156,6 +156,7 @@ private:
     void findBuckets(std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed,
                      ParallelFor parallelFor);
     void layOut(std::span<const PaddedBox<Scalar>> boxes);
+    [[nodiscard]] FixedList<SizeClass<Scalar>, kMaxLevels> sizeClasses() const;
     [[nodiscard]] std::size_t countBuckets(std::span<const PaddedBox<Scalar>> boxes,
                                            ParallelFor parallelFor);
     void sortEntries(std::span<const std::uint32_t> boxSlots,
@@ -170,6 +171,7 @@ private:
     [[nodiscard]] bool areSorted() const;
     void noteRows();
     void noteHeights();
+    void linkLevels() noexcept;
 
     std::unique_ptr<LevelLayout<Scalar>> layout_;  // made when the first box is filed
     std::uint32_t largestBucket_ = 0;              // of those that are cells
@@ -184,9 +186,8 @@ private:
     std::vector<SortedBucket<Scalar>> sortedBuckets_;
     std::array<std::vector<Scalar>, 6> bounds_;  // kColumnPadding longer than the entries
 
-    std::vector<std::uint32_t> buckets_;    // scratch of build()
-    std::vector<std::uint32_t> longOnes_;   // the same
-    std::vector<LevelView<Scalar>> views_;  // the same
+    std::vector<std::uint32_t> buckets_;   // scratch of build()
+    std::vector<std::uint32_t> longOnes_;  // the same
 };
 
 template <class Scalar>
@@ -198,8 +199,7 @@ void Table<Scalar>::forNear(const Level<Scalar>& level, EntryRange range,
             visit(EntryRange{first, last});
         }
     };
-    const std::span<const SortedBucket<Scalar>> buckets =
-        std::span(sortedBuckets_).subspan(level.firstSorted, level.sortedCount);
+    const std::span buckets(level.sortedBuckets, level.sortedCount);
     auto sorted = std::partition_point(buckets.begin(), buckets.end(),
                                        [&](const auto& one) { return one.first < range.first; });
     for (; sorted != buckets.end() && sorted->first < range.last; ++sorted) {

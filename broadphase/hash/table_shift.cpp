@@ -37,7 +37,7 @@ bool Table<Scalar>::shiftOrigin(const Vector3<Scalar>& shift) {
                 isExact &=
                     shiftColumn(bounds_[column].data() + level.firstEntry, level.count(), by);
             }
-            isFiled &= isExact || !level.hasCells || level.count() == 0;
+            isFiled &= isExact || !level.hasCells() || level.count() == 0;
         }
     }
     if (layout_ != nullptr) {

@@ -61,10 +61,10 @@ void extendByCells(Aabb<double>& world, const Level<Scalar>& level) {
 template <class Scalar>
 void extendByTable(Aabb<double>& world, const Table<Scalar>& table) {
     for (const Level<Scalar>& level : table.levels()) {
-        if (level.count() > 0 && level.hasCells) {
+        if (level.count() > 0 && level.hasCells()) {
             extendByCells(world, level);
         }
-        for (std::uint32_t i = level.firstEntry; i < level.lastEntry && !level.hasCells; ++i) {
+        for (std::uint32_t i = level.firstEntry; i < level.lastEntry && !level.hasCells(); ++i) {
             const Aabb<Scalar> box = table.box(i);
             if (!hasNan(box)) {
                 world.extend(box.template cast<double>());
@@ -259,7 +259,7 @@ void ContactSearch<Scalar>::walkSegments(const Table<Scalar>& table, std::size_t
                                          KernelCost& cost) const {
     for (const Level<Scalar>& level : table.levels()) {
         if (level.count() > 0) {
-            kernels<Scalar>().walkWays(table.view(level), segments_.columns().data(), ways_.data(),
+            kernels<Scalar>().walkWays(level, segments_.columns().data(), ways_.data(),
                                        motionOfSegment_.data(), static_cast<std::uint32_t>(first),
                                        static_cast<std::uint32_t>(last), candidates, cost);
         }

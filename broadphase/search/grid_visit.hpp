@@ -104,10 +104,10 @@ struct Grid<Scalar>::VolumeReader {
         if (!(reader.limit() >= 0)) {
             return false;
         }
-        return std::ranges::all_of(
-            reader.table.levels(), [this](const detail::Level<Scalar>& level) {
-                return level.count() == 0 || (level.hasCells ? readCells(level) : readList(level));
-            });
+        return std::ranges::all_of(reader.table.levels(), [this](
+                                                              const detail::Level<Scalar>& level) {
+            return level.count() == 0 || (level.hasCells() ? readCells(level) : readList(level));
+        });
     }
 
 private:
@@ -122,8 +122,7 @@ private:
         };
         std::array<std::uint32_t, 512> found;
         detail::SlotSink sink{found.data(), found.data(), found.data() + found.size(), flush, this};
-        return detail::kernels<Scalar>().walkVolume(reader.table.view(level),
-                                                    reader.region.volume(), sink, walk) &&
+        return detail::kernels<Scalar>().walkVolume(level, reader.region.volume(), sink, walk) &&
                take(sink);
     }
 

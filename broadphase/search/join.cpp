@@ -37,8 +37,8 @@ struct Search {
 // reads no more than the cells around it, where the other way round everyone would read all of them.
 template <class Scalar>
 Search<Scalar> searchOf(const Level<Scalar>& a, const Level<Scalar>& b) {
-    if (!a.hasCells || !b.hasCells) {
-        return a.hasCells ? Search<Scalar>{&b, &a} : Search<Scalar>{&a, &b};
+    if (!a.hasCells() || !b.hasCells()) {
+        return a.hasCells() ? Search<Scalar>{&b, &a} : Search<Scalar>{&a, &b};
     }
     const bool isFromA = a.count() * rowsLookedUp(a, b) <= b.count() * rowsLookedUp(b, a);
     return isFromA ? Search<Scalar>{&a, &b} : Search<Scalar>{&b, &a};
@@ -48,10 +48,10 @@ template <class Scalar>
 void run(const Table<Scalar>& table, const Search<Scalar>& search, const GroupsView* groups,
          std::uint32_t first, std::uint32_t last, PairSink& sink, KernelCost& cost) {
     const Kernels<Scalar>& kernel = kernels<Scalar>();
-    const LevelView<Scalar> among = table.view(*search.among);
+    const Level<Scalar>& among = *search.among;
     if (search.from != search.among) {
         kernel.walkLevel(among, groups, table.columns().data(), first, last, sink, cost);
-    } else if (among.hasCells) {
+    } else if (among.hasCells()) {
         kernel.joinLevel(among, groups, first, last, sink, cost);
     } else {
         kernel.joinList(among, groups, first, last, sink, cost);
@@ -147,7 +147,7 @@ void walkTogether(const Table<Scalar>& table, const Columns<Scalar>& queries, st
                   PairSink& sink, KernelCost& cost) {
     for (const Level<Scalar>& level : table.levels()) {
         if (level.count() > 0) {
-            kernels<Scalar>().walkTogether(table.view(level), queries.data(), 0, count, sink, cost);
+            kernels<Scalar>().walkTogether(level, queries.data(), 0, count, sink, cost);
         }
     }
 }
@@ -157,8 +157,7 @@ void walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::
                std::uint32_t last, PairSink& sink, KernelCost& cost, const GroupsView* groups) {
     for (const Level<Scalar>& level : table.levels()) {
         if (level.count() > 0) {
-            kernels<Scalar>().walkLevel(table.view(level), groups, queries.data(), first, last,
-                                        sink, cost);
+            kernels<Scalar>().walkLevel(level, groups, queries.data(), first, last, sink, cost);
         }
     }
 }

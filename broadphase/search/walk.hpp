@@ -76,7 +76,7 @@ void forRows(const RowsOfBox& rows, VisitRow&& visitRow) {
 template <class Scalar>
 bool haveMoreThanAll(const Table<Scalar>& table, const Level<Scalar>& level,
                      const RowsOfBox& rows) {
-    if (level.isDense || rows.count == 0) {
+    if (level.isDense() || rows.count == 0) {
         return false;
     }
     const auto length = static_cast<std::uint64_t>(rows.high[0] - rows.low[0]) + 1;
@@ -100,7 +100,7 @@ template <class Scalar, class Read>
 bool walkBuckets(const Table<Scalar>& table, const Level<Scalar>& level, const Aabb<Scalar>& bounds,
                  QueryCost& cost, const Read& read) {
     const RowsOfBox rows = rowsOfBox(level, bounds);
-    if (!level.hasCells || rows.areTooMany || haveMoreThanAll(table, level, rows)) {
+    if (!level.hasCells() || rows.areTooMany || haveMoreThanAll(table, level, rows)) {
         return read(EntryRange{level.firstEntry, level.lastEntry},
                     [](std::uint32_t) { return true; });
     }

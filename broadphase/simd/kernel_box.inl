@@ -133,7 +133,7 @@ struct GroupQuery : Query<Scalar> {
     ProxyGroups own;
 
     // cppcheck-suppress uninitDerivedMemberVar  // the copied query has them
-    GroupQuery(const LevelView<Scalar>& level, const GroupsView& groups, const Query<Scalar>& query)
+    GroupQuery(const Level<Scalar>& level, const GroupsView& groups, const Query<Scalar>& query)
         : Query<Scalar>(query),
           view(&groups),
           slots(level.entrySlots),
@@ -177,7 +177,7 @@ inline std::uint32_t laneMask(std::uint32_t count, std::uint32_t width) {
 
 // Hashed rows may share buckets: of the entries of a run, those in the row are hits.
 template <bool kIsDense, class Scalar>
-bool isInRow(const LevelView<Scalar>& level, std::uint32_t entry, Row row) {
+bool isInRow(const Level<Scalar>& level, std::uint32_t entry, Row row) {
     if constexpr (kIsDense) {
         return true;
     } else {
@@ -189,7 +189,7 @@ bool isInRow(const LevelView<Scalar>& level, std::uint32_t entry, Row row) {
 // Tests all entries of a run; none where it ends before it begins, as what is looked for in a
 // sorted one may. Returns how many.
 template <bool kIsDense, class Scalar, class Query>
-std::uint32_t scanAll(const LevelView<Scalar>& level, const Query& query, Run run, Row row,
+std::uint32_t scanAll(const Level<Scalar>& level, const Query& query, Run run, Row row,
                       PairSink& found) {
     if (run.last <= run.first) {
         return 0;
@@ -212,7 +212,7 @@ std::uint32_t scanAll(const LevelView<Scalar>& level, const Query& query, Run ru
 
 /// The first part of the bucket, counted over all levels; null when it is not sorted.
 template <class Scalar>
-const SortedBucket<Scalar>* sortedBucket(const LevelView<Scalar>& level, std::uint32_t bucket) {
+const SortedBucket<Scalar>* sortedBucket(const Level<Scalar>& level, std::uint32_t bucket) {
     std::uint32_t first = 0;
     std::uint32_t last = level.sortedCount;
     while (first < last) {
@@ -229,7 +229,7 @@ const SortedBucket<Scalar>* sortedBucket(const LevelView<Scalar>& level, std::ui
 
 // Tests those entries of a run that are in a part of a bucket.
 template <bool kIsDense, class Scalar, class Query>
-std::uint32_t sweepPart(const LevelView<Scalar>& level, const Query& query,
+std::uint32_t sweepPart(const Level<Scalar>& level, const Query& query,
                         const SortedBucket<Scalar>& sorted, Run run, Row row, PairSink& found) {
     run = {highest(run.first, sorted.first), lowest(run.last, sorted.last)};
     if (run.last <= run.first || !query.findsAny(sorted)) {
@@ -250,7 +250,7 @@ std::uint32_t sweepPart(const LevelView<Scalar>& level, const Query& query,
 // these, those that begin before the box ends, and no farther before it than the longest of them
 // reaches, and the long ones. Returns how many it tested.
 template <bool kIsDense, class Scalar, class Query>
-[[gnu::noinline]] std::uint32_t sweep(const LevelView<Scalar>& level, const Query& query, Run run,
+[[gnu::noinline]] std::uint32_t sweep(const Level<Scalar>& level, const Query& query, Run run,
                                       Row row, PairSink& found) {
     std::uint32_t tested = 0;
     while (run.first < run.last) {
@@ -275,7 +275,7 @@ template <bool kIsDense, class Scalar, class Query>
 
 // Finds all entries of a run that overlap the box. Returns how many it tested.
 template <bool kIsDense, class Scalar, class Query>
-std::uint32_t scan(const LevelView<Scalar>& level, const Query& query, Run run, Row row,
+std::uint32_t scan(const Level<Scalar>& level, const Query& query, Run run, Row row,
                    PairSink& found) {
     if (level.sortedCount > 0) {
         return sweep<kIsDense>(level, query, run, row, found);

@@ -3,7 +3,7 @@
 // Kernel part: finds the buckets of boxes. See kernels.inl.
 
 template <class Scalar>
-bool isWithin(const LevelView<Scalar>& level, const std::int32_t* cell) {
+bool isWithin(const Level<Scalar>& level, const std::int32_t* cell) {
     bool result = true;
     for (int axis = 0; axis < 3; ++axis) {
         result &= (level.low[axis] <= cell[axis]) & (cell[axis] <= level.high[axis]);
@@ -12,27 +12,25 @@ bool isWithin(const LevelView<Scalar>& level, const std::int32_t* cell) {
 }
 
 template <class Scalar>
-void fileBoxes(const LevelView<Scalar>* levels, std::size_t levelCount,
+void fileBoxes(const SizeClass<Scalar>* classes, std::size_t classCount, std::uint32_t listBucket,
                const PaddedBox<Scalar>* boxes, std::size_t count, std::uint32_t* buckets) {
-    const std::size_t listed = levelCount - 1;
+    const SizeClass<Scalar>* const end = classes + classCount;
     for (std::size_t i = 0; i < count; ++i) {
         const PaddedBox<Scalar>& box = boxes[i];
-        std::size_t number = 0;
+        const SizeClass<Scalar>* sized = classes;
         std::int32_t cell[4] = {};
         // The finest cells that are no smaller than the box, or, where rounding makes it span three
         // of these, coarser ones. Only the cells themselves decide, so that no rounding can file a
         // box where it is not looked for.
-        while (number < listed &&
-               !(fitsEdge(levels[number], box) && quantiseCorners(levels[number], box, cell))) {
-            number += 2;
+        while (sized != end &&
+               !(fitsEdge(*sized->dense, box) && quantiseCorners(*sized->dense, box, cell))) {
+            ++sized;
         }
-        if (number == listed) {
-            buckets[i] = isNan(box) ? kNoBucket : levels[listed].firstBucket;
+        if (sized == end) {
+            buckets[i] = isNan(box) ? kNoBucket : listBucket;
             continue;
         }
-        const LevelView<Scalar>& level = levels[number + (isWithin(levels[number], cell) ? 0 : 1)];
-        const std::uint32_t sum =
-            rowBase(level, Row{cell[1], cell[2]}) + static_cast<std::uint32_t>(cell[0]);
-        buckets[i] = level.firstBucket + (level.isDense ? sum : sum & (level.bucketCount - 1));
+        const Level<Scalar>& level = isWithin(*sized->dense, cell) ? *sized->dense : *sized->hashed;
+        buckets[i] = level.firstBucket + level.bucket(cell[0], Row{cell[1], cell[2]});
     }
 }

@@ -16,11 +16,11 @@ inline Row operator+(Row a, Row b) {
 /// The runs of the entries' neighbourhoods, one after the other.
 template <class Scalar, bool kIsDense, int kRows>
 struct Neighbourhood {
-    const LevelView<Scalar>& level;
+    const Level<Scalar>& level;
     const Row* steps;
     std::uint32_t offsets[kRows];  // of buckets, where these are dense
 
-    Neighbourhood(const LevelView<Scalar>& itsLevel, const Row* itsSteps)
+    Neighbourhood(const Level<Scalar>& itsLevel, const Row* itsSteps)
         : level(itsLevel), steps(itsSteps) {
         for (int k = 0; k < kRows; ++k) {
             offsets[k] = static_cast<std::uint32_t>(steps[k].y) * level.strideY +
@@ -36,7 +36,7 @@ struct Neighbourhood {
     [[nodiscard]] std::uint32_t bucketBefore(std::uint32_t entry, int k) const {
         const Row own = level.rowOfEntry[entry];
         const std::uint32_t bucket = level.bucketOfEntry[entry] - level.firstBucket;
-        return (bucket - rowBase(level, own) + rowBase(level, own + steps[k]) - 1) &
+        return (bucket - level.rowBase(own) + level.rowBase(own + steps[k]) - 1) &
                (level.bucketCount - 1);
     }
 
@@ -79,8 +79,7 @@ struct Neighbourhood {
 /// The queries of a join: for all that overlaps an entry, or for what it may pair with.
 struct ForAll {
     template <class Scalar>
-    [[nodiscard]] Query<Scalar> operator()(const LevelView<Scalar>& level,
-                                           std::uint32_t entry) const {
+    [[nodiscard]] Query<Scalar> operator()(const Level<Scalar>& level, std::uint32_t entry) const {
         return {level.columns, entry};
     }
 };
@@ -88,7 +87,7 @@ struct ForGroups {
     const GroupsView* view;
 
     template <class Scalar>
-    [[nodiscard]] GroupQuery<Scalar> operator()(const LevelView<Scalar>& level,
+    [[nodiscard]] GroupQuery<Scalar> operator()(const Level<Scalar>& level,
                                                 std::uint32_t entry) const {
         return {level, *view, Query<Scalar>{level.columns, entry}};
     }
@@ -96,9 +95,9 @@ struct ForGroups {
 
 // Flattened, because compilers leave calls in this loop otherwise.
 template <class Scalar, bool kIsDense, int kRows, class QueryOf>
-[[gnu::flatten]] void joinRows(const LevelView<Scalar>& level, const Row* steps,
-                               const QueryOf& queryOf, std::uint32_t firstEntry,
-                               std::uint32_t lastEntry, PairSink& found, KernelCost& cost) {
+[[gnu::flatten]] void joinRows(const Level<Scalar>& level, const Row* steps, const QueryOf& queryOf,
+                               std::uint32_t firstEntry, std::uint32_t lastEntry, PairSink& found,
+                               KernelCost& cost) {
     constexpr int kUnbranchedHits = 2;
     const Neighbourhood<Scalar, kIsDense, kRows> around(level, steps);
     std::uint64_t boxesTested = 0;
@@ -174,7 +173,7 @@ template <class Scalar, bool kIsDense, int kRows, class QueryOf>
 }
 
 template <class Scalar, bool kIsDense, class QueryOf>
-void joinDenseOrHashed(const LevelView<Scalar>& level, const QueryOf& queryOf, std::uint32_t first,
+void joinDenseOrHashed(const Level<Scalar>& level, const QueryOf& queryOf, std::uint32_t first,
                        std::uint32_t last, PairSink& found, KernelCost& cost) {
     const bool isOneRow = level.low[1] == level.high[1];
     const bool isOneLayer = level.low[2] == level.high[2];
@@ -190,9 +189,9 @@ void joinDenseOrHashed(const LevelView<Scalar>& level, const QueryOf& queryOf, s
 }
 
 template <class Scalar, class QueryOf>
-void joinLevelFor(const LevelView<Scalar>& level, const QueryOf& queryOf, std::uint32_t first,
+void joinLevelFor(const Level<Scalar>& level, const QueryOf& queryOf, std::uint32_t first,
                   std::uint32_t last, PairSink& found, KernelCost& cost) {
-    if (level.isDense) {
+    if (level.isDense()) {
         joinDenseOrHashed<Scalar, true>(level, queryOf, first, last, found, cost);
     } else {
         joinDenseOrHashed<Scalar, false>(level, queryOf, first, last, found, cost);
@@ -200,7 +199,7 @@ void joinLevelFor(const LevelView<Scalar>& level, const QueryOf& queryOf, std::u
 }
 
 template <class Scalar>
-void joinLevel(const LevelView<Scalar>& level, const GroupsView* groups, std::uint32_t firstEntry,
+void joinLevel(const Level<Scalar>& level, const GroupsView* groups, std::uint32_t firstEntry,
                std::uint32_t lastEntry, PairSink& found, KernelCost& cost) {
     if (groups == nullptr) {
         joinLevelFor(level, ForAll{}, firstEntry, lastEntry, found, cost);
@@ -210,7 +209,7 @@ void joinLevel(const LevelView<Scalar>& level, const GroupsView* groups, std::ui
 }
 
 template <class Scalar, class QueryOf>
-void joinListFor(const LevelView<Scalar>& level, const QueryOf& queryOf, std::uint32_t firstEntry,
+void joinListFor(const Level<Scalar>& level, const QueryOf& queryOf, std::uint32_t firstEntry,
                  std::uint32_t lastEntry, PairSink& found, KernelCost& cost) {
     for (std::uint32_t entry = firstEntry; entry < lastEntry; ++entry) {
         const auto query = queryOf(level, entry);
@@ -222,7 +221,7 @@ void joinListFor(const LevelView<Scalar>& level, const QueryOf& queryOf, std::ui
 }
 
 template <class Scalar>
-void joinList(const LevelView<Scalar>& level, const GroupsView* groups, std::uint32_t firstEntry,
+void joinList(const Level<Scalar>& level, const GroupsView* groups, std::uint32_t firstEntry,
               std::uint32_t lastEntry, PairSink& found, KernelCost& cost) {
     if (groups == nullptr) {
         joinListFor(level, ForAll{}, firstEntry, lastEntry, found, cost);

@@ -33,13 +33,13 @@ struct Packs {
 
 // Returns false when there are too many.
 template <bool kIsDense, class Scalar>
-bool gatherPacks(const LevelView<Scalar>& level, const CellBlock& block, Packs& packs) {
+bool gatherPacks(const Level<Scalar>& level, const CellBlock& block, Packs& packs) {
     const std::uint32_t* starts = level.bucketStart;
     const auto length = static_cast<std::uint32_t>(block.extent(0));
     for (std::int32_t z = block.low[2]; z <= block.high[2]; ++z) {
         for (std::int32_t y = block.low[1]; y <= block.high[1]; ++y) {
             const Row row{y, z};
-            std::uint32_t first = rowBase(level, row) + static_cast<std::uint32_t>(block.low[0]);
+            std::uint32_t first = level.rowBase(row) + static_cast<std::uint32_t>(block.low[0]);
             if constexpr (kIsDense) {
                 if (!packs.add({starts[first], starts[first + length]}, row)) {
                     return false;
@@ -59,7 +59,7 @@ bool gatherPacks(const LevelView<Scalar>& level, const CellBlock& block, Packs& 
 }
 
 template <bool kIsDense, class Scalar>
-void scanPacks(const LevelView<Scalar>& level, const Query<Scalar>& query, const Packs& packs,
+void scanPacks(const Level<Scalar>& level, const Query<Scalar>& query, const Packs& packs,
                PairSink& found) {
     const Lanes<Pack<Scalar>, Scalar> box(query.columns, query.number);
     makeRoom(found, kWidth * packs.count + 1);
@@ -83,7 +83,7 @@ void scanPacks(const LevelView<Scalar>& level, const Query<Scalar>& query, const
 
 // Returns false when the boxes are better looked at one by one.
 template <class Scalar, bool kIsDense>
-[[gnu::flatten]] bool walkBoxes(const LevelView<Scalar>& level, const Scalar* const* queries,
+[[gnu::flatten]] bool walkBoxes(const Level<Scalar>& level, const Scalar* const* queries,
                                 std::uint32_t first, std::uint32_t last, PairSink& found,
                                 KernelCost& cost) {
     // The box around all. Whatever overlaps one of them, be it inverted, overlaps this one, when this
@@ -124,13 +124,13 @@ template <class Scalar, bool kIsDense>
 }
 
 template <class Scalar>
-void walkTogether(const LevelView<Scalar>& level, const Scalar* const* queries, std::uint32_t first,
+void walkTogether(const Level<Scalar>& level, const Scalar* const* queries, std::uint32_t first,
                   std::uint32_t last, PairSink& found, KernelCost& cost) {
     for (std::uint32_t end = first; first < last; first = end) {
         end = first + lowest(kTogether, last - first);
         bool isDone = false;
-        if (level.hasCells && end - first > 1) {
-            isDone = level.isDense
+        if (level.hasCells() && end - first > 1) {
+            isDone = level.isDense()
                          ? walkBoxes<Scalar, true>(level, queries, first, end, found, cost)
                          : walkBoxes<Scalar, false>(level, queries, first, end, found, cost);
         }

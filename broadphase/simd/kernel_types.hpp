@@ -5,7 +5,7 @@
 // several instruction sets, and an inline function of the standard library that such a file emits
 // could be the copy that the linker keeps for the whole program.
 
-#include <broadphase/hash/sorted_bucket.hpp>
+#include <broadphase/hash/level.hpp>
 #include <broadphase/proxy_groups.hpp>
 
 #include <cstddef>
@@ -95,53 +95,12 @@ struct Way {
     std::uint32_t leaveColumn[3];
 };
 
-/// A row of cells, along x.
-struct Row {
-    std::int32_t y;
-    std::int32_t z;
-};
-
-/// A level of a table (see table.hpp) as plain arrays.
-template <class Scalar>
-struct LevelView {
-    const Scalar* columns[6];            // min x, y, z, max x, y, z of the whole table
-    const std::uint32_t* bucketStart;    // first entry of each of the level's buckets, and the end
-    const std::uint32_t* bucketOfEntry;  // of the whole table, counted over all levels
-    const std::uint32_t* entrySlots;     // of the whole table's entries
-    std::uint32_t firstBucket;           // of the level
-    const Row* rowOfEntry;               // of the whole table, where a level is hashed
-    Scalar origin[4];
-    Scalar inverseCellSize[4];  // 0 along a flat axis
-    Scalar largestEdge;         // of boxes that are filed here
-    Scalar lowest[4];           // coordinates of boxes, known along flat axes
-    Scalar highest[4];
-    std::int32_t low[4];
-    std::int32_t high[4];
-    std::uint32_t firstEntry;
-    std::uint32_t lastEntry;
-    std::uint32_t bucketCount;
-    std::uint32_t strideY;
-    std::uint32_t strideZ;
-    std::uint32_t denseBase;
-    bool isDense;
-    bool hasCells;
-    const SortedBucket<Scalar>* sortedBuckets;  // of the level, in ascending order
-    std::uint32_t sortedCount;
-};
-
 /// Who may pair with whom, for searches that are to find no others.
 struct GroupsView {
     const ProxyGroups* groups;         // of a slot: groups[2 * slot]
     const std::uint32_t* slotOfQuery;  // by the number of what is looked for
     ProxyGroups together;              // all bits of those that are looked through
 };
-
-/// A hash of a row's number whose lower bits are well mixed.
-[[nodiscard, gnu::always_inline]] inline std::uint32_t mixRow(std::uint32_t row) noexcept {
-    std::uint32_t hash = row ^ (row >> 16);
-    hash *= 0x7feb352dU;
-    return hash ^ (hash >> 15);
-}
 
 /// What a kernel did.
 struct KernelCost {
@@ -201,45 +160,44 @@ struct CrowdVisitor {
 
 template <class Scalar>
 struct Kernels {
-    /// Finds the bucket of each of `count` boxes, over all levels: two for each cell size, finest
-    /// first, a dense one for the cells from its low to its high and one for all others, and last
-    /// the list without cells.
-    void (*fileBoxes)(const LevelView<Scalar>* levels, std::size_t levelCount,
-                      const PaddedBox<Scalar>* boxes, std::size_t count, std::uint32_t* buckets);
+    /// Finds the bucket of each of `count` boxes, counted over all levels: of the first cell size that is
+    /// no smaller, or that of the list.
+    void (*fileBoxes)(const SizeClass<Scalar>* classes, std::size_t classCount,
+                      std::uint32_t listBucket, const PaddedBox<Scalar>* boxes, std::size_t count,
+                      std::uint32_t* buckets);
 
     /// Finds every two entries of a level with cells that overlap, the first one from firstEntry
     /// to lastEntry; over the whole level each couple once. Where `groups` is not null, this and the next
     /// one leave out those that may not pair.
-    void (*joinLevel)(const LevelView<Scalar>& level, const GroupsView* groups,
+    void (*joinLevel)(const Level<Scalar>& level, const GroupsView* groups,
                       std::uint32_t firstEntry, std::uint32_t lastEntry, PairSink& found,
                       KernelCost& cost);
 
     /// Finds (i, entry) for every box i from first to last of `queries`, which has columns like the
     /// level's, and every entry of the level that overlaps it.
-    void (*walkLevel)(const LevelView<Scalar>& level, const GroupsView* groups,
+    void (*walkLevel)(const Level<Scalar>& level, const GroupsView* groups,
                       const Scalar* const* queries, std::uint32_t first, std::uint32_t last,
                       PairSink& found, KernelCost& cost);
 
     /// The same for all groups, but for entries that are not within reach of ways[wayOf[i]] between
     /// the times 0 and 1; some that it just misses may be found.
-    void (*walkWays)(const LevelView<Scalar>& level, const Scalar* const* queries,
+    void (*walkWays)(const Level<Scalar>& level, const Scalar* const* queries,
                      const Way<Scalar>* ways, const std::uint32_t* wayOf, std::uint32_t first,
                      std::uint32_t last, PairSink& found, KernelCost& cost);
 
     /// As walkLevel(), sooner where boxes that follow each other are near each other.
-    void (*walkTogether)(const LevelView<Scalar>& level, const Scalar* const* queries,
+    void (*walkTogether)(const Level<Scalar>& level, const Scalar* const* queries,
                          std::uint32_t first, std::uint32_t last, PairSink& found,
                          KernelCost& cost);
 
     /// Finds the slot of every entry of a level with cells that is in the volume, and perhaps of some
     /// that were erased. Returns false when the sink has ended the search.
-    bool (*walkVolume)(const LevelView<Scalar>& level, const Volume<Scalar>& volume,
-                       SlotSink& found, KernelCost& cost);
+    bool (*walkVolume)(const Level<Scalar>& level, const Volume<Scalar>& volume, SlotSink& found,
+                       KernelCost& cost);
 
     /// As joinLevel(), of a level without cells.
-    void (*joinList)(const LevelView<Scalar>& level, const GroupsView* groups,
-                     std::uint32_t firstEntry, std::uint32_t lastEntry, PairSink& found,
-                     KernelCost& cost);
+    void (*joinList)(const Level<Scalar>& level, const GroupsView* groups, std::uint32_t firstEntry,
+                     std::uint32_t lastEntry, PairSink& found, KernelCost& cost);
 
     /// The least and the greatest number of a column, from entry first to last.
     void (*findRange)(const Scalar* column, std::uint32_t first, std::uint32_t last, Scalar* least,

@@ -58,7 +58,7 @@ struct BoxPlane {
 template <class Scalar>
 class VolumeView {
 public:
-    VolumeView(const LevelView<Scalar>& itsLevel, const Volume<Scalar>& itsVolume)
+    VolumeView(const Level<Scalar>& itsLevel, const Volume<Scalar>& itsVolume)
         : level(itsLevel), volume(itsVolume) {
         for (int axis = 0; axis < 3; ++axis) {
             all.low[axis] = level.lowest[axis];
@@ -141,8 +141,9 @@ public:
         if (part.isEmpty()) {
             return {1, 0};
         }
-        return {larger(cellOf(level, part.low, axis) - 1, level.low[axis]),
-                smaller(cellOf(level, part.high, axis), level.high[axis])};
+        const auto at = static_cast<std::size_t>(axis);
+        return {larger(level.cell(part.low, at) - 1, level.low[axis]),
+                smaller(level.cell(part.high, at), level.high[axis])};
     }
 
     /// The least that a plane may be found to sum up to over the boxes of a hull, and the most.
@@ -158,7 +159,7 @@ public:
         return sum;
     }
 
-    const LevelView<Scalar>& level;
+    const Level<Scalar>& level;
     const Volume<Scalar>& volume;
     Hull<Scalar> all;  // of all boxes of the level
     bool isFlat[3];
@@ -224,9 +225,9 @@ bool forRowBatches(const VolumeView<Scalar>& view, PlaneSet crossing, CellInterv
 template <class Scalar>
 bool coversBuckets(const VolumeView<Scalar>& view, PlaneSet crossing, CellInterval layers,
                    CellInterval rows) {
-    const LevelView<Scalar>& level = view.level;
+    const Level<Scalar>& level = view.level;
     const std::uint64_t longest = CellInterval{level.low[0], level.high[0]}.count();
-    if (level.isDense || layers.count() * rows.count() * longest < level.bucketCount) {
+    if (level.isDense() || layers.count() * rows.count() * longest < level.bucketCount) {
         return false;
     }
     std::uint64_t cells = 0;
@@ -238,7 +239,7 @@ bool coversBuckets(const VolumeView<Scalar>& view, PlaneSet crossing, CellInterv
 }
 
 template <class Scalar>
-bool walkVolume(const LevelView<Scalar>& level, const Volume<Scalar>& volume, SlotSink& found,
+bool walkVolume(const Level<Scalar>& level, const Volume<Scalar>& volume, SlotSink& found,
                 KernelCost& cost) {
     const VolumeView<Scalar> view(level, volume);
     PlaneSet crossing = 0;

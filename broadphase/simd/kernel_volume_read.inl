@@ -35,7 +35,7 @@ public:
         batch.clip();
         const int count = batch.count;
         batch.count = 0;
-        return view_.level.isDense ? readDense(batch, count) : readHashed(batch, count);
+        return view_.level.isDense() ? readDense(batch, count) : readHashed(batch, count);
     }
 
 private:
@@ -70,7 +70,7 @@ private:
         const std::uint32_t* starts = view_.level.bucketStart;
         int foundCount = 0;
         for (int k = 0; k < count; ++k) {
-            const std::uint32_t base = rowBase(view_.level, batch.rows[k]);
+            const std::uint32_t base = view_.level.rowBase(batch.rows[k]);
             const auto startOf = [starts, base](std::int32_t cell) {
                 return starts[base + static_cast<std::uint32_t>(cell)];
             };
@@ -140,12 +140,12 @@ private:
     }
 
     bool readHashedRow(const RowBatch<Scalar>& batch, int k) {
-        const LevelView<Scalar>& level = view_.level;
+        const Level<Scalar>& level = view_.level;
         const Row row = batch.rows[k];
         const std::uint32_t* starts = level.bucketStart;
         const auto length = static_cast<std::uint32_t>(batch.last[k] - batch.first[k]) + 1;
         const std::uint32_t bucket =
-            rowBase(level, row) + static_cast<std::uint32_t>(batch.first[k]);
+            level.rowBase(row) + static_cast<std::uint32_t>(batch.first[k]);
         const std::uint32_t first =
             length >= level.bucketCount ? 0 : bucket & (level.bucketCount - 1);
         const std::uint32_t end = first + lowest(length, level.bucketCount);

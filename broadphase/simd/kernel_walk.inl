@@ -21,17 +21,17 @@ struct CellBlock {
 // Of an inverted box, which may overlap boxes that it lies within, the block is the whole level; of
 // one with a NaN, which overlaps nothing, it is empty.
 template <class Scalar>
-CellBlock blockAround(const LevelView<Scalar>& level, const Query<Scalar>& query) {
+CellBlock blockAround(const Level<Scalar>& level, const Query<Scalar>& query) {
     CellBlock block;
     bool isOrdered = true;
     bool isNan = false;
-    for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
         const Scalar min = query.columns[axis][query.number];
         const Scalar max = query.columns[axis + 3][query.number];
         isOrdered &= min <= max;
         isNan |= (min != min) | (max != max);
-        const std::int32_t before = cellOf(level, min, axis) - 1;
-        const std::int32_t last = cellOf(level, max, axis);
+        const std::int32_t before = level.cell(min, axis) - 1;
+        const std::int32_t last = level.cell(max, axis);
         block.low[axis] = before > level.low[axis] ? before : level.low[axis];
         block.high[axis] = last < level.high[axis] ? last : level.high[axis];
     }
@@ -48,7 +48,7 @@ constexpr std::uint64_t kFewRows = 16;
 // Whether the rows of a hashed level have more entries in their buckets, those of other rows and those
 // that several of them share included, than there are.
 template <class Scalar>
-[[gnu::noinline]] bool haveMoreThanAll(const LevelView<Scalar>& level, const CellBlock& block) {
+[[gnu::noinline]] bool haveMoreThanAll(const Level<Scalar>& level, const CellBlock& block) {
     const std::uint32_t* starts = level.bucketStart;
     const std::uint32_t length =
         lowest(static_cast<std::uint32_t>(block.extent(0)), level.bucketCount);
@@ -56,7 +56,7 @@ template <class Scalar>
     for (std::int32_t z = block.low[2]; z <= block.high[2]; ++z) {
         for (std::int32_t y = block.low[1]; y <= block.high[1]; ++y) {
             const std::uint32_t first =
-                (rowBase(level, Row{y, z}) + static_cast<std::uint32_t>(block.low[0])) &
+                (level.rowBase(Row{y, z}) + static_cast<std::uint32_t>(block.low[0])) &
                 (level.bucketCount - 1);
             const std::uint32_t end = first + length;
             const std::uint32_t wrapped = end > level.bucketCount ? end - level.bucketCount : 0;
@@ -73,7 +73,7 @@ template <class Scalar>
 
 // Runs of up to kWidth rows, read with few branches in between: most are shorter than kWidth.
 template <bool kIsDense, class Scalar, class Query, class Lanes>
-void scanRows(const LevelView<Scalar>& level, const Query& query, const Lanes& box, const Run* runs,
+void scanRows(const Level<Scalar>& level, const Query& query, const Lanes& box, const Run* runs,
               const Row* rows, std::uint32_t rowCount, PairSink& found, KernelCost& cost) {
     std::uint64_t hits = 0;
     std::uint32_t candidates = 0;
@@ -105,7 +105,7 @@ void scanRows(const LevelView<Scalar>& level, const Query& query, const Lanes& b
 }
 
 template <bool kIsDense, class Scalar, class Query>
-[[gnu::flatten]] void walkBox(const LevelView<Scalar>& level, const Query& query, PairSink& found,
+[[gnu::flatten]] void walkBox(const Level<Scalar>& level, const Query& query, PairSink& found,
                               KernelCost& cost) {
     const CellBlock block = blockAround(level, query);
     if (block.isEmpty()) {
@@ -139,7 +139,7 @@ template <bool kIsDense, class Scalar, class Query>
                 waiting = 0;
             }
             const Row row{y, z};
-            std::uint32_t first = rowBase(level, row) + static_cast<std::uint32_t>(block.low[0]);
+            std::uint32_t first = level.rowBase(row) + static_cast<std::uint32_t>(block.low[0]);
             if constexpr (kIsDense) {
                 runs[waiting] = {starts[first], starts[first + length]};
             } else {
@@ -158,11 +158,11 @@ template <bool kIsDense, class Scalar, class Query>
 }
 
 template <class Scalar, class Query>
-void walk(const LevelView<Scalar>& level, const Query& query, PairSink& found, KernelCost& cost) {
-    if (!level.hasCells) {
+void walk(const Level<Scalar>& level, const Query& query, PairSink& found, KernelCost& cost) {
+    if (!level.hasCells()) {
         cost.boxesTested +=
             scan<true>(level, query, Run{level.firstEntry, level.lastEntry}, Row{}, found);
-    } else if (level.isDense) {
+    } else if (level.isDense()) {
         walkBox<true>(level, query, found, cost);
     } else {
         walkBox<false>(level, query, found, cost);
@@ -170,9 +170,8 @@ void walk(const LevelView<Scalar>& level, const Query& query, PairSink& found, K
 }
 
 template <class Scalar>
-void walkLevel(const LevelView<Scalar>& level, const GroupsView* groups,
-               const Scalar* const* queries, std::uint32_t first, std::uint32_t last,
-               PairSink& found, KernelCost& cost) {
+void walkLevel(const Level<Scalar>& level, const GroupsView* groups, const Scalar* const* queries,
+               std::uint32_t first, std::uint32_t last, PairSink& found, KernelCost& cost) {
     for (std::uint32_t number = first; number < last && groups == nullptr; ++number) {
         walk(level, Query<Scalar>{queries, number}, found, cost);
     }
@@ -185,7 +184,7 @@ void walkLevel(const LevelView<Scalar>& level, const GroupsView* groups,
 }
 
 template <class Scalar>
-void walkWays(const LevelView<Scalar>& level, const Scalar* const* queries, const Way<Scalar>* ways,
+void walkWays(const Level<Scalar>& level, const Scalar* const* queries, const Way<Scalar>* ways,
               const std::uint32_t* wayOf, std::uint32_t first, std::uint32_t last, PairSink& found,
               KernelCost& cost) {
     for (std::uint32_t number = first; number < last; ++number) {

@@ -27,19 +27,6 @@
 //
 // Nothing in these files may call a function that is not defined in them or always inlined.
 
-template <class Scalar>
-std::int32_t cellOf(const LevelView<Scalar>& level, Scalar x, int axis) {
-    const Scalar inverse = level.inverseCellSize[axis];
-    return inverse == 0 ? 0 : quantise(x, level.origin[axis], inverse);
-}
-
-template <class Scalar>
-std::uint32_t rowBase(const LevelView<Scalar>& level, Row row) {
-    const std::uint32_t number = static_cast<std::uint32_t>(row.y) * level.strideY +
-                                 static_cast<std::uint32_t>(row.z) * level.strideZ;
-    return level.isDense ? number + level.denseBase : mixRow(number);
-}
-
 #include <broadphase/simd/kernel_box.inl>
 
 #include <broadphase/simd/kernel_crowd.inl>

@@ -38,12 +38,12 @@ inline bool isApart(const PaddedBox<double>& a, const PaddedBox<double>& b) {
 
 // The arithmetic of quantise(), axes side by side.
 
-inline bool fitsEdge(const LevelView<float>& level, const PaddedBox<float>& box) {
+inline bool fitsEdge(const Level<float>& level, const PaddedBox<float>& box) {
     const __m128 edges = _mm_sub_ps(_mm_load_ps(box.high), _mm_load_ps(box.low));
     return _mm_movemask_ps(_mm_cmp_ps(edges, _mm_set1_ps(level.largestEdge), _CMP_LE_OQ)) == 0xf;
 }
 
-inline bool fitsEdge(const LevelView<double>& level, const PaddedBox<double>& box) {
+inline bool fitsEdge(const Level<double>& level, const PaddedBox<double>& box) {
     const __m256d edges = _mm256_sub_pd(_mm256_load_pd(box.high), _mm256_load_pd(box.low));
     const __m256d largest = _mm256_set1_pd(level.largestEdge);
     return _mm256_movemask_pd(_mm256_cmp_pd(edges, largest, _CMP_LE_OQ)) == 0xf;
@@ -62,7 +62,7 @@ inline __m256d onBorder(__m256d scaled) {
                             scaled);
 }
 
-inline __m128 quantiseCorner(const float* corner, const LevelView<float>& level) {
+inline __m128 quantiseCorner(const float* corner, const Level<float>& level) {
     const __m128 limit = _mm_set1_ps(static_cast<float>(kCellLimit));
     const __m128 relative = _mm_sub_ps(_mm_load_ps(corner), _mm_loadu_ps(level.origin));
     const __m128 scaled = _mm_mul_ps(relative, _mm_loadu_ps(level.inverseCellSize));
@@ -70,7 +70,7 @@ inline __m128 quantiseCorner(const float* corner, const LevelView<float>& level)
     return _mm_floor_ps(onBorder(_mm_max_ps(_mm_min_ps(scaled, limit), low)));
 }
 
-inline __m256d quantiseCorner(const double* corner, const LevelView<double>& level) {
+inline __m256d quantiseCorner(const double* corner, const Level<double>& level) {
     const __m256d limit = _mm256_set1_pd(static_cast<double>(kCellLimit));
     const __m256d relative = _mm256_sub_pd(_mm256_load_pd(corner), _mm256_loadu_pd(level.origin));
     const __m256d scaled = _mm256_mul_pd(relative, _mm256_loadu_pd(level.inverseCellSize));
@@ -88,7 +88,7 @@ inline bool areFine(__m128i low, __m128i high) {
     return _mm_movemask_epi8(all) == 0xffff;
 }
 
-inline bool quantiseCorners(const LevelView<float>& level, const PaddedBox<float>& box,
+inline bool quantiseCorners(const Level<float>& level, const PaddedBox<float>& box,
                             std::int32_t* cell) {
     const __m128i low = _mm_cvttps_epi32(quantiseCorner(box.low, level));
     const __m128i high = _mm_cvttps_epi32(quantiseCorner(box.high, level));
@@ -96,7 +96,7 @@ inline bool quantiseCorners(const LevelView<float>& level, const PaddedBox<float
     return areFine(low, high);
 }
 
-inline bool quantiseCorners(const LevelView<double>& level, const PaddedBox<double>& box,
+inline bool quantiseCorners(const Level<double>& level, const PaddedBox<double>& box,
                             std::int32_t* cell) {
     const __m128i low = _mm256_cvttpd_epi32(quantiseCorner(box.low, level));
     const __m128i high = _mm256_cvttpd_epi32(quantiseCorner(box.high, level));

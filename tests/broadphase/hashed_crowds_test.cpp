@@ -76,9 +76,9 @@ bool areInOneBucket(const Attack<Scalar>& boxes) {
     std::vector<std::uint32_t> buckets;
     const detail::Level<Scalar>& hashed = table.levels()[1];
     for (std::uint32_t i = hashed.firstEntry; i < hashed.lastEntry; ++i) {
-        buckets.push_back(hashed.bucket({hashed.cell(table.box(i).min()[0], 0),
-                                         hashed.cell(table.box(i).min()[1], 1),
-                                         hashed.cell(table.box(i).min()[2], 2)}));
+        buckets.push_back(hashed.bucket(
+            hashed.cell(table.box(i).min()[0], 0),
+            {hashed.cell(table.box(i).min()[1], 1), hashed.cell(table.box(i).min()[2], 2)}));
     }
     std::sort(buckets.begin(), buckets.end());
     std::size_t most = 0;

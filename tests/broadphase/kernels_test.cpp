@@ -74,7 +74,7 @@ protected:
         KernelCost cost;
         for (const Level<Scalar>& level : table.levels()) {
             found.append([&](PairSink& sink) {
-                kernels<Scalar>().walkWays(table.view(level), queries.columns().data(), ways.data(),
+                kernels<Scalar>().walkWays(level, queries.columns().data(), ways.data(),
                                            queries.order().data(), 0, queries.size(), sink, cost);
             });
         }

@@ -84,12 +84,12 @@ protected:
         std::size_t shared = 0;
         for (const Level<Scalar>& level : table_.levels()) {
             std::map<std::uint32_t, std::pair<std::int32_t, std::int32_t>> rowOfBucket;
-            for (std::uint32_t i = level.firstEntry; level.hasCells && i < level.lastEntry; ++i) {
+            for (std::uint32_t i = level.firstEntry; level.hasCells() && i < level.lastEntry; ++i) {
                 const Box box = table_.box(i);
                 const std::int32_t x = level.cell(box.min()[0], 0);
                 const std::int32_t y = level.cell(box.min()[1], 1);
                 const std::int32_t z = level.cell(box.min()[2], 2);
-                const std::uint32_t bucket = level.bucket({x, y, z});
+                const std::uint32_t bucket = level.bucket(x, Row{y, z});
                 shared += rowOfBucket.try_emplace(bucket, y, z).first->second != std::pair(y, z);
             }
         }
@@ -139,7 +139,7 @@ TYPED_TEST(TableTest, JoinFindsEveryCoupleOnceThoughRowsShareBuckets) {
         }
         this->build(std::move(boxes), fixedLevels(1, 4));
         const Level<TypeParam>& level = this->table_.levels()[1];
-        EXPECT_FALSE(level.isDense);
+        EXPECT_FALSE(level.isDense());
         EXPECT_EQ(level.count(), this->table_.size()) << "all are hashed";
         shared += this->sharedBuckets();
         ASSERT_EQ(this->joined(), this->expected());
