@@ -20,7 +20,7 @@ namespace hashphase {
 
 /// Says which overlapping proxies make a pair: a function that is asked about two of them, or one
 /// that is asked about many at once and sets accepted[i], given as 0, to 1 where asked[i] make a
-/// pair. Asked once when two proxies begin to overlap, in ascending order of ids; again, for couples
+/// pair. Asked once when two proxies begin to overlap, in ascending order of ids; again, for candidates
 /// that it refused, whenever one of them has changed or refilter() is called; not about two that may not
 /// pair by their groups. Thousands at once may be asked about in parts, each in that order. May ask the
 /// grid, and must not change it (asserted). For parameters only, as FunctionRef.

@@ -15,7 +15,7 @@
 //           or refilter() nothing has happened; one from update() has ended nothing: the frame goes
 //           on, and the next update() tells all that has changed since the last one that returned.
 // Memory    follows proxies and pairs. Of what overlaps, that which the filter refused is remembered,
-//           up to 32 couples for each proxy and four for each pair; where it refuses more, the pairs
+//           up to 32 candidates for each proxy and four for each pair; where it refuses more, the pairs
 //           are, and the update follows all that what has changed overlaps.
 // Late      created over a grid that has proxies already, they begin as if these were all new; they may
 //           go, and others come, between two updates.
@@ -80,7 +80,7 @@ public:
     /// after it files their boxes of that update once for all calls up to the next one.
     PairChanges refilter(ProxyId id, PairFilter filter) &;
 
-    /// The same for many proxies, in one pass: the filter is asked once about each couple, in ascending
+    /// The same for many proxies, in one pass: the filter is asked once about each candidate, in ascending
     /// order. A proxy may be named more than once. Cost: as refilter() for each proxy; at most that of
     /// finding all pairs from scratch, and a box query for each proxy that has changed.
     PairChanges refilter(std::span<const ProxyId> ids, PairFilter filter) &;
@@ -109,7 +109,7 @@ public:
     /// Number of pairs in the set.
     [[nodiscard]] std::size_t count() const noexcept { return tracker_.count(); }
 
-    /// Number of overlapping couples that the filter refused, as they are remembered: none while the pairs
+    /// Number of overlapping candidates that the filter refused, as they are remembered: none while the pairs
     /// are, instead. Those that may not pair by their groups are not counted.
     [[nodiscard]] std::size_t refusedCount() const noexcept { return tracker_.refusedCount(); }
 
@@ -121,17 +121,17 @@ public:
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
     /// Gives back what is not used, but nothing of the grid's, which has a call of its own: room for more
-    /// couples than there are, and what only the next call would use, which takes it again. What calls
+    /// candidates than there are, and what only the next call would use, which takes it again. What calls
     /// have returned is not valid any more. update() does it by itself when there has been room for more
     /// than eight times as many in 256 updates in a row. Not within the filter (asserted). Cost: moving
     /// what is left.
     void releaseUnusedMemory() noexcept;
 
     /// Says which invariant is broken, in a sentence; empty when all hold (ask after update()):
-    /// - The watched couples are the overlapping ones that may pair and of which one is mobile, each once.
-    /// - count() is the number of overlapping and swept couples that may pair, less the refused ones, and
+    /// - The watched candidates are the overlapping ones that may pair and of which one is mobile, each once.
+    /// - count() is the number of overlapping and swept candidates that may pair, less the refused ones, and
     ///   of the pairs that are kept.
-    /// - Of each swept couple one sweeps.
+    /// - Of each swept candidate one sweeps.
     /// - The pairs that are kept overlap and may not pair.
     /// While the pairs are remembered, that count() is their number, and each overlaps or is swept; not that
     /// none is missing.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-// Which couples have come to overlap.
+// Which candidates have come to overlap: two proxies that overlap, and may pair by their groups.
 
 #include <broadphase/pairs/pair_tracker.hpp>
 
@@ -29,10 +29,9 @@ void takeOut(PairList& pairs, const IsOut& isOut) {
 
 }  // namespace
 
-// A couple is born when its boxes overlap now and did not at the last update.
+// A candidate is born when its boxes overlap now and did not at the last update.
 template <class Scalar>
-bool PairTracker<Scalar>::findBegun(bool someCameToRest, PairFilter filter,
-                                    ParallelFor parallelFor) {
+bool PairTracker<Scalar>::findBegun(bool someSettled, PairFilter filter, ParallelFor parallelFor) {
     if (remembersPairs()) {
         findBegunOfPairs(filter, parallelFor);
         return true;
@@ -40,48 +39,48 @@ bool PairTracker<Scalar>::findBegun(bool someCameToRest, PairFilter filter,
     if (doesRefuseMost(filter)) {
         return false;
     }
-    const auto order = store_.tables.mobile.order();
-    entryOf_.resize(store_.proxies.mobile.size());
+    const auto order = tables_.mobile.order();
+    entryOf_.resize(proxies_.mobile.size());
     for (std::uint32_t entry = 0; entry < order.size(); ++entry) {
         entryOf_[order[entry]] = entry;
     }
-    carryToRest(someCameToRest);
+    carryToRest(someSettled);
     joinMobile(parallelFor);
-    walkResting(parallelFor);
-    if (store_.proxies.areRegrouped) {
+    findAgainstResting(parallelFor);
+    if (proxies_.areRegrouped) {
         askAboutRegrouped();
     }
-    if (announced_.size() > 0) {
-        std::erase_if(asked_, [this](Couple c) { return announced_.contains(c); });
+    if (immediate_.size() > 0) {
+        std::erase_if(asked_, [this](PairKey c) { return immediate_.contains(c); });
     }
     findSwept(parallelFor);
     askRefusedAgain();
     return true;
 }
 
-// Couples of a mobile one that has not changed and a resting one are not looked for again.
+// Candidates of a mobile one that has not changed and a resting one are not looked for again.
 template <class Scalar>
-void PairTracker<Scalar>::carryToRest(bool someCameToRest) {
+void PairTracker<Scalar>::carryToRest(bool someSettled) {
     carried_.clear();
-    if (store_.tables.resting.size() == 0) {
+    if (tables_.resting.size() == 0) {
         return;
     }
     const auto isKept = [this](std::uint32_t mobile, std::uint32_t resting) {
-        return store_.proxies.records[resting].place == Place::resting &&
-               store_.proxies.records[mobile].place == Place::mobile &&
-               !store_.proxies.changedNow(mobile);
+        return proxies_.records[resting].residency == Residency::resting &&
+               proxies_.records[mobile].residency == Residency::mobile &&
+               !proxies_.changedNow(mobile);
     };
     for (const auto [place, slot] : toResting_.pairs()) {
-        if (isKept(store_.proxies.mobile[place], slot)) {
+        if (isKept(proxies_.mobile[place], slot)) {
             carried_.push({entryOf_[place], slot});
         }
     }
-    if (!someCameToRest) {
+    if (!someSettled) {
         return;
     }
     for (const auto [a, b] : amongMobile_.pairs()) {
-        const std::uint32_t slotA = store_.proxies.mobile[a];
-        const std::uint32_t slotB = store_.proxies.mobile[b];
+        const std::uint32_t slotA = proxies_.mobile[a];
+        const std::uint32_t slotB = proxies_.mobile[b];
         if (isKept(slotA, slotB)) {
             carried_.push({entryOf_[a], slotB});
         } else if (isKept(slotB, slotA)) {
@@ -92,32 +91,31 @@ void PairTracker<Scalar>::carryToRest(bool someCameToRest) {
 
 template <class Scalar>
 void PairTracker<Scalar>::joinMobile(ParallelFor parallelFor) {
-    const Table<Scalar>& table = store_.tables.mobile;
+    const Table<Scalar>& table = tables_.mobile;
     KernelCost cost;
     amongMobile_.clear();
-    const GroupKinds::Set kinds = store_.frame.mobileKinds;
-    const bool someRefuse = store_.proxies.groupKinds.refuse(kinds, kinds);
+    const GroupKinds::Set kinds = frame_.mobileKinds;
+    const bool someRefuse = proxies_.groupKinds.refuse(kinds, kinds);
     const bool areToldApart = someRefuse && isCrowded(table);
     joinTable(table, parallelFor, parts_, amongMobile_, cost,
-              areToldApart ? store_.proxies.groups.data() : nullptr,
-              store_.proxies.groupKinds.together(kinds));
+              areToldApart ? proxies_.groups.data() : nullptr, proxies_.groupKinds.together(kinds));
     if (someRefuse && !areToldApart) {
         takeOut(amongMobile_, [&](const IndexPair& pair) {
-            return store_.proxies.doRefuse(table.slot(pair.a), table.slot(pair.b));
+            return proxies_.doRefuse(table.slot(pair.a), table.slot(pair.b));
         });
     }
     cost_.boxesTested += cost.boxesTested;
-    const auto fresh = selectApart(amongMobile_.pairs(), table.order().data(),
-                                   store_.frame.before.data(), parallelFor);
+    const auto fresh =
+        selectApart(amongMobile_.pairs(), table.order().data(), frame_.before.data(), parallelFor);
     for (const auto [a, b] : fresh) {
-        asked_.push_back(couple(table.slot(a), table.slot(b)));
+        asked_.push_back(pairKey(table.slot(a), table.slot(b)));
     }
 }
 
-// Those couples of which the boxes, numbered order[a] and order[b], do not overlap; valid until the
+// Those candidates of which the boxes, numbered order[a] and order[b], do not overlap; valid until the
 // next call.
 template <class Scalar>
-std::span<const IndexPair> PairTracker<Scalar>::selectApart(std::span<const IndexPair> couples,
+std::span<const IndexPair> PairTracker<Scalar>::selectApart(std::span<const IndexPair> candidates,
                                                             const std::uint32_t* order,
                                                             const PaddedBox<Scalar>* boxes,
                                                             ParallelFor parallelFor) {
@@ -126,61 +124,75 @@ std::span<const IndexPair> PairTracker<Scalar>::selectApart(std::span<const Inde
     KernelCost none;
     const auto select = [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost&) {
         detail::makeRoom(sink, last - first);
-        sink.next += kernels<Scalar>().selectApart(couples.data() + first, last - first, order,
+        sink.next += kernels<Scalar>().selectApart(candidates.data() + first, last - first, order,
                                                    boxes, sink.next);
     };
-    parts_.collect(parallelFor, couples.size(), kGrain, selected_, none, select);
+    parts_.collect(parallelFor, candidates.size(), kGrain, selected_, none, select);
     return selected_.pairs();
 }
 
 // What changed against the resting proxies.
 template <class Scalar>
-void PairTracker<Scalar>::walkResting(ParallelFor parallelFor) {
+void PairTracker<Scalar>::findAgainstResting(ParallelFor parallelFor) {
     toResting_.swap(carried_);
-    if (store_.tables.resting.size() == 0) {
+    if (tables_.resting.size() == 0) {
         return;
     }
-    const Table<Scalar>& table = store_.tables.mobile;
-    walkers_.clear();
-    searchedSlots_.clear();
-    bounds_.clear();
-    const bool someRefuse =
-        store_.proxies.groupKinds.refuse(store_.frame.changedKinds, store_.tables.restingKinds);
-    const bool areToldApart = someRefuse && isCrowded(store_.tables.resting);
-    for (std::uint32_t entry = 0; entry < table.size(); ++entry) {
-        const std::uint32_t slot = table.slot(entry);
-        if (store_.proxies.changedNow(slot)) {
-            walkers_.push_back(entry);
-            bounds_.push(table.box(entry));
-            if (areToldApart) {
-                searchedSlots_.push_back(slot);
-            }
+    queryResting(parallelFor);
+    const Table<Scalar>& table = tables_.mobile;
+    const bool isShifted = !proxies_.boxesAtUpdate.empty();
+    for (const auto [changed, restingEntry] : selected_.pairs()) {
+        const std::uint32_t entry = changedEntries_[changed];
+        const std::uint32_t slot = tables_.resting.slot(restingEntry);
+        toResting_.push({entry, slot});
+        // Not by their slots: these boxes are at hand.
+        const PaddedBox<Scalar>& before = frame_.before[table.order()[entry]];
+        const Box resting =
+            isShifted ? proxies_.boxAtUpdate(slot) : tables_.resting.box(restingEntry);
+        if (!overlaps(unpadded(before), resting)) {
+            asked_.push_back(pairKey(table.slot(entry), slot));
         }
     }
-    const GroupsView view{store_.proxies.groups.data(), searchedSlots_.data(),
-                          store_.proxies.groupKinds.together(store_.tables.restingKinds)};
+}
+
+// Sets selected_ to all that overlap and may pair: a place in changedEntries_ and an entry at rest.
+template <class Scalar>
+void PairTracker<Scalar>::queryResting(ParallelFor parallelFor) {
+    const Table<Scalar>& resting = tables_.resting;
+    const bool someRefuse = proxies_.groupKinds.refuse(frame_.changedKinds, tables_.restingKinds);
+    const bool areToldApart = someRefuse && isCrowded(resting);
+    listChanged(areToldApart);
+    const GroupsView view{proxies_.groups.data(), searchedSlots_.data(),
+                          proxies_.groupKinds.together(tables_.restingKinds)};
     KernelCost cost;
     selected_.clear();
-    walkTable(store_.tables.resting, bounds_.columns(), bounds_.size(), parallelFor, parts_,
-              selected_, cost, areToldApart ? &view : nullptr);
+    walkTable(resting, bounds_.columns(), bounds_.size(), parallelFor, parts_, selected_, cost,
+              areToldApart ? &view : nullptr);
     cost_.boxesTested += cost.boxesTested;
     if (someRefuse && !areToldApart) {
         takeOut(selected_, [&](const IndexPair& pair) {
-            return store_.proxies.doRefuse(table.slot(walkers_[pair.a]),
-                                           store_.tables.resting.slot(pair.b));
+            return proxies_.doRefuse(tables_.mobile.slot(changedEntries_[pair.a]),
+                                     resting.slot(pair.b));
         });
     }
-    const bool isShifted = !store_.proxies.boxesAtUpdate.empty();
-    for (const auto [walker, restingEntry] : selected_.pairs()) {
-        const std::uint32_t entry = walkers_[walker];
-        const std::uint32_t slot = store_.tables.resting.slot(restingEntry);
-        toResting_.push({entry, slot});
-        // Not by their slots: these boxes are at hand.
-        const PaddedBox<Scalar>& before = store_.frame.before[table.order()[entry]];
-        const Box resting =
-            isShifted ? store_.proxies.boxAtUpdate(slot) : store_.tables.resting.box(restingEntry);
-        if (!overlaps(unpadded(before), resting)) {
-            asked_.push_back(couple(table.slot(entry), slot));
+}
+
+// Sets changedEntries_ and bounds_ to the entries of the mobile table that have changed; with slots,
+// searchedSlots_ as well.
+template <class Scalar>
+void PairTracker<Scalar>::listChanged(bool withSlots) {
+    const Table<Scalar>& table = tables_.mobile;
+    changedEntries_.clear();
+    searchedSlots_.clear();
+    bounds_.clear();
+    for (std::uint32_t entry = 0; entry < table.size(); ++entry) {
+        const std::uint32_t slot = table.slot(entry);
+        if (proxies_.changedNow(slot)) {
+            changedEntries_.push_back(entry);
+            bounds_.push(table.box(entry));
+            if (withSlots) {
+                searchedSlots_.push_back(slot);
+            }
         }
     }
 }
@@ -188,7 +200,9 @@ void PairTracker<Scalar>::walkResting(ParallelFor parallelFor) {
 template bool PairTracker<float>::findBegun(bool, PairFilter, ParallelFor);
 template void PairTracker<float>::carryToRest(bool);
 template void PairTracker<float>::joinMobile(ParallelFor);
-template void PairTracker<float>::walkResting(ParallelFor);
+template void PairTracker<float>::findAgainstResting(ParallelFor);
+template void PairTracker<float>::queryResting(ParallelFor);
+template void PairTracker<float>::listChanged(bool);
 template std::span<const IndexPair> PairTracker<float>::selectApart(std::span<const IndexPair>,
                                                                     const std::uint32_t*,
                                                                     const PaddedBox<float>*,
@@ -196,7 +210,9 @@ template std::span<const IndexPair> PairTracker<float>::selectApart(std::span<co
 template bool PairTracker<double>::findBegun(bool, PairFilter, ParallelFor);
 template void PairTracker<double>::carryToRest(bool);
 template void PairTracker<double>::joinMobile(ParallelFor);
-template void PairTracker<double>::walkResting(ParallelFor);
+template void PairTracker<double>::findAgainstResting(ParallelFor);
+template void PairTracker<double>::queryResting(ParallelFor);
+template void PairTracker<double>::listChanged(bool);
 template std::span<const IndexPair> PairTracker<double>::selectApart(std::span<const IndexPair>,
                                                                      const std::uint32_t*,
                                                                      const PaddedBox<double>*,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-// Which couples overlap no more.
+// Which candidates overlap no more.
 
 #include <broadphase/pairs/pair_tracker.hpp>
 
@@ -12,7 +12,7 @@
 
 namespace hashphase::detail {
 
-// A couple dies when its boxes overlapped at the last update, or were announced since, and do not
+// A candidate dies when its boxes overlapped at the last update, or were announced since, and do not
 // now, or when one of the two sweeps now, unless they touch on their ways, see findSwept(). All those
 // that are not watched are found here before their boxes are lost.
 template <class Scalar>
@@ -23,83 +23,95 @@ void PairTracker<Scalar>::findEnded(ParallelFor parallelFor) {
     }
     const auto watched = amongMobile_.pairs();
     cost_.couplesWatched = watched.size() + toResting_.size();
-    for (const auto [a, b] : selectApart(watched, nullptr, store_.frame.now.data(), parallelFor)) {
-        lost_.push_back(couple(store_.proxies.mobile[a], store_.proxies.mobile[b]));
+    for (const auto [a, b] : selectApart(watched, nullptr, frame_.now.data(), parallelFor)) {
+        endedPairs_.push_back(pairKey(proxies_.mobile[a], proxies_.mobile[b]));
     }
     constexpr std::size_t kAhead = 12;
     const auto toResting = toResting_.pairs();
     for (std::size_t i = 0; i < toResting.size(); ++i) {
         if (i + kAhead < toResting.size()) {
-            prefetch(&store_.proxies.records[toResting[i + kAhead].b]);
+            prefetch(&proxies_.records[toResting[i + kAhead].b]);
         }
         const auto [place, slot] = toResting[i];
-        const Box& resting = store_.proxies.standingBox(store_.proxies.records[slot]);
-        if (!overlaps(unpadded(store_.frame.now[place]), resting)) {
-            lost_.push_back(couple(store_.proxies.mobile[place], slot));
+        const Box& resting = proxies_.standingBox(proxies_.records[slot]);
+        if (!overlaps(unpadded(frame_.now[place]), resting)) {
+            endedPairs_.push_back(pairKey(proxies_.mobile[place], slot));
         }
     }
-    for (const Couple c : announced_.keys()) {
-        loseIfApart(c);
+    for (const PairKey c : immediate_.keys()) {
+        endIfSeparated(c);
     }
-    findDeathsOfWoken(parallelFor);
+    findEndedOfWoken(parallelFor);
     findKept();
 }
 
-// Couples of two that rest are not watched. When one wakes, its couples are those of its box before:
+// Candidates of two that rest are not watched. When one wakes, its candidates are those of its box before:
 // found in the resting table where the other one has not changed, and among the woken otherwise.
 template <class Scalar>
-void PairTracker<Scalar>::findDeathsOfWoken(ParallelFor parallelFor) {
-    const bool isShifted = !store_.proxies.boxesAtUpdate.empty();
-    const auto wake = [this, isShifted](std::uint32_t a, std::uint32_t b) {
-        const Couple c = couple(a, b);
-        if (isShifted && !store_.proxies.overlappedAtUpdate(a, b)) {
-            return;  // a shift of the origin has rounded them together
-        }
-        if (refusedAtRest_.contains(c)) {
-            refused_.findOrInsert(c);
-            refusedAtRest_.erase(c);
-        }
-        loseIfApart(c);
-        if (store_.proxies.areRegrouped) {
-            keepIfPair(c);
-        }
-    };
-    wokenBoxes_.clear();
-    bounds_.clear();
-    GroupKinds::Set wokenKinds = 0;
-    const ProxyGroups* const groups = store_.proxies.groupsOfAllAtUpdate();
-    for (const std::uint32_t slot : store_.proxies.woken) {
-        wokenBoxes_.push_back(padded(store_.proxies.boxAtUpdate(slot)));
-        bounds_.push(store_.proxies.before(slot));
-        if (groups != nullptr) {
-            wokenKinds |=
-                GroupKinds::bit(store_.proxies.groupKinds.numberOf(groups[2 * std::size_t{slot}]));
-        }
-    }
-    const GroupsView view{groups, store_.proxies.woken.data(),
-                          store_.proxies.groupKinds.together(store_.tables.restingKinds)};
-    const bool areToldApart =
-        store_.proxies.groupKinds.refuse(wokenKinds, store_.tables.restingKinds);
+void PairTracker<Scalar>::findEndedOfWoken(ParallelFor parallelFor) {
+    const GroupKinds::Set kinds = listWoken();
+    const GroupsView view{proxies_.groupsOfAllAtUpdate(), proxies_.woken.data(),
+                          proxies_.groupKinds.together(tables_.restingKinds)};
+    const bool someRefuse = proxies_.groupKinds.refuse(kinds, tables_.restingKinds);
     KernelCost cost;
     selected_.clear();
-    walkTable(store_.tables.resting, bounds_.columns(), bounds_.size(), parallelFor, parts_,
-              selected_, cost, areToldApart ? &view : nullptr);
+    walkTable(tables_.resting, bounds_.columns(), bounds_.size(), parallelFor, parts_, selected_,
+              cost, someRefuse ? &view : nullptr);
     for (const auto [woken, entry] : selected_.pairs()) {
-        wake(store_.proxies.woken[woken], store_.tables.resting.slot(entry));
+        endIfWokenApart(proxies_.woken[woken], tables_.resting.slot(entry));
     }
-    if (store_.proxies.woken.size() > 1) {
-        Table<Scalar>& table = wokenTable();
-        const ProxyGroups* own =
-            store_.proxies.groupKinds.refuse(wokenKinds, wokenKinds) ? groups : nullptr;
-        table.build(store_.proxies.woken, wokenBoxes_, store_.fixedSizes(), parallelFor, own);
-        selected_.clear();
-        joinTable(table, parallelFor, parts_, selected_, cost, own,
-                  store_.proxies.groupKinds.together(wokenKinds));
-        for (const auto [a, b] : selected_.pairs()) {
-            wake(table.slot(a), table.slot(b));
-        }
+    if (proxies_.woken.size() > 1) {
+        joinWoken(kinds, parallelFor, cost);
     }
     cost_.boxesTested += cost.boxesTested;
+}
+
+// Sets wokenBoxes_ and bounds_ to their boxes of the last update; returns their kinds.
+template <class Scalar>
+GroupKinds::Set PairTracker<Scalar>::listWoken() {
+    wokenBoxes_.clear();
+    bounds_.clear();
+    GroupKinds::Set kinds = 0;
+    const ProxyGroups* const groups = proxies_.groupsOfAllAtUpdate();
+    for (const std::uint32_t slot : proxies_.woken) {
+        wokenBoxes_.push_back(padded(proxies_.boxAtUpdate(slot)));
+        bounds_.push(proxies_.before(slot));
+        if (groups != nullptr) {
+            kinds |= GroupKinds::bit(proxies_.groupKinds.numberOf(groups[2 * std::size_t{slot}]));
+        }
+    }
+    return kinds;
+}
+
+template <class Scalar>
+void PairTracker<Scalar>::joinWoken(GroupKinds::Set kinds, ParallelFor parallelFor,
+                                    KernelCost& cost) {
+    Table<Scalar>& table = wokenTable();
+    const ProxyGroups* const groups =
+        proxies_.groupKinds.refuse(kinds, kinds) ? proxies_.groupsOfAllAtUpdate() : nullptr;
+    table.build(proxies_.woken, wokenBoxes_, store_.fixedSizes(), parallelFor, groups);
+    selected_.clear();
+    joinTable(table, parallelFor, parts_, selected_, cost, groups,
+              proxies_.groupKinds.together(kinds));
+    for (const auto [a, b] : selected_.pairs()) {
+        endIfWokenApart(table.slot(a), table.slot(b));
+    }
+}
+
+template <class Scalar>
+void PairTracker<Scalar>::endIfWokenApart(std::uint32_t a, std::uint32_t b) {
+    const PairKey c = pairKey(a, b);
+    if (!proxies_.boxesAtUpdate.empty() && !proxies_.overlappedAtUpdate(a, b)) {
+        return;  // a shift of the origin has rounded them together
+    }
+    if (refusedAtRest_.contains(c)) {
+        refused_.findOrInsert(c);
+        refusedAtRest_.erase(c);
+    }
+    endIfSeparated(c);
+    if (proxies_.areRegrouped) {
+        keepIfPair(c);
+    }
 }
 
 template <class Scalar>
@@ -111,19 +123,25 @@ Table<Scalar>& PairTracker<Scalar>::wokenTable() {
 }
 
 template <class Scalar>
-void PairTracker<Scalar>::loseIfApart(Couple c) {
+void PairTracker<Scalar>::endIfSeparated(PairKey c) {
     if (!overlapNow(c)) {
-        lost_.push_back(c);
+        endedPairs_.push_back(c);
     }
 }
 
 template void PairTracker<float>::findEnded(ParallelFor);
-template void PairTracker<float>::findDeathsOfWoken(ParallelFor);
-template void PairTracker<float>::loseIfApart(Couple);
+template void PairTracker<float>::findEndedOfWoken(ParallelFor);
+template GroupKinds::Set PairTracker<float>::listWoken();
+template void PairTracker<float>::joinWoken(GroupKinds::Set, ParallelFor, KernelCost&);
+template void PairTracker<float>::endIfWokenApart(std::uint32_t, std::uint32_t);
+template void PairTracker<float>::endIfSeparated(PairKey);
 template Table<float>& PairTracker<float>::wokenTable();
 template void PairTracker<double>::findEnded(ParallelFor);
-template void PairTracker<double>::findDeathsOfWoken(ParallelFor);
-template void PairTracker<double>::loseIfApart(Couple);
+template void PairTracker<double>::findEndedOfWoken(ParallelFor);
+template GroupKinds::Set PairTracker<double>::listWoken();
+template void PairTracker<double>::joinWoken(GroupKinds::Set, ParallelFor, KernelCost&);
+template void PairTracker<double>::endIfWokenApart(std::uint32_t, std::uint32_t);
+template void PairTracker<double>::endIfSeparated(PairKey);
 template Table<double>& PairTracker<double>::wokenTable();
 
 }  // namespace hashphase::detail

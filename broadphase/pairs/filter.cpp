@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-// What becomes of the couples that have come to touch, or touch no more: who is a pair, by the filter.
+// What becomes of the candidates that have come to touch, or touch no more: who is a pair, by the filter.
 
 #include <broadphase/pairs/pair_tracker.hpp>
 
@@ -14,18 +14,18 @@ namespace hashphase::detail {
 // put aside when both have come to rest.
 template <class Scalar>
 void PairTracker<Scalar>::askRefusedAgain() {
-    restedCouples_.clear();
-    for (const Couple c : refused_.keys()) {
+    restedPairs_.clear();
+    for (const PairKey c : refused_.keys()) {
         if (!mayPairNow(c)) {
             lapsed_.push_back(c);
         } else if (isAtRest(c)) {
-            restedCouples_.push_back(c);
-        } else if ((store_.proxies.changedNow(first(c)) || store_.proxies.changedNow(second(c))) &&
+            restedPairs_.push_back(c);
+        } else if ((proxies_.changedNow(first(c)) || proxies_.changedNow(second(c))) &&
                    (overlapNow(c) || std::binary_search(sweptNow_.begin(), sweptNow_.end(), c))) {
             asked_.push_back(c);
         }
     }
-    for (const Couple c : restedCouples_) {
+    for (const PairKey c : restedPairs_) {
         refusedAtRest_.findOrInsert(c);
         refused_.erase(c);
     }
@@ -34,13 +34,13 @@ void PairTracker<Scalar>::askRefusedAgain() {
 // Asks the filter about what is to be asked and has not been asked by this call.
 template <class Scalar>
 void PairTracker<Scalar>::ask(PairFilter filter) {
-    sortCouples(asked_);
-    sortCouples(standing_);
+    sortPairs(asked_);
+    sortPairs(acceptedPairs_);
     askedPairs_.clear();
-    const auto numberIfSampled = [this](Couple c) {
+    const auto numberIfSampled = [this](PairKey c) {
         return pile_ != nullptr ? pile_->sampled.find(c) : FlatSet::kNone;
     };
-    for (const Couple c : asked_) {
+    for (const PairKey c : asked_) {
         if (mayPairNow(c) && numberIfSampled(c) == FlatSet::kNone) {
             askedPairs_.push_back(pairOf(c));
         }
@@ -63,7 +63,7 @@ void PairTracker<Scalar>::ask(PairFilter filter) {
 
 // For all that may come of the answers.
 template <class Scalar>
-void PairTracker<Scalar>::makeRoom(Told& told) {
+void PairTracker<Scalar>::makeRoom(PairChangeLists& lists) {
     const auto refused =
         static_cast<std::size_t>(std::count(accepted_.begin(), accepted_.end(), 0));
     if (remembersPairs()) {
@@ -71,32 +71,33 @@ void PairTracker<Scalar>::makeRoom(Told& told) {
     } else if (refused > 0) {
         refused_.reserve(refused_.size() + refused);
     }
-    if (!unknown_.empty()) {
-        announced_.reserve(announced_.size() + unknown_.size(), store_.proxies.records.size());
+    if (!newCandidates_.empty()) {
+        immediate_.reserve(immediate_.size() + newCandidates_.size(), proxies_.records.size());
     }
     if (!keptNow_.empty()) {
         kept_.reserve(kept_.size() + keptNow_.size());
     }
-    const std::size_t mayDie = lost_.size() + standing_.size();
-    ensureCapacity(bornCouples_, asked_.size());
-    ensureCapacity(told.born, asked_.size());
-    ensureCapacity(diedCouples_, mayDie);
-    ensureCapacity(told.died, mayDie);
+    const std::size_t mayDie = endedPairs_.size() + acceptedPairs_.size();
+    ensureCapacity(begunPairs_, asked_.size());
+    ensureCapacity(lists.born, asked_.size());
+    ensureCapacity(diedPairs_, mayDie);
+    ensureCapacity(lists.died, mayDie);
     ensureCapacity(sorted_, mayDie);
 }
 
-// Of what was asked, the standing ones are pairs already. Couples at rest that are refused are put
+// Of what was asked, the standing ones are pairs already. Candidates at rest that are refused are put
 // aside by the next update.
 template <class Scalar>
-void PairTracker<Scalar>::decide() noexcept {  // NOLINT(bugprone-exception-escape)
+void PairTracker<Scalar>::applyFilter() noexcept {  // NOLINT(bugprone-exception-escape)
     std::size_t nextStanding = 0;
     for (std::size_t i = 0; i < asked_.size(); ++i) {
-        const Couple c = asked_[i];
-        const bool wasPair = nextStanding < standing_.size() && standing_[nextStanding] == c;
+        const PairKey c = asked_[i];
+        const bool wasPair =
+            nextStanding < acceptedPairs_.size() && acceptedPairs_[nextStanding] == c;
         nextStanding += wasPair ? 1 : 0;
         if (accepted_[i] == 0) {
             if (wasPair) {
-                lose(c);
+                endPair(c);
             }
             if (!remembersPairs() && isToBeRefused(c) && !refusedAtRest_.contains(c)) {
                 refused_.findOrInsert(c);
@@ -107,7 +108,7 @@ void PairTracker<Scalar>::decide() noexcept {  // NOLINT(bugprone-exception-esca
             } else {
                 forgetRefused(c);
             }
-            bornCouples_.push_back(c);
+            begunPairs_.push_back(c);
             ++count_;
         }
     }
@@ -116,56 +117,57 @@ void PairTracker<Scalar>::decide() noexcept {  // NOLINT(bugprone-exception-esca
 // What may not pair is not noted down, unless it is known, so that it counts as refused until the next
 // update, which forgets it.
 template <class Scalar>
-bool PairTracker<Scalar>::isToBeRefused(Couple c) const noexcept {
-    return mayPairNow(c) || couldPair(c) || kept_.contains(c) || announced_.contains(c) ||
+bool PairTracker<Scalar>::isToBeRefused(PairKey c) const noexcept {
+    return mayPairNow(c) || couldPair(c) || kept_.contains(c) || immediate_.contains(c) ||
            isSwept(c);
 }
 
-// Returns whether the couple was refused.
+// Returns whether the candidate was refused.
 template <class Scalar>
-bool PairTracker<Scalar>::forgetRefused(Couple c) noexcept {
+bool PairTracker<Scalar>::forgetRefused(PairKey c) noexcept {
     return refused_.erase(c) != FlatSet::kNone || refusedAtRest_.erase(c) != FlatSet::kNone;
 }
 
 template <class Scalar>
-void PairTracker<Scalar>::lose(Couple c) noexcept {
+void PairTracker<Scalar>::endPair(PairKey c) noexcept {
     const bool wasPair =
         remembersPairs() ? pile_->pairs.erase(c) != FlatSet::kNone : !forgetRefused(c);
     if (wasPair) {
-        diedCouples_.push_back(c);
+        diedPairs_.push_back(c);
         --count_;
     }
 }
 
 template <class Scalar>
-PairChanges PairTracker<Scalar>::tell(Told& told) noexcept {
-    const auto list = [this](const std::vector<Couple>& couples, std::vector<ProxyPair>& pairs) {
+PairChanges PairTracker<Scalar>::report(PairChangeLists& lists) noexcept {
+    const auto list = [this](const std::vector<PairKey>& candidates,
+                             std::vector<ProxyPair>& pairs) {
         pairs.clear();
-        for (const Couple c : couples) {
+        for (const PairKey c : candidates) {
             pairs.push_back(pairOf(c));
         }
     };
-    sortCouples(diedCouples_);
-    list(bornCouples_, told.born);  // as sorted as what was asked
-    list(diedCouples_, told.died);
-    return {told.born, told.died};
+    sortPairs(diedPairs_);
+    list(begunPairs_, lists.born);  // as sorted as what was asked
+    list(diedPairs_, lists.died);
+    return {lists.born, lists.died};
 }
 
 template void PairTracker<float>::askRefusedAgain();
 template void PairTracker<float>::ask(PairFilter);
-template void PairTracker<float>::makeRoom(Told&);
-template void PairTracker<float>::decide() noexcept;
-template void PairTracker<float>::lose(Couple) noexcept;
-template bool PairTracker<float>::isToBeRefused(Couple) const noexcept;
-template bool PairTracker<float>::forgetRefused(Couple) noexcept;
-template PairChanges PairTracker<float>::tell(Told&) noexcept;
+template void PairTracker<float>::makeRoom(PairChangeLists&);
+template void PairTracker<float>::applyFilter() noexcept;
+template void PairTracker<float>::endPair(PairKey) noexcept;
+template bool PairTracker<float>::isToBeRefused(PairKey) const noexcept;
+template bool PairTracker<float>::forgetRefused(PairKey) noexcept;
+template PairChanges PairTracker<float>::report(PairChangeLists&) noexcept;
 template void PairTracker<double>::askRefusedAgain();
 template void PairTracker<double>::ask(PairFilter);
-template void PairTracker<double>::makeRoom(Told&);
-template void PairTracker<double>::decide() noexcept;
-template void PairTracker<double>::lose(Couple) noexcept;
-template bool PairTracker<double>::isToBeRefused(Couple) const noexcept;
-template bool PairTracker<double>::forgetRefused(Couple) noexcept;
-template PairChanges PairTracker<double>::tell(Told&) noexcept;
+template void PairTracker<double>::makeRoom(PairChangeLists&);
+template void PairTracker<double>::applyFilter() noexcept;
+template void PairTracker<double>::endPair(PairKey) noexcept;
+template bool PairTracker<double>::isToBeRefused(PairKey) const noexcept;
+template bool PairTracker<double>::forgetRefused(PairKey) noexcept;
+template PairChanges PairTracker<double>::report(PairChangeLists&) noexcept;
 
 }  // namespace hashphase::detail

@@ -10,28 +10,28 @@ namespace hashphase::detail {
 // Those that may pair again are watched as the others are.
 template <class Scalar>
 void PairTracker<Scalar>::findKept() {
-    for (const Couple c : kept_.keys()) {
-        loseIfApart(c);
+    for (const PairKey c : kept_.keys()) {
+        endIfSeparated(c);
         if (mayPairNow(c)) {
             notKept_.push_back(c);
         }
     }
-    if (!store_.proxies.areRegrouped) {
+    if (!proxies_.areRegrouped) {
         return;
     }
     for (const auto [a, b] : amongMobile_.pairs()) {
-        keepIfPair(couple(store_.proxies.mobile[a], store_.proxies.mobile[b]));
+        keepIfPair(pairKey(proxies_.mobile[a], proxies_.mobile[b]));
     }
     for (const auto [place, slot] : toResting_.pairs()) {
-        keepIfPair(couple(store_.proxies.mobile[place], slot));
+        keepIfPair(pairKey(proxies_.mobile[place], slot));
     }
-    for (const Couple c : announced_.keys()) {
+    for (const PairKey c : immediate_.keys()) {
         keepIfPair(c);
     }
 }
 
 template <class Scalar>
-void PairTracker<Scalar>::keepIfPair(Couple c) {
+void PairTracker<Scalar>::keepIfPair(PairKey c) {
     if (!mayPairNow(c) && overlapNow(c) && !isRefused(c)) {
         keptNow_.push_back(c);
     }
@@ -41,11 +41,11 @@ void PairTracker<Scalar>::keepIfPair(Couple c) {
 template <class Scalar>
 void PairTracker<Scalar>::askAboutRegrouped() {
     const auto askIfNew = [this](std::uint32_t a, std::uint32_t b) {
-        if (store_.proxies.overlappedAtUpdate(a, b) && !wasKnown(a, b)) {
-            asked_.push_back(couple(a, b));
+        if (proxies_.overlappedAtUpdate(a, b) && !wasKnown(a, b)) {
+            asked_.push_back(pairKey(a, b));
         }
     };
-    const Table<Scalar>& table = store_.tables.mobile;
+    const Table<Scalar>& table = tables_.mobile;
     for (const auto [a, b] : amongMobile_.pairs()) {
         askIfNew(table.slot(a), table.slot(b));
     }
@@ -56,17 +56,17 @@ void PairTracker<Scalar>::askAboutRegrouped() {
 
 template <class Scalar>
 bool PairTracker<Scalar>::wasKnown(std::uint32_t a, std::uint32_t b) const noexcept {
-    return store_.proxies.overlappedAtUpdate(a, b) &&
-           (store_.proxies.couldPair(a, b) || kept_.contains(couple(a, b)) ||
-            isRemembered(couple(a, b)));
+    return proxies_.overlappedAtUpdate(a, b) &&
+           (proxies_.couldPair(a, b) || kept_.contains(pairKey(a, b)) ||
+            isRemembered(pairKey(a, b)));
 }
 
 template void PairTracker<float>::findKept();
-template void PairTracker<float>::keepIfPair(Couple);
+template void PairTracker<float>::keepIfPair(PairKey);
 template void PairTracker<float>::askAboutRegrouped();
 template bool PairTracker<float>::wasKnown(std::uint32_t, std::uint32_t) const noexcept;
 template void PairTracker<double>::findKept();
-template void PairTracker<double>::keepIfPair(Couple);
+template void PairTracker<double>::keepIfPair(PairKey);
 template void PairTracker<double>::askAboutRegrouped();
 template bool PairTracker<double>::wasKnown(std::uint32_t, std::uint32_t) const noexcept;
 

@@ -10,62 +10,66 @@
 namespace hashphase::detail {
 template <class Scalar>
 template <class Find>
-PairChanges PairTracker<Scalar>::announceFound(PairFilter filter, const Find& find) {
+PairChanges PairTracker<Scalar>::findNow(PairFilter filter, const Find& find) {
     beginCall();
-    findAnnouncedOfRemoved();
+    findImmediateOfRemoved();
     find();
-    return decideBetween(filter);
+    return applyFilterNow(filter);
 }
 
 template <class Scalar>
 PairChanges PairTracker<Scalar>::announce(std::uint32_t slot, PairFilter filter) {
-    return announceFound(filter, [&] { findUnknown(slot); });
+    return findNow(filter, [&] { findNewCandidates(slot); });
 }
 
 template <class Scalar>
 PairChanges PairTracker<Scalar>::announce(std::uint32_t slot, std::span<const ProxyId> others,
                                           PairFilter filter) {
-    return announceFound(filter, [&] {
+    return findNow(filter, [&] {
         for (const ProxyId other : others) {
-            if (other.index != slot && store_.proxies.contains(other)) {
-                addIfUnknown(slot, other.index);
+            if (other.index != slot && proxies_.contains(other)) {
+                addIfNew(slot, other.index);
             }
         }
     });
 }
 
-// Of a large part of all proxies, all couples are found in one pass.
+// Of a large part of all proxies, all candidates are found in one pass.
 template <class Scalar>
 PairChanges PairTracker<Scalar>::refilter(std::span<const ProxyId> ids, PairFilter filter) {
-    beginCall();
-    recover();
-    findAnnouncedOfRemoved();
+    beginRefilter();
     constexpr std::size_t kLargePart = 8;
-    if (ids.size() > 1 && ids.size() > store_.proxies.size / kLargePart) {
-        isNamed_.assign(store_.proxies.records.size(), 0);
+    if (ids.size() > 1 && ids.size() > proxies_.size / kLargePart) {
+        isNamed_.assign(proxies_.records.size(), 0);
         for (const ProxyId id : ids) {
-            if (store_.proxies.contains(id)) {
+            if (proxies_.contains(id)) {
                 isNamed_[id.index] = 1;
             }
         }
         askAgainAboutMany(filter, [this](std::uint32_t slot) { return isNamed_[slot] != 0; });
-        return decideBetween(filter);
+    } else {
+        askAgainAboutFew(ids, filter);
     }
-    // Where they are asked about in parts, those with a proxy that has been dealt with are left out.
-    isNamed_.assign(remembersPairs() ? store_.proxies.records.size() : 0, 0);
+    return applyFilterNow(filter);
+}
+
+// Where they are asked about in parts, those with a proxy that has been dealt with are left out.
+template <class Scalar>
+void PairTracker<Scalar>::askAgainAboutFew(std::span<const ProxyId> ids, PairFilter filter) {
+    isNamed_.assign(remembersPairs() ? proxies_.records.size() : 0, 0);
     const auto isDone = [this](std::uint32_t slot) {
         return slot < isNamed_.size() && isNamed_[slot] != 0;
     };
     for (const ProxyId id : ids) {
-        if (!store_.proxies.contains(id) || isDone(id.index)) {
+        if (!proxies_.contains(id) || isDone(id.index)) {
             continue;
         }
         if (store_.cost.changed > 0) {
-            findUnknown(id.index, [&](std::uint32_t other) {
+            findNewCandidates(id.index, [&](std::uint32_t other) {
                 return !(isDone(other) && wouldFind(other, id.index));
             });
         }
-        forKnownCouples(id.index, [&](Couple c) {
+        forKnownPairs(id.index, [&](PairKey c) {
             if (!isDone(first(c)) && !isDone(second(c))) {
                 askAgain(c);
             }
@@ -75,39 +79,41 @@ PairChanges PairTracker<Scalar>::refilter(std::span<const ProxyId> ids, PairFilt
             isNamed_[id.index] = 1;
         }
     }
-    return decideBetween(filter);
+}
+
+template <class Scalar>
+void PairTracker<Scalar>::beginRefilter() {
+    beginCall();
+    recover();
+    findImmediateOfRemoved();
 }
 
 template <class Scalar>
 PairChanges PairTracker<Scalar>::refilter(std::span<const ProxyPair> pairs, PairFilter filter) {
-    beginCall();
-    recover();
-    findAnnouncedOfRemoved();
+    beginRefilter();
     for (const ProxyPair& pair : pairs) {
         if (isPair(pair)) {
-            askAgain(couple(pair.first.index, pair.second.index));
+            askAgain(pairKey(pair.first.index, pair.second.index));
         }
     }
-    return decideBetween(filter);
+    return applyFilterNow(filter);
 }
 
 template <class Scalar>
 bool PairTracker<Scalar>::isPair(const ProxyPair& pair) const noexcept {
     const auto [a, b] = pair;
-    if (a == b || !store_.proxies.contains(a) || !store_.proxies.contains(b)) {
+    if (a == b || !proxies_.contains(a) || !proxies_.contains(b)) {
         return false;
     }
-    const Couple c = couple(a.index, b.index);
-    return !isRefused(c) && (wasKnown(a.index, b.index) || announced_.contains(c) || isSwept(c));
+    const PairKey c = pairKey(a.index, b.index);
+    return !isRefused(c) && (wasKnown(a.index, b.index) || immediate_.contains(c) || isSwept(c));
 }
 
 template <class Scalar>
 PairChanges PairTracker<Scalar>::refilterAll(PairFilter filter) {
-    beginCall();
-    recover();
-    findAnnouncedOfRemoved();
+    beginRefilter();
     askAgainAboutMany(filter, [](std::uint32_t) { return true; });
-    return decideBetween(filter);
+    return applyFilterNow(filter);
 }
 
 // What is not known yet is of one that has changed.
@@ -115,18 +121,18 @@ template <class Scalar>
 template <class IsNamed>
 void PairTracker<Scalar>::askAgainAboutMany(PairFilter filter, const IsNamed& isNamed) {
     if (store_.cost.changed > 0) {
-        for (const std::uint32_t slot : store_.proxies.mobile) {
-            if (store_.proxies.changedNow(slot) && store_.proxies.isAlive(slot)) {
-                findUnknown(slot, [&](std::uint32_t other) {
+        for (const std::uint32_t slot : proxies_.mobile) {
+            if (proxies_.changedNow(slot) && proxies_.isAlive(slot)) {
+                findNewCandidates(slot, [&](std::uint32_t other) {
                     const bool isFoundByOther =
-                        other < slot && store_.proxies.changedNow(other) && wouldFind(other, slot);
+                        other < slot && proxies_.changedNow(other) && wouldFind(other, slot);
                     return (isNamed(slot) || isNamed(other)) && !isFoundByOther;
                 });
                 askInParts(filter, kPart);
             }
         }
     }
-    forAllKnown([&](Couple c) {
+    forAllKnown([&](PairKey c) {
         if (isNamed(first(c)) || isNamed(second(c))) {
             askAgain(c);
             askInParts(filter, kPart);
@@ -134,104 +140,106 @@ void PairTracker<Scalar>::askAgainAboutMany(PairFilter filter, const IsNamed& is
     });
 }
 
-// Whether findUnknown() of one comes upon the other, which it looks for by its box in the grid.
+// Whether findNewCandidates() of one comes upon the other, which it looks for by its box in the grid.
 template <class Scalar>
 bool PairTracker<Scalar>::wouldFind(std::uint32_t finder, std::uint32_t found) const {
-    return overlaps(boxAtStart(finder), store_.proxies.records[found].box);
+    return overlaps(boxAtStart(finder), proxies_.records[found].box);
 }
 
-// Asks about a couple that is known. One that is refused and apart for the moment is asked about by
+// Asks about a candidate that is known. One that is refused and apart for the moment is asked about by
 // update(), should they meet again.
 template <class Scalar>
-void PairTracker<Scalar>::askAgain(Couple c) {
-    if (!store_.proxies.isAlive(first(c)) || !store_.proxies.isAlive(second(c))) {
+void PairTracker<Scalar>::askAgain(PairKey c) {
+    if (!proxies_.isAlive(first(c)) || !proxies_.isAlive(second(c))) {
         return;
     }
     if (!isRefused(c)) {
-        standing_.push_back(c);
+        acceptedPairs_.push_back(c);
         asked_.push_back(c);
     } else if (isSwept(c) || touchAtStart(first(c), second(c))) {
         asked_.push_back(c);
     }
 }
 
-// A couple may have been found from either of the two.
+// A candidate may have been found from either of the two.
 template <class Scalar>
-PairChanges PairTracker<Scalar>::decideBetween(PairFilter filter) {
+PairChanges PairTracker<Scalar>::applyFilterNow(PairFilter filter) {
     if (remembersPairs()) {
         askInParts(filter, 1);
         takeTurned();
-        unknown_.clear();
-        std::copy_if(asked_.begin(), asked_.end(), std::back_inserter(unknown_), [this](Couple c) {
-            return isRefused(c) && !wasKnown(first(c), second(c)) && !isSwept(c);
-        });
+        newCandidates_.clear();
+        std::copy_if(asked_.begin(), asked_.end(), std::back_inserter(newCandidates_),
+                     [this](PairKey c) {
+                         return isRefused(c) && !wasKnown(first(c), second(c)) && !isSwept(c);
+                     });
     } else {
-        for (std::vector<Couple>* couples : {&asked_, &standing_, &unknown_}) {
-            sortCouples(*couples);
-            couples->erase(std::unique(couples->begin(), couples->end()), couples->end());
+        for (std::vector<PairKey>* candidates : {&asked_, &acceptedPairs_, &newCandidates_}) {
+            sortPairs(*candidates);
+            candidates->erase(std::unique(candidates->begin(), candidates->end()),
+                              candidates->end());
         }
         ask(filter);
     }
-    makeRoom(toldBetween_);
-    endAnnouncedOfRemoved();
-    announceUnknown();
-    decide();
+    makeRoom(immediateChanges_);
+    endImmediateOfRemoved();
+    noteNewCandidates();
+    applyFilter();
     chooseSide(false);
-    return tell(toldBetween_);
+    return report(immediateChanges_);
 }
 
 template <class Scalar>
-void PairTracker<Scalar>::announceUnknown() noexcept {  // NOLINT(bugprone-exception-escape)
-    for (const Couple c : unknown_) {
-        announced_.insert(c);
+void PairTracker<Scalar>::noteNewCandidates() noexcept {  // NOLINT(bugprone-exception-escape)
+    for (const PairKey c : newCandidates_) {
+        immediate_.insert(c);
     }
-    markAnnounced(unknown_, true);
+    markImmediate(newCandidates_, true);
 }
 
-// The grid keeps the slots of those that are removed apart, until their couples are ended.
+// The grid keeps the slots of those that are removed apart, until their candidates are ended.
 template <class Scalar>
-void PairTracker<Scalar>::markAnnounced(std::span<const Couple> couples, bool are) noexcept {
-    for (const Couple c : couples) {
-        store_.proxies.records[first(c)].isAnnounced = are;
-        store_.proxies.records[second(c)].isAnnounced = are;
+void PairTracker<Scalar>::markImmediate(std::span<const PairKey> candidates, bool are) noexcept {
+    for (const PairKey c : candidates) {
+        proxies_.records[first(c)].isImmediate = are;
+        proxies_.records[second(c)].isImmediate = are;
     }
 }
 
-// Where proxies come, are announced and go, and there is no update: whenever twice as many couples are
+// Where proxies come, are announced and go, and there is no update: whenever twice as many candidates are
 // announced as were left the last time, so that each is looked at about once.
 template <class Scalar>
-bool PairTracker<Scalar>::areManyAnnounced() const noexcept {
-    return announced_.size() > fewAnnounced_ && store_.proxies.removedAnnounced.count > 0;
+bool PairTracker<Scalar>::areManyImmediate() const noexcept {
+    return immediate_.size() > fewImmediate_ && proxies_.removedImmediate.count > 0;
 }
 
 template <class Scalar>
-void PairTracker<Scalar>::findAnnouncedOfRemoved() {
-    if (!areManyAnnounced()) {
+void PairTracker<Scalar>::findImmediateOfRemoved() {
+    if (!areManyImmediate()) {
         return;
     }
-    stillAnnounced_.clear();
-    for (const Couple c : announced_.keys()) {
-        const bool areAlive = store_.proxies.isAlive(first(c)) && store_.proxies.isAlive(second(c));
-        (areAlive ? stillAnnounced_ : lost_).push_back(c);
+    stillImmediate_.clear();
+    for (const PairKey c : immediate_.keys()) {
+        const bool areAlive = proxies_.isAlive(first(c)) && proxies_.isAlive(second(c));
+        (areAlive ? stillImmediate_ : endedPairs_).push_back(c);
     }
 }
 
 template <class Scalar>
-void PairTracker<Scalar>::endAnnouncedOfRemoved() noexcept {
-    if (!areManyAnnounced()) {
+void PairTracker<Scalar>::endImmediateOfRemoved() noexcept {
+    if (!areManyImmediate()) {
         return;
     }
-    markAnnounced(announced_.keys(), false);
-    announced_.clear();
-    for (const Couple c : stillAnnounced_) {
-        announced_.insert(c);
+    markImmediate(immediate_.keys(), false);
+    immediate_.clear();
+    for (const PairKey c : stillImmediate_) {
+        immediate_.insert(c);
     }
-    markAnnounced(announced_.keys(), true);
-    for (const Couple c : lost_) {
-        lose(c);
+    markImmediate(immediate_.keys(), true);
+    for (const PairKey c : endedPairs_) {
+        endPair(c);
     }
-    fewAnnounced_ = kFewAnnounced + 2 * announced_.size();
-    store_.proxies.giveBack(store_.proxies.removedAnnounced);
+    fewImmediate_ = kFewImmediate + 2 * immediate_.size();
+    proxies_.giveBack(proxies_.removedImmediate);
 }
 
 template PairChanges PairTracker<float>::announce(std::uint32_t, PairFilter);
@@ -239,30 +247,34 @@ template PairChanges PairTracker<float>::announce(std::uint32_t, std::span<const
                                                   PairFilter);
 template PairChanges PairTracker<float>::refilter(std::span<const ProxyId>, PairFilter);
 template PairChanges PairTracker<float>::refilter(std::span<const ProxyPair>, PairFilter);
+template void PairTracker<float>::askAgainAboutFew(std::span<const ProxyId>, PairFilter);
+template void PairTracker<float>::beginRefilter();
 template bool PairTracker<float>::isPair(const ProxyPair&) const noexcept;
 template PairChanges PairTracker<float>::refilterAll(PairFilter);
 template bool PairTracker<float>::wouldFind(std::uint32_t, std::uint32_t) const;
-template void PairTracker<float>::askAgain(Couple);
-template PairChanges PairTracker<float>::decideBetween(PairFilter);
-template void PairTracker<float>::announceUnknown() noexcept;
-template void PairTracker<float>::markAnnounced(std::span<const Couple>, bool) noexcept;
-template bool PairTracker<float>::areManyAnnounced() const noexcept;
-template void PairTracker<float>::findAnnouncedOfRemoved();
-template void PairTracker<float>::endAnnouncedOfRemoved() noexcept;
+template void PairTracker<float>::askAgain(PairKey);
+template PairChanges PairTracker<float>::applyFilterNow(PairFilter);
+template void PairTracker<float>::noteNewCandidates() noexcept;
+template void PairTracker<float>::markImmediate(std::span<const PairKey>, bool) noexcept;
+template bool PairTracker<float>::areManyImmediate() const noexcept;
+template void PairTracker<float>::findImmediateOfRemoved();
+template void PairTracker<float>::endImmediateOfRemoved() noexcept;
 template PairChanges PairTracker<double>::announce(std::uint32_t, PairFilter);
 template PairChanges PairTracker<double>::announce(std::uint32_t, std::span<const ProxyId>,
                                                    PairFilter);
 template PairChanges PairTracker<double>::refilter(std::span<const ProxyId>, PairFilter);
 template PairChanges PairTracker<double>::refilter(std::span<const ProxyPair>, PairFilter);
+template void PairTracker<double>::askAgainAboutFew(std::span<const ProxyId>, PairFilter);
+template void PairTracker<double>::beginRefilter();
 template bool PairTracker<double>::isPair(const ProxyPair&) const noexcept;
 template PairChanges PairTracker<double>::refilterAll(PairFilter);
 template bool PairTracker<double>::wouldFind(std::uint32_t, std::uint32_t) const;
-template void PairTracker<double>::askAgain(Couple);
-template PairChanges PairTracker<double>::decideBetween(PairFilter);
-template void PairTracker<double>::announceUnknown() noexcept;
-template void PairTracker<double>::markAnnounced(std::span<const Couple>, bool) noexcept;
-template bool PairTracker<double>::areManyAnnounced() const noexcept;
-template void PairTracker<double>::findAnnouncedOfRemoved();
-template void PairTracker<double>::endAnnouncedOfRemoved() noexcept;
+template void PairTracker<double>::askAgain(PairKey);
+template PairChanges PairTracker<double>::applyFilterNow(PairFilter);
+template void PairTracker<double>::noteNewCandidates() noexcept;
+template void PairTracker<double>::markImmediate(std::span<const PairKey>, bool) noexcept;
+template bool PairTracker<double>::areManyImmediate() const noexcept;
+template void PairTracker<double>::findImmediateOfRemoved();
+template void PairTracker<double>::endImmediateOfRemoved() noexcept;
 
 }  // namespace hashphase::detail

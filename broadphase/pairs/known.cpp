@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-// Which couples overlapped at the last update, or have been announced since, and which have come to
+// Which candidates overlapped at the last update, or have been announced since, and which have come to
 // overlap: of one proxy, or of all.
 
 #include <broadphase/pairs/pair_tracker.hpp>
@@ -18,122 +18,122 @@ template <class Scalar>
 void PairTracker<Scalar>::indexLastUpdate(std::size_t mostUnindexed) {
     const bool isStale =
         shiftOfUpdate_ != store_.shiftCount ||
-        (tableOfUpdate_ == &store_.tables.mobile && filingOfUpdate_ != store_.tables.filingCount);
+        (tableOfUpdate_ == &tables_.mobile && filingOfUpdate_ != tables_.filingCount);
     if (isStale) {
         tableOfUpdate_ = nullptr;
     }
-    if (tableOfUpdate_ != nullptr && store_.proxies.woken.size() - indexedWoken_ <= mostUnindexed) {
+    if (tableOfUpdate_ != nullptr && proxies_.woken.size() - indexedWoken_ <= mostUnindexed) {
         return;
     }
     // What has come since the last update had no box then.
-    const auto listed = store_.proxies.mobile.begin();
+    const auto listed = proxies_.mobile.begin();
     std::vector<std::uint32_t>& slots = searchedSlots_;
-    slots.assign(listed, listed + static_cast<std::ptrdiff_t>(store_.proxies.mobileAtUpdate));
-    slots.insert(slots.end(), store_.proxies.woken.begin(), store_.proxies.woken.end());
+    slots.assign(listed, listed + static_cast<std::ptrdiff_t>(proxies_.mobileAtUpdate));
+    slots.insert(slots.end(), proxies_.woken.begin(), proxies_.woken.end());
     wokenBoxes_.clear();
     for (const std::uint32_t slot : slots) {
-        wokenBoxes_.push_back(padded(store_.proxies.boxAtUpdate(slot)));
+        wokenBoxes_.push_back(padded(proxies_.boxAtUpdate(slot)));
     }
     tableOfUpdate_ = nullptr;
     wokenTable().build(slots, wokenBoxes_, store_.fixedSizes(), serialFor,
-                       store_.proxies.groupsOfAllAtUpdate());
+                       proxies_.groupsOfAllAtUpdate());
     tableOfUpdate_ = wokenTable_.get();
-    indexedWoken_ = store_.proxies.woken.size();
+    indexedWoken_ = proxies_.woken.size();
     shiftOfUpdate_ = store_.shiftCount;
 }
 
-// Calls visit for each of the proxy's couples that overlapped at the last update, or met on their ways
+// Calls visit for each of the proxy's candidates that overlapped at the last update, or met on their ways
 // then, or were announced since.
 template <class Scalar>
-void PairTracker<Scalar>::forKnownCouples(std::uint32_t slot, VisitCouple visit) {
+void PairTracker<Scalar>::forKnownPairs(std::uint32_t slot, VisitPair visit) {
     forOverlapsAtUpdate(slot, visit);
-    announced_.forEachOf(slot, visit);
+    immediate_.forEachOf(slot, visit);
     forSwept(slot, visit);
 }
 
 template <class Scalar>
-void PairTracker<Scalar>::forOverlapsAtUpdate(std::uint32_t slot, VisitCouple visit) {
+void PairTracker<Scalar>::forOverlapsAtUpdate(std::uint32_t slot, VisitPair visit) {
     constexpr std::size_t kFew = 64;
-    indexLastUpdate(kFew + (store_.proxies.mobileAtUpdate + indexedWoken_) / 4);
+    indexLastUpdate(kFew + (proxies_.mobileAtUpdate + indexedWoken_) / 4);
     const auto visitIfTheyDid = [&](std::uint32_t other) {
         if (other != slot && wasKnown(slot, other)) {
-            visit(couple(slot, other));
+            visit(pairKey(slot, other));
         }
     };
     const bool isOwn = tableOfUpdate_ == wokenTable_.get();  // in the coordinates of then
-    const Box& before = store_.proxies.before(slot);
-    forTouching(*tableOfUpdate_, isOwn ? store_.proxies.boxAtUpdate(slot) : before, visitIfTheyDid);
-    forTouching(store_.tables.resting, before, visitIfTheyDid);
-    for (std::size_t i = indexedWoken_; i < store_.proxies.woken.size(); ++i) {
-        visitIfTheyDid(store_.proxies.woken[i]);
+    const Box& before = proxies_.before(slot);
+    forTouching(*tableOfUpdate_, isOwn ? proxies_.boxAtUpdate(slot) : before, visitIfTheyDid);
+    forTouching(tables_.resting, before, visitIfTheyDid);
+    for (std::size_t i = indexedWoken_; i < proxies_.woken.size(); ++i) {
+        visitIfTheyDid(proxies_.woken[i]);
     }
 }
 
 template <class Scalar>
-void PairTracker<Scalar>::forSwept(std::uint32_t slot, VisitCouple visit) {
+void PairTracker<Scalar>::forSwept(std::uint32_t slot, VisitPair visit) {
     if (swept_.empty()) {
         return;
     }
     if (sweptBySecond_.empty()) {
-        std::vector<Couple> turned(swept_.size());
+        std::vector<PairKey> turned(swept_.size());
         std::transform(swept_.begin(), swept_.end(), turned.begin(),
-                       [](Couple c) { return c << 32 | c >> 32; });
-        sortCouples(turned);
+                       [](PairKey c) { return c << 32 | c >> 32; });
+        sortPairs(turned);
         sweptBySecond_.swap(turned);
     }
-    for (const auto* couples : {&swept_, &sweptBySecond_}) {
-        auto at = std::lower_bound(couples->begin(), couples->end(), Couple{slot} << 32);
-        for (; at != couples->end() && *at >> 32 == slot; ++at) {
-            visit(couple(first(*at), second(*at)));
+    for (const auto* candidates : {&swept_, &sweptBySecond_}) {
+        auto at = std::lower_bound(candidates->begin(), candidates->end(), PairKey{slot} << 32);
+        for (; at != candidates->end() && *at >> 32 == slot; ++at) {
+            visit(pairKey(first(*at), second(*at)));
         }
     }
 }
 
-// forKnownCouples() of all; some twice, where they are announced or kept.
+// forKnownPairs() of all; some twice, where they are announced or kept.
 template <class Scalar>
-void PairTracker<Scalar>::forAllKnown(VisitCouple visit) {
+void PairTracker<Scalar>::forAllKnown(VisitPair visit) {
     indexLastUpdate(0);
-    const ProxyGroups* const groups = store_.proxies.groupsOfAllAtUpdate();
+    const ProxyGroups* const groups = proxies_.groupsOfAllAtUpdate();
     const auto visitIfTheyDid = [&](std::uint32_t a, std::uint32_t b) {
         if (wasKnown(a, b)) {
-            visit(couple(a, b));
+            visit(pairKey(a, b));
         }
     };
     KernelCost cost;
     forOverlaps(*tableOfUpdate_, groups, cost, visitIfTheyDid);
-    forOverlaps(store_.tables.resting, groups, cost, visitIfTheyDid);
+    forOverlaps(tables_.resting, groups, cost, visitIfTheyDid);
     bounds_.clear();
     for (const std::uint32_t slot : tableOfUpdate_->entrySlots()) {
-        bounds_.push(store_.proxies.before(slot));
+        bounds_.push(proxies_.before(slot));
     }
     const GroupsView view{groups, tableOfUpdate_->entrySlots().data(), {}};
-    forOverlaps(bounds_.columns(), bounds_.size(), store_.tables.resting,
+    forOverlaps(bounds_.columns(), bounds_.size(), tables_.resting,
                 groups != nullptr ? &view : nullptr, cost,
                 [&](std::uint32_t entry, std::uint32_t resting) {
                     visitIfTheyDid(tableOfUpdate_->slot(entry), resting);
                 });
-    for (const std::span<const Couple> couples :
-         {announced_.keys(), kept_.keys(), std::span<const Couple>(swept_)}) {
-        std::for_each(couples.begin(), couples.end(), visit);
+    for (const std::span<const PairKey> candidates :
+         {immediate_.keys(), kept_.keys(), std::span<const PairKey>(swept_)}) {
+        std::for_each(candidates.begin(), candidates.end(), visit);
     }
-    const std::span<const Couple> pairs =
-        remembersPairs() ? pile_->pairs.keys() : std::span<const Couple>();
-    for (const Couple c : pairs) {  // that are kept
-        if (!couldPair(c) && !announced_.contains(c) && !isSwept(c)) {
+    const std::span<const PairKey> pairs =
+        remembersPairs() ? pile_->pairs.keys() : std::span<const PairKey>();
+    for (const PairKey c : pairs) {  // that are kept
+        if (!couldPair(c) && !immediate_.contains(c) && !isSwept(c)) {
             visit(c);
         }
     }
 }
 
-// The proxy's couples that overlap now, did not at the last update, and were not announced since; those
+// The proxy's candidates that overlap now, did not at the last update, and were not announced since; those
 // with others that are wanted.
 template <class Scalar>
-void PairTracker<Scalar>::findUnknown(std::uint32_t slot,
-                                      FunctionRef<bool(std::uint32_t)> isWanted) {
+void PairTracker<Scalar>::findNewCandidates(std::uint32_t slot,
+                                            FunctionRef<bool(std::uint32_t)> isWanted) {
     const Box box = boxAtStart(slot);
     const auto add = [&](std::uint32_t other) {
         if (other != slot && isWanted(other)) {
-            addIfUnknown(slot, other);
+            addIfNew(slot, other);
         }
     };
     const Reading<Scalar> reading = store_.beginReading();
@@ -144,9 +144,9 @@ void PairTracker<Scalar>::findUnknown(std::uint32_t slot,
             }
         });
     }
-    for (std::size_t i = 0; i < store_.proxies.waiting.size() && !reading.isFresh; ++i) {
-        const std::uint32_t other = store_.proxies.waiting[i];
-        if (store_.proxies.isAlive(other) && overlaps(box, store_.proxies.records[other].box)) {
+    for (std::size_t i = 0; i < proxies_.waiting.size() && !reading.isFresh; ++i) {
+        const std::uint32_t other = proxies_.waiting[i];
+        if (proxies_.isAlive(other) && overlaps(box, proxies_.records[other].box)) {
             add(other);
         }
     }
@@ -167,11 +167,11 @@ void PairTracker<Scalar>::forTouching(const Table<Scalar>& table, const Box& box
 }
 
 template <class Scalar>
-void PairTracker<Scalar>::addIfUnknown(std::uint32_t slot, std::uint32_t other) {
-    const Couple c = couple(slot, other);
-    if (!wasKnown(slot, other) && store_.proxies.mayPairNow(slot, other) &&
-        touchAtStart(slot, other) && !announced_.contains(c) && !isSwept(c)) {
-        unknown_.push_back(c);
+void PairTracker<Scalar>::addIfNew(std::uint32_t slot, std::uint32_t other) {
+    const PairKey c = pairKey(slot, other);
+    if (!wasKnown(slot, other) && proxies_.mayPairNow(slot, other) && touchAtStart(slot, other) &&
+        !immediate_.contains(c) && !isSwept(c)) {
+        newCandidates_.push_back(c);
         asked_.push_back(c);
     }
 }
@@ -179,8 +179,7 @@ void PairTracker<Scalar>::addIfUnknown(std::uint32_t slot, std::uint32_t other) 
 // Where a proxy alive is now, of what sweeps where its way begins.
 template <class Scalar>
 Aabb<Scalar> PairTracker<Scalar>::boxAtStart(std::uint32_t slot) const {
-    return sweeping_ != nullptr ? sweeping_->motions.boxAtStart(slot)
-                                : store_.proxies.records[slot].box;
+    return sweeping_ != nullptr ? sweeping_->motions.boxAtStart(slot) : proxies_.records[slot].box;
 }
 
 template <class Scalar>
@@ -189,32 +188,34 @@ bool PairTracker<Scalar>::touchAtStart(std::uint32_t a, std::uint32_t b) const {
 }
 
 template <class Scalar>
-void PairTracker<Scalar>::findUnknown(std::uint32_t slot) {
-    findUnknown(slot, [](std::uint32_t) { return true; });
+void PairTracker<Scalar>::findNewCandidates(std::uint32_t slot) {
+    findNewCandidates(slot, [](std::uint32_t) { return true; });
 }
 
 template void PairTracker<float>::indexLastUpdate(std::size_t);
-template void PairTracker<float>::forKnownCouples(std::uint32_t, VisitCouple);
-template void PairTracker<float>::forOverlapsAtUpdate(std::uint32_t, VisitCouple);
-template void PairTracker<float>::forSwept(std::uint32_t, VisitCouple);
-template void PairTracker<float>::forAllKnown(VisitCouple);
-template void PairTracker<float>::findUnknown(std::uint32_t, FunctionRef<bool(std::uint32_t)>);
-template void PairTracker<float>::findUnknown(std::uint32_t);
+template void PairTracker<float>::forKnownPairs(std::uint32_t, VisitPair);
+template void PairTracker<float>::forOverlapsAtUpdate(std::uint32_t, VisitPair);
+template void PairTracker<float>::forSwept(std::uint32_t, VisitPair);
+template void PairTracker<float>::forAllKnown(VisitPair);
+template void PairTracker<float>::findNewCandidates(std::uint32_t,
+                                                    FunctionRef<bool(std::uint32_t)>);
+template void PairTracker<float>::findNewCandidates(std::uint32_t);
 template void PairTracker<float>::forTouching(const Table<float>&, const Box&,
                                               FunctionRef<void(std::uint32_t)>);
-template void PairTracker<float>::addIfUnknown(std::uint32_t, std::uint32_t);
+template void PairTracker<float>::addIfNew(std::uint32_t, std::uint32_t);
 template Aabb<float> PairTracker<float>::boxAtStart(std::uint32_t) const;
 template bool PairTracker<float>::touchAtStart(std::uint32_t, std::uint32_t) const;
 template void PairTracker<double>::indexLastUpdate(std::size_t);
-template void PairTracker<double>::forKnownCouples(std::uint32_t, VisitCouple);
-template void PairTracker<double>::forOverlapsAtUpdate(std::uint32_t, VisitCouple);
-template void PairTracker<double>::forSwept(std::uint32_t, VisitCouple);
-template void PairTracker<double>::forAllKnown(VisitCouple);
-template void PairTracker<double>::findUnknown(std::uint32_t, FunctionRef<bool(std::uint32_t)>);
-template void PairTracker<double>::findUnknown(std::uint32_t);
+template void PairTracker<double>::forKnownPairs(std::uint32_t, VisitPair);
+template void PairTracker<double>::forOverlapsAtUpdate(std::uint32_t, VisitPair);
+template void PairTracker<double>::forSwept(std::uint32_t, VisitPair);
+template void PairTracker<double>::forAllKnown(VisitPair);
+template void PairTracker<double>::findNewCandidates(std::uint32_t,
+                                                     FunctionRef<bool(std::uint32_t)>);
+template void PairTracker<double>::findNewCandidates(std::uint32_t);
 template void PairTracker<double>::forTouching(const Table<double>&, const Box&,
                                                FunctionRef<void(std::uint32_t)>);
-template void PairTracker<double>::addIfUnknown(std::uint32_t, std::uint32_t);
+template void PairTracker<double>::addIfNew(std::uint32_t, std::uint32_t);
 template Aabb<double> PairTracker<double>::boxAtStart(std::uint32_t) const;
 template bool PairTracker<double>::touchAtStart(std::uint32_t, std::uint32_t) const;
 

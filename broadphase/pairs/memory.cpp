@@ -15,33 +15,34 @@ std::size_t PairTracker<Scalar>::memoryBytes() const noexcept {
     return sizeof(*this) + amongMobile_.memoryBytes() + toResting_.memoryBytes() +
            selected_.memoryBytes() + parts_.memoryBytes() + carried_.memoryBytes() +
            bounds_.memoryBytes() +
-           (asked_.capacity() + standing_.capacity() + bornCouples_.capacity() +
-            diedCouples_.capacity() + sorted_.capacity() + restedCouples_.capacity() +
-            sweptBySecond_.capacity() + lost_.capacity() + swept_.capacity() + gone_.capacity() +
-            fresh_.capacity() + unknown_.capacity() + sweptNow_.capacity() +
-            stillAnnounced_.capacity() + keptNow_.capacity() + notKept_.capacity() +
-            lapsed_.capacity()) *
-               sizeof(Couple) +
-           (toldByUpdate_.born.capacity() + toldByUpdate_.died.capacity() +
-            toldBetween_.born.capacity() + toldBetween_.died.capacity() + askedPairs_.capacity()) *
+           (asked_.capacity() + acceptedPairs_.capacity() + begunPairs_.capacity() +
+            diedPairs_.capacity() + sorted_.capacity() + restedPairs_.capacity() +
+            sweptBySecond_.capacity() + endedPairs_.capacity() + swept_.capacity() +
+            stillEnded_.capacity() + stillBegun_.capacity() + newCandidates_.capacity() +
+            sweptNow_.capacity() + stillImmediate_.capacity() + keptNow_.capacity() +
+            notKept_.capacity() + lapsed_.capacity()) *
+               sizeof(PairKey) +
+           (updateChanges_.born.capacity() + updateChanges_.died.capacity() +
+            immediateChanges_.born.capacity() + immediateChanges_.died.capacity() +
+            askedPairs_.capacity()) *
                sizeof(ProxyPair) +
            accepted_.capacity() + isNamed_.capacity() +
-           (entryOf_.capacity() + walkers_.capacity() + searchedSlots_.capacity()) *
+           (entryOf_.capacity() + changedEntries_.capacity() + searchedSlots_.capacity()) *
                sizeof(std::uint32_t) +
            wokenBoxes_.capacity() * sizeof(PaddedBox<Scalar>) +
            (wokenTable_ != nullptr ? sizeof(*wokenTable_) + wokenTable_->memoryBytes() : 0) +
-           announced_.memoryBytes() + kept_.memoryBytes() + refused_.memoryBytes() +
+           immediate_.memoryBytes() + kept_.memoryBytes() + refused_.memoryBytes() +
            refusedAtRest_.memoryBytes() + (pile_ != nullptr ? pile_->memoryBytes() : 0);
 }
 
 template <class Scalar>
 void PairTracker<Scalar>::releaseUnusedMemory() noexcept {
     // What is found anew by each call.
-    freeArrays(sweptNow_, lost_, asked_, standing_, askedPairs_, accepted_, bornCouples_,
-               diedCouples_, toldByUpdate_.born, toldByUpdate_.died, toldBetween_.born,
-               toldBetween_.died, sorted_, restedCouples_, sweptBySecond_, unknown_, gone_, fresh_,
-               keptNow_, notKept_, lapsed_, isNamed_, entryOf_, walkers_, searchedSlots_,
-               wokenBoxes_);
+    freeArrays(sweptNow_, endedPairs_, asked_, acceptedPairs_, askedPairs_, accepted_, begunPairs_,
+               diedPairs_, updateChanges_.born, updateChanges_.died, immediateChanges_.born,
+               immediateChanges_.died, sorted_, restedPairs_, sweptBySecond_, newCandidates_,
+               stillEnded_, stillBegun_, keptNow_, notKept_, lapsed_, isNamed_, entryOf_,
+               changedEntries_, searchedSlots_, wokenBoxes_);
     selected_ = {};
     parts_ = {};
     carried_ = {};
@@ -54,13 +55,13 @@ void PairTracker<Scalar>::releaseUnusedMemory() noexcept {
     // What is kept.
     swept_.shrink_to_fit();
     try {
-        for (PairList* couples : {&amongMobile_, &toResting_}) {
-            couples->shrink();
+        for (PairList* candidates : {&amongMobile_, &toResting_}) {
+            candidates->shrink();
         }
-        for (FlatSet* couples : {&refused_, &refusedAtRest_, &kept_}) {
-            couples->shrink();
+        for (FlatSet* candidates : {&refused_, &refusedAtRest_, &kept_}) {
+            candidates->shrink();
         }
-        announced_.shrink();
+        immediate_.shrink();
         if (pile_ != nullptr) {
             freeArrays(pile_->turned, pile_->sampledAccepted);
             pile_->sampled = {};
@@ -72,12 +73,12 @@ void PairTracker<Scalar>::releaseUnusedMemory() noexcept {
 
 template <class Scalar>
 void PairTracker<Scalar>::releaseAfterPeak() noexcept {
-    // Searches make room for some couples of each proxy.
+    // Searches make room for some candidates of each proxy.
     const std::size_t count = store_.listedCount() + amongMobile_.size() + toResting_.size() +
-                              refusedCount() + announced_.size() +
+                              refusedCount() + immediate_.size() +
                               (pile_ != nullptr ? pile_->pairs.size() : 0);
     const std::size_t room = amongMobile_.capacity() + toResting_.capacity() + refused_.capacity() +
-                             refusedAtRest_.capacity() + announced_.capacity() +
+                             refusedAtRest_.capacity() + immediate_.capacity() +
                              (pile_ != nullptr ? pile_->pairs.capacity() : 0);
     if (peaks_.isPast(count, room)) {
         releaseUnusedMemory();

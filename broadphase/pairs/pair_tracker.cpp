@@ -26,7 +26,7 @@ void PairTracker<Scalar>::setSweeps(Sweeping<Scalar>* sweeping) {
     store_.endSweeps();
     sweeping_ = sweeping;
     if (sweeping_ != nullptr) {
-        sweeping_->motions.noteAllChanged();
+        sweeping_->motions.markAllChanged();
     }
 }
 
@@ -41,7 +41,7 @@ void PairTracker<Scalar>::beginUpdate() {
     if (sweeping_ != nullptr) {
         sweeping_->beginUpdate();
     }
-    for (const Couple c : kept_.keys()) {
+    for (const PairKey c : kept_.keys()) {
         if (isRefused(c) && !mayPairNow(c)) {  // filtered again
             notKept_.push_back(c);
             lapsed_.push_back(c);
@@ -60,33 +60,33 @@ void PairTracker<Scalar>::beginCall() {
 
 template <class Scalar>
 void PairTracker<Scalar>::beginSearch() {
-    lost_.clear();
+    endedPairs_.clear();
     asked_.clear();
-    unknown_.clear();
-    standing_.clear();
+    newCandidates_.clear();
+    acceptedPairs_.clear();
     if (pile_ != nullptr) {
         pile_->turned.clear();
     }
     keptNow_.clear();
     notKept_.clear();
     lapsed_.clear();
-    bornCouples_.clear();
-    diedCouples_.clear();
+    begunPairs_.clear();
+    diedPairs_.clear();
 }
 
 // Where memory has run out, everything is mobile, and what the last one has left to be watched
-// are the couples of the boxes at that time.
+// are the candidates of the boxes at that time.
 template <class Scalar>
 void PairTracker<Scalar>::recover() {
-    if (!store_.isTorn) {
+    if (!store_.mustRebuildPairs) {
         return;
     }
     refused_.reserve(refused_.size() + refusedAtRest_.size());
     tableOfUpdate_ = nullptr;
     store_.stage(serialFor);
     Table<Scalar>& table = wokenTable();
-    const ProxyGroups* const groups = store_.proxies.groupsOfAllAtUpdate();
-    table.build(store_.proxies.mobile, store_.frame.before, store_.fixedSizes(), serialFor, groups);
+    const ProxyGroups* const groups = proxies_.groupsOfAllAtUpdate();
+    table.build(proxies_.mobile, frame_.before, store_.fixedSizes(), serialFor, groups);
     amongMobile_.clear();
     if (!remembersPairs()) {
         KernelCost cost;
@@ -96,17 +96,17 @@ void PairTracker<Scalar>::recover() {
             amongMobile_.push({table.order()[a], table.order()[b]});
         }
     }
-    for (const Couple c : refusedAtRest_.keys()) {
+    for (const PairKey c : refusedAtRest_.keys()) {
         refused_.findOrInsert(c);
     }
     toResting_.clear();
     refusedAtRest_.clear();
-    store_.proxies.woken.clear();
-    store_.proxies.mobileAtUpdate = store_.proxies.mobile.size();
+    proxies_.woken.clear();
+    proxies_.mobileAtUpdate = proxies_.mobile.size();
     tableOfUpdate_ = wokenTable_.get();
     indexedWoken_ = 0;
     shiftOfUpdate_ = store_.shiftCount;
-    store_.isTorn = false;
+    store_.mustRebuildPairs = false;
 }
 
 template <class Scalar>
@@ -122,52 +122,52 @@ void PairTracker<Scalar>::askAndMakeRoom(PairFilter filter) {
     if (!remembersPairs()) {
         ask(filter);
     }
-    makeRoom(toldByUpdate_);
+    makeRoom(updateChanges_);
 }
 
 template <class Scalar>
 void PairTracker<Scalar>::publish() noexcept {  // NOLINT(bugprone-exception-escape)
-    for (const Couple c : lost_) {
-        lose(c);
+    for (const PairKey c : endedPairs_) {
+        endPair(c);
         kept_.erase(c);
     }
-    for (const Couple c : keptNow_) {
+    for (const PairKey c : keptNow_) {
         kept_.findOrInsert(c);
     }
-    for (const Couple c : notKept_) {
+    for (const PairKey c : notKept_) {
         kept_.erase(c);
     }
-    for (const Couple c : lapsed_) {
+    for (const PairKey c : lapsed_) {
         forgetRefused(c);
     }
     if (store_.cost.changed > 0) {
         swept_.swap(sweptNow_);
-        tableOfUpdate_ = &store_.tables.mobile;
+        tableOfUpdate_ = &tables_.mobile;
         indexedWoken_ = 0;
-        filingOfUpdate_ = store_.tables.filingCount;
+        filingOfUpdate_ = tables_.filingCount;
         shiftOfUpdate_ = store_.shiftCount;
         sweptBySecond_.clear();
     }
-    markAnnounced(announced_.keys(), false);
-    announced_.clear();
-    fewAnnounced_ = kFewAnnounced;
-    decide();
+    markImmediate(immediate_.keys(), false);
+    immediate_.clear();
+    fewImmediate_ = kFewImmediate;
+    applyFilter();
 }
 
 template <class Scalar>
 PairChanges PairTracker<Scalar>::endUpdate(const UpdateCost& cost) noexcept {
     cost_.grid = cost;
     chooseSide(true);
-    return tell(toldByUpdate_);
+    return report(updateChanges_);
 }
 
 template <class Scalar>
-void PairTracker<Scalar>::sortCouples(std::vector<Couple>& couples) {
-    radixSort(couples, static_cast<std::uint32_t>(store_.proxies.records.size()), sorted_);
+void PairTracker<Scalar>::sortPairs(std::vector<PairKey>& candidates) {
+    radixSort(candidates, static_cast<std::uint32_t>(proxies_.records.size()), sorted_);
 }
 
 template <class Scalar>
-bool PairTracker<Scalar>::isRefused(Couple c) const noexcept {
+bool PairTracker<Scalar>::isRefused(PairKey c) const noexcept {
     return remembersPairs() ? !isRemembered(c) : refused_.contains(c) || refusedAtRest_.contains(c);
 }
 

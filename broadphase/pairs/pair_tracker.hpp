@@ -3,9 +3,12 @@
 
 // Knows which pairs there are, and finds in each update which begin and which end: see pairs.hpp. The
 // files of this folder are its operations.
+//
+// Two proxies that overlap, or touch on their ways, and may pair by their groups are a candidate, which the
+// filter accepts or refuses. A pair is a candidate that was accepted.
 
-#include <broadphase/core/couple_set.hpp>
 #include <broadphase/core/flat_set.hpp>
+#include <broadphase/core/pair_key_set.hpp>
 #include <broadphase/core/peak_watch.hpp>
 #include <broadphase/geometry/box_columns.hpp>
 #include <broadphase/pair_filter.hpp>
@@ -39,7 +42,7 @@ public:
     void findEnded(ParallelFor parallelFor);
     /// Finds what overlaps now and did not at the last update. Returns false where the pairs had better be
     /// remembered: then it has changed nothing that is of use.
-    [[nodiscard]] bool findBegun(bool someCameToRest, PairFilter filter, ParallelFor parallelFor);
+    [[nodiscard]] bool findBegun(bool someSettled, PairFilter filter, ParallelFor parallelFor);
     /// From now on remembers the pairs in place of what is refused; everything is mobile.
     void rememberInstead();
     /// Asks about what findBegun() has found, and makes room for all that may come of the answers.
@@ -73,14 +76,14 @@ public:
 private:
     using Box = Aabb<Scalar>;
 
-    struct Told {
+    struct PairChangeLists {
         std::vector<ProxyPair> born;
         std::vector<ProxyPair> died;
     };
 
     /// What is known where many share a cell.
     struct Pile {
-        // In place of the couples that are watched, refused or kept, where those would be too many.
+        // In place of the candidates that are watched, refused or kept, where those would be too many.
         FlatSet pairs;
         bool hasPairs = false;
         std::uint32_t updatesUntilLook = 0;  // whether they still would
@@ -98,72 +101,76 @@ private:
         }
     };
 
-    /// Two slots, the smaller one on top, so that couples sort by slots.
-    using Couple = std::uint64_t;
+    /// Two slots, the smaller one on top, so that candidates sort by slots.
+    using PairKey = std::uint64_t;
 
-    static constexpr Couple couple(std::uint32_t a, std::uint32_t b) noexcept {
-        return a < b ? Couple{a} << 32 | b : Couple{b} << 32 | a;
+    static constexpr PairKey pairKey(std::uint32_t a, std::uint32_t b) noexcept {
+        return a < b ? PairKey{a} << 32 | b : PairKey{b} << 32 | a;
     }
-    static constexpr std::uint32_t first(Couple c) noexcept {
+    static constexpr std::uint32_t first(PairKey c) noexcept {
         return static_cast<std::uint32_t>(c >> 32);
     }
-    static constexpr std::uint32_t second(Couple c) noexcept {
+    static constexpr std::uint32_t second(PairKey c) noexcept {
         return static_cast<std::uint32_t>(c);
     }
 
-    [[nodiscard]] ProxyPair pairOf(Couple c) const noexcept {
-        return {store_.proxies.idOf(first(c)), store_.proxies.idOf(second(c))};
+    [[nodiscard]] ProxyPair pairOf(PairKey c) const noexcept {
+        return {proxies_.idOf(first(c)), proxies_.idOf(second(c))};
     }
-    [[nodiscard]] bool overlapNow(Couple c) const noexcept {
-        const Population<Scalar>& proxies = store_.proxies;
-        return overlaps(proxies.standingBox(proxies.records[first(c)]),
-                        proxies.standingBox(proxies.records[second(c)]));
+    [[nodiscard]] bool overlapNow(PairKey c) const noexcept {
+        return overlaps(proxies_.standingBox(proxies_.records[first(c)]),
+                        proxies_.standingBox(proxies_.records[second(c)]));
     }
     [[nodiscard]] bool touchAtStart(std::uint32_t a, std::uint32_t b) const;
     [[nodiscard]] Box boxAtStart(std::uint32_t slot) const;
-    [[nodiscard]] bool isAtRest(Couple c) const noexcept {
-        return store_.proxies.rests(first(c)) && store_.proxies.rests(second(c));
+    [[nodiscard]] bool isAtRest(PairKey c) const noexcept {
+        return proxies_.rests(first(c)) && proxies_.rests(second(c));
     }
-    [[nodiscard]] bool isRefused(Couple c) const noexcept;
-    [[nodiscard]] bool isSwept(Couple c) const noexcept;
+    [[nodiscard]] bool isRefused(PairKey c) const noexcept;
+    [[nodiscard]] bool isSwept(PairKey c) const noexcept;
     /// While the pairs are remembered.
-    [[nodiscard]] bool isRemembered(Couple c) const noexcept {
+    [[nodiscard]] bool isRemembered(PairKey c) const noexcept {
         return remembersPairs() && pile_->pairs.contains(c);
     }
 
     void beginCall();
     void beginSearch();
     void recover();
-    void findDeathsOfWoken(ParallelFor parallelFor);
+    void findEndedOfWoken(ParallelFor parallelFor);
+    void joinWoken(GroupKinds::Set kinds, ParallelFor parallelFor, KernelCost& cost);
+    void endIfWokenApart(std::uint32_t a, std::uint32_t b);
+    GroupKinds::Set listWoken();
     [[nodiscard]] Table<Scalar>& wokenTable();
-    void loseIfApart(Couple c);
-    [[nodiscard]] bool mayPairNow(Couple c) const noexcept {
-        return store_.proxies.mayPairNow(first(c), second(c));
+    void endIfSeparated(PairKey c);
+    [[nodiscard]] bool mayPairNow(PairKey c) const noexcept {
+        return proxies_.mayPairNow(first(c), second(c));
     }
-    [[nodiscard]] bool couldPair(Couple c) const noexcept {
-        return store_.proxies.couldPair(first(c), second(c));
+    [[nodiscard]] bool couldPair(PairKey c) const noexcept {
+        return proxies_.couldPair(first(c), second(c));
     }
     [[nodiscard]] bool wasKnown(std::uint32_t a, std::uint32_t b) const noexcept;
     void findKept();
-    void keepIfPair(Couple c);
+    void keepIfPair(PairKey c);
     void askAboutRegrouped();
     void leaveOutSweptByGroups();
     void findSwept(ParallelFor parallelFor);
-    void carryToRest(bool someCameToRest);
+    void carryToRest(bool someSettled);
     void joinMobile(ParallelFor parallelFor);
-    void walkResting(ParallelFor parallelFor);
-    [[nodiscard]] std::span<const IndexPair> selectApart(std::span<const IndexPair> couples,
+    void findAgainstResting(ParallelFor parallelFor);
+    void queryResting(ParallelFor parallelFor);
+    void listChanged(bool withSlots);
+    [[nodiscard]] std::span<const IndexPair> selectApart(std::span<const IndexPair> candidates,
                                                          const std::uint32_t* order,
                                                          const PaddedBox<Scalar>* boxes,
                                                          ParallelFor parallelFor);
     void askRefusedAgain();
-    void sortCouples(std::vector<Couple>& couples);
+    void sortPairs(std::vector<PairKey>& candidates);
     void findBegunOfPairs(PairFilter filter, ParallelFor parallelFor);
     void ask(PairFilter filter);
-    void makeRoom(Told& told);
+    void makeRoom(PairChangeLists& lists);
 
     // Which side is remembered.
-    [[nodiscard]] std::size_t mostCouples() const noexcept;
+    [[nodiscard]] std::size_t mostRefused() const noexcept;
     Pile& pile();
     [[nodiscard]] bool doesRefuseMost(PairFilter filter);
     [[nodiscard]] double countRefused(PairFilter filter, double weight);
@@ -172,104 +179,115 @@ private:
     void rememberPairs();
     void forgetWatched() noexcept;
     void rememberRefusedIfFew();
+    [[nodiscard]] bool areOverlapsFew(std::size_t most);
+    void watchAll();
+    [[nodiscard]] double sampleMobile();
+    [[nodiscard]] double sampleResting();
     void askAboutChanged(PairFilter filter);
     void askInParts(PairFilter filter, std::size_t size);
     void takeTurned();
 
     // The rest of a call, which takes no more memory, and so cannot throw: makeRoom() has made room.
-    [[nodiscard]] bool areManyAnnounced() const noexcept;
-    void findAnnouncedOfRemoved();
-    void markAnnounced(std::span<const Couple> couples, bool are) noexcept;
-    void endAnnouncedOfRemoved() noexcept;
-    void announceUnknown() noexcept;  // NOLINT(bugprone-exception-escape)
-    void lose(Couple c) noexcept;
-    void decide() noexcept;  // NOLINT(bugprone-exception-escape)
-    [[nodiscard]] bool isToBeRefused(Couple c) const noexcept;
-    bool forgetRefused(Couple c) noexcept;
-    PairChanges tell(Told& told) noexcept;
+    [[nodiscard]] bool areManyImmediate() const noexcept;
+    void findImmediateOfRemoved();
+    void markImmediate(std::span<const PairKey> candidates, bool are) noexcept;
+    void endImmediateOfRemoved() noexcept;
+    void noteNewCandidates() noexcept;  // NOLINT(bugprone-exception-escape)
+    void endPair(PairKey c) noexcept;
+    void applyFilter() noexcept;  // NOLINT(bugprone-exception-escape)
+    [[nodiscard]] bool isToBeRefused(PairKey c) const noexcept;
+    bool forgetRefused(PairKey c) noexcept;
+    PairChanges report(PairChangeLists& lists) noexcept;
 
     // What was known at the last update, or has been announced since.
-    using VisitCouple = FunctionRef<void(Couple)>;
+    using VisitPair = FunctionRef<void(PairKey)>;
     void indexLastUpdate(std::size_t mostUnindexed);
-    void forKnownCouples(std::uint32_t slot, VisitCouple visit);
-    void forOverlapsAtUpdate(std::uint32_t slot, VisitCouple visit);
-    void forSwept(std::uint32_t slot, VisitCouple visit);
-    void forAllKnown(VisitCouple visit);
+    void forKnownPairs(std::uint32_t slot, VisitPair visit);
+    void forOverlapsAtUpdate(std::uint32_t slot, VisitPair visit);
+    void forSwept(std::uint32_t slot, VisitPair visit);
+    void forAllKnown(VisitPair visit);
+    void beginRefilter();
+    void askAgainAboutFew(std::span<const ProxyId> ids, PairFilter filter);
     template <class IsNamed>
     void askAgainAboutMany(PairFilter filter, const IsNamed& isNamed);
     [[nodiscard]] bool wouldFind(std::uint32_t finder, std::uint32_t found) const;
-    void askAgain(Couple c);
-    PairChanges decideBetween(PairFilter filter);
-    void findUnknown(std::uint32_t slot, FunctionRef<bool(std::uint32_t)> isWanted);
-    void findUnknown(std::uint32_t slot);
+    void askAgain(PairKey c);
+    PairChanges applyFilterNow(PairFilter filter);
+    void findNewCandidates(std::uint32_t slot, FunctionRef<bool(std::uint32_t)> isWanted);
+    void findNewCandidates(std::uint32_t slot);
     void forTouching(const Table<Scalar>& table, const Box& box,
                      FunctionRef<void(std::uint32_t)> visit);
     template <class Find>
-    PairChanges announceFound(PairFilter filter, const Find& find);
-    void addIfUnknown(std::uint32_t slot, std::uint32_t other);
+    PairChanges findNow(PairFilter filter, const Find& find);
+    void addIfNew(std::uint32_t slot, std::uint32_t other);
     void releaseAfterPeak() noexcept;
+    [[nodiscard]] bool areWatchedAll(std::size_t& overlapCount) const;
     void forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const;
 
-    static constexpr std::size_t kFewAnnounced = 64;
-    static constexpr std::size_t kPart = 8192;  // couples that are asked about at once, some twice
+    static constexpr std::size_t kFewImmediate = 64;
+    static constexpr std::size_t kPart =
+        8192;  // candidates that are asked about at once, some twice
 
     Store<Scalar>& store_;
+    Population<Scalar>& proxies_ = store_.proxies;
+    Tables<Scalar>& tables_ = store_.tables;
+    Frame<Scalar>& frame_ = store_.frame;
 
-    // The watched couples: all that overlapped at the last update and of which one is mobile, the
+    // The watched candidates: all that overlapped at the last update and of which one is mobile, the
     // refused ones included. `a`, and among the mobile ones `b`, is a place in
-    // Population::mobile, which are in spatial order, so that boxes of a couple are near in memory.
+    // Population::mobile, which are in spatial order, so that boxes of a candidate are near in memory.
     PairList amongMobile_;
     PairList toResting_;  // b is a slot
 
-    FlatSet refused_;             // couples that the filter refused, unless they are ...
+    FlatSet refused_;             // candidates that the filter refused, unless they are ...
     FlatSet refusedAtRest_;       // ... both at rest
     std::unique_ptr<Pile> pile_;  // made when many share a cell
-    CoupleSet announced_;         // couples decided since the last update
+    PairKeySet immediate_;        // candidates decided since the last update
     // Until there are more, those of removed proxies stay.
-    std::size_t fewAnnounced_ = kFewAnnounced;
-    std::vector<Couple> stillAnnounced_;  // scratch
+    std::size_t fewImmediate_ = kFewImmediate;
+    std::vector<PairKey> stillImmediate_;  // scratch
 
     // Pairs whose groups have been set since, so that they may not pair any more: they overlap. Those
     // that were filtered again count as refused until the next update.
     FlatSet kept_;
 
     Sweeping<Scalar>* sweeping_;
-    // Couples of which one swept at the last update, and that touched on their ways; sorted. All the
+    // Candidates of which one swept at the last update, and that touched on their ways; sorted. All the
     // others follow from boxes: what sweeps has none there, see Population::standingBox().
-    std::vector<Couple> swept_;
-    std::vector<Couple> sweptNow_;  // the same of the update under way
+    std::vector<PairKey> swept_;
+    std::vector<PairKey> sweptNow_;  // the same of the update under way
 
     // What endUpdate() changes, besides: kept_ by the first two, and what is not refused any more.
-    std::vector<Couple> keptNow_;
-    std::vector<Couple> notKept_;
-    std::vector<Couple> lapsed_;
+    std::vector<PairKey> keptNow_;
+    std::vector<PairKey> notKept_;
+    std::vector<PairKey> lapsed_;
 
-    std::vector<Couple> lost_;      // what overlapped and does not any more, refused or not
-    std::vector<Couple> asked_;     // what the filter is to be asked about
-    std::vector<Couple> standing_;  // those of them that are pairs
+    std::vector<PairKey> endedPairs_;     // what overlapped and does not any more, refused or not
+    std::vector<PairKey> asked_;          // what the filter is to be asked about
+    std::vector<PairKey> acceptedPairs_;  // those of them that are pairs
     std::vector<ProxyPair> askedPairs_;
     std::vector<char> accepted_;
-    std::vector<Couple> bornCouples_;
-    std::vector<Couple> diedCouples_;
-    Told toldByUpdate_;
-    Told toldBetween_;
+    std::vector<PairKey> begunPairs_;
+    std::vector<PairKey> diedPairs_;
+    PairChangeLists updateChanges_;
+    PairChangeLists immediateChanges_;
     std::size_t count_ = 0;
     PairCost cost_;
     PeakWatch peaks_;
 
     // Scratch.
-    std::vector<Couple> sorted_;
-    std::vector<Couple> restedCouples_;
-    std::vector<Couple>
-        sweptBySecond_;            // swept_ with the halves exchanged, sorted, when it is asked for
-    std::vector<Couple> unknown_;  // what is announced by the call under way
-    std::vector<Couple> gone_;
-    std::vector<Couple> fresh_;
+    std::vector<PairKey> sorted_;
+    std::vector<PairKey> restedPairs_;
+    std::vector<PairKey>
+        sweptBySecond_;  // swept_ with the halves exchanged, sorted, when it is asked for
+    std::vector<PairKey> newCandidates_;  // what is announced by the call under way
+    std::vector<PairKey> stillEnded_;
+    std::vector<PairKey> stillBegun_;
     PairList selected_;
     PairParts parts_;
     PairList carried_;
     std::vector<std::uint32_t> entryOf_;  // of places in Population::mobile, in the mobile table
-    std::vector<std::uint32_t> walkers_;  // entries that changed
+    std::vector<std::uint32_t> changedEntries_;  // entries that changed
     std::vector<std::uint32_t> searchedSlots_;   // what is looked for, or filed to be found
     BoxColumns<Scalar> bounds_;                  // of what is looked for in a table
     std::unique_ptr<Table<Scalar>> wokenTable_;  // made when it is first needed

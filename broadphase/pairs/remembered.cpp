@@ -31,7 +31,7 @@ std::size_t sampleSize(const Table<Scalar>& table, std::size_t count) {
 
 // That are remembered of the refused ones.
 template <class Scalar>
-std::size_t PairTracker<Scalar>::mostCouples() const noexcept {
+std::size_t PairTracker<Scalar>::mostRefused() const noexcept {
     return 32 * store_.listedCount() + 4 * count_;
 }
 
@@ -48,49 +48,56 @@ auto PairTracker<Scalar>::pile() -> Pile& {
 template <class Scalar>
 bool PairTracker<Scalar>::doesRefuseMost(PairFilter filter) {
     constexpr std::uint32_t kMany = 128;
-    const ProxyGroups* const groups = store_.proxies.groupsOfAll();
-    const Table<Scalar>& mobile = store_.tables.mobile;
-    const Table<Scalar>& resting = store_.tables.resting;
-    KernelCost cost;
-    double refused = 0;
-    if (std::max(mostTogether(mobile), mostTogether(resting)) > kMany) {
+    const bool isMobileCrowded = mostTogether(tables_.mobile) > kMany;
+    const bool isRestingCrowded = mostTogether(tables_.resting) > kMany;
+    if (isMobileCrowded || isRestingCrowded) {
         static_cast<void>(pile());
     }
-    if (mostTogether(mobile) > kMany) {
-        const double weight = sampleOverlaps(mobile, cost);
-        for (const auto [a, b] : selected_.pairs()) {
-            asked_.push_back(couple(mobile.slot(a), mobile.slot(b)));
-        }
-        refused += countRefused(filter, weight);
-    }
-    if (mostTogether(resting) > kMany) {
-        walkers_.clear();
-        for (std::uint32_t entry = 0; entry < mobile.size(); ++entry) {
-            if (store_.proxies.changedNow(mobile.slot(entry))) {
-                walkers_.push_back(entry);
-            }
-        }
-        const std::size_t size = sampleSize(resting, walkers_.size());
-        searchedSlots_.clear();
-        bounds_.clear();
-        for (std::size_t i = 0; i < size; ++i) {
-            const std::uint32_t entry = walkers_[walkers_.size() * i / size];
-            searchedSlots_.push_back(mobile.slot(entry));
-            bounds_.push(mobile.box(entry));
-        }
-        const GroupsView view{groups, searchedSlots_.data(), {}};
-        forOverlaps(bounds_.columns(), bounds_.size(), resting, groups != nullptr ? &view : nullptr,
-                    cost, [this](std::uint32_t searched, std::uint32_t slot) {
-                        asked_.push_back(couple(searchedSlots_[searched], slot));
-                    });
-        refused += countRefused(filter, static_cast<double>(walkers_.size()) /
-                                            static_cast<double>(std::max<std::size_t>(size, 1)));
-    }
-    cost_.boxesTested += cost.boxesTested;
-    return refused > static_cast<double>(mostCouples());
+    double refused = isMobileCrowded ? countRefused(filter, sampleMobile()) : 0;
+    refused += isRestingCrowded ? countRefused(filter, sampleResting()) : 0;
+    return refused > static_cast<double>(mostRefused());
 }
 
-// Finds some of what overlaps in a table that is not empty, see selected_. Returns for how many couples each
+// Sets asked_ to some of what overlaps among the mobile ones. Returns, as the next one, for how many
+// candidates each of them stands.
+template <class Scalar>
+double PairTracker<Scalar>::sampleMobile() {
+    const Table<Scalar>& mobile = tables_.mobile;
+    KernelCost cost;
+    const double weight = sampleOverlaps(mobile, cost);
+    cost_.boxesTested += cost.boxesTested;
+    for (const auto [a, b] : selected_.pairs()) {
+        asked_.push_back(pairKey(mobile.slot(a), mobile.slot(b)));
+    }
+    return weight;
+}
+
+// The same of what has changed against the resting ones.
+template <class Scalar>
+double PairTracker<Scalar>::sampleResting() {
+    const Table<Scalar>& mobile = tables_.mobile;
+    listChanged(false);
+    const std::size_t count = changedEntries_.size();
+    const std::size_t size = sampleSize(tables_.resting, count);
+    bounds_.clear();
+    for (std::size_t i = 0; i < size; ++i) {
+        const std::uint32_t entry = changedEntries_[count * i / size];
+        searchedSlots_.push_back(mobile.slot(entry));
+        bounds_.push(mobile.box(entry));
+    }
+    const ProxyGroups* const groups = proxies_.groupsOfAll();
+    const GroupsView view{groups, searchedSlots_.data(), {}};
+    KernelCost cost;
+    forOverlaps(bounds_.columns(), bounds_.size(), tables_.resting,
+                groups != nullptr ? &view : nullptr, cost,
+                [this](std::uint32_t searched, std::uint32_t slot) {
+                    asked_.push_back(pairKey(searchedSlots_[searched], slot));
+                });
+    cost_.boxesTested += cost.boxesTested;
+    return static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(size, 1));
+}
+
+// Finds some of what overlaps in a table that is not empty, see selected_. Returns for how many candidates each
 // of them stands.
 template <class Scalar>
 double PairTracker<Scalar>::sampleOverlaps(const Table<Scalar>& table, KernelCost& cost) {
@@ -98,7 +105,7 @@ double PairTracker<Scalar>::sampleOverlaps(const Table<Scalar>& table, KernelCos
     std::size_t searches = 0;
     selected_.clear();
     selected_.append([&](PairSink& sink) {
-        searches = joinSample(table, size, sink, cost, store_.proxies.groupsOfAll());
+        searches = joinSample(table, size, sink, cost, proxies_.groupsOfAll());
     });
     return static_cast<double>(searches) / static_cast<double>(size);
 }
@@ -108,8 +115,8 @@ double PairTracker<Scalar>::sampleOverlaps(const Table<Scalar>& table, KernelCos
 template <class Scalar>
 double PairTracker<Scalar>::countRefused(PairFilter filter, double weight) {
     std::size_t refused = 0;
-    std::erase_if(asked_, [&](Couple c) {
-        const bool isKnown = wasKnown(first(c), second(c)) || announced_.contains(c) || isSwept(c);
+    std::erase_if(asked_, [&](PairKey c) {
+        const bool isKnown = wasKnown(first(c), second(c)) || immediate_.contains(c) || isSwept(c);
         refused += isKnown && isRefused(c) ? 1 : 0;
         return isKnown || !mayPairNow(c);
     });
@@ -132,7 +139,7 @@ void PairTracker<Scalar>::chooseSide(bool isUpdated) noexcept {
     constexpr std::uint32_t kSeldom = 256;
     try {
         if (!remembersPairs()) {
-            if (refusedCount() + announced_.size() > mostCouples() && !store_.isTorn) {
+            if (refusedCount() + immediate_.size() > mostRefused() && !store_.mustRebuildPairs) {
                 rememberPairs();
             }
         } else if (isUpdated && cost_.grid.changed > 0 && --pile_->updatesUntilLook == 0) {
@@ -160,7 +167,7 @@ void PairTracker<Scalar>::forgetWatched() noexcept {
 template <class Scalar>
 void PairTracker<Scalar>::rememberPairs() {
     FlatSet pairs;
-    forAllKnown([&](Couple c) {
+    forAllKnown([&](PairKey c) {
         if (!isRefused(c)) {
             pairs.findOrInsert(c);
         }
@@ -176,48 +183,18 @@ void PairTracker<Scalar>::rememberPairs() {
 // Directly after an update.
 template <class Scalar>
 void PairTracker<Scalar>::rememberRefusedIfFew() {
-    const std::size_t most = mostCouples() / 2;  // not to come back with the next few
-    KernelCost cost;
-    for (const Table<Scalar>* table : {&store_.tables.mobile, &store_.tables.resting}) {
-        const double weight = table->size() > 0 ? sampleOverlaps(*table, cost) : 0;
-        cost_.boxesTested += std::exchange(cost, {}).boxesTested;
-        if (weight * static_cast<double>(selected_.size()) > static_cast<double>(most)) {
-            return;
-        }
-    }
-    std::size_t count = 0;
-    forEachOverlap([&](std::uint32_t, std::uint32_t) { ++count; });
-    if (count > most) {
+    if (!areOverlapsFew(mostRefused() / 2)) {  // not to come back with the next few
         return;
     }
-    const ProxyGroups* const groups = store_.proxies.groupsOfAll();
-    const GroupsView view{groups, store_.tables.mobile.entrySlots().data(), {}};
-    amongMobile_.clear();
-    carried_.clear();
-    selected_.clear();
-    joinTable(store_.tables.mobile, serialFor, parts_, amongMobile_, cost, groups);
-    walkTable(store_.tables.resting, store_.tables.mobile.columns(), store_.tables.mobile.size(),
-              serialFor, parts_, carried_, cost, groups != nullptr ? &view : nullptr);
-    joinTable(store_.tables.resting, serialFor, parts_, selected_, cost, groups);
-    cost_.boxesTested += cost.boxesTested;
-    const auto refuse = [this](Couple c) {
+    watchAll();
+    const auto refuse = [this](PairKey c) {
         if (!isRemembered(c)) {
             refused_.findOrInsert(c);
         }
     };
-    for (const auto [a, b] : amongMobile_.pairs()) {
-        refuse(couple(store_.tables.mobile.slot(a), store_.tables.mobile.slot(b)));
-    }
-    toResting_.clear();
-    for (const auto [entry, resting] : carried_.pairs()) {
-        toResting_.push({entry, store_.tables.resting.slot(resting)});
-        refuse(couple(store_.tables.mobile.slot(entry), store_.tables.resting.slot(resting)));
-    }
-    for (const auto [a, b] : selected_.pairs()) {
-        refuse(couple(store_.tables.resting.slot(a), store_.tables.resting.slot(b)));
-    }
+    forEachOverlap([&](std::uint32_t a, std::uint32_t b) { refuse(pairKey(a, b)); });
     std::for_each(swept_.begin(), swept_.end(), refuse);
-    for (const Couple c : pile_->pairs.keys()) {
+    for (const PairKey c : pile_->pairs.keys()) {
         if (!mayPairNow(c) && overlapNow(c)) {
             kept_.findOrInsert(c);
         }
@@ -226,12 +203,46 @@ void PairTracker<Scalar>::rememberRefusedIfFew() {
     pile_->pairs = {};
 }
 
+// By a sample first.
+template <class Scalar>
+bool PairTracker<Scalar>::areOverlapsFew(std::size_t most) {
+    KernelCost cost;
+    for (const Table<Scalar>* table : {&tables_.mobile, &tables_.resting}) {
+        const double weight = table->size() > 0 ? sampleOverlaps(*table, cost) : 0;
+        cost_.boxesTested += std::exchange(cost, {}).boxesTested;
+        if (weight * static_cast<double>(selected_.size()) > static_cast<double>(most)) {
+            return false;
+        }
+    }
+    std::size_t count = 0;
+    forEachOverlap([&](std::uint32_t, std::uint32_t) { ++count; });
+    return count <= most;
+}
+
+// Finds all candidates that are to be watched.
+template <class Scalar>
+void PairTracker<Scalar>::watchAll() {
+    const ProxyGroups* const groups = proxies_.groupsOfAll();
+    const GroupsView view{groups, tables_.mobile.entrySlots().data(), {}};
+    KernelCost cost;
+    amongMobile_.clear();
+    carried_.clear();
+    toResting_.clear();
+    joinTable(tables_.mobile, serialFor, parts_, amongMobile_, cost, groups);
+    walkTable(tables_.resting, tables_.mobile.columns(), tables_.mobile.size(), serialFor, parts_,
+              carried_, cost, groups != nullptr ? &view : nullptr);
+    for (const auto [entry, resting] : carried_.pairs()) {
+        toResting_.push({entry, tables_.resting.slot(resting)});
+    }
+    cost_.boxesTested += cost.boxesTested;
+}
+
 template <class Scalar>
 void PairTracker<Scalar>::findBegunOfPairs(PairFilter filter, ParallelFor parallelFor) {
     sweptNow_.clear();
     if (sweeping_ != nullptr) {
         sweeping_->search.find(sweeping_->motions.all, parallelFor);
-        for (const Couple c : sweeping_->search.contacts()) {
+        for (const PairKey c : sweeping_->search.contacts()) {
             const bool isPair = isRemembered(c);
             if (isPair || mayPairNow(c)) {
                 sweptNow_.push_back(c);
@@ -242,9 +253,9 @@ void PairTracker<Scalar>::findBegunOfPairs(PairFilter filter, ParallelFor parall
         }
     }
     cost_.couplesWatched = pile_->pairs.size();
-    for (const Couple c : pile_->pairs.keys()) {
+    for (const PairKey c : pile_->pairs.keys()) {
         if (!overlapNow(c) && !std::binary_search(sweptNow_.begin(), sweptNow_.end(), c)) {
-            lost_.push_back(c);
+            endedPairs_.push_back(c);
         }
     }
     askAboutChanged(filter);
@@ -254,28 +265,19 @@ void PairTracker<Scalar>::findBegunOfPairs(PairFilter filter, ParallelFor parall
 
 template <class Scalar>
 void PairTracker<Scalar>::askAboutChanged(PairFilter filter) {
-    const Table<Scalar>& mobile = store_.tables.mobile;
-    searchedSlots_.clear();
-    bounds_.clear();
-    for (std::uint32_t entry = 0; entry < mobile.size(); ++entry) {
-        if (store_.proxies.changedNow(mobile.slot(entry))) {
-            searchedSlots_.push_back(mobile.slot(entry));
-            bounds_.push(mobile.box(entry));
-        }
-    }
+    listChanged(true);
     const auto askUnlessPair = [&](std::uint32_t searched, std::uint32_t other) {
         const std::uint32_t slot = searchedSlots_[searched];
-        const bool isFoundByOther = store_.proxies.changedNow(other) && other <= slot;
-        if (!isFoundByOther && !isRemembered(couple(slot, other))) {
-            asked_.push_back(couple(slot, other));
+        const bool isFoundByOther = proxies_.changedNow(other) && other <= slot;
+        if (!isFoundByOther && !isRemembered(pairKey(slot, other))) {
+            asked_.push_back(pairKey(slot, other));
             askInParts(filter, kPart);
         }
     };
-    const ProxyGroups* const groups = store_.proxies.groupsOfAll();
+    const ProxyGroups* const groups = proxies_.groupsOfAll();
     const GroupsView view{groups, searchedSlots_.data(), {}};
     KernelCost cost;
-    for (const Table<Scalar>* table :
-         {&mobile, static_cast<const Table<Scalar>*>(&store_.tables.resting)}) {
+    for (const Table<Scalar>* table : {&tables_.mobile, &tables_.resting}) {
         forOverlaps(bounds_.columns(), bounds_.size(), *table, groups != nullptr ? &view : nullptr,
                     cost, askUnlessPair);
     }
@@ -289,7 +291,7 @@ void PairTracker<Scalar>::askInParts(PairFilter filter, std::size_t size) {
     if (!remembersPairs() || asked_.size() < size) {
         return;
     }
-    sortCouples(asked_);
+    sortPairs(asked_);
     asked_.erase(std::unique(asked_.begin(), asked_.end()), asked_.end());
     ask(filter);
     for (std::size_t i = 0; i < asked_.size(); ++i) {
@@ -298,27 +300,31 @@ void PairTracker<Scalar>::askInParts(PairFilter filter, std::size_t size) {
         }
     }
     asked_.clear();
-    standing_.clear();
-    unknown_.clear();
+    acceptedPairs_.clear();
+    newCandidates_.clear();
 }
 
 // As if only what the answers change had been asked.
 template <class Scalar>
 void PairTracker<Scalar>::takeTurned() {
     asked_.swap(pile_->turned);
-    sortCouples(asked_);
+    sortPairs(asked_);
     asked_.erase(std::unique(asked_.begin(), asked_.end()), asked_.end());
     accepted_.clear();
-    for (const Couple c : asked_) {
+    for (const PairKey c : asked_) {
         const bool isPair = isRemembered(c);
         accepted_.push_back(isPair ? 0 : 1);
         if (isPair) {
-            standing_.push_back(c);
+            acceptedPairs_.push_back(c);
         }
     }
 }
 
 template bool PairTracker<float>::doesRefuseMost(PairFilter);
+template double PairTracker<float>::sampleMobile();
+template double PairTracker<float>::sampleResting();
+template bool PairTracker<float>::areOverlapsFew(std::size_t);
+template void PairTracker<float>::watchAll();
 template double PairTracker<float>::countRefused(PairFilter, double);
 template double PairTracker<float>::sampleOverlaps(const Table<float>&, KernelCost&);
 template void PairTracker<float>::rememberRefusedIfFew();
@@ -326,12 +332,16 @@ template auto PairTracker<float>::pile() -> Pile&;
 template void PairTracker<float>::askAboutChanged(PairFilter);
 template void PairTracker<float>::chooseSide(bool) noexcept;
 template void PairTracker<float>::forgetWatched() noexcept;
-template std::size_t PairTracker<float>::mostCouples() const noexcept;
+template std::size_t PairTracker<float>::mostRefused() const noexcept;
 template void PairTracker<float>::rememberPairs();
 template void PairTracker<float>::findBegunOfPairs(PairFilter, ParallelFor);
 template void PairTracker<float>::askInParts(PairFilter, std::size_t);
 template void PairTracker<float>::takeTurned();
 template bool PairTracker<double>::doesRefuseMost(PairFilter);
+template double PairTracker<double>::sampleMobile();
+template double PairTracker<double>::sampleResting();
+template bool PairTracker<double>::areOverlapsFew(std::size_t);
+template void PairTracker<double>::watchAll();
 template double PairTracker<double>::countRefused(PairFilter, double);
 template double PairTracker<double>::sampleOverlaps(const Table<double>&, KernelCost&);
 template void PairTracker<double>::rememberRefusedIfFew();
@@ -339,7 +349,7 @@ template auto PairTracker<double>::pile() -> Pile&;
 template void PairTracker<double>::askAboutChanged(PairFilter);
 template void PairTracker<double>::chooseSide(bool) noexcept;
 template void PairTracker<double>::forgetWatched() noexcept;
-template std::size_t PairTracker<double>::mostCouples() const noexcept;
+template std::size_t PairTracker<double>::mostRefused() const noexcept;
 template void PairTracker<double>::rememberPairs();
 template void PairTracker<double>::findBegunOfPairs(PairFilter, ParallelFor);
 template void PairTracker<double>::askInParts(PairFilter, std::size_t);

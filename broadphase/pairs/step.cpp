@@ -16,9 +16,9 @@ UpdateCost step(Store<Scalar>& store, PairTracker<Scalar>* pairs, PairFilter fil
             if (pairs != nullptr) {
                 pairs->findEnded(parallelFor);
             }
-            const bool someCameToRest = store.putQuietToRest(parallelFor);
+            const bool someSettled = store.settleIdle(parallelFor);
             store.fileMobile(parallelFor);
-            isDone = pairs == nullptr || pairs->findBegun(someCameToRest, filter, parallelFor);
+            isDone = pairs == nullptr || pairs->findBegun(someSettled, filter, parallelFor);
             if (!isDone) {
                 pairs->rememberInstead();
             }
@@ -35,7 +35,7 @@ UpdateCost step(Store<Scalar>& store, PairTracker<Scalar>* pairs, PairFilter fil
         pairs->publish();
     }
     if (store.cost.changed > 0) {
-        store.settle();
+        store.relistMobile();
     }
     return store.endUpdate();
 }

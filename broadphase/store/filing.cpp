@@ -33,13 +33,13 @@ void Store<Scalar>::stage(ParallelFor parallelFor, bool isForQueries) {
     const std::size_t count = proxies.mobile.size();
     frame.now.resize(count);
     frame.before.resize(hasPairs ? count : 0);
-    ensureCapacity(frame.slots, proxies.nanCount);  // for settle()
-    frame.quietCount = 0;
+    ensureCapacity(frame.slots, proxies.nanCount);  // for relistMobile()
+    frame.idleCount = 0;
     const bool someRefuse = proxies.groupKinds.someRefuse();  // else nobody asks for kinds
     frame.mobileKinds = 0;
     frame.changedKinds = 0;
     parallelFor(count, kGrain, [&](std::size_t begin, std::size_t end) {
-        std::uint32_t quietCount = 0;
+        std::uint32_t idleCount = 0;
         GroupKinds::Set mobileKinds = 0;
         GroupKinds::Set changedKinds = 0;
         for (std::size_t i = begin; i < end; ++i) {
@@ -51,41 +51,41 @@ void Store<Scalar>::stage(ParallelFor parallelFor, bool isForQueries) {
             if (hasPairs) {
                 frame.before[i] = padded(proxies.boxAtUpdate(proxies.mobile[i]));
             }
-            quietCount += isQuiet(record) ? 1 : 0;
+            idleCount += isIdle(record) ? 1 : 0;
             if (someRefuse) {
                 const GroupKinds::Set kind = GroupKinds::bit(record.kind);
                 mobileKinds |= kind;
                 changedKinds |= record.changedAt == proxies.updateNumber ? kind : 0;
             }
         }
-        frame.quietCount += quietCount;
+        frame.idleCount += idleCount;
         frame.mobileKinds |= mobileKinds;
         frame.changedKinds |= changedKinds;
     });
 }
 
 template <class Scalar>
-bool Store<Scalar>::putQuietToRest(ParallelFor parallelFor) {
+bool Store<Scalar>::settleIdle(ParallelFor parallelFor) {
     const std::size_t filedCount = tables.resting.size() - tables.restingErased;
-    if (std::max<std::uint32_t>(frame.quietCount, tables.restingErased) <
+    if (std::max<std::uint32_t>(frame.idleCount, tables.restingErased) <
         worthRefiling(filedCount)) {
         return false;
     }
     // Those that stay at rest come first, then those that join.
-    ensureCapacity(frame.slots, filedCount + frame.quietCount);
-    ensureCapacity(frame.boxes, filedCount + frame.quietCount);
+    ensureCapacity(frame.slots, filedCount + frame.idleCount);
+    ensureCapacity(frame.boxes, filedCount + frame.idleCount);
     listResting();
-    for (std::size_t i = 0; frame.quietCount > 0 && i < proxies.mobile.size(); ++i) {
+    for (std::size_t i = 0; frame.idleCount > 0 && i < proxies.mobile.size(); ++i) {
         Record& record = proxies.records[proxies.mobile[i]];
-        if (record.place == Place::mobile && isQuiet(record)) {
-            record.place = Place::resting;
+        if (record.residency == Residency::mobile && isIdle(record)) {
+            record.residency = Residency::resting;
             frame.slots.push_back(proxies.mobile[i]);
             frame.boxes.push_back(frame.now[i]);
             frame.now[i] = padded(nanBox<Scalar>());
         }
     }
     fileResting(parallelFor);
-    return frame.quietCount > 0;
+    return frame.idleCount > 0;
 }
 
 // Those that are at rest, in the order of their table.
@@ -94,7 +94,7 @@ void Store<Scalar>::listResting() {
     frame.slots.clear();
     frame.boxes.clear();
     for (const std::uint32_t slot : tables.resting.entrySlots()) {
-        if (proxies.records[slot].place == Place::resting) {
+        if (proxies.records[slot].residency == Residency::resting) {
             frame.slots.push_back(slot);
             frame.boxes.push_back(padded(proxies.records[slot].box));
         }
@@ -116,14 +116,15 @@ void Store<Scalar>::fileResting(ParallelFor parallelFor) {
 template <class Scalar>
 void Store<Scalar>::fileMobile(ParallelFor parallelFor) {
     tables.isFresh.store(false, std::memory_order_relaxed);
-    tables.isTorn.store(true,
-                        std::memory_order_relaxed);  // should it fail, the next one files anew
+    tables.mustRefileMobile.store(
+        true,
+        std::memory_order_relaxed);  // should it fail, the next one files anew
     tables.mobile.file(proxies.mobile, frame.now, fixedSizes(), parallelFor, proxies.groupsOfAll());
     ++tables.filingCount;
     cost.filed += tables.mobile.size();
     fileSweeping(parallelFor);
     dropList();
-    tables.isTorn.store(false, std::memory_order_release);
+    tables.mustRefileMobile.store(false, std::memory_order_release);
 }
 
 // What sweeps is filed apart, for queries: their boxes may be many times as large as those of what
@@ -131,7 +132,7 @@ void Store<Scalar>::fileMobile(ParallelFor parallelFor) {
 template <class Scalar>
 void Store<Scalar>::fileSweeping(ParallelFor parallelFor) {
     std::erase_if(proxies.sweeping, [this](std::uint32_t slot) {
-        return proxies.records[slot].place != Place::sweeping;
+        return proxies.records[slot].residency != Residency::sweeping;
     });
     if (proxies.sweeping.empty()) {
         clearSweeping();
@@ -157,7 +158,7 @@ void Store<Scalar>::clearSweeping() noexcept {
 }
 
 template <class Scalar>
-void Store<Scalar>::settle() noexcept {
+void Store<Scalar>::relistMobile() noexcept {
     frame.slots.clear();
     if (tables.mobile.size() != proxies.mobile.size() && proxies.nanCount > 0) {
         std::copy_if(proxies.mobile.begin(), proxies.mobile.end(), std::back_inserter(frame.slots),
@@ -171,7 +172,7 @@ void Store<Scalar>::settle() noexcept {
     proxies.mobile.insert(proxies.mobile.end(), frame.slots.begin(), frame.slots.end());
     proxies.mobileAtUpdate = proxies.mobile.size();
     proxies.giveBack(proxies.removed);
-    proxies.giveBack(proxies.removedAnnounced);
+    proxies.giveBack(proxies.removedImmediate);
 }
 
 template <class Scalar>
@@ -194,7 +195,7 @@ UpdateCost Store<Scalar>::endUpdate() noexcept {
     if (++proxies.updateNumber == std::numeric_limits<std::uint32_t>::max()) {
         proxies.countUpdatesAnew(config.updatesBeforeRest);
     }
-    if (config.cellSize == 0 && !tables.isTorn.load(std::memory_order_relaxed)) {
+    if (config.cellSize == 0 && !tables.mustRefileMobile.load(std::memory_order_relaxed)) {
         tables.cellSize = std::isinf(finest) ? Scalar(1) : static_cast<Scalar>(finest);
     }
     return std::exchange(cost, {});
@@ -204,14 +205,14 @@ template <class Scalar>
 void Store<Scalar>::forgetLastUpdate() noexcept {
     forEachListed([this](std::uint32_t slot) {
         if (proxies.isAlive(slot)) {
-            noteChange(slot);
+            markChanged(slot);
         }
         proxies.records[slot].before = nanBox<Scalar>();
-        proxies.records[slot].isAnnounced = false;
+        proxies.records[slot].isImmediate = false;
     });
     proxies.boxesAtUpdate.clear();
     proxies.slotsAtUpdate.clear();
-    isTorn = false;
+    mustRebuildPairs = false;
 }
 
 // Whoever has been put to rest by now is still listed among the mobile ones; who rested before is not.
@@ -219,42 +220,43 @@ template <class Scalar>
 void Store<Scalar>::wakeAll() noexcept {
     for (const std::uint32_t slot : proxies.mobile) {
         Record& record = proxies.records[slot];
-        record.place = record.place == Place::resting ? Place::mobile : record.place;
+        record.residency =
+            record.residency == Residency::resting ? Residency::mobile : record.residency;
     }
     for (std::uint32_t slot = 0; slot < proxies.records.size(); ++slot) {
-        if (proxies.records[slot].place == Place::resting) {
-            proxies.records[slot].place = Place::mobile;
+        if (proxies.records[slot].residency == Residency::resting) {
+            proxies.records[slot].residency = Residency::mobile;
             proxies.listMobile(slot);
             proxies.woken.push_back(slot);
         }
     }
-    isTorn = true;
+    mustRebuildPairs = true;
     tables.resting.clear();
     tables.restingErased = 0;
     tables.resting.makeTreeStale();
     tables.isFresh.store(false, std::memory_order_relaxed);
-    tables.isTorn.store(true, std::memory_order_relaxed);
+    tables.mustRefileMobile.store(true, std::memory_order_relaxed);
 }
 
 template void Store<float>::stage(ParallelFor, bool);
-template bool Store<float>::putQuietToRest(ParallelFor);
+template bool Store<float>::settleIdle(ParallelFor);
 template void Store<float>::listResting();
 template void Store<float>::fileResting(ParallelFor);
 template void Store<float>::fileMobile(ParallelFor);
 template void Store<float>::fileSweeping(ParallelFor);
 template void Store<float>::clearSweeping() noexcept;
-template void Store<float>::settle() noexcept;
+template void Store<float>::relistMobile() noexcept;
 template UpdateCost Store<float>::endUpdate() noexcept;
 template void Store<float>::wakeAll() noexcept;
 template void Store<float>::forgetLastUpdate() noexcept;
 template void Store<double>::stage(ParallelFor, bool);
-template bool Store<double>::putQuietToRest(ParallelFor);
+template bool Store<double>::settleIdle(ParallelFor);
 template void Store<double>::listResting();
 template void Store<double>::fileResting(ParallelFor);
 template void Store<double>::fileMobile(ParallelFor);
 template void Store<double>::fileSweeping(ParallelFor);
 template void Store<double>::clearSweeping() noexcept;
-template void Store<double>::settle() noexcept;
+template void Store<double>::relistMobile() noexcept;
 template UpdateCost Store<double>::endUpdate() noexcept;
 template void Store<double>::wakeAll() noexcept;
 template void Store<double>::forgetLastUpdate() noexcept;

@@ -41,7 +41,7 @@ void Motions<Scalar>::set(const Motion<Scalar>& motion) {
         all[place] = motion;
     }
     ofSlot[slot] = place;
-    store.noteChange(slot);
+    store.markChanged(slot);
 }
 
 // Its place stays, for the next one that begins: a query whose collector ends motions goes on where
@@ -60,10 +60,10 @@ void Motions<Scalar>::end(std::uint32_t slot) noexcept {
 }
 
 template <class Scalar>
-void Motions<Scalar>::noteAllChanged() noexcept {
+void Motions<Scalar>::markAllChanged() noexcept {
     for (const Motion<Scalar>& motion : all) {
         if (store.proxies.contains(motion.id)) {
-            store.noteChange(motion.id.index);
+            store.markChanged(motion.id.index);
         }
     }
 }

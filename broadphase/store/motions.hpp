@@ -70,7 +70,7 @@ struct Motions {
     }
 
     /// For pairs that have not heard of them.
-    void noteAllChanged() noexcept;
+    void markAllChanged() noexcept;
     void shiftOrigin(const Vector3<Scalar>& shift) noexcept;
     /// What sweeps counts as changed in each update, whether its box has changed or not: it never comes to
     /// rest, and what it meets is looked for anew.

@@ -105,7 +105,7 @@ void Population<Scalar>::giveBack(SlotList& list) noexcept {
 // Slots in the order in which a new grid makes them.
 template <class Scalar>
 void Population<Scalar>::clear() noexcept {
-    free = removed = removedAnnounced = {};
+    free = removed = removedImmediate = {};
     for (auto slot = static_cast<std::uint32_t>(records.size()); slot-- > 0;) {
         const std::uint32_t generation = records[slot].generation;
         records[slot] = {};
@@ -161,8 +161,9 @@ void Population<Scalar>::dropLastSlots() {
         slots.push_back(slot);
     }
     std::sort(slots.begin(), slots.end());
-    std::erase_if(sweeping,
-                  [this](std::uint32_t slot) { return records[slot].place != Place::sweeping; });
+    std::erase_if(sweeping, [this](std::uint32_t slot) {
+        return records[slot].residency != Residency::sweeping;
+    });
     constexpr std::uint32_t kOld = kLastGeneration / 2;
     while (!slots.empty() && slots.back() + 1 == records.size() && !isWaiting(records.back()) &&
            records.back().generation < kOld) {

@@ -21,7 +21,7 @@ namespace hashphase::detail {
 
 inline constexpr std::uint32_t kNoSlot = ~std::uint32_t{0};
 
-enum class Place : std::uint8_t {
+enum class Residency : std::uint8_t {
     nowhere,  // no proxy
     mobile,  // listed in Population::mobile, and filed with the mobile ones unless it waits or is NaN
     resting,   // filed with the resting ones
@@ -45,13 +45,13 @@ struct alignas(16 * sizeof(Scalar)) Record {
     std::uint32_t listedAt =
         0;  // where in the resting table; in Population::mobile, if it has joined
             // these since the last update; or the next slot without a proxy
-    Place place = Place::nowhere;
+    Residency residency = Residency::nowhere;
     std::uint8_t listedIn = 0;  // number of the list of changes that has it
     std::uint8_t kind = 0;      // of its groups, in Population::groupKinds
     // Mobility::resting, or rested, and has not moved since but by a shift of the origin
     bool restsAtOnce : 1 = false;
     bool isNan : 1 = false;        // has a NaN; of a proxy alive
-    bool isAnnounced : 1 = false;  // a couple of the slot's has been told since the last update
+    bool isImmediate : 1 = false;  // a candidate of the slot's has been told since the last update
 };
 
 /// Slots without a proxy, one after the other by Record::listedAt.
@@ -78,9 +78,9 @@ struct Population {
 
     SlotList free;
     // Those whose proxies were removed since the tables were last settled: the next update has to tell
-    // these from the next ones. What came and went in between is free at once, unless it has been told.
+    // these from the next ones. What came and went in between is free at once, unless it has been lists.
     SlotList removed;
-    SlotList removedAnnounced;
+    SlotList removedImmediate;
 
     // Of each slot now, and at the last update: 2 * slot, and one behind. Empty until somebody has others
     // than ProxyGroups{}; as long as records then. The same as numbers.
@@ -122,12 +122,12 @@ struct Population {
         return records[slot].changedAt == updateNumber;
     }
     [[nodiscard]] bool rests(std::uint32_t slot) const noexcept {
-        return records[slot].place == Place::resting;
+        return records[slot].residency == Residency::resting;
     }
 
     /// The box by which a slot makes pairs: NaN of what sweeps, which makes them on its way.
     [[nodiscard]] const Box& standingBox(const Record<Scalar>& record) const noexcept {
-        return record.place == Place::sweeping ? nowhere() : record.box;
+        return record.residency == Residency::sweeping ? nowhere() : record.box;
     }
     [[nodiscard]] static const Box& nowhere() noexcept {
         static const Box box = nanBox<Scalar>();

@@ -88,16 +88,16 @@ std::uint64_t Store<Scalar>::countRead(std::size_t count) const noexcept {
 // No reader has passed this point while the table is torn, and the first to come here files for all.
 template <class Scalar>
 void Store<Scalar>::mendTables() const {
-    if (!tables.isTorn.load(std::memory_order_acquire)) {
+    if (!tables.mustRefileMobile.load(std::memory_order_acquire)) {
         return;
     }
     auto& self = writable(*this);
     const std::lock_guard lock(self.tables.mutex);
-    if (tables.isTorn.load(std::memory_order_relaxed)) {
+    if (tables.mustRefileMobile.load(std::memory_order_relaxed)) {
         self.stage(serialFor);
         self.fileMobile(serialFor);
         if (!hasPairs) {
-            self.settle();
+            self.relistMobile();
         }
     }
 }
@@ -142,7 +142,7 @@ void Store<Scalar>::takeFresh() noexcept {
     clearSweeping();
     dropList();
     if (!hasPairs) {
-        settle();
+        relistMobile();
     }
     forgetErased();
 }

@@ -62,8 +62,8 @@ bool Store<Scalar>::shiftRecord(std::uint32_t slot, const Point& shift) noexcept
     Record& record = proxies.records[slot];
     const bool isRounded = detail::isRounded(record.box, shift);
     if (isRounded) {
-        record.restsAtOnce = record.restsAtOnce || record.place == Place::resting;
-        noteChange(slot);
+        record.restsAtOnce = record.restsAtOnce || record.residency == Residency::resting;
+        markChanged(slot);
     }
     record.box = shiftedBox(record.box, shift);
     if (proxies.changedNow(slot)) {
@@ -81,7 +81,7 @@ void Store<Scalar>::shiftTables(const Point& shift) {
     const bool isMobileFiled = tables.mobile.shiftOrigin(shift) && isSweepingFiled;
     Tables<Scalar>::forAll(tables, [](FiledTable<Scalar>& table) { table.makeTreeStale(); });
     if (!isMobileFiled) {
-        tables.isTorn.store(true, std::memory_order_release);
+        tables.mustRefileMobile.store(true, std::memory_order_release);
     }
     try {
         if (!isRestFiled) {

@@ -55,11 +55,11 @@ std::uint32_t Store<Scalar>::add(const Box& box, bool restsAtOnce, const ProxyGr
     }
     Record& record = proxies.records[slot];
     ++record.generation;
-    record.place = Place::mobile;
+    record.residency = Residency::mobile;
     proxies.listMobile(slot);
     ++proxies.size;
     ++proxies.number;
-    noteChange(slot);
+    markChanged(slot);
     setBox(record, own);
     record.restsAtOnce = restsAtOnce;
     return slot;
@@ -85,7 +85,7 @@ std::uint32_t Store<Scalar>::takeSlot() {
 template <class Scalar>
 void Store<Scalar>::reserve(std::size_t count) {
     checkCount(count, kMostProxies, "A grid holds at most 268,435,456 proxies.");
-    const std::size_t removed = proxies.removed.count + proxies.removedAnnounced.count;
+    const std::size_t removed = proxies.removed.count + proxies.removedImmediate.count;
     proxies.reserveSlots(count + removed);
     proxies.reserveLists(count + removed);
     proxies.reservedCount = count;
@@ -95,14 +95,14 @@ template <class Scalar>
 void Store<Scalar>::move(std::uint32_t slot, const Box& box) {
     Record& record = proxies.records[slot];
     if (!isSameBits(record.box, box)) {
-        noteChange(slot);
+        markChanged(slot);
         setBox(record, box);
     }
 }
 
 template <class Scalar>
 void Store<Scalar>::remove(std::uint32_t slot) noexcept {
-    noteChange(slot);
+    markChanged(slot);
     const bool cameAndWent = proxies.isUnseen(slot);
     if (cameAndWent) {
         proxies.unlistMobile(slot);
@@ -111,7 +111,7 @@ void Store<Scalar>::remove(std::uint32_t slot) noexcept {
     proxies.nanCount -= record.isNan ? 1 : 0;
     record.isNan = false;
     record.box = nanBox<Scalar>();
-    record.place = Place::nowhere;
+    record.residency = Residency::nowhere;
     ++record.generation;
     --proxies.size;
     ++proxies.number;
@@ -119,7 +119,7 @@ void Store<Scalar>::remove(std::uint32_t slot) noexcept {
         return;  // nobody gets the slot any more, or an id would name two proxies
     }
     proxies.append(slot, !cameAndWent         ? proxies.removed
-                         : record.isAnnounced ? proxies.removedAnnounced
+                         : record.isImmediate ? proxies.removedImmediate
                                               : proxies.free);
 }
 
@@ -128,7 +128,7 @@ template <class Scalar>
 void Store<Scalar>::clear() {
     proxies.clear();
     tables.clear();
-    isTorn = false;
+    mustRebuildPairs = false;
     cost = {};
     freeArrays(frame.now, frame.before, frame.slots, frame.boxes);
     tables.cellSize = config.cellSize > 0 ? static_cast<Scalar>(config.cellSize) : Scalar(1);
@@ -140,22 +140,22 @@ void Store<Scalar>::setGroups(std::uint32_t slot, const ProxyGroups& groups) {
     proxies.setGroups(slot, groups);
     proxies.areRegrouped = true;
     Record& record = proxies.records[slot];
-    if (hasPairs && record.place == Place::mobile) {
+    if (hasPairs && record.residency == Residency::mobile) {
         countChange(record);  // where its box is filed, there it is
     } else if (hasPairs) {
-        noteChange(slot);
+        markChanged(slot);
     }
 }
 
 // --- A change ------------------------------------------------------------------------------------
 
 template <class Scalar>
-void Store<Scalar>::noteChange(std::uint32_t slot) noexcept {
+void Store<Scalar>::markChanged(std::uint32_t slot) noexcept {
     beforeChange();
     Record& record = proxies.records[slot];
     countChange(record);
-    if (record.place == Place::resting) {
-        leaveRest(slot);
+    if (record.residency == Residency::resting) {
+        wake(slot);
     }
     if (!proxies.isWaiting(record)) {
         record.listedIn = proxies.listNumber;
@@ -167,7 +167,7 @@ template <class Scalar>
 void Store<Scalar>::countChange(Record& record) noexcept {
     if (record.changedAt != proxies.updateNumber) {
         record.before = record.box;
-        if (record.place == Place::sweeping) {
+        if (record.residency == Residency::sweeping) {
             record.before = proxies.nowhere();  // as standingBox(), which copies more slowly
         }
         record.changedAt = proxies.updateNumber;
@@ -176,11 +176,11 @@ void Store<Scalar>::countChange(Record& record) noexcept {
 }
 
 template <class Scalar>
-void Store<Scalar>::leaveRest(std::uint32_t slot) noexcept {
+void Store<Scalar>::wake(std::uint32_t slot) noexcept {
     Record& record = proxies.records[slot];
     tables.resting.erase(record.listedAt);
     ++tables.restingErased;
-    record.place = Place::mobile;
+    record.residency = Residency::mobile;
     proxies.listMobile(slot);
     proxies.woken.push_back(slot);
 }
@@ -191,12 +191,12 @@ void Store<Scalar>::setBox(Record& record, const Box& box) {
     record.restsAtOnce = false;
     const bool isNan = hasNan(box);
     if (isNan || record.isNan) {
-        noteNan(record, isNan);
+        markNan(record, isNan);
     }
 }
 
 template <class Scalar>
-void Store<Scalar>::noteNan(Record& record, bool isNan) {
+void Store<Scalar>::markNan(Record& record, bool isNan) {
     proxies.nanCount += isNan ? 1 : 0;
     proxies.nanCount -= record.isNan ? 1 : 0;
     record.isNan = isNan;
@@ -210,23 +210,24 @@ void Store<Scalar>::noteNan(Record& record, bool isNan) {
 
 template <class Scalar>
 void Store<Scalar>::beginSweep(std::uint32_t slot) noexcept {
-    noteChange(slot);
-    proxies.records[slot].place = Place::sweeping;
+    markChanged(slot);
+    proxies.records[slot].residency = Residency::sweeping;
     proxies.sweeping.push_back(slot);
 }
 
 template <class Scalar>
 void Store<Scalar>::endSweep(std::uint32_t slot) noexcept {
-    noteChange(slot);
+    markChanged(slot);
     Record& record = proxies.records[slot];
-    record.place = record.place == Place::sweeping ? Place::mobile : record.place;
+    record.residency =
+        record.residency == Residency::sweeping ? Residency::mobile : record.residency;
 }
 
 // Without pairs nothing does.
 template <class Scalar>
 void Store<Scalar>::endSweeps() noexcept {
     for (const std::uint32_t slot : proxies.sweeping) {
-        if (proxies.records[slot].place == Place::sweeping) {
+        if (proxies.records[slot].residency == Residency::sweeping) {
             endSweep(slot);
         }
     }

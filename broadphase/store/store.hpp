@@ -31,7 +31,7 @@ template <class Scalar>
 struct Frame {
     std::vector<PaddedBox<Scalar>> now;
     std::vector<PaddedBox<Scalar>> before;  // as of the last update; where there are pairs
-    std::atomic<std::uint32_t> quietCount{0};
+    std::atomic<std::uint32_t> idleCount{0};
     // Which kinds of groups there are among the mobile ones, and those that have changed; perhaps more.
     std::atomic<GroupKinds::Set> mobileKinds{0};
     std::atomic<GroupKinds::Set> changedKinds{0};
@@ -62,7 +62,7 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     Motions<Scalar>* firstMotions = nullptr;
     PeakWatch peaks;
     bool hasPairs = false;
-    bool isTorn = false;  // by wakeAll(): what pairs watch is to be found anew
+    bool mustRebuildPairs = false;  // by wakeAll(): what pairs watch is to be found anew
 
     explicit Store(const GridConfig& itsConfig);
 
@@ -77,12 +77,12 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     void setGroups(std::uint32_t slot, const ProxyGroups& groups);
 
     /// To be called before every change of a slot's box.
-    void noteChange(std::uint32_t slot) noexcept;
+    void markChanged(std::uint32_t slot) noexcept;
     /// The same where the box is not changed.
     void countChange(Record& record) noexcept;
-    void leaveRest(std::uint32_t slot) noexcept;
+    void wake(std::uint32_t slot) noexcept;
     void setBox(Record& record, const Box& box);
-    void noteNan(Record& record, bool isNan);
+    void markNan(Record& record, bool isNan);
 
     /// It sweeps as of the update that begins here.
     void beginSweep(std::uint32_t slot) noexcept;
@@ -101,7 +101,7 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     void stage(ParallelFor parallelFor, bool isForQueries = false);
     /// Quiet proxies leave the mobile ones when enough have gathered, or enough others have left rest, to
     /// be worth filing the resting ones anew. Returns whether any did.
-    [[nodiscard]] bool putQuietToRest(ParallelFor parallelFor);
+    [[nodiscard]] bool settleIdle(ParallelFor parallelFor);
     void listResting();
     void fileResting(ParallelFor parallelFor);
     void fileMobile(ParallelFor parallelFor);
@@ -109,13 +109,13 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     void clearSweeping() noexcept;
     /// Lists the mobile proxies in the order of their table, for the next time, and forgets those that
     /// have left, whose slots may be given away again.
-    void settle() noexcept;
+    void relistMobile() noexcept;
     UpdateCost endUpdate() noexcept;
     /// What is left where memory ran out, and the next update can go on from: everything is mobile.
     void wakeAll() noexcept;
     /// What pairs begin with: as if all had been added since the last update.
     void forgetLastUpdate() noexcept;
-    [[nodiscard]] bool isQuiet(const Record& record) const noexcept {
+    [[nodiscard]] bool isIdle(const Record& record) const noexcept {
         return record.changedAt != proxies.updateNumber && !record.isNan &&
                (record.restsAtOnce ||
                 proxies.updateNumber - record.changedAt > config.updatesBeforeRest);
@@ -147,7 +147,8 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     /// Whether a slot that is listed in a table is still filed there.
     [[nodiscard]] bool isFiled(std::uint32_t slot, const Reading& reading) const noexcept {
         const Record& record = proxies.records[slot];
-        return record.place != Place::nowhere && (reading.isFresh || !proxies.isWaiting(record));
+        return record.residency != Residency::nowhere &&
+               (reading.isFresh || !proxies.isWaiting(record));
     }
     [[nodiscard]] bool standsIn(const Filing& filing, std::uint32_t slot,
                                 const Reading& reading) const noexcept {

@@ -80,7 +80,7 @@ struct Tables {
     std::unique_ptr<FiledTable<Scalar>> fresh;
     std::atomic<bool> isFresh{false};
     // `mobile` cannot be read: a shift of the origin, or want of memory, has left it as it is.
-    std::atomic<bool> isTorn{false};
+    std::atomic<bool> mustRefileMobile{false};
     std::mutex mutex;  // of queries that file, or grow trees
 
     std::uint32_t restingErased = 0;  // entries
@@ -112,7 +112,7 @@ struct Tables {
         fresh.reset();
         restingErased = 0;
         waitingRead.store(0, std::memory_order_relaxed);
-        isTorn.store(false, std::memory_order_relaxed);
+        mustRefileMobile.store(false, std::memory_order_relaxed);
         isFresh.store(false, std::memory_order_relaxed);
     }
 

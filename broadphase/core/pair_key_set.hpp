@@ -11,19 +11,17 @@
 
 namespace hashphase::detail {
 
-/// A set of couples of slots, the smaller one on top, in which those of one slot are chained. Keeps its
+/// A set of pairs of slots, the smaller one on top, in which those of one slot are chained. Keeps its
 /// memory.
-class CoupleSet {
+class PairKeySet {
 public:
-    [[nodiscard]] bool contains(std::uint64_t couple) const noexcept {
-        return couples_.contains(couple);
-    }
-    [[nodiscard]] std::size_t size() const noexcept { return couples_.size(); }
-    [[nodiscard]] std::span<const std::uint64_t> keys() const noexcept { return couples_.keys(); }
+    [[nodiscard]] bool contains(std::uint64_t key) const noexcept { return keys_.contains(key); }
+    [[nodiscard]] std::size_t size() const noexcept { return keys_.size(); }
+    [[nodiscard]] std::span<const std::uint64_t> keys() const noexcept { return keys_.keys(); }
 
-    /// Makes room for `count` couples of slots below `slotCount`, so that insert() does not allocate.
+    /// Makes room for `count` pairs of slots below `slotCount`, so that insert() does not allocate.
     void reserve(std::size_t count, std::size_t slotCount) {
-        couples_.reserve(count);
+        keys_.reserve(count);
         ensureCapacity(next_, 2 * count);
         if (firstOf_.size() < slotCount) {
             firstOf_.resize(slotCount, kNone);
@@ -31,43 +29,43 @@ public:
     }
 
     /// There is room for it. Cost: O(1).
-    void insert(std::uint64_t couple) noexcept {
-        if (couples_.findOrInsert(couple) == next_.size() / 2) {
-            chain(static_cast<std::uint32_t>(couple >> 32));
-            chain(static_cast<std::uint32_t>(couple));
+    void insert(std::uint64_t key) noexcept {
+        if (keys_.findOrInsert(key) == next_.size() / 2) {
+            chain(static_cast<std::uint32_t>(key >> 32));
+            chain(static_cast<std::uint32_t>(key));
         }
     }
 
-    /// Calls visit(couple) for those of the slot. Cost: their number.
+    /// Calls visit(key) for those of the slot. Cost: their number.
     template <class Visit>
     void forEachOf(std::uint32_t slot, const Visit& visit) const {
         for (std::uint32_t at = slot < firstOf_.size() ? firstOf_[slot] : kNone; at != kNone;
              at = next_[at]) {
-            visit(couples_.keys()[at / 2]);
+            visit(keys_.keys()[at / 2]);
         }
     }
 
     /// Cost: O(capacity), nothing when it is empty.
     void clear() noexcept {
-        for (const std::uint64_t couple : couples_.keys()) {
-            firstOf_[static_cast<std::uint32_t>(couple >> 32)] = kNone;
-            firstOf_[static_cast<std::uint32_t>(couple)] = kNone;
+        for (const std::uint64_t key : keys_.keys()) {
+            firstOf_[static_cast<std::uint32_t>(key >> 32)] = kNone;
+            firstOf_[static_cast<std::uint32_t>(key)] = kNone;
         }
-        couples_.clear();
+        keys_.clear();
         next_.clear();
     }
 
-    [[nodiscard]] std::size_t capacity() const noexcept { return couples_.capacity(); }
+    [[nodiscard]] std::size_t capacity() const noexcept { return keys_.capacity(); }
 
     /// Gives its memory back when it is empty.
     void shrink() {
-        if (couples_.size() == 0) {
-            *this = CoupleSet();
+        if (keys_.size() == 0) {
+            *this = PairKeySet();
         }
     }
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
-        return couples_.memoryBytes() +
+        return keys_.memoryBytes() +
                (next_.capacity() + firstOf_.capacity()) * sizeof(std::uint32_t);
     }
 
@@ -80,8 +78,8 @@ private:
         firstOf_[slot] = at;
     }
 
-    FlatSet couples_;
-    std::vector<std::uint32_t> next_;     // two for each couple: the next one of either slot
+    FlatSet keys_;
+    std::vector<std::uint32_t> next_;     // two for each key: the next one of either slot
     std::vector<std::uint32_t> firstOf_;  // by slot
 };
 
