@@ -32,7 +32,7 @@ void joinTable(const Table<Scalar>& table, ParallelFor parallelFor, PairParts& p
                PairList& found, KernelCost& cost, const ProxyGroups* groups = nullptr,
                const ProxyGroups& together = {});
 
-/// The same on the caller's thread.
+/// The same on the caller's thread. The sink must not end a join.
 template <class Scalar>
 void joinTable(const Table<Scalar>& table, PairSink& sink, KernelCost& cost,
                const ProxyGroups* groups);
@@ -49,15 +49,15 @@ void walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::
                ParallelFor parallelFor, PairParts& parts, PairList& found, KernelCost& cost,
                const GroupsView* groups = nullptr);
 
-/// The same for queries from first to last, on the caller's thread.
+/// The same for queries from first to last, on the caller's thread. Returns false when the sink has
+/// ended the search.
 template <class Scalar>
-void walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t first,
+bool walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t first,
                std::uint32_t last, PairSink& sink, KernelCost& cost, const GroupsView* groups);
 
-/// The same for a few boxes, on the caller's thread; sooner where those that follow each other are
-/// near each other.
+/// The same for a few boxes; sooner where those that follow each other are near each other.
 template <class Scalar>
-HASHPHASE_BROADPHASE_EXPORT void walkTogether(const Table<Scalar>& table,
+HASHPHASE_BROADPHASE_EXPORT bool walkTogether(const Table<Scalar>& table,
                                               const Columns<Scalar>& queries, std::uint32_t count,
                                               PairSink& sink, KernelCost& cost);
 

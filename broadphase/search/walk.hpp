@@ -14,9 +14,6 @@
 
 namespace hashphase::detail {
 
-// Looking up a run of buckets costs about as much as testing this many boxes one after another.
-inline constexpr std::uint64_t kBoxesPerRun = 4;
-
 // So few rows are read without a look at how long their runs are.
 inline constexpr std::uint64_t kFewRows = 16;
 

@@ -27,7 +27,28 @@
 //
 // Nothing in these files may call a function that is not defined in them or always inlined.
 
+inline std::uint32_t lowest(std::uint32_t a, std::uint32_t b) {
+    return a < b ? a : b;
+}
+
+inline std::uint32_t highest(std::uint32_t a, std::uint32_t b) {
+    return a < b ? b : a;
+}
+
+/// The lowest `count` of `width` bits.
+inline std::uint32_t laneMask(std::uint32_t count, std::uint32_t width) {
+    return (1U << lowest(count, width)) - 1;
+}
+
+/// Entries to be read, from first to last, one past.
+struct Run {
+    std::uint32_t first;
+    std::uint32_t last;
+};
+
 #include <broadphase/simd/kernel_box.inl>
+
+#include <broadphase/simd/kernel_rows.inl>
 
 #include <broadphase/simd/kernel_crowd.inl>
 #include <broadphase/simd/kernel_file.inl>
