@@ -4,7 +4,6 @@
 // Finds all overlapping couples of a table, or of two: each entry against the half of its
 // neighbourhood that lies after it, on its own level, and levels against each other.
 
-#include <broadphase/export.hpp>
 #include <broadphase/geometry/box_columns.hpp>
 #include <broadphase/hash/table.hpp>
 #include <broadphase/search/pair_parts.hpp>
@@ -57,9 +56,8 @@ bool walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::
 
 /// The same for a few boxes; sooner where those that follow each other are near each other.
 template <class Scalar>
-HASHPHASE_BROADPHASE_EXPORT bool walkTogether(const Table<Scalar>& table,
-                                              const Columns<Scalar>& queries, std::uint32_t count,
-                                              PairSink& sink, KernelCost& cost);
+bool walkTogether(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t count,
+                  PairSink& sink, KernelCost& cost);
 
 /// Calls visit(a, b) for the slots of every two entries of the table whose boxes overlap, in the memory of a
 /// block of them; with `groups`, that may pair.

@@ -7,7 +7,7 @@
 
 #include <broadphase/hash/level.hpp>
 #include <broadphase/proxy_groups.hpp>
-
+#include <broadphase/simd/ray_types.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace hashphase::detail {
 /// Columns are readable this many entries past the last one.
 inline constexpr std::uint32_t kColumnPadding = 16;
 
-// Looking up a run of buckets costs about as much as testing this many boxes one after another.
+/// Looking up a run of buckets costs about as much as testing this many boxes one after another.
 inline constexpr std::uint64_t kBoxesPerRun = 4;
 
 /// A box of which each corner fills a vector register; the fourth numbers are 0.
@@ -201,6 +201,15 @@ struct Kernels {
     /// some that were erased.
     bool (*walkVolume)(const Level<Scalar>& level, const Volume<Scalar>& volume, SlotSink& found,
                        KernelCost& cost);
+
+    /// Finds the slots of a tree's boxes that the ray may meet up to sink.last, about from near to
+    /// far. The tree's blocks from firstInner on stand above others.
+    bool (*walkRay)(const BoxBlock* blocks, std::uint32_t root, std::uint32_t firstInner,
+                    const RayLanes& ray, RaySink& sink, KernelCost& cost);
+
+    /// What walkRay() asks of each block: bit k tells whether the ray may meet box k at some t in
+    /// [0, last]; enter[k] is then a lower bound of that t.
+    std::uint32_t (*mayMeet)(const BoxBlock& block, const RayLanes& ray, float last, float* enter);
 
     /// As joinLevel(), of a level without cells.
     bool (*joinList)(const Level<Scalar>& level, const GroupsView* groups, std::uint32_t firstEntry,

@@ -94,7 +94,7 @@ private:
 };
 
 /// The same for a search that finds few: they are on the stack, and on the heap when they are more.
-class HASHPHASE_BROADPHASE_EXPORT FewPairs {
+class FewPairs {
 public:
     // Its 4 kB are written before they are read.
     // cppcheck-suppress uninitMemberVar

@@ -7,6 +7,7 @@
 //     kWidth           how many; up to eight
 //     Numbers          the register
 //     load(from)       the numbers from there on, of any alignment
+//     store(to, numbers)  writes them there
 //     all(x)           the same number everywhere
 //     notAbove(a, b)   where a <= b, which NaN is not; of a type that ...
 //     both(hits, hits) ... and
@@ -53,6 +54,7 @@ struct Run {
 #include <broadphase/simd/kernel_crowd.inl>
 #include <broadphase/simd/kernel_file.inl>
 #include <broadphase/simd/kernel_join.inl>
+#include <broadphase/simd/kernel_ray.inl>
 #include <broadphase/simd/kernel_volume.inl>
 #include <broadphase/simd/kernel_walk.inl>
 
@@ -101,7 +103,17 @@ std::size_t selectApart(const IndexPair* couples, std::size_t count, const std::
 }
 
 template <class Scalar>
-constexpr Kernels<Scalar> kKernels{
-    &fileBoxes<Scalar>,    &joinLevel<Scalar>,  &walkLevel<Scalar>,        &walkWays<Scalar>,
-    &walkTogether<Scalar>, &walkVolume<Scalar>, &joinList<Scalar>,         &findRange<Scalar>,
-    &selectApart<Scalar>,  &countCrowd<Scalar>, &countCrowdGroups<Scalar>, &listCrowd<Scalar>};
+constexpr Kernels<Scalar> kKernels{&fileBoxes<Scalar>,
+                                   &joinLevel<Scalar>,
+                                   &walkLevel<Scalar>,
+                                   &walkWays<Scalar>,
+                                   &walkTogether<Scalar>,
+                                   &walkVolume<Scalar>,
+                                   &walkRay,
+                                   &mayMeet,
+                                   &joinList<Scalar>,
+                                   &findRange<Scalar>,
+                                   &selectApart<Scalar>,
+                                   &countCrowd<Scalar>,
+                                   &countCrowdGroups<Scalar>,
+                                   &listCrowd<Scalar>};
