@@ -266,22 +266,11 @@ private:
 
     template <class Region, class Collector>
     struct VisitReader;
-    template <class Region, class Collector>
-    struct RayReader;
-    template <class Region, class Collector>
-    struct VolumeReader;
     struct CellRegion;
 
     template <class Region, class Collector>
-    QueryCost visit(const Reading& reading, const Region& region, Collector& collector) const;
-    template <class Region, class Collector>
-    void visitWaiting(const Region& region, Collector& collector, QueryCost& cost) const;
-    template <class Region, class Collector>
     QueryCost visitTogether(const Reading& reading, std::span<const Region> regions,
-                            std::span<Collector> collectors, detail::FewPairs& found) const;
-    template <class Region, class Collector>
-    bool visitTables(const Reading& reading, std::span<const Filing> filings, const Region& region,
-                     Collector& collector, QueryCost& cost) const;
+                            std::span<Collector> collectors, bool mayChange) const;
 
     detail::Store<Scalar> store_;
 };

@@ -18,7 +18,6 @@
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/geometry/unit_scale.hpp>
-#include <broadphase/search/walk.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -34,7 +34,8 @@ template <class Scalar>
     scaled = scaled < limit ? scaled : limit;
     scaled = scaled > -limit ? scaled : -limit;
     // Both sides, for compilers make vector instructions of that. The other one's floor is 0 anyway.
-    const Scalar size = scaled < 0 ? -scaled : scaled;
+    // Without a branch on the sign, which no processor could foresee.
+    const auto size = static_cast<Scalar>(__builtin_fabs(scaled));
     scaled = size < kOnBorder<Scalar> ? Scalar(0) : scaled;
     const auto truncated = static_cast<std::int32_t>(scaled);
     return truncated - static_cast<std::int32_t>(static_cast<Scalar>(truncated) > scaled);

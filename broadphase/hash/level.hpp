@@ -77,17 +77,19 @@ struct Level {
         return inverseCellSize[axis] == 0 ? 0 : quantise(x, origin[axis], inverseCellSize[axis]);
     }
 
-    /// Bucket of cell x = 0 of a row, among the level's own; hashed ones before the modulo.
+    /// Bucket of cell x = 0 of a row, among the level's own; of a hashed one before the modulo.
+    template <bool kIsDense>
     [[nodiscard, gnu::always_inline]] std::uint32_t rowBase(Row row) const noexcept {
         const std::uint32_t number = static_cast<std::uint32_t>(row.y) * strideY +
                                      static_cast<std::uint32_t>(row.z) * strideZ;
-        return isDense() ? number + denseBase : mixRow(number);
+        return kIsDense ? number + denseBase : mixRow(number);
     }
 
     /// Bucket of a cell from low to high, among the level's own.
     [[nodiscard, gnu::always_inline]] std::uint32_t bucket(std::int32_t x, Row row) const noexcept {
-        const std::uint32_t sum = rowBase(row) + static_cast<std::uint32_t>(x);
-        return isDense() ? sum : sum & (bucketCount - 1);
+        const auto column = static_cast<std::uint32_t>(x);
+        return isDense() ? rowBase<true>(row) + column
+                         : (rowBase<false>(row) + column) & (bucketCount - 1);
     }
 };
 

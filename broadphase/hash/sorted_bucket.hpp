@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A bucket in which hundreds share a cell, and where to read in it. Inlined into each of the kernels,
-// and into queries that no kernel answers: what stands here may call only what is always inlined, as
-// kernels.inl says.
+// A bucket in which hundreds share a cell, and where to read in it. Inlined into each of the
+// kernels: what stands here may call only what is always inlined, as kernels.inl says.
 
 #include <broadphase/proxy_groups.hpp>
 

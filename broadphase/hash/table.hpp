@@ -40,21 +40,6 @@ namespace hashphase::detail {
 template <class Scalar>
 using Columns = std::array<const Scalar*, 6>;
 
-/// Part of a row of cells, from firstX to lastX inclusive.
-struct CellRun {
-    std::int32_t y = 0;
-    std::int32_t z = 0;
-    std::int32_t firstX = 0;
-    std::int32_t lastX = 0;
-};
-
-struct EntryRange {
-    std::uint32_t first = 0;
-    std::uint32_t last = 0;  // one past
-
-    [[nodiscard]] std::uint32_t count() const noexcept { return last - first; }
-};
-
 template <class Scalar>
 class HASHPHASE_BROADPHASE_EXPORT Table {
 public:
@@ -111,40 +96,6 @@ public:
                 bounds_[3].data(), bounds_[4].data(), bounds_[5].data()};
     }
 
-    /// True when the entry, found by forRun(), lies in that row (y, z): hashed rows may share
-    /// buckets. Asked about hits only.
-    [[nodiscard]] bool isInRow(const Level<Scalar>& level, std::uint32_t entry, std::int32_t y,
-                               std::int32_t z) const noexcept {
-        return level.isDense() || (rowOfEntry_[entry].y == y && rowOfEntry_[entry].z == z);
-    }
-
-    /// Calls visit(EntryRange) for the buckets of the run, which must lie in the level's low to
-    /// high: once, or twice where hashed buckets wrap around. Entries of other rows may be among
-    /// them where rows are hashed. Cost: O(1) + visits.
-    template <class Visit>
-    void forRun(const Level<Scalar>& level, const CellRun& run, Visit&& visit) const {
-        const std::uint32_t* starts = bucketStart_.data() + level.firstBucket;
-        const auto length = static_cast<std::uint32_t>(run.lastX - run.firstX) + 1;
-        if (length >= level.bucketCount) {
-            visit(EntryRange{starts[0], starts[level.bucketCount]});
-            return;
-        }
-        const std::uint32_t first = level.bucket(run.firstX, Row{run.y, run.z});
-        const std::uint32_t last = first + length;
-        if (last <= level.bucketCount) {
-            visit(EntryRange{starts[first], starts[last]});
-        } else {
-            visit(EntryRange{starts[first], starts[level.bucketCount]});
-            visit(EntryRange{starts[0], starts[last - level.bucketCount]});
-        }
-    }
-
-    /// Calls visit(EntryRange) for those of a range of whole buckets that may overlap `bounds`: all but
-    /// what is far from it in a sorted bucket. Cost: O(log n) for each sorted bucket + visits.
-    template <class Visit>
-    void forNear(const Level<Scalar>& level, EntryRange range, const Aabb<Scalar>& bounds,
-                 Visit&& visit) const;
-
     /// Says which invariant is broken, in a sentence; empty when all hold:
     /// - Every entry lies in the bucket of the cell of its min corner.
     /// - Every entry spans at most two cells of its level an axis, or is listed without cells.
@@ -189,31 +140,6 @@ private:
     std::vector<std::uint32_t> buckets_;   // scratch of build()
     std::vector<std::uint32_t> longOnes_;  // the same
 };
-
-template <class Scalar>
-template <class Visit>
-void Table<Scalar>::forNear(const Level<Scalar>& level, EntryRange range,
-                            const Aabb<Scalar>& bounds, Visit&& visit) const {
-    const auto visitSome = [&](std::uint32_t first, std::uint32_t last) {
-        if (first < last) {
-            visit(EntryRange{first, last});
-        }
-    };
-    const std::span buckets(level.sortedBuckets, level.sortedCount);
-    auto sorted = std::partition_point(buckets.begin(), buckets.end(),
-                                       [&](const auto& one) { return one.first < range.first; });
-    for (; sorted != buckets.end() && sorted->first < range.last; ++sorted) {
-        const Scalar* const column = bounds_[sorted->axis].data();
-        const auto axis = static_cast<Eigen::Index>(sorted->axis);
-        const std::uint32_t begin = sorted->first;
-        const std::uint32_t end = sorted->firstLong;
-        visitSome(range.first, begin);
-        visitSome(firstNear(*sorted, column, begin, end, bounds.min()[axis]),
-                  endOfNear(column, begin, end, bounds.max()[axis]));
-        range.first = end;
-    }
-    visitSome(range.first, range.last);
-}
 
 extern template class Table<float>;
 extern template class Table<double>;

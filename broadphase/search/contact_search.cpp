@@ -11,7 +11,7 @@
 #include <broadphase/core/radix_sort.hpp>
 #include <broadphase/geometry/padded_box.hpp>
 #include <broadphase/search/join.hpp>
-#include <broadphase/tree/ray_walk.hpp>
+#include <broadphase/search/ray_search.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -279,27 +279,24 @@ void ContactSearch<Scalar>::addTouching(const Table<Scalar>& table,
     }
 }
 
-/// Takes what a ray finds in a table, and meets.
+// Appends what stands in the table and is met by a ray.
 template <class Scalar>
-struct ContactSearch<Scalar>::ContactsOfRay {
-    const Store<Scalar>& store;
-    const Reading<Scalar>& reading;
-    const Filing<Scalar>& filing;
-    const MovingBoxRegion<Scalar>& region;
-    std::uint32_t slot;
-    PairSink& sink;
-
-    static constexpr double limit() { return 1; }
-
-    bool read(std::uint32_t other) {
-        if (store.standsIn(filing, other, reading) &&
-            region.key(store.proxies.records[other].box) >= 0) {
-            makeRoom(sink, 1);
-            *sink.next++ = {slot, other};
+void ContactSearch<Scalar>::addMetByRay(const Reading<Scalar>& reading,
+                                        const Filing<Scalar>& filing, const Motion<Scalar>& motion,
+                                        PairSink& sink, QueryCost& cost) const {
+    const MovingBoxRegion<Scalar> region(motion.way);
+    const auto take = [&](std::span<const std::uint32_t> slots) {
+        for (const std::uint32_t slot : slots) {
+            if (store_.standsIn(filing, slot, reading) &&
+                region.key(store_.proxies.records[slot].box) >= 0) {
+                makeRoom(sink, 1);
+                *sink.next++ = {motion.id.index, slot};
+            }
         }
-        return true;
-    }
-};
+        return 1.0;
+    };
+    searchRay(filing.table->tree, region.segment(), 1.0, take, cost);
+}
 
 template <class Scalar>
 void ContactSearch<Scalar>::meetStandingByRay(ParallelFor parallelFor) {
@@ -315,12 +312,9 @@ void ContactSearch<Scalar>::meetStandingByRay(ParallelFor parallelFor) {
                    [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost& own) {
                        for (std::size_t i = first; i < last; ++i) {
                            const Motion<Scalar>& motion = motions_[rays_[i].motion];
-                           const MovingBoxRegion<Scalar> region(motion.way);
                            QueryCost read;
                            for (const Filing<Scalar>& filing : reading.standing()) {
-                               ContactsOfRay contacts{store_, reading,         filing,
-                                                      region, motion.id.index, sink};
-                               walkTree(filing.table->tree, region.segment(), read, contacts);
+                               addMetByRay(reading, filing, motion, sink, read);
                            }
                            own.boxesTested += read.boxesTested;
                        }

@@ -7,6 +7,7 @@
 #include <broadphase/geometry/box_columns.hpp>
 #include <broadphase/geometry/padded_box.hpp>
 #include <broadphase/parallel_for.hpp>
+#include <broadphase/query_cost.hpp>
 #include <broadphase/search/pair_parts.hpp>
 #include <broadphase/simd/kernels.hpp>
 #include <broadphase/store/motions.hpp>
@@ -44,8 +45,6 @@ public:
 private:
     using Point = Vector3<Scalar>;
 
-    struct ContactsOfRay;
-
     /// A way that would take so many segments.
     struct LongWay {
         std::uint32_t motion;
@@ -60,6 +59,8 @@ private:
                      int count);
     void meetStanding(ParallelFor parallelFor);
     void meetStandingByRay(ParallelFor parallelFor);
+    void addMetByRay(const Reading<Scalar>& reading, const Filing<Scalar>& filing,
+                     const Motion<Scalar>& motion, PairSink& sink, QueryCost& cost) const;
     void meetEachOther(ParallelFor parallelFor);
     void addMeeting(ParallelFor parallelFor);
     template <class ValueOf>

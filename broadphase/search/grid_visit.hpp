@@ -3,9 +3,11 @@
 
 // Grid's query templates; included by grid.hpp.
 
+#include <broadphase/geometry/box_columns.hpp>
 #include <broadphase/grid.hpp>
-#include <broadphase/search/join.hpp>
-#include <broadphase/tree/ray_walk.hpp>
+#include <broadphase/search/box_search.hpp>
+#include <broadphase/search/ray_search.hpp>
+#include <broadphase/search/volume_search.hpp>
 
 #include <algorithm>
 #include <array>
@@ -17,257 +19,213 @@
 
 namespace hashphase {
 
-/// Turns what the walk finds into what the collector takes.
+/// Offers to collectors what searches find for their regions: collectors[i] takes what regions[i]
+/// has.
 template <class Scalar>
 template <class Region, class Collector>
 struct Grid<Scalar>::VisitReader {
-    const Grid& grid;
+    static constexpr bool kIsLine = requires(const Region& region) { region.segment(); };
+    static constexpr bool kIsVolume = requires(const Region& region) { region.volume(); };
+
+    const detail::Store<Scalar>& store;
     const Reading& reading;
-    const detail::Table<Scalar>& table;
-    const Region& region;
-    Collector& collector;
+    std::span<const Region> regions;  // one, unless they have bounds()
+    std::span<Collector> collectors;
     QueryCost& cost;
+    // Where nothing waits, and nothing is changed meanwhile, all that the tables list is filed
+    // there.
+    bool isAllFiled = false;
+    bool mayChange = false;
 
-    [[nodiscard]] auto limit() const { return collector.limit(); }
+    /// Reads the tables. Returns false when a single collector wants no more.
+    bool readTables(std::span<const Filing> filings) {
+        if constexpr (kIsLine) {
+            return std::ranges::all_of(filings, [&](const Filing& f) { return readTree(f); });
+        } else if constexpr (kIsVolume) {
+            return std::ranges::all_of(filings, [&](const Filing& f) { return readVolume(f); });
+        } else {
+            const detail::QueryColumns<Scalar> bounds(regions);
+            return std::ranges::all_of(
+                filings, [&](const Filing& f) { return readCells(*f.table, bounds.columns()); });
+        }
+    }
 
-    template <class IsOwn>
-    bool read(const detail::EntryRange& range, const IsOwn& isOwn) {
-        for (std::uint32_t entry = range.first; entry < range.last; ++entry) {
-            Scalar key = region.key(table.box(entry));
-            if (!isWanted(key) || !isOwn(entry)) {
-                continue;
+    // Offers what changed since it was filed, by the boxes as they are now. Not by iterators: the collector
+    // may change the list.
+    void readWaiting(std::size_t i) {
+        const std::size_t count = store.proxies.waiting.size();
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::uint32_t slot = store.proxies.waiting[k];
+            if (store.proxies.isAlive(slot)) {
+                ++cost.boxesTested;
+                const Scalar key = regions[i].key(store.proxies.records[slot].box);
+                if (detail::isWanted(key, collectors[i])) {
+                    ++cost.hits;
+                    collectors[i].add(store.proxies.idOf(slot), key);
+                    if (!(collectors[i].limit() >= 0)) {
+                        return;
+                    }
+                }
             }
-            const std::uint32_t slot = table.slot(entry);
-            if (!grid.store().isFiled(slot, reading)) {
-                continue;
-            }
-            // What is fresh has no list of what the collector has changed since: boxes are asked for
-            // as they are now.
-            if (reading.isFresh) {
-                key = region.key(grid.store().proxies.records[slot].box);
-            }
-            if (isWanted(key) && !offer(slot, key)) {
+        }
+    }
+
+private:
+    bool readCells(const detail::Table<Scalar>& table, const detail::Columns<Scalar>& bounds) {
+        detail::KernelCost walk;
+        const auto take = [&](std::span<const detail::IndexPair> found) {
+            return offerEntries(table, found);
+        };
+        const auto count = static_cast<std::uint32_t>(regions.size());
+        const bool goesOn = detail::searchBoxes(table, bounds, count, take, walk);
+        addCost(walk);
+        return goesOn;
+    }
+
+    bool readVolume(const Filing& filing) {
+        if (regions[0].isEmpty()) {
+            return true;
+        }
+        if (!(collectors[0].limit() >= 0)) {
+            return false;
+        }
+        const bool mayHaveLeft = (!reading.isFresh && !store.proxies.waiting.empty()) ||
+                                 (filing.isResting && store.tables.restingErased > 0);
+        const auto take = [&](std::span<const std::uint32_t> slots) {
+            const auto zero = [](std::uint32_t) { return Scalar(0); };
+            return mayHaveLeft ? offerSlots(
+                                     slots, [&](auto slot) { return isThere(filing, slot); }, zero)
+                               : offerSlots(
+                                     slots, [](auto) { return true; }, zero);
+        };
+        detail::KernelCost walk;
+        const bool goesOn = detail::searchVolume(*filing.table, regions[0].volume(), take, walk) &&
+                            readList(*filing.table, walk);
+        addCost(walk);
+        return goesOn;
+    }
+
+    // Of what has no cells, the region's key decides.
+    bool readList(const detail::Table<Scalar>& table, detail::KernelCost& walk) {
+        if (table.size() == 0) {
+            return true;
+        }
+        const detail::Level<Scalar>& list = table.levels().back();
+        walk.boxesTested += list.count();
+        for (std::uint32_t entry = list.firstEntry; entry < list.lastEntry; ++entry) {
+            const detail::IndexPair found{0, entry};
+            if (!offerEntries(table, {&found, 1})) {
                 return false;
             }
         }
         return true;
     }
 
-    [[nodiscard]] bool isWanted(Scalar key) const { return detail::isWanted(key, collector); }
-
-    bool offer(std::uint32_t slot, Scalar key) {
-        ++cost.hits;
-        collector.add(grid.store().proxies.idOf(slot), key);
-        return limit() >= 0;
-    }
-};
-
-/// The same for what a ray finds in a tree.
-template <class Scalar>
-template <class Region, class Collector>
-struct Grid<Scalar>::RayReader {
-    const Grid& grid;
-    const Reading& reading;
-    const Region& region;
-    Collector& collector;
-    QueryCost& cost;
-    const Filing& filing;
-
-    [[nodiscard]] auto limit() const { return collector.limit(); }
-
-    bool read(std::uint32_t slot) {
-        // The tree is as old as its table: who stands there may have left.
-        if (!grid.store().standsIn(filing, slot, reading)) {
-            return true;
-        }
-        const Scalar key = region.key(grid.store().proxies.records[slot].box);
-        if (!detail::isWanted(key, collector)) {
-            return true;
-        }
-        ++cost.hits;
-        collector.add(grid.store().proxies.idOf(slot), key);
-        return limit() >= 0;
-    }
-};
-
-/// The same for what a kernel finds in a convex volume.
-template <class Scalar>
-template <class Region, class Collector>
-struct Grid<Scalar>::VolumeReader {
-    VisitReader<Region, Collector> reader;
-    const Filing& filing;
-    bool mayHaveLeft = false;  // some that are filed in the table
-    detail::KernelCost walk{};
-
-    /// Returns false when the collector wants no more.
-    bool read() {
-        if (!(reader.limit() >= 0)) {
-            return false;
-        }
-        return std::ranges::all_of(reader.table.levels(), [this](
-                                                              const detail::Level<Scalar>& level) {
-            return level.count() == 0 || (level.hasCells() ? readCells(level) : readList(level));
-        });
-    }
-
-private:
-    bool readList(const detail::Level<Scalar>& level) {
-        walk.boxesTested += level.count();
-        return reader.read({level.firstEntry, level.lastEntry}, [](std::uint32_t) { return true; });
-    }
-
-    bool readCells(const detail::Level<Scalar>& level) {
-        const auto flush = [](detail::SlotSink& sink) {
-            return static_cast<VolumeReader*>(sink.owner)->take(sink);
+    bool readTree(const Filing& filing) {
+        const Region& region = regions[0];
+        const auto take = [&](std::span<const std::uint32_t> slots) {
+            // The tree is as old as its table: who stands there may have left.
+            const bool goesOn = offerSlots(
+                slots, [&](auto slot) { return isThere(filing, slot); },
+                [&](auto slot) { return region.key(store.proxies.records[slot].box); });
+            return goesOn ? static_cast<double>(collectors[0].limit()) : -1.0;
         };
-        std::array<std::uint32_t, 512> found;
-        detail::SlotSink sink{found.data(), found.data(), found.data() + found.size(), flush, this};
-        return detail::kernels<Scalar>().walkVolume(level, reader.region.volume(), sink, walk) &&
-               take(sink);
+        return detail::searchRay(filing.table->tree, region.segment(),
+                                 static_cast<double>(collectors[0].limit()), take, cost);
     }
 
-    bool take(detail::SlotSink& sink) {
-        const std::span<const std::uint32_t> taken(sink.begin, sink.next);
-        sink.next = sink.begin;
-        return mayHaveLeft ? offer<true>(taken) : offer<false>(taken);
-    }
-
-    template <bool kMayHaveLeft>
-    bool offer(std::span<const std::uint32_t> taken) {
+    // Pairs of a region's number and an entry that overlaps the region's bounds.
+    bool offerEntries(const detail::Table<Scalar>& table,
+                      std::span<const detail::IndexPair> found) {
         std::uint64_t hits = 0;  // no collector writes here
         bool goesOn = true;
-        for (std::size_t i = 0; i < taken.size() && goesOn; ++i) {
-            // Who is listed may have left: erased, or waiting.
-            if (!kMayHaveLeft || reader.grid.store().standsIn(filing, taken[i], reader.reading)) {
-                ++hits;
-                reader.collector.add(reader.grid.store().proxies.idOf(taken[i]), Scalar(0));
-                goesOn = reader.limit() >= 0;
+        for (std::size_t k = 0; k < found.size() && goesOn; ++k) {
+            const auto [i, entry] = found[k];
+            Collector& collector = collectors[i];
+            Scalar key = 0;
+            if constexpr (!requires { Region::kIsItsBounds; }) {
+                key = regions[i].key(table.box(entry));
             }
+            const std::uint32_t slot = table.slot(entry);
+            if (!detail::isWanted(key, collector) ||
+                !(isAllFiled || store.isFiled(slot, reading))) {
+                continue;
+            }
+            // What is fresh has no list of what the collector has changed since: boxes are asked for
+            // as they are now.
+            if (mayChange && reading.isFresh) {
+                key = regions[i].key(store.proxies.records[slot].box);
+                if (!detail::isWanted(key, collector)) {
+                    continue;
+                }
+            }
+            ++hits;
+            goesOn = offer(collector, slot, key);
         }
-        reader.cost.hits += hits;
+        cost.hits += hits;
         return goesOn;
     }
-};
 
-template <class Scalar>
-template <class Region, class Collector>
-bool Grid<Scalar>::visitTables(const Reading& reading, std::span<const Filing> filings,
-                               const Region& region, Collector& collector, QueryCost& cost) const {
-    if constexpr (requires { region.segment(); }) {
-        const RayRegion<Scalar>& ray = region.segment();
-        return std::ranges::all_of(filings, [&](const Filing& filing) {
-            RayReader<Region, Collector> reader{*this, reading, region, collector, cost, filing};
-            return detail::walkTree(filing.table->tree, ray, cost, reader);
-        });
-    } else if constexpr (requires { region.volume(); }) {
-        return std::ranges::all_of(filings, [&](const Filing& filing) {
-            const bool mayHaveLeft = (!reading.isFresh && !store_.proxies.waiting.empty()) ||
-                                     (filing.isResting && store_.tables.restingErased > 0);
-            VolumeReader<Region, Collector> reader{
-                {*this, reading, *filing.table, region, collector, cost}, filing, mayHaveLeft};
-            const bool goesOn = region.isEmpty() || reader.read();
-            cost.rowsVisited += reader.walk.rowsVisited;
-            cost.boxesTested += reader.walk.boxesTested;
-            return goesOn;
-        });
-    } else {
-        const Box bounds = region.bounds();
-        return std::ranges::all_of(filings, [&](const Filing& filing) {
-            VisitReader<Region, Collector> reader{*this,  reading,   *filing.table,
-                                                  region, collector, cost};
-            return detail::walkTable(*filing.table, bounds, cost, reader);
-        });
-    }
-}
-
-// Offers what changed since it was filed, by the boxes as they are now. Not by iterators: the collector
-// may change the list.
-template <class Scalar>
-template <class Region, class Collector>
-void Grid<Scalar>::visitWaiting(const Region& region, Collector& collector, QueryCost& cost) const {
-    const std::size_t count = store_.proxies.waiting.size();
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::uint32_t slot = store_.proxies.waiting[i];
-        if (!store_.proxies.isAlive(slot)) {
-            continue;
-        }
-        ++cost.boxesTested;
-        const Scalar key = region.key(store_.proxies.records[slot].box);
-        if (detail::isWanted(key, collector)) {
-            ++cost.hits;
-            collector.add(store_.proxies.idOf(slot), key);
-            if (!(collector.limit() >= 0)) {
-                return;
+    template <class IsThere, class KeyOf>
+    bool offerSlots(std::span<const std::uint32_t> slots, const IsThere& isThere,
+                    const KeyOf& keyOf) {
+        Collector& collector = collectors[0];
+        std::uint64_t hits = 0;
+        bool goesOn = true;
+        for (std::size_t k = 0; k < slots.size() && goesOn; ++k) {
+            if (isThere(slots[k])) {
+                const Scalar key = keyOf(slots[k]);
+                if (detail::isWanted(key, collector)) {
+                    ++hits;
+                    goesOn = offer(collector, slots[k], key);
+                }
             }
         }
+        cost.hits += hits;
+        return goesOn;
     }
-}
+
+    // One of many that wants no more does not end the search of the others.
+    bool offer(Collector& collector, std::uint32_t slot, Scalar key) const {
+        collector.add(store.proxies.idOf(slot), key);
+        return collector.limit() >= 0 || collectors.size() > 1;
+    }
+
+    [[nodiscard]] bool isThere(const Filing& filing, std::uint32_t slot) const {
+        return store.standsIn(filing, slot, reading);
+    }
+
+    void addCost(const detail::KernelCost& walk) {
+        cost.rowsVisited += walk.rowsVisited;
+        cost.boxesTested += walk.boxesTested;
+    }
+};
 
 template <class Scalar>
 template <class Region, class Collector>
 QueryCost Grid<Scalar>::visit(const Region& region, Collector& collector) const {
-    if constexpr (requires { region.segment(); }) {
-        return visit(store_.beginReadingInOrder(), region, collector);
-    } else {
-        return visit(store_.beginReading(), region, collector);
-    }
-}
-
-template <class Scalar>
-template <class Region, class Collector>
-QueryCost Grid<Scalar>::visit(const Reading& reading, const Region& region,
-                              Collector& collector) const {
+    using Reader = VisitReader<Region, Collector>;
     using Changes = detail::QueryScope::Changes;
-    constexpr bool kReadsRows = requires {
-        region.volume();
-    };
-    const detail::QueryScope scope(&store_, kReadsRows ? Changes::forbidden : Changes::allowed);
-    QueryCost cost;
-    if (visitTables(reading, reading.filings(), region, collector, cost) && !reading.isFresh) {
-        visitWaiting(region, collector, cost);
-    }
-    return cost;
+    const Reading reading = Reader::kIsLine ? store_.beginReadingInOrder() : store_.beginReading();
+    const detail::QueryScope scope(&store_,
+                                   Reader::kIsVolume ? Changes::forbidden : Changes::allowed);
+    return visitTogether<Region, Collector>(reading, {&region, 1}, {&collector, 1},
+                                            !Reader::kIsVolume);
 }
 
-// Some boxes are looked for at once, in one table after the other; what they find is then offered to
-// the regions.
+// Several regions have bounds(), and had better be near each other.
 template <class Scalar>
 template <class Region, class Collector>
 QueryCost Grid<Scalar>::visitTogether(const Reading& reading, std::span<const Region> regions,
-                                      std::span<Collector> collectors,
-                                      detail::FewPairs& found) const {
-    const detail::QueryColumns<Scalar> bounds(regions);
-    // Where nothing waits, all that the tables list is filed there.
-    const bool isAllFiled = reading.isFresh || store_.proxies.waiting.empty();
+                                      std::span<Collector> collectors, bool mayChange) const {
     QueryCost cost;
-    for (const Filing& filing : reading.filings()) {
-        const detail::Table<Scalar>* const table = filing.table;
-        if (table->size() == 0) {
-            continue;
-        }
-        detail::KernelCost walk;
-        found.assign([&](detail::PairSink& sink) {
-            detail::walkTogether(*table, bounds.columns(),
-                                 static_cast<std::uint32_t>(regions.size()), sink, walk);
-        });
-        cost.rowsVisited += walk.rowsVisited;
-        cost.boxesTested += walk.boxesTested;
-        for (const auto [i, entry] : found.pairs()) {
-            Scalar key = 0;
-            if constexpr (!requires { Region::kIsItsBounds; }) {
-                key = regions[i].key(table->box(entry));
-            }
-            const std::uint32_t slot = table->slot(entry);
-            if (detail::isWanted(key, collectors[i]) &&
-                (isAllFiled || store_.isFiled(slot, reading))) {
-                ++cost.hits;
-                collectors[i].add(store_.proxies.idOf(slot), key);
-            }
-        }
-    }
-    for (std::size_t i = 0; i < regions.size() && !isAllFiled; ++i) {
+    const bool isAllFiled = !mayChange && (reading.isFresh || store_.proxies.waiting.empty());
+    VisitReader<Region, Collector> reader{store_, reading,    regions,  collectors,
+                                          cost,   isAllFiled, mayChange};
+    reader.readTables(reading.filings());
+    for (std::size_t i = 0; i < regions.size() && !reading.isFresh; ++i) {
         if (collectors[i].limit() >= 0) {
-            visitWaiting(regions[i], collectors[i], cost);
+            reader.readWaiting(i);
         }
     }
     return cost;
@@ -279,8 +237,13 @@ QueryCost Grid<Scalar>::visitEach(std::span<const Region> regions, std::span<Col
                                   ParallelFor parallelFor) const {
     HASHPHASE_ASSERT(regions.size() == collectors.size(), "Each region has a collector.");
     constexpr std::size_t grain = 256;
+    // Boxes are looked for together.
+    constexpr bool kHasBounds = requires(const Region& region) {
+        region.bounds();
+    };
+    constexpr std::size_t atOnce = kHasBounds ? detail::QueryColumns<Scalar>::kMost : 1;
     const Reading reading = store_.beginReadings(regions.size());
-    if constexpr (requires { regions[0].segment(); }) {
+    if constexpr (VisitReader<Region, Collector>::kIsLine) {
         store_.growTrees(reading);
     }
     std::atomic<std::uint64_t> rowsVisited{0};
@@ -289,18 +252,10 @@ QueryCost Grid<Scalar>::visitEach(std::span<const Region> regions, std::span<Col
     parallelFor(regions.size(), grain, [&](std::size_t begin, std::size_t end) {
         QueryCost cost;
         const detail::QueryScope scope(&store_, detail::QueryScope::Changes::forbidden);
-        if constexpr (requires { regions[0].bounds(); }) {
-            // So few that what they find has room, though each of them finds everything.
-            constexpr std::size_t atOnce = detail::QueryColumns<Scalar>::kMost;
-            detail::FewPairs found;
-            for (; begin < end; begin += atOnce) {
-                const std::size_t count = std::min(atOnce, end - begin);
-                cost += visitTogether(reading, regions.subspan(begin, count),
-                                      collectors.subspan(begin, count), found);
-            }
-        }
-        for (; begin < end; ++begin) {
-            cost += visit(reading, regions[begin], collectors[begin]);
+        for (; begin < end; begin += atOnce) {
+            const std::size_t count = std::min(atOnce, end - begin);
+            cost += visitTogether(reading, regions.subspan(begin, count),
+                                  collectors.subspan(begin, count), false);
         }
         rowsVisited += cost.rowsVisited;
         boxesTested += cost.boxesTested;

@@ -143,23 +143,21 @@ std::size_t joinSample(const Table<Scalar>& table, std::size_t count, PairSink& 
 }
 
 template <class Scalar>
-void walkTogether(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t count,
+bool walkTogether(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t count,
                   PairSink& sink, KernelCost& cost) {
-    for (const Level<Scalar>& level : table.levels()) {
-        if (level.count() > 0) {
-            kernels<Scalar>().walkTogether(level, queries.data(), 0, count, sink, cost);
-        }
-    }
+    return std::ranges::all_of(table.levels(), [&](const Level<Scalar>& level) {
+        return level.count() == 0 ||
+               kernels<Scalar>().walkTogether(level, queries.data(), 0, count, sink, cost);
+    });
 }
 
 template <class Scalar>
-void walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t first,
+bool walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t first,
                std::uint32_t last, PairSink& sink, KernelCost& cost, const GroupsView* groups) {
-    for (const Level<Scalar>& level : table.levels()) {
-        if (level.count() > 0) {
-            kernels<Scalar>().walkLevel(level, groups, queries.data(), first, last, sink, cost);
-        }
-    }
+    return std::ranges::all_of(table.levels(), [&](const Level<Scalar>& level) {
+        return level.count() == 0 ||
+               kernels<Scalar>().walkLevel(level, groups, queries.data(), first, last, sink, cost);
+    });
 }
 
 template <class Scalar>
@@ -180,9 +178,9 @@ template std::size_t joinSample<float>(const Table<float>&, std::size_t, PairSin
                                        const ProxyGroups*);
 template void walkTable<float>(const Table<float>&, const Columns<float>&, std::uint32_t,
                                ParallelFor, PairParts&, PairList&, KernelCost&, const GroupsView*);
-template void walkTable<float>(const Table<float>&, const Columns<float>&, std::uint32_t,
+template bool walkTable<float>(const Table<float>&, const Columns<float>&, std::uint32_t,
                                std::uint32_t, PairSink&, KernelCost&, const GroupsView*);
-template void walkTogether<float>(const Table<float>&, const Columns<float>&, std::uint32_t,
+template bool walkTogether<float>(const Table<float>&, const Columns<float>&, std::uint32_t,
                                   PairSink&, KernelCost&);
 template void joinTable<double>(const Table<double>&, ParallelFor, PairParts&, PairList&,
                                 KernelCost&, const ProxyGroups*, const ProxyGroups&);
@@ -191,9 +189,9 @@ template std::size_t joinSample<double>(const Table<double>&, std::size_t, PairS
                                         const ProxyGroups*);
 template void walkTable<double>(const Table<double>&, const Columns<double>&, std::uint32_t,
                                 ParallelFor, PairParts&, PairList&, KernelCost&, const GroupsView*);
-template void walkTable<double>(const Table<double>&, const Columns<double>&, std::uint32_t,
+template bool walkTable<double>(const Table<double>&, const Columns<double>&, std::uint32_t,
                                 std::uint32_t, PairSink&, KernelCost&, const GroupsView*);
-template void walkTogether<double>(const Table<double>&, const Columns<double>&, std::uint32_t,
+template bool walkTogether<double>(const Table<double>&, const Columns<double>&, std::uint32_t,
                                    PairSink&, KernelCost&);
 
 }  // namespace hashphase::detail

@@ -4,7 +4,6 @@
 // Finds all overlapping couples of a table, or of two: each entry against the half of its
 // neighbourhood that lies after it, on its own level, and levels against each other.
 
-#include <broadphase/export.hpp>
 #include <broadphase/geometry/box_columns.hpp>
 #include <broadphase/hash/table.hpp>
 #include <broadphase/search/pair_parts.hpp>
@@ -32,7 +31,7 @@ void joinTable(const Table<Scalar>& table, ParallelFor parallelFor, PairParts& p
                PairList& found, KernelCost& cost, const ProxyGroups* groups = nullptr,
                const ProxyGroups& together = {});
 
-/// The same on the caller's thread.
+/// The same on the caller's thread. The sink must not end a join.
 template <class Scalar>
 void joinTable(const Table<Scalar>& table, PairSink& sink, KernelCost& cost,
                const ProxyGroups* groups);
@@ -49,17 +48,16 @@ void walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::
                ParallelFor parallelFor, PairParts& parts, PairList& found, KernelCost& cost,
                const GroupsView* groups = nullptr);
 
-/// The same for queries from first to last, on the caller's thread.
+/// The same for queries from first to last, on the caller's thread. Returns false when the sink has
+/// ended the search.
 template <class Scalar>
-void walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t first,
+bool walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t first,
                std::uint32_t last, PairSink& sink, KernelCost& cost, const GroupsView* groups);
 
-/// The same for a few boxes, on the caller's thread; sooner where those that follow each other are
-/// near each other.
+/// The same for a few boxes; sooner where those that follow each other are near each other.
 template <class Scalar>
-HASHPHASE_BROADPHASE_EXPORT void walkTogether(const Table<Scalar>& table,
-                                              const Columns<Scalar>& queries, std::uint32_t count,
-                                              PairSink& sink, KernelCost& cost);
+bool walkTogether(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t count,
+                  PairSink& sink, KernelCost& cost);
 
 /// Calls visit(a, b) for the slots of every two entries of the table whose boxes overlap, in the memory of a
 /// block of them; with `groups`, that may pair.

@@ -99,12 +99,6 @@ private:
     typename Pack::Numbers inverse_[3];
 };
 
-/// Entries to be read, from first to last, one past.
-struct Run {
-    std::uint32_t first;
-    std::uint32_t last;
-};
-
 /// A box that is looked for: box `number` of six columns.
 template <class Scalar>
 struct Query {
@@ -162,19 +156,6 @@ struct WayQuery : Query<Scalar> {
     }
 };
 
-inline std::uint32_t lowest(std::uint32_t a, std::uint32_t b) {
-    return a < b ? a : b;
-}
-
-inline std::uint32_t highest(std::uint32_t a, std::uint32_t b) {
-    return a < b ? b : a;
-}
-
-/// The lowest `count` of `width` bits.
-inline std::uint32_t laneMask(std::uint32_t count, std::uint32_t width) {
-    return (1U << lowest(count, width)) - 1;
-}
-
 // Hashed rows may share buckets: of the entries of a run, those in the row are hits.
 template <bool kIsDense, class Scalar>
 bool isInRow(const Level<Scalar>& level, std::uint32_t entry, Row row) {
@@ -186,28 +167,37 @@ bool isInRow(const Level<Scalar>& level, std::uint32_t entry, Row row) {
     }
 }
 
-// Tests all entries of a run; none where it ends before it begins, as what is looked for in a
-// sorted one may. Returns how many.
+// Tests all entries of a run, and adds how many to `tested`; none where it ends before it begins,
+// as what is looked for in a sorted one may. Like all scans, returns false when the sink ends the
+// search.
 template <bool kIsDense, class Scalar, class Query>
-std::uint32_t scanAll(const Level<Scalar>& level, const Query& query, Run run, Row row,
-                      PairSink& found) {
+bool scanAll(const Level<Scalar>& level, const Query& query, Run run, Row row, PairSink& found,
+             std::uint64_t& tested) {
     if (run.last <= run.first) {
-        return 0;
+        return true;
     }
     using Pack = WidePack<Scalar>;
     constexpr std::uint32_t width = Pack::kWidth < kWidth ? kWidth : Pack::kWidth;
+    static_assert(kMostRoom % width == 0);
     const auto box = query.template lanes<Pack>();
-    makeRoom(found, run.last - run.first);
-    for (std::uint32_t first = run.first; first < run.last; first += width) {
-        std::uint32_t mask = box.template overlapMask<width>(level.columns, first) &
-                             laneMask(run.last - first, width);
-        for (; mask != 0; mask &= mask - 1) {
-            const std::uint32_t hit = first + static_cast<std::uint32_t>(__builtin_ctz(mask));
-            *found.next = {query.number, hit};
-            found.next += isInRow<kIsDense>(level, hit, row) && query.finds(hit) ? 1 : 0;
+    while (run.first < run.last) {
+        const std::uint32_t count = lowest(run.last - run.first, kMostRoom);
+        if (!makeRoom(found, count)) {
+            return false;
+        }
+        tested += count;
+        for (const std::uint32_t end = run.first + count; run.first < end; run.first += width) {
+            std::uint32_t mask = box.template overlapMask<width>(level.columns, run.first) &
+                                 laneMask(end - run.first, width);
+            for (; mask != 0; mask &= mask - 1) {
+                const std::uint32_t hit =
+                    run.first + static_cast<std::uint32_t>(__builtin_ctz(mask));
+                *found.next = {query.number, hit};
+                found.next += isInRow<kIsDense>(level, hit, row) && query.finds(hit) ? 1 : 0;
+            }
         }
     }
-    return run.last - run.first;
+    return true;
 }
 
 /// The first part of the bucket, counted over all levels; null when it is not sorted.
@@ -229,11 +219,11 @@ const SortedBucket<Scalar>* sortedBucket(const Level<Scalar>& level, std::uint32
 
 // Tests those entries of a run that are in a part of a bucket.
 template <bool kIsDense, class Scalar, class Query>
-std::uint32_t sweepPart(const Level<Scalar>& level, const Query& query,
-                        const SortedBucket<Scalar>& sorted, Run run, Row row, PairSink& found) {
+bool sweepPart(const Level<Scalar>& level, const Query& query, const SortedBucket<Scalar>& sorted,
+               Run run, Row row, PairSink& found, std::uint64_t& tested) {
     run = {highest(run.first, sorted.first), lowest(run.last, sorted.last)};
     if (run.last <= run.first || !query.findsAny(sorted)) {
-        return 0;
+        return true;
     }
     const Scalar* const column = level.columns[sorted.axis];
     const Scalar low = query.columns[sorted.axis][query.number];
@@ -242,17 +232,17 @@ std::uint32_t sweepPart(const Level<Scalar>& level, const Query& query,
     run.last = lowest(run.last, sorted.firstLong);
     const Run near = {firstNear(sorted, column, run.first, run.last, low),
                       endOfNear(column, run.first, run.last, high)};
-    return scanAll<kIsDense>(level, query, longOnes, row, found) +
-           scanAll<kIsDense>(level, query, near, row, found);
+    return scanAll<kIsDense>(level, query, longOnes, row, found, tested) &&
+           scanAll<kIsDense>(level, query, near, row, found, tested);
 }
 
 // Tests the entries of a run on a level of which some crowded buckets are sorted along an axis: of
 // these, those that begin before the box ends, and no farther before it than the longest of them
-// reaches, and the long ones. Returns how many it tested.
+// reaches, and the long ones.
 template <bool kIsDense, class Scalar, class Query>
-[[gnu::noinline]] std::uint32_t sweep(const Level<Scalar>& level, const Query& query, Run run,
-                                      Row row, PairSink& found) {
-    std::uint32_t tested = 0;
+[[gnu::noinline]] bool sweep(const Level<Scalar>& level, const Query& query, Run run, Row row,
+                             PairSink& found, std::uint64_t& tested) {
+    const SortedBucket<Scalar>* const endOfSorted = level.sortedBuckets + level.sortedCount;
     while (run.first < run.last) {
         const std::uint32_t bucket = level.bucketOfEntry[run.first];
         const std::uint32_t begin = level.bucketStart[bucket - level.firstBucket];
@@ -262,23 +252,26 @@ template <bool kIsDense, class Scalar, class Query>
         const Run part = {run.first, lowest(end, run.last)};
         run.first = part.last;
         if (sorted == nullptr) {
-            tested += scanAll<kIsDense>(level, query, part, row, found);
+            if (!scanAll<kIsDense>(level, query, part, row, found, tested)) {
+                return false;
+            }
             continue;
         }
-        const SortedBucket<Scalar>* const endOfSorted = level.sortedBuckets + level.sortedCount;
         for (; sorted != endOfSorted && sorted->bucket == bucket; ++sorted) {
-            tested += sweepPart<kIsDense>(level, query, *sorted, part, row, found);
+            if (!sweepPart<kIsDense>(level, query, *sorted, part, row, found, tested)) {
+                return false;
+            }
         }
     }
-    return tested;
+    return true;
 }
 
-// Finds all entries of a run that overlap the box. Returns how many it tested.
+// Finds all entries of a run that overlap the box, and adds to `tested` how many it tested.
 template <bool kIsDense, class Scalar, class Query>
-std::uint32_t scan(const Level<Scalar>& level, const Query& query, Run run, Row row,
-                   PairSink& found) {
+bool scan(const Level<Scalar>& level, const Query& query, Run run, Row row, PairSink& found,
+          std::uint64_t& tested) {
     if (level.sortedCount > 0) {
-        return sweep<kIsDense>(level, query, run, row, found);
+        return sweep<kIsDense>(level, query, run, row, found, tested);
     }
-    return scanAll<kIsDense>(level, query, run, row, found);
+    return scanAll<kIsDense>(level, query, run, row, found, tested);
 }

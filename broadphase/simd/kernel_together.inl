@@ -14,11 +14,12 @@ struct Packs {
     std::uint32_t lanes[kMostPacks];  // a bit for each entry
     Row rows[kMostPacks];
     std::uint32_t count = 0;
-    std::uint32_t entries = 0;
+    std::uint32_t entryCount = 0;
+    std::uint64_t rowCount = 0;
 
     /// Returns false when there is no room for the run.
     bool add(Run run, Row row) {
-        entries += run.last - run.first;
+        entryCount += run.last - run.first;
         for (std::uint32_t at = run.first; at < run.last; at += kWidth) {
             if (count == kMostPacks) {
                 return false;
@@ -34,58 +35,18 @@ struct Packs {
 // Returns false when there are too many.
 template <bool kIsDense, class Scalar>
 bool gatherPacks(const Level<Scalar>& level, const CellBlock& block, Packs& packs) {
-    const std::uint32_t* starts = level.bucketStart;
-    const auto length = static_cast<std::uint32_t>(block.extent(0));
-    for (std::int32_t z = block.low[2]; z <= block.high[2]; ++z) {
-        for (std::int32_t y = block.low[1]; y <= block.high[1]; ++y) {
-            const Row row{y, z};
-            std::uint32_t first = level.rowBase(row) + static_cast<std::uint32_t>(block.low[0]);
-            if constexpr (kIsDense) {
-                if (!packs.add({starts[first], starts[first + length]}, row)) {
-                    return false;
-                }
-            } else {
-                first = length >= level.bucketCount ? 0 : first & (level.bucketCount - 1);
-                const std::uint32_t end = first + lowest(length, level.bucketCount);
-                const std::uint32_t wrapped = end > level.bucketCount ? end - level.bucketCount : 0;
-                if (!packs.add({starts[first], starts[lowest(end, level.bucketCount)]}, row) ||
-                    !packs.add({starts[0], starts[wrapped]}, row)) {
-                    return false;
-                }
-            }
-        }
-    }
-    return true;
+    return block.forRows([&](Row row) {
+        const auto buckets = bucketsOf<kIsDense>(level, row, block.low[0], block.rowLength());
+        return packs.add(buckets.run(level), row) &&
+               (!buckets.wraps(level) || packs.add(buckets.wrapped(level), row));
+    });
 }
 
+// Gathers what is filed around the boxes from first to last. Returns false when they are better
+// looked at one by one.
 template <bool kIsDense, class Scalar>
-void scanPacks(const Level<Scalar>& level, const Query<Scalar>& query, const Packs& packs,
-               PairSink& found) {
-    const Lanes<Pack<Scalar>, Scalar> box(query.columns, query.number);
-    makeRoom(found, kWidth * packs.count + 1);
-    for (std::uint32_t begin = 0; begin < packs.count; begin += 8) {
-        std::uint64_t hits = 0;
-        for (std::uint32_t k = 0; k < lowest(packs.count - begin, 8); ++k) {
-            const std::uint32_t mask =
-                box.template overlapMask<kWidth>(level.columns, packs.first[begin + k]) &
-                packs.lanes[begin + k];
-            hits |= std::uint64_t{mask} << (kWidth * k);
-        }
-        for (; hits != 0; hits &= hits - 1) {
-            const auto bit = static_cast<std::uint32_t>(__builtin_ctzll(hits));
-            const std::uint32_t k = begin + bit / kWidth;
-            const std::uint32_t hit = packs.first[k] + bit % kWidth;
-            *found.next = {query.number, hit};
-            found.next += isInRow<kIsDense>(level, hit, packs.rows[k]) ? 1 : 0;
-        }
-    }
-}
-
-// Returns false when the boxes are better looked at one by one.
-template <class Scalar, bool kIsDense>
-[[gnu::flatten]] bool walkBoxes(const Level<Scalar>& level, const Scalar* const* queries,
-                                std::uint32_t first, std::uint32_t last, PairSink& found,
-                                KernelCost& cost) {
+[[gnu::flatten]] bool gatherAround(const Level<Scalar>& level, const Scalar* const* queries,
+                                   std::uint32_t first, std::uint32_t last, Packs& packs) {
     // The box around all. Whatever overlaps one of them, be it inverted, overlaps this one, when this
     // one is not inverted; a NaN is left out, as it overlaps nothing.
     Scalar around[6];
@@ -109,33 +70,73 @@ template <class Scalar, bool kIsDense>
     if (block.isEmpty()) {
         return true;
     }
-    const std::uint64_t rowCount = block.extent(1) * block.extent(2);
-    Packs packs;
-    if (rowCount > kMostPacks || rowCount * kBoxesPerRun > level.lastEntry - level.firstEntry ||
-        !gatherPacks<kIsDense>(level, block, packs)) {
+    packs.rowCount = block.rowCount();
+    return packs.rowCount <= kMostPacks && packs.rowCount * kBoxesPerRun <= level.count() &&
+           gatherPacks<kIsDense>(level, block, packs);
+}
+
+template <bool kIsDense, class Scalar>
+bool scanPacks(const Level<Scalar>& level, const Query<Scalar>& query, const Packs& packs,
+               PairSink& found) {
+    static_assert(kWidth * kMostPacks + 1 <= kMostRoom);
+    const Lanes<Pack<Scalar>, Scalar> box(query.columns, query.number);
+    if (!makeRoom(found, kWidth * packs.count + 1)) {
         return false;
     }
-    cost.rowsVisited += rowCount;
-    for (std::uint32_t number = first; number < last; ++number) {
-        cost.boxesTested += packs.entries;
-        scanPacks<kIsDense>(level, Query<Scalar>{queries, number}, packs, found);
+    for (std::uint32_t begin = 0; begin < packs.count; begin += 8) {
+        std::uint64_t hits = 0;
+        for (std::uint32_t k = 0; k < lowest(packs.count - begin, 8); ++k) {
+            const std::uint32_t mask =
+                box.template overlapMask<kWidth>(level.columns, packs.first[begin + k]) &
+                packs.lanes[begin + k];
+            hits |= std::uint64_t{mask} << (kWidth * k);
+        }
+        for (; hits != 0; hits &= hits - 1) {
+            const auto bit = static_cast<std::uint32_t>(__builtin_ctzll(hits));
+            const std::uint32_t k = begin + bit / kWidth;
+            const std::uint32_t hit = packs.first[k] + bit % kWidth;
+            *found.next = {query.number, hit};
+            found.next += isInRow<kIsDense>(level, hit, packs.rows[k]) ? 1 : 0;
+        }
     }
     return true;
 }
 
+template <bool kIsDense, class Scalar>
+[[gnu::flatten]] bool scanAround(const Level<Scalar>& level, const Scalar* const* queries,
+                                 std::uint32_t first, std::uint32_t last, const Packs& packs,
+                                 PairSink& found, KernelCost& cost) {
+    cost.rowsVisited += packs.rowCount;
+    bool goesOn = true;
+    for (std::uint32_t number = first; number < last && packs.count > 0 && goesOn; ++number) {
+        cost.boxesTested += packs.entryCount;
+        goesOn = scanPacks<kIsDense>(level, Query<Scalar>{queries, number}, packs, found);
+    }
+    return goesOn;
+}
+
+template <bool kIsDense, class Scalar>
+bool walkGroup(const Level<Scalar>& level, const Scalar* const* queries, std::uint32_t first,
+               std::uint32_t last, PairSink& found, KernelCost& cost) {
+    Packs packs;
+    return gatherAround<kIsDense>(level, queries, first, last, packs)
+               ? scanAround<kIsDense>(level, queries, first, last, packs, found, cost)
+               : walkLevel(level, nullptr, queries, first, last, found, cost);
+}
+
 template <class Scalar>
-void walkTogether(const Level<Scalar>& level, const Scalar* const* queries, std::uint32_t first,
+bool walkTogether(const Level<Scalar>& level, const Scalar* const* queries, std::uint32_t first,
                   std::uint32_t last, PairSink& found, KernelCost& cost) {
-    for (std::uint32_t end = first; first < last; first = end) {
+    bool goesOn = true;
+    for (std::uint32_t end = first; first < last && goesOn; first = end) {
         end = first + lowest(kTogether, last - first);
-        bool isDone = false;
-        if (level.hasCells() && end - first > 1) {
-            isDone = level.isDense()
-                         ? walkBoxes<Scalar, true>(level, queries, first, end, found, cost)
-                         : walkBoxes<Scalar, false>(level, queries, first, end, found, cost);
-        }
-        if (!isDone) {
-            walkLevel(level, nullptr, queries, first, end, found, cost);
+        if (!level.hasCells() || end - first == 1) {
+            goesOn = walkLevel(level, nullptr, queries, first, end, found, cost);
+        } else if (level.isDense()) {
+            goesOn = walkGroup<true>(level, queries, first, end, found, cost);
+        } else {
+            goesOn = walkGroup<false>(level, queries, first, end, found, cost);
         }
     }
+    return goesOn;
 }

@@ -7,6 +7,7 @@
 
 #include <broadphase/hash/level.hpp>
 #include <broadphase/proxy_groups.hpp>
+#include <broadphase/simd/ray_types.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -15,6 +16,9 @@ namespace hashphase::detail {
 
 /// Columns are readable this many entries past the last one.
 inline constexpr std::uint32_t kColumnPadding = 16;
+
+/// Looking up a run of buckets costs about as much as testing this many boxes one after another.
+inline constexpr std::uint64_t kBoxesPerRun = 4;
 
 /// A box of which each corner fills a vector register; the fourth numbers are 0.
 template <class Scalar>
@@ -41,19 +45,21 @@ struct IndexPair {
     friend bool operator==(const IndexPair&, const IndexPair&) = default;
 };
 
-/// Where a kernel writes couples: grow(sink, count) makes room for at least `count` behind `next`.
+/// Kernels ask for room for so many couples at a time, at most.
+inline constexpr std::uint32_t kMostRoom = 256;
+
+/// Where a kernel writes couples: grow(sink, count) makes room for at least `count` behind `next`;
+/// false ends the search.
 struct PairSink {
     IndexPair* next;
     IndexPair* end;
-    void (*grow)(PairSink& sink, std::size_t count);
+    bool (*grow)(PairSink& sink, std::size_t count);
     void* owner;
 };
 
-/// Room for `count` more couples.
-[[gnu::always_inline]] inline void makeRoom(PairSink& sink, std::size_t count) {
-    if (static_cast<std::size_t>(sink.end - sink.next) < count) {
-        sink.grow(sink, count);
-    }
+/// Room for `count` more couples; false ends the search.
+[[gnu::always_inline]] inline bool makeRoom(PairSink& sink, std::size_t count) {
+    return static_cast<std::size_t>(sink.end - sink.next) >= count || sink.grow(sink, count);
 }
 
 /// Where a kernel writes slots: flush(sink) takes those up to `next` away and makes room for at least
@@ -166,37 +172,47 @@ struct Kernels {
                       std::uint32_t listBucket, const PaddedBox<Scalar>* boxes, std::size_t count,
                       std::uint32_t* buckets);
 
-    /// Finds every two entries of a level with cells that overlap, the first one from firstEntry
-    /// to lastEntry; over the whole level each couple once. Where `groups` is not null, this and the next
-    /// one leave out those that may not pair.
-    void (*joinLevel)(const Level<Scalar>& level, const GroupsView* groups,
+    /// Finds every two entries of a level with cells that overlap, the first one from firstEntry to
+    /// lastEntry; over the whole level each couple once. Where `groups` is not null, this and the
+    /// next one leave out those that may not pair. All searches return false when the sink has
+    /// ended them.
+    bool (*joinLevel)(const Level<Scalar>& level, const GroupsView* groups,
                       std::uint32_t firstEntry, std::uint32_t lastEntry, PairSink& found,
                       KernelCost& cost);
 
     /// Finds (i, entry) for every box i from first to last of `queries`, which has columns like the
     /// level's, and every entry of the level that overlaps it.
-    void (*walkLevel)(const Level<Scalar>& level, const GroupsView* groups,
+    bool (*walkLevel)(const Level<Scalar>& level, const GroupsView* groups,
                       const Scalar* const* queries, std::uint32_t first, std::uint32_t last,
                       PairSink& found, KernelCost& cost);
 
     /// The same for all groups, but for entries that are not within reach of ways[wayOf[i]] between
     /// the times 0 and 1; some that it just misses may be found.
-    void (*walkWays)(const Level<Scalar>& level, const Scalar* const* queries,
+    bool (*walkWays)(const Level<Scalar>& level, const Scalar* const* queries,
                      const Way<Scalar>* ways, const std::uint32_t* wayOf, std::uint32_t first,
                      std::uint32_t last, PairSink& found, KernelCost& cost);
 
     /// As walkLevel(), sooner where boxes that follow each other are near each other.
-    void (*walkTogether)(const Level<Scalar>& level, const Scalar* const* queries,
+    bool (*walkTogether)(const Level<Scalar>& level, const Scalar* const* queries,
                          std::uint32_t first, std::uint32_t last, PairSink& found,
                          KernelCost& cost);
 
-    /// Finds the slot of every entry of a level with cells that is in the volume, and perhaps of some
-    /// that were erased. Returns false when the sink has ended the search.
+    /// Finds the slot of every entry of a level with cells that is in the volume, and perhaps of
+    /// some that were erased.
     bool (*walkVolume)(const Level<Scalar>& level, const Volume<Scalar>& volume, SlotSink& found,
                        KernelCost& cost);
 
+    /// Finds the slots of a tree's boxes that the ray may meet up to sink.last, about from near to
+    /// far. The tree's blocks from firstInner on stand above others.
+    bool (*walkRay)(const BoxBlock* blocks, std::uint32_t root, std::uint32_t firstInner,
+                    const RayLanes& ray, RaySink& sink, KernelCost& cost);
+
+    /// What walkRay() asks of each block: bit k tells whether the ray may meet box k at some t in
+    /// [0, last]; enter[k] is then a lower bound of that t.
+    std::uint32_t (*mayMeet)(const BoxBlock& block, const RayLanes& ray, float last, float* enter);
+
     /// As joinLevel(), of a level without cells.
-    void (*joinList)(const Level<Scalar>& level, const GroupsView* groups, std::uint32_t firstEntry,
+    bool (*joinList)(const Level<Scalar>& level, const GroupsView* groups, std::uint32_t firstEntry,
                      std::uint32_t lastEntry, PairSink& found, KernelCost& cost);
 
     /// The least and the greatest number of a column, from entry first to last.

@@ -70,7 +70,7 @@ private:
         const std::uint32_t* starts = view_.level.bucketStart;
         int foundCount = 0;
         for (int k = 0; k < count; ++k) {
-            const std::uint32_t base = view_.level.rowBase(batch.rows[k]);
+            const std::uint32_t base = view_.level.template rowBase<true>(batch.rows[k]);
             const auto startOf = [starts, base](std::int32_t cell) {
                 return starts[base + static_cast<std::uint32_t>(cell)];
             };
@@ -142,17 +142,10 @@ private:
     bool readHashedRow(const RowBatch<Scalar>& batch, int k) {
         const Level<Scalar>& level = view_.level;
         const Row row = batch.rows[k];
-        const std::uint32_t* starts = level.bucketStart;
         const auto length = static_cast<std::uint32_t>(batch.last[k] - batch.first[k]) + 1;
-        const std::uint32_t bucket =
-            level.rowBase(row) + static_cast<std::uint32_t>(batch.first[k]);
-        const std::uint32_t first =
-            length >= level.bucketCount ? 0 : bucket & (level.bucketCount - 1);
-        const std::uint32_t end = first + lowest(length, level.bucketCount);
-        const std::uint32_t wrapped = end > level.bucketCount ? end - level.bucketCount : 0;
-        return scan<false>({starts[first], starts[lowest(end, level.bucketCount)]}, crossing_,
-                           row) &&
-               scan<false>({starts[0], starts[wrapped]}, crossing_, row);
+        const auto buckets = bucketsOf<false>(level, row, batch.first[k], length);
+        return scan<false>(buckets.run(level), crossing_, row) &&
+               scan<false>(buckets.wrapped(level), crossing_, row);
     }
 
     // Once in memory, for all that call it: the first search of a frame has to fetch the code, too.

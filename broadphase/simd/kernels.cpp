@@ -109,7 +109,7 @@ const Kernels<double>& kernels<double>() noexcept {
 
 // --- PairList ------------------------------------------------------------------------------------
 
-void PairList::grow(PairSink& sink, std::size_t count) {
+bool PairList::grow(PairSink& sink, std::size_t count) {
     auto& list = *static_cast<PairList*>(sink.owner);
     const auto size = static_cast<std::size_t>(sink.next - list.data_.get());
     const auto capacity = std::max<std::size_t>({2 * list.capacity_, size + count, 16});
@@ -119,6 +119,7 @@ void PairList::grow(PairSink& sink, std::size_t count) {
     list.capacity_ = capacity;
     sink.next = list.data_.get() + size;
     sink.end = list.data_.get() + capacity;
+    return true;
 }
 
 void PairList::shrink() {
@@ -139,7 +140,7 @@ IndexPair* PairList::resize(std::size_t count) {
     return data_.get();
 }
 
-void FewPairs::grow(PairSink& sink, std::size_t count) {
+bool FewPairs::grow(PairSink& sink, std::size_t count) {
     auto& list = *static_cast<FewPairs*>(sink.owner);
     const auto size = static_cast<std::size_t>(sink.next - list.data_);
     const std::size_t capacity = std::max(2 * list.capacity_, size + count);
@@ -150,6 +151,7 @@ void FewPairs::grow(PairSink& sink, std::size_t count) {
     list.capacity_ = capacity;
     sink.next = list.data_ + size;
     sink.end = list.data_ + capacity;
+    return true;
 }
 
 }  // namespace hashphase::detail

@@ -86,7 +86,7 @@ public:
     }
 
 private:
-    static void grow(PairSink& sink, std::size_t count);
+    static bool grow(PairSink& sink, std::size_t count);
 
     std::unique_ptr<IndexPair[]> data_;
     std::size_t size_ = 0;
@@ -94,7 +94,7 @@ private:
 };
 
 /// The same for a search that finds few: they are on the stack, and on the heap when they are more.
-class HASHPHASE_BROADPHASE_EXPORT FewPairs {
+class FewPairs {
 public:
     // Its 4 kB are written before they are read.
     // cppcheck-suppress uninitMemberVar
@@ -115,7 +115,7 @@ public:
 private:
     static constexpr std::size_t kFew = 512;
 
-    static void grow(PairSink& sink, std::size_t count);
+    static bool grow(PairSink& sink, std::size_t count);
 
     IndexPair few_[kFew];
     std::unique_ptr<IndexPair[]> many_;
@@ -132,21 +132,21 @@ void findInBlocks(const Search& search, const Use& use) {
         const Use& use;
         std::vector<IndexPair> block;
 
-        void handOn(PairSink& sink, std::size_t room) {
+        bool handOn(PairSink& sink) {
             use({block.data(), static_cast<std::size_t>(sink.next - block.data())});
-            block.resize(std::max(block.size(), room));
             sink.next = block.data();
-            sink.end = block.data() + block.size();
+            return true;
         }
     };
     constexpr std::size_t kBlock = 4096;
+    static_assert(kBlock >= kMostRoom);
     Blocks blocks{use, std::vector<IndexPair>(kBlock)};
-    const auto grow = [](PairSink& sink, std::size_t count) {
-        static_cast<Blocks*>(sink.owner)->handOn(sink, count);
+    const auto grow = [](PairSink& sink, std::size_t /*count*/) {
+        return static_cast<Blocks*>(sink.owner)->handOn(sink);
     };
     PairSink sink{blocks.block.data(), blocks.block.data() + kBlock, grow, &blocks};
     search(sink);
-    blocks.handOn(sink, 0);
+    blocks.handOn(sink);
 }
 
 }  // namespace hashphase::detail

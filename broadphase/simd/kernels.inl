@@ -7,6 +7,7 @@
 //     kWidth           how many; up to eight
 //     Numbers          the register
 //     load(from)       the numbers from there on, of any alignment
+//     store(to, numbers)  writes them there
 //     all(x)           the same number everywhere
 //     notAbove(a, b)   where a <= b, which NaN is not; of a type that ...
 //     both(hits, hits) ... and
@@ -27,11 +28,33 @@
 //
 // Nothing in these files may call a function that is not defined in them or always inlined.
 
+inline std::uint32_t lowest(std::uint32_t a, std::uint32_t b) {
+    return a < b ? a : b;
+}
+
+inline std::uint32_t highest(std::uint32_t a, std::uint32_t b) {
+    return a < b ? b : a;
+}
+
+/// The lowest `count` of `width` bits.
+inline std::uint32_t laneMask(std::uint32_t count, std::uint32_t width) {
+    return (1U << lowest(count, width)) - 1;
+}
+
+/// Entries to be read, from first to last, one past.
+struct Run {
+    std::uint32_t first;
+    std::uint32_t last;
+};
+
 #include <broadphase/simd/kernel_box.inl>
+
+#include <broadphase/simd/kernel_rows.inl>
 
 #include <broadphase/simd/kernel_crowd.inl>
 #include <broadphase/simd/kernel_file.inl>
 #include <broadphase/simd/kernel_join.inl>
+#include <broadphase/simd/kernel_ray.inl>
 #include <broadphase/simd/kernel_volume.inl>
 #include <broadphase/simd/kernel_walk.inl>
 
@@ -80,7 +103,17 @@ std::size_t selectApart(const IndexPair* couples, std::size_t count, const std::
 }
 
 template <class Scalar>
-constexpr Kernels<Scalar> kKernels{
-    &fileBoxes<Scalar>,    &joinLevel<Scalar>,  &walkLevel<Scalar>,        &walkWays<Scalar>,
-    &walkTogether<Scalar>, &walkVolume<Scalar>, &joinList<Scalar>,         &findRange<Scalar>,
-    &selectApart<Scalar>,  &countCrowd<Scalar>, &countCrowdGroups<Scalar>, &listCrowd<Scalar>};
+constexpr Kernels<Scalar> kKernels{&fileBoxes<Scalar>,
+                                   &joinLevel<Scalar>,
+                                   &walkLevel<Scalar>,
+                                   &walkWays<Scalar>,
+                                   &walkTogether<Scalar>,
+                                   &walkVolume<Scalar>,
+                                   &walkRay,
+                                   &mayMeet,
+                                   &joinList<Scalar>,
+                                   &findRange<Scalar>,
+                                   &selectApart<Scalar>,
+                                   &countCrowd<Scalar>,
+                                   &countCrowdGroups<Scalar>,
+                                   &listCrowd<Scalar>};

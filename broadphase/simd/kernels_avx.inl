@@ -10,6 +10,7 @@ struct Pack<float> {
     static constexpr std::uint32_t kWidth = 8;
     using Numbers = __m256;
     static Numbers load(const float* from) { return _mm256_loadu_ps(from); }
+    static void store(float* to, Numbers a) { _mm256_storeu_ps(to, a); }
     static Numbers all(float x) { return _mm256_set1_ps(x); }
     static Numbers minus(Numbers a, Numbers b) { return _mm256_sub_ps(a, b); }
     static Numbers plus(Numbers a, Numbers b) { return _mm256_add_ps(a, b); }

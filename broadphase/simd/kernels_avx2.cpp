@@ -17,6 +17,7 @@ struct Pack<double> {
     static constexpr std::uint32_t kWidth = 4;
     using Numbers = __m256d;
     static Numbers load(const double* from) { return _mm256_loadu_pd(from); }
+    static void store(double* to, Numbers a) { _mm256_storeu_pd(to, a); }
     static Numbers all(double x) { return _mm256_set1_pd(x); }
     static Numbers minus(Numbers a, Numbers b) { return _mm256_sub_pd(a, b); }
     static Numbers plus(Numbers a, Numbers b) { return _mm256_add_pd(a, b); }

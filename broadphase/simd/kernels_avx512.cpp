@@ -19,6 +19,7 @@ struct Pack<double> {
     static constexpr std::uint32_t kWidth = 8;
     using Numbers = __m512d;
     static Numbers load(const double* from) { return _mm512_loadu_pd(from); }
+    static void store(double* to, Numbers a) { _mm512_storeu_pd(to, a); }
     static Numbers all(double x) { return _mm512_set1_pd(x); }
     static Numbers minus(Numbers a, Numbers b) { return _mm512_sub_pd(a, b); }
     static Numbers plus(Numbers a, Numbers b) { return _mm512_add_pd(a, b); }
@@ -45,6 +46,7 @@ struct WidePack<float> {
     static constexpr std::uint32_t kWidth = 16;
     using Numbers = __m512;
     static Numbers load(const float* from) { return _mm512_loadu_ps(from); }
+    static void store(float* to, Numbers a) { _mm512_storeu_ps(to, a); }
     static Numbers all(float x) { return _mm512_set1_ps(x); }
     static Numbers minus(Numbers a, Numbers b) { return _mm512_sub_ps(a, b); }
     static Numbers plus(Numbers a, Numbers b) { return _mm512_add_ps(a, b); }

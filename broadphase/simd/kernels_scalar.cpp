@@ -13,6 +13,7 @@ struct Pack {
     static constexpr std::uint32_t kWidth = 1;
     using Numbers = Scalar;
     static Numbers load(const Scalar* from) { return *from; }
+    static void store(Scalar* to, Numbers a) { *to = a; }
     static Numbers all(Scalar x) { return x; }
     static Numbers minus(Numbers a, Numbers b) { return a - b; }
     static Numbers plus(Numbers a, Numbers b) { return a + b; }

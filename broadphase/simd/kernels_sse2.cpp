@@ -18,6 +18,7 @@ struct Pack<float> {
     static constexpr std::uint32_t kWidth = 4;
     using Numbers = __m128;
     static Numbers load(const float* from) { return _mm_loadu_ps(from); }
+    static void store(float* to, Numbers a) { _mm_storeu_ps(to, a); }
     static Numbers all(float x) { return _mm_set1_ps(x); }
     static Numbers minus(Numbers a, Numbers b) { return _mm_sub_ps(a, b); }
     static Numbers plus(Numbers a, Numbers b) { return _mm_add_ps(a, b); }
@@ -37,6 +38,7 @@ struct Pack<double> {
     static constexpr std::uint32_t kWidth = 2;
     using Numbers = __m128d;
     static Numbers load(const double* from) { return _mm_loadu_pd(from); }
+    static void store(double* to, Numbers a) { _mm_storeu_pd(to, a); }
     static Numbers all(double x) { return _mm_set1_pd(x); }
     static Numbers minus(Numbers a, Numbers b) { return _mm_sub_pd(a, b); }
     static Numbers plus(Numbers a, Numbers b) { return _mm_add_pd(a, b); }

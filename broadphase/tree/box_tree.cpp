@@ -29,11 +29,9 @@ float roundedDown(double x) {
 BoxBlock emptyBlock() {
     BoxBlock block{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        block.bounds[axis].fill(kFloatInfinity);
-        block.bounds[axis + 3].fill(-kFloatInfinity);
+        std::fill_n(block.bounds[axis], kBlockWidth, kFloatInfinity);
+        std::fill_n(block.bounds[axis + 3], kBlockWidth, -kFloatInfinity);
     }
-    block.below.fill(0);
-    block.count = 0;
     return block;
 }
 
@@ -281,7 +279,8 @@ std::string BoxTree::validate() const {
                     }
                 }
                 if (grown.low != box.low || grown.high != box.high) {
-                    return "Every block but the roots stands below one lane of one block, in the "
+                    return "Every block but the roots stands below one lane of one "
+                           "block, in the "
                            "lane's box: broken.";
                 }
                 const float most = std::max(
@@ -295,7 +294,8 @@ std::string BoxTree::validate() const {
     const bool allOnce = std::all_of(timesBelow.begin(), timesBelow.end(),
                                      [](std::uint32_t times) { return times == 1; });
     return allOnce ? std::string()
-                   : "Every block but the roots stands below one lane of one block, in the lane's "
+                   : "Every block but the roots stands below one lane of one "
+                     "block, in the lane's "
                      "box: broken.";
 }
 

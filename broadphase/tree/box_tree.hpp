@@ -12,7 +12,7 @@
 // Threads   build() needs the tree for itself; everything const may run anywhere.
 
 #include <broadphase/hash/table.hpp>
-#include <broadphase/simd/ray_kernel.hpp>
+#include <broadphase/simd/ray_types.hpp>
 
 #include <array>
 #include <cstddef>

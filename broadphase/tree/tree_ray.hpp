@@ -5,7 +5,7 @@
 // no rounding, here or in the region's key(), lets it pass by what key() finds.
 
 #include <broadphase/regions.hpp>
-#include <broadphase/simd/ray_kernel.hpp>
+#include <broadphase/simd/ray_types.hpp>
 
 #include <algorithm>
 #include <array>
@@ -68,7 +68,7 @@ public:
         return clip(radius);
     }
 
-    /// The ray between 0 and 1, for mayMeetMask().
+    /// The ray between 0 and 1, for kernels.
     [[nodiscard]] const RayLanes& lanes() const noexcept { return lanes_; }
 
     /// False when a number is too large for single precision, or NaN; lanes() mean nothing then.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/ai/nearest.hpp>
 
+#include <broadphase/simd/kernel_types.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

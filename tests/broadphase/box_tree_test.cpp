@@ -2,7 +2,8 @@
 
 // The tree that rays read, its kernel, and the ray as it reads it.
 
-#include <broadphase/tree/ray_walk.hpp>
+#include <broadphase/search/ray_search.hpp>
+#include <broadphase/simd/kernels.hpp>
 #include <tests/support/box_scenes.hpp>
 #include <tests/support/fill_table.hpp>
 
@@ -37,14 +38,24 @@ protected:
         ASSERT_EQ(tree_.validate(), "");
     }
 
-    /// Slots that the walk offers, sorted.
-    std::vector<std::uint32_t> walk(const Ray& ray, double limit = 1) {
-        Reader reader{{}, limit};
+    /// Slots that the search offers, in its order.
+    std::vector<std::uint32_t> search(const Ray& ray, double limit = 1) {
+        std::vector<std::uint32_t> found;
         cost_ = {};
-        walkTree(tree_, ray, cost_, reader);
-        std::sort(reader.slots.begin(), reader.slots.end());
-        EXPECT_EQ(std::adjacent_find(reader.slots.begin(), reader.slots.end()), reader.slots.end());
-        return reader.slots;
+        const auto take = [&](std::span<const std::uint32_t> slots) {
+            found.insert(found.end(), slots.begin(), slots.end());
+            return limit;
+        };
+        EXPECT_TRUE(searchRay(tree_, ray, limit, take, cost_));
+        return found;
+    }
+
+    /// The same, sorted.
+    std::vector<std::uint32_t> walk(const Ray& ray, double limit = 1) {
+        std::vector<std::uint32_t> slots = search(ray, limit);
+        std::sort(slots.begin(), slots.end());
+        EXPECT_EQ(std::adjacent_find(slots.begin(), slots.end()), slots.end());
+        return slots;
     }
 
     /// All that the region's key() finds is offered. Returns how much more is.
@@ -64,17 +75,6 @@ protected:
         EXPECT_LE(offered.size(), cost_.boxesTested);
         return offered.size() - found;
     }
-
-    struct Reader {
-        std::vector<std::uint32_t> slots;
-        double largest;
-
-        [[nodiscard]] double limit() const { return largest; }
-        bool read(std::uint32_t slot) {
-            slots.push_back(slot);
-            return true;
-        }
-    };
 
     std::vector<Box> boxes_;
     Table<Scalar> table_;
@@ -221,6 +221,83 @@ TYPED_TEST(BoxTreeTest, ReadsOnlyThePartOfAVeryLongRayThatIsNear) {
     }
 }
 
+TYPED_TEST(BoxTreeTest, OffersBoxesInBlocksFromNearToFarUntilToldToStop) {
+    std::vector<Aabb<TypeParam>> boxes;
+    for (int i = 0; i < 1000; ++i) {
+        boxes.push_back(boxAround<TypeParam>({i + 0.5, 0, 0}, {0.25, 1, 1}));
+    }
+    this->build(std::move(boxes));
+    const RayRegion<TypeParam> ray({-10, 0, 0}, {1100, 0, 0});
+    std::size_t all = 0;
+    QueryCost wholeCost;
+    const auto takeAll = [&](std::span<const std::uint32_t> slots) {
+        EXPECT_TRUE(std::is_sorted(slots.begin(), slots.end()));
+        EXPECT_LE(slots.size(), kBlockWidth);
+        all += slots.size();
+        return 1.0;
+    };
+    EXPECT_TRUE(searchRay(this->tree_, ray, 1, takeAll, wholeCost));
+    EXPECT_EQ(all, 1000U);
+    for (const double end : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
+        std::size_t offered = 0;
+        QueryCost cost;
+        const auto take = [&](std::span<const std::uint32_t> slots) {
+            offered += slots.size();
+            return offered < 20 ? 1.0 : end;
+        };
+        EXPECT_FALSE(searchRay(this->tree_, ray, 1, take, cost));
+        EXPECT_GE(offered, 20U);
+        EXPECT_LT(offered, 20 + kBlockWidth);
+        EXPECT_EQ(cost.boxesTested, offered);
+    }
+}
+
+TYPED_TEST(BoxTreeTest, OffersNothingBeyondALimitThatShrinks) {
+    std::vector<Aabb<TypeParam>> boxes;
+    for (int i = 0; i < 1000; ++i) {
+        boxes.push_back(boxAround<TypeParam>({i + 0.5, 0, 0}, {0.25, 1, 1}));
+    }
+    this->build(std::move(boxes));
+    QueryCost cost;
+    std::size_t offered = 0;
+    const auto take = [&](std::span<const std::uint32_t> slots) {
+        offered += slots.size();
+        return 0.1;
+    };
+    EXPECT_TRUE(
+        searchRay(this->tree_, RayRegion<TypeParam>({0, 0, 0}, {1000, 0, 0}), 1, take, cost));
+    EXPECT_GE(offered, 100U);
+    EXPECT_LT(offered, 120U);
+    EXPECT_LT(cost.boxesTested, 130U);
+}
+
+TYPED_TEST(BoxTreeTest, IsSearchedInTheSameOrderByEveryInstructionSet) {
+    Random random(0x5eed0a08);
+    std::vector<Aabb<TypeParam>> boxes;
+    for (int i = 0; i < 3000; ++i) {
+        boxes.push_back(boxAround<TypeParam>(random.pointIn(-30, 30), random.pointIn(0, 1)));
+    }
+    this->build(std::move(boxes));
+    const InstructionSet before = instructionSet();
+    std::size_t found = 0;
+    for (int i = 0; i < 200; ++i) {
+        const RayRegion<TypeParam> ray(random.pointIn(-40, 40).template cast<TypeParam>(),
+                                       random.pointIn(-40, 40).template cast<TypeParam>());
+        useInstructionSet(InstructionSet::scalar);
+        const std::vector<std::uint32_t> expected = this->search(ray);
+        found += expected.size();
+        for (const InstructionSet set :
+             {InstructionSet::sse2, InstructionSet::avx2, InstructionSet::avx512}) {
+            if (isAvailable(set)) {
+                useInstructionSet(set);
+                EXPECT_EQ(this->search(ray), expected) << nameOf(set);
+            }
+        }
+    }
+    useInstructionSet(before);
+    EXPECT_GT(found, 100U);
+}
+
 // --- Kernel --------------------------------------------------------------------------------------
 
 TEST(RayKernel, GivesTheBitsOfItsScalarTwin) {
@@ -233,11 +310,15 @@ TEST(RayKernel, GivesTheBitsOfItsScalarTwin) {
         return random.chance(0.1) ? special[random.below(8)]
                                   : static_cast<float>(random.between(-3, 3));
     };
+    const InstructionSet before = instructionSet();
+    useInstructionSet(InstructionSet::scalar);
+    const auto scalarTwin = kernels<float>().mayMeet;
+    useInstructionSet(before);
     int hits = 0;
     for (int i = 0; i < 100000; ++i) {
         BoxBlock block{};
         for (auto& column : block.bounds) {
-            std::generate(column.begin(), column.end(), number);
+            std::generate(std::begin(column), std::end(column), number);
         }
         RayLanes ray{};
         for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -246,15 +327,22 @@ TEST(RayKernel, GivesTheBitsOfItsScalarTwin) {
             ray.inverse[axis] = number();
             ray.farInverse[axis] = number();
         }
-        std::generate(ray.offset.begin(), ray.offset.end(), number);
+        std::generate(std::begin(ray.offset), std::end(ray.offset), number);
         const float last = number();
         std::array<float, kBlockWidth> enter{};
         std::array<float, kBlockWidth> expected{};
-        const std::uint32_t mask = mayMeetMask(block, ray, last, enter.data());
-        ASSERT_EQ(mask, mayMeetMaskScalar(block, ray, last, expected.data()));
-        ASSERT_EQ(std::memcmp(enter.data(), expected.data(), sizeof(enter)), 0);
+        const std::uint32_t mask = scalarTwin(block, ray, last, expected.data());
+        for (const InstructionSet set :
+             {InstructionSet::sse2, InstructionSet::avx2, InstructionSet::avx512}) {
+            if (isAvailable(set)) {
+                useInstructionSet(set);
+                ASSERT_EQ(kernels<float>().mayMeet(block, ray, last, enter.data()), mask);
+                ASSERT_EQ(std::memcmp(enter.data(), expected.data(), sizeof(enter)), 0);
+            }
+        }
         hits += mask != 0 ? 1 : 0;
     }
+    useInstructionSet(before);
     EXPECT_GT(hits, 1000);
 }
 

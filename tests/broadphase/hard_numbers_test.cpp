@@ -115,9 +115,9 @@ TYPED_TEST(HardNumbers, OfABoxWithNanChangeNothingForTheOthers) {
 
 // Among them the empty box, which is inverted as far as numbers go.
 TYPED_TEST(HardNumbers, OfInvertedBoxesMeanWhatComparingThemSays) {
-    using Box = Aabb<TypeParam>;
-    const Box inside = makeBox<TypeParam>(2, 2, 2, 1, 1, 1);
-    std::vector<Box> boxes{Box(), inside, makeBox<TypeParam>(2, 1, 1, 1, 2, 2)};
+    using Bounds = Aabb<TypeParam>;
+    const Bounds inside = makeBox<TypeParam>(2, 2, 2, 1, 1, 1);
+    std::vector<Bounds> boxes{Bounds(), inside, makeBox<TypeParam>(2, 1, 1, 1, 2, 2)};
     for (int i = 0; i < 40; ++i) {
         boxes.push_back(inside);
         boxes.push_back(makeBox<TypeParam>(i, 0, 0, i + 1, 3, 3));
@@ -136,17 +136,17 @@ TYPED_TEST(HardNumbers, OfInvertedBoxesMeanWhatComparingThemSays) {
     PairWorld<TypeParam> world;
     world.add(inside);
     world.add(inside);
-    world.add(Box());
+    world.add(Bounds());
     world.add(makeBox<TypeParam>(-9, -9, -9, 9, 9, 9));
     EXPECT_EQ(world.update().born.size(), 2U) << "with what they lie within, not with each other";
 }
 
 // More of them share a cell than are searched unsorted.
 TYPED_TEST(HardNumbers, OfBothZeroesAreOneNumber) {
-    using Box = Aabb<TypeParam>;
+    using Bounds = Aabb<TypeParam>;
     constexpr TypeParam kZeroes[] = {TypeParam(0), -TypeParam(0)};
     for (const int copies : {1, 20}) {
-        std::vector<Box> boxes;
+        std::vector<Bounds> boxes;
         for (int i = 0; i < 16 * copies; ++i) {
             Vector3<TypeParam> corner;
             for (int axis = 0; axis < 3; ++axis) {
@@ -154,7 +154,7 @@ TYPED_TEST(HardNumbers, OfBothZeroesAreOneNumber) {
             }
             const bool isBelow = (i & 8) != 0;
             const Vector3<TypeParam> away = Vector3<TypeParam>::Constant(isBelow ? -1 : 1);
-            boxes.push_back(isBelow ? Box(away, corner) : Box(corner, away));
+            boxes.push_back(isBelow ? Bounds(away, corner) : Bounds(corner, away));
         }
         const std::size_t all = boxes.size() * (boxes.size() - 1) / 2;
         for (const double cellSize : {0.0, 1.0, 0.3, 100.0}) {
@@ -166,7 +166,7 @@ TYPED_TEST(HardNumbers, OfBothZeroesAreOneNumber) {
     world.add(makeBox<TypeParam>(0, 0, 0, 1, 1, 1));
     EXPECT_EQ(world.update().born.size(), 1U);
     world.move(id,
-               Box(Vector3<TypeParam>(-1, -1, -1), Vector3<TypeParam>::Constant(-TypeParam(0))));
+               Bounds(Vector3<TypeParam>(-1, -1, -1), Vector3<TypeParam>::Constant(-TypeParam(0))));
     const PairChanges changes = world.update();
     EXPECT_EQ(changes.born.size() + changes.died.size(), 0U);
 }

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Zlib
+#include <broadphase/search/volume_search.hpp>
+
+#include <broadphase/simd/kernels.hpp>
+
+#include <algorithm>
+#include <array>
+
+namespace hashphase::detail {
+namespace {
+
+using TakeSlots = FunctionRef<bool(std::span<const std::uint32_t>)>;
+
+bool handOver(SlotSink& sink) {
+    const std::span<const std::uint32_t> found(sink.begin, sink.next);
+    sink.next = sink.begin;
+    return found.empty() || (*static_cast<const TakeSlots*>(sink.owner))(found);
+}
+
+}  // namespace
+
+template <class Scalar>
+bool searchVolume(const Table<Scalar>& table, const Volume<Scalar>& volume, TakeSlots take,
+                  KernelCost& cost) {
+    std::array<std::uint32_t, 512> found;
+    SlotSink sink{found.data(), found.data(), found.data() + found.size(), &handOver, &take};
+    return std::ranges::all_of(table.levels(), [&](const Level<Scalar>& level) {
+        return !level.hasCells() || level.count() == 0 ||
+               (kernels<Scalar>().walkVolume(level, volume, sink, cost) && handOver(sink));
+    });
+}
+
+template bool searchVolume(const Table<float>&, const Volume<float>&, TakeSlots, KernelCost&);
+template bool searchVolume(const Table<double>&, const Volume<double>&, TakeSlots, KernelCost&);
+
+}  // namespace hashphase::detail

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What the ray kernel reads and writes: as kernel_types.hpp, plain arrays and nothing that has
+// code.
+
+#include <cstdint>
+
+namespace hashphase::detail {
+
+/// Boxes of a block.
+inline constexpr std::uint32_t kBlockWidth = 8;
+
+/// Eight boxes by column: min x, y, z, max x, y, z, in single precision and rounded outward. A lane
+/// without a box is inverted infinitely, which nothing meets.
+struct alignas(16) BoxBlock {
+    float bounds[6][kBlockWidth];
+    /// Per lane, what stands behind the box: a block, or a slot in the lowest blocks.
+    std::uint32_t below[kBlockWidth];
+    std::uint32_t count;  // of lanes with a box, the first ones
+};
+
+/// A ray, or a box moved along it, prepared for many boxes: position t in [0, 1] is in the slab of
+/// an axis from (bound - offset) * inverse of the near column to (bound - offset) * farInverse of
+/// the far one.
+struct RayLanes {
+    std::uint32_t nearColumn[3];
+    std::uint32_t farColumn[3];
+    float offset[6];  // by column
+    float inverse[3];
+    float farInverse[3];  // the least bit longer than `inverse`
+};
+
+/// Where a kernel brings what a ray may meet: take(sink, slots, count) takes that of one block,
+/// from near to far, and may make `last` smaller; false ends the search.
+struct RaySink {
+    float last;  // what is met later is not looked for
+    bool (*take)(RaySink& sink, const std::uint32_t* slots, std::uint32_t count);
+    void* owner;
+};
+
+}  // namespace hashphase::detail
