@@ -5,6 +5,7 @@
 
 #include <broadphase/pairs/pair_tracker.hpp>
 
+#include <broadphase/search/box_search.hpp>
 #include <broadphase/search/join.hpp>
 
 #include <algorithm>
@@ -158,12 +159,14 @@ void PairTracker<Scalar>::forTouching(const Table<Scalar>& table, const Box& box
                                       FunctionRef<void(std::uint32_t)> visit) {
     bounds_.clear();
     bounds_.push(box);
-    FewPairs found;
     KernelCost cost;
-    found.assign([&](PairSink& sink) { walkTogether(table, bounds_.columns(), 1, sink, cost); });
-    for (const auto [query, entry] : found.pairs()) {
-        visit(table.slot(entry));
-    }
+    const auto take = [&](std::span<const IndexPair> found) {
+        for (const auto [query, entry] : found) {
+            visit(table.slot(entry));
+        }
+        return true;
+    };
+    static_cast<void>(searchBoxes(table, bounds_.columns(), 1, take, cost));
 }
 
 template <class Scalar>

@@ -7,7 +7,7 @@
 namespace hashphase::detail {
 namespace {
 
-using TakeSlots = FunctionRef<double(std::span<const std::uint32_t>)>;
+using TakeNear = FunctionRef<double(std::span<const std::uint32_t>)>;
 
 /// A search through all levels of a tree.
 template <class Scalar>
@@ -15,7 +15,7 @@ struct RaySearch {
     const BoxTree& tree;
     TreeRay<Scalar> ray;
     double limit;
-    TakeSlots take;
+    TakeNear take;
     KernelCost cost{};
 
     [[nodiscard]] bool walk(const BoxTreeLevel& level) {
@@ -53,7 +53,7 @@ private:
 }  // namespace
 
 template <class Scalar>
-bool searchRay(const BoxTree& tree, const RayRegion<Scalar>& region, double limit, TakeSlots take,
+bool searchRay(const BoxTree& tree, const RayRegion<Scalar>& region, double limit, TakeNear take,
                QueryCost& cost) {
     if (tree.levels().empty() || region.isEmpty()) {
         return true;
@@ -70,7 +70,7 @@ bool searchRay(const BoxTree& tree, const RayRegion<Scalar>& region, double limi
     return goesOn;
 }
 
-template bool searchRay(const BoxTree&, const RayRegion<float>&, double, TakeSlots, QueryCost&);
-template bool searchRay(const BoxTree&, const RayRegion<double>&, double, TakeSlots, QueryCost&);
+template bool searchRay(const BoxTree&, const RayRegion<float>&, double, TakeNear, QueryCost&);
+template bool searchRay(const BoxTree&, const RayRegion<double>&, double, TakeNear, QueryCost&);
 
 }  // namespace hashphase::detail

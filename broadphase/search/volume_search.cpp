@@ -9,18 +9,18 @@
 namespace hashphase::detail {
 namespace {
 
-using TakeSlots = FunctionRef<bool(std::span<const std::uint32_t>)>;
+using TakeInside = FunctionRef<bool(std::span<const std::uint32_t>)>;
 
 bool handOver(SlotSink& sink) {
     const std::span<const std::uint32_t> found(sink.begin, sink.next);
     sink.next = sink.begin;
-    return found.empty() || (*static_cast<const TakeSlots*>(sink.owner))(found);
+    return found.empty() || (*static_cast<const TakeInside*>(sink.owner))(found);
 }
 
 }  // namespace
 
 template <class Scalar>
-bool searchVolume(const Table<Scalar>& table, const Volume<Scalar>& volume, TakeSlots take,
+bool searchVolume(const Table<Scalar>& table, const Volume<Scalar>& volume, TakeInside take,
                   KernelCost& cost) {
     std::array<std::uint32_t, 512> found;
     SlotSink sink{found.data(), found.data(), found.data() + found.size(), &handOver, &take};
@@ -30,7 +30,7 @@ bool searchVolume(const Table<Scalar>& table, const Volume<Scalar>& volume, Take
     });
 }
 
-template bool searchVolume(const Table<float>&, const Volume<float>&, TakeSlots, KernelCost&);
-template bool searchVolume(const Table<double>&, const Volume<double>&, TakeSlots, KernelCost&);
+template bool searchVolume(const Table<float>&, const Volume<float>&, TakeInside, KernelCost&);
+template bool searchVolume(const Table<double>&, const Volume<double>&, TakeInside, KernelCost&);
 
 }  // namespace hashphase::detail
