@@ -3,7 +3,7 @@
 
 #include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/core/limits.hpp>
-#include <integration/bullet/spatial_hash_broadphase.hpp>
+#include <integration/bullet/detail/cache_watch.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
@@ -47,8 +47,9 @@ private:
 };
 
 PairCache::~PairCache() {
-    if (watcher_ != nullptr) {
-        watcher_->forgetCache();
+    if (watch_ != nullptr) {
+        watch_->forget();
+        watch_->cache = nullptr;
     }
 }
 
@@ -135,30 +136,9 @@ void* PairCache::remove(std::uint64_t ids, btDispatcher* dispatcher, Freeing fre
     return removed.m_internalInfo1;
 }
 
-void PairCache::noteTakenOut(const btBroadphasePair& pair) noexcept {
-    if (watcher_ == nullptr) {
-        return;
-    }
-    try {
-        if (takenOut_ == nullptr) {
-            takenOut_ = std::make_unique<std::vector<ProxyCouple>>();
-        }
-        if (takenOut_->size() == takenOut_->capacity()) {
-            pruneTakenOut();
-            takenOut_->reserve(2 * takenOut_->size() + 8);
-        }
-        takenOut_->emplace_back(*pair.m_pProxy0, *pair.m_pProxy1);
-    } catch (const std::exception&) {
-        isMoreTakenOut_ = true;
-    }
-}
-
-// Where nobody asks, those of which a proxy is gone do not gather, nor those that are back.
-void PairCache::pruneTakenOut() noexcept {
-    if (takenOut_ != nullptr) {
-        std::erase_if(*takenOut_, [this](const ProxyCouple& couple) {
-            return !couple.isUpToDate() || ids_.find(couple.ids()) != kNone;
-        });
+void PairCache::noteTakenOut(const btBroadphasePair& pair) const noexcept {
+    if (watch_ != nullptr) {
+        watch_->note(pair);
     }
 }
 
@@ -347,20 +327,13 @@ std::size_t PairCache::memoryBytes() const noexcept {
     return sizeof(*this) + static_cast<std::size_t>(pairs_.capacity()) * sizeof(btBroadphasePair) +
            ids_.memoryBytes() + links_.capacity() * sizeof(Link) + firstEdge_.memoryBytes() +
            retired_.capacity() * sizeof(Retired) + places_.capacity() * sizeof(std::uint32_t) +
-           ranks_.memoryBytes() + scratch_.capacity() * sizeof(Note) +
-           (takenOut_ != nullptr
-                ? sizeof(std::vector<ProxyCouple>) + takenOut_->capacity() * sizeof(ProxyCouple)
-                : 0);
+           ranks_.memoryBytes() + scratch_.capacity() * sizeof(Note);
 }
 
 // Bullet's arrays give memory back only when they are emptied. Chains are made anew when they are
 // needed.
 void PairCache::releaseUnusedMemory() noexcept {
     checkMayChange();
-    pruneTakenOut();
-    if (takenOut_ != nullptr && takenOut_->empty()) {
-        takenOut_ = nullptr;
-    }
     if (pairs_.capacity() > pairs_.size()) {
         btBroadphasePairArray fresh;
         fresh.reserve(pairs_.size());

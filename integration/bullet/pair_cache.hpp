@@ -40,14 +40,15 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
-namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
+struct CacheWatch;
+}
 
-class SpatialHashBroadphase;
+namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 /// In which order the array lists the pairs.
 enum class PairOrder {
@@ -265,9 +266,20 @@ public:
     /// - An array that counts as sorted is in canonical order.
     [[nodiscard]] std::string validate() const;
 
-private:
-    friend class SpatialHashBroadphase;
+    // --- For a broadphase ------------------------------------------------------------------------
 
+    /// Who removes a pair: what others take out, a broadphase wants to know.
+    enum class Remover { broadphase, other };
+
+    /// The same as removeOverlappingPairsContainingProxies(), by that remover.
+    void removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher,
+                       Remover remover);
+
+    /// Where it is noted what others take out; null for nowhere.
+    [[nodiscard]] detail::CacheWatch* watch() const noexcept { return watch_; }
+    void setWatch(detail::CacheWatch* watch) noexcept { watch_ = watch; }
+
+private:
     // A pair has two edges: 2 * its index for the proxy with the lower unique id, and that + 1. The
     // edges of a proxy are chained, those of the first so many pairs, that is.
     struct Link {
@@ -288,9 +300,6 @@ private:
     };
 
     enum class Freeing { now, inTurn };
-
-    // Who removes a pair: what others take out, the broadphase wants to know.
-    enum class Remover { broadphase, other };
 
     class Processing;
 
@@ -317,18 +326,8 @@ private:
     void name(const ProxyCouple& couple, btBroadphasePair& pair) const;
     btBroadphasePair* add(const ProxyCouple& couple);
     void* remove(std::uint64_t ids, btDispatcher* dispatcher, Freeing freeing, Remover remover);
-    void noteTakenOut(const btBroadphasePair& pair) noexcept;
-    void pruneTakenOut() noexcept;
-    [[nodiscard]] bool isAnythingTakenOut() const noexcept {
-        return isMoreTakenOut_ || (takenOut_ != nullptr && !takenOut_->empty());
-    }
-    void dropTakenOut() noexcept {
-        takenOut_ = nullptr;
-        isMoreTakenOut_ = false;
-    }
-    void removePairsOf(btBroadphaseProxy& proxy, btDispatcher* dispatcher, Remover remover);
-    void removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher,
-                       Remover remover);
+    void noteTakenOut(const btBroadphasePair& pair) const noexcept;
+    void removePairsOfOne(btBroadphaseProxy& proxy, btDispatcher* dispatcher, Remover remover);
     void retire(const btBroadphasePair& pair, std::uint64_t ids, btDispatcher* dispatcher) {
         if (pair.m_algorithm != nullptr && dispatcher != nullptr) {
             retired_.push_back({{keysOf(pair, ids), ids, kNone}, pair, dispatcher});
@@ -388,13 +387,11 @@ private:
     std::size_t pairsScanned_ = 0;  // in place of chaining them, since some were last chained
     std::uint64_t pairsVisited_ = 0;
     bool isSorted_ = true;
-    bool isMoreTakenOut_ = false;  // than is noted, as there was no memory
-    int processDepth_ = 0;         // processAllOverlappingPairs() calls under way
+    int processDepth_ = 0;  // processAllOverlappingPairs() calls under way
 
     std::vector<Retired> retired_;
 
-    SpatialHashBroadphase* watcher_ = nullptr;            // wants to know what others take out
-    std::unique_ptr<std::vector<ProxyCouple>> takenOut_;  // since it last asked
+    detail::CacheWatch* watch_ = nullptr;
 
     std::vector<std::uint32_t> places_;  // scratch of batches, vacant ones; and of sort(), new ones
     detail::ProxyRanks ranks_;           // scratch of removals

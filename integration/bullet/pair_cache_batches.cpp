@@ -159,7 +159,7 @@ void PairCache::removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDis
     constexpr std::size_t kFew = 4;  // so many single scans cost what one for many does
     if (isTold() || proxies.size() < kFew) {
         for (btBroadphaseProxy* proxy : proxies) {
-            removePairsOf(*proxy, dispatcher, remover);
+            removePairsOfOne(*proxy, dispatcher, remover);
         }
         return;
     }

@@ -147,10 +147,11 @@ std::vector<PairCache::Note> PairCache::notesOf(const btBroadphaseProxy& proxy) 
 
 void PairCache::removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy,
                                                       btDispatcher* dispatcher) {
-    removePairsOf(*proxy, dispatcher, Remover::other);
+    removePairsOfOne(*proxy, dispatcher, Remover::other);
 }
 
-void PairCache::removePairsOf(btBroadphaseProxy& proxy, btDispatcher* dispatcher, Remover remover) {
+void PairCache::removePairsOfOne(btBroadphaseProxy& proxy, btDispatcher* dispatcher,
+                                 Remover remover) {
     std::vector<Note> notes;
     try {
         notes = notesOf(proxy);

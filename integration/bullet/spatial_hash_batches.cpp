@@ -73,14 +73,14 @@ void SpatialHashBroadphase::destroyProxies(std::span<btBroadphaseProxy* const> p
 
 void SpatialHashBroadphase::removePairsOf(std::span<btBroadphaseProxy* const> proxies,
                                           btDispatcher* dispatcher) {
-    if (batchCache_ == nullptr) {
+    if (watch_.cache == nullptr) {
         for (btBroadphaseProxy* proxy : proxies) {
             pairCache_->removeOverlappingPairsContainingProxy(proxy, dispatcher);
         }
         return;
     }
     try {
-        batchCache_->removePairsOf(proxies, dispatcher, PairCache::Remover::broadphase);
+        watch_.cache->removePairsOf(proxies, dispatcher, PairCache::Remover::broadphase);
     } catch (...) {
         isCacheBehind_ = true;  // for nobody is destroyed
         throw;

@@ -71,34 +71,14 @@ void SpatialHashBroadphase::refilterAll(btDispatcher* dispatcher) {
     removeDeferred([this](const btBroadphasePair& pair) { return isAccepted(pair); }, dispatcher);
 }
 
-SpatialHashBroadphase::~SpatialHashBroadphase() {
-    if (batchCache_ != nullptr && batchCache_->watcher_ == this) {
-        batchCache_->watcher_ = nullptr;
-        batchCache_->dropTakenOut();
-    }
-}
-
-// It notes what others take out of it, from now on.
-void SpatialHashBroadphase::watchCache() noexcept {
-    if (batchCache_ != nullptr) {
-        batchCache_->watcher_ = this;
-        batchCache_->dropTakenOut();
-    }
-}
-
-// It has ended before the broadphase.
-void SpatialHashBroadphase::forgetCache() noexcept {
-    batchCache_ = nullptr;
-}
-
 // A pair that the program has taken out of the cache is one as before, unless the filter refuses it by now.
 void SpatialHashBroadphase::putBackWhatWasTakenOut(btDispatcher* dispatcher) {
-    if (batchCache_ == nullptr || batchCache_->takenOut_ == nullptr) {
+    watch_.prune();
+    if (watch_.takenOut == nullptr) {
         return;
     }
     try {
-        batchCache_->pruneTakenOut();
-        std::vector<ProxyCouple> couples = *batchCache_->takenOut_;
+        std::vector<ProxyCouple> couples = *watch_.takenOut;
         const auto pairOf = [](const ProxyCouple& couple) {
             const ProxyId a = idOf(couple.lower());
             const ProxyId b = idOf(couple.upper());
@@ -112,28 +92,28 @@ void SpatialHashBroadphase::putBackWhatWasTakenOut(btDispatcher* dispatcher) {
         static_cast<void>(pairs_.refilter(pairs, cacheFilter()));
         std::erase_if(couples,
                       [&](const ProxyCouple& couple) { return !pairs_.isPair(pairOf(couple)); });
-        batchCache_->takenOut_ = nullptr;
+        watch_.takenOut = nullptr;
         applyToCache({}, couples, dispatcher);
     } catch (...) {
-        batchCache_->isMoreTakenOut_ = true;
+        watch_.isMoreTakenOut = true;
         throw;
     }
 }
 
 // Where not all are noted, for want of memory: all are asked about, and then compared.
 void SpatialHashBroadphase::askIfMoreWasTakenOut(btDispatcher* dispatcher) {
-    if (batchCache_ != nullptr && batchCache_->isMoreTakenOut_) {
+    if (watch_.isMoreTakenOut) {
         refilterAll(dispatcher);
         isCacheBehind_ = true;
-        batchCache_->dropTakenOut();
+        watch_.forget();
     }
 }
 
 void SpatialHashBroadphase::shapeChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
     checkMayChange();
     Proxy* own = checkedProxy(proxy);
-    if (batchCache_ != nullptr) {
-        batchCache_->renewPairsContainingProxy(own, dispatcher);
+    if (watch_.cache != nullptr) {
+        watch_.cache->renewPairsContainingProxy(own, dispatcher);
         return;
     }
     if (pairCache_->hasDeferredRemoval()) {

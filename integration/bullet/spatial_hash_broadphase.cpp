@@ -57,9 +57,10 @@ SpatialHashBroadphase::SpatialHashBroadphase(std::nullptr_t, const SpatialHashCo
 
 SpatialHashBroadphase::SpatialHashBroadphase(PairCache* pairCache, const SpatialHashConfig& config)
     : SpatialHashBroadphase(static_cast<btOverlappingPairCache*>(pairCache), config) {
-    batchCache_ = pairCache != nullptr ? pairCache : ownCache_.get();
+    if (pairCache != nullptr) {
+        watch_.begin(*pairCache);
+    }
     groupsDecide_ = doGroupsDecide();
-    watchCache();
 }
 
 SpatialHashBroadphase::SpatialHashBroadphase(btOverlappingPairCache* pairCache,
@@ -71,14 +72,15 @@ SpatialHashBroadphase::SpatialHashBroadphase(btOverlappingPairCache* pairCache,
       pairCache_(pairCache) {
     if (pairCache_ == nullptr) {
         ownCache_ = std::make_unique<PairCache>();
-        batchCache_ = ownCache_.get();
+        watch_.begin(*ownCache_);
         pairCache_ = ownCache_.get();
     }
     groupsDecide_ = doGroupsDecide();
-    watchCache();
     HASHPHASE_ASSERT(pairCache_->getNumOverlappingPairs() == 0,
                      "A pair cache has no pairs yet when it is given to a broadphase.");
 }
+
+SpatialHashBroadphase::~SpatialHashBroadphase() = default;
 
 btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
                                                       const btVector3& aabbMax, int /*shapeType*/,
@@ -234,8 +236,8 @@ void SpatialHashBroadphase::askFilter(std::span<const ProxyPair> asked,
         }
         Proxy* const first = proxyAt(asked[i].first.index);
         Proxy* const second = proxyAt(asked[i].second.index);
-        const bool isPair = batchCache_ != nullptr
-                                ? batchCache_->needsBroadphaseCollision(first, second)
+        const bool isPair = watch_.cache != nullptr
+                                ? watch_.cache->needsBroadphaseCollision(first, second)
                                 : pairCache_->needsBroadphaseCollision(first, second);
         accepted[i] = isPair ? 1 : 0;
     }
@@ -340,8 +342,8 @@ void SpatialHashBroadphase::applyToCache(std::span<const ProxyCouple> died,
                                          std::span<const ProxyCouple> born,
                                          btDispatcher* dispatcher) {
     const Applying applying(*this, !died.empty() || !born.empty());
-    if (batchCache_ != nullptr) {
-        batchCache_->update(died, born, dispatcher);
+    if (watch_.cache != nullptr) {
+        watch_.cache->update(died, born, dispatcher);
         return;
     }
     for (const ProxyCouple& couple : died) {

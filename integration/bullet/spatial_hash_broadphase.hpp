@@ -39,6 +39,7 @@
 #include <broadphase/grid.hpp>
 #include <broadphase/pairs.hpp>
 #include <broadphase/sweeps.hpp>
+#include <integration/bullet/detail/cache_watch.hpp>
 #include <integration/bullet/export.hpp>
 #include <integration/bullet/pair_cache.hpp>
 #include <integration/bullet/precision.hpp>
@@ -320,8 +321,6 @@ public:
     [[nodiscard]] std::string validate() const;
 
 private:
-    friend class PairCache;
-
     /// What is known of a client.
     enum class Client : std::uint8_t { unknown, ghost, other };
 
@@ -366,8 +365,6 @@ private:
     void applyToCache(std::span<const ProxyCouple> died, std::span<const ProxyCouple> born,
                       btDispatcher* dispatcher);
     void catchUp(btDispatcher* dispatcher);
-    void watchCache() noexcept;
-    void forgetCache() noexcept;
     void putBackWhatWasTakenOut(btDispatcher* dispatcher);
     void askIfMoreWasTakenOut(btDispatcher* dispatcher);
     [[nodiscard]] bool isEager(Proxy& proxy, const btDispatcher* dispatcher) {
@@ -376,7 +373,7 @@ private:
     }
     [[nodiscard]] bool mayHaveGhosts() const noexcept {
         return config_.eagerGhosts &&
-               (batchCache_ == nullptr || batchCache_->getInternalGhostPairCallback() != nullptr);
+               (watch_.cache == nullptr || watch_.cache->getInternalGhostPairCallback() != nullptr);
     }
     [[nodiscard]] bool isGhost(Proxy& proxy, const btDispatcher* dispatcher);
     [[nodiscard]] std::vector<ProxyId> ghostsAt(const Proxy& proxy) const;
@@ -417,7 +414,7 @@ private:
     bool isApplying_ = false;      // changes to the cache
 
     std::unique_ptr<PairCache> ownCache_;  // if none was given
-    PairCache* batchCache_ = nullptr;      // the cache, if it is known to be a PairCache
+    detail::CacheWatch watch_;             // of the cache, if it is known to be a PairCache
     btOverlappingPairCache* pairCache_ = nullptr;
     detail::GroupKinds groupKinds_;
     // Of what was created or moved since pairs were calculated.

@@ -24,19 +24,16 @@ void SpatialHashBroadphase::releaseUnusedMemory() noexcept {
     }
     detail::freeArrays(died_, born_);
     dropLastProxies();
-    if (batchCache_ != nullptr) {
-        batchCache_->releaseUnusedMemory();
+    if (watch_.cache != nullptr) {
+        watch_.cache->releaseUnusedMemory();
     }
 }
 
 // Those whose indices the grid has given back. A cache that is behind, or from which somebody has taken
 // pairs, may still name some.
 void SpatialHashBroadphase::dropLastProxies() noexcept {
-    if (batchCache_ != nullptr) {
-        batchCache_->pruneTakenOut();
-    }
-    const bool mayBeNamed =
-        isCacheBehind_ || (batchCache_ != nullptr && batchCache_->isAnythingTakenOut());
+    watch_.prune();
+    const bool mayBeNamed = isCacheBehind_ || watch_.isAnythingTakenOut();
     if (!mayBeNamed && grid_.indexLimit() < uniqueIds_.size()) {
         uniqueIds_.resize(grid_.indexLimit());
         uniqueIds_.shrink_to_fit();
@@ -47,11 +44,11 @@ void SpatialHashBroadphase::dropLastProxies() noexcept {
 // The grid and its pairs look after themselves.
 void SpatialHashBroadphase::releaseAfterPeak() noexcept {
     dropLastProxies();
-    const std::size_t room = batchCache_ != nullptr ? batchCache_->capacity() : died_.capacity();
+    const std::size_t room = watch_.cache != nullptr ? watch_.cache->capacity() : died_.capacity();
     if (peaks_.isPast(pairs_.count(), room)) {
         detail::freeArrays(died_, born_);
-        if (batchCache_ != nullptr) {
-            batchCache_->releaseUnusedMemory();
+        if (watch_.cache != nullptr) {
+            watch_.cache->releaseUnusedMemory();
         }
     }
 }
@@ -66,9 +63,7 @@ void SpatialHashBroadphase::resetPool(btDispatcher* /*dispatcher*/) {
     if (!isWithin) {
         pairs_.clear();
         lastUniqueId_ = 0;
-        if (batchCache_ != nullptr) {
-            batchCache_->dropTakenOut();
-        }
+        watch_.forget();
         groupKinds_ = {};
         changedKinds_ = 0;
         seen_ = std::vector<std::uint64_t>();
@@ -84,7 +79,7 @@ std::size_t SpatialHashBroadphase::memoryBytes() const noexcept {
            (sweeps_ != nullptr ? sweeps_->memoryBytes() : 0) + uniqueIds_.capacity() * sizeof(int) +
            (died_.capacity() + born_.capacity()) * sizeof(ProxyCouple) +
            seen_.capacity() * sizeof(seen_[0]) + ghosts_.capacity() * sizeof(ghosts_[0]) +
-           (ownCache_ != nullptr ? ownCache_->memoryBytes() : 0);
+           watch_.memoryBytes() + (ownCache_ != nullptr ? ownCache_->memoryBytes() : 0);
 }
 
 std::string SpatialHashBroadphase::validate() const {
@@ -98,7 +93,7 @@ std::string SpatialHashBroadphase::validate() const {
         return {};
     }
     if (static_cast<std::size_t>(ownCache_->getNumOverlappingPairs()) != pairs_.count() &&
-        !ownCache_->isAnythingTakenOut()) {
+        !watch_.isAnythingTakenOut()) {
         return "The cache holds as many pairs as the set of pairs: broken.";
     }
     return ownCache_->validate();

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Zlib
+#include <integration/bullet/detail/cache_watch.hpp>
+
+#include <exception>
+
+namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
+
+CacheWatch::~CacheWatch() {
+    if (cache != nullptr && cache->watch() == this) {
+        cache->setWatch(nullptr);
+    }
+}
+
+void CacheWatch::begin(PairCache& watched) noexcept {
+    if (watched.watch() != nullptr) {
+        watched.watch()->forget();
+    }
+    forget();
+    cache = &watched;
+    watched.setWatch(this);
+}
+
+void CacheWatch::note(const btBroadphasePair& pair) noexcept {
+    try {
+        if (takenOut != nullptr && takenOut->size() == takenOut->capacity()) {
+            prune();
+        }
+        if (takenOut == nullptr) {
+            takenOut = std::make_unique<std::vector<ProxyCouple>>();
+        }
+        if (takenOut->size() == takenOut->capacity()) {
+            takenOut->reserve(2 * takenOut->size() + 8);
+        }
+        takenOut->emplace_back(*pair.m_pProxy0, *pair.m_pProxy1);
+    } catch (const std::exception&) {
+        isMoreTakenOut = true;
+    }
+}
+
+void CacheWatch::prune() noexcept {
+    if (takenOut == nullptr) {
+        return;
+    }
+    std::erase_if(*takenOut, [this](const ProxyCouple& couple) {
+        return !couple.isUpToDate() || cache->findPair(couple.lower(), couple.upper()) != nullptr;
+    });
+    if (takenOut->empty()) {
+        takenOut = nullptr;
+    }
+}
+
+void CacheWatch::forget() noexcept {
+    takenOut = nullptr;
+    isMoreTakenOut = false;
+}
+
+}  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE
