@@ -99,14 +99,14 @@ Crowd<Scalar>::~Crowd() = default;
 
 // --- The agents ----------------------------------------------------------------------------------
 
-// Says where the slot's proxy is; returns whether it is an agent. In place: what is copied at once
+// Says where the index's proxy is; returns whether it is an agent. In place: what is copied at once
 // after it was written in parts makes the processor wait.
 template <class Scalar>
-bool Crowd<Scalar>::stageSlot(const Grid<Scalar>& grid, std::uint32_t slot, ProxyFilter filter,
-                              Staged& staged) {
+bool Crowd<Scalar>::stageProxy(const Grid<Scalar>& grid, std::uint32_t proxyIndex,
+                               ProxyFilter filter, Staged& staged) {
     const detail::Population<Scalar>& proxies = grid.store().proxies;
-    const detail::Record<Scalar>& record = proxies.records[slot];
-    const bool isAccepted = proxies.isAlive(slot) && filter(proxies.idOf(slot));
+    const detail::Record<Scalar>& record = proxies.records[proxyIndex];
+    const bool isAccepted = proxies.isAlive(proxyIndex) && filter(proxies.idOf(proxyIndex));
     staged.generation = isAccepted ? record.generation : 0;
     const Vector3<Scalar> position = positionOf(record.box);
     staged.position = {position.x(), position.y(), position.z()};
@@ -130,7 +130,7 @@ void Crowd<Scalar>::chooseCells(const Grid<Scalar>& grid, Scalar radius, ProxyFi
         for (; place < count; ++place) {
             ++examined;
             Staged staged;
-            if (stageSlot(grid, slotAt(place), filter, staged)) {
+            if (stageProxy(grid, indexAt(place), filter, staged)) {
                 for (std::size_t axis = 0; axis < 3; ++axis) {
                     sample_[axis].push_back(static_cast<double>(staged.position[axis]));
                 }
@@ -143,7 +143,7 @@ void Crowd<Scalar>::chooseCells(const Grid<Scalar>& grid, Scalar radius, ProxyFi
     torus_ = detail::torusFor(sample_, static_cast<double>(reach), agents);
 }
 
-// Reads where the proxies are, in the order of their slots, which is that of memory.
+// Reads where the proxies are, in the order of their indices, which is that of memory.
 template <class Scalar>
 void Crowd<Scalar>::stage(const Grid<Scalar>& grid, ProxyFilter filter, ParallelFor parallelFor) {
     staged_.resize(placeCount_);
@@ -158,7 +158,7 @@ void Crowd<Scalar>::stage(const Grid<Scalar>& grid, ProxyFilter filter, Parallel
         std::uint32_t others = 0;
         for (std::size_t place = begin; place < end; ++place) {
             Staged& staged = staged_[place];
-            if (stageSlot(grid, slotAt(place), filter, staged)) {
+            if (stageProxy(grid, indexAt(place), filter, staged)) {
                 const auto& [x, y, z] = staged.position;
                 cellOfPlace_[place] = torus.cellOf(x, y, z);
                 ++agents;
@@ -207,7 +207,7 @@ void Crowd<Scalar>::sort(ParallelFor parallelFor) {
                 detail::prefetch(&staged_[places_[agent + kAhead]]);
             }
             const Staged& staged = staged_[places_[agent]];
-            ids_[agent] = {slotAt(places_[agent]), staged.generation};
+            ids_[agent] = {indexAt(places_[agent]), staged.generation};
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 columns_[axis][agent] = staged.position[axis];
             }

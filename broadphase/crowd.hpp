@@ -122,15 +122,15 @@ public:
     void releaseMemory() noexcept;
 
 private:
-    /// Where a slot's proxy is, and whose it is.
+    /// Where an index's proxy is, and whose it is.
     struct Staged {
         std::array<Scalar, 3> position;
         std::uint32_t generation;  // 0: none that the filter accepts
     };
     struct Tile;
 
-    static bool stageSlot(const Grid<Scalar>& grid, std::uint32_t slot, ProxyFilter filter,
-                          Staged& staged);
+    static bool stageProxy(const Grid<Scalar>& grid, std::uint32_t proxyIndex, ProxyFilter filter,
+                           Staged& staged);
     void stage(const Grid<Scalar>& grid, ProxyFilter filter, ParallelFor parallelFor);
     void chooseCells(const Grid<Scalar>& grid, Scalar radius, ProxyFilter filter);
     void sort(ParallelFor parallelFor);
@@ -141,12 +141,12 @@ private:
     [[nodiscard]] std::unique_ptr<Tile> borrowTile();
     void returnTile(std::unique_ptr<Tile> tile);
 
-    [[nodiscard]] std::uint32_t slotAt(std::size_t place) const noexcept {
+    [[nodiscard]] std::uint32_t indexAt(std::size_t place) const noexcept {
         return few_.empty() ? static_cast<std::uint32_t>(place) : few_[place];
     }
 
-    std::vector<std::uint32_t> few_;  // slots, where few have proxies
-    std::size_t placeCount_ = 0;      // of those slots, or of all
+    std::vector<std::uint32_t> few_;  // indices, where few have proxies
+    std::size_t placeCount_ = 0;      // of those indices, or of all
     std::vector<Staged> staged_;      // by place among them
     std::vector<std::uint32_t> cellOfPlace_;
     detail::PeakWatch peaks_;

@@ -68,10 +68,10 @@ std::span<const ProxyPair> Neighbours<Scalar>::find(const Grid<Scalar>& grid, Sc
         ids_.push_back(id);
         boxes_.push_back(detail::padded(box));
     });
-    for (auto i = static_cast<std::uint32_t>(slots_.size()); i < ids_.size(); ++i) {
-        slots_.push_back(i);
+    for (auto i = static_cast<std::uint32_t>(proxyIndices_.size()); i < ids_.size(); ++i) {
+        proxyIndices_.push_back(i);
     }
-    slots_.resize(ids_.size());
+    proxyIndices_.resize(ids_.size());
     grown_.resize(boxes_.size());
     constexpr std::size_t grain = 4096;
     parallelFor(boxes_.size(), grain, [&](std::size_t begin, std::size_t end) {
@@ -79,7 +79,7 @@ std::span<const ProxyPair> Neighbours<Scalar>::find(const Grid<Scalar>& grid, Sc
             grown_[i] = grown(boxes_[i], distance / 2);
         }
     });
-    table_.build(slots_, grown_, {}, parallelFor);
+    table_.build(proxyIndices_, grown_, {}, parallelFor);
     detail::KernelCost cost;
     candidates_.clear();
     detail::joinTable(table_, parallelFor, parts_, candidates_, cost);
@@ -103,7 +103,7 @@ std::span<const ProxyPair> Neighbours<Scalar>::find(const Grid<Scalar>& grid, Sc
 
 template <class Scalar>
 std::size_t Neighbours<Scalar>::memoryBytes() const noexcept {
-    return sizeof(*this) + slots_.capacity() * sizeof(slots_[0]) +
+    return sizeof(*this) + proxyIndices_.capacity() * sizeof(proxyIndices_[0]) +
            ids_.capacity() * sizeof(ProxyId) +
            (boxes_.capacity() + grown_.capacity()) * sizeof(boxes_[0]) + table_.memoryBytes() +
            parts_.memoryBytes() + candidates_.memoryBytes() + found_.capacity() * sizeof(ProxyPair);
@@ -111,7 +111,7 @@ std::size_t Neighbours<Scalar>::memoryBytes() const noexcept {
 
 template <class Scalar>
 void Neighbours<Scalar>::releaseMemory() noexcept {
-    detail::freeArrays(ids_, boxes_, grown_, slots_, found_);
+    detail::freeArrays(ids_, boxes_, grown_, proxyIndices_, found_);
     table_ = {};
     parts_ = {};
     candidates_ = {};

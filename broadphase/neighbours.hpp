@@ -42,7 +42,7 @@ private:
     std::vector<ProxyId> ids_;
     std::vector<detail::PaddedBox<Scalar>> boxes_;
     std::vector<detail::PaddedBox<Scalar>> grown_;
-    std::vector<std::uint32_t> slots_;  // 0, 1, 2 ...
+    std::vector<std::uint32_t> proxyIndices_;  // 0, 1, 2 ...
     detail::Table<Scalar> table_;
     detail::PairParts parts_;
     detail::PairList candidates_;

@@ -87,7 +87,7 @@ public:
     void releaseUnusedMemory() noexcept;
 
     /// Says which invariant is broken, in a sentence; empty when all hold:
-    /// - Every motion is listed by its slot, and no other slot is.
+    /// - Every motion is listed by its index, and no other index is.
     [[nodiscard]] std::string validate() const;
 
     /// What the library's own parts read.

@@ -15,7 +15,7 @@ namespace hashphase::detail {
 /// numbers, over all levels, have 32 bits.
 inline constexpr std::size_t kMostProxies = std::size_t{1} << 28;
 
-/// A slot of this generation, which is even as all that are free, has used up its ids: it stays free,
+/// An index of this generation, which is even as all that are free, has used up its ids: it stays free,
 /// or an id would come to name something else.
 inline constexpr std::uint32_t kLastGeneration = ~std::uint32_t{1};
 

@@ -11,7 +11,7 @@
 
 namespace hashphase::detail {
 
-/// A set of pairs of slots, the smaller one on top, in which those of one slot are chained. Keeps its
+/// A set of pairs of indices, the smaller one on top, in which those of one index are chained. Keeps its
 /// memory.
 class PairKeySet {
 public:
@@ -19,12 +19,12 @@ public:
     [[nodiscard]] std::size_t size() const noexcept { return keys_.size(); }
     [[nodiscard]] std::span<const std::uint64_t> keys() const noexcept { return keys_.keys(); }
 
-    /// Makes room for `count` pairs of slots below `slotCount`, so that insert() does not allocate.
-    void reserve(std::size_t count, std::size_t slotCount) {
+    /// Makes room for `count` pairs of indices below `indexCount`, so that insert() does not allocate.
+    void reserve(std::size_t count, std::size_t indexCount) {
         keys_.reserve(count);
         ensureCapacity(next_, 2 * count);
-        if (firstOf_.size() < slotCount) {
-            firstOf_.resize(slotCount, kNone);
+        if (firstOf_.size() < indexCount) {
+            firstOf_.resize(indexCount, kNone);
         }
     }
 
@@ -36,11 +36,11 @@ public:
         }
     }
 
-    /// Calls visit(key) for those of the slot. Cost: their number.
+    /// Calls visit(key) for those of the index. Cost: their number.
     template <class Visit>
-    void forEachOf(std::uint32_t slot, const Visit& visit) const {
-        for (std::uint32_t at = slot < firstOf_.size() ? firstOf_[slot] : kNone; at != kNone;
-             at = next_[at]) {
+    void forEachOf(std::uint32_t proxyIndex, const Visit& visit) const {
+        for (std::uint32_t at = proxyIndex < firstOf_.size() ? firstOf_[proxyIndex] : kNone;
+             at != kNone; at = next_[at]) {
             visit(keys_.keys()[at / 2]);
         }
     }
@@ -72,15 +72,15 @@ public:
 private:
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-    void chain(std::uint32_t slot) noexcept {
+    void chain(std::uint32_t proxyIndex) noexcept {
         const auto at = static_cast<std::uint32_t>(next_.size());
-        next_.push_back(firstOf_[slot]);
-        firstOf_[slot] = at;
+        next_.push_back(firstOf_[proxyIndex]);
+        firstOf_[proxyIndex] = at;
     }
 
     FlatSet keys_;
-    std::vector<std::uint32_t> next_;     // two for each key: the next one of either slot
-    std::vector<std::uint32_t> firstOf_;  // by slot
+    std::vector<std::uint32_t> next_;     // two for each key: the next one of either index
+    std::vector<std::uint32_t> firstOf_;  // by index
 };
 
 }  // namespace hashphase::detail

@@ -58,7 +58,7 @@ struct Level {
     const Scalar* columns[6] = {};                        // min x, y, z, max x, y, z of all entries
     const std::uint32_t* bucketStart = nullptr;           // of the level's own buckets, and the end
     const std::uint32_t* bucketOfEntry = nullptr;         // of all entries, counted over all levels
-    const std::uint32_t* entrySlots = nullptr;            // of all entries
+    const std::uint32_t* proxyIndices = nullptr;          // of all entries
     const Row* rowOfEntry = nullptr;                      // of all entries, where a level is hashed
     const SortedBucket<Scalar>* sortedBuckets = nullptr;  // the level's own, in ascending order
 

@@ -114,7 +114,7 @@ std::size_t Table<Scalar>::countBuckets(std::span<const PaddedBox<Scalar>> boxes
 // A counting sort. Boxes that come in the order of the last time are read and written nearly in
 // sequence.
 template <class Scalar>
-void Table<Scalar>::sortEntries(std::span<const std::uint32_t> boxSlots,
+void Table<Scalar>::sortEntries(std::span<const std::uint32_t> boxIndices,
                                 std::span<const PaddedBox<Scalar>> boxes, const ProxyGroups* groups,
                                 ParallelFor parallelFor) {
     std::uint32_t sum = 0;
@@ -127,7 +127,7 @@ void Table<Scalar>::sortEntries(std::span<const std::uint32_t> boxSlots,
     sum += std::exchange(bucketStart_[listBucket], sum);
     bucketStart_.back() = sum;
     const std::uint32_t count = sum;
-    slots_.resize(count);
+    proxyIndices_.resize(count);
     order_.resize(count);
     bucketOfEntry_.resize(count);
     for (auto& column : bounds_) {
@@ -145,12 +145,12 @@ void Table<Scalar>::sortEntries(std::span<const std::uint32_t> boxSlots,
     }
     std::copy_backward(bucketStart_.begin(), bucketStart_.end() - 1, bucketStart_.end());
     bucketStart_[0] = 0;
-    sortCrowds(boxSlots, boxes, groups);
+    sortCrowds(boxIndices, boxes, groups);
 
     parallelFor(count, kTableGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t entry = begin; entry < end; ++entry) {
             const std::uint32_t i = order_[entry];
-            slots_[entry] = boxSlots[i];
+            proxyIndices_[entry] = boxIndices[i];
             bucketOfEntry_[entry] = buckets_[i];
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 bounds_[axis][entry] = boxes[i].low[axis];
@@ -181,7 +181,7 @@ void Table<Scalar>::forCrowds(const Level<Scalar>& level, const Visit& visit) {
 // where no axis tells them apart, are mostly some that may not pair: by groups, a search need not read
 // what it cannot pair with.
 template <class Scalar>
-void Table<Scalar>::sortCrowds(std::span<const std::uint32_t> boxSlots,
+void Table<Scalar>::sortCrowds(std::span<const std::uint32_t> boxIndices,
                                std::span<const PaddedBox<Scalar>> boxes,
                                const ProxyGroups* groups) {
     sortedBuckets_.clear();
@@ -194,7 +194,7 @@ void Table<Scalar>::sortCrowds(std::span<const std::uint32_t> boxSlots,
         }
         forCrowds(level, [&](std::uint32_t bucket, std::span<std::uint32_t> crowd) {
             const auto groupsOf = [&](std::uint32_t i) {
-                return groups[2 * std::size_t{boxSlots[i]}];
+                return groups[2 * std::size_t{boxIndices[i]}];
             };
             const bool haveGroups = groups != nullptr && sortByGroups(crowd, groupsOf);
             std::uint32_t first = bucketStart_[bucket];
@@ -265,7 +265,7 @@ void Table<Scalar>::noteRows() {
         return level.hasCells() && !level.isDense() && level.count() > 0;
     };
     const bool isNeeded = std::any_of(levels_.begin(), levels_.end(), isHashed);
-    rowOfEntry_.resize(isNeeded ? slots_.size() : 0);
+    rowOfEntry_.resize(isNeeded ? proxyIndices_.size() : 0);
     for (Level<Scalar>& level : levels_) {
         if (!isHashed(level)) {
             continue;
@@ -306,10 +306,10 @@ void Table<Scalar>::noteHeights() {
 }
 
 template <class Scalar>
-void Table<Scalar>::build(std::span<const std::uint32_t> boxSlots,
+void Table<Scalar>::build(std::span<const std::uint32_t> boxIndices,
                           std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed,
                           ParallelFor parallelFor, const ProxyGroups* groups) {
-    HASHPHASE_ASSERT(boxSlots.size() == boxes.size(), "Every box has a slot.");
+    HASHPHASE_ASSERT(boxIndices.size() == boxes.size(), "Every box has a proxyIndex.");
     if (boxes.empty()) {
         clear();
         return;
@@ -319,7 +319,7 @@ void Table<Scalar>::build(std::span<const std::uint32_t> boxSlots,
             layout_ = std::make_unique<LevelLayout<Scalar>>();
         }
         findBuckets(boxes, fixed, parallelFor);
-        sortEntries(boxSlots, boxes, groups, parallelFor);
+        sortEntries(boxIndices, boxes, groups, parallelFor);
     } catch (...) {
         clear();
         throw;
@@ -362,7 +362,7 @@ void Table<Scalar>::linkLevels() noexcept {
         }
         level.bucketStart = bucketStart_.data() + level.firstBucket;
         level.bucketOfEntry = bucketOfEntry_.data();
-        level.entrySlots = slots_.data();
+        level.proxyIndices = proxyIndices_.data();
         level.rowOfEntry = rowOfEntry_.data();
         level.sortedBuckets = sorted;
         sorted += level.sortedCount;
@@ -373,7 +373,7 @@ template <class Scalar>
 void Table<Scalar>::clear() noexcept {
     largestBucket_ = 0;
     levels_.clear();
-    slots_.clear();
+    proxyIndices_.clear();
     order_.clear();
     sortedBuckets_.clear();
 }
@@ -388,7 +388,7 @@ void Table<Scalar>::erase(std::uint32_t entry) noexcept {
 template <class Scalar>
 std::size_t Table<Scalar>::memoryBytes() const noexcept {
     return levels_.capacity() * sizeof(Level<Scalar>) +
-           (bucketStart_.capacity() + slots_.capacity() + order_.capacity() +
+           (bucketStart_.capacity() + proxyIndices_.capacity() + order_.capacity() +
             bucketOfEntry_.capacity() + buckets_.capacity() + longOnes_.capacity()) *
                sizeof(std::uint32_t) +
            6 * bounds_[0].capacity() * sizeof(Scalar) + rowOfEntry_.capacity() * sizeof(Row) +
@@ -398,13 +398,13 @@ std::size_t Table<Scalar>::memoryBytes() const noexcept {
 
 template <class Scalar>
 void Table<Scalar>::releaseUnusedMemory() noexcept {
-    if (slots_.empty()) {
+    if (proxyIndices_.empty()) {
         *this = {};
         return;
     }
     layout_->releaseUnusedMemory();
     levels_.shrink_to_fit();
-    for (auto* numbers : {&bucketStart_, &slots_, &order_, &bucketOfEntry_}) {
+    for (auto* numbers : {&bucketStart_, &proxyIndices_, &order_, &bucketOfEntry_}) {
         numbers->shrink_to_fit();
     }
     rowOfEntry_.shrink_to_fit();
@@ -469,7 +469,7 @@ std::string Table<Scalar>::validate() const {
             }
         }
     }
-    if (entry != slots_.size()) {
+    if (entry != proxyIndices_.size()) {
         return "Buckets partition the entries in order: broken.";
     }
     return areSorted() ? std::string()

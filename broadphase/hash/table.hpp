@@ -43,12 +43,12 @@ using Columns = std::array<const Scalar*, 6>;
 template <class Scalar>
 class HASHPHASE_BROADPHASE_EXPORT Table {
 public:
-    /// Files boxes[i], of boxSlots[i], for every i, anew; boxes with a NaN are left out. Cell sizes
+    /// Files boxes[i], of boxIndices[i], for every i, anew; boxes with a NaN are left out. Cell sizes
     /// follow the population, or are fixed when `fixed.count` > 0. Where it throws, for want of
     /// memory, nothing is filed. Cost: a few passes over the boxes; least when they come in about the
-    /// order of the last time, see order(). With groups[2 * slot] of every slot, what shares a crowded
+    /// order of the last time, see order(). With groups[2 * index] of every index, what shares a crowded
     /// bucket is kept apart by groups, so that a search passes by all with which it cannot pair.
-    void build(std::span<const std::uint32_t> boxSlots, std::span<const PaddedBox<Scalar>> boxes,
+    void build(std::span<const std::uint32_t> boxIndices, std::span<const PaddedBox<Scalar>> boxes,
                const LevelSizes& fixed, ParallelFor parallelFor = serialFor,
                const ProxyGroups* groups = nullptr);
 
@@ -63,20 +63,24 @@ public:
     [[nodiscard]] bool shiftOrigin(const Vector3<Scalar>& shift);
 
     [[nodiscard]] std::uint32_t size() const noexcept {
-        return static_cast<std::uint32_t>(slots_.size());
+        return static_cast<std::uint32_t>(proxyIndices_.size());
     }
     /// Those of each cell size, finest first, the dense one before the hashed one; and the list. None when
     /// nothing is filed.
     [[nodiscard]] std::span<const Level<Scalar>> levels() const noexcept { return levels_; }
-    [[nodiscard]] std::span<const std::uint32_t> entrySlots() const noexcept { return slots_; }
-    [[nodiscard]] std::uint32_t slot(std::uint32_t entry) const noexcept { return slots_[entry]; }
+    [[nodiscard]] std::span<const std::uint32_t> proxyIndices() const noexcept {
+        return proxyIndices_;
+    }
+    [[nodiscard]] std::uint32_t proxyIndex(std::uint32_t entry) const noexcept {
+        return proxyIndices_[entry];
+    }
     /// For every entry the number under which build() was given it.
     [[nodiscard]] std::span<const std::uint32_t> order() const noexcept { return order_; }
     /// The most entries that share a bucket of cells.
     [[nodiscard]] std::uint32_t largestCell() const noexcept { return largestBucket_; }
     /// Edge of the finest cells [m]; infinity when nothing is filed by cells.
     [[nodiscard]] double finestCellSize() const noexcept {
-        return !slots_.empty() && layout_->sizes().count > 0
+        return !proxyIndices_.empty() && layout_->sizes().count > 0
                    ? layout_->sizes().cellSize[0]
                    : std::numeric_limits<double>::infinity();
     }
@@ -110,12 +114,12 @@ private:
     [[nodiscard]] FixedList<SizeClass<Scalar>, kMaxLevels> sizeClasses() const;
     [[nodiscard]] std::size_t countBuckets(std::span<const PaddedBox<Scalar>> boxes,
                                            ParallelFor parallelFor);
-    void sortEntries(std::span<const std::uint32_t> boxSlots,
+    void sortEntries(std::span<const std::uint32_t> boxIndices,
                      std::span<const PaddedBox<Scalar>> boxes, const ProxyGroups* groups,
                      ParallelFor parallelFor);
     template <class Visit>
     void forCrowds(const Level<Scalar>& level, const Visit& visit);
-    void sortCrowds(std::span<const std::uint32_t> boxSlots,
+    void sortCrowds(std::span<const std::uint32_t> boxIndices,
                     std::span<const PaddedBox<Scalar>> boxes, const ProxyGroups* groups);
     [[nodiscard]] std::optional<SortedBucket<Scalar>> sortedAlong(
         std::span<std::uint32_t> crowd, std::span<const PaddedBox<Scalar>> boxes);
@@ -130,7 +134,7 @@ private:
     std::size_t straysWhenChosen_ = 0;             // when the cell sizes were chosen
     std::vector<Level<Scalar>> levels_;
     std::vector<std::uint32_t> bucketStart_;
-    std::vector<std::uint32_t> slots_;
+    std::vector<std::uint32_t> proxyIndices_;
     std::vector<std::uint32_t> order_;
     std::vector<std::uint32_t> bucketOfEntry_;
     std::vector<Row> rowOfEntry_;  // where a level is hashed

@@ -70,21 +70,21 @@ void PairTracker<Scalar>::carryToRest(bool someSettled) {
                proxies_.records[mobile].residency == Residency::mobile &&
                !proxies_.changedNow(mobile);
     };
-    for (const auto [place, slot] : toResting_.pairs()) {
-        if (isKept(proxies_.mobile[place], slot)) {
-            carried_.push({entryOf_[place], slot});
+    for (const auto [place, proxyIndex] : toResting_.pairs()) {
+        if (isKept(proxies_.mobile[place], proxyIndex)) {
+            carried_.push({entryOf_[place], proxyIndex});
         }
     }
     if (!someSettled) {
         return;
     }
     for (const auto [a, b] : amongMobile_.pairs()) {
-        const std::uint32_t slotA = proxies_.mobile[a];
-        const std::uint32_t slotB = proxies_.mobile[b];
-        if (isKept(slotA, slotB)) {
-            carried_.push({entryOf_[a], slotB});
-        } else if (isKept(slotB, slotA)) {
-            carried_.push({entryOf_[b], slotA});
+        const std::uint32_t indexA = proxies_.mobile[a];
+        const std::uint32_t indexB = proxies_.mobile[b];
+        if (isKept(indexA, indexB)) {
+            carried_.push({entryOf_[a], indexB});
+        } else if (isKept(indexB, indexA)) {
+            carried_.push({entryOf_[b], indexA});
         }
     }
 }
@@ -101,14 +101,14 @@ void PairTracker<Scalar>::joinMobile(ParallelFor parallelFor) {
               areToldApart ? proxies_.groups.data() : nullptr, proxies_.groupKinds.together(kinds));
     if (someRefuse && !areToldApart) {
         takeOut(amongMobile_, [&](const IndexPair& pair) {
-            return proxies_.doRefuse(table.slot(pair.a), table.slot(pair.b));
+            return proxies_.doRefuse(table.proxyIndex(pair.a), table.proxyIndex(pair.b));
         });
     }
     cost_.boxesTested += cost.boxesTested;
     const auto fresh =
         selectApart(amongMobile_.pairs(), table.order().data(), frame_.before.data(), parallelFor);
     for (const auto [a, b] : fresh) {
-        asked_.push_back(pairKey(table.slot(a), table.slot(b)));
+        asked_.push_back(pairKey(table.proxyIndex(a), table.proxyIndex(b)));
     }
 }
 
@@ -143,14 +143,14 @@ void PairTracker<Scalar>::findAgainstResting(ParallelFor parallelFor) {
     const bool isShifted = !proxies_.boxesAtUpdate.empty();
     for (const auto [changed, restingEntry] : selected_.pairs()) {
         const std::uint32_t entry = changedEntries_[changed];
-        const std::uint32_t slot = tables_.resting.slot(restingEntry);
-        toResting_.push({entry, slot});
-        // Not by their slots: these boxes are at hand.
+        const std::uint32_t proxyIndex = tables_.resting.proxyIndex(restingEntry);
+        toResting_.push({entry, proxyIndex});
+        // Not by their indices: these boxes are at hand.
         const PaddedBox<Scalar>& before = frame_.before[table.order()[entry]];
         const Box resting =
-            isShifted ? proxies_.boxAtUpdate(slot) : tables_.resting.box(restingEntry);
+            isShifted ? proxies_.boxAtUpdate(proxyIndex) : tables_.resting.box(restingEntry);
         if (!overlaps(unpadded(before), resting)) {
-            asked_.push_back(pairKey(table.slot(entry), slot));
+            asked_.push_back(pairKey(table.proxyIndex(entry), proxyIndex));
         }
     }
 }
@@ -162,7 +162,7 @@ void PairTracker<Scalar>::queryResting(ParallelFor parallelFor) {
     const bool someRefuse = proxies_.groupKinds.refuse(frame_.changedKinds, tables_.restingKinds);
     const bool areToldApart = someRefuse && isCrowded(resting);
     listChanged(areToldApart);
-    const GroupsView view{proxies_.groups.data(), searchedSlots_.data(),
+    const GroupsView view{proxies_.groups.data(), searchedIndices_.data(),
                           proxies_.groupKinds.together(tables_.restingKinds)};
     KernelCost cost;
     selected_.clear();
@@ -171,27 +171,27 @@ void PairTracker<Scalar>::queryResting(ParallelFor parallelFor) {
     cost_.boxesTested += cost.boxesTested;
     if (someRefuse && !areToldApart) {
         takeOut(selected_, [&](const IndexPair& pair) {
-            return proxies_.doRefuse(tables_.mobile.slot(changedEntries_[pair.a]),
-                                     resting.slot(pair.b));
+            return proxies_.doRefuse(tables_.mobile.proxyIndex(changedEntries_[pair.a]),
+                                     resting.proxyIndex(pair.b));
         });
     }
 }
 
-// Sets changedEntries_ and bounds_ to the entries of the mobile table that have changed; with slots,
-// searchedSlots_ as well.
+// Sets changedEntries_ and bounds_ to the entries of the mobile table that have changed; with indices,
+// searchedIndices_ as well.
 template <class Scalar>
-void PairTracker<Scalar>::listChanged(bool withSlots) {
+void PairTracker<Scalar>::listChanged(bool withIndices) {
     const Table<Scalar>& table = tables_.mobile;
     changedEntries_.clear();
-    searchedSlots_.clear();
+    searchedIndices_.clear();
     bounds_.clear();
     for (std::uint32_t entry = 0; entry < table.size(); ++entry) {
-        const std::uint32_t slot = table.slot(entry);
-        if (proxies_.changedNow(slot)) {
+        const std::uint32_t proxyIndex = table.proxyIndex(entry);
+        if (proxies_.changedNow(proxyIndex)) {
             changedEntries_.push_back(entry);
             bounds_.push(table.box(entry));
-            if (withSlots) {
-                searchedSlots_.push_back(slot);
+            if (withIndices) {
+                searchedIndices_.push_back(proxyIndex);
             }
         }
     }

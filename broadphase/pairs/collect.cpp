@@ -18,11 +18,11 @@ void PairTracker<Scalar>::forEachOverlap(
     KernelCost cost;
     forOverlaps(tables_.mobile, groups, cost, visit);
     forOverlaps(tables_.resting, groups, cost, visit);
-    const GroupsView view{groups, tables_.mobile.entrySlots().data(), {}};
+    const GroupsView view{groups, tables_.mobile.proxyIndices().data(), {}};
     forOverlaps(tables_.mobile.columns(), tables_.mobile.size(), tables_.resting,
                 groups != nullptr ? &view : nullptr, cost,
                 [&](std::uint32_t entry, std::uint32_t resting) {
-                    visit(tables_.mobile.slot(entry), resting);
+                    visit(tables_.mobile.proxyIndex(entry), resting);
                 });
 }
 
@@ -52,8 +52,8 @@ bool PairTracker<Scalar>::areWatchedAll(std::size_t& overlapCount) const {
     for (const auto [a, b] : amongMobile_.pairs()) {
         watched.push_back(pairKey(proxies_.mobile[a], proxies_.mobile[b]));
     }
-    for (const auto [place, slot] : toResting_.pairs()) {
-        watched.push_back(pairKey(proxies_.mobile[place], slot));
+    for (const auto [place, proxyIndex] : toResting_.pairs()) {
+        watched.push_back(pairKey(proxies_.mobile[place], proxyIndex));
     }
     std::sort(watched.begin(), watched.end());
     std::vector<PairKey> expected;
@@ -91,8 +91,8 @@ std::string PairTracker<Scalar>::validate() const {
     if (!std::all_of(kept_.keys().begin(), kept_.keys().end(), isKept)) {
         return "The pairs that are kept overlap and may not pair: broken.";
     }
-    const auto sweeps = [this](std::uint32_t slot) {
-        return proxies_.records[slot].residency == Residency::sweeping;
+    const auto sweeps = [this](std::uint32_t proxyIndex) {
+        return proxies_.records[proxyIndex].residency == Residency::sweeping;
     };
     const bool oneSweeps = std::all_of(swept_.begin(), swept_.end(), [&](PairKey c) {
         return sweeps(first(c)) || sweeps(second(c));

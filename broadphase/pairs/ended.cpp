@@ -32,10 +32,10 @@ void PairTracker<Scalar>::findEnded(ParallelFor parallelFor) {
         if (i + kAhead < toResting.size()) {
             prefetch(&proxies_.records[toResting[i + kAhead].b]);
         }
-        const auto [place, slot] = toResting[i];
-        const Box& resting = proxies_.standingBox(proxies_.records[slot]);
+        const auto [place, proxyIndex] = toResting[i];
+        const Box& resting = proxies_.standingBox(proxies_.records[proxyIndex]);
         if (!overlaps(unpadded(frame_.now[place]), resting)) {
-            endedPairs_.push_back(pairKey(proxies_.mobile[place], slot));
+            endedPairs_.push_back(pairKey(proxies_.mobile[place], proxyIndex));
         }
     }
     for (const PairKey c : immediate_.keys()) {
@@ -58,7 +58,7 @@ void PairTracker<Scalar>::findEndedOfWoken(ParallelFor parallelFor) {
     walkTable(tables_.resting, bounds_.columns(), bounds_.size(), parallelFor, parts_, selected_,
               cost, someRefuse ? &view : nullptr);
     for (const auto [woken, entry] : selected_.pairs()) {
-        endIfWokenApart(proxies_.woken[woken], tables_.resting.slot(entry));
+        endIfWokenApart(proxies_.woken[woken], tables_.resting.proxyIndex(entry));
     }
     if (proxies_.woken.size() > 1) {
         joinWoken(kinds, parallelFor, cost);
@@ -73,11 +73,12 @@ GroupKinds::Set PairTracker<Scalar>::listWoken() {
     bounds_.clear();
     GroupKinds::Set kinds = 0;
     const ProxyGroups* const groups = proxies_.groupsOfAllAtUpdate();
-    for (const std::uint32_t slot : proxies_.woken) {
-        wokenBoxes_.push_back(padded(proxies_.boxAtUpdate(slot)));
-        bounds_.push(proxies_.before(slot));
+    for (const std::uint32_t proxyIndex : proxies_.woken) {
+        wokenBoxes_.push_back(padded(proxies_.boxAtUpdate(proxyIndex)));
+        bounds_.push(proxies_.before(proxyIndex));
         if (groups != nullptr) {
-            kinds |= GroupKinds::bit(proxies_.groupKinds.numberOf(groups[2 * std::size_t{slot}]));
+            kinds |=
+                GroupKinds::bit(proxies_.groupKinds.numberOf(groups[2 * std::size_t{proxyIndex}]));
         }
     }
     return kinds;
@@ -94,7 +95,7 @@ void PairTracker<Scalar>::joinWoken(GroupKinds::Set kinds, ParallelFor parallelF
     joinTable(table, parallelFor, parts_, selected_, cost, groups,
               proxies_.groupKinds.together(kinds));
     for (const auto [a, b] : selected_.pairs()) {
-        endIfWokenApart(table.slot(a), table.slot(b));
+        endIfWokenApart(table.proxyIndex(a), table.proxyIndex(b));
     }
 }
 

@@ -22,8 +22,8 @@ void PairTracker<Scalar>::findKept() {
     for (const auto [a, b] : amongMobile_.pairs()) {
         keepIfPair(pairKey(proxies_.mobile[a], proxies_.mobile[b]));
     }
-    for (const auto [place, slot] : toResting_.pairs()) {
-        keepIfPair(pairKey(proxies_.mobile[place], slot));
+    for (const auto [place, proxyIndex] : toResting_.pairs()) {
+        keepIfPair(pairKey(proxies_.mobile[place], proxyIndex));
     }
     for (const PairKey c : immediate_.keys()) {
         keepIfPair(c);
@@ -47,10 +47,10 @@ void PairTracker<Scalar>::askAboutRegrouped() {
     };
     const Table<Scalar>& table = tables_.mobile;
     for (const auto [a, b] : amongMobile_.pairs()) {
-        askIfNew(table.slot(a), table.slot(b));
+        askIfNew(table.proxyIndex(a), table.proxyIndex(b));
     }
-    for (const auto [entry, slot] : toResting_.pairs()) {
-        askIfNew(table.slot(entry), slot);
+    for (const auto [entry, proxyIndex] : toResting_.pairs()) {
+        askIfNew(table.proxyIndex(entry), proxyIndex);
     }
 }
 

@@ -18,17 +18,17 @@ PairChanges PairTracker<Scalar>::findNow(PairFilter filter, const Find& find) {
 }
 
 template <class Scalar>
-PairChanges PairTracker<Scalar>::announce(std::uint32_t slot, PairFilter filter) {
-    return findNow(filter, [&] { findNewCandidates(slot); });
+PairChanges PairTracker<Scalar>::announce(std::uint32_t proxyIndex, PairFilter filter) {
+    return findNow(filter, [&] { findNewCandidates(proxyIndex); });
 }
 
 template <class Scalar>
-PairChanges PairTracker<Scalar>::announce(std::uint32_t slot, std::span<const ProxyId> others,
+PairChanges PairTracker<Scalar>::announce(std::uint32_t proxyIndex, std::span<const ProxyId> others,
                                           PairFilter filter) {
     return findNow(filter, [&] {
         for (const ProxyId other : others) {
-            if (other.index != slot && proxies_.contains(other)) {
-                addIfNew(slot, other.index);
+            if (other.index != proxyIndex && proxies_.contains(other)) {
+                addIfNew(proxyIndex, other.index);
             }
         }
     });
@@ -46,7 +46,8 @@ PairChanges PairTracker<Scalar>::refilter(std::span<const ProxyId> ids, PairFilt
                 isNamed_[id.index] = 1;
             }
         }
-        askAgainAboutMany(filter, [this](std::uint32_t slot) { return isNamed_[slot] != 0; });
+        askAgainAboutMany(filter,
+                          [this](std::uint32_t proxyIndex) { return isNamed_[proxyIndex] != 0; });
     } else {
         askAgainAboutFew(ids, filter);
     }
@@ -57,8 +58,8 @@ PairChanges PairTracker<Scalar>::refilter(std::span<const ProxyId> ids, PairFilt
 template <class Scalar>
 void PairTracker<Scalar>::askAgainAboutFew(std::span<const ProxyId> ids, PairFilter filter) {
     isNamed_.assign(remembersPairs() ? proxies_.records.size() : 0, 0);
-    const auto isDone = [this](std::uint32_t slot) {
-        return slot < isNamed_.size() && isNamed_[slot] != 0;
+    const auto isDone = [this](std::uint32_t proxyIndex) {
+        return proxyIndex < isNamed_.size() && isNamed_[proxyIndex] != 0;
     };
     for (const ProxyId id : ids) {
         if (!proxies_.contains(id) || isDone(id.index)) {
@@ -121,12 +122,12 @@ template <class Scalar>
 template <class IsNamed>
 void PairTracker<Scalar>::askAgainAboutMany(PairFilter filter, const IsNamed& isNamed) {
     if (store_.cost.changed > 0) {
-        for (const std::uint32_t slot : proxies_.mobile) {
-            if (proxies_.changedNow(slot) && proxies_.isAlive(slot)) {
-                findNewCandidates(slot, [&](std::uint32_t other) {
-                    const bool isFoundByOther =
-                        other < slot && proxies_.changedNow(other) && wouldFind(other, slot);
-                    return (isNamed(slot) || isNamed(other)) && !isFoundByOther;
+        for (const std::uint32_t proxyIndex : proxies_.mobile) {
+            if (proxies_.changedNow(proxyIndex) && proxies_.isAlive(proxyIndex)) {
+                findNewCandidates(proxyIndex, [&](std::uint32_t other) {
+                    const bool isFoundByOther = other < proxyIndex && proxies_.changedNow(other) &&
+                                                wouldFind(other, proxyIndex);
+                    return (isNamed(proxyIndex) || isNamed(other)) && !isFoundByOther;
                 });
                 askInParts(filter, kPart);
             }
@@ -196,7 +197,7 @@ void PairTracker<Scalar>::noteNewCandidates() noexcept {  // NOLINT(bugprone-exc
     markImmediate(newCandidates_, true);
 }
 
-// The grid keeps the slots of those that are removed apart, until their candidates are ended.
+// The grid keeps the indices of those that are removed apart, until their candidates are ended.
 template <class Scalar>
 void PairTracker<Scalar>::markImmediate(std::span<const PairKey> candidates, bool are) noexcept {
     for (const PairKey c : candidates) {

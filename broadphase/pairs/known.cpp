@@ -28,15 +28,15 @@ void PairTracker<Scalar>::indexLastUpdate(std::size_t mostUnindexed) {
     }
     // What has come since the last update had no box then.
     const auto listed = proxies_.mobile.begin();
-    std::vector<std::uint32_t>& slots = searchedSlots_;
-    slots.assign(listed, listed + static_cast<std::ptrdiff_t>(proxies_.mobileAtUpdate));
-    slots.insert(slots.end(), proxies_.woken.begin(), proxies_.woken.end());
+    std::vector<std::uint32_t>& proxyIndices = searchedIndices_;
+    proxyIndices.assign(listed, listed + static_cast<std::ptrdiff_t>(proxies_.mobileAtUpdate));
+    proxyIndices.insert(proxyIndices.end(), proxies_.woken.begin(), proxies_.woken.end());
     wokenBoxes_.clear();
-    for (const std::uint32_t slot : slots) {
-        wokenBoxes_.push_back(padded(proxies_.boxAtUpdate(slot)));
+    for (const std::uint32_t proxyIndex : proxyIndices) {
+        wokenBoxes_.push_back(padded(proxies_.boxAtUpdate(proxyIndex)));
     }
     tableOfUpdate_ = nullptr;
-    wokenTable().build(slots, wokenBoxes_, store_.fixedSizes(), serialFor,
+    wokenTable().build(proxyIndices, wokenBoxes_, store_.fixedSizes(), serialFor,
                        proxies_.groupsOfAllAtUpdate());
     tableOfUpdate_ = wokenTable_.get();
     indexedWoken_ = proxies_.woken.size();
@@ -46,24 +46,24 @@ void PairTracker<Scalar>::indexLastUpdate(std::size_t mostUnindexed) {
 // Calls visit for each of the proxy's candidates that overlapped at the last update, or met on their ways
 // then, or were announced since.
 template <class Scalar>
-void PairTracker<Scalar>::forKnownPairs(std::uint32_t slot, VisitPair visit) {
-    forOverlapsAtUpdate(slot, visit);
-    immediate_.forEachOf(slot, visit);
-    forSwept(slot, visit);
+void PairTracker<Scalar>::forKnownPairs(std::uint32_t proxyIndex, VisitPair visit) {
+    forOverlapsAtUpdate(proxyIndex, visit);
+    immediate_.forEachOf(proxyIndex, visit);
+    forSwept(proxyIndex, visit);
 }
 
 template <class Scalar>
-void PairTracker<Scalar>::forOverlapsAtUpdate(std::uint32_t slot, VisitPair visit) {
+void PairTracker<Scalar>::forOverlapsAtUpdate(std::uint32_t proxyIndex, VisitPair visit) {
     constexpr std::size_t kFew = 64;
     indexLastUpdate(kFew + (proxies_.mobileAtUpdate + indexedWoken_) / 4);
     const auto visitIfTheyDid = [&](std::uint32_t other) {
-        if (other != slot && wasKnown(slot, other)) {
-            visit(pairKey(slot, other));
+        if (other != proxyIndex && wasKnown(proxyIndex, other)) {
+            visit(pairKey(proxyIndex, other));
         }
     };
     const bool isOwn = tableOfUpdate_ == wokenTable_.get();  // in the coordinates of then
-    const Box& before = proxies_.before(slot);
-    forTouching(*tableOfUpdate_, isOwn ? proxies_.boxAtUpdate(slot) : before, visitIfTheyDid);
+    const Box& before = proxies_.before(proxyIndex);
+    forTouching(*tableOfUpdate_, isOwn ? proxies_.boxAtUpdate(proxyIndex) : before, visitIfTheyDid);
     forTouching(tables_.resting, before, visitIfTheyDid);
     for (std::size_t i = indexedWoken_; i < proxies_.woken.size(); ++i) {
         visitIfTheyDid(proxies_.woken[i]);
@@ -71,7 +71,7 @@ void PairTracker<Scalar>::forOverlapsAtUpdate(std::uint32_t slot, VisitPair visi
 }
 
 template <class Scalar>
-void PairTracker<Scalar>::forSwept(std::uint32_t slot, VisitPair visit) {
+void PairTracker<Scalar>::forSwept(std::uint32_t proxyIndex, VisitPair visit) {
     if (swept_.empty()) {
         return;
     }
@@ -83,8 +83,9 @@ void PairTracker<Scalar>::forSwept(std::uint32_t slot, VisitPair visit) {
         sweptBySecond_.swap(turned);
     }
     for (const auto* candidates : {&swept_, &sweptBySecond_}) {
-        auto at = std::lower_bound(candidates->begin(), candidates->end(), PairKey{slot} << 32);
-        for (; at != candidates->end() && *at >> 32 == slot; ++at) {
+        auto at =
+            std::lower_bound(candidates->begin(), candidates->end(), PairKey{proxyIndex} << 32);
+        for (; at != candidates->end() && *at >> 32 == proxyIndex; ++at) {
             visit(pairKey(first(*at), second(*at)));
         }
     }
@@ -104,14 +105,14 @@ void PairTracker<Scalar>::forAllKnown(VisitPair visit) {
     forOverlaps(*tableOfUpdate_, groups, cost, visitIfTheyDid);
     forOverlaps(tables_.resting, groups, cost, visitIfTheyDid);
     bounds_.clear();
-    for (const std::uint32_t slot : tableOfUpdate_->entrySlots()) {
-        bounds_.push(proxies_.before(slot));
+    for (const std::uint32_t proxyIndex : tableOfUpdate_->proxyIndices()) {
+        bounds_.push(proxies_.before(proxyIndex));
     }
-    const GroupsView view{groups, tableOfUpdate_->entrySlots().data(), {}};
+    const GroupsView view{groups, tableOfUpdate_->proxyIndices().data(), {}};
     forOverlaps(bounds_.columns(), bounds_.size(), tables_.resting,
                 groups != nullptr ? &view : nullptr, cost,
                 [&](std::uint32_t entry, std::uint32_t resting) {
-                    visitIfTheyDid(tableOfUpdate_->slot(entry), resting);
+                    visitIfTheyDid(tableOfUpdate_->proxyIndex(entry), resting);
                 });
     for (const std::span<const PairKey> candidates :
          {immediate_.keys(), kept_.keys(), std::span<const PairKey>(swept_)}) {
@@ -129,12 +130,12 @@ void PairTracker<Scalar>::forAllKnown(VisitPair visit) {
 // The proxy's candidates that overlap now, did not at the last update, and were not announced since; those
 // with others that are wanted.
 template <class Scalar>
-void PairTracker<Scalar>::findNewCandidates(std::uint32_t slot,
+void PairTracker<Scalar>::findNewCandidates(std::uint32_t proxyIndex,
                                             FunctionRef<bool(std::uint32_t)> isWanted) {
-    const Box box = boxAtStart(slot);
+    const Box box = boxAtStart(proxyIndex);
     const auto add = [&](std::uint32_t other) {
-        if (other != slot && isWanted(other)) {
-            addIfNew(slot, other);
+        if (other != proxyIndex && isWanted(other)) {
+            addIfNew(proxyIndex, other);
         }
     };
     const Reading<Scalar> reading = store_.beginReading();
@@ -153,7 +154,7 @@ void PairTracker<Scalar>::findNewCandidates(std::uint32_t slot,
     }
 }
 
-// Calls visit(slot) for each entry of the table whose box overlaps.
+// Calls visit(index) for each entry of the table whose box overlaps.
 template <class Scalar>
 void PairTracker<Scalar>::forTouching(const Table<Scalar>& table, const Box& box,
                                       FunctionRef<void(std::uint32_t)> visit) {
@@ -162,7 +163,7 @@ void PairTracker<Scalar>::forTouching(const Table<Scalar>& table, const Box& box
     KernelCost cost;
     const auto take = [&](std::span<const IndexPair> found) {
         for (const auto [query, entry] : found) {
-            visit(table.slot(entry));
+            visit(table.proxyIndex(entry));
         }
         return true;
     };
@@ -170,10 +171,10 @@ void PairTracker<Scalar>::forTouching(const Table<Scalar>& table, const Box& box
 }
 
 template <class Scalar>
-void PairTracker<Scalar>::addIfNew(std::uint32_t slot, std::uint32_t other) {
-    const PairKey c = pairKey(slot, other);
-    if (!wasKnown(slot, other) && proxies_.mayPairNow(slot, other) && touchAtStart(slot, other) &&
-        !immediate_.contains(c) && !isSwept(c)) {
+void PairTracker<Scalar>::addIfNew(std::uint32_t proxyIndex, std::uint32_t other) {
+    const PairKey c = pairKey(proxyIndex, other);
+    if (!wasKnown(proxyIndex, other) && proxies_.mayPairNow(proxyIndex, other) &&
+        touchAtStart(proxyIndex, other) && !immediate_.contains(c) && !isSwept(c)) {
         newCandidates_.push_back(c);
         asked_.push_back(c);
     }
@@ -181,8 +182,9 @@ void PairTracker<Scalar>::addIfNew(std::uint32_t slot, std::uint32_t other) {
 
 // Where a proxy alive is now, of what sweeps where its way begins.
 template <class Scalar>
-Aabb<Scalar> PairTracker<Scalar>::boxAtStart(std::uint32_t slot) const {
-    return sweeping_ != nullptr ? sweeping_->motions.boxAtStart(slot) : proxies_.records[slot].box;
+Aabb<Scalar> PairTracker<Scalar>::boxAtStart(std::uint32_t proxyIndex) const {
+    return sweeping_ != nullptr ? sweeping_->motions.boxAtStart(proxyIndex)
+                                : proxies_.records[proxyIndex].box;
 }
 
 template <class Scalar>
@@ -191,8 +193,8 @@ bool PairTracker<Scalar>::touchAtStart(std::uint32_t a, std::uint32_t b) const {
 }
 
 template <class Scalar>
-void PairTracker<Scalar>::findNewCandidates(std::uint32_t slot) {
-    findNewCandidates(slot, [](std::uint32_t) { return true; });
+void PairTracker<Scalar>::findNewCandidates(std::uint32_t proxyIndex) {
+    findNewCandidates(proxyIndex, [](std::uint32_t) { return true; });
 }
 
 template void PairTracker<float>::indexLastUpdate(std::size_t);

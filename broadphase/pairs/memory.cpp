@@ -27,7 +27,7 @@ std::size_t PairTracker<Scalar>::memoryBytes() const noexcept {
             askedPairs_.capacity()) *
                sizeof(ProxyPair) +
            accepted_.capacity() + isNamed_.capacity() +
-           (entryOf_.capacity() + changedEntries_.capacity() + searchedSlots_.capacity()) *
+           (entryOf_.capacity() + changedEntries_.capacity() + searchedIndices_.capacity()) *
                sizeof(std::uint32_t) +
            wokenBoxes_.capacity() * sizeof(PaddedBox<Scalar>) +
            (wokenTable_ != nullptr ? sizeof(*wokenTable_) + wokenTable_->memoryBytes() : 0) +
@@ -42,7 +42,7 @@ void PairTracker<Scalar>::releaseUnusedMemory() noexcept {
                diedPairs_, updateChanges_.born, updateChanges_.died, immediateChanges_.born,
                immediateChanges_.died, sorted_, restedPairs_, sweptBySecond_, newCandidates_,
                stillEnded_, stillBegun_, keptNow_, notKept_, lapsed_, isNamed_, entryOf_,
-               changedEntries_, searchedSlots_, wokenBoxes_);
+               changedEntries_, searchedIndices_, wokenBoxes_);
     selected_ = {};
     parts_ = {};
     carried_ = {};

@@ -10,6 +10,7 @@
 #include <broadphase/core/flat_set.hpp>
 #include <broadphase/core/pair_key_set.hpp>
 #include <broadphase/core/peak_watch.hpp>
+#include <broadphase/export.hpp>
 #include <broadphase/geometry/box_columns.hpp>
 #include <broadphase/pair_filter.hpp>
 #include <broadphase/search/contact_search.hpp>
@@ -27,7 +28,7 @@
 namespace hashphase::detail {
 
 template <class Scalar>
-class PairTracker {
+class HASHPHASE_BROADPHASE_EXPORT PairTracker {
 public:
     /// Of a store that has no other one. All that rests wakes.
     PairTracker(Store<Scalar>& store, Sweeping<Scalar>* sweeping);
@@ -54,8 +55,9 @@ public:
     // --- The rest of pairs.hpp -------------------------------------------------------------------
 
     void setSweeps(Sweeping<Scalar>* sweeping);
-    PairChanges announce(std::uint32_t slot, PairFilter filter);
-    PairChanges announce(std::uint32_t slot, std::span<const ProxyId> others, PairFilter filter);
+    PairChanges announce(std::uint32_t proxyIndex, PairFilter filter);
+    PairChanges announce(std::uint32_t proxyIndex, std::span<const ProxyId> others,
+                         PairFilter filter);
     PairChanges refilter(std::span<const ProxyId> ids, PairFilter filter);
     PairChanges refilter(std::span<const ProxyPair> pairs, PairFilter filter);
     PairChanges refilterAll(PairFilter filter);
@@ -101,7 +103,7 @@ private:
         }
     };
 
-    /// Two slots, the smaller one on top, so that candidates sort by slots.
+    /// Two indices, the smaller one on top, so that candidates sort by indices.
     using PairKey = std::uint64_t;
 
     static constexpr PairKey pairKey(std::uint32_t a, std::uint32_t b) noexcept {
@@ -122,7 +124,7 @@ private:
                         proxies_.standingBox(proxies_.records[second(c)]));
     }
     [[nodiscard]] bool touchAtStart(std::uint32_t a, std::uint32_t b) const;
-    [[nodiscard]] Box boxAtStart(std::uint32_t slot) const;
+    [[nodiscard]] Box boxAtStart(std::uint32_t proxyIndex) const;
     [[nodiscard]] bool isAtRest(PairKey c) const noexcept {
         return proxies_.rests(first(c)) && proxies_.rests(second(c));
     }
@@ -158,7 +160,7 @@ private:
     void joinMobile(ParallelFor parallelFor);
     void findAgainstResting(ParallelFor parallelFor);
     void queryResting(ParallelFor parallelFor);
-    void listChanged(bool withSlots);
+    void listChanged(bool withIndices);
     [[nodiscard]] std::span<const IndexPair> selectApart(std::span<const IndexPair> candidates,
                                                          const std::uint32_t* order,
                                                          const PaddedBox<Scalar>* boxes,
@@ -202,9 +204,9 @@ private:
     // What was known at the last update, or has been announced since.
     using VisitPair = FunctionRef<void(PairKey)>;
     void indexLastUpdate(std::size_t mostUnindexed);
-    void forKnownPairs(std::uint32_t slot, VisitPair visit);
-    void forOverlapsAtUpdate(std::uint32_t slot, VisitPair visit);
-    void forSwept(std::uint32_t slot, VisitPair visit);
+    void forKnownPairs(std::uint32_t proxyIndex, VisitPair visit);
+    void forOverlapsAtUpdate(std::uint32_t proxyIndex, VisitPair visit);
+    void forSwept(std::uint32_t proxyIndex, VisitPair visit);
     void forAllKnown(VisitPair visit);
     void beginRefilter();
     void askAgainAboutFew(std::span<const ProxyId> ids, PairFilter filter);
@@ -213,13 +215,13 @@ private:
     [[nodiscard]] bool wouldFind(std::uint32_t finder, std::uint32_t found) const;
     void askAgain(PairKey c);
     PairChanges applyFilterNow(PairFilter filter);
-    void findNewCandidates(std::uint32_t slot, FunctionRef<bool(std::uint32_t)> isWanted);
-    void findNewCandidates(std::uint32_t slot);
+    void findNewCandidates(std::uint32_t proxyIndex, FunctionRef<bool(std::uint32_t)> isWanted);
+    void findNewCandidates(std::uint32_t proxyIndex);
     void forTouching(const Table<Scalar>& table, const Box& box,
                      FunctionRef<void(std::uint32_t)> visit);
     template <class Find>
     PairChanges findNow(PairFilter filter, const Find& find);
-    void addIfNew(std::uint32_t slot, std::uint32_t other);
+    void addIfNew(std::uint32_t proxyIndex, std::uint32_t other);
     void releaseAfterPeak() noexcept;
     [[nodiscard]] bool areWatchedAll(std::size_t& overlapCount) const;
     void forEachOverlap(FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const;
@@ -237,7 +239,7 @@ private:
     // refused ones included. `a`, and among the mobile ones `b`, is a place in
     // Population::mobile, which are in spatial order, so that boxes of a candidate are near in memory.
     PairList amongMobile_;
-    PairList toResting_;  // b is a slot
+    PairList toResting_;  // b is an index
 
     FlatSet refused_;             // candidates that the filter refused, unless they are ...
     FlatSet refusedAtRest_;       // ... both at rest
@@ -287,11 +289,11 @@ private:
     PairParts parts_;
     PairList carried_;
     std::vector<std::uint32_t> entryOf_;  // of places in Population::mobile, in the mobile table
-    std::vector<std::uint32_t> changedEntries_;  // entries that changed
-    std::vector<std::uint32_t> searchedSlots_;   // what is looked for, or filed to be found
-    BoxColumns<Scalar> bounds_;                  // of what is looked for in a table
-    std::unique_ptr<Table<Scalar>> wokenTable_;  // made when it is first needed
-    std::vector<char> isNamed_;                  // by slot
+    std::vector<std::uint32_t> changedEntries_;   // entries that changed
+    std::vector<std::uint32_t> searchedIndices_;  // what is looked for, or filed to be found
+    BoxColumns<Scalar> bounds_;                   // of what is looked for in a table
+    std::unique_ptr<Table<Scalar>> wokenTable_;   // made when it is first needed
+    std::vector<char> isNamed_;                   // by index
 
     // A table of boxes as of the last update: of what was mobile then, and of the first indexedWoken_ of
     // what has left rest since. Either the grid's own, until it is filed again, or wokenTable_; null when

@@ -67,7 +67,7 @@ double PairTracker<Scalar>::sampleMobile() {
     const double weight = sampleOverlaps(mobile, cost);
     cost_.boxesTested += cost.boxesTested;
     for (const auto [a, b] : selected_.pairs()) {
-        asked_.push_back(pairKey(mobile.slot(a), mobile.slot(b)));
+        asked_.push_back(pairKey(mobile.proxyIndex(a), mobile.proxyIndex(b)));
     }
     return weight;
 }
@@ -82,16 +82,16 @@ double PairTracker<Scalar>::sampleResting() {
     bounds_.clear();
     for (std::size_t i = 0; i < size; ++i) {
         const std::uint32_t entry = changedEntries_[count * i / size];
-        searchedSlots_.push_back(mobile.slot(entry));
+        searchedIndices_.push_back(mobile.proxyIndex(entry));
         bounds_.push(mobile.box(entry));
     }
     const ProxyGroups* const groups = proxies_.groupsOfAll();
-    const GroupsView view{groups, searchedSlots_.data(), {}};
+    const GroupsView view{groups, searchedIndices_.data(), {}};
     KernelCost cost;
     forOverlaps(bounds_.columns(), bounds_.size(), tables_.resting,
                 groups != nullptr ? &view : nullptr, cost,
-                [this](std::uint32_t searched, std::uint32_t slot) {
-                    asked_.push_back(pairKey(searchedSlots_[searched], slot));
+                [this](std::uint32_t searched, std::uint32_t proxyIndex) {
+                    asked_.push_back(pairKey(searchedIndices_[searched], proxyIndex));
                 });
     cost_.boxesTested += cost.boxesTested;
     return static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(size, 1));
@@ -223,7 +223,7 @@ bool PairTracker<Scalar>::areOverlapsFew(std::size_t most) {
 template <class Scalar>
 void PairTracker<Scalar>::watchAll() {
     const ProxyGroups* const groups = proxies_.groupsOfAll();
-    const GroupsView view{groups, tables_.mobile.entrySlots().data(), {}};
+    const GroupsView view{groups, tables_.mobile.proxyIndices().data(), {}};
     KernelCost cost;
     amongMobile_.clear();
     carried_.clear();
@@ -232,7 +232,7 @@ void PairTracker<Scalar>::watchAll() {
     walkTable(tables_.resting, tables_.mobile.columns(), tables_.mobile.size(), serialFor, parts_,
               carried_, cost, groups != nullptr ? &view : nullptr);
     for (const auto [entry, resting] : carried_.pairs()) {
-        toResting_.push({entry, tables_.resting.slot(resting)});
+        toResting_.push({entry, tables_.resting.proxyIndex(resting)});
     }
     cost_.boxesTested += cost.boxesTested;
 }
@@ -267,15 +267,15 @@ template <class Scalar>
 void PairTracker<Scalar>::askAboutChanged(PairFilter filter) {
     listChanged(true);
     const auto askUnlessPair = [&](std::uint32_t searched, std::uint32_t other) {
-        const std::uint32_t slot = searchedSlots_[searched];
-        const bool isFoundByOther = proxies_.changedNow(other) && other <= slot;
-        if (!isFoundByOther && !isRemembered(pairKey(slot, other))) {
-            asked_.push_back(pairKey(slot, other));
+        const std::uint32_t proxyIndex = searchedIndices_[searched];
+        const bool isFoundByOther = proxies_.changedNow(other) && other <= proxyIndex;
+        if (!isFoundByOther && !isRemembered(pairKey(proxyIndex, other))) {
+            asked_.push_back(pairKey(proxyIndex, other));
             askInParts(filter, kPart);
         }
     };
     const ProxyGroups* const groups = proxies_.groupsOfAll();
-    const GroupsView view{groups, searchedSlots_.data(), {}};
+    const GroupsView view{groups, searchedIndices_.data(), {}};
     KernelCost cost;
     for (const Table<Scalar>* table : {&tables_.mobile, &tables_.resting}) {
         forOverlaps(bounds_.columns(), bounds_.size(), *table, groups != nullptr ? &view : nullptr,

@@ -140,8 +140,9 @@ void ContactSearch<Scalar>::find(std::span<const Motion<Scalar>> motions, Parall
     meetEachOther(parallelFor);
     const std::span<const IndexPair> touching = touching_.pairs();
     contacts_.resize(touching.size());
-    std::transform(touching.begin(), touching.end(), contacts_.begin(), [](IndexPair slots) {
-        return std::uint64_t{std::min(slots.a, slots.b)} << 32 | std::max(slots.a, slots.b);
+    std::transform(touching.begin(), touching.end(), contacts_.begin(), [](IndexPair proxyIndices) {
+        return std::uint64_t{std::min(proxyIndices.a, proxyIndices.b)} << 32 |
+               std::max(proxyIndices.a, proxyIndices.b);
     });
     radixSort(contacts_, static_cast<std::uint32_t>(store_.proxies.records.size()), sorted_);
     contacts_.erase(std::unique(contacts_.begin(), contacts_.end()), contacts_.end());
@@ -274,7 +275,7 @@ void ContactSearch<Scalar>::addTouching(const Table<Scalar>& table,
         const Motion<Scalar>& motion = motions_[motionOfSegment_[segment]];
         if (firstContact(motion.way, MovingBox<Scalar>{table.box(entry)})) {
             makeRoom(sink, 1);
-            *sink.next++ = {motion.id.index, table.slot(entry)};
+            *sink.next++ = {motion.id.index, table.proxyIndex(entry)};
         }
     }
 }
@@ -285,12 +286,12 @@ void ContactSearch<Scalar>::addMetByRay(const Reading<Scalar>& reading,
                                         const Filing<Scalar>& filing, const Motion<Scalar>& motion,
                                         PairSink& sink, QueryCost& cost) const {
     const MovingBoxRegion<Scalar> region(motion.way);
-    const auto take = [&](std::span<const std::uint32_t> slots) {
-        for (const std::uint32_t slot : slots) {
-            if (store_.standsIn(filing, slot, reading) &&
-                region.key(store_.proxies.records[slot].box) >= 0) {
+    const auto take = [&](std::span<const std::uint32_t> proxyIndices) {
+        for (const std::uint32_t proxyIndex : proxyIndices) {
+            if (store_.standsIn(filing, proxyIndex, reading) &&
+                region.key(store_.proxies.records[proxyIndex].box) >= 0) {
                 makeRoom(sink, 1);
-                *sink.next++ = {motion.id.index, slot};
+                *sink.next++ = {motion.id.index, proxyIndex};
             }
         }
         return 1.0;
@@ -399,8 +400,8 @@ void ContactSearch<Scalar>::addMeeting(ParallelFor parallelFor) {
                    [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost&) {
                        makeRoom(sink, last - first);
                        for (const auto [i, j] : candidates_.pairs().subspan(first, last - first)) {
-                           const Motion<Scalar>& a = motions_[sliceTable_.slot(i)];
-                           const Motion<Scalar>& b = motions_[sliceTable_.slot(j)];
+                           const Motion<Scalar>& a = motions_[sliceTable_.proxyIndex(i)];
+                           const Motion<Scalar>& b = motions_[sliceTable_.proxyIndex(j)];
                            if (firstContact(a.way, b.way)) {
                                *sink.next++ = {a.id.index, b.id.index};
                            }

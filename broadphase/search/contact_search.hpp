@@ -35,7 +35,7 @@ public:
     /// stands in the store's tables of it, and each other.
     void find(std::span<const Motion<Scalar>> motions, ParallelFor parallelFor);
 
-    /// What find() found: two slots each, the smaller one on top; sorted.
+    /// What find() found: two indices each, the smaller one on top; sorted.
     [[nodiscard]] std::span<const std::uint64_t> contacts() const noexcept { return contacts_; }
     [[nodiscard]] const SweepCost& cost() const noexcept { return cost_; }
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
@@ -85,7 +85,7 @@ private:
     PairParts parts_;
     PairList candidates_;
     PairList touchingNow_;
-    PairList touching_;  // two slots each
+    PairList touching_;  // two indices each
     std::vector<std::uint64_t> sorted_;
     std::vector<std::uint32_t> motionNumbers_;
     std::vector<PaddedBox<Scalar>> slice_;
@@ -102,8 +102,8 @@ struct Sweeping {
     explicit Sweeping(Store<Scalar>& store) : motions(store), search(store) {}
 
     void beginUpdate() {
-        const std::size_t slotCount = motions.store.proxies.records.size();
-        const std::size_t dropped = std::max(motions.ofSlot.size(), slotCount) - slotCount;
+        const std::size_t indexCount = motions.store.proxies.records.size();
+        const std::size_t dropped = std::max(motions.ofProxy.size(), indexCount) - indexCount;
         if (peaks.isPast(motions.all.size(), std::max(motions.all.capacity(), dropped))) {
             releaseUnusedMemory();
         }

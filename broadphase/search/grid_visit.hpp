@@ -55,13 +55,13 @@ struct Grid<Scalar>::VisitReader {
     void readWaiting(std::size_t i) {
         const std::size_t count = store.proxies.waiting.size();
         for (std::size_t k = 0; k < count; ++k) {
-            const std::uint32_t slot = store.proxies.waiting[k];
-            if (store.proxies.isAlive(slot)) {
+            const std::uint32_t proxyIndex = store.proxies.waiting[k];
+            if (store.proxies.isAlive(proxyIndex)) {
                 ++cost.boxesTested;
-                const Scalar key = regions[i].key(store.proxies.records[slot].box);
+                const Scalar key = regions[i].key(store.proxies.records[proxyIndex].box);
                 if (detail::isWanted(key, collectors[i])) {
                     ++cost.hits;
-                    collectors[i].add(store.proxies.idOf(slot), key);
+                    collectors[i].add(store.proxies.idOf(proxyIndex), key);
                     if (!(collectors[i].limit() >= 0)) {
                         return;
                     }
@@ -91,12 +91,14 @@ private:
         }
         const bool mayHaveLeft = (!reading.isFresh && !store.proxies.waiting.empty()) ||
                                  (filing.isResting && store.tables.restingErased > 0);
-        const auto take = [&](std::span<const std::uint32_t> slots) {
+        const auto take = [&](std::span<const std::uint32_t> proxyIndices) {
             const auto zero = [](std::uint32_t) { return Scalar(0); };
-            return mayHaveLeft ? offerSlots(
-                                     slots, [&](auto slot) { return isThere(filing, slot); }, zero)
-                               : offerSlots(
-                                     slots, [](auto) { return true; }, zero);
+            return mayHaveLeft
+                       ? offerIndices(
+                             proxyIndices,
+                             [&](auto proxyIndex) { return isThere(filing, proxyIndex); }, zero)
+                       : offerIndices(
+                             proxyIndices, [](auto) { return true; }, zero);
         };
         detail::KernelCost walk;
         const bool goesOn = detail::searchVolume(*filing.table, regions[0].volume(), take, walk) &&
@@ -123,11 +125,11 @@ private:
 
     bool readTree(const Filing& filing) {
         const Region& region = regions[0];
-        const auto take = [&](std::span<const std::uint32_t> slots) {
+        const auto take = [&](std::span<const std::uint32_t> proxyIndices) {
             // The tree is as old as its table: who stands there may have left.
-            const bool goesOn = offerSlots(
-                slots, [&](auto slot) { return isThere(filing, slot); },
-                [&](auto slot) { return region.key(store.proxies.records[slot].box); });
+            const bool goesOn = offerIndices(
+                proxyIndices, [&](auto proxyIndex) { return isThere(filing, proxyIndex); },
+                [&](auto proxyIndex) { return region.key(store.proxies.records[proxyIndex].box); });
             return goesOn ? static_cast<double>(collectors[0].limit()) : -1.0;
         };
         return detail::searchRay(filing.table->tree, region.segment(),
@@ -146,38 +148,38 @@ private:
             if constexpr (!requires { Region::kIsItsBounds; }) {
                 key = regions[i].key(table.box(entry));
             }
-            const std::uint32_t slot = table.slot(entry);
+            const std::uint32_t proxyIndex = table.proxyIndex(entry);
             if (!detail::isWanted(key, collector) ||
-                !(isAllFiled || store.isFiled(slot, reading))) {
+                !(isAllFiled || store.isFiled(proxyIndex, reading))) {
                 continue;
             }
             // What is fresh has no list of what the collector has changed since: boxes are asked for
             // as they are now.
             if (mayChange && reading.isFresh) {
-                key = regions[i].key(store.proxies.records[slot].box);
+                key = regions[i].key(store.proxies.records[proxyIndex].box);
                 if (!detail::isWanted(key, collector)) {
                     continue;
                 }
             }
             ++hits;
-            goesOn = offer(collector, slot, key);
+            goesOn = offer(collector, proxyIndex, key);
         }
         cost.hits += hits;
         return goesOn;
     }
 
     template <class IsThere, class KeyOf>
-    bool offerSlots(std::span<const std::uint32_t> slots, const IsThere& isThere,
-                    const KeyOf& keyOf) {
+    bool offerIndices(std::span<const std::uint32_t> proxyIndices, const IsThere& isThere,
+                      const KeyOf& keyOf) {
         Collector& collector = collectors[0];
         std::uint64_t hits = 0;
         bool goesOn = true;
-        for (std::size_t k = 0; k < slots.size() && goesOn; ++k) {
-            if (isThere(slots[k])) {
-                const Scalar key = keyOf(slots[k]);
+        for (std::size_t k = 0; k < proxyIndices.size() && goesOn; ++k) {
+            if (isThere(proxyIndices[k])) {
+                const Scalar key = keyOf(proxyIndices[k]);
                 if (detail::isWanted(key, collector)) {
                     ++hits;
-                    goesOn = offer(collector, slots[k], key);
+                    goesOn = offer(collector, proxyIndices[k], key);
                 }
             }
         }
@@ -186,13 +188,13 @@ private:
     }
 
     // One of many that wants no more does not end the search of the others.
-    bool offer(Collector& collector, std::uint32_t slot, Scalar key) const {
-        collector.add(store.proxies.idOf(slot), key);
+    bool offer(Collector& collector, std::uint32_t proxyIndex, Scalar key) const {
+        collector.add(store.proxies.idOf(proxyIndex), key);
         return collector.limit() >= 0 || collectors.size() > 1;
     }
 
-    [[nodiscard]] bool isThere(const Filing& filing, std::uint32_t slot) const {
-        return store.standsIn(filing, slot, reading);
+    [[nodiscard]] bool isThere(const Filing& filing, std::uint32_t proxyIndex) const {
+        return store.standsIn(filing, proxyIndex, reading);
     }
 
     void addCost(const detail::KernelCost& walk) {
@@ -318,11 +320,11 @@ void Grid<Scalar>::forEach(Visit&& visit) const {
     const auto count =
         static_cast<std::uint32_t>(store_.listFew(few));  // not those that `visit` adds
     for (std::uint32_t i = 0; i < count; ++i) {
-        const std::uint32_t slot = few.empty() ? i : few[i];
-        if (store_.proxies.isAlive(slot)) {
+        const std::uint32_t proxyIndex = few.empty() ? i : few[i];
+        if (store_.proxies.isAlive(proxyIndex)) {
             const Box box =
-                store_.proxies.records[slot].box;  // a copy: `visit` may move the records
-            visit(store_.proxies.idOf(slot), box);
+                store_.proxies.records[proxyIndex].box;  // a copy: `visit` may move the records
+            visit(store_.proxies.idOf(proxyIndex), box);
         }
     }
 }

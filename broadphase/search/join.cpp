@@ -113,7 +113,7 @@ template <class Scalar>
 void joinTable(const Table<Scalar>& table, ParallelFor parallelFor, PairParts& parts,
                PairList& found, KernelCost& cost, const ProxyGroups* groups,
                const ProxyGroups& together) {
-    const GroupsView view{groups, table.entrySlots().data(), together};
+    const GroupsView view{groups, table.proxyIndices().data(), together};
     const Searches<Scalar> searches(table);
     parts.collect(parallelFor, searches.entryCount(), kJoinGrain, found, cost,
                   [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost& own) {
@@ -124,7 +124,7 @@ void joinTable(const Table<Scalar>& table, ParallelFor parallelFor, PairParts& p
 template <class Scalar>
 void joinTable(const Table<Scalar>& table, PairSink& sink, KernelCost& cost,
                const ProxyGroups* groups) {
-    const GroupsView view{groups, table.entrySlots().data(), {}};
+    const GroupsView view{groups, table.proxyIndices().data(), {}};
     const Searches<Scalar> searches(table);
     searches.run(0, searches.entryCount(), groups != nullptr ? &view : nullptr, sink, cost);
 }
@@ -132,7 +132,7 @@ void joinTable(const Table<Scalar>& table, PairSink& sink, KernelCost& cost,
 template <class Scalar>
 std::size_t joinSample(const Table<Scalar>& table, std::size_t count, PairSink& sink,
                        KernelCost& cost, const ProxyGroups* groups) {
-    const GroupsView view{groups, table.entrySlots().data(), {}};
+    const GroupsView view{groups, table.proxyIndices().data(), {}};
     const Searches<Scalar> searches(table);
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t at = searches.entryCount() * i / count;

@@ -24,8 +24,8 @@ template <class Scalar>
     return std::max(table.largestCell(), levels.empty() ? 0 : levels.back().count());
 }
 
-/// Appends every two entries of the table whose boxes overlap, each couple once. With groups[2 * slot] of
-/// every slot, and with what those of the table have together, it leaves out those that may not pair.
+/// Appends every two entries of the table whose boxes overlap, each couple once. With groups[2 * index] of
+/// every index, and with what those of the table have together, it leaves out those that may not pair.
 template <class Scalar>
 void joinTable(const Table<Scalar>& table, ParallelFor parallelFor, PairParts& parts,
                PairList& found, KernelCost& cost, const ProxyGroups* groups = nullptr,
@@ -59,7 +59,7 @@ template <class Scalar>
 bool walkTogether(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t count,
                   PairSink& sink, KernelCost& cost);
 
-/// Calls visit(a, b) for the slots of every two entries of the table whose boxes overlap, in the memory of a
+/// Calls visit(a, b) for the indices of every two entries of the table whose boxes overlap, in the memory of a
 /// block of them; with `groups`, that may pair.
 template <class Scalar, class Visit>
 void forOverlaps(const Table<Scalar>& table, const ProxyGroups* groups, KernelCost& cost,
@@ -67,19 +67,19 @@ void forOverlaps(const Table<Scalar>& table, const ProxyGroups* groups, KernelCo
     findInBlocks([&](PairSink& sink) { joinTable(table, sink, cost, groups); },
                  [&](std::span<const IndexPair> found) {
                      for (const auto [a, b] : found) {
-                         visit(table.slot(a), table.slot(b));
+                         visit(table.proxyIndex(a), table.proxyIndex(b));
                      }
                  });
 }
 
-/// The same for every box of `queries` and every entry of the table: visit(i, slot).
+/// The same for every box of `queries` and every entry of the table: visit(i, index).
 template <class Scalar, class Visit>
 void forOverlaps(const Columns<Scalar>& queries, std::uint32_t count, const Table<Scalar>& table,
                  const GroupsView* groups, KernelCost& cost, const Visit& visit) {
     findInBlocks([&](PairSink& sink) { walkTable(table, queries, 0, count, sink, cost, groups); },
                  [&](std::span<const IndexPair> found) {
                      for (const auto [i, entry] : found) {
-                         visit(i, table.slot(entry));
+                         visit(i, table.proxyIndex(entry));
                      }
                  });
 }

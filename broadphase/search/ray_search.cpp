@@ -37,14 +37,14 @@ struct RaySearch {
     }
 
 private:
-    [[nodiscard]] bool handOver(std::span<const std::uint32_t> slots) {
-        limit = take(slots);
+    [[nodiscard]] bool handOver(std::span<const std::uint32_t> proxyIndices) {
+        limit = take(proxyIndices);
         return limit >= 0;
     }
 
-    static bool takeLanes(RaySink& sink, const std::uint32_t* slots, std::uint32_t count) {
+    static bool takeLanes(RaySink& sink, const std::uint32_t* proxyIndices, std::uint32_t count) {
         auto& search = *static_cast<RaySearch*>(sink.owner);
-        const bool goesOn = search.handOver({slots, count});
+        const bool goesOn = search.handOver({proxyIndices, count});
         sink.last = search.ray.lastFor(search.limit);
         return goesOn;
     }

@@ -14,8 +14,8 @@
 
 namespace hashphase::detail {
 
-/// Hands the slots of all boxes of the tree that the ray may meet up to the key `limit`, those of a
-/// few neighbours at a time and roughly from near to far, to take(slots). It returns the new limit,
+/// Hands the indices of all boxes of the tree that the ray may meet up to the key `limit`, those of a
+/// few neighbours at a time and roughly from near to far, to take(indices). It returns the new limit,
 /// which is no larger, or a negative number or NaN, which ends the search. Returns false when it
 /// has.
 template <class Scalar>

@@ -11,7 +11,7 @@ namespace {
 
 using TakeInside = FunctionRef<bool(std::span<const std::uint32_t>)>;
 
-bool handOver(SlotSink& sink) {
+bool handOver(IndexSink& sink) {
     const std::span<const std::uint32_t> found(sink.begin, sink.next);
     sink.next = sink.begin;
     return found.empty() || (*static_cast<const TakeInside*>(sink.owner))(found);
@@ -23,7 +23,7 @@ template <class Scalar>
 bool searchVolume(const Table<Scalar>& table, const Volume<Scalar>& volume, TakeInside take,
                   KernelCost& cost) {
     std::array<std::uint32_t, 512> found;
-    SlotSink sink{found.data(), found.data(), found.data() + found.size(), &handOver, &take};
+    IndexSink sink{found.data(), found.data(), found.data() + found.size(), &handOver, &take};
     return std::ranges::all_of(table.levels(), [&](const Level<Scalar>& level) {
         return !level.hasCells() || level.count() == 0 ||
                (kernels<Scalar>().walkVolume(level, volume, sink, cost) && handOver(sink));

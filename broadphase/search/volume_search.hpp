@@ -13,8 +13,8 @@
 
 namespace hashphase::detail {
 
-/// Hands the slots of all entries that are filed by cells and that are in the volume, and perhaps
-/// of some that were erased, to take(slots), some at a time, until it returns false. Returns false
+/// Hands the indices of all entries that are filed by cells and that are in the volume, and perhaps
+/// of some that were erased, to take(indices), some at a time, until it returns false. Returns false
 /// when it has. Entries of the list are the caller's to test. Allocates nothing.
 template <class Scalar>
 HASHPHASE_BROADPHASE_EXPORT bool searchVolume(

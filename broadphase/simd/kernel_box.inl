@@ -123,21 +123,21 @@ struct Query {
 template <class Scalar>
 struct GroupQuery : Query<Scalar> {
     const GroupsView* view;
-    const std::uint32_t* slots;  // of entries
+    const std::uint32_t* proxyIndices;  // of entries
     ProxyGroups own;
 
     // cppcheck-suppress uninitDerivedMemberVar  // the copied query has them
     GroupQuery(const Level<Scalar>& level, const GroupsView& groups, const Query<Scalar>& query)
         : Query<Scalar>(query),
           view(&groups),
-          slots(level.entrySlots),
-          own(groups.groups[2 * std::size_t{groups.slotOfQuery[query.number]}]) {}
+          proxyIndices(level.proxyIndices),
+          own(groups.groups[2 * std::size_t{groups.indexOfQuery[query.number]}]) {}
 
     [[nodiscard]] bool isFor(const ProxyGroups& other) const {
         return ((own.group & other.mask) != 0) & ((other.group & own.mask) != 0);
     }
     [[nodiscard]] bool finds(std::uint32_t entry) const {
-        return isFor(view->groups[2 * std::size_t{slots[entry]}]);
+        return isFor(view->groups[2 * std::size_t{proxyIndices[entry]}]);
     }
     [[nodiscard]] bool findsAny() const { return isFor(view->together); }
     [[nodiscard]] bool findsAny(const SortedBucket<Scalar>& part) const {

@@ -53,17 +53,17 @@ inline std::uint32_t nearestLane(const float* enter, std::uint32_t mask) {
     return nearest;
 }
 
-// Brings the slots of the lanes to the sink.
+// Brings the indices of the lanes to the sink.
 inline bool takeLanes(const BoxBlock& block, const float* enter, std::uint32_t mask,
                       RaySink& sink) {
-    std::uint32_t slots[kBlockWidth];
+    std::uint32_t proxyIndices[kBlockWidth];
     std::uint32_t count = 0;
     while (mask != 0) {
         const std::uint32_t lane = nearestLane(enter, mask);
         mask ^= 1U << lane;
-        slots[count++] = block.below[lane];
+        proxyIndices[count++] = block.below[lane];
     }
-    return count == 0 || sink.take(sink, slots, count);
+    return count == 0 || sink.take(sink, proxyIndices, count);
 }
 
 // Puts the blocks of the lanes on top of those that are pending, the nearest at the very top.

@@ -62,13 +62,13 @@ struct PairSink {
     return static_cast<std::size_t>(sink.end - sink.next) >= count || sink.grow(sink, count);
 }
 
-/// Where a kernel writes slots: flush(sink) takes those up to `next` away and makes room for at least
+/// Where a kernel writes indices: flush(sink) takes those up to `next` away and makes room for at least
 /// 16; false ends the search.
-struct SlotSink {
+struct IndexSink {
     std::uint32_t* begin;
     std::uint32_t* next;
     std::uint32_t* end;
-    bool (*flush)(SlotSink& sink);
+    bool (*flush)(IndexSink& sink);
     void* owner;
 };
 
@@ -103,9 +103,9 @@ struct Way {
 
 /// Who may pair with whom, for searches that are to find no others.
 struct GroupsView {
-    const ProxyGroups* groups;         // of a slot: groups[2 * slot]
-    const std::uint32_t* slotOfQuery;  // by the number of what is looked for
-    ProxyGroups together;              // all bits of those that are looked through
+    const ProxyGroups* groups;          // of an index: groups[2 * index]
+    const std::uint32_t* indexOfQuery;  // by the number of what is looked for
+    ProxyGroups together;               // all bits of those that are looked through
 };
 
 /// What a kernel did.
@@ -197,12 +197,12 @@ struct Kernels {
                          std::uint32_t first, std::uint32_t last, PairSink& found,
                          KernelCost& cost);
 
-    /// Finds the slot of every entry of a level with cells that is in the volume, and perhaps of
+    /// Finds the index of every entry of a level with cells that is in the volume, and perhaps of
     /// some that were erased.
-    bool (*walkVolume)(const Level<Scalar>& level, const Volume<Scalar>& volume, SlotSink& found,
+    bool (*walkVolume)(const Level<Scalar>& level, const Volume<Scalar>& volume, IndexSink& found,
                        KernelCost& cost);
 
-    /// Finds the slots of a tree's boxes that the ray may meet up to sink.last, about from near to
+    /// Finds the indices of a tree's boxes that the ray may meet up to sink.last, about from near to
     /// far. The tree's blocks from firstInner on stand above others.
     bool (*walkRay)(const BoxBlock* blocks, std::uint32_t root, std::uint32_t firstInner,
                     const RayLanes& ray, RaySink& sink, KernelCost& cost);

@@ -239,7 +239,7 @@ bool coversBuckets(const VolumeView<Scalar>& view, PlaneSet crossing, CellInterv
 }
 
 template <class Scalar>
-bool walkVolume(const Level<Scalar>& level, const Volume<Scalar>& volume, SlotSink& found,
+bool walkVolume(const Level<Scalar>& level, const Volume<Scalar>& volume, IndexSink& found,
                 KernelCost& cost) {
     const VolumeView<Scalar> view(level, volume);
     PlaneSet crossing = 0;

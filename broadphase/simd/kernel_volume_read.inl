@@ -2,12 +2,12 @@
 
 // Kernel part: reads the entries of a level that are in a convex volume. See kernel_volume.inl.
 
-/// Lists the slots of a level's entries that are in a volume.
+/// Lists the indices of a level's entries that are in a volume.
 template <class Scalar>
 class VolumeReader {
 public:
     /// `crossing` are the planes that may part the boxes of the level.
-    VolumeReader(const VolumeView<Scalar>& view, PlaneSet crossing, SlotSink& found,
+    VolumeReader(const VolumeView<Scalar>& view, PlaneSet crossing, IndexSink& found,
                  KernelCost& cost)
         : view_(view), crossing_(crossing), found_(found), cost_(cost) {}
 
@@ -19,7 +19,7 @@ public:
         while (run.first < run.last) {
             const auto room = static_cast<std::uint32_t>(found_.end - found_.next);
             const std::uint32_t count = lowest(run.last - run.first, room);
-            __builtin_memcpy(found_.next, view_.level.entrySlots + run.first,
+            __builtin_memcpy(found_.next, view_.level.proxyIndices + run.first,
                              count * sizeof(*found_.next));
             found_.next += count;
             run.first += count;
@@ -53,7 +53,7 @@ private:
         RowRuns rows[kRowsAtOnce];
         const int found = findRuns(batch, count, rows);
         for (int k = 0; k < found; ++k) {
-            fetchSlots(rows[k].all);
+            fetchIndices(rows[k].all);
             fetchColumns({rows[k].all.first, rows[k].covered.first}, rows[k].before);
             fetchColumns({rows[k].covered.last, rows[k].all.last}, rows[k].behind);
         }
@@ -99,11 +99,11 @@ private:
     static constexpr std::uint32_t kMostFetched = 128;
     static constexpr std::uint32_t kLine = 64;
 
-    void fetchSlots(Run run) const {
+    void fetchIndices(Run run) const {
         const std::uint32_t last = lowest(run.last, run.first + kMostFetched);
         for (std::uint32_t at = run.first; at < last;
-             at += kLine / sizeof(*view_.level.entrySlots)) {
-            __builtin_prefetch(view_.level.entrySlots + at);
+             at += kLine / sizeof(*view_.level.proxyIndices)) {
+            __builtin_prefetch(view_.level.proxyIndices + at);
         }
     }
 
@@ -163,14 +163,14 @@ private:
             for (PlaneSet left = planes; left != 0 && mask != 0; left &= left - 1) {
                 mask &= bitsOf<Pack>(view_.planes[firstPlane(left)], first);
             }
-            const std::uint32_t* entrySlots = view_.level.entrySlots;
+            const std::uint32_t* proxyIndices = view_.level.proxyIndices;
             if constexpr (kIsDense) {
-                found_.next = writeNumbers<Pack>(mask, entrySlots + first, found_.next);
+                found_.next = writeNumbers<Pack>(mask, proxyIndices + first, found_.next);
             } else {
                 for (; mask != 0; mask &= mask - 1) {
                     const std::uint32_t hit =
                         first + static_cast<std::uint32_t>(__builtin_ctz(mask));
-                    *found_.next = entrySlots[hit];
+                    *found_.next = proxyIndices[hit];
                     found_.next += isInRow<false>(view_.level, hit, row) ? 1 : 0;
                 }
             }
@@ -208,6 +208,6 @@ private:
 
     const VolumeView<Scalar>& view_;
     PlaneSet crossing_;
-    SlotSink& found_;
+    IndexSink& found_;
     KernelCost& cost_;
 };

@@ -15,7 +15,7 @@ inline constexpr std::uint32_t kBlockWidth = 8;
 /// without a box is inverted infinitely, which nothing meets.
 struct alignas(16) BoxBlock {
     float bounds[6][kBlockWidth];
-    /// Per lane, what stands behind the box: a block, or a slot in the lowest blocks.
+    /// Per lane, what stands behind the box: a block, or an index in the lowest blocks.
     std::uint32_t below[kBlockWidth];
     std::uint32_t count;  // of lanes with a box, the first ones
 };
@@ -31,11 +31,11 @@ struct RayLanes {
     float farInverse[3];  // the least bit longer than `inverse`
 };
 
-/// Where a kernel brings what a ray may meet: take(sink, slots, count) takes that of one block,
+/// Where a kernel brings what a ray may meet: take(sink, indices, count) takes that of one block,
 /// from near to far, and may make `last` smaller; false ends the search.
 struct RaySink {
     float last;  // what is met later is not looked for
-    bool (*take)(RaySink& sink, const std::uint32_t* slots, std::uint32_t count);
+    bool (*take)(RaySink& sink, const std::uint32_t* proxyIndices, std::uint32_t count);
     void* owner;
 };
 

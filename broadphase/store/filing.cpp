@@ -24,7 +24,7 @@ std::size_t worthRefiling(std::size_t restingCount) {
 
 }  // namespace
 
-// Slots that are near each other in space are near each other
+// Indices that are near each other in space are near each other
 // in proxies.mobile, but anywhere in proxies.records.
 template <class Scalar>
 void Store<Scalar>::stage(ParallelFor parallelFor, bool isForQueries) {
@@ -33,7 +33,7 @@ void Store<Scalar>::stage(ParallelFor parallelFor, bool isForQueries) {
     const std::size_t count = proxies.mobile.size();
     frame.now.resize(count);
     frame.before.resize(hasPairs ? count : 0);
-    ensureCapacity(frame.slots, proxies.nanCount);  // for relistMobile()
+    ensureCapacity(frame.proxyIndices, proxies.nanCount);  // for relistMobile()
     frame.idleCount = 0;
     const bool someRefuse = proxies.groupKinds.someRefuse();  // else nobody asks for kinds
     frame.mobileKinds = 0;
@@ -72,14 +72,14 @@ bool Store<Scalar>::settleIdle(ParallelFor parallelFor) {
         return false;
     }
     // Those that stay at rest come first, then those that join.
-    ensureCapacity(frame.slots, filedCount + frame.idleCount);
+    ensureCapacity(frame.proxyIndices, filedCount + frame.idleCount);
     ensureCapacity(frame.boxes, filedCount + frame.idleCount);
     listResting();
     for (std::size_t i = 0; frame.idleCount > 0 && i < proxies.mobile.size(); ++i) {
         Record& record = proxies.records[proxies.mobile[i]];
         if (record.residency == Residency::mobile && isIdle(record)) {
             record.residency = Residency::resting;
-            frame.slots.push_back(proxies.mobile[i]);
+            frame.proxyIndices.push_back(proxies.mobile[i]);
             frame.boxes.push_back(frame.now[i]);
             frame.now[i] = padded(nanBox<Scalar>());
         }
@@ -91,23 +91,24 @@ bool Store<Scalar>::settleIdle(ParallelFor parallelFor) {
 // Those that are at rest, in the order of their table.
 template <class Scalar>
 void Store<Scalar>::listResting() {
-    frame.slots.clear();
+    frame.proxyIndices.clear();
     frame.boxes.clear();
-    for (const std::uint32_t slot : tables.resting.entrySlots()) {
-        if (proxies.records[slot].residency == Residency::resting) {
-            frame.slots.push_back(slot);
-            frame.boxes.push_back(padded(proxies.records[slot].box));
+    for (const std::uint32_t proxyIndex : tables.resting.proxyIndices()) {
+        if (proxies.records[proxyIndex].residency == Residency::resting) {
+            frame.proxyIndices.push_back(proxyIndex);
+            frame.boxes.push_back(padded(proxies.records[proxyIndex].box));
         }
     }
 }
 
 template <class Scalar>
 void Store<Scalar>::fileResting(ParallelFor parallelFor) {
-    tables.resting.file(frame.slots, frame.boxes, fixedSizes(), parallelFor, proxies.groupsOfAll());
+    tables.resting.file(frame.proxyIndices, frame.boxes, fixedSizes(), parallelFor,
+                        proxies.groupsOfAll());
     tables.restingKinds = 0;
     for (std::uint32_t entry = 0; entry < tables.resting.size(); ++entry) {
-        proxies.records[tables.resting.slot(entry)].listedAt = entry;
-        tables.restingKinds |= proxies.kindOf(tables.resting.slot(entry));
+        proxies.records[tables.resting.proxyIndex(entry)].listedAt = entry;
+        tables.restingKinds |= proxies.kindOf(tables.resting.proxyIndex(entry));
     }
     tables.restingErased = 0;
     cost.filed += tables.resting.size();
@@ -131,8 +132,8 @@ void Store<Scalar>::fileMobile(ParallelFor parallelFor) {
 // stands, and no pair is looked for by them.
 template <class Scalar>
 void Store<Scalar>::fileSweeping(ParallelFor parallelFor) {
-    std::erase_if(proxies.sweeping, [this](std::uint32_t slot) {
-        return proxies.records[slot].residency != Residency::sweeping;
+    std::erase_if(proxies.sweeping, [this](std::uint32_t proxyIndex) {
+        return proxies.records[proxyIndex].residency != Residency::sweeping;
     });
     if (proxies.sweeping.empty()) {
         clearSweeping();
@@ -142,8 +143,8 @@ void Store<Scalar>::fileSweeping(ParallelFor parallelFor) {
         tables.sweeping = std::make_unique<FiledTable<Scalar>>();
     }
     frame.boxes.clear();
-    for (const std::uint32_t slot : proxies.sweeping) {
-        frame.boxes.push_back(padded(proxies.records[slot].box));
+    for (const std::uint32_t proxyIndex : proxies.sweeping) {
+        frame.boxes.push_back(padded(proxies.records[proxyIndex].box));
     }
     tables.sweeping->file(proxies.sweeping, frame.boxes, fixedSizes(), parallelFor);
     cost.filed += tables.sweeping->size();
@@ -159,17 +160,19 @@ void Store<Scalar>::clearSweeping() noexcept {
 
 template <class Scalar>
 void Store<Scalar>::relistMobile() noexcept {
-    frame.slots.clear();
+    frame.proxyIndices.clear();
     if (tables.mobile.size() != proxies.mobile.size() && proxies.nanCount > 0) {
-        std::copy_if(proxies.mobile.begin(), proxies.mobile.end(), std::back_inserter(frame.slots),
-                     [this](std::uint32_t slot) { return proxies.records[slot].isNan; });
+        std::copy_if(
+            proxies.mobile.begin(), proxies.mobile.end(), std::back_inserter(frame.proxyIndices),
+            [this](std::uint32_t proxyIndex) { return proxies.records[proxyIndex].isNan; });
     }
-    proxies.mobile.assign(tables.mobile.entrySlots().begin(), tables.mobile.entrySlots().end());
+    proxies.mobile.assign(tables.mobile.proxyIndices().begin(), tables.mobile.proxyIndices().end());
     if (tables.sweeping != nullptr) {
-        const std::span<const std::uint32_t> sweeping = tables.sweeping->entrySlots();
+        const std::span<const std::uint32_t> sweeping = tables.sweeping->proxyIndices();
         proxies.mobile.insert(proxies.mobile.end(), sweeping.begin(), sweeping.end());
     }
-    proxies.mobile.insert(proxies.mobile.end(), frame.slots.begin(), frame.slots.end());
+    proxies.mobile.insert(proxies.mobile.end(), frame.proxyIndices.begin(),
+                          frame.proxyIndices.end());
     proxies.mobileAtUpdate = proxies.mobile.size();
     proxies.giveBack(proxies.removed);
     proxies.giveBack(proxies.removedImmediate);
@@ -186,7 +189,7 @@ UpdateCost Store<Scalar>::endUpdate() noexcept {
     }
     proxies.woken.clear();
     proxies.boxesAtUpdate.clear();
-    proxies.slotsAtUpdate.clear();
+    proxies.indicesAtUpdate.clear();
     if (std::exchange(proxies.areRegrouped, false)) {
         for (std::size_t i = 0; i < proxies.groups.size(); i += 2) {
             proxies.groups[i + 1] = proxies.groups[i];
@@ -203,31 +206,31 @@ UpdateCost Store<Scalar>::endUpdate() noexcept {
 
 template <class Scalar>
 void Store<Scalar>::forgetLastUpdate() noexcept {
-    forEachListed([this](std::uint32_t slot) {
-        if (proxies.isAlive(slot)) {
-            markChanged(slot);
+    forEachListed([this](std::uint32_t proxyIndex) {
+        if (proxies.isAlive(proxyIndex)) {
+            markChanged(proxyIndex);
         }
-        proxies.records[slot].before = nanBox<Scalar>();
-        proxies.records[slot].isImmediate = false;
+        proxies.records[proxyIndex].before = nanBox<Scalar>();
+        proxies.records[proxyIndex].isImmediate = false;
     });
     proxies.boxesAtUpdate.clear();
-    proxies.slotsAtUpdate.clear();
+    proxies.indicesAtUpdate.clear();
     mustRebuildPairs = false;
 }
 
 // Whoever has been put to rest by now is still listed among the mobile ones; who rested before is not.
 template <class Scalar>
 void Store<Scalar>::wakeAll() noexcept {
-    for (const std::uint32_t slot : proxies.mobile) {
-        Record& record = proxies.records[slot];
+    for (const std::uint32_t proxyIndex : proxies.mobile) {
+        Record& record = proxies.records[proxyIndex];
         record.residency =
             record.residency == Residency::resting ? Residency::mobile : record.residency;
     }
-    for (std::uint32_t slot = 0; slot < proxies.records.size(); ++slot) {
-        if (proxies.records[slot].residency == Residency::resting) {
-            proxies.records[slot].residency = Residency::mobile;
-            proxies.listMobile(slot);
-            proxies.woken.push_back(slot);
+    for (std::uint32_t proxyIndex = 0; proxyIndex < proxies.records.size(); ++proxyIndex) {
+        if (proxies.records[proxyIndex].residency == Residency::resting) {
+            proxies.records[proxyIndex].residency = Residency::mobile;
+            proxies.listMobile(proxyIndex);
+            proxies.woken.push_back(proxyIndex);
         }
     }
     mustRebuildPairs = true;

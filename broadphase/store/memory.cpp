@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 
 // What a grid holds, and what it gives back after a peak: what only an update, a shift or a ray needs,
-// room for more than there are, and slots at the end that have no proxy.
+// room for more than there are, and indices at the end that have no proxy.
 
 #include <broadphase/store/store.hpp>
 
@@ -58,7 +58,7 @@ void Store<Scalar>::releaseRayMemory() noexcept {
     });
 }
 
-// Where the last slots have proxies, room for records cannot be given back.
+// Where the last indices have proxies, room for records cannot be given back.
 template <class Scalar>
 void Store<Scalar>::releaseAfterPeak() noexcept {
     const auto& records = proxies.records;
@@ -85,7 +85,7 @@ void Store<Scalar>::releaseMemory() noexcept {
         }
     }
     try {
-        proxies.dropLastSlots();
+        proxies.dropLastRecords();
     } catch (const std::bad_alloc&) {  // they are kept
     }
     shrink(proxies.records, proxies.reservedCount);
@@ -93,10 +93,10 @@ void Store<Scalar>::releaseMemory() noexcept {
     shrink(proxies.mobile, std::max(listedCount(), proxies.reservedCount));
     shrink(proxies.woken, proxies.mobile.capacity());
     shrink(proxies.waiting, proxies.mobile.capacity());
-    freeArrays(frame.now, frame.before, frame.slots, frame.boxes);
+    freeArrays(frame.now, frame.before, frame.proxyIndices, frame.boxes);
     if (proxies.boxesAtUpdate.empty()) {
         freeArrays(proxies.boxesAtUpdate);
-        proxies.slotsAtUpdate = {};
+        proxies.indicesAtUpdate = {};
     }
     Tables<Scalar>::forAll(tables, [](FiledTable<Scalar>& table) {
         table.releaseUnusedMemory();

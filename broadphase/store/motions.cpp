@@ -25,8 +25,8 @@ Motions<Scalar>::~Motions() {
 
 template <class Scalar>
 void Motions<Scalar>::set(const Motion<Scalar>& motion) {
-    const std::uint32_t slot = motion.id.index;
-    const std::uint32_t known = of(slot);
+    const std::uint32_t proxyIndex = motion.id.index;
+    const std::uint32_t known = of(proxyIndex);
     if (known != kNone) {
         all[known] = motion;
         return;
@@ -40,23 +40,23 @@ void Motions<Scalar>::set(const Motion<Scalar>& motion) {
         --vacantCount;
         all[place] = motion;
     }
-    ofSlot[slot] = place;
-    store.markChanged(slot);
+    ofProxy[proxyIndex] = place;
+    store.markChanged(proxyIndex);
 }
 
 // Its place stays, for the next one that begins: a query whose collector ends motions goes on where
 // it was.
 template <class Scalar>
-void Motions<Scalar>::end(std::uint32_t slot) noexcept {
-    const std::uint32_t known = of(slot);
+void Motions<Scalar>::end(std::uint32_t proxyIndex) noexcept {
+    const std::uint32_t known = of(proxyIndex);
     if (known == kNone) {
         return;
     }
-    ofSlot[all[known].id.index] = kNone;
+    ofProxy[all[known].id.index] = kNone;
     all[known].id = {firstVacant, 0};
     firstVacant = known;
     ++vacantCount;
-    store.endSweep(slot);
+    store.endSweep(proxyIndex);
 }
 
 template <class Scalar>
@@ -79,19 +79,19 @@ void Motions<Scalar>::shiftOrigin(const Vector3<Scalar>& shift) noexcept {
 template <class Scalar>
 void Motions<Scalar>::drop(std::uint32_t motion) noexcept {
     if (!all[motion].id.isNull()) {
-        ofSlot[all[motion].id.index] = kNone;
+        ofProxy[all[motion].id.index] = kNone;
     }
     all[motion] = all.back();
     all.pop_back();
     if (motion < all.size() && !all[motion].id.isNull()) {
-        ofSlot[all[motion].id.index] = motion;
+        ofProxy[all[motion].id.index] = motion;
     }
 }
 
 template <class Scalar>
 void Motions<Scalar>::makeRoom() {
-    if (ofSlot.size() < store.proxies.records.size()) {
-        ofSlot.resize(store.proxies.records.size(), kNone);
+    if (ofProxy.size() < store.proxies.records.size()) {
+        ofProxy.resize(store.proxies.records.size(), kNone);
     }
 }
 
@@ -117,29 +117,30 @@ void Motions<Scalar>::beginUpdate() {
 
 template <class Scalar>
 void Motions<Scalar>::releaseUnusedMemory() noexcept {
-    while (ofSlot.size() > store.proxies.records.size() && ofSlot.back() == kNone) {
-        ofSlot.pop_back();
+    while (ofProxy.size() > store.proxies.records.size() && ofProxy.back() == kNone) {
+        ofProxy.pop_back();
     }
     if (all.empty()) {
-        ofSlot.clear();
+        ofProxy.clear();
     }
-    ofSlot.shrink_to_fit();
+    ofProxy.shrink_to_fit();
     all.shrink_to_fit();
 }
 
 template <class Scalar>
 std::string Motions<Scalar>::validate() const {
     std::size_t listed = 0;
-    for (std::uint32_t slot = 0; slot < ofSlot.size(); ++slot) {
-        const std::uint32_t motion = ofSlot[slot];
+    for (std::uint32_t proxyIndex = 0; proxyIndex < ofProxy.size(); ++proxyIndex) {
+        const std::uint32_t motion = ofProxy[proxyIndex];
         listed += motion != kNone ? 1 : 0;
-        if (motion != kNone && (motion >= all.size() || all[motion].id.index != slot)) {
+        if (motion != kNone && (motion >= all.size() || all[motion].id.index != proxyIndex)) {
             listed = size() + 1;
             break;
         }
     }
-    return listed == size() ? std::string()
-                            : "Every motion is listed by its slot, and no other slot is: broken.";
+    return listed == size()
+               ? std::string()
+               : "Every motion is listed by its proxyIndex, and no other proxyIndex is: broken.";
 }
 
 template struct Motions<float>;

@@ -4,6 +4,7 @@
 // How far proxies move in a frame: see sweeps.hpp.
 
 #include <broadphase/aabb.hpp>
+#include <broadphase/export.hpp>
 #include <broadphase/moving_box.hpp>
 #include <broadphase/proxy_id.hpp>
 #include <broadphase/store/store.hpp>
@@ -27,7 +28,7 @@ struct Motion {
 
 /// The motions of a store's proxies.
 template <class Scalar>
-struct Motions {
+struct HASHPHASE_BROADPHASE_EXPORT Motions {
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
     Store<Scalar>& store;
@@ -36,7 +37,7 @@ struct Motions {
     // The places of what has ended since the last update: null ids, whose index is the next place.
     std::uint32_t firstVacant = kNone;
     std::uint32_t vacantCount = 0;
-    std::vector<std::uint32_t> ofSlot;  // kNone where a slot does not sweep
+    std::vector<std::uint32_t> ofProxy;  // kNone where an index does not sweep
 
     explicit Motions(Store<Scalar>& itsStore);
     ~Motions();
@@ -45,12 +46,12 @@ struct Motions {
 
     /// Where memory runs out, nothing has changed.
     void set(const Motion<Scalar>& motion);
-    /// What the slot has met is to be given up.
-    void end(std::uint32_t slot) noexcept;
+    /// What the index has met is to be given up.
+    void end(std::uint32_t proxyIndex) noexcept;
 
     [[nodiscard]] std::size_t size() const noexcept { return all.size() - vacantCount; }
-    [[nodiscard]] std::uint32_t of(std::uint32_t slot) const noexcept {
-        return slot < ofSlot.size() ? ofSlot[slot] : kNone;
+    [[nodiscard]] std::uint32_t of(std::uint32_t proxyIndex) const noexcept {
+        return proxyIndex < ofProxy.size() ? ofProxy[proxyIndex] : kNone;
     }
     /// Not of one that has taken the place of another one that swept.
     [[nodiscard]] bool sweeps(ProxyId id) const noexcept {
@@ -63,10 +64,10 @@ struct Motions {
                 motion.way.displacement};
     }
     /// The box of a proxy alive where its way begins.
-    [[nodiscard]] Aabb<Scalar> boxAtStart(std::uint32_t slot) const {
-        const std::uint32_t known = of(slot);
-        const bool sweeps = known != kNone && all[known].id == store.proxies.idOf(slot);
-        return sweeps ? wayOf(all[known]).box : store.proxies.records[slot].box;
+    [[nodiscard]] Aabb<Scalar> boxAtStart(std::uint32_t proxyIndex) const {
+        const std::uint32_t known = of(proxyIndex);
+        const bool sweeps = known != kNone && all[known].id == store.proxies.idOf(proxyIndex);
+        return sweeps ? wayOf(all[known]).box : store.proxies.records[proxyIndex].box;
     }
 
     /// For pairs that have not heard of them.
@@ -79,7 +80,7 @@ struct Motions {
     void makeRoom();
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
-        return all.capacity() * sizeof(all[0]) + ofSlot.capacity() * sizeof(ofSlot[0]);
+        return all.capacity() * sizeof(all[0]) + ofProxy.capacity() * sizeof(ofProxy[0]);
     }
     void releaseUnusedMemory() noexcept;
     [[nodiscard]] std::string validate() const;

@@ -18,12 +18,12 @@ std::size_t roomFor(std::size_t count, std::size_t present) {
 }  // namespace
 
 template <class Scalar>
-void Population<Scalar>::reserveSlots(std::size_t slotCount) {
-    checkCount(slotCount, kMostProxies, "A grid holds at most 268,435,456 proxies.");
-    if (slotCount <= records.capacity()) {
+void Population<Scalar>::reserveRecords(std::size_t indexCount) {
+    checkCount(indexCount, kMostProxies, "A grid holds at most 268,435,456 proxies.");
+    if (indexCount <= records.capacity()) {
         return;
     }
-    const std::size_t room = roomFor(slotCount, records.capacity());
+    const std::size_t room = roomFor(indexCount, records.capacity());
     if (!groups.empty()) {
         groups.reserve(2 * room);
     }
@@ -44,7 +44,7 @@ void Population<Scalar>::reserveLists(std::size_t count) {
 template <class Scalar>
 void Population<Scalar>::makeGroups() {
     if (groups.empty()) {
-        reserveSlots(1);
+        reserveRecords(1);
         const std::size_t count = std::max<std::size_t>(records.size(), 1);
         groups.reserve(2 * records.capacity());
         groups.resize(2 * count);
@@ -52,49 +52,49 @@ void Population<Scalar>::makeGroups() {
 }
 
 template <class Scalar>
-void Population<Scalar>::setGroups(std::uint32_t slot, const ProxyGroups& of) noexcept {
-    std::uint8_t& kind = records[slot].kind;
+void Population<Scalar>::setGroups(std::uint32_t proxyIndex, const ProxyGroups& of) noexcept {
+    std::uint8_t& kind = records[proxyIndex].kind;
     const bool isKnown = kind != GroupKinds::kOther && groupKinds[kind] == of;
     kind = isKnown ? kind : groupKinds.numberOf(of);
-    groups[2 * std::size_t{slot}] = of;
+    groups[2 * std::size_t{proxyIndex}] = of;
 }
 
 template <class Scalar>
-void Population<Scalar>::listMobile(std::uint32_t slot) noexcept {
-    records[slot].listedAt = static_cast<std::uint32_t>(mobile.size());
-    mobile.push_back(slot);
+void Population<Scalar>::listMobile(std::uint32_t proxyIndex) noexcept {
+    records[proxyIndex].listedAt = static_cast<std::uint32_t>(mobile.size());
+    mobile.push_back(proxyIndex);
 }
 
 // The last one takes its place: no order holds among those that have joined since the last update.
 template <class Scalar>
-void Population<Scalar>::unlistMobile(std::uint32_t slot) noexcept {
+void Population<Scalar>::unlistMobile(std::uint32_t proxyIndex) noexcept {
     const std::uint32_t last = mobile.back();
-    mobile[records[slot].listedAt] = last;
+    mobile[records[proxyIndex].listedAt] = last;
     if (isAlive(last)) {
-        records[last].listedAt = records[slot].listedAt;
+        records[last].listedAt = records[proxyIndex].listedAt;
     }
     mobile.pop_back();
 }
 
 // What is listed at its place behind those of the last update was at rest then, or was not yet.
 template <class Scalar>
-bool Population<Scalar>::isUnseen(std::uint32_t slot) const noexcept {
-    const Record<Scalar>& record = records[slot];
+bool Population<Scalar>::isUnseen(std::uint32_t proxyIndex) const noexcept {
+    const Record<Scalar>& record = records[proxyIndex];
     return record.listedAt >= mobileAtUpdate && record.listedAt < mobile.size() &&
-           mobile[record.listedAt] == slot && hasNan(record.before);
+           mobile[record.listedAt] == proxyIndex && hasNan(record.before);
 }
 
 template <class Scalar>
-void Population<Scalar>::append(std::uint32_t slot, SlotList& list) noexcept {
-    records[slot].listedAt = list.first;
-    list.last = list.first == kNoSlot ? slot : list.last;
-    list.first = slot;
+void Population<Scalar>::append(std::uint32_t proxyIndex, FreeList& list) noexcept {
+    records[proxyIndex].listedAt = list.first;
+    list.last = list.first == kNoProxyIndex ? proxyIndex : list.last;
+    list.first = proxyIndex;
     ++list.count;
 }
 
 template <class Scalar>
-void Population<Scalar>::giveBack(SlotList& list) noexcept {
-    if (list.first != kNoSlot) {
+void Population<Scalar>::giveBack(FreeList& list) noexcept {
+    if (list.first != kNoProxyIndex) {
         records[list.last].listedAt = free.first;
         free.first = list.first;
         free.count += list.count;
@@ -102,16 +102,16 @@ void Population<Scalar>::giveBack(SlotList& list) noexcept {
     }
 }
 
-// Slots in the order in which a new grid makes them.
+// Indices in the order in which a new grid makes them.
 template <class Scalar>
 void Population<Scalar>::clear() noexcept {
     free = removed = removedImmediate = {};
-    for (auto slot = static_cast<std::uint32_t>(records.size()); slot-- > 0;) {
-        const std::uint32_t generation = records[slot].generation;
-        records[slot] = {};
-        records[slot].generation = generation + (generation & 1);
-        if (records[slot].generation != kLastGeneration) {
-            append(slot, free);
+    for (auto proxyIndex = static_cast<std::uint32_t>(records.size()); proxyIndex-- > 0;) {
+        const std::uint32_t generation = records[proxyIndex].generation;
+        records[proxyIndex] = {};
+        records[proxyIndex].generation = generation + (generation & 1);
+        if (records[proxyIndex].generation != kLastGeneration) {
+            append(proxyIndex, free);
         }
     }
     size = nanCount = 0;
@@ -124,7 +124,7 @@ void Population<Scalar>::clear() noexcept {
     mobileAtUpdate = 0;
     listNumber = 1;
     freeArrays(sweeping, boxesAtUpdate, groups);
-    slotsAtUpdate = {};
+    indicesAtUpdate = {};
     groupKinds = {};
 }
 
@@ -151,32 +151,33 @@ void Population<Scalar>::countUpdatesAnew(std::uint32_t updatesBeforeRest) noexc
     updateNumber = longAgo;
 }
 
-// Of the slots that are left, the lowest are given away first, so that those at the end may go later. A
-// new slot begins with a generation that none at its place has had.
+// Of the indices that are left, the lowest are given away first, so that those at the end may go later. A
+// new index begins with a generation that none at its place has had.
 template <class Scalar>
-void Population<Scalar>::dropLastSlots() {
-    std::vector<std::uint32_t> slots;
-    slots.reserve(free.count);
-    for (std::uint32_t slot = free.first; slot != kNoSlot; slot = records[slot].listedAt) {
-        slots.push_back(slot);
+void Population<Scalar>::dropLastRecords() {
+    std::vector<std::uint32_t> proxyIndices;
+    proxyIndices.reserve(free.count);
+    for (std::uint32_t proxyIndex = free.first; proxyIndex != kNoProxyIndex;
+         proxyIndex = records[proxyIndex].listedAt) {
+        proxyIndices.push_back(proxyIndex);
     }
-    std::sort(slots.begin(), slots.end());
-    std::erase_if(sweeping, [this](std::uint32_t slot) {
-        return records[slot].residency != Residency::sweeping;
+    std::sort(proxyIndices.begin(), proxyIndices.end());
+    std::erase_if(sweeping, [this](std::uint32_t proxyIndex) {
+        return records[proxyIndex].residency != Residency::sweeping;
     });
     constexpr std::uint32_t kOld = kLastGeneration / 2;
-    while (!slots.empty() && slots.back() + 1 == records.size() && !isWaiting(records.back()) &&
-           records.back().generation < kOld) {
+    while (!proxyIndices.empty() && proxyIndices.back() + 1 == records.size() &&
+           !isWaiting(records.back()) && records.back().generation < kOld) {
         firstGeneration = std::max(firstGeneration, records.back().generation);
         records.pop_back();
-        slots.pop_back();
+        proxyIndices.pop_back();
     }
     if (!groups.empty()) {  // nor are they afterwards
         groups.resize(2 * std::max<std::size_t>(records.size(), 1));
     }
     free = {};
-    for (; !slots.empty(); slots.pop_back()) {
-        append(slots.back(), free);
+    for (; !proxyIndices.empty(); proxyIndices.pop_back()) {
+        append(proxyIndices.back(), free);
     }
 }
 

@@ -7,6 +7,7 @@
 #include <broadphase/aabb.hpp>
 #include <broadphase/core/flat_set.hpp>
 #include <broadphase/core/group_kinds.hpp>
+#include <broadphase/export.hpp>
 #include <broadphase/proxy_groups.hpp>
 #include <broadphase/proxy_id.hpp>
 
@@ -19,7 +20,7 @@
 
 namespace hashphase::detail {
 
-inline constexpr std::uint32_t kNoSlot = ~std::uint32_t{0};
+inline constexpr std::uint32_t kNoProxyIndex = ~std::uint32_t{0};
 
 enum class Residency : std::uint8_t {
     nowhere,  // no proxy
@@ -34,55 +35,55 @@ template <class Scalar>
     return {nan, nan};
 }
 
-/// All about a slot, in one cache line for single precision and two for double.
+/// All about an index, in one cache line for single precision and two for double.
 template <class Scalar>
 struct alignas(16 * sizeof(Scalar)) Record {
-    Aabb<Scalar> box = nanBox<Scalar>();  // NaN while the slot has no proxy
+    Aabb<Scalar> box = nanBox<Scalar>();  // NaN while the index has no proxy
     Aabb<Scalar> before =
         nanBox<Scalar>();          // standingBox() at the last update, if it has changed since
-    std::uint32_t generation = 0;  // odd while the slot has a proxy
+    std::uint32_t generation = 0;  // odd while the index has a proxy
     std::uint32_t changedAt = 0;   // number of the update that will see, or saw, the last change
     std::uint32_t listedAt =
         0;  // where in the resting table; in Population::mobile, if it has joined
-            // these since the last update; or the next slot without a proxy
+            // these since the last update; or the next index without a proxy
     Residency residency = Residency::nowhere;
     std::uint8_t listedIn = 0;  // number of the list of changes that has it
     std::uint8_t kind = 0;      // of its groups, in Population::groupKinds
     // Mobility::resting, or rested, and has not moved since but by a shift of the origin
     bool restsAtOnce : 1 = false;
     bool isNan : 1 = false;        // has a NaN; of a proxy alive
-    bool isImmediate : 1 = false;  // a candidate of the slot's has been told since the last update
+    bool isImmediate : 1 = false;  // a candidate of the index's has been told since the last update
 };
 
-/// Slots without a proxy, one after the other by Record::listedAt.
-struct SlotList {
-    std::uint32_t first = kNoSlot;
-    std::uint32_t last = kNoSlot;
+/// Indices without a proxy, one after the other by Record::listedAt.
+struct FreeList {
+    std::uint32_t first = kNoProxyIndex;
+    std::uint32_t last = kNoProxyIndex;
     std::uint32_t count = 0;
 };
 
 template <class Scalar>
-struct Population {
+struct HASHPHASE_BROADPHASE_EXPORT Population {
     using Box = Aabb<Scalar>;
 
-    std::vector<Record<Scalar>> records;  // by slot
+    std::vector<Record<Scalar>> records;  // by index
     std::size_t size = 0;                 // proxies alive
     std::size_t nanCount = 0;
     std::size_t reservedCount = 0;      // of proxies, by Grid::reserve()
     std::uint64_t number;               // see Grid::populationNumber()
     std::uint32_t updateNumber = 1;     // of the update that ends the present frame
-    std::uint32_t firstGeneration = 0;  // of new slots; even
+    std::uint32_t firstGeneration = 0;  // of new indices; even
     bool nanReported = false;
     bool areRegrouped = false;    // groups of some, since the last update
     std::uint8_t listNumber = 1;  // of `waiting`, so that marks of earlier lists do not count
 
-    SlotList free;
+    FreeList free;
     // Those whose proxies were removed since the tables were last settled: the next update has to tell
     // these from the next ones. What came and went in between is free at once, unless it has been lists.
-    SlotList removed;
-    SlotList removedImmediate;
+    FreeList removed;
+    FreeList removedImmediate;
 
-    // Of each slot now, and at the last update: 2 * slot, and one behind. Empty until somebody has others
+    // Of each index now, and at the last update: 2 * index, and one behind. Empty until somebody has others
     // than ProxyGroups{}; as long as records then. The same as numbers.
     std::vector<ProxyGroups> groups;
     GroupKinds groupKinds;
@@ -92,24 +93,24 @@ struct Population {
     // and `waiting`, has room for all that are listed here or rest.
     std::vector<std::uint32_t> mobile;
     std::size_t mobileAtUpdate = 0;       // how many there were at the last update
-    std::vector<std::uint32_t> woken;     // slots that have left rest since the last update
+    std::vector<std::uint32_t> woken;     // indices that have left rest since the last update
     std::vector<std::uint32_t> waiting;   // what changed since the mobile table was built
     std::vector<std::uint32_t> sweeping;  // when the last update began; in `mobile`, too
 
     // When a shift of the origin has rounded boxes since the last update: the boxes of that update in the
-    // coordinates of then. By slot, or where proxies are few among the slots by place in slotsAtUpdate.
+    // coordinates of then. By index, or where proxies are few among the indices by place in indicesAtUpdate.
     // Those that are missing had no proxy.
     std::vector<Box> boxesAtUpdate;
-    FlatSet slotsAtUpdate;
+    FlatSet indicesAtUpdate;
 
-    // --- A slot ----------------------------------------------------------------------------------
+    // --- An index ----------------------------------------------------------------------------------
 
-    /// The proxy in the slot, or the last one that was.
-    [[nodiscard]] ProxyId idOf(std::uint32_t slot) const noexcept {
-        return {slot, (records[slot].generation - 1) | 1};
+    /// The proxy in the index, or the last one that was.
+    [[nodiscard]] ProxyId idOf(std::uint32_t proxyIndex) const noexcept {
+        return {proxyIndex, (records[proxyIndex].generation - 1) | 1};
     }
-    [[nodiscard]] bool isAlive(std::uint32_t slot) const noexcept {
-        return (records[slot].generation & 1) != 0;
+    [[nodiscard]] bool isAlive(std::uint32_t proxyIndex) const noexcept {
+        return (records[proxyIndex].generation & 1) != 0;
     }
     [[nodiscard]] bool contains(ProxyId id) const noexcept {
         return !id.isNull() && id.index < records.size() &&
@@ -118,14 +119,14 @@ struct Population {
     [[nodiscard]] bool isWaiting(const Record<Scalar>& record) const noexcept {
         return record.listedIn == listNumber;
     }
-    [[nodiscard]] bool changedNow(std::uint32_t slot) const noexcept {
-        return records[slot].changedAt == updateNumber;
+    [[nodiscard]] bool changedNow(std::uint32_t proxyIndex) const noexcept {
+        return records[proxyIndex].changedAt == updateNumber;
     }
-    [[nodiscard]] bool rests(std::uint32_t slot) const noexcept {
-        return records[slot].residency == Residency::resting;
+    [[nodiscard]] bool rests(std::uint32_t proxyIndex) const noexcept {
+        return records[proxyIndex].residency == Residency::resting;
     }
 
-    /// The box by which a slot makes pairs: NaN of what sweeps, which makes them on its way.
+    /// The box by which an index makes pairs: NaN of what sweeps, which makes them on its way.
     [[nodiscard]] const Box& standingBox(const Record<Scalar>& record) const noexcept {
         return record.residency == Residency::sweeping ? nowhere() : record.box;
     }
@@ -137,16 +138,18 @@ struct Population {
     // --- The last update -------------------------------------------------------------------------
 
     /// standingBox() at the last update, in present coordinates; NaN when it had no proxy.
-    [[nodiscard]] const Box& before(std::uint32_t slot) const noexcept {
-        return changedNow(slot) ? records[slot].before : standingBox(records[slot]);
+    [[nodiscard]] const Box& before(std::uint32_t proxyIndex) const noexcept {
+        return changedNow(proxyIndex) ? records[proxyIndex].before
+                                      : standingBox(records[proxyIndex]);
     }
     /// The same in coordinates in which such boxes may be compared with each other.
-    [[nodiscard]] const Box& boxAtUpdate(std::uint32_t slot) const noexcept {
+    [[nodiscard]] const Box& boxAtUpdate(std::uint32_t proxyIndex) const noexcept {
         if (boxesAtUpdate.empty()) {
-            return before(slot);
+            return before(proxyIndex);
         }
-        const std::size_t place = slotsAtUpdate.size() == 0 ? slot : slotsAtUpdate.find(slot);
-        return place < boxesAtUpdate.size() ? boxesAtUpdate[place] : before(slot);
+        const std::size_t place =
+            indicesAtUpdate.size() == 0 ? proxyIndex : indicesAtUpdate.find(proxyIndex);
+        return place < boxesAtUpdate.size() ? boxesAtUpdate[place] : before(proxyIndex);
     }
     [[nodiscard]] bool overlappedAtUpdate(std::uint32_t a, std::uint32_t b) const noexcept {
         return overlaps(boxAtUpdate(a), boxAtUpdate(b));
@@ -154,8 +157,8 @@ struct Population {
 
     // --- Groups ----------------------------------------------------------------------------------
 
-    [[nodiscard]] ProxyGroups groupsNow(std::uint32_t slot) const noexcept {
-        return groups.empty() ? ProxyGroups{} : groups[2 * std::size_t{slot}];
+    [[nodiscard]] ProxyGroups groupsNow(std::uint32_t proxyIndex) const noexcept {
+        return groups.empty() ? ProxyGroups{} : groups[2 * std::size_t{proxyIndex}];
     }
     [[nodiscard]] bool mayPairNow(std::uint32_t a, std::uint32_t b) const noexcept {
         return groups.empty() || mayPair(groupsNow(a), groupsNow(b));
@@ -174,8 +177,8 @@ struct Population {
         const ProxyGroups* const now = groupsOfAll();
         return now != nullptr ? now + 1 : nullptr;
     }
-    [[nodiscard]] GroupKinds::Set kindOf(std::uint32_t slot) const noexcept {
-        return GroupKinds::bit(records[slot].kind);
+    [[nodiscard]] GroupKinds::Set kindOf(std::uint32_t proxyIndex) const noexcept {
+        return GroupKinds::bit(records[proxyIndex].kind);
     }
     /// Whether the two may not pair, by their kinds first, which mostly tell.
     [[nodiscard]] bool doRefuse(std::uint32_t a, std::uint32_t b) const noexcept {
@@ -184,22 +187,22 @@ struct Population {
 
     // --- Lists -----------------------------------------------------------------------------------
 
-    /// Makes room for records of so many slots. Throws std::length_error beyond 2^28.
-    void reserveSlots(std::size_t slotCount);
+    /// Makes room for records of so many indices. Throws std::length_error beyond 2^28.
+    void reserveRecords(std::size_t indexCount);
     /// Makes room in `mobile`, `woken` and `waiting`.
     void reserveLists(std::size_t count);
     /// Makes groups for all that are there, with room for as many as records has room for.
     void makeGroups();
-    void setGroups(std::uint32_t slot, const ProxyGroups& of) noexcept;
+    void setGroups(std::uint32_t proxyIndex, const ProxyGroups& of) noexcept;
 
-    /// Lists the slot among the mobile ones, and notes where.
-    void listMobile(std::uint32_t slot) noexcept;
-    void unlistMobile(std::uint32_t slot) noexcept;
-    /// Whether the slot's proxy, which is marked as changed, was added since the last update.
-    [[nodiscard]] bool isUnseen(std::uint32_t slot) const noexcept;
-    void append(std::uint32_t slot, SlotList& list) noexcept;
-    /// From now on the slots may be given away again.
-    void giveBack(SlotList& list) noexcept;
+    /// Lists the index among the mobile ones, and notes where.
+    void listMobile(std::uint32_t proxyIndex) noexcept;
+    void unlistMobile(std::uint32_t proxyIndex) noexcept;
+    /// Whether the index's proxy, which is marked as changed, was added since the last update.
+    [[nodiscard]] bool isUnseen(std::uint32_t proxyIndex) const noexcept;
+    void append(std::uint32_t proxyIndex, FreeList& list) noexcept;
+    /// From now on the indices may be given away again.
+    void giveBack(FreeList& list) noexcept;
     /// As new, but for what tells ids of before apart, and room in what changes append to.
     void clear() noexcept;
     /// Begins an empty list of changes.
@@ -210,10 +213,10 @@ struct Population {
         return records.capacity() * sizeof(records[0]) + groups.capacity() * sizeof(groups[0]) +
                (mobile.capacity() + woken.capacity() + waiting.capacity() + sweeping.capacity()) *
                    sizeof(mobile[0]) +
-               boxesAtUpdate.capacity() * sizeof(Box) + slotsAtUpdate.memoryBytes();
+               boxesAtUpdate.capacity() * sizeof(Box) + indicesAtUpdate.memoryBytes();
     }
-    /// Drops slots at the end of which nothing tells any more, and sorts those that are free.
-    void dropLastSlots();
+    /// Drops indices at the end of which nothing tells any more, and sorts those that are free.
+    void dropLastRecords();
 };
 
 extern template struct Population<float>;

@@ -21,7 +21,8 @@ std::size_t Store<Scalar>::shiftOrigin(const Point& shift) {
     ++shiftCount;
     ++proxies.number;
     std::size_t roundedCount = 0;
-    forEachListed([&](std::uint32_t slot) { roundedCount += shiftRecord(slot, shift) ? 1 : 0; });
+    forEachListed(
+        [&](std::uint32_t proxyIndex) { roundedCount += shiftRecord(proxyIndex, shift) ? 1 : 0; });
     for (auto* motions = firstMotions; motions != nullptr; motions = motions->next) {
         motions->shiftOrigin(shift);
     }
@@ -34,8 +35,8 @@ std::size_t Store<Scalar>::shiftOrigin(const Point& shift) {
 template <class Scalar>
 void Store<Scalar>::keepBoxesAtUpdate(const Point& shift) {
     bool someAreRounded = false;
-    forEachListed([&](std::uint32_t slot) {
-        const Record& record = proxies.records[slot];
+    forEachListed([&](std::uint32_t proxyIndex) {
+        const Record& record = proxies.records[proxyIndex];
         someAreRounded =
             someAreRounded || isRounded(record.box, shift) ||
             (record.changedAt == proxies.updateNumber && isRounded(record.before, shift));
@@ -47,26 +48,27 @@ void Store<Scalar>::keepBoxesAtUpdate(const Point& shift) {
     const std::size_t count = areFew ? listedCount() : proxies.records.size();
     proxies.boxesAtUpdate.reserve(count);
     if (areFew) {
-        proxies.slotsAtUpdate.reserve(count);
+        proxies.indicesAtUpdate.reserve(count);
     }
-    forEachListed([&](std::uint32_t slot) {
-        if (!areFew || proxies.slotsAtUpdate.findOrInsert(slot) == proxies.boxesAtUpdate.size()) {
-            proxies.boxesAtUpdate.push_back(proxies.before(slot));
+    forEachListed([&](std::uint32_t proxyIndex) {
+        if (!areFew ||
+            proxies.indicesAtUpdate.findOrInsert(proxyIndex) == proxies.boxesAtUpdate.size()) {
+            proxies.boxesAtUpdate.push_back(proxies.before(proxyIndex));
         }
     });
 }
 
-// Returns whether the slot's box was rounded.
+// Returns whether the index's box was rounded.
 template <class Scalar>
-bool Store<Scalar>::shiftRecord(std::uint32_t slot, const Point& shift) noexcept {
-    Record& record = proxies.records[slot];
+bool Store<Scalar>::shiftRecord(std::uint32_t proxyIndex, const Point& shift) noexcept {
+    Record& record = proxies.records[proxyIndex];
     const bool isRounded = detail::isRounded(record.box, shift);
     if (isRounded) {
         record.restsAtOnce = record.restsAtOnce || record.residency == Residency::resting;
-        markChanged(slot);
+        markChanged(proxyIndex);
     }
     record.box = shiftedBox(record.box, shift);
-    if (proxies.changedNow(slot)) {
+    if (proxies.changedNow(proxyIndex)) {
         record.before = shiftedBox(record.before, shift);
     }
     return isRounded;

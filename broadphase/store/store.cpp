@@ -47,67 +47,67 @@ std::uint32_t Store<Scalar>::add(const Box& box, bool restsAtOnce, const ProxyGr
     beforeChange();  // before anything is listed that it does not have
     // It may be that of another proxy, which moves. NOLINTNEXTLINE(*-unnecessary-copy-initialization)
     const Box own = box;
-    const std::uint32_t slot = takeSlot();
+    const std::uint32_t proxyIndex = takeIndex();
     if (!proxies.groups.empty()) {
         proxies.groups.resize(2 * proxies.records.size());
-        proxies.setGroups(slot, groups);
-        proxies.groups[2 * std::size_t{slot} + 1] = groups;
+        proxies.setGroups(proxyIndex, groups);
+        proxies.groups[2 * std::size_t{proxyIndex} + 1] = groups;
     }
-    Record& record = proxies.records[slot];
+    Record& record = proxies.records[proxyIndex];
     ++record.generation;
     record.residency = Residency::mobile;
-    proxies.listMobile(slot);
+    proxies.listMobile(proxyIndex);
     ++proxies.size;
     ++proxies.number;
-    markChanged(slot);
+    markChanged(proxyIndex);
     setBox(record, own);
     record.restsAtOnce = restsAtOnce;
-    return slot;
+    return proxyIndex;
 }
 
 // One without a proxy, and room to list it.
 template <class Scalar>
-std::uint32_t Store<Scalar>::takeSlot() {
-    std::uint32_t slot = proxies.free.first;
-    if (slot == kNoSlot) {
-        proxies.reserveSlots(proxies.records.size() + 1);
+std::uint32_t Store<Scalar>::takeIndex() {
+    std::uint32_t proxyIndex = proxies.free.first;
+    if (proxyIndex == kNoProxyIndex) {
+        proxies.reserveRecords(proxies.records.size() + 1);
         proxies.reserveLists(listedCount() + 1);
-        slot = static_cast<std::uint32_t>(proxies.records.size());
+        proxyIndex = static_cast<std::uint32_t>(proxies.records.size());
         proxies.records.emplace_back().generation = proxies.firstGeneration;
     } else {
         proxies.reserveLists(listedCount() + 1);
-        proxies.free.first = proxies.records[slot].listedAt;
+        proxies.free.first = proxies.records[proxyIndex].listedAt;
         --proxies.free.count;
     }
-    return slot;
+    return proxyIndex;
 }
 
 template <class Scalar>
 void Store<Scalar>::reserve(std::size_t count) {
     checkCount(count, kMostProxies, "A grid holds at most 268,435,456 proxies.");
     const std::size_t removed = proxies.removed.count + proxies.removedImmediate.count;
-    proxies.reserveSlots(count + removed);
+    proxies.reserveRecords(count + removed);
     proxies.reserveLists(count + removed);
     proxies.reservedCount = count;
 }
 
 template <class Scalar>
-void Store<Scalar>::move(std::uint32_t slot, const Box& box) {
-    Record& record = proxies.records[slot];
+void Store<Scalar>::move(std::uint32_t proxyIndex, const Box& box) {
+    Record& record = proxies.records[proxyIndex];
     if (!isSameBits(record.box, box)) {
-        markChanged(slot);
+        markChanged(proxyIndex);
         setBox(record, box);
     }
 }
 
 template <class Scalar>
-void Store<Scalar>::remove(std::uint32_t slot) noexcept {
-    markChanged(slot);
-    const bool cameAndWent = proxies.isUnseen(slot);
+void Store<Scalar>::remove(std::uint32_t proxyIndex) noexcept {
+    markChanged(proxyIndex);
+    const bool cameAndWent = proxies.isUnseen(proxyIndex);
     if (cameAndWent) {
-        proxies.unlistMobile(slot);
+        proxies.unlistMobile(proxyIndex);
     }
-    Record& record = proxies.records[slot];
+    Record& record = proxies.records[proxyIndex];
     proxies.nanCount -= record.isNan ? 1 : 0;
     record.isNan = false;
     record.box = nanBox<Scalar>();
@@ -116,50 +116,50 @@ void Store<Scalar>::remove(std::uint32_t slot) noexcept {
     --proxies.size;
     ++proxies.number;
     if (record.generation == kLastGeneration) {
-        return;  // nobody gets the slot any more, or an id would name two proxies
+        return;  // nobody gets the index any more, or an id would name two proxies
     }
-    proxies.append(slot, !cameAndWent         ? proxies.removed
-                         : record.isImmediate ? proxies.removedImmediate
-                                              : proxies.free);
+    proxies.append(proxyIndex, !cameAndWent         ? proxies.removed
+                               : record.isImmediate ? proxies.removedImmediate
+                                                    : proxies.free);
 }
 
-// Slots in the order in which a new grid makes them. What tells their ids apart stays.
+// Indices in the order in which a new grid makes them. What tells their ids apart stays.
 template <class Scalar>
 void Store<Scalar>::clear() {
     proxies.clear();
     tables.clear();
     mustRebuildPairs = false;
     cost = {};
-    freeArrays(frame.now, frame.before, frame.slots, frame.boxes);
+    freeArrays(frame.now, frame.before, frame.proxyIndices, frame.boxes);
     tables.cellSize = config.cellSize > 0 ? static_cast<Scalar>(config.cellSize) : Scalar(1);
 }
 
 template <class Scalar>
-void Store<Scalar>::setGroups(std::uint32_t slot, const ProxyGroups& groups) {
+void Store<Scalar>::setGroups(std::uint32_t proxyIndex, const ProxyGroups& groups) {
     proxies.makeGroups();
-    proxies.setGroups(slot, groups);
+    proxies.setGroups(proxyIndex, groups);
     proxies.areRegrouped = true;
-    Record& record = proxies.records[slot];
+    Record& record = proxies.records[proxyIndex];
     if (hasPairs && record.residency == Residency::mobile) {
         countChange(record);  // where its box is filed, there it is
     } else if (hasPairs) {
-        markChanged(slot);
+        markChanged(proxyIndex);
     }
 }
 
 // --- A change ------------------------------------------------------------------------------------
 
 template <class Scalar>
-void Store<Scalar>::markChanged(std::uint32_t slot) noexcept {
+void Store<Scalar>::markChanged(std::uint32_t proxyIndex) noexcept {
     beforeChange();
-    Record& record = proxies.records[slot];
+    Record& record = proxies.records[proxyIndex];
     countChange(record);
     if (record.residency == Residency::resting) {
-        wake(slot);
+        wake(proxyIndex);
     }
     if (!proxies.isWaiting(record)) {
         record.listedIn = proxies.listNumber;
-        proxies.waiting.push_back(slot);
+        proxies.waiting.push_back(proxyIndex);
     }
 }
 
@@ -176,13 +176,13 @@ void Store<Scalar>::countChange(Record& record) noexcept {
 }
 
 template <class Scalar>
-void Store<Scalar>::wake(std::uint32_t slot) noexcept {
-    Record& record = proxies.records[slot];
+void Store<Scalar>::wake(std::uint32_t proxyIndex) noexcept {
+    Record& record = proxies.records[proxyIndex];
     tables.resting.erase(record.listedAt);
     ++tables.restingErased;
     record.residency = Residency::mobile;
-    proxies.listMobile(slot);
-    proxies.woken.push_back(slot);
+    proxies.listMobile(proxyIndex);
+    proxies.woken.push_back(proxyIndex);
 }
 
 template <class Scalar>
@@ -209,16 +209,16 @@ void Store<Scalar>::markNan(Record& record, bool isNan) {
 }
 
 template <class Scalar>
-void Store<Scalar>::beginSweep(std::uint32_t slot) noexcept {
-    markChanged(slot);
-    proxies.records[slot].residency = Residency::sweeping;
-    proxies.sweeping.push_back(slot);
+void Store<Scalar>::beginSweep(std::uint32_t proxyIndex) noexcept {
+    markChanged(proxyIndex);
+    proxies.records[proxyIndex].residency = Residency::sweeping;
+    proxies.sweeping.push_back(proxyIndex);
 }
 
 template <class Scalar>
-void Store<Scalar>::endSweep(std::uint32_t slot) noexcept {
-    markChanged(slot);
-    Record& record = proxies.records[slot];
+void Store<Scalar>::endSweep(std::uint32_t proxyIndex) noexcept {
+    markChanged(proxyIndex);
+    Record& record = proxies.records[proxyIndex];
     record.residency =
         record.residency == Residency::sweeping ? Residency::mobile : record.residency;
 }
@@ -226,9 +226,9 @@ void Store<Scalar>::endSweep(std::uint32_t slot) noexcept {
 // Without pairs nothing does.
 template <class Scalar>
 void Store<Scalar>::endSweeps() noexcept {
-    for (const std::uint32_t slot : proxies.sweeping) {
-        if (proxies.records[slot].residency == Residency::sweeping) {
-            endSweep(slot);
+    for (const std::uint32_t proxyIndex : proxies.sweeping) {
+        if (proxies.records[proxyIndex].residency == Residency::sweeping) {
+            endSweep(proxyIndex);
         }
     }
 }
@@ -239,9 +239,9 @@ std::size_t Store<Scalar>::listFew(std::vector<std::uint32_t>& few) const {
     if (!isSparse()) {
         return proxies.records.size();
     }
-    forEachListed([&](std::uint32_t slot) {
-        if (proxies.isAlive(slot)) {
-            few.push_back(slot);
+    forEachListed([&](std::uint32_t proxyIndex) {
+        if (proxies.isAlive(proxyIndex)) {
+            few.push_back(proxyIndex);
         }
     });
     std::sort(few.begin(), few.end());
@@ -264,12 +264,12 @@ std::string Store<Scalar>::validate() const {
             return error;
         }
         for (std::uint32_t entry = 0; entry < table->size(); ++entry) {
-            const std::uint32_t slot = table->slot(entry);
-            if (hasNan(table->box(entry)) || !isFiled(slot, reading)) {
+            const std::uint32_t proxyIndex = table->proxyIndex(entry);
+            if (hasNan(table->box(entry)) || !isFiled(proxyIndex, reading)) {
                 continue;
             }
-            ++timesFound[slot];
-            if (!isSameBits(table->box(entry), proxies.records[slot].box)) {
+            ++timesFound[proxyIndex];
+            if (!isSameBits(table->box(entry), proxies.records[proxyIndex].box)) {
                 return "A filed proxy's entry has the proxy's box: broken.";
             }
         }
@@ -278,12 +278,12 @@ std::string Store<Scalar>::validate() const {
         timesFound[proxies.waiting[i]] += proxies.isAlive(proxies.waiting[i]) ? 1 : 0;
     }
     std::size_t alive = 0;
-    for (std::uint32_t slot = 0; slot < proxies.records.size(); ++slot) {
-        const Record& record = proxies.records[slot];
-        const bool isAlive = proxies.isAlive(slot);
+    for (std::uint32_t proxyIndex = 0; proxyIndex < proxies.records.size(); ++proxyIndex) {
+        const Record& record = proxies.records[proxyIndex];
+        const bool isAlive = proxies.isAlive(proxyIndex);
         const bool isNan = record.isNan && (reading.isFresh || !proxies.isWaiting(record));
         alive += isAlive ? 1 : 0;
-        if (timesFound[slot] != (isAlive && !isNan ? 1U : 0U)) {
+        if (timesFound[proxyIndex] != (isAlive && !isNan ? 1U : 0U)) {
             return "Every proxy alive is filed in exactly one table, or waits in the list of "
                    "changes, or is NaN: broken.";
         }

@@ -36,12 +36,12 @@ struct Frame {
     std::atomic<GroupKinds::Set> mobileKinds{0};
     std::atomic<GroupKinds::Set> changedKinds{0};
 
-    std::vector<std::uint32_t> slots;      // scratch: of what is filed, or has a NaN
-    std::vector<PaddedBox<Scalar>> boxes;  // scratch: of what is filed
+    std::vector<std::uint32_t> proxyIndices;  // scratch: of what is filed, or has a NaN
+    std::vector<PaddedBox<Scalar>> boxes;     // scratch: of what is filed
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         return (now.capacity() + before.capacity() + boxes.capacity()) * sizeof(boxes[0]) +
-               slots.capacity() * sizeof(slots[0]);
+               proxyIndices.capacity() * sizeof(proxyIndices[0]);
     }
 };
 
@@ -69,30 +69,30 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     // --- Changes. None allocates but add() and reserve(), which make room for all of it. ---------
 
     [[nodiscard]] std::uint32_t add(const Box& box, bool restsAtOnce, const ProxyGroups& groups);
-    [[nodiscard]] std::uint32_t takeSlot();
+    [[nodiscard]] std::uint32_t takeIndex();
     void reserve(std::size_t count);
-    void move(std::uint32_t slot, const Box& box);
-    void remove(std::uint32_t slot) noexcept;
+    void move(std::uint32_t proxyIndex, const Box& box);
+    void remove(std::uint32_t proxyIndex) noexcept;
     void clear();
-    void setGroups(std::uint32_t slot, const ProxyGroups& groups);
+    void setGroups(std::uint32_t proxyIndex, const ProxyGroups& groups);
 
-    /// To be called before every change of a slot's box.
-    void markChanged(std::uint32_t slot) noexcept;
+    /// To be called before every change of an index's box.
+    void markChanged(std::uint32_t proxyIndex) noexcept;
     /// The same where the box is not changed.
     void countChange(Record& record) noexcept;
-    void wake(std::uint32_t slot) noexcept;
+    void wake(std::uint32_t proxyIndex) noexcept;
     void setBox(Record& record, const Box& box);
     void markNan(Record& record, bool isNan);
 
     /// It sweeps as of the update that begins here.
-    void beginSweep(std::uint32_t slot) noexcept;
-    void endSweep(std::uint32_t slot) noexcept;
+    void beginSweep(std::uint32_t proxyIndex) noexcept;
+    void endSweep(std::uint32_t proxyIndex) noexcept;
     void endSweeps() noexcept;
 
     /// See Grid::shiftOrigin().
     std::size_t shiftOrigin(const Point& shift);
     void keepBoxesAtUpdate(const Point& shift);
-    bool shiftRecord(std::uint32_t slot, const Point& shift) noexcept;
+    bool shiftRecord(std::uint32_t proxyIndex, const Point& shift) noexcept;
     void shiftTables(const Point& shift);
 
     // --- The passes of an update, see step.hpp ---------------------------------------------------
@@ -108,7 +108,7 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     void fileSweeping(ParallelFor parallelFor);
     void clearSweeping() noexcept;
     /// Lists the mobile proxies in the order of their table, for the next time, and forgets those that
-    /// have left, whose slots may be given away again.
+    /// have left, whose indices may be given away again.
     void relistMobile() noexcept;
     UpdateCost endUpdate() noexcept;
     /// What is left where memory ran out, and the next update can go on from: everything is mobile.
@@ -144,36 +144,36 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     void forgetErased() noexcept;
     void dropList() noexcept;
 
-    /// Whether a slot that is listed in a table is still filed there.
-    [[nodiscard]] bool isFiled(std::uint32_t slot, const Reading& reading) const noexcept {
-        const Record& record = proxies.records[slot];
+    /// Whether an index that is listed in a table is still filed there.
+    [[nodiscard]] bool isFiled(std::uint32_t proxyIndex, const Reading& reading) const noexcept {
+        const Record& record = proxies.records[proxyIndex];
         return record.residency != Residency::nowhere &&
                (reading.isFresh || !proxies.isWaiting(record));
     }
-    [[nodiscard]] bool standsIn(const Filing& filing, std::uint32_t slot,
+    [[nodiscard]] bool standsIn(const Filing& filing, std::uint32_t proxyIndex,
                                 const Reading& reading) const noexcept {
-        return proxies.rests(slot) == filing.isResting && isFiled(slot, reading);
+        return proxies.rests(proxyIndex) == filing.isResting && isFiled(proxyIndex, reading);
     }
     /// Calls visit(ProxyId, box) for every proxy alive whose box has no NaN, in about the order of space.
     template <class Visit>
     void forEachFiled(const Visit& visit) const;
 
-    // --- All slots -------------------------------------------------------------------------------
+    // --- All indices -------------------------------------------------------------------------------
 
-    /// How many slots are listed, among the mobile ones or in the table of those at rest.
+    /// How many indices are listed, among the mobile ones or in the table of those at rest.
     [[nodiscard]] std::size_t listedCount() const noexcept {
         return proxies.mobile.size() + (tables.resting.size() - tables.restingErased);
     }
-    /// Whether so few slots have proxies that their lists are read sooner than all slots.
+    /// Whether so few indices have proxies that their lists are read sooner than all indices.
     [[nodiscard]] bool isSparse() const noexcept {
         return 8 * listedCount() < proxies.records.size();
     }
-    /// Calls visit(slot) once for each slot that has a proxy or had one at the last update, and perhaps for
+    /// Calls visit(index) once for each index that has a proxy or had one at the last update, and perhaps for
     /// others; in any order. visit() may wake proxies, and not add any.
     template <class Visit>
     void forEachListed(const Visit& visit) const;
-    /// Where proxies are few among the slots, lists their slots in ascending order; else none. Returns how
-    /// many slots are to be looked at: those listed, or all.
+    /// Where proxies are few among the indices, lists their indices in ascending order; else none. Returns how
+    /// many indices are to be looked at: those listed, or all.
     std::size_t listFew(std::vector<std::uint32_t>& few) const;
 
     /// None where cell sizes follow the population.
@@ -196,15 +196,15 @@ void Store<Scalar>::forEachFiled(const Visit& visit) const {
     for (const auto& [table, isResting] : reading.filings()) {
         for (std::uint32_t entry = 0; entry < table->size(); ++entry) {
             const Box box = table->box(entry);
-            if (isFiled(table->slot(entry), reading) && !hasNan(box)) {
-                visit(proxies.idOf(table->slot(entry)), box);
+            if (isFiled(table->proxyIndex(entry), reading) && !hasNan(box)) {
+                visit(proxies.idOf(table->proxyIndex(entry)), box);
             }
         }
     }
     for (std::size_t i = 0; i < proxies.waiting.size() && !reading.isFresh; ++i) {
-        const std::uint32_t slot = proxies.waiting[i];
-        if (proxies.isAlive(slot) && !proxies.records[slot].isNan) {
-            visit(proxies.idOf(slot), proxies.records[slot].box);
+        const std::uint32_t proxyIndex = proxies.waiting[i];
+        if (proxies.isAlive(proxyIndex) && !proxies.records[proxyIndex].isNan) {
+            visit(proxies.idOf(proxyIndex), proxies.records[proxyIndex].box);
         }
     }
 }
@@ -213,8 +213,8 @@ template <class Scalar>
 template <class Visit>
 void Store<Scalar>::forEachListed(const Visit& visit) const {
     if (!isSparse()) {
-        for (std::uint32_t slot = 0; slot < proxies.records.size(); ++slot) {
-            visit(slot);
+        for (std::uint32_t proxyIndex = 0; proxyIndex < proxies.records.size(); ++proxyIndex) {
+            visit(proxyIndex);
         }
         return;
     }
@@ -222,9 +222,9 @@ void Store<Scalar>::forEachListed(const Visit& visit) const {
     for (std::size_t i = 0; i < mobileCount; ++i) {
         visit(proxies.mobile[i]);
     }
-    for (const std::uint32_t slot : tables.resting.entrySlots()) {
-        if (proxies.rests(slot)) {
-            visit(slot);
+    for (const std::uint32_t proxyIndex : tables.resting.proxyIndices()) {
+        if (proxies.rests(proxyIndex)) {
+            visit(proxyIndex);
         }
     }
 }

@@ -25,10 +25,10 @@ struct FiledTable : Table<Scalar> {
     std::atomic<bool> isTreeStale{false};
 
     /// Table::build().
-    void file(std::span<const std::uint32_t> slots, std::span<const PaddedBox<Scalar>> boxes,
+    void file(std::span<const std::uint32_t> proxyIndices, std::span<const PaddedBox<Scalar>> boxes,
               const LevelSizes& sizes, ParallelFor parallelFor,
               const ProxyGroups* groups = nullptr) {
-        this->build(slots, boxes, sizes, parallelFor, groups);
+        this->build(proxyIndices, boxes, sizes, parallelFor, groups);
         makeTreeStale();
     }
     [[nodiscard]] std::string validateTree() const {

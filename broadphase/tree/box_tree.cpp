@@ -74,7 +74,7 @@ void BoxTree::readBoxes(const Table<Scalar>& table, const Level<Scalar>& level) 
             box.high[axis] = -roundedDown(-std::max(a, b));
         }
         if (!isNan) {
-            box.below = table.slot(entry);
+            box.below = table.proxyIndex(entry);
             boxes_.push_back(box);
         }
     }

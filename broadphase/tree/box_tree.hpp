@@ -57,7 +57,7 @@ private:
     struct Box {
         std::array<float, 3> low;
         std::array<float, 3> high;
-        std::uint32_t below;  // slot, or block
+        std::uint32_t below;  // index, or block
 
         [[nodiscard]] float longestEdge() const noexcept;
         void extend(const Box& other) noexcept;

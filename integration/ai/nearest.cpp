@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/ai/nearest.hpp>
 
-#include <broadphase/simd/kernel_types.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

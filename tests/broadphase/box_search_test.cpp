@@ -47,7 +47,7 @@ protected:
         const auto take = [&](std::span<const IndexPair> pairs) {
             EXPECT_FALSE(pairs.empty());
             for (const auto [query, entry] : pairs) {
-                couples.emplace_back(query, table_.slot(entry));
+                couples.emplace_back(query, table_.proxyIndex(entry));
             }
             return true;
         };

@@ -265,7 +265,7 @@ std::size_t expectNoneParted(int tenths, int axis) {
     detail::joinTable(table, serialFor, parts, found, cost);
     CoupleSum actual;
     for (const auto [first, second] : found.pairs()) {
-        actual.add(table.slot(first), table.slot(second));
+        actual.add(table.proxyIndex(first), table.proxyIndex(second));
     }
     EXPECT_EQ(actual, couplesInOrder(boxes));
     EXPECT_GE(actual.count, 3 * 2000U);

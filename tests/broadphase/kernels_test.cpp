@@ -107,7 +107,7 @@ protected:
                                                    apart.data()));
         std::vector<IndexPair> filed;
         for (std::uint32_t i = 0; i < table.size(); ++i) {
-            filed.push_back({table.order()[i], table.slot(i)});
+            filed.push_back({table.order()[i], table.proxyIndex(i)});
         }
         const PairList onWays = walkWays(table, movedTable, moved);
         return {copyOf(joined), copyOf(walked), apart, filed, copyOf(together), copyOf(onWays)};

@@ -41,7 +41,7 @@ protected:
         PairParts parts;
         joinTable(table_, serialFor, parts, found, cost_);
         for (const auto [a, b] : found.pairs()) {
-            couples.push_back(std::minmax(table_.slot(a), table_.slot(b)));
+            couples.push_back(std::minmax(table_.proxyIndex(a), table_.proxyIndex(b)));
         }
         std::sort(couples.begin(), couples.end());
         return couples;
@@ -59,8 +59,8 @@ protected:
         cost_ = {};
         walkTable(table_, queries.columns(), queries.size(), serialFor, parts, found, cost_);
         for (const auto [query, entry] : found.pairs()) {
-            if (query < table_.slot(entry)) {
-                couples.emplace_back(query, table_.slot(entry));
+            if (query < table_.proxyIndex(entry)) {
+                couples.emplace_back(query, table_.proxyIndex(entry));
             }
         }
         std::sort(couples.begin(), couples.end());
@@ -238,7 +238,7 @@ TYPED_TEST(TableTest, ErasedEntriesAreFoundByNothing) {
     this->build(std::move(boxes));
     const TypeParam nan = std::numeric_limits<TypeParam>::quiet_NaN();
     for (std::uint32_t entry = 0; entry < this->table_.size(); entry += 3) {
-        this->boxes_[this->table_.slot(entry)].min().setConstant(nan);
+        this->boxes_[this->table_.proxyIndex(entry)].min().setConstant(nan);
         this->table_.erase(entry);
     }
     EXPECT_EQ(this->table_.validate(), "");
@@ -300,7 +300,7 @@ TYPED_TEST(TableTest, CrowdsAreFoundWholeAfterSomeOfThemWereErased) {
     this->build(crowd<TypeParam>(random, 1200, {0, 0, 0}, {12, 12, 12}), fixedLevels(100, 4));
     const TypeParam nan = std::numeric_limits<TypeParam>::quiet_NaN();
     for (std::uint32_t entry = 0; entry < this->table_.size(); entry += 2) {
-        this->boxes_[this->table_.slot(entry)].min().setConstant(nan);
+        this->boxes_[this->table_.proxyIndex(entry)].min().setConstant(nan);
         this->table_.erase(entry);
     }
     EXPECT_EQ(this->table_.validate(), "");

@@ -8,8 +8,9 @@
 cmake_minimum_required(VERSION 3.22)
 
 string(CONCAT offered
-       "(CameraInverse|FewPairs|Kernels|QueryScope|Table<|firstContactExactly|instructionSet|"
-       "isAvailable|kernels|nameOf|reportBrokenAssert|reportMessage|useInstructionSet|walkTogether)")
+       "(CameraInverse|FewPairs|Kernels|Motions<|PairTracker<|Population<|QueryScope|Store<|Table<|"
+       "firstContactExactly|instructionSet|isAvailable|kernels|nameOf|reportBrokenAssert|"
+       "reportMessage|search(Boxes|Ray|Volume)|useInstructionSet)")
 
 string(REPLACE "," ";" libraries "${LIBRARIES}")
 foreach(library IN LISTS libraries)
