@@ -36,10 +36,4 @@ HASHPHASE_AI_EXPORT QueryCost findNearest(const Grid<Scalar>& grid,
                                           std::vector<KeyedProxy<Scalar>>& nearest,
                                           ProxyFilter filter = acceptAll, ProxyId self = {});
 
-extern template QueryCost findNearest(const Grid<float>&, const Vector3<float>&, std::size_t, float,
-                                      std::vector<KeyedProxy<float>>&, ProxyFilter, ProxyId);
-extern template QueryCost findNearest(const Grid<double>&, const Vector3<double>&, std::size_t,
-                                      double, std::vector<KeyedProxy<double>>&, ProxyFilter,
-                                      ProxyId);
-
 }  // namespace hashphase

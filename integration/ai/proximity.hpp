@@ -44,13 +44,4 @@ HASHPHASE_AI_EXPORT QueryCost estimateWithin(const Grid<Scalar>& grid,
                                              std::vector<ProxyId>& found,
                                              ProxyFilter filter = acceptAll, ProxyId self = {});
 
-extern template QueryCost findWithin(const Grid<float>&, const Vector3<float>&, float,
-                                     std::vector<ProxyId>&, ProxyFilter, ProxyId);
-extern template QueryCost findWithin(const Grid<double>&, const Vector3<double>&, double,
-                                     std::vector<ProxyId>&, ProxyFilter, ProxyId);
-extern template QueryCost estimateWithin(const Grid<float>&, const Vector3<float>&, float,
-                                         std::vector<ProxyId>&, ProxyFilter, ProxyId);
-extern template QueryCost estimateWithin(const Grid<double>&, const Vector3<double>&, double,
-                                         std::vector<ProxyId>&, ProxyFilter, ProxyId);
-
 }  // namespace hashphase

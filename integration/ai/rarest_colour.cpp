@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/ai/rarest_colour.hpp>
 
+#include <broadphase/core/shared_cost.hpp>
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/position_region.hpp>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <iterator>
 #include <limits>
 #include <utility>
@@ -117,9 +117,7 @@ QueryCost RarestColour<Scalar>::updateSome(const Grid<Scalar>& grid, Scalar radi
     // All read ...
     rarest_.resize(agents.size());
     constexpr std::size_t kGrain = 64;
-    std::atomic<std::uint64_t> rowsVisited{0};
-    std::atomic<std::uint64_t> boxesTested{0};
-    std::atomic<std::uint64_t> hits{0};
+    detail::SharedCost sum;
     parallelFor(agents.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         QueryCost cost;
         for (std::size_t first = begin; first < end; first += kAtOnce) {
@@ -128,9 +126,7 @@ QueryCost RarestColour<Scalar>::updateSome(const Grid<Scalar>& grid, Scalar radi
                                         agents.subspan(first, count), filter,
                                         std::span(rarest_).subspan(first, count));
         }
-        rowsVisited += cost.rowsVisited;
-        boxesTested += cost.boxesTested;
-        hits += cost.hits;
+        sum.add(cost);
     });
     // ... then all change.
     for (std::size_t i = 0; i < agents.size(); ++i) {
@@ -138,7 +134,7 @@ QueryCost RarestColour<Scalar>::updateSome(const Grid<Scalar>& grid, Scalar radi
             colours[agents[i].index] = rarest_[i];
         }
     }
-    return {rowsVisited, boxesTested, hits};
+    return sum.sum();
 }
 
 template <class Scalar>

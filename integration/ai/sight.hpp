@@ -116,15 +116,5 @@ extern template class SightRegion<float>;
 extern template class SightRegion<double>;
 extern template class Sight<float>;
 extern template class Sight<double>;
-extern template bool hasLineOfSight(const Grid<float>&, const Vector3<float>&,
-                                    const Vector3<float>&, ProxyFilter, ProxyId, ProxyId);
-extern template bool hasLineOfSight(const Grid<double>&, const Vector3<double>&,
-                                    const Vector3<double>&, ProxyFilter, ProxyId, ProxyId);
-extern template bool canSee(const Grid<float>&, const Viewer<float>&, ProxyId, ProxyFilter);
-extern template bool canSee(const Grid<double>&, const Viewer<double>&, ProxyId, ProxyFilter);
-extern template QueryCost visibleFrom(const Grid<float>&, const Viewer<float>&,
-                                      std::vector<ProxyId>&, ProxyFilter, ProxyFilter);
-extern template QueryCost visibleFrom(const Grid<double>&, const Viewer<double>&,
-                                      std::vector<ProxyId>&, ProxyFilter, ProxyFilter);
 
 }  // namespace hashphase

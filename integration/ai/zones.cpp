@@ -112,11 +112,10 @@ const Zone<Scalar>& Zones<Scalar>::zone(ZoneId id) const {
 
 // --- Frame ---------------------------------------------------------------------------------------
 
+// Who is where now, in the zones that are due.
 template <class Scalar>
-ZoneEvents Zones<Scalar>::update(const Grid<Scalar>& grid, ZoneFilter filter, ZoneChoice due,
-                                 ParallelFor parallelFor) {
-    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kMustNotChange);
-    // Who is where.
+void Zones<Scalar>::findAll(const Grid<Scalar>& grid, ZoneFilter filter, ZoneChoice due,
+                            ParallelFor parallelFor) {
     constexpr std::size_t grain = 8;
     grid.expectQueries(slots_.size());
     parallelFor(slots_.size(), grain, [&](std::size_t begin, std::size_t end) {
@@ -136,7 +135,13 @@ ZoneEvents Zones<Scalar>::update(const Grid<Scalar>& grid, ZoneFilter filter, Zo
                 slot.zone.shape);
         }
     });
+}
 
+template <class Scalar>
+ZoneEvents Zones<Scalar>::update(const Grid<Scalar>& grid, ZoneFilter filter, ZoneChoice due,
+                                 ParallelFor parallelFor) {
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kMustNotChange);
+    findAll(grid, filter, due, parallelFor);
     // What has changed, in the order of zones.
     entered_.clear();
     stayed_.clear();

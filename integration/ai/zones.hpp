@@ -151,6 +151,8 @@ private:
     [[nodiscard]] static bool isAlive(const Slot& slot) noexcept {
         return (slot.generation & 1) != 0;
     }
+    void findAll(const Grid<Scalar>& grid, ZoneFilter filter, ZoneChoice due,
+                 ParallelFor parallelFor);
     void tellApart(ZoneId id, const Slot& slot);
 
     std::vector<Slot> slots_;

@@ -79,9 +79,8 @@ btBroadphasePair* PairCache::add(const ProxyCouple& couple) {
     checkRoomFor(1);
     const auto index = static_cast<int>(ids_.findOrInsert(couple.ids()));
     if (index < pairs_.size()) {
-        HASHPHASE_ASSERT(
-            pairs_[index].m_pProxy0 == couple.lower() || pairs_[index].m_pProxy0 == couple.upper(),
-            "Proxies that are alive have different unique ids.");
+        HASHPHASE_ASSERT(isNamedBy(couple, pairs_[index]),
+                         "Proxies that are alive have different unique ids.");
         return &pairs_[index];
     }
     btBroadphasePair pair;

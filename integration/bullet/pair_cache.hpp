@@ -342,6 +342,7 @@ private:
     void vacate(std::uint64_t ids, btDispatcher* dispatcher, Remover remover);
     void vacateAll(std::span<const ProxyCouple> died, btDispatcher* dispatcher);
     void makeRoomFor(std::size_t bornCount);
+    void vacateAll(std::span<const Note> notes, btDispatcher* dispatcher, Remover remover);
     std::size_t settle(std::span<const ProxyCouple> born);
     void closeVacant(std::size_t firstVacant) noexcept;
     void fill(std::uint32_t index) noexcept;
@@ -366,6 +367,8 @@ private:
     void rename(std::uint32_t from, std::uint32_t to);
     void noteUnchained(std::uint32_t id, std::vector<Note>& notes) const;
     [[nodiscard]] std::vector<Note> notesOf(const btBroadphaseProxy& proxy);
+    template <class Visit>
+    void forEachPairOf(const btBroadphaseProxy& proxy, const Visit& visit);
     void tellGhostsAgain(std::uint64_t ids, const btBroadphasePair& pair, btDispatcher* dispatcher);
     void removeUnnoted(const btBroadphaseProxy& proxy, btDispatcher* dispatcher, Remover remover);
     void processByUniqueId(btOverlapCallback& callback, btDispatcher* dispatcher);

@@ -170,12 +170,7 @@ void PairCache::removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDis
     places_.clear();
     detail::ensureCapacity(places_, notes.size());
     try {
-        for (std::size_t i = 0; i < notes.size(); ++i) {
-            if (i + kFar < notes.size()) {
-                ids_.prefetch(notes[i + kFar].uniqueIds);
-            }
-            vacate(notes[i].uniqueIds, dispatcher, remover);
-        }
+        vacateAll(notes, dispatcher, remover);
     } catch (...) {
         closeVacant(0);
         throw;
@@ -183,6 +178,15 @@ void PairCache::removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDis
     closeVacant(0);
     scratch_ = std::move(notes);
     freeRetiredAsListed();
+}
+
+void PairCache::vacateAll(std::span<const Note> notes, btDispatcher* dispatcher, Remover remover) {
+    for (std::size_t i = 0; i < notes.size(); ++i) {
+        if (i + kFar < notes.size()) {
+            ids_.prefetch(notes[i + kFar].uniqueIds);
+        }
+        vacate(notes[i].uniqueIds, dispatcher, remover);
+    }
 }
 
 // In the order in which their algorithms are to be freed; some may be listed twice. Of the chained

@@ -185,28 +185,30 @@ void PairCache::removeUnnoted(const btBroadphaseProxy& proxy, btDispatcher* disp
     }
 }
 
-void PairCache::cleanProxyFromPairs(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
-    std::vector<Note> notes = notesOf(*proxy);
+// Calls visit(ids, pair) for each; pairs may go meanwhile.
+template <class Visit>
+void PairCache::forEachPairOf(const btBroadphaseProxy& proxy, const Visit& visit) {
+    std::vector<Note> notes = notesOf(proxy);
     for (const Note& note : notes) {
-        const std::uint32_t index = indexOf(note);
-        if (index != kNone) {
-            cleanOverlappingPair(pairs_[static_cast<int>(index)], dispatcher);
+        if (const std::uint32_t index = indexOf(note); index != kNone) {
+            visit(note.uniqueIds, pairs_[static_cast<int>(index)]);
         }
     }
     scratch_ = std::move(notes);
 }
 
+void PairCache::cleanProxyFromPairs(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
+    forEachPairOf(*proxy, [&](std::uint64_t /*ids*/, btBroadphasePair& pair) {
+        cleanOverlappingPair(pair, dispatcher);
+    });
+}
+
 void PairCache::renewPairsContainingProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
     checkMayChange();
-    std::vector<Note> notes = notesOf(*proxy);
-    for (const Note& note : notes) {
-        const std::uint32_t index = indexOf(note);
-        if (index != kNone) {
-            cleanOverlappingPair(pairs_[static_cast<int>(index)], dispatcher);
-            tellGhostsAgain(note.uniqueIds, pairs_[static_cast<int>(index)], dispatcher);
-        }
-    }
-    scratch_ = std::move(notes);
+    forEachPairOf(*proxy, [&](std::uint64_t ids, btBroadphasePair& pair) {
+        cleanOverlappingPair(pair, dispatcher);
+        tellGhostsAgain(ids, pair, dispatcher);
+    });
 }
 
 // The callback may remove the pair, or itself.

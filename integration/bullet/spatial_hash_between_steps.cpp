@@ -79,19 +79,15 @@ void SpatialHashBroadphase::putBackWhatWasTakenOut(btDispatcher* dispatcher) {
     }
     try {
         std::vector<ProxyCouple> couples = *watch_.takenOut;
-        const auto pairOf = [](const ProxyCouple& couple) {
-            const ProxyId a = idOf(couple.lower());
-            const ProxyId b = idOf(couple.upper());
-            return a < b ? ProxyPair{a, b} : ProxyPair{b, a};
-        };
         std::vector<ProxyPair> pairs;
         pairs.reserve(couples.size());
         for (const ProxyCouple& couple : couples) {
-            pairs.push_back(pairOf(couple));
+            pairs.push_back(pairOf(couple.lower(), couple.upper()));
         }
         static_cast<void>(pairs_.refilter(pairs, cacheFilter()));
-        std::erase_if(couples,
-                      [&](const ProxyCouple& couple) { return !pairs_.isPair(pairOf(couple)); });
+        std::erase_if(couples, [&](const ProxyCouple& couple) {
+            return !pairs_.isPair(pairOf(couple.lower(), couple.upper()));
+        });
         watch_.takenOut = nullptr;
         applyToCache({}, couples, dispatcher);
     } catch (...) {
@@ -114,18 +110,21 @@ void SpatialHashBroadphase::shapeChanged(btBroadphaseProxy* proxy, btDispatcher*
     Proxy* own = checkedProxy(proxy);
     if (watch_.cache != nullptr) {
         watch_.cache->renewPairsContainingProxy(own, dispatcher);
-        return;
-    }
-    if (pairCache_->hasDeferredRemoval()) {
+    } else if (pairCache_->hasDeferredRemoval()) {
         pairCache_->cleanProxyFromPairs(own, dispatcher);
-        return;
+    } else {
+        renewPairsOfOtherCache(*own, dispatcher);
     }
+}
+
+void SpatialHashBroadphase::renewPairsOfOtherCache(btBroadphaseProxy& proxy,
+                                                   btDispatcher* dispatcher) {
     std::vector<ProxyCouple> couples;
     const btBroadphasePairArray& pairs = pairCache_->getOverlappingPairArray();
     for (int i = 0; i < pairs.size(); ++i) {
         const btBroadphasePair& pair = pairs[i];
-        if (pair.m_pProxy0 == own || pair.m_pProxy1 == own) {
-            couples.emplace_back(*own, pair.m_pProxy0 == own ? *pair.m_pProxy1 : *pair.m_pProxy0);
+        if (pair.m_pProxy0 == &proxy || pair.m_pProxy1 == &proxy) {
+            couples.emplace_back(*pair.m_pProxy0, *pair.m_pProxy1);
         }
     }
     for (const ProxyCouple& couple : couples) {

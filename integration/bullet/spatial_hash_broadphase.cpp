@@ -89,27 +89,7 @@ btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
                                                       btDispatcher* dispatcher) {
     detail::checkCount(static_cast<std::size_t>(lastUniqueId_) + 1, std::numeric_limits<int>::max(),
                        "All unique ids are used up. Without proxies, resetPool() counts anew.");
-    // All that the proxy needs, before it is in the grid.
-    detail::ensureCapacity(uniqueIds_, uniqueIds_.size() + 1);
-    proxies_.reserve(uniqueIds_.size() + 1);
-    const bool isStatic = (collisionFilterGroup & btBroadphaseProxy::StaticFilter) != 0;
-    const btBroadphaseProxy made(aabbMin, aabbMax, userPtr, collisionFilterGroup,
-                                 collisionFilterMask);
-    const ProxyGroups groups = groupsOf(made);
-    const ProxyId id = grid_.add(toAabb(aabbMin, aabbMax),
-                                 isStatic ? Mobility::resting : Mobility::mobile, groups);
-    if (id.index >= uniqueIds_.size()) {
-        uniqueIds_.resize(id.index + 1, 0);
-    }
-    Proxy& proxy = *proxyAt(id.index);
-    static_cast<btBroadphaseProxy&>(proxy) = made;
-    proxy.kind = groupKinds_.numberOf(groups);
-    changedKinds_ |= detail::GroupKinds::bit(proxy.kind);
-    proxy.m_uniqueId = ++lastUniqueId_;
-    proxy.id = id;
-    proxy.client = Client::unknown;
-    noteSeen(proxy);
-    uniqueIds_[id.index] = proxy.m_uniqueId;
+    Proxy& proxy = place({aabbMin, aabbMax, userPtr, collisionFilterGroup, collisionFilterMask});
     try {
         if (isEager(proxy, dispatcher)) {
             announce(proxy, dispatcher);
@@ -121,6 +101,29 @@ btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
         throw;
     }
     return &proxy;
+}
+
+// All that the proxy needs is there before it is in the grid.
+SpatialHashBroadphase::Proxy& SpatialHashBroadphase::place(const btBroadphaseProxy& made) {
+    detail::ensureCapacity(uniqueIds_, uniqueIds_.size() + 1);
+    proxies_.reserve(uniqueIds_.size() + 1);
+    const bool isStatic = (made.m_collisionFilterGroup & btBroadphaseProxy::StaticFilter) != 0;
+    const ProxyGroups groups = groupsOf(made);
+    const ProxyId id = grid_.add(toAabb(made.m_aabbMin, made.m_aabbMax),
+                                 isStatic ? Mobility::resting : Mobility::mobile, groups);
+    if (id.index >= uniqueIds_.size()) {
+        uniqueIds_.resize(id.index + 1, 0);
+    }
+    Proxy& proxy = *proxyAt(id.index);
+    static_cast<btBroadphaseProxy&>(proxy) = made;
+    proxy.kind = groupKinds_.numberOf(groups);
+    changedKinds_ |= detail::GroupKinds::bit(proxy.kind);
+    proxy.m_uniqueId = ++lastUniqueId_;
+    proxy.id = id;
+    proxy.client = Client::unknown;
+    noteSeen(proxy, true);
+    uniqueIds_[id.index] = proxy.m_uniqueId;
+    return proxy;
 }
 
 void SpatialHashBroadphase::destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
@@ -137,7 +140,7 @@ void SpatialHashBroadphase::removeFromGrid(Proxy* proxy) {
         return;
     }
     grid_.remove(proxy->id);
-    noteUnseen(*proxy);
+    noteSeen(*proxy, false);
     if (proxy->client == Client::ghost) {
         forgetGhost(*proxy);
     }
@@ -170,7 +173,7 @@ void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& a
         !groupsDecide_ || (own->kind != kOther && groupKinds_[own->kind] == groupsOf(*own));
     const bool isRegrouped = !isKnown && noteGroups(*own);
     if (!seen_.empty()) {
-        noteSeen(*own);
+        noteSeen(*own, true);
     }
     if ((!isSame || isRegrouped) && isEager(*own, dispatcher)) {
         announce(*own, dispatcher);
@@ -204,21 +207,16 @@ void SpatialHashBroadphase::getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin
     aabbMax = own->m_aabbMax;
 }
 
-void SpatialHashBroadphase::noteSeen(const Proxy& proxy) noexcept {
+void SpatialHashBroadphase::noteSeen(const Proxy& proxy, bool isSeen) noexcept {
     const std::size_t word = proxy.id.index / 64;
     const std::uint64_t bit = std::uint64_t{1} << proxy.id.index % 64;
-    if (word < seen_.size() && (seen_[word] & bit) == 0) {
-        seen_[word] |= bit;
-        ++seenCount_;
-    }
-}
-
-void SpatialHashBroadphase::noteUnseen(const Proxy& proxy) noexcept {
-    const std::size_t word = proxy.id.index / 64;
-    const std::uint64_t bit = std::uint64_t{1} << proxy.id.index % 64;
-    if (word < seen_.size() && (seen_[word] & bit) != 0) {
-        seen_[word] &= ~bit;
-        --seenCount_;
+    if (word < seen_.size() && ((seen_[word] & bit) != 0) != isSeen) {
+        seen_[word] ^= bit;
+        if (isSeen) {
+            ++seenCount_;
+        } else {
+            --seenCount_;
+        }
     }
 }
 
@@ -366,10 +364,8 @@ void SpatialHashBroadphase::catchUp(btDispatcher* dispatcher) {
     couples.died.clear();
     btBroadphasePairArray& present = pairCache_->getOverlappingPairArray();
     for (int i = 0; i < present.size(); ++i) {
-        const ProxyId a = idOf(present[i].m_pProxy0);
-        const ProxyId b = idOf(present[i].m_pProxy1);
         if (!std::binary_search(all.begin(), all.end(),
-                                a < b ? ProxyPair{a, b} : ProxyPair{b, a})) {
+                                pairOf(present[i].m_pProxy0, present[i].m_pProxy1))) {
             couples.died.emplace_back(*present[i].m_pProxy0, *present[i].m_pProxy1);
         }
     }

@@ -353,9 +353,15 @@ private:
     bool noteGroups(Proxy& proxy);
     void noteGroupsOfAll();
     void noteGroupsIfTheyMatter();
-    void noteSeen(const Proxy& proxy) noexcept;
-    void noteUnseen(const Proxy& proxy) noexcept;
+    void noteSeen(const Proxy& proxy, bool isSeen) noexcept;
     void noteGroupsAround(const Proxy& proxy);
+    [[nodiscard]] Proxy& place(const btBroadphaseProxy& made);
+    [[nodiscard]] static ProxyPair pairOf(const btBroadphaseProxy* a, const btBroadphaseProxy* b) {
+        const ProxyId idOfA = idOf(a);
+        const ProxyId idOfB = idOf(b);
+        return idOfA < idOfB ? ProxyPair{idOfA, idOfB} : ProxyPair{idOfB, idOfA};
+    }
+    void renewPairsOfOtherCache(btBroadphaseProxy& proxy, btDispatcher* dispatcher);
     void removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher);
     void removeFromGrid(Proxy* proxy);
     void dropLastProxies() noexcept;

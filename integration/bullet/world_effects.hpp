@@ -172,6 +172,7 @@ private:
     };
 
     [[nodiscard]] BodyEffects effectsOf(const btCollisionObject& object) const;
+    [[nodiscard]] KeptBody* keptOf(const btCollisionObject& object, bool isWanted);
     bool configure(btCollisionObject& object, const BodyEffects& effects,
                    const WorldEffects& ofWorld);
     void setFilter();

@@ -84,23 +84,30 @@ bool WorldConfigurator::KeptBody::mayBeOf(const btCollisionObject& object) const
                                 slowBelow.isAsWritten(body->getLinearSleepingThreshold())));
 }
 
-bool WorldConfigurator::configure(btCollisionObject& object, const BodyEffects& effects,
-                                  const WorldEffects& ofWorld) {
-    if (solvesContactsOfItsOwn(object)) {
-        return false;
-    }
+// What is kept of the object; where nothing is, it is made if that is wanted, before anything is written.
+WorldConfigurator::KeptBody* WorldConfigurator::keptOf(const btCollisionObject& object,
+                                                       bool isWanted) {
     auto found = kept_.find(&object);
     if (found != kept_.end() && found->second.wasAway && !found->second.mayBeOf(object)) {
         kept_.erase(found);  // that was another one
         found = kept_.end();
     }
-    if (found == kept_.end()) {
-        if (areAllItsOwn(effects, ofWorld)) {
-            return false;
-        }
-        found = kept_.try_emplace(&object).first;  // before anything is written: it takes memory
+    if (found == kept_.end() && isWanted) {
+        found = kept_.try_emplace(&object).first;
     }
-    KeptBody& kept = found->second;
+    return found == kept_.end() ? nullptr : &found->second;
+}
+
+bool WorldConfigurator::configure(btCollisionObject& object, const BodyEffects& effects,
+                                  const WorldEffects& ofWorld) {
+    if (solvesContactsOfItsOwn(object)) {
+        return false;
+    }
+    KeptBody* const found = keptOf(object, !areAllItsOwn(effects, ofWorld));
+    if (found == nullptr) {
+        return false;
+    }
+    KeptBody& kept = *found;
     kept.wasAway = false;
     kept.lastSeen = applyCount_;
     bool isChanged = setContacts(object, kept, effects, ofWorld);
@@ -112,7 +119,7 @@ bool WorldConfigurator::configure(btCollisionObject& object, const BodyEffects& 
         setSleeping(*body, kept, effects, ofWorld);
     }
     if (!kept.isHeld()) {
-        kept_.erase(found);
+        kept_.erase(&object);
     }
     return isChanged;
 }

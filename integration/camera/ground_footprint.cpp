@@ -31,7 +31,13 @@ struct Corner {
 };
 using Corners = detail::FixedList<Corner, 32>;  // 14, if it were not for rounding
 
-Corners viewCorners(const detail::CameraInverse& inverse, const Aabb<double>& cube) {
+template <class Scalar>
+Corners viewCorners(const detail::CameraInverse& inverse, DepthRange depthRange,
+                    const ScreenRectangle<Scalar>& rectangle) {
+    Aabb<double> cube(Vector3<double>::Constant(depthRange == DepthRange::zeroToOne ? 0 : -1),
+                      Vector3<double>::Ones());
+    cube.min().template head<2>() = rectangle.min().template cast<double>();
+    cube.max().template head<2>() = rectangle.max().template cast<double>();
     Corners corners;
     for (std::uint32_t i = 0; i < 8; ++i) {
         const auto end = [&](std::uint32_t axis) {
@@ -72,6 +78,24 @@ void clip(Corners& corners, std::uint32_t newFace, const DepthOf& depthOf, const
     }
     if (hasRoom) {
         corners = clipped;
+    }
+}
+
+template <class Scalar>
+void clipToHeights(Corners& corners, const HeightRange<Scalar>& heights) {
+    using Point4 = Eigen::Vector4d;
+    const auto up = static_cast<int>(heights.up);
+    const auto low = static_cast<double>(heights.low);
+    const auto high = static_cast<double>(heights.high);
+    if (std::isfinite(low)) {
+        clip(
+            corners, 7, [&](const Point4& point) { return point[up] - low * point.w(); },
+            [&](Point4& point) { point[up] = low * point.w(); });
+    }
+    if (std::isfinite(high)) {
+        clip(
+            corners, 8, [&](const Point4& point) { return high * point.w() - point[up]; },
+            [&](Point4& point) { point[up] = high * point.w(); });
     }
 }
 
@@ -197,11 +221,7 @@ GroundFootprint<Scalar>::GroundFootprint(const Eigen::Matrix<Scalar, 4, 4>& view
         return;
     }
     const detail::CameraInverse inverse(viewProjection.template cast<double>());
-    Aabb<double> cube(Vector3<double>::Constant(depthRange == DepthRange::zeroToOne ? 0 : -1),
-                      Vector3<double>::Ones());
-    cube.min().template head<2>() = rectangle.min().template cast<double>();
-    cube.max().template head<2>() = rectangle.max().template cast<double>();
-    Corners corners = viewCorners(inverse, cube);
+    Corners corners = viewCorners(inverse, depthRange, rectangle);
 
     double nearest = 0;
     for (const Corner& corner : corners) {
@@ -210,25 +230,13 @@ GroundFootprint<Scalar>::GroundFootprint(const Eigen::Matrix<Scalar, 4, 4>& view
     if (!(nearest > 0)) {
         return;  // all of it is behind the eye
     }
-    // Passes: what is before the farthest distance, above `low`, below `high`.
+    // Passes: what is before the farthest distance, and what is between the heights.
     const double least = inverse.weightBehind(nearest, farthest);
     using Point4 = Eigen::Vector4d;
     clip(
         corners, 6, [&](const Point4& point) { return point.w() - least; },
         [&](Point4& point) { point.w() = least; });
-    const auto up = static_cast<int>(heights.up);
-    const auto low = static_cast<double>(heights.low);
-    const auto high = static_cast<double>(heights.high);
-    if (std::isfinite(low)) {
-        clip(
-            corners, 7, [&](const Point4& point) { return point[up] - low * point.w(); },
-            [&](Point4& point) { point[up] = low * point.w(); });
-    }
-    if (std::isfinite(high)) {
-        clip(
-            corners, 8, [&](const Point4& point) { return high * point.w() - point[up]; },
-            [&](Point4& point) { point[up] = high * point.w(); });
-    }
+    clipToHeights(corners, heights);
     const std::array<int, 2> axes = mapAxes(heights.up);
     PointList points;
     for (const Corner& corner : corners) {

@@ -4,41 +4,17 @@
 #include <integration/effects/undeclared_effect.hpp>
 
 #include <algorithm>
+#include <cstddef>
 
 namespace hashphase {
 
 std::string_view nameOf(Effect effect) noexcept {
-    switch (effect) {
-        case Effect::motion:
-            return "motion";
-        case Effect::terrain:
-            return "terrain";
-        case Effect::pairs:
-            return "pairs";
-        case Effect::response:
-            return "response";
-        case Effect::sweep:
-            return "sweep";
-        case Effect::sleeping:
-            return "sleeping";
-        case Effect::rotation:
-            return "rotation";
-        case Effect::friction:
-            return "friction";
-        case Effect::picking:
-            return "picking";
-        case Effect::boxSelection:
-            return "boxSelection";
-        case Effect::culling:
-            return "culling";
-        case Effect::proximity:
-            return "proximity";
-        case Effect::zones:
-            return "zones";
-        case Effect::radar:
-            return "radar";
-    }
-    return {};
+    // In the order of Effect.
+    static constexpr std::array<std::string_view, kAllEffects.size()> kNames{
+        "motion",   "terrain", "pairs",        "response", "sweep",     "sleeping", "rotation",
+        "friction", "picking", "boxSelection", "culling",  "proximity", "zones",    "radar"};
+    const auto i = static_cast<std::size_t>(effect);
+    return i < kNames.size() ? kNames[i] : std::string_view();
 }
 
 std::string namesOf(EffectSet effects) {

@@ -38,6 +38,21 @@ std::size_t countOf(const ObservedScene<Scalar>& scene, Effect effect) {
     return count;
 }
 
+/// Whether nothing within the box can be in a zone of that shape.
+template <class Shape, class Scalar>
+bool isApart(const Shape& shape, const Aabb<Scalar>& box) {
+    return std::visit(
+        [&](const auto& region) {
+            if constexpr (requires { region.volume(); }) {
+                // One that wants boxes inside has no key for one around it.
+                return !region.volume().isInside && region.key(box) < 0;
+            } else {
+                return region.key(box) < 0;
+            }
+        },
+        shape);
+}
+
 }  // namespace
 
 template <class Scalar>
@@ -301,17 +316,7 @@ void Observers<Scalar>::watchZones(const Scene& scene, Scalar /*moved*/, Paralle
     }
     std::atomic<std::uint32_t> lateCount{0};
     const auto isDueZone = [&](ZoneId id) {
-        const bool isFar =
-            !allAreDue && std::visit(
-                              [&](const auto& shape) {
-                                  if constexpr (requires { shape.volume(); }) {
-                                      // One that wants boxes inside has no key for one around it.
-                                      return !shape.volume().isInside && shape.key(near) < 0;
-                                  } else {
-                                      return shape.key(near) < 0;
-                                  }
-                              },
-                              watch.zones.zone(id).shape);
+        const bool isFar = !allAreDue && isApart(watch.zones.zone(id).shape, near);
         lateCount.fetch_add(isFar ? 1 : 0, std::memory_order_relaxed);
         return !isFar;
     };
@@ -422,26 +427,29 @@ void Observers<Scalar>::noteAsked(SceneCounter count, SceneCounter boxesTested,
 }
 
 template <class Scalar>
-Picked<Scalar> Observers<Scalar>::pick(const Scene& scene, const RayRegion<Scalar>& ray) {
+template <class PickBy>
+Picked<Scalar> Observers<Scalar>::pickBy(const Scene& scene, const PickBy& pickBy) {
     demand(Effect::picking, "pick()");
     QueryCost cost;
-    Picked<Scalar> picked = askFor(scene, Effect::picking, [&](ProxyFilter filter) {
-        return pickNearest(scene.grid, ray, filter, &cost);
-    });
+    Picked<Scalar> picked =
+        askFor(scene, Effect::picking, [&](ProxyFilter filter) { return pickBy(filter, &cost); });
     noteAsked(SceneCounter::picks, SceneCounter::pickBoxesTested, cost);
     return picked;
 }
 
 template <class Scalar>
+Picked<Scalar> Observers<Scalar>::pick(const Scene& scene, const RayRegion<Scalar>& ray) {
+    return pickBy(scene, [&](ProxyFilter filter, QueryCost* cost) {
+        return pickNearest(scene.grid, ray, filter, cost);
+    });
+}
+
+template <class Scalar>
 Picked<Scalar> Observers<Scalar>::pick(const Scene& scene, const RayRegion<Scalar>& ray,
                                        ExactTest<Scalar> test) {
-    demand(Effect::picking, "pick()");
-    QueryCost cost;
-    Picked<Scalar> picked = askFor(scene, Effect::picking, [&](ProxyFilter filter) {
-        return pickNearest(scene.grid, ray, test, filter, &cost);
+    return pickBy(scene, [&](ProxyFilter filter, QueryCost* cost) {
+        return pickNearest(scene.grid, ray, test, filter, cost);
     });
-    noteAsked(SceneCounter::picks, SceneCounter::pickBoxesTested, cost);
-    return picked;
 }
 
 template <class Scalar>

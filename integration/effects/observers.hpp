@@ -184,6 +184,8 @@ private:
     template <class Part>
     static Part& partOf(const std::unique_ptr<Part>& part, Effect effect, const char* call);
     void demand(Effect effect, const char* call) const;
+    template <class PickBy>
+    Picked<Scalar> pickBy(const Scene& scene, const PickBy& pickBy);
     void noteAsked(SceneCounter count, SceneCounter boxesTested, const QueryCost& cost);
 
     SceneEffects effects_;

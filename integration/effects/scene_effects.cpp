@@ -70,11 +70,15 @@ public:
             error_ = sentence.str();
         }
     }
-    void requireSomeFar(std::string_view effect, double interestRadius, std::uint32_t frames) {
-        require(interestRadius >= 0, std::string(effect) + ".interestRadius", interestRadius,
-                "0 or more [m]");
-        require(frames >= 1 && frames <= kMostEffectFrames, std::string(effect) + ".farFrames",
-                frames, "from 1 to 1000000");
+    void requireNotNegative(std::string_view field, double value, std::string_view unit) {
+        require(value >= 0, field, value, "0 or more " + std::string(unit));
+    }
+    void requireFrames(std::string_view field, std::uint32_t frames) {
+        require(frames >= 1 && frames <= kMostEffectFrames, field, frames, "from 1 to 1000000");
+    }
+    void requireSomeFar(const std::string& effect, double interestRadius, std::uint32_t frames) {
+        requireNotNegative(effect + ".interestRadius", interestRadius, "[m]");
+        requireFrames(effect + ".farFrames", frames);
         if (error_.empty() && frames > 1 && !(interestRadius < kInfinity)) {
             std::ostringstream sentence;
             sentence << effect << ".farFrames is " << frames << ", but nothing is far: set "
@@ -91,19 +95,22 @@ private:
 };
 
 // Each test is phrased so that NaN fails it.
+void requireBounds(const Aabb<double>& bounds, Settings& settings) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low = bounds.min()[axis];
+        const double high = bounds.max()[axis];
+        settings.require(low <= high, "motion.bounds", low,
+                         "a box whose lower corner is not above its upper one");
+        settings.require(low <= kMostEffectLength, "motion.bounds: the lower corner", low,
+                         "at most 1e30 [m]");
+        settings.require(high >= -kMostEffectLength, "motion.bounds: the upper corner", high,
+                         "at least -1e30 [m]");
+    }
+}
+
 void requireOfMovers(const SceneEffects& effects, Settings& settings) {
     if (effects.motion) {
-        const Aabb<double>& bounds = effects.motion->bounds;
-        for (int axis = 0; axis < 3; ++axis) {
-            const double low = bounds.min()[axis];
-            const double high = bounds.max()[axis];
-            settings.require(low <= high, "motion.bounds", low,
-                             "a box whose lower corner is not above its upper one");
-            settings.require(low <= kMostEffectLength, "motion.bounds: the lower corner", low,
-                             "at most 1e30 [m]");
-            settings.require(high >= -kMostEffectLength, "motion.bounds: the upper corner", high,
-                             "at least -1e30 [m]");
-        }
+        requireBounds(effects.motion->bounds, settings);
     }
     if (effects.response) {
         const double restitution = effects.response->restitution;
@@ -113,19 +120,34 @@ void requireOfMovers(const SceneEffects& effects, Settings& settings) {
     if (effects.sweep) {
         settings.require(effects.sweep->mode != Sweep::none, "sweep.mode", "none",
                          "automatic, box or line; not to sweep, leave out sweep");
-        settings.require(effects.sweep->fastFrom >= 0, "sweep.fastFrom", effects.sweep->fastFrom,
-                         "0 or more diameters a frame");
+        settings.requireNotNegative("sweep.fastFrom", effects.sweep->fastFrom, "diameters a frame");
     }
     if (effects.sleeping) {
         const SleepingEffect& sleeping = *effects.sleeping;
-        settings.require(sleeping.interestRadius >= 0, "sleeping.interestRadius",
-                         sleeping.interestRadius, "0 or more [m]");
-        settings.require(sleeping.slowBelow >= 0, "sleeping.slowBelow", sleeping.slowBelow,
-                         "0 or more [m/s]");
-        settings.require(
-            sleeping.framesBeforeSleep >= 1 && sleeping.framesBeforeSleep <= kMostEffectFrames,
-            "sleeping.framesBeforeSleep", sleeping.framesBeforeSleep, "from 1 to 1000000");
+        settings.requireNotNegative("sleeping.interestRadius", sleeping.interestRadius, "[m]");
+        settings.requireNotNegative("sleeping.slowBelow", sleeping.slowBelow, "[m/s]");
+        settings.requireFrames("sleeping.framesBeforeSleep", sleeping.framesBeforeSleep);
     }
+}
+
+void requireOfAgents(const ProximityEffect& proximity, Settings& settings) {
+    constexpr std::uint32_t most = Crowd<float>::kMostGroups;
+    settings.requireNotNegative("proximity.radius", proximity.radius, "[m]");
+    settings.require(proximity.colourCount >= 1 && proximity.colourCount <= most,
+                     "proximity.colourCount", proximity.colourCount,
+                     "from 1 to " + std::to_string(most));
+    settings.requireSomeFar("proximity", proximity.interestRadius, proximity.farFrames);
+    settings.requireFrames("proximity.turns", proximity.turns);
+}
+
+void requireOfRadar(const RadarEffect& radar, Settings& settings) {
+    settings.require(radar.cellSize >= kLeastEffectLength && radar.cellSize <= kMostEffectLength,
+                     "radar.cellSize", radar.cellSize, "from 1e-30 to 1e30 [m]");
+    const double counts = double{1} * radar.columns * radar.rows * radar.groupCount;
+    settings.require(counts >= 1 && counts <= static_cast<double>(Radar<float>::kMostCounts),
+                     "radar: columns * rows * groupCount", counts,
+                     "from 1 to " + std::to_string(Radar<float>::kMostCounts));
+    settings.requireFrames("radar.frames", radar.frames);
 }
 
 void requireOfLookers(const SceneEffects& effects, Settings& settings) {
@@ -133,36 +155,16 @@ void requireOfLookers(const SceneEffects& effects, Settings& settings) {
         const CullingEffect& culling = *effects.culling;
         settings.require(culling.margin >= 0 && culling.margin <= kMostEffectLength,
                          "culling.margin", culling.margin, "from 0 to 1e30 [m]");
-        settings.require(
-            culling.restingCameraFrames >= 1 && culling.restingCameraFrames <= kMostEffectFrames,
-            "culling.restingCameraFrames", culling.restingCameraFrames, "from 1 to 1000000");
+        settings.requireFrames("culling.restingCameraFrames", culling.restingCameraFrames);
     }
     if (effects.proximity) {
-        const ProximityEffect& proximity = *effects.proximity;
-        settings.require(proximity.radius >= 0, "proximity.radius", proximity.radius,
-                         "0 or more [m]");
-        settings.require(
-            proximity.colourCount >= 1 && proximity.colourCount <= Crowd<float>::kMostGroups,
-            "proximity.colourCount", proximity.colourCount,
-            "from 1 to " + std::to_string(Crowd<float>::kMostGroups));
-        settings.requireSomeFar("proximity", proximity.interestRadius, proximity.farFrames);
-        settings.require(proximity.turns >= 1 && proximity.turns <= kMostEffectFrames,
-                         "proximity.turns", proximity.turns, "from 1 to 1000000");
+        requireOfAgents(*effects.proximity, settings);
     }
     if (effects.zones) {
         settings.requireSomeFar("zones", effects.zones->interestRadius, effects.zones->farFrames);
     }
     if (effects.radar) {
-        const RadarEffect& radar = *effects.radar;
-        settings.require(
-            radar.cellSize >= kLeastEffectLength && radar.cellSize <= kMostEffectLength,
-            "radar.cellSize", radar.cellSize, "from 1e-30 to 1e30 [m]");
-        const double counts = double{1} * radar.columns * radar.rows * radar.groupCount;
-        settings.require(counts >= 1 && counts <= static_cast<double>(Radar<float>::kMostCounts),
-                         "radar: columns * rows * groupCount", counts,
-                         "from 1 to " + std::to_string(Radar<float>::kMostCounts));
-        settings.require(radar.frames >= 1 && radar.frames <= kMostEffectFrames, "radar.frames",
-                         radar.frames, "from 1 to 1000000");
+        requireOfRadar(*effects.radar, settings);
     }
 }
 

@@ -248,6 +248,7 @@ private:
     void respondTo();
     void addWalker(std::uint32_t body, Scalar moved);
     void putWalkersOnGround();
+    void countStoppedSweepers();
 
     // The phases.
     void wake();

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace hashphase {
 namespace {
@@ -31,6 +32,26 @@ double timeOfContact(const Vector3<Scalar>& apart, const Vector3<Scalar>& way, S
     return discriminant >= 0 ? distance / (closing + std::sqrt(discriminant)) : never;
 }
 
+/// Merges what is present with what has changed since; all are sorted.
+template <class Couple, class CoupleOf>
+void applyChanges(const std::vector<Couple>& present, const PairChanges& changes,
+                  const CoupleOf& coupleOf, std::vector<Couple>& next) {
+    next.clear();
+    auto fresh = changes.born.begin();
+    auto gone = changes.died.begin();
+    for (const Couple& couple : present) {
+        if (gone != changes.died.end() && coupleOf(*gone) == couple) {
+            ++gone;
+            continue;
+        }
+        for (; fresh != changes.born.end() && coupleOf(*fresh) < couple; ++fresh) {
+            next.push_back(coupleOf(*fresh));
+        }
+        next.push_back(couple);
+    }
+    std::transform(fresh, changes.born.end(), std::back_inserter(next), coupleOf);
+}
+
 }  // namespace
 
 // The present pairs, from those of the last frame and what has changed; all three are sorted. Where
@@ -50,28 +71,11 @@ void Simulation<Scalar>::gather() {
         contacts_->isCurrent = true;
         return;
     }
-    const auto [born, died] = pairing_->changes;
-    if (born.empty() && died.empty()) {
-        return;
+    const PairChanges& changes = pairing_->changes;
+    if (!changes.born.empty() || !changes.died.empty()) {
+        applyChanges(present, changes, coupleOf, contacts_->next);
+        present.swap(contacts_->next);
     }
-    std::vector<Couple>& next = contacts_->next;
-    next.clear();
-    auto fresh = born.begin();
-    auto gone = died.begin();
-    for (const Couple& couple : present) {
-        if (gone != died.end() && coupleOf(*gone) == couple) {
-            ++gone;
-            continue;
-        }
-        for (; fresh != born.end() && coupleOf(*fresh) < couple; ++fresh) {
-            next.push_back(coupleOf(*fresh));
-        }
-        next.push_back(couple);
-    }
-    for (; fresh != born.end(); ++fresh) {
-        next.push_back(coupleOf(*fresh));
-    }
-    present.swap(next);
 }
 
 template <class Scalar>
@@ -138,9 +142,7 @@ void Simulation<Scalar>::respond() {
 template <class Scalar>
 template <bool allRespond>
 void Simulation<Scalar>::respondTo() {
-    const auto sweeps = [this](std::uint32_t body) {
-        return sweepers_ && sweepers_->ofBody[body] != Sweepers::kNone;
-    };
+    const auto sweeps = [this](std::uint32_t body) { return sweepers_ && sweepers_->has(body); };
     const std::span<const Point> positions = positions_;
     const std::span<const Scalar> radii = radii_;
     const Scalar bounciness = bouncinessOf(effects_.response->restitution);
@@ -168,35 +170,35 @@ void Simulation<Scalar>::respondTo() {
 // Whom each sweeper meets first, and when.
 template <class Scalar>
 void Simulation<Scalar>::meet() {
-    std::vector<typename Sweepers::Sweeper>& list = sweepers_->list;
-    const std::vector<std::uint32_t>& ofBody = sweepers_->ofBody;
-    if (list.empty()) {
+    Sweepers& sweepers = *sweepers_;
+    if (sweepers.list.empty()) {
         return;
     }
-    const auto sweeps = [&](std::uint32_t body) { return ofBody[body] != Sweepers::kNone; };
-    const auto wayOf = [&](std::uint32_t body) -> Point {
-        return sweeps(body) ? list[ofBody[body]].way : Point(Point::Zero());
-    };
     for (const auto& [a, b] : contacts_->present) {
         const EffectSet both = effectsOf_[a] & effectsOf_[b];
-        if (!both.contains(Effect::response) || !(sweeps(a) || sweeps(b))) {
+        if (!both.contains(Effect::response) || !(sweepers.has(a) || sweepers.has(b))) {
             continue;
         }
         ++cost_[SceneCounter::contactsTested];
-        const Point way = wayOf(a) - wayOf(b);
+        const Point way = sweepers.wayOf(a) - sweepers.wayOf(b);
         const double time =
             timeOfContact<Scalar>(positions_[b] - positions_[a], way, radii_[a] + radii_[b]);
         for (const auto& [body, other] : {std::pair(a, b), std::pair(b, a)}) {
-            if (sweeps(body) && time < list[ofBody[body]].time) {
-                list[ofBody[body]].time = time;
-                list[ofBody[body]].hit = other;
+            if (sweepers.has(body) && time < sweepers.list[sweepers.ofBody[body]].time) {
+                sweepers.list[sweepers.ofBody[body]].time = time;
+                sweepers.list[sweepers.ofBody[body]].hit = other;
             }
         }
     }
-    for (const auto& [body, hit, start, velocity, way, time] : list) {
+    countStoppedSweepers();
+}
+
+template <class Scalar>
+void Simulation<Scalar>::countStoppedSweepers() {
+    for (const auto& [body, hit, start, velocity, way, time] : sweepers_->list) {
         if (hit != Sweepers::kNone) {
             const Scalar radii = radii_[hit] + radii_[body];
-            const Point apartInTheEnd = positions_[hit] + wayOf(hit) - start - way;
+            const Point apartInTheEnd = positions_[hit] + sweepers_->wayOf(hit) - start - way;
             cost_[SceneCounter::sweepersStopped] +=
                 apartInTheEnd.squaredNorm() > radii * radii ? 1 : 0;
         }

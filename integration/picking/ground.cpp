@@ -28,17 +28,13 @@ RayRegion<Scalar> clipToHeights(const RayRegion<Scalar>& ray, const HeightRange<
     // The ends are rounded, and must not end before what they touch.
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     constexpr auto rounding = static_cast<double>(std::numeric_limits<Scalar>::epsilon());
-    const auto slack = [&](Scalar end) {
-        return 4 * (rounding * std::abs(static_cast<double>(end)) +
-                    epsilon * (std::abs(from[up]) + std::abs(way[up])));
+    const auto above = [&](double height, double outward) {
+        const double slack =
+            4 * (rounding * std::abs(height) + epsilon * (std::abs(from[up]) + std::abs(way[up])));
+        return std::isinf(height) ? height : height - from[up] + outward * slack;
     };
-    const Scalar lowest = heights.low - ray.fatness().max()[up];
-    const Scalar highest = heights.high - ray.fatness().min()[up];
-    const double low = std::isinf(lowest) ? static_cast<double>(lowest)
-                                          : static_cast<double>(lowest) - from[up] - slack(lowest);
-    const double high = std::isinf(highest)
-                            ? static_cast<double>(highest)
-                            : static_cast<double>(highest) - from[up] + slack(highest);
+    const double low = above(static_cast<double>(heights.low - ray.fatness().max()[up]), -1);
+    const double high = above(static_cast<double>(heights.high - ray.fatness().min()[up]), 1);
     double enter = 0;
     double leave = 1;
     if (way[up] == 0) {

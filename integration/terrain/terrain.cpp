@@ -4,6 +4,7 @@
 #include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/diagnostics.hpp>
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -67,14 +68,18 @@ AddedTriangles Terrain<Scalar>::addAll(std::size_t count, const CornersOf& corne
         throw;
     }
     if (!box.isEmpty()) {
-        const double heights = std::max(std::abs(static_cast<double>(box.min()[up_])),
-                                        std::abs(static_cast<double>(box.max()[up_])));
-        const double extent =
-            (box.max().template cast<double>() - box.min().template cast<double>()).maxCoeff();
-        meshReach_ =
-            std::max(meshReach_, static_cast<Scalar>(std::min(extent + heights, kLargestMesh)));
+        noteReach(box);
     }
     return added;
+}
+
+template <class Scalar>
+void Terrain<Scalar>::noteReach(const Aabb<Scalar>& mesh) {
+    const Aabb<double> box = mesh.template cast<double>();
+    const double heights = std::max(std::abs(box.min()[up_]), std::abs(box.max()[up_]));
+    const double extent = (box.max() - box.min()).maxCoeff();
+    meshReach_ =
+        std::max(meshReach_, static_cast<Scalar>(std::min(extent + heights, kLargestMesh)));
 }
 
 template <class Scalar>
@@ -83,22 +88,20 @@ void Terrain<Scalar>::addOne(const Corners& corners, AddedTriangles& added,
     HASHPHASE_ASSERT(size() < kNone, "A terrain holds fewer than 2^32 - 1 triangles.");
     const std::uint32_t number = size();
     ++added.count;
-    Aabb<Scalar> box(corners[0]);
-    bool isGood = true;
-    for (const Point& corner : corners) {
-        for (const Scalar x : corner) {
-            isGood = isGood && std::abs(x) <= std::numeric_limits<Scalar>::max() &&
-                     std::abs(static_cast<double>(x)) <= kFarthest;
-        }
-        box.extend(corner);
-    }
-    if (!isGood) {
+    const auto isGood = [](const Point& corner) {
+        return (corner.array().abs() <= std::numeric_limits<Scalar>::max()).all() &&
+               (corner.template cast<double>().array().abs() <= kFarthest).all();
+    };
+    if (!std::all_of(corners.begin(), corners.end(), isGood)) {
         const Point nan = Point::Constant(std::numeric_limits<Scalar>::quiet_NaN());
         added.refused.push_back(number);
         triangles_.push_back(groundTriangle({nan, nan, nan}));
         proxies_.emplace_back();
         return;
     }
+    Aabb<Scalar> box(corners[0]);
+    box.extend(corners[1]);
+    box.extend(corners[2]);
     boxOfAll.extend(box);
     bounds_.extend(box);
     tilesPerMetre_ = bounds_.sizes().cwiseInverse() * Scalar(kTilesPerSide);

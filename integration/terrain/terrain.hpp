@@ -193,6 +193,7 @@ private:
 
     template <class CornersOf>
     AddedTriangles addAll(std::size_t count, const CornersOf& cornersOf);
+    void noteReach(const Aabb<Scalar>& mesh);
     void addOne(const Corners& corners, AddedTriangles& added, Aabb<Scalar>& boxOfAll);
     void removeFrom(std::size_t first);
     [[nodiscard]] detail::GroundTriangle<Scalar> groundTriangle(const Corners& corners) const;

@@ -3,9 +3,9 @@
 
 #include <broadphase/core/fixed_list.hpp>
 #include <broadphase/core/prefetch.hpp>
+#include <broadphase/core/shared_cost.hpp>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -259,9 +259,7 @@ QueryCost Terrain<Scalar>::searchInOrder(std::size_t count, const NumberOf& numb
                                          const MakeSearch& makeSearch) const {
     constexpr std::size_t grain = 1024;
     constexpr std::size_t atOnce = 16;
-    std::atomic<std::uint64_t> rowsVisited{0};
-    std::atomic<std::uint64_t> boxesTested{0};
-    std::atomic<std::uint64_t> hits{0};
+    detail::SharedCost sum;
     parallelFor(count, grain, [&](std::size_t begin, std::size_t end) {
         std::array<BoxRegion<Scalar>, atOnce> columns;
         std::array<Search, atOnce> searches;
@@ -277,11 +275,9 @@ QueryCost Terrain<Scalar>::searchInOrder(std::size_t count, const NumberOf& numb
                 found[numberOf(first + i)] = searches[i].result();
             }
         }
-        rowsVisited += cost.rowsVisited;
-        boxesTested += cost.boxesTested;
-        hits += cost.hits;
+        sum.add(cost);
     });
-    return {rowsVisited, boxesTested, hits};
+    return sum.sum();
 }
 
 template <class Scalar>

@@ -105,6 +105,11 @@ struct Simulation<Scalar>::Sweepers {
         double time = 1;  // when, as a share of the frame
     };
 
+    [[nodiscard]] bool has(std::uint32_t body) const noexcept { return ofBody[body] != kNone; }
+    [[nodiscard]] Point wayOf(std::uint32_t body) const {
+        return has(body) ? list[ofBody[body]].way : Point(Point::Zero());
+    }
+
     std::vector<Sweeper> list;          // of this frame, by body
     std::vector<std::uint32_t> ofBody;  // its place there, or kNone
 };
