@@ -19,7 +19,7 @@ using Cell = std::array<std::int32_t, 3>;
 /// makes of (x - origin) * inverseCellSize differs from what another one makes of it, when the three
 /// are normal numbers or zero, and the cells no smaller than 1e-30. So threads may differ in this.
 template <class Scalar>
-inline constexpr Scalar kOnBorder = sizeof(Scalar) == sizeof(float) ? Scalar(0x1p-25)
+inline constexpr Scalar kTinyCell = sizeof(Scalar) == sizeof(float) ? Scalar(0x1p-25)
                                                                     : Scalar(0x1p-54);
 
 /// floor((x - origin) * inverseCellSize), clamped to the cell range in floating point, before the
@@ -36,7 +36,7 @@ template <class Scalar>
     // Both sides, for compilers make vector instructions of that. The other one's floor is 0 anyway.
     // Without a branch on the sign, which no processor could foresee.
     const auto size = static_cast<Scalar>(__builtin_fabs(scaled));
-    scaled = size < kOnBorder<Scalar> ? Scalar(0) : scaled;
+    scaled = size < kTinyCell<Scalar> ? Scalar(0) : scaled;
     const auto truncated = static_cast<std::int32_t>(scaled);
     return truncated - static_cast<std::int32_t>(static_cast<Scalar>(truncated) > scaled);
 }

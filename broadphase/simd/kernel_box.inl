@@ -11,8 +11,8 @@ class Lanes {
 public:
     Lanes(const Scalar* const* columns, std::uint32_t number) {
         for (int axis = 0; axis < 3; ++axis) {
-            low_[axis] = Pack::all(columns[axis][number]);
-            high_[axis] = Pack::all(columns[axis + 3][number]);
+            low_[axis] = Pack::broadcast(columns[axis][number]);
+            high_[axis] = Pack::broadcast(columns[axis + 3][number]);
         }
     }
 
@@ -30,12 +30,12 @@ public:
 private:
     [[nodiscard]] std::uint32_t maskOfPack(const Scalar* const* columns,
                                            std::uint32_t first) const {
-        auto hits = Pack::notAbove(Pack::load(columns[0] + first), high_[0]);
-        hits = Pack::both(hits, Pack::notAbove(low_[0], Pack::load(columns[3] + first)));
+        auto hits = Pack::lessEqual(Pack::load(columns[0] + first), high_[0]);
+        hits = Pack::bitAnd(hits, Pack::lessEqual(low_[0], Pack::load(columns[3] + first)));
         for (int axis = 1; axis < 3; ++axis) {
-            hits = Pack::both(hits, Pack::notAbove(Pack::load(columns[axis] + first), high_[axis]));
+            hits = Pack::bitAnd(hits, Pack::lessEqual(Pack::load(columns[axis] + first), high_[axis]));
             hits =
-                Pack::both(hits, Pack::notAbove(low_[axis], Pack::load(columns[axis + 3] + first)));
+                Pack::bitAnd(hits, Pack::lessEqual(low_[axis], Pack::load(columns[axis + 3] + first)));
         }
         return Pack::bits(hits);
     }
@@ -50,9 +50,9 @@ class WayLanes {
 public:
     WayLanes(const Lanes<Pack, Scalar>& box, const Way<Scalar>& way) : box_(box), way_(&way) {
         for (int k = 0; k < 3; ++k) {
-            enterFrom_[k] = Pack::all(way.enterFrom[k]);
-            leaveFrom_[k] = Pack::all(way.leaveFrom[k]);
-            inverse_[k] = Pack::all(way.inverse[k]);
+            enterFrom_[k] = Pack::broadcast(way.enterFrom[k]);
+            leaveFrom_[k] = Pack::broadcast(way.leaveFrom[k]);
+            inverse_[k] = Pack::broadcast(way.inverse[k]);
         }
     }
 
@@ -78,8 +78,8 @@ private:
             static_cast<Scalar>(sizeof(Scalar) == sizeof(float) ? 1 + 0x1p-19 : 1 + 0x1p-48);
         constexpr Scalar kTiny =
             sizeof(Scalar) == sizeof(float) ? Scalar(0x1p-126) : Scalar(0x1p-1022);
-        auto enter = Pack::all(0);
-        auto leave = Pack::all(1);
+        auto enter = Pack::broadcast(0);
+        auto leave = Pack::broadcast(1);
         for (int k = 0; k < 3; ++k) {
             const auto enters =
                 Pack::minus(Pack::load(columns[way_->enterColumn[k]] + first), enterFrom_[k]);
@@ -88,8 +88,8 @@ private:
             enter = Pack::greatest(Pack::times(enters, inverse_[k]), enter);
             leave = Pack::least(Pack::times(leaves, inverse_[k]), leave);
         }
-        leave = Pack::plus(Pack::times(leave, Pack::all(kWidened)), Pack::all(kTiny));
-        return Pack::bits(Pack::notAbove(enter, leave));
+        leave = Pack::plus(Pack::times(leave, Pack::broadcast(kWidened)), Pack::broadcast(kTiny));
+        return Pack::bits(Pack::lessEqual(enter, leave));
     }
 
     Lanes<Pack, Scalar> box_;

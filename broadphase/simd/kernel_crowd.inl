@@ -137,13 +137,13 @@ template <class Scalar, int kAxes, bool kIsScaled>
 void searchTile(const CrowdView<Scalar>& crowd, const CrowdTile<Scalar>& tile, std::uint32_t first,
                 std::uint32_t last) {
     using Pack = WidePack<Scalar>;
-    const auto most = Pack::all(crowd.mostSquared);
-    const auto scale = Pack::all(crowd.scale);
+    const auto most = Pack::broadcast(crowd.mostSquared);
+    const auto scale = Pack::broadcast(crowd.scale);
     std::uint64_t* hits = tile.hits;
     for (std::uint32_t agent = first; agent < last; ++agent) {
         typename Pack::Numbers own[kAxes];
         for (int axis = 0; axis < kAxes; ++axis) {
-            own[axis] = Pack::all(crowd.columns[axis][agent]);
+            own[axis] = Pack::broadcast(crowd.columns[axis][agent]);
         }
         for (std::uint32_t word = 0; word < tile.wordCount; ++word) {
             std::uint64_t mask = 0;
@@ -158,7 +158,7 @@ void searchTile(const CrowdView<Scalar>& crowd, const CrowdTile<Scalar>& tile, s
                     const auto square = Pack::times(way, way);
                     sum = axis == 0 ? square : Pack::plus(sum, square);
                 }
-                mask |= std::uint64_t{Pack::bits(Pack::notAbove(sum, most))} << bit;
+                mask |= std::uint64_t{Pack::bits(Pack::lessEqual(sum, most))} << bit;
             }
             *hits++ = mask;
         }

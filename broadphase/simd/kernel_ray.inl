@@ -28,7 +28,7 @@ inline std::uint32_t mayMeet(const BoxBlock& block, const RayLanes& ray, float l
             exit = Floats::least(slabExit, exit);
         }
         Floats::store(enter + k, first);
-        mask |= Floats::bits(Floats::notAbove(first, exit)) << k;
+        mask |= Floats::bits(Floats::lessEqual(first, exit)) << k;
     }
     return mask;
 }

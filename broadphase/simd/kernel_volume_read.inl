@@ -181,29 +181,29 @@ private:
     // Bit k tells whether the plane has some of box first + k inside.
     template <class Pack>
     [[nodiscard]] std::uint32_t bitsOf(const BoxPlane<Scalar>& plane, std::uint32_t first) const {
-        auto sum = Pack::all(plane.offset);
+        auto sum = Pack::broadcast(plane.offset);
         for (int axis = 0; axis < 3; ++axis) {
-            sum = Pack::plus(sum, Pack::times(Pack::all(plane.slope[axis]),
+            sum = Pack::plus(sum, Pack::times(Pack::broadcast(plane.slope[axis]),
                                               Pack::load(plane.corner[axis] + first)));
         }
-        const std::uint32_t may = Pack::bits(Pack::notAbove(Pack::all(-plane.slack), sum));
-        const std::uint32_t does = Pack::bits(Pack::notAbove(Pack::all(plane.slack), sum));
+        const std::uint32_t may = Pack::bits(Pack::lessEqual(Pack::broadcast(-plane.slack), sum));
+        const std::uint32_t does = Pack::bits(Pack::lessEqual(Pack::broadcast(plane.slack), sum));
         return may == does ? may : may & exactBitsOf<Pack>(plane, first);
     }
 
     template <class Pack>
     [[nodiscard, gnu::noinline]] std::uint32_t exactBitsOf(const BoxPlane<Scalar>& plane,
                                                            std::uint32_t first) const {
-        auto sum = Pack::all(plane.offset);
-        auto size = Pack::all(absolute(plane.offset));
+        auto sum = Pack::broadcast(plane.offset);
+        auto size = Pack::broadcast(absolute(plane.offset));
         for (int axis = 0; axis < 3; ++axis) {
             const auto term =
-                Pack::times(Pack::all(plane.slope[axis]), Pack::load(plane.corner[axis] + first));
+                Pack::times(Pack::broadcast(plane.slope[axis]), Pack::load(plane.corner[axis] + first));
             sum = Pack::plus(sum, term);
-            size = Pack::plus(size, Pack::magnitude(term));
+            size = Pack::plus(size, Pack::abs(term));
         }
-        const auto least = Pack::times(Pack::all(-view_.volume.rounding), size);
-        return Pack::bits(Pack::notAbove(least, sum));
+        const auto least = Pack::times(Pack::broadcast(-view_.volume.rounding), size);
+        return Pack::bits(Pack::lessEqual(least, sum));
     }
 
     const VolumeView<Scalar>& view_;

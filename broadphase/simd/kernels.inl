@@ -8,11 +8,11 @@
 //     Numbers          the register
 //     load(from)       the numbers from there on, of any alignment
 //     store(to, numbers)  writes them there
-//     all(x)           the same number everywhere
-//     notAbove(a, b)   where a <= b, which NaN is not; of a type that ...
-//     both(hits, hits) ... and
+//     broadcast(x)     the same number everywhere
+//     lessEqual(a, b)   where a <= b, which NaN is not; of a type that ...
+//     bitAnd(hits, hits) ... and
 //     bits(hits)       ... take: bit k tells about number k
-//     minus, plus, times(a, b), magnitude(a)
+//     minus, plus, times(a, b), abs(a)
 //     least, greatest(a, b)  b where one is NaN
 //     compress(mask, numbers, to)  where it is there, writes numbers[k] to `to` for every bit k of the
 //                      mask, which has kWidth, and may write so many; reads no others

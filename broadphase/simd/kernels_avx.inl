@@ -11,15 +11,15 @@ struct Pack<float> {
     using Numbers = __m256;
     static Numbers load(const float* from) { return _mm256_loadu_ps(from); }
     static void store(float* to, Numbers a) { _mm256_storeu_ps(to, a); }
-    static Numbers all(float x) { return _mm256_set1_ps(x); }
+    static Numbers broadcast(float x) { return _mm256_set1_ps(x); }
     static Numbers minus(Numbers a, Numbers b) { return _mm256_sub_ps(a, b); }
     static Numbers plus(Numbers a, Numbers b) { return _mm256_add_ps(a, b); }
     static Numbers times(Numbers a, Numbers b) { return _mm256_mul_ps(a, b); }
     static Numbers least(Numbers a, Numbers b) { return _mm256_min_ps(a, b); }
     static Numbers greatest(Numbers a, Numbers b) { return _mm256_max_ps(a, b); }
-    static Numbers magnitude(Numbers a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0F), a); }
-    static __m256 notAbove(Numbers a, Numbers b) { return _mm256_cmp_ps(a, b, _CMP_LE_OQ); }
-    static __m256 both(__m256 a, __m256 b) { return _mm256_and_ps(a, b); }
+    static Numbers abs(Numbers a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0F), a); }
+    static __m256 lessEqual(Numbers a, Numbers b) { return _mm256_cmp_ps(a, b, _CMP_LE_OQ); }
+    static __m256 bitAnd(__m256 a, __m256 b) { return _mm256_and_ps(a, b); }
     static std::uint32_t bits(__m256 hits) {
         return static_cast<std::uint32_t>(_mm256_movemask_ps(hits));
     }
@@ -52,14 +52,14 @@ inline bool fitsEdge(const Level<double>& level, const PaddedBox<double>& box) {
 
 // What is hardly anything, on either side, is 0.
 
-inline __m128 onBorder(__m128 scaled) {
+inline __m128 flushTiny(__m128 scaled) {
     const __m128 size = _mm_andnot_ps(_mm_set1_ps(-0.0F), scaled);
-    return _mm_andnot_ps(_mm_cmp_ps(size, _mm_set1_ps(kOnBorder<float>), _CMP_LT_OQ), scaled);
+    return _mm_andnot_ps(_mm_cmp_ps(size, _mm_set1_ps(kTinyCell<float>), _CMP_LT_OQ), scaled);
 }
 
-inline __m256d onBorder(__m256d scaled) {
+inline __m256d flushTiny(__m256d scaled) {
     const __m256d size = _mm256_andnot_pd(_mm256_set1_pd(-0.0), scaled);
-    return _mm256_andnot_pd(_mm256_cmp_pd(size, _mm256_set1_pd(kOnBorder<double>), _CMP_LT_OQ),
+    return _mm256_andnot_pd(_mm256_cmp_pd(size, _mm256_set1_pd(kTinyCell<double>), _CMP_LT_OQ),
                             scaled);
 }
 
@@ -68,7 +68,7 @@ inline __m128 quantiseCorner(const float* corner, const Level<float>& level) {
     const __m128 relative = _mm_sub_ps(_mm_load_ps(corner), _mm_loadu_ps(level.origin));
     const __m128 scaled = _mm_mul_ps(relative, _mm_loadu_ps(level.inverseCellSize));
     const __m128 low = _mm_set1_ps(-static_cast<float>(kCellLimit));
-    return _mm_floor_ps(onBorder(_mm_max_ps(_mm_min_ps(scaled, limit), low)));
+    return _mm_floor_ps(flushTiny(_mm_max_ps(_mm_min_ps(scaled, limit), low)));
 }
 
 inline __m256d quantiseCorner(const double* corner, const Level<double>& level) {
@@ -76,11 +76,11 @@ inline __m256d quantiseCorner(const double* corner, const Level<double>& level) 
     const __m256d relative = _mm256_sub_pd(_mm256_load_pd(corner), _mm256_loadu_pd(level.origin));
     const __m256d scaled = _mm256_mul_pd(relative, _mm256_loadu_pd(level.inverseCellSize));
     const __m256d low = _mm256_set1_pd(-static_cast<double>(kCellLimit));
-    return _mm256_floor_pd(onBorder(_mm256_max_pd(_mm256_min_pd(scaled, limit), low)));
+    return _mm256_floor_pd(flushTiny(_mm256_max_pd(_mm256_min_pd(scaled, limit), low)));
 }
 
 // Whether each span is 0 or 1 and no cell is clamped.
-inline bool areFine(__m128i low, __m128i high) {
+inline bool spanAtMostTwo(__m128i low, __m128i high) {
     const __m128i span = _mm_sub_epi32(high, low);
     const __m128i isSpan = _mm_cmpeq_epi32(_mm_srli_epi32(span, 1), _mm_setzero_si128());
     const __m128i isAbove = _mm_cmpgt_epi32(low, _mm_set1_epi32(-kCellLimit));
@@ -94,7 +94,7 @@ inline bool quantiseCorners(const Level<float>& level, const PaddedBox<float>& b
     const __m128i low = _mm_cvttps_epi32(quantiseCorner(box.low, level));
     const __m128i high = _mm_cvttps_epi32(quantiseCorner(box.high, level));
     _mm_storeu_si128(reinterpret_cast<__m128i*>(cell), low);
-    return areFine(low, high);
+    return spanAtMostTwo(low, high);
 }
 
 inline bool quantiseCorners(const Level<double>& level, const PaddedBox<double>& box,
@@ -102,7 +102,7 @@ inline bool quantiseCorners(const Level<double>& level, const PaddedBox<double>&
     const __m128i low = _mm256_cvttpd_epi32(quantiseCorner(box.low, level));
     const __m128i high = _mm256_cvttpd_epi32(quantiseCorner(box.high, level));
     _mm_storeu_si128(reinterpret_cast<__m128i*>(cell), low);
-    return areFine(low, high);
+    return spanAtMostTwo(low, high);
 }
 
 inline std::uint32_t bitCount(std::uint64_t word) {

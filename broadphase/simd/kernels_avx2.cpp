@@ -18,15 +18,15 @@ struct Pack<double> {
     using Numbers = __m256d;
     static Numbers load(const double* from) { return _mm256_loadu_pd(from); }
     static void store(double* to, Numbers a) { _mm256_storeu_pd(to, a); }
-    static Numbers all(double x) { return _mm256_set1_pd(x); }
+    static Numbers broadcast(double x) { return _mm256_set1_pd(x); }
     static Numbers minus(Numbers a, Numbers b) { return _mm256_sub_pd(a, b); }
     static Numbers plus(Numbers a, Numbers b) { return _mm256_add_pd(a, b); }
     static Numbers times(Numbers a, Numbers b) { return _mm256_mul_pd(a, b); }
     static Numbers least(Numbers a, Numbers b) { return _mm256_min_pd(a, b); }
     static Numbers greatest(Numbers a, Numbers b) { return _mm256_max_pd(a, b); }
-    static Numbers magnitude(Numbers a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a); }
-    static __m256d notAbove(Numbers a, Numbers b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
-    static __m256d both(__m256d a, __m256d b) { return _mm256_and_pd(a, b); }
+    static Numbers abs(Numbers a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a); }
+    static __m256d lessEqual(Numbers a, Numbers b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
+    static __m256d bitAnd(__m256d a, __m256d b) { return _mm256_and_pd(a, b); }
     static std::uint32_t bits(__m256d hits) {
         return static_cast<std::uint32_t>(_mm256_movemask_pd(hits));
     }

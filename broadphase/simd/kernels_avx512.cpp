@@ -20,21 +20,21 @@ struct Pack<double> {
     using Numbers = __m512d;
     static Numbers load(const double* from) { return _mm512_loadu_pd(from); }
     static void store(double* to, Numbers a) { _mm512_storeu_pd(to, a); }
-    static Numbers all(double x) { return _mm512_set1_pd(x); }
+    static Numbers broadcast(double x) { return _mm512_set1_pd(x); }
     static Numbers minus(Numbers a, Numbers b) { return _mm512_sub_pd(a, b); }
     static Numbers plus(Numbers a, Numbers b) { return _mm512_add_pd(a, b); }
     static Numbers times(Numbers a, Numbers b) { return _mm512_mul_pd(a, b); }
     static Numbers least(Numbers a, Numbers b) { return _mm512_min_pd(a, b); }
     static Numbers greatest(Numbers a, Numbers b) { return _mm512_max_pd(a, b); }
-    static Numbers magnitude(Numbers a) { return _mm512_abs_pd(a); }
+    static Numbers abs(Numbers a) { return _mm512_abs_pd(a); }
     static void compress(std::uint32_t mask, const std::uint32_t* numbers, std::uint32_t* to) {
         const auto lanes = static_cast<__mmask8>(mask);
         const __m256i some = _mm256_maskz_loadu_epi32(lanes, numbers);
         _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
                             _mm256_maskz_compress_epi32(lanes, some));
     }
-    static __mmask8 notAbove(Numbers a, Numbers b) { return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ); }
-    static __mmask8 both(__mmask8 a, __mmask8 b) { return a & b; }
+    static __mmask8 lessEqual(Numbers a, Numbers b) { return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ); }
+    static __mmask8 bitAnd(__mmask8 a, __mmask8 b) { return a & b; }
     static std::uint32_t bits(__mmask8 hits) { return hits; }
 };
 
@@ -47,20 +47,22 @@ struct WidePack<float> {
     using Numbers = __m512;
     static Numbers load(const float* from) { return _mm512_loadu_ps(from); }
     static void store(float* to, Numbers a) { _mm512_storeu_ps(to, a); }
-    static Numbers all(float x) { return _mm512_set1_ps(x); }
+    static Numbers broadcast(float x) { return _mm512_set1_ps(x); }
     static Numbers minus(Numbers a, Numbers b) { return _mm512_sub_ps(a, b); }
     static Numbers plus(Numbers a, Numbers b) { return _mm512_add_ps(a, b); }
     static Numbers times(Numbers a, Numbers b) { return _mm512_mul_ps(a, b); }
     static Numbers least(Numbers a, Numbers b) { return _mm512_min_ps(a, b); }
     static Numbers greatest(Numbers a, Numbers b) { return _mm512_max_ps(a, b); }
-    static Numbers magnitude(Numbers a) { return _mm512_abs_ps(a); }
+    static Numbers abs(Numbers a) { return _mm512_abs_ps(a); }
     static void compress(std::uint32_t mask, const std::uint32_t* numbers, std::uint32_t* to) {
         const auto lanes = static_cast<__mmask16>(mask);
         const __m512i some = _mm512_maskz_loadu_epi32(lanes, numbers);
         _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(lanes, some));
     }
-    static __mmask16 notAbove(Numbers a, Numbers b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
-    static __mmask16 both(__mmask16 a, __mmask16 b) { return a & b; }
+    static __mmask16 lessEqual(Numbers a, Numbers b) {
+        return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ);
+    }
+    static __mmask16 bitAnd(__mmask16 a, __mmask16 b) { return a & b; }
     static std::uint32_t bits(__mmask16 hits) { return hits; }
 };
 

@@ -14,15 +14,15 @@ struct Pack {
     using Numbers = Scalar;
     static Numbers load(const Scalar* from) { return *from; }
     static void store(Scalar* to, Numbers a) { *to = a; }
-    static Numbers all(Scalar x) { return x; }
+    static Numbers broadcast(Scalar x) { return x; }
     static Numbers minus(Numbers a, Numbers b) { return a - b; }
     static Numbers plus(Numbers a, Numbers b) { return a + b; }
     static Numbers times(Numbers a, Numbers b) { return a * b; }
     static Numbers least(Numbers a, Numbers b) { return a < b ? a : b; }
     static Numbers greatest(Numbers a, Numbers b) { return a > b ? a : b; }
-    static Numbers magnitude(Numbers a) { return a < 0 ? -a : a; }
-    static bool notAbove(Numbers a, Numbers b) { return a <= b; }
-    static bool both(bool a, bool b) { return a & b; }
+    static Numbers abs(Numbers a) { return a < 0 ? -a : a; }
+    static bool lessEqual(Numbers a, Numbers b) { return a <= b; }
+    static bool bitAnd(bool a, bool b) { return a & b; }
     static std::uint32_t bits(bool hit) { return hit ? 1 : 0; }
 };
 

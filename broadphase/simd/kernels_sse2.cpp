@@ -19,15 +19,15 @@ struct Pack<float> {
     using Numbers = __m128;
     static Numbers load(const float* from) { return _mm_loadu_ps(from); }
     static void store(float* to, Numbers a) { _mm_storeu_ps(to, a); }
-    static Numbers all(float x) { return _mm_set1_ps(x); }
+    static Numbers broadcast(float x) { return _mm_set1_ps(x); }
     static Numbers minus(Numbers a, Numbers b) { return _mm_sub_ps(a, b); }
     static Numbers plus(Numbers a, Numbers b) { return _mm_add_ps(a, b); }
     static Numbers times(Numbers a, Numbers b) { return _mm_mul_ps(a, b); }
     static Numbers least(Numbers a, Numbers b) { return _mm_min_ps(a, b); }
     static Numbers greatest(Numbers a, Numbers b) { return _mm_max_ps(a, b); }
-    static Numbers magnitude(Numbers a) { return _mm_andnot_ps(_mm_set1_ps(-0.0F), a); }
-    static __m128 notAbove(Numbers a, Numbers b) { return _mm_cmple_ps(a, b); }
-    static __m128 both(__m128 a, __m128 b) { return _mm_and_ps(a, b); }
+    static Numbers abs(Numbers a) { return _mm_andnot_ps(_mm_set1_ps(-0.0F), a); }
+    static __m128 lessEqual(Numbers a, Numbers b) { return _mm_cmple_ps(a, b); }
+    static __m128 bitAnd(__m128 a, __m128 b) { return _mm_and_ps(a, b); }
     static std::uint32_t bits(__m128 hits) {
         return static_cast<std::uint32_t>(_mm_movemask_ps(hits));
     }
@@ -39,15 +39,15 @@ struct Pack<double> {
     using Numbers = __m128d;
     static Numbers load(const double* from) { return _mm_loadu_pd(from); }
     static void store(double* to, Numbers a) { _mm_storeu_pd(to, a); }
-    static Numbers all(double x) { return _mm_set1_pd(x); }
+    static Numbers broadcast(double x) { return _mm_set1_pd(x); }
     static Numbers minus(Numbers a, Numbers b) { return _mm_sub_pd(a, b); }
     static Numbers plus(Numbers a, Numbers b) { return _mm_add_pd(a, b); }
     static Numbers times(Numbers a, Numbers b) { return _mm_mul_pd(a, b); }
     static Numbers least(Numbers a, Numbers b) { return _mm_min_pd(a, b); }
     static Numbers greatest(Numbers a, Numbers b) { return _mm_max_pd(a, b); }
-    static Numbers magnitude(Numbers a) { return _mm_andnot_pd(_mm_set1_pd(-0.0), a); }
-    static __m128d notAbove(Numbers a, Numbers b) { return _mm_cmple_pd(a, b); }
-    static __m128d both(__m128d a, __m128d b) { return _mm_and_pd(a, b); }
+    static Numbers abs(Numbers a) { return _mm_andnot_pd(_mm_set1_pd(-0.0), a); }
+    static __m128d lessEqual(Numbers a, Numbers b) { return _mm_cmple_pd(a, b); }
+    static __m128d bitAnd(__m128d a, __m128d b) { return _mm_and_pd(a, b); }
     static std::uint32_t bits(__m128d hits) {
         return static_cast<std::uint32_t>(_mm_movemask_pd(hits));
     }

@@ -86,7 +86,7 @@ Aabb<Scalar> drawBox(Random& random, const Batch& batch) {
     if (random.chance(batch.hostileShare)) {
         return hostileBox<Scalar>(random);
     }
-    const auto onBorder = [&](double value) {
+    const auto flushTiny = [&](double value) {
         auto border = static_cast<Scalar>(value);
         const double step = random.unit();
         return step < 0.4   ? border
@@ -99,7 +99,7 @@ Aabb<Scalar> drawBox(Random& random, const Batch& batch) {
     Aabb<Scalar> box;
     for (int axis = 0; axis < 3; ++axis) {
         const double lattice = std::floor(random.between(-batch.spread, batch.spread));
-        box.min()[axis] = onBorder(batch.middle + lattice * batch.cell);
+        box.min()[axis] = flushTiny(batch.middle + lattice * batch.cell);
         const double size = isCube               ? edge
                             : random.chance(0.1) ? 0
                                                  : random.logBetween(batch.smallest, batch.largest);
@@ -107,7 +107,7 @@ Aabb<Scalar> drawBox(Random& random, const Batch& batch) {
         const double cells = std::floor(size / batch.cell);
         const double low = static_cast<double>(box.min()[axis]);
         box.max()[axis] = random.chance(0.5) && cells < 1e6
-                              ? onBorder(batch.middle + (lattice + cells) * batch.cell)
+                              ? flushTiny(batch.middle + (lattice + cells) * batch.cell)
                               : static_cast<Scalar>(low + size);
         box.max()[axis] = std::max(box.max()[axis], box.min()[axis]);
     }
