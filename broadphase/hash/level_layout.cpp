@@ -68,7 +68,7 @@ void measure(std::span<const PaddedBox<Scalar>> boxes, Candidates<Scalar>& candi
 
 // Returns false when there are too many cells for so few boxes.
 template <class Scalar>
-bool numberThrough(Level<Scalar>& level, std::uint32_t count) {
+bool makeDense(Level<Scalar>& level, std::uint32_t count) {
     std::array<std::uint64_t, 3> extent{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::int32_t margin = marginOf(level.low[axis], level.high[axis]);
@@ -166,7 +166,7 @@ void LevelLayout<Scalar>::choose(std::span<const PaddedBox<Scalar>> boxes,
     middle_ = census_.range(0.5 / kStrays);
 }
 
-// A few strays must not keep all the others from being numbered through: where the whole population
+// A few strays must not keep all the others from being dense: where the whole population
 // is too sparse, its middle may be dense enough.
 template <class Scalar>
 void LevelLayout<Scalar>::layOutDense(Level<Scalar>& level, const CellReach& reach) const {
@@ -175,14 +175,14 @@ void LevelLayout<Scalar>::layOutDense(Level<Scalar>& level, const CellReach& rea
         level.low[axis] = reach.low[axis];
         level.high[axis] = reach.high[axis];
     }
-    if (numberThrough(level, reach.count)) {
+    if (makeDense(level, reach.count)) {
         return;
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
         level.low[axis] = level.cell(static_cast<Scalar>(middle_.low[axis]), axis);
         level.high[axis] = level.cell(static_cast<Scalar>(middle_.high[axis]), axis);
     }
-    if (!numberThrough(level, reach.count)) {
+    if (!makeDense(level, reach.count)) {
         std::fill_n(level.low, 3, 1);
         std::fill_n(level.high, 3, 0);
         level.bucketCount = 1;

@@ -41,7 +41,7 @@ public:
     /// A level of so few proxies costs every walk more than reading them as a list.
     static constexpr std::uint32_t kThinLevel = 32;
 
-    /// Up to one in so many may lie beyond the cells that are numbered through.
+    /// Up to one in so many may lie beyond the cells that are dense.
     static constexpr std::uint32_t kStrays = 32;
 
     /// Whether the cell sizes are to be chosen again for so many boxes: when the number has changed,

@@ -10,8 +10,8 @@ namespace hashphase::detail {
 namespace {
 
 // Modelled costs [ns], measured on a plain x86-64 build: looking up a run of buckets that are
-// numbered through, or hashed; one box more in a run; the mispredicted branches of a long run; a box
-// of the contiguous list of those that fit no level; keeping a cell that is numbered through.
+// dense, or hashed; one box more in a run; the mispredicted branches of a long run; a box
+// of the contiguous list of those that fit no level; keeping a cell that is dense.
 constexpr double kRunCost = 3.7;
 constexpr double kHashedRunCost = 8.5;
 constexpr double kBoxCost = 0.15;
@@ -48,7 +48,7 @@ bool has(AxisSet axes, std::size_t axis) {
 }
 
 // Cells much smaller than the distance between proxies are nearly all empty: they find nothing
-// sooner and only scatter memory. So many a box can be numbered through.
+// sooner and only scatter memory. So many a box can be dense.
 constexpr double kCellsPerBox = 4;
 
 }  // namespace
@@ -143,7 +143,7 @@ SizeCensus::LevelCost SizeCensus::costOfLevel(double cellSize, double own, doubl
     for (const AxisSet flat : {AxisSet{0b000}, AxisSet{0b010}, AxisSet{0b100}, AxisSet{0b110}}) {
         const double rows = rowsNearby(cellSize, flat);
         const double boxes = own * crowding_.shareInCell(3 * cellSize, flat);
-        // Cells that are too many to be numbered through are hashed.
+        // Cells that are too many to be dense are hashed.
         const double cells = cellsAround(cellSize, flat);
         const bool isDense = cells < kMostCellsPerBox * own + kFewCells;
         const double runCost = isDense ? kRunCost : kHashedRunCost;

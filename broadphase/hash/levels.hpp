@@ -18,7 +18,7 @@ namespace hashphase::detail {
 
 inline constexpr int kMaxLevels = 16;
 
-/// Up to so many cells for each box of a level are numbered through, and a few more at any rate.
+/// Up to so many cells for each box of a level are dense, and a few more at any rate.
 inline constexpr std::uint32_t kMostCellsPerBox = 6;
 inline constexpr std::uint32_t kFewCells = 1024;
 

@@ -86,7 +86,7 @@ FixedList<SizeClass<Scalar>, kMaxLevels> Table<Scalar>::sizeClasses() const {
 }
 
 // Finds every box's bucket and counts how many each has. Returns how many boxes lie where it takes
-// longer to find them: listed without cells, or beyond the cells that are numbered through.
+// longer to find them: listed without cells, or beyond the cells that are dense.
 template <class Scalar>
 std::size_t Table<Scalar>::countBuckets(std::span<const PaddedBox<Scalar>> boxes,
                                         ParallelFor parallelFor) {

@@ -102,7 +102,7 @@ BucketRange<kIsDense> bucketsOf(const Level<Scalar>& level, Row row, std::int32_
 // Whether the rows of a hashed level have more entries in their buckets, those of other rows and those
 // that several of them share included, than there are.
 template <class Scalar>
-[[gnu::noinline]] bool haveMoreThanAll(const Level<Scalar>& level, const CellBlock& block) {
+[[gnu::noinline]] bool costsMoreThanFullScan(const Level<Scalar>& level, const CellBlock& block) {
     std::uint64_t left = level.count();
     return !block.forRows([&](Row row) {
         const auto buckets = bucketsOf<false>(level, row, block.low[0], block.rowLength());
@@ -127,7 +127,7 @@ bool costsMoreThanAll(const Level<Scalar>& level, const CellBlock& block) {
     if constexpr (!kIsDense) {
         // Rows that pass as many buckets as there are would have every box read about once a row.
         return rowCount * lowest(block.rowLength(), level.bucketCount) >= level.bucketCount ||
-               (rowCount > kFewRows && haveMoreThanAll(level, block));
+               (rowCount > kFewRows && costsMoreThanFullScan(level, block));
     }
     return false;
 }

@@ -198,12 +198,12 @@ TYPED_TEST(TableTest, AFewStraysDoNotMakeTheOthersSparse) {
         boxes.push_back(boxAround<TypeParam>(away * (1 + i % 2), {0.5, 0.5, 0.5}));
     }
     this->build(std::move(boxes));
-    EXPECT_GE(this->table_.levels()[0].count(), 2900U) << "most are numbered through";
+    EXPECT_GE(this->table_.levels()[0].count(), 2900U) << "most are dense";
     EXPECT_GE(this->table_.levels()[1].count(), 40U) << "the strays are hashed";
     ASSERT_EQ(this->joined(), this->expected());
 }
 
-// Layers, walls and lines have fewer neighbours than cells in space, numbered through or hashed.
+// Layers, walls and lines have fewer neighbours than cells in space, dense or hashed.
 TYPED_TEST(TableTest, FindsEveryCoupleOnceInPlanesAndLines) {
     Random random(0x5eed040b);
     const Vector3<double> extents[] = {{1, 1, 0}, {1, 0, 1}, {0, 1, 1},
@@ -280,7 +280,7 @@ TYPED_TEST(TableTest, CrowdsInACellAreSortedAndSearchedWhereTheyAreNear) {
     EXPECT_GT(found, 10000U);
 }
 
-// Strays keep the cells from being numbered through: buckets are shared by what is hashed there.
+// Strays keep the cells from being dense: buckets are shared by what is hashed there.
 TYPED_TEST(TableTest, CrowdsInHashedCellsAreFoundWhole) {
     Random random(0x5eed0408);
     auto boxes = crowd<TypeParam>(random, 1500, {3, 4, 5}, {30, 30, 30});
