@@ -27,9 +27,9 @@ struct RaySearch {
     // Where numbers are too large for the kernel, every box may be met.
     [[nodiscard]] bool readAll(const BoxTreeLevel& level) {
         for (std::uint32_t index = level.firstBlock; index < level.firstInner; ++index) {
-            const BoxBlock& block = tree.blocks()[index];
+            const TreeNode8& block = tree.blocks()[index];
             cost.boxesTested += block.count;
-            if (!handOver({block.below, block.count})) {
+            if (!handOver({block.children, block.count})) {
                 return false;
             }
         }

@@ -7,7 +7,7 @@
 
 // Bit k of the result tells whether the ray may meet box k at some t in [0, last]; enter[k] is then
 // a lower bound of that t. A NaN changes nothing.
-inline std::uint32_t mayMeet(const BoxBlock& block, const RayLanes& ray, float last, float* enter) {
+inline std::uint32_t mayMeet(const TreeNode8& block, const RayLanes& ray, float last, float* enter) {
     using Floats = Pack<float>;
     std::uint32_t mask = 0;
     for (std::uint32_t k = 0; k < kBlockWidth; k += Floats::kWidth) {
@@ -54,20 +54,20 @@ inline std::uint32_t nearestLane(const float* enter, std::uint32_t mask) {
 }
 
 // Brings the indices of the lanes to the sink.
-inline bool takeLanes(const BoxBlock& block, const float* enter, std::uint32_t mask,
+inline bool takeLanes(const TreeNode8& block, const float* enter, std::uint32_t mask,
                       RaySink& sink) {
     std::uint32_t proxyIndices[kBlockWidth];
     std::uint32_t count = 0;
     while (mask != 0) {
         const std::uint32_t lane = nearestLane(enter, mask);
         mask ^= 1U << lane;
-        proxyIndices[count++] = block.below[lane];
+        proxyIndices[count++] = block.children[lane];
     }
     return count == 0 || sink.take(sink, proxyIndices, count);
 }
 
 // Puts the blocks of the lanes on top of those that are pending, the nearest at the very top.
-inline std::uint32_t pushLanes(const BoxBlock& block, const float* enter, std::uint32_t mask,
+inline std::uint32_t pushLanes(const TreeNode8& block, const float* enter, std::uint32_t mask,
                                PendingBlock* pending, std::uint32_t count) {
     const std::uint32_t bottom = count;
     for (; mask != 0; mask &= mask - 1) {
@@ -76,12 +76,12 @@ inline std::uint32_t pushLanes(const BoxBlock& block, const float* enter, std::u
         for (; i > bottom && pending[i - 1].enter < enter[lane]; --i) {
             pending[i] = pending[i - 1];
         }
-        pending[i] = {enter[lane], block.below[lane]};
+        pending[i] = {enter[lane], block.children[lane]};
     }
     return count;
 }
 
-inline bool walkRay(const BoxBlock* blocks, std::uint32_t root, std::uint32_t firstInner,
+inline bool walkRay(const TreeNode8* blocks, std::uint32_t root, std::uint32_t firstInner,
                     const RayLanes& ray, RaySink& sink, KernelCost& cost) {
     PendingBlock pending[kMostPending];
     pending[0] = {0, root};
@@ -91,7 +91,7 @@ inline bool walkRay(const BoxBlock* blocks, std::uint32_t root, std::uint32_t fi
         if (entered > sink.last) {
             continue;
         }
-        const BoxBlock& block = blocks[index];
+        const TreeNode8& block = blocks[index];
         float enter[kBlockWidth];
         const std::uint32_t mask = mayMeet(block, ray, sink.last, enter);
         ++cost.rowsVisited;

@@ -204,12 +204,12 @@ struct Kernels {
 
     /// Finds the indices of a tree's boxes that the ray may meet up to sink.last, about from near to
     /// far. The tree's blocks from firstInner on stand above others.
-    bool (*walkRay)(const BoxBlock* blocks, std::uint32_t root, std::uint32_t firstInner,
+    bool (*walkRay)(const TreeNode8* blocks, std::uint32_t root, std::uint32_t firstInner,
                     const RayLanes& ray, RaySink& sink, KernelCost& cost);
 
     /// What walkRay() asks of each block: bit k tells whether the ray may meet box k at some t in
     /// [0, last]; enter[k] is then a lower bound of that t.
-    std::uint32_t (*mayMeet)(const BoxBlock& block, const RayLanes& ray, float last, float* enter);
+    std::uint32_t (*mayMeet)(const TreeNode8& block, const RayLanes& ray, float last, float* enter);
 
     /// As joinLevel(), of a level without cells.
     bool (*joinList)(const Level<Scalar>& level, const GroupsView* groups, std::uint32_t firstEntry,

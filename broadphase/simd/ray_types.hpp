@@ -13,7 +13,7 @@ inline constexpr std::uint32_t kBlockWidth = 8;
 
 /// Eight boxes by column: min x, y, z, max x, y, z, in single precision and rounded outward. A lane
 /// without a box is inverted infinitely, which nothing meets.
-struct alignas(16) BoxBlock {
+struct alignas(16) TreeNode8 {
     float bounds[6][kBlockWidth];
     /// Per lane, what stands behind the box: a block, or an index in the lowest blocks.
     std::uint32_t below[kBlockWidth];

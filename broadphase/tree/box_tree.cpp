@@ -26,8 +26,8 @@ float roundedDown(double x) {
                       std::numeric_limits<float>::min());
 }
 
-BoxBlock emptyBlock() {
-    BoxBlock block{};
+TreeNode8 emptyBlock() {
+    TreeNode8 block{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         std::fill_n(block.bounds[axis], kBlockWidth, kFloatInfinity);
         std::fill_n(block.bounds[axis + 3], kBlockWidth, -kFloatInfinity);
@@ -74,7 +74,7 @@ void BoxTree::readBoxes(const Table<Scalar>& table, const Level<Scalar>& level) 
             box.high[axis] = -roundedDown(-std::max(a, b));
         }
         if (!isNan) {
-            box.below = table.proxyIndex(entry);
+            box.children = table.proxyIndex(entry);
             boxes_.push_back(box);
         }
     }
@@ -166,17 +166,17 @@ void BoxTree::buildLevel() {
             level.radius = std::max(level.radius, static_cast<double>(most));
         }
     }
-    addStorey();
+    buildParents();
     level.firstInner = static_cast<std::uint32_t>(blocks_.size());
     while (boxes_.size() > 1) {
-        addStorey();
+        buildParents();
     }
-    level.root = boxes_.front().below;
+    level.root = boxes_.front().children;
     levels_.push_back(level);
 }
 
 // Puts boxes that follow one another into blocks, and the blocks' bounds in the boxes' place.
-void BoxTree::addStorey() {
+void BoxTree::buildParents() {
     constexpr float kFarApart = 16;
     const auto count = static_cast<std::uint32_t>(boxes_.size());
     std::uint32_t blockCount = 0;
@@ -185,7 +185,7 @@ void BoxTree::addStorey() {
         const float usual =
             blockCount == 0 ? kFloatInfinity : edges / static_cast<float>(blockCount);
         const std::uint32_t last = neighbours(first, kFarApart * usual);
-        BoxBlock block = emptyBlock();
+        TreeNode8 block = emptyBlock();
         Box bounds = boxes_[first];
         for (std::uint32_t k = 0; first + k < last; ++k) {
             const Box& box = boxes_[first + k];
@@ -193,11 +193,11 @@ void BoxTree::addStorey() {
                 block.bounds[axis][k] = box.low[axis];
                 block.bounds[axis + 3][k] = box.high[axis];
             }
-            block.below[k] = box.below;
+            block.children[k] = box.children;
             bounds.extend(box);
         }
         block.count = last - first;
-        bounds.below = static_cast<std::uint32_t>(blocks_.size());
+        bounds.children = static_cast<std::uint32_t>(blocks_.size());
         blocks_.push_back(block);
         boxes_[blockCount++] = bounds;
         edges += bounds.longestEdge();
@@ -221,13 +221,13 @@ std::uint32_t BoxTree::neighbours(std::uint32_t first, float farApart) const {
     return most;
 }
 
-BoxTree::Box BoxTree::boxOf(const BoxBlock& block, std::uint32_t lane) {
+BoxTree::Box BoxTree::boxOf(const TreeNode8& block, std::uint32_t lane) {
     Box box{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         box.low[axis] = block.bounds[axis][lane];
         box.high[axis] = block.bounds[axis + 3][lane];
     }
-    box.below = block.below[lane];
+    box.children = block.children[lane];
     return box;
 }
 
@@ -243,7 +243,7 @@ void BoxTree::Box::extend(const Box& other) noexcept {
 }
 
 std::size_t BoxTree::memoryBytes() const noexcept {
-    return levels_.capacity() * sizeof(BoxTreeLevel) + blocks_.capacity() * sizeof(BoxBlock) +
+    return levels_.capacity() * sizeof(BoxTreeLevel) + blocks_.capacity() * sizeof(TreeNode8) +
            (boxes_.capacity() + unsorted_.capacity()) * sizeof(Box) +
            (places_.capacity() + places2_.capacity()) * sizeof(Place);
 }
@@ -259,7 +259,7 @@ std::string BoxTree::validate() const {
     for (const BoxTreeLevel& level : levels_) {
         ++timesBelow[level.root];
         for (std::uint32_t index = level.firstBlock; index <= level.root; ++index) {
-            const BoxBlock& block = blocks_[index];
+            const TreeNode8& block = blocks_[index];
             if (block.count < 1 || block.count > kBlockWidth) {
                 return "A block has one to eight boxes: broken.";
             }
@@ -273,9 +273,9 @@ std::string BoxTree::validate() const {
                 }
                 Box grown = box;
                 if (index >= level.firstInner) {
-                    ++timesBelow[block.below[k]];
-                    for (std::uint32_t i = 0; i < blocks_[block.below[k]].count; ++i) {
-                        grown.extend(boxOf(blocks_[block.below[k]], i));
+                    ++timesBelow[block.children[k]];
+                    for (std::uint32_t i = 0; i < blocks_[block.children[k]].count; ++i) {
+                        grown.extend(boxOf(blocks_[block.children[k]], i));
                     }
                 }
                 if (grown.low != box.low || grown.high != box.high) {

@@ -42,7 +42,7 @@ public:
     /// What bounds are relative to [m].
     [[nodiscard]] const std::array<double, 3>& origin() const noexcept { return origin_; }
     [[nodiscard]] std::span<const BoxTreeLevel> levels() const noexcept { return levels_; }
-    [[nodiscard]] const BoxBlock* blocks() const noexcept { return blocks_.data(); }
+    [[nodiscard]] const TreeNode8* blocks() const noexcept { return blocks_.data(); }
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
     /// Gives back what only build() uses, and room for more boxes than there are.
     void releaseUnusedMemory() noexcept;
@@ -57,7 +57,7 @@ private:
     struct Box {
         std::array<float, 3> low;
         std::array<float, 3> high;
-        std::uint32_t below;  // index, or block
+        std::uint32_t children;  // index, or block
 
         [[nodiscard]] float longestEdge() const noexcept;
         void extend(const Box& other) noexcept;
@@ -67,19 +67,19 @@ private:
         std::uint32_t box;
     };
 
-    [[nodiscard]] static Box boxOf(const BoxBlock& block, std::uint32_t lane);
+    [[nodiscard]] static Box boxOf(const TreeNode8& block, std::uint32_t lane);
     template <class Scalar>
     void readBoxes(const Table<Scalar>& table, const Level<Scalar>& level);
     [[nodiscard]] float curveStep();
     void sortAlongCurve();
     void sortPlaces(int bits);
     void buildLevel();
-    void addStorey();
+    void buildParents();
     [[nodiscard]] std::uint32_t neighbours(std::uint32_t first, float farApart) const;
 
     std::array<double, 3> origin_{};
     std::vector<BoxTreeLevel> levels_;
-    std::vector<BoxBlock> blocks_;
+    std::vector<TreeNode8> blocks_;
 
     std::vector<Box> boxes_;      // scratch of build(): one level's, then those of a storey
     std::vector<Box> unsorted_;   // the same
