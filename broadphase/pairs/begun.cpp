@@ -166,8 +166,8 @@ void PairTracker<Scalar>::queryResting(ParallelFor parallelFor) {
                           proxies_.groupKinds.together(tables_.restingKinds)};
     KernelCost cost;
     selected_.clear();
-    walkTable(resting, bounds_.columns(), bounds_.size(), parallelFor, parts_, selected_, cost,
-              areToldApart ? &view : nullptr);
+    queryTable(resting, bounds_.columns(), bounds_.size(), parallelFor, parts_, selected_, cost,
+               areToldApart ? &view : nullptr);
     cost_.boxesTested += cost.boxesTested;
     if (someRefuse && !areToldApart) {
         takeOut(selected_, [&](const IndexPair& pair) {

@@ -55,8 +55,8 @@ void PairTracker<Scalar>::findEndedOfWoken(ParallelFor parallelFor) {
     const bool someRefuse = proxies_.groupKinds.refuse(kinds, tables_.restingKinds);
     KernelCost cost;
     selected_.clear();
-    walkTable(tables_.resting, bounds_.columns(), bounds_.size(), parallelFor, parts_, selected_,
-              cost, someRefuse ? &view : nullptr);
+    queryTable(tables_.resting, bounds_.columns(), bounds_.size(), parallelFor, parts_, selected_,
+               cost, someRefuse ? &view : nullptr);
     for (const auto [woken, entry] : selected_.pairs()) {
         endIfWokenApart(proxies_.woken[woken], tables_.resting.proxyIndex(entry));
     }

@@ -229,8 +229,8 @@ void PairTracker<Scalar>::watchAll() {
     carried_.clear();
     toResting_.clear();
     joinTable(tables_.mobile, serialFor, parts_, amongMobile_, cost, groups);
-    walkTable(tables_.resting, tables_.mobile.columns(), tables_.mobile.size(), serialFor, parts_,
-              carried_, cost, groups != nullptr ? &view : nullptr);
+    queryTable(tables_.resting, tables_.mobile.columns(), tables_.mobile.size(), serialFor, parts_,
+               carried_, cost, groups != nullptr ? &view : nullptr);
     for (const auto [entry, resting] : carried_.pairs()) {
         toResting_.push({entry, tables_.resting.proxyIndex(resting)});
     }

@@ -49,8 +49,8 @@ bool searchBoxes(const Table<Scalar>& table, const Columns<Scalar>& queries, std
     const bool isSingle = count == 1;
     PairBuffer buffer(take, isSingle);
     PairSink sink = buffer.sink();
-    const bool goesOn = isSingle ? walkTable(table, queries, 0, 1, sink, cost, nullptr)
-                                 : walkTogether(table, queries, count, sink, cost);
+    const bool goesOn = isSingle ? queryTable(table, queries, 0, 1, sink, cost, nullptr)
+                                 : queryBatch(table, queries, count, sink, cost);
     return goesOn && buffer.handOver(sink);
 }
 

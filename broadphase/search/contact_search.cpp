@@ -260,9 +260,9 @@ void ContactSearch<Scalar>::walkSegments(const Table<Scalar>& table, std::size_t
                                          KernelCost& cost) const {
     for (const Level<Scalar>& level : table.levels()) {
         if (level.count() > 0) {
-            kernels<Scalar>().walkWays(level, segments_.columns().data(), ways_.data(),
-                                       motionOfSegment_.data(), static_cast<std::uint32_t>(first),
-                                       static_cast<std::uint32_t>(last), candidates, cost);
+            kernels<Scalar>().querySwept(level, segments_.columns().data(), ways_.data(),
+                                         motionOfSegment_.data(), static_cast<std::uint32_t>(first),
+                                         static_cast<std::uint32_t>(last), candidates, cost);
         }
     }
 }

@@ -50,7 +50,7 @@ void run(const Table<Scalar>& table, const Search<Scalar>& search, const GroupsV
     const Kernels<Scalar>& kernel = kernels<Scalar>();
     const Level<Scalar>& among = *search.among;
     if (search.from != search.among) {
-        kernel.walkLevel(among, groups, table.columns().data(), first, last, sink, cost);
+        kernel.queryLevel(among, groups, table.columns().data(), first, last, sink, cost);
     } else if (among.hasCells()) {
         kernel.joinLevel(among, groups, first, last, sink, cost);
     } else {
@@ -143,31 +143,31 @@ std::size_t joinSample(const Table<Scalar>& table, std::size_t count, PairSink& 
 }
 
 template <class Scalar>
-bool walkTogether(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t count,
-                  PairSink& sink, KernelCost& cost) {
+bool queryBatch(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t count,
+                PairSink& sink, KernelCost& cost) {
     return std::ranges::all_of(table.levels(), [&](const Level<Scalar>& level) {
         return level.count() == 0 ||
-               kernels<Scalar>().walkTogether(level, queries.data(), 0, count, sink, cost);
+               kernels<Scalar>().queryBatch(level, queries.data(), 0, count, sink, cost);
     });
 }
 
 template <class Scalar>
-bool walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t first,
-               std::uint32_t last, PairSink& sink, KernelCost& cost, const GroupsView* groups) {
+bool queryTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t first,
+                std::uint32_t last, PairSink& sink, KernelCost& cost, const GroupsView* groups) {
     return std::ranges::all_of(table.levels(), [&](const Level<Scalar>& level) {
         return level.count() == 0 ||
-               kernels<Scalar>().walkLevel(level, groups, queries.data(), first, last, sink, cost);
+               kernels<Scalar>().queryLevel(level, groups, queries.data(), first, last, sink, cost);
     });
 }
 
 template <class Scalar>
-void walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t count,
-               ParallelFor parallelFor, PairParts& parts, PairList& found, KernelCost& cost,
-               const GroupsView* groups) {
+void queryTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t count,
+                ParallelFor parallelFor, PairParts& parts, PairList& found, KernelCost& cost,
+                const GroupsView* groups) {
     parts.collect(parallelFor, count, kJoinGrain, found, cost,
                   [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost& own) {
-                      walkTable(table, queries, static_cast<std::uint32_t>(first),
-                                static_cast<std::uint32_t>(last), sink, own, groups);
+                      queryTable(table, queries, static_cast<std::uint32_t>(first),
+                                 static_cast<std::uint32_t>(last), sink, own, groups);
                   });
 }
 
@@ -176,22 +176,23 @@ template void joinTable<float>(const Table<float>&, ParallelFor, PairParts&, Pai
 template void joinTable<float>(const Table<float>&, PairSink&, KernelCost&, const ProxyGroups*);
 template std::size_t joinSample<float>(const Table<float>&, std::size_t, PairSink&, KernelCost&,
                                        const ProxyGroups*);
-template void walkTable<float>(const Table<float>&, const Columns<float>&, std::uint32_t,
-                               ParallelFor, PairParts&, PairList&, KernelCost&, const GroupsView*);
-template bool walkTable<float>(const Table<float>&, const Columns<float>&, std::uint32_t,
-                               std::uint32_t, PairSink&, KernelCost&, const GroupsView*);
-template bool walkTogether<float>(const Table<float>&, const Columns<float>&, std::uint32_t,
-                                  PairSink&, KernelCost&);
+template void queryTable<float>(const Table<float>&, const Columns<float>&, std::uint32_t,
+                                ParallelFor, PairParts&, PairList&, KernelCost&, const GroupsView*);
+template bool queryTable<float>(const Table<float>&, const Columns<float>&, std::uint32_t,
+                                std::uint32_t, PairSink&, KernelCost&, const GroupsView*);
+template bool queryBatch<float>(const Table<float>&, const Columns<float>&, std::uint32_t,
+                                PairSink&, KernelCost&);
 template void joinTable<double>(const Table<double>&, ParallelFor, PairParts&, PairList&,
                                 KernelCost&, const ProxyGroups*, const ProxyGroups&);
 template void joinTable<double>(const Table<double>&, PairSink&, KernelCost&, const ProxyGroups*);
 template std::size_t joinSample<double>(const Table<double>&, std::size_t, PairSink&, KernelCost&,
                                         const ProxyGroups*);
-template void walkTable<double>(const Table<double>&, const Columns<double>&, std::uint32_t,
-                                ParallelFor, PairParts&, PairList&, KernelCost&, const GroupsView*);
-template bool walkTable<double>(const Table<double>&, const Columns<double>&, std::uint32_t,
-                                std::uint32_t, PairSink&, KernelCost&, const GroupsView*);
-template bool walkTogether<double>(const Table<double>&, const Columns<double>&, std::uint32_t,
-                                   PairSink&, KernelCost&);
+template void queryTable<double>(const Table<double>&, const Columns<double>&, std::uint32_t,
+                                 ParallelFor, PairParts&, PairList&, KernelCost&,
+                                 const GroupsView*);
+template bool queryTable<double>(const Table<double>&, const Columns<double>&, std::uint32_t,
+                                 std::uint32_t, PairSink&, KernelCost&, const GroupsView*);
+template bool queryBatch<double>(const Table<double>&, const Columns<double>&, std::uint32_t,
+                                 PairSink&, KernelCost&);
 
 }  // namespace hashphase::detail

@@ -44,20 +44,20 @@ std::size_t joinSample(const Table<Scalar>& table, std::size_t count, PairSink& 
 /// Appends (i, entry) for every box of `queries` and every entry of the table that overlaps it; with
 /// `groups`, that may pair with it.
 template <class Scalar>
-void walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t count,
-               ParallelFor parallelFor, PairParts& parts, PairList& found, KernelCost& cost,
-               const GroupsView* groups = nullptr);
+void queryTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t count,
+                ParallelFor parallelFor, PairParts& parts, PairList& found, KernelCost& cost,
+                const GroupsView* groups = nullptr);
 
 /// The same for queries from first to last, on the caller's thread. Returns false when the sink has
 /// ended the search.
 template <class Scalar>
-bool walkTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t first,
-               std::uint32_t last, PairSink& sink, KernelCost& cost, const GroupsView* groups);
+bool queryTable(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t first,
+                std::uint32_t last, PairSink& sink, KernelCost& cost, const GroupsView* groups);
 
 /// The same for a few boxes; sooner where those that follow each other are near each other.
 template <class Scalar>
-bool walkTogether(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t count,
-                  PairSink& sink, KernelCost& cost);
+bool queryBatch(const Table<Scalar>& table, const Columns<Scalar>& queries, std::uint32_t count,
+                PairSink& sink, KernelCost& cost);
 
 /// Calls visit(a, b) for the indices of every two entries of the table whose boxes overlap, in the memory of a
 /// block of them; with `groups`, that may pair.
@@ -76,7 +76,7 @@ void forOverlaps(const Table<Scalar>& table, const ProxyGroups* groups, KernelCo
 template <class Scalar, class Visit>
 void forOverlaps(const Columns<Scalar>& queries, std::uint32_t count, const Table<Scalar>& table,
                  const GroupsView* groups, KernelCost& cost, const Visit& visit) {
-    findInBlocks([&](PairSink& sink) { walkTable(table, queries, 0, count, sink, cost, groups); },
+    findInBlocks([&](PairSink& sink) { queryTable(table, queries, 0, count, sink, cost, groups); },
                  [&](std::span<const IndexPair> found) {
                      for (const auto [i, entry] : found) {
                          visit(i, table.proxyIndex(entry));

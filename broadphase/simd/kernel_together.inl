@@ -121,17 +121,17 @@ bool walkGroup(const Level<Scalar>& level, const Scalar* const* queries, std::ui
     Packs packs;
     return gatherAround<kIsDense>(level, queries, first, last, packs)
                ? scanAround<kIsDense>(level, queries, first, last, packs, found, cost)
-               : walkLevel(level, nullptr, queries, first, last, found, cost);
+               : queryLevel(level, nullptr, queries, first, last, found, cost);
 }
 
 template <class Scalar>
-bool walkTogether(const Level<Scalar>& level, const Scalar* const* queries, std::uint32_t first,
+bool queryBatch(const Level<Scalar>& level, const Scalar* const* queries, std::uint32_t first,
                   std::uint32_t last, PairSink& found, KernelCost& cost) {
     bool goesOn = true;
     for (std::uint32_t end = first; first < last && goesOn; first = end) {
         end = first + lowest(kTogether, last - first);
         if (!level.hasCells() || end - first == 1) {
-            goesOn = walkLevel(level, nullptr, queries, first, end, found, cost);
+            goesOn = queryLevel(level, nullptr, queries, first, end, found, cost);
         } else if (level.isDense()) {
             goesOn = walkGroup<true>(level, queries, first, end, found, cost);
         } else {

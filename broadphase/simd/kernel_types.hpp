@@ -182,20 +182,19 @@ struct Kernels {
 
     /// Finds (i, entry) for every box i from first to last of `queries`, which has columns like the
     /// level's, and every entry of the level that overlaps it.
-    bool (*walkLevel)(const Level<Scalar>& level, const GroupsView* groups,
-                      const Scalar* const* queries, std::uint32_t first, std::uint32_t last,
-                      PairSink& found, KernelCost& cost);
+    bool (*queryLevel)(const Level<Scalar>& level, const GroupsView* groups,
+                       const Scalar* const* queries, std::uint32_t first, std::uint32_t last,
+                       PairSink& found, KernelCost& cost);
 
     /// The same for all groups, but for entries that are not within reach of ways[wayOf[i]] between
     /// the times 0 and 1; some that it just misses may be found.
-    bool (*walkWays)(const Level<Scalar>& level, const Scalar* const* queries,
-                     const Way<Scalar>* ways, const std::uint32_t* wayOf, std::uint32_t first,
-                     std::uint32_t last, PairSink& found, KernelCost& cost);
+    bool (*querySwept)(const Level<Scalar>& level, const Scalar* const* queries,
+                       const Way<Scalar>* ways, const std::uint32_t* wayOf, std::uint32_t first,
+                       std::uint32_t last, PairSink& found, KernelCost& cost);
 
-    /// As walkLevel(), sooner where boxes that follow each other are near each other.
-    bool (*walkTogether)(const Level<Scalar>& level, const Scalar* const* queries,
-                         std::uint32_t first, std::uint32_t last, PairSink& found,
-                         KernelCost& cost);
+    /// As queryLevel(), sooner where boxes that follow each other are near each other.
+    bool (*queryBatch)(const Level<Scalar>& level, const Scalar* const* queries,
+                       std::uint32_t first, std::uint32_t last, PairSink& found, KernelCost& cost);
 
     /// Finds the index of every entry of a level with cells that is in the volume, and perhaps of
     /// some that were erased.

@@ -89,7 +89,7 @@ bool walk(const Level<Scalar>& level, const Query& query, PairSink& found, Kerne
 }
 
 template <class Scalar>
-bool walkLevel(const Level<Scalar>& level, const GroupsView* groups, const Scalar* const* queries,
+bool queryLevel(const Level<Scalar>& level, const GroupsView* groups, const Scalar* const* queries,
                std::uint32_t first, std::uint32_t last, PairSink& found, KernelCost& cost) {
     bool goesOn = true;
     for (std::uint32_t number = first; number < last && goesOn; ++number) {
@@ -105,7 +105,7 @@ bool walkLevel(const Level<Scalar>& level, const GroupsView* groups, const Scala
 }
 
 template <class Scalar>
-bool walkWays(const Level<Scalar>& level, const Scalar* const* queries, const Way<Scalar>* ways,
+bool querySwept(const Level<Scalar>& level, const Scalar* const* queries, const Way<Scalar>* ways,
               const std::uint32_t* wayOf, std::uint32_t first, std::uint32_t last, PairSink& found,
               KernelCost& cost) {
     bool goesOn = true;

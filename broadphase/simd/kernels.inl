@@ -105,9 +105,9 @@ std::size_t selectApart(const IndexPair* couples, std::size_t count, const std::
 template <class Scalar>
 constexpr Kernels<Scalar> kKernels{&fileBoxes<Scalar>,
                                    &joinLevel<Scalar>,
-                                   &walkLevel<Scalar>,
-                                   &walkWays<Scalar>,
-                                   &walkTogether<Scalar>,
+                                   &queryLevel<Scalar>,
+                                   &querySwept<Scalar>,
+                                   &queryBatch<Scalar>,
                                    &walkVolume<Scalar>,
                                    &walkRay,
                                    &mayMeet,

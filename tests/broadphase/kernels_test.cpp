@@ -66,16 +66,16 @@ protected:
         return ways;
     }
 
-    static PairList walkWays(const Table<Scalar>& table, const Table<Scalar>& queries,
-                             const std::vector<PaddedBox<Scalar>>& boxes) {
+    static PairList querySwept(const Table<Scalar>& table, const Table<Scalar>& queries,
+                               const std::vector<PaddedBox<Scalar>>& boxes) {
         std::vector<Way<Scalar>> ways = waysOf(boxes);
         std::rotate(ways.begin(), ways.begin() + 1, ways.end());  // else all would be passed
         PairList found;
         KernelCost cost;
         for (const Level<Scalar>& level : table.levels()) {
             found.append([&](PairSink& sink) {
-                kernels<Scalar>().walkWays(level, queries.columns().data(), ways.data(),
-                                           queries.order().data(), 0, queries.size(), sink, cost);
+                kernels<Scalar>().querySwept(level, queries.columns().data(), ways.data(),
+                                             queries.order().data(), 0, queries.size(), sink, cost);
             });
         }
         return found;
@@ -96,10 +96,10 @@ protected:
         PairParts parts;
         joinTable(table, serialFor, parts, joined, cost);
         PairList walked;
-        walkTable(table, movedTable.columns(), movedTable.size(), serialFor, parts, walked, cost);
+        queryTable(table, movedTable.columns(), movedTable.size(), serialFor, parts, walked, cost);
         PairList together;
         together.append([&](PairSink& sink) {
-            walkTogether(table, movedTable.columns(), movedTable.size(), sink, cost);
+            queryBatch(table, movedTable.columns(), movedTable.size(), sink, cost);
         });
         std::vector<IndexPair> apart(joined.size());
         apart.resize(kernels<Scalar>().selectApart(joined.pairs().data(), joined.size(),
@@ -109,7 +109,7 @@ protected:
         for (std::uint32_t i = 0; i < table.size(); ++i) {
             filed.push_back({table.order()[i], table.proxyIndex(i)});
         }
-        const PairList onWays = walkWays(table, movedTable, moved);
+        const PairList onWays = querySwept(table, movedTable, moved);
         return {copyOf(joined), copyOf(walked), apart, filed, copyOf(together), copyOf(onWays)};
     }
 

@@ -57,7 +57,7 @@ protected:
         PairList found;
         PairParts parts;
         cost_ = {};
-        walkTable(table_, queries.columns(), queries.size(), serialFor, parts, found, cost_);
+        queryTable(table_, queries.columns(), queries.size(), serialFor, parts, found, cost_);
         for (const auto [query, entry] : found.pairs()) {
             if (query < table_.proxyIndex(entry)) {
                 couples.emplace_back(query, table_.proxyIndex(entry));
