@@ -98,9 +98,9 @@ Part partWithin(const MovingBox<Scalar>& moving, const Aabb<double>& world) {
 // The moving box as kernels need it. An axis along which it hardly moves repeats another one: the
 // boxes around its segments say all there is to say about it.
 template <class Scalar>
-Way<Scalar> wayOf(const MovingBox<Scalar>& moving) {
+SweptBox<Scalar> wayOf(const MovingBox<Scalar>& moving) {
     using Limits = std::numeric_limits<Scalar>;
-    Way<Scalar> way{};
+    SweptBox<Scalar> way{};
     int far = 0;
     moving.displacement.cwiseAbs().maxCoeff(&far);
     const Vector3<Scalar> reach =
@@ -199,13 +199,13 @@ template <class Scalar>
 void ContactSearch<Scalar>::cutFewRays() {
     constexpr double kBoxesPerSegment = 8;  // of a tree made in the time of a segment
     double count = 0;
-    for (const LongWay& ray : rays_) {
+    for (const LongSweep& ray : rays_) {
         count += ray.segments;
     }
     if (!(count * kBoxesPerSegment < static_cast<double>(store_.tables.mobile.size()))) {
         return;
     }
-    for (const LongWay& ray : rays_) {
+    for (const LongSweep& ray : rays_) {
         addSegments(ray.motion, motions_[ray.motion].way, ray.within,
                     static_cast<int>(ray.segments));
     }
@@ -425,10 +425,11 @@ template <class Scalar>
 std::size_t ContactSearch<Scalar>::memoryBytes() const noexcept {
     return (contacts_.capacity() + sorted_.capacity()) * sizeof(std::uint64_t) +
            (motionOfSegment_.capacity() + motionNumbers_.capacity()) * sizeof(std::uint32_t) +
-           rays_.capacity() * sizeof(LongWay) + sample_.capacity() * sizeof(double) +
-           segments_.memoryBytes() + ways_.capacity() * sizeof(Way<Scalar>) + parts_.memoryBytes() +
-           candidates_.memoryBytes() + touchingNow_.memoryBytes() + touching_.memoryBytes() +
-           slice_.capacity() * sizeof(PaddedBox<Scalar>) + sliceTable_.memoryBytes();
+           rays_.capacity() * sizeof(LongSweep) + sample_.capacity() * sizeof(double) +
+           segments_.memoryBytes() + ways_.capacity() * sizeof(SweptBox<Scalar>) +
+           parts_.memoryBytes() + candidates_.memoryBytes() + touchingNow_.memoryBytes() +
+           touching_.memoryBytes() + slice_.capacity() * sizeof(PaddedBox<Scalar>) +
+           sliceTable_.memoryBytes();
 }
 
 template class ContactSearch<float>;

@@ -46,7 +46,7 @@ private:
     using Point = Vector3<Scalar>;
 
     /// A way that would take so many segments.
-    struct LongWay {
+    struct LongSweep {
         std::uint32_t motion;
         Part within;
         double segments;
@@ -78,9 +78,9 @@ private:
 
     // Scratch.
     BoxColumns<Scalar> segments_;
-    std::vector<Way<Scalar>> ways_;  // of the motions
+    std::vector<SweptBox<Scalar>> ways_;  // of the motions
     std::vector<std::uint32_t> motionOfSegment_;
-    std::vector<LongWay> rays_;
+    std::vector<LongSweep> rays_;
     std::vector<double> sample_;
     PairParts parts_;
     PairList candidates_;

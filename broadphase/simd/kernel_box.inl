@@ -46,9 +46,9 @@ private:
 
 /// The same for a box on its way: `box` is around that part of it which matters.
 template <class Pack, class Scalar>
-class WayLanes {
+class SweptLanes {
 public:
-    WayLanes(const Lanes<Pack, Scalar>& box, const Way<Scalar>& way) : box_(box), way_(&way) {
+    SweptLanes(const Lanes<Pack, Scalar>& box, const SweptBox<Scalar>& way) : box_(box), way_(&way) {
         for (int k = 0; k < 3; ++k) {
             enterFrom_[k] = Pack::broadcast(way.enterFrom[k]);
             leaveFrom_[k] = Pack::broadcast(way.leaveFrom[k]);
@@ -93,7 +93,7 @@ private:
     }
 
     Lanes<Pack, Scalar> box_;
-    const Way<Scalar>* way_;
+    const SweptBox<Scalar>* way_;
     typename Pack::Numbers enterFrom_[3];
     typename Pack::Numbers leaveFrom_[3];
     typename Pack::Numbers inverse_[3];
@@ -147,11 +147,11 @@ struct GroupQuery : Query<Scalar> {
 
 /// The same for a part of a way, of which the box is around.
 template <class Scalar>
-struct WayQuery : Query<Scalar> {
-    const Way<Scalar>* way;
+struct SweptQuery : Query<Scalar> {
+    const SweptBox<Scalar>* way;
 
     template <class Pack>
-    [[nodiscard]] WayLanes<Pack, Scalar> lanes() const {
+    [[nodiscard]] SweptLanes<Pack, Scalar> lanes() const {
         return {Query<Scalar>::template lanes<Pack>(), *way};
     }
 };

@@ -93,7 +93,7 @@ struct Volume {
 /// On axis k it reaches a box when (columns[enterColumn[k]] - enterFrom[k]) * inverse[k] units have
 /// passed, and leaves it behind by leaveColumn and leaveFrom. Where `inverse` is 0, always.
 template <class Scalar>
-struct Way {
+struct SweptBox {
     Scalar enterFrom[3];
     Scalar leaveFrom[3];
     Scalar inverse[3];
@@ -189,8 +189,8 @@ struct Kernels {
     /// The same for all groups, but for entries that are not within reach of ways[wayOf[i]] between
     /// the times 0 and 1; some that it just misses may be found.
     bool (*querySwept)(const Level<Scalar>& level, const Scalar* const* queries,
-                       const Way<Scalar>* ways, const std::uint32_t* wayOf, std::uint32_t first,
-                       std::uint32_t last, PairSink& found, KernelCost& cost);
+                       const SweptBox<Scalar>* ways, const std::uint32_t* wayOf,
+                       std::uint32_t first, std::uint32_t last, PairSink& found, KernelCost& cost);
 
     /// As queryLevel(), sooner where boxes that follow each other are near each other.
     bool (*queryBatch)(const Level<Scalar>& level, const Scalar* const* queries,

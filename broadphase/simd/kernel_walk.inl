@@ -105,12 +105,12 @@ bool queryLevel(const Level<Scalar>& level, const GroupsView* groups, const Scal
 }
 
 template <class Scalar>
-bool querySwept(const Level<Scalar>& level, const Scalar* const* queries, const Way<Scalar>* ways,
+bool querySwept(const Level<Scalar>& level, const Scalar* const* queries, const SweptBox<Scalar>* ways,
               const std::uint32_t* wayOf, std::uint32_t first, std::uint32_t last, PairSink& found,
               KernelCost& cost) {
     bool goesOn = true;
     for (std::uint32_t number = first; number < last && goesOn; ++number) {
-        const WayQuery<Scalar> query{{queries, number}, &ways[wayOf[number]]};
+        const SweptQuery<Scalar> query{{queries, number}, &ways[wayOf[number]]};
         goesOn = walk(level, query, found, cost);
     }
     return goesOn;
