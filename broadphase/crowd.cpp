@@ -140,7 +140,7 @@ void Crowd<Scalar>::chooseCells(const Grid<Scalar>& grid, Scalar radius, ProxyFi
     }
     const std::size_t agents = sample_[0].size() * count / std::max<std::size_t>(examined, 1);
     const Scalar reach = radius >= 0 ? radius : Scalar(0);
-    torus_ = detail::torusFor(sample_, static_cast<double>(reach), agents);
+    wrappedGrid_ = detail::wrappedGridFor(sample_, static_cast<double>(reach), agents);
 }
 
 // Reads where the proxies are, in the order of their indices, which is that of memory.
@@ -153,14 +153,14 @@ void Crowd<Scalar>::stage(const Grid<Scalar>& grid, ProxyFilter filter, Parallel
     parallelFor(staged_.size(), kCrowdGrain, [&](std::size_t begin, std::size_t end) {
         const detail::QueryScope gridScope(&grid.store());
         const detail::QueryScope scope(this);
-        const detail::Torus torus = torus_;
+        const detail::WrappedGrid wrapped = wrappedGrid_;
         std::uint32_t agents = 0;
         std::uint32_t others = 0;
         for (std::size_t place = begin; place < end; ++place) {
             Staged& staged = staged_[place];
             if (stageProxy(grid, indexAt(place), filter, staged)) {
                 const auto& [x, y, z] = staged.position;
-                cellOfPlace_[place] = torus.cellOf(x, y, z);
+                cellOfPlace_[place] = wrapped.cellOf(x, y, z);
                 ++agents;
             } else {
                 cellOfPlace_[place] = kNoCell;
@@ -177,7 +177,7 @@ void Crowd<Scalar>::stage(const Grid<Scalar>& grid, ProxyFilter filter, Parallel
 // A counting sort by cell.
 template <class Scalar>
 void Crowd<Scalar>::sort(ParallelFor parallelFor) {
-    cellStart_.assign(torus_.cellCount() + 1, 0);
+    cellStart_.assign(wrappedGrid_.cellCount() + 1, 0);
     for (const std::uint32_t cell : cellOfPlace_) {
         if (cell != kNoCell) {
             ++cellStart_[cell];
@@ -226,15 +226,15 @@ void Crowd<Scalar>::prepare(Scalar radius) {
     }
     view_.numbers = numbers_.data();
     view_.cellStart = cellStart_.data();
-    std::copy(torus_.extent.begin(), torus_.extent.end(), view_.extent);
-    view_.reach = torus_.reach;
+    std::copy(wrappedGrid_.extent.begin(), wrappedGrid_.extent.end(), view_.extent);
+    view_.reach = wrappedGrid_.reach;
     // Along one axis all may be the same, as in a world of two dimensions: of no difference there is
     // no square to be added.
     std::size_t same = 3;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto begin = columns_[axis].begin();
         const auto isFirst = [begin](Scalar x) { return x == *begin; };
-        if (view_.scale == 1 && torus_.extent[axis] == 1 &&
+        if (view_.scale == 1 && wrappedGrid_.extent[axis] == 1 &&
             std::all_of(begin, begin + agentCount_, isFirst)) {
             same = axis;
         }

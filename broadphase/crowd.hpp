@@ -25,7 +25,7 @@
 
 #include <broadphase/export.hpp>
 #include <broadphase/grid.hpp>
-#include <broadphase/hash/torus.hpp>
+#include <broadphase/hash/wrapped_grid.hpp>
 #include <broadphase/position_region.hpp>
 #include <broadphase/proxy_filter.hpp>
 #include <broadphase/simd/kernel_types.hpp>
@@ -153,7 +153,7 @@ private:
     std::uint32_t agentCount_ = 0;
     std::uint32_t leftOut_ = 0;
     detail::PointSample sample_;
-    detail::Torus torus_;
+    detail::WrappedGrid wrappedGrid_;
 
     std::vector<std::uint32_t> cellStart_;  // the first agent of each cell, and the end
     std::vector<std::uint32_t> places_;     // of agents, by cell

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <broadphase/hash/torus.hpp>
+#include <broadphase/hash/wrapped_grid.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -54,10 +54,10 @@ double cellsIn(const Range& range, double cellSize) {
 
 }  // namespace
 
-Torus torusFor(PointSample& sample, double radius, std::size_t count) {
-    Torus torus;
+WrappedGrid wrappedGridFor(PointSample& sample, double radius, std::size_t count) {
+    WrappedGrid wrapped;
     if (sample[0].empty()) {
-        return torus;
+        return wrapped;
     }
     const auto points = static_cast<double>(count);
     const double mostCells = std::min(4 * points + 64, 0x1p28);
@@ -75,19 +75,19 @@ Torus torusFor(PointSample& sample, double radius, std::size_t count) {
     }
     if (points > kPointsInHalfCells * cellsIn(range, cellSize / 2)) {
         cellSize /= 2;
-        torus.reach = 2;
+        wrapped.reach = 2;
     }
-    torus.inverseHalfCellSize = 1 / (cellSize / 2);
+    wrapped.inverseHalfCellSize = 1 / (cellSize / 2);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto cells = static_cast<std::uint32_t>(cellsAlong(range, axis, cellSize));
         // Cells that are all looked at together are one. Others have one behind them and one before
         // them, which is the last one, for points beyond the sample, and in between so many empty
         // ones that what is at one end does not meet what is at the other.
-        const bool isOne = cells <= torus.reach + 1;
-        torus.extent[axis] = isOne ? 1 : cells + 2 + torus.reach;
-        torus.halfOrigin[axis] = range.low[axis] / 2;
+        const bool isOne = cells <= wrapped.reach + 1;
+        wrapped.extent[axis] = isOne ? 1 : cells + 2 + wrapped.reach;
+        wrapped.halfOrigin[axis] = range.low[axis] / 2;
     }
-    return torus;
+    return wrapped;
 }
 
 }  // namespace hashphase::detail

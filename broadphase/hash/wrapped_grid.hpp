@@ -16,7 +16,7 @@ namespace hashphase::detail {
 /// Coordinates of some of the points, by axis.
 using PointSample = std::array<std::vector<double>, 3>;
 
-struct Torus {
+struct WrappedGrid {
     // Halves, because differences of large numbers would overflow.
     std::array<double, 3> halfOrigin{};
     double inverseHalfCellSize = 0;
@@ -60,6 +60,6 @@ private:
 
 /// Cells for `count` points, of which the sample tells where they are (its order changes), and for
 /// searches within `radius`, which is not negative and may be infinite. Cost: that of the sample.
-[[nodiscard]] Torus torusFor(PointSample& sample, double radius, std::size_t count);
+[[nodiscard]] WrappedGrid wrappedGridFor(PointSample& sample, double radius, std::size_t count);
 
 }  // namespace hashphase::detail
