@@ -142,7 +142,7 @@ SizeCensus::LevelCost SizeCensus::costOfLevel(double cellSize, double own, doubl
     LevelCost least{std::numeric_limits<double>::infinity(), 0};
     for (const AxisSet flat : {AxisSet{0b000}, AxisSet{0b010}, AxisSet{0b100}, AxisSet{0b110}}) {
         const double rows = rowsNearby(cellSize, flat);
-        const double boxes = own * crowding_.shareInCell(3 * cellSize, flat);
+        const double boxes = own * density_.shareInCell(3 * cellSize, flat);
         // Cells that are too many to be dense are hashed.
         const double cells = cellsAround(cellSize, flat);
         const bool isDense = cells < kMostCellsPerBox * own + kFewCells;
@@ -166,7 +166,7 @@ double SizeCensus::smallestUsefulCell() const {
     }
     const double fewest = 1 / (kCellsPerBox * static_cast<double>(total_));
     double cellSize = largest;
-    while (crowding_.shareInCell(cellSize / 1.125, 0) >= fewest && cellSize > largest * 1e-7) {
+    while (density_.shareInCell(cellSize / 1.125, 0) >= fewest && cellSize > largest * 1e-7) {
         cellSize /= 1.125;
     }
     return cellSize;
@@ -179,7 +179,7 @@ void SizeCensus::measureSpread() {
     middle_ = middle;
     // The middle nine tenths, so that a few strays do not stretch the picture.
     const auto [low, high] = range(0.05);
-    crowding_.measure(samples_, low, high);
+    density_.measure(samples_, low, high);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double extent = high[axis] / 0.9 - low[axis] / 0.9;
         spread_[axis] = std::min(extent, std::numeric_limits<double>::max());
@@ -299,7 +299,7 @@ std::array<double, 3> SizeCensus::middle() {
 std::size_t SizeCensus::memoryBytes() const noexcept {
     return histogram_.capacity() * sizeof(Bin) + samples_.capacity() * sizeof(samples_[0]) +
            classes_.capacity() * sizeof(SizeClass) + column_.capacity() * sizeof(double) +
-           crowding_.memoryBytes();
+           density_.memoryBytes();
 }
 
 LevelSizes fixedLevels(double cellSize, double ratio) {

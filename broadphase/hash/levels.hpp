@@ -6,7 +6,7 @@
 // under a model of the walk's cost, found exactly by dynamic programming over size classes.
 
 #include <broadphase/aabb.hpp>
-#include <broadphase/hash/crowding.hpp>
+#include <broadphase/hash/density_estimate.hpp>
 
 #include <array>
 #include <cstddef>
@@ -109,7 +109,7 @@ private:
     bool isConcluded_ = false;
     std::array<double, 3> spread_{};
     std::array<double, 3> middle_{};
-    Crowding crowding_;
+    DensityEstimate density_;
     std::vector<SizeClass> classes_;  // occupied ones in ascending order, behind an empty one
     std::vector<double> column_;      // scratch
 };

@@ -11,7 +11,7 @@
 namespace hashphase::detail {
 
 /// A bucket with more entries than this is crowded, and may be sorted along an axis.
-inline constexpr std::uint32_t kCrowd = 256;
+inline constexpr std::uint32_t kCrowdedBucket = 256;
 
 /// A crowded bucket, or those of its entries that have the same groups: sorted by their min corners along
 /// an axis, so that not all have to be read, but for the last ones, which are long. Where groups tell

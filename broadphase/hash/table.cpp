@@ -7,7 +7,7 @@
 
 #include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/diagnostics.hpp>
-#include <broadphase/hash/crowd_census.hpp>
+#include <broadphase/hash/bucket_census.hpp>
 #include <broadphase/simd/kernels.hpp>
 
 #include <algorithm>
@@ -145,7 +145,7 @@ void Table<Scalar>::sortEntries(std::span<const std::uint32_t> boxIndices,
     }
     std::copy_backward(bucketStart_.begin(), bucketStart_.end() - 1, bucketStart_.end());
     bucketStart_[0] = 0;
-    sortCrowds(boxIndices, boxes, groups);
+    sortCrowdedBuckets(boxIndices, boxes, groups);
 
     parallelFor(count, kTableGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t entry = begin; entry < end; ++entry) {
@@ -158,19 +158,19 @@ void Table<Scalar>::sortEntries(std::span<const std::uint32_t> boxIndices,
             }
         }
     });
-    noteRows();
-    noteHeights();
+    computeRows();
+    computeFlatExtents();
     linkLevels();
 }
 
 // Calls visit(bucket, span of entries in order_) for the crowded buckets of the level.
 template <class Scalar>
 template <class Visit>
-void Table<Scalar>::forCrowds(const Level<Scalar>& level, const Visit& visit) {
+void Table<Scalar>::forCrowdedBuckets(const Level<Scalar>& level, const Visit& visit) {
     const std::uint32_t* starts = bucketStart_.data() + level.firstBucket;
     for (std::uint32_t bucket = 0; bucket < level.bucketCount; ++bucket) {
         const std::uint32_t count = starts[bucket + 1] - starts[bucket];
-        if (count > kCrowd) {
+        if (count > kCrowdedBucket) {
             visit(level.firstBucket + bucket, std::span(order_).subspan(starts[bucket], count));
         }
     }
@@ -181,18 +181,19 @@ void Table<Scalar>::forCrowds(const Level<Scalar>& level, const Visit& visit) {
 // where no axis tells them apart, are mostly some that may not pair: by groups, a search need not read
 // what it cannot pair with.
 template <class Scalar>
-void Table<Scalar>::sortCrowds(std::span<const std::uint32_t> boxIndices,
-                               std::span<const PaddedBox<Scalar>> boxes,
-                               const ProxyGroups* groups) {
+void Table<Scalar>::sortCrowdedBuckets(std::span<const std::uint32_t> boxIndices,
+                                       std::span<const PaddedBox<Scalar>> boxes,
+                                       const ProxyGroups* groups) {
     sortedBuckets_.clear();
     for (Level<Scalar>& level : levels_) {
         const std::size_t countBefore = sortedBuckets_.size();
         level.sortedCount = 0;
-        const bool mayBeCrowded = level.hasCells() ? largestBucket_ > kCrowd : groups != nullptr;
-        if (!mayBeCrowded || level.count() <= kCrowd) {
+        const bool mayBeCrowded =
+            level.hasCells() ? largestBucket_ > kCrowdedBucket : groups != nullptr;
+        if (!mayBeCrowded || level.count() <= kCrowdedBucket) {
             continue;
         }
-        forCrowds(level, [&](std::uint32_t bucket, std::span<std::uint32_t> crowd) {
+        forCrowdedBuckets(level, [&](std::uint32_t bucket, std::span<std::uint32_t> crowd) {
             const auto groupsOf = [&](std::uint32_t i) {
                 return groups[2 * std::size_t{boxIndices[i]}];
             };
@@ -236,7 +237,7 @@ void Table<Scalar>::sortCrowds(std::span<const std::uint32_t> boxIndices,
 template <class Scalar>
 std::optional<SortedBucket<Scalar>> Table<Scalar>::sortedAlong(
     std::span<std::uint32_t> crowd, std::span<const PaddedBox<Scalar>> boxes) {
-    const CrowdCensus<Scalar> census(crowd, boxes);
+    const BucketCensus<Scalar> census(crowd, boxes);
     const std::optional<std::uint32_t> axis = census.sweepAxis();
     if (!axis) {
         return std::nullopt;
@@ -260,7 +261,7 @@ std::optional<SortedBucket<Scalar>> Table<Scalar>::sortedAlong(
 
 // Hashed rows are told apart by their coordinates, and no search need look beyond them.
 template <class Scalar>
-void Table<Scalar>::noteRows() {
+void Table<Scalar>::computeRows() {
     const auto isHashed = [](const Level<Scalar>& level) {
         return level.hasCells() && !level.isDense() && level.count() > 0;
     };
@@ -286,7 +287,7 @@ void Table<Scalar>::noteRows() {
 
 // Along a flat axis, cells do not tell where the boxes are. Inverted ones end before they begin.
 template <class Scalar>
-void Table<Scalar>::noteHeights() {
+void Table<Scalar>::computeFlatExtents() {
     const auto find = kernels<Scalar>().findRange;
     for (Level<Scalar>& level : levels_) {
         for (std::size_t axis = 0; level.hasCells() && axis < 3; ++axis) {

@@ -118,14 +118,14 @@ private:
                      std::span<const PaddedBox<Scalar>> boxes, const ProxyGroups* groups,
                      ParallelFor parallelFor);
     template <class Visit>
-    void forCrowds(const Level<Scalar>& level, const Visit& visit);
-    void sortCrowds(std::span<const std::uint32_t> boxIndices,
-                    std::span<const PaddedBox<Scalar>> boxes, const ProxyGroups* groups);
+    void forCrowdedBuckets(const Level<Scalar>& level, const Visit& visit);
+    void sortCrowdedBuckets(std::span<const std::uint32_t> boxIndices,
+                            std::span<const PaddedBox<Scalar>> boxes, const ProxyGroups* groups);
     [[nodiscard]] std::optional<SortedBucket<Scalar>> sortedAlong(
         std::span<std::uint32_t> crowd, std::span<const PaddedBox<Scalar>> boxes);
     [[nodiscard]] bool areSorted() const;
-    void noteRows();
-    void noteHeights();
+    void computeRows();
+    void computeFlatExtents();
     void linkLevels() noexcept;
 
     std::unique_ptr<LevelLayout<Scalar>> layout_;  // made when the first box is filed

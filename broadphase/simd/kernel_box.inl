@@ -248,7 +248,7 @@ template <bool kIsDense, class Scalar, class Query>
         const std::uint32_t begin = level.bucketStart[bucket - level.firstBucket];
         const std::uint32_t end = level.bucketStart[bucket - level.firstBucket + 1];
         const SortedBucket<Scalar>* sorted =
-            end - begin > kCrowd ? sortedBucket(level, bucket) : nullptr;
+            end - begin > kCrowdedBucket ? sortedBucket(level, bucket) : nullptr;
         const Run part = {run.first, lowest(end, run.last)};
         run.first = part.last;
         if (sorted == nullptr) {

@@ -160,7 +160,7 @@ TYPED_TEST(HashedCrowds, InOneBucketAreSweptToo) {
         SCOPED_TRACE(testing::Message() << "attack " << &boxes - attacks.data());
         for (const double cellSize : {1.0, 0.0}) {
             const PairCost cost = expectPairsOfSweep(boxes, hashedCellsOf(cellSize));
-            EXPECT_LT(cost.boxesTested, 5 * detail::kCrowd * boxes.size())
+            EXPECT_LT(cost.boxesTested, 5 * detail::kCrowdedBucket * boxes.size())
                 << "cells of " << cellSize;
         }
     }
@@ -201,7 +201,7 @@ TYPED_TEST(HashedCrowds, InOneBucketAreFoundByQueriesOfFewTests) {
     const auto attacks = attacksWithCouples<TypeParam>();
     for (const Attack<TypeParam>& boxes : attacks) {
         SCOPED_TRACE(testing::Message() << "attack " << &boxes - attacks.data());
-        expectFewTestsAQuery<TypeParam>(boxes, 1, 3 * detail::kCrowd);
+        expectFewTestsAQuery<TypeParam>(boxes, 1, 3 * detail::kCrowdedBucket);
         expectFewTestsAQuery<TypeParam>(boxes, 0, 32);
     }
 }

@@ -17,7 +17,7 @@ namespace hashphase::detail {
 /// A set of axes: bit i for axis i. Rows run along x, which is never flat.
 using AxisSet = std::uint8_t;
 
-class Crowding {
+class DensityEstimate {
 public:
     /// Takes points [m] of a population most of which lies between low and high. Those far outside
     /// share no cell with anything. Cost: a few sorts of the points.

@@ -19,10 +19,10 @@
 namespace hashphase::detail {
 
 template <class Scalar>
-class CrowdCensus {
+class BucketCensus {
 public:
     /// Of the boxes of one bucket: boxes[i] for every i of the crowd.
-    CrowdCensus(std::span<const std::uint32_t> crowd, std::span<const PaddedBox<Scalar>> boxes) {
+    BucketCensus(std::span<const std::uint32_t> crowd, std::span<const PaddedBox<Scalar>> boxes) {
         const auto count = static_cast<double>(crowd.size());
         for (std::size_t axis = 0; axis < 3; ++axis) {
             Scalar low = boxes[crowd[0]].low[axis];

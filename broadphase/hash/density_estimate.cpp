@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <broadphase/hash/crowding.hpp>
+#include <broadphase/hash/density_estimate.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -23,8 +23,8 @@ std::uint64_t spreadBits(std::uint64_t x) {
 
 }  // namespace
 
-void Crowding::measure(std::span<const std::array<double, 3>> points,
-                       const std::array<double, 3>& low, const std::array<double, 3>& high) {
+void DensityEstimate::measure(std::span<const std::array<double, 3>> points,
+                              const std::array<double, 3>& low, const std::array<double, 3>& high) {
     std::array<double, 3> corner{};
     double extent = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -56,7 +56,7 @@ void Crowding::measure(std::span<const std::array<double, 3>> points,
     }
 }
 
-Crowding::Shares Crowding::count(std::size_t pointCount) {
+DensityEstimate::Shares DensityEstimate::count(std::size_t pointCount) {
     std::sort(keys_.begin(), keys_.end());
     // Neighbours in this order share their cells down to some scale; a run of those that share one,
     // ending here, has so many in it.
@@ -87,7 +87,7 @@ Crowding::Shares Crowding::count(std::size_t pointCount) {
     return shares;
 }
 
-double Crowding::shareInCell(double size, AxisSet flat) const {
+double DensityEstimate::shareInCell(double size, AxisSet flat) const {
     if (!(size < edge_)) {
         return 1;
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-#include <broadphase/hash/crowding.hpp>
+#include <broadphase/hash/density_estimate.hpp>
 #include <tests/support/random.hpp>
 
 #include <gtest/gtest.h>
@@ -49,12 +49,12 @@ double shareByCouples(const Points& points, double size, AxisSet flat) {
     return same / all;
 }
 
-TEST(Crowding, IsTheShareOfCouplesInOneCell) {
+TEST(DensityEstimate, IsTheShareOfCouplesInOneCell) {
     Random random(0x5eed0c01);
     Points points;
     scatter(points, random, 700, {-20, 3, 100}, {40, 10, 20});
     scatter(points, random, 300, {5, 5, 105}, {4, 4, 4});
-    Crowding crowding;
+    DensityEstimate crowding;
     crowding.measure(points, {-20, 3, 100}, {20, 13, 120});
     for (const AxisSet flat : {kNone, kFlatY, AxisSet{0b100}, kFlatYZ}) {
         for (const double size : {1.5, 3.0, 6.0, 12.0}) {
@@ -67,24 +67,24 @@ TEST(Crowding, IsTheShareOfCouplesInOneCell) {
     EXPECT_EQ(crowding.shareInCell(1e6, kNone), 1);
 }
 
-TEST(Crowding, OfPilesFarApartIsThatOfOnePile) {
+TEST(DensityEstimate, OfPilesFarApartIsThatOfOnePile) {
     Random random(0x5eed0c02);
     Points points;
     for (int pile = 0; pile < 20; ++pile) {
         scatter(points, random, 100, {500.0 * pile, 0, -300.0 * pile}, {10, 10, 10});
     }
-    Crowding crowding;
+    DensityEstimate crowding;
     crowding.measure(points, {0, 0, -6000}, {10000, 10, 10});
     // A cell of 5 m has an eighth of a pile, which is a twentieth of all.
     EXPECT_NEAR(std::log2(crowding.shareInCell(5, kNone)), std::log2(1.0 / 160), 1);
 }
 
 // Where too few of the sample share a cell to be counted.
-TEST(Crowding, FallsWithTheVolumeOfSmallCells) {
+TEST(DensityEstimate, FallsWithTheVolumeOfSmallCells) {
     Random random(0x5eed0c03);
     Points points;
     scatter(points, random, 2000, {0, 0, 0}, {100, 100, 100});
-    Crowding crowding;
+    DensityEstimate crowding;
     crowding.measure(points, {0, 0, 0}, {100, 100, 100});
     for (const double size : {10.0, 3.0, 1.0}) {
         const double share = crowding.shareInCell(size, kNone);
@@ -93,31 +93,31 @@ TEST(Crowding, FallsWithTheVolumeOfSmallCells) {
     }
 }
 
-TEST(Crowding, OfPointsAtOnePlaceIsWhole) {
+TEST(DensityEstimate, OfPointsAtOnePlaceIsWhole) {
     const Points points(100, Point{1, 2, 3});
-    Crowding crowding;
+    DensityEstimate crowding;
     crowding.measure(points, {0, 0, 0}, {10, 10, 10});
     EXPECT_NEAR(crowding.shareInCell(1e-9, kNone), 1, 1e-9);
     crowding.measure(points, {1, 2, 3}, {1, 2, 3});
     EXPECT_EQ(crowding.shareInCell(1e-9, kNone), 1);
 }
 
-TEST(Crowding, DoesNotCountWhatIsFarOutside) {
+TEST(DensityEstimate, DoesNotCountWhatIsFarOutside) {
     Random random(0x5eed0c04);
     Points points;
     scatter(points, random, 900, {0, 0, 0}, {10, 10, 10});
-    Crowding alone;
+    DensityEstimate alone;
     alone.measure(points, {0, 0, 0}, {10, 10, 10});
     for (int i = 0; i < 100; ++i) {
         points.push_back({1e30, -1e30, 1e300});
     }
-    Crowding crowding;
+    DensityEstimate crowding;
     crowding.measure(points, {0, 0, 0}, {10, 10, 10});
     EXPECT_NEAR(crowding.shareInCell(2, kNone) / alone.shareInCell(2, kNone), 0.81, 0.02);
 }
 
-TEST(Crowding, OfNothingOrOfNumbersAtTheirEndsIsAShare) {
-    Crowding crowding;
+TEST(DensityEstimate, OfNothingOrOfNumbersAtTheirEndsIsAShare) {
+    DensityEstimate crowding;
     crowding.measure({}, {0, 0, 0}, {0, 0, 0});
     EXPECT_EQ(crowding.shareInCell(1, kNone), 1);
     constexpr double most = std::numeric_limits<double>::max();
