@@ -11,19 +11,19 @@ inline std::uint32_t mayMeet(const TreeNode8& block, const RayLanes& ray, float 
     using Floats = Pack<float>;
     std::uint32_t mask = 0;
     for (std::uint32_t k = 0; k < kBlockWidth; k += Floats::kWidth) {
-        auto first = Floats::all(0);
-        auto exit = Floats::all(last);
+        auto first = Floats::broadcast(0);
+        auto exit = Floats::broadcast(last);
         for (int axis = 0; axis < 3; ++axis) {
             const std::uint32_t nearColumn = ray.nearColumn[axis];
             const std::uint32_t farColumn = ray.farColumn[axis];
             const auto slabEnter =
                 Floats::times(Floats::minus(Floats::load(block.bounds[nearColumn] + k),
-                                            Floats::all(ray.offset[nearColumn])),
-                              Floats::all(ray.inverse[axis]));
+                                            Floats::broadcast(ray.offset[nearColumn])),
+                              Floats::broadcast(ray.inverse[axis]));
             const auto slabExit =
                 Floats::times(Floats::minus(Floats::load(block.bounds[farColumn] + k),
-                                            Floats::all(ray.offset[farColumn])),
-                              Floats::all(ray.farInverse[axis]));
+                                            Floats::broadcast(ray.offset[farColumn])),
+                              Floats::broadcast(ray.farInverse[axis]));
             first = Floats::greatest(slabEnter, first);
             exit = Floats::least(slabExit, exit);
         }

@@ -123,7 +123,7 @@ struct KernelCost {
 /// In the place of the bucket of a box that is not filed, because it has a NaN.
 inline constexpr std::uint32_t kNoBucket = ~std::uint32_t{0};
 
-/// Agents sorted by the cells of a wrapped grid (see wrapped.hpp), as plain arrays, and what they look for.
+/// Agents sorted by the cells of a wrapped grid (see wrapped_grid.hpp), as plain arrays, and what they look for.
 template <class Scalar>
 struct CrowdView {
     const Scalar* columns[3];  // positions, by axis; of two axes, what is the same along the third

@@ -16,7 +16,7 @@ inline constexpr std::uint32_t kBlockWidth = 8;
 struct alignas(16) TreeNode8 {
     float bounds[6][kBlockWidth];
     /// Per lane, what stands behind the box: a block, or an index in the lowest blocks.
-    std::uint32_t below[kBlockWidth];
+    std::uint32_t children[kBlockWidth];
     std::uint32_t count;  // of lanes with a box, the first ones
 };
 
