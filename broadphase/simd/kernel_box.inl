@@ -33,9 +33,10 @@ private:
         auto hits = Pack::lessEqual(Pack::load(columns[0] + first), high_[0]);
         hits = Pack::bitAnd(hits, Pack::lessEqual(low_[0], Pack::load(columns[3] + first)));
         for (int axis = 1; axis < 3; ++axis) {
-            hits = Pack::bitAnd(hits, Pack::lessEqual(Pack::load(columns[axis] + first), high_[axis]));
             hits =
-                Pack::bitAnd(hits, Pack::lessEqual(low_[axis], Pack::load(columns[axis + 3] + first)));
+                Pack::bitAnd(hits, Pack::lessEqual(Pack::load(columns[axis] + first), high_[axis]));
+            hits = Pack::bitAnd(hits,
+                                Pack::lessEqual(low_[axis], Pack::load(columns[axis + 3] + first)));
         }
         return Pack::bits(hits);
     }
@@ -48,7 +49,8 @@ private:
 template <class Pack, class Scalar>
 class SweptLanes {
 public:
-    SweptLanes(const Lanes<Pack, Scalar>& box, const SweptBox<Scalar>& way) : box_(box), way_(&way) {
+    SweptLanes(const Lanes<Pack, Scalar>& box, const SweptBox<Scalar>& way)
+        : box_(box), way_(&way) {
         for (int k = 0; k < 3; ++k) {
             enterFrom_[k] = Pack::broadcast(way.enterFrom[k]);
             leaveFrom_[k] = Pack::broadcast(way.leaveFrom[k]);

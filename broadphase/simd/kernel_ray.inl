@@ -7,7 +7,8 @@
 
 // Bit k of the result tells whether the ray may meet box k at some t in [0, last]; enter[k] is then
 // a lower bound of that t. A NaN changes nothing.
-inline std::uint32_t mayMeet(const TreeNode8& block, const RayLanes& ray, float last, float* enter) {
+inline std::uint32_t mayMeet(const TreeNode8& block, const RayLanes& ray, float last,
+                             float* enter) {
     using Floats = Pack<float>;
     std::uint32_t mask = 0;
     for (std::uint32_t k = 0; k < kBlockWidth; k += Floats::kWidth) {

@@ -119,7 +119,7 @@ template <class Scalar>
 /// Whether reading the rows of the block, which is not empty, costs more than reading the whole
 /// level.
 template <bool kIsDense, class Scalar>
-bool costsMoreThanAll(const Level<Scalar>& level, const CellBlock& block) {
+bool costsMoreThanFullScan(const Level<Scalar>& level, const CellBlock& block) {
     const std::uint64_t rowCount = block.rowCount();
     if (rowCount * kBoxesPerRun > level.count()) {
         return true;

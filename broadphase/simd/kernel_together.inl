@@ -126,7 +126,7 @@ bool walkGroup(const Level<Scalar>& level, const Scalar* const* queries, std::ui
 
 template <class Scalar>
 bool queryBatch(const Level<Scalar>& level, const Scalar* const* queries, std::uint32_t first,
-                  std::uint32_t last, PairSink& found, KernelCost& cost) {
+                std::uint32_t last, PairSink& found, KernelCost& cost) {
     bool goesOn = true;
     for (std::uint32_t end = first; first < last && goesOn; first = end) {
         end = first + lowest(kTogether, last - first);

@@ -197,8 +197,8 @@ private:
         auto sum = Pack::broadcast(plane.offset);
         auto size = Pack::broadcast(absolute(plane.offset));
         for (int axis = 0; axis < 3; ++axis) {
-            const auto term =
-                Pack::times(Pack::broadcast(plane.slope[axis]), Pack::load(plane.corner[axis] + first));
+            const auto term = Pack::times(Pack::broadcast(plane.slope[axis]),
+                                          Pack::load(plane.corner[axis] + first));
             sum = Pack::plus(sum, term);
             size = Pack::plus(size, Pack::abs(term));
         }

@@ -45,7 +45,7 @@ template <bool kIsDense, class Scalar, class Query>
     if (block.isEmpty()) {
         return true;
     }
-    if (costsMoreThanAll<kIsDense>(level, block)) {
+    if (costsMoreThanFullScan<kIsDense>(level, block)) {
         const Run all = {level.firstEntry, level.lastEntry};
         return scan<true>(level, query, all, Row{}, found, cost.boxesTested);
     }
@@ -90,7 +90,7 @@ bool walk(const Level<Scalar>& level, const Query& query, PairSink& found, Kerne
 
 template <class Scalar>
 bool queryLevel(const Level<Scalar>& level, const GroupsView* groups, const Scalar* const* queries,
-               std::uint32_t first, std::uint32_t last, PairSink& found, KernelCost& cost) {
+                std::uint32_t first, std::uint32_t last, PairSink& found, KernelCost& cost) {
     bool goesOn = true;
     for (std::uint32_t number = first; number < last && goesOn; ++number) {
         const Query<Scalar> all{queries, number};
@@ -105,9 +105,9 @@ bool queryLevel(const Level<Scalar>& level, const GroupsView* groups, const Scal
 }
 
 template <class Scalar>
-bool querySwept(const Level<Scalar>& level, const Scalar* const* queries, const SweptBox<Scalar>* ways,
-              const std::uint32_t* wayOf, std::uint32_t first, std::uint32_t last, PairSink& found,
-              KernelCost& cost) {
+bool querySwept(const Level<Scalar>& level, const Scalar* const* queries,
+                const SweptBox<Scalar>* ways, const std::uint32_t* wayOf, std::uint32_t first,
+                std::uint32_t last, PairSink& found, KernelCost& cost) {
     bool goesOn = true;
     for (std::uint32_t number = first; number < last && goesOn; ++number) {
         const SweptQuery<Scalar> query{{queries, number}, &ways[wayOf[number]]};
