@@ -46,11 +46,11 @@ protected:
     }
 
     /// Ways from each box, with whatever is in it, to somewhere else.
-    static std::vector<Way<Scalar>> waysOf(const std::vector<PaddedBox<Scalar>>& boxes) {
+    static std::vector<SweptBox<Scalar>> waysOf(const std::vector<PaddedBox<Scalar>>& boxes) {
         Random random(0x5eed0503);
-        std::vector<Way<Scalar>> ways;
+        std::vector<SweptBox<Scalar>> ways;
         for (const PaddedBox<Scalar>& box : boxes) {
-            Way<Scalar> way{};
+            SweptBox<Scalar> way{};
             for (std::uint32_t k = 0; k < 3; ++k) {
                 const auto axis = random.below(3);
                 const bool rises = random.chance(0.5);
@@ -68,7 +68,7 @@ protected:
 
     static PairList querySwept(const Table<Scalar>& table, const Table<Scalar>& queries,
                                const std::vector<PaddedBox<Scalar>>& boxes) {
-        std::vector<Way<Scalar>> ways = waysOf(boxes);
+        std::vector<SweptBox<Scalar>> ways = waysOf(boxes);
         std::rotate(ways.begin(), ways.begin() + 1, ways.end());  // else all would be passed
         PairList found;
         KernelCost cost;
