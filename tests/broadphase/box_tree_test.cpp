@@ -96,13 +96,13 @@ TYPED_TEST(BoxTreeTest, OffersARayAllThatItsKeyFindsInEveryScene) {
         this->build(std::move(boxes));
         const auto corner = [&] {
             const auto& box =
-                this->boxes_[random.children(static_cast<std::uint32_t>(this->boxes_.size()))];
+                this->boxes_[random.below(static_cast<std::uint32_t>(this->boxes_.size()))];
             return random.chance(0.5) ? box.min() : box.max();
         };
         for (int i = 0; i < 400 && !this->HasFailure(); ++i) {
             const Vector3<TypeParam> from = corner();
             Vector3<TypeParam> to = random.chance(0.1) ? from : corner();
-            to[random.children(3)] = from[random.children(3)];
+            to[random.below(3)] = from[random.below(3)];
             const Vector3<TypeParam> half = (corner() - corner()).cwiseAbs();
             const TypeParam thick = random.chance(0.5) ? TypeParam(0) : TypeParam(0.25);
             this->expectNoneMissed({from, to, {-half * thick, half * thick}},
@@ -307,7 +307,7 @@ TEST(RayKernel, GivesTheBitsOfItsScalarTwin) {
         0,      -0.0F,         Limits::infinity(),  1e30F,
         1e-38F, Limits::max(), -Limits::infinity(), Limits::quiet_NaN()};
     const auto number = [&] {
-        return random.chance(0.1) ? special[random.children(8)]
+        return random.chance(0.1) ? special[random.below(8)]
                                   : static_cast<float>(random.between(-3, 3));
     };
     const InstructionSet before = instructionSet();
