@@ -13,10 +13,13 @@
 #include <broadphase/store/motions.hpp>
 #include <broadphase/sweep_mode.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
+
+#include <broadphase/core/hide_macros.hpp>
 
 namespace hashphase::detail {
 
@@ -116,3 +119,5 @@ struct Sweeping {
 };
 
 }  // namespace hashphase::detail
+
+#include <broadphase/core/restore_macros.hpp>
