@@ -148,10 +148,7 @@ function(hashphase_add_library component)
     if(TARGET hashphase_broadphase AND NOT component STREQUAL "broadphase")
         hashphase_precompile_headers(${target} AS hashphase_broadphase)
     endif()
-    # What is measured is compiled as it is installed: each source by itself.
-    if(CMAKE_BUILD_TYPE STREQUAL "RelWithDebInfo")
-        hashphase_compile_together(${target} 6)
-    endif()
+    hashphase_compile_together(${target} 6)  # what is packaged as well as what is measured
     hashphase_find_libraries_from(${target} ${CMAKE_INSTALL_LIBDIR})
     install(
         TARGETS ${target}
