@@ -92,15 +92,6 @@ void Store<Scalar>::reserve(std::size_t count) {
 }
 
 template <class Scalar>
-void Store<Scalar>::move(std::uint32_t proxyIndex, const Box& box) {
-    Record& record = proxies.records[proxyIndex];
-    if (!isSameBits(record.box, box)) {
-        markChanged(proxyIndex);
-        setBox(record, box);
-    }
-}
-
-template <class Scalar>
 void Store<Scalar>::remove(std::uint32_t proxyIndex) noexcept {
     markChanged(proxyIndex);
     const bool cameAndWent = proxies.isUnseen(proxyIndex);

@@ -71,7 +71,14 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     [[nodiscard]] std::uint32_t add(const Box& box, bool restsAtOnce, const ProxyGroups& groups);
     [[nodiscard]] std::uint32_t takeIndex();
     void reserve(std::size_t count);
-    void move(std::uint32_t proxyIndex, const Box& box);
+    // Here, because mostly it is but a comparison.
+    void move(std::uint32_t proxyIndex, const Box& box) {
+        Record& record = proxies.records[proxyIndex];
+        if (!isSameBits(record.box, box)) {
+            markChanged(proxyIndex);
+            setBox(record, box);
+        }
+    }
     void remove(std::uint32_t proxyIndex) noexcept;
     void clear();
     void setGroups(std::uint32_t proxyIndex, const ProxyGroups& groups);
