@@ -4,6 +4,7 @@
 #include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/core/prefetch.hpp>
 #include <broadphase/core/query_scope.hpp>
+#include <broadphase/core/shared_cost.hpp>
 #include <broadphase/geometry/unit_scale.hpp>
 #include <broadphase/simd/kernels.hpp>
 
@@ -294,17 +295,14 @@ template <class Scalar>
 template <class Kernel>
 QueryCost Crowd<Scalar>::ask(ParallelFor parallelFor, const Kernel& kernel) {
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kIsAsked);
-    std::atomic<std::uint64_t> rowsVisited{0};
-    std::atomic<std::uint64_t> boxesTested{0};
-    std::atomic<std::uint64_t> hits{0};
+    detail::SharedCost shared;
     parallelFor(agentCount_, kAgentsGrain, [&](std::size_t begin, std::size_t end) {
         const detail::QueryScope scope(this);
         std::unique_ptr<Tile> tile = borrowTile();
         detail::KernelCost cost;
-        hits += kernel(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end),
-                       tile->view, cost);
-        rowsVisited += cost.rowsVisited;
-        boxesTested += cost.boxesTested;
+        const std::uint64_t hits = kernel(static_cast<std::uint32_t>(begin),
+                                          static_cast<std::uint32_t>(end), tile->view, cost);
+        shared.add({cost.rowsVisited, cost.boxesTested, hits});
         returnTile(std::move(tile));
     });
     // Which thread has the largest part is a matter of chance, and must not make tiles grow later.
@@ -317,7 +315,7 @@ QueryCost Crowd<Scalar>::ask(ParallelFor parallelFor, const Kernel& kernel) {
             tile->setCapacity(largest);
         }
     }
-    return {rowsVisited, boxesTested, hits};
+    return shared.sum();
 }
 
 template <class Scalar>

@@ -122,7 +122,7 @@ public:
     void releaseMemory() noexcept;
 
 private:
-    /// Where an index's proxy is, and whose it is.
+    /// Where a proxy is, and which one.
     struct Staged {
         std::array<Scalar, 3> position;
         std::uint32_t generation;  // 0: none that the filter accepts

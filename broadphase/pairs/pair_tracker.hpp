@@ -239,7 +239,7 @@ private:
     // refused ones included. `a`, and among the mobile ones `b`, is a place in
     // Population::mobile, which are in spatial order, so that boxes of a candidate are near in memory.
     PairList amongMobile_;
-    PairList toResting_;  // b is an index
+    PairList toResting_;  // b is a proxyIndex
 
     FlatSet refused_;             // candidates that the filter refused, unless they are ...
     FlatSet refusedAtRest_;       // ... both at rest

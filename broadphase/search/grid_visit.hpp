@@ -3,6 +3,7 @@
 
 // Grid's query templates; included by grid.hpp.
 
+#include <broadphase/core/shared_cost.hpp>
 #include <broadphase/geometry/box_columns.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/search/box_search.hpp>
@@ -11,7 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -248,9 +248,7 @@ QueryCost Grid<Scalar>::visitEach(std::span<const Region> regions, std::span<Col
     if constexpr (VisitReader<Region, Collector>::kIsLine) {
         store_.growTrees(reading);
     }
-    std::atomic<std::uint64_t> rowsVisited{0};
-    std::atomic<std::uint64_t> boxesTested{0};
-    std::atomic<std::uint64_t> hits{0};
+    detail::SharedCost shared;
     parallelFor(regions.size(), grain, [&](std::size_t begin, std::size_t end) {
         QueryCost cost;
         const detail::QueryScope scope(&store_, detail::QueryScope::Changes::forbidden);
@@ -259,11 +257,9 @@ QueryCost Grid<Scalar>::visitEach(std::span<const Region> regions, std::span<Col
             cost += visitTogether(reading, regions.subspan(begin, count),
                                   collectors.subspan(begin, count), false);
         }
-        rowsVisited += cost.rowsVisited;
-        boxesTested += cost.boxesTested;
-        hits += cost.hits;
+        shared.add(cost);
     });
-    return {rowsVisited, boxesTested, hits};
+    return shared.sum();
 }
 
 /// The boxes that touch one cell, by the same rounding as cellAt().

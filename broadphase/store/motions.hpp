@@ -37,7 +37,7 @@ struct HASHPHASE_BROADPHASE_EXPORT Motions {
     // The places of what has ended since the last update: null ids, whose index is the next place.
     std::uint32_t firstVacant = kNone;
     std::uint32_t vacantCount = 0;
-    std::vector<std::uint32_t> ofProxy;  // kNone where an index does not sweep
+    std::vector<std::uint32_t> ofProxy;  // by proxyIndex; kNone where it does not sweep
 
     explicit Motions(Store<Scalar>& itsStore);
     ~Motions();

@@ -35,24 +35,25 @@ template <class Scalar>
     return {nan, nan};
 }
 
-/// All about an index, in one cache line for single precision and two for double.
+/// All about a proxy, by its index, in one cache line for single precision and two for double.
 template <class Scalar>
 struct alignas(16 * sizeof(Scalar)) Record {
-    Aabb<Scalar> box = nanBox<Scalar>();  // NaN while the index has no proxy
-    Aabb<Scalar> before =
-        nanBox<Scalar>();          // standingBox() at the last update, if it has changed since
+    /// NaN while the index has no proxy.
+    Aabb<Scalar> box = nanBox<Scalar>();
+    /// standingBox() at the last update, if it has changed since.
+    Aabb<Scalar> before = nanBox<Scalar>();
     std::uint32_t generation = 0;  // odd while the index has a proxy
     std::uint32_t changedAt = 0;   // number of the update that will see, or saw, the last change
-    std::uint32_t listedAt =
-        0;  // where in the resting table; in Population::mobile, if it has joined
-            // these since the last update; or the next index without a proxy
+    /// Where in the resting table; where in Population::mobile, if it has joined these since the last
+    /// update; or the next index without a proxy.
+    std::uint32_t listedAt = 0;
     Residency residency = Residency::nowhere;
     std::uint8_t listedIn = 0;  // number of the list of changes that has it
     std::uint8_t kind = 0;      // of its groups, in Population::groupKinds
     // Mobility::resting, or rested, and has not moved since but by a shift of the origin
     bool restsAtOnce : 1 = false;
     bool isNan : 1 = false;        // has a NaN; of a proxy alive
-    bool isImmediate : 1 = false;  // a candidate of the index's has been told since the last update
+    bool isImmediate : 1 = false;  // a pair of the proxy's was reported since the last update
 };
 
 /// Indices without a proxy, one after the other by Record::listedAt.
@@ -79,11 +80,11 @@ struct HASHPHASE_BROADPHASE_EXPORT Population {
 
     FreeList free;
     // Those whose proxies were removed since the tables were last settled: the next update has to tell
-    // these from the next ones. What came and went in between is free at once, unless it has been lists.
+    // these from the next ones. What came and went in between is free at once, unless it was reported.
     FreeList removed;
     FreeList removedImmediate;
 
-    // Of each index now, and at the last update: 2 * index, and one behind. Empty until somebody has others
+    // Of each index now, and at the last update: 2 * index, and one behind. Empty until a proxy has others
     // than ProxyGroups{}; as long as records then. The same as numbers.
     std::vector<ProxyGroups> groups;
     GroupKinds groupKinds;
@@ -98,14 +99,14 @@ struct HASHPHASE_BROADPHASE_EXPORT Population {
     std::vector<std::uint32_t> sweeping;  // when the last update began; in `mobile`, too
 
     // When a shift of the origin has rounded boxes since the last update: the boxes of that update in the
-    // coordinates of then. By index, or where proxies are few among the indices by place in indicesAtUpdate.
+    // coordinates of then. By index, or, where few indices have proxies, by place in indicesAtUpdate.
     // Those that are missing had no proxy.
     std::vector<Box> boxesAtUpdate;
     FlatSet indicesAtUpdate;
 
-    // --- An index ----------------------------------------------------------------------------------
+    // --- An index --------------------------------------------------------------------------------
 
-    /// The proxy in the index, or the last one that was.
+    /// The proxy that has the index, or the last one that had.
     [[nodiscard]] ProxyId idOf(std::uint32_t proxyIndex) const noexcept {
         return {proxyIndex, (records[proxyIndex].generation - 1) | 1};
     }
@@ -215,7 +216,7 @@ struct HASHPHASE_BROADPHASE_EXPORT Population {
                    sizeof(mobile[0]) +
                boxesAtUpdate.capacity() * sizeof(Box) + indicesAtUpdate.memoryBytes();
     }
-    /// Drops indices at the end of which nothing tells any more, and sorts those that are free.
+    /// Drops free indices at the end, and sorts the others.
     void dropLastRecords();
 };
 

@@ -58,7 +58,7 @@ void Store<Scalar>::keepBoxesAtUpdate(const Point& shift) {
     });
 }
 
-// Returns whether the index's box was rounded.
+// Returns whether the proxy's box was rounded.
 template <class Scalar>
 bool Store<Scalar>::shiftRecord(std::uint32_t proxyIndex, const Point& shift) noexcept {
     Record& record = proxies.records[proxyIndex];

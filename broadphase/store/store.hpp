@@ -83,7 +83,7 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     void clear();
     void setGroups(std::uint32_t proxyIndex, const ProxyGroups& groups);
 
-    /// To be called before every change of an index's box.
+    /// To be called before every change of a proxy's box.
     void markChanged(std::uint32_t proxyIndex) noexcept;
     /// The same where the box is not changed.
     void countChange(Record& record) noexcept;
@@ -106,7 +106,7 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
 
     /// Copies the mobile boxes side by side.
     void stage(ParallelFor parallelFor, bool isForQueries = false);
-    /// Quiet proxies leave the mobile ones when enough have gathered, or enough others have left rest, to
+    /// Idle proxies leave the mobile ones when enough have gathered, or enough others have left rest, to
     /// be worth filing the resting ones anew. Returns whether any did.
     [[nodiscard]] bool settleIdle(ParallelFor parallelFor);
     void listResting();
@@ -151,7 +151,7 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     void forgetErased() noexcept;
     void dropList() noexcept;
 
-    /// Whether an index that is listed in a table is still filed there.
+    /// Whether a proxy that is listed in a table is still filed there.
     [[nodiscard]] bool isFiled(std::uint32_t proxyIndex, const Reading& reading) const noexcept {
         const Record& record = proxies.records[proxyIndex];
         return record.residency != Residency::nowhere &&
@@ -165,13 +165,13 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     template <class Visit>
     void forEachFiled(const Visit& visit) const;
 
-    // --- All indices -------------------------------------------------------------------------------
+    // --- All proxies -----------------------------------------------------------------------------
 
-    /// How many indices are listed, among the mobile ones or in the table of those at rest.
+    /// How many proxies are listed, among the mobile ones or in the table of those at rest.
     [[nodiscard]] std::size_t listedCount() const noexcept {
         return proxies.mobile.size() + (tables.resting.size() - tables.restingErased);
     }
-    /// Whether so few indices have proxies that their lists are read sooner than all indices.
+    /// Whether so few indices have proxies that the lists are read sooner than all records.
     [[nodiscard]] bool isSparse() const noexcept {
         return 8 * listedCount() < proxies.records.size();
     }
@@ -179,8 +179,8 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     /// others; in any order. visit() may wake proxies, and not add any.
     template <class Visit>
     void forEachListed(const Visit& visit) const;
-    /// Where proxies are few among the indices, lists their indices in ascending order; else none. Returns how
-    /// many indices are to be looked at: those listed, or all.
+    /// Where few indices have proxies, lists these in ascending order; else none. Returns how many indices are
+    /// to be looked at: those listed, or all.
     std::size_t listFew(std::vector<std::uint32_t>& few) const;
 
     /// None where cell sizes follow the population.
