@@ -126,7 +126,7 @@ Benchmark queryBenchmark(std::string name, std::string description, std::size_t 
 Benchmark rays(std::string name, std::string description, MakeScene makeScene, RayPlan plan) {
     constexpr std::size_t kObjects = 30'000;
     Benchmark benchmark = queryBenchmark(std::move(name), std::move(description), kObjects);
-    benchmark.operation = "ray";
+    benchmark.operation = plan.probe == Probe::box ? "box" : "ray";
     benchmark.make = [makeScene = std::move(makeScene), plan = std::move(plan)](
                          std::size_t objects, std::uint64_t seed) {
         return std::make_unique<RayWorkload>(makeScene(objects, seed), plan, ~seed);
@@ -182,6 +182,11 @@ std::vector<Benchmark> queryBenchmarks() {
     RayPlan fat = planOf(shortRay);
     fat.castHalfExtents = btVector3(0.5F, 0.5F, 0.5F);
     all.push_back(rays("rays-fat", "a box of 1 m cast 5 m far among uniform boxes", dense, fat));
+    RayPlan boxes = planOf(rayBetweenBoxes);
+    boxes.probe = Probe::box;
+    all.push_back(rays("boxes",
+                       "what overlaps a box of 2 m, one box at a time, among uniform boxes", dense,
+                       boxes));
     all.push_back(
         interleaved("interleaved-rays", "set one box, cast one ray, set the next", Probe::ray));
     all.push_back(

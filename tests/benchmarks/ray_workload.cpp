@@ -83,6 +83,13 @@ Aabb<float> probeBox(const Ray& ray) {
     return {toEigen(ray.from) - half, toEigen(ray.from) + half};
 }
 
+void askForBox(std::size_t number, const Ray& ray, btBroadphaseInterface& broadphase,
+               std::vector<Answer>& answers) {
+    Finds<btBroadphaseAabbCallback> finds(number, answers);
+    const Aabb<float> box = probeBox(ray);
+    broadphase.aabbTest(toBullet(box.min()), toBullet(box.max()), finds);
+}
+
 }  // namespace
 
 RayWorkload::RayWorkload(std::unique_ptr<demos::BoxScene> scene, RayPlan plan, std::uint64_t seed)
@@ -111,6 +118,10 @@ void RayWorkload::ask(demos::FilledBroadphase& filled, std::vector<Answer>& answ
 
 void RayWorkload::askForAll(btBroadphaseInterface& broadphase, std::vector<Answer>& answers) const {
     for (std::size_t i = 0; i < rays_.size(); ++i) {
+        if (plan_.probe == Probe::box) {
+            askForBox(i, rays_[i], broadphase, answers);
+            continue;
+        }
         Finds<RayCallback> hits(i, answers, rays_[i]);
         broadphase.rayTest(rays_[i].from, rays_[i].to, hits, -plan_.castHalfExtents,
                            plan_.castHalfExtents);
@@ -142,7 +153,11 @@ void RayWorkload::listExactAnswers(std::vector<Answer>& answers) {
         float closest = std::numeric_limits<float>::infinity();
         for (std::uint32_t object = 0; object < scene().size(); ++object) {
             const Aabb<float>& box = scene().boxes()[object];
-            if (plan_.closestOnly) {
+            if (plan_.probe == Probe::box) {
+                if (overlaps(probeBox(rays_[i]), box)) {
+                    answers.push_back(answerOf(i, object));
+                }
+            } else if (plan_.closestOnly) {
                 const float key = region.key(box);
                 closest = key >= 0 ? std::min(closest, key) : closest;
             } else if (test.meets(rays_[i], box, plan_.castHalfExtents)) {
@@ -187,9 +202,7 @@ void InterleavedWorkload::ask(demos::FilledBroadphase& filled, std::vector<Answe
             Finds<RayCallback> hits(i, answers, step.ray);
             filled.broadphase().rayTest(step.ray.from, step.ray.to, hits);
         } else {
-            Finds<btBroadphaseAabbCallback> finds(i, answers);
-            const Aabb<float> box = probeBox(step.ray);
-            filled.broadphase().aabbTest(toBullet(box.min()), toBullet(box.max()), finds);
+            askForBox(i, step.ray, filled.broadphase(), answers);
         }
     }
 }

@@ -15,10 +15,14 @@ struct Ray {
 /// Draws one ray through these boxes.
 using DrawRay = std::function<Ray(demos::Random&, const std::vector<Aabb<float>>&)>;
 
+/// What is asked: what the ray meets, or what overlaps a box of 2 m around its start.
+enum class Probe { ray, box };
+
 struct RayPlan {
     DrawRay draw;
     std::size_t raysPerFrame = 500;
     btVector3 castHalfExtents{0, 0, 0};  // the box that is moved along the ray
+    Probe probe = Probe::ray;            // a box is one query for each of them
     bool closestOnly = false;            // only how far the nearest box is, not all boxes
     bool movesScene = false;             // all boxes move before each frame; else they stand still
 };
@@ -41,9 +45,6 @@ private:
     demos::Random random_;
     std::vector<Ray> rays_;
 };
-
-/// What is asked after each write.
-enum class Probe { ray, box };
 
 /// Sets one box, asks one question, sets the next: what a game does that moves its characters one
 /// by one. The pairs are found after the frame, untimed.
