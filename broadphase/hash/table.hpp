@@ -117,10 +117,10 @@ private:
     void sortEntries(std::span<const std::uint32_t> boxIndices,
                      std::span<const PaddedBox<Scalar>> boxes, const ProxyGroups* groups,
                      ParallelFor parallelFor);
-    template <class Visit>
-    void forCrowdedBuckets(const Level<Scalar>& level, const Visit& visit);
     void sortCrowdedBuckets(std::span<const std::uint32_t> boxIndices,
                             std::span<const PaddedBox<Scalar>> boxes, const ProxyGroups* groups);
+    void sortBucket(std::uint32_t bucket, bool hasCells, std::span<const std::uint32_t> boxIndices,
+                    std::span<const PaddedBox<Scalar>> boxes, const ProxyGroups* groups);
     [[nodiscard]] std::optional<SortedBucket<Scalar>> sortedAlong(
         std::span<std::uint32_t> crowd, std::span<const PaddedBox<Scalar>> boxes);
     [[nodiscard]] bool areSorted() const;
