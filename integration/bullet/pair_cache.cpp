@@ -213,11 +213,11 @@ void PairCache::processAllOverlappingPairs(btOverlapCallback* callback, btDispat
 void PairCache::processByUniqueId(btOverlapCallback& callback, btDispatcher* dispatcher) {
     prepareWholeArray();
     const Processing processing(processDepth_);
-    std::vector<Note> notes = std::move(scratch_);
+    std::vector<PairSortKey> notes = std::move(scratch_);
     noteAll(notes);
     std::sort(notes.begin(), notes.end(),
-              [](const Note& a, const Note& b) { return a.uniqueIds > b.uniqueIds; });
-    for (const Note& note : notes) {
+              [](const PairSortKey& a, const PairSortKey& b) { return a.uniqueIds > b.uniqueIds; });
+    for (const PairSortKey& note : notes) {
         const std::uint32_t index = indexOf(note);
         if (index != kNone && callback.processOverlap(pairs_[static_cast<int>(index)])) {
             remove(note.uniqueIds, dispatcher, Freeing::now, Remover::other);
@@ -304,12 +304,12 @@ std::uint64_t PairCache::keysOf(const btBroadphasePair& pair, std::uint64_t ids)
     return key_ == &uniqueId ? ids : ascending(key_(*pair.m_pProxy0), key_(*pair.m_pProxy1));
 }
 
-PairCache::Note PairCache::noteOf(std::uint32_t index) const {
+PairCache::PairSortKey PairCache::noteOf(std::uint32_t index) const {
     const std::uint64_t ids = ids_.keys()[index];
     return {keysOf(pairs_[static_cast<int>(index)], ids), ids, index};
 }
 
-void PairCache::noteAll(std::vector<Note>& notes) const {
+void PairCache::noteAll(std::vector<PairSortKey>& notes) const {
     notes.clear();
     for (std::uint32_t i = 0; i < ids_.size(); ++i) {
         notes.push_back(noteOf(i));
@@ -317,7 +317,7 @@ void PairCache::noteAll(std::vector<Note>& notes) const {
 }
 
 // Where the pair is now, or kNone when it is gone.
-std::uint32_t PairCache::indexOf(const Note& note) const {
+std::uint32_t PairCache::indexOf(const PairSortKey& note) const {
     const bool isWhereItWas = note.index < ids_.size() && ids_.keys()[note.index] == note.uniqueIds;
     return isWhereItWas ? note.index : ids_.find(note.uniqueIds);
 }
@@ -326,7 +326,7 @@ std::size_t PairCache::memoryBytes() const noexcept {
     return sizeof(*this) + static_cast<std::size_t>(pairs_.capacity()) * sizeof(btBroadphasePair) +
            ids_.memoryBytes() + links_.capacity() * sizeof(Link) + firstEdge_.memoryBytes() +
            retired_.capacity() * sizeof(Retired) + places_.capacity() * sizeof(std::uint32_t) +
-           ranks_.memoryBytes() + scratch_.capacity() * sizeof(Note);
+           ranks_.memoryBytes() + scratch_.capacity() * sizeof(PairSortKey);
 }
 
 // Bullet's arrays give memory back only when they are emptied. Chains are made anew when they are

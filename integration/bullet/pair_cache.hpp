@@ -288,13 +288,13 @@ private:
     };
 
     // A pair as it was noted down, with what it is to be sorted by.
-    struct Note {
+    struct PairSortKey {
         std::uint64_t keys;  // of first and second proxy, ascending as unsigned
         std::uint64_t uniqueIds;
         std::uint32_t index;
         std::uint32_t rank = 0;  // of the first of its proxies among those of a batch
 
-        friend bool operator<(const Note& a, const Note& b) noexcept {
+        friend bool operator<(const PairSortKey& a, const PairSortKey& b) noexcept {
             return a.keys != b.keys ? a.keys < b.keys : a.uniqueIds < b.uniqueIds;
         }
     };
@@ -308,7 +308,7 @@ private:
 
     // A removed pair whose algorithm waits to be freed in its turn.
     struct Retired {
-        Note note;
+        PairSortKey note;
         btBroadphasePair pair;
         btDispatcher* dispatcher;
     };
@@ -317,9 +317,9 @@ private:
     void checkRoomFor(std::size_t bornCount) const;
     [[nodiscard]] bool isLower(const btBroadphaseProxy& a, const btBroadphaseProxy& b) const;
     [[nodiscard]] std::uint64_t keysOf(const btBroadphasePair& pair, std::uint64_t ids) const;
-    [[nodiscard]] Note noteOf(std::uint32_t index) const;
-    void noteAll(std::vector<Note>& notes) const;
-    [[nodiscard]] std::uint32_t indexOf(const Note& note) const;
+    [[nodiscard]] PairSortKey noteOf(std::uint32_t index) const;
+    void noteAll(std::vector<PairSortKey>& notes) const;
+    [[nodiscard]] std::uint32_t indexOf(const PairSortKey& note) const;
     static bool isNamedBy(const ProxyCouple& couple, const btBroadphasePair& pair) noexcept {
         return pair.m_pProxy0 == couple.lower() || pair.m_pProxy0 == couple.upper();
     }
@@ -342,11 +342,11 @@ private:
     void vacate(std::uint64_t ids, btDispatcher* dispatcher, Remover remover);
     void vacateAll(std::span<const ProxyCouple> died, btDispatcher* dispatcher);
     void makeRoomFor(std::size_t bornCount);
-    void vacateAll(std::span<const Note> notes, btDispatcher* dispatcher, Remover remover);
+    void vacateAll(std::span<const PairSortKey> notes, btDispatcher* dispatcher, Remover remover);
     std::size_t settle(std::span<const ProxyCouple> born);
     void closeVacant(std::size_t firstVacant) noexcept;
     void fill(std::uint32_t index) noexcept;
-    [[nodiscard]] std::vector<Note> notesOfAll(std::span<btBroadphaseProxy* const> proxies);
+    [[nodiscard]] std::vector<PairSortKey> notesOfAll(std::span<btBroadphaseProxy* const> proxies);
 
     [[nodiscard]] bool isChained(std::uint32_t index) const noexcept {
         return 2 * std::size_t{index} < links_.size();
@@ -365,8 +365,8 @@ private:
     void chain(std::uint32_t edge);
     void unchain(std::uint32_t edge, std::uint64_t uniqueId);
     void rename(std::uint32_t from, std::uint32_t to);
-    void noteUnchained(std::uint32_t id, std::vector<Note>& notes) const;
-    [[nodiscard]] std::vector<Note> notesOf(const btBroadphaseProxy& proxy);
+    void noteUnchained(std::uint32_t id, std::vector<PairSortKey>& notes) const;
+    [[nodiscard]] std::vector<PairSortKey> notesOf(const btBroadphaseProxy& proxy);
     template <class Visit>
     void forEachPairOf(const btBroadphaseProxy& proxy, const Visit& visit);
     void tellGhostsAgain(std::uint64_t ids, const btBroadphasePair& pair, btDispatcher* dispatcher);
@@ -398,7 +398,7 @@ private:
 
     std::vector<std::uint32_t> places_;  // scratch of batches, vacant ones; and of sort(), new ones
     detail::ProxyRanks ranks_;           // scratch of removals
-    std::vector<Note> scratch_;
+    std::vector<PairSortKey> scratch_;
 };
 
 // Not by Bullet's constructor for two proxies: that one orients by unique id.

@@ -166,7 +166,7 @@ void PairCache::removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDis
     freeRetired();
     dropChainsIfMany(proxies.size());
     chainIfWorth();
-    std::vector<Note> notes = notesOfAll(proxies);
+    std::vector<PairSortKey> notes = notesOfAll(proxies);
     places_.clear();
     detail::ensureCapacity(places_, notes.size());
     try {
@@ -180,7 +180,8 @@ void PairCache::removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDis
     freeRetiredAsListed();
 }
 
-void PairCache::vacateAll(std::span<const Note> notes, btDispatcher* dispatcher, Remover remover) {
+void PairCache::vacateAll(std::span<const PairSortKey> notes, btDispatcher* dispatcher,
+                          Remover remover) {
     for (std::size_t i = 0; i < notes.size(); ++i) {
         if (i + kFar < notes.size()) {
             ids_.prefetch(notes[i + kFar].uniqueIds);
@@ -191,8 +192,9 @@ void PairCache::vacateAll(std::span<const Note> notes, btDispatcher* dispatcher,
 
 // In the order in which their algorithms are to be freed; some may be listed twice. Of the chained
 // pairs each proxy's are followed, the others are all looked at.
-std::vector<PairCache::Note> PairCache::notesOfAll(std::span<btBroadphaseProxy* const> proxies) {
-    std::vector<Note> notes = std::move(scratch_);
+std::vector<PairCache::PairSortKey> PairCache::notesOfAll(
+    std::span<btBroadphaseProxy* const> proxies) {
+    std::vector<PairSortKey> notes = std::move(scratch_);
     notes.clear();
     const auto add = [&](std::uint32_t index, std::uint32_t rank) {
         notes.push_back(noteOf(index));
@@ -215,7 +217,7 @@ std::vector<PairCache::Note> PairCache::notesOfAll(std::span<btBroadphaseProxy* 
     }
     pairsVisited_ += notes.size();
     if (order_ == PairOrder::canonical) {
-        std::sort(notes.begin(), notes.end(), [](const Note& a, const Note& b) {
+        std::sort(notes.begin(), notes.end(), [](const PairSortKey& a, const PairSortKey& b) {
             return a.rank != b.rank ? a.rank < b.rank : a < b;
         });
     }

@@ -108,7 +108,7 @@ void PairCache::dropChains() noexcept {
 // --- One proxy -----------------------------------------------------------------------------------
 
 // A block at a time, most of which have no pair of the proxy's.
-void PairCache::noteUnchained(std::uint32_t id, std::vector<Note>& notes) const {
+void PairCache::noteUnchained(std::uint32_t id, std::vector<PairSortKey>& notes) const {
     constexpr std::size_t kBlock = 16;
     const std::span<const std::uint64_t> keys = ids_.keys();
     for (std::size_t first = links_.size() / 2; first < keys.size(); first += kBlock) {
@@ -128,10 +128,10 @@ void PairCache::noteUnchained(std::uint32_t id, std::vector<Note>& notes) const 
 }
 
 // Noted down, for callbacks may change the cache. In canonical order, or in that of the array.
-std::vector<PairCache::Note> PairCache::notesOf(const btBroadphaseProxy& proxy) {
+std::vector<PairCache::PairSortKey> PairCache::notesOf(const btBroadphaseProxy& proxy) {
     freeRetired();
     chainIfWorth();
-    std::vector<Note> notes = std::move(scratch_);
+    std::vector<PairSortKey> notes = std::move(scratch_);
     notes.clear();
     for (std::uint32_t edge = firstEdge_.find(static_cast<std::uint32_t>(proxy.m_uniqueId));
          edge != kNone; edge = links_[edge].next) {
@@ -140,8 +140,9 @@ std::vector<PairCache::Note> PairCache::notesOf(const btBroadphaseProxy& proxy) 
     noteUnchained(static_cast<std::uint32_t>(proxy.m_uniqueId), notes);
     pairsVisited_ += notes.size();
     const bool byKey = order_ == PairOrder::canonical;
-    std::sort(notes.begin(), notes.end(),
-              [=](const Note& a, const Note& b) { return byKey ? a < b : a.index < b.index; });
+    std::sort(notes.begin(), notes.end(), [=](const PairSortKey& a, const PairSortKey& b) {
+        return byKey ? a < b : a.index < b.index;
+    });
     return notes;
 }
 
@@ -152,7 +153,7 @@ void PairCache::removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy,
 
 void PairCache::removePairsOfOne(btBroadphaseProxy& proxy, btDispatcher* dispatcher,
                                  Remover remover) {
-    std::vector<Note> notes;
+    std::vector<PairSortKey> notes;
     try {
         notes = notesOf(proxy);
     } catch (const std::bad_alloc&) {
@@ -188,8 +189,8 @@ void PairCache::removeUnnoted(const btBroadphaseProxy& proxy, btDispatcher* disp
 // Calls visit(ids, pair) for each; pairs may go meanwhile.
 template <class Visit>
 void PairCache::forEachPairOf(const btBroadphaseProxy& proxy, const Visit& visit) {
-    std::vector<Note> notes = notesOf(proxy);
-    for (const Note& note : notes) {
+    std::vector<PairSortKey> notes = notesOf(proxy);
+    for (const PairSortKey& note : notes) {
         if (const std::uint32_t index = indexOf(note); index != kNone) {
             visit(note.uniqueIds, pairs_[static_cast<int>(index)]);
         }

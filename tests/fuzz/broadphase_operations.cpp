@@ -28,7 +28,7 @@ struct AskedRay : btCollisionWorld::RayResultCallback {
 
 class BroadphasePlay {
 public:
-    BroadphasePlay(const Operation& first, Story& story)
+    BroadphasePlay(const Operation& first, OperationLog& story)
         : story_(story),
           world_(first),
           life_(first, world_, story),
@@ -389,9 +389,9 @@ private:
         EXPECT_EQ(uidPairs(world_.cache()), before);
     }
 
-    Story& story_;
+    OperationLog& story_;
     BulletLifeWorld world_;
-    BoxLife<btScalar, BulletLifeWorld> life_;
+    BoxModel<btScalar, BulletLifeWorld> life_;
     bool isSeldomStepped_;
 };
 

@@ -58,7 +58,7 @@ struct RemoveSome : btOverlapCallback {
 
 class CachePlay {
 public:
-    CachePlay(const Operation& first, Story& story)
+    CachePlay(const Operation& first, OperationLog& story)
         : story_(story),
           cache_(first.arguments[0] % 2 == 0 ? PairOrder::arrival : PairOrder::canonical,
                  first.arguments[1] % 2 == 0 ? &PairCache::uniqueId : &backwards) {
@@ -238,7 +238,7 @@ private:
         EXPECT_EQ(pair != nullptr, expected_.contains(idsOfCouple({a, b})));
     }
 
-    Story& story_;
+    OperationLog& story_;
     std::array<btBroadphaseProxy, kProxies> proxies_;
     GhostBook ghosts_;
     bool hasGhosts_ = false;

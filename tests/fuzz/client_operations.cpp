@@ -28,7 +28,7 @@ bool isOdd(ProxyId id) {
 template <class Scalar>
 class ClientPlay {
 public:
-    ClientPlay(const Operation& first, Story& story)
+    ClientPlay(const Operation& first, OperationLog& story)
         : story_(story), world_(configOf(first)), life_(first, world_, story) {
         // Something that is no ground.
         static_cast<void>(
@@ -316,9 +316,9 @@ private:
         EXPECT_EQ(added.refused.size(), spoil >= 240 ? 1U : 0U);
     }
 
-    Story& story_;
+    OperationLog& story_;
     GridWorld<Scalar> world_;
-    BoxLife<Scalar, GridWorld<Scalar>> life_;
+    BoxModel<Scalar, GridWorld<Scalar>> life_;
     Culler<Scalar> culler_;
     Zones<Scalar> zones_;
     ZonesByBruteForce<Scalar> byBruteForce_;

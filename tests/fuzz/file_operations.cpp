@@ -88,7 +88,7 @@ std::string sceneOfEffects(std::uint32_t count) {
 
 class FilePlay {
 public:
-    FilePlay(const Operation& first, Story& story) : story_(story), reader_(first.kind % 4) {
+    FilePlay(const Operation& first, OperationLog& story) : story_(story), reader_(first.kind % 4) {
         Arguments arguments(first);
         const std::uint32_t size = arguments.below(4);
         if (reader_ == 1) {
@@ -297,7 +297,7 @@ private:
         }
     }
 
-    Story& story_;
+    OperationLog& story_;
     std::uint32_t reader_;
     std::string bytes_;
 };

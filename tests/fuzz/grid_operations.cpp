@@ -17,9 +17,9 @@ namespace hashphase::test {
 namespace {
 
 template <class Scalar>
-class GridPlay {
+class GridModel {
 public:
-    GridPlay(const Operation& first, Story& story)
+    GridModel(const Operation& first, OperationLog& story)
         : story_(story),
           world_(configOf(first)),
           life_(first, world_, story),
@@ -411,9 +411,9 @@ private:
         EXPECT_EQ(nearest, expectedNearest);
     }
 
-    Story& story_;
+    OperationLog& story_;
     GridWorld<Scalar> world_;
-    BoxLife<Scalar, GridWorld<Scalar>> life_;
+    BoxModel<Scalar, GridWorld<Scalar>> life_;
     bool isNeverUpdated_;
     Neighbours<Scalar> neighbours_;
     Crowd<Scalar> crowd_;
@@ -423,8 +423,8 @@ private:
 
 Verdict playGrid(std::span<const Operation> operations, bool tellsStory) {
     return operations.empty() || operations[0].kind % 2 == 0
-               ? playLife<GridPlay<float>>(operations, tellsStory)
-               : playLife<GridPlay<double>>(operations, tellsStory);
+               ? playLife<GridModel<float>>(operations, tellsStory)
+               : playLife<GridModel<double>>(operations, tellsStory);
 }
 
 }  // namespace hashphase::test

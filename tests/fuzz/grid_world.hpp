@@ -24,11 +24,11 @@ inline constexpr std::size_t kMostProxies = 160;
 /// A World (tests/support/script.hpp) over a grid or what stands around one, and what it should hold.
 /// Knows the operations that change boxes, and leaves the others to whom it serves.
 template <class Scalar, class World>
-class BoxLife {
+class BoxModel {
 public:
     static constexpr std::uint32_t kKinds = 8;
 
-    BoxLife(const Operation& first, World& world, Story& story)
+    BoxModel(const Operation& first, World& world, OperationLog& story)
         : palette_(first), world_(world), story_(story) {}
 
     [[nodiscard]] const Palette<Scalar>& palette() const noexcept { return palette_; }
@@ -150,7 +150,7 @@ private:
 
     Palette<Scalar> palette_;
     World& world_;
-    Story& story_;
+    OperationLog& story_;
     std::vector<Placed<Scalar>> proxies_;
     std::vector<ProxyId> dead_;
 };

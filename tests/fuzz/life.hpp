@@ -17,9 +17,9 @@
 namespace hashphase::test {
 
 /// What an operation does, in words, while a story is told; else nothing is written.
-class Story {
+class OperationLog {
 public:
-    explicit Story(bool isTold) : isTold_(isTold) {}
+    explicit OperationLog(bool isTold) : isTold_(isTold) {}
 
     template <class... Parts>
     void tell(const Parts&... parts) {
@@ -55,7 +55,7 @@ inline std::string firstFailure(const testing::TestPartResultArray& results) {
 }  // namespace life_detail
 
 /// World has
-///   World(const Operation& first, Story&)   made as the first operation says
+///   World(const Operation& first, OperationLog&)   made as the first operation says
 ///   void play(const Operation&)             one operation, with all comparisons
 /// and expects by EXPECT_... and ASSERT_... A broken assertion of the library is a fault, too.
 template <class World>
@@ -63,7 +63,7 @@ Verdict playLife(std::span<const Operation> operations, bool tellsStory) {
     Verdict verdict;
     const CaughtMessages aboutBadData;
     const ThrowingAsserts brokenAssertsAreFaults;
-    Story story(tellsStory);
+    OperationLog story(tellsStory);
     std::unique_ptr<World> world;
     testing::TestPartResultArray results;
     for (const Operation& operation : operations) {

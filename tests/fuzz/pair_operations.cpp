@@ -12,7 +12,7 @@ namespace {
 template <class Scalar>
 class PairPlay {
 public:
-    PairPlay(const Operation& first, Story& story)
+    PairPlay(const Operation& first, OperationLog& story)
         : story_(story),
           world_(configOf(first),
                  [this](ProxyId a, ProxyId b) {
@@ -223,12 +223,12 @@ private:
         }
     }
 
-    Story& story_;
+    OperationLog& story_;
     std::vector<std::uint32_t> colours_;  // by index of proxy
     bool maySweep_ = false;
     bool isSeldomUpdated_ = false;
     PairWorld<Scalar> world_;
-    BoxLife<Scalar, PairWorld<Scalar>> life_;
+    BoxModel<Scalar, PairWorld<Scalar>> life_;
 };
 
 }  // namespace
