@@ -165,7 +165,7 @@ std::optional<double> detail::firstContactExactly(const MovingBox<Scalar>& a,
 
 // In double precision: of a long way, a float knows the places only roughly.
 template <class Scalar>
-Aabb<Scalar> wayBounds(const MovingBox<Scalar>& moving, double from, double to) {
+Aabb<Scalar> sweptBounds(const MovingBox<Scalar>& moving, double from, double to) {
     using Limits = std::numeric_limits<Scalar>;
     constexpr auto kLargest = static_cast<double>(Limits::max());
     constexpr auto kShare = 2 * static_cast<double>(Limits::epsilon());
@@ -198,7 +198,7 @@ RayRegion<Scalar> rayAround(const MovingBox<Scalar>& moving) {
         moving.box.min().cwiseAbs() + moving.box.max().cwiseAbs() + moving.displacement.cwiseAbs();
     if (!(reach.maxCoeff() < Limits::max() / 8)) {
         const Vector3<Scalar> zero = Vector3<Scalar>::Zero();
-        return {zero, zero, wayBounds(moving)};
+        return {zero, zero, sweptBounds(moving)};
     }
     const Vector3<Scalar> center = moving.box.min() / 2 + moving.box.max() / 2;
     const Vector3<Scalar> padding =
@@ -214,8 +214,8 @@ template <class Scalar>
 MovingBoxRegion<Scalar>::MovingBoxRegion(const MovingBox<Scalar>& moving)
     : moving_(moving), segment_(rayAround(moving)) {}
 
-template Aabb<float> wayBounds(const MovingBox<float>&, double, double);
-template Aabb<double> wayBounds(const MovingBox<double>&, double, double);
+template Aabb<float> sweptBounds(const MovingBox<float>&, double, double);
+template Aabb<double> sweptBounds(const MovingBox<double>&, double, double);
 template std::optional<double> detail::firstContactExactly(const MovingBox<float>&,
                                                            const MovingBox<float>&) noexcept;
 template std::optional<double> detail::firstContactExactly(const MovingBox<double>&,

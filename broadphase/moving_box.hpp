@@ -31,8 +31,14 @@ struct MovingBox {
 
 /// The box around a moving box's way between two times [m], rounded outward.
 template <class Scalar>
-[[nodiscard]] HASHPHASE_BROADPHASE_EXPORT Aabb<Scalar> wayBounds(const MovingBox<Scalar>& moving,
-                                                                 double from = 0, double to = 1);
+[[nodiscard]] HASHPHASE_BROADPHASE_EXPORT Aabb<Scalar> sweptBounds(const MovingBox<Scalar>& moving,
+                                                                   double from = 0, double to = 1);
+
+template <class Scalar>
+[[deprecated("sweptBounds()")]] [[nodiscard]] Aabb<Scalar> wayBounds(
+    const MovingBox<Scalar>& moving, double from = 0, double to = 1) {
+    return sweptBounds(moving, from, to);
+}
 
 namespace detail {
 
@@ -111,8 +117,8 @@ private:
     RayRegion<Scalar> segment_;
 };
 
-extern template Aabb<float> wayBounds(const MovingBox<float>&, double, double);
-extern template Aabb<double> wayBounds(const MovingBox<double>&, double, double);
+extern template Aabb<float> sweptBounds(const MovingBox<float>&, double, double);
+extern template Aabb<double> sweptBounds(const MovingBox<double>&, double, double);
 extern template std::optional<double> detail::firstContactExactly(const MovingBox<float>&,
                                                                   const MovingBox<float>&) noexcept;
 extern template std::optional<double> detail::firstContactExactly(

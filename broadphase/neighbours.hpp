@@ -2,7 +2,7 @@
 #pragma once
 
 // Who is near whom: all neighbours of all proxies at once, as agents ask in every frame. A query for
-// each of them looks at every couple twice, and at its surroundings anew; here boxes are grown by
+// each of them looks at every pair twice, and at its surroundings anew; here boxes are grown by
 // half the distance and joined, as pairs are found.
 //
 // Threads   find() reads the grid, as queries do, and needs this object for itself.
@@ -23,15 +23,15 @@ template <class Scalar>
 class HASHPHASE_BROADPHASE_EXPORT Neighbours {
 public:
     /// Every two proxies of the grid whose boxes are at most `distance` [m] apart (closed, by the
-    /// straight line between the nearest points; 0 apart where they overlap), each couple once, in
+    /// straight line between the nearest points; 0 apart where they overlap), each pair once, in
     /// any order. Valid until the next call. None for a negative or NaN distance. The result does
-    /// not depend on `parallelFor`. Cost: that of an update of the grid, and of the couples; at most
+    /// not depend on `parallelFor`. Cost: that of an update of the grid, and of the pairs; at most
     /// that of comparing all with all. Gives back memory that has been room for more than eight times as
-    /// many proxies, or couples, in 256 calls in a row.
+    /// many proxies, or pairs, in 256 calls in a row.
     [[nodiscard]] std::span<const ProxyPair> find(const Grid<Scalar>& grid, Scalar distance,
                                                   ParallelFor parallelFor = serialFor) &;
 
-    /// What the last find() cost; hits are couples.
+    /// What the last find() cost; hits are pairs.
     [[nodiscard]] const QueryCost& lastCost() const noexcept { return cost_; }
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 

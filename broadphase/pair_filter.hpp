@@ -70,7 +70,7 @@ struct PairChanges {
 struct PairCost {
     std::uint64_t boxesTested = 0;
     /// Tested whether they still overlap: one of the two is mobile.
-    std::uint64_t couplesWatched = 0;
+    std::uint64_t pairsWatched = 0;
     UpdateCost grid;
 };
 

@@ -10,7 +10,7 @@ namespace hashphase {
 namespace {
 
 [[maybe_unused]] constexpr const char* kMustNotAsk =
-    "Pairs are not announced, nor filtered again, from within the filter.";
+    "Pairs are neither found nor filtered again from within the filter.";
 
 template <class Scalar>
 detail::Sweeping<Scalar>* sweepingOf(Sweeps<Scalar>* sweeps) {
@@ -48,18 +48,18 @@ PairChanges Pairs<Scalar>::update(PairFilter filter, ParallelFor parallelFor) & 
 }
 
 template <class Scalar>
-PairChanges Pairs<Scalar>::announce(ProxyId id, PairFilter filter) & {
-    HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid can announce its pairs.");
+PairChanges Pairs<Scalar>::findPairsNow(ProxyId id, PairFilter filter) & {
+    HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid has pairs to find.");
     HASHPHASE_ASSERT(grid_.takesChanges(), kMustNotAsk);
-    return grid_.contains(id) ? tracker_.announce(id.index, filter) : PairChanges{};
+    return grid_.contains(id) ? tracker_.findPairsNow(id.index, filter) : PairChanges{};
 }
 
 template <class Scalar>
-PairChanges Pairs<Scalar>::announce(ProxyId id, std::span<const ProxyId> others,
-                                    PairFilter filter) & {
-    HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid can announce its pairs.");
+PairChanges Pairs<Scalar>::findPairsNow(ProxyId id, std::span<const ProxyId> others,
+                                        PairFilter filter) & {
+    HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid has pairs to find.");
     HASHPHASE_ASSERT(grid_.takesChanges(), kMustNotAsk);
-    return grid_.contains(id) ? tracker_.announce(id.index, others, filter) : PairChanges{};
+    return grid_.contains(id) ? tracker_.findPairsNow(id.index, others, filter) : PairChanges{};
 }
 
 template <class Scalar>

@@ -11,7 +11,7 @@
 //
 // A frame   move proxies in the grid, then update() here (it updates the grid).
 // Threads   every member needs the grid and this object for itself.
-// Failure   An exception, of the filter or for want of memory, is passed on. After one from announce()
+// Failure   An exception, of the filter or for want of memory, is passed on. After one from findPairsNow()
 //           or refilter() nothing has happened; one from update() has ended nothing: the frame goes
 //           on, and the next update() tells all that has changed since the last one that returned.
 // Memory    follows proxies and pairs. Of what overlaps, that which the filter refused is remembered,
@@ -65,17 +65,26 @@ public:
     /// Pairs of one proxy, which is alive (asserted), that have come to overlap since the last update,
     /// at once; update() will not report them again. Returns these births; of what sweeps, itself or
     /// another one, not what it meets on its way, but what it touches where that begins. Deaths, now and
-    /// then, of pairs announced since the last update of which a proxy was removed since: they do not
-    /// gather where nobody updates. update() reports the rest of them.
+    /// then, of pairs found at once of which a proxy was removed since: they do not gather where no
+    /// update() follows. update() reports the rest of them.
     /// Cost: that of a box query.
-    PairChanges announce(ProxyId id, PairFilter filter) &;
+    PairChanges findPairsNow(ProxyId id, PairFilter filter) &;
 
     /// The same of its pairs with others alone, each named once; those that are not alive are passed
     /// over. Cost: O(others).
-    PairChanges announce(ProxyId id, std::span<const ProxyId> others, PairFilter filter) &;
+    PairChanges findPairsNow(ProxyId id, std::span<const ProxyId> others, PairFilter filter) &;
+
+    [[deprecated("findPairsNow()")]] PairChanges announce(ProxyId id, PairFilter filter) & {
+        return findPairsNow(id, filter);
+    }
+    [[deprecated("findPairsNow()")]] PairChanges announce(ProxyId id,
+                                                          std::span<const ProxyId> others,
+                                                          PairFilter filter) & {
+        return findPairsNow(id, others, filter);
+    }
 
     /// Asks the filter again about everything that the proxy, which is alive (asserted), overlaps, or
-    /// met on its way at the last update, refused or not, at once; and deaths as announce() does. Cost:
+    /// met on its way at the last update, refused or not, at once; and deaths as findPairsNow() does. Cost:
     /// that of a few box queries. Where many proxies have changed since the last update, the first call
     /// after it files their boxes of that update once for all calls up to the next one.
     PairChanges refilter(ProxyId id, PairFilter filter) &;

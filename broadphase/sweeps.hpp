@@ -118,7 +118,7 @@ std::optional<Scalar> Sweeps<Scalar>::keyOnTheWay(const auto& region, const Moti
             least = key;
         }
     };
-    const std::optional<Scalar> ofAll = keyOf(wayBounds(way));
+    const std::optional<Scalar> ofAll = keyOf(sweptBounds(way));
     if (!ofAll || motion.sweep == Sweep::box) {
         add(ofAll);
         return least;
@@ -130,7 +130,7 @@ std::optional<Scalar> Sweeps<Scalar>::keyOnTheWay(const auto& region, const Moti
     const int count = static_cast<int>(
         distance < mostParts * size ? std::max(std::ceil(distance / size), 1.0) : mostParts);
     for (int i = 0; i < count; ++i) {
-        add(keyOf(wayBounds(way, static_cast<double>(i) / count, (i + 1.0) / count)));
+        add(keyOf(sweptBounds(way, static_cast<double>(i) / count, (i + 1.0) / count)));
     }
     return least;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Sorts couples of small numbers by their digits: linear where comparing them would mispredict a
+// Sorts pairs of small numbers by their digits: linear where comparing them would mispredict a
 // branch at every second step. After Knuth, "The Art of Computer Programming" 3, 5.2.5, algorithm R.
 
 #include <algorithm>

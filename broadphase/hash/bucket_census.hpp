@@ -36,19 +36,19 @@ public:
             const double spread = static_cast<double>(high) - static_cast<double>(low);
             share_[axis] = sum / (count * spread);
             longFrom_[axis] = static_cast<Scalar>(kLong * sum / count);
-            couples_[axis] = couplesAlong(axis, crowd, boxes);
+            pairs_[axis] = pairsAlong(axis, crowd, boxes);
         }
     }
 
-    /// The axis along which the fewest of a sample of couples are beside each other, or where boxes
+    /// The axis along which the fewest of a sample of pairs are beside each other, or where boxes
     /// are shortest by how far the crowd spreads; none where a sweep spares less than half of the
     /// tests.
     [[nodiscard]] std::optional<std::uint32_t> sweepAxis() const {
         std::optional<std::uint32_t> best;
         for (std::uint32_t axis = 0; axis < 3; ++axis) {
-            const bool isWorthIt = 2 * couples_[axis] < kSample * (kSample - 1) / 2;
-            if (isWorthIt && (!best || std::pair(couples_[axis], share_[axis]) <
-                                           std::pair(couples_[*best], share_[*best]))) {
+            const bool isWorthIt = 2 * pairs_[axis] < kSample * (kSample - 1) / 2;
+            if (isWorthIt && (!best || std::pair(pairs_[axis], share_[axis]) <
+                                           std::pair(pairs_[*best], share_[*best]))) {
                 best = axis;
             }
         }
@@ -76,26 +76,26 @@ private:
     static constexpr double kLong = 8;
     static constexpr std::uint32_t kSample = 48;
 
-    static std::uint32_t couplesAlong(std::size_t axis, std::span<const std::uint32_t> crowd,
-                                      std::span<const PaddedBox<Scalar>> boxes) {
+    static std::uint32_t pairsAlong(std::size_t axis, std::span<const std::uint32_t> crowd,
+                                    std::span<const PaddedBox<Scalar>> boxes) {
         std::array<const PaddedBox<Scalar>*, kSample> sample;
         for (std::size_t k = 0; k < kSample; ++k) {
             sample[k] = &boxes[crowd[k * crowd.size() / kSample]];
         }
-        std::uint32_t couples = 0;
+        std::uint32_t pairs = 0;
         for (std::size_t a = 0; a < kSample; ++a) {
             for (std::size_t b = 0; b < a; ++b) {
                 const bool beginsBefore = sample[a]->low[axis] <= sample[b]->high[axis];
                 const bool endsBehind = sample[b]->low[axis] <= sample[a]->high[axis];
-                couples += static_cast<std::uint32_t>(beginsBefore & endsBehind);
+                pairs += static_cast<std::uint32_t>(beginsBefore & endsBehind);
             }
         }
-        return couples;
+        return pairs;
     }
 
     std::array<double, 3> share_{};     // mean edge by spread of the min corners
     std::array<Scalar, 3> longFrom_{};  // [m]
-    std::array<std::uint32_t, 3> couples_{};
+    std::array<std::uint32_t, 3> pairs_{};
 };
 
 }  // namespace hashphase::detail

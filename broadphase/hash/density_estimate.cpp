@@ -9,8 +9,8 @@
 namespace hashphase::detail {
 namespace {
 
-// Fewer couples than this say little about the share.
-constexpr std::uint64_t kFewCouples = 16;
+// Fewer pairs than this say little about the share.
+constexpr std::uint64_t kFewPairs = 16;
 
 // Every third bit, beginning with the lowest, is one of x.
 std::uint64_t spreadBits(std::uint64_t x) {
@@ -60,14 +60,14 @@ DensityEstimate::Shares DensityEstimate::count(std::size_t pointCount) {
     std::sort(keys_.begin(), keys_.end());
     // Neighbours in this order share their cells down to some scale; a run of those that share one,
     // ending here, has so many in it.
-    std::array<std::uint64_t, kScales> couples{};
+    std::array<std::uint64_t, kScales> pairs{};
     std::array<std::uint64_t, kScales> run{};
     std::size_t sharedBefore = 0;
     for (std::size_t i = 1; i < keys_.size(); ++i) {
         const auto differing = static_cast<std::size_t>(std::bit_width(keys_[i] ^ keys_[i - 1]));
         const std::size_t shared = kScales - (differing + 2) / 3;
         for (std::size_t scale = 0; scale < shared; ++scale) {
-            couples[scale] += ++run[scale];
+            pairs[scale] += ++run[scale];
         }
         for (std::size_t scale = shared; scale < sharedBefore; ++scale) {
             run[scale] = 0;
@@ -76,9 +76,9 @@ DensityEstimate::Shares DensityEstimate::count(std::size_t pointCount) {
     }
     Shares shares;
     const auto points = static_cast<double>(pointCount);
-    for (std::size_t scale = 0; scale < kScales && couples[scale] >= kFewCouples; ++scale) {
+    for (std::size_t scale = 0; scale < kScales && pairs[scale] >= kFewPairs; ++scale) {
         shares.log[scale] =
-            std::log2(2 * static_cast<double>(couples[scale]) / (points * (points - 1)));
+            std::log2(2 * static_cast<double>(pairs[scale]) / (points * (points - 1)));
         shares.last = scale;
     }
     if (shares.last > 0) {

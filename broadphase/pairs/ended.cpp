@@ -12,7 +12,7 @@
 
 namespace hashphase::detail {
 
-// A candidate dies when its boxes overlapped at the last update, or were announced since, and do not
+// A candidate dies when its boxes overlapped at the last update, or were found between updates, and do not
 // now, or when one of the two sweeps now, unless they touch on their ways, see findSwept(). All those
 // that are not watched are found here before their boxes are lost.
 template <class Scalar>
@@ -22,7 +22,7 @@ void PairTracker<Scalar>::findEnded(ParallelFor parallelFor) {
         return;  // see findBegunOfPairs()
     }
     const auto watched = amongMobile_.pairs();
-    cost_.couplesWatched = watched.size() + toResting_.size();
+    cost_.pairsWatched = watched.size() + toResting_.size();
     for (const auto [a, b] : selectApart(watched, nullptr, frame_.now.data(), parallelFor)) {
         endedPairs_.push_back(pairKey(proxies_.mobile[a], proxies_.mobile[b]));
     }

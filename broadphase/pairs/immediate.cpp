@@ -18,13 +18,13 @@ PairChanges PairTracker<Scalar>::findNow(PairFilter filter, const Find& find) {
 }
 
 template <class Scalar>
-PairChanges PairTracker<Scalar>::announce(std::uint32_t proxyIndex, PairFilter filter) {
+PairChanges PairTracker<Scalar>::findPairsNow(std::uint32_t proxyIndex, PairFilter filter) {
     return findNow(filter, [&] { findNewCandidates(proxyIndex); });
 }
 
 template <class Scalar>
-PairChanges PairTracker<Scalar>::announce(std::uint32_t proxyIndex, std::span<const ProxyId> others,
-                                          PairFilter filter) {
+PairChanges PairTracker<Scalar>::findPairsNow(std::uint32_t proxyIndex,
+                                              std::span<const ProxyId> others, PairFilter filter) {
     return findNow(filter, [&] {
         for (const ProxyId other : others) {
             if (other.index != proxyIndex && proxies_.contains(other)) {
@@ -206,8 +206,8 @@ void PairTracker<Scalar>::markImmediate(std::span<const PairKey> candidates, boo
     }
 }
 
-// Where proxies come, are announced and go, and there is no update: whenever twice as many candidates are
-// announced as were left the last time, so that each is looked at about once.
+// Where proxies come, their pairs are found at once, they go, and no update follows: whenever twice as many
+// candidates are immediate as were left the last time, so that each is looked at about once.
 template <class Scalar>
 bool PairTracker<Scalar>::areManyImmediate() const noexcept {
     return immediate_.size() > fewImmediate_ && proxies_.removedImmediate.count > 0;
@@ -243,9 +243,9 @@ void PairTracker<Scalar>::endImmediateOfRemoved() noexcept {
     proxies_.giveBack(proxies_.removedImmediate);
 }
 
-template PairChanges PairTracker<float>::announce(std::uint32_t, PairFilter);
-template PairChanges PairTracker<float>::announce(std::uint32_t, std::span<const ProxyId>,
-                                                  PairFilter);
+template PairChanges PairTracker<float>::findPairsNow(std::uint32_t, PairFilter);
+template PairChanges PairTracker<float>::findPairsNow(std::uint32_t, std::span<const ProxyId>,
+                                                      PairFilter);
 template PairChanges PairTracker<float>::refilter(std::span<const ProxyId>, PairFilter);
 template PairChanges PairTracker<float>::refilter(std::span<const ProxyPair>, PairFilter);
 template void PairTracker<float>::askAgainAboutFew(std::span<const ProxyId>, PairFilter);
@@ -260,9 +260,9 @@ template void PairTracker<float>::markImmediate(std::span<const PairKey>, bool) 
 template bool PairTracker<float>::areManyImmediate() const noexcept;
 template void PairTracker<float>::findImmediateOfRemoved();
 template void PairTracker<float>::endImmediateOfRemoved() noexcept;
-template PairChanges PairTracker<double>::announce(std::uint32_t, PairFilter);
-template PairChanges PairTracker<double>::announce(std::uint32_t, std::span<const ProxyId>,
-                                                   PairFilter);
+template PairChanges PairTracker<double>::findPairsNow(std::uint32_t, PairFilter);
+template PairChanges PairTracker<double>::findPairsNow(std::uint32_t, std::span<const ProxyId>,
+                                                       PairFilter);
 template PairChanges PairTracker<double>::refilter(std::span<const ProxyId>, PairFilter);
 template PairChanges PairTracker<double>::refilter(std::span<const ProxyPair>, PairFilter);
 template void PairTracker<double>::askAgainAboutFew(std::span<const ProxyId>, PairFilter);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-// Which candidates overlapped at the last update, or have been announced since, and which have come to
+// Which candidates overlapped at the last update, or have been found since, and which have come to
 // overlap: of one proxy, or of all.
 
 #include <broadphase/pairs/pair_tracker.hpp>
@@ -44,7 +44,7 @@ void PairTracker<Scalar>::indexLastUpdate(std::size_t mostUnindexed) {
 }
 
 // Calls visit for each of the proxy's candidates that overlapped at the last update, or met on their ways
-// then, or were announced since.
+// then, or were found since.
 template <class Scalar>
 void PairTracker<Scalar>::forKnownPairs(std::uint32_t proxyIndex, VisitPair visit) {
     forOverlapsAtUpdate(proxyIndex, visit);
@@ -91,7 +91,7 @@ void PairTracker<Scalar>::forSwept(std::uint32_t proxyIndex, VisitPair visit) {
     }
 }
 
-// forKnownPairs() of all; some twice, where they are announced or kept.
+// forKnownPairs() of all; some twice, where they are immediate or kept.
 template <class Scalar>
 void PairTracker<Scalar>::forAllKnown(VisitPair visit) {
     indexLastUpdate(0);
@@ -127,7 +127,7 @@ void PairTracker<Scalar>::forAllKnown(VisitPair visit) {
     }
 }
 
-// The proxy's candidates that overlap now, did not at the last update, and were not announced since; those
+// The proxy's candidates that overlap now, did not at the last update, and were not found since; those
 // with others that are wanted.
 template <class Scalar>
 void PairTracker<Scalar>::findNewCandidates(std::uint32_t proxyIndex,

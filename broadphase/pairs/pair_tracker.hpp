@@ -55,9 +55,9 @@ public:
     // --- The rest of pairs.hpp -------------------------------------------------------------------
 
     void setSweeps(Sweeping<Scalar>* sweeping);
-    PairChanges announce(std::uint32_t proxyIndex, PairFilter filter);
-    PairChanges announce(std::uint32_t proxyIndex, std::span<const ProxyId> others,
-                         PairFilter filter);
+    PairChanges findPairsNow(std::uint32_t proxyIndex, PairFilter filter);
+    PairChanges findPairsNow(std::uint32_t proxyIndex, std::span<const ProxyId> others,
+                             PairFilter filter);
     PairChanges refilter(std::span<const ProxyId> ids, PairFilter filter);
     PairChanges refilter(std::span<const ProxyPair> pairs, PairFilter filter);
     PairChanges refilterAll(PairFilter filter);
@@ -201,7 +201,7 @@ private:
     bool forgetRefused(PairKey c) noexcept;
     PairChanges report(PairChangeLists& lists) noexcept;
 
-    // What was known at the last update, or has been announced since.
+    // What was known at the last update, or has been found since.
     using VisitPair = FunctionRef<void(PairKey)>;
     void indexLastUpdate(std::size_t mostUnindexed);
     void forKnownPairs(std::uint32_t proxyIndex, VisitPair visit);
@@ -282,7 +282,7 @@ private:
     std::vector<PairKey> restedPairs_;
     std::vector<PairKey>
         sweptBySecond_;  // swept_ with the halves exchanged, sorted, when it is asked for
-    std::vector<PairKey> newCandidates_;  // what is announced by the call under way
+    std::vector<PairKey> newCandidates_;  // what the call under way has found
     std::vector<PairKey> stillEnded_;
     std::vector<PairKey> stillBegun_;
     PairList selected_;

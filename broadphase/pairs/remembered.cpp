@@ -163,7 +163,7 @@ void PairTracker<Scalar>::forgetWatched() noexcept {
     kept_ = {};
 }
 
-// As of the last update, and what has been announced since.
+// As of the last update, and what has been found since.
 template <class Scalar>
 void PairTracker<Scalar>::rememberPairs() {
     FlatSet pairs;
@@ -252,7 +252,7 @@ void PairTracker<Scalar>::findBegunOfPairs(PairFilter filter, ParallelFor parall
             }
         }
     }
-    cost_.couplesWatched = pile_->pairs.size();
+    cost_.pairsWatched = pile_->pairs.size();
     for (const PairKey c : pile_->pairs.keys()) {
         if (!overlapNow(c) && !std::binary_search(sweptNow_.begin(), sweptNow_.end(), c)) {
             endedPairs_.push_back(c);

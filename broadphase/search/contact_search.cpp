@@ -218,7 +218,7 @@ void ContactSearch<Scalar>::addSegments(std::uint32_t motion, const MovingBox<Sc
     double begin = part.from;
     for (int i = 1; i <= count; ++i) {
         const double end = i == count ? part.to : part.from + (part.to - part.from) * i / count;
-        segments_.push(wayBounds(way, begin, end));
+        segments_.push(sweptBounds(way, begin, end));
         motionOfSegment_.push_back(motion);
         begin = end;
     }
@@ -379,7 +379,7 @@ void ContactSearch<Scalar>::meetEachOther(ParallelFor parallelFor) {
         const double to = static_cast<double>(slice + 1) / count;
         slice_.clear();
         for (const Motion<Scalar>& motion : motions_) {
-            slice_.push_back(padded(wayBounds(motion.way, from, to)));
+            slice_.push_back(padded(sweptBounds(motion.way, from, to)));
         }
         sliceTable_.build(motionNumbers_, slice_, {}, parallelFor);
         KernelCost cost;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Finds all overlapping couples of a table, or of two: each entry against the half of its
+// Finds all overlapping pairs of a table, or of two: each entry against the half of its
 // neighbourhood that lies after it, on its own level, and levels against each other.
 
 #include <broadphase/geometry/box_columns.hpp>
@@ -24,7 +24,7 @@ template <class Scalar>
     return std::max(table.largestCell(), levels.empty() ? 0 : levels.back().count());
 }
 
-/// Appends every two entries of the table whose boxes overlap, each couple once. With groups[2 * index] of
+/// Appends every two entries of the table whose boxes overlap, each pair once. With groups[2 * index] of
 /// every index, and with what those of the table have together, it leaves out those that may not pair.
 template <class Scalar>
 void joinTable(const Table<Scalar>& table, ParallelFor parallelFor, PairParts& parts,

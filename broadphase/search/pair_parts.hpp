@@ -12,7 +12,7 @@
 
 namespace hashphase::detail {
 
-/// Couples that a loop finds on several threads, put together in the loop's order: what it finds
+/// Pairs that a loop finds on several threads, put together in the loop's order: what it finds
 /// does not depend on the threads. Keeps its memory.
 class PairParts {
 public:

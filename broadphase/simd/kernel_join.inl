@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-// Kernel part: finds the couples within a level. See kernels.inl.
+// Kernel part: finds the pairs within a level. See kernels.inl.
 
 /// The queries of a join: for all that overlaps an entry, or for what it may pair with.
 struct ForAll {

@@ -45,10 +45,10 @@ struct IndexPair {
     friend bool operator==(const IndexPair&, const IndexPair&) = default;
 };
 
-/// Kernels ask for room for so many couples at a time, at most.
+/// Kernels ask for room for so many pairs at a time, at most.
 inline constexpr std::uint32_t kMostRoom = 256;
 
-/// Where a kernel writes couples: grow(sink, count) makes room for at least `count` behind `next`;
+/// Where a kernel writes pairs: grow(sink, count) makes room for at least `count` behind `next`;
 /// false ends the search.
 struct PairSink {
     IndexPair* next;
@@ -57,7 +57,7 @@ struct PairSink {
     void* owner;
 };
 
-/// Room for `count` more couples; false ends the search.
+/// Room for `count` more pairs; false ends the search.
 [[gnu::always_inline]] inline bool makeRoom(PairSink& sink, std::size_t count) {
     return static_cast<std::size_t>(sink.end - sink.next) >= count || sink.grow(sink, count);
 }
@@ -125,7 +125,7 @@ inline constexpr std::uint32_t kNoBucket = ~std::uint32_t{0};
 
 /// Agents sorted by the cells of a wrapped grid (see wrapped_grid.hpp), as plain arrays, and what they look for.
 template <class Scalar>
-struct CrowdView {
+struct RadiusView {
     const Scalar* columns[3];  // positions, by axis; of two axes, what is the same along the third
     int axisCount;             // columns that are to be compared: two or three
     const std::uint32_t* numbers;    // 0, 1, 2 ...
@@ -139,7 +139,7 @@ struct CrowdView {
 /// Where a kernel keeps the candidates of a cell's agents, and what it finds: grow(tile, count)
 /// makes room for `count` candidates.
 template <class Scalar>
-struct CrowdTile {
+struct RadiusTile {
     Scalar* columns[3];
     std::uint32_t* numbers;
     std::uint8_t* groups;
@@ -147,7 +147,7 @@ struct CrowdTile {
     std::uint64_t* members;  // the same for kMostGroups groups
     std::uint32_t* found;    // the neighbours of one agent
     std::uint32_t capacity;
-    void (*grow)(CrowdTile& tile, std::size_t count);
+    void (*grow)(RadiusTile& tile, std::size_t count);
     void* owner;
     std::uint32_t count;  // of candidates
     std::uint32_t wordCount;
@@ -158,7 +158,7 @@ struct CrowdTile {
 inline constexpr std::uint32_t kMostGroups = 32;
 
 /// Whom a kernel tells each agent's neighbours.
-struct CrowdVisitor {
+struct RadiusVisitor {
     void (*visit)(void* owner, std::uint32_t agent, const std::uint32_t* neighbours,
                   std::size_t count);
     void* owner;
@@ -173,7 +173,7 @@ struct Kernels {
                       std::uint32_t* buckets);
 
     /// Finds every two entries of a level with cells that overlap, the first one from firstEntry to
-    /// lastEntry; over the whole level each couple once. Where `groups` is not null, this and the
+    /// lastEntry; over the whole level each pair once. Where `groups` is not null, this and the
     /// next one leave out those that may not pair. All searches return false when the sink has
     /// ended them.
     bool (*joinLevel)(const Level<Scalar>& level, const GroupsView* groups,
@@ -218,29 +218,29 @@ struct Kernels {
     void (*findRange)(const Scalar* column, std::uint32_t first, std::uint32_t last, Scalar* least,
                       Scalar* greatest);
 
-    /// Writes those of `count` couples whose boxes do not overlap, the boxes order[a] and order[b],
+    /// Writes those of `count` pairs whose boxes do not overlap, the boxes order[a] and order[b],
     /// or a and b where order is null, to `apart`, which has room for all. Returns their number.
-    std::size_t (*selectApart)(const IndexPair* couples, std::size_t count,
+    std::size_t (*selectApart)(const IndexPair* pairs, std::size_t count,
                                const std::uint32_t* order, const PaddedBox<Scalar>* boxes,
                                IndexPair* apart);
 
     /// Counts the neighbours of the agents first to last. This and the next two return how many
     /// neighbours there are in all.
-    std::uint64_t (*countCrowd)(const CrowdView<Scalar>& crowd, std::uint32_t first,
-                                std::uint32_t last, CrowdTile<Scalar>& tile, std::uint32_t* counts,
-                                KernelCost& cost);
+    std::uint64_t (*countWithin)(const RadiusView<Scalar>& view, std::uint32_t first,
+                                 std::uint32_t last, RadiusTile<Scalar>& tile,
+                                 std::uint32_t* counts, KernelCost& cost);
 
     /// The same for each group: counts[agent * groupCount + group]. Groups that are not below
     /// groupCount are left out.
-    std::uint64_t (*countCrowdGroups)(const CrowdView<Scalar>& crowd, std::uint32_t first,
-                                      std::uint32_t last, CrowdTile<Scalar>& tile,
-                                      const std::uint8_t* groups, std::uint32_t groupCount,
-                                      std::uint32_t* counts, KernelCost& cost);
+    std::uint64_t (*countGroupsWithin)(const RadiusView<Scalar>& view, std::uint32_t first,
+                                       std::uint32_t last, RadiusTile<Scalar>& tile,
+                                       const std::uint8_t* groups, std::uint32_t groupCount,
+                                       std::uint32_t* counts, KernelCost& cost);
 
     /// Tells the visitor the neighbours of each of the agents first to last.
-    std::uint64_t (*listCrowd)(const CrowdView<Scalar>& crowd, std::uint32_t first,
-                               std::uint32_t last, CrowdTile<Scalar>& tile,
-                               const CrowdVisitor& visitor, KernelCost& cost);
+    std::uint64_t (*listWithin)(const RadiusView<Scalar>& view, std::uint32_t first,
+                                std::uint32_t last, RadiusTile<Scalar>& tile,
+                                const RadiusVisitor& visitor, KernelCost& cost);
 };
 
 }  // namespace hashphase::detail

@@ -3,10 +3,10 @@
 
 // The loops that find overlaps, compiled for several instruction sets and chosen at run time.
 //
-// All give the same couples in the same order; the scalar one is the definition.
+// All give the same pairs in the same order; the scalar one is the definition.
 //
 // Threads   The instruction set is chosen once, or by a test while nothing else runs. The kernels
-//           may run anywhere, each with a list of couples of its own.
+//           may run anywhere, each with a list of pairs of its own.
 
 #include <broadphase/export.hpp>
 #include <broadphase/simd/kernel_types.hpp>
@@ -40,7 +40,7 @@ HASHPHASE_BROADPHASE_EXPORT void useInstructionSet(InstructionSet set) noexcept;
 template <class Scalar>
 [[nodiscard]] HASHPHASE_BROADPHASE_EXPORT const Kernels<Scalar>& kernels() noexcept;
 
-/// A growing array of couples for kernels to write to. Does not initialise what it grows by, and
+/// A growing array of pairs for kernels to write to. Does not initialise what it grows by, and
 /// keeps its memory.
 class PairList {
 public:
@@ -63,7 +63,7 @@ public:
         });
     }
 
-    /// Appends one couple.
+    /// Appends one pair.
     void push(IndexPair pair) {
         append([&](PairSink& sink) {
             makeRoom(sink, 1);
@@ -71,12 +71,12 @@ public:
         });
     }
 
-    /// Room for `count` couples in all, whose values are the caller's to write.
+    /// Room for `count` pairs in all, whose values are the caller's to write.
     [[nodiscard]] IndexPair* resize(std::size_t count);
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept { return capacity_ * sizeof(IndexPair); }
     [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
-    /// Gives back room for more couples than there are. Where memory runs out, nothing has changed.
+    /// Gives back room for more pairs than there are. Where memory runs out, nothing has changed.
     void shrink();
 
     void swap(PairList& other) noexcept {
@@ -104,7 +104,7 @@ public:
 
     [[nodiscard]] std::span<const IndexPair> pairs() const noexcept { return {data_, size_}; }
 
-    /// Calls kernel(PairSink&), whose couples take the place of all earlier ones.
+    /// Calls kernel(PairSink&), whose pairs take the place of all earlier ones.
     template <std::invocable<PairSink&> Kernel>
     void assign(const Kernel& kernel) {
         PairSink sink{data_, data_ + capacity_, &grow, this};
@@ -124,7 +124,7 @@ private:
     std::size_t capacity_ = kFew;
 };
 
-/// Calls search(PairSink&), and use(couples) with what it finds, block by block, in the order in which it
+/// Calls search(PairSink&), and use(pairs) with what it finds, block by block, in the order in which it
 /// is found: however many there are, they take the memory of a block.
 template <std::invocable<PairSink&> Search, std::invocable<std::span<const IndexPair>> Use>
 void findInBlocks(const Search& search, const Use& use) {

@@ -51,9 +51,9 @@ struct Run {
 
 #include <broadphase/simd/kernel_rows.inl>
 
-#include <broadphase/simd/kernel_crowd.inl>
 #include <broadphase/simd/kernel_file.inl>
 #include <broadphase/simd/kernel_join.inl>
+#include <broadphase/simd/kernel_radius.inl>
 #include <broadphase/simd/kernel_ray.inl>
 #include <broadphase/simd/kernel_volume.inl>
 #include <broadphase/simd/kernel_walk.inl>
@@ -89,14 +89,14 @@ void findRange(const Scalar* column, std::uint32_t first, std::uint32_t last, Sc
 }
 
 template <class Scalar>
-std::size_t selectApart(const IndexPair* couples, std::size_t count, const std::uint32_t* order,
+std::size_t selectApart(const IndexPair* pairs, std::size_t count, const std::uint32_t* order,
                         const PaddedBox<Scalar>* boxes, IndexPair* apart) {
     std::size_t selected = 0;
     for (std::size_t i = 0; i < count; ++i) {
-        const IndexPair couple = couples[i];
-        const std::uint32_t a = order != nullptr ? order[couple.a] : couple.a;
-        const std::uint32_t b = order != nullptr ? order[couple.b] : couple.b;
-        apart[selected] = couple;
+        const IndexPair pair = pairs[i];
+        const std::uint32_t a = order != nullptr ? order[pair.a] : pair.a;
+        const std::uint32_t b = order != nullptr ? order[pair.b] : pair.b;
+        apart[selected] = pair;
         selected += isApart(boxes[a], boxes[b]) ? 1 : 0;
     }
     return selected;
@@ -114,6 +114,6 @@ constexpr Kernels<Scalar> kKernels{&fileBoxes<Scalar>,
                                    &joinList<Scalar>,
                                    &findRange<Scalar>,
                                    &selectApart<Scalar>,
-                                   &countCrowd<Scalar>,
-                                   &countCrowdGroups<Scalar>,
-                                   &listCrowd<Scalar>};
+                                   &countWithin<Scalar>,
+                                   &countGroupsWithin<Scalar>,
+                                   &listWithin<Scalar>};

@@ -115,7 +115,7 @@ std::string lossOf(const EffectPrices& prices, Effect effect, EffectSet without)
         case Effect::pairs:
             return amount(prices.whole().present) + " pairs that nobody knows";
         case Effect::response:
-            return amount(lacking.interpenetrating) + " couples inside each other (" +
+            return amount(lacking.interpenetrating) + " pairs inside each other (" +
                    amount(prices.whole().interpenetrating) + " with it)";
         case Effect::sweep:
             return whole.text(SceneCounter::sweepersStopped, "bodies fly through what they hit");

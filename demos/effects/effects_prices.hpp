@@ -27,7 +27,7 @@ struct PricedVariant {
     SceneFootprint footprint;     // in the end
     double visible = 0;           // these are means of the measured frames: bodies in view
     double present = 0;           // pairs
-    double interpenetrating = 0;  // couples of spheres
+    double interpenetrating = 0;  // pairs of spheres
     double offGround = 0;         // bodies that should stand on it
     std::optional<double> allocations;
 };

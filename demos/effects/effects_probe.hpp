@@ -11,7 +11,7 @@ class EffectsProbe {
 public:
     explicit EffectsProbe(const EffectsScene& scene);
 
-    /// Couples of spheres that reach into each other by more than a twentieth of a radius.
+    /// Pairs of spheres that reach into each other by more than a twentieth of a radius.
     [[nodiscard]] std::size_t interpenetrating(const EffectsWorld& world) const;
 
     /// Bodies that walk, and whose height is wrong by more than a centimetre.

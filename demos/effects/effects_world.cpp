@@ -12,7 +12,7 @@ namespace {
 constexpr double kScreenWidth = 1600;
 constexpr double kScreenHeight = 900;
 
-View<float> viewOf(const CameraPose& pose) {
+Camera<float> viewOf(const CameraPose& pose) {
     return {cameraView(pose).viewProjection, kDepthRange, {0, 0, kScreenWidth, kScreenHeight}};
 }
 

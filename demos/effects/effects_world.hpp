@@ -43,7 +43,7 @@ private:
     EffectSet declared_;
     Simulation<float> simulation_;
     std::vector<BodyId> bodies_;
-    View<float> view_;
+    Camera<float> view_;
     std::vector<Pixel> clicks_;         // of the frame
     std::vector<ProxyId> picked_;       // by them
     std::vector<ProxyId> selected_;     // by the last rectangle

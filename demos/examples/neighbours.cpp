@@ -4,7 +4,7 @@
 // stays near those within 5 m. You should see how far they agree on where to fly, from 0 (not at all)
 // to 1 (all the same way), grow from near 0 to near 1.
 
-#include <broadphase/crowd.hpp>
+#include <broadphase/radius_search.hpp>
 
 #include <cstdio>
 #include <random>
@@ -51,16 +51,16 @@ int main() {
     }
     std::printf("agreement at first: %.2f\n", agreement(birds));
 
-    Crowd<float> crowd;
+    RadiusSearch<float> search;
     QueryCost first;
     for (int frame = 0; frame < 200; ++frame) {
-        crowd.take(grid, kRadius);
+        search.take(grid, kRadius);
         const QueryCost cost =
-            crowd.forEach([&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) {
-                Bird& bird = birds[crowd.id(agent).index];
+            search.forEach([&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) {
+                Bird& bird = birds[search.id(agent).index];
                 bird.wish.setZero();
                 for (const std::uint32_t neighbour : neighbours) {
-                    const Bird& other = birds[crowd.id(neighbour).index];
+                    const Bird& other = birds[search.id(neighbour).index];
                     const Vector apart = other.position - bird.position;
                     bird.wish += other.velocity + apart - 10 * apart / (apart.squaredNorm() + 0.1F);
                 }

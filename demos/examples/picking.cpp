@@ -41,12 +41,12 @@ int main() {
         const ProxyId id = grid.add(boxAround(middle, {0.3F, 0.4F, 0.3F}));
         names[id.index] = {static_cast<char>('a' + i % 8), static_cast<char>('1' + i / 8)};
     }
-    const View<float> view(viewProjection({0, 2, 4}, 0.3F, 800.0F / 600), DepthRange::zeroToOne,
-                           Viewport{0, 0, 800, 600});
+    const Camera<float> camera(viewProjection({0, 2, 4}, 0.3F, 800.0F / 600), DepthRange::zeroToOne,
+                               Viewport{0, 0, 800, 600});
 
     // Clicks: the nearest piece below the pointer.
     for (const Pixel& pixel : {Pixel(450, 330), Pixel(400, 330), Pixel(660, 420)}) {
-        const Picked<float> picked = pickNearest(grid, view.rayThrough(pixel));
+        const Picked<float> picked = pickNearest(grid, camera.rayThrough(pixel));
         if (picked.id.isNull()) {
             std::printf("(%.0f, %.0f): nothing\n", pixel.x(), pixel.y());
         } else {
@@ -57,7 +57,7 @@ int main() {
 
     // All that is below the pointer, from near to far.
     std::vector<Picked<float>> below;
-    pickAll(grid, view.rayThrough({450, 330}), below);
+    pickAll(grid, camera.rayThrough({450, 330}), below);
     std::printf("behind one another:");
     for (const Picked<float>& picked : below) {
         std::printf(" %s", names[picked.id.index].c_str());
@@ -65,7 +65,7 @@ int main() {
 
     // A rectangle that is dragged: all that lies wholly within.
     std::vector<ProxyId> selected;
-    select(grid, view, {640, 380}, {330, 150}, selected, Containment::inside);
+    select(grid, camera, {640, 380}, {330, 150}, selected, Containment::inside);
     std::printf("\nselected:");
     for (const ProxyId id : selected) {
         std::printf(" %s", names[id.index].c_str());

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::array kVolumeKinds{VolumeKind::sphere, VolumeKind::aabb, VolumeKind::obb};
 
-using Couple = std::array<std::uint32_t, 2>;
+using StickPair = std::array<std::uint32_t, 2>;
 
 class VolumePass {
 public:
@@ -41,17 +41,17 @@ public:
 
     void testExactly(std::span<const Stick> sticks) {
         touching_.clear();
-        for (const Couple& couple : passed_) {
-            if (sticksTouch(sticks[couple[0]], sticks[couple[1]])) {
-                touching_.push_back(couple);
+        for (const StickPair& pair : passed_) {
+            if (sticksTouch(sticks[pair[0]], sticks[pair[1]])) {
+                touching_.push_back(pair);
             }
         }
     }
 
     [[nodiscard]] std::size_t candidates() const { return candidates_; }
     [[nodiscard]] std::size_t passed() const { return passed_.size(); }
-    [[nodiscard]] std::vector<Couple> touching() const {
-        std::vector<Couple> sorted = touching_;
+    [[nodiscard]] std::vector<StickPair> touching() const {
+        std::vector<StickPair> sorted = touching_;
         std::sort(sorted.begin(), sorted.end());
         return sorted;
     }
@@ -62,21 +62,21 @@ private:
     Neighbours<float> neighbours_;
     std::vector<ProxyId> ids_;
     std::size_t candidates_ = 0;
-    std::vector<Couple> passed_;
-    std::vector<Couple> touching_;
+    std::vector<StickPair> passed_;
+    std::vector<StickPair> touching_;
 };
 
-std::vector<Couple> touchingByBruteForce(std::span<const Stick> sticks) {
-    std::vector<Couple> couples;
+std::vector<StickPair> touchingByBruteForce(std::span<const Stick> sticks) {
+    std::vector<StickPair> pairs;
     for (std::uint32_t a = 0; a < sticks.size(); ++a) {
         for (std::uint32_t b = a + 1; b < sticks.size(); ++b) {
             if (volumesOverlap(VolumeKind::sphere, sticks[a], sticks[b]) &&
                 sticksTouch(sticks[a], sticks[b])) {
-                couples.push_back({a, b});
+                pairs.push_back({a, b});
             }
         }
     }
-    return couples;
+    return pairs;
 }
 
 void runVolumeFrame(VolumePass& pass, std::span<const Stick> sticks, VolumeResult& result) {
@@ -94,7 +94,7 @@ void runVolumeFrame(VolumePass& pass, std::span<const Stick> sticks, VolumeResul
 /// With one pass for each kind, which are made.
 PaperCheck compareVolumes(std::span<const Stick> sticks,
                           std::vector<std::unique_ptr<VolumePass>>& passes) {
-    const std::vector<Couple> right = touchingByBruteForce(sticks);
+    const std::vector<StickPair> right = touchingByBruteForce(sticks);
     std::string faults;
     for (const VolumeKind kind : kVolumeKinds) {
         passes.push_back(std::make_unique<VolumePass>(kind, sticks));
@@ -104,10 +104,9 @@ PaperCheck compareVolumes(std::span<const Stick> sticks,
             faults += " " + std::string(nameOf(kind));
         }
     }
-    return {
-        "Whatever the bounding volume, the same sticks touch",
-        faults.empty() ? CheckOutcome::holds : CheckOutcome::broken,
-        faults.empty() ? withThousands(right.size()) + " couples touch" : "wrong with" + faults};
+    return {"Whatever the bounding volume, the same sticks touch",
+            faults.empty() ? CheckOutcome::holds : CheckOutcome::broken,
+            faults.empty() ? withThousands(right.size()) + " pairs touch" : "wrong with" + faults};
 }
 
 }  // namespace

@@ -15,9 +15,9 @@ namespace hashphase::demos {
 /// Of one kind of volume; counts are means of the frames.
 struct VolumeResult {
     VolumeKind kind = VolumeKind::sphere;
-    std::vector<double> firstPassMs;  // all boxes moved, couples found and their volumes compared
+    std::vector<double> firstPassMs;  // all boxes moved, pairs found and their volumes compared
     std::vector<double> exactMs;      // the exact test of what passed
-    double candidates = 0;            // couples whose boxes overlap
+    double candidates = 0;            // pairs whose boxes overlap
     double passed = 0;                // of these, whose volumes overlap
     double touching = 0;              // of these, who touch
 };
@@ -32,7 +32,7 @@ struct VolumeResults {
 [[nodiscard]] std::string_view nameOf(VolumeKind kind);
 
 /// All kinds in turn in each frame, as many as the effort allows until the time is up. In the first
-/// one, which is not timed, they are compared with the exact test of all couples.
+/// one, which is not timed, they are compared with the exact test of all pairs.
 [[nodiscard]] VolumeResults measureVolumes(
     std::uint32_t sticks, const PhaseEffort& effort, std::uint64_t seed,
     const IsTimeUp& isTimeUp = [] { return false; });

@@ -11,9 +11,9 @@
 namespace hashphase::demos {
 namespace {
 
-PhaseAnswer sortedAnswer(std::vector<std::uint64_t> couples, std::vector<float> numbers) {
-    std::sort(couples.begin(), couples.end());
-    return {std::move(couples), std::move(numbers)};
+PhaseAnswer sortedAnswer(std::vector<std::uint64_t> pairs, std::vector<float> numbers) {
+    std::sort(pairs.begin(), pairs.end());
+    return {std::move(pairs), std::move(numbers)};
 }
 
 /// All boxes with all boxes, and for each the triangles one by one until one has it.
@@ -23,14 +23,14 @@ public:
 
     void run(const TestBed& bed) override {
         states_.begin(bed);
-        couples_.clear();
+        pairs_.clear();
         const std::vector<Aabb<float>>& boxes = bed.boxes();
         for (const std::uint32_t a : subjects_.list()) {
             const Aabb<float>& box = boxes[a];
             for (std::uint32_t b = subjects_.areAll() ? a + 1 : 0; b < boxes.size(); ++b) {
-                // Of two subjects, the first one has seen the couple.
+                // Of two subjects, the first one has seen the pair.
                 if (overlaps(box, boxes[b]) && (b > a || !subjects_.contains(b))) {
-                    couples_.push_back(pairKeyOf(a, b));
+                    pairs_.push_back(pairKeyOf(a, b));
                     states_.meet(a, b);
                 }
             }
@@ -47,16 +47,16 @@ public:
     }
 
     [[nodiscard]] PhaseAnswer answer() const override {
-        return sortedAnswer(couples_, states_.numbers(subjects_));
+        return sortedAnswer(pairs_, states_.numbers(subjects_));
     }
     [[nodiscard]] std::size_t memoryBytes() const override {
-        return states_.memoryBytes() + couples_.capacity() * sizeof(couples_[0]);
+        return states_.memoryBytes() + pairs_.capacity() * sizeof(pairs_[0]);
     }
 
 private:
     Subjects subjects_;
     SphereStates states_;
-    std::vector<std::uint64_t> couples_;
+    std::vector<std::uint64_t> pairs_;
 };
 
 /// The paper's: all buckets wiped, every sphere filed in each cell that its box touches, those of a
@@ -70,7 +70,7 @@ public:
 
     void run(const TestBed& bed) override {
         states_.begin(bed);
-        couples_.clear();
+        pairs_.clear();
         const PaperMap::Range all = spheres_.all();
         for (int z = all.lowZ; z <= all.highZ; ++z) {
             for (int x = all.lowX; x <= all.highX; ++x) {
@@ -90,11 +90,11 @@ public:
     }
 
     [[nodiscard]] PhaseAnswer answer() const override {
-        return sortedAnswer(couples_, states_.numbers(Subjects::all(states_.size())));
+        return sortedAnswer(pairs_, states_.numbers(Subjects::all(states_.size())));
     }
     [[nodiscard]] std::size_t memoryBytes() const override {
         return spheres_.memoryBytes() + triangles_.memoryBytes() + states_.memoryBytes() +
-               couples_.capacity() * sizeof(couples_[0]);
+               pairs_.capacity() * sizeof(pairs_[0]);
     }
 
 private:
@@ -104,14 +104,14 @@ private:
             const Aabb<float>& a = boxes[bucket[i]];
             for (const std::uint32_t other : bucket.subspan(i + 1)) {
                 if (overlaps(a, boxes[other]) && isHome(x, z, a, boxes[other])) {
-                    couples_.push_back(pairKeyOf(bucket[i], other));
+                    pairs_.push_back(pairKeyOf(bucket[i], other));
                     states_.meet(bucket[i], other);
                 }
             }
         }
     }
 
-    /// Of the cells that the two share, the one where their overlap begins: a couple counts once.
+    /// Of the cells that the two share, the one where their overlap begins: a pair counts once.
     [[nodiscard]] bool isHome(int x, int z, const Aabb<float>& a, const Aabb<float>& b) const {
         const float lowX = std::max(a.min().x(), b.min().x());
         const float lowZ = std::max(a.min().z(), b.min().z());
@@ -122,7 +122,7 @@ private:
     PaperMap spheres_;
     PaperMap triangles_;
     SphereStates states_;
-    std::vector<std::uint64_t> couples_;
+    std::vector<std::uint64_t> pairs_;
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// What the collision phase does with couples and triangles once a method has found them.
+// What the collision phase does with pairs and triangles once a method has found them.
 
 #include <demos/paper/phase_method.hpp>
 

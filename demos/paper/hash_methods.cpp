@@ -81,11 +81,11 @@ public:
     }
 
     [[nodiscard]] PhaseAnswer answer() const override {
-        std::vector<std::uint64_t> couples;
+        std::vector<std::uint64_t> pairs;
         for (const auto& [a, b] : current_) {
-            couples.push_back(pairKeyOf(a.index, b.index));
+            pairs.push_back(pairKeyOf(a.index, b.index));
         }
-        return {std::move(couples), states_.numbers(Subjects::all(states_.size()))};
+        return {std::move(pairs), states_.numbers(Subjects::all(states_.size()))};
     }
 
     [[nodiscard]] double cellSize() const override { return spheres_.cellSize(); }

@@ -156,25 +156,25 @@ PageSection volumeSection(const PaperResults& results) {
     PageSection section;
     section.heading = "Bounding volumes as a first pass";
     section.sentences = {
-        "Sticks of 4 m, 0.4 m thick, turn in space. The grid files the box of each volume; couples "
+        "Sticks of 4 m, 0.4 m thick, turn in space. The grid files the box of each volume; pairs "
         "whose boxes overlap are candidates, those whose volumes do pass, and the exact test says "
         "which of them touch. A volume that fits passes fewer in vain, and takes longer to "
         "compare."};
     const std::string objects = withThousands(results.volumes.sticks) + " sticks, 30 m^3 for each";
-    Chart couples;
-    couples.name = "paper-volumes-couples";
-    couples.title = "Couples that the first pass lets through in vain";
-    couples.settings = objects + "; means of " + withThousands(results.volumes.frames) + " frames";
-    couples.mark = ChartMark::kBar;
-    couples.data = volumeTable(results);
-    couples.x = {"volume", AxisScale::kNames};
-    couples.y = {"false", AxisScale::kLinear};
-    Chart time = couples;
+    Chart pairs;
+    pairs.name = "paper-volumes-pairs";
+    pairs.title = "Pairs that the first pass lets through in vain";
+    pairs.settings = objects + "; means of " + withThousands(results.volumes.frames) + " frames";
+    pairs.mark = ChartMark::kBar;
+    pairs.data = volumeTable(results);
+    pairs.x = {"volume", AxisScale::kNames};
+    pairs.y = {"false", AxisScale::kLinear};
+    Chart time = pairs;
     time.name = "paper-volumes-time";
     time.title = "Time of a frame, the exact test included";
     time.settings = objects + "; " + medianSettings(results.volumes.frames);
     time.y = {"ms", AxisScale::kLinear};
-    section.charts = {couples, time};
+    section.charts = {pairs, time};
     section.tables = {volumeTable(results)};
     return section;
 }
@@ -192,7 +192,7 @@ PageSection checkSection(const PaperResults& results) {
     PageSection section;
     section.heading = "Whether it is right";
     section.sentences = {
-        "What every method found, couples, bounces and heights, visible objects, colours, is "
+        "What every method found, pairs, bounces and heights, visible objects, colours, is "
         "compared with brute force in the same frame."};
     section.conclusions = observations(results);
     for (const PaperCheck& check : results.checks) {

@@ -24,7 +24,7 @@ constexpr const char* kMethods =
     "Un-optimized compares everything with everything, and looks for a sphere's triangle until one "
     "has it. The paper's grid is a map of square cells, wiped and filled in every frame, hashed by "
     "multiplication and truncation, its errors corrected: all cells that a box touches, each "
-    "couple once.";
+    "pair once.";
 constexpr const char* kCamera =
     "Visibility by the paper's grid is that of its free camera: every cell, as high as the domain, "
     "against the frustum; all objects of a cell that is wholly inside, and those that touch of one "

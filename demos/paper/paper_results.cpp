@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/paper/paper_results.hpp>
 
-#include <broadphase/crowd.hpp>
+#include <broadphase/radius_search.hpp>
 #include <demos/console/format.hpp>
 
 #include <algorithm>
@@ -29,10 +29,10 @@ double meanNeighbours(const PhaseTask& task) {
     for (const Aabb<float>& box : bed.boxes()) {
         static_cast<void>(grid.add(box));
     }
-    Crowd<float> crowd;
-    crowd.take(grid, task.aiRadius);
-    std::vector<std::uint32_t> counts(crowd.size());
-    crowd.count(counts);
+    RadiusSearch<float> search;
+    search.take(grid, task.aiRadius);
+    std::vector<std::uint32_t> counts(search.size());
+    search.count(counts);
     return std::accumulate(counts.begin(), counts.end(), 0.0) /
            static_cast<double>(std::max<std::size_t>(counts.size(), 1));
 }

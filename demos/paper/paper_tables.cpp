@@ -259,7 +259,7 @@ DataTable cellSizeTable(const PaperResults& results) {
 
 DataTable volumeTable(const PaperResults& results) {
     DataTable table{{{"volume", "first pass by"},
-                     {"candidates", "couples from the grid"},
+                     {"candidates", "pairs from the grid"},
                      {"passed", "pass"},
                      {"false", "of these, false"},
                      {"touching", "touch"},

@@ -16,7 +16,7 @@ namespace hashphase::demos {
 
 /// What a phase found, for comparison with what another method found.
 struct PhaseAnswer {
-    /// Collision: the overlapping couples, pairKeyOf() each, sorted. Visibility: the objects,
+    /// Collision: the overlapping pairs, pairKeyOf() each, sorted. Visibility: the objects,
     /// sorted. AI: the new colour of each object.
     std::vector<std::uint64_t> found;
 

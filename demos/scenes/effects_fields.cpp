@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/scenes/effects_fields.hpp>
 
-#include <broadphase/crowd.hpp>
+#include <broadphase/radius_search.hpp>
 #include <integration/ai/radar.hpp>
 
 #include <array>
@@ -157,7 +157,7 @@ constexpr std::array kFields{
         "effects.proximity", "radius", "how far they look", "m",
         NumberField{0, kInfinite, setting<&SceneEffects::proximity, &ProximityEffect::radius>}},
     EffectsField{"effects.proximity", "colourCount", "colours of agents", "",
-                 WholeField{1, Crowd<float>::kMostGroups,
+                 WholeField{1, RadiusSearch<float>::kMostGroups,
                             setting<&SceneEffects::proximity, &ProximityEffect::colourCount>}},
     EffectsField{"effects.proximity", "interestRadius", "agents beyond it are far", "m",
                  NumberField{0, kInfinite,

@@ -23,7 +23,7 @@ struct ColourCount {
     const ProxyFilter* filter = nullptr;
     std::span<const std::uint32_t> colours;
     std::uint32_t colourCount = 0;
-    std::array<std::uint32_t, Crowd<float>::kMostGroups> counts{};
+    std::array<std::uint32_t, RadiusSearch<float>::kMostGroups> counts{};
 
     template <class Scalar>
     void add(ProxyId id, Scalar /*key*/) {
@@ -76,10 +76,10 @@ QueryCost RarestColour<Scalar>::update(const Grid<Scalar>& grid, Scalar radius,
                                        std::uint32_t colourCount, std::span<std::uint32_t> colours,
                                        ProxyFilter filter, ProxyFilter changes,
                                        ParallelFor parallelFor) {
-    HASHPHASE_ASSERT(colourCount > 0 && colourCount <= Crowd<Scalar>::kMostGroups,
+    HASHPHASE_ASSERT(colourCount > 0 && colourCount <= RadiusSearch<Scalar>::kMostGroups,
                      "There are 1 to kMostGroups colours.");
-    crowd_.take(grid, radius, filter, parallelFor);
-    const std::span<const ProxyId> ids = crowd_.ids();
+    search_.take(grid, radius, filter, parallelFor);
+    const std::span<const ProxyId> ids = search_.ids();
     HASHPHASE_ASSERT(
         std::all_of(ids.begin(), ids.end(), [&](ProxyId id) { return id.index < colours.size(); }),
         "There is a colour for each agent, by ProxyId::index.");
@@ -87,7 +87,7 @@ QueryCost RarestColour<Scalar>::update(const Grid<Scalar>& grid, Scalar radius,
     // All read ...
     counts_.resize(ids.size() * colourCount);
     const auto colourOf = [colours](ProxyId id) { return colours[id.index]; };
-    const QueryCost cost = crowd_.countGroups(colourCount, colourOf, counts_, parallelFor);
+    const QueryCost cost = search_.countGroups(colourCount, colourOf, counts_, parallelFor);
 
     // ... then all change.
     constexpr std::size_t kGrain = 4096;
@@ -110,7 +110,7 @@ QueryCost RarestColour<Scalar>::updateSome(const Grid<Scalar>& grid, Scalar radi
                                            std::span<std::uint32_t> colours,
                                            std::span<const ProxyId> agents, ProxyFilter filter,
                                            ParallelFor parallelFor) {
-    HASHPHASE_ASSERT(colourCount > 0 && colourCount <= Crowd<Scalar>::kMostGroups,
+    HASHPHASE_ASSERT(colourCount > 0 && colourCount <= RadiusSearch<Scalar>::kMostGroups,
                      "There are 1 to kMostGroups colours.");
     HASHPHASE_ASSERT(grid.indexLimit() <= colours.size(),
                      "There is a colour for each agent, by ProxyId::index.");
@@ -139,7 +139,7 @@ QueryCost RarestColour<Scalar>::updateSome(const Grid<Scalar>& grid, Scalar radi
 
 template <class Scalar>
 std::size_t RarestColour<Scalar>::memoryBytes() const noexcept {
-    return sizeof(*this) - sizeof(crowd_) + crowd_.memoryBytes() +
+    return sizeof(*this) - sizeof(search_) + search_.memoryBytes() +
            (counts_.capacity() + rarest_.capacity()) * sizeof(std::uint32_t);
 }
 

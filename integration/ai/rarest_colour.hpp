@@ -9,11 +9,11 @@
 //            next frame, so the result does not depend on any order.
 // Threads    update() reads the grid, as queries do, and needs this object for itself.
 // Units      metres, or whatever the grid's are.
-// Bad data   As for a crowd (broadphase/crowd.hpp): who has no finite centre keeps its colour, and
+// Bad data   As for a radius search (broadphase/radius_search.hpp): who has no finite centre keeps its colour, and
 //            within a negative or NaN radius is nobody. An agent whose colour is not below the number
 //            of colours is counted by nobody, and takes one.
 
-#include <broadphase/crowd.hpp>
+#include <broadphase/radius_search.hpp>
 #include <integration/ai/export.hpp>
 
 #include <cstdint>
@@ -29,9 +29,9 @@ public:
     /// Of every proxy that the filter accepts, sets colours[ProxyId::index] to that of the colours
     /// 0 to colourCount - 1 which fewest of the other ones within `radius` [m] of its centre have; of
     /// equally rare ones the lowest. An agent does not count itself: whoever is alone takes colour 0.
-    /// There are 1 to Crowd::kMostGroups colours, and one place for each agent (asserted). Whom
+    /// There are 1 to RadiusSearch::kMostGroups colours, and one place for each agent (asserted). Whom
     /// `changes` refuses, asked once about each, is counted and keeps its colour. Returns the cost of
-    /// counting. Cost: that of Crowd::countGroups().
+    /// counting. Cost: that of RadiusSearch::countGroups().
     QueryCost update(const Grid<Scalar>& grid, Scalar radius, std::uint32_t colourCount,
                      std::span<std::uint32_t> colours, ProxyFilter filter = acceptAll,
                      ProxyFilter changes = acceptAll, ParallelFor parallelFor = serialFor);
@@ -43,11 +43,14 @@ public:
                          ProxyFilter filter = acceptAll, ParallelFor parallelFor = serialFor);
 
     /// The agents of the last update().
-    [[nodiscard]] const Crowd<Scalar>& crowd() const noexcept { return crowd_; }
+    [[nodiscard]] const RadiusSearch<Scalar>& search() const noexcept { return search_; }
+    [[deprecated("search()")]] [[nodiscard]] const RadiusSearch<Scalar>& crowd() const noexcept {
+        return search_;
+    }
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
 private:
-    Crowd<Scalar> crowd_;
+    RadiusSearch<Scalar> search_;
     std::vector<std::uint32_t> counts_;  // by agent, then by colour
     std::vector<std::uint32_t> rarest_;  // of updateSome(), by agent
 };

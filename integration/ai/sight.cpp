@@ -155,19 +155,19 @@ QueryCost Sight<Scalar>::look(const Grid<Scalar>& grid, std::span<const Viewer<S
                      "Viewers are not replaced from within the filters of look().");
     constexpr std::size_t grain = 16;
     viewerCount_ = 0;  // nobody has seen anybody, should memory run out
-    views_.resize(std::max(views_.size(), viewers.size()));
+    found_.resize(std::max(found_.size(), viewers.size()));
     // A query for each viewer, and one for each that it may see.
     grid.expectQueries(viewers.empty() ? 0 : std::numeric_limits<std::size_t>::max());
     parallelFor(viewers.size(), grain, [&](std::size_t begin, std::size_t end) {
         const detail::QueryScope scope(this);
         for (std::size_t i = begin; i < end; ++i) {
-            views_[i].cost = visibleFrom(grid, viewers[i], views_[i].seen, targets, blockers);
+            found_[i].cost = visibleFrom(grid, viewers[i], found_[i].seen, targets, blockers);
         }
     });
     viewerCount_ = viewers.size();
     QueryCost cost;
     for (std::size_t i = 0; i < viewerCount_; ++i) {
-        cost += views_[i].cost;
+        cost += found_[i].cost;
     }
     return cost;
 }
@@ -176,7 +176,7 @@ template <class Scalar>
 std::span<const ProxyId> Sight<Scalar>::seenBy(std::size_t viewer) const {
     HASHPHASE_ASSERT(viewer < viewerCount_,
                      "Only the viewers of the last look() have seen anybody.");
-    return views_[viewer].seen;
+    return found_[viewer].seen;
 }
 
 template class SightRegion<float>;

@@ -104,11 +104,11 @@ public:
     [[nodiscard]] std::span<const ProxyId> seenBy(std::size_t viewer) const;
 
 private:
-    struct View {
+    struct Found {
         std::vector<ProxyId> seen;
         QueryCost cost;
     };
-    std::vector<View> views_;  // never shrinks
+    std::vector<Found> found_;  // never shrinks
     std::size_t viewerCount_ = 0;
 };
 

@@ -74,17 +74,17 @@ void PairCache::checkRoomFor(std::size_t bornCount) const {
                        "A pair cache holds at most 1,073,741,824 pairs.");
 }
 
-btBroadphasePair* PairCache::add(const ProxyCouple& couple) {
+btBroadphasePair* PairCache::add(const BulletProxyPair& proxies) {
     checkMayChange();
     checkRoomFor(1);
-    const auto index = static_cast<int>(ids_.findOrInsert(couple.ids()));
+    const auto index = static_cast<int>(ids_.findOrInsert(proxies.ids()));
     if (index < pairs_.size()) {
-        HASHPHASE_ASSERT(isNamedBy(couple, pairs_[index]),
+        HASHPHASE_ASSERT(isNamedBy(proxies, pairs_[index]),
                          "Proxies that are alive have different unique ids.");
         return &pairs_[index];
     }
     btBroadphasePair pair;
-    name(couple, pair);
+    name(proxies, pair);
     pairs_.push_back(pair);
     isSorted_ = false;
 

@@ -70,13 +70,13 @@ using ProxyKey = int (*)(const btBroadphaseProxy&);
 
 /// Two proxies as a batch names them. Their unique ids come along, so that the proxies themselves
 /// need not be read.
-class ProxyCouple {
+class BulletProxyPair {
 public:
-    ProxyCouple(btBroadphaseProxy& a, btBroadphaseProxy& b) noexcept
-        : ProxyCouple(a, a.m_uniqueId, b, b.m_uniqueId) {}
+    BulletProxyPair(btBroadphaseProxy& a, btBroadphaseProxy& b) noexcept
+        : BulletProxyPair(a, a.m_uniqueId, b, b.m_uniqueId) {}
 
     /// The ids must be those of the proxies, which are not read to see whether they are.
-    ProxyCouple(btBroadphaseProxy& a, int idOfA, btBroadphaseProxy& b, int idOfB) noexcept
+    BulletProxyPair(btBroadphaseProxy& a, int idOfA, btBroadphaseProxy& b, int idOfB) noexcept
         : lower_(idOfA < idOfB ? &a : &b),
           upper_(idOfA < idOfB ? &b : &a),
           ids_(std::uint64_t{static_cast<std::uint32_t>(idOfA < idOfB ? idOfA : idOfB)} << 32 |
@@ -100,6 +100,8 @@ private:
     btBroadphaseProxy* upper_;
     std::uint64_t ids_;
 };
+
+using ProxyCouple [[deprecated("BulletProxyPair")]] = BulletProxyPair;
 
 /// A btOverlappingPairCache in which removing a proxy costs as much as it has pairs.
 class HASHPHASE_BULLET_EXPORT PairCache final : public btOverlappingPairCache {
@@ -154,7 +156,7 @@ public:
     /// single calls in every respect. Throws std::length_error, and changes nothing, when there are
     /// more than kMostPairs with those that are born. Cost: O(1) a pair, a third of that of single
     /// calls.
-    void update(std::span<const ProxyCouple> died, std::span<const ProxyCouple> born,
+    void update(std::span<const BulletProxyPair> died, std::span<const BulletProxyPair> born,
                 btDispatcher* dispatcher);
 
     // --- The pairs of one proxy ------------------------------------------------------------------
@@ -320,11 +322,11 @@ private:
     [[nodiscard]] PairSortKey noteOf(std::uint32_t index) const;
     void noteAll(std::vector<PairSortKey>& notes) const;
     [[nodiscard]] std::uint32_t indexOf(const PairSortKey& note) const;
-    static bool isNamedBy(const ProxyCouple& couple, const btBroadphasePair& pair) noexcept {
-        return pair.m_pProxy0 == couple.lower() || pair.m_pProxy0 == couple.upper();
+    static bool isNamedBy(const BulletProxyPair& proxies, const btBroadphasePair& pair) noexcept {
+        return pair.m_pProxy0 == proxies.lower() || pair.m_pProxy0 == proxies.upper();
     }
-    void name(const ProxyCouple& couple, btBroadphasePair& pair) const;
-    btBroadphasePair* add(const ProxyCouple& couple);
+    void name(const BulletProxyPair& proxies, btBroadphasePair& pair) const;
+    btBroadphasePair* add(const BulletProxyPair& proxies);
     void* remove(std::uint64_t ids, btDispatcher* dispatcher, Freeing freeing, Remover remover);
     void noteTakenOut(const btBroadphasePair& pair) const noexcept;
     void removePairsOfOne(btBroadphaseProxy& proxy, btDispatcher* dispatcher, Remover remover);
@@ -336,14 +338,14 @@ private:
     [[nodiscard]] Freeing freeingNow() const noexcept;
 
     [[nodiscard]] bool isTold() const noexcept { return ghosts_ != nullptr || processDepth_ > 0; }
-    void updateOneByOne(std::span<const ProxyCouple> died, std::span<const ProxyCouple> born,
-                        btDispatcher* dispatcher);
-    void prefetchAhead(std::span<const ProxyCouple> couples, std::size_t i) const;
+    void updateOneByOne(std::span<const BulletProxyPair> died,
+                        std::span<const BulletProxyPair> born, btDispatcher* dispatcher);
+    void prefetchAhead(std::span<const BulletProxyPair> pairs, std::size_t i) const;
     void vacate(std::uint64_t ids, btDispatcher* dispatcher, Remover remover);
-    void vacateAll(std::span<const ProxyCouple> died, btDispatcher* dispatcher);
+    void vacateAll(std::span<const BulletProxyPair> died, btDispatcher* dispatcher);
     void makeRoomFor(std::size_t bornCount);
     void vacateAll(std::span<const PairSortKey> notes, btDispatcher* dispatcher, Remover remover);
-    std::size_t settle(std::span<const ProxyCouple> born);
+    std::size_t settle(std::span<const BulletProxyPair> born);
     void closeVacant(std::size_t firstVacant) noexcept;
     void fill(std::uint32_t index) noexcept;
     [[nodiscard]] std::vector<PairSortKey> notesOfAll(std::span<btBroadphaseProxy* const> proxies);
@@ -402,14 +404,14 @@ private:
 };
 
 // Not by Bullet's constructor for two proxies: that one orients by unique id.
-inline void PairCache::name(const ProxyCouple& couple, btBroadphasePair& pair) const {
-    HASHPHASE_ASSERT(couple.ids() >> 32 != (couple.ids() & kLowerHalf),
+inline void PairCache::name(const BulletProxyPair& proxies, btBroadphasePair& pair) const {
+    HASHPHASE_ASSERT(proxies.ids() >> 32 != (proxies.ids() & kLowerHalf),
                      "A pair is made of two proxies with different unique ids.");
-    HASHPHASE_ASSERT((couple.ids() & 0x8000000080000000U) == 0,
+    HASHPHASE_ASSERT((proxies.ids() & 0x8000000080000000U) == 0,
                      "The unique id of a proxy is not negative.");
-    const bool isSwapped = key_ != &uniqueId && isLower(*couple.upper(), *couple.lower());
-    pair.m_pProxy0 = isSwapped ? couple.upper() : couple.lower();
-    pair.m_pProxy1 = isSwapped ? couple.lower() : couple.upper();
+    const bool isSwapped = key_ != &uniqueId && isLower(*proxies.upper(), *proxies.lower());
+    pair.m_pProxy0 = isSwapped ? proxies.upper() : proxies.lower();
+    pair.m_pProxy1 = isSwapped ? proxies.lower() : proxies.upper();
     pair.m_algorithm = nullptr;
     pair.m_internalInfo1 = nullptr;
 }

@@ -22,7 +22,7 @@ constexpr std::size_t kNear = 8;
 
 // --- Births and deaths ---------------------------------------------------------------------------
 
-void PairCache::update(std::span<const ProxyCouple> died, std::span<const ProxyCouple> born,
+void PairCache::update(std::span<const BulletProxyPair> died, std::span<const BulletProxyPair> born,
                        btDispatcher* dispatcher) {
     checkMayChange();
     checkRoomFor(born.size());
@@ -46,8 +46,8 @@ void PairCache::update(std::span<const ProxyCouple> died, std::span<const ProxyC
     }
 }
 
-void PairCache::updateOneByOne(std::span<const ProxyCouple> died, std::span<const ProxyCouple> born,
-                               btDispatcher* dispatcher) {
+void PairCache::updateOneByOne(std::span<const BulletProxyPair> died,
+                               std::span<const BulletProxyPair> born, btDispatcher* dispatcher) {
     for (std::size_t i = 0; i < died.size(); ++i) {
         prefetchAhead(died, i);
         if (kNear < ids_.size()) {
@@ -63,17 +63,17 @@ void PairCache::updateOneByOne(std::span<const ProxyCouple> died, std::span<cons
     }
 }
 
-// What it takes to find the pair of a couple further on, and the pair.
-void PairCache::prefetchAhead(std::span<const ProxyCouple> couples, std::size_t i) const {
-    if (i + kFar < couples.size()) {
-        ids_.prefetch(couples[i + kFar].ids());
+// What it takes to find the pair further on, and the pair.
+void PairCache::prefetchAhead(std::span<const BulletProxyPair> pairs, std::size_t i) const {
+    if (i + kFar < pairs.size()) {
+        ids_.prefetch(pairs[i + kFar].ids());
     }
-    if (i + kNear < couples.size() && pairs_.size() > 0) {
-        detail::prefetch(&pairs_[0] + ids_.prefetchKey(couples[i + kNear].ids()));
+    if (i + kNear < pairs.size() && pairs_.size() > 0) {
+        detail::prefetch(&pairs_[0] + ids_.prefetchKey(pairs[i + kNear].ids()));
     }
 }
 
-void PairCache::vacateAll(std::span<const ProxyCouple> died, btDispatcher* dispatcher) {
+void PairCache::vacateAll(std::span<const BulletProxyPair> died, btDispatcher* dispatcher) {
     for (std::size_t i = 0; i < died.size(); ++i) {
         prefetchAhead(died, i);
         vacate(died[i].ids(), dispatcher, Remover::broadphase);
@@ -109,7 +109,7 @@ void PairCache::makeRoomFor(std::size_t bornCount) {
 }
 
 // Adds the pairs in vacant places, as long as there are some, and returns how many it took.
-std::size_t PairCache::settle(std::span<const ProxyCouple> born) {
+std::size_t PairCache::settle(std::span<const BulletProxyPair> born) {
     std::size_t taken = 0;
     for (std::size_t i = 0; i < born.size(); ++i) {
         if (i + kFar < born.size()) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Picking in a Bullet world by the shapes of its objects. A picking ray is a RayRegion, as a View makes
+// Picking in a Bullet world by the shapes of its objects. A picking ray is a RayRegion, as a Camera makes
 // one of a pixel; picking by boxes and drag selection work on SpatialHashBroadphase::grid() as they are.
 //
 // Worlds   whose clients are btCollisionObjects; proxies without a client are not met

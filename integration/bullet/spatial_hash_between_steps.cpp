@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-// What happens to pairs between two calculations: some are announced or asked about again, of some the
+// What happens to pairs between two calculations: some are found or asked about again, of some the
 // shape changes, and some are taken out by the program.
 
 #include <integration/bullet/spatial_hash_broadphase.hpp>
@@ -14,17 +14,17 @@
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 // All births at once: should memory run out, there are none.
-void SpatialHashBroadphase::announce(const Proxy& proxy, btDispatcher* dispatcher) {
+void SpatialHashBroadphase::findPairsNow(const Proxy& proxy, btDispatcher* dispatcher) {
     followFilter();
-    const PairChanges changes = pairs_.announce(proxy.id, cacheFilter());
+    const PairChanges changes = pairs_.findPairsNow(proxy.id, cacheFilter());
     apply(changes, changes.born.size(), dispatcher);
 }
 
-void SpatialHashBroadphase::announceToGhosts(const Proxy& proxy, btDispatcher* dispatcher) {
+void SpatialHashBroadphase::findGhostPairsNow(const Proxy& proxy, btDispatcher* dispatcher) {
     const std::vector<ProxyId> met = ghostsAt(proxy);
     if (!met.empty()) {
         followFilter();
-        const PairChanges changes = pairs_.announce(proxy.id, met, cacheFilter());
+        const PairChanges changes = pairs_.findPairsNow(proxy.id, met, cacheFilter());
         apply(changes, changes.born.size(), dispatcher);
     }
 }
@@ -78,18 +78,18 @@ void SpatialHashBroadphase::putBackWhatWasTakenOut(btDispatcher* dispatcher) {
         return;
     }
     try {
-        std::vector<ProxyCouple> couples = *watch_.takenOut;
+        std::vector<BulletProxyPair> bulletPairs = *watch_.takenOut;
         std::vector<ProxyPair> pairs;
-        pairs.reserve(couples.size());
-        for (const ProxyCouple& couple : couples) {
-            pairs.push_back(pairOf(couple.lower(), couple.upper()));
+        pairs.reserve(bulletPairs.size());
+        for (const BulletProxyPair& pair : bulletPairs) {
+            pairs.push_back(pairOf(pair.lower(), pair.upper()));
         }
         static_cast<void>(pairs_.refilter(pairs, cacheFilter()));
-        std::erase_if(couples, [&](const ProxyCouple& couple) {
-            return !pairs_.isPair(pairOf(couple.lower(), couple.upper()));
+        std::erase_if(bulletPairs, [&](const BulletProxyPair& pair) {
+            return !pairs_.isPair(pairOf(pair.lower(), pair.upper()));
         });
         watch_.takenOut = nullptr;
-        applyToCache({}, couples, dispatcher);
+        applyToCache({}, bulletPairs, dispatcher);
     } catch (...) {
         watch_.isMoreTakenOut = true;
         throw;
@@ -119,20 +119,20 @@ void SpatialHashBroadphase::shapeChanged(btBroadphaseProxy* proxy, btDispatcher*
 
 void SpatialHashBroadphase::renewPairsOfOtherCache(btBroadphaseProxy& proxy,
                                                    btDispatcher* dispatcher) {
-    std::vector<ProxyCouple> couples;
+    std::vector<BulletProxyPair> bulletPairs;
     const btBroadphasePairArray& pairs = pairCache_->getOverlappingPairArray();
     for (int i = 0; i < pairs.size(); ++i) {
         const btBroadphasePair& pair = pairs[i];
         if (pair.m_pProxy0 == &proxy || pair.m_pProxy1 == &proxy) {
-            couples.emplace_back(*pair.m_pProxy0, *pair.m_pProxy1);
+            bulletPairs.emplace_back(*pair.m_pProxy0, *pair.m_pProxy1);
         }
     }
-    for (const ProxyCouple& couple : couples) {
-        if (couple.isUpToDate()) {  // a callback may have destroyed one of the two
-            pairCache_->removeOverlappingPair(couple.lower(), couple.upper(), dispatcher);
+    for (const BulletProxyPair& pair : bulletPairs) {
+        if (pair.isUpToDate()) {  // a callback may have destroyed one of the two
+            pairCache_->removeOverlappingPair(pair.lower(), pair.upper(), dispatcher);
         }
-        if (couple.isUpToDate()) {
-            pairCache_->addOverlappingPair(couple.lower(), couple.upper());
+        if (pair.isUpToDate()) {
+            pairCache_->addOverlappingPair(pair.lower(), pair.upper());
         }
     }
 }

@@ -92,9 +92,9 @@ btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
     Proxy& proxy = place({aabbMin, aabbMax, userPtr, collisionFilterGroup, collisionFilterMask});
     try {
         if (isEager(proxy, dispatcher)) {
-            announce(proxy, dispatcher);
+            findPairsNow(proxy, dispatcher);
         } else {
-            announceToGhosts(proxy, dispatcher);
+            findGhostPairsNow(proxy, dispatcher);
         }
     } catch (...) {
         destroyProxy(&proxy, dispatcher);
@@ -176,9 +176,9 @@ void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& a
         noteSeen(*own, true);
     }
     if ((!isSame || isRegrouped) && isEager(*own, dispatcher)) {
-        announce(*own, dispatcher);
+        findPairsNow(*own, dispatcher);
     } else if (jumps) {
-        announceToGhosts(*own, dispatcher);
+        findGhostPairsNow(*own, dispatcher);
     }
 }
 
@@ -266,31 +266,32 @@ void SpatialHashBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) 
 }
 
 // A destroyed proxy has taken its pairs with it.
-void SpatialHashBroadphase::findCouples(std::span<const ProxyPair> pairs,
-                                        std::vector<ProxyCouple>& couples) const {
-    couples.clear();
+void SpatialHashBroadphase::findBulletPairs(std::span<const ProxyPair> pairs,
+                                            std::vector<BulletProxyPair>& bulletPairs) const {
+    bulletPairs.clear();
     for (const auto& [first, second] : pairs) {
         const int firstId = uniqueIds_[first.index];
         const int secondId = uniqueIds_[second.index];
         if (firstId != 0 && secondId != 0) {
-            couples.emplace_back(*proxyAt(first.index), firstId, *proxyAt(second.index), secondId);
+            bulletPairs.emplace_back(*proxyAt(first.index), firstId, *proxyAt(second.index),
+                                     secondId);
         }
     }
 }
 
-/// The lists of couples that are applied, lent to a call: its callbacks may bring another one about.
-struct SpatialHashBroadphase::Couples {
-    explicit Couples(SpatialHashBroadphase& lender)
+/// The lists of pairs that are applied, lent to a call: its callbacks may bring another one about.
+struct SpatialHashBroadphase::PairLists {
+    explicit PairLists(SpatialHashBroadphase& lender)
         : died(std::move(lender.died_)), born(std::move(lender.born_)), lender_(lender) {}
-    ~Couples() {
+    ~PairLists() {
         lender_.died_ = std::move(died);
         lender_.born_ = std::move(born);
     }
-    Couples(const Couples&) = delete;
-    Couples& operator=(const Couples&) = delete;
+    PairLists(const PairLists&) = delete;
+    PairLists& operator=(const PairLists&) = delete;
 
-    std::vector<ProxyCouple> died;
-    std::vector<ProxyCouple> born;
+    std::vector<BulletProxyPair> died;
+    std::vector<BulletProxyPair> born;
 
 private:
     SpatialHashBroadphase& lender_;
@@ -298,16 +299,16 @@ private:
 
 void SpatialHashBroadphase::apply(const PairChanges& changes, std::size_t birthsAtOnce,
                                   btDispatcher* dispatcher) {
-    Couples couples(*this);
+    PairLists lists(*this);
     try {
         // The first births, as many as there are deaths at least, go with these, to take their places.
-        findCouples(changes.died, couples.died);
+        findBulletPairs(changes.died, lists.died);
         std::span<const ProxyPair> born = changes.born;
-        std::size_t count = std::min(born.size(), std::max(couples.died.size(), birthsAtOnce));
+        std::size_t count = std::min(born.size(), std::max(lists.died.size(), birthsAtOnce));
         do {
-            findCouples(born.first(count), couples.born);
-            applyToCache(couples.died, couples.born, dispatcher);
-            couples.died.clear();
+            findBulletPairs(born.first(count), lists.born);
+            applyToCache(lists.died, lists.born, dispatcher);
+            lists.died.clear();
             born = born.subspan(count);
             count = std::min(born.size(), birthsAtOnce);
         } while (count > 0);
@@ -336,20 +337,20 @@ private:
     bool isAny_;
 };
 
-void SpatialHashBroadphase::applyToCache(std::span<const ProxyCouple> died,
-                                         std::span<const ProxyCouple> born,
+void SpatialHashBroadphase::applyToCache(std::span<const BulletProxyPair> died,
+                                         std::span<const BulletProxyPair> born,
                                          btDispatcher* dispatcher) {
     const Applying applying(*this, !died.empty() || !born.empty());
     if (watch_.cache != nullptr) {
         watch_.cache->update(died, born, dispatcher);
         return;
     }
-    for (const ProxyCouple& couple : died) {
-        pairCache_->removeOverlappingPair(couple.lower(), couple.upper(), dispatcher);
+    for (const BulletProxyPair& pair : died) {
+        pairCache_->removeOverlappingPair(pair.lower(), pair.upper(), dispatcher);
     }
-    for (const ProxyCouple& couple : born) {
-        if (couple.isUpToDate()) {  // a callback may have destroyed one of the two
-            pairCache_->addOverlappingPair(couple.lower(), couple.upper());
+    for (const BulletProxyPair& pair : born) {
+        if (pair.isUpToDate()) {  // a callback may have destroyed one of the two
+            pairCache_->addOverlappingPair(pair.lower(), pair.upper());
         }
     }
 }
@@ -359,19 +360,19 @@ void SpatialHashBroadphase::applyToCache(std::span<const ProxyCouple> died,
 void SpatialHashBroadphase::catchUp(btDispatcher* dispatcher) {
     std::vector<ProxyPair> all;
     pairs_.collect(all);
-    Couples couples(*this);
-    findCouples(all, couples.born);
-    couples.died.clear();
+    PairLists lists(*this);
+    findBulletPairs(all, lists.born);
+    lists.died.clear();
     btBroadphasePairArray& present = pairCache_->getOverlappingPairArray();
     for (int i = 0; i < present.size(); ++i) {
         if (!std::binary_search(all.begin(), all.end(),
                                 pairOf(present[i].m_pProxy0, present[i].m_pProxy1))) {
-            couples.died.emplace_back(*present[i].m_pProxy0, *present[i].m_pProxy1);
+            lists.died.emplace_back(*present[i].m_pProxy0, *present[i].m_pProxy1);
         }
     }
     isCacheBehind_ = false;
     try {
-        applyToCache(couples.died, couples.born, dispatcher);
+        applyToCache(lists.died, lists.born, dispatcher);
     } catch (...) {
         isCacheBehind_ = true;
         throw;

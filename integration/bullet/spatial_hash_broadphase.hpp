@@ -158,7 +158,7 @@ public:
     /// The proxy's address is fixed for its life, m_uniqueId counts 1, 2, 3 ... and is never used
     /// again: after 2^31 - 1 of them std::length_error is thrown until resetPool(); likewise where there
     /// are 2^28 proxies. `shapeType` is ignored. Cost: O(1), and a look at up to 1,024 ghosts, or a box
-    /// query where there are more; of ghosts and SpatialHashConfig::eagerGroups that of Pairs::announce()
+    /// query where there are more; of ghosts and SpatialHashConfig::eagerGroups that of Pairs::findPairsNow()
     /// and of its pairs, too.
     btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
                                    int shapeType, void* userPtr, int collisionFilterGroup,
@@ -330,7 +330,7 @@ private:
         std::uint8_t kind = 0;      // of its groups, as the grid knows them, in groupKinds_
         std::uint32_t ghostAt = 0;  // a ghost's place in ghosts_
     };
-    struct Couples;
+    struct PairLists;
     class Applying;
     template <class Callback>
     struct ProcessCollector;
@@ -366,9 +366,10 @@ private:
     void removeFromGrid(Proxy* proxy);
     void dropLastProxies() noexcept;
     void releaseAfterPeak() noexcept;
-    void findCouples(std::span<const ProxyPair> pairs, std::vector<ProxyCouple>& couples) const;
+    void findBulletPairs(std::span<const ProxyPair> pairs,
+                         std::vector<BulletProxyPair>& bulletPairs) const;
     void apply(const PairChanges& changes, std::size_t birthsAtOnce, btDispatcher* dispatcher);
-    void applyToCache(std::span<const ProxyCouple> died, std::span<const ProxyCouple> born,
+    void applyToCache(std::span<const BulletProxyPair> died, std::span<const BulletProxyPair> born,
                       btDispatcher* dispatcher);
     void catchUp(btDispatcher* dispatcher);
     void putBackWhatWasTakenOut(btDispatcher* dispatcher);
@@ -384,8 +385,8 @@ private:
     [[nodiscard]] bool isGhost(Proxy& proxy, const btDispatcher* dispatcher);
     [[nodiscard]] std::vector<ProxyId> ghostsAt(const Proxy& proxy) const;
     void forgetGhost(Proxy& proxy) noexcept;
-    void announce(const Proxy& proxy, btDispatcher* dispatcher);
-    void announceToGhosts(const Proxy& proxy, btDispatcher* dispatcher);
+    void findPairsNow(const Proxy& proxy, btDispatcher* dispatcher);
+    void findGhostPairsNow(const Proxy& proxy, btDispatcher* dispatcher);
     void move(const Proxy& proxy);
     void moveOnItsWay(const Proxy& proxy, const Aabb<btScalar>& box);
     [[nodiscard]] bool doMeet(const btBroadphaseProxy& a, const btBroadphaseProxy& b) const;
@@ -430,8 +431,8 @@ private:
     std::size_t seenCount_ = 0;
     std::vector<std::uint32_t> ghosts_;  // their slots
     detail::PeakWatch peaks_;            // of the cache
-    std::vector<ProxyCouple> died_;      // scratch of Couples
-    std::vector<ProxyCouple> born_;
+    std::vector<BulletProxyPair> died_;  // scratch of PairLists
+    std::vector<BulletProxyPair> born_;
 };
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

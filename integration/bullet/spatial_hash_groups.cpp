@@ -68,7 +68,7 @@ void SpatialHashBroadphase::noteGroupsAround(const Proxy& proxy) {
     std::vector<ProxyId> found{proxy.id};
     CollectAll collector(found);
     if (sweeps_ != nullptr) {
-        const Aabb<btScalar> bounds = wayBounds(sweeps_->motion(proxy.id));
+        const Aabb<btScalar> bounds = sweptBounds(sweeps_->motion(proxy.id));
         sweeps_->visit(BoxRegion<btScalar>{bounds}, collector);
     } else {
         grid_.visit(BoxRegion<btScalar>{grid_.box(proxy.id)}, collector);

@@ -77,7 +77,7 @@ std::size_t SpatialHashBroadphase::memoryBytes() const noexcept {
     return sizeof(*this) - sizeof(grid_) - sizeof(pairs_) + grid_.memoryBytes() +
            pairs_.memoryBytes() + proxies_.memoryBytes() +
            (sweeps_ != nullptr ? sweeps_->memoryBytes() : 0) + uniqueIds_.capacity() * sizeof(int) +
-           (died_.capacity() + born_.capacity()) * sizeof(ProxyCouple) +
+           (died_.capacity() + born_.capacity()) * sizeof(BulletProxyPair) +
            seen_.capacity() * sizeof(seen_[0]) + ghosts_.capacity() * sizeof(ghosts_[0]) +
            watch_.memoryBytes() + (ownCache_ != nullptr ? ownCache_->memoryBytes() : 0);
 }

@@ -197,7 +197,7 @@ private:
     detail::KeptSetting<int> frictionDirections_;
     std::unordered_map<const btCollisionObject*, KeptBody> kept_;  // of those that are overridden
     std::uint64_t applyCount_ = 0;
-    bool arePairsOld_ = false;       // until every couple has been asked about again
+    bool arePairsOld_ = false;       // until every pair has been asked about again
     bool areBodiesChanged_ = false;  // until all have been woken
 };
 

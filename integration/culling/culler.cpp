@@ -39,8 +39,8 @@ template <class Scalar>
 Culler<Scalar>::Culler(Scalar margin)
     : margin_(margin > 0 ? margin : Scalar(0)),
       moved_(std::numeric_limits<Scalar>::infinity()),
-      view_(nothing<Scalar>()),
-      grown_(view_) {}
+      frustum_(nothing<Scalar>()),
+      grown_(frustum_) {}
 
 template <class Scalar>
 void Culler<Scalar>::noteMoves(Scalar moved) noexcept {
@@ -56,18 +56,19 @@ void Culler<Scalar>::noteMoves(Scalar moved) noexcept {
 // farther than the view lies inside of that.
 template <class Scalar>
 bool Culler<Scalar>::keepsSet() const {
-    return moved_ <= margin_ && view_.isEmpty() == grown_.isEmpty() && !view_.volume().isInside &&
-           !grown_.volume().isInside && grown_.contains(view_, moved_);
+    return moved_ <= margin_ && frustum_.isEmpty() == grown_.isEmpty() &&
+           !frustum_.volume().isInside && !grown_.volume().isInside &&
+           grown_.contains(frustum_, moved_);
 }
 
 // Returns whether the set is to be found anew, and empties it if so. It is not to be kept before it is
 // found: should the query throw, it has not all that is visible.
 template <class Scalar>
-bool Culler<Scalar>::begin(const Grid<Scalar>& grid, const View& view, Scalar moved) {
+bool Culler<Scalar>::begin(const Grid<Scalar>& grid, const Frustum& frustum, Scalar moved) {
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
                      "A culler does not look from within its own filter or forEach().");
     if (!isFrozen_) {
-        view_ = view;
+        frustum_ = frustum;
     }
     noteMoves(moved);
     if (population_ == grid.populationNumber() && keepsSet()) {
@@ -75,7 +76,7 @@ bool Culler<Scalar>::begin(const Grid<Scalar>& grid, const View& view, Scalar mo
     }
     population_ = grid.populationNumber();
     ++findCount_;
-    grown_ = margin_ > 0 ? view_.grownBy(margin_) : view_;
+    grown_ = margin_ > 0 ? frustum_.grownBy(margin_) : frustum_;
     moved_ = std::numeric_limits<Scalar>::infinity();
     if (peaks_.isPast(bits_.size(), bits_.capacity())) {
         std::vector<std::uint64_t>().swap(bits_);
@@ -85,8 +86,8 @@ bool Culler<Scalar>::begin(const Grid<Scalar>& grid, const View& view, Scalar mo
 }
 
 template <class Scalar>
-QueryCost Culler<Scalar>::look(const Grid<Scalar>& grid, const View& view, Scalar moved) {
-    if (!begin(grid, view, moved)) {
+QueryCost Culler<Scalar>::look(const Grid<Scalar>& grid, const Frustum& frustum, Scalar moved) {
+    if (!begin(grid, frustum, moved)) {
         return {};
     }
     CollectBits bits(bits_);
@@ -96,9 +97,9 @@ QueryCost Culler<Scalar>::look(const Grid<Scalar>& grid, const View& view, Scala
 }
 
 template <class Scalar>
-QueryCost Culler<Scalar>::look(const Grid<Scalar>& grid, const View& view, ProxyFilter filter,
+QueryCost Culler<Scalar>::look(const Grid<Scalar>& grid, const Frustum& frustum, ProxyFilter filter,
                                Scalar moved) {
-    if (!begin(grid, view, moved)) {
+    if (!begin(grid, frustum, moved)) {
         return {};
     }
     const detail::QueryScope scope(this);
@@ -121,7 +122,7 @@ std::size_t Culler<Scalar>::count() const noexcept {
 template <class Scalar>
 Overdraw Culler<Scalar>::overdraw(const Grid<Scalar>& grid) const {
     CountVisible<Scalar> seen(*this);
-    grid.visit(view_.exact(), seen);
+    grid.visit(frustum_.exact(), seen);
     const std::size_t visible = count();
     return {visible, visible - std::min(visible, seen.count())};
 }

@@ -42,11 +42,12 @@ struct Overdraw {
     std::size_t unseen = 0;
 };
 
-/// Finds and keeps the set of proxies that a view touches.
+/// Finds and keeps the set of proxies that a camera sees.
 template <class Scalar>
 class HASHPHASE_CULLING_EXPORT Culler {
 public:
-    using View = ConvexRegion<Scalar>;
+    using Frustum = ConvexRegion<Scalar>;
+    using View [[deprecated("Frustum")]] = Frustum;
 
     /// What is within `margin` [m] of the volume is found as well, so that the set may serve for some
     /// frames: see look(). At least 0, else taken as 0.
@@ -54,16 +55,16 @@ public:
 
     // --- Once a frame ----------------------------------------------------------------------------
 
-    /// Finds what touches `view` and passes the filter, unless what was found the last time is known
-    /// to have it all: when `view` lies within that time's volume, grown by the margin, nothing was added or
+    /// Finds what touches the frustum and passes the filter, unless what was found the last time is known
+    /// to have it all: when the frustum lies within that time's volume, grown by the margin, nothing was added or
     /// removed since (Grid::populationNumber()), and nothing can have come in. `moved` [m] says how far any
     /// corner of a box of the grid may have moved since the last call; infinite when nobody knows, or
     /// the filter has changed. A Touch::byPlanes region takes less time than an exact one; of one for
     /// what lies inside no set is kept. Returns the query's cost, none when the set was kept. Cost: the
     /// cells at the surface of the volume; at most one test for each proxy (Grid::visit()).
-    QueryCost look(const Grid<Scalar>& grid, const View& view,
+    QueryCost look(const Grid<Scalar>& grid, const Frustum& frustum,
                    Scalar moved = std::numeric_limits<Scalar>::infinity());
-    QueryCost look(const Grid<Scalar>& grid, const View& view, ProxyFilter filter,
+    QueryCost look(const Grid<Scalar>& grid, const Frustum& frustum, ProxyFilter filter,
                    Scalar moved = std::numeric_limits<Scalar>::infinity());
 
     /// Says that corners of boxes may have moved so far [m] in a frame without a look().
@@ -113,9 +114,12 @@ public:
     }
 
     /// The volume of the last look(), or the frozen one; not grown.
-    [[nodiscard]] const View& view() const noexcept { return view_; }
+    [[nodiscard]] const Frustum& frustum() const noexcept { return frustum_; }
+    [[deprecated("frustum()")]] [[nodiscard]] const Frustum& view() const noexcept {
+        return frustum_;
+    }
 
-    /// Compares the set with the proxies whose boxes now share a point with view(). Cost: that of an
+    /// Compares the set with the proxies whose boxes now share a point with frustum(). Cost: that of an
     /// exact query.
     [[nodiscard]] Overdraw overdraw(const Grid<Scalar>& grid) const;
 
@@ -124,13 +128,13 @@ public:
     }
 
 private:
-    [[nodiscard]] bool begin(const Grid<Scalar>& grid, const View& view, Scalar moved);
+    [[nodiscard]] bool begin(const Grid<Scalar>& grid, const Frustum& frustum, Scalar moved);
     [[nodiscard]] bool keepsSet() const;
 
     Scalar margin_;
     Scalar moved_;  // since the set was found
-    View view_;
-    View grown_;  // in which the set was found
+    Frustum frustum_;
+    Frustum grown_;  // in which the set was found
     bool isFrozen_ = false;
     std::uint64_t findCount_ = 0;
     std::uint64_t population_ = 0;  // of which the set was found

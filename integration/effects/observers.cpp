@@ -261,7 +261,7 @@ void Observers<Scalar>::lookAround(const Scene& scene, Scalar /*moved*/, Paralle
         };
         return update(counts, looks);
     });
-    cost_[SceneCounter::agentsScanned] = proximity.rarest.crowd().size();
+    cost_[SceneCounter::agentsScanned] = proximity.rarest.search().size();
     cost_[SceneCounter::neighboursTested] = cost.boxesTested;
     cost_[SceneCounter::agentsLate] =
         allLook ? 0 : countOf(scene, Effect::proximity) - lookingCount.load();
@@ -453,12 +453,12 @@ Picked<Scalar> Observers<Scalar>::pick(const Scene& scene, const RayRegion<Scala
 }
 
 template <class Scalar>
-QueryCost Observers<Scalar>::select(const Scene& scene, const View<Scalar>& view, const Pixel& a,
-                                    const Pixel& b, std::vector<ProxyId>& selected,
+QueryCost Observers<Scalar>::select(const Scene& scene, const Camera<Scalar>& camera,
+                                    const Pixel& a, const Pixel& b, std::vector<ProxyId>& selected,
                                     Containment containment) {
     demand(Effect::boxSelection, "select()");
     const QueryCost cost = askFor(scene, Effect::boxSelection, [&](ProxyFilter filter) {
-        return hashphase::select(scene.grid, view, a, b, selected, containment, filter);
+        return hashphase::select(scene.grid, camera, a, b, selected, containment, filter);
     });
     noteAsked(SceneCounter::selections, SceneCounter::selectionBoxesTested, cost);
     return cost;

@@ -152,8 +152,8 @@ public:
                                       ExactTest<Scalar> test);
 
     /// hashphase::select(), of those that take part in box selection, which it needs.
-    QueryCost select(const Scene& scene, const View<Scalar>& view, const Pixel& a, const Pixel& b,
-                     std::vector<ProxyId>& selected,
+    QueryCost select(const Scene& scene, const Camera<Scalar>& camera, const Pixel& a,
+                     const Pixel& b, std::vector<ProxyId>& selected,
                      Containment containment = Containment::touching);
 
     /// Adds the bytes of all tables here, capacity included. Cost: O(zones).

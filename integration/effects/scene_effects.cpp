@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/effects/scene_effects.hpp>
 
-#include <broadphase/crowd.hpp>
+#include <broadphase/radius_search.hpp>
 #include <integration/ai/radar.hpp>
 
 #include <array>
@@ -131,7 +131,7 @@ void requireOfMovers(const SceneEffects& effects, Settings& settings) {
 }
 
 void requireOfAgents(const ProximityEffect& proximity, Settings& settings) {
-    constexpr std::uint32_t most = Crowd<float>::kMostGroups;
+    constexpr std::uint32_t most = RadiusSearch<float>::kMostGroups;
     settings.requireNotNegative("proximity.radius", proximity.radius, "[m]");
     settings.require(proximity.colourCount >= 1 && proximity.colourCount <= most,
                      "proximity.colourCount", proximity.colourCount,

@@ -93,7 +93,7 @@ struct CullingEffect {
 /// What an agent does about who is near: the paper's routine (RarestColour).
 struct ProximityEffect {
     double radius = 10;             ///< [m]
-    std::uint32_t colourCount = 4;  ///< 1 to Crowd::kMostGroups
+    std::uint32_t colourCount = 4;  ///< 1 to RadiusSearch::kMostGroups
     double interestRadius =
         std::numeric_limits<double>::infinity();  ///< agents beyond it are far [m]
     std::uint32_t farFrames = 1;  ///< far agents look around in every n-th frame only

@@ -362,11 +362,11 @@ Picked<Scalar> Simulation<Scalar>::pick(const RayRegion<Scalar>& ray) {
 }
 
 template <class Scalar>
-QueryCost Simulation<Scalar>::select(const View<Scalar>& view, const Pixel& a, const Pixel& b,
+QueryCost Simulation<Scalar>::select(const Camera<Scalar>& camera, const Pixel& a, const Pixel& b,
                                      std::vector<ProxyId>& selected, Containment containment) {
     demand(Effect::boxSelection, "select()");
     takeStock();
-    return observers_.select(observed(), view, a, b, selected, containment);
+    return observers_.select(observed(), camera, a, b, selected, containment);
 }
 
 template class Simulation<float>;

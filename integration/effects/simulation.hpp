@@ -169,7 +169,7 @@ public:
 
     /// As those of Observers.
     [[nodiscard]] Picked<Scalar> pick(const RayRegion<Scalar>& ray);
-    QueryCost select(const View<Scalar>& view, const Pixel& a, const Pixel& b,
+    QueryCost select(const Camera<Scalar>& camera, const Pixel& a, const Pixel& b,
                      std::vector<ProxyId>& selected,
                      Containment containment = Containment::touching);
 

@@ -33,23 +33,23 @@ double timeOfContact(const Vector3<Scalar>& apart, const Vector3<Scalar>& way, S
 }
 
 /// Merges what is present with what has changed since; all are sorted.
-template <class Couple, class CoupleOf>
-void applyChanges(const std::vector<Couple>& present, const PairChanges& changes,
-                  const CoupleOf& coupleOf, std::vector<Couple>& next) {
+template <class BodyPair, class BodyPairOf>
+void applyChanges(const std::vector<BodyPair>& present, const PairChanges& changes,
+                  const BodyPairOf& bodyPairOf, std::vector<BodyPair>& next) {
     next.clear();
     auto fresh = changes.born.begin();
     auto gone = changes.died.begin();
-    for (const Couple& couple : present) {
-        if (gone != changes.died.end() && coupleOf(*gone) == couple) {
+    for (const BodyPair& pair : present) {
+        if (gone != changes.died.end() && bodyPairOf(*gone) == pair) {
             ++gone;
             continue;
         }
-        for (; fresh != changes.born.end() && coupleOf(*fresh) < couple; ++fresh) {
-            next.push_back(coupleOf(*fresh));
+        for (; fresh != changes.born.end() && bodyPairOf(*fresh) < pair; ++fresh) {
+            next.push_back(bodyPairOf(*fresh));
         }
-        next.push_back(couple);
+        next.push_back(pair);
     }
-    std::transform(fresh, changes.born.end(), std::back_inserter(next), coupleOf);
+    std::transform(fresh, changes.born.end(), std::back_inserter(next), bodyPairOf);
 }
 
 }  // namespace
@@ -58,22 +58,22 @@ void applyChanges(const std::vector<Couple>& present, const PairChanges& changes
 // nobody responded in the last frame, all are asked for.
 template <class Scalar>
 void Simulation<Scalar>::gather() {
-    using Couple = typename Contacts::Couple;
-    const auto coupleOf = [](const ProxyPair& pair) {
-        return Couple{pair.first.index, pair.second.index};
+    using BodyPair = typename Contacts::BodyPair;
+    const auto bodyPairOf = [](const ProxyPair& pair) {
+        return BodyPair{pair.first.index, pair.second.index};
     };
-    std::vector<Couple>& present = contacts_->present;
+    std::vector<BodyPair>& present = contacts_->present;
     if (!contacts_->isCurrent) {
         std::vector<ProxyPair> pairs;
         pairing_->pairs.collect(pairs);
         present.resize(pairs.size());
-        std::transform(pairs.begin(), pairs.end(), present.begin(), coupleOf);
+        std::transform(pairs.begin(), pairs.end(), present.begin(), bodyPairOf);
         contacts_->isCurrent = true;
         return;
     }
     const PairChanges& changes = pairing_->changes;
     if (!changes.born.empty() || !changes.died.empty()) {
-        applyChanges(present, changes, coupleOf, contacts_->next);
+        applyChanges(present, changes, bodyPairOf, contacts_->next);
         present.swap(contacts_->next);
     }
 }

@@ -317,7 +317,7 @@ void Simulation<Scalar>::pair() {
     const PairCost& cost = pairs.lastCost();
     cost_[SceneCounter::entriesFiled] += cost.grid.filed;
     cost_[SceneCounter::boxesTested] += cost.boxesTested;
-    cost_[SceneCounter::couplesWatched] += cost.couplesWatched;
+    cost_[SceneCounter::pairsWatched] += cost.pairsWatched;
     cost_[SceneCounter::pairsBorn] += pairing_->changes.born.size();
     cost_[SceneCounter::pairsDied] += pairing_->changes.died.size();
     if (pairing_->sweeps) {

@@ -6,42 +6,43 @@
 namespace hashphase {
 
 template <class Scalar>
-std::string selectionError(const View<Scalar>& view, const Pixel& a, const Pixel& b) {
-    if (!view.isValid()) {
-        return viewError(view.viewProjection(), view.viewport());
+std::string selectionError(const Camera<Scalar>& camera, const Pixel& a, const Pixel& b) {
+    if (!camera.isValid()) {
+        return cameraError(camera.viewProjection(), camera.viewport());
     }
     if (a.hasNaN() || b.hasNaN()) {
         return "A corner of the rectangle is NaN; both must be places in the window.";
     }
-    if (view.rectangleBetween(a, b).isEmpty()) {
+    if (camera.rectangleBetween(a, b).isEmpty()) {
         return "The rectangle lies beside the viewport; some of it must lie inside.";
     }
     return {};
 }
 
 template <class Scalar>
-ConvexRegion<Scalar> selectionRegion(const View<Scalar>& view, const Pixel& a, const Pixel& b,
+ConvexRegion<Scalar> selectionRegion(const Camera<Scalar>& camera, const Pixel& a, const Pixel& b,
                                      Containment containment) {
-    return frustumRegion(view.viewProjection(), view.depthRange(), view.rectangleBetween(a, b),
-                         containment, Touch::exact);
+    return frustumRegion(camera.viewProjection(), camera.depthRange(),
+                         camera.rectangleBetween(a, b), containment, Touch::exact);
 }
 
 template <class Scalar>
-QueryCost select(const Grid<Scalar>& grid, const View<Scalar>& view, const Pixel& a, const Pixel& b,
-                 std::vector<ProxyId>& selected, Containment containment, ProxyFilter filter) {
+QueryCost select(const Grid<Scalar>& grid, const Camera<Scalar>& camera, const Pixel& a,
+                 const Pixel& b, std::vector<ProxyId>& selected, Containment containment,
+                 ProxyFilter filter) {
     selected.clear();
     CollectAll all(selected);
     CollectIf accepted(all, filter);
-    const QueryCost cost = grid.visit(selectionRegion(view, a, b, containment), accepted);
+    const QueryCost cost = grid.visit(selectionRegion(camera, a, b, containment), accepted);
     std::sort(selected.begin(), selected.end());
     return cost;
 }
 
 #define HASHPHASE_INSTANTIATE(Scalar)                                                              \
-    template std::string selectionError(const View<Scalar>&, const Pixel&, const Pixel&);          \
-    template ConvexRegion<Scalar> selectionRegion(const View<Scalar>&, const Pixel&, const Pixel&, \
-                                                  Containment);                                    \
-    template QueryCost select(const Grid<Scalar>&, const View<Scalar>&, const Pixel&,              \
+    template std::string selectionError(const Camera<Scalar>&, const Pixel&, const Pixel&);        \
+    template ConvexRegion<Scalar> selectionRegion(const Camera<Scalar>&, const Pixel&,             \
+                                                  const Pixel&, Containment);                      \
+    template QueryCost select(const Grid<Scalar>&, const Camera<Scalar>&, const Pixel&,            \
                               const Pixel&, std::vector<ProxyId>&, Containment, ProxyFilter)
 
 HASHPHASE_INSTANTIATE(float);

@@ -70,9 +70,9 @@ std::optional<Vector3<Scalar>> groundPoint(const RayRegion<Scalar>& ray,
 }
 
 template <class Scalar>
-GroundFootprint<Scalar> dragFootprint(const View<Scalar>& view, const Pixel& a, const Pixel& b,
+GroundFootprint<Scalar> dragFootprint(const Camera<Scalar>& camera, const Pixel& a, const Pixel& b,
                                       const HeightRange<Scalar>& heights, double farthest) {
-    return {view.viewProjection(), view.depthRange(), heights, view.rectangleBetween(a, b),
+    return {camera.viewProjection(), camera.depthRange(), heights, camera.rectangleBetween(a, b),
             farthest};
 }
 
@@ -81,7 +81,7 @@ GroundFootprint<Scalar> dragFootprint(const View<Scalar>& view, const Pixel& a, 
                                              const HeightRange<Scalar>&);                          \
     template std::optional<Vector3<Scalar>> groundPoint(const RayRegion<Scalar>&, Scalar, UpAxis); \
     template GroundFootprint<Scalar> dragFootprint(                                                \
-        const View<Scalar>&, const Pixel&, const Pixel&, const HeightRange<Scalar>&, double)
+        const Camera<Scalar>&, const Pixel&, const Pixel&, const HeightRange<Scalar>&, double)
 
 HASHPHASE_INSTANTIATE(float);
 HASHPHASE_INSTANTIATE(double);

@@ -10,8 +10,8 @@
 // Bad data  Empty rays and heights that are NaN or exchanged meet nothing.
 
 #include <broadphase/regions.hpp>
+#include <integration/camera/camera.hpp>
 #include <integration/camera/ground_footprint.hpp>
-#include <integration/camera/view.hpp>
 #include <integration/picking/export.hpp>
 
 #include <optional>
@@ -35,7 +35,7 @@ template <class Scalar>
 /// ground_footprint.hpp). Select by its region(): all columns of air over it count, as on a map.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_PICKING_EXPORT GroundFootprint<Scalar> dragFootprint(
-    const View<Scalar>& view, const Pixel& a, const Pixel& b, const HeightRange<Scalar>& heights,
-    double farthest = kFarthestView);
+    const Camera<Scalar>& camera, const Pixel& a, const Pixel& b,
+    const HeightRange<Scalar>& heights, double farthest = kFarthestView);
 
 }  // namespace hashphase

@@ -2,7 +2,7 @@
 #pragma once
 
 // What is under the pointer: by boxes, or by an exact test of the caller's. Users and AI alike pick
-// along a ray: View::rayThrough() makes one of a pixel, clipToHeights() shortens it to where things
+// along a ray: Camera::rayThrough() makes one of a pixel, clipToHeights() shortens it to where things
 // stand.
 //
 // Order    from near to far; of those equally near, by their ids

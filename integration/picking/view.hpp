@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Moved: include integration/camera/view.hpp.
+// Renamed: include integration/camera/camera.hpp, and write Camera and cameraError().
 
-#include <integration/camera/view.hpp>
+#include <integration/camera/camera.hpp>
+
+namespace hashphase {
+
+template <class Scalar>
+using View [[deprecated("Camera")]] = Camera<Scalar>;
+
+template <class Scalar>
+[[deprecated("cameraError()")]] [[nodiscard]] std::string viewError(
+    const Eigen::Matrix<Scalar, 4, 4>& viewProjection, const Viewport& viewport) {
+    return cameraError(viewProjection, viewport);
+}
+
+}  // namespace hashphase

@@ -2,7 +2,7 @@
 
 // Which crowds are asked who is near whom, and who answers.
 
-#include <broadphase/crowd.hpp>
+#include <broadphase/radius_search.hpp>
 #include <demos/scenes/brownian_scene.hpp>
 #include <integration/bullet/conversions.hpp>
 #include <tests/benchmarks/catalog.hpp>
@@ -40,12 +40,12 @@ public:
     }
 
     void ask(float radius) override {
-        crowd_.take(grid_, radius, acceptAll, parallelFor_);
+        search_.take(grid_, radius, acceptAll, parallelFor_);
         if (question_ == Question::count) {
-            crowd_.count(counts_, parallelFor_);
+            search_.count(counts_, parallelFor_);
             return;
         }
-        crowd_.forEach(
+        search_.forEach(
             [this](std::uint32_t agent, std::span<const std::uint32_t> neighbours) {
                 heads_[agent] = neighbours.empty() ? 0 : neighbours.front();
             },
@@ -54,14 +54,14 @@ public:
 
     void listAnswers(float /*radius*/, std::vector<AgentAnswer>& answers) override {
         const auto objectOf = [this](std::uint32_t agent) {
-            return objects_[crowd_.id(agent).index];
+            return objects_[search_.id(agent).index];
         };
         for (std::uint32_t agent = 0; question_ == Question::count && agent < counts_.size();
              ++agent) {
             answers[objectOf(agent)].count = counts_[agent];
         }
         if (question_ == Question::list) {
-            crowd_.forEach(
+            search_.forEach(
                 [&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) {
                     for (const std::uint32_t neighbour : neighbours) {
                         answers[objectOf(agent)].add(objectOf(neighbour));
@@ -73,14 +73,14 @@ public:
 
     [[nodiscard]] bool tellsWho() const override { return question_ == Question::list; }
     [[nodiscard]] std::optional<OwnBytes> ownBytes() const override {
-        return OwnBytes{crowd_.memoryBytes(), 0};
+        return OwnBytes{search_.memoryBytes(), 0};
     }
 
 private:
     Question question_;
     ParallelFor parallelFor_;
     Grid<float> grid_;
-    Crowd<float> crowd_;
+    RadiusSearch<float> search_;
     std::vector<ProxyId> ids_;            // by object
     std::vector<std::uint32_t> objects_;  // by index of proxy
     std::vector<std::uint32_t> counts_;
@@ -159,8 +159,8 @@ CrowdKind ownKind(std::string name, std::string description, Question question,
                   ParallelFor parallelFor, bool onThreads) {
     CrowdKind crowd;
     crowd.kind.name = std::move(name);
-    crowd.kind.title =
-        question == Question::count ? "hashphase::Crowd::count" : "hashphase::Crowd::forEach";
+    crowd.kind.title = question == Question::count ? "hashphase::RadiusSearch::count"
+                                                   : "hashphase::RadiusSearch::forEach";
     crowd.kind.description = std::move(description);
     crowd.kind.package = "this build";
     crowd.kind.ours = true;

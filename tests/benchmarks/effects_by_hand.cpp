@@ -99,20 +99,22 @@ public:
     void advance(const ConvexRegion<float>& view) override {
         HandPaired::advance(view);
         gather();
-        for (const Couple& couple : present_) {
-            bounce(couple);
+        for (const SpherePair& pair : present_) {
+            bounce(pair);
         }
     }
 
 private:
-    struct Couple {
+    struct SpherePair {
         std::uint32_t a;
         std::uint32_t b;
 
-        friend constexpr auto operator<=>(const Couple&, const Couple&) = default;
+        friend constexpr auto operator<=>(const SpherePair&, const SpherePair&) = default;
     };
 
-    static Couple coupleOf(const ProxyPair& pair) { return {pair.first.index, pair.second.index}; }
+    static SpherePair spherePairOf(const ProxyPair& pair) {
+        return {pair.first.index, pair.second.index};
+    }
 
     // Merges the present pairs with those born, and leaves out those that died.
     void gather() {
@@ -120,33 +122,33 @@ private:
         auto born = allBorn.begin();
         auto died = allDied.begin();
         next_.clear();
-        for (const Couple& couple : present_) {
-            if (died != allDied.end() && coupleOf(*died) == couple) {
+        for (const SpherePair& pair : present_) {
+            if (died != allDied.end() && spherePairOf(*died) == pair) {
                 ++died;
                 continue;
             }
-            for (; born != allBorn.end() && coupleOf(*born) < couple; ++born) {
-                next_.push_back(coupleOf(*born));
+            for (; born != allBorn.end() && spherePairOf(*born) < pair; ++born) {
+                next_.push_back(spherePairOf(*born));
             }
-            next_.push_back(couple);
+            next_.push_back(pair);
         }
         for (; born != allBorn.end(); ++born) {
-            next_.push_back(coupleOf(*born));
+            next_.push_back(spherePairOf(*born));
         }
         present_.swap(next_);
     }
 
-    void bounce(const Couple& couple) {
-        const float reach = radii_[couple.a] + radii_[couple.b];
-        const Vector3<float> apart = positions_[couple.b] - positions_[couple.a];
+    void bounce(const SpherePair& pair) {
+        const float reach = radii_[pair.a] + radii_[pair.b];
+        const Vector3<float> apart = positions_[pair.b] - positions_[pair.a];
         if (apart.squaredNorm() > reach * reach) {
             return;
         }
         const float distance = apart.norm();
         const Vector3<float> normal =
             distance > 0 ? Vector3<float>(apart / distance) : Vector3<float>::UnitX();
-        Vector3<float>& velocityA = velocities_[couple.a];
-        Vector3<float>& velocityB = velocities_[couple.b];
+        Vector3<float>& velocityA = velocities_[pair.a];
+        Vector3<float>& velocityB = velocities_[pair.b];
         const float approach = velocityA.dot(normal) - velocityB.dot(normal);
         if (approach > 0) {
             const Vector3<float> change = normal * approach;
@@ -155,8 +157,8 @@ private:
         }
     }
 
-    std::vector<Couple> present_;  // sorted
-    std::vector<Couple> next_;
+    std::vector<SpherePair> present_;  // sorted
+    std::vector<SpherePair> next_;
 };
 
 class HandCulled final : public HandMoved {

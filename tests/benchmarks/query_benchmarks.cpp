@@ -9,7 +9,7 @@
 
 #include <demos/scenes/brownian_scene.hpp>
 #include <demos/scenes/paper_scene.hpp>
-#include <integration/camera/view.hpp>
+#include <integration/camera/camera.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -103,7 +103,8 @@ Ray rayThroughPixel(Random& random, const Boxes& boxes) {
     const test::CameraLens lens;
     const Vector3<double> target = anyBox(random, boxes).center().cast<double>();
     const Vector3<double> eye = target + Vector3<double>(24, 20, 24);
-    const View<float> view(test::cameraMatrix<float>(lens, eye, target), lens.depthRange, kWindow);
+    const Camera<float> view(test::cameraMatrix<float>(lens, eye, target), lens.depthRange,
+                             kWindow);
     const RayRegion<float> ray =
         view.rayThrough({random.between(0, 1920), random.between(0, 1080)});
     return {toBullet(ray.from()), toBullet(ray.from() + ray.direction())};

@@ -54,12 +54,12 @@ void SweepWorkload::beginFrame() {
         const ObjectMotion& motion = motions_[i];
         MovingBox<float>& way = moving_[motion.object];
         way.displacement = motion.displacement;
-        ways_[motion.object] = wayBounds(way);
+        ways_[motion.object] = sweptBounds(way);
         Parts& parts = parts_[i];
         for (std::size_t part = 0; part < parts.size(); ++part) {
             const auto share = 1 / static_cast<double>(parts.size());
             const auto number = static_cast<double>(part);
-            parts[part] = wayBounds(way, number * share, (number + 1) * share);
+            parts[part] = sweptBounds(way, number * share, (number + 1) * share);
         }
     }
     demos::toBulletBoxes(ways_, bulletWays_);

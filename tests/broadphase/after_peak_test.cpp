@@ -2,13 +2,13 @@
 
 // After a peak: what has come and gone is given back, and what is left takes what it would take alone.
 
-#include <broadphase/crowd.hpp>
 #include <broadphase/neighbours.hpp>
+#include <broadphase/radius_search.hpp>
 #include <tests/support/box_scenes.hpp>
-#include <tests/support/crowd_oracle.hpp>
 #include <tests/support/handlers.hpp>
 #include <tests/support/pair_world.hpp>
 #include <tests/support/query_checks.hpp>
+#include <tests/support/radius_oracle.hpp>
 
 #include <gtest/gtest.h>
 
@@ -226,7 +226,7 @@ TYPED_TEST(AfterAPeak, AnswersAreThoseOfBruteForce) {
                 for (Placed<TypeParam>& proxy : proxies) {
                     proxy.box = {proxy.box.min() - by, proxy.box.max() - by};
                 }
-                world.announce(proxies[5].id);
+                world.findPairsNow(proxies[5].id);
                 world.refilter(proxies[6].id);
                 world.update();
                 ASSERT_NO_FATAL_FAILURE(world.checkThoroughly(proxies));
@@ -288,39 +288,39 @@ TYPED_TEST(AfterAPeak, RadiusSearchesReadAndHoldWhatIsLeft) {
     Grid<TypeParam> grid;
     auto proxies = this->addMany(grid, 20000);
     grid.update();
-    Crowd<TypeParam> crowd;
+    RadiusSearch<TypeParam> search;
     Neighbours<TypeParam> neighbours;
-    crowd.take(grid, TypeParam(1));
+    search.take(grid, TypeParam(1));
     static_cast<void>(neighbours.find(grid, TypeParam(0.01)));
-    const std::size_t atPeak = crowd.memoryBytes();
+    const std::size_t atPeak = search.memoryBytes();
     const std::size_t ofNeighbours = neighbours.memoryBytes();
     this->leave(grid, proxies, 100, Left::last);
     grid.update();
-    Crowd<TypeParam> fresh;
+    RadiusSearch<TypeParam> fresh;
     const auto radius = TypeParam(6);
     fresh.take(grid, radius);
     EXPECT_EQ(fresh.size(), 100U);
     EXPECT_LT(fresh.memoryBytes(), 32U * 1024U) << "no list by index";
     for (int take = 0; take < kManyUpdates; ++take) {
-        crowd.take(grid, radius);
+        search.take(grid, radius);
         static_cast<void>(neighbours.find(grid, radius));
     }
-    EXPECT_LT(crowd.memoryBytes(), atPeak / 20);
+    EXPECT_LT(search.memoryBytes(), atPeak / 20);
     EXPECT_LT(neighbours.memoryBytes(), ofNeighbours / 20);
     const NeighbourLists expected = neighboursByBruteForce<TypeParam>(proxies, radius);
-    std::size_t couples = 0;
-    crowd.forEach([&](std::uint32_t agent, std::span<const std::uint32_t> found) {
+    std::size_t pairs = 0;
+    search.forEach([&](std::uint32_t agent, std::span<const std::uint32_t> found) {
         std::vector<ProxyId> ids;
         for (const std::uint32_t other : found) {
-            ids.push_back(crowd.id(other));
+            ids.push_back(search.id(other));
         }
         std::sort(ids.begin(), ids.end());
-        std::vector<ProxyId> wanted = expected.at(crowd.id(agent));
+        std::vector<ProxyId> wanted = expected.at(search.id(agent));
         std::sort(wanted.begin(), wanted.end());
         EXPECT_EQ(ids, wanted);
-        couples += ids.size();
+        pairs += ids.size();
     });
-    EXPECT_GT(couples, 0U);
+    EXPECT_GT(pairs, 0U);
 }
 
 #if HASHPHASE_ENABLE_ASSERTS

@@ -23,7 +23,7 @@ using test::BoxScene;
 using test::makeBox;
 using test::Random;
 
-using Couples = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+using IndexPairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 template <class Scalar>
 class BoxSearchTest : public testing::Test {
@@ -40,35 +40,35 @@ protected:
         return columns;
     }
 
-    /// (query, slot) in the order in which they are handed over.
-    Couples found(const std::vector<Box>& queries) {
-        Couples couples;
+    /// (query, proxy index) in the order in which they are handed over.
+    IndexPairs found(const std::vector<Box>& queries) {
+        IndexPairs pairs;
         const BoxColumns<Scalar> columns = columnsOf(queries);
-        const auto take = [&](std::span<const IndexPair> pairs) {
-            EXPECT_FALSE(pairs.empty());
-            for (const auto [query, entry] : pairs) {
-                couples.emplace_back(query, table_.proxyIndex(entry));
+        const auto take = [&](std::span<const IndexPair> batch) {
+            EXPECT_FALSE(batch.empty());
+            for (const auto [query, entry] : batch) {
+                pairs.emplace_back(query, table_.proxyIndex(entry));
             }
             return true;
         };
         EXPECT_TRUE(searchBoxes(table_, columns.columns(), columns.size(), take, cost_));
-        return couples;
+        return pairs;
     }
 
     /// The same, one query after the other.
-    Couples foundOneByOne(const std::vector<Box>& queries) {
-        Couples couples;
+    IndexPairs foundOneByOne(const std::vector<Box>& queries) {
+        IndexPairs pairs;
         for (std::uint32_t i = 0; i < queries.size(); ++i) {
-            for (const auto& [none, slot] : found({queries[i]})) {
-                couples.emplace_back(i, slot);
+            for (const auto& [none, proxyIndex] : found({queries[i]})) {
+                pairs.emplace_back(i, proxyIndex);
             }
         }
-        return couples;
+        return pairs;
     }
 
-    static Couples sorted(Couples couples) {
-        std::sort(couples.begin(), couples.end());
-        return couples;
+    static IndexPairs sorted(IndexPairs pairs) {
+        std::sort(pairs.begin(), pairs.end());
+        return pairs;
     }
 
     /// What is handed over to somebody who wants no more than the first of it.
@@ -107,11 +107,11 @@ TYPED_TEST(BoxSearchTest, FindsWhatOverlapsOneByOneAndTogether) {
                 queries.push_back(scene.draw(random));
             }
             test::fill(this->table_, boxes, cellSize > 0 ? fixedLevels(cellSize, 4) : LevelSizes{});
-            Couples expected;
+            IndexPairs expected;
             for (std::uint32_t i = 0; i < queries.size(); ++i) {
-                for (std::uint32_t slot = 0; slot < boxes.size(); ++slot) {
-                    if (overlaps(queries[i], boxes[slot])) {
-                        expected.emplace_back(i, slot);
+                for (std::uint32_t proxyIndex = 0; proxyIndex < boxes.size(); ++proxyIndex) {
+                    if (overlaps(queries[i], boxes[proxyIndex])) {
+                        expected.emplace_back(i, proxyIndex);
                     }
                 }
             }
@@ -131,7 +131,7 @@ TYPED_TEST(BoxSearchTest, FindsTheSameInTheSameOrderWithEveryInstructionSet) {
     }
     test::fill(this->table_, boxes);
     useInstructionSet(InstructionSet::scalar);
-    const Couples expected = this->foundOneByOne(queries);
+    const IndexPairs expected = this->foundOneByOne(queries);
     for (const InstructionSet set :
          {InstructionSet::sse2, InstructionSet::avx2, InstructionSet::avx512}) {
         if (isAvailable(set)) {

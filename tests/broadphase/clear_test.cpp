@@ -43,8 +43,8 @@ struct ToldWorld {
         if (sweeps != nullptr && id.index % 7 == 0) {
             sweeps->set(id, box.sizes() * 5);
         }
-        if (pairs != nullptr && announces && id.index % 11 == 0) {
-            tell(pairs->announce(id, acceptAllPairs));
+        if (pairs != nullptr && findsNow && id.index % 11 == 0) {
+            tell(pairs->findPairsNow(id, acceptAllPairs));
         }
         return id;
     }
@@ -64,7 +64,7 @@ struct ToldWorld {
         UpdateCost cost;
         if (pairs != nullptr) {
             tell(pairs->update());
-            told << pairs->lastCost().boxesTested << ' ' << pairs->lastCost().couplesWatched << ' '
+            told << pairs->lastCost().boxesTested << ' ' << pairs->lastCost().pairsWatched << ' '
                  << sweeps->lastCost().segments << ' ';
             cost = pairs->lastCost().grid;
         } else {
@@ -98,7 +98,7 @@ struct ToldWorld {
     std::unique_ptr<Sweeps<Scalar>> sweeps;
     std::unique_ptr<Pairs<Scalar>> pairs;
     std::ostringstream told;
-    bool announces = true;
+    bool findsNow = true;
 };
 
 template <class Scalar>
@@ -142,7 +142,7 @@ TYPED_TEST(Clear, LeavesAGridAndItsPairsAsNewOnes) {
 TYPED_TEST(Clear, LeavesNothingToBeFoundAndNoIdValid) {
     for (const bool hasPairs : {false, true}) {
         ToldWorld<TypeParam> world({}, hasPairs);
-        world.announces = false;
+        world.findsNow = false;
         std::vector<ProxyId> ids;
         for (int round = 0; round < 3; ++round) {
             for (int i = 0; i < 100; ++i) {

@@ -28,8 +28,8 @@ void scatter(Points& points, Random& random, int count, const Point& corner, con
     }
 }
 
-/// The definition: of all couples, those whose cells are the same; cells begin anywhere.
-double shareByCouples(const Points& points, double size, AxisSet flat) {
+/// The definition: of all pairs, those whose cells are the same; cells begin anywhere.
+double shareByPairs(const Points& points, double size, AxisSet flat) {
     double same = 0;
     double all = 0;
     for (const double begin : {0.0, 0.21, 0.43, 0.77}) {
@@ -49,7 +49,7 @@ double shareByCouples(const Points& points, double size, AxisSet flat) {
     return same / all;
 }
 
-TEST(DensityEstimate, IsTheShareOfCouplesInOneCell) {
+TEST(DensityEstimate, IsTheShareOfPairsInOneCell) {
     Random random(0x5eed0c01);
     Points points;
     scatter(points, random, 700, {-20, 3, 100}, {40, 10, 20});
@@ -58,7 +58,7 @@ TEST(DensityEstimate, IsTheShareOfCouplesInOneCell) {
     crowding.measure(points, {-20, 3, 100}, {20, 13, 120});
     for (const AxisSet flat : {kNone, kFlatY, AxisSet{0b100}, kFlatYZ}) {
         for (const double size : {1.5, 3.0, 6.0, 12.0}) {
-            const double expected = shareByCouples(points, size, flat);
+            const double expected = shareByPairs(points, size, flat);
             const double share = crowding.shareInCell(size, flat);
             EXPECT_GT(share, 0.6 * expected) << size << ", flat " << int{flat};
             EXPECT_LT(share, 1.6 * expected) << size << ", flat " << int{flat};

@@ -178,7 +178,7 @@ TYPED_TEST(HardCrowds, InAnyOrderOnAnyNumberOfThreadsAreTheSamePairs) {
             boxes.push_back(hasNan(box) ? makeBox<TypeParam>(0, 0, 0, 1, 1, 1) : box);
         }
     }
-    const auto expected = Swept(boxes).couples;
+    const auto expected = Swept(boxes).pairs;
     std::vector<std::uint32_t> order(boxes.size());
     std::iota(order.begin(), order.end(), 0U);
     for (const std::size_t threadCount : {1U, 2U, 3U, 5U, 8U, 16U}) {

@@ -172,7 +172,7 @@ TYPED_TEST(HardNumbers, OfBothZeroesAreOneNumber) {
 }
 
 /// What joins find, and what there is, summed up so that order does not matter.
-struct CoupleSum {
+struct PairSum {
     std::uint64_t count = 0;
     std::uint64_t hash = 0;
 
@@ -183,7 +183,7 @@ struct CoupleSum {
         ++count;
         hash += key * 0xbf58476d1ce4e5b9U;
     }
-    friend bool operator==(const CoupleSum&, const CoupleSum&) = default;
+    friend bool operator==(const PairSum&, const PairSum&) = default;
 };
 
 /// A border of cells of a size, k * cell as rounded, and the numbers next to it.
@@ -216,16 +216,16 @@ std::vector<Aabb<Scalar>> boxesOnBorders(Scalar cell, int axis) {
     return boxes;
 }
 
-/// The couples of boxes that are in the order of where they begin along an axis.
+/// The pairs of boxes that are in the order of where they begin along an axis.
 template <class Scalar>
-CoupleSum couplesInOrder(const std::vector<Aabb<Scalar>>& boxes) {
-    CoupleSum couples;
+PairSum pairsInOrder(const std::vector<Aabb<Scalar>>& boxes) {
+    PairSum pairs;
     for (std::uint32_t a = 0; a < boxes.size(); ++a) {
         for (std::uint32_t b = a + 1; b < boxes.size() && overlaps(boxes[a], boxes[b]); ++b) {
-            couples.add(a, b);
+            pairs.add(a, b);
         }
     }
-    return couples;
+    return pairs;
 }
 
 /// The level counts its cells from 0, and in order; numbers at border k are in cell k or the one
@@ -263,11 +263,11 @@ std::size_t expectNoneParted(int tenths, int axis) {
     detail::PairList found;
     detail::KernelCost cost;
     detail::joinTable(table, serialFor, parts, found, cost);
-    CoupleSum actual;
+    PairSum actual;
     for (const auto [first, second] : found.pairs()) {
         actual.add(table.proxyIndex(first), table.proxyIndex(second));
     }
-    EXPECT_EQ(actual, couplesInOrder(boxes));
+    EXPECT_EQ(actual, pairsInOrder(boxes));
     EXPECT_GE(actual.count, 3 * 2000U);
     return elsewhere;
 }

@@ -139,9 +139,9 @@ Attack<Scalar> boxesInALongRow() {
     return boxes;
 }
 
-/// Crowds in one bucket, each in a way of its own, with some couples in it.
+/// Crowds in one bucket, each in a way of its own, with some pairs in it.
 template <class Scalar>
-std::array<Attack<Scalar>, 3> attacksWithCouples() {
+std::array<Attack<Scalar>, 3> attacksWithPairs() {
     std::array attacks{boxesInRowsOfOneHash<Scalar>(), boxesThatMakeUpForTheirRows<Scalar>(),
                        boxesInALongRow<Scalar>()};
     for (Attack<Scalar>& boxes : attacks) {
@@ -155,7 +155,7 @@ std::array<Attack<Scalar>, 3> attacksWithCouples() {
 }
 
 TYPED_TEST(HashedCrowds, InOneBucketAreSweptToo) {
-    const auto attacks = attacksWithCouples<TypeParam>();
+    const auto attacks = attacksWithPairs<TypeParam>();
     for (const Attack<TypeParam>& boxes : attacks) {
         SCOPED_TRACE(testing::Message() << "attack " << &boxes - attacks.data());
         for (const double cellSize : {1.0, 0.0}) {
@@ -198,7 +198,7 @@ void expectFewTestsAQuery(const Attack<Scalar>& boxes, double cellSize, std::uin
 
 // Cells of 1 m are those that the boxes are made for: there the bucket is sorted.
 TYPED_TEST(HashedCrowds, InOneBucketAreFoundByQueriesOfFewTests) {
-    const auto attacks = attacksWithCouples<TypeParam>();
+    const auto attacks = attacksWithPairs<TypeParam>();
     for (const Attack<TypeParam>& boxes : attacks) {
         SCOPED_TRACE(testing::Message() << "attack " << &boxes - attacks.data());
         expectFewTestsAQuery<TypeParam>(boxes, 1, 3 * detail::kCrowdedBucket);

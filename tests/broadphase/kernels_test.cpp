@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-// Every instruction set gives the couples of the scalar kernels, in the same order.
+// Every instruction set gives the pairs of the scalar kernels, in the same order.
 
 #include <broadphase/search/join.hpp>
 #include <tests/support/box_scenes.hpp>
@@ -113,11 +113,11 @@ protected:
         return {copyOf(joined), copyOf(walked), apart, filed, copyOf(together), copyOf(onWays)};
     }
 
-    static std::vector<IndexPair> sorted(std::vector<IndexPair> couples) {
-        std::sort(couples.begin(), couples.end(), [](const IndexPair& a, const IndexPair& b) {
+    static std::vector<IndexPair> sorted(std::vector<IndexPair> pairs) {
+        std::sort(pairs.begin(), pairs.end(), [](const IndexPair& a, const IndexPair& b) {
             return std::pair(a.a, a.b) < std::pair(b.a, b.b);
         });
-        return couples;
+        return pairs;
     }
 
 private:
@@ -127,7 +127,7 @@ private:
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(KernelsTest, Scalars);
 
-TYPED_TEST(KernelsTest, OfEveryInstructionSetGiveTheSameCouplesInTheSameOrder) {
+TYPED_TEST(KernelsTest, OfEveryInstructionSetGiveTheSamePairsInTheSameOrder) {
     Random random(0x5eed0501);
     std::size_t found = 0;
     std::size_t passed = 0;
@@ -158,14 +158,14 @@ TYPED_TEST(KernelsTest, OfEveryInstructionSetGiveTheSameCouplesInTheSameOrder) {
     EXPECT_GT(passedBy, 1000U);
 }
 
-TYPED_TEST(KernelsTest, TellApartTheCouplesThatBruteForceTellsApart) {
+TYPED_TEST(KernelsTest, TellApartThePairsThatBruteForceTellsApart) {
     Random random(0x5eed0502);
     const auto boxes = this->draw(test::hostileScene<TypeParam>(), 200, random);
-    std::vector<IndexPair> couples;
+    std::vector<IndexPair> pairs;
     std::vector<IndexPair> expected;
     for (std::uint32_t a = 0; a < boxes.size(); ++a) {
         for (std::uint32_t b = 0; b < boxes.size(); ++b) {
-            couples.push_back({a, b});
+            pairs.push_back({a, b});
             if (!overlaps(unpadded(boxes[a]), unpadded(boxes[b]))) {
                 expected.push_back({a, b});
             }
@@ -177,8 +177,8 @@ TYPED_TEST(KernelsTest, TellApartTheCouplesThatBruteForceTellsApart) {
             continue;
         }
         useInstructionSet(set);
-        std::vector<IndexPair> apart(couples.size());
-        apart.resize(kernels<TypeParam>().selectApart(couples.data(), couples.size(), nullptr,
+        std::vector<IndexPair> apart(pairs.size());
+        apart.resize(kernels<TypeParam>().selectApart(pairs.data(), pairs.size(), nullptr,
                                                       boxes.data(), apart.data()));
         EXPECT_EQ(apart, expected) << nameOf(set);
     }

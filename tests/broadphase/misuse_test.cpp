@@ -3,8 +3,8 @@
 // What a caller may not do is asserted; what a callback may do, and where, is safe.
 
 #include <broadphase/convex_region.hpp>
-#include <broadphase/crowd.hpp>
 #include <broadphase/pairs.hpp>
+#include <broadphase/radius_search.hpp>
 #include <broadphase/sweeps.hpp>
 #include <tests/support/box_scenes.hpp>
 #include <tests/support/handlers.hpp>
@@ -326,7 +326,7 @@ TEST(PairFilterCallback, MayAskTheGridButMustNotChangeItNorAskForPairs) {
         ++calls;
         expectThatNothingMayChange(grid, a);
         EXPECT_THROW(pairs.update(all), BrokenAssert);
-        EXPECT_THROW(pairs.announce(a, all), BrokenAssert);
+        EXPECT_THROW(pairs.findPairsNow(a, all), BrokenAssert);
         EXPECT_THROW(pairs.refilter(a, all), BrokenAssert);
         CollectCount count;
         grid.visit(BoxRegion<float>{cube(0)}, count);
@@ -407,41 +407,41 @@ TEST(CrowdMisuse, OfAgentsThatThereAreNotIsAsserted) {
     const ThrowingAsserts throwing;
     Grid<float> grid;
     static_cast<void>(grid.add(cube(0)));
-    Crowd<float> crowd;
-    crowd.take(grid, 1);
-    EXPECT_EQ(crowd.position(0), Point(0, 0, 0));
-    EXPECT_THROW(static_cast<void>(crowd.id(1)), BrokenAssert);
-    EXPECT_THROW(static_cast<void>(crowd.position(1)), BrokenAssert);
+    RadiusSearch<float> search;
+    search.take(grid, 1);
+    EXPECT_EQ(search.position(0), Point(0, 0, 0));
+    EXPECT_THROW(static_cast<void>(search.id(1)), BrokenAssert);
+    EXPECT_THROW(static_cast<void>(search.position(1)), BrokenAssert);
 }
 
 TEST(CrowdMisuse, OfItsOwnCallbacksIsAsserted) {
     const ThrowingAsserts throwing;
     Grid<float> grid;
     const ProxyId id = grid.add(cube(0));
-    Crowd<float> crowd;
+    RadiusSearch<float> search;
     int calls = 0;
-    crowd.take(grid, 1, [&](ProxyId) {
+    search.take(grid, 1, [&](ProxyId) {
         ++calls;
         expectThatNothingMayChange(grid, id);
-        EXPECT_THROW(crowd.take(grid, 1), BrokenAssert);
+        EXPECT_THROW(search.take(grid, 1), BrokenAssert);
         return true;
     });
     std::vector<std::uint32_t> counts(1);
     const auto ask = [&] {
         ++calls;
-        EXPECT_THROW(crowd.take(grid, 2), BrokenAssert);
-        EXPECT_THROW(crowd.count(counts), BrokenAssert);
+        EXPECT_THROW(search.take(grid, 2), BrokenAssert);
+        EXPECT_THROW(search.count(counts), BrokenAssert);
     };
-    crowd.forEach([&](std::uint32_t, std::span<const std::uint32_t>) { ask(); });
+    search.forEach([&](std::uint32_t, std::span<const std::uint32_t>) { ask(); });
     const auto groupOf = [&](ProxyId) {
         ask();
         return 0U;
     };
-    crowd.countGroups(1, groupOf, counts);
+    search.countGroups(1, groupOf, counts);
     EXPECT_GE(calls, 4);
     grid.move(id, cube(3));  // all scopes have ended
-    crowd.take(grid, 1);
-    EXPECT_EQ(crowd.position(0), Point(3, 0, 0));
+    search.take(grid, 1);
+    EXPECT_EQ(search.position(0), Point(3, 0, 0));
 }
 
 TEST(GridMisuseDeathTest, EndsTheProgramWithASentence) {

@@ -209,7 +209,7 @@ TYPED_TEST(MovingBoxes, HaveTheirWayWithinItsBounds) {
         for (int i = 0; i < 2000; ++i) {
             const Aabb<TypeParam> box = scene.draw(random);
             const Vector3<TypeParam> way = scene.draw(random).min() - box.max();
-            const Aabb<TypeParam> bounds = wayBounds(MovingBox<TypeParam>{box, way});
+            const Aabb<TypeParam> bounds = sweptBounds(MovingBox<TypeParam>{box, way});
             if (hasNan(box) || !way.allFinite()) {
                 continue;
             }

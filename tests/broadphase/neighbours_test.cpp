@@ -21,15 +21,15 @@ template <class Found>
 concept CanBeAskedInPassing = requires(Found found, const Grid<float>& grid) {
     std::move(found).find(grid, 1.0F);
 };
-static_assert(!CanBeAskedInPassing<Neighbours<float>>, "couples would outlive what holds them");
+static_assert(!CanBeAskedInPassing<Neighbours<float>>, "pairs would outlive what holds them");
 
 template <class Scalar>
 class NeighboursTest : public testing::Test {
 protected:
-    using Couples = std::vector<ProxyPair>;
+    using ProxyPairs = std::vector<ProxyPair>;
 
-    static Couples sorted(std::span<const ProxyPair> couples) {
-        Couples result(couples.begin(), couples.end());
+    static ProxyPairs sorted(std::span<const ProxyPair> pairs) {
+        ProxyPairs result(pairs.begin(), pairs.end());
         std::sort(result.begin(), result.end());
         return result;
     }
@@ -37,8 +37,8 @@ protected:
     /// The definition, in higher precision than that of the boxes: what is surely near, and what
     /// may be, by rounding.
     struct Expected {
-        Couples near;
-        Couples perhaps;
+        ProxyPairs near;
+        ProxyPairs perhaps;
     };
     static Expected byBruteForce(std::span<const Placed<Scalar>> proxies, Scalar distance) {
         constexpr auto slack = static_cast<long double>(8 * std::numeric_limits<Scalar>::epsilon());
@@ -77,7 +77,7 @@ protected:
 
     std::size_t expectLikeBruteForce(const Grid<Scalar>& grid,
                                      std::span<const Placed<Scalar>> proxies, Scalar distance) {
-        const Couples found = sorted(neighbours_.find(grid, distance));
+        const ProxyPairs found = sorted(neighbours_.find(grid, distance));
         const Expected expected = byBruteForce(proxies, distance);
         EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end()) << "each once";
         EXPECT_TRUE(
@@ -121,7 +121,7 @@ TYPED_TEST(NeighboursTest, AreThoseOfBruteForceAtEveryMomentOfAFrame) {
     EXPECT_GT(found, 10000U);
 }
 
-TYPED_TEST(NeighboursTest, AtNoDistanceAreTheOverlappingCouples) {
+TYPED_TEST(NeighboursTest, AtNoDistanceAreTheOverlappingPairs) {
     Random random(0x5eed0d02);
     Grid<TypeParam> grid;
     std::vector<Placed<TypeParam>> proxies;
@@ -146,9 +146,9 @@ TYPED_TEST(NeighboursTest, AtNoDistanceAreTheOverlappingCouples) {
     const auto found = this->sorted(this->neighbours_.find(grid, 0));
     EXPECT_GT(expected.size(), 300U);
     EXPECT_TRUE(std::includes(found.begin(), found.end(), expected.begin(), expected.end()));
-    for (const ProxyPair& couple : found) {
-        const Aabb<TypeParam>& a = grid.box(couple.first);
-        const Aabb<TypeParam>& b = grid.box(couple.second);
+    for (const ProxyPair& pair : found) {
+        const Aabb<TypeParam>& a = grid.box(pair.first);
+        const Aabb<TypeParam>& b = grid.box(pair.second);
         ASSERT_TRUE(a.isEmpty() || b.isEmpty() || overlaps(a, b));
     }
 }

@@ -224,7 +224,7 @@ TYPED_TEST(NeverUpdated, TellsOnceOfThePairsThatWereAnnouncedOfWhatCameAndWent) 
     const ProxyId a = world.add(boxAt<TypeParam>(0));
     world.update();
     const ProxyId b = world.add(boxAt<TypeParam>(0, 0.5));
-    world.announce(b);
+    world.findPairsNow(b);
     EXPECT_TRUE(world.set().contains(makePair(a, b)));
     world.remove(b);
     const ProxyId c = world.add(boxAt<TypeParam>(0, 0.25));
@@ -255,7 +255,7 @@ TYPED_TEST(NeverUpdated, HoldsNoMoreWherePairsAreAnnounced) {
         std::vector<Placed<TypeParam>> present;
         for (int i = 0; i < kGhosts; ++i) {
             present.push_back(add(i / 4, 0.1 * (i % 4)));
-            world.announce(present.back().id);
+            world.findPairsNow(present.back().id);
         }
         if (level % 10 == 0) {
             kept.push_back(present[static_cast<std::size_t>(level) % kGhosts]);
@@ -274,7 +274,7 @@ TYPED_TEST(NeverUpdated, HoldsNoMoreWherePairsAreAnnounced) {
     world.checkThoroughly(kept);
 }
 
-// Each couple is looked at about once, however many are announced at the same time.
+// Each pair is looked at about once, however many are announced at the same time.
 TYPED_TEST(NeverUpdated, AnnouncesManyAtACostThatFollowsTheirNumber) {
     Asked<TypeParam> world(Asked<TypeParam>::With::pairs);
     std::size_t died = 0;
@@ -283,7 +283,7 @@ TYPED_TEST(NeverUpdated, AnnouncesManyAtACostThatFollowsTheirNumber) {
         std::vector<ProxyId> ids;
         for (int i = 0; i < 3000; ++i) {
             ids.push_back(world.grid.add(boxAt<TypeParam>(i / 2, 0.1 * (i % 2))));
-            const PairChanges changes = world.pairs->announce(ids.back(), acceptAllPairs);
+            const PairChanges changes = world.pairs->findPairsNow(ids.back(), acceptAllPairs);
             born += changes.born.size();
             died += changes.died.size();
         }

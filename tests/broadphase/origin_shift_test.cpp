@@ -229,7 +229,7 @@ TYPED_TEST(OriginShift, AtAnyMomentLeavesThePairsOfBruteForce) {
             shiftSometimes();
             for (const Placed<TypeParam>& proxy : script.proxies()) {
                 if (random.chance(0.02)) {
-                    world.announce(proxy.id);
+                    world.findPairsNow(proxy.id);
                 }
             }
             shiftSometimes();

@@ -2,9 +2,9 @@
 
 // Memory runs out at every allocation of every operation that makes one, and then is there again.
 
-#include <broadphase/crowd.hpp>
 #include <broadphase/neighbours.hpp>
 #include <broadphase/pairs.hpp>
+#include <broadphase/radius_search.hpp>
 #include <broadphase/sweeps.hpp>
 #include <tests/support/box_scenes.hpp>
 #include <tests/support/out_of_memory.hpp>
@@ -214,8 +214,9 @@ TEST_F(OutOfMemory, AnnouncingAndFilteringAgainHaveHappenedOrNot) {
             },
             [=](World& world) {
                 const ProxyId id = world.proxies[0].id;
-                const PairChanges changes = isRefiltered ? world.pairs.refilter(id, world.filter())
-                                                         : world.pairs.announce(id, world.filter());
+                const PairChanges changes = isRefiltered
+                                                ? world.pairs.refilter(id, world.filter())
+                                                : world.pairs.findPairsNow(id, world.filter());
                 const WorkingAllocations lifted;
                 world.set.insert(changes.born.begin(), changes.born.end());
             },
@@ -395,14 +396,14 @@ TEST_F(OutOfMemory, NeighboursAndCrowdsAreFoundWhenAskedAgain) {
     struct Asked {
         World world{200};
         Neighbours<float> neighbours;
-        Crowd<float> crowd;
+        RadiusSearch<float> search;
         std::vector<std::uint32_t> counts = std::vector<std::uint32_t>(200);
-        std::size_t coupleCount = 0;
+        std::size_t pairCount = 0;
 
         void ask() {
-            coupleCount = neighbours.find(world.grid, 1).size();
-            crowd.take(world.grid, 2);
-            crowd.count(counts);
+            pairCount = neighbours.find(world.grid, 1).size();
+            search.take(world.grid, 2);
+            search.count(counts);
         }
     };
     Asked whole;
@@ -410,9 +411,9 @@ TEST_F(OutOfMemory, NeighboursAndCrowdsAreFoundWhenAskedAgain) {
     const std::size_t failures =
         runOutOfMemory([] { return std::make_unique<Asked>(); }, [](Asked& asked) { asked.ask(); },
                        [&](Asked& asked, std::size_t) {
-                           EXPECT_TRUE(asked.crowd.size() == 0 || asked.crowd.size() == 200);
+                           EXPECT_TRUE(asked.search.size() == 0 || asked.search.size() == 200);
                            asked.ask();
-                           EXPECT_EQ(asked.coupleCount, whole.coupleCount);
+                           EXPECT_EQ(asked.pairCount, whole.pairCount);
                            EXPECT_EQ(asked.counts, whole.counts);
                        });
     EXPECT_GE(failures, 50U);

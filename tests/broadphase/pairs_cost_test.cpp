@@ -45,7 +45,7 @@ TEST(PairCost, OfAnUpdateAfterWhichNothingChangedIsZero) {
         EXPECT_EQ(pairs.lastCost().grid.filed, 0U);
         EXPECT_EQ(pairs.lastCost().boxesTested, 0U);
     }
-    EXPECT_EQ(pairs.lastCost().couplesWatched, 0U);
+    EXPECT_EQ(pairs.lastCost().pairsWatched, 0U);
 }
 
 TEST(PairCost, FollowsWhatMovesNotWhatExists) {
@@ -70,7 +70,7 @@ TEST(PairCost, FollowsWhatMovesNotWhatExists) {
         EXPECT_GE(cost.grid.resting, kCount - 2 * kMoving);
         // Some dozen neighbours each, where a search through all would be a million tests.
         EXPECT_LT(cost.boxesTested, 200 * kMoving);
-        EXPECT_LT(cost.couplesWatched, 20 * kMoving);
+        EXPECT_LT(cost.pairsWatched, 20 * kMoving);
     }
 }
 
@@ -108,7 +108,7 @@ TEST(PairCost, CountsTheSearchOnBehalfOfProxiesThatWake) {
         grid.move(mover, makeBox<float>(-100 - i, 0, 0, -99, 1, 1));
         pairs.update(acceptAll);
     }
-    EXPECT_EQ(pairs.lastCost().couplesWatched, 0U);
+    EXPECT_EQ(pairs.lastCost().pairsWatched, 0U);
     grid.move(sleeper, makeBox<float>(900, 0, 0, 901, 1, 1));  // to where nothing is
     EXPECT_EQ(pairs.update(acceptAll).died.size(), 500U);
     EXPECT_GE(pairs.lastCost().boxesTested, 500U);

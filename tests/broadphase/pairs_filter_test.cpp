@@ -19,14 +19,14 @@ Aabb<double> unitCubeAt(double x) {
 }
 
 /// Two boxes that overlap, and a filter that is a switch.
-struct Couple {
+struct TwoProxies {
     bool accept;
     PairWorld<double> world;
     ProxyId a;
     ProxyId b;
     ProxyPair pair;
 
-    explicit Couple(bool acceptAtFirst)
+    explicit TwoProxies(bool acceptAtFirst)
         : accept(acceptAtFirst),
           world({}, [this](ProxyId, ProxyId) { return accept; }),
           a(world.add(unitCubeAt(0))),
@@ -46,12 +46,12 @@ struct Couple {
 };
 
 TEST(PairFilter, IsAskedOnceWhileTheBoxesOverlap) {
-    Couple couple(true);
-    EXPECT_EQ(couple.world.asked(), std::vector{couple.pair});
+    TwoProxies two(true);
+    EXPECT_EQ(two.world.asked(), std::vector{two.pair});
     for (int i = 0; i < 30; ++i) {
-        couple.world.move(couple.b, unitCubeAt(0.5 + 0.01 * (i % 2)));
-        couple.world.update();
-        EXPECT_TRUE(couple.world.asked().empty());
+        two.world.move(two.b, unitCubeAt(0.5 + 0.01 * (i % 2)));
+        two.world.update();
+        EXPECT_TRUE(two.world.asked().empty());
     }
 }
 
@@ -69,54 +69,54 @@ TEST(PairFilter, IsAskedInAscendingOrderWhateverTheOrderOfChanges) {
     EXPECT_GT(world.asked().size(), 100U);
 }
 
-TEST(PairFilter, IsAskedAgainAboutARefusedCoupleOnlyWhenOneOfThemChanged) {
-    Couple couple(false);
-    EXPECT_FALSE(couple.isPair());
-    EXPECT_EQ(couple.world.pairs.refusedCount(), 1U);
+TEST(PairFilter, IsAskedAgainAboutARefusedPairOnlyWhenOneOfThemChanged) {
+    TwoProxies two(false);
+    EXPECT_FALSE(two.isPair());
+    EXPECT_EQ(two.world.pairs.refusedCount(), 1U);
     for (int i = 0; i < 30; ++i) {
-        couple.world.update();
-        EXPECT_TRUE(couple.world.asked().empty());
+        two.world.update();
+        EXPECT_TRUE(two.world.asked().empty());
         if (i % 13 == 12) {
-            couple.world.move(couple.b, unitCubeAt(0.5 + 0.01 * i));
-            couple.world.update();
-            EXPECT_EQ(couple.world.asked(), std::vector{couple.pair});
+            two.world.move(two.b, unitCubeAt(0.5 + 0.01 * i));
+            two.world.update();
+            EXPECT_EQ(two.world.asked(), std::vector{two.pair});
         }
     }
-    couple.accept = true;
-    couple.world.move(couple.a, unitCubeAt(0.1));
-    couple.world.update();
-    EXPECT_TRUE(couple.isPair());
-    EXPECT_EQ(couple.world.pairs.refusedCount(), 0U);
+    two.accept = true;
+    two.world.move(two.a, unitCubeAt(0.1));
+    two.world.update();
+    EXPECT_TRUE(two.isPair());
+    EXPECT_EQ(two.world.pairs.refusedCount(), 0U);
 }
 
-TEST(PairFilter, RefusedCouplesThatPartMakeNoDeath) {
+TEST(PairFilter, RefusedPairsThatPartMakeNoDeath) {
     for (const int updatesBetween : {0, 40}) {
-        Couple couple(false);
-        couple.rest(updatesBetween);
-        couple.world.move(couple.b, unitCubeAt(5));
-        EXPECT_TRUE(couple.world.update().died.empty());
-        EXPECT_EQ(couple.world.pairs.refusedCount(), 0U);
+        TwoProxies two(false);
+        two.rest(updatesBetween);
+        two.world.move(two.b, unitCubeAt(5));
+        EXPECT_TRUE(two.world.update().died.empty());
+        EXPECT_EQ(two.world.pairs.refusedCount(), 0U);
     }
 }
 
-TEST(PairFilter, RefusedCouplesOfWhichOneIsRemovedMakeNoDeath) {
+TEST(PairFilter, RefusedPairsOfWhichOneIsRemovedMakeNoDeath) {
     for (const int updatesBetween : {0, 40}) {
-        Couple couple(false);
-        couple.rest(updatesBetween);
-        couple.world.remove(couple.a);
-        EXPECT_TRUE(couple.world.update().died.empty());
-        EXPECT_EQ(couple.world.pairs.refusedCount(), 0U);
-        EXPECT_EQ(couple.world.pairs.validate(), "");
+        TwoProxies two(false);
+        two.rest(updatesBetween);
+        two.world.remove(two.a);
+        EXPECT_TRUE(two.world.update().died.empty());
+        EXPECT_EQ(two.world.pairs.refusedCount(), 0U);
+        EXPECT_EQ(two.world.pairs.validate(), "");
     }
 }
 
 TEST(PairFilter, IsNotAskedAgainBecauseARestingProxyWakes) {
-    Couple couple(true);
-    couple.rest();
-    couple.world.move(couple.b, unitCubeAt(0.6));
-    couple.world.update();
-    EXPECT_TRUE(couple.world.asked().empty());
-    EXPECT_TRUE(couple.isPair());
+    TwoProxies two(true);
+    two.rest();
+    two.world.move(two.b, unitCubeAt(0.6));
+    two.world.update();
+    EXPECT_TRUE(two.world.asked().empty());
+    EXPECT_TRUE(two.isPair());
 }
 
 TEST(PairFilter, OfManyAtOnceDecidesAsOneByOneDoes) {
@@ -160,9 +160,9 @@ TEST(PairFilter, OfManyAtOnceDecidesAsOneByOneDoes) {
 TEST(PairFilter, RefusesNothingWhereNoneIsGiven) {
     Grid<double> grid;
     Pairs<double> pairs(grid);
-    const ProxyPair couple = makePair(grid.add(unitCubeAt(0)), grid.add(unitCubeAt(0.5)));
+    const ProxyPair two = makePair(grid.add(unitCubeAt(0)), grid.add(unitCubeAt(0.5)));
     const PairChanges changes = pairs.update();
-    EXPECT_EQ(std::vector(changes.born.begin(), changes.born.end()), std::vector{couple});
+    EXPECT_EQ(std::vector(changes.born.begin(), changes.born.end()), std::vector{two});
 }
 
 TEST(PairFilter, MayTakeItsArgumentsAsAuto) {
@@ -180,114 +180,114 @@ TEST(PairFilter, MayTakeItsArgumentsAsAuto) {
 TEST(Refilter, EndsAndBeginsPairsAtOnceAlsoOfProxiesAtRest) {
     for (const int updatesBetween : {0, 1, 40}) {
         SCOPED_TRACE(testing::Message() << updatesBetween << " updates in between");
-        Couple couple(true);
-        couple.rest(updatesBetween);
-        couple.accept = false;
-        couple.world.refilter(couple.a);
-        EXPECT_FALSE(couple.isPair());
-        EXPECT_EQ(couple.world.pairs.count(), 0U);
-        couple.rest(updatesBetween);
-        couple.accept = true;
-        couple.world.refilter(couple.b);
-        EXPECT_TRUE(couple.isPair());
-        EXPECT_EQ(couple.world.pairs.count(), 1U);
-        couple.rest(updatesBetween);
-        EXPECT_TRUE(couple.isPair());
+        TwoProxies two(true);
+        two.rest(updatesBetween);
+        two.accept = false;
+        two.world.refilter(two.a);
+        EXPECT_FALSE(two.isPair());
+        EXPECT_EQ(two.world.pairs.count(), 0U);
+        two.rest(updatesBetween);
+        two.accept = true;
+        two.world.refilter(two.b);
+        EXPECT_TRUE(two.isPair());
+        EXPECT_EQ(two.world.pairs.count(), 1U);
+        two.rest(updatesBetween);
+        EXPECT_TRUE(two.isPair());
     }
 }
 
 TEST(Refilter, ThereAndBackWithinAFrameChangesNothing) {
-    Couple couple(true);
-    couple.rest();
-    couple.accept = false;
-    couple.world.refilter(couple.a);
-    couple.accept = true;
-    couple.world.refilter(couple.a);
-    couple.rest(1);
-    EXPECT_TRUE(couple.isPair());
+    TwoProxies two(true);
+    two.rest();
+    two.accept = false;
+    two.world.refilter(two.a);
+    two.accept = true;
+    two.world.refilter(two.a);
+    two.rest(1);
+    EXPECT_TRUE(two.isPair());
 }
 
 TEST(Refilter, WithTheSameFilterReportsNothing) {
     for (const bool accept : {true, false}) {
-        Couple couple(accept);
-        couple.rest();
+        TwoProxies two(accept);
+        two.rest();
         const PairChanges changes =
-            couple.world.pairs.refilter(couple.a, [accept](ProxyId, ProxyId) { return accept; });
+            two.world.pairs.refilter(two.a, [accept](ProxyId, ProxyId) { return accept; });
         EXPECT_TRUE(changes.born.empty());
         EXPECT_TRUE(changes.died.empty());
     }
 }
 
 TEST(Refilter, OfANewProxyTellsItsPairsOnce) {
-    Couple couple(true);
-    const ProxyId c = couple.world.add(unitCubeAt(0.25));
-    couple.world.refilter(c);
-    EXPECT_EQ(couple.world.pairs.count(), 3U);
-    couple.accept = false;
-    couple.world.refilter(c);
-    EXPECT_EQ(couple.world.pairs.count(), 1U);
-    couple.world.update();
-    EXPECT_EQ(couple.world.set().size(), 1U);
+    TwoProxies two(true);
+    const ProxyId c = two.world.add(unitCubeAt(0.25));
+    two.world.refilter(c);
+    EXPECT_EQ(two.world.pairs.count(), 3U);
+    two.accept = false;
+    two.world.refilter(c);
+    EXPECT_EQ(two.world.pairs.count(), 1U);
+    two.world.update();
+    EXPECT_EQ(two.world.set().size(), 1U);
 }
 
 TEST(Refilter, DecidesAlsoForAPairThatIsApartForTheMoment) {
     // Known from the last update, apart when filtered again, and together at the next update.
-    Couple couple(true);
-    couple.world.move(couple.a, unitCubeAt(9));
-    couple.accept = false;
-    couple.world.refilter(couple.a);
-    couple.world.move(couple.a, unitCubeAt(0));
-    couple.world.update();
-    EXPECT_FALSE(couple.isPair());
+    TwoProxies two(true);
+    two.world.move(two.a, unitCubeAt(9));
+    two.accept = false;
+    two.world.refilter(two.a);
+    two.world.move(two.a, unitCubeAt(0));
+    two.world.update();
+    EXPECT_FALSE(two.isPair());
 }
 
 TEST(Refilter, OfAProxyThatMovedAwayLeavesTheDeathToTheUpdate) {
-    Couple couple(true);
-    couple.world.move(couple.a, unitCubeAt(9));
-    couple.world.refilter(couple.a);
-    couple.world.update();
-    EXPECT_FALSE(couple.isPair());
-    EXPECT_EQ(couple.world.pairs.count(), 0U);
+    TwoProxies two(true);
+    two.world.move(two.a, unitCubeAt(9));
+    two.world.refilter(two.a);
+    two.world.update();
+    EXPECT_FALSE(two.isPair());
+    EXPECT_EQ(two.world.pairs.count(), 0U);
 }
 
 TEST(Refilter, OfAProxyWhosePartnerWasRemovedLeavesTheDeathToTheUpdate) {
     for (const int updatesBetween : {0, 40}) {
-        Couple couple(true);
-        couple.rest(updatesBetween);
-        couple.world.remove(couple.b);
-        couple.accept = false;
-        couple.world.refilter(couple.a);
-        EXPECT_TRUE(couple.isPair());
-        couple.world.update();
-        EXPECT_FALSE(couple.isPair());
-        EXPECT_EQ(couple.world.pairs.count() + couple.world.pairs.refusedCount(), 0U);
+        TwoProxies two(true);
+        two.rest(updatesBetween);
+        two.world.remove(two.b);
+        two.accept = false;
+        two.world.refilter(two.a);
+        EXPECT_TRUE(two.isPair());
+        two.world.update();
+        EXPECT_FALSE(two.isPair());
+        EXPECT_EQ(two.world.pairs.count() + two.world.pairs.refusedCount(), 0U);
     }
 }
 
-// Such a couple is still noted down among those at rest, and must not be noted down twice.
+// Such a pair is still noted down among those at rest, and must not be noted down twice.
 TEST(Refilter, CountsOnceWhatIsRefusedAtRestAndAgainWhenOneHasWoken) {
-    Couple couple(false);
+    TwoProxies two(false);
     // Proxies are put to rest when there are many, by an update in which something moves.
-    const ProxyId mover = couple.world.add(unitCubeAt(-9));
+    const ProxyId mover = two.world.add(unitCubeAt(-9));
     for (int i = 0; i < 200; ++i) {
-        couple.world.add(unitCubeAt(10 + 2 * i));
+        two.world.add(unitCubeAt(10 + 2 * i));
     }
     for (int i = 0; i < 40; ++i) {
-        couple.world.move(mover, unitCubeAt(-9 - i));
-        couple.world.update();
+        two.world.move(mover, unitCubeAt(-9 - i));
+        two.world.update();
     }
-    EXPECT_GT(couple.world.pairs.lastCost().grid.resting, 200U);
-    couple.world.move(couple.b, unitCubeAt(0.25));
-    couple.world.refilter(couple.a);
-    EXPECT_EQ(couple.world.pairs.refusedCount(), 1U);
-    couple.accept = true;
-    couple.world.refilter(couple.a);
-    EXPECT_TRUE(couple.isPair());
-    EXPECT_EQ(couple.world.pairs.refusedCount(), 0U);
-    couple.world.update();
-    EXPECT_TRUE(couple.isPair());
-    EXPECT_EQ(couple.world.pairs.refusedCount(), 0U);
-    EXPECT_EQ(couple.world.pairs.validate(), "");
+    EXPECT_GT(two.world.pairs.lastCost().grid.resting, 200U);
+    two.world.move(two.b, unitCubeAt(0.25));
+    two.world.refilter(two.a);
+    EXPECT_EQ(two.world.pairs.refusedCount(), 1U);
+    two.accept = true;
+    two.world.refilter(two.a);
+    EXPECT_TRUE(two.isPair());
+    EXPECT_EQ(two.world.pairs.refusedCount(), 0U);
+    two.world.update();
+    EXPECT_TRUE(two.isPair());
+    EXPECT_EQ(two.world.pairs.refusedCount(), 0U);
+    EXPECT_EQ(two.world.pairs.validate(), "");
 }
 
 TEST(PairFilterOutOfMemory, LeavesWhatIsRefusedAsItWasWhenAFailedUpdateIsRepairedInVain) {

@@ -263,7 +263,7 @@ TEST(RefilterMany, DoesWhatAsManySingleCallsDo) {
     }
 }
 
-TEST(RefilterMany, AsksOnceAboutEachCouple) {
+TEST(RefilterMany, AsksOnceAboutEachPair) {
     Two two(kMoving, kMoving, 2);
     two.world.refilterAll();
     EXPECT_EQ(two.world.asked(), std::vector{makePair(two.a, two.b)});

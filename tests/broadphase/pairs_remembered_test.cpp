@@ -79,7 +79,7 @@ public:
         }
     }
     void askAgain() {
-        world.announce(any().id);
+        world.findPairsNow(any().id);
         std::array<ProxyId, 3> ids;
         for (ProxyId& id : ids) {
             Placed<Scalar>& proxy = any();
@@ -338,7 +338,7 @@ TEST(RefusedPile, OfWhichPairsAreAnnouncedIsBounded) {
     std::size_t asked = 0;
     for (std::uint32_t i = 0; i < kCount; ++i) {
         pile.ids.push_back(pile.grid.add(pile.box));
-        pile.pairs.announce(pile.ids.back(), [&](ProxyId, ProxyId) {
+        pile.pairs.findPairsNow(pile.ids.back(), [&](ProxyId, ProxyId) {
             ++asked;
             return false;
         });

@@ -118,7 +118,7 @@ TYPED_TEST(PairsInScripts, AreNotDisturbedByQueriesAndAnnouncementsInBetween) {
                     CollectCount count;
                     world.grid.visit(BoxRegion<TypeParam>{proxy.box}, count);
                     found += count.count();
-                    world.announce(proxy.id);
+                    world.findPairsNow(proxy.id);
                 }
             }
             world.update();
@@ -144,7 +144,7 @@ TYPED_TEST(PairsInScripts, EqualBruteForceWhenTheyComeLateAndGo) {
                      world.renewPairs(script.random().chance(0.5));
                  }
                  if (script.random().chance(0.1) && !script.proxies().empty()) {
-                     world.announce(script.proxies().front().id);
+                     world.findPairsNow(script.proxies().front().id);
                  }
                  born += world.update().born.size();
                  world.checkThoroughly(script.proxies());

@@ -183,50 +183,50 @@ TEST(Pairs, OfABoxWithNanDieAndAreBornAgainWhenItHeals) {
 
 // --- Announcing ----------------------------------------------------------------------------------
 
-TEST(Announce, TellsThePairsOfANewProxyAtOnceAndUpdateDoesNotRepeatThem) {
+TEST(FindPairsNow, TellsThePairsOfANewProxyAtOnceAndUpdateDoesNotRepeatThem) {
     PairWorld<float> world;
     const ProxyId a = world.add(cubeAt(0));
     world.update();
     const ProxyId b = world.add(cubeAt(0.5));
-    world.announce(b);
+    world.findPairsNow(b);
     EXPECT_TRUE(world.set().contains(makePair(a, b)));
     EXPECT_EQ(world.pairs.count(), 1U);
     EXPECT_TRUE(world.update().born.empty());
     EXPECT_EQ(world.set().size(), 1U);
 }
 
-TEST(Announce, TellsNothingTwice) {
+TEST(FindPairsNow, TellsNothingTwice) {
     PairWorld<float> world;
     const ProxyId a = world.add(cubeAt(0));
     const ProxyId b = world.add(cubeAt(0.5));
-    world.announce(a);
-    world.announce(a);
+    world.findPairsNow(a);
+    world.findPairsNow(a);
     EXPECT_TRUE(world.asked().empty());
-    world.announce(b);
+    world.findPairsNow(b);
     EXPECT_TRUE(world.asked().empty());
     EXPECT_EQ(world.pairs.count(), 1U);
 }
 
-TEST(Announce, IsTakenBackByTheUpdateWhenTheBoxesHaveParted) {
+TEST(FindPairsNow, IsTakenBackByTheUpdateWhenTheBoxesHaveParted) {
     PairWorld<float> world;
     const ProxyId a = world.add(cubeAt(0));
     const ProxyId b = world.add(cubeAt(0.5));
-    world.announce(b);
+    world.findPairsNow(b);
     world.move(b, cubeAt(7));
     EXPECT_EQ(listOf(world.update().died), std::vector{makePair(a, b)});
     EXPECT_EQ(world.pairs.count(), 0U);
 }
 
-TEST(Announce, IsTakenBackByTheUpdateWhenOneWasRemoved) {
+TEST(FindPairsNow, IsTakenBackByTheUpdateWhenOneWasRemoved) {
     PairWorld<float> world;
     const ProxyId a = world.add(cubeAt(0));
     const ProxyId b = world.add(cubeAt(0.5));
-    world.announce(b);
+    world.findPairsNow(b);
     world.remove(b);
     EXPECT_EQ(listOf(world.update().died), std::vector{makePair(a, b)});
 }
 
-TEST(Announce, FindsProxiesAtRest) {
+TEST(FindPairsNow, FindsProxiesAtRest) {
     PairWorld<float> world;
     const ProxyId a = world.add(cubeAt(0), Mobility::resting);
     std::vector<Placed<float>> proxies{{a, cubeAt(0)}};
@@ -240,7 +240,7 @@ TEST(Announce, FindsProxiesAtRest) {
         world.checkThoroughly(proxies);
     }
     const ProxyId b = world.add(cubeAt(0.5));
-    world.announce(b);
+    world.findPairsNow(b);
     EXPECT_EQ(world.set().count(makePair(a, b)), 1U);
     EXPECT_TRUE(world.update().born.empty());
     for (int i = 0; i < 30; ++i) {
@@ -274,9 +274,9 @@ TEST(Pairs, MisuseIsAsserted) {
     world.update();
     world.remove(id);
     const auto all = [](ProxyId, ProxyId) { return true; };
-    EXPECT_THROW(world.pairs.announce(id, all), BrokenAssert);
+    EXPECT_THROW(world.pairs.findPairsNow(id, all), BrokenAssert);
     EXPECT_THROW(world.pairs.refilter(id, all), BrokenAssert);
-    EXPECT_THROW(world.pairs.announce({}, all), BrokenAssert);
+    EXPECT_THROW(world.pairs.findPairsNow({}, all), BrokenAssert);
 }
 #endif
 

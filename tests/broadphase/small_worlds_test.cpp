@@ -2,9 +2,9 @@
 
 // A world of a few boxes takes a few bytes: what is not used yet is not there yet.
 
-#include <broadphase/crowd.hpp>
 #include <broadphase/neighbours.hpp>
 #include <broadphase/pairs.hpp>
+#include <broadphase/radius_search.hpp>
 #include <broadphase/sweeps.hpp>
 #include <tests/support/box_scenes.hpp>
 #include <tests/support/count_allocations.hpp>
@@ -29,13 +29,13 @@ TYPED_TEST(SmallWorlds, TakeLittleMemoryWhileTheyAreEmpty) {
     Sweeps<TypeParam> sweeps(grid);
     Pairs<TypeParam> pairs(grid, &sweeps);
     const Neighbours<TypeParam> neighbours;
-    const Crowd<TypeParam> crowd;
+    const RadiusSearch<TypeParam> search;
     EXPECT_EQ(bytesHeld(), before) << "nothing is allocated";
     EXPECT_LT(grid.memoryBytes(), 3584U);
     EXPECT_LT(pairs.memoryBytes(), 2048U);
     EXPECT_LT(sweeps.memoryBytes(), 2048U);
     EXPECT_LT(neighbours.memoryBytes(), 1024U);
-    EXPECT_LT(crowd.memoryBytes(), 1024U);
+    EXPECT_LT(search.memoryBytes(), 1024U);
     // Nor by a frame of nothing.
     pairs.update();
     EXPECT_LT(bytesHeld(), before + 1024);

@@ -60,7 +60,7 @@ TEST_F(StaleIds, ChangeNobodyWithoutAssertions) {
         EXPECT_TRUE(hasNan(grid.box(id)));
         static_cast<void>(grid.cellsOf(id));
         EXPECT_TRUE(hasNan(sweeps.motion(id).box));
-        EXPECT_TRUE(pairs.announce(id, acceptAllPairs).born.empty());
+        EXPECT_TRUE(pairs.findPairsNow(id, acceptAllPairs).born.empty());
         EXPECT_TRUE(pairs.refilter(id, refuse).died.empty());
         calls += 10;
     }

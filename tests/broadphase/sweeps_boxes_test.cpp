@@ -32,7 +32,7 @@ template <class Scalar>
 void fileAsLargeAsTheirWays(BulletWorld<Scalar>& world, const Bullets<Scalar>& bullets) {
     for (std::size_t i = 0; i < bullets.ways.size(); ++i) {
         const MovingBox<Scalar> way{bullets.boxes[i], bullets.ways[i]};
-        world.grid.move(world.ids[i], wayBounds(way));
+        world.grid.move(world.ids[i], sweptBounds(way));
         world.sweeps.set(world.ids[i], way);
     }
 }
@@ -46,7 +46,7 @@ TYPED_TEST(SweptBoxes, MakeTheSamePairsAtTheSameCostHoweverLargeInTheGrid) {
     EXPECT_EQ(differences(large.update(), small.update()), "");
     for (int frame = 0; frame < 2; ++frame) {  // as long as they fly, and when they stand again
         EXPECT_EQ(large.pairs.lastCost().boxesTested, small.pairs.lastCost().boxesTested);
-        EXPECT_EQ(large.pairs.lastCost().couplesWatched, small.pairs.lastCost().couplesWatched);
+        EXPECT_EQ(large.pairs.lastCost().pairsWatched, small.pairs.lastCost().pairsWatched);
         EXPECT_EQ(large.sweeps.lastCost().boxesTested, small.sweeps.lastCost().boxesTested);
         EXPECT_EQ(large.sweeps.lastCost().contactsTested, small.sweeps.lastCost().contactsTested);
         for (const BulletWorld<TypeParam>* world : {&small, &large}) {
@@ -128,15 +128,15 @@ TYPED_TEST(SweptBoxes, AreAnnouncedWhereTheirWaysBegin) {
     world.sweep(bullet, MovingBox<TypeParam>{place(0), {100, 0, 0}}, Sweep::automatic);
     const ProxyId atStart = world.add(place(TypeParam(0.5)));
     const ProxyId onTheWay = world.add(place(50));
-    world.announce(onTheWay);
+    world.findPairsNow(onTheWay);
     EXPECT_TRUE(world.set().empty());
-    world.announce(bullet);
+    world.findPairsNow(bullet);
     EXPECT_EQ(world.set().size(), 1U);
-    world.announce(atStart);
+    world.findPairsNow(atStart);
     const PairChanges changes = world.update();
     EXPECT_TRUE(changes.died.empty());
     EXPECT_EQ(changes.born.size(), 1U) << "the one on the way";
-    world.announce(bullet);
+    world.findPairsNow(bullet);
     world.refilter(bullet);
     EXPECT_EQ(world.set().size(), 2U);
 
@@ -192,7 +192,7 @@ TYPED_TEST(SweptBoxes, MakePairsByTheSweepsThatAreGiven) {
     pairs.setSweeps(&first);
     partner({near});
     pairs.setSweeps(&second);
-    EXPECT_TRUE(pairs.announce(mover, acceptAllPairs).died.empty());
+    EXPECT_TRUE(pairs.findPairsNow(mover, acceptAllPairs).died.empty());
     grid.shiftOrigin({8, 0, 0});
     EXPECT_EQ(second.motion(mover).box.min().x(), 12);
     now = {makePair(mover, near), makePair(mover, far)};

@@ -35,22 +35,22 @@ using NumberPair = std::pair<std::uint32_t, std::uint32_t>;
 
 /// All pairs by firstContact(), sorted; the first boxes sweep.
 template <class Scalar>
-std::vector<NumberPair> couplesOf(const Bullets<Scalar>& bullets) {
+std::vector<NumberPair> pairsOf(const Bullets<Scalar>& bullets) {
     const auto moving = [&](std::size_t i) {
         return i < bullets.ways.size() ? MovingBox<Scalar>{bullets.boxes[i], bullets.ways[i]}
                                        : MovingBox<Scalar>{bullets.boxes[i]};
     };
-    std::vector<NumberPair> couples;
+    std::vector<NumberPair> pairs;
     for (std::uint32_t i = 0; i < bullets.boxes.size(); ++i) {
         for (std::uint32_t j = i + 1; j < bullets.boxes.size(); ++j) {
             const bool sweeps = i < bullets.ways.size() || j < bullets.ways.size();
             if (overlaps(bullets.boxes[i], bullets.boxes[j]) ||
                 (sweeps && firstContact(moving(i), moving(j)))) {
-                couples.emplace_back(i, j);
+                pairs.emplace_back(i, j);
             }
         }
     }
-    return couples;
+    return pairs;
 }
 
 /// Proxies of a grid from which none was removed are numbered as they were added.
@@ -64,9 +64,9 @@ std::vector<NumberPair> numbersOf(const std::vector<ProxyPair>& pairs) {
 
 /// In each mode, one update makes these pairs. Returns what each takes, in tests.
 template <class Scalar>
-std::array<std::uint64_t, kSweepModes.size()> expectCouples(const Bullets<Scalar>& bullets,
-                                                            const std::vector<NumberPair>& expected,
-                                                            const GridConfig& config = {}) {
+std::array<std::uint64_t, kSweepModes.size()> expectPairs(const Bullets<Scalar>& bullets,
+                                                          const std::vector<NumberPair>& expected,
+                                                          const GridConfig& config = {}) {
     std::array<std::uint64_t, kSweepModes.size()> tests{};
     for (std::size_t i = 0; i < kSweepModes.size(); ++i) {
         BulletWorld<Scalar> world(bullets, kSweepModes[i], config);
@@ -140,8 +140,8 @@ TYPED_TEST(HardSweeps, MissNothingAtInfinity) {
     inverted.ways = {{10, 1.7e38F, -1e6F}};
     for (const Bullets<Scalar>& bullets : {high, inverted}) {
         const std::vector<NumberPair> one{{0, 1}};
-        ASSERT_EQ(couplesOf(bullets), one);
-        expectCouples(bullets, one);
+        ASSERT_EQ(pairsOf(bullets), one);
+        expectPairs(bullets, one);
     }
 }
 
@@ -164,14 +164,14 @@ TYPED_TEST(HardSweeps, MissNothingWhereCellsAreRounded) {
             bullets.boxes.push_back(
                 boxAround<Scalar>(at + Vector3<double>(shift, 0, 0), {0.45, 0.45, 0.45}));
         }
-        const std::vector<NumberPair> expected = couplesOf(bullets);
+        const std::vector<NumberPair> expected = pairsOf(bullets);
         EXPECT_GT(expected.size(), 200U);
         for (int i = 0; i < 3000; ++i) {
             bullets.boxes.push_back(
                 boxAround<Scalar>(Vector3<double>(2e8, 10 * i, 1000), {0.5, 0.5, 0.5}));
         }
         SCOPED_TRACE(shift);
-        expectCouples(bullets, expected, config);
+        expectPairs(bullets, expected, config);
     }
 }
 
@@ -243,9 +243,9 @@ TYPED_TEST(HardSweeps, OfLessThanAnUlpTouchWhatIsWithinThem) {
             {Vector3<TypeParam>(face + one.gap, 0, 0), Vector3<TypeParam>(face + 1, 1, 1)}};
         bullets.ways = {{one.way, 0, 0}};
         SCOPED_TRACE(testing::Message() << one.gap << ", " << one.way);
-        const std::vector<NumberPair> expected = couplesOf(bullets);
+        const std::vector<NumberPair> expected = pairsOf(bullets);
         ASSERT_EQ(expected.size(), one.pairs);
-        expectCouples(bullets, expected);
+        expectPairs(bullets, expected);
     }
 }
 
@@ -260,8 +260,8 @@ TYPED_TEST(HardSweeps, FindInEveryModeWhatTouchesForAMoment) {
             cubeAt<TypeParam>(0),
             {Vector3<TypeParam>(atB, heightB, 0), Vector3<TypeParam>(atB + 1, heightB + 1, 1)}};
         bullets.ways = {wayA, wayB};
-        const std::vector<NumberPair> expected = couplesOf(bullets);
-        expectCouples(bullets, expected);
+        const std::vector<NumberPair> expected = pairsOf(bullets);
+        expectPairs(bullets, expected);
         return expected.size();
     };
     const TypeParam above = std::nextafter(TypeParam(1), TypeParam(2));
@@ -303,9 +303,9 @@ TYPED_TEST(HardSweeps, ThatTeleportMeetWhatIsOnTheStraightWay) {
                                        random.pointIn(-9, 9);
             bullets.boxes.push_back(boxAround<TypeParam>(at, {2, 2, 2}));
         }
-        const std::vector<NumberPair> expected = couplesOf(bullets);
+        const std::vector<NumberPair> expected = pairsOf(bullets);
         EXPECT_GT(expected.size(), 100U);
-        const auto tests = expectCouples(bullets, expected, config);
+        const auto tests = expectPairs(bullets, expected, config);
         for (std::size_t mode = 0; mode < tests.size(); ++mode) {
             EXPECT_LE(tests[mode], 90'000U) << "mode " << mode;
             if (length > 1e6) {

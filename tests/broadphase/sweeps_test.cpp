@@ -68,7 +68,7 @@ void playSwept(const BoxScene<Scalar>& scene, const GridConfig& config, std::uin
                     world.sweep(proxy.id, way, mode);
                 }
             } else if (random.chance(0.01)) {
-                world.announce(proxy.id);
+                world.findPairsNow(proxy.id);
             }
         }
         world.update();
@@ -337,7 +337,7 @@ TYPED_TEST(SweptPairs, AreFoundByQueriesAlongTheirWay) {
                     ASSERT_TRUE(isFound) << j;
                     onTheWay += overlaps(motion.box, box) ? 0 : 1;
                 } else if (isFound) {
-                    ASSERT_TRUE(overlaps(wayBounds(motion), box)) << j;
+                    ASSERT_TRUE(overlaps(sweptBounds(motion), box)) << j;
                     ASSERT_LT(j, bullets.ways.size()) << "who stands is found where it is";
                 }
             }

@@ -19,7 +19,7 @@ using test::boxAround;
 using test::BoxScene;
 using test::Random;
 
-using Couples = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+using IndexPairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 template <class Scalar>
 class TableTest : public testing::Test {
@@ -33,23 +33,23 @@ protected:
         ASSERT_EQ(table_.size(), boxes_.size());
     }
 
-    /// Every couple in the order of its numbers, found by the join.
-    [[nodiscard]] Couples joined() {
-        Couples couples;
+    /// Every pair in the order of its indices, found by the join.
+    [[nodiscard]] IndexPairs joined() {
+        IndexPairs pairs;
         PairList found;
         cost_ = {};
         PairParts parts;
         joinTable(table_, serialFor, parts, found, cost_);
         for (const auto [a, b] : found.pairs()) {
-            couples.push_back(std::minmax(table_.proxyIndex(a), table_.proxyIndex(b)));
+            pairs.push_back(std::minmax(table_.proxyIndex(a), table_.proxyIndex(b)));
         }
-        std::sort(couples.begin(), couples.end());
-        return couples;
+        std::sort(pairs.begin(), pairs.end());
+        return pairs;
     }
 
     /// The same, found by looking for every box in the table.
-    [[nodiscard]] Couples walked() {
-        Couples couples;
+    [[nodiscard]] IndexPairs walked() {
+        IndexPairs pairs;
         BoxColumns<Scalar> queries;
         for (const Box& box : boxes_) {
             queries.push(box);
@@ -60,23 +60,23 @@ protected:
         queryTable(table_, queries.columns(), queries.size(), serialFor, parts, found, cost_);
         for (const auto [query, entry] : found.pairs()) {
             if (query < table_.proxyIndex(entry)) {
-                couples.emplace_back(query, table_.proxyIndex(entry));
+                pairs.emplace_back(query, table_.proxyIndex(entry));
             }
         }
-        std::sort(couples.begin(), couples.end());
-        return couples;
+        std::sort(pairs.begin(), pairs.end());
+        return pairs;
     }
 
-    [[nodiscard]] Couples expected() const {
-        Couples couples;
+    [[nodiscard]] IndexPairs expected() const {
+        IndexPairs pairs;
         for (std::uint32_t a = 0; a < boxes_.size(); ++a) {
             for (std::uint32_t b = a + 1; b < boxes_.size(); ++b) {
                 if (overlaps(boxes_[a], boxes_[b])) {
-                    couples.emplace_back(a, b);
+                    pairs.emplace_back(a, b);
                 }
             }
         }
-        return couples;
+        return pairs;
     }
 
     /// How many entries share a bucket with an entry of another row.
@@ -104,7 +104,7 @@ protected:
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(TableTest, Scalars);
 
-TYPED_TEST(TableTest, JoinFindsEveryCoupleOnceInEveryScene) {
+TYPED_TEST(TableTest, JoinFindsEveryPairOnceInEveryScene) {
     Random random(0x5eed0401);
     for (const BoxScene<TypeParam>& scene : test::allBoxScenes<TypeParam>()) {
         for (const double cellSize : {0.0, 0.01, 1.0, 30.0}) {
@@ -124,7 +124,7 @@ TYPED_TEST(TableTest, JoinFindsEveryCoupleOnceInEveryScene) {
 
 // Lattices whose strides are powers of two, so that rows fall onto each other wherever their
 // numbers were used without mixing; and so sparse that rows have to be hashed.
-TYPED_TEST(TableTest, JoinFindsEveryCoupleOnceThoughRowsShareBuckets) {
+TYPED_TEST(TableTest, JoinFindsEveryPairOnceThoughRowsShareBuckets) {
     std::size_t shared = 0;
     for (const int stride : {64, 256, 1024, 65536, 1 << 20}) {
         SCOPED_TRACE(testing::Message() << "stride " << stride);
@@ -148,7 +148,7 @@ TYPED_TEST(TableTest, JoinFindsEveryCoupleOnceThoughRowsShareBuckets) {
     EXPECT_GT(shared, 100U) << "the lattices do not do what they are for";
 }
 
-TYPED_TEST(TableTest, JoinFindsEveryCoupleOnceThoughARowIsLongerThanTheTable) {
+TYPED_TEST(TableTest, JoinFindsEveryPairOnceThoughARowIsLongerThanTheTable) {
     std::vector<Aabb<TypeParam>> boxes;
     for (int i = 0; i < 200; ++i) {
         const auto at = [](double x) { return Vector3<double>(x, 0.5, 0.5); };
@@ -192,7 +192,7 @@ TYPED_TEST(TableTest, AFewStraysDoNotMakeTheOthersSparse) {
         boxes.push_back(boxAround<TypeParam>(random.pointIn(0, 30), {0.5, 0.5, 0.5}));
     }
     for (int i = 0; i < 20; ++i) {
-        // Half of them in couples that overlap.
+        // Half of them in pairs that overlap.
         const Vector3<double> away = random.pointIn(-1e6, 1e6);
         boxes.push_back(boxAround<TypeParam>(away, {0.5, 0.5, 0.5}));
         boxes.push_back(boxAround<TypeParam>(away * (1 + i % 2), {0.5, 0.5, 0.5}));
@@ -204,7 +204,7 @@ TYPED_TEST(TableTest, AFewStraysDoNotMakeTheOthersSparse) {
 }
 
 // Layers, walls and lines have fewer neighbours than cells in space, dense or hashed.
-TYPED_TEST(TableTest, FindsEveryCoupleOnceInPlanesAndLines) {
+TYPED_TEST(TableTest, FindsEveryPairOnceInPlanesAndLines) {
     Random random(0x5eed040b);
     const Vector3<double> extents[] = {{1, 1, 0}, {1, 0, 1}, {0, 1, 1},
                                        {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -220,7 +220,7 @@ TYPED_TEST(TableTest, FindsEveryCoupleOnceInPlanesAndLines) {
                 }
             }
             this->build(std::move(boxes), fixedLevels(1.5, 4));
-            const Couples expected = this->expected();
+            const IndexPairs expected = this->expected();
             EXPECT_GT(expected.size(), 50U);
             ASSERT_EQ(this->joined(), expected);
             ASSERT_EQ(this->walked(), expected);
@@ -269,7 +269,7 @@ TYPED_TEST(TableTest, CrowdsInACellAreSortedAndSearchedWhereTheyAreNear) {
             SCOPED_TRACE(testing::Message() << spread.transpose() << ", away " << away);
             this->build(crowd<TypeParam>(random, 1500, Vector3<double>::Constant(away), spread),
                         fixedLevels(100, 4));
-            const Couples expected = this->expected();
+            const IndexPairs expected = this->expected();
             found += expected.size();
             ASSERT_EQ(this->joined(), expected);
             EXPECT_LT(this->cost_.boxesTested, 1500U * 1500U / 8);
@@ -290,7 +290,7 @@ TYPED_TEST(TableTest, CrowdsInHashedCellsAreFoundWhole) {
     }
     this->build(std::move(boxes), fixedLevels(100, 4));
     EXPECT_GT(this->table_.levels()[1].count(), 500U) << "hashed";
-    const Couples expected = this->expected();
+    const IndexPairs expected = this->expected();
     EXPECT_EQ(this->joined(), expected);
     EXPECT_EQ(this->walked(), expected);
 }
@@ -304,7 +304,7 @@ TYPED_TEST(TableTest, CrowdsAreFoundWholeAfterSomeOfThemWereErased) {
         this->table_.erase(entry);
     }
     EXPECT_EQ(this->table_.validate(), "");
-    const Couples expected = this->expected();
+    const IndexPairs expected = this->expected();
     EXPECT_GT(expected.size(), 10U);
     EXPECT_EQ(this->joined(), expected);
     EXPECT_EQ(this->walked(), expected);
@@ -327,7 +327,7 @@ TYPED_TEST(TableTest, CrowdsTouchToTheLastBit) {
         const auto first = static_cast<TypeParam>(away);
         boxes.push_back({Vector3<TypeParam>(first, -1, 0), Vector3<TypeParam>(first + 5, 2, 0)});
         this->build(std::move(boxes), fixedLevels(1000, 4));
-        const Couples expected = this->expected();
+        const IndexPairs expected = this->expected();
         EXPECT_EQ(this->joined(), expected);
         EXPECT_EQ(this->walked(), expected);
     }

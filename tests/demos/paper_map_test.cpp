@@ -56,7 +56,7 @@ TEST(PaperMap, HasEachBoxOnceInEveryCellOfItsRangeAndInNoOther) {
     }
 }
 
-TEST(PaperMap, PutsTheBoxesOfACoupleThatOverlapsIntoOneCellAtLeast) {
+TEST(PaperMap, PutsTheBoxesOfAPairThatOverlapsIntoOneCellAtLeast) {
     // Many meet exactly at borders of cells, where a product and a quotient are rounded differently.
     std::vector<Aabb<float>> boxes = boxesOfMap(300, 8, 5);
     for (int i = 0; i < 100; ++i) {

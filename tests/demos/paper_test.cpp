@@ -203,17 +203,17 @@ TEST(PaperPhases, HoldNoBytesWhereTheyAreNotMeasured) {
     }
 }
 
-TEST(PaperPhases, CountTheCouplesAndTheNumbersOfProxiesThatTheyKeep) {
+TEST(PaperPhases, CountThePairsAndTheNumbersOfProxiesThatTheyKeep) {
     TestBed bed(kFew, 5);
     for (const MethodKind kind : {MethodKind::unoptimized, MethodKind::paperGrid}) {
         const auto method = methodSpec(Phase::collision, kind, 10, 12).make(bed);
         method->hash(bed);
         const std::size_t before = method->memoryBytes();
         method->run(bed);
-        const std::size_t couples = method->answer().found.size();
-        EXPECT_GT(couples, 50U);
+        const std::size_t pairs = method->answer().found.size();
+        EXPECT_GT(pairs, 50U);
         constexpr std::size_t kState = sizeof(float) + sizeof(Vector3<float>);
-        EXPECT_GE(method->memoryBytes(), before + couples * sizeof(std::uint64_t) + kFew * kState);
+        EXPECT_GE(method->memoryBytes(), before + pairs * sizeof(std::uint64_t) + kFew * kState);
     }
     Grid<float> grid({.cellSize = 10});
     grid.reserve(bed.objects());

@@ -24,7 +24,7 @@ namespace hashphase::demos {
 [[nodiscard]] std::vector<std::vector<Aabb<float>>> driftingFrames(std::size_t objects,
                                                                    std::size_t frames);
 
-/// All couples that overlap, sorted.
+/// All pairs that overlap, sorted.
 [[nodiscard]] std::vector<PairKey> overlappingPairs(std::span<const Aabb<float>> boxes);
 
 }  // namespace hashphase::demos

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Zlib
 //
-// box-pairs [couples [seed]]: random couples of boxes, a thousand million unless told otherwise, of
+// box-pairs [pairs [seed]]: random pairs of boxes, a thousand million unless told otherwise, of
 // which pairs must hold exactly those that overlap.
 //
 // Boxes come in batches of a thousand or so, each with cells, sizes and a place of its own: from
 // denormal to the largest numbers, most of them on the borders of cells or one step beside them. Each
 // batch lives for two updates, between which a third of the boxes move; some rest. In each update
-// every couple is judged: once by coordinates in columns, which the compiler makes vectors of, once by
+// every pair is judged: once by coordinates in columns, which the compiler makes vectors of, once by
 // what Pairs::collect() lists. Prints what was judged and how long it took; exit status 1 at the first
-// couple that is missing or too many.
+// pair that is missing or too many.
 
 #include <broadphase/pairs.hpp>
 #include <tests/support/box_scenes.hpp>
@@ -28,7 +28,7 @@ namespace hashphase::test {
 namespace {
 
 struct Tally {
-    std::uint64_t couples = 0;
+    std::uint64_t pairs = 0;
     std::uint64_t overlapping = 0;
     std::uint64_t batches = 0;
     bool isExact = true;
@@ -181,7 +181,7 @@ void judge(const Batch& batch, const std::vector<Aabb<Scalar>>& boxes, const Pai
             ++tally.overlapping;
         }
         const std::size_t behind = i + 1;
-        tally.couples += boxes.size() - behind;
+        tally.pairs += boxes.size() - behind;
         for (std::size_t k = behind;
              k < boxes.size() && std::memcmp(expected.data() + behind, found.data() + behind,
                                              boxes.size() - behind) != 0;
@@ -223,11 +223,11 @@ void playBatch(Random& random, Tally& tally) {
     ++tally.batches;
 }
 
-int run(std::uint64_t couples, std::uint64_t seed) {
+int run(std::uint64_t pairs, std::uint64_t seed) {
     setMessageHandler([](const char*) {});  // there are NaNs among the hostile
     const auto begin = std::chrono::steady_clock::now();
     Tally tally;
-    for (std::uint64_t batch = 0; tally.couples < couples && tally.isExact; ++batch) {
+    for (std::uint64_t batch = 0; tally.pairs < pairs && tally.isExact; ++batch) {
         Random random(seed + batch);
         if (batch % 2 == 0) {
             playBatch<float>(random, tally);
@@ -241,8 +241,8 @@ int run(std::uint64_t couples, std::uint64_t seed) {
         }
     }
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
-    std::printf("%llu couples in %llu batches, %llu overlapping, in %.1f s: %s\n",
-                static_cast<unsigned long long>(tally.couples),
+    std::printf("%llu pairs in %llu batches, %llu overlapping, in %.1f s: %s\n",
+                static_cast<unsigned long long>(tally.pairs),
                 static_cast<unsigned long long>(tally.batches),
                 static_cast<unsigned long long>(tally.overlapping), time.count(),
                 tally.isExact ? "none missing, none too many" : "WRONG");
@@ -260,7 +260,7 @@ int main(int argc, char** argv) {
         if (at >= numbers.size() ||
             std::from_chars(word.data(), word.data() + word.size(), numbers[at]).ptr !=
                 word.data() + word.size()) {
-            std::fputs("Usage: box-pairs [couples [seed]]\n", stderr);
+            std::fputs("Usage: box-pairs [pairs [seed]]\n", stderr);
             return 2;
         }
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-// PairCache by itself against a set of couples.
+// PairCache by itself against a set of pairs.
 
 #include <tests/fuzz/life.hpp>
 #include <tests/fuzz/palette.hpp>
@@ -119,17 +119,17 @@ private:
         return proxies_[arguments.below(kProxies)];
     }
     /// Two different ones.
-    std::pair<btBroadphaseProxy*, btBroadphaseProxy*> couple(Arguments& arguments) {
+    std::pair<btBroadphaseProxy*, btBroadphaseProxy*> proxiesOf(Arguments& arguments) {
         const std::uint32_t low = arguments.byte();
-        return couple(low + 256U * arguments.byte());
+        return proxiesOf(low + 256U * arguments.byte());
     }
-    std::pair<btBroadphaseProxy*, btBroadphaseProxy*> couple(std::uint32_t number) {
+    std::pair<btBroadphaseProxy*, btBroadphaseProxy*> proxiesOf(std::uint32_t number) {
         const std::uint32_t first = number % kProxies;
         const std::uint32_t second = (first + 1 + number / kProxies % (kProxies - 1)) % kProxies;
         return {&proxies_[first], &proxies_[second]};
     }
-    static Ids idsOfCouple(const std::pair<btBroadphaseProxy*, btBroadphaseProxy*>& couple) {
-        return std::minmax({couple.first->m_uniqueId, couple.second->m_uniqueId});
+    static Ids uniqueIds(const std::pair<btBroadphaseProxy*, btBroadphaseProxy*>& proxies) {
+        return std::minmax({proxies.first->m_uniqueId, proxies.second->m_uniqueId});
     }
     static bool groupsPair(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
         return (a.m_collisionFilterGroup & b.m_collisionFilterMask) != 0 &&
@@ -137,47 +137,47 @@ private:
     }
 
     void add(Arguments& arguments) {
-        const auto [a, b] = couple(arguments);
+        const auto [a, b] = proxiesOf(arguments);
         const bool asks = arguments.flag();
         story_.tell(asks ? "add " : "add accepted ", a->m_uniqueId, '-', b->m_uniqueId);
-        const bool isIn = !asks || groupsPair(*a, *b) || expected_.contains(idsOfCouple({a, b}));
+        const bool isIn = !asks || groupsPair(*a, *b) || expected_.contains(uniqueIds({a, b}));
         btBroadphasePair* const pair =
             asks ? cache_.addOverlappingPair(a, b) : cache_.addAcceptedPair(a, b);
         // A pair that is there already, but which the filter refuses, is not returned.
-        EXPECT_TRUE(pair == nullptr || idsOf(*pair) == idsOfCouple({a, b}));
+        EXPECT_TRUE(pair == nullptr || idsOf(*pair) == uniqueIds({a, b}));
         EXPECT_TRUE(pair != nullptr || (asks && !groupsPair(*a, *b)));
         if (isIn) {
-            expected_.insert(idsOfCouple({a, b}));
+            expected_.insert(uniqueIds({a, b}));
         }
     }
 
     void removeOne(Arguments& arguments) {
-        const auto [a, b] = couple(arguments);
+        const auto [a, b] = proxiesOf(arguments);
         story_.tell("remove ", a->m_uniqueId, '-', b->m_uniqueId);
         cache_.removeOverlappingPair(a, b, nullptr);
-        expected_.erase(idsOfCouple({a, b}));
+        expected_.erase(uniqueIds({a, b}));
         EXPECT_EQ(cache_.findPair(a, b), nullptr);
     }
 
-    // Died and born may name what is not there, or there already; never the same couple in both.
+    // Died and born may name what is not there, or there already; never the same pair in both.
     void update(Arguments& arguments) {
         const std::uint32_t diedCount = arguments.byte();
         const std::uint32_t bornCount = arguments.byte();
         story_.tell("update with ", diedCount, " that die and ", bornCount, " that are born");
         Random random = arguments.random();
         std::set<Ids> named;
-        std::vector<ProxyCouple> died;
-        std::vector<ProxyCouple> born;
+        std::vector<BulletProxyPair> died;
+        std::vector<BulletProxyPair> born;
         for (std::uint32_t i = 0; i < diedCount + bornCount; ++i) {
-            const auto drawn = couple(random.below(kProxies * (kProxies - 1)));
-            if (!named.insert(idsOfCouple(drawn)).second) {
+            const auto drawn = proxiesOf(random.below(kProxies * (kProxies - 1)));
+            if (!named.insert(uniqueIds(drawn)).second) {
                 continue;
             }
             (i < diedCount ? died : born).emplace_back(*drawn.first, *drawn.second);
             if (i < diedCount) {
-                expected_.erase(idsOfCouple(drawn));
+                expected_.erase(uniqueIds(drawn));
             } else {
-                expected_.insert(idsOfCouple(drawn));
+                expected_.insert(uniqueIds(drawn));
             }
         }
         cache_.update(died, born, nullptr);
@@ -223,7 +223,7 @@ private:
     }
 
     void look(bool sorts, Arguments& arguments) {
-        const auto [a, b] = couple(arguments);
+        const auto [a, b] = proxiesOf(arguments);
         story_.tell(sorts ? "sort, and find " : "look, and find ", a->m_uniqueId, '-',
                     b->m_uniqueId);
         if (sorts) {
@@ -235,7 +235,7 @@ private:
         EXPECT_EQ(static_cast<std::size_t>(cache_.getOverlappingPairArray().size()),
                   expected_.size());
         const btBroadphasePair* const pair = cache_.findPair(a, b);
-        EXPECT_EQ(pair != nullptr, expected_.contains(idsOfCouple({a, b})));
+        EXPECT_EQ(pair != nullptr, expected_.contains(uniqueIds({a, b})));
     }
 
     OperationLog& story_;

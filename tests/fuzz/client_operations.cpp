@@ -126,7 +126,7 @@ private:
             EXPECT_TRUE(culler_.isVisible(proxy.id) || !(view.key(proxy.box) >= 0))
                 << proxy.id.index << " is culled";
         }
-        const View<Scalar> window(matrix, lens.depthRange, {0, 0, 640, 480});
+        const Camera<Scalar> window(matrix, lens.depthRange, {0, 0, 640, 480});
         const Pixel a = random.pointIn(-20, 660).head<2>();
         const Pixel b = random.chance(0.2) ? a : Pixel(random.pointIn(-20, 660).head<2>());
         const auto containment = random.chance(0.5) ? Containment::touching : Containment::inside;

@@ -3,15 +3,15 @@
 // The grid, its queries, and who is near whom, against a look at everything.
 
 #include <broadphase/cells_region.hpp>
-#include <broadphase/crowd.hpp>
 #include <broadphase/moving_box.hpp>
 #include <broadphase/neighbours.hpp>
 #include <broadphase/position_region.hpp>
+#include <broadphase/radius_search.hpp>
 #include <integration/ai/nearest.hpp>
 #include <tests/fuzz/grid_world.hpp>
 #include <tests/fuzz/subjects.hpp>
-#include <tests/support/crowd_oracle.hpp>
 #include <tests/support/position_oracles.hpp>
+#include <tests/support/radius_oracle.hpp>
 
 namespace hashphase::test {
 namespace {
@@ -254,13 +254,13 @@ private:
     void askNeighbours(Arguments& arguments) {
         const Scalar distance = radius(arguments);
         story_.tell("neighbours within ", distance);
-        const auto couples = neighbours_.find(world_.grid, distance, anyFor(arguments));
-        std::vector<ProxyPair> found(couples.begin(), couples.end());
+        const auto pairs = neighbours_.find(world_.grid, distance, anyFor(arguments));
+        std::vector<ProxyPair> found(pairs.begin(), pairs.end());
         std::sort(found.begin(), found.end());
         EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end()) << "each once";
         std::vector<ProxyPair> surely;
         std::vector<ProxyPair> perhaps;
-        forEachCouple([&](const Placed<Scalar>& a, const Placed<Scalar>& b) {
+        forEachPair([&](const Placed<Scalar>& a, const Placed<Scalar>& b) {
             const long double apart = gapBetween(a.box, b.box);
             const auto slack = static_cast<long double>(8 * std::numeric_limits<Scalar>::epsilon() *
                                                         static_cast<double>(apart));
@@ -284,7 +284,7 @@ private:
 
     // Inverted boxes have no straight line between them, and are left out.
     template <class Visit>
-    void forEachCouple(const Visit& visit) {
+    void forEachPair(const Visit& visit) {
         const auto proxies = life_.proxies();
         for (std::size_t i = 0; i < proxies.size(); ++i) {
             for (std::size_t k = i + 1; k < proxies.size(); ++k) {
@@ -312,17 +312,17 @@ private:
     void askCrowd(Arguments& arguments) {
         const Scalar reach = radius(arguments);
         story_.tell("crowd within ", reach);
-        crowd_.take(world_.grid, reach, acceptAll, anyFor(arguments));
+        search_.take(world_.grid, reach, acceptAll, anyFor(arguments));
         const NeighbourLists expected = neighboursByBruteForce(life_.proxies(), reach);
-        ASSERT_EQ(crowd_.size(), expected.size());
-        EXPECT_EQ(crowd_.size() + crowd_.leftOutCount(), life_.proxies().size());
-        std::vector<std::uint32_t> counts(crowd_.size());
-        crowd_.count(counts);
+        ASSERT_EQ(search_.size(), expected.size());
+        EXPECT_EQ(search_.size() + search_.leftOutCount(), life_.proxies().size());
+        std::vector<std::uint32_t> counts(search_.size());
+        search_.count(counts);
         NeighbourLists found;
-        crowd_.forEach([&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) {
-            std::vector<ProxyId>& list = found[crowd_.id(agent)];
+        search_.forEach([&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) {
+            std::vector<ProxyId>& list = found[search_.id(agent)];
             for (const std::uint32_t other : neighbours) {
-                list.push_back(crowd_.id(other));
+                list.push_back(search_.id(other));
             }
             std::sort(list.begin(), list.end());
             EXPECT_EQ(counts[agent], neighbours.size());
@@ -416,7 +416,7 @@ private:
     BoxModel<Scalar, GridWorld<Scalar>> life_;
     bool isNeverUpdated_;
     Neighbours<Scalar> neighbours_;
-    Crowd<Scalar> crowd_;
+    RadiusSearch<Scalar> search_;
 };
 
 }  // namespace

@@ -75,8 +75,8 @@ private:
             }
             case 6: {
                 const ProxyId id = life_.proxies()[life_.any(arguments)].id;
-                story_.tell("announce ", id.index);
-                world_.announce(id);
+                story_.tell("findPairsNow ", id.index);
+                world_.findPairsNow(id);
                 break;
             }
             case 7:
@@ -209,7 +209,7 @@ private:
                              firstContactByRationals(moving, MovingBox<Scalar>{box}).has_value()
                        : overlaps(proxy.box, box);
             EXPECT_TRUE(isFound || !touches) << proxy.id.index << " is left out";
-            EXPECT_TRUE(!isFound || touches || (sweeps && overlaps(wayBounds(moving), box)))
+            EXPECT_TRUE(!isFound || touches || (sweeps && overlaps(sweptBounds(moving), box)))
                 << proxy.id.index << " is nowhere near";
         }
     }

@@ -2,8 +2,8 @@
 #include <tests/golden/golden_results.hpp>
 
 #include <broadphase/convex_region.hpp>
-#include <broadphase/crowd.hpp>
 #include <broadphase/neighbours.hpp>
+#include <broadphase/radius_search.hpp>
 #include <integration/ai/nearest.hpp>
 #include <integration/culling/culler.hpp>
 #include <integration/terrain/terrain.hpp>
@@ -126,21 +126,21 @@ private:
     void askAll() {
         const Scalar distance = world_.box(0).sizes().maxCoeff();
         Neighbours<Scalar> neighbours;
-        std::vector<std::pair<std::uint32_t, std::uint32_t>> couples;
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
         for (const ProxyPair& pair :
              neighbours.find(world_.grid(), distance, world_.parallelFor())) {
-            couples.push_back(world_.numbersOf(pair));
+            pairs.push_back(world_.numbersOf(pair));
         }
-        std::sort(couples.begin(), couples.end());
-        hashes_["neighbours"].addAll(couples);
+        std::sort(pairs.begin(), pairs.end());
+        hashes_["neighbours"].addAll(pairs);
 
-        Crowd<Scalar> crowd;
-        crowd.take(world_.grid(), 3 * distance, acceptAll, world_.parallelFor());
-        std::vector<std::uint32_t> counts(crowd.size());
-        crowd.count(counts, world_.parallelFor());
+        RadiusSearch<Scalar> search;
+        search.take(world_.grid(), 3 * distance, acceptAll, world_.parallelFor());
+        std::vector<std::uint32_t> counts(search.size());
+        search.count(counts, world_.parallelFor());
         std::vector<std::pair<std::uint32_t, std::uint32_t>> countOf;
-        for (std::uint32_t agent = 0; agent < crowd.size(); ++agent) {
-            countOf.emplace_back(world_.numberOf(crowd.id(agent)), counts[agent]);
+        for (std::uint32_t agent = 0; agent < search.size(); ++agent) {
+            countOf.emplace_back(world_.numberOf(search.id(agent)), counts[agent]);
         }
         std::sort(countOf.begin(), countOf.end());
         hashes_["crowd"].addAll(countOf);

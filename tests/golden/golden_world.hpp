@@ -48,12 +48,12 @@ public:
         add(numbers.size());
     }
     template <class A, class B>
-    void addAll(const std::vector<std::pair<A, B>>& couples) {
-        for (const auto& [a, b] : couples) {
+    void addAll(const std::vector<std::pair<A, B>>& pairs) {
+        for (const auto& [a, b] : pairs) {
             add(a);
             add(b);
         }
-        add(couples.size());
+        add(pairs.size());
     }
     [[nodiscard]] GoldenLine line(std::string name) const {
         return {std::move(name), hash_, count_};

@@ -25,10 +25,10 @@ set(standard "[a-z_0-9]+")
 set(simd "([a-z]+intrin|arm_neon)\\.h")
 set(eigen "Eigen/[A-Za-z]+")
 set(offered "broadphase/((core|geometry)/)?[^/]+")
-set(moved broadphase/frustum.hpp broadphase/ground_footprint.hpp broadphase/nearest.hpp
-          integration/picking/view.hpp)
-set(movedTo integration/camera/frustum.hpp integration/camera/ground_footprint.hpp
-            integration/ai/nearest.hpp integration/camera/view.hpp)
+set(moved broadphase/crowd.hpp broadphase/frustum.hpp broadphase/ground_footprint.hpp
+          broadphase/nearest.hpp integration/picking/view.hpp)
+set(movedTo broadphase/radius_search.hpp integration/camera/frustum.hpp integration/camera/ground_footprint.hpp
+            integration/ai/nearest.hpp integration/camera/camera.hpp)
 set(bullet "(bt[A-Z][A-Za-z0-9]*\\.h|(LinearMath|Bullet[A-Z][A-Za-z]*)/.+)")
 
 # Sets `allowed`, a regular expression for what stands between < and >, and `rule`, a sentence.

@@ -28,10 +28,10 @@ function(make_good_tree)
     file(WRITE ${SCRATCH}/broadphase/nearest.hpp "#include <integration/ai/nearest.hpp>\n")
     file(WRITE ${SCRATCH}/integration/ai/sight.cpp "#include <integration/ai/nearest.hpp>\n")
     file(WRITE ${SCRATCH}/integration/camera/view.cpp
-         "#include <integration/camera/view.hpp>\n#include <broadphase/regions.hpp>\n")
+         "#include <integration/camera/camera.hpp>\n#include <broadphase/regions.hpp>\n")
     file(WRITE ${SCRATCH}/integration/culling/culler.hpp "#include <integration/camera/frustum.hpp>\n")
     file(WRITE ${SCRATCH}/integration/picking/pick.cpp
-         "#include <integration/picking/pick.hpp>\n#include <integration/camera/view.hpp>\n"
+         "#include <integration/picking/pick.hpp>\n#include <integration/camera/camera.hpp>\n"
          "#include <broadphase/core/limits.hpp>\n")
     file(WRITE ${SCRATCH}/integration/tbb/loops.hpp
          "#include <tbb/parallel_for.h>\n#include <broadphase/parallel_for.hpp>\n")
@@ -88,7 +88,7 @@ expect_breach(broadphase/grid.hpp 4 "has moved" "#include <broadphase/nearest.hp
 expect_breach(integration/bullet/broadphase.hpp 6 "integration/bullet/ includes only itself"
               "#include <broadphase/store/population.hpp>\n")
 expect_breach(integration/bullet/broadphase.hpp 6 "integration/bullet/ includes only itself"
-              "#include <integration/camera/view.hpp>\n")
+              "#include <integration/camera/camera.hpp>\n")
 expect_breach(integration/picking/pick.cpp 4 "${client}" "#include <tests/support/oracle.hpp>\n")
 expect_breach(integration/bullet/broadphase.hpp 6 "integration/bullet/ includes only itself"
               "#include <integration/picking/pick.hpp>\n")

@@ -3,8 +3,8 @@
 // The example of the README's chapter "One grid for all", and the check that its answers are right.
 // Prints the number of overlapping pairs, which is one.
 
-#include <broadphase/crowd.hpp>
 #include <broadphase/pairs.hpp>
+#include <broadphase/radius_search.hpp>
 #include <integration/ai/nearest.hpp>
 #include <integration/ai/proximity.hpp>
 #include <integration/ai/radar.hpp>
@@ -64,7 +64,7 @@ int main() {
     check(culler.isVisible(enemy) && culler.count() == 3, "culling");
 
     // Picking: the nearest body under the pointer, all of them, and a rectangle that is dragged.
-    const View<float> view(camera(), DepthRange::zeroToOne, {0, 0, 800, 800});
+    const Camera<float> view(camera(), DepthRange::zeroToOne, {0, 0, 800, 800});
     std::vector<Picked<float>> underPointer;
     std::vector<ProxyId> selected;
     check(pickNearest(grid, view.rayThrough({400, 400})).id == agent, "the nearest");
@@ -95,10 +95,10 @@ int main() {
                    [&](ProxyId id) { return isEnemy(id) ? 1U : 0U; });
     check(counts.size() == 2 * 9 * 9, "radar");
 
-    Crowd<float> crowd;  // every agent asks
-    crowd.take(grid, 5);
-    std::vector<std::uint32_t> neighbourCounts(crowd.size());
-    crowd.count(neighbourCounts);
+    RadiusSearch<float> search;  // every agent asks
+    search.take(grid, 5);
+    std::vector<std::uint32_t> neighbourCounts(search.size());
+    search.count(neighbourCounts);
 
     // Terrain: triangles filed once.
     Grid<float> ground;

@@ -4,9 +4,9 @@
 // and a library share must not know of it.
 
 #include <broadphase/cells_region.hpp>
-#include <broadphase/crowd.hpp>
 #include <broadphase/neighbours.hpp>
 #include <broadphase/position_region.hpp>
+#include <broadphase/radius_search.hpp>
 #include <broadphase/sweeps.hpp>
 #include <integration/ai/radar.hpp>
 #include <integration/ai/rarest_colour.hpp>
@@ -28,7 +28,7 @@ constexpr bool isSameForAll =
 
 static_assert(isSameForAll<Aabb, BoxRegion, CellsRegion, ConvexRegion, GroundFootprint, MovingBox,
                            MovingBoxRegion, PositionRegion, RayRegion, SphereRegion>);
-static_assert(isSameForAll<Crowd, Grid, Neighbours, Pairs, Sweeps>);
+static_assert(isSameForAll<RadiusSearch, Grid, Neighbours, Pairs, Sweeps>);
 static_assert(isSameForAll<Culler, Picked, Radar, RadarWindow, RarestColour, Sight, Terrain, View,
                            Viewer, SightRegion, Zone, Zones>);
 static_assert(isSameForAll<Body, ObservedScene, Observers, Simulation>);

@@ -77,10 +77,10 @@ void useGrid() {
     std::printf("%d\n", firstContact(moving, moving) ? 1 : 0);
     Neighbours<Scalar> neighbours;
     std::printf("%zu\n", neighbours.find(grid, 1).size());
-    Crowd<Scalar> crowd;
-    crowd.take(grid, 1, isOther);
-    std::vector<std::uint32_t> counts(crowd.size());
-    crowd.count(counts);
+    RadiusSearch<Scalar> search;
+    search.take(grid, 1, isOther);
+    std::vector<std::uint32_t> counts(search.size());
+    search.count(counts);
 }
 
 template <class Scalar>
@@ -94,7 +94,7 @@ void useClients() {
     culler.look(grid, frustumRegion<Scalar>(camera, DepthRange::zeroToOne), accept);
     culler.forEach([](std::uint32_t index) { std::printf("%u\n", index); });
 
-    const View<Scalar> view(camera, DepthRange::zeroToOne, {0, 0, 800, 600});
+    const Camera<Scalar> view(camera, DepthRange::zeroToOne, {0, 0, 800, 600});
     std::vector<ProxyId> found;
     std::vector<Picked<Scalar>> picked;
     pickAll(grid, view.rayThrough({1, 2}), picked);

@@ -27,10 +27,10 @@ TEST_F(AiPage, OneAgentKnowsItsSurroundings) {
 }
 
 TEST_F(AiPage, EverybodyKnows) {
-    std::size_t couples = 0;
-    const auto flock = [&](ProxyId /*id*/, std::size_t count) { couples += count; };
+    std::size_t pairs = 0;
+    const auto flock = [&](ProxyId /*id*/, std::size_t count) { pairs += count; };
 #include <ai_2.inl>
-    EXPECT_EQ(couples, 4U);
+    EXPECT_EQ(pairs, 4U);
     EXPECT_EQ(counts[0] + counts[1] + counts[2], 4U);
 }
 

@@ -19,7 +19,7 @@ TEST(Readme, OneGridAnswersAll) {
     btBroadphaseProxy* proxy =
         broadphase.createProxy({-1, -1, -31}, {1, 1, -29}, 0, nullptr, kEnemyGroup, -1, nullptr);
     const Eigen::Matrix<btScalar, 4, 4> viewProjection = orthographic().cast<btScalar>();
-    const View<btScalar> view(viewProjection, DepthRange::zeroToOne, {0, 0, 800, 800});
+    const Camera<btScalar> camera(viewProjection, DepthRange::zeroToOne, {0, 0, 800, 800});
     const double x = 400;
     const double y = 400;
     const Vector3<btScalar> eye(0, 0, -10);

@@ -7,9 +7,9 @@
 
 #include <broadphase/collectors.hpp>
 #include <broadphase/convex_region.hpp>
-#include <broadphase/crowd.hpp>
 #include <broadphase/neighbours.hpp>
 #include <broadphase/pairs.hpp>
+#include <broadphase/radius_search.hpp>
 #include <broadphase/regions.hpp>
 #include <broadphase/sweeps.hpp>
 #include <integration/ai/nearest.hpp>
@@ -24,9 +24,9 @@
 #include <integration/bullet/shape_pick.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 #include <integration/bullet/static_triangles.hpp>
+#include <integration/camera/camera.hpp>
 #include <integration/camera/frustum.hpp>
 #include <integration/camera/ground_footprint.hpp>
-#include <integration/camera/view.hpp>
 #include <integration/culling/culler.hpp>
 #include <integration/effects/bullet_frame.hpp>
 #include <integration/effects/observers.hpp>

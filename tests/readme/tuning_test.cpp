@@ -25,7 +25,7 @@ TEST(TuningPage, CostIsPrinted) {
     {
 #include <tuning_1.inl>
     } EXPECT_EQ(testing::internal::GetCapturedStdout(),
-                "100 changed, 0 at rest, 294 boxes tested, 3 couples watched, 100 share a cell\n");
+                "100 changed, 0 at rest, 294 boxes tested, 3 pairs watched, 100 share a cell\n");
 }
 
 /// How many boxes are compared for each of 3,000 cubes of a metre, four of which overlap each.

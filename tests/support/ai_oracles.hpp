@@ -65,7 +65,7 @@ void visibleFromByBruteForce(std::span<const Placed<Scalar>> proxies, const View
     std::sort(seen.begin(), seen.end());
 }
 
-/// Zones, with one set of all couples of a zone and an occupant.
+/// Zones, with one set of all pairs of a zone and an occupant.
 template <class Scalar>
 class ZonesByBruteForce {
 public:

@@ -20,7 +20,7 @@ namespace hashphase::test {
 /// Numbers of boxes that overlap, found by sorting along x; and how many tests of two boxes that
 /// takes.
 struct Swept {
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> couples;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
     std::uint64_t tests = 0;
 
     template <class Scalar>
@@ -36,11 +36,11 @@ struct Swept {
                  j < order.size() && boxes[order[j]].min()[0] <= box.max()[0]; ++j) {
                 ++tests;
                 if (overlaps(box, boxes[order[j]])) {
-                    couples.push_back(std::minmax(order[i], order[j]));
+                    pairs.push_back(std::minmax(order[i], order[j]));
                 }
             }
         }
-        std::sort(couples.begin(), couples.end());
+        std::sort(pairs.begin(), pairs.end());
     }
 };
 
@@ -57,7 +57,7 @@ PairCost expectPairsOfSweep(const std::vector<Aabb<Scalar>>& boxes, const GridCo
     for (const ProxyPair& pair : pairs.update([](ProxyId, ProxyId) { return true; }).born) {
         found.emplace_back(pair.first.index, pair.second.index);
     }
-    EXPECT_EQ(differences(found, swept.couples), "");
+    EXPECT_EQ(differences(found, swept.pairs), "");
     EXPECT_EQ(grid.validate(), "");
     return pairs.lastCost();
 }

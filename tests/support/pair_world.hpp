@@ -142,16 +142,16 @@ public:
         noteRefiltered(pairs.refilterAll(recordingFilter()));
     }
 
-    void announce(ProxyId id) {
+    void findPairsNow(ProxyId id) {
         asked_.clear();
-        const PairChanges changes = pairs.announce(id, recordingFilter());
+        const PairChanges changes = pairs.findPairsNow(id, recordingFilter());
         for (const ProxyPair& pair : changes.died) {
             EXPECT_FALSE(grid.contains(pair.first) && grid.contains(pair.second))
                 << testing::PrintToString(pair) << " dies though both are alive";
         }
         apply(changes);
         noteDecided();
-        noteAsked("announce");
+        noteAsked("findPairsNow");
     }
 
     /// Ends the frame. What the filter was asked is in asked() afterwards.
@@ -239,7 +239,7 @@ private:
         if (asked_.size() > kPart) {
             std::sort(asked_.begin(), asked_.end());
         }
-        EXPECT_TRUE(isAscending(asked_)) << what << " asks in ascending order, each couple once";
+        EXPECT_TRUE(isAscending(asked_)) << what << " asks in ascending order, each pair once";
     }
 
     static bool isAscending(std::span<const ProxyPair> list) {
@@ -300,7 +300,7 @@ private:
                firstContactByRationals(wayOfA, wayOfB).has_value();
     }
 
-    // Asked must be: couples that may pair and meet now and did not before, or could not, unless decided
+    // Asked must be: pairs that may pair and meet now and did not before, or could not, unless decided
     // already, and refused ones that still meet and of which one has changed.
     void checkAsked(std::span<const Placed<Scalar>> proxies) {
         std::set<ProxyPair> meeting;

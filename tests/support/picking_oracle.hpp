@@ -3,7 +3,7 @@
 
 // What picking must answer, found by looking at everything, in double precision where that helps.
 
-#include <integration/camera/view.hpp>
+#include <integration/camera/camera.hpp>
 #include <integration/picking/pick.hpp>
 #include <tests/support/convex_oracle.hpp>
 #include <tests/support/oracles.hpp>

@@ -2,7 +2,7 @@
 #include <demos/accuracy/proximity/neighbour_method.hpp>
 
 #include <broadphase/cells_region.hpp>
-#include <broadphase/crowd.hpp>
+#include <broadphase/radius_search.hpp>
 #include <integration/ai/proximity.hpp>
 #include <integration/ai/rarest_colour.hpp>
 
@@ -80,24 +80,24 @@ public:
         rarest_.update(grid(), radius(), kColourCount, chosen);
     }
     void forEach(Visit visit) override {
-        crowd_.take(grid(), radius());
-        crowd_.forEach([&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) {
+        search_.take(grid(), radius());
+        search_.forEach([&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) {
             found_.clear();
             for (const std::uint32_t neighbour : neighbours) {
-                found_.push_back(crowd_.id(neighbour).index);
+                found_.push_back(search_.id(neighbour).index);
             }
-            visit(crowd_.id(agent).index, found_);
+            visit(search_.id(agent).index, found_);
         });
     }
 
 private:
     RarestColour<float> rarest_;
-    Crowd<float> crowd_;
+    RadiusSearch<float> search_;
     std::vector<std::uint32_t> found_;
 };
 
 /// Decides from the lists.
-class CrowdSearch : public RarestColourSearch {
+class WithinSearch : public RarestColourSearch {
 public:
     using RarestColourSearch::RarestColourSearch;
 
@@ -259,7 +259,7 @@ NeighbourMethod rarestColourMethod() {
 }
 
 NeighbourMethod crowdMethod() {
-    NeighbourMethod method = methodOf<CrowdSearch>("Crowd, listed");
+    NeighbourMethod method = methodOf<WithinSearch>("RadiusSearch, listed");
     method.isExact = true;
     method.usesCells = false;
     return method;

@@ -63,7 +63,7 @@ struct NeighbourMethod {
 // --- Of the library --------------------------------------------------------------------------------
 
 [[nodiscard]] NeighbourMethod rarestColourMethod();  // RarestColour: counted, exactly
-[[nodiscard]] NeighbourMethod crowdMethod();         // Crowd::forEach(): listed, exactly
+[[nodiscard]] NeighbourMethod crowdMethod();         // RadiusSearch::forEach(): listed, exactly
 [[nodiscard]] NeighbourMethod findWithinMethod();    // agent by agent, exactly
 [[nodiscard]] NeighbourMethod estimateMethod();      // estimateWithin(): by cells
 [[nodiscard]] NeighbourMethod countedCellsMethod();  // the same, only counted

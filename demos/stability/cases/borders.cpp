@@ -76,7 +76,7 @@ CaseOutcome signsOfZero(const CaseContext& context) {
 // --- Borders --------------------------------------------------------------------------------------
 
 // At the border k * cell, boxes that touch, overlap by an ulp, and miss each other by one on either
-// side, and boxes of a cell from border to border that touch; each couple in a lane of its own.
+// side, and boxes of a cell from border to border that touch; each pair in a lane of its own.
 void addBoxesAtBorder(Boxes& boxes, int k, int axis, float cell) {
     const auto border = [&](int number) { return static_cast<float>(number) * cell; };
     const auto add = [&](int lane, float from, float to) {
@@ -114,8 +114,8 @@ Boxes boxesAtBorders(float cell, int axis, int firstBorder, int lastBorder) {
     return boxes;
 }
 
-// Every box stands apart from all but the other one of its couple.
-void judgeCouples(const CaseContext& context, CaseTally& tally, const Boxes& boxes, float cell) {
+// Every box stands apart from all but the other one of its pair.
+void judgePairs(const CaseContext& context, CaseTally& tally, const Boxes& boxes, float cell) {
     PairScene scene(context, boxes, {.cellSize = static_cast<double>(cell)});
     scene.findPairs();
     std::vector<PairKey> exact;
@@ -140,7 +140,7 @@ CaseOutcome multiplesOfTheCell(const CaseContext& context) {
         for (int first = 1; first < borders; first += kBordersAtOnce) {
             const int last = std::min(first + kBordersAtOnce, borders) - 1;
             const int axis = (tenths + first / kBordersAtOnce) % 3;
-            judgeCouples(context, tally, boxesAtBorders(cell, axis, first, last), cell);
+            judgePairs(context, tally, boxesAtBorders(cell, axis, first, last), cell);
         }
         ++sizes;
     }

@@ -4,7 +4,7 @@
 
 #include <demos/stability/cases/cases.hpp>
 
-#include <broadphase/crowd.hpp>
+#include <broadphase/radius_search.hpp>
 #include <demos/console/format.hpp>
 #include <demos/scenes/random.hpp>
 #include <demos/stability/isolation.hpp>
@@ -117,10 +117,10 @@ void judgeCounts(const CaseContext& context, CaseTally& tally) {
         static_cast<void>(grid.add(
             cubeAt({random.between(0, 1), random.between(0, 1), random.between(0, 1)}, 0.1F)));
     }
-    Crowd<float> crowd;
-    crowd.take(grid, 10);
-    std::vector<std::uint32_t> counts(crowd.size());
-    const QueryCost cost = crowd.count(counts);
+    RadiusSearch<float> search;
+    search.take(grid, 10);
+    std::vector<std::uint32_t> counts(search.size());
+    const QueryCost cost = search.count(counts);
     const std::uint64_t exact = std::uint64_t{count} * (count - 1);
     std::uint64_t sum = 0;
     for (const std::uint32_t each : counts) {

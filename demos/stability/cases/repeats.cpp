@@ -4,8 +4,8 @@
 
 #include <demos/stability/cases/cases.hpp>
 
-#include <broadphase/crowd.hpp>
 #include <broadphase/pairs.hpp>
+#include <broadphase/radius_search.hpp>
 #include <broadphase/simd/kernels.hpp>
 #include <broadphase/sweeps.hpp>
 #include <demos/scenes/random.hpp>
@@ -135,12 +135,12 @@ std::uint64_t digestOfAll(std::size_t count, std::uint64_t seed, ParallelFor par
     for (const std::uint64_t word : bits) {
         digest.add(word);
     }
-    Crowd<Scalar> crowd;
-    crowd.take(grid, 1, acceptAll, parallelFor);
-    std::vector<std::uint32_t> counts(crowd.size());
-    crowd.count(counts, parallelFor);
-    for (std::uint32_t agent = 0; agent < crowd.size(); ++agent) {
-        digest.add(std::uint64_t{crowd.id(agent).index} << 32 | counts[agent]);
+    RadiusSearch<Scalar> search;
+    search.take(grid, 1, acceptAll, parallelFor);
+    std::vector<std::uint32_t> counts(search.size());
+    search.count(counts, parallelFor);
+    for (std::uint32_t agent = 0; agent < search.size(); ++agent) {
+        digest.add(std::uint64_t{search.id(agent).index} << 32 | counts[agent]);
     }
     return digest.value();
 }

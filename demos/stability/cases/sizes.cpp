@@ -124,7 +124,7 @@ std::array<std::int32_t, 2> stepOfEqualRows() {
 }
 
 // Two that touch at each of the places, and some that are beside them in the next cells.
-Boxes couplesAt(const std::vector<Point>& places) {
+Boxes pairsAt(const std::vector<Point>& places) {
     Boxes boxes;
     for (const Point& at : places) {
         boxes.push_back(cubeAt(at + Point::Constant(0.5F), 0.5F));
@@ -151,8 +151,8 @@ CaseOutcome cellsThatCollide(const CaseContext& context) {
         };
         scattered.emplace_back(0, far(stepY), far(stepZ));
     }
-    PairScene adversary(context, couplesAt(equalRows), {.cellSize = 1});
-    PairScene harmless(context, couplesAt(scattered), {.cellSize = 1});
+    PairScene adversary(context, pairsAt(equalRows), {.cellSize = 1});
+    PairScene harmless(context, pairsAt(scattered), {.cellSize = 1});
     adversary.judge(tally);
     harmless.judge(tally);
 
@@ -164,7 +164,7 @@ CaseOutcome cellsThatCollide(const CaseContext& context) {
                                             static_cast<float>(i / 5 % 5),
                                             static_cast<float>(i / 25)));
         }
-        judgePairs(context, tally, couplesAt(places), {.cellSize = 1});
+        judgePairs(context, tally, pairsAt(places), {.cellSize = 1});
     }
     if (adversary.hash() != nullptr) {
         tally.addCost(testsOf(adversary) / testsOf(harmless), 3);
@@ -269,7 +269,7 @@ constexpr std::array kSizeCases{
              "exact pairs; it is filed once, and costs what its pairs do", oneLargeObject},
     HardCase{
         "H29", "cells that collide in the hash",
-        "cells of 1 m; couples in rows of cells that our hash cannot tell apart, on multiples of "
+        "cells of 1 m; pairs in rows of cells that our hash cannot tell apart, on multiples of "
         "table sizes, and of large primes",
         "exact pairs, and bounded work", cellsThatCollide},
     HardCase{"H31", "cell sizes that are none",

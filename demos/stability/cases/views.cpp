@@ -183,7 +183,7 @@ CaseOutcome strangeRectangles(const CaseContext& context) {
     }
     scene.findPairs();
     Random random(context.seed);
-    const auto chosen = [&](const View<float>& view, const Pixel& a, const Pixel& b) {
+    const auto chosen = [&](const Camera<float>& view, const Pixel& a, const Pixel& b) {
         std::vector<ProxyId> selected;
         Objects objects;
         select(hash->grid(), view, a, b, selected);
@@ -196,7 +196,7 @@ CaseOutcome strangeRectangles(const CaseContext& context) {
     // Level, down, and up over the horizon.
     for (const float pitch : {0.0F, -0.5F, 0.6F}) {
         const Eigen::Matrix4f matrix = camera({0, 2, 0}, pitch, 5000);
-        const View<float> view(matrix, kDepths, {0, 0, 800, 600});
+        const Camera<float> view(matrix, kDepths, {0, 0, 800, 600});
         const auto judge = [&](const Pixel& a, const Pixel& b) {
             const Objects seen =
                 boxesAround(pointsSeen(matrix, view.rectangleBetween(a, b), random), scene.boxes());

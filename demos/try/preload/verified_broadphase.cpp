@@ -14,10 +14,10 @@
 namespace hashphase::tryout {
 namespace {
 
-using Couple = std::pair<btBroadphaseProxy*, btBroadphaseProxy*>;
+using RawPair = std::pair<btBroadphaseProxy*, btBroadphaseProxy*>;
 
-Couple coupleOf(btBroadphaseProxy* a, btBroadphaseProxy* b) {
-    return std::less<>()(a, b) ? Couple(a, b) : Couple(b, a);
+RawPair rawPairOf(btBroadphaseProxy* a, btBroadphaseProxy* b) {
+    return std::less<>()(a, b) ? RawPair(a, b) : RawPair(b, a);
 }
 
 btBroadphaseProxy* programs(const btBroadphaseProxy* stock) {
@@ -25,14 +25,14 @@ btBroadphaseProxy* programs(const btBroadphaseProxy* stock) {
 }
 
 template <class Name>
-std::vector<Couple> couplesOf(const btOverlappingPairCache& cache, const Name& name) {
-    const btBroadphasePair* pairs = cache.getOverlappingPairArrayPtr();
-    std::vector<Couple> couples;
+std::vector<RawPair> rawPairsOf(const btOverlappingPairCache& cache, const Name& name) {
+    const btBroadphasePair* cached = cache.getOverlappingPairArrayPtr();
+    std::vector<RawPair> pairs;
     for (int i = 0; i < cache.getNumOverlappingPairs(); ++i) {
-        couples.push_back(coupleOf(name(pairs[i].m_pProxy0), name(pairs[i].m_pProxy1)));
+        pairs.push_back(rawPairOf(name(cached[i].m_pProxy0), name(cached[i].m_pProxy1)));
     }
-    std::sort(couples.begin(), couples.end());
-    return couples;
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
 }
 
 // By its three coordinates; the fourth may be anything.
@@ -40,24 +40,25 @@ bool isSame(const btVector3& a, const btVector3& b) {
     return a.x() == b.x() && a.y() == b.y() && a.z() == b.z();
 }
 
-std::vector<Couple> difference(const std::vector<Couple>& from, const std::vector<Couple>& what) {
-    std::vector<Couple> left;
+std::vector<RawPair> difference(const std::vector<RawPair>& from,
+                                const std::vector<RawPair>& what) {
+    std::vector<RawPair> left;
     std::set_difference(from.begin(), from.end(), what.begin(), what.end(),
                         std::back_inserter(left));
     return left;
 }
 
-bool contains(const std::vector<Couple>& couples, const Couple& couple) {
-    return std::binary_search(couples.begin(), couples.end(), couple);
+bool contains(const std::vector<RawPair>& pairs, const RawPair& pair) {
+    return std::binary_search(pairs.begin(), pairs.end(), pair);
 }
 
 // The first fault, as a sentence for the record.
-void describe(Verification& verification, const char* fault, const Couple& couple,
+void describe(Verification& verification, const char* fault, const RawPair& pair,
               std::uint64_t calculation) {
     if (verification.firstFault[0] != '\0') {
         return;
     }
-    const auto& [a, b] = couple;
+    const auto& [a, b] = pair;
     const auto number = [](btScalar x) { return static_cast<double>(x); };
     std::snprintf(verification.firstFault.data(), verification.firstFault.size(),
                   "calculation %llu: the pair of proxies %d and %d is %s; their boxes are "
@@ -219,7 +220,7 @@ void VerifiedBroadphase::getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMa
 // --- The comparison ------------------------------------------------------------------------------
 
 // A sweep along x: from each box on, those that begin before it ends.
-std::vector<Couple> VerifiedBroadphase::findOverlapping() const {
+std::vector<RawPair> VerifiedBroadphase::findOverlapping() const {
     std::vector<btBroadphaseProxy*> proxies;
     for (const auto& [proxy, twin] : twins_) {
         // NaN overlaps nothing, and cannot be sorted.
@@ -231,22 +232,22 @@ std::vector<Couple> VerifiedBroadphase::findOverlapping() const {
               [](const btBroadphaseProxy* a, const btBroadphaseProxy* b) {
                   return a->m_aabbMin.x() < b->m_aabbMin.x();
               });
-    std::vector<Couple> couples;
+    std::vector<RawPair> pairs;
     for (std::size_t i = 0; i < proxies.size(); ++i) {
         for (std::size_t j = i + 1;
              j < proxies.size() && proxies[j]->m_aabbMin.x() <= proxies[i]->m_aabbMax.x(); ++j) {
             if (overlaps(*proxies[i], *proxies[j])) {
-                couples.push_back(coupleOf(proxies[i], proxies[j]));
+                pairs.push_back(rawPairOf(proxies[i], proxies[j]));
             }
         }
     }
-    std::sort(couples.begin(), couples.end());
-    return couples;
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
 }
 
-std::uint64_t VerifiedBroadphase::changeOf(const Couple& couple) const {
+std::uint64_t VerifiedBroadphase::changeOf(const RawPair& pair) const {
     std::uint64_t last = 0;
-    for (btBroadphaseProxy* proxy : {couple.first, couple.second}) {
+    for (btBroadphaseProxy* proxy : {pair.first, pair.second}) {
         if (const auto twin = twins_.find(proxy); twin != twins_.end()) {
             last = std::max(last, twin->second.changed);
         }
@@ -257,19 +258,19 @@ std::uint64_t VerifiedBroadphase::changeOf(const Couple& couple) const {
 // Pairs that the last calculation left in the cache and that are no longer there were removed; those of
 // proxies that were destroyed have gone from last_ with them.
 void VerifiedBroadphase::lookAtCache() {
-    before_ =
-        couplesOf(*ours_.getOverlappingPairCache(), [](btBroadphaseProxy* proxy) { return proxy; });
-    const std::vector<Couple> gone = difference(last_, before_);
+    before_ = rawPairsOf(*ours_.getOverlappingPairCache(),
+                         [](btBroadphaseProxy* proxy) { return proxy; });
+    const std::vector<RawPair> gone = difference(last_, before_);
     removed_.insert(removed_.end(), gone.begin(), gone.end());
     std::sort(removed_.begin(), removed_.end());
 }
 
 void VerifiedBroadphase::forget(const btBroadphaseProxy* proxy) {
-    const auto names = [proxy](const Couple& couple) {
-        return couple.first == proxy || couple.second == proxy;
+    const auto names = [proxy](const RawPair& pair) {
+        return pair.first == proxy || pair.second == proxy;
     };
-    for (std::vector<Couple>* couples : {&last_, &before_, &removed_, &missing_}) {
-        std::erase_if(*couples, names);
+    for (std::vector<RawPair>* pairs : {&last_, &before_, &removed_, &missing_}) {
+        std::erase_if(*pairs, names);
     }
 }
 
@@ -279,56 +280,56 @@ void VerifiedBroadphase::compare() {
         return;
     }
     btOverlappingPairCache& cache = *ours_.getOverlappingPairCache();
-    const auto isLate = [this](const Couple& couple) { return changeOf(couple) > calculation_; };
-    const auto isAccepted = [&cache](const Couple& couple) {
-        return cache.needsBroadphaseCollision(couple.first, couple.second);
+    const auto isLate = [this](const RawPair& pair) { return changeOf(pair) > calculation_; };
+    const auto isAccepted = [&cache](const RawPair& pair) {
+        return cache.needsBroadphaseCollision(pair.first, pair.second);
     };
     Verification verification;
     verification.calculations = 1;
-    std::vector<Couple> exact = findOverlapping();
-    std::vector<Couple> ours = couplesOf(cache, [](btBroadphaseProxy* proxy) { return proxy; });
-    std::vector<Couple> stock = couplesOf(stock_->cache(), programs);
+    std::vector<RawPair> exact = findOverlapping();
+    std::vector<RawPair> ours = rawPairsOf(cache, [](btBroadphaseProxy* proxy) { return proxy; });
+    std::vector<RawPair> stock = rawPairsOf(stock_->cache(), programs);
     last_ = ours;
     verification.late = std::erase_if(exact, isLate);
     std::erase_if(ours, isLate);
     std::erase_if(stock, isLate);
 
     verification.pairs = ours.size();
-    for (const Couple& couple : difference(ours, exact)) {
+    for (const RawPair& pair : difference(ours, exact)) {
         ++verification.extra;
-        describe(verification, "extra", couple, calculation_);
+        describe(verification, "extra", pair, calculation_);
     }
-    for (const Couple& couple : difference(ours, before_)) {
-        if (contains(exact, couple) && !isAccepted(couple)) {
+    for (const RawPair& pair : difference(ours, before_)) {
+        if (contains(exact, pair) && !isAccepted(pair)) {
             ++verification.extra;
-            describe(verification, "made although the filter refuses it", couple, calculation_);
+            describe(verification, "made although the filter refuses it", pair, calculation_);
         }
     }
-    std::vector<Couple> missing;
-    for (const Couple& couple : difference(exact, ours)) {
-        const bool isLost = contains(before_, couple) || contains(missing_, couple);
-        if (!isAccepted(couple)) {
+    std::vector<RawPair> missing;
+    for (const RawPair& pair : difference(exact, ours)) {
+        const bool isLost = contains(before_, pair) || contains(missing_, pair);
+        if (!isAccepted(pair)) {
             continue;
         }
-        if (!isLost && contains(removed_, couple)) {
+        if (!isLost && contains(removed_, pair)) {
             ++verification.removed;
-        } else if (!isLost && changeOf(couple) < calculation_) {
+        } else if (!isLost && changeOf(pair) < calculation_) {
             ++verification.unasked;
         } else {
-            missing.push_back(couple);
-            describe(verification, "missing", couple, calculation_);
+            missing.push_back(pair);
+            describe(verification, "missing", pair, calculation_);
         }
     }
     verification.missing = missing.size();
     missing_ = std::move(missing);
-    std::erase_if(removed_, [&](const Couple& couple) {
-        return contains(ours, couple) || !contains(exact, couple);
+    std::erase_if(removed_, [&](const RawPair& pair) {
+        return contains(ours, pair) || !contains(exact, pair);
     });
 
     verification.stockPairs = stock.size();
     verification.stockExtra = difference(stock, exact).size();
-    for (const Couple& couple : difference(exact, stock)) {
-        if (changeOf(couple) == calculation_ && isAccepted(couple)) {
+    for (const RawPair& pair : difference(exact, stock)) {
+        if (changeOf(pair) == calculation_ && isAccepted(pair)) {
             ++verification.stockMissing;
         }
     }

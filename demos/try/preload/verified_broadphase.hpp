@@ -5,10 +5,10 @@
 // calculateOverlappingPairs() the pairs of both are compared with the exact ones, and what is wrong is
 // counted in the record.
 //
-// Exact    The couples whose boxes overlap (overlap.hpp), by a sweep along x that shares no code with the
-//          library, and that the pair cache accepts: a couple that is no pair is missing if it is
+// Exact    The pairs whose boxes overlap (overlap.hpp), by a sweep along x that shares no code with the
+//          library, and that the pair cache accepts: two proxies that are no pair are missing if it is
 //          accepted when it is asked about, now, and a pair that the calculation has made is extra if it
-//          is not. A couple that was none before, is accepted now, and whose boxes are as they were in
+//          is not. A pair that was none before, is accepted now, and whose boxes are as they were in
 //          the last calculation, was refused then: it is counted apart, as it waits for a move under
 //          any broadphase of Bullet's.
 // Removed  A pair that the program itself took out of the cache between two calculations is counted apart
@@ -69,22 +69,22 @@ private:
     };
 
     /// Two proxies of the program's, the one with the lower address first.
-    using Couple = std::pair<btBroadphaseProxy*, btBroadphaseProxy*>;
+    using RawPair = std::pair<btBroadphaseProxy*, btBroadphaseProxy*>;
 
-    [[nodiscard]] std::vector<Couple> findOverlapping() const;
+    [[nodiscard]] std::vector<RawPair> findOverlapping() const;
     void lookAtCache();
     void forget(const btBroadphaseProxy* proxy);
     void compare();
-    [[nodiscard]] std::uint64_t changeOf(const Couple& couple) const;
+    [[nodiscard]] std::uint64_t changeOf(const RawPair& pair) const;
 
     const btDbvtBroadphase& settings_;
     SpatialHashBroadphase ours_;
     std::unique_ptr<Stock> stock_;
     std::unordered_map<btBroadphaseProxy*, Twin> twins_;
-    std::vector<Couple> last_;       // pairs of ours after the last calculation
-    std::vector<Couple> before_;     // and when the next one began
-    std::vector<Couple> removed_;    // by the program since, or before, and overlapping ever since
-    std::vector<Couple> missing_;    // after the last calculation
+    std::vector<RawPair> last_;      // pairs of ours after the last calculation
+    std::vector<RawPair> before_;    // and when the next one began
+    std::vector<RawPair> removed_;   // by the program since, or before, and overlapping ever since
+    std::vector<RawPair> missing_;   // after the last calculation
     std::uint64_t calculation_ = 0;  // the last one that has begun
 };
 

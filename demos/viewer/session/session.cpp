@@ -131,7 +131,7 @@ void Session::see() {
         return;
     }
     const ConvexRegion<float> region = seenRegion();
-    usesOwnCuller_ = !(stage_->observers().culler().view() == region);
+    usesOwnCuller_ = !(stage_->observers().culler().frustum() == region);
     if (usesOwnCuller_) {
         ownCuller_.look(*stage_->grid(), region);
     }
@@ -309,7 +309,7 @@ CameraPose Session::pose() const {
     return camera_.pose(double{static_cast<double>(width_)} / height_);
 }
 
-View<float> Session::view() const {
+hashphase::Camera<float> Session::view() const {
     return {cameraView(pose()).viewProjection,
             kDepthRange,
             {0, 0, static_cast<double>(width_), static_cast<double>(height_)}};
@@ -412,7 +412,7 @@ std::size_t Session::visibleCount() const {
         return stage_->size();
     }
     const ConvexRegion<float> region = seenRegion();
-    if (culler().view() == region) {
+    if (culler().frustum() == region) {
         return culler().count();
     }
     Culler<float> now;

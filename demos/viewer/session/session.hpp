@@ -142,7 +142,7 @@ public:
     [[nodiscard]] ViewOptions& options() noexcept { return options_; }
     [[nodiscard]] const ViewOptions& options() const noexcept { return options_; }
     [[nodiscard]] CameraPose pose() const;
-    [[nodiscard]] View<float> view() const;
+    [[nodiscard]] hashphase::Camera<float> view() const;
     [[nodiscard]] int width() const noexcept { return width_; }
     [[nodiscard]] int height() const noexcept { return height_; }
     [[nodiscard]] std::uint64_t frame() const noexcept { return frame_; }

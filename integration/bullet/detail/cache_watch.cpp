@@ -26,7 +26,7 @@ void CacheWatch::note(const btBroadphasePair& pair) noexcept {
             prune();
         }
         if (takenOut == nullptr) {
-            takenOut = std::make_unique<std::vector<ProxyCouple>>();
+            takenOut = std::make_unique<std::vector<BulletProxyPair>>();
         }
         if (takenOut->size() == takenOut->capacity()) {
             takenOut->reserve(2 * takenOut->size() + 8);
@@ -41,8 +41,8 @@ void CacheWatch::prune() noexcept {
     if (takenOut == nullptr) {
         return;
     }
-    std::erase_if(*takenOut, [this](const ProxyCouple& couple) {
-        return !couple.isUpToDate() || cache->findPair(couple.lower(), couple.upper()) != nullptr;
+    std::erase_if(*takenOut, [this](const BulletProxyPair& pair) {
+        return !pair.isUpToDate() || cache->findPair(pair.lower(), pair.upper()) != nullptr;
     });
     if (takenOut->empty()) {
         takenOut = nullptr;

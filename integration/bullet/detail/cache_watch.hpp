@@ -34,13 +34,14 @@ struct CacheWatch {
         return isMoreTakenOut || takenOut != nullptr;
     }
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
-        return takenOut == nullptr ? 0
-                                   : sizeof(*takenOut) + takenOut->capacity() * sizeof(ProxyCouple);
+        return takenOut == nullptr
+                   ? 0
+                   : sizeof(*takenOut) + takenOut->capacity() * sizeof(BulletProxyPair);
     }
 
-    PairCache* cache = nullptr;                          // null when there is none, or it has ended
-    std::unique_ptr<std::vector<ProxyCouple>> takenOut;  // null for none
-    bool isMoreTakenOut = false;                         // than is noted, as there was no memory
+    PairCache* cache = nullptr;  // null when there is none, or it has ended
+    std::unique_ptr<std::vector<BulletProxyPair>> takenOut;  // null for none
+    bool isMoreTakenOut = false;  // than is noted, as there was no memory
 };
 
 }  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

@@ -80,15 +80,15 @@ struct Simulation<Scalar>::Pairing {
 
 template <class Scalar>
 struct Simulation<Scalar>::Contacts {
-    struct Couple {
+    struct BodyPair {
         std::uint32_t first;
         std::uint32_t second;
 
-        friend constexpr auto operator<=>(const Couple&, const Couple&) = default;
+        friend constexpr auto operator<=>(const BodyPair&, const BodyPair&) = default;
     };
 
-    std::vector<Couple> present;  // sorted
-    std::vector<Couple> next;
+    std::vector<BodyPair> present;  // sorted
+    std::vector<BodyPair> next;
     bool isCurrent = true;  // else nobody responded, and nobody kept them
 };
 

@@ -2,7 +2,7 @@
 
 // The most that a question of an agent may cost, however far it reaches: about one test for each proxy.
 
-#include <broadphase/crowd.hpp>
+#include <broadphase/radius_search.hpp>
 #include <integration/ai/proximity.hpp>
 #include <integration/ai/radar.hpp>
 #include <integration/ai/sight.hpp>
@@ -104,10 +104,10 @@ TYPED_TEST(AiBounds, OfSightIsOnePassAndOneForEachTarget) {
         this->expectAPass(visibleFrom(this->grid, viewer, seen, fewTargets), 11);
     }
     // Nobody has that many neighbours that an agent would be compared with somebody twice.
-    Crowd<TypeParam> crowd;
-    crowd.take(this->grid, this->kInfinity, fewTargets);
-    std::vector<std::uint32_t> counts(crowd.size());
-    EXPECT_LE(crowd.count(counts).boxesTested, 10U * 16);
+    RadiusSearch<TypeParam> search;
+    search.take(this->grid, this->kInfinity, fewTargets);
+    std::vector<std::uint32_t> counts(search.size());
+    EXPECT_LE(search.count(counts).boxesTested, 10U * 16);
     EXPECT_EQ(counts, std::vector<std::uint32_t>(10, 9));
 }
 

@@ -2,9 +2,9 @@
 
 #include <integration/ai/rarest_colour.hpp>
 #include <tests/support/box_scenes.hpp>
-#include <tests/support/crowd_oracle.hpp>
 #include <tests/support/handlers.hpp>
 #include <tests/support/query_checks.hpp>
+#include <tests/support/radius_oracle.hpp>
 #include <tests/support/script.hpp>
 #include <tests/support/threaded_for.hpp>
 
@@ -170,7 +170,7 @@ TYPED_TEST(RarestColourTest, ChangesNobodyWhomTheFilterRefusesOrWhoIsNowhere) {
     EXPECT_EQ(colours[agent.index], 0U);
     EXPECT_EQ(colours[refused.index], 7U);
     EXPECT_EQ(colours[bad.index], 7U);
-    EXPECT_EQ(this->rarest_.crowd().size(), 1U);
+    EXPECT_EQ(this->rarest_.search().size(), 1U);
 }
 
 TYPED_TEST(RarestColourTest, WantsAColourForEachAgentAndANumberOfThemThatCanBeCounted) {

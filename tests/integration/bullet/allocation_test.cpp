@@ -85,13 +85,13 @@ TEST(SteadyFrame, AllocatesNothing) {
         }
         const std::size_t before = allocationCount();
         ASSERT_GT(before, 0U);
-        std::uint64_t couplesWatched = 0;
+        std::uint64_t pairsWatched = 0;
         for (int number = kWarm; number < kWarm + 200; ++number) {
             swing.frame(number);
-            couplesWatched += swing.broadphase.lastCost().couplesWatched;
+            pairsWatched += swing.broadphase.lastCost().pairsWatched;
         }
         EXPECT_EQ(allocationCount(), before);
-        EXPECT_GT(couplesWatched, 200U * 4000U);
+        EXPECT_GT(pairsWatched, 200U * 4000U);
         EXPECT_EQ(swing.broadphase.validate(), "");
     }
     btAlignedAllocSetCustom(nullptr, nullptr);

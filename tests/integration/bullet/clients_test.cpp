@@ -18,8 +18,8 @@
 #include <integration/bullet/group_filter.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 #include <integration/bullet/static_triangles.hpp>
+#include <integration/camera/camera.hpp>
 #include <integration/camera/frustum.hpp>
-#include <integration/camera/view.hpp>
 #include <integration/culling/culler.hpp>
 #include <integration/picking/drag_selection.hpp>
 #include <integration/picking/pick.hpp>
@@ -134,7 +134,7 @@ public:
         view = frustumRegion<Scalar>(camera, DepthRange::zeroToOne);
         culler.look(grid, view);
 
-        const View<Scalar> window(camera, DepthRange::zeroToOne, {0, 0, 800, 500});
+        const Camera<Scalar> window(camera, DepthRange::zeroToOne, {0, 0, 800, 500});
         ray = window.rayThrough({400, 250});
         picked = pickNearest(grid, ray, red_);
         pickAll(grid, ray, allPicked);
@@ -154,8 +154,8 @@ public:
                             2, [&](ProxyId id) { return world_.isRed(id) ? 1U : 0U; });
         const auto isBody = [&](ProxyId id) { return !isHill(id); };
         rarest.update(grid, kRadius, 8, colours, isBody);
-        crowd.take(grid, kRadius, isBody);
-        crowd.count(neighbourCounts);
+        search.take(grid, kRadius, isBody);
+        search.count(neighbourCounts);
 
         places.clear();
         for (const int body : world_.bodies) {
@@ -182,7 +182,7 @@ public:
     Radar<Scalar> radar;
     std::span<const std::uint32_t> counts;
     RarestColour<Scalar> rarest;
-    Crowd<Scalar> crowd;
+    RadiusSearch<Scalar> search;
     std::vector<std::uint32_t> neighbourCounts;
     std::vector<std::uint32_t> colours;
     std::vector<Vector3<Scalar>> places;
@@ -252,12 +252,12 @@ private:
 
     // A few of all the agents.
     void expectNeighbours() const {
-        const Crowd<Scalar>& crowd = found_.crowd;
-        ASSERT_EQ(crowd.size(), world_.bodies.size());
-        EXPECT_EQ(found_.rarest.crowd().size(), crowd.size());
-        for (std::uint32_t agent = 0; agent < crowd.size(); agent += 997) {
-            const PositionRegion<Scalar> ball(crowd.position(agent), kRadius);
-            const auto isOther = [&](ProxyId id) { return id != crowd.id(agent) && !isHill(id); };
+        const RadiusSearch<Scalar>& search = found_.search;
+        ASSERT_EQ(search.size(), world_.bodies.size());
+        EXPECT_EQ(found_.rarest.search().size(), search.size());
+        for (std::uint32_t agent = 0; agent < search.size(); agent += 997) {
+            const PositionRegion<Scalar> ball(search.position(agent), kRadius);
+            const auto isOther = [&](ProxyId id) { return id != search.id(agent) && !isHill(id); };
             EXPECT_EQ(found_.neighbourCounts[agent], idsIn(ball, isOther).size());
         }
     }

@@ -85,7 +85,7 @@ TEST(StepCost, OfAWorldAtRestIsNothing) {
     }
     EXPECT_EQ(costOf(player).grid.filed, 0U);
     EXPECT_EQ(costOf(player).boxesTested, 0U);
-    EXPECT_EQ(costOf(player).couplesWatched, 0U);
+    EXPECT_EQ(costOf(player).pairsWatched, 0U);
 }
 
 TEST(StepCost, FollowsWhatMovesAmongManyAtRest) {
@@ -103,7 +103,7 @@ TEST(StepCost, FollowsWhatMovesAmongManyAtRest) {
         if (step >= 20) {
             EXPECT_LE(costOf(player).grid.filed, 2U * kMoving) << "step " << step;
             EXPECT_LE(costOf(player).boxesTested, 200U * kMoving) << "step " << step;
-            EXPECT_LE(costOf(player).couplesWatched, 20U * kMoving) << "step " << step;
+            EXPECT_LE(costOf(player).pairsWatched, 20U * kMoving) << "step " << step;
         }
     }
 }

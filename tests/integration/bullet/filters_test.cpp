@@ -62,7 +62,7 @@ TEST_F(Filters, AreAskedOnceForAPairThatLasts) {
     EXPECT_EQ(filter.asked, (std::map<std::pair<int, int>, int>{{{0, 1}, 1}}));
 }
 
-TEST_F(Filters, AreAskedAgainForARefusedCoupleOnlyWhenEitherMoves) {
+TEST_F(Filters, AreAskedAgainForARefusedPairOnlyWhenEitherMoves) {
     CountingFilter filter;
     filter.answer = false;
     player.cache().setOverlapFilterCallback(&filter);

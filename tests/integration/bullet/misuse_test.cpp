@@ -32,8 +32,8 @@ TEST(PairCacheMisuse, OfProxiesWithTheSameUniqueIdIsAsserted) {
     btBroadphaseProxy otherTwo = numbered(2);
     cache.addAcceptedPair(&one, &two);
     EXPECT_THROW(cache.addAcceptedPair(&otherOne, &otherTwo), BrokenAssert);
-    const ProxyCouple couple(otherOne, otherTwo);
-    EXPECT_THROW(cache.update({}, std::span(&couple, 1), nullptr), BrokenAssert);
+    const BulletProxyPair pair(otherOne, otherTwo);
+    EXPECT_THROW(cache.update({}, std::span(&pair, 1), nullptr), BrokenAssert);
     EXPECT_EQ(cache.getNumOverlappingPairs(), 1);
 }
 
@@ -46,9 +46,9 @@ TEST(PairCacheMisuse, OfAFilterThatChangesIsAsserted) {
     struct Filter : btOverlapFilterCallback {
         bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override {
             ++calls;
-            const ProxyCouple couple(*a, *b);
+            const BulletProxyPair pair(*a, *b);
             EXPECT_THROW(cache.addAcceptedPair(a, b), BrokenAssert);
-            EXPECT_THROW(cache.update({}, {&couple, 1}, nullptr), BrokenAssert);
+            EXPECT_THROW(cache.update({}, {&pair, 1}, nullptr), BrokenAssert);
             EXPECT_THROW(cache.removeOverlappingPair(a, known, nullptr), BrokenAssert);
             EXPECT_THROW(cache.removeOverlappingPairsContainingProxy(a, nullptr), BrokenAssert);
             EXPECT_THROW(cache.removeOverlappingPairsContainingProxies({&a, 1}, nullptr),

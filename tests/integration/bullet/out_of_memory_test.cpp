@@ -19,7 +19,7 @@
 namespace hashphase::test {
 namespace {
 
-using Couple = std::pair<btBroadphaseProxy*, btBroadphaseProxy*>;
+using RawPair = std::pair<btBroadphaseProxy*, btBroadphaseProxy*>;
 
 /// A broadphase over a cache of any kind, and its proxies.
 struct Proxies {
@@ -73,7 +73,7 @@ struct Proxies {
             EXPECT_EQ(broadphase.validate(), "");
             EXPECT_EQ(cache.validate(), "");
             EXPECT_EQ(broadphase.grid().size(), proxies.size());
-            std::set<Couple> expected;
+            std::set<RawPair> expected;
             for (btBroadphaseProxy* a : proxies) {
                 for (btBroadphaseProxy* b : proxies) {
                     if (a->m_uniqueId < b->m_uniqueId &&
@@ -83,7 +83,7 @@ struct Proxies {
                     }
                 }
             }
-            std::set<Couple> present;
+            std::set<RawPair> present;
             for (int i = 0; i < cache.getNumOverlappingPairs(); ++i) {
                 const btBroadphasePair& pair = cache.getOverlappingPairArray()[i];
                 present.emplace(pair.m_pProxy0, pair.m_pProxy1);

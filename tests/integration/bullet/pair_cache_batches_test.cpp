@@ -78,8 +78,8 @@ struct Side {
         }
     }
 
-    std::vector<ProxyCouple> couples(const std::vector<IdPair>& of) {
-        std::vector<ProxyCouple> list;
+    std::vector<BulletProxyPair> pairs(const std::vector<IdPair>& of) {
+        std::vector<BulletProxyPair> list;
         for (const auto& [a, b] : of) {
             list.emplace_back(proxies[std::size_t(a)], proxies[std::size_t(b)]);
         }
@@ -87,15 +87,15 @@ struct Side {
     }
 
     void update(const std::vector<IdPair>& died, const std::vector<IdPair>& born) {
-        cache.update(couples(died), couples(born), &dispatcher);
+        cache.update(pairs(died), pairs(born), &dispatcher);
     }
 
     void updateSingly(const std::vector<IdPair>& died, const std::vector<IdPair>& born) {
-        for (const ProxyCouple& couple : couples(died)) {
-            cache.removeOverlappingPair(couple.upper(), couple.lower(), &dispatcher);
+        for (const BulletProxyPair& pair : pairs(died)) {
+            cache.removeOverlappingPair(pair.upper(), pair.lower(), &dispatcher);
         }
-        for (const ProxyCouple& couple : couples(born)) {
-            cache.addAcceptedPair(couple.upper(), couple.lower());
+        for (const BulletProxyPair& pair : pairs(born)) {
+            cache.addAcceptedPair(pair.upper(), pair.lower());
         }
     }
 
@@ -137,14 +137,14 @@ std::vector<IdPair> sorted(std::vector<IdPair> pairs) {
     return pairs;
 }
 
-/// BulletRandom couples, some of them there and some not, some twice.
-std::vector<IdPair> someCouples(std::mt19937& random, std::size_t most) {
-    std::vector<IdPair> couples(random() % (most + 1));
-    for (IdPair& couple : couples) {
-        couple.first = static_cast<int>(random() % kProxies);
-        couple.second = static_cast<int>((std::size_t(couple.first) + 1 + random() % 9) % kProxies);
+/// BulletRandom pairs, some of them there and some not, some twice.
+std::vector<IdPair> somePairs(std::mt19937& random, std::size_t most) {
+    std::vector<IdPair> pairs(random() % (most + 1));
+    for (IdPair& pair : pairs) {
+        pair.first = static_cast<int>(random() % kProxies);
+        pair.second = static_cast<int>((std::size_t(pair.first) + 1 + random() % 9) % kProxies);
     }
-    return couples;
+    return pairs;
 }
 
 class PairCacheBatches : public testing::TestWithParam<std::pair<PairOrder, bool>> {};
@@ -160,8 +160,8 @@ TEST_P(PairCacheBatches, DoWhatSingleCallsDo) {
     for (int round = 0; round < 1500; ++round) {
         // Few changes and many, so that chains are kept, dropped and made again.
         const std::size_t most = round % 50 < 30 ? 6 : 150;
-        const std::vector<IdPair> died = someCouples(random, most);
-        const std::vector<IdPair> born = someCouples(random, 2 * most);
+        const std::vector<IdPair> died = somePairs(random, most);
+        const std::vector<IdPair> born = somePairs(random, 2 * most);
         batch.update(died, born);
         single.updateSingly(died, born);
         if (round % 3 == 0) {
@@ -308,7 +308,7 @@ TEST(PairCacheBatch, AllocatesNothingForPairsThatComeAndGo) {
     std::mt19937 random(32);
     std::size_t before = 0;
     for (int round = 0; round < 600; ++round) {
-        side.update(side.list(), someCouples(random, 300));
+        side.update(side.list(), somePairs(random, 300));
         side.giveAlgorithms();
         const std::size_t now = side.cache.memoryBytes();
         ASSERT_TRUE(round < 300 || now == before);
@@ -322,12 +322,12 @@ TEST(PairCacheBatch, OfMoreThanThereMayBeIsRefusedAndChangesNothing) {
     for (const bool hasGhosts : {false, true}) {
         Side side(PairOrder::arrival);
         side.cache.setInternalGhostPairCallback(hasGhosts ? &side.ghosts : nullptr);
-        side.cache.update({}, side.couples({{0, 1}}), &side.dispatcher);
+        side.cache.update({}, side.pairs({{0, 1}}), &side.dispatcher);
         side.ghosts.told.clear();
-        const std::vector<ProxyCouple> present = side.couples({{0, 1}});
-        const std::vector<ProxyCouple> another = side.couples({{2, 3}});
+        const std::vector<BulletProxyPair> present = side.pairs({{0, 1}});
+        const std::vector<BulletProxyPair> another = side.pairs({{2, 3}});
         for (const std::size_t count : {PairCache::kMostPairs, PairCache::kMostPairs + 1}) {
-            const std::span<const ProxyCouple> tooMany(another.data(), count);
+            const std::span<const BulletProxyPair> tooMany(another.data(), count);
             EXPECT_THROW(side.cache.update({}, tooMany, nullptr), std::length_error);
             EXPECT_THROW(side.cache.update(present, tooMany, nullptr), std::length_error);
         }

@@ -264,10 +264,10 @@ TEST(LateCallbacks, AreNotNeededByACacheThatDecidesItself) {
     player.play({Action::create, 1, kBeside, 1, 0});
     player.calculate();
     EXPECT_EQ(hashOf(player).validate(), "");
-    EXPECT_EQ(hashOf(player).lastCost().couplesWatched, 0U);
+    EXPECT_EQ(hashOf(player).lastCost().pairsWatched, 0U);
     player.play({Action::set, 0, kBeside, 0, 0});
     player.calculate();
-    EXPECT_EQ(hashOf(player).lastCost().couplesWatched, 1U) << "the cache was asked";
+    EXPECT_EQ(hashOf(player).lastCost().pairsWatched, 1U) << "the cache was asked";
 }
 
 // --- Filtering many again ------------------------------------------------------------------------

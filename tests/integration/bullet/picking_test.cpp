@@ -49,7 +49,7 @@ protected:
         return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
     }
 
-    View<btScalar> someView() {
+    Camera<btScalar> someView() {
         const Vector3<double> eye(between(-15, 15), between(1, 15), between(-15, 15));
         const Vector3<double> target(between(-4, 4), between(0, 4), between(-4, 4));
         CameraLens lens;
@@ -237,7 +237,7 @@ TEST_F(WorldPicking, SeesABodyAtOnceWhereItWasMoved) {
         scene.world().updateSingleAabb(&body);
         const CameraLens lens;
         const Vector3<double> target = toEigen(place).cast<double>();
-        const View<btScalar> view(
+        const Camera<btScalar> view(
             cameraMatrix<btScalar>(lens, target + Vector3<double>(9, 5, 3), target),
             lens.depthRange, kViewport);
         const Pixel middle = middleOf(kViewport);
@@ -258,7 +258,7 @@ TEST_F(WorldPicking, ByADragFindsWhatLiesBetweenTheCorners) {
     for (int i = 0; i < 100; ++i) {
         SCOPED_TRACE(i);
         step(i % 10 == 0 ? 1 : 0);
-        const View<btScalar> view = someView();
+        const Camera<btScalar> view = someView();
         const Pixel a = somePixel();
         const Pixel b = somePixel();
         select(grid(), view, a, b, selected, Containment::touching, isMobile());

@@ -29,7 +29,7 @@ inline SpatialHashConfig withSweep(Sweep sweep) {
 
 /// Walls that stand, and balls that fly through them without touching: no response.
 struct ShootingRange {
-    using Couple = std::pair<const btBroadphaseProxy*, const btBroadphaseProxy*>;
+    using RawPair = std::pair<const btBroadphaseProxy*, const btBroadphaseProxy*>;
 
     explicit ShootingRange(std::unique_ptr<btBroadphaseInterface> ofWhat)
         : broadphase(std::move(ofWhat)),
@@ -82,7 +82,7 @@ struct ShootingRange {
     }
 
     /// What a broadphase must know of the step that begins, by looking at every two bodies.
-    [[nodiscard]] std::set<Couple> expectedPairs(btScalar share) const {
+    [[nodiscard]] std::set<RawPair> expectedPairs(btScalar share) const {
         std::vector<MovingBox<btScalar>> motions;
         for (const auto& body : bodies) {
             const btBroadphaseProxy& proxy = *body->getBroadphaseProxy();
@@ -91,7 +91,7 @@ struct ShootingRange {
                                   ? motion->way
                                   : MovingBox<btScalar>{toAabb(proxy.m_aabbMin, proxy.m_aabbMax)});
         }
-        std::set<Couple> pairs;
+        std::set<RawPair> pairs;
         for (std::size_t i = 0; i < bodies.size(); ++i) {
             for (std::size_t j = i + 1; j < bodies.size(); ++j) {
                 const bool doStand = bodies[i]->isStaticObject() && bodies[j]->isStaticObject();
@@ -104,10 +104,10 @@ struct ShootingRange {
         return pairs;
     }
 
-    [[nodiscard]] std::set<Couple> pairs() const {
+    [[nodiscard]] std::set<RawPair> pairs() const {
         const btBroadphasePairArray& listed =
             broadphase->getOverlappingPairCache()->getOverlappingPairArray();
-        std::set<Couple> pairs;
+        std::set<RawPair> pairs;
         for (int i = 0; i < listed.size(); ++i) {
             pairs.insert(
                 std::minmax<const btBroadphaseProxy*>(listed[i].m_pProxy0, listed[i].m_pProxy1));

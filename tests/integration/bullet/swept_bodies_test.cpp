@@ -103,7 +103,7 @@ TEST(SweptBodies, PassNoThinWallUnnoticedWhereverInTheirStepItStands) {
             ShootingRange range(swept(sweep));
             range.world.getDispatchInfo().m_useContinuous = false;
             btBoxShape thinWall(btVector3(1, 1, btScalar(thickness / 2)));
-            std::set<ShootingRange::Couple> expected;
+            std::set<ShootingRange::RawPair> expected;
             for (int i = 0; i < kPhases; ++i) {
                 const auto x = btScalar(3 * i);
                 const btRigidBody& wall = range.add(thinWall, 0, btVector3(x, 0, 0));

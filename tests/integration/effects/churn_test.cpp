@@ -224,7 +224,7 @@ private:
         std::set<std::uint32_t> mayBeSeen;
         for (const Placed<float>& proxy : participants(Effect::culling)) {
             mayBeSeen.insert(proxy.id.index);
-            if (!isLate && culler.view().key(proxy.box) >= 0) {
+            if (!isLate && culler.frustum().key(proxy.box) >= 0) {
                 ASSERT_TRUE(culler.isVisible(proxy.id)) << proxy.id.index;
                 ++compared_[Effect::culling];
             }

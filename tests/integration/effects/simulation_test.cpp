@@ -109,9 +109,8 @@ TEST(Simulation, TouchesNothingWhileAllSleep) {
         for (const SceneCounter counter :
              {SceneCounter::bodiesMoved, SceneCounter::groundsAsked, SceneCounter::trianglesTested,
               SceneCounter::proxiesHashed, SceneCounter::entriesFiled, SceneCounter::boxesTested,
-              SceneCounter::couplesWatched, SceneCounter::contactsTested,
-              SceneCounter::sweepsSolved, SceneCounter::sleepersAsked,
-              SceneCounter::cellRowsCulled}) {
+              SceneCounter::pairsWatched, SceneCounter::contactsTested, SceneCounter::sweepsSolved,
+              SceneCounter::sleepersAsked, SceneCounter::cellRowsCulled}) {
             EXPECT_EQ(cost[counter], 0U)
                 << sceneCounters()[static_cast<std::size_t>(counter)].name << ", frame " << frame;
         }

@@ -57,7 +57,7 @@ inline constexpr float kStep = 1.0F / 64;
 }
 
 /// A camera in a corner.
-[[nodiscard]] inline View<float> smallSceneView() {
+[[nodiscard]] inline Camera<float> smallSceneView() {
     const Eigen::Matrix4d camera = cameraMatrix<double>({}, {-2, 6, -2}, {10, 0, 10});
     return {camera.cast<float>(), DepthRange::zeroToOne, {0, 0, 800, 500}};
 }
@@ -83,7 +83,7 @@ inline void fill(Simulation<float>& simulation, int bodyCount = 40) {
     Observers<float>& observers = simulation.observers();
     observers.setInterest(Vector3<float>(10, 1, 10));
     if (declared.contains(Effect::culling)) {
-        const View<float> view = smallSceneView();
+        const Camera<float> view = smallSceneView();
         observers.setView(frustumRegion<float>(view.viewProjection(), DepthRange::zeroToOne));
     }
     if (declared.contains(Effect::proximity)) {

@@ -37,8 +37,8 @@ public:
             grid_.move(ids_[i], boxes_[i]);
         }
         grid_.update();
-        const View<float> view(cameraMatrix<float>({}, {-40, 20, 0}, {0, 0, 0}),
-                               DepthRange::zeroToOne, Viewport{0, 0, 1280, 720});
+        const Camera<float> view(cameraMatrix<float>({}, {-40, 20, 0}, {0, 0, 0}),
+                                 DepthRange::zeroToOne, Viewport{0, 0, 1280, 720});
         const RayRegion<float> ray = view.rayThrough({640, 360});
         const auto test = [](ProxyId, const RayRegion<float>&, float limit) {
             return std::optional(limit);

@@ -54,7 +54,7 @@ TYPED_TEST(DragSelection, FindsWhatBruteForceFindsWhateverTheOrderOfCorners) {
         const CameraLens lens = randomLens(random);
         const auto matrix =
             cameraMatrix<TypeParam>(lens, random.pointIn(-20, 20), random.pointIn(-9, 9));
-        const View<TypeParam> view(matrix, lens.depthRange, kViewport);
+        const Camera<TypeParam> view(matrix, lens.depthRange, kViewport);
         const Pixel a = anyPixel(random);
         const Pixel b = random.chance(0.3)
                             ? Pixel(a + Pixel(random.between(0, 40), random.between(0, 40)))
@@ -106,8 +106,9 @@ TYPED_TEST(DragSelection, OfNoAreaIsWhatLiesUnderThePoint) {
         const CameraLens lens = randomLens(random);
         const auto matrix =
             cameraMatrix<TypeParam>(lens, random.pointIn(-20, 20), random.pointIn(-9, 9));
-        const View<TypeParam> view(matrix, lens.depthRange, kViewport,
-                                   lens.isReversed ? DepthOrder::reversed : DepthOrder::nearFirst);
+        const Camera<TypeParam> view(
+            matrix, lens.depthRange, kViewport,
+            lens.isReversed ? DepthOrder::reversed : DepthOrder::nearFirst);
         const Pixel pixel(random.between(100, 1380), random.between(50, 770));
         const RayRegion<TypeParam> ray = view.rayThrough(pixel, 1000);
         select(this->grid, view, pixel, pixel, this->selected);
@@ -129,7 +130,7 @@ TYPED_TEST(DragSelection, OfNoAreaIsWhatLiesUnderThePoint) {
 
 /// Over a plain with bodies on the ground and in the air, looking level: the horizon is in the middle.
 template <class Scalar>
-View<Scalar> levelView() {
+Camera<Scalar> levelView() {
     CameraLens lens;
     lens.farPlane = std::numeric_limits<double>::infinity();
     return {cameraMatrix<Scalar>(lens, {0, 2, 0}, {0, 2, -1}), lens.depthRange, kViewport};
@@ -173,7 +174,7 @@ TYPED_TEST(DragSelection, BesideTheViewportSelectsNothingAndSaysSo) {
     EXPECT_NE(errorOf({std::nan(""), 100}, {700, 600}).find("NaN"), std::string::npos);
     EXPECT_EQ(selectionError(view, {100, 50}, {20, 10}), "");  // the viewport's corner
     EXPECT_EQ(selectionError(view, {-1e9, -1e9}, {1e9, 1e9}), "");
-    const View<TypeParam> bad(view.viewProjection(), view.depthRange(), Viewport{});
+    const Camera<TypeParam> bad(view.viewProjection(), view.depthRange(), Viewport{});
     EXPECT_NE(selectionError(bad, {0, 0}, {9, 9}).find("viewport must be"), std::string::npos);
     this->selected.assign(3, ProxyId{});
     select(this->grid, bad, {0, 0}, {9, 9}, this->selected);

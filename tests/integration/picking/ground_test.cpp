@@ -21,7 +21,7 @@ class Ground : public testing::Test {
 protected:
     static constexpr double kNearly = sizeof(Scalar) == sizeof(float) ? 1e-4 : 1e-11;
 
-    static View<Scalar> viewFrom(const Vector3<double>& eye, const Vector3<double>& target) {
+    static Camera<Scalar> viewFrom(const Vector3<double>& eye, const Vector3<double>& target) {
         CameraLens lens;
         lens.farPlane = std::numeric_limits<double>::infinity();
         return {cameraMatrix<Scalar>(lens, eye, target), lens.depthRange, kViewport};
@@ -242,7 +242,7 @@ TYPED_TEST(Ground, ADragCoversOnTheGroundWhateverItSelectsThere) {
     EXPECT_GT(seen, 5000U);
     EXPECT_GT(covered, seen);
     const auto bad =
-        View<TypeParam>(Eigen::Matrix<TypeParam, 4, 4>::Zero(), DepthRange::zeroToOne, kViewport);
+        Camera<TypeParam>(Eigen::Matrix<TypeParam, 4, 4>::Zero(), DepthRange::zeroToOne, kViewport);
     EXPECT_TRUE(dragFootprint(bad, {0, 0}, {9, 9}, heights).isEmpty());
 }
 

@@ -29,8 +29,8 @@ TEST(PickingOutOfMemory, IsTheSameWhenAskedAgain) {
             }
         }
         void ask() {
-            const View<float> view(cameraMatrix<float>({}, {-40, 20, 0}, {0, 0, 0}),
-                                   DepthRange::zeroToOne, kViewport);
+            const Camera<float> view(cameraMatrix<float>({}, {-40, 20, 0}, {0, 0, 0}),
+                                     DepthRange::zeroToOne, kViewport);
             const Pixel middle = middleOf(kViewport);
             const RayRegion<float> ray = view.rayThrough(middle);
             nearest = pickNearest(grid, ray).id;

@@ -50,17 +50,17 @@ void copyNumbers(Number* to, const Number* from) {
 }
 
 /// At most: five rows an axis, and two runs a row.
-constexpr std::uint32_t kMostCrowdRuns = 50;
+constexpr std::uint32_t kMostRunsAround = 50;
 
 // Sets `runs` to those of the cells around a segment that are not empty; returns how many.
 template <class Scalar>
-std::uint32_t runsAround(const CrowdView<Scalar>& crowd, const CellSegment& segment, Run* runs,
+std::uint32_t runsAround(const RadiusView<Scalar>& view, const CellSegment& segment, Run* runs,
                          KernelCost& cost) {
-    const std::uint32_t* extent = crowd.extent;
+    const std::uint32_t* extent = view.extent;
     const CellWindow windows[] = {
-        windowAround(segment.firstX, segment.lastX, extent[0], crowd.reach),
-        windowAround(segment.y, segment.y, extent[1], crowd.reach),
-        windowAround(segment.z, segment.z, extent[2], crowd.reach)};
+        windowAround(segment.firstX, segment.lastX, extent[0], view.reach),
+        windowAround(segment.y, segment.y, extent[1], view.reach),
+        windowAround(segment.z, segment.z, extent[2], view.reach)};
     const std::uint32_t first = windows[0].first;
     const std::uint32_t last = first + windows[0].count;
     std::uint32_t count = 0;
@@ -68,7 +68,7 @@ std::uint32_t runsAround(const CrowdView<Scalar>& crowd, const CellSegment& segm
         const std::uint32_t layer = wrapped(windows[2].first + z, extent[2]) * extent[1];
         for (std::uint32_t y = 0; y < windows[1].count; ++y) {
             const std::uint32_t row = layer + wrapped(windows[1].first + y, extent[1]);
-            const std::uint32_t* starts = crowd.cellStart + std::size_t{row} * extent[0];
+            const std::uint32_t* starts = view.cellStart + std::size_t{row} * extent[0];
             runs[count] = {starts[first], starts[lowest(last, extent[0])]};
             count += runs[count].first < runs[count].last ? 1 : 0;
             if (last > extent[0]) {
@@ -84,10 +84,10 @@ std::uint32_t runsAround(const CrowdView<Scalar>& crowd, const CellSegment& segm
 // Copies the positions of the candidates of a segment's agents, of which `agent` is the first one, and
 // calls copy(to, from) for each kCopied of them that stood side by side.
 template <class Scalar, class Copy>
-void gatherTile(const CrowdView<Scalar>& crowd, const CellSegment& segment, std::uint32_t agent,
-                CrowdTile<Scalar>& tile, KernelCost& cost, const Copy& copy) {
-    Run runs[kMostCrowdRuns];
-    const std::uint32_t runCount = runsAround(crowd, segment, runs, cost);
+void gatherTile(const RadiusView<Scalar>& view, const CellSegment& segment, std::uint32_t agent,
+                RadiusTile<Scalar>& tile, KernelCost& cost, const Copy& copy) {
+    Run runs[kMostRunsAround];
+    const std::uint32_t runCount = runsAround(view, segment, runs, cost);
     std::uint32_t total = 0;
     std::uint32_t longest = 0;
     std::uint32_t farthest = 0;
@@ -99,14 +99,14 @@ void gatherTile(const CrowdView<Scalar>& crowd, const CellSegment& segment, std:
     }
     // As many of every run, and what is too many is overwritten by the next one: branches between
     // runs of slightly different lengths could not be predicted.
-    const std::uint32_t end = crowd.cellStart[crowd.extent[0] * crowd.extent[1] * crowd.extent[2]];
+    const std::uint32_t end = view.cellStart[view.extent[0] * view.extent[1] * view.extent[2]];
     const bool isEven = longest * runCount < 2 * total && farthest + longest <= end;
     if (total + longest > tile.capacity) {
         tile.grow(tile, total + longest);
     }
-    const Scalar* const from[] = {crowd.columns[0], crowd.columns[1], crowd.columns[2]};
+    const Scalar* const from[] = {view.columns[0], view.columns[1], view.columns[2]};
     Scalar* const to[] = {tile.columns[0], tile.columns[1], tile.columns[2]};
-    const bool hasThird = crowd.axisCount > 2;
+    const bool hasThird = view.axisCount > 2;
     std::size_t next = 0;
     for (std::uint32_t i = 0; i < runCount; ++i) {
         const std::size_t first = runs[i].first;
@@ -134,16 +134,16 @@ void gatherTile(const CrowdView<Scalar>& crowd, const CellSegment& segment, std:
 
 // Writes the hits of each of the agents: tile.wordCount words for one after the other.
 template <class Scalar, int kAxes, bool kIsScaled>
-void searchTile(const CrowdView<Scalar>& crowd, const CrowdTile<Scalar>& tile, std::uint32_t first,
+void searchTile(const RadiusView<Scalar>& view, const RadiusTile<Scalar>& tile, std::uint32_t first,
                 std::uint32_t last) {
     using Pack = WidePack<Scalar>;
-    const auto most = Pack::broadcast(crowd.mostSquared);
-    const auto scale = Pack::broadcast(crowd.scale);
+    const auto most = Pack::broadcast(view.mostSquared);
+    const auto scale = Pack::broadcast(view.scale);
     std::uint64_t* hits = tile.hits;
     for (std::uint32_t agent = first; agent < last; ++agent) {
         typename Pack::Numbers own[kAxes];
         for (int axis = 0; axis < kAxes; ++axis) {
-            own[axis] = Pack::broadcast(crowd.columns[axis][agent]);
+            own[axis] = Pack::broadcast(view.columns[axis][agent]);
         }
         for (std::uint32_t word = 0; word < tile.wordCount; ++word) {
             std::uint64_t mask = 0;
@@ -166,24 +166,24 @@ void searchTile(const CrowdView<Scalar>& crowd, const CrowdTile<Scalar>& tile, s
 }
 
 template <class Scalar>
-using SearchTile = void (*)(const CrowdView<Scalar>& crowd, const CrowdTile<Scalar>& tile,
+using SearchTile = void (*)(const RadiusView<Scalar>& view, const RadiusTile<Scalar>& tile,
                             std::uint32_t first, std::uint32_t last);
 
 template <class Scalar>
-SearchTile<Scalar> searchFor(const CrowdView<Scalar>& crowd) {
-    if (crowd.scale != 1) {
+SearchTile<Scalar> searchFor(const RadiusView<Scalar>& view) {
+    if (view.scale != 1) {
         return &searchTile<Scalar, 3, true>;
     }
-    return crowd.axisCount == 2 ? &searchTile<Scalar, 2, false> : &searchTile<Scalar, 3, false>;
+    return view.axisCount == 2 ? &searchTile<Scalar, 2, false> : &searchTile<Scalar, 3, false>;
 }
 
 // The last cell that begins at or before the agent: its own.
 template <class Scalar>
-std::uint32_t cellOfAgent(const CrowdView<Scalar>& crowd, std::uint32_t agent) {
-    Run cells{0, crowd.extent[0] * crowd.extent[1] * crowd.extent[2]};
+std::uint32_t cellOfAgent(const RadiusView<Scalar>& view, std::uint32_t agent) {
+    Run cells{0, view.extent[0] * view.extent[1] * view.extent[2]};
     while (cells.last - cells.first > 1) {
         const std::uint32_t middle = cells.first + (cells.last - cells.first) / 2;
-        (crowd.cellStart[middle] <= agent ? cells.first : cells.last) = middle;
+        (view.cellStart[middle] <= agent ? cells.first : cells.last) = middle;
     }
     return cells.first;
 }
@@ -191,47 +191,45 @@ std::uint32_t cellOfAgent(const CrowdView<Scalar>& crowd, std::uint32_t agent) {
 // Where agents are few, those of several cells of a row share their candidates, while these are no
 // more than one word tells of, to go by the row.
 template <class Scalar>
-CellSegment segmentFrom(const CrowdView<Scalar>& crowd, std::uint32_t cell) {
-    const std::uint32_t end = crowd.extent[0];
+CellSegment segmentFrom(const RadiusView<Scalar>& view, std::uint32_t cell) {
+    const std::uint32_t end = view.extent[0];
     const std::uint32_t row = cell / end;
     const std::uint32_t first = cell % end;
-    const auto rowsAlong = [&](int axis) {
-        return lowest(2 * crowd.reach + 1, crowd.extent[axis]);
-    };
+    const auto rowsAlong = [&](int axis) { return lowest(2 * view.reach + 1, view.extent[axis]); };
     const std::uint32_t most = kWord / (rowsAlong(1) * rowsAlong(2));
-    const std::uint32_t* starts = crowd.cellStart + std::size_t{row} * end;
-    const std::uint32_t begin = starts[first < crowd.reach ? 0 : first - crowd.reach];
+    const std::uint32_t* starts = view.cellStart + std::size_t{row} * end;
+    const std::uint32_t begin = starts[first < view.reach ? 0 : first - view.reach];
     std::uint32_t last = first;
     // A segment whose window is all of the row would read it from its beginning, others from before
     // their first cell: the order of what is found must not depend on where parts begin.
-    while (last + 1 < end && last + 2 - first + 2 * crowd.reach + 1 < end &&
-           starts[lowest(last + crowd.reach + 2, end)] - begin <= most) {
+    while (last + 1 < end && last + 2 - first + 2 * view.reach + 1 < end &&
+           starts[lowest(last + view.reach + 2, end)] - begin <= most) {
         ++last;
     }
-    return {first, last, row % crowd.extent[1], row / crowd.extent[1]};
+    return {first, last, row % view.extent[1], row / view.extent[1]};
 }
 
 // For each segment calls copy() as gatherTile() does, then begin(), then use(agent, hits) for its
 // agents in order; the agent itself is not among the hits.
 template <class Scalar, class Copy, class Begin, class Use>
-void searchCrowd(const CrowdView<Scalar>& crowd, std::uint32_t first, std::uint32_t last,
-                 CrowdTile<Scalar>& tile, KernelCost& cost, const Copy& copy, const Begin& begin,
-                 const Use& use) {
-    const SearchTile<Scalar> search = searchFor(crowd);
+void searchWithin(const RadiusView<Scalar>& view, std::uint32_t first, std::uint32_t last,
+                  RadiusTile<Scalar>& tile, KernelCost& cost, const Copy& copy, const Begin& begin,
+                  const Use& use) {
+    const SearchTile<Scalar> search = searchFor(view);
     std::uint32_t agent = first;
-    for (std::uint32_t cell = cellOfAgent(crowd, first); agent < last; ++cell) {
-        if (crowd.cellStart[cell + 1] <= agent) {
+    for (std::uint32_t cell = cellOfAgent(view, first); agent < last; ++cell) {
+        if (view.cellStart[cell + 1] <= agent) {
             continue;
         }
-        const CellSegment segment = segmentFrom(crowd, cell);
+        const CellSegment segment = segmentFrom(view, cell);
         cell += segment.lastX - segment.firstX;
-        const std::uint32_t end = lowest(crowd.cellStart[cell + 1], last);
-        gatherTile(crowd, segment, agent, tile, cost, copy);
+        const std::uint32_t end = lowest(view.cellStart[cell + 1], last);
+        gatherTile(view, segment, agent, tile, cost, copy);
         cost.boxesTested += std::uint64_t{tile.count} * (end - agent);
         begin();
         while (agent < end) {
             const std::uint32_t batch = lowest(agent + kAgentsAtOnce, end);
-            search(crowd, tile, agent, batch);
+            search(view, tile, agent, batch);
             std::uint64_t* hits = tile.hits;
             for (; agent < batch; ++agent, ++tile.own, hits += tile.wordCount) {
                 hits[tile.own / kWord] &= ~(std::uint64_t{1} << (tile.own % kWord));
@@ -242,8 +240,8 @@ void searchCrowd(const CrowdView<Scalar>& crowd, std::uint32_t first, std::uint3
 }
 
 template <class Scalar>
-std::uint64_t countCrowd(const CrowdView<Scalar>& crowd, std::uint32_t first, std::uint32_t last,
-                         CrowdTile<Scalar>& tile, std::uint32_t* counts, KernelCost& cost) {
+std::uint64_t countWithin(const RadiusView<Scalar>& view, std::uint32_t first, std::uint32_t last,
+                          RadiusTile<Scalar>& tile, std::uint32_t* counts, KernelCost& cost) {
     std::uint64_t found = 0;
     const auto count = [&](std::uint32_t agent, const std::uint64_t* hits) {
         std::uint32_t sum = 0;
@@ -253,16 +251,16 @@ std::uint64_t countCrowd(const CrowdView<Scalar>& crowd, std::uint32_t first, st
         counts[agent] = sum;
         found += sum;
     };
-    searchCrowd(
-        crowd, first, last, tile, cost, [](std::size_t, std::size_t) {}, [] {}, count);
+    searchWithin(
+        view, first, last, tile, cost, [](std::size_t, std::size_t) {}, [] {}, count);
     return found;
 }
 
 template <class Scalar>
-std::uint64_t countCrowdGroups(const CrowdView<Scalar>& crowd, std::uint32_t first,
-                               std::uint32_t last, CrowdTile<Scalar>& tile,
-                               const std::uint8_t* groups, std::uint32_t groupCount,
-                               std::uint32_t* counts, KernelCost& cost) {
+std::uint64_t countGroupsWithin(const RadiusView<Scalar>& view, std::uint32_t first,
+                                std::uint32_t last, RadiusTile<Scalar>& tile,
+                                const std::uint8_t* groups, std::uint32_t groupCount,
+                                std::uint32_t* counts, KernelCost& cost) {
     std::uint64_t found = 0;
     const auto copy = [&](std::size_t to, std::size_t from) {
         copyNumbers(tile.groups + to, groups + from);
@@ -292,13 +290,13 @@ std::uint64_t countCrowdGroups(const CrowdView<Scalar>& crowd, std::uint32_t fir
         }
         found += all;
     };
-    searchCrowd(crowd, first, last, tile, cost, copy, note, count);
+    searchWithin(view, first, last, tile, cost, copy, note, count);
     return found;
 }
 
 template <class Scalar>
-std::uint64_t listCrowd(const CrowdView<Scalar>& crowd, std::uint32_t first, std::uint32_t last,
-                        CrowdTile<Scalar>& tile, const CrowdVisitor& visitor, KernelCost& cost) {
+std::uint64_t listWithin(const RadiusView<Scalar>& view, std::uint32_t first, std::uint32_t last,
+                         RadiusTile<Scalar>& tile, const RadiusVisitor& visitor, KernelCost& cost) {
     std::uint64_t found = 0;
     const auto list = [&](std::uint32_t agent, const std::uint64_t* hits) {
         std::uint32_t* next = tile.found;
@@ -310,9 +308,9 @@ std::uint64_t listCrowd(const CrowdView<Scalar>& crowd, std::uint32_t first, std
         found += count;
     };
     const auto copy = [&](std::size_t to, std::size_t from) {
-        copyNumbers(tile.numbers + to, crowd.numbers + from);
+        copyNumbers(tile.numbers + to, view.numbers + from);
     };
-    searchCrowd(
-        crowd, first, last, tile, cost, copy, [] {}, list);
+    searchWithin(
+        view, first, last, tile, cost, copy, [] {}, list);
     return found;
 }

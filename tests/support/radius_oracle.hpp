@@ -2,7 +2,7 @@
 #pragma once
 
 // Who is within a radius of whom, by looking at every two agents: the definition of
-// broadphase/crowd.hpp.
+// broadphase/radius_search.hpp.
 
 #include <broadphase/geometry/unit_scale.hpp>
 #include <broadphase/position_region.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-#include <integration/camera/view.hpp>
+#include <integration/camera/camera.hpp>
 #include <tests/support/cameras.hpp>
 #include <tests/support/picking_oracle.hpp>
 
@@ -18,8 +18,8 @@ protected:
     static constexpr double kInfinity = std::numeric_limits<double>::infinity();
     using Matrix = Eigen::Matrix<Scalar, 4, 4>;
 
-    static View<Scalar> viewOf(const CameraLens& lens, const Vector3<double>& eye,
-                               const Vector3<double>& target) {
+    static Camera<Scalar> viewOf(const CameraLens& lens, const Vector3<double>& eye,
+                                 const Vector3<double>& target) {
         return {cameraMatrix<Scalar>(lens, eye, target), lens.depthRange, kViewport,
                 lens.isReversed ? DepthOrder::reversed : DepthOrder::nearFirst};
     }
@@ -38,7 +38,7 @@ protected:
                1e-9;
     }
 
-    static void expectSeenAt(const View<Scalar>& view, const Vector3<Scalar>& point,
+    static void expectSeenAt(const Camera<Scalar>& view, const Vector3<Scalar>& point,
                              const Pixel& pixel) {
         const Vector3<double> exact = point.template cast<double>();
         const Eigen::Vector4d clip = clipCoordinates(view.viewProjection(), exact);
@@ -142,8 +142,8 @@ TYPED_TEST(Views, CastRaysFromObliqueNearPlanes) {
             Eigen::Vector4d(plane.x() < 0 ? -1 : 1, plane.y() < 0 ? -1 : 1, 1, 1);
         projection.row(2) = plane.transpose() * (2 / plane.dot(corner)) - projection.row(3);
         const Eigen::Matrix4d world = viewMatrix(random.pointIn(-9, 9), random.pointIn(-9, 9));
-        const View<TypeParam> view((projection * world).template cast<TypeParam>(), lens.depthRange,
-                                   kViewport);
+        const Camera<TypeParam> view((projection * world).template cast<TypeParam>(),
+                                     lens.depthRange, kViewport);
         const Pixel pixel(random.between(100, 1380), random.between(50, 770));
         const RayRegion<TypeParam> ray = view.rayThrough(pixel, 200);
         ASSERT_FALSE(ray.isEmpty());
@@ -162,8 +162,8 @@ TYPED_TEST(Views, TakeTheOrderOfDepthsFromThePerspective) {
         CameraLens lens = randomLens(random);
         const auto matrix =
             cameraMatrix<TypeParam>(lens, random.pointIn(-9, 9), random.pointIn(-9, 9));
-        const View<TypeParam> forth(matrix, lens.depthRange, kViewport, DepthOrder::nearFirst);
-        const View<TypeParam> back(matrix, lens.depthRange, kViewport, DepthOrder::reversed);
+        const Camera<TypeParam> forth(matrix, lens.depthRange, kViewport, DepthOrder::nearFirst);
+        const Camera<TypeParam> back(matrix, lens.depthRange, kViewport, DepthOrder::reversed);
         const Pixel pixel(random.between(100, 1380), random.between(50, 770));
         const RayRegion<TypeParam> a = forth.rayThrough(pixel);
         const RayRegion<TypeParam> b = back.rayThrough(pixel);
@@ -189,8 +189,8 @@ TEST(ViewsFarAway, AreExactAHundredThousandKilometresFromTheOrigin) {
         lens.fieldOfView = std::max(lens.fieldOfView, 0.3);
         const Vector3<double> eye = random.pointIn(-1e8, 1e8);
         const Eigen::Matrix4d matrix = cameraMatrix<double>(lens, eye, eye + random.pointIn(-9, 9));
-        const View<double> view(matrix, lens.depthRange, kViewport);
-        ASSERT_EQ(viewError(matrix, kViewport), "");
+        const Camera<double> view(matrix, lens.depthRange, kViewport);
+        ASSERT_EQ(cameraError(matrix, kViewport), "");
         const double y = random.between(50, 770);
         const Pixel pixel(random.between(100, 1380), y);
         const RayRegion<double> ray = view.rayThrough(pixel, 1000);
@@ -237,13 +237,13 @@ TYPED_TEST(Views, SeeNothingWhenTheyAreBad) {
     using Matrix4 = Eigen::Matrix<TypeParam, 4, 4>;
     const Matrix4 good = cameraMatrix<TypeParam>({}, {1, 2, 3}, {0, 0, 0});
     const auto errorOf = [](const Matrix4& matrix, const Viewport& viewport) {
-        const View<TypeParam> view(matrix, DepthRange::zeroToOne, viewport);
+        const Camera<TypeParam> view(matrix, DepthRange::zeroToOne, viewport);
         EXPECT_FALSE(view.isValid());
         EXPECT_TRUE(view.rayThrough({1, 1}).isEmpty());
         EXPECT_TRUE(view.rectangleBetween({0, 0}, {9, 9}).isEmpty());
-        return viewError(matrix, viewport);
+        return cameraError(matrix, viewport);
     };
-    EXPECT_EQ(viewError(good, kViewport), "");
+    EXPECT_EQ(cameraError(good, kViewport), "");
     Matrix4 bad = good;
     bad(3, 3) = std::numeric_limits<TypeParam>::quiet_NaN();
     EXPECT_NE(errorOf(bad, kViewport).find("must be finite"), std::string::npos);
@@ -258,7 +258,7 @@ TYPED_TEST(Views, SeeNothingWhenTheyAreBad) {
         EXPECT_NE(errorOf(good, viewport).find("viewport must be"), std::string::npos);
     }
     // Everything is behind the eye.
-    const View<TypeParam> behind(-good, DepthRange::zeroToOne, kViewport);
+    const Camera<TypeParam> behind(-good, DepthRange::zeroToOne, kViewport);
     EXPECT_TRUE(behind.rayThrough({700, 400}).isEmpty());
 }
 

@@ -10,7 +10,7 @@
 //           middle of the pixel in column i and row k is (i + 0.5, k + 0.5).
 // Units     metres in the world
 // Bad data  A view that has no inverse or no size sees nothing: its rays and rectangles are empty, and
-//           viewError() says why. So are those of pixels that are NaN.
+//           cameraError() says why. So are those of pixels that are NaN.
 // Threads   values; use them from any thread
 
 #include <broadphase/regions.hpp>
@@ -55,20 +55,20 @@ enum class DepthOrder : std::uint8_t { nearFirst, reversed };
 /// Says in a sentence why nothing can be seen or picked through the matrix, 4 x 4, in the viewport;
 /// empty when something may be.
 template <class Scalar>
-[[nodiscard]] HASHPHASE_CAMERA_EXPORT std::string viewError(
+[[nodiscard]] HASHPHASE_CAMERA_EXPORT std::string cameraError(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection, const Viewport& viewport);
 
 /// A camera and the part of the window that it draws to.
 template <class Scalar>
-class HASHPHASE_CAMERA_EXPORT View {
+class HASHPHASE_CAMERA_EXPORT Camera {
 public:
     using Matrix = Eigen::Matrix<Scalar, 4, 4>;
 
     /// Cost: inverts the matrix, once.
-    View(const Matrix& viewProjection, DepthRange depthRange, const Viewport& viewport,
-         DepthOrder depthOrder = DepthOrder::nearFirst);
+    Camera(const Matrix& viewProjection, DepthRange depthRange, const Viewport& viewport,
+           DepthOrder depthOrder = DepthOrder::nearFirst);
 
-    /// False when viewError() says something.
+    /// False when cameraError() says something.
     [[nodiscard]] bool isValid() const noexcept { return isValid_; }
 
     /// All that is seen at a pixel, in the viewport or beside it: from the near plane to the far
@@ -98,7 +98,7 @@ private:
     bool isValid_;
 };
 
-extern template class View<float>;
-extern template class View<double>;
+extern template class Camera<float>;
+extern template class Camera<double>;
 
 }  // namespace hashphase

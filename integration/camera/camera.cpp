@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <integration/camera/view.hpp>
+#include <integration/camera/camera.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,8 @@ constexpr double kSameWeight = 1e-9;
 }  // namespace
 
 template <class Scalar>
-std::string viewError(const Eigen::Matrix<Scalar, 4, 4>& viewProjection, const Viewport& viewport) {
+std::string cameraError(const Eigen::Matrix<Scalar, 4, 4>& viewProjection,
+                        const Viewport& viewport) {
     if (std::string error = frustumError(viewProjection); !error.empty()) {
         return error;
     }
@@ -34,8 +35,8 @@ std::string viewError(const Eigen::Matrix<Scalar, 4, 4>& viewProjection, const V
 }
 
 template <class Scalar>
-View<Scalar>::View(const Matrix& viewProjection, DepthRange depthRange, const Viewport& viewport,
-                   DepthOrder depthOrder)
+Camera<Scalar>::Camera(const Matrix& viewProjection, DepthRange depthRange,
+                       const Viewport& viewport, DepthOrder depthOrder)
     : viewProjection_(viewProjection),
       inverse_(viewProjection.template cast<double>()),
       viewport_(viewport),
@@ -44,13 +45,13 @@ View<Scalar>::View(const Matrix& viewProjection, DepthRange depthRange, const Vi
       isValid_(inverse_.isValid() && isGood(viewport)) {}
 
 template <class Scalar>
-Eigen::Vector2d View<Scalar>::deviceCoordinates(const Pixel& pixel) const {
+Eigen::Vector2d Camera<Scalar>::deviceCoordinates(const Pixel& pixel) const {
     return {2 * (pixel.x() - viewport_.x) / viewport_.width - 1,
             1 - 2 * (pixel.y() - viewport_.y) / viewport_.height};
 }
 
 template <class Scalar>
-RayRegion<Scalar> View<Scalar>::rayThrough(const Pixel& pixel, double farthest) const {
+RayRegion<Scalar> Camera<Scalar>::rayThrough(const Pixel& pixel, double farthest) const {
     const Vector3<Scalar> nowhere =
         Vector3<Scalar>::Constant(std::numeric_limits<Scalar>::quiet_NaN());
     RayRegion<Scalar> nothing(nowhere, nowhere);
@@ -81,7 +82,7 @@ RayRegion<Scalar> View<Scalar>::rayThrough(const Pixel& pixel, double farthest) 
 }
 
 template <class Scalar>
-ScreenRectangle<Scalar> View<Scalar>::rectangleBetween(const Pixel& a, const Pixel& b) const {
+ScreenRectangle<Scalar> Camera<Scalar>::rectangleBetween(const Pixel& a, const Pixel& b) const {
     const Eigen::Vector2d first = deviceCoordinates(a);
     const Eigen::Vector2d second = deviceCoordinates(b);
     const Eigen::Vector2d low = first.cwiseMin(second);
@@ -94,9 +95,9 @@ ScreenRectangle<Scalar> View<Scalar>::rectangleBetween(const Pixel& a, const Pix
     return {low.cwiseMax(-1).cast<Scalar>(), high.cwiseMin(1).cast<Scalar>()};
 }
 
-template std::string viewError(const Eigen::Matrix4f&, const Viewport&);
-template std::string viewError(const Eigen::Matrix4d&, const Viewport&);
-template class View<float>;
-template class View<double>;
+template std::string cameraError(const Eigen::Matrix4f&, const Viewport&);
+template std::string cameraError(const Eigen::Matrix4d&, const Viewport&);
+template class Camera<float>;
+template class Camera<double>;
 
 }  // namespace hashphase

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <broadphase/crowd.hpp>
+#include <broadphase/radius_search.hpp>
 
 #include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/core/prefetch.hpp>
@@ -17,7 +17,7 @@
 namespace hashphase {
 namespace {
 
-constexpr std::size_t kCrowdGrain = 4096;   // proxies that one thread deals with at a time
+constexpr std::size_t kAgentGrain = 4096;   // proxies that one thread deals with at a time
 constexpr std::size_t kAgentsGrain = 1024;  // the same of agents that look around
 constexpr std::size_t kSampledShare = 4;    // one in so many agents says which cells fit, of
 constexpr std::size_t kLeastSample = 64;    // at least so many
@@ -26,7 +26,7 @@ constexpr std::size_t kAhead = 12;          // agents to be read that are fetche
 constexpr std::uint32_t kNoCell = ~std::uint32_t{0};
 
 [[maybe_unused]] constexpr const char* kIsAsked =
-    "A crowd neither takes nor answers from within its own filters and visitors.";
+    "A radius search neither takes nor answers from within its own filters and visitors.";
 
 // What kernels write beyond the candidates, and beyond the last neighbour.
 constexpr std::size_t kTilePadding = 64 + detail::kColumnPadding;
@@ -42,9 +42,9 @@ Scalar scaleFor(Scalar radius) {
 
 }  // namespace
 
-/// The memory of a CrowdTile.
+/// The memory of a RadiusTile.
 template <class Scalar>
-struct Crowd<Scalar>::Tile {
+struct RadiusSearch<Scalar>::Tile {
     Tile() {
         view.grow = &grow;
         view.owner = this;
@@ -53,7 +53,7 @@ struct Crowd<Scalar>::Tile {
     Tile(const Tile&) = delete;
     Tile& operator=(const Tile&) = delete;
 
-    static void grow(detail::CrowdTile<Scalar>& view, std::size_t count) {
+    static void grow(detail::RadiusTile<Scalar>& view, std::size_t count) {
         static_cast<Tile*>(view.owner)->setCapacity(count + count / 2);
     }
 
@@ -83,7 +83,7 @@ struct Crowd<Scalar>::Tile {
                (hits.capacity() + members.capacity()) * sizeof(std::uint64_t);
     }
 
-    detail::CrowdTile<Scalar> view{};
+    detail::RadiusTile<Scalar> view{};
     std::array<std::vector<Scalar>, 3> columns;
     std::vector<std::uint32_t> numbers;
     std::vector<std::uint8_t> groups;
@@ -93,18 +93,18 @@ struct Crowd<Scalar>::Tile {
 };
 
 template <class Scalar>
-Crowd<Scalar>::Crowd() = default;
+RadiusSearch<Scalar>::RadiusSearch() = default;
 
 template <class Scalar>
-Crowd<Scalar>::~Crowd() = default;
+RadiusSearch<Scalar>::~RadiusSearch() = default;
 
 // --- The agents ----------------------------------------------------------------------------------
 
 // Says where the index's proxy is; returns whether it is an agent. In place: what is copied at once
 // after it was written in parts makes the processor wait.
 template <class Scalar>
-bool Crowd<Scalar>::stageProxy(const Grid<Scalar>& grid, std::uint32_t proxyIndex,
-                               ProxyFilter filter, Staged& staged) {
+bool RadiusSearch<Scalar>::stageProxy(const Grid<Scalar>& grid, std::uint32_t proxyIndex,
+                                      ProxyFilter filter, Staged& staged) {
     const detail::Population<Scalar>& proxies = grid.store().proxies;
     const detail::Record<Scalar>& record = proxies.records[proxyIndex];
     const bool isAccepted = proxies.isAlive(proxyIndex) && filter(proxies.idOf(proxyIndex));
@@ -116,7 +116,8 @@ bool Crowd<Scalar>::stageProxy(const Grid<Scalar>& grid, std::uint32_t proxyInde
 
 // Cells that fit where some of the agents are.
 template <class Scalar>
-void Crowd<Scalar>::chooseCells(const Grid<Scalar>& grid, Scalar radius, ProxyFilter filter) {
+void RadiusSearch<Scalar>::chooseCells(const Grid<Scalar>& grid, Scalar radius,
+                                       ProxyFilter filter) {
     for (std::vector<double>& column : sample_) {
         column.clear();
     }
@@ -146,12 +147,13 @@ void Crowd<Scalar>::chooseCells(const Grid<Scalar>& grid, Scalar radius, ProxyFi
 
 // Reads where the proxies are, in the order of their indices, which is that of memory.
 template <class Scalar>
-void Crowd<Scalar>::stage(const Grid<Scalar>& grid, ProxyFilter filter, ParallelFor parallelFor) {
+void RadiusSearch<Scalar>::stage(const Grid<Scalar>& grid, ProxyFilter filter,
+                                 ParallelFor parallelFor) {
     staged_.resize(placeCount_);
     cellOfPlace_.resize(placeCount_);
     std::atomic<std::uint32_t> agentCount{0};
     std::atomic<std::uint32_t> leftOut{0};
-    parallelFor(staged_.size(), kCrowdGrain, [&](std::size_t begin, std::size_t end) {
+    parallelFor(staged_.size(), kAgentGrain, [&](std::size_t begin, std::size_t end) {
         const detail::QueryScope gridScope(&grid.store());
         const detail::QueryScope scope(this);
         const detail::WrappedGrid wrapped = wrappedGrid_;
@@ -177,7 +179,7 @@ void Crowd<Scalar>::stage(const Grid<Scalar>& grid, ProxyFilter filter, Parallel
 
 // A counting sort by cell.
 template <class Scalar>
-void Crowd<Scalar>::sort(ParallelFor parallelFor) {
+void RadiusSearch<Scalar>::sort(ParallelFor parallelFor) {
     cellStart_.assign(wrappedGrid_.cellCount() + 1, 0);
     for (const std::uint32_t cell : cellOfPlace_) {
         if (cell != kNoCell) {
@@ -202,7 +204,7 @@ void Crowd<Scalar>::sort(ParallelFor parallelFor) {
     for (std::vector<Scalar>& column : columns_) {
         column.resize(agentCount_ + detail::kColumnPadding);
     }
-    parallelFor(agentCount_, kCrowdGrain, [&](std::size_t begin, std::size_t end) {
+    parallelFor(agentCount_, kAgentGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t agent = begin; agent < end; ++agent) {
             if (agent + kAhead < end) {
                 detail::prefetch(&staged_[places_[agent + kAhead]]);
@@ -218,7 +220,7 @@ void Crowd<Scalar>::sort(ParallelFor parallelFor) {
 
 // Says what kernels read.
 template <class Scalar>
-void Crowd<Scalar>::prepare(Scalar radius) {
+void RadiusSearch<Scalar>::prepare(Scalar radius) {
     const bool isDistance = radius >= 0;
     view_.scale = isDistance ? scaleFor(radius) : Scalar(1);
     view_.mostSquared = isDistance ? (radius * view_.scale) * (radius * view_.scale) : Scalar(-1);
@@ -249,8 +251,8 @@ void Crowd<Scalar>::prepare(Scalar radius) {
 }
 
 template <class Scalar>
-void Crowd<Scalar>::take(const Grid<Scalar>& grid, Scalar radius, ProxyFilter filter,
-                         ParallelFor parallelFor) {
+void RadiusSearch<Scalar>::take(const Grid<Scalar>& grid, Scalar radius, ProxyFilter filter,
+                                ParallelFor parallelFor) {
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kIsAsked);
     if (peaks_.isPast(std::max(grid.store().listedCount(), placeCount_), staged_.capacity())) {
         releaseMemory();
@@ -272,7 +274,7 @@ void Crowd<Scalar>::take(const Grid<Scalar>& grid, Scalar radius, ProxyFilter fi
 // --- Questions -----------------------------------------------------------------------------------
 
 template <class Scalar>
-std::unique_ptr<typename Crowd<Scalar>::Tile> Crowd<Scalar>::borrowTile() {
+std::unique_ptr<typename RadiusSearch<Scalar>::Tile> RadiusSearch<Scalar>::borrowTile() {
     {
         const std::lock_guard lock(tilesMutex_);
         if (!tiles_.empty()) {
@@ -285,7 +287,7 @@ std::unique_ptr<typename Crowd<Scalar>::Tile> Crowd<Scalar>::borrowTile() {
 }
 
 template <class Scalar>
-void Crowd<Scalar>::returnTile(std::unique_ptr<Tile> tile) {
+void RadiusSearch<Scalar>::returnTile(std::unique_ptr<Tile> tile) {
     const std::lock_guard lock(tilesMutex_);
     tiles_.push_back(std::move(tile));
 }
@@ -293,7 +295,7 @@ void Crowd<Scalar>::returnTile(std::unique_ptr<Tile> tile) {
 // Calls kernel(firstAgent, lastAgent, tile, cost) for all agents, in parts; it returns what it found.
 template <class Scalar>
 template <class Kernel>
-QueryCost Crowd<Scalar>::ask(ParallelFor parallelFor, const Kernel& kernel) {
+QueryCost RadiusSearch<Scalar>::ask(ParallelFor parallelFor, const Kernel& kernel) {
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kIsAsked);
     detail::SharedCost shared;
     parallelFor(agentCount_, kAgentsGrain, [&](std::size_t begin, std::size_t end) {
@@ -319,30 +321,32 @@ QueryCost Crowd<Scalar>::ask(ParallelFor parallelFor, const Kernel& kernel) {
 }
 
 template <class Scalar>
-QueryCost Crowd<Scalar>::list(const detail::CrowdVisitor& visitor, ParallelFor parallelFor) {
+QueryCost RadiusSearch<Scalar>::list(const detail::RadiusVisitor& visitor,
+                                     ParallelFor parallelFor) {
     return ask(parallelFor, [&](std::uint32_t first, std::uint32_t last, auto& tile, auto& cost) {
-        return detail::kernels<Scalar>().listCrowd(view_, first, last, tile, visitor, cost);
+        return detail::kernels<Scalar>().listWithin(view_, first, last, tile, visitor, cost);
     });
 }
 
 template <class Scalar>
-QueryCost Crowd<Scalar>::count(std::span<std::uint32_t> counts, ParallelFor parallelFor) {
+QueryCost RadiusSearch<Scalar>::count(std::span<std::uint32_t> counts, ParallelFor parallelFor) {
     HASHPHASE_ASSERT(counts.size() == size(), "There is one count for each agent.");
     return ask(parallelFor, [&](std::uint32_t first, std::uint32_t last, auto& tile, auto& cost) {
-        return detail::kernels<Scalar>().countCrowd(view_, first, last, tile, counts.data(), cost);
+        return detail::kernels<Scalar>().countWithin(view_, first, last, tile, counts.data(), cost);
     });
 }
 
 template <class Scalar>
-QueryCost Crowd<Scalar>::countGroups(std::uint32_t groupCount,
-                                     FunctionRef<std::uint32_t(ProxyId)> groupOf,
-                                     std::span<std::uint32_t> counts, ParallelFor parallelFor) {
+QueryCost RadiusSearch<Scalar>::countGroups(std::uint32_t groupCount,
+                                            FunctionRef<std::uint32_t(ProxyId)> groupOf,
+                                            std::span<std::uint32_t> counts,
+                                            ParallelFor parallelFor) {
     HASHPHASE_ASSERT(groupCount <= kMostGroups, "There are at most kMostGroups groups.");
     HASHPHASE_ASSERT(counts.size() == std::size_t{size()} * groupCount,
                      "There is one count for each agent and group.");
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kIsAsked);
     groups_.resize(size() + detail::kColumnPadding);
-    parallelFor(size(), kCrowdGrain, [&](std::size_t begin, std::size_t end) {
+    parallelFor(size(), kAgentGrain, [&](std::size_t begin, std::size_t end) {
         const detail::QueryScope scope(this);
         for (std::size_t agent = begin; agent < end; ++agent) {
             const std::uint32_t group = groupOf(ids_[agent]);
@@ -350,13 +354,13 @@ QueryCost Crowd<Scalar>::countGroups(std::uint32_t groupCount,
         }
     });
     return ask(parallelFor, [&](std::uint32_t first, std::uint32_t last, auto& tile, auto& cost) {
-        return detail::kernels<Scalar>().countCrowdGroups(view_, first, last, tile, groups_.data(),
-                                                          groupCount, counts.data(), cost);
+        return detail::kernels<Scalar>().countGroupsWithin(view_, first, last, tile, groups_.data(),
+                                                           groupCount, counts.data(), cost);
     });
 }
 
 template <class Scalar>
-std::size_t Crowd<Scalar>::memoryBytes() const noexcept {
+std::size_t RadiusSearch<Scalar>::memoryBytes() const noexcept {
     std::size_t bytes =
         sizeof(*this) + staged_.capacity() * sizeof(Staged) +
         (few_.capacity() + cellOfPlace_.capacity() + cellStart_.capacity() + places_.capacity() +
@@ -372,7 +376,7 @@ std::size_t Crowd<Scalar>::memoryBytes() const noexcept {
 }
 
 template <class Scalar>
-void Crowd<Scalar>::releaseMemory() noexcept {
+void RadiusSearch<Scalar>::releaseMemory() noexcept {
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kIsAsked);
     detail::freeArrays(few_, staged_, cellOfPlace_, cellStart_, places_, ids_, numbers_, groups_,
                        tiles_);
@@ -383,7 +387,7 @@ void Crowd<Scalar>::releaseMemory() noexcept {
     leftOut_ = 0;
 }
 
-template class Crowd<float>;
-template class Crowd<double>;
+template class RadiusSearch<float>;
+template class RadiusSearch<double>;
 
 }  // namespace hashphase

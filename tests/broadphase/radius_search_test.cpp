@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Zlib
 
-#include <broadphase/crowd.hpp>
+#include <broadphase/radius_search.hpp>
 #include <tests/support/box_scenes.hpp>
-#include <tests/support/crowd_oracle.hpp>
 #include <tests/support/handlers.hpp>
 #include <tests/support/query_checks.hpp>
+#include <tests/support/radius_oracle.hpp>
 #include <tests/support/script.hpp>
 #include <tests/support/threaded_for.hpp>
 
@@ -33,8 +33,8 @@ protected:
     }
 
     std::vector<std::uint32_t> count() {
-        std::vector<std::uint32_t> counts(crowd_.size());
-        crowd_.count(counts);
+        std::vector<std::uint32_t> counts(search_.size());
+        search_.count(counts);
         return counts;
     }
 
@@ -43,22 +43,22 @@ protected:
     std::size_t expectLikeBruteForce(const Grid<Scalar>& grid,
                                      std::span<const Placed<Scalar>> proxies, Scalar radius) {
         SCOPED_TRACE(testing::Message() << "within " << radius);
-        crowd_.take(grid, radius);
+        search_.take(grid, radius);
         const NeighbourLists expected = neighboursByBruteForce(proxies, radius);
-        EXPECT_EQ(crowd_.size(), expected.size());
+        EXPECT_EQ(search_.size(), expected.size());
         const std::vector<std::uint32_t> counts = count();
-        std::vector<std::uint32_t> groups(std::size_t{crowd_.size()} * kGroups);
-        crowd_.countGroups(kGroups, groupOf, groups);
+        std::vector<std::uint32_t> groups(std::size_t{search_.size()} * kGroups);
+        search_.countGroups(kGroups, groupOf, groups);
         std::size_t visited = 0;
         std::size_t sum = 0;
         const auto visit = [&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) {
             EXPECT_EQ(agent, visited++) << "in order, on one thread";
-            const auto own = expected.find(crowd_.id(agent));
+            const auto own = expected.find(search_.id(agent));
             ASSERT_NE(own, expected.end());
-            EXPECT_EQ(crowd_.position(agent), agentPosition(grid.box(own->first)));
+            EXPECT_EQ(search_.position(agent), agentPosition(grid.box(own->first)));
             std::vector<ProxyId> ids;
             for (const std::uint32_t neighbour : neighbours) {
-                ids.push_back(crowd_.id(neighbour));
+                ids.push_back(search_.id(neighbour));
             }
             std::sort(ids.begin(), ids.end());
             EXPECT_EQ(differences(ids, own->second), "") << "of agent " << agent;
@@ -68,8 +68,8 @@ protected:
             EXPECT_TRUE(std::equal(expectedGroups.begin(), expectedGroups.end(), groupsOfAgent));
             sum += ids.size();
         };
-        const QueryCost cost = crowd_.forEach(visit);
-        EXPECT_EQ(visited, crowd_.size());
+        const QueryCost cost = search_.forEach(visit);
+        EXPECT_EQ(visited, search_.size());
         EXPECT_EQ(cost.hits, sum);
         EXPECT_GE(cost.boxesTested, cost.hits);
         return sum;
@@ -88,7 +88,7 @@ protected:
 
     Grid<Scalar> grid_;
     std::vector<Placed<Scalar>> proxies_;
-    Crowd<Scalar> crowd_;
+    RadiusSearch<Scalar> search_;
     CaughtMessages aboutNan_;
 };
 
@@ -203,12 +203,12 @@ TYPED_TEST(CrowdTest, FindsWhoIsJustNearEnoughWhereverCellsEnd) {
 TYPED_TEST(CrowdTest, MeasuresAStraightClosedBallInSpace) {
     const ProxyId corner = this->addPoint(0, 0, 0);
     const ProxyId beside = this->addPoint(2, 3, 6);  // 7 away
-    this->crowd_.take(this->grid_, TypeParam(6.999));
+    this->search_.take(this->grid_, TypeParam(6.999));
     EXPECT_EQ(this->count(), (std::vector<std::uint32_t>{0, 0}));
-    this->crowd_.take(this->grid_, 7);
+    this->search_.take(this->grid_, 7);
     EXPECT_EQ(this->count(), (std::vector<std::uint32_t>{1, 1}));
-    EXPECT_NE(this->crowd_.id(0), this->crowd_.id(1));
-    for (const ProxyId id : this->crowd_.ids()) {
+    EXPECT_NE(this->search_.id(0), this->search_.id(1));
+    for (const ProxyId id : this->search_.ids()) {
         EXPECT_TRUE(id == corner || id == beside);
     }
 }
@@ -232,7 +232,7 @@ TYPED_TEST(CrowdTest, FindsNobodyWithinANegativeOrNaNRadius) {
     using Limits = std::numeric_limits<TypeParam>;
     for (const TypeParam radius : {TypeParam(-1), -Limits::infinity(), Limits::quiet_NaN()}) {
         EXPECT_EQ(this->expectLikeBruteForce(this->grid_, this->proxies_, radius), 0U);
-        EXPECT_EQ(this->crowd_.size(), 40U);
+        EXPECT_EQ(this->search_.size(), 40U);
     }
 }
 
@@ -267,12 +267,12 @@ TYPED_TEST(CrowdTest, LeavesOutWhoHasNoFiniteCentre) {
     const ProxyId plane =
         this->grid_.add(makeBox<TypeParam>(-1e18, -1e18, -1e18, 1e18, 1e18, 1e18));
     const ProxyId stone = this->addPoint(1, 1, 1);
-    this->crowd_.take(this->grid_, 10);
-    EXPECT_EQ(this->crowd_.leftOutCount(), 3U);
-    ASSERT_EQ(this->crowd_.size(), 2U);
+    this->search_.take(this->grid_, 10);
+    EXPECT_EQ(this->search_.leftOutCount(), 3U);
+    ASSERT_EQ(this->search_.size(), 2U);
     EXPECT_EQ(this->count(), (std::vector<std::uint32_t>{1, 1}));
-    EXPECT_EQ(std::min(this->crowd_.id(0), this->crowd_.id(1)), plane);
-    EXPECT_EQ(std::max(this->crowd_.id(0), this->crowd_.id(1)), stone);
+    EXPECT_EQ(std::min(this->search_.id(0), this->search_.id(1)), plane);
+    EXPECT_EQ(std::max(this->search_.id(0), this->search_.id(1)), stone);
 }
 
 TYPED_TEST(CrowdTest, TakesWhomTheFilterAccepts) {
@@ -292,35 +292,35 @@ TYPED_TEST(CrowdTest, TakesWhomTheFilterAccepts) {
     };
     std::copy_if(this->proxies_.begin(), this->proxies_.end(), std::back_inserter(agents),
                  [&](const auto& proxy) { return isAgent(proxy.id); });
-    this->crowd_.take(this->grid_, 8, isAgent);
+    this->search_.take(this->grid_, 8, isAgent);
     const NeighbourLists expected = neighboursByBruteForce<TypeParam>(agents, 8);
-    ASSERT_EQ(this->crowd_.size(), expected.size());
-    EXPECT_EQ(this->crowd_.leftOutCount(), 0U);
+    ASSERT_EQ(this->search_.size(), expected.size());
+    EXPECT_EQ(this->search_.leftOutCount(), 0U);
     const std::vector<std::uint32_t> counts = this->count();
-    for (std::uint32_t agent = 0; agent < this->crowd_.size(); ++agent) {
-        EXPECT_EQ(counts[agent], expected.at(this->crowd_.id(agent)).size());
+    for (std::uint32_t agent = 0; agent < this->search_.size(); ++agent) {
+        EXPECT_EQ(counts[agent], expected.at(this->search_.id(agent)).size());
     }
-    this->crowd_.take(this->grid_, 8, [](ProxyId) { return false; });
-    EXPECT_EQ(this->crowd_.size(), 0U);
+    this->search_.take(this->grid_, 8, [](ProxyId) { return false; });
+    EXPECT_EQ(this->search_.size(), 0U);
     EXPECT_EQ(this->count().size(), 0U);
 }
 
 TYPED_TEST(CrowdTest, CountsAsManyGroupsAsThereMayBe) {
-    constexpr std::uint32_t kMost = Crowd<TypeParam>::kMostGroups;
+    constexpr std::uint32_t kMost = RadiusSearch<TypeParam>::kMostGroups;
     for (std::uint32_t i = 0; i < 100; ++i) {
         this->addPoint(0, 0, 0);
     }
-    this->crowd_.take(this->grid_, 1);
+    this->search_.take(this->grid_, 1);
     std::vector<std::uint32_t> counts(100 * kMost, 77);
     const auto groupOf = [](ProxyId id) { return id.index < kMost ? id.index : id.index * 1000; };
-    EXPECT_EQ(this->crowd_.countGroups(kMost, groupOf, counts).hits, 99 * kMost);
+    EXPECT_EQ(this->search_.countGroups(kMost, groupOf, counts).hits, 99 * kMost);
     for (std::uint32_t agent = 0; agent < 100; ++agent) {
         for (std::uint32_t group = 0; group < kMost; ++group) {
-            const bool isOwn = groupOf(this->crowd_.id(agent)) == group;
+            const bool isOwn = groupOf(this->search_.id(agent)) == group;
             ASSERT_EQ(counts[agent * kMost + group], isOwn ? 0U : 1U);
         }
     }
-    EXPECT_EQ(this->crowd_.countGroups(0, groupOf, {}).hits, 0U);
+    EXPECT_EQ(this->search_.countGroups(0, groupOf, {}).hits, 0U);
 }
 
 TYPED_TEST(CrowdTest, IsTheSameOnAnyNumberOfThreads) {
@@ -332,15 +332,15 @@ TYPED_TEST(CrowdTest, IsTheSameOnAnyNumberOfThreads) {
     using Lists = std::vector<std::vector<std::uint32_t>>;
     const auto ask = [this](ParallelFor parallelFor, std::vector<ProxyId>& ids,
                             std::vector<std::uint32_t>& counts, QueryCost& cost) {
-        this->crowd_.take(this->grid_, 3, acceptAll, parallelFor);
-        ids.assign(this->crowd_.ids().begin(), this->crowd_.ids().end());
-        counts.resize(this->crowd_.size());
-        this->crowd_.count(counts, parallelFor);
+        this->search_.take(this->grid_, 3, acceptAll, parallelFor);
+        ids.assign(this->search_.ids().begin(), this->search_.ids().end());
+        counts.resize(this->search_.size());
+        this->search_.count(counts, parallelFor);
         std::vector<std::uint32_t> groups(counts.size() * 5);
-        this->crowd_.countGroups(5, this->groupOf, groups, parallelFor);
+        this->search_.countGroups(5, this->groupOf, groups, parallelFor);
         counts.insert(counts.end(), groups.begin(), groups.end());
-        Lists lists(this->crowd_.size());
-        cost = this->crowd_.forEach(
+        Lists lists(this->search_.size());
+        cost = this->search_.forEach(
             [&lists](std::uint32_t agent, std::span<const std::uint32_t> neighbours) {
                 lists[agent].assign(neighbours.begin(), neighbours.end());
             },
@@ -363,9 +363,9 @@ TYPED_TEST(CrowdTest, IsTheSameOnAnyNumberOfThreads) {
         EXPECT_EQ(otherCost.hits, cost.hits);
         EXPECT_GT(threadedFor.mostRanges(), 1U);
     }
-    const std::size_t bytes = this->crowd_.memoryBytes();
+    const std::size_t bytes = this->search_.memoryBytes();
     ask(serialFor, ids, counts, cost);
-    EXPECT_EQ(this->crowd_.memoryBytes(), bytes);
+    EXPECT_EQ(this->search_.memoryBytes(), bytes);
 }
 
 // Cells are for where most are, whatever the others do and however small the radius is.
@@ -383,11 +383,11 @@ TYPED_TEST(CrowdTest, ListsNeighboursInOneOrderWhereverPartsBegin) {
                 Vector3<double>(x, random.between(0, 50), random.between(0, 50)).cast<TypeParam>();
             static_cast<void>(grid.add({at, at}));
         }
-        Crowd<TypeParam> crowd;
-        crowd.take(grid, 1);
-        const auto list = [&crowd](ParallelFor parallelFor) {
-            Lists lists(crowd.size());
-            crowd.forEach(
+        RadiusSearch<TypeParam> search;
+        search.take(grid, 1);
+        const auto list = [&search](ParallelFor parallelFor) {
+            Lists lists(search.size());
+            search.forEach(
                 [&lists](std::uint32_t agent, std::span<const std::uint32_t> neighbours) {
                     lists[agent].assign(neighbours.begin(), neighbours.end());
                 },
@@ -416,23 +416,23 @@ TYPED_TEST(CrowdTest, CostsNoMoreForStraysAndSmallRadii) {
     }
     std::vector<std::uint32_t> counts(kCount);
     for (const double radius : {0.0, 1e-20, 0.1, 2.0, 6.0}) {
-        this->crowd_.take(this->grid_, static_cast<TypeParam>(radius));
-        const QueryCost cost = this->crowd_.count(counts);
+        this->search_.take(this->grid_, static_cast<TypeParam>(radius));
+        const QueryCost cost = this->search_.count(counts);
         EXPECT_LT(cost.boxesTested, 100U * kCount) << radius;
         EXPECT_LT(cost.rowsVisited, 20U * kCount) << radius;
-        EXPECT_LT(this->crowd_.memoryBytes(), 400U * kCount) << radius;
+        EXPECT_LT(this->search_.memoryBytes(), 400U * kCount) << radius;
     }
 }
 
 TYPED_TEST(CrowdTest, WantsOneCountForEachAgentAndGroupAndNoMoreGroupsThanThereMayBe) {
     const ThrowingAsserts throwingAsserts;
     this->addPoint(0, 0, 0);
-    this->crowd_.take(this->grid_, 1);
+    this->search_.take(this->grid_, 1);
     std::vector<std::uint32_t> counts(2);
-    EXPECT_THROW(this->crowd_.count(counts), BrokenAssert);
-    EXPECT_THROW(this->crowd_.countGroups(3, this->groupOf, counts), BrokenAssert);
+    EXPECT_THROW(this->search_.count(counts), BrokenAssert);
+    EXPECT_THROW(this->search_.countGroups(3, this->groupOf, counts), BrokenAssert);
     counts.resize(33);
-    EXPECT_THROW(this->crowd_.countGroups(33, this->groupOf, counts), BrokenAssert);
+    EXPECT_THROW(this->search_.countGroups(33, this->groupOf, counts), BrokenAssert);
 }
 
 }  // namespace
