@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/pairs.hpp>
 
+#include <broadphase/pairs/check.inl>
+#include <broadphase/pairs/immediate.inl>
 #include <broadphase/pairs/step.hpp>
+#include <broadphase/pairs/update.inl>
 #include <broadphase/sweeps.hpp>
 
 #include <memory>
@@ -26,7 +29,7 @@ template <class Scalar>
 
 template <class Scalar>
 Pairs<Scalar>::Pairs(Grid<Scalar>& grid, Sweeps<Scalar>* sweeps)
-    : grid_(grid), sweeps_(sweeps), tracker_(grid.store(), sweepingOf(sweeps)) {
+    : grid_(grid), sweeps_(sweeps), state_(grid.store(), sweepingOf(sweeps)) {
     HASHPHASE_ASSERT(areOf(grid, sweeps), "Sweeps and Pairs are of the same grid.");
 }
 
@@ -36,22 +39,22 @@ void Pairs<Scalar>::setSweeps(Sweeps<Scalar>* sweeps) {
     HASHPHASE_ASSERT(!grid_.isWithinQuery(),
                      "Sweeps are not given within a query, or within the filter.");
     sweeps_ = sweeps;
-    tracker_.setSweeps(sweepingOf(sweeps));
+    state_.setSweeping(sweepingOf(sweeps));
 }
 
 template <class Scalar>
 PairChanges Pairs<Scalar>::update(PairFilter filter, ParallelFor parallelFor) & {
     HASHPHASE_ASSERT(!grid_.isWithinQuery(),
                      "An update is not begun within a query, or within the filter.");
-    const UpdateCost cost = detail::step(grid_.store(), &tracker_, filter, parallelFor);
-    return tracker_.endUpdate(cost);
+    const UpdateCost cost = detail::step(grid_.store(), &state_, filter, parallelFor);
+    return detail::endUpdate(state_, cost);
 }
 
 template <class Scalar>
 PairChanges Pairs<Scalar>::findPairsNow(ProxyId id, PairFilter filter) & {
     HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid has pairs to find.");
     HASHPHASE_ASSERT(grid_.takesChanges(), kMustNotAsk);
-    return grid_.contains(id) ? tracker_.findPairsNow(id.index, filter) : PairChanges{};
+    return grid_.contains(id) ? detail::findPairsNow(state_, id.index, filter) : PairChanges{};
 }
 
 template <class Scalar>
@@ -59,7 +62,8 @@ PairChanges Pairs<Scalar>::findPairsNow(ProxyId id, std::span<const ProxyId> oth
                                         PairFilter filter) & {
     HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid has pairs to find.");
     HASHPHASE_ASSERT(grid_.takesChanges(), kMustNotAsk);
-    return grid_.contains(id) ? tracker_.findPairsNow(id.index, others, filter) : PairChanges{};
+    return grid_.contains(id) ? detail::findPairsNow(state_, id.index, others, filter)
+                              : PairChanges{};
 }
 
 template <class Scalar>
@@ -73,19 +77,19 @@ PairChanges Pairs<Scalar>::refilter(std::span<const ProxyId> ids, PairFilter fil
         HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid can be filtered again.");
     }
     HASHPHASE_ASSERT(grid_.takesChanges(), kMustNotAsk);
-    return tracker_.refilter(ids, filter);
+    return detail::refilter(state_, ids, filter);
 }
 
 template <class Scalar>
 PairChanges Pairs<Scalar>::refilter(std::span<const ProxyPair> pairs, PairFilter filter) & {
     HASHPHASE_ASSERT(grid_.takesChanges(), kMustNotAsk);
-    return tracker_.refilter(pairs, filter);
+    return detail::refilter(state_, pairs, filter);
 }
 
 template <class Scalar>
 PairChanges Pairs<Scalar>::refilterAll(PairFilter filter) & {
     HASHPHASE_ASSERT(grid_.takesChanges(), kMustNotAsk);
-    return tracker_.refilterAll(filter);
+    return detail::refilterAll(state_, filter);
 }
 
 // Made again in place, so that nothing is left of what was, and nothing takes memory.
@@ -93,36 +97,41 @@ template <class Scalar>
 void Pairs<Scalar>::clear() {
     HASHPHASE_ASSERT(!grid_.isWithinQuery(),
                      "Pairs and their grid are not cleared within a query, or within the filter.");
-    std::destroy_at(&tracker_);
+    std::destroy_at(&state_);
     grid_.clear();
     if (sweeps_ != nullptr) {
         std::destroy_at(sweeps_);
         std::construct_at(sweeps_, grid_);
     }
-    std::construct_at(&tracker_, grid_.store(), sweepingOf(sweeps_));
+    std::construct_at(&state_, grid_.store(), sweepingOf(sweeps_));
+}
+
+template <class Scalar>
+bool Pairs<Scalar>::isPair(const ProxyPair& pair) const noexcept {
+    return detail::isPair(state_, pair);
 }
 
 template <class Scalar>
 void Pairs<Scalar>::collect(std::vector<ProxyPair>& pairs) const {
     HASHPHASE_ASSERT(grid_.store().cost.changed == 0,
                      "The set of pairs is asked for directly after an update.");
-    tracker_.collect(pairs);
+    detail::collect(state_, pairs);
 }
 
 template <class Scalar>
 std::size_t Pairs<Scalar>::memoryBytes() const noexcept {
-    return sizeof(*this) - sizeof(tracker_) + tracker_.memoryBytes();
+    return sizeof(*this) - sizeof(state_) + detail::memoryBytes(state_);
 }
 
 template <class Scalar>
 void Pairs<Scalar>::releaseUnusedMemory() noexcept {
     HASHPHASE_ASSERT(grid_.takesChanges(), "Memory is not given back within the filter.");
-    tracker_.releaseUnusedMemory();
+    detail::releaseUnusedMemory(state_);
 }
 
 template <class Scalar>
 std::string Pairs<Scalar>::validate() const {
-    return tracker_.validate();
+    return detail::validate(state_);
 }
 
 template class Pairs<float>;

@@ -24,7 +24,7 @@
 #include <broadphase/export.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/pair_filter.hpp>
-#include <broadphase/pairs/pair_tracker.hpp>
+#include <broadphase/pairs/pair_state.hpp>
 
 #include <cstddef>
 #include <span>
@@ -111,22 +111,20 @@ public:
 
     /// Whether the two are a pair, as of the last update, or as was told since. Not of one that is not
     /// alive. Cost: O(1).
-    [[nodiscard]] bool isPair(const ProxyPair& pair) const noexcept {
-        return tracker_.isPair(pair);
-    }
+    [[nodiscard]] bool isPair(const ProxyPair& pair) const noexcept;
 
     /// Number of pairs in the set.
-    [[nodiscard]] std::size_t count() const noexcept { return tracker_.count(); }
+    [[nodiscard]] std::size_t count() const noexcept { return state_.known.count; }
 
     /// Number of overlapping candidates that the filter refused, as they are remembered: none while the pairs
     /// are, instead. Those that may not pair by their groups are not counted.
-    [[nodiscard]] std::size_t refusedCount() const noexcept { return tracker_.refusedCount(); }
+    [[nodiscard]] std::size_t refusedCount() const noexcept { return state_.known.refusedCount(); }
 
     /// Whether so many overlap, of which the filter refuses most, that the pairs are remembered in their
     /// place; up to 256 updates longer.
-    [[nodiscard]] bool remembersPairs() const noexcept { return tracker_.remembersPairs(); }
+    [[nodiscard]] bool remembersPairs() const noexcept { return state_.known.arePairs(); }
 
-    [[nodiscard]] const PairCost& lastCost() const noexcept { return tracker_.lastCost(); }
+    [[nodiscard]] const PairCost& lastCost() const noexcept { return state_.cost; }
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
     /// Gives back what is not used, but nothing of the grid's, which has a call of its own: room for more
@@ -149,7 +147,7 @@ public:
 private:
     Grid<Scalar>& grid_;
     Sweeps<Scalar>* sweeps_;
-    detail::PairTracker<Scalar> tracker_;
+    detail::PairState<Scalar> state_;
 };
 
 extern template class Pairs<float>;

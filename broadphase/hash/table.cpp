@@ -5,6 +5,8 @@
 
 #include <broadphase/hash/table.hpp>
 
+#include <broadphase/hash/crowded_buckets.inl>
+
 #include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/simd/kernels.hpp>

@@ -1,30 +1,34 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/pairs/step.hpp>
 
+#include <broadphase/pairs/begun.inl>
+#include <broadphase/pairs/ended.inl>
+#include <broadphase/pairs/update.inl>
+
 namespace hashphase::detail {
 
 template <class Scalar>
-UpdateCost step(Store<Scalar>& store, PairTracker<Scalar>* pairs, PairFilter filter,
+UpdateCost step(Store<Scalar>& store, PairState<Scalar>* pairs, PairFilter filter,
                 ParallelFor parallelFor) {
     store.releaseAfterPeak();
     try {
         if (pairs != nullptr) {
-            pairs->beginUpdate();
+            beginUpdate(*pairs);
         }
         for (bool isDone = store.cost.changed == 0; !isDone;) {
             store.stage(parallelFor);
             if (pairs != nullptr) {
-                pairs->findEnded(parallelFor);
+                findEnded(*pairs, parallelFor);
             }
             const bool someSettled = store.settleIdle(parallelFor);
             store.fileMobile(parallelFor);
-            isDone = pairs == nullptr || pairs->findBegun(someSettled, filter, parallelFor);
+            isDone = pairs == nullptr || findBegun(*pairs, someSettled, filter, parallelFor);
             if (!isDone) {
-                pairs->rememberInstead();
+                rememberInstead(*pairs);
             }
         }
         if (pairs != nullptr) {
-            pairs->askAndMakeRoom(filter);
+            askAndMakeRoom(*pairs, filter);
         }
     } catch (...) {
         store.wakeAll();
@@ -32,7 +36,7 @@ UpdateCost step(Store<Scalar>& store, PairTracker<Scalar>* pairs, PairFilter fil
     }
     // From here on nothing takes memory, and so nothing throws.
     if (pairs != nullptr) {
-        pairs->publish();
+        publish(*pairs);
     }
     if (store.cost.changed > 0) {
         store.relistMobile();
@@ -40,7 +44,7 @@ UpdateCost step(Store<Scalar>& store, PairTracker<Scalar>* pairs, PairFilter fil
     return store.endUpdate();
 }
 
-template UpdateCost step<float>(Store<float>&, PairTracker<float>*, PairFilter, ParallelFor);
-template UpdateCost step<double>(Store<double>&, PairTracker<double>*, PairFilter, ParallelFor);
+template UpdateCost step<float>(Store<float>&, PairState<float>*, PairFilter, ParallelFor);
+template UpdateCost step<double>(Store<double>&, PairState<double>*, PairFilter, ParallelFor);
 
 }  // namespace hashphase::detail

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-#include <broadphase/pairs/pair_tracker.hpp>
+#include <broadphase/pairs/pair_state.hpp>
 
 namespace hashphase::detail {
 
@@ -9,7 +9,7 @@ namespace hashphase::detail {
 /// pairs have begun and ended; of a grid without pairs `pairs` is null. Where it throws, for want of memory
 /// or out of the filter, everything is mobile, nothing is lost, and the next one goes on from there.
 template <class Scalar>
-UpdateCost step(Store<Scalar>& store, PairTracker<Scalar>* pairs, PairFilter filter,
+UpdateCost step(Store<Scalar>& store, PairState<Scalar>* pairs, PairFilter filter,
                 ParallelFor parallelFor);
 
 }  // namespace hashphase::detail

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/store/store.hpp>
 
+#include <broadphase/store/filing.inl>
+#include <broadphase/store/memory.inl>
+#include <broadphase/store/reading.inl>
+#include <broadphase/store/shift.inl>
+
 #include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/core/limits.hpp>
 #include <broadphase/diagnostics.hpp>

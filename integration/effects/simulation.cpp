@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Zlib
+#include <integration/effects/simulation.hpp>
+
+#include <integration/effects/simulation_contacts.inl>
+#include <integration/effects/simulation_frame.inl>
+#include <integration/effects/simulation_plan.inl>
+
 #include <broadphase/core/ensure_capacity.hpp>
 #include <integration/effects/detail/parts.hpp>
 #include <integration/effects/detail/simulation_parts.hpp>
-#include <integration/effects/simulation.hpp>
 
 #include <algorithm>
 #include <cmath>

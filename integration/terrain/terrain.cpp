@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/terrain/terrain.hpp>
 
+#include <integration/terrain/terrain_queries.inl>
+
 #include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/diagnostics.hpp>
 

@@ -8,7 +8,7 @@
 cmake_minimum_required(VERSION 3.22)
 
 string(CONCAT offered
-       "(CameraInverse|FewPairs|Kernels|Motions<|PairTracker<|Population<|QueryScope|Store<|Table<|"
+       "(CameraInverse|FewPairs|Kernels|Motions<|PairState<|Population<|QueryScope|Store<|Table<|"
        "firstContactExactly|instructionSet|isAvailable|kernels|nameOf|reportBrokenAssert|"
        "reportMessage|search(Boxes|Ray|Volume)|useInstructionSet)")
 

@@ -28,8 +28,8 @@ constexpr bool isSameForAll =
 
 static_assert(isSameForAll<Aabb, BoxRegion, CellsRegion, ConvexRegion, GroundFootprint, MovingBox,
                            MovingBoxRegion, PositionRegion, RayRegion, SphereRegion>);
-static_assert(isSameForAll<RadiusSearch, Grid, Neighbours, Pairs, Sweeps>);
-static_assert(isSameForAll<Culler, Picked, Radar, RadarWindow, RarestColour, Sight, Terrain, View,
+static_assert(isSameForAll<Grid, Neighbours, Pairs, RadiusSearch, Sweeps>);
+static_assert(isSameForAll<Culler, Picked, Radar, RadarWindow, RarestColour, Sight, Terrain, Camera,
                            Viewer, SightRegion, Zone, Zones>);
 static_assert(isSameForAll<Body, ObservedScene, Observers, Simulation>);
 static_assert(alignof(SceneEffects) <= 16);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
-//
+#pragma once
+
 // What comes of pairs: who touches, and how it bounces off.
 
 #include <integration/effects/detail/simulation_parts.hpp>
@@ -249,8 +250,5 @@ bool Simulation<Scalar>::collide(BodyId first, BodyId second, double restitution
            apart.squaredNorm() <= reach * reach &&
            bounce<false>(a, b, apart, bouncinessOf(restitution), between_);
 }
-
-template class Simulation<float>;
-template class Simulation<double>;
 
 }  // namespace hashphase

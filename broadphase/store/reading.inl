@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Zlib
+#pragma once
 
 // What queries read between updates, and what they build for that: the filing of many changes, and the
 // trees of rays. Each is built by the first query that needs it, under one lock.
@@ -184,30 +185,5 @@ void Store<Scalar>::growTrees(const Reading& reading) const {
         }
     });
 }
-
-template std::uint64_t Store<float>::worthFiling() const noexcept;
-template auto Store<float>::beginReading() const -> Reading;
-template auto Store<float>::beginReadingInOrder() const -> Reading;
-template auto Store<float>::beginReadings(std::size_t) const -> Reading;
-template std::uint64_t Store<float>::countRead(std::size_t) const noexcept;
-template void Store<float>::expectQueries(std::size_t) const;
-template void Store<float>::mendTables() const;
-template void Store<float>::fileFresh(Lock);
-template void Store<float>::takeFresh() noexcept;
-template void Store<float>::dropList() noexcept;
-template void Store<float>::forgetErased() noexcept;
-template void Store<float>::growTrees(const Reading&) const;
-template std::uint64_t Store<double>::worthFiling() const noexcept;
-template auto Store<double>::beginReading() const -> Reading;
-template auto Store<double>::beginReadingInOrder() const -> Reading;
-template auto Store<double>::beginReadings(std::size_t) const -> Reading;
-template std::uint64_t Store<double>::countRead(std::size_t) const noexcept;
-template void Store<double>::expectQueries(std::size_t) const;
-template void Store<double>::mendTables() const;
-template void Store<double>::fileFresh(Lock);
-template void Store<double>::takeFresh() noexcept;
-template void Store<double>::dropList() noexcept;
-template void Store<double>::forgetErased() noexcept;
-template void Store<double>::growTrees(const Reading&) const;
 
 }  // namespace hashphase::detail

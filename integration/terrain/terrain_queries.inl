@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Zlib
+#pragma once
+
+// What a terrain answers: terrain.cpp compiles it.
+
 #include <integration/terrain/terrain.hpp>
 
 #include <broadphase/core/fixed_list.hpp>
@@ -364,19 +368,5 @@ typename Terrain<Scalar>::Found Terrain<Scalar>::restingHeight(const Point& cent
     }
     return found;
 }
-
-template QueryCost Terrain<float>::surfacesBelow(std::span<const Point>, std::span<Found>,
-                                                 ParallelFor) const;
-template QueryCost Terrain<float>::restingHeights(std::span<const Point>, std::span<const float>,
-                                                  std::span<Found>, ParallelFor) const;
-template Terrain<float>::Found Terrain<float>::surfaceBelow(const Point&, QueryCost*) const;
-template Terrain<float>::Found Terrain<float>::restingHeight(const Point&, float, QueryCost*) const;
-template QueryCost Terrain<double>::surfacesBelow(std::span<const Point>, std::span<Found>,
-                                                  ParallelFor) const;
-template QueryCost Terrain<double>::restingHeights(std::span<const Point>, std::span<const double>,
-                                                   std::span<Found>, ParallelFor) const;
-template Terrain<double>::Found Terrain<double>::surfaceBelow(const Point&, QueryCost*) const;
-template Terrain<double>::Found Terrain<double>::restingHeight(const Point&, double,
-                                                               QueryCost*) const;
 
 }  // namespace hashphase

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Zlib
+#pragma once
 
 // How an update files what has changed, in passes.
 
@@ -240,28 +241,5 @@ void Store<Scalar>::wakeAll() noexcept {
     tables.isFresh.store(false, std::memory_order_relaxed);
     tables.mustRefileMobile.store(true, std::memory_order_relaxed);
 }
-
-template void Store<float>::stage(ParallelFor, bool);
-template bool Store<float>::settleIdle(ParallelFor);
-template void Store<float>::listResting();
-template void Store<float>::fileResting(ParallelFor);
-template void Store<float>::fileMobile(ParallelFor);
-template void Store<float>::fileSweeping(ParallelFor);
-template void Store<float>::clearSweeping() noexcept;
-template void Store<float>::relistMobile() noexcept;
-template UpdateCost Store<float>::endUpdate() noexcept;
-template void Store<float>::wakeAll() noexcept;
-template void Store<float>::forgetLastUpdate() noexcept;
-template void Store<double>::stage(ParallelFor, bool);
-template bool Store<double>::settleIdle(ParallelFor);
-template void Store<double>::listResting();
-template void Store<double>::fileResting(ParallelFor);
-template void Store<double>::fileMobile(ParallelFor);
-template void Store<double>::fileSweeping(ParallelFor);
-template void Store<double>::clearSweeping() noexcept;
-template void Store<double>::relistMobile() noexcept;
-template UpdateCost Store<double>::endUpdate() noexcept;
-template void Store<double>::wakeAll() noexcept;
-template void Store<double>::forgetLastUpdate() noexcept;
 
 }  // namespace hashphase::detail

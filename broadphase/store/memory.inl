@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Zlib
+#pragma once
 
 // What a grid holds, and what it gives back after a peak: what only an update, a shift or a ray needs,
 // room for more than there are, and indices at the end that have no proxy.
@@ -107,16 +108,5 @@ void Store<Scalar>::releaseMemory() noexcept {
         }
     });
 }
-
-template std::size_t Store<float>::memoryBytes() const noexcept;
-template std::size_t Store<float>::rayMemoryBytes() const noexcept;
-template void Store<float>::releaseRayMemory() noexcept;
-template void Store<float>::releaseAfterPeak() noexcept;
-template void Store<float>::releaseMemory() noexcept;
-template std::size_t Store<double>::memoryBytes() const noexcept;
-template std::size_t Store<double>::rayMemoryBytes() const noexcept;
-template void Store<double>::releaseRayMemory() noexcept;
-template void Store<double>::releaseAfterPeak() noexcept;
-template void Store<double>::releaseMemory() noexcept;
 
 }  // namespace hashphase::detail

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Zlib
+#pragma once
 
 // Where many boxes share a cell, because it is much larger than they are, a search would have to read
 // them all; when they are sorted, only what is near along the axis. Those that lie at one place, where no
@@ -145,20 +146,5 @@ std::optional<SortedBucket<Scalar>> Table<Scalar>::sortedAlong(
     sorted.reach = census.reach(crowd.first(sorted.firstLong), boxes, *axis);
     return sorted;
 }
-
-template void Table<float>::sortCrowdedBuckets(std::span<const std::uint32_t>,
-                                               std::span<const PaddedBox<float>>,
-                                               const ProxyGroups*);
-template void Table<float>::sortBucket(std::uint32_t, bool, std::span<const std::uint32_t>,
-                                       std::span<const PaddedBox<float>>, const ProxyGroups*);
-template std::optional<SortedBucket<float>> Table<float>::sortedAlong(
-    std::span<std::uint32_t>, std::span<const PaddedBox<float>>);
-template void Table<double>::sortCrowdedBuckets(std::span<const std::uint32_t>,
-                                                std::span<const PaddedBox<double>>,
-                                                const ProxyGroups*);
-template void Table<double>::sortBucket(std::uint32_t, bool, std::span<const std::uint32_t>,
-                                        std::span<const PaddedBox<double>>, const ProxyGroups*);
-template std::optional<SortedBucket<double>> Table<double>::sortedAlong(
-    std::span<std::uint32_t>, std::span<const PaddedBox<double>>);
 
 }  // namespace hashphase::detail

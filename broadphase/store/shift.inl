@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Zlib
+#pragma once
 
 // A shift of the origin. Most boxes can be shifted without rounding, and then nothing else changes:
 // they stay in their cells, at rest, and pairs. Those that are rounded count as moved.
@@ -97,14 +98,5 @@ void Store<Scalar>::shiftTables(const Point& shift) {
         wakeAll();
     }
 }
-
-template std::size_t Store<float>::shiftOrigin(const Point&);
-template std::size_t Store<double>::shiftOrigin(const Point&);
-template void Store<float>::keepBoxesAtUpdate(const Point&);
-template bool Store<float>::shiftRecord(std::uint32_t, const Point&) noexcept;
-template void Store<double>::keepBoxesAtUpdate(const Point&);
-template bool Store<double>::shiftRecord(std::uint32_t, const Point&) noexcept;
-template void Store<float>::shiftTables(const Point&);
-template void Store<double>::shiftTables(const Point&);
 
 }  // namespace hashphase::detail

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
-//
+#pragma once
+
 // From a declaration and the bodies to the phases of a frame, and to the tables that they need.
 
 #include <integration/effects/detail/simulation_parts.hpp>
@@ -213,8 +214,5 @@ std::string Simulation<Scalar>::validate() const {
     }
     return error;
 }
-
-template class Simulation<float>;
-template class Simulation<double>;
 
 }  // namespace hashphase

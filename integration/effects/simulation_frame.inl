@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
-//
+#pragma once
+
 // The phases of a frame, but for those of contacts. Each loops over those that it is about; what is not
 // declared is not among the phases.
 
@@ -370,8 +371,5 @@ void Simulation<Scalar>::observe() {
     const Scalar moved = changedOutside_ ? std::numeric_limits<Scalar>::infinity() : farthestMove_;
     cost_ += observers_.observe(observed(), moved, *parallelFor_);
 }
-
-template class Simulation<float>;
-template class Simulation<double>;
 
 }  // namespace hashphase

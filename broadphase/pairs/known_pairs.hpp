@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What pairs remember of candidates from one call to the next.
+//
+// Two proxies that overlap, or touch on their ways, and may pair by their groups are a candidate, which the
+// filter accepts or refuses. A pair is a candidate that was accepted. Which candidates there are follows
+// from the boxes, so that it is enough to know which of them the filter refused; where those are too many,
+// the pairs are remembered in their place.
+
+#include <broadphase/core/flat_set.hpp>
+#include <broadphase/core/pair_key_set.hpp>
+#include <broadphase/pairs/pair_key.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace hashphase::detail {
+
+/// What is known where many share a cell.
+struct Pile {
+    // In place of the candidates that are watched, refused or kept, where those would be too many.
+    FlatSet pairs;
+    bool hasPairs = false;
+    std::uint32_t updatesUntilLook = 0;  // whether they still would
+    std::uint32_t lookInterval = 0;
+
+    // Of what this call has asked in parts, whose answer makes or ends a pair.
+    std::vector<PairKey> turned;
+    // What this call has asked as a sample, and the answers by their numbers.
+    FlatSet sampled;
+    std::vector<char> sampledAccepted;
+
+    [[nodiscard]] std::size_t memoryBytes() const noexcept {
+        return sizeof(*this) + pairs.memoryBytes() + sampled.memoryBytes() +
+               turned.capacity() * sizeof(PairKey) + sampledAccepted.capacity();
+    }
+};
+
+/// Candidates of which one swept at the last update, and that touched on their ways; sorted. All the others
+/// follow from boxes: what sweeps has none there, see Population::standingBox().
+struct SweptPairs {
+    std::vector<PairKey> atUpdate;
+    std::vector<PairKey> now;  // the same of the update under way
+    std::vector<PairKey>
+        bySecond;  // atUpdate with the halves exchanged, sorted, when it is asked for
+
+    [[nodiscard]] bool contains(PairKey key) const noexcept {
+        return std::binary_search(atUpdate.begin(), atUpdate.end(), key);
+    }
+    [[nodiscard]] bool touchNow(PairKey key) const noexcept {
+        return std::binary_search(now.begin(), now.end(), key);
+    }
+    /// Ends the update under way.
+    void advance() noexcept {
+        atUpdate.swap(now);
+        bySecond.clear();
+    }
+    [[nodiscard]] std::size_t memoryBytes() const noexcept {
+        return (atUpdate.capacity() + now.capacity() + bySecond.capacity()) * sizeof(PairKey);
+    }
+};
+
+struct KnownPairs {
+    FlatSet refused;             // candidates that the filter refused, unless they are ...
+    FlatSet refusedAtRest;       // ... both at rest
+    std::unique_ptr<Pile> pile;  // made when many share a cell
+
+    // Pairs whose groups have been set since, so that they may not pair any more: they overlap. Those
+    // that were filtered again count as refused until the next update.
+    FlatSet kept;
+    PairKeySet immediate;  // candidates decided since the last update
+    SweptPairs swept;
+    std::size_t count = 0;  // of pairs
+
+    /// Whether the pairs are remembered in place of what was refused.
+    [[nodiscard]] bool arePairs() const noexcept { return pile != nullptr && pile->hasPairs; }
+    /// Whether it is one of the pairs that are remembered.
+    [[nodiscard]] bool isRemembered(PairKey key) const noexcept {
+        return arePairs() && pile->pairs.contains(key);
+    }
+    [[nodiscard]] bool isRefused(PairKey key) const noexcept {
+        return arePairs() ? !pile->pairs.contains(key)
+                          : refused.contains(key) || refusedAtRest.contains(key);
+    }
+    [[nodiscard]] std::size_t refusedCount() const noexcept {
+        return refused.size() + refusedAtRest.size();
+    }
+
+    /// How many candidates are remembered, and for how many there is room.
+    [[nodiscard]] std::size_t size() const noexcept {
+        return refusedCount() + immediate.size() + (pile != nullptr ? pile->pairs.size() : 0);
+    }
+    [[nodiscard]] std::size_t capacity() const noexcept {
+        return refused.capacity() + refusedAtRest.capacity() + immediate.capacity() +
+               (pile != nullptr ? pile->pairs.capacity() : 0);
+    }
+    [[nodiscard]] std::size_t memoryBytes() const noexcept {
+        return refused.memoryBytes() + refusedAtRest.memoryBytes() + kept.memoryBytes() +
+               immediate.memoryBytes() + swept.memoryBytes() +
+               (pile != nullptr ? pile->memoryBytes() : 0);
+    }
+
+    /// Returns whether the candidate was refused.
+    bool forgetRefused(PairKey key) noexcept {
+        return refused.erase(key) != FlatSet::kNone || refusedAtRest.erase(key) != FlatSet::kNone;
+    }
+    /// Forgets a candidate that has ended. Returns whether it was a pair.
+    [[nodiscard]] bool end(PairKey key) noexcept {
+        const bool wasPair =
+            arePairs() ? pile->pairs.erase(key) != FlatSet::kNone : !forgetRefused(key);
+        count -= wasPair ? 1 : 0;
+        return wasPair;
+    }
+    /// A candidate becomes a pair. There is room for it.
+    void accept(PairKey key) noexcept {
+        if (arePairs()) {
+            pile->pairs.findOrInsert(key);
+        } else {
+            forgetRefused(key);
+        }
+        ++count;
+    }
+    /// One of two that rested, and were refused, has woken. There is room for it, or it throws.
+    void wake(PairKey key) {
+        if (refusedAtRest.contains(key)) {
+            refused.findOrInsert(key);
+            refusedAtRest.erase(key);
+        }
+    }
+};
+
+}  // namespace hashphase::detail

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+#include <broadphase/store/store.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace hashphase::detail {
+
+/// A table of boxes as of the last update: of what was mobile then, and of the first indexedWoken of what has
+/// left rest since. Either the grid's own, until it is filed again, or one of this object's.
+template <class Scalar>
+struct LastUpdate {
+    Store<Scalar>& store;
+    const Table<Scalar>* table = nullptr;       // null when neither has them
+    std::unique_ptr<Table<Scalar>> ownTable{};  // made when it is first needed; in old coordinates
+    std::size_t indexedWoken = 0;
+    std::uint64_t filing = 0;                   // Tables::filingCount and ...
+    std::uint64_t shift = 0;                    // ... Store::shiftCount at that time
+    std::vector<PaddedBox<Scalar>> boxes{};     // scratch
+    std::vector<std::uint32_t> proxyIndices{};  // scratch
+
+    [[nodiscard]] bool isOwn() const noexcept { return table == ownTable.get(); }
+
+    void forget() noexcept { table = nullptr; }
+    /// The given table has just been filed with the boxes.
+    void take(const Table<Scalar>& filed) noexcept {
+        table = &filed;
+        indexedWoken = 0;
+        filing = store.tables.filingCount;
+        shift = store.shiftCount;
+    }
+    /// The own table, for what the caller files in it.
+    [[nodiscard]] Table<Scalar>& scratchTable() {
+        if (ownTable == nullptr) {
+            ownTable = std::make_unique<Table<Scalar>>();
+        }
+        return *ownTable;
+    }
+    /// Files the boxes of these proxies as of the last update in the own table, and no others.
+    Table<Scalar>& file(const std::vector<std::uint32_t>& ofProxies, ParallelFor parallelFor,
+                        const ProxyGroups* groups) {
+        boxes.clear();
+        for (const std::uint32_t proxyIndex : ofProxies) {
+            boxes.push_back(padded(store.proxies.boxAtUpdate(proxyIndex)));
+        }
+        scratchTable().build(ofProxies, boxes, store.fixedSizes(), parallelFor, groups);
+        return *ownTable;
+    }
+    /// Afterwards `table` has all but `mostUnindexed` of the proxies that are mobile now, and that were
+    /// there at the last update. Each time that it is filed for more of them it has a quarter more, so
+    /// that this costs each of them little.
+    void index(std::size_t mostUnindexed);
+
+    void releaseMemory() noexcept {
+        table = isOwn() ? nullptr : table;
+        ownTable.reset();
+        freeArrays(boxes, proxyIndices);
+    }
+    [[nodiscard]] std::size_t memoryBytes() const noexcept {
+        return boxes.capacity() * sizeof(boxes[0]) +
+               proxyIndices.capacity() * sizeof(proxyIndices[0]) +
+               (ownTable != nullptr ? sizeof(*ownTable) + ownTable->memoryBytes() : 0);
+    }
+};
+
+template <class Scalar>
+void LastUpdate<Scalar>::index(std::size_t mostUnindexed) {
+    const bool isStale = shift != store.shiftCount ||
+                         (table == &store.tables.mobile && filing != store.tables.filingCount);
+    if (isStale) {
+        forget();
+    }
+    const Population<Scalar>& proxies = store.proxies;
+    if (table != nullptr && proxies.woken.size() - indexedWoken <= mostUnindexed) {
+        return;
+    }
+    // What has come since the last update had no box then.
+    const auto listed = proxies.mobile.begin();
+    proxyIndices.assign(listed, listed + static_cast<std::ptrdiff_t>(proxies.mobileAtUpdate));
+    proxyIndices.insert(proxyIndices.end(), proxies.woken.begin(), proxies.woken.end());
+    forget();
+    take(file(proxyIndices, serialFor, proxies.groupsOfAllAtUpdate()));
+    indexedWoken = proxies.woken.size();
+}
+
+}  // namespace hashphase::detail

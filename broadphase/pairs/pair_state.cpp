@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Zlib
+#include <broadphase/pairs/pair_state.hpp>
+
+#include <broadphase/diagnostics.hpp>
+
+namespace hashphase::detail {
+
+template <class Scalar>
+PairState<Scalar>::PairState(Store<Scalar>& itsStore, Sweeping<Scalar>* itsSweeping)
+    : store(itsStore), sweeping(itsSweeping) {
+    HASHPHASE_ASSERT(!store.hasPairs, "A grid has at most one Pairs.");
+    store.forgetLastUpdate();
+    store.hasPairs = true;
+}
+
+template <class Scalar>
+PairState<Scalar>::~PairState() {
+    store.endSweeps();
+    store.hasPairs = false;
+}
+
+template <class Scalar>
+void PairState<Scalar>::setSweeping(Sweeping<Scalar>* next) {
+    store.endSweeps();
+    sweeping = next;
+    if (sweeping != nullptr) {
+        sweeping->motions.markAllChanged();
+    }
+}
+
+template struct PairState<float>;
+template struct PairState<double>;
+
+}  // namespace hashphase::detail

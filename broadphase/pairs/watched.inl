@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// The candidates of which one is mobile: what was watched and parts, what is found in tables.
+
+#include <broadphase/pairs/pair_state.hpp>
+
+#include <broadphase/search/join.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace hashphase::detail {
+
+// Those candidates of which the boxes, numbered order[a] and order[b], do not overlap; valid until the
+// next call.
+template <class Scalar>
+std::span<const IndexPair> selectApart(SearchScratch<Scalar>& scratch,
+                                       std::span<const IndexPair> candidates,
+                                       const std::uint32_t* order, const PaddedBox<Scalar>* boxes,
+                                       ParallelFor parallelFor) {
+    constexpr std::size_t kGrain = 8192;
+    scratch.selected.clear();
+    KernelCost none;
+    const auto select = [&](std::size_t first, std::size_t last, PairSink& sink, KernelCost&) {
+        makeRoom(sink, last - first);
+        sink.next += kernels<Scalar>().selectApart(candidates.data() + first, last - first, order,
+                                                   boxes, sink.next);
+    };
+    scratch.parts.collect(parallelFor, candidates.size(), kGrain, scratch.selected, none, select);
+    return scratch.selected.pairs();
+}
+
+// Calls visit(key) for each candidate that was watched, before the frame files anew.
+template <class Scalar, class Visit>
+void forEachWatched(const PairState<Scalar>& pairs, const Visit& visit) {
+    const std::vector<std::uint32_t>& mobile = pairs.proxies.mobile;
+    for (const auto [a, b] : pairs.watched.amongMobile.pairs()) {
+        visit(pairKey(mobile[a], mobile[b]));
+    }
+    for (const auto [place, proxyIndex] : pairs.watched.toResting.pairs()) {
+        visit(pairKey(mobile[place], proxyIndex));
+    }
+}
+
+// Lists the entries of the mobile table that have changed, their proxies and their boxes.
+template <class Scalar>
+void listChanged(PairState<Scalar>& pairs) {
+    const Table<Scalar>& table = pairs.tables.mobile;
+    SearchScratch<Scalar>& scratch = pairs.scratch;
+    scratch.changedEntries.clear();
+    scratch.searchedIndices.clear();
+    scratch.bounds.clear();
+    for (std::uint32_t entry = 0; entry < table.size(); ++entry) {
+        const std::uint32_t proxyIndex = table.proxyIndex(entry);
+        if (pairs.proxies.changedNow(proxyIndex)) {
+            scratch.changedEntries.push_back(entry);
+            scratch.searchedIndices.push_back(proxyIndex);
+            scratch.bounds.push(table.box(entry));
+        }
+    }
+}
+
+// Finds all candidates that are to be watched, in the tables as they are.
+template <class Scalar>
+void watchAll(PairState<Scalar>& pairs) {
+    const Table<Scalar>& mobile = pairs.tables.mobile;
+    const Table<Scalar>& resting = pairs.tables.resting;
+    WatchedPairs& watched = pairs.watched;
+    PairParts& parts = pairs.scratch.parts;
+    const ProxyGroups* const groups = pairs.proxies.groupsOfAll();
+    const GroupsView view{groups, mobile.proxyIndices().data(), {}};
+    KernelCost cost;
+    watched.amongMobile.clear();
+    watched.carried.clear();
+    watched.toResting.clear();
+    joinTable(mobile, serialFor, parts, watched.amongMobile, cost, groups);
+    queryTable(resting, mobile.columns(), mobile.size(), serialFor, parts, watched.carried, cost,
+               groups != nullptr ? &view : nullptr);
+    for (const auto [entry, restingEntry] : watched.carried.pairs()) {
+        watched.toResting.push({entry, resting.proxyIndex(restingEntry)});
+    }
+    pairs.cost.boxesTested += cost.boxesTested;
+}
+
+// Calls visit(a, b) for every two that overlap and may pair, found from scratch.
+template <class Scalar, class Visit>
+void forEachOverlap(const PairState<Scalar>& pairs, const Visit& visit) {
+    pairs.store.mendTables();
+    const Table<Scalar>& mobile = pairs.tables.mobile;
+    const Table<Scalar>& resting = pairs.tables.resting;
+    const ProxyGroups* const groups = pairs.proxies.groupsOfAll();
+    KernelCost cost;
+    forOverlaps(mobile, groups, cost, visit);
+    forOverlaps(resting, groups, cost, visit);
+    const GroupsView view{groups, mobile.proxyIndices().data(), {}};
+    forOverlaps(
+        mobile.columns(), mobile.size(), resting, groups != nullptr ? &view : nullptr, cost,
+        [&](std::uint32_t entry, std::uint32_t other) { visit(mobile.proxyIndex(entry), other); });
+}
+
+}  // namespace hashphase::detail
