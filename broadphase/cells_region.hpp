@@ -11,18 +11,25 @@
 
 namespace hashphase {
 
-/// Every proxy whose box touches a cell that a ball's box touches: an estimate of who is in the ball
-/// for which no distance is computed (paper, "AI proximity decisions"; its loop over the cells left
-/// out the last of them, and where the ball was smaller than a cell, all). Key: 0.
+/// Every proxy whose box touches a cell that a ball's box touches: an estimate of which proxies are in the
+/// ball, without computing a distance. Key: 0.
 ///
-/// Finds everybody that PositionRegion(center, radius) and SphereRegion(center, radius) find, and
-/// beyond them only boxes that come nearer than radius + cellSize on each axis, but for rounding:
-/// nobody whose box is farther away than sqrt(3) * (radius + cellSize). Cells are cubes with corners
-/// at the multiples of `cellSize` [m]; with one that is 0 or less, NaN or infinite, the ball's box is
-/// taken as it is. Empty when the ball is.
+///     CollectCount count;
+///     grid.visit(CellsRegion<float>(center, 20, grid.cellSize()), count);
+///
+/// Finds every proxy that PositionRegion(center, radius) and SphereRegion(center, radius) find. Beyond these
+/// it finds only boxes that come nearer than radius + cellSize on each axis, but for rounding: no box that is
+/// farther away than sqrt(3) * (radius + cellSize).
+///
+/// After Hastings, Mesit and Guha, "Optimization of Large-Scale, Real-Time Simulations by Spatial Hashing",
+/// 2005, "AI proximity decisions". The loop there leaves out the last cells, and all cells where the ball is
+/// smaller than a cell.
 template <class Scalar>
 class CellsRegion {
 public:
+    /// The ball has its `center` and `radius` in [m]. Cells are cubes with corners at multiples of `cellSize`
+    /// [m]. With a cell size that is 0 or less, NaN or infinite, the ball's box is taken as it is. The region
+    /// is empty when the ball is: with a negative radius, a NaN, or a centre that is not finite.
     CellsRegion(const Vector3<Scalar>& center, Scalar radius, Scalar cellSize)
         : bounds_(PositionRegion<Scalar>(center, radius).bounds()) {
         const bool hasCells = cellSize > 0 && std::isfinite(cellSize);
@@ -37,9 +44,11 @@ public:
         }
     }
 
+    /// 0 where the box overlaps bounds(), else -1.
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept {
         return overlaps(bounds_, box) ? Scalar(0) : Scalar(-1);
     }
+    /// The box of all these cells [m]; NaN when the region is empty.
     [[nodiscard]] const Aabb<Scalar>& bounds() const noexcept { return bounds_; }
 
 private:

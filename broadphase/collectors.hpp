@@ -3,11 +3,20 @@
 
 // Collectors say what a query keeps. A collector has two members:
 //
-//   add(id, key)   takes a proxy that lies in the region, each at most once a query
-//   limit()        the largest key still wanted; below zero the query ends
+//   add(id, key)   takes a proxy that lies in the region; a query offers each proxy at most once
+//   limit()        returns the largest key still wanted; below zero the query ends
 //
-// Each lives on the caller's stack and serves one query on one thread. Queries take it as a variable,
-// which has the answer afterwards, not as a temporary.
+//     std::vector<ProxyId> found;
+//     CollectAll all(found);
+//     grid.visit(BoxRegion<float>{box}, all);  // the answer is in `found`
+//
+// Use      A collector lives on the caller's stack and serves one query on one thread. Pass a variable, not
+//          a temporary: the variable holds the answer after the query.
+// Keys     The region defines them (regions.hpp): 0, a squared distance [m^2], or a fraction of a way.
+// Own      Any class with these two members is a collector. add() gets keys of the grid's Scalar, limit()
+//          may return float or double. A collector that changes the grid may be offered a proxy again: see
+//          Callbacks in grid.hpp.
+// Filters  CollectIf (proxy_filter.hpp) leaves out proxies before another collector sees them.
 
 #include <broadphase/proxy_id.hpp>
 
@@ -22,8 +31,8 @@
 
 namespace hashphase {
 
-/// Appends every proxy found to a vector of the caller's. The order follows the grid's memory;
-/// sort where order matters.
+/// Appends every proxy found to the caller's vector, which keeps what it held and must outlive the
+/// collector. The order follows the grid's memory; sort where order matters.
 class CollectAll {
 public:
     explicit CollectAll(std::vector<ProxyId>& found) noexcept : found_(&found) {}
@@ -40,7 +49,7 @@ private:
     std::vector<ProxyId>* found_;
 };
 
-/// Counts.
+/// Counts the proxies found. Serves several queries, too: it goes on counting.
 class CollectCount {
 public:
     template <class Scalar>
@@ -50,30 +59,38 @@ public:
     [[nodiscard]] static constexpr double limit() noexcept {
         return std::numeric_limits<double>::infinity();
     }
+    /// Number of proxies found so far.
     [[nodiscard]] std::size_t count() const noexcept { return count_; }
 
 private:
     std::size_t count_ = 0;
 };
 
-/// Stops at the first proxy found, whichever it is; null when there is none.
+/// Ends the query at the first proxy found. Answers "is there any?" at the least cost; which one is found
+/// follows the grid's memory, not distance. For the nearest one take CollectClosest.
 class CollectAny {
 public:
     template <class Scalar>
     void add(ProxyId id, Scalar /*key*/) noexcept {
         found_ = id;
     }
+    /// Infinity until a proxy is found, then -1.
     [[nodiscard]] double limit() const noexcept {
         return found_.isNull() ? std::numeric_limits<double>::infinity() : -1.0;
     }
+    /// The proxy found; null when there is none.
     [[nodiscard]] ProxyId found() const noexcept { return found_; }
 
 private:
     ProxyId found_;
 };
 
-/// Keeps the proxy with the smallest key (of equal ones the smallest id), and shrinks the search to
-/// what is at least as near.
+/// Keeps the proxy with the smallest key; of equal keys, the smallest id. Shrinks the search: the query
+/// leaves out what is farther away than the closest proxy so far. With a SphereRegion it finds the nearest
+/// box, with a RayRegion the first box that the ray enters:
+///
+///     CollectClosest<float> first;
+///     grid.visit(RayRegion<float>(from, to), first);  // first.key(): the fraction of the way
 template <class Scalar>
 class CollectClosest {
 public:
@@ -83,8 +100,11 @@ public:
             key_ = key;
         }
     }
+    /// The smallest key so far.
     [[nodiscard]] Scalar limit() const noexcept { return key_; }
+    /// The closest proxy; null when none was found.
     [[nodiscard]] ProxyId found() const noexcept { return found_; }
+    /// The key of found(), in the region's measure; infinity when none was found.
     [[nodiscard]] Scalar key() const noexcept { return key_; }
 
 private:
@@ -92,21 +112,27 @@ private:
     Scalar key_ = std::numeric_limits<Scalar>::infinity();
 };
 
-/// A proxy and its key in the region where it was found.
+/// A proxy and its key in the region where it was found. Ordered by key, then by id.
 template <class Scalar>
 struct KeyedProxy {
-    Scalar key = 0;
+    Scalar key = 0;  ///< in the region's measure
     ProxyId id;
 
     friend constexpr auto operator<=>(const KeyedProxy&, const KeyedProxy&) = default;
 };
 
-/// Keeps the `count` proxies with the smallest keys (of equal ones those with the smallest ids), in a
-/// vector of the caller's, which is emptied first, and shrinks the search to what may still displace
-/// one of them. Cost: O(log count) for each that is kept.
+/// Keeps the `count` proxies with the smallest keys; of equal keys, those with the smallest ids. Shrinks the
+/// search to proxies that may still displace one of them. Cost: O(log count) for each proxy kept.
+///
+///     std::vector<KeyedProxy<float>> nearest;
+///     CollectNearest<float> five(5, nearest);
+///     grid.visit(SphereRegion<float>(center, radius), five);
+///     for (const KeyedProxy<float>& found : five.sort()) { ... }
 template <class Scalar>
 class CollectNearest {
 public:
+    /// Keeps them in `nearest`, which is emptied here and must outlive the collector. With a count of 0
+    /// nothing is kept.
     CollectNearest(std::size_t count, std::vector<KeyedProxy<Scalar>>& nearest)
         : count_(count), nearest_(&nearest) {
         nearest_->clear();
@@ -124,6 +150,7 @@ public:
         nearest_->push_back(found);
         std::push_heap(nearest_->begin(), nearest_->end());
     }
+    /// Infinity until `count` proxies are kept, then the largest key among them.
     [[nodiscard]] Scalar limit() const noexcept {
         if (nearest_->size() < count_) {
             return std::numeric_limits<Scalar>::infinity();
@@ -131,7 +158,8 @@ public:
         return count_ == 0 ? Scalar(-1) : nearest_->front().key;
     }
 
-    /// Ends the search: sorts the vector, nearest first.
+    /// Sorts the vector, nearest first, and returns it. Call it once, after the query: until then the
+    /// vector is a heap. Fewer than `count` proxies when the region has fewer. Cost: O(count log count).
     std::span<const KeyedProxy<Scalar>> sort() {
         std::sort_heap(nearest_->begin(), nearest_->end());
         return *nearest_;
@@ -142,10 +170,12 @@ private:
     std::vector<KeyedProxy<Scalar>>* nearest_;  // a heap, the farthest on top
 };
 
-/// Sets a bit for every proxy found, by ProxyId::index: bit i % 64 of word i / 64 of a vector of the
-/// caller's, which grows where that is needed and is not cleared. The cheapest list of many.
+/// Sets a bit for every proxy found: bit i % 64 of word i / 64 stands for the ProxyId::index i. The cheapest
+/// list of many proxies. Grid::idAt() leads from an index back to the id.
 class CollectBits {
 public:
+    /// Sets bits in the caller's vector, which grows as needed. Bits already set stay set, so that several
+    /// queries can be united. Only the collector may resize the vector while it is in use.
     explicit CollectBits(std::vector<std::uint64_t>& bits) noexcept
         : bits_(&bits), words_(bits.data()), wordCount_(bits.size()) {}
 
@@ -170,8 +200,8 @@ private:
 };
 
 namespace detail {
-/// Whether a key is that of something in the region, and no larger than the collector's limit, which
-/// may be of the other precision.
+/// True when the key is that of a box in the region (0 or more) and no larger than the collector's limit.
+/// The limit may be of the other precision.
 template <class Scalar, class Collector>
 [[nodiscard]] bool isWanted(Scalar key, const Collector& collector) {
     const auto limit = collector.limit();

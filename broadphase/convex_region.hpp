@@ -12,56 +12,56 @@
 
 namespace hashphase {
 
-/// How much of a box has to be in a volume.
+/// How much of a box has to be in a volume: any point (touching), or the whole box (inside).
 enum class Containment : std::uint8_t { touching, inside };
 
-/// Which boxes touch a volume. Exactly those that share a point with it; or those of which no plane of
-/// the volume has all outside, nor one of its outline along the x axis: that is less work, and finds a
-/// few more near the volume's edges.
+/// Which boxes touch a volume. exact: the boxes that share a point with it. byPlanes: the boxes that no plane
+/// has wholly outside, of the volume's own planes and of its outline along the x axis. byPlanes takes less
+/// time, and finds a few more boxes near the volume's edges.
 enum class Touch : std::uint8_t { exact, byPlanes };
 
-/// Everything that touches a convex volume, or lies wholly inside: the points p with
-/// plane.signedDistance(p) >= 0 for each of its planes. Key: 0. Cells that are wholly inside are taken
-/// without a test of their boxes; a query costs at most one pass over all boxes, as Grid::visit() says.
+/// Every box that touches a convex volume, or lies wholly inside. The volume is the set of points p with
+/// plane.signedDistance(p) >= 0 for each plane. Key: 0. Cells that lie wholly inside are taken without a test
+/// of their boxes; a query costs at most one pass over all boxes, as Grid::visit() says.
 ///
 /// Closed, and rounding errs to the side of a hit: by about 1e-6 of the coordinates' size in single
-/// precision, 1e-9 in double. Volumes may be unbounded; no planes at all are all of space. A volume
-/// without a point, or with a plane that is NaN or has an infinite normal, is empty.
+/// precision, 1e-9 in double. A volume may be unbounded; without planes it is all of space. A volume without
+/// a point, or with a plane that is NaN or has an infinite normal, is empty.
 template <class Scalar>
 class HASHPHASE_BROADPHASE_EXPORT ConvexRegion {
 public:
     using Plane = Eigen::Hyperplane<Scalar, 3>;
     static constexpr std::size_t kMostPlanes = detail::kMostOwnPlanes;
 
-    /// At most kMostPlanes planes (asserted), their normals of any length. Cost: some microseconds
-    /// for a frustum; grows with the fourth power of the number of planes.
+    /// Takes at most kMostPlanes planes (asserted), which face inwards, with normals of any length. Cost:
+    /// some microseconds for a frustum; grows with the fourth power of the number of planes.
     explicit ConvexRegion(std::span<const Plane> planes,
                           Containment containment = Containment::touching,
                           Touch touch = Touch::exact);
 
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept;
 
-    /// True when nothing has a key.
+    /// True when no box has a key.
     [[nodiscard]] bool isEmpty() const noexcept { return isEmpty_; }
 
-    /// True when every point of `other` lies inside of this volume, and at least `margin` [m] away from
-    /// each of its planes. What rounding leaves in doubt is not, nor is a volume without corners.
+    /// True when every point of `other` lies inside of this volume, and at least `margin` [m] away from each
+    /// of its planes. False where rounding leaves this in doubt, and where `other` has no corners.
     [[nodiscard]] bool contains(const ConvexRegion& other, Scalar margin = 0) const;
 
-    /// The volume with its planes moved outwards by `distance` [m]; it has all that lies within so much
-    /// of this one.
+    /// The volume with its planes moved outwards by `distance` [m]. It holds every point within that distance
+    /// of this volume.
     [[nodiscard]] ConvexRegion grownBy(Scalar distance) const;
 
     /// The same volume with Touch::exact.
     [[nodiscard]] ConvexRegion exact() const;
 
-    /// Whether they are made of the same planes, in the same order and for the same questions; false
-    /// for a plane that is NaN.
+    /// True when both have equal planes in the same order, and equal Containment and Touch. False for a plane
+    /// that is NaN.
     friend bool operator==(const ConvexRegion& a, const ConvexRegion& b) noexcept {
         return a.isSameAs(b);
     }
 
-    /// The planes given and those that were found to bound the volume as boxes see it, for grids.
+    /// For grids: the planes given, and more planes that bound the volume for boxes.
     [[nodiscard]] const detail::Volume<Scalar>& volume() const noexcept { return volume_; }
 
 private:

@@ -5,13 +5,12 @@
 //
 // Threads   The handlers may be called from any thread that uses the library. Replace them before
 //           other threads start.
-// Errors    A handler of messages does not throw. One of assertions may, to get away from misuse.
-// Messages  Bad data from outside (a NaN box) is kept out of harm's way and told once, in a
+// Errors    A message handler does not throw. An assertion handler may throw, to get away from misuse.
+// Messages  Bad data from outside (a NaN box) is set aside, where it does no harm, and told once, in a
 //           sentence; the default handler writes it to stderr.
-// Misuse    A broken precondition is an assertion. The default handler writes the sentence with its
-//           place to stderr and aborts. Assertions are compiled in when HASHPHASE_ENABLE_ASSERTS is
-//           1, which is so in every build type but Release and MinSizeRel: in RelWithDebInfo as well.
-//           HASHPHASE_ASSERTS of CMake says otherwise.
+// Misuse    A broken precondition is an assertion. The default handler writes the sentence with its place to
+//           stderr and aborts. Assertions are compiled in when HASHPHASE_ENABLE_ASSERTS is 1: in every build
+//           type but Release and MinSizeRel, unless CMake's HASHPHASE_ASSERTS says otherwise.
 
 #include <broadphase/export.hpp>
 

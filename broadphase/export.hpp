@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// What a shared library of hashphase offers, all else being hidden. Each library has such a header,
-// with a macro of its own: to DLLs it matters whose functions are meant. HASHPHASE_SHARED is 1 where
-// the libraries are shared ones, which their users are told by CMake and pkg-config, and
+// Macros for shared libraries: they mark what a library offers; all else is hidden. Each library has a header
+// like this, with a macro of its own, because DLLs import functions of others and export their own.
+// HASHPHASE_SHARED is 1 where the libraries are shared ones; CMake and pkg-config set it for their users.
 // hashphase_<component>_EXPORTS is set where that library itself is compiled.
 //
-// HASHPHASE_ONE_FOR_ALL stands before a variable of a thread in a header, of which all libraries of a
-// program are to see the same one. DLLs cannot share it, and have one each.
+// HASHPHASE_ONE_FOR_ALL stands before a thread_local variable in a header that all libraries of a program
+// share. DLLs cannot share it, and have one each.
 
-// Every public header leads here before anything that older compilers stumble over.
+// Every public header includes this one before any code that older standards reject.
 #if defined(_MSVC_LANG) ? _MSVC_LANG <= 201703L : __cplusplus <= 201703L
 #error "hashphase needs C++20: -std=c++20, /std:c++20, or target_compile_features(... cxx_std_20)."
 #endif
 
-// What is not set is 0, so that whoever asks the preprocessor asks about something that is defined.
+// Macros that are not set are 0, so that every #if asks about a defined macro.
 #ifndef HASHPHASE_SHARED
 #define HASHPHASE_SHARED 0
 #endif

@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
+// A reference to a function, as parameters of this library take it: cheaper than std::function, which owns
+// a copy.
+//
+//     void visitAll(FunctionRef<void(ProxyId)> visit);
+//     visitAll([&](ProxyId id) { ... });                     // right: the lambda lives until the call ends
+//     FunctionRef<void(ProxyId)> visit = [&](ProxyId) { };   // wrong: the lambda is gone after this line
+
 #include <broadphase/export.hpp>
 
 #include <memory>
 #include <type_traits>
 #include <utility>
 
-// Before a parameter that what is made of it refers to: Clang warns where it is a temporary that is gone
-// before that.
+// Marks a parameter to which the new object keeps a reference. Clang then warns where the argument is a
+// temporary that dies before the object.
 #if __has_cpp_attribute(clang::lifetimebound)
 #define HASHPHASE_LIFETIME_BOUND [[clang::lifetimebound]]
 #else
@@ -20,11 +27,13 @@ namespace hashphase {
 template <class Signature>
 class FunctionRef;
 
-/// A reference to anything callable, for parameters only: it must not outlive the call that it is
-/// passed to, nor the callable. To keep a lambda, keep it as `const auto`. Two pointers, no allocation.
+/// A reference to anything callable: a lambda, a function, a function object. For parameters only: it must
+/// outlive neither the call to which it is passed nor the callable. To keep a lambda, keep it as
+/// `const auto`. Size: two pointers. Allocates nothing. Never empty.
 template <class Result, class... Arguments>
 class FunctionRef<Result(Arguments...)> {
 public:
+    /// Refers to `callable`, which takes these arguments and returns a Result or what converts to it.
     template <class Callable>
         requires(!std::is_same_v<std::remove_cvref_t<Callable>, FunctionRef> &&
                  std::is_invocable_r_v<Result, Callable&, Arguments...>)
@@ -45,12 +54,14 @@ public:
         }
     }
 
+    /// Calls the callable, as a non-const one unless it is const itself. Passes on its exceptions. On several
+    /// threads at the same time if the callable allows that. Cost: a call through a pointer.
     Result operator()(Arguments... arguments) const {
         return invoke_(object_, std::forward<Arguments>(arguments)...);
     }
 
 private:
-    void* object_;
+    void* object_;  // the callable, or the address of the function
     Result (*invoke_)(void*, Arguments...);
 };
 

@@ -5,35 +5,31 @@
 //
 // A frame    move() whatever moved (or everything: an unchanged box costs a comparison), then
 //            update() once, or Pairs::update(), which does it for you.
-// Reads      Every change is visible to queries at once, with no call in between. Changes are kept in
-//            a list that queries read beside the tables. When that has cost a third of what filing does,
-//            a query files everything anew: changes and queries in turn cost about the least there is.
-//            Grids that are never updated, as in editors and servers, hold no more than there is, and at
-//            the last update was.
+// Reads      Every change is visible to queries at once, without a call in between. Queries read the list of
+//            changes beside the tables. When this has cost a third of what filing does, a query files all
+//            changes: changes and queries in turn cost about the least possible. Grids that are never
+//            updated, as in editors and servers, hold no more than the proxies of now and of the last update.
 // Threads    Queries are const and may run on any number of threads at the same time, and from
 //            within a collector. Everything else needs the grid for itself.
 // Units      metres, or any other unit of length used throughout.
 // Bad data   A box with a NaN is kept, found by nothing, counted by nanCount(), and reported once
 //            through the message handler. Infinite, huge and inverted boxes are answered exactly as
 //            overlaps() says.
-// Denormals  Boxes are compared as the thread's processor compares numbers: one that takes denormal
-//            numbers (nearer to 0 than 1.2e-38, or 2.2e-308) for 0 finds that more of these touch.
-//            All threads must agree on that where coordinates are denormal; elsewhere they need not,
-//            and the answers are the same.
-// Limits     2^28 proxies; who adds more is thrown std::length_error.
-// Callbacks  A collector may ask the grid, and change it, in a query of its own: what it removes is
-//            not offered any more; what it moves or adds may be offered again, as it is then, or not.
-//            After a change, no other thread asks until the query is over.
-//            Not so where many are dealt with at once, in visitEach(), in the queries of convex
-//            volumes, and in a PairFilter; update() and shiftOrigin() run within none of them.
-//            Asserted.
+// Denormals  Boxes are compared as the thread's processor compares numbers. A thread that takes denormal
+//            numbers (nearer to 0 than 1.2e-38, or 2.2e-308) for 0 finds that more such boxes touch. Where
+//            coordinates are denormal, all threads must agree on that; elsewhere the answers are the same.
+// Limits     2^28 proxies. Throws std::length_error beyond.
+// Callbacks  A collector may ask the grid, and change it, in a query of its own. A proxy that it removes is
+//            not offered any more; a proxy that it moves or adds may be offered again, by its new box, or
+//            not. After a change, no other thread asks until the query is over. Within visitEach(), queries
+//            of convex volumes and a PairFilter the grid must not change; update() and shiftOrigin() must not
+//            run within any query. Asserted.
 // Memory     Where it runs out, std::bad_alloc comes from add(), reserve(), shiftOrigin(), update() and
-//            queries that file or grow; nothing is lost, and the call may be repeated. move() and
-//            remove() allocate nothing. Who asks much between changes and updates has a second table of
-//            what moves.
-// Misuse     An id that is null or stale is asserted, and does nothing; its box is NaN. So is one of
-//            another grid, unless this grid has a proxy of the same index and generation, for which it
-//            is taken.
+//            queries that file or grow; nothing is lost, and the call may be repeated. move() and remove()
+//            allocate nothing. Many queries between changes and updates need a second table of the mobile
+//            proxies.
+// Misuse     An id that is null or stale is asserted, and does nothing; its box is NaN. An id of another
+//            grid is, too, unless this grid has a proxy with the same index and generation.
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/collectors.hpp>
@@ -81,60 +77,60 @@ public:
 
     /// Throws std::invalid_argument with configError(config) when the configuration is bad.
     explicit Grid(const GridConfig& config = {});
-    /// The Pairs of the grid, if there are any, are destroyed before it (asserted).
+    /// Destroy the Pairs and Sweeps of the grid first (asserted).
     ~Grid();
     Grid(const Grid&) = delete;
     Grid& operator=(const Grid&) = delete;
 
     // --- Proxies ---------------------------------------------------------------------------------
 
-    /// Adds a proxy. The hint saves work for what will not move; for `groups` see setGroups(). Throws
-    /// std::length_error, and adds nothing, when there are 2^28 already. Cost: O(1) amortised.
+    /// Adds a proxy. The hint `mobility` saves work for proxies that will not move; for `groups` see
+    /// setGroups(). Throws std::length_error, and adds nothing, beyond 2^28 proxies. Cost: O(1) amortised.
     [[nodiscard]] ProxyId add(const Box& box, Mobility mobility = Mobility::mobile,
                               const ProxyGroups& groups = {});
 
-    /// Makes room for `count` proxies altogether, so that adding many neither moves anything on the
-    /// way nor fails for want of memory, until releaseUnusedMemory() gives it back. Throws
-    /// std::length_error for more than 2^28. Cost: O(count) where there is not room already.
+    /// Makes room for `count` proxies altogether. Up to that number, add() neither moves memory nor fails for
+    /// want of it, until releaseUnusedMemory() gives the room back. Throws std::length_error beyond 2^28.
+    /// Cost: O(count) where there is not room already.
     void reserve(std::size_t count);
 
-    /// Sets the proxy's box. Bit-equal to the present one: a comparison, and nothing is marked.
-    /// Cost: O(1) amortised.
+    /// Sets the proxy's box. A box that is equal to the present one, bit by bit, costs a comparison and marks
+    /// nothing. Cost: O(1) amortised.
     void move(ProxyId id, const Box& box);
 
-    /// Says with whom the proxy may pair, for Pairs; queries find it as before. Pairs neither tests nor
-    /// remembers two that may not, and does not ask its filter about them: where hundreds share a cell,
-    /// too, the cost follows those that may. Groups count from the next Pairs::update() on, for which
-    /// the proxy counts as changed: what may pair by then begins to, and a pair that stands stays one
-    /// until its boxes part, or until Pairs::refilter(). Where memory runs out, nothing has changed.
+    /// Says which proxies the proxy may pair with, for Pairs; queries find it as before. Pairs neither tests
+    /// nor remembers two proxies that may not pair, and does not ask its filter about them: the cost follows
+    /// the pairs that may be, even where hundreds share a cell. Groups count from the next Pairs::update()
+    /// on, for which the proxy counts as changed. New pairs begin there; a present pair lasts until its boxes
+    /// part, or until Pairs::refilter(). Where memory runs out, nothing has changed.
     /// Cost: O(1); the first call for other groups than ProxyGroups{}, O(proxies).
     void setGroups(ProxyId id, const ProxyGroups& groups);
 
-    /// As last set.
+    /// The groups last set.
     [[nodiscard]] ProxyGroups groups(ProxyId id) const;
 
     /// Removes the proxy; its id is never valid again. Cost: O(1).
     void remove(ProxyId id);
 
-    /// Removes every proxy and forgets all that came before: what is done next has the same results,
-    /// in the same order and at the same cost, as with a new grid, indices of ids included. Ids of
-    /// before stay invalid. Frees what is held but for 64 bytes an index (128 of doubles). Not for a
-    /// grid with Pairs, whose clear() does it, nor within a query: asserted, and does nothing.
+    /// Removes every proxy and forgets all that came before: the next calls have the same results, in the
+    /// same order and at the same cost, as with a new grid, indices of ids included. Old ids stay invalid.
+    /// Frees all memory but 64 bytes an index (128 in double precision). Not for a grid with Pairs, which
+    /// Pairs::clear() clears, nor within a query: asserted, and does nothing.
     /// Cost: O(indexLimit()).
     void clear();
 
-    /// Moves the origin of all coordinates to `shift` [m]: subtracts it from every box. What could be
-    /// subtracted without rounding, or is so large that the shift is lost in it, stays as it was: at
-    /// rest, or not, and in its pairs. The others count as moved, by what they were rounded; such
-    /// boxes may come to touch, but none that overlap can part. (A shift by multiples of a power of two
-    /// rounds least: a kilometre, say, or 1024 m, towards where things are.) Queries see it at once.
-    /// Returns how many boxes were rounded. A shift that is not finite is asserted, and does nothing.
-    /// Sweeps over this grid are shifted with it. Everything else that has coordinates of its own is for
-    /// the caller to shift: regions, zones, terrains. Where it throws, for want of memory, nothing has
-    /// changed.
+    /// Moves the origin of all coordinates to `shift` [m]: subtracts it from every box. Queries see it at
+    /// once. Returns how many boxes were rounded.
+    /// Boxes that were not rounded, or are so large that the shift is lost in them, keep their rest and their
+    /// pairs. Boxes that were rounded count as moved: some may come to touch, but none that overlap can part.
+    /// (A shift by multiples of a power of two rounds least: 1024 m, say, towards where things are.)
+    /// Sweeps over this grid are shifted with it. Shift all else that has coordinates yourself: regions,
+    /// zones, terrains. A shift that is not finite is asserted, and does nothing. Where memory runs out,
+    /// nothing has changed.
     /// Cost: up to three passes over all boxes; when cells had to change, an update(), or the next one's.
     std::size_t shiftOrigin(const Point& shift);
 
+    /// Whether the id names a proxy of this grid that was not removed.
     [[nodiscard]] bool contains(ProxyId id) const noexcept;
 
     /// The box last set, exactly.
@@ -143,21 +139,21 @@ public:
     /// Number of proxies alive, those with a NaN box included.
     [[nodiscard]] std::size_t size() const noexcept { return store_.proxies.size; }
 
-    /// ProxyId::index of every proxy, present and past, is below it: the length of an array by index. Falls
-    /// only where memory is given back, as far as there are no proxies: see releaseUnusedMemory().
+    /// The length of an array by ProxyId::index: the indices of all proxies, present and past, are below it.
+    /// Falls only where memory is given back: see releaseUnusedMemory().
     [[nodiscard]] std::uint32_t indexLimit() const noexcept {
         return static_cast<std::uint32_t>(store_.proxies.records.size());
     }
 
-    /// The proxy alive that has this index; null when there is none. From what is kept by index, as
-    /// CollectBits does, back to who is meant. Cost: O(1).
+    /// The proxy alive that has this index; null when there is none. Leads from data kept by index, such as
+    /// the bits of CollectBits, back to the proxy. Cost: O(1).
     [[nodiscard]] ProxyId idAt(std::uint32_t index) const noexcept {
         return index < indexLimit() && store_.proxies.isAlive(index) ? store_.proxies.idOf(index)
                                                                      : ProxyId{};
     }
 
-    /// Which proxies there are, as a number: another one after each add(), remove(), clear() and shift of the
-    /// origin, and never that of another grid. For who keeps what a query has found.
+    /// A number that stands for the set of proxies: it differs after each add(), remove(), clear() and shift
+    /// of the origin, and from that of any other grid. Tells whether a kept query result is out of date.
     [[nodiscard]] std::uint64_t populationNumber() const noexcept { return store_.proxies.number; }
 
     /// Number of proxies whose box has a NaN now.
@@ -171,19 +167,19 @@ public:
     // --- Queries ---------------------------------------------------------------------------------
 
     /// The one query: offers to `collector` every proxy whose box has a key in `region`, each once.
-    /// See regions.hpp and collectors.hpp. Cost: the cells that the region touches, returned as
-    /// data. However large or long the region, about one test for each proxy at most, up to 16 where
-    /// so many rows of cells share a bucket, and one more for each that has changed since it was
-    /// filed; none, but for these, for a region that is empty by a NaN (one for each, if the NaN is in
-    /// a ray's fatness). Of hundreds that share a cell, only the long ones and what is near along
-    /// an axis, where the region has bounds().
+    /// See regions.hpp and collectors.hpp. Returns the cost as data.
+    /// Cost: the cells that the region touches. However large or long the region, at most about one test for
+    /// each proxy (up to 16 where so many rows of cells share a bucket), and one more for each proxy that has
+    /// changed since it was filed. A region that is empty by a NaN costs only these (one test for each proxy,
+    /// if the NaN is in a ray's fatness). Where hundreds share a cell, a region with bounds() tests only the
+    /// long ones and those close to it along an axis.
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
 
-    /// visit() for many: collectors[i] takes what regions[i] finds, in any order; there are as many
-    /// of both (asserted). The collectors must not share anything when `parallelFor` is parallel.
-    /// Returns the sum of the costs, each within the bounds of visit(). Faster than one by one where
-    /// regions have bounds(), unless the collectors stop early.
+    /// visit() for many regions: collectors[i] takes the proxies of regions[i], in any order. Both spans have
+    /// the same length (asserted). The collectors must not share data when `parallelFor` is parallel. Returns
+    /// the sum of the costs, each within the bounds of visit(). Faster than single calls where regions have
+    /// bounds(), unless the collectors stop early.
     template <class Region, class Collector>
     QueryCost visitEach(std::span<const Region> regions, std::span<Collector> collectors,
                         ParallelFor parallelFor = serialFor) const;
@@ -193,17 +189,17 @@ public:
     [[nodiscard]] Scalar cellSize() const noexcept { return store_.tables.cellSize; }
 
     /// Files what has changed, if `count` queries would otherwise read more of the list of changes than
-    /// filing costs. visitEach() does it; for who makes many single queries on several threads, and wants
-    /// all of them to cost the same in every run. Cost: O(1), or that of an update().
+    /// filing costs. visitEach() does it by itself. Call it before many single queries on several threads, so
+    /// that they cost the same in every run. Cost: O(1), or that of an update().
     void expectQueries(std::size_t count) const { store_.expectQueries(count); }
 
-    /// Cell query: who is in the cell? Offers every proxy p with `cell` in cellsOf(p) to the
+    /// Cell query: which proxies are in the cell? Offers every proxy p with `cell` in cellsOf(p) to the
     /// collector. Cost: O(1) buckets; at most that of visit().
     template <class Collector>
     QueryCost visitCell(const std::array<std::int64_t, 3>& cell, Collector& collector) const;
 
-    /// The cell of a point: floor(point / cellSize()), at most 9e18 from 0, beyond which all is in the
-    /// last cell. The point must be finite (asserted).
+    /// The cell of a point [m]: floor(point / cellSize()) on each axis. The last cells, 9e18 from 0, hold all
+    /// that lies beyond. The point must be finite (asserted).
     [[nodiscard]] std::array<std::int64_t, 3> cellAt(const Point& point) const;
 
     /// Object query: which cells does the proxy's box touch? Its box must be finite (asserted).
@@ -212,32 +208,33 @@ public:
 
     // --- Frame -----------------------------------------------------------------------------------
 
-    /// Ends a frame: files what changed, and puts to rest what has not changed for a while.
-    /// Cost: a rebuild of the mobile proxies when one of them changed, nothing otherwise; at worst
-    /// O(n log n), which is that of sorting crowds. Not for a grid with Pairs, whose update() does it, nor
-    /// within a query: asserted, and does nothing. The result does not depend on `parallelFor`.
+    /// Ends a frame: files what changed, and puts to rest what has not changed for a while. Not for a grid
+    /// with Pairs, which Pairs::update() updates, nor within a query: asserted, and does nothing. The result
+    /// does not depend on `parallelFor`. Cost: a rebuild of the mobile proxies when one of them
+    /// changed, nothing otherwise; at worst O(n log n), to sort cells that very many proxies share.
     UpdateCost update(ParallelFor parallelFor = serialFor);
 
-    /// How often the mobile proxies have been filed: once by each update that found a change, and
-    /// between updates by queries, where those have read much of what has changed.
+    /// How often the mobile proxies have been filed: once by each update that found a change, and between
+    /// updates by queries that had read much of the list of changes.
     [[nodiscard]] std::uint64_t filingCount() const noexcept { return store_.tables.filingCount; }
 
     /// Bytes held, capacity included.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Those of them that only rays read; 0 before the first one.
+    /// Bytes that only rays read; 0 before the first ray. Part of memoryBytes().
     [[nodiscard]] std::size_t rayMemoryBytes() const noexcept;
 
-    /// Frees these; the next ray makes them anew.
+    /// Frees what only rays read; the next ray builds it again. Not within a query (asserted).
     void releaseRayMemory() noexcept;
 
-    /// Gives back what is not used: room for more proxies than there are, or than were reserved, and what
-    /// only the next update, shift or query would use, which takes it again. Indices at the end without a
-    /// proxy go, too: indexLimit() falls, and their old ids stay invalid; from then on new proxies take
-    /// the lowest free index first. A proxy with a high index keeps a record (64 bytes, or 128 in double
-    /// precision) for each index below. An update does it by itself when there has been room for more than
-    /// eight times as many, or eight times those reserved, in 256 updates in a row. Not within a query
-    /// (asserted). Cost: O(indexLimit()), and moving what is left.
+    /// Gives back unused memory: room for more proxies than there are, and scratch, which the next update,
+    /// shift or query takes again. Ends what reserve() has asked for.
+    /// Indices at the end without a proxy go, too: indexLimit() falls, and their old ids stay invalid; from
+    /// then on new proxies take the lowest free index first. A proxy with a high index keeps a record (64
+    /// bytes, or 128 in double precision) for each index below.
+    /// An update does it by itself when there has been room for more than eight times as many proxies, or
+    /// eight times those reserved, in 256 updates in a row. Not within a query (asserted). Cost:
+    /// O(indexLimit()), and moving what is left.
     void releaseUnusedMemory() noexcept;
 
     /// Says which invariant is broken, in a sentence; empty when all hold:
@@ -248,14 +245,14 @@ public:
 
     // --- For the library's own parts -------------------------------------------------------------
 
-    /// What the grid is made of. Of no use to others: it may change with any version.
+    /// What the grid is made of. It may change with any version.
     [[nodiscard]] detail::Store<Scalar>& store() noexcept { return store_; }
     [[nodiscard]] const detail::Store<Scalar>& store() const noexcept { return store_; }
     /// Whether the calling thread is within a query of this grid, or within its filter.
     [[nodiscard]] bool isWithinQuery() const noexcept {
         return detail::QueryScope::isWithin(&store_);
     }
-    /// False while the calling thread is within one that takes no changes: see Callbacks.
+    /// False while the calling thread is within a query that takes no changes: see Callbacks.
     [[nodiscard]] bool takesChanges() const noexcept {
         return !detail::QueryScope::forbidsChanges(&store_);
     }

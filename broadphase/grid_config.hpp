@@ -7,11 +7,11 @@
 
 namespace hashphase {
 
-/// Settings of a grid. The defaults work for any scene; change one only to reproduce a measurement
-/// or because one of yours says so.
+/// Settings of a grid. The defaults work for any scene. Change one only where a measurement of yours says so,
+/// or to reproduce one.
 struct GridConfig {
-    /// Edge of the finest cells [m]. 0 chooses the cell sizes from the sizes of the proxies and
-    /// chooses anew when the population changes. Valid: 0, or 1e-30 to 1e30.
+    /// Edge of the finest cells [m]. With 0 the grid chooses the cell sizes by the sizes of the proxies, and
+    /// chooses again when the population changes. Valid: 0, or 1e-30 to 1e30.
     double cellSize = 0;
 
     /// With a fixed cell size, each coarser level's cells are this many times larger. Valid: 2 to 64.
@@ -25,8 +25,8 @@ struct GridConfig {
 };
 
 /// Says what is wrong with `config` in a sentence that names the field and its valid range; empty
-/// when all is well. The constructors that take a configuration throw std::invalid_argument with
-/// this sentence; ask here first where exceptions are not wanted.
+/// when all is well. Constructors that take a configuration throw std::invalid_argument with this sentence;
+/// ask here first where exceptions are not wanted.
 [[nodiscard]] HASHPHASE_BROADPHASE_EXPORT std::string configError(const GridConfig& config);
 
 }  // namespace hashphase

@@ -3,12 +3,19 @@
 
 // Boxes that move along a straight line during a frame, and when two of them first touch.
 //
-// Time    runs from 0, where the boxes are as given, to 1, where each has moved by its whole
-//         displacement. Both ends count.
-// Closed  Boxes that touch for a moment only, at a face, an edge or a corner, do touch.
-// Exact   Whether they touch is decided without a rounding error, for single precision always, and
-//         for double between 1e-140 and 1e300 m. When they do is rounded to double precision.
-// Bad data  What has a NaN, or an infinite displacement, touches nothing.
+//     const MovingBox<float> bullet{box, velocity * seconds};
+//     if (const std::optional<double> time = firstContact(bullet, {wall})) { ... }
+//
+// Time      runs from 0, where the boxes are as given, to 1, where each has moved by its whole
+//           displacement. Both ends count.
+// Closed    Boxes that touch for a moment only, at a face, an edge or a corner, do touch.
+// Exact     Whether two boxes touch is decided without a rounding error: always in single precision, in
+//           double precision between 1e-140 and 1e300 m. The time is rounded to double precision.
+// Units     metres; times are fractions of the frame
+// Bad data  A box with a NaN touches nothing, nor does one with a NaN or infinite displacement.
+// Threads   values and pure functions; use them from any thread
+//
+// After Ericson, "Real-Time Collision Detection", 5.5.8, with the comparison made exact.
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/export.hpp>
@@ -22,14 +29,15 @@
 
 namespace hashphase {
 
-/// At the time t, `box` shifted by t * displacement [m].
+/// A box that moves: at the time t it is `box` shifted by t * displacement. By default it stands still.
 template <class Scalar>
 struct MovingBox {
-    Aabb<Scalar> box;
-    Vector3<Scalar> displacement = Vector3<Scalar>::Zero();
+    Aabb<Scalar> box;                                        ///< at the time 0 [m]
+    Vector3<Scalar> displacement = Vector3<Scalar>::Zero();  ///< from the time 0 to 1 [m]
 };
 
-/// The box around a moving box's way between two times [m], rounded outward.
+/// Returns a box around all places of the moving box between the times `from` and `to`, by default the whole
+/// frame [m]. Rounded outward: it is a little larger than the exact one, never smaller. Cost: O(1).
 template <class Scalar>
 [[nodiscard]] HASHPHASE_BROADPHASE_EXPORT Aabb<Scalar> sweptBounds(const MovingBox<Scalar>& moving,
                                                                    double from = 0, double to = 1);
@@ -42,7 +50,7 @@ template <class Scalar>
 
 namespace detail {
 
-/// firstContact(), slowly, whatever the numbers.
+/// As firstContact(), slower, and right where rounding would decide.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_BROADPHASE_EXPORT std::optional<double> firstContactExactly(
     const MovingBox<Scalar>& a, const MovingBox<Scalar>& b) noexcept;
@@ -54,8 +62,8 @@ inline constexpr double kTiniest = 0x1p-1000;
 
 }  // namespace detail
 
-/// The first time at which the two touch: 0 when they do from the start; nothing when they never do.
-/// Cost: some ten nanoseconds; half a microsecond where rounding would decide.
+/// Returns the first time at which the two boxes touch: 0 when they touch from the start, nothing when they
+/// never touch in the frame. Cost: some ten nanoseconds; half a microsecond where rounding would decide.
 template <class Scalar>
 [[nodiscard]] inline std::optional<double> firstContact(const MovingBox<Scalar>& a,
                                                         const MovingBox<Scalar>& b) noexcept {
@@ -97,19 +105,26 @@ template <class Scalar>
     return begin < end ? std::optional(begin) : std::nullopt;
 }
 
-/// What a moving box meets on its way. Key: the time of the first contact, by firstContact(). With
-/// CollectClosest, what is hit first.
+/// Every box that a moving box meets on its way. Key: the time of the first contact, by firstContact(). The
+/// boxes of the grid stand still. With CollectClosest a query finds the box that is hit first:
+///
+///     CollectClosest<float> hit;
+///     grid.visit(MovingBoxRegion<float>({box, displacement}), hit);  // at the time hit.key()
+///
+/// Where the moving box is a proxy of the grid, the query finds that proxy too: leave it out by a CollectIf.
 template <class Scalar>
 class HASHPHASE_BROADPHASE_EXPORT MovingBoxRegion {
 public:
+    /// Cost: O(1).
     explicit MovingBoxRegion(const MovingBox<Scalar>& moving);
 
+    /// The time of the first contact, rounded to Scalar, or -1 without a contact.
     [[nodiscard]] Scalar key(const Aabb<Scalar>& other) const noexcept {
         const std::optional<double> time = firstContact(moving_, MovingBox<Scalar>{other});
         return time ? static_cast<Scalar>(*time) : Scalar(-1);
     }
 
-    /// The way, a little thicker than the box: it is rounded, and key() is not.
+    /// The way as a ray that is a little thicker than the box: the ray is rounded, key() is not.
     [[nodiscard]] const RayRegion<Scalar>& segment() const noexcept { return segment_; }
 
 private:

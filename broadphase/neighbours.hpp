@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Who is near whom: all neighbours of all proxies at once, as agents ask in every frame. A query for
-// each of them looks at every pair twice, and at its surroundings anew; here boxes are grown by
-// half the distance and joined, as pairs are found.
+// Which proxies are near which: all neighbours of all proxies at once, as agents ask in every frame. A query
+// for each proxy would look at every pair twice. Here all boxes grow by half the distance, and one pass finds
+// those that overlap, as for pairs.
+//
+//     Neighbours<float> neighbours;
+//     for (const ProxyPair& pair : neighbours.find(grid, 5)) { ... }
 //
 // Threads   find() reads the grid, as queries do, and needs this object for itself.
+// Others    RadiusSearch (radius_search.hpp) lists positions within a radius, agent by agent.
 
 #include <broadphase/export.hpp>
 #include <broadphase/grid.hpp>
@@ -22,20 +26,21 @@ namespace hashphase {
 template <class Scalar>
 class HASHPHASE_BROADPHASE_EXPORT Neighbours {
 public:
-    /// Every two proxies of the grid whose boxes are at most `distance` [m] apart (closed, by the
-    /// straight line between the nearest points; 0 apart where they overlap), each pair once, in
-    /// any order. Valid until the next call. None for a negative or NaN distance. The result does
-    /// not depend on `parallelFor`. Cost: that of an update of the grid, and of the pairs; at most
-    /// that of comparing all with all. Gives back memory that has been room for more than eight times as
-    /// many proxies, or pairs, in 256 calls in a row.
+    /// Returns every two proxies of the grid whose boxes are at most `distance` [m] apart, each pair once, in
+    /// any order. The distance is that between the nearest points (closed), 0 where boxes overlap. A negative
+    /// or NaN distance finds no pair; a box with a NaN has no neighbours. The result does not depend on
+    /// `parallelFor`, and is valid until the next call.
+    /// Cost: as an update of the grid, and the pairs; at most that of comparing all with all. Gives back
+    /// memory that has been room for more than eight times as many proxies, or pairs, in 256 calls in a row.
     [[nodiscard]] std::span<const ProxyPair> find(const Grid<Scalar>& grid, Scalar distance,
                                                   ParallelFor parallelFor = serialFor) &;
 
     /// What the last find() cost; hits are pairs.
     [[nodiscard]] const QueryCost& lastCost() const noexcept { return cost_; }
+    /// Bytes held, capacity included.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Gives back all memory; what was found is not valid any more.
+    /// Gives back all memory. The pairs that find() returned are not valid any more.
     void releaseMemory() noexcept;
 
 private:

@@ -2,6 +2,11 @@
 #pragma once
 
 // Which overlapping proxies make a pair, and what an update tells of pairs.
+//
+//     const auto areEnemies = [&](ProxyId a, ProxyId b) { return team[a.index] != team[b.index]; };
+//     for (const ProxyPair& pair : pairs.update(areEnemies).born) { ... }
+//
+// Where groups and masks suffice, Grid::setGroups() costs less than a filter.
 
 #include <broadphase/export.hpp>
 #include <broadphase/function_ref.hpp>
@@ -18,15 +23,22 @@
 
 namespace hashphase {
 
-/// Says which overlapping proxies make a pair: a function that is asked about two of them, or one
-/// that is asked about many at once and sets accepted[i], given as 0, to 1 where asked[i] make a
-/// pair. Asked once when two proxies begin to overlap, in ascending order of ids; again, for candidates
-/// that it refused, whenever one of them has changed or refilter() is called; not about two that may not
-/// pair by their groups. Thousands at once may be asked about in parts, each in that order. May ask the
-/// grid, and must not change it (asserted). For parameters only, as FunctionRef.
+/// Says which overlapping proxies make a pair. Made of a function that is asked about two proxies and returns
+/// whether they make a pair, or of one that is asked about many pairs at once.
+///
+/// Asked     once when two proxies begin to overlap; again about a refused candidate when one of the two has
+///           changed; again about any candidate by refilter(). Never about two that may not pair by their
+///           groups.
+/// Order     ascending by ids. Thousands of candidates may come in parts, each part in that order.
+/// Threads   the thread that calls Pairs
+/// Misuse    The filter may ask the grid but must not change it (asserted).
+///
+/// For parameters only, as FunctionRef.
 class PairFilter {
 public:
+    /// Gets two ids, the one with the lower index first.
     using OfOne = FunctionRef<bool(ProxyId, ProxyId)>;
+    /// Sets accepted[i], given as 0, to 1 where asked[i] make a pair. Both spans have the same length.
     using OfMany = FunctionRef<void(std::span<const ProxyPair> asked, std::span<char> accepted)>;
 
     template <std::convertible_to<OfOne> Ask>
@@ -39,6 +51,8 @@ public:
     PairFilter(Ask&& ask HASHPHASE_LIFETIME_BOUND)  // NOLINT: conversion is its purpose
         : ask_(OfMany(ask)) {}
 
+    /// Asks about all pairs, in one call or one by one, and writes the answers to `accepted`, which is as
+    /// long and holds zeros.
     void operator()(std::span<const ProxyPair> asked, std::span<char> accepted) const {
         if (const auto* ofMany = std::get_if<OfMany>(&ask_)) {
             (*ofMany)(asked, accepted);
@@ -59,19 +73,19 @@ private:
     return true;
 }
 
-/// Sorted; what update() returns is valid until the next update(), the rest until the next call of
-/// another kind. A pair that died may name a proxy that was removed.
+/// The pairs that began and ended, each list sorted. Lists of update() are valid until the next update().
+/// Lists of findPairsNow() and of the refilter calls are valid until the next of these calls or update().
 struct PairChanges {
-    std::span<const ProxyPair> born;
-    std::span<const ProxyPair> died;
+    std::span<const ProxyPair> born;  ///< pairs now that were none before
+    std::span<const ProxyPair> died;  ///< pairs no more; may name a proxy that was removed
 };
 
 /// What an update cost.
 struct PairCost {
-    std::uint64_t boxesTested = 0;
-    /// Tested whether they still overlap: one of the two is mobile.
+    std::uint64_t boxesTested = 0;  ///< in all searches for candidates
+    /// Candidates tested whether they still overlap: those of which one proxy is mobile.
     std::uint64_t pairsWatched = 0;
-    UpdateCost grid;
+    UpdateCost grid;  ///< what the update of the grid cost
 };
 
 }  // namespace hashphase

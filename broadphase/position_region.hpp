@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Where a proxy is when it counts as a point: agents measure from position to position, where
-// SphereRegion measures to the box.
+// Where a proxy is when it counts as a point. Agents measure from position to position; SphereRegion
+// (regions.hpp) measures from a point to the box.
+//
+//     CollectCount neighbours;
+//     grid.visit(PositionRegion<float>(positionOf(grid.box(agent)), 10), neighbours);  // itself included
+//
+// Units     metres
+// Bad data  A box with a NaN, an inverted or an infinite box has no position: no ball finds it.
+// Threads   values and pure functions; use them from any thread
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/geometry/unit_scale.hpp>
@@ -15,8 +22,8 @@
 
 namespace hashphase {
 
-/// A box's position: its centre, which lies in the closed box and does not overflow. NaN on all
-/// axes for a box that has none: with a NaN, inverted, or infinite on one side of an axis or both.
+/// Returns the position of a box: its centre [m], which lies in the closed box and does not overflow. NaN on
+/// all axes for a box without a position: with a NaN, inverted, or infinite on any side. Cost: O(1).
 template <class Scalar>
 [[nodiscard]] Vector3<Scalar> positionOf(const Aabb<Scalar>& box) noexcept {
     Vector3<Scalar> position;
@@ -35,13 +42,14 @@ template <class Scalar>
     return position;
 }
 
-/// Every proxy whose position is within `radius` [m] of `center` (closed ball). Key: squared
-/// distance [m^2] between the two, which may round to 0 or infinity. A proxy without a position is
-/// in no ball; one so far away that the distance overflows is in an infinite one only. A negative
+/// Every proxy whose position is within `radius` [m] of `center` (closed ball). Key: squared distance [m^2]
+/// between position and centre, which may round to 0 or infinity. A proxy without a position is in no ball. A
+/// proxy so far away that the distance overflows is only in a ball with an infinite radius. A negative
 /// radius, a NaN, or a centre that is not finite makes the region empty.
 template <class Scalar>
 class PositionRegion {
 public:
+    /// The ball around `center` [m].
     PositionRegion(const Vector3<Scalar>& center, Scalar radius)
         : center_(center), radius_(radius), scale_(detail::unitScale(radius)) {
         if (!center.allFinite()) {
@@ -49,11 +57,12 @@ public:
         }
     }
 
+    /// The squared distance [m^2] to the position of the box, or -1 outside of the ball.
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept {
         return keyAt(positionOf(box));
     }
 
-    /// The key of a box that has this position.
+    /// The key of a box with this position [m]; -1 for a NaN.
     [[nodiscard]] Scalar keyAt(const Vector3<Scalar>& position) const noexcept {
         Scalar squared = 0;
         Scalar scaledSquared = 0;
@@ -68,6 +77,7 @@ public:
         return reach >= 0 && scaledSquared <= reach * reach ? squared : Scalar(-1);
     }
 
+    /// The cube around the ball, rounded outward; NaN when the region is empty.
     [[nodiscard]] Aabb<Scalar> bounds() const noexcept {
         using Limits = std::numeric_limits<Scalar>;
         if (!(radius_ >= 0)) {
@@ -81,7 +91,9 @@ public:
         return {center_ - half, center_ + half};
     }
 
+    /// As given [m].
     [[nodiscard]] const Vector3<Scalar>& center() const noexcept { return center_; }
+    /// As given [m], or NaN where the centre is not finite.
     [[nodiscard]] Scalar radius() const noexcept { return radius_; }
 
 private:

@@ -8,13 +8,15 @@
 
 namespace hashphase {
 
-/// Says whether a query may find a proxy: by group and mask (integration/bullet/group_filter.hpp), by
-/// team, by anything that the caller keeps by ProxyId::index. Asked about what lies in the region
-/// only. Queries that run on several threads ask on all of them.
+/// Says whether a query may find a proxy: by group and mask (integration/bullet/group_filter.hpp), by team,
+/// or by any data that the caller keeps by ProxyId::index. Asked only about proxies in the region. Queries
+/// that run on several threads ask on all of them.
 ///
-/// For parameters only: it refers to the function that it is made of, and keeps no copy. Keep the function:
-/// `const auto enemies = [&](ProxyId id) { ... };`. As `const ProxyFilter enemies = [&] ...` it would be gone
-/// at the end of the line (Clang warns).
+/// For parameters only: a filter refers to the function that it is made of, and keeps no copy. Keep the
+/// function itself:
+///
+///     const auto enemies = [&](ProxyId id) { return team[id.index] != team[self.index]; };  // right
+///     const ProxyFilter enemies = [&](ProxyId id) { ... };  // wrong: the lambda is gone (Clang warns)
 using ProxyFilter = FunctionRef<bool(ProxyId)>;
 
 /// The filter that refuses nothing.
@@ -22,12 +24,16 @@ using ProxyFilter = FunctionRef<bool(ProxyId)>;
     return true;
 }
 
-/// A collector that hands on to another one, which must outlive it, what the filter accepts, of which it
-/// keeps a copy: CollectIf enemies(all, [&](ProxyId id) { ... }). Of a query's cost, `hits` are those
-/// that were asked about.
+/// A collector that hands on to another collector what the filter accepts:
+///
+///     CollectIf enemies(all, [&](ProxyId id) { ... });
+///     grid.visit(region, enemies);
+///
+/// In the query's cost, `hits` counts the proxies that the filter was asked about.
 template <class Collector, class Filter>
 class CollectIf {
 public:
+    /// The other collector must outlive this one. The filter, bool(ProxyId), is copied.
     CollectIf(Collector& collector, Filter filter)
         : collector_(collector), filter_(std::move(filter)) {}
 
@@ -37,6 +43,7 @@ public:
             collector_.add(id, key);
         }
     }
+    /// That of the other collector, so that the search shrinks as with it alone.
     [[nodiscard]] auto limit() const { return collector_.limit(); }
 
 private:

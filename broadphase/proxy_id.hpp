@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Names for what is in a grid: a proxy stands for an object of the caller's by its box.
+// Names for the proxies of a grid. A proxy stands for an object of the caller by its box.
+//
+//     const ProxyId id = grid.add(box);
+//     objects.resize(grid.indexLimit());
+//     objects[id.index] = &object;  // the caller's data, by index
 
 #include <broadphase/export.hpp>
 
@@ -12,20 +16,22 @@
 
 namespace hashphase {
 
-/// A value that names one proxy of one grid. Zero is null. `index` is small and dense (below the
-/// largest number of proxies that were ever alive at once, those removed since the last update
-/// included that it had seen), so callers keep their own data in an array by it; `generation` tells a
-/// proxy from earlier ones with the same index.
+/// A value that names one proxy of one grid. Zero is null. Ids are ordered by index, then by generation.
 struct ProxyId {
+    /// Small and dense, so that callers keep their own data in an array by index. Below the largest number of
+    /// proxies that were ever alive at once; proxies removed since the last update count, if that update saw
+    /// them.
     std::uint32_t index = 0;
+    /// Tells a proxy from earlier ones with the same index.
     std::uint32_t generation = 0;
 
-    /// True for ProxyId{}, which names nobody; not for one whose proxy was removed: Grid::contains().
+    /// True for ProxyId{}, which names no proxy. An id whose proxy was removed is not null: ask
+    /// Grid::contains().
     [[nodiscard]] constexpr bool isNull() const noexcept { return generation == 0; }
     friend constexpr auto operator<=>(const ProxyId&, const ProxyId&) = default;
 };
 
-/// Two overlapping proxies, first.index < second.index.
+/// Two proxies that make a pair, first.index < second.index. Ordered by first, then by second.
 struct ProxyPair {
     ProxyId first;
     ProxyId second;
@@ -33,13 +39,14 @@ struct ProxyPair {
     friend constexpr auto operator<=>(const ProxyPair&, const ProxyPair&) = default;
 };
 
-/// How a proxy is expected to behave. A hint that saves work and never changes a result: a resting
-/// proxy may move, a mobile one that stays unchanged comes to rest by itself.
+/// How a proxy is expected to behave: mobile like a body, or resting like a wall. A hint that saves work and
+/// never changes a result: a resting proxy may move, a mobile proxy that stays unchanged comes to rest by
+/// itself.
 enum class Mobility : std::uint8_t { mobile, resting };
 
 namespace detail {
 
-/// A hash of what has an index and a generation; differs where these do.
+/// A hash for ids with an index and a generation. Different ids have different numbers to hash.
 template <class Id>
 struct IdHash {
     [[nodiscard]] std::size_t operator()(const Id& id) const noexcept {
@@ -50,6 +57,6 @@ struct IdHash {
 }  // namespace detail
 }  // namespace hashphase
 
-/// For keys of std::unordered_map. What is kept of every proxy is better kept in an array by its index.
+/// For keys of std::unordered_map. Data about every proxy is better kept in an array by ProxyId::index.
 template <>
 struct std::hash<hashphase::ProxyId> : hashphase::detail::IdHash<hashphase::ProxyId> {};

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Finds the agents within a radius of each agent, of all at once, as AI asks in every frame.
+// Finds the agents within a radius of each agent, for all agents at once, as AI asks in every frame.
 //
 //     search.take(grid, 10);
 //     search.forEach([&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) { ... });
 //
-// A frame    take() copies where all are; then ask as often as you like.
+// A frame    take() copies where all proxies are; then ask as often as you like.
 // Agents     are proxies, numbered from 0 in spatial order by each take(), at the centres of their
 //            boxes: see positionOf() in position_region.hpp.
-// Neighbours of an agent are the other agents at most `radius` away: (dx^2 + dy^2) + dz^2 <=
-//            radius^2, each operation rounded to Scalar; beyond 2^60 and below 2^-60 (double: 2^480)
-//            with differences and the radius first multiplied by a power of two that brings the
-//            radius near 1. So of two agents either both or none is the other's neighbour, and the
-//            answer is the same with all instructions and on any number of threads.
-// Bad data   Who has no position, because its box has a NaN or an infinite face or is inverted, is no
-//            agent: see leftOutCount(). Within a negative or NaN radius nobody has a neighbour, within an
-//            infinite one everybody has all.
+// Neighbours of an agent are the other agents at most `radius` away: (dx^2 + dy^2) + dz^2 <= radius^2, each
+//            operation rounded to Scalar. With a radius beyond 2^60 or below 2^-60 (double: 2^480, 2^-480),
+//            the differences and the radius are first multiplied by a power of two that brings the radius
+//            near 1. So of two agents either both or none is the other's neighbour, and the answer is the
+//            same with all instruction sets and on any number of threads.
+// Bad data   A proxy without a position, because its box has a NaN or an infinite face or is inverted, is no
+//            agent: see leftOutCount(). Within a negative or NaN radius no agent has neighbours; within an
+//            infinite one all other agents are neighbours.
 // Threads    Everything but the accessors needs this object for itself; take() reads the grid, as
 //            queries do.
 // Units      metres, or whatever the grid's are.
@@ -43,13 +43,13 @@
 namespace hashphase {
 
 /// Finds neighbours. Keeps its memory: a frame like the last one allocates nothing, unless more threads
-/// are at work at the same time than ever before.
+/// work at the same time than ever before.
 template <class Scalar>
 class HASHPHASE_BROADPHASE_EXPORT RadiusSearch {
 public:
     using Point = Vector3<Scalar>;
 
-    /// Groups are numbered below this.
+    /// The most groups that countGroups() takes.
     static constexpr std::uint32_t kMostGroups = detail::kMostGroups;
 
     RadiusSearch();
@@ -63,7 +63,7 @@ public:
     /// The filter is asked on the loop's threads, about some proxies twice; it changes neither the grid
     /// nor this object (asserted). Where memory runs out, or the filter throws, there are no agents.
     /// Cost: a few passes over the proxies of the grid, whether or not they are filed. Gives back memory
-    /// that has been room for more than eight times as many in 256 calls in a row.
+    /// that has been room for more than eight times as many proxies in 256 calls in a row.
     void take(const Grid<Scalar>& grid, Scalar radius, ProxyFilter filter = acceptAll,
               ParallelFor parallelFor = serialFor);
 
@@ -75,7 +75,8 @@ public:
     /// Number of proxies that are no agents because they have no position.
     [[nodiscard]] std::uint32_t leftOutCount() const noexcept { return leftOut_; }
 
-    /// Of an agent, by its number below size() (asserted).
+    /// The proxy of an agent, and its position [m], by the agent's number below size() (asserted). ids()
+    /// returns all ids by that number.
     [[nodiscard]] ProxyId id(std::uint32_t agent) const {
         HASHPHASE_ASSERT(agent < size(), "Agents have numbers below size().");
         return ids_[agent];
@@ -88,11 +89,11 @@ public:
 
     // --- Questions -------------------------------------------------------------------------------
 
-    /// Calls visit(std::uint32_t agent, std::span<const std::uint32_t> neighbours) for every agent;
-    /// the neighbours' numbers are valid during the call, in an order that does not depend on
-    /// `parallelFor`, on whose threads visit() is called; it does not call this object (asserted), but for
-    /// ids and positions. Nothing is kept of all of them. Returns the cost; hits are neighbours. Cost:
-    /// that of comparing each agent with those in the cells around; at most all with all.
+    /// Calls visit(std::uint32_t agent, std::span<const std::uint32_t> neighbours) for every agent, on the
+    /// threads of `parallelFor`. The neighbours' numbers are valid during the call, in an order that does not
+    /// depend on `parallelFor`. visit() may ask this object for ids and positions, and for no more
+    /// (asserted). Returns the cost; hits are neighbours. Cost: comparing each agent with those in the cells
+    /// around it; at most all with all.
     template <std::invocable<std::uint32_t, std::span<const std::uint32_t>> Visit>
     QueryCost forEach(Visit&& visit, ParallelFor parallelFor = serialFor) {
         using Target = std::remove_reference_t<Visit>;
@@ -109,16 +110,16 @@ public:
     QueryCost count(std::span<std::uint32_t> counts, ParallelFor parallelFor = serialFor);
 
     /// Sets counts[agent * groupCount + group] to how many neighbours of that group the agent has;
-    /// size() * groupCount numbers (asserted). groupOf(ProxyId) is asked once for every agent, on the
-    /// loop's threads; who is in no group below groupCount, at most kMostGroups (asserted), is not
-    /// counted. Cost: that of count(), and a pass over the agents.
+    /// size() * groupCount numbers (asserted), with a groupCount of at most kMostGroups (asserted).
+    /// groupOf(ProxyId) is asked once for every agent, on the loop's threads; an agent whose group is not
+    /// below groupCount is not counted. Cost: that of count(), and a pass over the agents.
     QueryCost countGroups(std::uint32_t groupCount, FunctionRef<std::uint32_t(ProxyId)> groupOf,
                           std::span<std::uint32_t> counts, ParallelFor parallelFor = serialFor);
 
     /// Bytes held, capacity included.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Gives back all memory: there are no agents any more. Not within a filter or a visitor (asserted).
+    /// Gives back all memory, and with it all agents. Not within a filter or a visitor (asserted).
     void releaseMemory() noexcept;
 
 private:

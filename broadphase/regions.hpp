@@ -3,15 +3,20 @@
 
 // Regions say where a query looks. A region has two members:
 //
-//   key(box)                the box's distance in the region's own measure (0 or more), or a
+//   key(box)                returns the box's distance in the region's own measure (0 or more), or a
 //                           negative number when the box is not in the region
-//   bounds()                a box that overlaps whatever has a key
+//   bounds()                returns a box that overlaps every box with a key
 //
-// key() decides what is found; bounds() only saves work and may be too large, never too small. Where
-// it has kIsItsBounds, whatever overlaps bounds() is in the region, with the key 0. A region along a
-// line has segment() in the place of bounds(): a RayRegion that meets whatever has a key, no later on
-// its way than that key. One bounded by planes has volume(): see convex_region.hpp.
+//     CollectClosest<float> closest;
+//     grid.visit(SphereRegion<float>(center, 10), closest);  // the box nearest to the centre, up to 10 m
 //
+// key() decides what is found. bounds() only saves work: it may be too large, never too small. A region with
+// the constant kIsItsBounds holds every box that overlaps bounds(), with the key 0. A region along a line has
+// segment() in place of bounds(): a RayRegion that meets every box with a key, no later on its way than that
+// key. A region bounded by planes has volume(): see convex_region.hpp.
+//
+// Others   PositionRegion (positions, not boxes), CellsRegion (an estimate), MovingBoxRegion (the first
+//          contact of a moving box), ConvexRegion (frusta). Any class with these members is a region.
 // Units    metres; a ray's key is the fraction of its length, 0 at `from`, 1 at `to`
 // NaN      a NaN in a region makes it empty
 // Threads  values; use them from any thread
@@ -28,12 +33,12 @@
 
 namespace hashphase {
 
-/// Everything that overlaps a box (closed). Key: 0. An inverted box means what overlaps() says.
+/// Every box that overlaps `box` (closed). Key: 0. Infinite and inverted boxes mean what overlaps() says.
 template <class Scalar>
 struct BoxRegion {
     static constexpr bool kIsItsBounds = true;
 
-    Aabb<Scalar> box;
+    Aabb<Scalar> box;  ///< [m]
 
     [[nodiscard]] Scalar key(const Aabb<Scalar>& other) const noexcept {
         return overlaps(box, other) ? Scalar(0) : Scalar(-1);
@@ -42,14 +47,18 @@ struct BoxRegion {
     [[nodiscard]] const Aabb<Scalar>& bounds() const noexcept { return box; }
 };
 
-/// Everything within `radius` [m] of `center` (closed ball). Key: squared distance [m^2] from the
-/// centre to the box, 0 inside. A negative radius makes the region empty.
+/// Every box within `radius` [m] of `center` (closed ball). Key: squared distance [m^2] from the centre to
+/// the box, 0 where the centre is inside. A negative radius makes the region empty; an infinite one holds
+/// every box. PositionRegion measures to the middle of the box instead.
 template <class Scalar>
 class SphereRegion {
 public:
+    /// The ball around `center` [m].
     SphereRegion(const Vector3<Scalar>& center, Scalar radius)
         : center_(center), radius_(radius), scale_(detail::unitScale(radius)) {}
 
+    /// The squared distance [m^2], or -1 outside. It may round to 0 or infinity where it leaves the range of
+    /// Scalar; whether the box is in the ball is decided without that rounding.
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept {
         Scalar squared = 0;
         for (int axis = 0; axis < 3; ++axis) {
@@ -66,6 +75,7 @@ public:
         return reach >= 0 && squared <= reach * reach ? squared / scale_ / scale_ : Scalar(-1);
     }
 
+    /// The cube around the ball, rounded outward; NaN when the region is empty.
     [[nodiscard]] Aabb<Scalar> bounds() const noexcept {
         using Limits = std::numeric_limits<Scalar>;
         const bool isEmpty = center_.hasNaN() || !(radius_ >= 0);
@@ -87,16 +97,20 @@ private:
     Scalar scale_;
 };
 
-/// Everything that a segment meets, or that a box meets while it moves along the segment (a "fat"
-/// ray). Key: the fraction of the way at which the box is entered, 0 when it begins inside. Closed:
-/// grazing a face, an edge or a corner counts, and rounding errs to the side of a hit. A segment of
-/// no length is a point, or a box that stands still; one with an infinite end, or so long that its
-/// length along an axis is infinite, is empty.
+/// Every box that a segment meets, or that another box meets while it moves along the segment (a "fat" ray).
+/// Key: the fraction of the way at which the ray enters the box, 0 when it begins inside.
+///
+/// Closed: grazing a face, an edge or a corner counts, and rounding errs to the side of a hit. A segment
+/// without a length is a point, or a box that stands still. A segment with an infinite end, or with a length
+/// that is infinite along an axis, is empty.
+///
+///     CollectClosest<float> first;
+///     grid.visit(RayRegion<float>(from, to), first);  // enters at from + first.key() * (to - from)
 template <class Scalar>
 class RayRegion {
 public:
-    /// The segment from `from` to `to` [m]. `fatness` is the moving box relative to the moving
-    /// point, for example (-halfExtents, halfExtents); by default the point itself.
+    /// The segment from `from` to `to` [m]. `fatness` [m] is the moving box relative to the moving point, for
+    /// example (-halfExtents, halfExtents); by default it is the point itself.
     RayRegion(const Vector3<Scalar>& from, const Vector3<Scalar>& to,
               const Aabb<Scalar>& fatness = {Vector3<Scalar>::Zero(), Vector3<Scalar>::Zero()})
         : from_(from), direction_(to - from), fatness_(fatness) {
@@ -120,6 +134,7 @@ public:
         }
     }
 
+    /// The fraction from 0 to 1 at which the ray enters the box, or -1 when it misses the box.
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept {
         // Slabs; each distance is off by at most gamma(3), see Pharr, Jakob, Humphreys,
         // "Physically Based Rendering", 4th edition, section 6.8.3.
@@ -150,15 +165,16 @@ public:
         return enter <= exit ? std::min(enter, Scalar(1)) : Scalar(-1);
     }
 
-    /// True when an end is NaN or infinite, or the length: nothing has a key.
+    /// True when an end or the length is NaN or infinite: no box has a key.
     [[nodiscard]] bool isEmpty() const noexcept { return direction_.hasNaN(); }
+    /// Where the ray begins [m].
     [[nodiscard]] const Vector3<Scalar>& from() const noexcept { return from_; }
-    /// `to` - `from`, but 0 where that is too short to be inverted.
+    /// `to` - `from` [m], but 0 along an axis where this is too short to be inverted; NaN when isEmpty().
     [[nodiscard]] const Vector3<Scalar>& direction() const noexcept { return direction_; }
-    /// As given, or thicker by a rounding error.
+    /// The box given to the constructor [m], or one that is thicker by a rounding error.
     [[nodiscard]] const Aabb<Scalar>& fatness() const noexcept { return fatness_; }
 
-    /// Grids read this line, thick as the region is, and no cells.
+    /// Grids search along this line, which is as thick as the region, in a tree of boxes instead of cells.
     [[nodiscard]] const RayRegion& segment() const noexcept { return *this; }
 
 private:

@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Proxies that move so far in a frame that it matters what they pass. A proxy that sweeps stands, for
-// Pairs, wherever it passes during the frame: it makes a pair with everything that it touches on its
-// way, at the same time, of what stands and of what sweeps as well.
+// Proxies that move so far in a frame that it matters what they pass, such as bullets. A proxy that sweeps
+// makes a pair with every proxy that it touches on its way. Two proxies that sweep make a pair when they
+// touch at the same time.
 //
-// A frame   Grid::move() to where the proxy is when the frame begins, set() how far it moves until
-//           the frame ends, then Pairs::update(). Both hold until they are set again.
-// Queries   of the grid find the proxy by its box in the grid, which may be another one than that which
-//           moves: as large as the way, for those who ask while the proxy is anywhere on it. visit()
-//           finds it on its way, more exactly.
-// Modes     cost differently and find the same: pairs are confirmed by firstContact(), which is
-//           exact.
-// Cost      what sweeps costs time, whatever its speed, but for Sweep::box, which reads all that is in
-//           the box around its way; what does not sweep costs what it did.
-// Threads   visit() is const and may run anywhere; everything else needs the grid for itself.
+//     Sweeps<float> sweeps(grid);
+//     Pairs<float> pairs(grid, &sweeps);
+//     sweeps.set(bullet, velocity * seconds);
+//     pairs.update();  // what the bullet touches on its way
+//
+// A frame   Grid::move() to where the proxy is when the frame begins, set() how far it moves until the frame
+//           ends, then Pairs::update(). Both hold until they are set again.
+// Queries   of the grid find the proxy by its box in the grid. This may be another box than the one that
+//           moves: one around the whole way finds the proxy wherever it is on the way. visit() finds it on
+//           its way, more exactly.
+// Modes     find the same pairs at different costs: firstContact(), which is exact, confirms each pair.
+// Cost      A proxy that sweeps costs time, whatever its speed; with Sweep::box the cost grows with the box
+//           around its way, which is read as a whole. Proxies that do not sweep cost nothing more.
+// Threads   visit() is const and may run on any thread; everything else needs the grid for itself.
 // Units     metres; times are fractions of the frame, 0 to 1.
 // Bad data  A displacement that is NaN or infinite counts as none, and is reported once through the
 //           message handler.
@@ -47,50 +51,52 @@ namespace hashphase {
 template <class Scalar>
 class HASHPHASE_BROADPHASE_EXPORT Sweeps {
 public:
-    /// Keeps a reference to the grid, which must outlive this object. Hand it to Pairs.
+    /// Keeps a reference to the grid, which must outlive this object (asserted). Hand the object to Pairs.
     explicit Sweeps(Grid<Scalar>& grid);
     Sweeps(const Sweeps&) = delete;
     Sweeps& operator=(const Sweeps&) = delete;
 
-    /// Lets the proxy's box move by `displacement` [m] in this frame, from where it is. No
-    /// displacement, or Sweep::none, ends that. Where memory runs out, nothing has changed.
-    /// Cost: O(1) amortised.
+    /// Lets the proxy's box move by `displacement` [m] in each frame, from where it is, until set() is called
+    /// again. A displacement of zero, or Sweep::none, ends the sweep. Not within a query that takes no
+    /// changes (asserted). Where memory runs out, nothing has changed. Cost: O(1) amortised.
     void set(ProxyId id, const Vector3<Scalar>& displacement, Sweep sweep = Sweep::automatic);
 
-    /// The same for a box of its own, from which alone the pairs of the proxy follow as long as it
-    /// sweeps. The proxy's box in the grid is what queries see. Grid::shiftOrigin() shifts both.
+    /// Lets `way.box` move instead of the proxy's box. While the proxy sweeps, its pairs follow from `way`
+    /// alone; queries of the grid see the box in the grid. Grid::shiftOrigin() shifts both.
     void set(ProxyId id, const MovingBox<Scalar>& way, Sweep sweep = Sweep::automatic);
 
-    /// The box that moves, where it begins, and its displacement; when the proxy does not sweep, its
-    /// box, and none.
+    /// Returns the box that moves, where it begins, and its displacement [m]. For a proxy that does not
+    /// sweep: its box in the grid, and a displacement of zero.
     [[nodiscard]] MovingBox<Scalar> motion(ProxyId id) const;
 
-    /// Number of proxies that sweep, those included that were removed since the last update.
+    /// Number of proxies that sweep, including proxies removed from the grid since the last update.
     [[nodiscard]] std::size_t size() const noexcept { return sweeping_.motions.size(); }
 
-    /// Grid::visit(), but what sweeps is found wherever the box around its way, or around a part of
-    /// it, has a key: nothing that it passes is left out, some that it just misses may be found.
-    /// A PositionRegion, or one of boxes that lie inside, finds for certain only what does where it
-    /// stands: a larger box need not have a key where a smaller one has.
-    /// Cost: that of Grid::visit(), and for everything that sweeps one look at its way, or at 64 parts
-    /// of it at most, whatever its speed.
+    /// As Grid::visit(), but looks for a proxy that sweeps on its way: by the box around the way, or by boxes
+    /// around parts of it. Finds every proxy that passes through the region, and perhaps some that just miss
+    /// it. The key is the smallest one of these boxes.
+    /// With a PositionRegion, or a region for boxes that lie inside, only the box where the proxy stands is
+    /// found for certain: a larger box need not have a key where a smaller one has.
+    /// Cost: as Grid::visit(), and for each proxy that sweeps one look at its way, or at up to 64 parts of
+    /// the way, whatever its speed.
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
 
-    /// Of the last Pairs::update().
+    /// What the sweeps cost in the last Pairs::update().
     [[nodiscard]] const SweepCost& lastCost() const noexcept { return sweeping_.search.cost(); }
+    /// Bytes held, capacity included.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Gives back what is not used: room for more than sweep, and for indices that the grid has given back.
-    /// The next update takes again what it needs. Not within a query (asserted). Cost: O(indices that the
-    /// grid has given back), and moving what is left.
+    /// Gives back unused memory: room for more proxies than sweep, and for indices that the grid has given
+    /// back. The next update takes again what it needs. Not within a query (asserted). Cost: O(indices that
+    /// the grid has given back), and moving what is left.
     void releaseUnusedMemory() noexcept;
 
     /// Says which invariant is broken, in a sentence; empty when all hold:
     /// - Every motion is listed by its index, and no other index is.
     [[nodiscard]] std::string validate() const;
 
-    /// What the library's own parts read.
+    /// For the library's own parts. It may change with any version.
     [[nodiscard]] detail::Sweeping<Scalar>& sweeping() noexcept { return sweeping_; }
 
 private:

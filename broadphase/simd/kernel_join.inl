@@ -42,45 +42,37 @@ FirstBoxes testFirst(const Level<Scalar>& level, std::uint32_t entry, const Run*
     return first;
 }
 
-// Tests what the runs have beyond their first boxes, and what has wrapped around.
+// Tests what the runs have beyond their first boxes, and what has wrapped around. Returns how many boxes
+// were tested beyond those of the runs; of sorted buckets fewer are, and the number is negative, modulo 2^64.
 template <class Scalar, bool kIsDense, int kRows, class Query>
-bool joinRests(const Neighbourhood<Scalar, kIsDense, kRows>& around, const Query& query,
-               std::uint32_t entry, const Run* runs, bool wraps, PairSink& found,
-               std::uint64_t& boxesTested) {
+std::uint64_t joinRests(const Neighbourhood<Scalar, kIsDense, kRows>& around, const Query& query,
+                        std::uint32_t entry, const Run* runs, bool wraps, PairSink& found) {
+    std::uint64_t tested = 0;
     for (int k = 0; k < kRows; ++k) {
         const Run rest = {runs[k].first + kWidth, runs[k].last};
         if (rest.last > rest.first) {
-            std::uint64_t tested = 0;
-            if (!scan<kIsDense>(around.level, query, rest, around.row(entry, k), found, tested)) {
-                return false;
-            }
-            boxesTested += tested - (rest.last - rest.first);
+            tested -= rest.last - rest.first;
+            scan<kIsDense>(around.level, query, rest, around.row(entry, k), found, tested);
         }
     }
     for (int k = 0; wraps && k < kRows; ++k) {
         const Run rest = around.buckets(entry, k).wrapped(around.level);
-        std::uint64_t tested = 0;
-        if (!scan<kIsDense>(around.level, query, rest, around.row(entry, k), found, tested)) {
-            return false;
-        }
-        boxesTested += tested;
+        scan<kIsDense>(around.level, query, rest, around.row(entry, k), found, tested);
     }
-    return true;
+    return tested;
 }
 
+// Returns how many boxes were tested.
 template <class Scalar, bool kIsDense, int kRows, class Query>
-bool joinEntry(const Neighbourhood<Scalar, kIsDense, kRows>& around, const Query& query,
-               std::uint32_t entry, PairSink& found, std::uint64_t& boxesTested) {
+std::uint64_t joinEntry(const Neighbourhood<Scalar, kIsDense, kRows>& around, const Query& query,
+                        std::uint32_t entry, PairSink& found) {
     constexpr int kUnbranchedHits = 2;
     static_assert(kWidth * kRows + kUnbranchedHits <= kMostRoom);
     Run runs[kRows + 1];
     runs[kRows] = {0, 0};
     const bool wraps = around.read(entry, runs);
-    if (!makeRoom(found, kWidth * kRows + kUnbranchedHits)) {
-        return false;
-    }
+    makeRoom(found, kWidth * kRows + kUnbranchedHits);
     const FirstBoxes first = testFirst<kRows>(around.level, entry, runs);
-    boxesTested += first.candidates;
     // Most entries have at most two hits: these are written at any rate, and count if they are
     // any.
     constexpr std::uint64_t kNoHit = std::uint64_t{1} << (kWidth * kRows);
@@ -104,81 +96,84 @@ bool joinEntry(const Neighbourhood<Scalar, kIsDense, kRows>& around, const Query
         take();
     }
     found.next = next;
-    return (first.longest < kWidth && !wraps) ||
-           joinRests(around, query, entry, runs, wraps, found, boxesTested);
+    std::uint64_t tested = first.candidates;
+    if (first.longest >= kWidth || wraps) {
+        tested += joinRests(around, query, entry, runs, wraps, found);
+    }
+    return tested;
 }
 
 // Flattened, because compilers leave calls in this loop otherwise.
 template <class Scalar, bool kIsDense, int kRows, class QueryOf>
-[[gnu::flatten]] bool joinRows(const Level<Scalar>& level, const Row* steps, const QueryOf& queryOf,
+[[gnu::flatten]] void joinRows(const Level<Scalar>& level, const Row* steps, const QueryOf& queryOf,
                                std::uint32_t firstEntry, std::uint32_t lastEntry, PairSink& found,
                                KernelCost& cost) {
     const Neighbourhood<Scalar, kIsDense, kRows> around(level, steps);
     std::uint64_t boxesTested = 0;
-    bool goesOn = true;
-    for (std::uint32_t entry = firstEntry; entry < lastEntry && goesOn; ++entry) {
+    for (std::uint32_t entry = firstEntry; entry < lastEntry; ++entry) {
         const auto query = queryOf(level, entry);
         if (query.findsAny()) {
-            goesOn = joinEntry(around, query, entry, found, boxesTested);
+            boxesTested += joinEntry(around, query, entry, found);
         }
     }
     cost.boxesTested += boxesTested;
     cost.rowsVisited += std::uint64_t{lastEntry - firstEntry} * kRows;
-    return goesOn;
 }
 
 template <class Scalar, bool kIsDense, class QueryOf>
-bool joinDenseOrHashed(const Level<Scalar>& level, const QueryOf& queryOf, std::uint32_t first,
+void joinDenseOrHashed(const Level<Scalar>& level, const QueryOf& queryOf, std::uint32_t first,
                        std::uint32_t last, PairSink& found, KernelCost& cost) {
     const bool isOneRow = level.low[1] == level.high[1];
     const bool isOneLayer = level.low[2] == level.high[2];
     if (isOneRow && isOneLayer) {
-        return joinRows<Scalar, kIsDense, 1>(level, kRowsOfSpace, queryOf, first, last, found,
-                                             cost);
+        joinRows<Scalar, kIsDense, 1>(level, kRowsOfSpace, queryOf, first, last, found, cost);
+    } else if (isOneLayer) {
+        joinRows<Scalar, kIsDense, 2>(level, kRowsOfLayer, queryOf, first, last, found, cost);
+    } else if (isOneRow) {
+        joinRows<Scalar, kIsDense, 2>(level, kRowsOfWall, queryOf, first, last, found, cost);
+    } else {
+        joinRows<Scalar, kIsDense, 5>(level, kRowsOfSpace, queryOf, first, last, found, cost);
     }
-    if (isOneLayer) {
-        return joinRows<Scalar, kIsDense, 2>(level, kRowsOfLayer, queryOf, first, last, found,
-                                             cost);
-    }
-    if (isOneRow) {
-        return joinRows<Scalar, kIsDense, 2>(level, kRowsOfWall, queryOf, first, last, found, cost);
-    }
-    return joinRows<Scalar, kIsDense, 5>(level, kRowsOfSpace, queryOf, first, last, found, cost);
 }
 
 template <class Scalar, class QueryOf>
-bool joinLevelFor(const Level<Scalar>& level, const QueryOf& queryOf, std::uint32_t first,
+void joinLevelFor(const Level<Scalar>& level, const QueryOf& queryOf, std::uint32_t first,
                   std::uint32_t last, PairSink& found, KernelCost& cost) {
-    return level.isDense()
-               ? joinDenseOrHashed<Scalar, true>(level, queryOf, first, last, found, cost)
-               : joinDenseOrHashed<Scalar, false>(level, queryOf, first, last, found, cost);
+    if (level.isDense()) {
+        joinDenseOrHashed<Scalar, true>(level, queryOf, first, last, found, cost);
+    } else {
+        joinDenseOrHashed<Scalar, false>(level, queryOf, first, last, found, cost);
+    }
 }
 
 template <class Scalar>
-bool joinLevel(const Level<Scalar>& level, const GroupsView* groups, std::uint32_t firstEntry,
+void joinLevel(const Level<Scalar>& level, const GroupsView* groups, std::uint32_t firstEntry,
                std::uint32_t lastEntry, PairSink& found, KernelCost& cost) {
-    return groups == nullptr
-               ? joinLevelFor(level, ForAll{}, firstEntry, lastEntry, found, cost)
-               : joinLevelFor(level, ForGroups{groups}, firstEntry, lastEntry, found, cost);
+    if (groups == nullptr) {
+        joinLevelFor(level, ForAll{}, firstEntry, lastEntry, found, cost);
+    } else {
+        joinLevelFor(level, ForGroups{groups}, firstEntry, lastEntry, found, cost);
+    }
 }
 
 template <class Scalar, class QueryOf>
-bool joinListFor(const Level<Scalar>& level, const QueryOf& queryOf, std::uint32_t firstEntry,
+void joinListFor(const Level<Scalar>& level, const QueryOf& queryOf, std::uint32_t firstEntry,
                  std::uint32_t lastEntry, PairSink& found, KernelCost& cost) {
-    bool goesOn = true;
-    for (std::uint32_t entry = firstEntry; entry < lastEntry && goesOn; ++entry) {
+    for (std::uint32_t entry = firstEntry; entry < lastEntry; ++entry) {
         const auto query = queryOf(level, entry);
         const Run behind = {entry + 1, level.lastEntry};
-        goesOn =
-            !query.findsAny() || scan<true>(level, query, behind, Row{}, found, cost.boxesTested);
+        if (query.findsAny()) {
+            scan<true>(level, query, behind, Row{}, found, cost.boxesTested);
+        }
     }
-    return goesOn;
 }
 
 template <class Scalar>
-bool joinList(const Level<Scalar>& level, const GroupsView* groups, std::uint32_t firstEntry,
+void joinList(const Level<Scalar>& level, const GroupsView* groups, std::uint32_t firstEntry,
               std::uint32_t lastEntry, PairSink& found, KernelCost& cost) {
-    return groups == nullptr
-               ? joinListFor(level, ForAll{}, firstEntry, lastEntry, found, cost)
-               : joinListFor(level, ForGroups{groups}, firstEntry, lastEntry, found, cost);
+    if (groups == nullptr) {
+        joinListFor(level, ForAll{}, firstEntry, lastEntry, found, cost);
+    } else {
+        joinListFor(level, ForGroups{groups}, firstEntry, lastEntry, found, cost);
+    }
 }

@@ -174,9 +174,9 @@ struct Kernels {
 
     /// Finds every two entries of a level with cells that overlap, the first one from firstEntry to
     /// lastEntry; over the whole level each pair once. Where `groups` is not null, this and the
-    /// next one leave out those that may not pair. All searches return false when the sink has
-    /// ended them.
-    bool (*joinLevel)(const Level<Scalar>& level, const GroupsView* groups,
+    /// next one leave out those that may not pair. A join always goes to its end, whatever the
+    /// sink says; the searches below return false when the sink has ended them.
+    void (*joinLevel)(const Level<Scalar>& level, const GroupsView* groups,
                       std::uint32_t firstEntry, std::uint32_t lastEntry, PairSink& found,
                       KernelCost& cost);
 
@@ -211,7 +211,7 @@ struct Kernels {
     std::uint32_t (*mayMeet)(const TreeNode8& block, const RayLanes& ray, float last, float* enter);
 
     /// As joinLevel(), of a level without cells.
-    bool (*joinList)(const Level<Scalar>& level, const GroupsView* groups, std::uint32_t firstEntry,
+    void (*joinList)(const Level<Scalar>& level, const GroupsView* groups, std::uint32_t firstEntry,
                      std::uint32_t lastEntry, PairSink& found, KernelCost& cost);
 
     /// The least and the greatest number of a column, from entry first to last.

@@ -4,11 +4,11 @@
 // A radar: a condensed view of what is around, as counts in coarse cells by group (paper,
 // "condensed view of a section of the domain").
 //
-// Counted   Each proxy once, in the cell that its position (position_region.hpp) is in; who is
-//           outside the window, or has no position, is not. Cells are half open: a border belongs to
-//           the cell above it alone.
+// Counted   Each proxy once, in the cell of its position (position_region.hpp). A proxy outside the window,
+//           or without a position, is not counted. Cells are half open: a border belongs only to the cell
+//           above it.
 // Threads   scan() reads the grid, as queries do, and needs this object for itself.
-// Bad data  A cell size that is 0 or less, NaN or infinite, a centre or heading that is not finite:
+// Bad data  With a cell size that is 0 or less, NaN or infinite, or a centre or heading that is not finite,
 //           all counts are 0.
 // Misuse    More than kMostCounts counts are asserted.
 
@@ -29,37 +29,37 @@ namespace hashphase {
 /// z, where up is y).
 template <class Scalar>
 struct RadarWindow {
-    Vector3<Scalar> center = Vector3<Scalar>::Zero();
-    Scalar cellSize = 10;  ///< edge of the coarse cells [m]
+    Vector3<Scalar> center = Vector3<Scalar>::Zero();  ///< [m]
+    Scalar cellSize = 10;                              ///< edge of the coarse cells [m]
     std::uint32_t columns = 32;
     std::uint32_t rows = 32;
     std::uint32_t layers = 0;  ///< of cells, one above another; 0: one, of all heights
     UpAxis up = UpAxis::y;
 
-    /// Without a heading, cells begin at multiples of their size: the counts of what rests do not
-    /// flicker while the agent moves within its cell, nor when the origin is shifted by a multiple
-    /// of their size. The window begins columns / 2 cells (integer
-    /// division) before the cell of the centre; likewise rows and layers.
+    /// Without a heading, cells begin at multiples of their size: the counts of resting proxies do not
+    /// flicker while the agent moves within its cell, nor when the origin is shifted by a multiple of their
+    /// size. The window begins columns / 2 cells (integer division) before the cell of the centre; likewise
+    /// rows and layers.
     ///
-    /// With one, the window is turned about the up axis and its middle is the centre, which lies
-    /// between two columns where their number is even: rows grow along (sin, cos) of the heading
-    /// [rad] in the plane of (column axis, row axis), columns along (cos, -sin). Heading 0 looks
-    /// along the row axis.
+    /// With a heading [rad], the window is turned about the up axis and its middle is the centre, which lies
+    /// between two columns where their number is even. Rows grow along (sin, cos) of the heading in the plane
+    /// of (column axis, row axis), columns along (cos, -sin). Heading 0 looks along the row axis.
     std::optional<Scalar> heading = std::nullopt;
 };
 
-/// The group of a proxy; one that is not below the number of groups is not counted.
+/// Returns the group of a proxy. A proxy whose group is not below the number of groups is not counted.
 using RadarGroups = FunctionRef<std::uint32_t(ProxyId)>;
 
-/// Counts who is where. Keeps its memory: a frame like the last one allocates nothing.
+/// Counts proxies by cell and group. Keeps its memory: a frame like the last one allocates nothing.
 template <class Scalar>
 class HASHPHASE_AI_EXPORT Radar {
 public:
     static constexpr std::size_t kMostCounts = std::size_t{1} << 28;
 
-    /// Counts the proxies in the window, as [group][layer][row][column], the last index running
-    /// fastest; one layer where the window has none. Valid until the next call. Cost: the grid's
-    /// cells in the window, at most one test for each proxy (Grid::visit()), and the counts set to 0.
+    /// Returns the number of proxies by [group][layer][row][column], the last index running fastest; one
+    /// layer where the window has none. Valid until the next call. Not from within `groupOf` (asserted).
+    /// Cost: the grid's cells in the window, at most one test for each proxy (Grid::visit()), and the counts
+    /// set to 0.
     std::span<const std::uint32_t> scan(const Grid<Scalar>& grid, const RadarWindow<Scalar>& window,
                                         std::uint32_t groupCount, RadarGroups groupOf) &;
 

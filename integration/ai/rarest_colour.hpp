@@ -5,13 +5,13 @@
 // After Hastings, Mesit and Guha, "Optimization of Large-Scale, Real-Time Simulations by Spatial
 // Hashing".
 //
-// A frame    update() reads the colours of all, then changes them: nobody sees a new one before the
-//            next frame, so the result does not depend on any order.
+// A frame    update() reads all colours, then changes them: no agent sees a new colour before the next
+//            frame, so the result does not depend on any order.
 // Threads    update() reads the grid, as queries do, and needs this object for itself.
 // Units      metres, or whatever the grid's are.
-// Bad data   As for a radius search (broadphase/radius_search.hpp): who has no finite centre keeps its colour, and
-//            within a negative or NaN radius is nobody. An agent whose colour is not below the number
-//            of colours is counted by nobody, and takes one.
+// Bad data   As for a radius search (broadphase/radius_search.hpp): an agent without a finite centre keeps
+//            its colour, and within a negative or NaN radius there are no neighbours. An agent whose colour
+//            is not below the number of colours is not counted, and takes a colour.
 
 #include <broadphase/radius_search.hpp>
 #include <integration/ai/export.hpp>
@@ -26,18 +26,19 @@ namespace hashphase {
 template <class Scalar>
 class HASHPHASE_AI_EXPORT RarestColour {
 public:
-    /// Of every proxy that the filter accepts, sets colours[ProxyId::index] to that of the colours
-    /// 0 to colourCount - 1 which fewest of the other ones within `radius` [m] of its centre have; of
-    /// equally rare ones the lowest. An agent does not count itself: whoever is alone takes colour 0.
-    /// There are 1 to RadiusSearch::kMostGroups colours, and one place for each agent (asserted). Whom
-    /// `changes` refuses, asked once about each, is counted and keeps its colour. Returns the cost of
-    /// counting. Cost: that of RadiusSearch::countGroups().
+    /// Lets every agent take the rarest colour: sets colours[ProxyId::index] to the colour, of 0 to
+    /// colourCount - 1, that fewest of the other agents within `radius` [m] of its centre have; of equally
+    /// rare colours the lowest. Agents are the proxies that the filter accepts. An agent does not count
+    /// itself: alone it takes colour 0. An agent that `changes` refuses, asked once about each, is counted
+    /// and keeps its colour. There are 1 to RadiusSearch::kMostGroups colours, and one place for each agent
+    /// (asserted). Returns the cost of counting. Cost: that of RadiusSearch::countGroups().
     QueryCost update(const Grid<Scalar>& grid, Scalar radius, std::uint32_t colourCount,
                      std::span<std::uint32_t> colours, ProxyFilter filter = acceptAll,
                      ProxyFilter changes = acceptAll, ParallelFor parallelFor = serialFor);
 
-    /// The same for these agents alone, each named once and alive (asserted). Who has no position keeps
-    /// its colour. Cost: a query for each of them (Grid::visitEach()); less than update() where they are few.
+    /// update() for these agents only, each named once and alive (asserted). An agent without a position
+    /// keeps its colour. Cost: a query for each agent (Grid::visitEach()); less than update() where they are
+    /// few.
     QueryCost updateSome(const Grid<Scalar>& grid, Scalar radius, std::uint32_t colourCount,
                          std::span<std::uint32_t> colours, std::span<const ProxyId> agents,
                          ProxyFilter filter = acceptAll, ParallelFor parallelFor = serialFor);

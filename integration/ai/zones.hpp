@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Zones of interest: volumes that know who is in them, and tell who enters, stays and leaves
-// (paper, "areas of interest"). What a zone means, the caller keeps by ZoneId::index.
+// Zones of interest: volumes that know which proxies are in them, and tell which enter, stay and leave
+// (paper, "areas of interest"). Keep what a zone means in an array by ZoneId::index.
 //
-// A frame   move bodies and zones, then update() once: every proxy and zone that have to do with
-//           each other are in one event.
-// Grid      holds the bodies; zones are not filed in it. update() is always given the same one, or after
-//           forgetOccupants() another one. After a Grid::shiftOrigin() every zone has to be set() where
-//           it is now, before the next update(): who was in it then stays.
-// Threads   update() reads the grid, as queries do, and needs this object for itself, as add(), set()
-//           and remove() do. All else is const and may be called from any number of threads.
-// Failure   Where memory runs out, or a filter throws, nothing has happened: what update() would have
-//           told the next one does.
-// Bad data  Nobody is in a zone whose shape has a NaN or a negative radius. An inverted box means
-//           what overlaps() says.
-// Misuse    An id of no zone is asserted; one of other Zones that some zone here has as well is taken for
-//           that.
+// A frame   Move bodies and zones, then update() once: each proxy in a zone, or that has left it, is in
+//           exactly one event of that zone.
+// Grid      The grid holds the bodies; zones are not filed in it. Give update() the same grid always, or
+//           another one after forgetOccupants(). After a Grid::shiftOrigin(), set() every zone where it is
+//           now before the next update(): then its occupants stay.
+// Threads   update(), add(), set() and remove() need this object for themselves; update() reads the grid, as
+//           queries do. All else is const and may be called from any number of threads.
+// Failure   Where memory runs out, or a filter throws, nothing has happened: the next update() tells what
+//           this one would have told.
+// Bad data  A zone whose shape has a NaN or a negative radius holds no proxy. An inverted box means what
+//           overlaps() says.
+// Misuse    An id of no zone is asserted. An id of other Zones is, too, unless a zone here has the same id.
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/grid.hpp>
@@ -34,7 +33,7 @@
 
 namespace hashphase {
 
-/// A value that names one zone; zero is null. As ProxyId: `index` is small and dense.
+/// A value that names one zone; zero is null. As in a ProxyId, `index` is small and dense.
 struct ZoneId {
     std::uint32_t index = 0;
     std::uint32_t generation = 0;
@@ -44,19 +43,20 @@ struct ZoneId {
     friend constexpr auto operator<=>(const ZoneId&, const ZoneId&) = default;
 };
 
-/// What of a proxy has to be in a zone.
+/// Which part of a proxy has to be in a zone.
 enum class Presence : std::uint8_t {
     position,  ///< its position (position_region.hpp), and of course its box
     box,       ///< any part of its box
 };
 
-/// A closed volume. A ConvexRegion that is made for Containment::inside asks for the whole box.
+/// A closed volume. A ConvexRegion made for Containment::inside wants the whole box inside.
 template <class Scalar>
 struct Zone {
     std::variant<BoxRegion<Scalar>, SphereRegion<Scalar>, ConvexRegion<Scalar>> shape;
     Presence presence = Presence::position;
 };
 
+/// A zone and a proxy that entered it, stayed in it or left it. Ordered by zone, then by proxy.
 struct ZoneEvent {
     ZoneId zone;
     ProxyId proxy;
@@ -68,15 +68,15 @@ struct ZoneEvent {
 struct ZoneEvents {
     std::span<const ZoneEvent> entered;
     std::span<const ZoneEvent> stayed;
-    /// A proxy or zone that was removed has its old id here.
+    /// Includes removed proxies and zones, by their old ids.
     std::span<const ZoneEvent> left;
 };
 
-/// Says whether a proxy counts in a zone. Asked about those that are in it, on all threads. Whom it
-/// refuses now though it did not before has left.
+/// Says whether a proxy counts in a zone. Asked only about proxies in the zone, on all threads. A proxy that
+/// it accepted before and refuses now has left the zone.
 using ZoneFilter = FunctionRef<bool(ZoneId, ProxyId)>;
 
-/// The filter that refuses nobody.
+/// The filter that accepts every proxy.
 [[nodiscard]] inline bool acceptAllInZones(ZoneId /*zone*/, ProxyId /*proxy*/) noexcept {
     return true;
 }
@@ -84,6 +84,7 @@ using ZoneFilter = FunctionRef<bool(ZoneId, ProxyId)>;
 /// Says whether an update looks into a zone.
 using ZoneChoice = FunctionRef<bool(ZoneId)>;
 
+/// The choice of every zone.
 [[nodiscard]] inline bool allZones(ZoneId /*zone*/) noexcept {
     return true;
 }
@@ -97,7 +98,7 @@ public:
     /// Adds a zone, empty until the next update. Cost: O(1) amortised.
     [[nodiscard]] ZoneId add(const Zone<Scalar>& zone);
 
-    /// Moves, resizes or reshapes a zone, seen by the next update. Cost: O(1).
+    /// Moves, resizes or reshapes a zone; the next update sees it. Cost: O(1).
     void set(ZoneId id, const Zone<Scalar>& zone);
 
     /// Removes a zone; its id is never valid again. Its occupants leave in the next update. Cost:
@@ -108,30 +109,29 @@ public:
     [[nodiscard]] const Zone<Scalar>& zone(ZoneId id) const;
     [[nodiscard]] std::size_t size() const noexcept { return slots_.size() - freeSlots_.size(); }
 
-    /// Empties all zones, and nobody is told: for the grid to be replaced by another one.
+    /// Empties all zones without events, before another grid replaces this one.
     void forgetOccupants() noexcept;
 
     // --- Frame -----------------------------------------------------------------------------------
 
-    /// Finds out who is in each zone now, and what has changed since the last update. Valid until
-    /// the next one. The result does not depend on `parallelFor`. A zone that `due` leaves out, asked
-    /// once for each, keeps its occupants, removed ones included, and has no events: the next update
-    /// that looks into it tells all that has changed since the last one that did. Cost: a query for
-    /// each zone that is due, at most one test for each zone and proxy (Grid::visit()), and the sum of
-    /// the occupants.
+    /// Finds which proxies are in each zone now, and returns what has changed since the last update. Valid
+    /// until the next update. The result does not depend on `parallelFor`. `due` is asked once for each zone.
+    /// A zone that it leaves out keeps its occupants, removed ones included, and has no events: the next
+    /// update that looks into the zone tells all that has changed since. Cost: a query for each zone that is
+    /// due, at most one test for each zone and proxy (Grid::visit()), and the sum of the occupants.
     ZoneEvents update(const Grid<Scalar>& grid, ZoneFilter filter = acceptAllInZones,
                       ZoneChoice due = allZones, ParallelFor parallelFor = serialFor);
 
     // --- Queries ---------------------------------------------------------------------------------
 
-    /// Who was in the zone at the last update, sorted. Valid until the next one.
+    /// The proxies in the zone at the last update, sorted by id. Valid until the next update.
     [[nodiscard]] std::span<const ProxyId> occupants(ZoneId id) const;
 
-    /// Finds the zones that the point is in now, sorted, in place of what `found` held. None when
+    /// Finds the zones that hold the point [m] now. Replaces what `found` held; sorted by id. Finds none when
     /// the point is not finite. Cost: O(zones).
     void zonesAt(const Vector3<Scalar>& point, std::vector<ZoneId>& found) const;
 
-    /// What the last update() cost; hits are boxes, before presence and filter are asked about.
+    /// What the last update() cost; hits are boxes found, before presence and filter count.
     [[nodiscard]] const QueryCost& lastCost() const noexcept { return cost_; }
 
     /// Bytes held, capacity included. Cost: O(zones).

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Loops of the broadphase on the threads of Bullet's task scheduler, see btSetTaskScheduler(). Where there
-// is none, as in a Bullet that was built without threads, they run on the caller's thread.
+// Runs the loops of the broadphase on the threads of Bullet's task scheduler: see btSetTaskScheduler().
+// Without a scheduler, as in a Bullet built without threads, they run on the caller's thread.
 
 #include <broadphase/parallel_for.hpp>
 

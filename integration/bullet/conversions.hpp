@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Between Bullet's vectors and the grid's. No rounding: both sides use btScalar.
+// Conversions between Bullet's vectors and the grid's. No rounding: both sides use btScalar. NaN and infinite
+// coordinates stay what they are.
+//
+//     const Aabb<btScalar> box = toAabb(aabbMin, aabbMax);
+//     broadphase.grid().visit(BoxRegion<btScalar>{box}, collector);
 
 #include <broadphase/aabb.hpp>
 #include <integration/bullet/precision.hpp>
@@ -12,19 +16,22 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
+/// The three coordinates; Bullet's fourth number is dropped.
 [[nodiscard]] inline Vector3<btScalar> toEigen(const btVector3& v) {
     return {v.x(), v.y(), v.z()};
 }
 
+/// The three coordinates; Bullet's fourth number is 0.
 [[nodiscard]] inline btVector3 toBullet(const Vector3<btScalar>& v) {
     return {v.x(), v.y(), v.z()};
 }
 
-/// True when the three coordinates are equal to the bit.
+/// True when the three coordinates are equal to the bit: -0 differs from 0, and a NaN equals itself.
 [[nodiscard]] inline bool isSameBits(const btVector3& a, const btVector3& b) {
     return std::memcmp(a.m_floats, b.m_floats, 3 * sizeof(btScalar)) == 0;
 }
 
+/// The box between two corners, taken as they are: where min > max, the box is inverted.
 [[nodiscard]] inline Aabb<btScalar> toAabb(const btVector3& min, const btVector3& max) {
     return {toEigen(min), toEigen(max)};
 }

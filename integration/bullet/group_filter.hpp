@@ -11,25 +11,28 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// A ProxyFilter by Bullet's rule: accepts proxies whose group is in the mask of whoever asks, and whose
-/// mask has that one's group:
+/// A ProxyFilter by Bullet's rule: accepts proxies whose group is in the asker's mask, and whose mask has
+/// the asker's group:
 ///
 ///     const GroupFilter enemies(broadphase, {.mask = kEnemyGroup});
+///     const Picked<btScalar> picked = pickNearest(broadphase.grid(), ray, enemies);
 ///
 /// Sees changes of a proxy's group and mask at once. The broadphase must outlive the filter. Any number of
-/// threads.
+/// threads may use it at the same time. Cost: O(1).
 class GroupFilter {
 public:
-    /// Who asks, as a ray callback's m_collisionFilterGroup and m_collisionFilterMask say.
+    /// The side that asks, like m_collisionFilterGroup and m_collisionFilterMask of a ray callback. By
+    /// default it has all groups and wants all groups.
     struct Asker {
-        int group = btBroadphaseProxy::AllFilter;
-        int mask = btBroadphaseProxy::AllFilter;
+        int group = btBroadphaseProxy::AllFilter;  ///< groups of the asker
+        int mask = btBroadphaseProxy::AllFilter;   ///< groups that the asker wants
     };
 
     GroupFilter(const SpatialHashBroadphase& broadphase, const Asker& asker) noexcept
         : broadphase_(&broadphase), asker_(asker) {}
     GroupFilter(const SpatialHashBroadphase&&, const Asker&) = delete;
 
+    /// True when the two groups and masks accept each other. The proxy is alive (asserted).
     [[nodiscard]] bool operator()(ProxyId id) const {
         const btBroadphaseProxy* proxy = broadphase_->proxyOf(id);
         return (proxy->m_collisionFilterGroup & asker_.mask) != 0 &&

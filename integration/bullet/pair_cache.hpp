@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A pair cache for Bullet that finds the pairs of one proxy without looking at all the others.
+// A pair cache for Bullet that finds the pairs of one proxy without looking at all other pairs.
 // Works under any broadphase and in any world:
 //
 //     hashphase::PairCache pairCache;
 //     btDbvtBroadphase broadphase(&pairCache);
 //
-// Bullet's own cache scans every pair, twice, to remove one body. Here a proxy's pairs are chained,
-// and removing it costs as much as it has pairs. The array of pairs may be kept in an order that
-// depends on nothing but the set of pairs.
+// Bullet's own cache scans every pair, twice, to remove one body. Here a proxy's pairs are chained, and the
+// cost of removing a body follows the number of its pairs. The array of pairs may be kept in an order that
+// depends only on the set of pairs.
 //
 // Threads   needsBroadphaseCollision() and the const members may run anywhere. Everything else
 //           needs the cache for itself, as in Bullet.
@@ -18,16 +18,16 @@
 //           reorder the array.
 // Batches   update() and removeOverlappingPairsContainingProxies() do in a pass what single calls do
 //           one by one, at a fraction of the cost.
-// Callbacks See the cache as it is after the change that they are told of, and may change it: those of
-//           ghosts, of processAllOverlappingPairs(), and of algorithms that are freed. The filter
-//           may not. Under a SpatialHashBroadphase, what is taken out comes back in its next
-//           calculation, and so into the callback, unless the filter refuses it.
-// Memory    Where it runs out, std::bad_alloc is passed on: a single call has changed nothing, a batch
-//           has removed some of its pairs or all, and added none. The pairs of one proxy go without
-//           any, in time proportional to all. Bullet's own arrays do not tell.
+// Callbacks of ghosts, of processAllOverlappingPairs(), and of algorithms that are freed see the cache as it
+//           is after the change that they are told of, and may change it. The filter may not. Under a
+//           SpatialHashBroadphase, a pair that is taken out comes back in the next calculation, unless the
+//           filter refuses it.
+// Memory    Where it runs out, std::bad_alloc is passed on: a single call has changed nothing, a batch has
+//           removed some of its pairs or all, and added none. Removing the pairs of one proxy then takes no
+//           memory, but time that follows all pairs. Bullet's own arrays do not report a lack of memory.
 // NULL      A NULL dispatcher frees no algorithms, as in Bullet; NULL clients are fine.
-// Misuse    Pairs of a proxy with itself, proxies alive with the same or with negative unique ids,
-//           no key, and a filter that changes the cache; asserted.
+// Misuse    Asserted are pairs of a proxy with itself, proxies alive with equal or negative unique ids, a
+//           missing key, and a filter that changes the cache.
 
 #include <broadphase/core/flat_set.hpp>
 #include <broadphase/core/query_scope.hpp>
@@ -52,30 +52,28 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 /// In which order the array lists the pairs.
 enum class PairOrder {
-    /// As pairs came and went: the same calls, from when the cache was empty, give the same order, that
-    /// of Bullet's cache unless they are batches. Where a pair stands depends on what was there
-    /// before: boxes that are set back to an earlier frame bring back its pairs, not their places.
-    /// Costs nothing.
+    /// As pairs came and went: equal calls, from an empty cache on, give an equal order, which is that of
+    /// Bullet's cache unless they are batches. The place of a pair depends on the history: boxes that are set
+    /// back to an earlier frame bring back the pairs of that frame, not their places. Costs nothing.
     arrival,
-    /// Ascending by the key of the first proxy, then of the second, whenever the whole array is
-    /// looked at: the same set of pairs gives the same order, whatever the broadphase and the
-    /// history. This is what rollback stands on. Algorithms are freed in that order, too, so that the
-    /// dispatcher's manifolds, and with them whole trajectories, are the same under all exact
-    /// broadphases. Costs a sort when the set has changed.
+    /// Ascending by the key of the first proxy, then of the second, whenever the whole array is read: equal
+    /// sets of pairs give an equal order, whatever the broadphase and the history. Rollback needs this.
+    /// Algorithms are freed in that order, too, so that the dispatcher's manifolds, and with them whole
+    /// trajectories, are equal under all exact broadphases. Costs a sort when the set has changed.
     canonical,
 };
 
-/// What orders proxies; ties go by m_uniqueId. Must not change while the proxy has pairs.
+/// Returns the number by which proxies are ordered; ties go by m_uniqueId. It must not change while the proxy
+/// has pairs.
 using ProxyKey = int (*)(const btBroadphaseProxy&);
 
-/// Two proxies as a batch names them. Their unique ids come along, so that the proxies themselves
-/// need not be read.
+/// Two proxies as a batch names them, with their unique ids, so that the proxies themselves need not be read.
 class BulletProxyPair {
 public:
     BulletProxyPair(btBroadphaseProxy& a, btBroadphaseProxy& b) noexcept
         : BulletProxyPair(a, a.m_uniqueId, b, b.m_uniqueId) {}
 
-    /// The ids must be those of the proxies, which are not read to see whether they are.
+    /// The ids must be those of the proxies; this is not checked.
     BulletProxyPair(btBroadphaseProxy& a, int idOfA, btBroadphaseProxy& b, int idOfB) noexcept
         : lower_(idOfA < idOfB ? &a : &b),
           upper_(idOfA < idOfB ? &b : &a),
@@ -89,7 +87,7 @@ public:
     /// Both unique ids, the lower one on top.
     [[nodiscard]] std::uint64_t ids() const noexcept { return ids_; }
 
-    /// False when one of the two has another unique id by now, as one that was destroyed.
+    /// False when one of the two has another unique id by now, as after it was destroyed.
     [[nodiscard]] bool isUpToDate() const noexcept {
         return static_cast<std::uint32_t>(lower_->m_uniqueId) == ids_ >> 32 &&
                static_cast<std::uint32_t>(upper_->m_uniqueId) == (ids_ & 0xffffffffU);
@@ -103,11 +101,11 @@ private:
 
 using ProxyCouple [[deprecated("BulletProxyPair")]] = BulletProxyPair;
 
-/// A btOverlappingPairCache in which removing a proxy costs as much as it has pairs.
+/// A btOverlappingPairCache in which the cost of removing a proxy follows the number of its pairs.
 class HASHPHASE_BULLET_EXPORT PairCache final : public btOverlappingPairCache {
 public:
-    /// The key orients pairs in either order: m_pProxy0 has the lower one. The default orients as
-    /// Bullet does; another one is for broadphases that re-use unique ids.
+    /// In both orders, m_pProxy0 of a pair has the lower key. The default key orients pairs as Bullet does;
+    /// another key is for broadphases that re-use unique ids.
     explicit PairCache(PairOrder order = PairOrder::arrival, ProxyKey key = &uniqueId)
         : order_(order), key_(key) {
         HASHPHASE_ASSERT(key != nullptr, "There is a key to order proxies by.");
@@ -119,23 +117,23 @@ public:
 
     static int uniqueId(const btBroadphaseProxy& proxy) { return proxy.m_uniqueId; }
 
-    /// So many pairs are the most that Bullet's array can hold.
+    /// The most pairs that Bullet's array can hold.
     static constexpr std::size_t kMostPairs = std::size_t{1} << 30;
 
     // --- One pair --------------------------------------------------------------------------------
 
-    /// Returns the pair, which is made when it is not there yet; NULL when the filter refuses it.
-    /// The ghost callback is told of a new pair. Throws std::length_error, and changes nothing, when
-    /// there are kMostPairs already. Cost: O(1).
+    /// Returns the pair of the two proxies; makes it when there is none. NULL when the filter refuses it. The
+    /// ghost callback is told of a new pair. Throws std::length_error, and changes nothing, beyond
+    /// kMostPairs. Cost: O(1).
     btBroadphasePair* addOverlappingPair(btBroadphaseProxy* proxy0,
                                          btBroadphaseProxy* proxy1) override;
 
-    /// The same without asking the filter, for callers who have.
+    /// addOverlappingPair() without asking the filter, for callers who have asked it.
     btBroadphasePair* addAcceptedPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1);
 
     /// Frees the pair's algorithm, tells the ghost callback and returns the pair's m_internalInfo1;
-    /// NULL when there is no such pair. In canonical order the algorithm is freed when next the
-    /// whole array is looked at or the pairs of a proxy are removed or cleaned. Cost: O(1).
+    /// NULL when there is no such pair. In canonical order the algorithm is freed when the whole array is
+    /// read next, or the pairs of a proxy are removed or cleaned. Cost: O(1).
     void* removeOverlappingPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1,
                                 btDispatcher* dispatcher) override;
 
@@ -148,71 +146,67 @@ public:
     // --- Many pairs ------------------------------------------------------------------------------
 
     /// Removes the pairs of `died` as removeOverlappingPair() does, then adds those of `born` as
-    /// addAcceptedPair() does; what is not there, or there already, is passed over. The array's
-    /// order of arrival is its own, and depends on the calls alone: the first that are born take
-    /// the places of the first that died, so that nothing else moves, the others go to the end;
-    /// places left are filled from the end. Algorithms are freed when all is in order again.
-    /// With a ghost callback, or called by one of processAllOverlappingPairs(), it is the same as
-    /// single calls in every respect. Throws std::length_error, and changes nothing, when there are
-    /// more than kMostPairs with those that are born. Cost: O(1) a pair, a third of that of single
-    /// calls.
+    /// addAcceptedPair() does. Passes over died pairs that are missing, and born pairs that are present. The
+    /// order of arrival depends only on the calls: the first born pairs take the places of the first died
+    /// ones, so that no other pair moves; further born pairs go to the end, further places are filled from
+    /// the end. Algorithms are freed when the array is in order again. With a ghost callback, or called by a
+    /// callback of processAllOverlappingPairs(), it does exactly what single calls do. Throws
+    /// std::length_error, and changes nothing, when the born pairs would make more than kMostPairs. Cost:
+    /// O(1) a pair, a third of that of single calls.
     void update(std::span<const BulletProxyPair> died, std::span<const BulletProxyPair> born,
                 btDispatcher* dispatcher);
 
     // --- The pairs of one proxy ------------------------------------------------------------------
 
-    /// Removes them one by one as removeOverlappingPair() does, in canonical order or in that of
-    /// Bullet's cache. Cost: the number of the proxy's pairs, and O(1), amortised, for every pair
-    /// added or sorted since the last such call, and for every pair there was before an update()
-    /// that changed many of them.
+    /// Removes the proxy's pairs one by one as removeOverlappingPair() does, in canonical order or in that
+    /// of Bullet's cache. Cost: the number of the proxy's pairs, and O(1), amortised, for every pair added or
+    /// sorted since the last such call, and for every pair from before an update() that changed many pairs.
     void removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy,
                                                btDispatcher* dispatcher) override;
 
-    /// Frees their algorithms and keeps the pairs, in the same order at the same cost. Ghosts that keep
-    /// algorithms of their own are told nothing.
+    /// Frees the algorithms of the proxy's pairs and keeps the pairs, in the order and at the cost of
+    /// removing them. Ghosts that keep algorithms of their own are told nothing.
     void cleanProxyFromPairs(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
 
-    /// The same, and tells the ghost callback of each pair that it has ended and begun, as if it had been
-    /// removed and added: what ghosts keep of it is freed too. Cost: the same.
+    /// As cleanProxyFromPairs(), and tells the ghost callback that each pair has ended and begun, as if it
+    /// had been removed and added: this frees what ghosts keep of the pair, too.
     void renewPairsContainingProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
     // --- The pairs of many proxies ---------------------------------------------------------------
 
-    /// Removes the pairs of each proxy in turn. The array's order of arrival is its own again;
-    /// algorithms are freed when all pairs are gone, in canonical order as by single calls, else in
-    /// no order that means anything. With a ghost callback, or called by one of
-    /// processAllOverlappingPairs(), the same as single calls in every respect. Cost: the number of
-    /// their pairs, and at most one pass over all pairs.
+    /// Removes the pairs of each proxy in turn. The order of arrival differs from that of single calls.
+    /// Algorithms are freed when all pairs are gone: in canonical order as by single calls, else in an
+    /// unspecified order. With a ghost callback, or called by a callback of processAllOverlappingPairs(), it
+    /// does exactly what single calls do. Cost: the number of the proxies' pairs, and at most one pass over
+    /// all pairs.
     void removeOverlappingPairsContainingProxies(std::span<btBroadphaseProxy* const> proxies,
                                                  btDispatcher* dispatcher);
 
     // --- All pairs -------------------------------------------------------------------------------
 
-    /// Calls callback->processOverlap() for every pair, and removes those for which it returns
-    /// true. The callback may add pairs, which it will be shown too, and remove any; where it
-    /// removes others than the one it is shown, some may not be shown this time. Cost: O(pairs), those
-    /// included that the callback adds: it ends when that adds no more.
+    /// Calls callback->processOverlap() for every pair, and removes the pairs for which it returns true. The
+    /// callback may add pairs, which it will be shown too, and remove any pair; where it removes others than
+    /// the one it is shown, some may not be shown this time. Cost: O(pairs), including pairs that the
+    /// callback adds: the call ends when the callback adds no more.
     void processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher* dispatcher) override;
 
-    /// The same, but with dispatchInfo.m_deterministicOverlappingPairs in the order of unique ids,
-    /// the highest first, as Bullet's cache; pairs added meanwhile wait for the next time.
+    /// As above, but with dispatchInfo.m_deterministicOverlappingPairs in the order of unique ids, the
+    /// highest first, as Bullet's cache; pairs added meanwhile wait for the next call.
     void processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher* dispatcher,
                                     const btDispatcherInfo& dispatchInfo) override;
 
     [[nodiscard]] int getNumOverlappingPairs() const override { return pairs_.size(); }
 
-    /// The array, in canonical order if that was asked for, but not during
-    /// processAllOverlappingPairs(): changes made by its callback are sorted in afterwards.
+    /// The array, with PairOrder::canonical in that order, but not during processAllOverlappingPairs():
+    /// changes made by its callback are sorted in afterwards.
     btBroadphasePair* getOverlappingPairArrayPtr() override;
     btBroadphasePairArray& getOverlappingPairArray() override;
 
-    /// The array as it stands: what has changed since it was last looked at by the others is not
-    /// sorted in.
+    /// The array as it stands: changes since the last call of the non-const ones are not sorted in.
     [[nodiscard]] const btBroadphasePair* getOverlappingPairArrayPtr() const override;
 
-    /// Brings the array into canonical order, once, whatever the order asked for. Bullet's caches
-    /// remove and add all pairs to that end, which destroys every algorithm; here algorithms stay
-    /// and ghosts are told nothing.
+    /// Brings the array into canonical order, once, with either PairOrder. Bullet's caches remove and add all
+    /// pairs for that, which destroys every algorithm; here algorithms stay and ghosts are told nothing.
     void sortOverlappingPairs(btDispatcher* dispatcher) override;
 
     /// False: removal is immediate.
@@ -220,7 +214,7 @@ public:
 
     // --- Callbacks -------------------------------------------------------------------------------
 
-    /// Asks the filter callback; without one, group and mask decide, both ways.
+    /// Asks the filter callback; without one, groups and masks decide, both ways.
     [[nodiscard]] bool needsBroadphaseCollision(btBroadphaseProxy* proxy0,
                                                 btBroadphaseProxy* proxy1) const override {
         if (filter_ != nullptr) {
@@ -235,8 +229,8 @@ public:
         filter_ = callback;
     }
 
-    /// Told of each pair added and of each pair removed, once; NULL for none. As in Bullet's caches, it is
-    /// not told of the pairs that there are.
+    /// Sets the callback that is told of each pair added and each pair removed, once; NULL for none. As in
+    /// Bullet's caches, it is not told of the present pairs.
     void setInternalGhostPairCallback(btOverlappingPairCallback* callback) override {
         ghosts_ = callback;
     }
@@ -246,38 +240,38 @@ public:
 
     // --- Beyond Bullet ---------------------------------------------------------------------------
 
-    /// For how many pairs there is room.
+    /// Number of pairs for which there is room.
     [[nodiscard]] std::size_t capacity() const noexcept {
         return static_cast<std::size_t>(pairs_.capacity());
     }
 
-    /// How many pairs were looked at so far to serve single proxies: the work of
+    /// Number of pairs read so far to serve single proxies: the work of
     /// removeOverlappingPairsContainingProxy() and cleanProxyFromPairs().
     [[nodiscard]] std::uint64_t pairsVisited() const noexcept { return pairsVisited_; }
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
     /// Gives back room for more pairs than there are. Pairs move, as where one is added. A
-    /// SpatialHashBroadphase does it by itself: see its own. Not within the filter (asserted). Cost: O(pairs).
+    /// SpatialHashBroadphase calls it by itself. Not within the filter (asserted). Cost: O(pairs).
     void releaseUnusedMemory() noexcept;
 
     /// Says which invariant is broken, in a sentence; empty when all hold:
     /// - Every pair is found by the unique ids of its proxies.
     /// - Every pair has the proxy with the lower key first.
-    /// - Every pair that is chained is so once to each of its proxies.
+    /// - Every chained pair is chained once to each of its proxies.
     /// - An array that counts as sorted is in canonical order.
     [[nodiscard]] std::string validate() const;
 
     // --- For a broadphase ------------------------------------------------------------------------
 
-    /// Who removes a pair: what others take out, a broadphase wants to know.
+    /// Which side removes a pair: a broadphase needs to know which pairs others take out.
     enum class Remover { broadphase, other };
 
-    /// The same as removeOverlappingPairsContainingProxies(), by that remover.
+    /// removeOverlappingPairsContainingProxies(), by that remover.
     void removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher,
                        Remover remover);
 
-    /// Where it is noted what others take out; null for nowhere.
+    /// Where pairs that others take out are noted; null for nowhere.
     [[nodiscard]] detail::CacheWatch* watch() const noexcept { return watch_; }
     void setWatch(detail::CacheWatch* watch) noexcept { watch_ = watch; }
 

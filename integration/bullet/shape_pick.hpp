@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Picking in a Bullet world by the shapes of its objects. A picking ray is a RayRegion, as a Camera makes
-// one of a pixel; picking by boxes and drag selection work on SpatialHashBroadphase::grid() as they are.
+// Picking in a Bullet world by the shapes of its objects. A picking ray is a RayRegion, which Camera makes
+// of a pixel. Picking by boxes and drag selection work on SpatialHashBroadphase::grid() as they are.
 //
-// Worlds   whose clients are btCollisionObjects; proxies without a client are not met
-// Boxes    Only objects whose boxes are met are asked: a body that was moved by hand needs its box
-//          set, by btCollisionWorld::updateSingleAabb().
+// Worlds   The clients of the broadphase are btCollisionObjects; a ray passes proxies without a client.
+// Boxes    Only objects whose boxes the ray meets are asked: after moving a body by hand, set its box by
+//          btCollisionWorld::updateSingleAabb().
 // Threads  any number at the same time
 
 #include <broadphase/collectors.hpp>
@@ -28,9 +28,9 @@ public:
         : broadphase_(&broadphase) {}
     explicit ShapeTest(const SpatialHashBroadphase&&) = delete;
 
-    /// The fraction of the ray's length, below the limit, that btCollisionWorld::rayTestSingle() has
-    /// for the ray without its fatness; where that cast ends in front of the proxy's box, as it may by
-    /// up to 2 cm, the fraction at which the ray enters the box.
+    /// Returns the fraction of the ray's length, below the limit, that btCollisionWorld::rayTestSingle()
+    /// finds for the ray without its fatness. Bullet's cast may end up to 2 cm in front of the proxy's box:
+    /// then it returns the fraction at which the ray enters the box.
     [[nodiscard]] std::optional<btScalar> operator()(ProxyId id, const RayRegion<btScalar>& ray,
                                                      btScalar limit) const;
 
@@ -38,8 +38,9 @@ private:
     const SpatialHashBroadphase* broadphase_;
 };
 
-/// The nearest object that the ray meets by its shape, and at what fraction of the ray's length; null
-/// when there is none. What closestRay() finds, which also has a normal to tell.
+/// Returns the nearest object that the ray meets by its shape, and the fraction of the ray's length as its
+/// key; a null id when there is none. SpatialHashBroadphase::closestRay() finds the same object, and a
+/// normal.
 [[nodiscard]] HASHPHASE_BULLET_EXPORT KeyedProxy<btScalar> closestShape(
     const SpatialHashBroadphase& broadphase, const RayRegion<btScalar>& ray,
     ProxyFilter filter = acceptAll);

@@ -9,28 +9,27 @@
 //
 //     hashphase::SpatialHashBroadphase broadphase;
 //
-// What changes: pairs are exact (no fat boxes, no stale pairs) and are made and removed in
-// calculateOverlappingPairs() only, but for those of ghost objects: theirs come at once, when they are
-// created or moved, and when something else is created where they stand, or jumps there.
+// What changes: pairs are exact (no fat boxes, no stale pairs), and are made and removed only in
+// calculateOverlappingPairs(). Pairs of ghost objects come at once, when the ghost is created or moved, and
+// when another object is created where the ghost stands, or jumps there.
 //
 // Batches   createProxies(), setAabbs() and destroyProxies() do what as many single calls do, at less
 //           cost.
 // Threads   Rays and aabbTest() are const in all but name: any number may run at the same time
 //           and inside each other. Everything else needs the broadphase for itself, as in Bullet.
-// Units     the world's; nothing depends on their size.
-// Bad data  A box with NaN pairs with nothing and is reported once (diagnostics.hpp). Infinite, huge
-//           and inverted boxes are treated exactly as comparing their coordinates says. NULL
-//           clients and NULL dispatchers are fine.
-// Callbacks Those of rayTest(), aabbTest() and closestRay(), of the pair cache and of the dispatcher
-//           may create, move and destroy proxies, and ask. What is destroyed is not reported any
-//           more; what is moved or created may be reported, once more, or not. Bullet itself must be
-//           able to bear it: it cannot where an object is removed that it is at work on. The overlap
-//           filter may ask but not change anything, and calculateOverlappingPairs(), shiftOrigin() and
-//           resetPool() are not called from within any of them; asserted.
-// Memory    Where it runs out, std::bad_alloc is passed on and the call may be repeated:
-//           createProxy() has created nothing, shiftOrigin() has shifted nothing, setAabb() has moved
-//           the proxy, and the first calculateOverlappingPairs() that returns brings the cache up to
-//           date, with the pairs that eager ones lack. Bullet's own arrays do not tell.
+// Units     the world's; nothing depends on their size
+// Bad data  A box with a NaN makes no pair and is reported once (diagnostics.hpp). Infinite, huge and
+//           inverted boxes are treated exactly as comparing their coordinates says. NULL clients and NULL
+//           dispatchers are fine.
+// Callbacks of rayTest(), aabbTest() and closestRay(), of the pair cache and of the dispatcher may create,
+//           move and destroy proxies, and ask. A destroyed proxy is not reported any more; a moved or created
+//           one may be reported, once more, or not. Bullet itself sets limits: do not remove an object that
+//           it is working on. The overlap filter may ask but must not change anything, and no callback may
+//           call calculateOverlappingPairs(), shiftOrigin() or resetPool(); asserted.
+// Memory    Where it runs out, std::bad_alloc is passed on and the call may be repeated: createProxy() has
+//           created nothing, shiftOrigin() has shifted nothing, setAabb() has moved the proxy. The first
+//           calculateOverlappingPairs() that returns brings the cache up to date, including missing pairs of
+//           ghosts. Bullet's own arrays do not report a lack of memory.
 // Misuse    Proxies that are not alive, proxies of other broadphases, spans of different lengths in a
 //           batch, and rays without a callback are asserted.
 
@@ -64,42 +63,41 @@ struct SpatialHashConfig {
     GridConfig grid{};
 
     /// Ghost objects get their pairs at once, in createProxy() and setAabb(), as Bullet's character
-    /// controller expects, wherever the pair cache has an internal ghost pair callback, through which
-    /// ghosts hear of pairs. (A cache that is not given as a PairCache counts as having one.) What is
-    /// created where a ghost stands, or jumps there, out of the box that it had, is a pair with it at once
-    /// as well. To find ghosts, a client that may have pairs is taken for a btCollisionObject then, in
-    /// calls that hand in a dispatcher, as a btCollisionWorld's do. False is for programs whose clients
-    /// are something else.
+    /// controller expects, wherever the pair cache has an internal ghost pair callback, which tells ghosts of
+    /// pairs. (A cache that is not given as a PairCache counts as having one.) An object that is created
+    /// where a ghost stands, or jumps there out of its last box, makes a pair with the ghost at once, too.
+    /// To find ghosts, calls with a dispatcher, as those of a btCollisionWorld, take every client that may
+    /// have pairs for a btCollisionObject. Set false where clients are other objects.
     bool eagerGhosts = true;
 
-    /// Proxies of these groups get theirs at once as well; none by default, for what a bit means is up
-    /// to the program. For code that reads pairs between moves and steps, and is no ghost object.
+    /// Proxies of these groups get their pairs at once, too; none by default, because the program defines
+    /// what a bit means. For code that reads pairs between moves and steps, and is no ghost object.
     int eagerGroups = 0;
 
-    /// On what threads calculateOverlappingPairs() runs its loops; empty for the caller's. The
-    /// result is the same on any number. See bullet_parallel_for.hpp and
-    /// integration/tbb/tbb_parallel_for.hpp. Called with count, grain and body, see ParallelFor.
+    /// A ParallelFor for the loops of calculateOverlappingPairs(); empty for the caller's thread. The result
+    /// is equal on any number of threads. See bullet_parallel_for.hpp and
+    /// integration/tbb/tbb_parallel_for.hpp.
     std::function<void(std::size_t count, std::size_t grain, LoopBody body)> parallelFor{};
 
-    /// How to find what a fast rigid body passes in a step; by default not at all. The box that Bullet
-    /// hands in covers such a body at start and end, with m_useContinuous, and all that lies between
-    /// its corners. It makes no pairs any more: the body sweeps along the way that Bullet has predicted,
-    /// and its pairs are exactly what it touches at some time of the step. Queries see it by its box, as
-    /// without a sweep, wherever on its way they ask; without m_useContinuous the box is extended to
-    /// the end for that. For worlds whose clients are btCollisionObjects. What sweeps does so until its
-    /// next setAabb(): after moving a body by hand between steps, set its interpolation transform too.
-    /// Costs a look at the shape of each body that moves.
+    /// How to find the objects that a fast rigid body passes in a step; by default not at all. With
+    /// m_useContinuous, Bullet's box of such a body covers start, end, and all between their corners. With a
+    /// sweep this box makes no pairs: the body sweeps along the way that Bullet has predicted, and makes
+    /// pairs exactly with the objects that it touches at some time of the step. Queries find the body by
+    /// Bullet's box, anywhere on its way; without m_useContinuous the box is extended to the end for that.
+    /// For worlds whose clients are btCollisionObjects. A body sweeps until its next setAabb(): after moving
+    /// it by hand between steps, set its interpolation transform too. Cost: a look at the shape of each body
+    /// that moves.
     Sweep sweep = Sweep::none;
 
-    /// A body is fast in a step in which it moves by more than this share of the smallest edge of its
-    /// box. The others keep the box that Bullet hands in. Valid: 0 or more.
+    /// A body is fast in a step in which it moves by more than this share of the smallest edge of its box.
+    /// Other bodies keep the box that Bullet hands in. Valid: 0 or more.
     btScalar fastFrom = 1;
 
-    /// An overlap filter callback decides in place of groups and masks, and so may a pair cache other than
-    /// PairCache: either is asked about each two that overlap, and again about those that it refuses when
-    /// one of them has changed. Where it refuses whatever groups and masks refuse, as Bullet's own caches
-    /// do, set this: it is asked about the others only, and what is parked with a mask of 0, or otherwise
-    /// filtered out, costs nothing.
+    /// Set this where an overlap filter callback, or a pair cache other than PairCache, refuses all pairs
+    /// that groups and masks refuse, as Bullet's own caches do. Then it is asked only about the other pairs,
+    /// and proxies that are parked with a mask of 0, or otherwise filtered out, cost nothing. Without it,
+    /// the filter decides in place of groups and masks: it is asked about each two proxies that overlap, and
+    /// again about a refused pair when one of the two has changed.
     bool filterRefusesMore = false;
 
     /// Ends a query when process() of its callback returns false. Off by default: Bullet's own
@@ -107,10 +105,11 @@ struct SpatialHashConfig {
     bool stopWhenProcessReturnsFalse = false;
 };
 
-/// As that of GridConfig, for the grid's settings and fastFrom.
+/// Says what is wrong with the grid's settings or fastFrom, as configError(const GridConfig&); empty when all
+/// is well.
 [[nodiscard]] HASHPHASE_BULLET_EXPORT std::string configError(const SpatialHashConfig& config);
 
-/// What createProxies() makes a proxy of: the arguments of createProxy().
+/// A proxy for createProxies(): the arguments of createProxy().
 struct ProxyDefinition {
     btVector3 aabbMin{0, 0, 0};
     btVector3 aabbMax{0, 0, 0};
@@ -155,11 +154,11 @@ public:
 
     // --- btBroadphaseInterface -------------------------------------------------------------------
 
-    /// The proxy's address is fixed for its life, m_uniqueId counts 1, 2, 3 ... and is never used
-    /// again: after 2^31 - 1 of them std::length_error is thrown until resetPool(); likewise where there
-    /// are 2^28 proxies. `shapeType` is ignored. Cost: O(1), and a look at up to 1,024 ghosts, or a box
-    /// query where there are more; of ghosts and SpatialHashConfig::eagerGroups that of Pairs::findPairsNow()
-    /// and of its pairs, too.
+    /// Returns a proxy with an address that is fixed for its life. m_uniqueId counts 1, 2, 3 ... and is never
+    /// used again. `shapeType` is ignored. Throws std::length_error beyond 2^28 proxies, and after 2^31 - 1
+    /// unique ids until resetPool(). Cost: O(1), and a look at up to 1,024 ghosts, or a box query where there
+    /// are more; for ghosts and SpatialHashConfig::eagerGroups also that of Pairs::findPairsNow() and of the
+    /// pairs.
     btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
                                    int shapeType, void* userPtr, int collisionFilterGroup,
                                    int collisionFilterMask, btDispatcher* dispatcher) override;
@@ -168,23 +167,23 @@ public:
     /// with PairCache the number of the proxy's pairs.
     void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
 
-    /// Notices, also when the box is the same, that the proxy's group or mask has been written.
-    /// Cost: O(1), or a comparison when the box is the same, and with SpatialHashConfig::sweep a look at
-    /// the body; for ghosts and eagerGroups, and where the box is another one that does not touch the last
-    /// one, as in createProxy().
+    /// Sets the proxy's box. Also notices that its group or mask has been written, even when the box has not
+    /// changed. Cost: O(1), or a comparison when the box has not changed, and with SpatialHashConfig::sweep a
+    /// look at the body; for ghosts and eagerGroups, and where the new box does not touch the last one, as
+    /// createProxy().
     void setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin, const btVector3& aabbMax,
                  btDispatcher* dispatcher) override;
 
-    /// As last set, whether the proxy sweeps or not.
+    /// Returns the box last set, whether the proxy sweeps or not.
     void getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin, btVector3& aabbMax) const override;
 
-    /// Calls rayCallback.process() once for every proxy whose box, grown by the cast box
-    /// (aabbMin, aabbMax), passes btRayAabb2() with the callback's own fields. Sees every box as it
-    /// was last set. Order roughly from near to far, but not to be relied on. A ray of no length, or
-    /// one too long to be squared, for which Bullet makes NaN or nothing of the direction, finds what
-    /// these fields say, as under btDbvtBroadphase: of no length nothing. Ask grid() with a RayRegion
-    /// for what is at a point, or on the longest ways. One with NaN or infinite ends finds nothing.
-    /// Cost: what lies near the ray; however long it is, at most one test for each proxy.
+    /// Calls rayCallback.process() once for every proxy whose box, grown by the cast box (aabbMin, aabbMax),
+    /// passes btRayAabb2() with the callback's own fields. Sees every box as it was last set. The order is
+    /// roughly from near to far; do not rely on it.
+    /// For a ray without a length, or one too long to be squared, Bullet computes a direction of NaN or zero:
+    /// the ray finds what these fields say, as under btDbvtBroadphase; without a length nothing. Ask grid()
+    /// with a RayRegion there. A ray with NaN or infinite ends finds nothing.
+    /// Cost: the boxes near the ray; however long it is, at most one test for each proxy.
     void rayTest(const btVector3& rayFrom, const btVector3& rayTo,
                  btBroadphaseRayCallback& rayCallback,
                  const btVector3& aabbMin = btVector3(0, 0, 0),
@@ -195,16 +194,16 @@ public:
     void aabbTest(const btVector3& aabbMin, const btVector3& aabbMax,
                   btBroadphaseAabbCallback& callback) override;
 
-    /// Makes the cache's pairs exact: afterwards it holds precisely the overlapping proxies that
-    /// its filter accepts, and with SpatialHashConfig::sweep those that meet on their ways. Pairs that
-    /// did so before are not touched. Groups and masks may be written at any time: what may pair begins to
-    /// where one of the two was moved, or its setAabb() called, since; a pair stays one until its boxes
-    /// part. First those that have parted go, then those that have met come, each in the order of their
-    /// proxies: what changes, and in which order, follows from the boxes before and now, not from
-    /// how they came there. At last pairs that the program itself has taken out of the cache come back,
-    /// unless the filter refuses them by now; out of a cache that was not given as a PairCache they stay
-    /// out until the two meet again. Cost: that of Pairs::update(), and of the cache for each pair that
-    /// comes or goes.
+    /// Makes the cache's pairs exact: afterwards it holds precisely the pairs of overlapping proxies that its
+    /// filter accepts, and with SpatialHashConfig::sweep those that meet on their ways. Pairs that persist
+    /// are not touched.
+    /// Order: pairs that have parted go first, then pairs that have met come, each in the order of their
+    /// proxies. Changes and their order follow from the boxes before and now, not from the calls between.
+    /// Last, pairs that the program has taken out of the cache come back, unless the filter refuses them by
+    /// now; in a cache that was not given as a PairCache they stay out until the two meet again. Groups and
+    /// masks may be written at any time: a new pair begins where one of the two was moved since, or
+    /// setAabb() called; a present pair lasts until its boxes part.
+    /// Cost: that of Pairs::update(), and of the cache for each pair that comes or goes.
     void calculateOverlappingPairs(btDispatcher* dispatcher) override;
 
     btOverlappingPairCache* getOverlappingPairCache() override { return pairCache_; }
@@ -215,10 +214,10 @@ public:
     /// The box around all boxes; zero when there is none. Cost: O(proxies).
     void getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax) const override;
 
-    /// When no proxy is alive, forgets all that came before: m_uniqueId counts from 1 again, and the same
-    /// calls lead to the same pairs in the same order, and the same frees of algorithms, as with a new
-    /// broadphase. What Bullet itself remembers is for its user: the solver's reset(). Frees memory, as
-    /// Grid::clear(). Does nothing while a proxy is alive. Not called by callbacks (asserted).
+    /// When no proxy is alive, forgets all that came before: m_uniqueId counts from 1 again, and the next
+    /// calls lead to pairs, orders and frees of algorithms as with a new broadphase. Reset Bullet's own
+    /// memory yourself, by the solver's reset(). Frees memory, as Grid::clear(). Does nothing while a proxy
+    /// is alive. Not called by callbacks (asserted).
     void resetPool(btDispatcher* dispatcher) override;
 
     /// Does nothing, as in Bullet; ask lastCost() and memoryBytes().
@@ -226,98 +225,98 @@ public:
 
     // --- Many at once ----------------------------------------------------------------------------
 
-    /// Creates a proxy for each definition, in their order, and writes them to `proxies`, which is
-    /// as long. Where memory runs out, those that were written are created, and no others. Cost: that
-    /// of createProxy(), each.
+    /// Creates a proxy for each definition, in their order, and writes it to `proxies`, which is as long
+    /// (asserted). Where memory runs out, the proxies written so far are created, and no others. Cost: as
+    /// createProxy() for each proxy.
     void createProxies(std::span<const ProxyDefinition> definitions,
                        std::span<btBroadphaseProxy*> proxies, btDispatcher* dispatcher);
 
-    /// Sets the box of each proxy, in their order; all three are of the same length.
-    /// Cost: that of setAabb(), each.
+    /// Sets the box of each proxy, in their order; all three spans have the same length (asserted).
+    /// Cost: as setAabb() for each proxy.
     void setAabbs(std::span<btBroadphaseProxy* const> proxies, std::span<const btVector3> aabbMins,
                   std::span<const btVector3> aabbMaxs, btDispatcher* dispatcher);
 
-    /// Removes the pairs of all the proxies through the pair cache, then the proxies, of which each
-    /// is named once. Pairs and their algorithms are removed in the order of proxies, but for what
-    /// PairCache::removeOverlappingPairsContainingProxies() says. Cost: that of the cache; with
-    /// PairCache, given as one, at most a pass over all pairs.
+    /// Removes the pairs of all the proxies through the pair cache, then the proxies, each named once. Pairs
+    /// and their algorithms are removed in the order of proxies; for a PairCache see
+    /// PairCache::removeOverlappingPairsContainingProxies(). Cost: that of the cache; with a cache given as a
+    /// PairCache, at most a pass over all pairs.
     void destroyProxies(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher);
 
     // --- Beyond Bullet ---------------------------------------------------------------------------
 
-    /// btCollisionWorld::rayTest(), but from near to far, and no farther than a nearer hit is
-    /// possible: reports to `callback` what it would report, less what lies more than 2 cm behind
-    /// callback.m_closestHitFraction. That makes no difference for a ClosestRayResultCallback, but
-    /// for which of several hits at the same fraction is kept. For worlds whose clients are
-    /// btCollisionObjects; soft bodies need their world's own rayTest(). Any number of threads. Cost:
-    /// at most that of rayTest(), and a cast at the shape of each proxy that it finds.
+    /// As btCollisionWorld::rayTest(), but goes from near to far, and only as far as a nearer hit is
+    /// possible: reports to `callback` the hits of rayTest(), without those more than 2 cm behind
+    /// callback.m_closestHitFraction. A ClosestRayResultCallback has an equal result, but may keep another
+    /// one of several hits at one fraction. For worlds whose clients are btCollisionObjects; soft bodies
+    /// need their world's own rayTest(). Any number of threads. Returns the cost. Cost: at most that of
+    /// rayTest(), and a cast at the shape of each proxy that it finds.
     QueryCost closestRay(const btVector3& from, const btVector3& to,
                          btCollisionWorld::RayResultCallback& callback) const;
 
-    /// rayTest() and closestRay() for many rays: each callback hears what it would hear from a ray
-    /// alone, in the same order; callbacks are called at the same time where `parallelFor` is
-    /// parallel, and change nothing then. Each ray has a callback (asserted), of its own. Cost: that of
-    /// the rays alone, or less.
+    /// rayTest() and closestRay() for many rays: each callback gets the reports of its own ray, in the order
+    /// of a single call. Each ray has a callback of its own (a missing one is asserted). Where `parallelFor`
+    /// is parallel, callbacks run at the same time and must change nothing. Cost: that of the single rays,
+    /// or less.
     void rayTests(std::span<const BroadphaseRay> rays, ParallelFor parallelFor = serialFor);
     void closestRays(std::span<const ClosestRay> rays, ParallelFor parallelFor = serialFor) const;
 
-    /// Asks the filter again about everything that the proxy overlaps, or met on its way, and adds and
-    /// removes its pairs accordingly, at once. For use after a change of its group, mask, or of the
-    /// filter. Pairs that stay keep their contacts: after a change of shape call shapeChanged(). Cost:
-    /// that of Pairs::refilter(), and of the proxy's pairs.
+    /// Asks the filter again about every proxy that this one overlaps, or met on its way, and adds and
+    /// removes its pairs accordingly, at once. Call it after a change of its group or mask, or of the
+    /// filter. Pairs that stay keep their contacts: after a change of shape call shapeChanged(). Cost: that
+    /// of Pairs::refilter(), and of the proxy's pairs.
     void refilter(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
-    /// The same for many proxies in one pass: the filter is asked once about each two of them. Cost: that
-    /// of Pairs::refilter() for many, and of their pairs.
+    /// refilter() for many proxies in one pass: the filter is asked once about each two of them. Cost: that
+    /// of Pairs::refilter() for many proxies, and of their pairs.
     void refilter(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher);
 
-    /// The same for all: for use after a change of the filter callback, or of what it goes by. Cost: that
-    /// of Pairs::refilterAll(), and of the pairs that come and go.
+    /// refilter() for all proxies. Call it after a change of the filter callback, or of the data it reads.
+    /// Cost: that of Pairs::refilterAll(), and of the pairs that come and go.
     void refilterAll(btDispatcher* dispatcher);
 
-    /// Frees what the proxy's pairs have kept of its shape, algorithms and contacts, here and in the ghosts
-    /// that list it; the pairs stay. For use after a change of shape, scale, margin or of anything else
-    /// by which contacts were made, beside btCollisionWorld::updateSingleAabb(), before the next step. Where
-    /// a ghost callback is set, it is told that each pair has ended and begun; a cache with deferred
-    /// removal tells ghosts nothing. Cost: that of PairCache::renewPairsContainingProxy(); a pass over all
-    /// pairs of any other cache.
+    /// Frees the algorithms and contacts that the proxy's pairs have made from its shape, here and in the
+    /// ghosts that list it; the pairs stay. Call it after a change of shape, scale, margin or other data by
+    /// which contacts are made, beside btCollisionWorld::updateSingleAabb(), before the next step. A ghost
+    /// callback is told that each pair has ended and begun; a cache with deferred removal tells ghosts
+    /// nothing. Cost: that of PairCache::renewPairsContainingProxy(); a pass over all pairs of any other
+    /// cache.
     void shapeChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
-    /// Moves the origin of all coordinates to `shift`: subtracts it from the box of every proxy, in one
-    /// call, with what Grid::shiftOrigin() says. Pairs stay as they are; should rounding have brought
-    /// boxes together, the next calculateOverlappingPairs() makes them pairs. The objects are not
-    /// moved: shiftWorldOrigin() (origin_shift.hpp) does all of a world. Returns how many boxes
-    /// were rounded. Cost: a pass over the proxies, and that of Grid::shiftOrigin().
+    /// Moves the origin of all coordinates to `shift`: subtracts it from the box of every proxy: see
+    /// Grid::shiftOrigin(). Pairs stay as they are; should rounding have brought boxes together, the next
+    /// calculateOverlappingPairs() makes them pairs. The objects are not moved: shiftWorldOrigin()
+    /// (origin_shift.hpp) shifts a whole world. Returns how many boxes were rounded. Cost: a pass over the
+    /// proxies, and that of Grid::shiftOrigin().
     std::size_t shiftOrigin(const btVector3& shift);
 
-    /// The grid, for queries that Bullet has none for. proxyOf() leads back to Bullet, of what is
-    /// alive (asserted), whose m_clientObject is the btCollisionObject; idOf() is for proxies of this
-    /// class. Of an index: proxyOf(grid().idAt(index)).
+    /// The grid, for queries that Bullet does not have. proxyOf() leads from an id back to the proxy, which
+    /// is alive (asserted); its m_clientObject is the btCollisionObject. idOf() takes proxies of this class.
+    /// For an index: proxyOf(grid().idAt(index)).
     [[nodiscard]] const Grid<btScalar>& grid() const noexcept { return grid_; }
     [[nodiscard]] btBroadphaseProxy* proxyOf(ProxyId id) const;
     [[nodiscard]] static ProxyId idOf(const btBroadphaseProxy* proxy);
 
-    /// What sweeps, and how far; nullptr unless SpatialHashConfig::sweep is set. The grid has the box
-    /// around the way; Sweeps::visit() asks for the way itself, and Sweeps::motion() tells it.
+    /// Which proxies sweep, and how far; nullptr unless SpatialHashConfig::sweep is set. The grid has the box
+    /// around the way; Sweeps::visit() searches the way itself, and Sweeps::motion() returns it.
     [[nodiscard]] const Sweeps<btScalar>* sweeps() const noexcept { return sweeps_.get(); }
 
     /// What the last calculateOverlappingPairs() cost.
     [[nodiscard]] const PairCost& lastCost() const noexcept { return pairs_.lastCost(); }
 
-    /// Bytes held, Bullet's own proxies included, the pair cache excluded unless it is our own.
+    /// Bytes held, including Bullet's own proxies, and the pair cache if the broadphase made it.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Gives back what is not used, after a level was left, say: that of the grid, its pairs and sweeps, see
-    /// Grid::releaseUnusedMemory(), of a PairCache, and of the proxies at the end that are destroyed, whose
-    /// addresses must not be used any more, not even for an assertion to tell of it.
+    /// Gives back unused memory, after a level was left, say: of the grid, its pairs and sweeps (see
+    /// Grid::releaseUnusedMemory()), of a PairCache, and of destroyed proxies at the end. Their addresses
+    /// must not be used any more, not even where an assertion would have told of it.
     /// calculateOverlappingPairs() does it by itself when there has been room for more than eight times as
     /// many proxies, or pairs, in 256 calls in a row. Not within a callback (asserted). Cost:
     /// O(grid().indexLimit()), and moving what is left.
     void releaseUnusedMemory() noexcept;
 
     /// Grid::validate(), Sweeps::validate(), Pairs::validate() and PairCache::validate(), and:
-    /// - The cache holds as many pairs as the set of pairs (for a cache of our own, out of which the
-    ///   program has taken none since pairs were calculated).
+    /// - The cache holds as many pairs as the set of pairs (for a cache that the broadphase made, if the
+    ///   program has taken out no pair since pairs were calculated).
     [[nodiscard]] std::string validate() const;
 
 private:

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The triangles of Bullet's static shapes, for whoever wants to know the ground:
+// The triangles of Bullet's static shapes, for a Terrain:
 //
 //     std::vector<Vector3<btScalar>> corners;
-//     const std::string error = appendTriangles(*body.getCollisionShape(), body.getWorldTransform(), corners);
+//     const btCollisionShape& shape = *body.getCollisionShape();
+//     const std::string error = appendTriangles(shape, body.getWorldTransform(), corners);
 //     terrain.add(corners);  // integration/terrain
 
 #include <broadphase/aabb.hpp>
@@ -19,15 +20,16 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// Appends the triangles of a shape that stands at `transform` to `corners`, in world coordinates,
-/// three corners each: of a btBvhTriangleMeshShape, a btScaledBvhTriangleMeshShape, a
-/// btHeightfieldTerrainShape, any other btConcaveShape that lists its triangles, and of compounds of
-/// these. They come in Bullet's order, which is not the mesh's; corners that triangles share stay
-/// equal to the bit. Returns nothing; or, where the shape or a child of it has no triangles (a plane,
-/// a convex shape), or compounds lie more than 64 deep within each other, as one that contains itself
-/// does, a sentence that says so, and then nothing was appended. A heightfield with a negative scaling
-/// has none either: Bullet itself finds none there. Cost: O(triangles), and the children of
-/// compounds, each as often as it is contained.
+/// Appends the triangles of a shape that stands at `transform` to `corners`, in world coordinates [m], three
+/// corners each. They come in Bullet's order, which is not the mesh's; corners that triangles share stay
+/// equal to the bit.
+///
+/// Shapes    btBvhTriangleMeshShape, btScaledBvhTriangleMeshShape, btHeightfieldTerrainShape, any other
+///           btConcaveShape that lists its triangles, and compounds of these
+/// Returns   an empty string, or a sentence that says what is wrong; then nothing was appended. Wrong are a
+///           shape or child without triangles (a plane, a convex shape, a heightfield with a negative
+///           scaling), and compounds more than 64 deep within each other, or within themselves.
+/// Cost      O(triangles), and the children of compounds, each as often as it is contained
 [[nodiscard]] HASHPHASE_BULLET_EXPORT std::string appendTriangles(
     const btCollisionShape& shape, const btTransform& transform,
     std::vector<Vector3<btScalar>>& corners);

@@ -10,15 +10,15 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// Each is exactly zero while the effect that is named is not declared (world_effects.hpp), whatever is
-/// in the world, unless the program sets by hand what is overridden.
+/// A number is exactly 0 while the effect named before its colon is not declared (world_effects.hpp),
+/// whatever is in the world, unless the program changes by hand what a WorldConfigurator has set.
 struct WorldCost {
     int pairCount = 0;             ///< pairs: boxes that overlap
-    int manifoldCount = 0;         ///< pairs: of those, how many the narrow phase follows
+    int manifoldCount = 0;         ///< pairs: pairs that the narrow phase follows
     int contactCount = 0;          ///< pairs: points where bodies touch
-    int answeredContactCount = 0;  ///< response: of those, how many the solver answers
-    int rubbingContactCount = 0;   ///< friction: of those, how many rub
-    int sweptCount = 0;            ///< sweep: bodies that Bullet has swept along their way
+    int answeredContactCount = 0;  ///< response: contact points that the solver answers
+    int rubbingContactCount = 0;   ///< friction: answered contact points that rub
+    int sweptCount = 0;            ///< sweep: bodies that Bullet has swept along their ways
     int sleepingCount = 0;         ///< sleeping: dynamic bodies asleep
     int turningCount = 0;          ///< rotation: dynamic bodies with an angular velocity
     int awakeCount = 0;            ///< dynamic bodies that were not asleep

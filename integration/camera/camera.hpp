@@ -3,14 +3,16 @@
 
 // A camera and the window that it draws to: from pixels to rays and rectangles.
 //
-// Cameras   any that frustum.hpp knows: perspective, orthographic, oblique, with a reversed depth
-//           range or an infinite far plane. Computed in double precision throughout, and rounded once
-//           at the end.
-// Pixels    x to the right and y downwards, as in windows; any numbers, not only whole ones: the
-//           middle of the pixel in column i and row k is (i + 0.5, k + 0.5).
+//     const Camera<float> camera(viewProjection, DepthRange::zeroToOne, Viewport(0, 0, 1920, 1080));
+//     const Picked<float> picked = pickNearest(grid, camera.rayThrough({mouseX + 0.5, mouseY + 0.5}));
+//
+// Cameras   All cameras of frustum.hpp: perspective, orthographic, oblique, with a reversed depth range or an
+//           infinite far plane. Computed in double precision, and rounded once at the end.
+// Pixels    x to the right and y downwards, as in windows. Fractions count: the middle of the pixel in
+//           column i and row k is (i + 0.5, k + 0.5).
 // Units     metres in the world
-// Bad data  A view that has no inverse or no size sees nothing: its rays and rectangles are empty, and
-//           cameraError() says why. So are those of pixels that are NaN.
+// Bad data  A camera whose matrix has no inverse, or whose viewport has no size, sees nothing: its rays and
+//           rectangles are empty, and cameraError() says why. So are those of a pixel that is NaN.
 // Threads   values; use them from any thread
 
 #include <broadphase/regions.hpp>
@@ -25,19 +27,19 @@
 
 namespace hashphase {
 
-/// A place in the window.
+/// A place in the window: x to the right, y downwards [pixels].
 using Pixel = Eigen::Vector2d;
 
-/// The part of the window that the camera draws to, in pixels; (x, y) is its upper left corner.
+/// The part of the window that the camera draws to [pixels].
 struct Viewport {
-    double x = 0;
-    double y = 0;
-    double width = 0;
-    double height = 0;
+    double x = 0;       ///< of the upper left corner
+    double y = 0;       ///< of the upper left corner
+    double width = 0;   ///< above 0
+    double height = 0;  ///< above 0
 
     constexpr Viewport() = default;
 
-    /// Of any numbers: windows tell their sizes as whole ones.
+    /// Takes numbers of any type: window systems give sizes as integers.
     template <class X, class Y, class Width, class Height>
         requires(std::is_arithmetic_v<X>&& std::is_arithmetic_v<Y>&& std::is_arithmetic_v<Width>&&
                      std::is_arithmetic_v<Height>)
@@ -48,12 +50,12 @@ struct Viewport {
           height(static_cast<double>(rows)) {}
 };
 
-/// Which end of the depth range is near. Asked about orthographic cameras only; of all others the
-/// matrix says so itself.
+/// Whether the near plane has the lowest depth (nearFirst) or the highest one (reversed). Matters for
+/// orthographic cameras only; all other matrices show it themselves.
 enum class DepthOrder : std::uint8_t { nearFirst, reversed };
 
-/// Says in a sentence why nothing can be seen or picked through the matrix, 4 x 4, in the viewport;
-/// empty when something may be.
+/// Says in a sentence why nothing can be seen or picked through the matrix, 4 x 4, in the viewport: not
+/// finite, singular, or a viewport without a size. Empty when something may be seen.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_CAMERA_EXPORT std::string cameraError(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection, const Viewport& viewport);
@@ -64,24 +66,26 @@ class HASHPHASE_CAMERA_EXPORT Camera {
 public:
     using Matrix = Eigen::Matrix<Scalar, 4, 4>;
 
-    /// Cost: inverts the matrix, once.
+    /// `viewProjection` is 4 x 4, from world to clip coordinates (frustum.hpp). Bad data makes a camera that
+    /// is not valid; nothing is thrown. Cost: inverts the matrix, once.
     Camera(const Matrix& viewProjection, DepthRange depthRange, const Viewport& viewport,
            DepthOrder depthOrder = DepthOrder::nearFirst);
 
-    /// False when cameraError() says something.
+    /// False when cameraError() is not empty.
     [[nodiscard]] bool isValid() const noexcept { return isValid_; }
 
-    /// All that is seen at a pixel, in the viewport or beside it: from the near plane to the far
-    /// plane, or, where that is farther away or at infinity, to what is `farthest` [m] behind the near
-    /// plane, as measured along the camera's view. Empty where nothing is, or `farthest` is not
-    /// positive.
+    /// Returns the ray that is seen at a pixel, in the viewport or beside it. It leads from the near plane to
+    /// the far plane, but no farther than `farthest` [m] behind the near plane, as measured along the
+    /// camera's view; the ray of an orthographic camera always ends on the far plane. Empty
+    /// (RayRegion::isEmpty()) where nothing is seen, or `farthest` is not positive.
     [[nodiscard]] RayRegion<Scalar> rayThrough(const Pixel& pixel,
                                                double farthest = kFarthestView) const;
 
-    /// The rectangle between two corners, in any order, as far as it lies in the viewport; perhaps
-    /// without area. isEmpty() when none of it does.
+    /// Returns the part of the rectangle between two corners, in any order, that lies in the viewport, in
+    /// normalised device coordinates. It may have no area. isEmpty() when no part lies in the viewport.
     [[nodiscard]] ScreenRectangle<Scalar> rectangleBetween(const Pixel& a, const Pixel& b) const;
 
+    /// As given.
     [[nodiscard]] Matrix viewProjection() const noexcept { return viewProjection_; }
     [[nodiscard]] DepthRange depthRange() const noexcept { return depthRange_; }
     [[nodiscard]] const Viewport& viewport() const noexcept { return viewport_; }

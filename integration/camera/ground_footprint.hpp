@@ -4,17 +4,18 @@
 // What a camera sees of the ground: the shadow that a rectangle of the screen casts on a map.
 //
 // Footprint  The part of the view (frustum.hpp) between two heights, projected along the up axis: a
-//            convex polygon. It contains the view's cuts with both heights and all that lies between,
-//            so that whatever the view touches between the heights stands on it. With equal heights
-//            it is the view's cut with that plane: under perspective, or a camera that is turned, a
-//            general quadrilateral, which its four corners give and two do not; fewer or more corners
-//            where the near or the far plane cuts it.
-// Horizon    Rays that never come down to the ground end on the far plane, or, where that is farther
-//            away or at infinity, `farthest` behind the near plane: there the footprint is cut off.
-// Units      metres.
-// Bad data   Singular matrices, heights that are NaN or exchanged: the footprint is empty, and
-//            footprintError() says why. Without an error it is empty when nothing of the ground is
-//            seen.
+//            convex polygon. It contains the view's cuts with both heights and all that lies between, so
+//            that every object which the view touches between the heights stands on it. With equal heights
+//            it is the view's cut with that plane. Under perspective, or with a turned camera, this is a
+//            general quadrilateral, which two corners do not give; it has fewer or more corners where the
+//            near or the far plane cuts it.
+// Horizon    Rays that never come down to the ground end on the far plane, or `farthest` behind the near
+//            plane if that is nearer: there the footprint is cut off. The rays of an orthographic camera
+//            always end on the far plane.
+// Units      metres
+// Bad data   With a singular matrix, heights that are NaN or exchanged, or a `farthest` that is not positive
+//            and finite, the footprint is empty, and footprintError() says why. Without an error it is empty
+//            when the camera sees no ground.
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/core/fixed_list.hpp>
@@ -29,14 +30,14 @@
 
 namespace hashphase {
 
-/// Where views end whose far plane is farther away [m], unless told otherwise.
+/// Views with a farther far plane end here by default [m behind the near plane].
 inline constexpr double kFarthestView = 1e6;
 
-/// From the lowest to the highest of what is on the ground.
+/// From the lowest to the highest point of all that stands on the ground.
 template <class Scalar>
 struct HeightRange {
-    Scalar low = 0;   // [m]; -infinity for no limit
-    Scalar high = 0;  // [m]; infinity for no limit
+    Scalar low = 0;   ///< [m]; -infinity for no limit
+    Scalar high = 0;  ///< [m]; infinity for no limit
     UpAxis up = UpAxis::y;
 };
 
@@ -45,14 +46,14 @@ struct HeightRange {
 template <class Scalar>
 class HASHPHASE_CAMERA_EXPORT GroundFootprint {
 public:
-    /// Across the up axis: (y, z), (x, z) or (x, y), where x, y or z is upwards.
+    /// A point of the map [m]: (y, z), (x, z) or (x, y), where x, y or z is upwards.
     using Point = Eigen::Matrix<Scalar, 2, 1, Eigen::DontAlign>;
 
-    /// Nine planes bound the view between the heights, and so no more than 14 corners.
+    /// A polyhedron with nine planes, as of the view between the heights, has at most 14 corners.
     static constexpr std::size_t kMostCorners = 14;
 
-    /// Of what is seen through the matrix, 4 x 4 (frustum.hpp), in a rectangle of the screen between
-    /// these heights, no more than `farthest` [m] behind the near plane. Cost: some microseconds.
+    /// The footprint of the view through the matrix, 4 x 4 (frustum.hpp), in a rectangle of the screen,
+    /// between these heights, up to `farthest` [m] behind the near plane. Cost: some microseconds.
     GroundFootprint(const Eigen::Matrix<Scalar, 4, 4>& viewProjection, DepthRange depthRange,
                     const HeightRange<Scalar>& heights,
                     const ScreenRectangle<Scalar>& rectangle = wholeScreen<Scalar>(),
@@ -60,14 +61,15 @@ public:
 
     [[nodiscard]] bool isEmpty() const noexcept { return corners_.empty(); }
 
-    /// In the order in which the first axis turns towards the second. One or two where the footprint
-    /// has no area.
+    /// The corners of the polygon, in the order in which the first axis turns towards the second. One or two
+    /// corners where the footprint has no area.
     [[nodiscard]] std::span<const Point> corners() const noexcept {
         return {corners_.begin(), corners_.end()};
     }
 
-    /// The vertical prism over the polygon between the heights: what touches it, or is wholly inside.
-    /// Whatever touches the view between the heights touches the prism. Cost: as a ConvexRegion.
+    /// Returns the vertical prism over the polygon between the heights, for boxes that touch it or lie wholly
+    /// inside. Every box that touches the view between the heights touches the prism. Cost: as a
+    /// ConvexRegion.
     [[nodiscard]] ConvexRegion<Scalar> region(
         Containment containment = Containment::touching) const;
 
@@ -82,7 +84,7 @@ private:
     detail::FixedList<Plane, kMostCorners + 2> planes_;
 };
 
-/// Says in a sentence why there is no footprint; empty when there may be one.
+/// Says in a sentence why there is no footprint: see Bad data. Empty when there may be one.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_CAMERA_EXPORT std::string footprintError(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection, const HeightRange<Scalar>& heights,

@@ -8,14 +8,14 @@
 //     culler.look(grid, frustumRegion<float>(viewProjection, DepthRange::zeroToOne));
 //     culler.forEach([&](std::uint32_t index) { draw(objects[index]); });
 //
-// Never culls what is visible: a proxy of which the box touches the volume is in the set. A few more
-// are, whose boxes only come near one of its edges, and those that a margin or an earlier frame has
-// brought in; overdraw() counts them.
+// Never culls what is visible: a proxy whose box touches the volume is in the set. So are a few others: boxes
+// that only come near an edge of the volume, and proxies that a margin or an earlier frame has brought in;
+// overdraw() counts them.
 //
 // A frame   look() once, with the camera of the frame.
 // Threads   look() reads the grid, as queries do, and needs this object for itself.
 // Units     metres
-// Bad data  A volume without a point, or with a NaN, has nothing; frustumError() says why.
+// Bad data  With a volume without a point, or with a NaN, the set is empty; frustumError() says why.
 // Memory    A bit for each index up to the highest that is visible; a frame like the last one allocates
 //           nothing. Room for more than eight times as many goes after 256 frames.
 
@@ -36,10 +36,10 @@
 
 namespace hashphase {
 
-/// How many are in the visible set, and how many of these touch nothing that is seen.
+/// How exact the visible set is.
 struct Overdraw {
-    std::size_t visible = 0;
-    std::size_t unseen = 0;
+    std::size_t visible = 0;  ///< proxies in the set
+    std::size_t unseen = 0;   ///< proxies in the set whose boxes do not touch the volume
 };
 
 /// Finds and keeps the set of proxies that a camera sees.
@@ -49,28 +49,28 @@ public:
     using Frustum = ConvexRegion<Scalar>;
     using View [[deprecated("Frustum")]] = Frustum;
 
-    /// What is within `margin` [m] of the volume is found as well, so that the set may serve for some
-    /// frames: see look(). At least 0, else taken as 0.
+    /// Also finds proxies within `margin` [m] of the volume, so that a set may serve for several frames: see
+    /// look(). A negative or NaN margin counts as 0.
     explicit Culler(Scalar margin = 0);
 
     // --- Once a frame ----------------------------------------------------------------------------
 
-    /// Finds what touches the frustum and passes the filter, unless what was found the last time is known
-    /// to have it all: when the frustum lies within that time's volume, grown by the margin, nothing was added or
-    /// removed since (Grid::populationNumber()), and nothing can have come in. `moved` [m] says how far any
-    /// corner of a box of the grid may have moved since the last call; infinite when nobody knows, or
-    /// the filter has changed. A Touch::byPlanes region takes less time than an exact one; of one for
-    /// what lies inside no set is kept. Returns the query's cost, none when the set was kept. Cost: the
+    /// Finds the proxies that touch the frustum and pass the filter, or keeps the last set where it is known
+    /// to hold them all: the frustum lies within the last set's volume, grown by the margin, no proxy was
+    /// added or removed since (Grid::populationNumber()), and none can have come in. `moved` [m] is how far
+    /// any corner of a box of the grid may have moved since the last call; infinite when this is unknown, or
+    /// the filter has changed. A Touch::byPlanes region takes less time than an exact one. With
+    /// Containment::inside no set is kept. Returns the query's cost, zeros when the set was kept. Cost: the
     /// cells at the surface of the volume; at most one test for each proxy (Grid::visit()).
     QueryCost look(const Grid<Scalar>& grid, const Frustum& frustum,
                    Scalar moved = std::numeric_limits<Scalar>::infinity());
     QueryCost look(const Grid<Scalar>& grid, const Frustum& frustum, ProxyFilter filter,
                    Scalar moved = std::numeric_limits<Scalar>::infinity());
 
-    /// Says that corners of boxes may have moved so far [m] in a frame without a look().
+    /// Says that corners of boxes may have moved by up to `moved` [m] in a frame without a look().
     void noteMoves(Scalar moved) noexcept;
 
-    /// Takes the proxy with that index out of the set, because it is removed, for whoever reads the set
+    /// Takes the proxy with that index out of the set. Call it for a removed proxy where the set is read
     /// before the next look().
     void forget(std::uint32_t index) noexcept {
         if (index / 64 < bits_.size()) {
@@ -78,29 +78,30 @@ public:
         }
     }
 
-    /// How often the set has been found anew.
+    /// How often look() has found a new set instead of keeping the last one.
     [[nodiscard]] std::uint64_t findCount() const noexcept { return findCount_; }
 
-    /// Goes on with the volume of the last look() while the camera moves, to look at the set from
-    /// outside, until it is called with false. Boxes that move are still found.
+    /// With true, look() goes on with the volume of the last look() while the camera moves, so that you can
+    /// see the set from outside, until a call with false. Boxes that move are still found.
     void freeze(bool isFrozen) noexcept { isFrozen_ = isFrozen; }
     [[nodiscard]] bool isFrozen() const noexcept { return isFrozen_; }
 
     // --- The visible set -------------------------------------------------------------------------
 
-    /// True when the proxy is in the set. A proxy that was removed since stays in until the next look(),
-    /// unless it is forgotten, and whoever has got its index is taken for it.
+    /// True when the proxy is in the set. A proxy removed since stays in the set until the next look() or
+    /// forget(); until then a new proxy with its index is taken for it.
     [[nodiscard]] bool isVisible(ProxyId id) const noexcept {
         return id.index / 64 < bits_.size() && (bits_[id.index / 64] >> (id.index % 64) & 1) != 0;
     }
 
-    /// Bit i % 64 of word i / 64 tells about the proxy with index i; beyond the end there is none.
+    /// Bit i % 64 of word i / 64 tells whether the proxy with index i is in the set; none is beyond the end.
     [[nodiscard]] std::span<const std::uint64_t> bits() const noexcept { return bits_; }
 
+    /// Number of proxies in the set.
     [[nodiscard]] std::size_t count() const noexcept;
 
-    /// Calls visit(index) for the ProxyId::index of every proxy in the set, ascending; Grid::idAt() has
-    /// its id. It does not look anew (asserted). Cost: a 64th of the highest index in the set, and the
+    /// Calls visit(index) for the ProxyId::index of every proxy in the set, ascending; Grid::idAt() returns
+    /// its id. visit() must not call look() (asserted). Cost: a 64th of the highest index in the set, and the
     /// calls.
     template <class Visit>
     void forEach(Visit&& visit) const {

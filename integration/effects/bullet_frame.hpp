@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Bullet's frame of a declaration: what the effects of a scene (scene_effects.hpp) are to a Bullet world.
-// What is not declared, Bullet does not compute.
+// What the effects of a declaration (scene_effects.hpp) mean for a Bullet world. Bullet computes only
+// declared effects.
 //
 //     hashphase::WorldConfigurator configurator(world);      // integration/bullet/world_effects.hpp
 //     configurator.apply(hashphase::worldEffectsOf(scene));
@@ -20,7 +20,7 @@
 // response     every object's answer to contacts       bodies fall through each other, contacts are still
 //                                                      told
 // sweep        m_useContinuous; CCD thresholds for     bodies that move by more than half their width in
-//              who is fast for its size                a step may pass what is thin
+//              bodies that are fast for their size     a step may pass thin ones
 // sleeping     deactivation, linear thresholds         nothing: bodies that rest go on being computed
 // rotation     angular factors                         bodies keep their orientation
 // friction     all frictions                           bodies slide for ever
@@ -28,15 +28,15 @@
 // boxSelection, SpatialHashBroadphase::grid()
 // culling, proximity, zones, radar
 //
-// Observers over that grid know objects by ProxyId: what they keep by index (colours, a visible set that
-// is late) is for you to forget() when an object is removed, as its index is given to another one; and
-// after an origin shift, zones, view and interest are yours to move.
+// Observers over that grid know objects by ProxyId, and keep data by index (colours, a late visible set).
+// Call Observers::forget() when an object is removed, because another object gets its index. After an origin
+// shift, move zones, view and interest yourself.
 //
-// Of the settings, Bullet heeds neither ResponseEffect::restitution, as each of its bodies has its own
-// (WorldEffects::restitution sets that of all), nor SweepEffect::mode, which is for the broadphase to say
-// (SpatialHashConfig::sweep), nor SleepingEffect::framesBeforeSleep: bodies fall asleep after
-// gDeactivationTime, 2 s. motion.bounds and sleeping.interestRadius, where they are finite, are errors:
-// put static planes at the bounds, and deactivate what is far.
+// Bullet ignores some settings: ResponseEffect::restitution, because each body has its own
+// (WorldEffects::restitution sets that of all); SweepEffect::mode, which belongs to the broadphase
+// (SpatialHashConfig::sweep); and SleepingEffect::framesBeforeSleep, because bodies fall asleep after
+// gDeactivationTime, 2 s. Finite motion.bounds and sleeping.interestRadius are errors: put static planes at
+// the bounds, and deactivate far bodies.
 
 #include <broadphase/core/raise.hpp>
 #include <integration/bullet/world_effects.hpp>
@@ -67,9 +67,9 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
     return {};
 }
 
-/// The declaration in Bullet's terms. Bodies are swept as is declared; where they are to have CCD
-/// thresholds of their own, reset() `fastFrom` of what is returned. With SleepingEffect::slowBelow 0
-/// they have sleeping thresholds of their own. Throws std::invalid_argument with bulletEffectsError().
+/// Returns the declaration in Bullet's terms. Bodies are swept as declared; where they are to have CCD
+/// thresholds of their own, reset() `fastFrom` of the result. With SleepingEffect::slowBelow 0 they have
+/// sleeping thresholds of their own. Throws std::invalid_argument with bulletEffectsError().
 [[nodiscard]] inline WorldEffects worldEffectsOf(const SceneEffects& effects) {
     if (const std::string error = bulletEffectsError(effects); !error.empty()) {
         detail::raiseInvalidArgument(error);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// What a scene may call for, and sets of it.
+// The effects that a scene may call for, and sets of effects.
+//
+//     EffectSet lookers{Effect::culling, Effect::radar};
+//     if (lookers.contains(Effect::radar)) { ... }  // namesOf(lookers): "culling, radar"
 
 #include <array>
 #include <cstdint>
@@ -12,34 +15,36 @@
 
 namespace hashphase {
 
-/// The first eight change where things are; the others only look.
+/// What a scene may call for. The first eight are its physics, the other six only look at it.
 enum class Effect : std::uint8_t {
     motion,        ///< bodies go on with their velocities
     terrain,       ///< bodies stand on the ground
-    pairs,         ///< whose boxes overlap: births and deaths
+    pairs,         ///< which boxes overlap: births and deaths
     response,      ///< bodies that touch bounce off
     sweep,         ///< fast bodies meet what they pass
-    sleeping,      ///< bodies that need not move do not
-    rotation,      ///< bodies turn; Bullet's alone
-    friction,      ///< bodies that touch rub; Bullet's alone
+    sleeping,      ///< bodies that need not move stand still
+    rotation,      ///< bodies turn; only under Bullet
+    friction,      ///< bodies that touch rub; only under Bullet
     picking,       ///< what is under the pointer
     boxSelection,  ///< what is in a rectangle that is dragged
     culling,       ///< what a camera sees
-    proximity,     ///< agents look at who is near
-    zones,         ///< who is in which zone of interest
-    radar,         ///< counts by coarse cells
+    proximity,     ///< agents look at their neighbours
+    zones,         ///< which proxy is in which zone of interest
+    radar,         ///< counts of proxies in coarse cells
 };
 
+/// Every effect, in the order of Effect.
 inline constexpr std::array kAllEffects{
     Effect::motion,   Effect::terrain,   Effect::pairs,    Effect::response, Effect::sweep,
     Effect::sleeping, Effect::rotation,  Effect::friction, Effect::picking,  Effect::boxSelection,
     Effect::culling,  Effect::proximity, Effect::zones,    Effect::radar,
 };
 
-/// As it is spelled in code and in files: "boxSelection".
+/// Returns the name as it is spelled in code and in files: "boxSelection". Empty for a value that is no
+/// Effect.
 [[nodiscard]] HASHPHASE_EFFECTS_EXPORT std::string_view nameOf(Effect effect) noexcept;
 
-/// A set of effects; a value of two bytes.
+/// A set of effects; a value of two bytes. Empty by default. Every operation costs O(1).
 class EffectSet {
 public:
     constexpr EffectSet() noexcept = default;
@@ -56,6 +61,7 @@ public:
         return set;
     }
 
+    /// Inserting an effect that is in the set, and erasing one that is not, changes nothing.
     constexpr void insert(Effect effect) noexcept { bits_ |= bitOf(effect); }
     constexpr void erase(Effect effect) noexcept {
         bits_ &= static_cast<std::uint16_t>(~bitOf(effect));
@@ -63,13 +69,13 @@ public:
     [[nodiscard]] constexpr bool contains(Effect effect) const noexcept {
         return (bits_ & bitOf(effect)) != 0;
     }
-    /// Whether it has any of them.
+    /// True when the two sets have an effect in common.
     [[nodiscard]] constexpr bool containsAny(EffectSet others) const noexcept {
         return (bits_ & others.bits_) != 0;
     }
     [[nodiscard]] constexpr bool isEmpty() const noexcept { return bits_ == 0; }
 
-    /// Those of either, of both, and of the first alone.
+    /// Union (|), intersection (&), and the effects of `a` that are not in `b` (-).
     friend constexpr EffectSet operator|(EffectSet a, EffectSet b) noexcept {
         return EffectSet(static_cast<std::uint16_t>(a.bits_ | b.bits_));
     }
@@ -90,10 +96,11 @@ private:
     std::uint16_t bits_ = 0;
 };
 
-/// Their names with commas between them; "nothing" for none.
+/// Returns the names in the order of Effect, with commas between them: "motion, pairs". Returns "nothing" for
+/// an empty set.
 [[nodiscard]] HASHPHASE_EFFECTS_EXPORT std::string namesOf(EffectSet effects);
 
-/// Those that decide where the bodies of a Simulation are.
+/// The effects that decide where the bodies of a Simulation are.
 inline constexpr EffectSet kMovingEffects{Effect::motion, Effect::terrain, Effect::response,
                                           Effect::sweep, Effect::sleeping};
 

@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The effects of a scene that only look at it: culling, proximity, zones, radar in each frame, picking
-// and box selection when they are asked for. Over any grid: that of a Simulation, or of a live Bullet
-// world (SpatialHashBroadphase::grid()).
+// The effects of a scene that only look at it: culling, proximity, zones and radar in each frame, picking
+// and box selection on request. They work over any grid: that of a Simulation, or of a live Bullet world
+// (SpatialHashBroadphase::grid()).
 //
 //     Observers<float> observers(effects);
 //     observers.setView(frustumRegion<float>(viewProjection, DepthRange::zeroToOne));
 //     observers.observe({grid});
 //     observers.culler().forEach([&](std::uint32_t index) { draw(objects[index]); });
 //
-// Undeclared  an effect that is not declared has no phase, no table and no cost. A call for it throws
+// Undeclared  An effect that is not declared has no phase, no table and no cost. A call for it throws
 //             UndeclaredEffect.
 // A frame     Say what has changed (view, interest, zones), then observe() once.
-// Exact       what an effect finds depends on the boxes and on its own settings alone, whatever else is
+// Exact       What an effect finds depends only on the boxes and on its own settings, whatever else is
 //             declared.
-// Late        where a declaration says that something is looked at in every n-th frame only, in frames
-//             between the answer is that of an earlier one: cost() counts these.
-// Threads     everything reads the grid, as queries do, and needs this object for itself.
+// Late        A declaration may let an effect look in every n-th frame only. In the frames between, the
+//             answer is that of an earlier frame: cost() counts late answers.
+// Threads     Everything reads the grid, as queries do, and needs this object for itself.
 // Removed     Call forget() for a proxy that is removed. (A Simulation does.)
-// Failure     Where memory runs out, frames go on after it; the one under way has not all answers.
+// Failure     Where memory runs out, std::bad_alloc is passed on. This frame then lacks some answers; the
+//             next frames go on.
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/core/fixed_list.hpp>
@@ -46,21 +47,23 @@
 
 namespace hashphase {
 
-/// A grid, and what each of its proxies takes part in.
+/// A grid, and what each of its proxies takes part in. By default every proxy takes part in every effect.
 template <class Scalar>
 struct ObservedScene {
     const Grid<Scalar>& grid;
 
-    /// By ProxyId::index: which effects may find the proxy. Whoever is beyond its end takes part in all.
+    /// By ProxyId::index: which effects may find the proxy. Proxies beyond the end take part in all effects.
     std::span<const EffectSet> effects = {};
 
-    /// By ProxyId::index: the group in which the radar counts the proxy. Beyond its end 0.
+    /// By ProxyId::index: the group in which the radar counts the proxy. Proxies beyond the end are in
+    /// group 0.
     std::span<const std::uint32_t> groups = {};
 
-    /// Effects that some proxy takes part in. What nobody does is not looked for.
+    /// Effects that some proxy takes part in. The other effects are not run.
     EffectSet present = EffectSet::all();
 
-    /// Effects that every proxy is known to take part in. For these nobody is asked one by one.
+    /// Effects that every proxy is known to take part in. For these the single proxies are not asked, which
+    /// is faster.
     EffectSet common = {};
 
     [[nodiscard]] bool allTakePartIn(Effect effect) const noexcept {
@@ -84,74 +87,75 @@ public:
     Observers(const Observers&) = delete;
     Observers& operator=(const Observers&) = delete;
 
-    /// Goes on with another declaration. Tables of effects that are not declared any more are gone; the
-    /// zones, colours and view of those that still are stay. What is late begins with a frame in which
-    /// nothing is. Throws as above or std::bad_alloc, and then nothing has changed.
+    /// Goes on with another declaration. Tables of effects that are not declared any more are freed; zones,
+    /// colours and view of effects that are still declared stay. In the next frame no answer is late. Throws
+    /// as the constructor, or std::bad_alloc; then nothing has changed.
     void declare(const SceneEffects& effects);
 
     [[nodiscard]] const SceneEffects& declared() const noexcept { return effects_; }
 
     // --- What is looked at -----------------------------------------------------------------------
 
-    /// The camera's volume, or any other; all of space until it is set. Needs culling.
+    /// Sets the camera's volume, or any other one; all of space until then. Needs culling.
     void setView(const ConvexRegion<Scalar>& view);
 
-    /// Where the player is [m]: what is far from it is late, where that is declared, and the radar is
-    /// around it. Without it nothing is far, and the radar is around the origin.
+    /// Sets where the player is [m]. What is far from it may be late, as declared, and the radar is around
+    /// it. Without an interest (std::nullopt) nothing is far, and the radar is around the origin.
     void setInterest(const std::optional<Point>& interest) { interest_ = interest; }
     [[nodiscard]] const std::optional<Point>& interest() const noexcept { return interest_; }
 
-    /// Zones are added, set and removed here; Zones::update() is observe()'s. Needs zones.
+    /// Add, set and remove zones here; observe() calls Zones::update(). Needs zones.
     [[nodiscard]] Zones<Scalar>& zones();
 
-    /// Gives the proxy with that index a colour, 0 until it is set. Needs proximity. Cost: O(1), and
+    /// Gives the proxy with that index a colour, which is 0 until then. Needs proximity. Cost: O(1), and
     /// memory for all lower indices.
     void setColour(std::uint32_t index, std::uint32_t colour);
 
-    /// Runs one frame of what is declared. `moved` [m] is how far any corner of a box may have moved
-    /// since the last frame; infinite when any proxy was added, or nobody knows: see Culler::look().
-    /// The result does not depend on `parallelFor`.
+    /// Runs one frame of the declared effects. `moved` [m] is how far any corner of a box may have moved
+    /// since the last frame; infinite when this is unknown or a proxy was added: see Culler::look(). Returns
+    /// the cost. The result does not depend on `parallelFor`.
     const SceneCost& observe(const Scene& scene,
                              Scalar moved = std::numeric_limits<Scalar>::infinity(),
                              ParallelFor parallelFor = serialFor);
 
-    /// To be called when the proxy with that index is removed: whoever takes the index after it is not
-    /// visible for having been, and has colour 0.
+    /// Call it when the proxy with that index is removed. The next proxy with this index then is not visible
+    /// because the removed one was, and has colour 0.
     void forget(std::uint32_t index) noexcept;
 
-    /// To be called before the grid is replaced by another one, in which indices mean the same and
-    /// generations do not: whoever is in a zone enters it again, without having left.
+    /// Call it before another grid replaces this one, in which indices mean the same and generations do not.
+    /// Proxies in a zone enter it again, without having left.
     void forgetProxies() noexcept;
 
-    /// Calls it after each phase with its effect's name, for a profiler. Null: calls nobody.
+    /// Calls `watch` after each phase with its effect's name, for a profiler. An empty function ends the
+    /// calls.
     void watchPhases(std::function<void(std::string_view)> watch) { watch_ = std::move(watch); }
 
     // --- What was found in the last frame --------------------------------------------------------
 
-    /// Who is visible. Needs culling.
+    /// The visible set. Needs culling.
     [[nodiscard]] const Culler<Scalar>& culler() const;
 
-    /// By ProxyId::index: which colour each agent has taken; beyond the end, 0. Valid until the next
-    /// frame. Needs proximity.
+    /// By ProxyId::index: the colour that each agent has taken; beyond the end, 0. Valid until the next
+    /// frame or setColour(). Needs proximity.
     [[nodiscard]] std::span<const std::uint32_t> colours() const;
 
-    /// Who entered, stayed in and left zones. Valid until the next frame. Needs zones.
+    /// Which proxies entered, stayed in and left zones. Valid until the next frame. Needs zones.
     [[nodiscard]] const ZoneEvents& zoneEvents() const;
 
-    /// Counts as Radar::scan() gives them. Valid until the next frame. Needs radar.
+    /// Counts as Radar::scan() returns them. Valid until the next frame. Needs radar.
     [[nodiscard]] std::span<const std::uint32_t> radarCounts() const;
 
-    /// The last frame's, and of picks and selections since the frame before.
+    /// What the last frame cost, including picks and selections between the frame before and it.
     [[nodiscard]] const SceneCost& cost() const noexcept { return cost_; }
 
     // --- When it is asked for --------------------------------------------------------------------
 
-    /// pickNearest(), of those that take part in picking, which it needs.
+    /// As pickNearest(), among proxies that take part in picking. Needs picking.
     [[nodiscard]] Picked<Scalar> pick(const Scene& scene, const RayRegion<Scalar>& ray);
     [[nodiscard]] Picked<Scalar> pick(const Scene& scene, const RayRegion<Scalar>& ray,
                                       ExactTest<Scalar> test);
 
-    /// hashphase::select(), of those that take part in box selection, which it needs.
+    /// As hashphase::select(), among proxies that take part in box selection. Needs box selection.
     QueryCost select(const Scene& scene, const Camera<Scalar>& camera, const Pixel& a,
                      const Pixel& b, std::vector<ProxyId>& selected,
                      Containment containment = Containment::touching);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The paper's simulation: spheres that roam, stand on a terrain, bounce off each other, sweep, sleep,
-// and are looked at; of all that, just what the scene declares. After Hastings, Mesit and Guha,
+// The paper's simulation: spheres that roam, stand on a terrain, bounce off each other, sweep, sleep, and
+// are looked at. It runs the effects that the scene declares, and no others. After Hastings, Mesit and Guha,
 // "Optimization of Large-Scale, Real-Time Simulations by Spatial Hashing", 2005.
 //
 //     SceneEffects effects;
@@ -13,19 +13,19 @@
 //     BodyId ball = simulation.add({.position = {0, 5, 0}, .velocity = {1, 0, 0}});
 //     simulation.advance(1.0F / 60);
 //
-// Undeclared  an effect that is not declared has no phase, no table, no cost, and no branch in a loop. A
-//             call for it throws UndeclaredEffect. Rotation and friction are Bullet's alone.
-// Kinds       Motion, terrain, response, sweep and sleeping change where bodies are; that is a function
-//             of these and the bodies, to the last bit. The others look at it: what they find depends on
-//             where bodies are, and on themselves.
-// Bodies      take part in what they are added for; in what is not declared nobody does. A body that
-//             does not take part in motion stands for ever, and others bounce off it; one that does
-//             not take part in response is a sensor.
-// Threads     Everything needs the simulation for itself, but const members do not from each other.
+// Undeclared  An effect that is not declared has no phase, no table, no cost, and no branch in a loop. A
+//             call for it throws UndeclaredEffect. Rotation and friction run only under Bullet.
+// Kinds       Motion, terrain, response, sweep and sleeping decide where bodies are, to the last bit,
+//             whatever else is declared. The other effects only look: what each of them finds depends on
+//             where bodies are, and on its own settings.
+// Bodies      A body takes part in the effects that it is added with, as far as these are declared. A body
+//             without motion stands for ever, and others bounce off it. A body without response is a sensor.
+// Threads     Const members may run at the same time. Everything else needs the simulation for itself.
 // Failure     Where memory runs out in advance(), some bodies may have moved; the next frame goes on, and
-//             tells all pairs as born. add() has added nothing then, and remove() has removed nothing.
+//             tells all pairs as born. Where it runs out in add() or remove(), nothing has changed.
 // Units       metres, seconds
-// Misuse      An id of no body and a time step that is negative or not finite are asserted.
+// Misuse      An id of no body, and a time step that is negative or not finite, are asserted. Without
+//             assertions, a call with an id of no body throws std::out_of_range.
 
 #include <broadphase/core/fixed_list.hpp>
 #include <broadphase/grid.hpp>
@@ -54,7 +54,7 @@ struct BodyId {
     std::uint32_t index = 0;
     std::uint32_t generation = 0;
 
-    /// True for BodyId{}, which names nobody.
+    /// True for BodyId{}, which names no body.
     [[nodiscard]] constexpr bool isNull() const noexcept { return generation == 0; }
     friend constexpr auto operator<=>(const BodyId&, const BodyId&) = default;
 };
@@ -62,12 +62,12 @@ struct BodyId {
 /// A sphere, as it is added.
 template <class Scalar>
 struct Body {
-    Vector3<Scalar> position = Vector3<Scalar>::Zero();  // of the centre [m]
-    Scalar radius = 1;                                   // [m]
-    Vector3<Scalar> velocity = Vector3<Scalar>::Zero();  // [m/s]; kept if motion is declared
-    EffectSet effects = EffectSet::all();                // what it takes part in
-    std::uint32_t group = 0;  // in which it is counted; kept if the radar is declared
-    bool isAsleep = false;    // to begin with; kept if sleeping is declared
+    Vector3<Scalar> position = Vector3<Scalar>::Zero();  ///< of the centre [m]
+    Scalar radius = 1;                                   ///< [m]
+    Vector3<Scalar> velocity = Vector3<Scalar>::Zero();  ///< [m/s]; kept if motion is declared
+    EffectSet effects = EffectSet::all();                ///< what the body takes part in
+    std::uint32_t group = 0;  ///< in which the radar counts the body; kept if the radar is declared
+    bool isAsleep = false;    ///< at first; kept if sleeping is declared
 };
 
 /// Runs frames of spheres: what is declared, and nothing else.
@@ -82,44 +82,54 @@ public:
     Simulation(const Simulation&) = delete;
     Simulation& operator=(const Simulation&) = delete;
 
-    /// Goes on with another declaration: tables of what is new appear, those of what is not declared
-    /// any more are gone. Bodies are where they are; if motion is new they stand still, if sleeping is they
-    /// are awake, if the radar is they are in group 0, and on an axis TerrainEffect::up that is another one
-    /// there are no triangles. Where pairs are new, all of them are told as born. Where there was no grid,
-    /// or one with another GridConfig, all bodies are filed anew: ProxyIds of before name nobody, pairs
-    /// are told as born, and who is in a zone enters it again. Throws as above, and then nothing has
-    /// changed; std::bad_alloc, and then nothing has changed, or the next call makes what is missing.
-    /// Cost: up to that of adding all bodies.
+    /// Goes on with another declaration. Tables of new effects appear; tables of effects that are not
+    /// declared any more are freed. Bodies stay where they are.
+    ///
+    /// motion     new: all bodies stand still
+    /// sleeping   new: all bodies are awake
+    /// radar      new: all bodies are in group 0
+    /// terrain    with another TerrainEffect::up: there are no triangles
+    /// pairs      new: all pairs are told as born
+    /// the grid   new, or with another GridConfig: all bodies are filed again. Old ProxyIds are not valid any
+    ///            more, all pairs are told as born, and proxies in a zone enter it again.
+    ///
+    /// Throws std::invalid_argument with simulationError(effects); then nothing has changed. Throws
+    /// std::bad_alloc; then nothing has changed, or the next call makes what is missing. Cost: up to that of
+    /// adding all bodies.
     void declare(const SceneEffects& effects);
 
     [[nodiscard]] const SceneEffects& declared() const noexcept { return effects_; }
 
     // --- Bodies ----------------------------------------------------------------------------------
 
-    /// Cost: O(1) amortised, and one look at all bodies in the next frame.
+    /// Adds a sphere. Where memory runs out, it adds nothing. Cost: O(1) amortised, and one look at all
+    /// bodies in the next frame.
     BodyId add(const Body<Scalar>& body);
 
-    /// Its id is never valid again. Cost: as above.
+    /// Removes a body; its id is never valid again. Cost: as add().
     void remove(BodyId id);
 
+    /// Whether the id names a body that was not removed.
     [[nodiscard]] bool contains(BodyId id) const noexcept;
+    /// Number of bodies.
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
+    /// The centre [m]. References to positions and velocities are valid until the next add() or declare().
     [[nodiscard]] const Point& position(BodyId id) const;
     [[nodiscard]] Scalar radius(BodyId id) const;
     [[nodiscard]] EffectSet effects(BodyId id) const;
 
-    /// Needs motion.
+    /// [m/s]. Setting it wakes the body. Both need motion.
     [[nodiscard]] const Point& velocity(BodyId id) const;
     void setVelocity(BodyId id, const Point& velocity);
 
-    /// Whether it would move and does not. Needs sleeping.
+    /// True when the body takes part in motion and stands still because it sleeps. Needs sleeping.
     [[nodiscard]] bool isAsleep(BodyId id) const;
 
-    /// Puts the body elsewhere at once; it does not sweep there.
+    /// Puts the centre of the body at `position` [m] at once. The body wakes, and does not sweep there.
     void setPosition(BodyId id, const Point& position);
 
-    /// The body of a proxy, as events and queries name it.
+    /// The body of a proxy that an event or a query names; null for a proxy that is no body here.
     [[nodiscard]] BodyId bodyOf(ProxyId id) const;
 
     // --- Scene -----------------------------------------------------------------------------------
@@ -127,58 +137,58 @@ public:
     /// What bodies stand on: add triangles here. Needs terrain.
     [[nodiscard]] Terrain<Scalar>& ground();
 
-    /// View, interest, zones and colours are set here, and what was found is read. What lies beyond the
-    /// interest radius of sleeping sleeps.
+    /// Set view, interest, zones and colours here, and read what was found. Bodies beyond the interest radius
+    /// of sleeping sleep.
     [[nodiscard]] Observers<Scalar>& observers() noexcept { return observers_; }
     [[nodiscard]] const Observers<Scalar>& observers() const noexcept { return observers_; }
 
-    /// The grid of all bodies, as of the last frame; while no body takes part in one of kGridEffects, it
-    /// has the boxes of when one did. Needs one of kGridEffects.
+    /// The grid of all bodies, as of the last frame. While no body takes part in one of kGridEffects, the
+    /// grid keeps the boxes of the last frame in which one did. Needs one of kGridEffects.
     [[nodiscard]] const Grid<Scalar>& grid() const;
 
     // --- Frame -----------------------------------------------------------------------------------
 
-    /// Simulates so long [s], in one step. The result does not depend on `parallelFor`. Returns the
-    /// cost.
+    /// Simulates `seconds` [s] in one step. Returns the cost. The result does not depend on `parallelFor`.
     const SceneCost& advance(Scalar seconds, ParallelFor parallelFor = serialFor);
 
-    /// What the last frame cost, and what was asked, woken and moved before it.
+    /// What the last frame cost, including what was asked, woken and moved between the frame before and it.
     [[nodiscard]] const SceneCost& cost() const noexcept { return cost_; }
 
-    /// The phases of a frame, in their order.
+    /// The names of a frame's phases, in their order: "move", "pair", "respond", "observe" ...
     [[nodiscard]] std::vector<std::string_view> phases() const;
 
-    /// Calls it after each phase with the phase's name, for a profiler: also, by their effects' names, after
-    /// each of the parts of "observe", which then is what remains. Null: calls nobody.
+    /// Calls `watch` after each phase with the phase's name, for a profiler. Calls it after each part of
+    /// "observe" too, with the name of the part's effect; "observe" then is the rest. An empty function ends
+    /// the calls.
     void watchPhases(std::function<void(std::string_view)> watch);
 
-    /// Lets two bodies bounce off each other if they touch and approach, as the frame does with its own
-    /// pairs: for pairs that another broadphase has found. Returns whether they did; bodies that do not
-    /// take part in response do not. Called for all pairs that touch, sorted by the bodies' indices, after
-    /// advance() without response, it moves bodies as the same frame with response does, to the
-    /// last bit. `restitution` is as that of ResponseEffect. Needs motion. Cost: O(1).
+    /// Lets two bodies bounce off each other if they touch and approach, as a frame does with its own pairs:
+    /// for pairs that another broadphase has found. Returns whether they bounced; bodies without response
+    /// never do. Called after advance() without response for all pairs that touch, sorted by the
+    /// bodies' indices, it has the same result as a frame with response, to the last bit. For `restitution`
+    /// see ResponseEffect. A body and itself are asserted. Needs motion. Cost: O(1).
     bool collide(BodyId first, BodyId second, double restitution = 1);
 
     /// Pairs that were born and died in the last frame. Valid until the next one. Needs pairs.
     [[nodiscard]] const PairChanges& pairChanges() const;
 
-    /// How many pairs there are since the last frame. Needs pairs.
+    /// Number of pairs as of the last frame. Needs pairs.
     [[nodiscard]] std::size_t pairCount() const;
 
     // --- When it is asked for --------------------------------------------------------------------
 
-    /// As those of Observers.
+    /// As Observers::pick() and Observers::select(), over the bodies of this simulation.
     [[nodiscard]] Picked<Scalar> pick(const RayRegion<Scalar>& ray);
     QueryCost select(const Camera<Scalar>& camera, const Pixel& a, const Pixel& b,
                      std::vector<ProxyId>& selected,
                      Containment containment = Containment::touching);
 
-    /// Bytes by table, capacity included; exactly 0 for each table of an effect that is not declared.
-    /// Cost: O(zones).
+    /// Returns the bytes of each table, capacity included: exactly 0 for each table of an effect that is not
+    /// declared. Cost: O(zones).
     [[nodiscard]] SceneFootprint footprint() const;
 
     /// Says which invariant is broken, in a sentence; empty when all hold (ask after advance()):
-    /// - Those of the grid and the sweeps, and of the pairs in a frame in which nobody swept.
+    /// - Those of the grid and the sweeps, and of the pairs in a frame in which no body swept.
     /// - Each body's proxy has the body's index and box.
     /// - Contacts are the present pairs, where some body responds.
     [[nodiscard]] std::string validate() const;
@@ -301,7 +311,8 @@ private:
     std::function<void(std::string_view)> watch_;
 };
 
-/// effectsError(), and what a Simulation cannot run.
+/// Says in a sentence why a Simulation cannot run the declaration: as effectsError(), and for effects that
+/// only Bullet runs. Empty when it can.
 [[nodiscard]] HASHPHASE_EFFECTS_EXPORT std::string simulationError(const SceneEffects& effects);
 
 extern template class Simulation<float>;

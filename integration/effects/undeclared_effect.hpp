@@ -9,15 +9,17 @@
 
 namespace hashphase {
 
-/// Thrown by a call for an effect that the scene does not declare. It has done nothing.
+/// Thrown by a call for an effect that the scene does not declare; the call has done nothing. what() names
+/// the call and the effect.
 class HASHPHASE_EFFECTS_EXPORT UndeclaredEffect : public std::logic_error {
 public:
-    /// `call` is what was asked for: "colours()".
+    /// `call` is the function that was called: "colours()".
     UndeclaredEffect(Effect effect, std::string_view call);
 
-    /// Of a call that any one of these would do for; effect() is the first of them.
+    /// For a call that needs any one of these effects; effect() is the first of them. `oneOf` is not empty.
     UndeclaredEffect(EffectSet oneOf, std::string_view call);
 
+    /// The effect to declare.
     [[nodiscard]] Effect effect() const noexcept { return effect_; }
 
 private:

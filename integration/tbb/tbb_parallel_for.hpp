@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Loops of the grid on the threads of oneTBB (2021 or newer). Link with TBB::tbb.
+// Runs the loops of the grid on the threads of oneTBB (2021 or newer). Link with TBB::tbb.
 
 #include <broadphase/parallel_for.hpp>
 
@@ -13,7 +13,7 @@
 
 namespace hashphase {
 
-/// A ParallelFor: pairs.update(filter, hashphase::tbbFor). Threads that have nothing to do sleep.
+/// A ParallelFor: pairs.update(filter, hashphase::tbbFor). Idle threads sleep.
 inline void tbbFor(std::size_t count, std::size_t grain, LoopBody body) {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, std::max<std::size_t>(grain, 1)),
                       [&body](const tbb::blocked_range<std::size_t>& range) {

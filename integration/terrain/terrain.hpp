@@ -5,17 +5,21 @@
 // ground is below a point, and where a sphere rests on it. After the object-terrain test of Hastings,
 // Mesit and Guha, which holds on flat ground; here a sphere rests on slopes, edges and corners too.
 //
-// A frame    Add triangles once. Then ask, for many points at once where there are many.
-// Others     The grid may hold other proxies, and changes in whatever way; they cost time only.
+//     Terrain<float> terrain(grid);
+//     terrain.add(corners);
+//     if (const auto ground = terrain.surfaceBelow(point)) { point.y() = ground->height; }
+//
+// A frame    Add triangles once. Then ask; ask about many points in one call.
+// Others     The grid may hold other proxies, and may change; this costs only time.
 // Exact      A point on an edge or a corner belongs to all triangles there: no point of a closed
 //            surface is lost between two triangles. Heights are found in double precision.
-// Seams      Meshes that meet, and were placed by different transforms, have edges that differ by
-//            rounding. A point between them belongs to the nearest, see seamTolerance(); what is
-//            wider stays a gap. Where a triangle is exactly below, at about that height, it counts.
+// Seams      Where meshes that were placed by different transforms meet, their edges differ by rounding. A
+//            point between the edges belongs to the nearest triangle: see seamTolerance(). Wider gaps stay
+//            gaps. A triangle exactly below the point, at about that height, goes before.
 // Units      metres. Heights are coordinates along the axis that is up.
 // Threads    Queries are const and may run on any number of threads.
-// Memory     A query allocates nothing, unless a few points meet hundreds of boxes; one about more
-//            than a thousand points takes 0.3 MB of the stack.
+// Memory     A query allocates nothing, unless a few points meet hundreds of boxes. A query about more than a
+//            thousand points takes 0.3 MB of the stack.
 // Bad data   Triangles with a bad corner are refused and named; bad points and radii have no ground.
 // Misuse     Corners that do not come in threes, batches of unequal lengths, numbers that no triangle
 //            has, and more than 2^32 - 2 triangles are asserted.
@@ -40,24 +44,24 @@
 
 namespace hashphase {
 
-/// Where something stands: on which triangle, by its number, and how high.
+/// Where an object stands.
 template <class Scalar>
 struct Ground {
-    std::uint32_t triangle = 0;
-    Scalar height = 0;  ///< [m]
+    std::uint32_t triangle = 0;  ///< number of the triangle
+    Scalar height = 0;           ///< of the ground, or of the centre of a resting sphere [m]
 
     friend bool operator==(const Ground&, const Ground&) = default;
 };
 
-/// What Terrain::add() did. Triangles are numbered in the order in which they were handed in, those
-/// that were refused included.
+/// What Terrain::add() did. Triangles are numbered in the order in which they were handed in, including
+/// refused ones.
 struct AddedTriangles {
-    std::uint32_t first = 0;             ///< number of the first one
-    std::uint32_t count = 0;             ///< handed in
-    std::vector<std::uint32_t> refused;  ///< numbers of those that the ground goes without
+    std::uint32_t first = 0;             ///< number of the first triangle
+    std::uint32_t count = 0;             ///< how many were handed in
+    std::vector<std::uint32_t> refused;  ///< numbers of triangles with a bad corner
 };
 
-/// Triangles that stand still, and what stands on them.
+/// Triangles that stand still, and how high the ground is.
 template <class Scalar>
 class HASHPHASE_TERRAIN_EXPORT Terrain {
 public:
@@ -65,10 +69,11 @@ public:
     using Corners = std::array<Point, 3>;
     using Found = std::optional<Ground<Scalar>>;
 
-    /// Coordinates and radii up to this are good [m]: all finite ones in single precision.
+    /// Coordinates and radii up to this are good [m]: in single precision all finite ones.
     static constexpr double kFarthest = 1e70;
 
-    /// The grid is not owned and must outlive the terrain, which removes its proxies in the end.
+    /// Keeps a reference to the grid, which must outlive the terrain. The destructor removes the terrain's
+    /// proxies.
     explicit Terrain(Grid<Scalar>& grid, UpAxis up = UpAxis::y);
     ~Terrain();
     Terrain(const Terrain&) = delete;
@@ -76,43 +81,44 @@ public:
 
     // --- Triangles -------------------------------------------------------------------------------
 
-    /// Adds triangles, three corners each. Refused is what has a corner that is NaN, infinite or
-    /// farther than kFarthest. Vertical triangles, and those without an area, carry spheres but have
-    /// no height themselves. Either side may be up. Where memory runs out, nothing has been added.
-    /// Cost: O(1) amortised for each.
+    /// Adds triangles, three corners [m] each. Refuses triangles with a corner that is NaN, infinite or
+    /// farther than kFarthest. Vertical triangles, and those without an area, carry spheres but have no
+    /// height themselves. Either side may be up. Where memory runs out, nothing has been added. Cost: O(1)
+    /// amortised for each triangle.
     AddedTriangles add(std::span<const Point> corners);
 
-    /// The same, corners by their place in `vertices`. Refused is also what names no vertex.
+    /// Adds triangles by the places of their corners in `vertices`, three indices each. Also refuses
+    /// triangles with an index beyond the last vertex.
     AddedTriangles add(std::span<const Point> vertices, std::span<const std::uint32_t> indices);
 
-    /// Removes all triangles; numbers begin at 0 again.
+    /// Removes all triangles, and their proxies; numbers begin at 0 again.
     void clear();
 
-    /// To be called with each Grid::shiftOrigin() of the grid: subtracts `shift` [m] from the corners,
-    /// as the grid does from their boxes. Cost: O(triangles).
+    /// Subtracts `shift` [m] from the corners, as Grid::shiftOrigin() does from their boxes. Call it with
+    /// each Grid::shiftOrigin() of the grid. Cost: O(triangles).
     void shiftOrigin(const Point& shift);
 
-    /// How many triangles were handed in: all numbers are below. Refused ones included.
+    /// Number of triangles handed in, including refused ones: all triangles' numbers are below it.
     [[nodiscard]] std::uint32_t size() const noexcept {
         return static_cast<std::uint32_t>(triangles_.size());
     }
 
-    /// The corners, in the order in which they were added; NaN of a refused one.
+    /// The corners [m] of a triangle, in the order in which they were added; NaN for a refused one.
     [[nodiscard]] Corners corners(std::uint32_t triangle) const;
 
     /// Unit normal of the side that is up; zero where the triangle has no heights.
     [[nodiscard]] Point normal(std::uint32_t triangle) const;
 
-    /// Its proxy in the grid; null of a refused one.
+    /// The triangle's proxy in the grid; null for a refused one.
     [[nodiscard]] ProxyId proxy(std::uint32_t triangle) const;
 
-    /// How far beside a triangle a point may lie, as seen from above, and still belong to it where no
-    /// other one is there [m]. That is what rounding may take away from an edge near the point: 8
-    /// epsilon of Scalar times the point's larger coordinate along the ground, now or before the shifts
-    /// of the origin, and the largest extent and height of what one add() has brought, at most 16 km.
-    /// A corner that a transform placed is six sums and products of numbers of that size, along two
-    /// axes, each off by half an epsilon of them. In single precision a twentieth of a millimetre for
-    /// chunks of 32 m near the origin, 1 mm at 1 km; in double precision 2 pm.
+    /// Returns how far beside a triangle a point may lie, as seen from above, and still belong to it where no
+    /// other triangle is [m]: the amount by which rounding may move an edge near the point. This is 8 epsilon
+    /// of Scalar times a sum: the point's larger coordinate along the ground, now or before the shifts of the
+    /// origin, and the largest extent and height of the triangles of one add(), at most 16 km. (A corner
+    /// placed by a transform is six sums and products of such numbers along two axes, each off by half an
+    /// epsilon.) In single precision a twentieth of a millimetre for chunks of 32 m near the origin, 1 mm at
+    /// 1 km; in double precision 2 pm.
     [[nodiscard]] Scalar seamTolerance(const Point& point) const noexcept {
         Scalar farthest = along(point);
         if (isShifted_) {
@@ -123,33 +129,37 @@ public:
 
     // --- Queries ---------------------------------------------------------------------------------
 
-    /// The highest surface at or below the point, on the vertical line through it; of several the
-    /// one with the smallest number. None outside of all triangles, and below them. Asked again at
-    /// the height that it gave, it gives the same. Adds what it cost to `cost`. Cost: the triangles
-    /// whose boxes the line below the point meets; at most one test for each proxy of the grid.
+    /// Returns the highest surface at or below the point [m], on the vertical line through it; of several
+    /// equally high ones the triangle with the smallest number. Nothing outside of all triangles, and below
+    /// them. A second call at the returned height returns that height again. Adds the query's cost to `cost`.
+    /// Cost: the triangles whose boxes the line below the point meets; at most one test for each proxy of the
+    /// grid.
     [[nodiscard]] Found surfaceBelow(const Point& point, QueryCost* cost = nullptr) const;
 
-    /// How high the centre of a sphere is that rests on the ground, and on which triangle, when it
-    /// may move along the vertical line through `center` only. Each triangle carries the sphere at
-    /// one height, touching it at one point; what counts is the highest of those whose touching
-    /// points are not above `center`: a bridge overhead does not, and a sphere that is sunk into a
-    /// hill is lifted. On a slope with the unit normal n, that is the height of the ground + radius /
-    /// n_up; with radius 0 the ground itself. None where nothing is below within the radius, and for
-    /// a radius that is negative, NaN or above kFarthest. Cost: the triangles whose boxes overlap
-    /// the square column below the sphere; at most as above.
+    /// Returns the height of the centre of a sphere that rests on the ground, and the triangle that carries
+    /// it, when the sphere may move only along the vertical line through `center` [m].
+    /// Each triangle carries the sphere at one height, and touches it at one point. The result is the highest
+    /// of these heights among triangles whose touching points are not above `center`: a bridge overhead does
+    /// not count, and a sphere sunk into a hill is lifted. On a slope with the unit normal n, it is the
+    /// height of the ground + radius / n_up; with radius 0 the ground itself. Nothing where no triangle is
+    /// below within the radius, and for a radius [m] that is negative, NaN or above kFarthest. Cost: the
+    /// triangles whose boxes overlap the square column below the sphere; at most one test for each proxy of
+    /// the grid.
     [[nodiscard]] Found restingHeight(const Point& center, Scalar radius,
                                       QueryCost* cost = nullptr) const;
 
-    /// surfaceBelow() for many: found[i] is that of points[i]. The result does not depend on
-    /// `parallelFor`. Fastest when near ones follow each other; each costs at most as above.
+    /// surfaceBelow() for many points: found[i] is that of points[i]. The result does not depend on
+    /// `parallelFor`. Returns the cost. Fastest when points near each other follow each other. Cost: at most
+    /// as surfaceBelow() for each point.
     QueryCost surfacesBelow(std::span<const Point> points, std::span<Found> found,
                             ParallelFor parallelFor = serialFor) const;
 
-    /// restingHeight() for many: found[i] is that of centers[i] and radii[i].
+    /// restingHeight() for many spheres: found[i] is that of centers[i] and radii[i]. Otherwise as
+    /// surfacesBelow().
     QueryCost restingHeights(std::span<const Point> centers, std::span<const Scalar> radii,
                              std::span<Found> found, ParallelFor parallelFor = serialFor) const;
 
-    /// Bytes held beside what the grid holds, capacity included.
+    /// Bytes held, capacity included, without those of the grid.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
 private:

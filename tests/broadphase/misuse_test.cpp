@@ -403,7 +403,7 @@ TEST(SweepsMisuse, OfAStaleIdIsAsserted) {
     EXPECT_THROW(static_cast<void>(sweeps.motion(id)), BrokenAssert);
 }
 
-TEST(CrowdMisuse, OfAgentsThatThereAreNotIsAsserted) {
+TEST(RadiusSearchMisuse, OfAgentsThatThereAreNotIsAsserted) {
     const ThrowingAsserts throwing;
     Grid<float> grid;
     static_cast<void>(grid.add(cube(0)));
@@ -414,7 +414,7 @@ TEST(CrowdMisuse, OfAgentsThatThereAreNotIsAsserted) {
     EXPECT_THROW(static_cast<void>(search.position(1)), BrokenAssert);
 }
 
-TEST(CrowdMisuse, OfItsOwnCallbacksIsAsserted) {
+TEST(RadiusSearchMisuse, OfItsOwnCallbacksIsAsserted) {
     const ThrowingAsserts throwing;
     Grid<float> grid;
     const ProxyId id = grid.add(cube(0));

@@ -252,8 +252,9 @@ template <class Scalar>
 
 /// The height when it is not. Means nothing where that is below `least`.
 template <class Scalar>
-[[nodiscard]] Rest restOnEdges(const GroundTriangle<Scalar>& triangle, const Weights& peak,
-                               const Point2& center, double radius, double least) noexcept {
+[[nodiscard, gnu::always_inline]] inline Rest restOnEdges(const GroundTriangle<Scalar>& triangle,
+                                                          const Weights& peak, const Point2& center,
+                                                          double radius, double least) noexcept {
     Rest best;
     const auto look = [&](double weight, std::size_t i, std::size_t j) {
         const Edge edge(triangle, i, j, center);
