@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/effects/simulation.hpp>
 
-#include <integration/effects/simulation_contacts.inl>
 #include <integration/effects/simulation_frame.inl>
 #include <integration/effects/simulation_plan.inl>
 
