@@ -77,7 +77,7 @@ void joinMobile(PairState<Scalar>& pairs, ParallelFor parallelFor) {
     pairs.cost.boxesTested += cost.boxesTested;
     for (const auto [a, b] : selectApart<Scalar>(pairs.scratch, found.pairs(), table.order().data(),
                                                  pairs.frame.before.data(), parallelFor)) {
-        pairs.ask(pairKey(table.proxyIndex(a), table.proxyIndex(b)));
+        pairs.listToAsk(pairKey(table.proxyIndex(a), table.proxyIndex(b)));
     }
 }
 
@@ -126,7 +126,7 @@ void findAgainstResting(PairState<Scalar>& pairs, ParallelFor parallelFor) {
         const Aabb<Scalar> other =
             isShifted ? pairs.proxies.boxAtUpdate(proxyIndex) : resting.box(restingEntry);
         if (!overlaps(unpadded(before), other)) {
-            pairs.ask(pairKey(mobile.proxyIndex(entry), proxyIndex));
+            pairs.listToAsk(pairKey(mobile.proxyIndex(entry), proxyIndex));
         }
     }
 }
@@ -152,14 +152,14 @@ template <class Scalar>
     joinMobile(pairs, parallelFor);
     findAgainstResting(pairs, parallelFor);
     if (pairs.proxies.areRegrouped) {
-        askAboutRegrouped(pairs);
+        listRegrouped(pairs);
     }
     if (pairs.known.immediate.size() > 0) {
         std::erase_if(pairs.call.asked,
                       [&](PairKey key) { return pairs.known.immediate.contains(key); });
     }
     findSwept(pairs, parallelFor);
-    askRefusedAgain(pairs);
+    listRefusedAgain(pairs);
     return true;
 }
 

@@ -121,14 +121,15 @@ void forEachKnown(PairState<Scalar>& pairs, const Visit& visit) {
 }
 
 template <class Scalar>
-void askIfNew(PairState<Scalar>& pairs, PairKey key) {
+void listIfNew(PairState<Scalar>& pairs, PairKey key) {
     if (pairs.mayPairNow(key) && pairs.touchAtStart(key) && !pairs.isKnown(key)) {
         pairs.call.immediate.push_back(key);
-        pairs.ask(key);
+        pairs.listToAsk(key);
     }
 }
 
-// Asks about the proxy's candidates that overlap now and are not known: those with others that are wanted.
+// Lists, to be asked about, the proxy's candidates that overlap now and are not known: those with others
+// that are wanted.
 template <class Scalar, class IsWanted>
 void findNewCandidates(PairState<Scalar>& pairs, std::uint32_t proxyIndex,
                        const IsWanted& isWanted) {
@@ -136,7 +137,7 @@ void findNewCandidates(PairState<Scalar>& pairs, std::uint32_t proxyIndex,
     const Aabb<Scalar> box = pairs.boxAtStart(proxyIndex);
     const auto add = [&](std::uint32_t other) {
         if (other != proxyIndex && isWanted(other)) {
-            askIfNew(pairs, pairKey(proxyIndex, other));
+            listIfNew(pairs, pairKey(proxyIndex, other));
         }
     };
     const Reading<Scalar> reading = pairs.store.beginReading();

@@ -24,7 +24,7 @@ void endIfWokenApart(PairState<Scalar>& pairs, std::uint32_t a, std::uint32_t b)
     }
 }
 
-// Sets bounds to the boxes that the woken ones had; returns their kinds.
+// Lists in `bounds` the boxes that the woken ones had; returns the kinds of their groups.
 template <class Scalar>
 GroupKinds::Set listWoken(PairState<Scalar>& pairs) {
     Population<Scalar>& proxies = pairs.proxies;
@@ -98,7 +98,7 @@ void findEndedOfWatched(PairState<Scalar>& pairs, ParallelFor parallelFor) {
     }
 }
 
-// A candidate ends when its boxes overlapped at the last update, or were found between updates, and do not
+// A candidate ends when its boxes overlapped at the last update, or it was found between updates, and they do not
 // now, or when one of the two sweeps now, unless they touch on their ways, see findSwept(). All those
 // that are not watched are found here before their boxes are lost.
 template <class Scalar>

@@ -14,7 +14,7 @@ namespace hashphase::detail {
 // What the filter refused, and has not ended, is asked about again when one of the two has changed, and
 // put aside when both have come to rest.
 template <class Scalar>
-void askRefusedAgain(PairState<Scalar>& pairs) {
+void listRefusedAgain(PairState<Scalar>& pairs) {
     KnownPairs& known = pairs.known;
     std::vector<PairKey>& rested = pairs.call.rested;
     rested.clear();
@@ -26,7 +26,7 @@ void askRefusedAgain(PairState<Scalar>& pairs) {
         } else if ((pairs.proxies.changedNow(firstIndex(key)) ||
                     pairs.proxies.changedNow(secondIndex(key))) &&
                    (pairs.overlapNow(key) || known.swept.touchNow(key))) {
-            pairs.ask(key);
+            pairs.listToAsk(key);
         }
     }
     for (const PairKey key : rested) {
@@ -118,7 +118,7 @@ void applyAnswers(PairState<Scalar>& pairs) noexcept {  // NOLINT(bugprone-excep
         nextStanding += wasPair ? 1 : 0;
         if (pairs.call.accepted[i] == 0) {
             if (wasPair) {
-                pairs.end(key);
+                pairs.endPair(key);
             }
             if (!known.arePairs() && isToBeRefused(pairs, key) &&
                 !known.refusedAtRest.contains(key)) {

@@ -26,21 +26,21 @@ void findKept(PairState<Scalar>& pairs) {
     }
 }
 
-// Asks about what overlapped at the last update, but could not pair, and may now.
+// Lists, to be asked about, what overlapped at the last update, but could not pair, and may now.
 template <class Scalar>
-void askAboutRegrouped(PairState<Scalar>& pairs) {
-    const auto askIfNew = [&](std::uint32_t a, std::uint32_t b) {
+void listRegrouped(PairState<Scalar>& pairs) {
+    const auto listIfUnknown = [&](std::uint32_t a, std::uint32_t b) {
         const PairKey key = pairKey(a, b);
         if (pairs.proxies.overlappedAtUpdate(a, b) && !pairs.wasCandidate(key)) {
-            pairs.ask(key);
+            pairs.listToAsk(key);
         }
     };
     const Table<Scalar>& table = pairs.tables.mobile;
     for (const auto [a, b] : pairs.watched.amongMobile.pairs()) {
-        askIfNew(table.proxyIndex(a), table.proxyIndex(b));
+        listIfUnknown(table.proxyIndex(a), table.proxyIndex(b));
     }
     for (const auto [entry, proxyIndex] : pairs.watched.toResting.pairs()) {
-        askIfNew(table.proxyIndex(entry), proxyIndex);
+        listIfUnknown(table.proxyIndex(entry), proxyIndex);
     }
 }
 

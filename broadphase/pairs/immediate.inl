@@ -45,7 +45,7 @@ void endImmediateOfRemoved(PairState<Scalar>& pairs) noexcept {
     }
     pairs.markImmediate(immediate.keys(), true);
     for (const PairKey key : pairs.call.ended) {
-        pairs.end(key);
+        pairs.endPair(key);
     }
     pairs.fewImmediate = PairState<Scalar>::kFewImmediate + 2 * immediate.size();
     pairs.proxies.giveBack(pairs.proxies.removedImmediate);
@@ -53,7 +53,7 @@ void endImmediateOfRemoved(PairState<Scalar>& pairs) noexcept {
 
 // Asks what the call has not asked in parts. A candidate may have been found from either of the two.
 template <class Scalar>
-void askAboutRest(PairState<Scalar>& pairs, PairFilter filter) {
+void askWhatIsLeft(PairState<Scalar>& pairs, PairFilter filter) {
     PairCall& call = pairs.call;
     if (!pairs.known.arePairs()) {
         for (std::vector<PairKey>* keys : {&call.asked, &call.standing, &call.immediate}) {
@@ -74,9 +74,9 @@ void askAboutRest(PairState<Scalar>& pairs, PairFilter filter) {
 
 template <class Scalar>
 [[nodiscard]] PairChanges endCall(PairState<Scalar>& pairs, PairFilter filter) {
-    askAboutRest(pairs, filter);
+    askWhatIsLeft(pairs, filter);
     makeRoomForAnswers(pairs, pairs.immediateChanges);
-    // From here on nothing takes memory.
+    // From here on nothing throws.
     endImmediateOfRemoved(pairs);
     for (const PairKey key : pairs.call.immediate) {
         pairs.known.immediate.insert(key);
@@ -105,7 +105,7 @@ template <class Scalar>
     findImmediateOfRemoved(pairs);
     for (const ProxyId other : others) {
         if (other.index != proxyIndex && pairs.proxies.contains(other)) {
-            askIfNew(pairs, pairKey(proxyIndex, other.index));
+            listIfNew(pairs, pairKey(proxyIndex, other.index));
         }
     }
     return endCall(pairs, filter);
@@ -123,15 +123,15 @@ void beginRefilter(PairState<Scalar>& pairs) {
 // Asks about a candidate that is known. One that is refused and apart for the moment is asked about by
 // an update, should they meet again.
 template <class Scalar>
-void askAgain(PairState<Scalar>& pairs, PairKey key) {
+void listAgain(PairState<Scalar>& pairs, PairKey key) {
     if (!pairs.areAlive(key)) {
         return;
     }
     if (!pairs.known.isRefused(key)) {
         pairs.call.standing.push_back(key);
-        pairs.ask(key);
+        pairs.listToAsk(key);
     } else if (pairs.known.swept.contains(key) || pairs.touchAtStart(key)) {
-        pairs.ask(key);
+        pairs.listToAsk(key);
     }
 }
 
@@ -161,7 +161,7 @@ void askAgainAboutFew(PairState<Scalar>& pairs, std::span<const ProxyId> ids, Pa
         }
         forEachKnown(pairs, id.index, [&](PairKey key) {
             if (!isDone(firstIndex(key)) && !isDone(secondIndex(key))) {
-                askAgain(pairs, key);
+                listAgain(pairs, key);
             }
         });
         askInParts(pairs, filter, PairState<Scalar>::kPart);
@@ -190,7 +190,7 @@ void askAgainAboutMany(PairState<Scalar>& pairs, PairFilter filter, const IsName
     }
     forEachKnown(pairs, [&](PairKey key) {
         if (isNamed(firstIndex(key)) || isNamed(secondIndex(key))) {
-            askAgain(pairs, key);
+            listAgain(pairs, key);
             askInParts(pairs, filter, kPart);
         }
     });
@@ -234,7 +234,7 @@ template <class Scalar>
     beginRefilter(pairs);
     for (const ProxyPair& pair : some) {
         if (isPair(pairs, pair)) {
-            askAgain(pairs, pairKey(pair.first.index, pair.second.index));
+            listAgain(pairs, pairKey(pair.first.index, pair.second.index));
         }
     }
     return endCall(pairs, filter);

@@ -20,7 +20,7 @@
 
 namespace hashphase::detail {
 
-/// What is known where many share a cell.
+/// What is known where many share a cell, or too many are refused.
 struct Pile {
     // In place of the candidates that are watched, refused or kept, where those would be too many.
     FlatSet pairs;
@@ -67,7 +67,7 @@ struct SweptPairs {
 struct KnownPairs {
     FlatSet refused;             // candidates that the filter refused, unless they are ...
     FlatSet refusedAtRest;       // ... both at rest
-    std::unique_ptr<Pile> pile;  // made when many share a cell
+    std::unique_ptr<Pile> pile;  // made when it is first needed
 
     // Pairs whose groups have been set since, so that they may not pair any more: they overlap. Those
     // that were filtered again count as refused until the next update.
@@ -108,8 +108,8 @@ struct KnownPairs {
     bool forgetRefused(PairKey key) noexcept {
         return refused.erase(key) != FlatSet::kNone || refusedAtRest.erase(key) != FlatSet::kNone;
     }
-    /// Forgets a candidate that has ended. Returns whether it was a pair.
-    [[nodiscard]] bool end(PairKey key) noexcept {
+    /// Forgets a candidate that has ended, or a pair that is refused now. Returns whether it was a pair.
+    [[nodiscard]] bool endPair(PairKey key) noexcept {
         const bool wasPair =
             arePairs() ? pile->pairs.erase(key) != FlatSet::kNone : !forgetRefused(key);
         count -= wasPair ? 1 : 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
+#include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/store/store.hpp>
 
 #include <cstddef>
@@ -40,7 +41,8 @@ struct LastUpdate {
         }
         return *ownTable;
     }
-    /// Files the boxes of these proxies as of the last update in the own table, and no others.
+    /// Files the boxes of these proxies as of the last update in the own table, and no others; after
+    /// forget(), since `table` may be that one.
     Table<Scalar>& file(const std::vector<std::uint32_t>& ofProxies, ParallelFor parallelFor,
                         const ProxyGroups* groups) {
         boxes.clear();

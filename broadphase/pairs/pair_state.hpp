@@ -2,8 +2,8 @@
 #pragma once
 
 // What Pairs are made of: which candidates are watched, what is known of them, and the call under way. Plain
-// data, like the store: the passes beside this file (*.inl) read and change it in place, step.cpp puts them
-// in order.
+// data, like the store: the passes beside this file (*.inl) read and change it in place, step.cpp puts those
+// of an update in order.
 
 #include <broadphase/core/flat_set.hpp>
 #include <broadphase/core/peak_watch.hpp>
@@ -47,7 +47,7 @@ struct SearchScratch {
     PairParts parts;
     std::vector<std::uint32_t> entryOf;  // of places in Population::mobile, in the mobile table
     std::vector<std::uint32_t> changedEntries;   // entries of the mobile table that changed
-    std::vector<std::uint32_t> searchedIndices;  // their proxies
+    std::vector<std::uint32_t> searchedIndices;  // proxies of these, or of some
     BoxColumns<Scalar> bounds;                   // of what is looked for in a table
     std::vector<char> isNamed;                   // by index
 
@@ -134,7 +134,7 @@ struct HASHPHASE_BROADPHASE_EXPORT PairState {
         return overlaps(boxAtStart(firstIndex(key)), boxAtStart(secondIndex(key)));
     }
 
-    // --- What all passes do ----------------------------------------------------------------------
+    // --- What passes share -----------------------------------------------------------------------
 
     void sort(std::vector<PairKey>& keys) {
         radixSort(keys, static_cast<std::uint32_t>(proxies.records.size()), call.sorted);
@@ -143,7 +143,7 @@ struct HASHPHASE_BROADPHASE_EXPORT PairState {
         sort(keys);
         keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
     }
-    void ask(PairKey key) { call.asked.push_back(key); }
+    void listToAsk(PairKey key) { call.asked.push_back(key); }
     void endIfSeparated(PairKey key) {
         if (!overlapNow(key)) {
             call.ended.push_back(key);
@@ -155,8 +155,8 @@ struct HASHPHASE_BROADPHASE_EXPORT PairState {
             call.keptNow.push_back(key);
         }
     }
-    void end(PairKey key) noexcept {
-        if (known.end(key)) {
+    void endPair(PairKey key) noexcept {
+        if (known.endPair(key)) {
             call.died.push_back(key);
         }
     }

@@ -63,7 +63,7 @@ template <class Scalar>
     const Table<Scalar>& mobile = pairs.tables.mobile;
     const double weight = sampleOverlaps(pairs, mobile);
     for (const auto [a, b] : pairs.scratch.selected.pairs()) {
-        pairs.ask(pairKey(mobile.proxyIndex(a), mobile.proxyIndex(b)));
+        pairs.listToAsk(pairKey(mobile.proxyIndex(a), mobile.proxyIndex(b)));
     }
     return weight;
 }
@@ -89,7 +89,7 @@ template <class Scalar>
     forOverlaps(scratch.bounds.columns(), scratch.bounds.size(), pairs.tables.resting,
                 groups != nullptr ? &view : nullptr, cost,
                 [&](std::uint32_t searched, std::uint32_t proxyIndex) {
-                    pairs.ask(pairKey(scratch.searchedIndices[searched], proxyIndex));
+                    pairs.listToAsk(pairKey(scratch.searchedIndices[searched], proxyIndex));
                 });
     pairs.cost.boxesTested += cost.boxesTested;
     return static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(size, 1));
@@ -275,7 +275,7 @@ void askAboutChanged(PairState<Scalar>& pairs, PairFilter filter) {
         const bool isFoundByOther = proxies.changedNow(other) && other <= proxyIndex;
         const PairKey key = pairKey(proxyIndex, other);
         if (!isFoundByOther && !pairs.known.isRemembered(key)) {
-            pairs.ask(key);
+            pairs.listToAsk(key);
             askInParts(pairs, filter, PairState<Scalar>::kPart);
         }
     };
@@ -302,7 +302,7 @@ void findSweptOfPairs(PairState<Scalar>& pairs, ParallelFor parallelFor) {
         if (isPair || pairs.mayPairNow(key)) {
             known.swept.now.push_back(key);
             if (!isPair) {
-                pairs.ask(key);
+                pairs.listToAsk(key);
             }
         }
     }

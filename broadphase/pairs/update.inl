@@ -103,7 +103,7 @@ template <class Scalar>
 void publish(PairState<Scalar>& pairs) noexcept {  // NOLINT(bugprone-exception-escape)
     KnownPairs& known = pairs.known;
     for (const PairKey key : pairs.call.ended) {
-        pairs.end(key);
+        pairs.endPair(key);
         known.kept.erase(key);
     }
     for (const PairKey key : pairs.call.keptNow) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The candidates of which one is mobile: what was watched and parts, what is found in tables.
+// The candidates that are watched, and those that tables have.
 
 #include <broadphase/pairs/pair_state.hpp>
 

@@ -174,8 +174,8 @@ struct Kernels {
 
     /// Finds every two entries of a level with cells that overlap, the first one from firstEntry to
     /// lastEntry; over the whole level each pair once. Where `groups` is not null, this and the
-    /// next one leave out those that may not pair. A join always goes to its end, whatever the
-    /// sink says; the searches below return false when the sink has ended them.
+    /// next one leave out those that may not pair. A join always goes to its end: its sink always
+    /// makes room, or throws. The searches below return false when the sink has ended them.
     void (*joinLevel)(const Level<Scalar>& level, const GroupsView* groups,
                       std::uint32_t firstEntry, std::uint32_t lastEntry, PairSink& found,
                       KernelCost& cost);
