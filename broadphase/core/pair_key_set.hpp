@@ -3,6 +3,7 @@
 
 #include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/core/flat_set.hpp>
+#include <broadphase/core/pair_key.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -11,13 +12,13 @@
 
 namespace hashphase::detail {
 
-/// A set of pairs of indices, the smaller one on top, in which those of one index are chained. Keeps its
+/// A set of pairs of indices, in which those of one index are chained. Keeps its
 /// memory.
 class PairKeySet {
 public:
-    [[nodiscard]] bool contains(std::uint64_t key) const noexcept { return keys_.contains(key); }
+    [[nodiscard]] bool contains(PairKey key) const noexcept { return keys_.contains(key); }
     [[nodiscard]] std::size_t size() const noexcept { return keys_.size(); }
-    [[nodiscard]] std::span<const std::uint64_t> keys() const noexcept { return keys_.keys(); }
+    [[nodiscard]] std::span<const PairKey> keys() const noexcept { return keys_.keys(); }
 
     /// Makes room for `count` pairs of indices below `indexCount`, so that insert() does not allocate.
     void reserve(std::size_t count, std::size_t indexCount) {
@@ -29,10 +30,10 @@ public:
     }
 
     /// There is room for it. Cost: O(1).
-    void insert(std::uint64_t key) noexcept {
+    void insert(PairKey key) noexcept {
         if (keys_.findOrInsert(key) == next_.size() / 2) {
-            chain(static_cast<std::uint32_t>(key >> 32));
-            chain(static_cast<std::uint32_t>(key));
+            chain(firstIndex(key));
+            chain(secondIndex(key));
         }
     }
 
@@ -47,9 +48,9 @@ public:
 
     /// Cost: O(capacity), nothing when it is empty.
     void clear() noexcept {
-        for (const std::uint64_t key : keys_.keys()) {
-            firstOf_[static_cast<std::uint32_t>(key >> 32)] = kNone;
-            firstOf_[static_cast<std::uint32_t>(key)] = kNone;
+        for (const PairKey key : keys_.keys()) {
+            firstOf_[firstIndex(key)] = kNone;
+            firstOf_[secondIndex(key)] = kNone;
         }
         keys_.clear();
         next_.clear();

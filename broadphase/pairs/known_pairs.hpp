@@ -9,8 +9,8 @@
 // the pairs are remembered in their place.
 
 #include <broadphase/core/flat_set.hpp>
+#include <broadphase/core/pair_key.hpp>
 #include <broadphase/core/pair_key_set.hpp>
-#include <broadphase/pairs/pair_key.hpp>
 
 #include <algorithm>
 #include <cstddef>

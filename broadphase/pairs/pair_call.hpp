@@ -2,8 +2,8 @@
 #pragma once
 
 #include <broadphase/core/ensure_capacity.hpp>
+#include <broadphase/core/pair_key.hpp>
 #include <broadphase/pair_filter.hpp>
-#include <broadphase/pairs/pair_key.hpp>
 
 #include <cstddef>
 #include <vector>

@@ -8,6 +8,7 @@
 #include <broadphase/search/contact_search.hpp>
 
 #include <broadphase/core/ensure_capacity.hpp>
+#include <broadphase/core/pair_key.hpp>
 #include <broadphase/core/radix_sort.hpp>
 #include <broadphase/geometry/padded_box.hpp>
 #include <broadphase/search/join.hpp>
@@ -140,10 +141,9 @@ void ContactSearch<Scalar>::find(std::span<const Motion<Scalar>> motions, Parall
     meetEachOther(parallelFor);
     const std::span<const IndexPair> touching = touching_.pairs();
     contacts_.resize(touching.size());
-    std::transform(touching.begin(), touching.end(), contacts_.begin(), [](IndexPair proxyIndices) {
-        return std::uint64_t{std::min(proxyIndices.a, proxyIndices.b)} << 32 |
-               std::max(proxyIndices.a, proxyIndices.b);
-    });
+    std::transform(
+        touching.begin(), touching.end(), contacts_.begin(),
+        [](const IndexPair& proxyIndices) { return pairKey(proxyIndices.a, proxyIndices.b); });
     radixSort(contacts_, static_cast<std::uint32_t>(store_.proxies.records.size()), sorted_);
     contacts_.erase(std::unique(contacts_.begin(), contacts_.end()), contacts_.end());
 }
