@@ -403,17 +403,6 @@ TEST(SweepsMisuse, OfAStaleIdIsAsserted) {
     EXPECT_THROW(static_cast<void>(sweeps.motion(id)), BrokenAssert);
 }
 
-TEST(RadiusSearchMisuse, OfAgentsThatThereAreNotIsAsserted) {
-    const ThrowingAsserts throwing;
-    Grid<float> grid;
-    static_cast<void>(grid.add(cube(0)));
-    RadiusSearch<float> search;
-    search.take(grid, 1);
-    EXPECT_EQ(search.position(0), Point(0, 0, 0));
-    EXPECT_THROW(static_cast<void>(search.id(1)), BrokenAssert);
-    EXPECT_THROW(static_cast<void>(search.position(1)), BrokenAssert);
-}
-
 TEST(RadiusSearchMisuse, OfItsOwnCallbacksIsAsserted) {
     const ThrowingAsserts throwing;
     Grid<float> grid;

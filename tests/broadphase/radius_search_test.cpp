@@ -19,7 +19,7 @@ namespace hashphase::test {
 namespace {
 
 template <class Scalar>
-class CrowdTest : public testing::Test {
+class RadiusSearchTest : public testing::Test {
 protected:
     static constexpr std::uint32_t kGroups = 5;
 
@@ -93,9 +93,9 @@ protected:
 };
 
 using Scalars = testing::Types<float, double>;
-TYPED_TEST_SUITE(CrowdTest, Scalars);
+TYPED_TEST_SUITE(RadiusSearchTest, Scalars);
 
-TYPED_TEST(CrowdTest, FindsThoseOfBruteForceAtEveryMomentOfAFrameInEveryScene) {
+TYPED_TEST(RadiusSearchTest, FindsThoseOfBruteForceAtEveryMomentOfAFrameInEveryScene) {
     for (const BoxScene<TypeParam>& scene : allBoxScenes<TypeParam>()) {
         GridWorld<TypeParam> world;
         Script<TypeParam> script(scene, 0x5eed0e01);
@@ -119,7 +119,7 @@ TYPED_TEST(CrowdTest, FindsThoseOfBruteForceAtEveryMomentOfAFrameInEveryScene) {
 }
 
 // The definition itself: no more than rounding away from the true distance.
-TYPED_TEST(CrowdTest, MeasuresWithinRounding) {
+TYPED_TEST(RadiusSearchTest, MeasuresWithinRounding) {
     constexpr auto slack = static_cast<long double>(4 * std::numeric_limits<TypeParam>::epsilon());
     Random random(0x5eed0e02);
     std::size_t near = 0;
@@ -144,7 +144,7 @@ TYPED_TEST(CrowdTest, MeasuresWithinRounding) {
     EXPECT_GT(near, 5000U);
 }
 
-TYPED_TEST(CrowdTest, FindsThoseOfBruteForceForAnyNumberOfAgents) {
+TYPED_TEST(RadiusSearchTest, FindsThoseOfBruteForceForAnyNumberOfAgents) {
     Random random(0x5eed0e03);
     for (const std::size_t count : {0, 1, 2, 3, 15, 16, 17, 63, 64, 65, 66, 130, 1200}) {
         while (this->proxies_.size() < count) {
@@ -158,7 +158,7 @@ TYPED_TEST(CrowdTest, FindsThoseOfBruteForceForAnyNumberOfAgents) {
     }
 }
 
-TYPED_TEST(CrowdTest, FindsThoseOfBruteForceInPlanesAndLines) {
+TYPED_TEST(RadiusSearchTest, FindsThoseOfBruteForceInPlanesAndLines) {
     Random random(0x5eed0e04);
     for (const std::uint32_t flatAxes : {1U, 2U, 4U, 3U, 5U, 6U, 7U}) {
         Grid<TypeParam> grid;
@@ -181,7 +181,7 @@ TYPED_TEST(CrowdTest, FindsThoseOfBruteForceInPlanesAndLines) {
 }
 
 // Cells are about as large as the radius, and every agent is on a border or next to it.
-TYPED_TEST(CrowdTest, FindsWhoIsJustNearEnoughWhereverCellsEnd) {
+TYPED_TEST(RadiusSearchTest, FindsWhoIsJustNearEnoughWhereverCellsEnd) {
     Random random(0x5eed0e09);
     std::size_t found = 0;
     for (int row = 0; row < 60; ++row) {
@@ -200,7 +200,7 @@ TYPED_TEST(CrowdTest, FindsWhoIsJustNearEnoughWhereverCellsEnd) {
     EXPECT_GT(found, 60U * 60);
 }
 
-TYPED_TEST(CrowdTest, MeasuresAStraightClosedBallInSpace) {
+TYPED_TEST(RadiusSearchTest, MeasuresAStraightClosedBallInSpace) {
     const ProxyId corner = this->addPoint(0, 0, 0);
     const ProxyId beside = this->addPoint(2, 3, 6);  // 7 away
     this->search_.take(this->grid_, TypeParam(6.999));
@@ -213,7 +213,7 @@ TYPED_TEST(CrowdTest, MeasuresAStraightClosedBallInSpace) {
     }
 }
 
-TYPED_TEST(CrowdTest, FindsWithinNothingThoseAtTheSamePlace) {
+TYPED_TEST(RadiusSearchTest, FindsWithinNothingThoseAtTheSamePlace) {
     constexpr double kTiny = 1e-30;
     this->addPoint(5, 5, 5);
     this->addPoint(5, 5, 5);
@@ -225,7 +225,7 @@ TYPED_TEST(CrowdTest, FindsWithinNothingThoseAtTheSamePlace) {
         4U);
 }
 
-TYPED_TEST(CrowdTest, FindsNobodyWithinANegativeOrNaNRadius) {
+TYPED_TEST(RadiusSearchTest, FindsNobodyWithinANegativeOrNaNRadius) {
     for (int i = 0; i < 40; ++i) {
         this->addPoint(0, 0, i % 2);
     }
@@ -236,7 +236,7 @@ TYPED_TEST(CrowdTest, FindsNobodyWithinANegativeOrNaNRadius) {
     }
 }
 
-TYPED_TEST(CrowdTest, FindsEverybodyWithinAHugeRadius) {
+TYPED_TEST(RadiusSearchTest, FindsEverybodyWithinAHugeRadius) {
     using Limits = std::numeric_limits<TypeParam>;
     Random random(0x5eed0e05);
     for (int i = 0; i < 300; ++i) {
@@ -254,7 +254,7 @@ TYPED_TEST(CrowdTest, FindsEverybodyWithinAHugeRadius) {
     EXPECT_EQ(this->expectLikeBruteForce(this->grid_, this->proxies_, TypeParam(1e7)), 300U * 299);
 }
 
-TYPED_TEST(CrowdTest, LeavesOutWhoHasNoFiniteCentre) {
+TYPED_TEST(RadiusSearchTest, LeavesOutWhoHasNoFiniteCentre) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const Aabb<TypeParam> half = makeBox<TypeParam>(0, 0, 0, infinity, 1, 1);
     const Aabb<TypeParam> all =
@@ -275,7 +275,7 @@ TYPED_TEST(CrowdTest, LeavesOutWhoHasNoFiniteCentre) {
     EXPECT_EQ(std::max(this->search_.id(0), this->search_.id(1)), stone);
 }
 
-TYPED_TEST(CrowdTest, TakesWhomTheFilterAccepts) {
+TYPED_TEST(RadiusSearchTest, TakesWhomTheFilterAccepts) {
     Random random(0x5eed0e06);
     for (int i = 0; i < 600; ++i) {
         const Vector3<double> at = random.pointIn(0, 20);
@@ -305,7 +305,7 @@ TYPED_TEST(CrowdTest, TakesWhomTheFilterAccepts) {
     EXPECT_EQ(this->count().size(), 0U);
 }
 
-TYPED_TEST(CrowdTest, CountsAsManyGroupsAsThereMayBe) {
+TYPED_TEST(RadiusSearchTest, CountsAsManyGroupsAsThereMayBe) {
     constexpr std::uint32_t kMost = RadiusSearch<TypeParam>::kMostGroups;
     for (std::uint32_t i = 0; i < 100; ++i) {
         this->addPoint(0, 0, 0);
@@ -323,7 +323,7 @@ TYPED_TEST(CrowdTest, CountsAsManyGroupsAsThereMayBe) {
     EXPECT_EQ(this->search_.countGroups(0, groupOf, {}).hits, 0U);
 }
 
-TYPED_TEST(CrowdTest, IsTheSameOnAnyNumberOfThreads) {
+TYPED_TEST(RadiusSearchTest, IsTheSameOnAnyNumberOfThreads) {
     Random random(0x5eed0e07);
     for (int i = 0; i < 9000; ++i) {
         const Vector3<double> at = random.pointIn(0, 60);
@@ -370,7 +370,7 @@ TYPED_TEST(CrowdTest, IsTheSameOnAnyNumberOfThreads) {
 
 // Cells are for where most are, whatever the others do and however small the radius is.
 // Rows of few cells, which a few at a time would read as a whole.
-TYPED_TEST(CrowdTest, ListsNeighboursInOneOrderWhereverPartsBegin) {
+TYPED_TEST(RadiusSearchTest, ListsNeighboursInOneOrderWhereverPartsBegin) {
     using Lists = std::vector<std::vector<std::uint32_t>>;
     for (const double width : {3.5, 4.5, 6.5, 9.5}) {
         SCOPED_TRACE(width);
@@ -406,7 +406,7 @@ TYPED_TEST(CrowdTest, ListsNeighboursInOneOrderWhereverPartsBegin) {
     }
 }
 
-TYPED_TEST(CrowdTest, CostsNoMoreForStraysAndSmallRadii) {
+TYPED_TEST(RadiusSearchTest, CostsNoMoreForStraysAndSmallRadii) {
     Random random(0x5eed0e08);
     constexpr std::uint32_t kCount = 4000;
     for (std::uint32_t i = 0; i < kCount; ++i) {
@@ -424,7 +424,7 @@ TYPED_TEST(CrowdTest, CostsNoMoreForStraysAndSmallRadii) {
     }
 }
 
-TYPED_TEST(CrowdTest, WantsOneCountForEachAgentAndGroupAndNoMoreGroupsThanThereMayBe) {
+TYPED_TEST(RadiusSearchTest, WantsOneCountForEachAgentAndGroupAndNoMoreGroupsThanThereMayBe) {
     const ThrowingAsserts throwingAsserts;
     this->addPoint(0, 0, 0);
     this->search_.take(this->grid_, 1);
@@ -433,6 +433,15 @@ TYPED_TEST(CrowdTest, WantsOneCountForEachAgentAndGroupAndNoMoreGroupsThanThereM
     EXPECT_THROW(this->search_.countGroups(3, this->groupOf, counts), BrokenAssert);
     counts.resize(33);
     EXPECT_THROW(this->search_.countGroups(33, this->groupOf, counts), BrokenAssert);
+}
+
+TYPED_TEST(RadiusSearchTest, OfAgentsThatThereAreNotIsAsserted) {
+    const ThrowingAsserts throwingAsserts;
+    this->addPoint(0, 0, 0);
+    this->search_.take(this->grid_, 1);
+    EXPECT_TRUE(this->search_.position(0).isZero(TypeParam(0)));
+    EXPECT_THROW(static_cast<void>(this->search_.id(1)), BrokenAssert);
+    EXPECT_THROW(static_cast<void>(this->search_.position(1)), BrokenAssert);
 }
 
 }  // namespace
