@@ -9,9 +9,7 @@
 // Missed    and false answers are different columns: the former are wrong, the latter cost time.
 // Times     are medians of at least 60 different frames, methods in turn within each.
 
-#include <demos/report/chart.hpp>
-#include <demos/report/check.hpp>
-#include <demos/report/data_table.hpp>
+#include <demos/experiment/findings.hpp>
 
 #include <cstdint>
 #include <functional>
@@ -31,28 +29,6 @@ struct Effort {
     [[nodiscard]] Number quickOrFull(Number quick, Number full) const {
         return isQuick ? quick : full;
     }
-};
-
-/// A method as a choice that somebody has: what it costs, what it gets wrong.
-struct Choice {
-    std::string
-        task;  // what is bought; choices of the same task compete: "Fast movers, 30,000 ..."
-    std::string method;       // "Sweep::line"
-    double milliseconds = 0;  // a frame
-    double error = 0;         // 0 is exact; comparable within a task
-    std::string result;       // the error in words: "misses 3.1 % of contacts"
-    bool isOurs = true;       // else of the paper or of Bullet, for comparison
-};
-
-/// What an experiment found.
-struct Findings {
-    std::vector<std::string> settings;  // sentences on scenes, sizes, truth
-    std::vector<Chart> charts;
-    std::vector<DataTable> tables;  // what is read better than drawn; titles of columns are shown
-    std::vector<Check> checks;
-    std::vector<Choice> choices;
-    std::vector<std::string>
-        conclusions;  // sentences that the numbers above show, bad news included
 };
 
 /// Takes the share that is done, 0 to 1, and what is being done.

@@ -9,8 +9,9 @@
 
 namespace hashphase::demos {
 
-std::vector<Spread> timeInTurn(int frames, int warmUp, const std::function<void(int frame)>& begin,
-                               std::span<const std::function<void()>> methods) {
+std::vector<std::vector<double>> timesInTurn(int frames, int warmUp,
+                                             const std::function<void(int frame)>& begin,
+                                             std::span<const std::function<void()>> methods) {
     std::vector<std::vector<double>> times(methods.size());
     for (int frame = 0; frame < warmUp + frames; ++frame) {
         begin(frame);
@@ -24,8 +25,13 @@ std::vector<Spread> timeInTurn(int frames, int warmUp, const std::function<void(
             }
         }
     }
+    return times;
+}
+
+std::vector<Spread> timeInTurn(int frames, int warmUp, const std::function<void(int frame)>& begin,
+                               std::span<const std::function<void()>> methods) {
     std::vector<Spread> spreads;
-    for (std::vector<double>& each : times) {
+    for (std::vector<double>& each : timesInTurn(frames, warmUp, begin, methods)) {
         spreads.push_back(spreadOf(std::move(each)));
     }
     return spreads;

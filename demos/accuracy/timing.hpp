@@ -21,6 +21,11 @@ inline constexpr int kFewestFrames = 60;
                                              const std::function<void(int frame)>& begin,
                                              std::span<const std::function<void()>> methods);
 
+/// The same, but returns the times of all frames, method by method.
+[[nodiscard]] std::vector<std::vector<double>> timesInTurn(
+    int frames, int warmUp, const std::function<void(int frame)>& begin,
+    std::span<const std::function<void()>> methods);
+
 /// Keeps the calling thread on the core where it is: the scheduler moves threads, and caches do not
 /// move along. Does nothing where the system has no such call.
 void pinToThisCore();

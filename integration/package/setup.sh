@@ -9,7 +9,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 
 # Tools by the command that must be there, libraries by their Debian package.
 tools=(cmake:cmake ninja:ninja-build c++:g++ pkg-config:pkg-config)
-libraries=(libbullet-dev libbullet-extras-dev libeigen3-dev libcli11-dev nlohmann-json3-dev
+libraries=(libbullet-dev libbullet-extras-dev libeigen3-dev libcli11-dev nlohmann-json3-dev libsqlite3-dev
     libgtest-dev libtbb-dev libgmp-dev)
 
 # What may be missing: npm brings what draws the charts of reports, rapidcheck makes up operations

@@ -1,0 +1,127 @@
+R"sql(-- SPDX-License-Identifier: Zlib
+--
+-- P4. Measured are: plan, methods, looks (a row for each method and view) and times (each flight).
+
+CREATE VIEW texts AS
+SELECT thousands(objects) || ' boxes of 1 to 3 m on flat ground of 1000 m x 1000 m; camera 120 m above '
+       || 'it, far plane 400 m; unless varied: field of view 60 degrees, pitch -45, yaw 20, objects up '
+       || 'to 10 m, cells of 10 m; seed ' || seed AS scene
+FROM plan;
+
+-- What a method did in a setting.
+CREATE TABLE did AS
+SELECT looks.scene, looks.setting, looks.cell, looks.method, sum(visible) AS visible,
+       sum(lost) AS lost, sum(in_vain) AS in_vain, avg(cells) AS cells, avg(boxes) AS boxes,
+       percent(sum(lost), sum(visible)) AS lost_percent,
+       percent(sum(in_vain), sum(visible)) AS in_vain_percent
+FROM looks GROUP BY looks.scene, looks.setting, looks.method ORDER BY min(looks.rowid);
+
+-- What it did in all settings; worst_setting is that of the greatest loss.
+CREATE TABLE did_in_all AS
+SELECT method, scene, sum(visible) AS visible, sum(lost) AS lost, sum(in_vain) AS in_vain,
+       max(lost_percent) AS worst, setting AS worst_setting
+FROM did GROUP BY scene, method ORDER BY min(rowid);
+
+-- With its time, in microseconds a look, where it was timed.
+CREATE TABLE timed AS
+SELECT did.*, methods.*, did_in_all.lost AS lost_in_all, worst,
+       iif(takes_cells, did.method || ', ' || number(did.cell) || ' m cells', did.method) AS name,
+       iif(takes_cells, number(did.cell) || ' m', '') AS label,
+       median(us) AS us, percentile(us, 0.05) AS low, percentile(us, 0.95) AS high
+FROM did JOIN methods USING (method) JOIN did_in_all USING (scene, method)
+     JOIN times USING (setting, method)
+WHERE did.scene = 'ground' GROUP BY did.setting, did.method ORDER BY did.rowid;
+
+CREATE TABLE bullet AS SELECT * FROM timed WHERE method = 'btDbvt::collideKDOP';
+
+/* {"settings": "scene, truth, times"} */
+SELECT scene || '.' FROM texts
+UNION ALL VALUES
+('Visible is what shares a point with the frustum: boxes clipped by its planes in long double.'),
+('Objects stand still, so that filing them is not in the times; Bullet''s trees are optimised.'),
+('Objects that touch the view''s sides hang in the air above the ground, where footprints at its height do not look for them.'),
+('A flight is 8 looks of a camera at 6 m/s that turns by 12 degrees a second, 60 looks a second; times are those of a flight by 8.');
+
+/* {"chart": "P4-lost", "title": "Visible objects that are not drawn: none may be lost",
+    "settings": "{scene}", "mark": "bar", "x": "setting names", "y": "lost", "series": "method",
+    "low": "low", "high": "high"} */
+SELECT setting, method, lost_percent AS "lost: visible objects lost [%]",
+       100 * interval_low(lost, max(visible, 1)) AS low,
+       100 * interval_high(lost, max(visible, 1)) AS high,
+       in_vain_percent AS "in_vain: drawn in vain [% of visible]",
+       cells AS "cells: cells a frame", boxes AS "boxes: boxes tested a frame"
+FROM did WHERE scene = 'ground';
+
+/* {"chart": "P4-overdraw", "title": "Objects that are drawn though nothing of them is visible",
+    "settings": "{scene}", "mark": "bar", "x": "setting names", "y": "in_vain", "series": "method"} */
+SELECT setting, method, lost_percent AS "lost: visible objects lost [%]",
+       in_vain_percent AS "in_vain: drawn in vain [% of visible]",
+       cells AS "cells: cells a frame", boxes AS "boxes: boxes tested a frame"
+FROM did WHERE scene = 'ground';
+
+/* {"chart": "P4-lost-time", "title": "Visible objects lost against the time of a look",
+    "settings": "{scene}; medians of at least 60 flights of 8 looks", "mark": "point", "x": "time log",
+    "y": "error log0", "series": "method", "label": "cell", "front": true} */
+SELECT method, label AS "cell: cells", us AS "time: a look [us]",
+       lost_percent AS "error: visible objects lost [%]"
+FROM timed;
+
+/* {"chart": "P4-overdraw-time",
+    "title": "Objects drawn in vain against the time of a look, by methods that lose none",
+    "settings": "{scene}; medians of at least 60 flights of 8 looks", "mark": "point", "x": "time log",
+    "y": "error log0", "series": "method", "label": "cell", "front": true} */
+SELECT method, label AS "cell: cells", us AS "time: a look [us]",
+       in_vain_percent AS "error: drawn in vain [% of visible]"
+FROM timed WHERE lost_in_all = 0;
+
+/* {"table": "times"} */
+SELECT timed.name AS method, timed.us AS "time: a look [us]", timed.low AS "low: 5 % [us]",
+       timed.high AS "high: 95 % [us]", timed.us / bullet.us AS "ratio: of Bullet's time",
+       timed.lost_percent AS "lost: visible, lost [%]",
+       timed.in_vain_percent AS "in_vain: drawn in vain [%]",
+       iif(timed.method = bullet.method, NULL, timed.cells) AS "cells: cells or rows",
+       iif(timed.method = bullet.method, NULL, timed.boxes) AS "boxes: boxes tested"
+FROM timed LEFT JOIN bullet;
+
+/* {"checks": "what each method promises"} */
+SELECT claim, holds, evidence FROM (
+    SELECT number, 1 AS part, method || ' draws all that is visible' AS claim,
+           lost = 0 AND visible > 0 AS holds,
+           thousands(lost) || ' lost of ' || thousands(visible) || ' visible' AS evidence
+    FROM methods JOIN did_in_all USING (method) WHERE must_see_all AND scene = 'ground'
+    UNION ALL
+    SELECT number, 2, method || ' draws what just touches the view', lost = 0 AND visible > 0,
+           thousands(lost) || ' lost of ' || thousands(visible) || ' visible'
+    FROM methods JOIN did_in_all USING (method) WHERE must_see_all AND scene = 'touching'
+    UNION ALL  -- by rounding one in 10,000
+    SELECT number, 3, method || ' draws nothing else, but for rounding', in_vain <= visible / 10000,
+           thousands(in_vain) || ' in vain of ' || thousands(visible) || ' visible'
+    FROM methods JOIN did_in_all USING (method) WHERE must_be_exact AND scene = 'ground')
+ORDER BY number, part;
+
+/* {"choices": "by what is lost, and by what is drawn in vain"} */
+SELECT 'Culling, ' || thousands(objects) || ' objects: visible ones lost at worst', name, us / 1000,
+       worst,
+       iif(lost_in_all = 0, 'loses nothing', 'loses up to ' || number(worst) || ' % of what is visible')
+       || ', draws ' || number(in_vain_percent) || ' % in vain', ours
+FROM timed, plan
+UNION ALL
+SELECT 'Culling, ' || thousands(objects) || ' objects: drawn in vain, none lost', name, us / 1000,
+       in_vain_percent, 'draws ' || number(in_vain_percent) || ' % in vain', ours
+FROM timed, plan WHERE lost_in_all = 0;
+
+/* {"conclusions": "losses"} */
+SELECT method || ' loses up to ' || number(worst) || ' % of what is visible (' || worst_setting || ').'
+FROM did_in_all WHERE scene = 'ground' AND lost > 0;
+
+/* {"conclusions": "losses at the sides"} */
+SELECT method || ' loses ' || number(lost_percent) || ' % of ' || thousands(visible)
+       || ' objects that touch the view''s sides by what single precision can tell.'
+FROM did WHERE scene = 'touching' AND lost > 0;
+
+/* {"conclusions": "times"} */
+SELECT timed.name || ': a look takes ' || number(timed.us) || ' us, ' || bullet.method || ' '
+       || number(bullet.us) || ' us; drawn in vain are ' || number(timed.in_vain_percent) || ' % and '
+       || number(bullet.in_vain_percent) || ' %.'
+FROM timed, bullet WHERE timed.must_see_all AND NOT timed.takes_cells;
+)sql"

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/experiment/findings.hpp>
+
+#include <demos/report/json_values.hpp>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace hashphase::demos {
+namespace {
+
+std::string textAt(const std::vector<Value>& row, std::size_t column) {
+    return valueText(row.at(column));
+}
+
+double numberAt(const std::vector<Value>& row, std::size_t column) {
+    const double* number = std::get_if<double>(&row.at(column));
+    return number != nullptr ? *number : 0;
+}
+
+// "name: title" -> a column of that name and title.
+void nameColumns(DataTable& table) {
+    for (DataColumn& column : table.columns) {
+        const std::size_t end = column.name.find(": ");
+        if (end != std::string::npos) {
+            column.title = column.name.substr(end + 2);
+            column.name.resize(end);
+        }
+    }
+}
+
+ChartMark markNamed(const std::string& name) {
+    return name == "point"  ? ChartMark::kPoint
+           : name == "bar"  ? ChartMark::kBar
+           : name == "cell" ? ChartMark::kCell
+                            : ChartMark::kLine;
+}
+
+// "time log0"
+Axis axisOf(const std::string& words) {
+    const std::size_t blank = std::min(words.find(' '), words.size());
+    const std::string scale = words.substr(std::min(blank + 1, words.size()));
+    return {words.substr(0, blank), scale == "log"     ? AxisScale::kLog
+                                    : scale == "log0"  ? AxisScale::kLogAndZero
+                                    : scale == "names" ? AxisScale::kNames
+                                                       : AxisScale::kLinear};
+}
+
+/// Takes the comments in front of the next statement, and returns the JSON that one of them holds; null
+/// where there is none.
+Json takeHeading(std::string_view& sql) {
+    Json heading;
+    for (;;) {
+        sql.remove_prefix(std::min(sql.find_first_not_of(" \n"), sql.size()));
+        std::size_t end = std::string_view::npos;
+        if (sql.starts_with("--")) {
+            end = sql.find('\n');
+        } else if (sql.starts_with("/*")) {
+            end = sql.find("*/");
+            const std::string_view comment = sql.substr(2, end - 2);
+            if (comment.find('{') != std::string_view::npos) {
+                heading = Json::parse(comment);
+            }
+            end += 2;
+        } else {
+            return heading;
+        }
+        sql.remove_prefix(std::min(end, sql.size()));
+    }
+}
+
+class Shower {
+public:
+    explicit Shower(Measurements& measured) : measured_(measured) {}
+
+    [[nodiscard]] Findings show(std::string_view sql) {
+        for (Json heading = takeHeading(sql); !sql.empty(); heading = takeHeading(sql)) {
+            if (heading.is_null()) {
+                measured_.take(sql);
+                continue;
+            }
+            for (const Record& parameters : parametersOf(heading)) {
+                showAs(heading, measured_.ask(sql, parameters), parameters);
+            }
+            measured_.skip(sql);
+        }
+        return std::move(findings_);
+    }
+
+private:
+    /// Of each time that the statement is shown.
+    [[nodiscard]] std::vector<Record> parametersOf(const Json& heading) {
+        if (!heading.contains("each")) {
+            return {{}};
+        }
+        each_ = measured_.ask(heading["each"].get<std::string>());
+        std::vector<Record> all;
+        for (const std::vector<Value>& row : each_.rows) {
+            Record& parameters = all.emplace_back();
+            for (std::size_t i = 0; i < row.size(); ++i) {
+                parameters.emplace_back(each_.columns[i].name, row[i]);
+            }
+        }
+        return all;
+    }
+
+    /// The heading's text with its expressions' values.
+    [[nodiscard]] std::string textOf(const Json& heading, const char* key,
+                                     const Record& parameters) {
+        std::string text = heading.value(key, "");
+        for (std::size_t begin = text.find('{'); begin != std::string::npos;
+             begin = text.find('{', begin)) {
+            const std::size_t end = text.find('}', begin);
+            const DataTable value = measured_.ask(
+                "SELECT " + text.substr(begin + 1, end - begin - 1) + " FROM texts", parameters);
+            const std::string inserted = valueText(value.rows.at(0).at(0));
+            text.replace(begin, end - begin + 1, inserted);
+            begin += inserted.size();
+        }
+        return text;
+    }
+
+    void showAs(const Json& heading, DataTable found, const Record& parameters) {
+        nameColumns(found);
+        if (heading.contains("chart")) {
+            findings_.charts.push_back(chartOf(heading, std::move(found), parameters));
+        } else if (heading.contains("table")) {
+            findings_.tables.push_back(std::move(found));
+        } else if (heading.contains("settings")) {
+            addSentences(found, findings_.settings);
+        } else if (heading.contains("conclusions")) {
+            addSentences(found, findings_.conclusions);
+        } else if (heading.contains("checks")) {
+            for (const std::vector<Value>& row : found.rows) {
+                findings_.checks.push_back({textAt(row, 0), numberAt(row, 1) != 0, textAt(row, 2)});
+            }
+        } else if (heading.contains("choices")) {
+            for (const std::vector<Value>& row : found.rows) {
+                findings_.choices.push_back({textAt(row, 0), textAt(row, 1), numberAt(row, 2),
+                                             numberAt(row, 3), textAt(row, 4),
+                                             numberAt(row, 5) != 0});
+            }
+        } else {
+            throw std::logic_error("Nothing is shown as " + heading.dump() + '.');
+        }
+    }
+
+    [[nodiscard]] Chart chartOf(const Json& heading, DataTable data, const Record& parameters) {
+        const auto word = [&](const char* key) { return heading.value(key, std::string()); };
+        Chart chart;
+        chart.name = textOf(heading, "chart", parameters);
+        chart.title = textOf(heading, "title", parameters);
+        chart.settings = textOf(heading, "settings", parameters);
+        chart.mark = markNamed(word("mark"));
+        chart.data = std::move(data);
+        chart.x = axisOf(word("x"));
+        chart.y = axisOf(word("y"));
+        chart.series = word("series");
+        chart.low = word("low");
+        chart.high = word("high");
+        chart.label = word("label");
+        chart.shade = axisOf(word("shade"));
+        chart.theory = word("theory");
+        chart.showFront = heading.value("front", false);
+        for (const std::string& column :
+             {chart.x.column, chart.y.column, chart.series, chart.low, chart.high, chart.label,
+              chart.shade.column, chart.theory}) {
+            if (!column.empty()) {
+                static_cast<void>(chart.data.columnOf(column));  // throws where there is none
+            }
+        }
+        return chart;
+    }
+
+    static void addSentences(const DataTable& found, std::vector<std::string>& sentences) {
+        for (const std::vector<Value>& row : found.rows) {
+            if (const auto* sentence = std::get_if<std::string>(&row.at(0)); sentence != nullptr) {
+                sentences.push_back(*sentence);
+            }
+        }
+    }
+
+    Measurements& measured_;
+    DataTable each_;  // whose columns the parameters name
+    Findings findings_;
+};
+
+}  // namespace
+
+Findings findingsOf(std::string_view declaration, Measurements& measured) {
+    return Shower(measured).show(declaration);
+}
+
+}  // namespace hashphase::demos

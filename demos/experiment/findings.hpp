@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What an experiment found, and its declaration in SQL that makes it of what was measured.
+//
+// A declaration is a file of SQL statements. A statement whose comment in front of it holds JSON is shown
+// to people; the others prepare (CREATE VIEW). The JSON says as what:
+//
+//   {"settings": "how"}             sentences on scenes, sizes, truth; a row each
+//   {"conclusions": "what"}         sentences that the numbers show, bad news included; nulls are left out
+//   {"checks": "what"}              claim, holds, evidence
+//   {"choices": "what"}             task, method, milliseconds, error, result, ours
+//   {"table": "what"}               a table, of which a column "name: title" is headed by its title
+//   {"chart": "P4-lost", "title": .., "settings": .., "mark": "bar", "x": "setting names", "y": "lost log",
+//    "series": .., "low": .., "high": .., "label": .., "shade": "a column", "theory": .., "front": true}
+//                                   a chart (chart.hpp): marks line, point, bar, cell; scales linear, log,
+//                                   log0, names
+//
+// Beside these, "each" holds a SELECT for whose rows the statement is shown in turn, with their columns as
+// parameters ":name". In names, titles and settings of charts, "{...}" is an expression over the view
+// `texts`, which the declaration makes, and these parameters.
+
+#include <demos/experiment/measurements.hpp>
+#include <demos/report/chart.hpp>
+#include <demos/report/check.hpp>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hashphase::demos {
+
+/// A method as a choice that somebody has: what it costs, what it gets wrong.
+struct Choice {
+    std::string task;    // what is bought; choices of the same task compete: "Fast movers, 30,000"
+    std::string method;  // "Sweep::line"
+    double milliseconds = 0;  // a frame
+    double error = 0;         // 0 is exact; comparable within a task
+    std::string result;       // the error in words: "misses 3.1 % of contacts"
+    bool isOurs = true;       // else of the paper or of Bullet, for comparison
+};
+
+struct Findings {
+    std::vector<std::string> settings;
+    std::vector<Chart> charts;
+    std::vector<DataTable> tables;
+    std::vector<Check> checks;
+    std::vector<Choice> choices;
+    std::vector<std::string> conclusions;
+};
+
+/// What the declaration shows of what was measured. Throws std::logic_error that names a fault of the
+/// declaration.
+[[nodiscard]] Findings findingsOf(std::string_view declaration, Measurements& measured);
+
+}  // namespace hashphase::demos

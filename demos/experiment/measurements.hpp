@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What an experiment measured: rows in named tables, which SQL asks. SQLite keeps them in memory.
+//
+// Functions that its SQL has beside SQLite's own:
+//   percent(part, whole)                  0 of nothing is 0
+//   interval_low(hits, trials), interval_high(hits, trials)
+//                                         the 95 % interval of a share (binomial.hpp); null of nothing
+//   interval_low(hits, trials, frames)    the same over frames in which the same objects are met again
+//   thousands(n), number(x), fixed(x, digits), ms(x)      as people read them (format.hpp, data_table.hpp)
+//   median(x), percentile(x, share)       aggregates; null of nothing
+
+#include <demos/report/data_table.hpp>
+
+#include <concepts>
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace hashphase::demos {
+
+/// A value as it is written where it was measured: any number, a truth (1 or 0), a text, or nothing.
+struct Datum {
+    Datum() = default;
+    template <class Number>
+        requires std::integral<Number> || std::floating_point<Number> Datum(Number number)
+            : value(static_cast<double>(number)) {}          // NOLINT(google-explicit-constructor)
+        Datum(std::string text) : value(std::move(text)) {}  // NOLINT(google-explicit-constructor)
+        Datum(std::string_view text)
+            : value(std::string(text)) {}  // NOLINT(google-explicit-constructor)
+        Datum(const char* text)
+            : value(std::string(text)) {}            // NOLINT(google-explicit-constructor)
+        Datum(Value any) : value(std::move(any)) {}  // NOLINT(google-explicit-constructor)
+        template <class Number>
+        Datum(const std::optional<Number>& number)  // NOLINT(google-explicit-constructor)
+            : Datum(number ? Datum(*number) : Datum()) {}
+
+        Value value;
+};
+
+/// A row: values under the names of their columns.
+using Record = std::vector<std::pair<std::string_view, Datum>>;
+
+class Measurements {
+public:
+    Measurements();
+    Measurements(Measurements&&) noexcept;
+    Measurements& operator=(Measurements&&) noexcept;
+    ~Measurements();
+
+    /// Appends a row to the table; the first one names its columns, and all others have the same ones in
+    /// the same order. Throws std::logic_error where they have not.
+    void add(std::string_view table, const Record& record);
+
+    /// Carries out the first statement of the SQL and takes it off. Its rows, with what it calls its
+    /// columns; empty of one that gives none. `parameters` are those that it names, as ":name". Throws
+    /// std::logic_error that names the fault.
+    DataTable take(std::string_view& sql, const Record& parameters = {});
+
+    /// The same of a single statement.
+    DataTable ask(std::string_view sql, const Record& parameters = {}) {
+        return take(sql, parameters);
+    }
+
+    /// Takes off a statement that is not carried out.
+    void skip(std::string_view& sql) { static_cast<void>(prepare(sql)); }
+
+private:
+    struct Close {
+        void operator()(sqlite3* database) const noexcept;
+        void operator()(sqlite3_stmt* statement) const noexcept;
+    };
+    using Statement = std::unique_ptr<sqlite3_stmt, Close>;
+    struct Insertion {
+        std::string table;
+        std::vector<std::string> columns;
+        Statement statement;
+    };
+
+    [[nodiscard]] Statement prepare(std::string_view& sql);
+    [[nodiscard]] Insertion& insertionOf(std::string_view table, const Record& record);
+
+    std::unique_ptr<sqlite3, Close> database_;
+    std::vector<Insertion> insertions_;
+};
+
+}  // namespace hashphase::demos
