@@ -1,53 +1,54 @@
 // SPDX-License-Identifier: Zlib
 
-// hashphase: what the spatial hash does, shown and measured. Each subcommand is a folder here.
+// hashphase: what the spatial hash does, shown and measured. Each subcommand is a folder here, and a program
+// of its own beside this one.
 
-#include <demos/accuracy/accuracy_command.hpp>
-#include <demos/allocation_count.hpp>
-#include <demos/compare/compare_command.hpp>
-#include <demos/console/program.hpp>
-#include <demos/effects/effects_command.hpp>
-#include <demos/paper/paper_command.hpp>
-#include <demos/report/report_command.hpp>
-#include <demos/stability/stability_command.hpp>
-#include <demos/try/try_command.hpp>
-#include <demos/viewer/viewer_program.hpp>
+#include <demos/console/subcommands.hpp>
 
-#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
 #include <iostream>
-#include <string>
-#include <vector>
+#include <system_error>
 
 #include <unistd.h>
 
+namespace {
+
+using hashphase::demos::Console;
+
+/// Becomes the program; returns only where that cannot be.
+int become(const std::string& name, std::vector<std::string> arguments, Console& console) {
+    std::error_code error;
+    const std::filesystem::path path =
+        std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / name;
+    if (!std::filesystem::exists(path, error)) {
+        return refuse(
+            console,
+            path.string() + " is not there. In the source tree demos/run builds it" +
+                (name == "hashphase-wander" ? ", where libepoxy-dev, libstb-dev, libimgui-dev and "
+                                              "libglfw3-dev (Debian, Ubuntu) are installed."
+                                            : "."));
+    }
+    arguments.insert(arguments.begin(), path.string());
+    std::vector<char*> pointers;
+    for (std::string& argument : arguments) {
+        pointers.push_back(argument.data());
+    }
+    pointers.push_back(nullptr);
+    execv(path.c_str(), pointers.data());  // returns only where it fails
+    const std::string reason = std::strerror(errno);
+    return refuse(console, path.string() + " cannot be run: " + reason + ".");
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
     using namespace hashphase::demos;
-    const std::vector<std::string> arguments(argv + 1, argv + argc);
     Console console{std::cout, std::cerr, isatty(STDERR_FILENO) != 0, "hashphase"};
-    for (const std::string& argument : arguments) {
-        console.commandLine += " " + argument;
-    }
-#if HASHPHASE_COUNTS_ALLOCATIONS
-    const auto countAllocations = allocationCount;
-#else
-    constexpr std::size_t (*countAllocations)() = nullptr;
-#endif
-    if (!arguments.empty() && arguments.front() == kViewerCommand) {
-        return runViewerProgram(arguments, console);
-    }
-    const Subcommand report = reportCommand(
-        {{compareCommand(), {"--objects", "10000", "--frames", "60"}, 5, 60},
-         {paperCommand(), {"--quick"}, 20, 90},
-         {accuracyCommand(), {"--quick"}, 40, 660},
-         {effectsCommand(countAllocations), {"--objects", "2000", "--frames", "60"}, 2, 40},
-         {stabilityCommand(), {"--quick"}, 20, 70}});
-    const std::array subcommands{compareCommand(),
-                                 paperCommand(),
-                                 accuracyCommand(),
-                                 stabilityCommand(),
-                                 effectsCommand(countAllocations),
-                                 report,
-                                 tryCommand(),
-                                 viewerCommand()};
-    return runProgram(arguments, subcommands, console);
+    return startSubcommand({argv + 1, argv + argc}, subcommandNames(), console,
+                           [&console](std::size_t index, std::vector<std::string> rest) {
+                               const std::string name(subcommandNames()[index].name);
+                               return become("hashphase-" + name, std::move(rest), console);
+                           });
 }

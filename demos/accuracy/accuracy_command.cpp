@@ -2,6 +2,7 @@
 #include <demos/accuracy/accuracy_command.hpp>
 
 #include <demos/console/options.hpp>
+#include <demos/console/subcommands.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -34,7 +35,7 @@ Subcommand accuracyCommand(std::span<const Experiment> known) {
     auto options = std::make_shared<AccuracyOptions>();
     Subcommand command;
     command.name = "accuracy";
-    command.description = "Measure what accuracy costs in time: every choice, its error and its ms";
+    command.description = descriptionOf(command.name);
     command.declareOptions = [options](CLI::App& app) { declare(app, *options); };
     command.run = [options, known](Console& console) {
         return runAccuracy(*options, known, console);

@@ -3,6 +3,7 @@
 
 #include <demos/compare/compare.hpp>
 #include <demos/console/options.hpp>
+#include <demos/console/subcommands.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -58,8 +59,7 @@ Subcommand compareCommand(std::span<const BroadphaseKind> kinds) {
     auto options = std::make_shared<CompareOptions>();
     Subcommand command;
     command.name = "compare";
-    command.description =
-        "Run a scene with our broadphase and Bullet's; verify the pairs; compare the times";
+    command.description = descriptionOf(command.name);
     command.declareOptions = [options](CLI::App& app) { declare(app, *options); };
     command.run = [options, kinds](Console& console) {
         return runCompare(*options, kinds, console);

@@ -3,24 +3,21 @@
 
 #include <demos/console/nearest_name.hpp>
 #include <demos/console/options.hpp>
+#include <demos/console/subcommands.hpp>
 #include <demos/scenes/input_error.hpp>
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <exception>
-#include <iterator>
+#include <iostream>
 #include <optional>
-#include <ostream>
 #include <utility>
+
+#include <unistd.h>
 
 namespace hashphase::demos {
 namespace {
-
-int refuse(Console& console, const std::string& sentence) {
-    console.err << "hashphase: " << sentence << '\n';
-    return kExitUsage;
-}
 
 std::vector<std::string> optionNames(const CLI::App& app) {
     std::vector<std::string> names;
@@ -46,21 +43,13 @@ std::string unknownWordSentence(const CLI::App& command, const std::string& call
     return unknownNameSentence("option", name, optionNames(command));
 }
 
-// Takes what follows the first `--` off the arguments of a subcommand that wants it, as it is.
-std::vector<std::string> takeRest(std::vector<std::string>& arguments,
-                                  std::span<const Subcommand> subcommands) {
-    const bool isWanted =
-        !arguments.empty() && std::any_of(subcommands.begin(), subcommands.end(),
-                                          [&arguments](const Subcommand& subcommand) {
-                                              return subcommand.name == arguments.front() &&
-                                                     subcommand.takeRest;
-                                          });
+// Takes what follows the first `--` off the arguments.
+std::vector<std::string> takeRest(std::vector<std::string>& arguments) {
     const auto dashes = std::find(arguments.begin(), arguments.end(), "--");
-    if (!isWanted || dashes == arguments.end()) {
+    if (dashes == arguments.end()) {
         return {};
     }
-    std::vector<std::string> rest;
-    std::move(dashes + 1, arguments.end(), std::back_inserter(rest));
+    std::vector<std::string> rest(dashes + 1, arguments.end());
     arguments.erase(dashes, arguments.end());
     return rest;
 }
@@ -122,71 +111,49 @@ std::string versionText() {
 
 }  // namespace
 
-int runProgram(std::vector<std::string> arguments, std::span<const Subcommand> subcommands,
-               Console console) {
-    std::vector<std::string> rest = takeRest(arguments, subcommands);
-    CLI::App app("hashphase: a spatial-hash broadphase for Bullet, shown at work", "hashphase");
-    app.set_version_flag("--version", versionText());
-    // Unknown words are collected rather than refused, so that the right one can be suggested.
-    app.allow_extras();
-    std::vector<std::string> names;
-    for (const Subcommand& subcommand : subcommands) {
-        CLI::App* parsed = app.add_subcommand(subcommand.name, subcommand.description);
-        parsed->allow_extras();
-        subcommand.declareOptions(*parsed);
-        checkValues(*parsed);
-        names.push_back(subcommand.name);
-    }
-
-    if (const std::optional<int> ended = parse(app, arguments, console)) {
-        return *ended;
-    }
-    const std::vector<CLI::App*> chosen = app.get_subcommands();
-    if (const std::vector<std::string> extras = app.remaining(); !extras.empty()) {
-        return refuse(console, extras.front().starts_with('-')
-                                   ? unknownNameSentence("option", extras.front(), optionNames(app))
-                                   : unknownNameSentence("subcommand", extras.front(), names));
-    }
-    if (chosen.size() != 1) {
-        console.err << app.help();
-        return kExitUsage;
-    }
-    const auto subcommand = std::find_if(
-        subcommands.begin(), subcommands.end(),
-        [&chosen](const Subcommand& known) { return known.name == chosen.front()->get_name(); });
-    if (const std::vector<std::string> extras = chosen.front()->remaining(); !extras.empty()) {
-        return refuse(
-            console, unknownWordSentence(*chosen.front(), "hashphase " + chosen.front()->get_name(),
-                                         extras.front(), subcommand->takeRest != nullptr));
-    }
-    if (subcommand->takeRest) {
-        subcommand->takeRest(std::move(rest));
-    }
-    return runGuarded(*subcommand, *chosen.front(), console);
-}
-
-int runSingleCommand(const std::vector<std::string>& arguments, const Subcommand& command,
+int runSingleCommand(std::vector<std::string> arguments, const Subcommand& command,
                      Console console) {
     CLI::App app(command.description, command.name);
     app.set_version_flag("--version", versionText());
+    // Unknown words are collected rather than refused, so that the right one can be suggested.
     app.allow_extras();
     command.declareOptions(app);
     checkValues(app);
+    if (command.takeRest) {
+        command.takeRest(takeRest(arguments));
+    }
     if (const std::optional<int> ended = parse(app, arguments, console)) {
         return *ended;
     }
     if (const std::vector<std::string> extras = app.remaining(); !extras.empty()) {
-        return refuse(console, unknownWordSentence(app, command.name, extras.front(), false));
+        return refuse(console, unknownWordSentence(app, command.name, extras.front(),
+                                                   command.takeRest != nullptr));
     }
     return runGuarded(command, app, console);
 }
 
-const char* programVersion() noexcept {
-#ifdef HASHPHASE_VERSION
-    return HASHPHASE_VERSION;
-#else
-    return "(version unknown)";
-#endif
+int runMain(int argc, char** argv, Subcommand command) {
+    command.name = "hashphase " + command.name;
+    const std::vector<std::string> arguments(argv + 1, argv + argc);
+    Console console{std::cout, std::cerr, isatty(STDERR_FILENO) != 0, command.name};
+    for (const std::string& argument : arguments) {
+        console.commandLine += " " + argument;
+    }
+    return runSingleCommand(arguments, command, std::move(console));
+}
+
+int runProgram(const std::vector<std::string>& arguments, std::span<const Subcommand> subcommands,
+               Console console) {
+    std::vector<SubcommandName> names;
+    for (const Subcommand& each : subcommands) {
+        names.push_back({each.name, each.description});
+    }
+    return startSubcommand(arguments, names, console,
+                           [&](std::size_t index, std::vector<std::string> rest) {
+                               Subcommand command = subcommands[index];
+                               command.name = "hashphase " + command.name;
+                               return runSingleCommand(std::move(rest), command, console);
+                           });
 }
 
 }  // namespace hashphase::demos

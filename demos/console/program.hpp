@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The command line of a program made of subcommands, or of a single command.
-//
-// Exit codes  0 all well, 1 a check failed, 2 wrong usage or bad input.
-// Output      results go to `out`; progress, warnings and errors to `err`.
+// The command line of a command.
+
+#include <demos/console/console.hpp>
 
 #include <functional>
 #include <iosfwd>
@@ -17,23 +16,6 @@ class App;
 }
 
 namespace hashphase::demos {
-
-struct Page;
-
-inline constexpr int kExitOk = 0;
-inline constexpr int kExitCheckFailed = 1;
-inline constexpr int kExitUsage = 2;
-
-/// Where a subcommand writes.
-struct Console {
-    std::ostream& out;
-    std::ostream& err;
-    bool errIsTerminal = false;
-    std::string commandLine;  // as typed, for the record
-
-    /// Takes the page of a report, whether or not it goes to a file; empty: nobody does.
-    std::function<void(const Page&)> takePage = {};
-};
 
 struct Subcommand {
     std::string name;
@@ -49,16 +31,16 @@ struct Subcommand {
     std::function<int(Console&)> run;
 };
 
-/// Parses the arguments (without the program's name), runs the subcommand and returns its exit
-/// code. Unknown words are told together with what was probably meant.
-int runProgram(std::vector<std::string> arguments, std::span<const Subcommand> subcommands,
-               Console console);
-
-/// The same for a program without subcommands: `command.name` is what the user types to run it.
-int runSingleCommand(const std::vector<std::string>& arguments, const Subcommand& command,
+/// Parses the arguments, runs the command and returns its exit code; `command.name` is what the user types
+/// to run it. Unknown words are told together with what was probably meant.
+int runSingleCommand(std::vector<std::string> arguments, const Subcommand& command,
                      Console console);
 
-/// The version of hashphase that this program was built from.
-[[nodiscard]] const char* programVersion() noexcept;
+/// The same for the program `hashphase-<name>` of a subcommand `hashphase <name>`, as its main() does.
+int runMain(int argc, char** argv, Subcommand command);
+
+/// The same for a program of several (subcommands.hpp), which are all in it.
+int runProgram(const std::vector<std::string>& arguments, std::span<const Subcommand> subcommands,
+               Console console);
 
 }  // namespace hashphase::demos

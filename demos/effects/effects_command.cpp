@@ -2,6 +2,7 @@
 #include <demos/effects/effects_command.hpp>
 
 #include <demos/console/options.hpp>
+#include <demos/console/subcommands.hpp>
 #include <demos/effects/effects.hpp>
 
 #include <CLI/CLI.hpp>
@@ -40,7 +41,7 @@ Subcommand effectsCommand(std::size_t (*allocationCount)()) {
     auto options = std::make_shared<EffectsOptions>();
     Subcommand command;
     command.name = "effects";
-    command.description = "Say what each effect of a scene costs, and what is lost without it";
+    command.description = descriptionOf(command.name);
     command.declareOptions = [options](CLI::App& app) { declareEffects(app, *options); };
     command.run = [options, allocationCount](Console& console) {
         return runEffects(*options, console, allocationCount);

@@ -2,6 +2,7 @@
 #include <demos/paper/paper_command.hpp>
 
 #include <demos/console/options.hpp>
+#include <demos/console/subcommands.hpp>
 #include <demos/paper/paper.hpp>
 
 #include <CLI/CLI.hpp>
@@ -49,7 +50,7 @@ Subcommand paperCommand() {
     auto options = std::make_shared<PaperOptions>();
     Subcommand command;
     command.name = "paper";
-    command.description = "Reproduce the paper's figures 13 to 15: its numbers beside today's";
+    command.description = descriptionOf(command.name);
     command.declareOptions = [options](CLI::App& app) { declarePaper(app, *options); };
     command.run = [options](Console& console) { return runPaper(*options, console); };
     return command;

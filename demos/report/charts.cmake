@@ -6,14 +6,13 @@
 find_program(HASHPHASE_NPM npm)
 find_program(HASHPHASE_NODE NAMES node nodejs)
 mark_as_advanced(HASHPHASE_NPM HASHPHASE_NODE)
-if(HASHPHASE_NPM AND HASHPHASE_NODE)
-    set(chartsDefault ON)
-else()
-    set(chartsDefault OFF)
+set(HASHPHASE_REPORT_CHARTS AUTO CACHE STRING
+    "Draw charts in reports (npm brings what draws them): ON, OFF, or AUTO, where npm is found")
+set_property(CACHE HASHPHASE_REPORT_CHARTS PROPERTY STRINGS AUTO ON OFF)
+if(HASHPHASE_REPORT_CHARTS STREQUAL "AUTO" AND NOT (HASHPHASE_NPM AND HASHPHASE_NODE))
     message(STATUS "hashphase: the reports will have tables but no charts, because npm was not "
                    "found (Debian, Ubuntu: npm)")
 endif()
-option(HASHPHASE_REPORT_CHARTS "Draw charts in reports (npm brings what draws them)" ${chartsDefault})
 
 set(chartsFolder ${CMAKE_CURRENT_BINARY_DIR}/charts)
 set(HASHPHASE_CHART_SCRIPTS ${chartsFolder}/chart_scripts.cpp)

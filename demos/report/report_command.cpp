@@ -4,6 +4,7 @@
 #include <demos/console/format.hpp>
 #include <demos/console/nearest_name.hpp>
 #include <demos/console/options.hpp>
+#include <demos/console/subcommands.hpp>
 #include <demos/report/page.hpp>
 #include <demos/report/report_text.hpp>
 #include <demos/report/stopwatch.hpp>
@@ -218,13 +219,9 @@ int runReport(const std::vector<ReportPart>& parts, const ReportOptions& options
 
 Subcommand reportCommand(std::vector<ReportPart> parts) {
     auto options = std::make_shared<ReportOptions>();
-    std::string names;
-    for (const ReportPart& part : parts) {
-        names += (names.empty() ? "" : ", ") + part.command.name;
-    }
     Subcommand command;
     command.name = "report";
-    command.description = "Join in one page what these find: " + names;
+    command.description = descriptionOf(command.name);
     command.declareOptions = [options](CLI::App& app) { declareReport(app, *options); };
     command.run = [options, parts = std::move(parts)](Console& console) {
         return runReport(parts, *options, console);

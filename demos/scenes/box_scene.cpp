@@ -28,7 +28,7 @@ std::unique_ptr<BoxScene> makeTerdiman(std::size_t objects, std::uint64_t seed) 
     return std::make_unique<TerdimanScene>(objects, seed);
 }
 
-constexpr std::array kKinds{
+constexpr std::array kBoxScenes{
     BoxSceneKind{"paper", "spheres of radius 1 m roaming a random terrain of 400 x 400 m",
                  "spheres", 30'000, makePaper},
     BoxSceneKind{"uniform", "boxes of 0.5-1.5 m all over a cube, each overlapping about two others",
@@ -54,7 +54,7 @@ constexpr std::array kKinds{
 }  // namespace
 
 std::span<const BoxSceneKind> boxSceneKinds() {
-    return kKinds;
+    return kBoxScenes;
 }
 
 }  // namespace hashphase::demos

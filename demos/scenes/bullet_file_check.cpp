@@ -12,7 +12,7 @@
 namespace hashphase::demos {
 namespace {
 
-constexpr std::size_t kHeaderBytes = 12;
+constexpr std::size_t kBulletHeaderBytes = 12;
 
 [[noreturn]] void fail(std::size_t byte, const std::string& fault) {
     throw InputError("byte " + std::to_string(byte) + ": " + fault);
@@ -91,7 +91,7 @@ std::size_t pointerBytes(std::string_view bytes) {
 }
 
 void checkHeader(std::string_view bytes) {
-    if (bytes.size() < kHeaderBytes) {
+    if (bytes.size() < kBulletHeaderBytes) {
         fail(bytes.size(), "the file ends inside the header of 12 bytes");
     }
     if (bytes.substr(0, 7) != "BULLETf" && bytes.substr(0, 7) != "BULLETd") {
@@ -106,7 +106,7 @@ void checkHeader(std::string_view bytes) {
     if (bytes[8] != 'v') {
         fail(8, "the byte order must be marked by 'v' (little-endian)");
     }
-    for (std::size_t i = 9; i < kHeaderBytes; ++i) {
+    for (std::size_t i = 9; i < kBulletHeaderBytes; ++i) {
         if (std::isdigit(static_cast<unsigned char>(bytes[i])) == 0) {
             fail(i, "the Bullet version must be three digits");
         }
@@ -131,7 +131,7 @@ Chunk readChunk(std::string_view bytes, Cursor& cursor) {
 // Ends at the type table, which the format puts last.
 std::vector<Chunk> readChunks(std::string_view bytes) {
     std::vector<Chunk> chunks;
-    Cursor cursor(bytes, kHeaderBytes);
+    Cursor cursor(bytes, kBulletHeaderBytes);
     do {
         if (cursor.position() == bytes.size()) {
             fail(bytes.size(), "the file ends before its type table (DNA1)");

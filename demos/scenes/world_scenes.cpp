@@ -151,7 +151,7 @@ void fillBulletStorm(WorldContents& contents, std::size_t objects, std::uint64_t
     }
 }
 
-constexpr std::array kKinds{
+constexpr std::array kWorldScenes{
     WorldSceneKind{"pile", "Bullet dynamics: boxes, spheres and capsules dropped in a heap", 1'000,
                    fillPile},
     WorldSceneKind{"stack", "Bullet dynamics: walls of bricks", 1'000, fillStack},
@@ -168,7 +168,7 @@ constexpr std::array kKinds{
 }  // namespace
 
 std::span<const WorldSceneKind> worldSceneKinds() {
-    return kKinds;
+    return kWorldScenes;
 }
 
 }  // namespace hashphase::demos

@@ -2,6 +2,7 @@
 #include <demos/stability/stability_command.hpp>
 
 #include <demos/console/options.hpp>
+#include <demos/console/subcommands.hpp>
 #include <demos/stability/stability.hpp>
 
 #include <CLI/CLI.hpp>
@@ -45,7 +46,7 @@ Subcommand stabilityCommand(std::span<const BroadphaseKind> kinds,
     auto options = std::make_shared<StabilityOptions>();
     Subcommand command;
     command.name = "stability";
-    command.description = "Run hard cases with our broadphase and Bullet's; say what each one does";
+    command.description = descriptionOf(command.name);
     command.declareOptions = [options](CLI::App& app) { declareStability(app, *options); };
     command.run = [options, kinds, cases](Console& console) {
         return runStability(*options, kinds, cases, console);

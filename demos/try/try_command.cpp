@@ -2,6 +2,7 @@
 #include <demos/try/try_command.hpp>
 
 #include <demos/console/options.hpp>
+#include <demos/console/subcommands.hpp>
 #include <demos/try/try.hpp>
 
 #include <CLI/CLI.hpp>
@@ -54,8 +55,7 @@ Subcommand tryCommand() {
     auto options = std::make_shared<TryOptions>();
     Subcommand command;
     command.name = "try";
-    command.description =
-        "Run a program of yours, as it is, with Bullet's broadphase and with ours, and compare";
+    command.description = descriptionOf(command.name);
     command.declareOptions = [options](CLI::App& app) { declare(app, *options); };
     command.takeRest = [options](std::vector<std::string> words) {
         options->words = std::move(words);

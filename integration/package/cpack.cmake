@@ -65,8 +65,8 @@ set(CPACK_COMPONENT_HASHPHASE_TOOLS_DEPENDS hashphase_libraries)
 set(CPACK_COMPONENT_HASHPHASE_TOOLS_DESCRIPTION "${about}
 .
 This package has the program hashphase, which compares it with Bullet's own
-broadphases on many scenes and tries it on programs as they are, and the
-viewer hashphase-wander.")
+broadphases on many scenes, tries it on programs as they are, and shows it
+at work; its subcommands are programs of their own, hashphase-compare and others.")
 
 # dpkg-shlibdeps looks for the libraries of the other package where they are built; when others use the
 # package, it is the file `shlibs` that tells what they depend on.

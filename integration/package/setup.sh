@@ -7,16 +7,36 @@
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 
-# Tools by the command that must be there, libraries by their Debian package.
+# Tools by the command that must be there, libraries by their Debian package: what the library and
+# `hashphase compare` need.
 tools=(cmake:cmake ninja:ninja-build c++:g++ pkg-config:pkg-config)
-libraries=(libbullet-dev libbullet-extras-dev libeigen3-dev libcli11-dev nlohmann-json3-dev libsqlite3-dev
-    libgtest-dev libtbb-dev libgmp-dev)
+libraries=(libbullet-dev libeigen3-dev libcli11-dev nlohmann-json3-dev)
 
-# What may be missing: npm brings what draws the charts of reports, rapidcheck makes up operations
-# for tests, and the others draw `hashphase wander`, on the processor where there is no GPU.
-optional_tools=(npm:npm)
-optional_libraries=(librapidcheck-dev libglfw3-dev libimgui-dev libepoxy-dev libstb-dev libegl1
-    libegl-mesa0 libgl1-mesa-dri)
+# What may be missing.
+optional_tools=()
+optional_libraries=()
+
+# need <part>...: what a part needs beside these.
+need() {
+    local part
+    for part; do
+        case $part in
+        bullet-files) libraries+=(libbullet-extras-dev) ;; # compare --file level.bullet
+        measurements) libraries+=(libsqlite3-dev) ;;       # accuracy, paper, report
+        charts) optional_tools+=(npm:npm) ;;               # pages have tables without
+        viewer)                                            # draws on the processor where there is no GPU
+            optional_libraries+=(libtbb-dev libglfw3-dev libimgui-dev libepoxy-dev libstb-dev libegl1
+                libegl-mesa0 libgl1-mesa-dri)
+            ;;
+        tests) # rapidcheck makes up operations
+            need bullet-files measurements charts viewer
+            libraries+=(libgtest-dev libtbb-dev libgmp-dev)
+            optional_libraries+=(librapidcheck-dev)
+            with_tests=ON
+            ;;
+        esac
+    done
+}
 
 say() {
     printf '%s: %s\n' "${script:-setup}" "$*" >&2
@@ -61,8 +81,8 @@ missing_options() {
 install_missing_packages() {
     if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
         say "this is no Debian or Ubuntu: please see to CMake 3.22, Ninja, a C++20 compiler," \
-            "pkg-config, Bullet 3.05 (with its world importer), Eigen 3, CLI11, nlohmann-json," \
-            "GoogleTest and GMP; CMake tells what it cannot find"
+            "pkg-config, Bullet 3.05, Eigen 3, CLI11 and nlohmann-json, and, for what needs them," \
+            "Bullet's world importer, SQLite, GoogleTest, TBB and GMP; CMake tells what it cannot find"
         return
     fi
     local missing=() options=() apt=(apt-get)
@@ -96,24 +116,34 @@ install_missing_packages() {
 # install_packages [<package>...]: by the caller's `apt`.
 install_packages() {
     (($#)) || return 0
-    say "installing $*"
+    say "installing $* (a minute or so)"
+    reconfigure=1 # which may find more now
     "${apt[@]}" -o DPkg::Lock::Timeout=300 -q install -y --no-install-recommends "$@" \
         >&2 </dev/null
 }
 
 # build_preset <preset> [<target>...]: configures when need be, or when `reconfigure` is set, and
-# builds.
+# builds. A build folder that has tests keeps them.
 build_preset() (
     preset=$1
     shift
     build=$root/build/$preset
     cd "$root" || exit
+    has_tests=$(sed -n 's/^HASHPHASE_BUILD_TESTS:BOOL=//p' "$build/CMakeCache.txt" 2>/dev/null || true)
+    if [[ $has_tests == ON ]]; then
+        with_tests=ON
+    fi
     # Ninja notices changes of CMakeLists.txt by itself, but not those of the presets.
-    if [[ ${reconfigure-} || ! -f $build/build.ninja ||
+    if [[ ${reconfigure-} || ! -f $build/build.ninja || $has_tests != "${with_tests-OFF}" ||
         CMakePresets.json -nt $build/build.ninja ]]; then
         say "configuring build/$preset"
-        cmake --preset "$preset" >&2
+        cmake --preset "$preset" -DHASHPHASE_BUILD_TESTS="${with_tests-OFF}" >&2
     fi
-    say "building build/$preset"
-    cmake --build "$build" ${1:+--target "$@"} >&2
+    steps=$(cmake --build "$build" ${1:+--target "$@"} -- -n 2>/dev/null | grep -c '^\[' || true)
+    if ((steps > 3)); then
+        cores=$(nproc)
+        say "building build/$preset: $steps steps, about $(((steps * 4 / cores + 9) / 10 * 10)) s on" \
+            "$cores cores"
+    fi
+    NINJA_STATUS='[%f of %t steps, %es] ' cmake --build "$build" ${1:+--target "$@"} >&2
 )

@@ -5,12 +5,6 @@
 
 #include <demos/viewer/show/wander.hpp>
 
-#include <iostream>
-#include <string>
-#include <vector>
-
-#include <unistd.h>
-
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
@@ -22,10 +16,5 @@ int main(int argc, char** argv) {
     // faulted in again, it would take a third of the main thread's time.
     mallopt(M_TRIM_THRESHOLD, 256 << 20);
 #endif
-    const std::vector<std::string> arguments(argv + 1, argv + argc);
-    Console console{std::cout, std::cerr, isatty(STDERR_FILENO) != 0, "hashphase wander"};
-    for (const std::string& argument : arguments) {
-        console.commandLine += " " + argument;
-    }
-    return runSingleCommand(arguments, wanderCommand(), console);
+    return runMain(argc, argv, wanderCommand());
 }

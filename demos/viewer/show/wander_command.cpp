@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/console/options.hpp>
+#include <demos/console/subcommands.hpp>
 #include <demos/viewer/show/wander.hpp>
 
 #include <CLI/CLI.hpp>
@@ -77,8 +78,8 @@ void declareWander(CLI::App& app, WanderOptions& options) {
 Subcommand wanderCommand() {
     auto options = std::make_shared<WanderOptions>();
     Subcommand command;
-    command.name = "hashphase wander";
-    command.description = "The paper's simulation to watch and play with, and Bullet's beside it";
+    command.name = "wander";
+    command.description = descriptionOf(command.name);
     command.declareOptions = [options](CLI::App& app) { declareWander(app, *options); };
     command.run = [options](Console& console) { return runWander(*options, console); };
     return command;
