@@ -83,7 +83,7 @@ int framesToRun(const CompareOptions& options, const OpenedTrial& opened) {
 constexpr std::size_t kMostReplayBytes = 200'000'000;
 
 std::optional<ReplayRecording> replayFor(const CompareOptions& options, const OpenedTrial& opened,
-                                         const std::vector<const BroadphaseKind*>& kinds,
+                                         const std::vector<Contestant>& contestants,
                                          bool isPageWanted) {
     if (!isPageWanted || options.replayFrames == 0) {
         return std::nullopt;
@@ -91,8 +91,10 @@ std::optional<ReplayRecording> replayFor(const CompareOptions& options, const Op
     ReplaySettings settings;
     settings.scene = opened.name;
     settings.bounds = opened.trial->bounds();
-    for (const BroadphaseKind* kind : kinds) {
-        settings.broadphases.emplace_back(kind->name);
+    for (const Contestant& each : contestants) {
+        if (!each.leftOutAfter) {
+            settings.broadphases.emplace_back(each.kind->name);
+        }
     }
     settings.noun = opened.noun;
     settings.areSpheres = opened.noun == "spheres";
@@ -130,35 +132,50 @@ int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> ki
         chosen = defaultKinds(kinds, opened.trial->objectCount());
     }
 
-    Report report;
-    report.options = options;
+    CompareReport report;
     report.scene = opened.name;
-    report.description = opened.description;
-    report.noun = opened.noun;
-    report.objects = opened.trial->objectCount();
-    report.framesAsked = framesToRun(options, opened);
     report.provenance = gatherProvenance(console.commandLine);
+    const int frames = framesToRun(options, opened);
     ResultFile json(options.jsonFile);
     ResultFile csv(options.csvFile);
     ResultFile html(options.htmlFile);
 
-    const ComparisonSettings settings{report.framesAsked, limit,
-                                      progressStyle(console, options.quiet), console.err};
-    report.comparison = fillBroadphases(*opened.trial, chosen, settings);
-    report.replay = replayFor(options, opened, contestantsOf(report.comparison),
+    const ComparisonSettings settings{frames, limit, progressStyle(console, options.quiet),
+                                      console.err};
+    std::vector<Contestant> contestants = fillBroadphases(*opened.trial, chosen, settings);
+    report.replay = replayFor(options, opened, contestants,
                               !options.htmlFile.empty() || static_cast<bool>(console.takePage));
-    runFrames(*opened.trial, settings, report.replay ? &*report.replay : nullptr,
-              report.comparison);
+    Measurements measured;
+    const std::size_t objects = opened.trial->objectCount();
+    const ComparisonEnd end = runFrames(*opened.trial, settings, contestants,
+                                        report.replay ? &*report.replay : nullptr, measured);
+    measured.add("run",
+                 {{"scene", opened.name},
+                  {"description", opened.description},
+                  {"noun", opened.noun},
+                  {"from_file", !options.file.empty()},
+                  {"objects", objects},
+                  {"frames_asked", frames},
+                  {"warm_up", end.warmUpFrames},
+                  {"frames_done", end.framesDone},
+                  {"removed", end.objectsRemoved},
+                  {"seed", options.sceneSeed()},
+                  {"reference", options.reference == ReferenceMethod::kBrute ? "brute" : "sweep"},
+                  {"time_limit", options.timeLimit},
+                  {"limit_hit", end.timeLimitHit}});
+    report.framesDone = end.framesDone;
+    report.wasAnythingTimed = end.framesDone > end.warmUpFrames;
+    report.findings = compareFindings(measured);
 
     printReport(report, console.out);
     json.write([&report](std::ostream& file) { writeJson(report, file); });
-    csv.write([&report](std::ostream& file) { writeCsv(report, file); });
+    csv.write([&report](std::ostream& file) { writeCsv(report.findings.rows.at("csv"), file); });
     deliverPage(pageOf(report), html, console);
-    const std::vector<Result>& results = report.comparison.results;
-    const bool isVerified = report.comparison.framesDone > 0 && oursWereExact(report) != false &&
-                            std::none_of(results.begin(), results.end(), [](const Result& result) {
-                                return result.kind->ours && result.leftOutAfter;
-                            });
+    const bool isVerified =
+        end.framesDone > 0 &&
+        std::none_of(contestants.begin(), contestants.end(), [](const Contestant& each) {
+            return each.kind->ours && (each.isWrong || each.leftOutAfter);
+        });
     return isVerified ? kExitOk : kExitCheckFailed;
 }
 

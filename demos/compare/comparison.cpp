@@ -3,8 +3,11 @@
 
 #include <demos/compare/filled_broadphase.hpp>
 #include <demos/console/format.hpp>
+#include <demos/report/json_values.hpp>
+#include <demos/report/report_text.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace hashphase::demos {
@@ -15,28 +18,54 @@ constexpr int kMostWarmUpFrames = 10;
 
 constexpr std::size_t kObjectsToRemove = 1000;
 
-Fault faultOf(int frame, const FrameVerdict& verdict, std::span<const Aabb<float>> boxes) {
-    Fault fault;
-    fault.frame = frame;
-    fault.missing = verdict.firstMissing.has_value();
-    fault.pair = fault.missing ? *verdict.firstMissing : *verdict.firstExtra;
-    fault.firstBox = boxes[firstOf(fault.pair)];
-    fault.secondBox = boxes[secondOf(fault.pair)];
-    return fault;
+// JSON has no numbers for what is not finite.
+Json cornerJson(const Vector3<float>& corner) {
+    Json numbers = Json::array();
+    for (const float number : corner) {
+        numbers.push_back(std::isfinite(number) ? Json(number) : Json(nullptr));
+    }
+    return numbers;
 }
 
-void record(int frame, bool measured, const Observation& seen, Verifier& verifier, Result& result) {
-    FrameRow row;
-    row.frame = frame;
-    row.measured = measured;
-    row.setAabbMs = seen.setAabbMs;
-    row.calculateMs = seen.calculateMs;
-    row.stepMs = seen.stepMs;
-    row.verdict = verifier.judge(seen.reported, seen.exact);
-    if (!result.firstFault && row.verdict.missing + row.verdict.extra > 0) {
-        result.firstFault = faultOf(frame, row.verdict, seen.boxes);
+// The first pair that a broadphase got wrong.
+void recordFault(std::string_view name, int frame, const FrameVerdict& verdict,
+                 std::span<const Aabb<float>> boxes, Measurements& measured) {
+    const bool isMissing = verdict.firstMissing.has_value();
+    const PairKey pair = isMissing ? *verdict.firstMissing : *verdict.firstExtra;
+    Json boxesJson = Json::array();
+    for (const std::uint32_t object : {firstOf(pair), secondOf(pair)}) {
+        boxesJson.push_back(
+            {{"min", cornerJson(boxes[object].min())}, {"max", cornerJson(boxes[object].max())}});
     }
-    result.rows.push_back(row);
+    measured.add("faults", {{"name", name},
+                            {"fault_frame", frame},
+                            {"kind", isMissing ? "missing" : "extra"},
+                            {"first", firstOf(pair)},
+                            {"second", secondOf(pair)},
+                            {"first_text", boxText(boxes[firstOf(pair)])},
+                            {"second_text", boxText(boxes[secondOf(pair)])},
+                            {"objects_json", Json::array({firstOf(pair), secondOf(pair)}).dump()},
+                            {"boxes_json", boxesJson.dump()}});
+}
+
+void record(int frame, bool isTimed, const Observation& seen, Contestant& contestant,
+            Measurements& measured) {
+    const FrameVerdict verdict = contestant.verifier.judge(seen.reported, seen.exact);
+    measured.add("frames", {{"name", contestant.kind->name},
+                            {"frame", frame},
+                            {"measured", isTimed},
+                            {"pairs", verdict.pairs},
+                            {"exact_pairs", verdict.exactPairs},
+                            {"missing", verdict.missing},
+                            {"extra", verdict.extra},
+                            {"stale", verdict.stale},
+                            {"set_aabb_ms", seen.setAabbMs},
+                            {"calculate_ms", seen.calculateMs},
+                            {"step_ms", seen.stepMs}});
+    if (!contestant.isWrong && verdict.missing + verdict.extra > 0) {
+        contestant.isWrong = true;
+        recordFault(contestant.kind->name, frame, verdict, seen.boxes, measured);
+    }
 }
 
 // Brings its code into memory, so that its filling tells nothing of that.
@@ -46,151 +75,130 @@ void touch(const BroadphaseKind& kind) {
     once.create(0, {btVector3(0, 0, 0), btVector3(1, 1, 1)}, {});
 }
 
-Result fill(Trial& trial, const BroadphaseKind& kind, double seconds,
-            const ComparisonSettings& settings) {
+Contestant fill(Trial& trial, const BroadphaseKind& kind, double seconds,
+                const ComparisonSettings& settings) {
     Progress progress(settings.err, settings.progress, "filling " + std::string(kind.name),
                       trial.objectCount());
     touch(kind);
     const Stopwatch watch;
-    Result result;
-    result.kind = &kind;
-    result.fillMs = trial.add(kind, [&](std::size_t filled) {
+    Contestant contestant;
+    contestant.kind = &kind;
+    contestant.fillMs = trial.add(kind, [&](std::size_t filled) {
         progress.update(filled);
         return watch.milliseconds() <= seconds * 1000;
     });
-    if (!result.fillMs) {
-        result.leftOutAfter = seconds;
+    if (!contestant.fillMs) {
+        contestant.leftOutAfter = seconds;
     }
-    return result;
+    return contestant;
 }
 
-// The results of those that take part, by their numbers in the trial.
-std::vector<Result*> contestants(Comparison& comparison) {
-    std::vector<Result*> filled;
-    for (Result& result : comparison.results) {
-        if (!result.leftOutAfter) {
-            filled.push_back(&result);
+// Those that take part, by their numbers in the trial.
+std::vector<Contestant*> filled(std::vector<Contestant>& all) {
+    std::vector<Contestant*> some;
+    for (Contestant& each : all) {
+        if (!each.leftOutAfter) {
+            some.push_back(&each);
         }
     }
-    return filled;
+    return some;
 }
 
-void removeFromAll(Trial& trial, const ComparisonSettings& settings,
-                   const std::vector<Result*>& results, Comparison& comparison) {
-    comparison.objectsRemoved = std::min(kObjectsToRemove, (trial.objectCount() + 1) / 2);
-    for (std::size_t i = 0; i < results.size(); ++i) {
-        Progress progress(settings.err, settings.progress,
-                          "removing from " + std::string(results[i]->kind->name),
-                          comparison.objectsRemoved);
-        results[i]->memoryBytes = trial.memoryBytes(i);
-        results[i]->removeMs =
-            trial.removeObjects(i, comparison.objectsRemoved, [&](std::size_t removed) {
+// Of all that were asked for.
+void recordEnd(Trial& trial, const ComparisonSettings& settings, std::size_t objectsToRemove,
+               std::span<const Contestant> contestants, Measurements& measured) {
+    std::size_t number = 0;
+    for (const Contestant& each : contestants) {
+        std::optional<std::int64_t> memory;
+        std::optional<double> removeMs;
+        if (!each.leftOutAfter) {
+            Progress progress(settings.err, settings.progress,
+                              "removing from " + std::string(each.kind->name), objectsToRemove);
+            memory = trial.memoryBytes(number);
+            removeMs = trial.removeObjects(number, objectsToRemove, [&](std::size_t removed) {
                 progress.update(removed);
                 return !settings.limit.isOver();
             });
+            ++number;
+        }
+        measured.add("broadphases", {{"name", each.kind->name},
+                                     {"title", each.kind->title},
+                                     {"ours", each.kind->ours},
+                                     {"fill_ms", each.fillMs},
+                                     {"left_out_after", each.leftOutAfter},
+                                     {"remove_ms", removeMs},
+                                     {"memory", memory}});
     }
+}
+
+void createTables(Measurements& measured) {
+    measured.create("frames", {"name", "frame", "measured", "pairs", "exact_pairs", "missing",
+                               "extra", "stale", "set_aabb_ms", "calculate_ms", "step_ms"});
+    measured.create("faults", {"name", "fault_frame", "kind", "first", "second", "first_text",
+                               "second_text", "objects_json", "boxes_json"});
 }
 
 }  // namespace
 
-Comparison fillBroadphases(Trial& trial, const std::vector<const BroadphaseKind*>& kinds,
-                           const ComparisonSettings& settings) {
+std::vector<Contestant> fillBroadphases(Trial& trial,
+                                        const std::vector<const BroadphaseKind*>& kinds,
+                                        const ComparisonSettings& settings) {
     const double seconds = settings.limit.secondsLeft() / 2;
     const Stopwatch watch;
-    Comparison comparison;
+    std::vector<Contestant> contestants;
     for (std::size_t i = 0; i < kinds.size(); ++i) {
         const double left = std::max(0.0, seconds - watch.milliseconds() / 1000);
         const double share = left / static_cast<double>(kinds.size() - i);
-        comparison.results.push_back(fill(trial, *kinds[i], share, settings));
+        contestants.push_back(fill(trial, *kinds[i], share, settings));
     }
-    return comparison;
+    return contestants;
 }
 
-std::vector<const BroadphaseKind*> contestantsOf(const Comparison& comparison) {
-    std::vector<const BroadphaseKind*> kinds;
-    for (const Result& result : comparison.results) {
-        if (!result.leftOutAfter) {
-            kinds.push_back(result.kind);
-        }
-    }
-    return kinds;
-}
-
-void runFrames(Trial& trial, const ComparisonSettings& settings, ReplayRecording* replay,
-               Comparison& comparison) {
-    const std::vector<Result*> results = contestants(comparison);
-    comparison.warmUpFrames = std::min(kMostWarmUpFrames, settings.frames / 4);
-    std::vector<Verifier> verifiers(results.size());
+ComparisonEnd runFrames(Trial& trial, const ComparisonSettings& settings,
+                        std::vector<Contestant>& all, ReplayRecording* replay,
+                        Measurements& measured) {
+    createTables(measured);
+    const std::vector<Contestant*> contestants = filled(all);
+    ComparisonEnd end;
+    end.warmUpFrames = std::min(kMostWarmUpFrames, settings.frames / 4);
+    end.objectsRemoved = std::min(kObjectsToRemove, (trial.objectCount() + 1) / 2);
     const auto frames = static_cast<std::size_t>(settings.frames);
-    Progress progress(settings.err, settings.progress, "frame", frames * results.size());
+    Progress progress(settings.err, settings.progress, "frame", frames * contestants.size());
 
     for (std::size_t frame = 0; frame < frames; ++frame) {
-        if (results.empty() || settings.limit.isOver()) {
-            comparison.timeLimitHit = true;
+        if (contestants.empty() || settings.limit.isOver()) {
+            end.timeLimitHit = true;
             break;
         }
         const auto tell = [&](std::size_t turn, std::string_view what) {
-            progress.update(frame * results.size() + turn, withThousands(frame + 1) + " of " +
-                                                               withThousands(frames) + ", " +
-                                                               std::string(what));
+            progress.update(frame * contestants.size() + turn, withThousands(frame + 1) + " of " +
+                                                                   withThousands(frames) + ", " +
+                                                                   std::string(what));
         };
         if (trial.sharesBoxes()) {
             tell(0, "exact pairs");
         }
         trial.beginFrame();
         const bool isReplayed = replay != nullptr && !replay->isFull();
-        for (std::size_t turn = 0; turn < results.size(); ++turn) {
-            const std::size_t i = (turn + frame) % results.size();
-            tell(turn, results[i]->kind->name);
+        for (std::size_t turn = 0; turn < contestants.size(); ++turn) {
+            const std::size_t i = (turn + frame) % contestants.size();
+            Contestant& contestant = *contestants[i];
+            tell(turn, contestant.kind->name);
             const Observation seen = trial.runFrame(i);
             const int number = static_cast<int>(frame);
-            record(number, number >= comparison.warmUpFrames, seen, verifiers[i], *results[i]);
+            record(number, number >= end.warmUpFrames, seen, contestant, measured);
             if (isReplayed) {
-                replay->add(i, {seen.boxes, seen.exact, verifiers[i].missing(),
-                                verifiers[i].extra(), seen.cellSize});
+                replay->add(i, {seen.boxes, seen.exact, contestant.verifier.missing(),
+                                contestant.verifier.extra(), seen.cellSize});
             }
         }
         if (isReplayed) {
             replay->finishFrame();
         }
-        comparison.framesDone = static_cast<int>(frame) + 1;
+        end.framesDone = static_cast<int>(frame) + 1;
     }
-    removeFromAll(trial, settings, results, comparison);
-}
-
-std::optional<Timing> timingOf(const Result& result) {
-    std::vector<double> setAabb;
-    std::vector<double> calculate;
-    std::vector<double> both;
-    std::vector<double> step;
-    for (const FrameRow& row : result.rows) {
-        if (!row.measured) {
-            continue;
-        }
-        setAabb.push_back(row.setAabbMs);
-        calculate.push_back(row.calculateMs);
-        both.push_back(row.setAabbMs + row.calculateMs);
-        if (row.stepMs) {
-            step.push_back(*row.stepMs);
-        }
-    }
-    if (both.empty()) {
-        return std::nullopt;
-    }
-    Timing timing{spreadOf(setAabb), spreadOf(calculate), spreadOf(both), std::nullopt};
-    if (!step.empty()) {
-        timing.step = spreadOf(step);
-    }
-    return timing;
-}
-
-Tally tallyOf(const Result& result, std::size_t FrameVerdict::*count) {
-    Tally tally;
-    for (const FrameRow& row : result.rows) {
-        tally.total += row.verdict.*count;
-        tally.most = std::max(tally.most, row.verdict.*count);
-    }
-    return tally;
+    recordEnd(trial, settings, end.objectsRemoved, all, measured);
+    return end;
 }
 
 }  // namespace hashphase::demos

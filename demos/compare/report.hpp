@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A finished comparison as text or a page for people, JSON for programs, CSV for spreadsheets.
+// A finished comparison as text or a page for people, JSON for programs, CSV for spreadsheets: what
+// compare.sql makes of it.
 
-#include <demos/compare/compare.hpp>
-#include <demos/compare/comparison.hpp>
+#include <demos/experiment/findings.hpp>
+#include <demos/replay/replay_recording.hpp>
 #include <demos/report/page.hpp>
 
 #include <iosfwd>
@@ -14,42 +15,29 @@
 namespace hashphase::demos {
 
 /// All that the reports say.
-struct Report {
-    CompareOptions options;
+struct CompareReport {
     std::string scene;  // name or path
-    std::string description;
-    std::string noun;
-    std::size_t objects = 0;
-    int framesAsked = 0;
-    Comparison comparison;
+    int framesDone = 0;
+    bool wasAnythingTimed = false;
+    Findings findings;
     Provenance provenance;
     std::optional<ReplayRecording> replay;  // of the first frames
 };
 
-/// How many times faster than `dbvt` this broadphase was, by the medians of setAabb + calculate;
-/// nothing without a measurement of both.
-[[nodiscard]] std::optional<double> speedAgainstDbvt(const Report& report, const Result& result);
+/// Measured are the run, its broadphases and its frames.
+[[nodiscard]] Findings compareFindings(Measurements& measured);
 
 /// True when no broadphase of ours missed or invented a pair; nothing when none of ours took part, or no
 /// frame was run.
-[[nodiscard]] std::optional<bool> oursWereExact(const Report& report);
-
-/// What became of a broadphase that was not filled in time, in a sentence; empty for the others.
-[[nodiscard]] std::string leftOutSentence(const Report& report, const Result& result);
-
-/// One sentence: objects, frames, times, ratio, and whether the pair sets were exact.
-[[nodiscard]] std::string verdictLine(const Report& report);
+[[nodiscard]] std::optional<bool> oursWereExact(const Findings& findings);
 
 /// What was run on what, the table, and the verdict.
-void printReport(const Report& report, std::ostream& out);
+void printReport(const CompareReport& report, std::ostream& out);
 
 /// Schema "hashphase-compare"; what was not measured is null, never NaN.
-void writeJson(const Report& report, std::ostream& out);
+void writeJson(const CompareReport& report, std::ostream& out);
 
 /// All of it as a page with charts.
-[[nodiscard]] Page pageOf(const Report& report);
-
-/// A header line, then a line for each frame of each broadphase.
-void writeCsv(const Report& report, std::ostream& out);
+[[nodiscard]] Page pageOf(const CompareReport& report);
 
 }  // namespace hashphase::demos

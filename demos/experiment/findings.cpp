@@ -18,17 +18,6 @@ double numberAt(const std::vector<Value>& row, std::size_t column) {
     return number != nullptr ? *number : 0;
 }
 
-// "name: title" -> a column of that name and title.
-void nameColumns(DataTable& table) {
-    for (DataColumn& column : table.columns) {
-        const std::size_t end = column.name.find(": ");
-        if (end != std::string::npos) {
-            column.title = column.name.substr(end + 2);
-            column.name.resize(end);
-        }
-    }
-}
-
 ChartMark markNamed(const std::string& name) {
     return name == "point"  ? ChartMark::kPoint
            : name == "bar"  ? ChartMark::kBar
@@ -104,10 +93,8 @@ private:
         return all;
     }
 
-    /// The heading's text with its expressions' values.
-    [[nodiscard]] std::string textOf(const Json& heading, const char* key,
-                                     const Record& parameters) {
-        std::string text = heading.value(key, "");
+    /// The text with its expressions' values.
+    [[nodiscard]] std::string filled(std::string text, const Record& parameters) {
         for (std::size_t begin = text.find('{'); begin != std::string::npos;
              begin = text.find('{', begin)) {
             const std::size_t end = text.find('}', begin);
@@ -120,12 +107,25 @@ private:
         return text;
     }
 
+    // "name: title" -> a column of that name and title.
+    void nameColumns(DataTable& table, const Record& parameters) {
+        for (DataColumn& column : table.columns) {
+            const std::size_t end = column.name.find(": ");
+            if (end != std::string::npos) {
+                column.title = filled(column.name.substr(end + 2), parameters);
+                column.name.resize(end);
+            }
+        }
+    }
+
     void showAs(const Json& heading, DataTable found, const Record& parameters) {
-        nameColumns(found);
+        nameColumns(found, parameters);
         if (heading.contains("chart")) {
             findings_.charts.push_back(chartOf(heading, std::move(found), parameters));
         } else if (heading.contains("table")) {
             findings_.tables.push_back(std::move(found));
+        } else if (heading.contains("rows")) {
+            findings_.rows[heading["rows"].get<std::string>()] = std::move(found);
         } else if (heading.contains("settings")) {
             addSentences(found, findings_.settings);
         } else if (heading.contains("conclusions")) {
@@ -148,9 +148,9 @@ private:
     [[nodiscard]] Chart chartOf(const Json& heading, DataTable data, const Record& parameters) {
         const auto word = [&](const char* key) { return heading.value(key, std::string()); };
         Chart chart;
-        chart.name = textOf(heading, "chart", parameters);
-        chart.title = textOf(heading, "title", parameters);
-        chart.settings = textOf(heading, "settings", parameters);
+        chart.name = filled(word("chart"), parameters);
+        chart.title = filled(word("title"), parameters);
+        chart.settings = filled(word("settings"), parameters);
         chart.mark = markNamed(word("mark"));
         chart.data = std::move(data);
         chart.x = axisOf(word("x"));
@@ -173,10 +173,8 @@ private:
     }
 
     static void addSentences(const DataTable& found, std::vector<std::string>& sentences) {
-        for (const std::vector<Value>& row : found.rows) {
-            if (const auto* sentence = std::get_if<std::string>(&row.at(0)); sentence != nullptr) {
-                sentences.push_back(*sentence);
-            }
+        for (std::string& sentence : sentencesOf(found)) {
+            sentences.push_back(std::move(sentence));
         }
     }
 
@@ -186,6 +184,16 @@ private:
 };
 
 }  // namespace
+
+std::vector<std::string> sentencesOf(const DataTable& table) {
+    std::vector<std::string> sentences;
+    for (const std::vector<Value>& row : table.rows) {
+        if (const auto* sentence = std::get_if<std::string>(&row.at(0)); sentence != nullptr) {
+            sentences.push_back(*sentence);
+        }
+    }
+    return sentences;
+}
 
 Findings findingsOf(std::string_view declaration, Measurements& measured) {
     return Shower(measured).show(declaration);

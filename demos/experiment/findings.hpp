@@ -11,19 +11,22 @@
 //   {"checks": "what"}              claim, holds, evidence
 //   {"choices": "what"}             task, method, milliseconds, error, result, ours
 //   {"table": "what"}               a table, of which a column "name: title" is headed by its title
+//   {"rows": "what"}                a table for the program itself, by that name
 //   {"chart": "P4-lost", "title": .., "settings": .., "mark": "bar", "x": "setting names", "y": "lost log",
 //    "series": .., "low": .., "high": .., "label": .., "shade": "a column", "theory": .., "front": true}
 //                                   a chart (chart.hpp): marks line, point, bar, cell; scales linear, log,
 //                                   log0, names
 //
 // Beside these, "each" holds a SELECT for whose rows the statement is shown in turn, with their columns as
-// parameters ":name". In names, titles and settings of charts, "{...}" is an expression over the view
-// `texts`, which the declaration makes, and these parameters.
+// parameters ":name". In names, titles and settings of charts and titles of columns, "{...}" is an
+// expression over the view `texts`, which the declaration makes, and these parameters.
 
 #include <demos/experiment/measurements.hpp>
 #include <demos/report/chart.hpp>
 #include <demos/report/check.hpp>
 
+#include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,7 +50,11 @@ struct Findings {
     std::vector<Check> checks;
     std::vector<Choice> choices;
     std::vector<std::string> conclusions;
+    std::map<std::string, DataTable, std::less<>> rows;
 };
+
+/// The texts of the table's first column.
+[[nodiscard]] std::vector<std::string> sentencesOf(const DataTable& table);
 
 /// What the declaration shows of what was measured. Throws std::logic_error that names a fault of the
 /// declaration.

@@ -20,8 +20,8 @@ using Arguments = sqlite3_value**;
 
 [[noreturn]] void refuse(sqlite3* database, std::string_view sql) {
     constexpr std::size_t kShown = 300;  // letters: enough to know which statement it is
-    throw std::logic_error(std::string(sqlite3_errmsg(database)) + " in: " +
-                           std::string(sql.substr(0, kShown)));
+    throw std::logic_error(std::string(sqlite3_errmsg(database)) +
+                           " in: " + std::string(sql.substr(0, kShown)));
 }
 
 double numberAt(Arguments arguments, int i) {
@@ -61,7 +61,9 @@ void interval(Context context, int count, Arguments arguments) {
 }
 
 void thousands(Context context, int /*count*/, Arguments arguments) {
-    giveText(context, withThousands(countAt(arguments, 0)));
+    if (!isNull(arguments[0])) {
+        giveText(context, withThousands(countAt(arguments, 0)));
+    }
 }
 
 void number(Context context, int /*count*/, Arguments arguments) {
@@ -69,13 +71,21 @@ void number(Context context, int /*count*/, Arguments arguments) {
 }
 
 void fixedText(Context context, int /*count*/, Arguments arguments) {
-    giveText(context, isNull(arguments[0])
-                          ? "-"
-                          : fixed(numberAt(arguments, 0), sqlite3_value_int(arguments[1])));
+    if (!isNull(arguments[0])) {
+        giveText(context, fixed(numberAt(arguments, 0), sqlite3_value_int(arguments[1])));
+    }
 }
 
 void millisecondsText(Context context, int /*count*/, Arguments arguments) {
-    giveText(context, isNull(arguments[0]) ? "-" : milliseconds(numberAt(arguments, 0)));
+    if (!isNull(arguments[0])) {
+        giveText(context, milliseconds(numberAt(arguments, 0)));
+    }
+}
+
+void bytesText(Context context, int /*count*/, Arguments arguments) {
+    if (!isNull(arguments[0])) {
+        giveText(context, byteSize(sqlite3_value_int64(arguments[0])));
+    }
 }
 
 // The series of an aggregate, which SQLite holds as zeros at first.
@@ -126,6 +136,7 @@ constexpr Function kFunctions[] = {
     {"number", 1, number},
     {"fixed", 2, fixedText},
     {"ms", 1, millisecondsText},
+    {"bytes", 1, bytesText},
 };
 constexpr Function kAggregates[] = {{"median", 1, stepOfPercentile},
                                     {"percentile", 2, stepOfPercentile}};
@@ -204,39 +215,46 @@ Measurements::Statement Measurements::prepare(std::string_view& sql) {
     return Statement(statement);
 }
 
-Measurements::Insertion& Measurements::insertionOf(std::string_view table, const Record& record) {
+Measurements::Insertion* Measurements::find(std::string_view table) {
     const auto known = std::find_if(insertions_.begin(), insertions_.end(),
                                     [&](const Insertion& each) { return each.table == table; });
-    if (known != insertions_.end()) {
-        const auto isSame = [](const auto& cell, const std::string& column) {
-            return cell.first == column;
-        };
-        if (!std::equal(record.begin(), record.end(), known->columns.begin(), known->columns.end(),
-                        isSame)) {
-            throw std::logic_error("The rows of '" + std::string(table) +
-                                   "' have not all the same columns.");
-        }
-        return *known;
-    }
-    std::vector<std::string> columns;
+    return known != insertions_.end() ? &*known : nullptr;
+}
+
+void Measurements::create(std::string_view table, const std::vector<std::string_view>& columns) {
     std::string names;
     std::string marks;
-    for (const auto& [name, cell] : record) {
-        columns.emplace_back(name);
-        names += (names.empty() ? "" : ", ") + quoted(name);
+    for (const std::string_view column : columns) {
+        names += (names.empty() ? "" : ", ") + quoted(column);
         marks += marks.empty() ? "?" : ", ?";
     }
     ask("CREATE TABLE " + quoted(table) + " (" + names + ")");
     const std::string insert = "INSERT INTO " + quoted(table) + " VALUES (" + marks + ")";
     std::string_view sql = insert;
-    return insertions_.emplace_back(std::string(table), std::move(columns), prepare(sql));
+    insertions_.push_back({std::string(table), {columns.begin(), columns.end()}, prepare(sql)});
 }
 
 void Measurements::add(std::string_view table, const Record& record) {
-    sqlite3_stmt* statement = insertionOf(table, record).statement.get();
+    if (find(table) == nullptr) {
+        std::vector<std::string_view> columns;
+        for (const auto& [name, datum] : record) {
+            columns.push_back(name);
+        }
+        create(table, columns);
+    }
+    const Insertion& insertion = *find(table);
+    const auto isSame = [](const auto& named, const std::string& column) {
+        return named.first == column;
+    };
+    if (!std::equal(record.begin(), record.end(), insertion.columns.begin(),
+                    insertion.columns.end(), isSame)) {
+        throw std::logic_error("The rows of '" + std::string(table) +
+                               "' have not all the same columns.");
+    }
+    sqlite3_stmt* statement = insertion.statement.get();
     int place = 0;
-    for (const auto& [name, cell] : record) {
-        bind(statement, ++place, cell.value);
+    for (const auto& [name, datum] : record) {
+        bind(statement, ++place, datum.value);
     }
     const int done = sqlite3_step(statement);
     sqlite3_reset(statement);

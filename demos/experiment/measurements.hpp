@@ -8,7 +8,9 @@
 //   interval_low(hits, trials), interval_high(hits, trials)
 //                                         the 95 % interval of a share (binomial.hpp); null of nothing
 //   interval_low(hits, trials, frames)    the same over frames in which the same objects are met again
-//   thousands(n), number(x), fixed(x, digits), ms(x)      as people read them (format.hpp, data_table.hpp)
+//   thousands(n), number(x), fixed(x, digits), ms(x), bytes(n)
+//                                         as people read them (format.hpp, data_table.hpp); of nothing
+//                                         number() is "-", and the others null
 //   median(x), percentile(x, share)       aggregates; null of nothing
 
 #include <demos/report/data_table.hpp>
@@ -58,8 +60,11 @@ public:
     Measurements& operator=(Measurements&&) noexcept;
     ~Measurements();
 
-    /// Appends a row to the table; the first one names its columns, and all others have the same ones in
-    /// the same order. Throws std::logic_error where they have not.
+    /// Makes a table, of which there may then be no row.
+    void create(std::string_view table, const std::vector<std::string_view>& columns);
+
+    /// Appends a row to the table; the first one makes it where there is none, and all have the same columns
+    /// in the same order. Throws std::logic_error where they have not.
     void add(std::string_view table, const Record& record);
 
     /// Carries out the first statement of the SQL and takes it off. Its rows, with what it calls its
@@ -88,7 +93,7 @@ private:
     };
 
     [[nodiscard]] Statement prepare(std::string_view& sql);
-    [[nodiscard]] Insertion& insertionOf(std::string_view table, const Record& record);
+    [[nodiscard]] Insertion* find(std::string_view table);
 
     std::unique_ptr<sqlite3, Close> database_;
     std::vector<Insertion> insertions_;

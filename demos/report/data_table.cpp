@@ -2,6 +2,7 @@
 #include <demos/report/data_table.hpp>
 
 #include <demos/console/format.hpp>
+#include <demos/console/table.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -68,6 +69,38 @@ std::string valueText(const Value& value) {
         std::to_chars(std::begin(digits), std::end(digits), *number, std::chars_format::general, 4)
             .ptr;
     return {std::begin(digits), end};
+}
+
+DataTable withoutEmptyColumns(const DataTable& table) {
+    DataTable kept;
+    kept.rows.resize(table.rows.size());
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        const auto isEmpty = [i](const std::vector<Value>& row) { return row[i].index() == 0; };
+        if (std::all_of(table.rows.begin(), table.rows.end(), isEmpty)) {
+            continue;
+        }
+        kept.columns.push_back(table.columns[i]);
+        for (std::size_t row = 0; row < table.rows.size(); ++row) {
+            kept.rows[row].push_back(table.rows[row][i]);
+        }
+    }
+    return kept;
+}
+
+void printTable(const DataTable& table, std::ostream& out) {
+    std::vector<std::string> header;
+    for (const DataColumn& column : table.columns) {
+        header.push_back(titleOf(column));
+    }
+    Table text(header);
+    for (const std::vector<Value>& row : table.rows) {
+        std::vector<std::string> cells;
+        for (const Value& value : row) {
+            cells.push_back(valueText(value));
+        }
+        text.addRow(std::move(cells));
+    }
+    text.print(out);
 }
 
 void writeCsv(const DataTable& table, std::ostream& out) {

@@ -37,6 +37,12 @@ struct DataTable {
 /// As people read it: four significant digits, thousands separated, "-" for nothing.
 [[nodiscard]] std::string valueText(const Value& value);
 
+/// Without the columns that have nothing in any row.
+[[nodiscard]] DataTable withoutEmptyColumns(const DataTable& table);
+
+/// As text with aligned columns; see console/table.hpp.
+void printTable(const DataTable& table, std::ostream& out);
+
 /// RFC 4180: a header line of the columns' names, numbers with all digits, nothing as an empty field.
 void writeCsv(const DataTable& table, std::ostream& out);
 

@@ -18,7 +18,39 @@ Json valueJson(const Value& value) {
         return *text;
     }
     const double* number = std::get_if<double>(&value);
-    return number != nullptr && std::isfinite(*number) ? Json(*number) : Json(nullptr);
+    if (number == nullptr || !std::isfinite(*number)) {
+        return nullptr;
+    }
+    constexpr double exact = 9'007'199'254'740'992;  // up to it, every whole number is a double
+    return std::trunc(*number) == *number && std::abs(*number) <= exact
+               ? Json(static_cast<std::int64_t>(*number))
+               : Json(*number);
+}
+
+Json rowsJson(const DataTable& table) {
+    Json rows = Json::array();
+    for (const std::vector<Value>& row : table.rows) {
+        Json object = Json::object();
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            std::string name = table.columns[i].name;
+            Json value = valueJson(row[i]);
+            if (name.ends_with('?')) {
+                name.pop_back();
+                value = value.is_null() ? value : Json(value != 0);
+            } else if (name.ends_with("{}")) {
+                name.resize(name.size() - 2);
+                value = value.is_null() ? value : Json::parse(value.get<std::string>());
+            }
+            const std::size_t dot = name.find('.');
+            if (dot == std::string::npos) {
+                object[name] = std::move(value);
+            } else if (Json& outer = object[name.substr(0, dot)]; !value.is_null()) {
+                outer[name.substr(dot + 1)] = std::move(value);
+            }
+        }
+        rows.push_back(std::move(object));
+    }
+    return rows;
 }
 
 Json spreadJson(const std::optional<Spread>& spread) {

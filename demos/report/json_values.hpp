@@ -27,6 +27,11 @@ template <class Value>
 
 [[nodiscard]] Json valueJson(const Value& value);
 [[nodiscard]] Json spreadJson(const std::optional<Spread>& spread);
+
+/// The rows as an array of objects. A column "a.b" is the member `b` of a member `a`, which is null where
+/// all its members are; one "a?" is a truth, and one "a{}" JSON as text.
+[[nodiscard]] Json rowsJson(const DataTable& table);
+
 [[nodiscard]] Json provenanceJson(const Provenance& provenance);
 
 }  // namespace hashphase::demos

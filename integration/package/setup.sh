@@ -10,7 +10,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 # Tools by the command that must be there, libraries by their Debian package: what the library and
 # `hashphase compare` need.
 tools=(cmake:cmake ninja:ninja-build c++:g++ pkg-config:pkg-config)
-libraries=(libbullet-dev libeigen3-dev libcli11-dev nlohmann-json3-dev)
+libraries=(libbullet-dev libeigen3-dev libcli11-dev nlohmann-json3-dev libsqlite3-dev)
 
 # What may be missing.
 optional_tools=()
@@ -22,14 +22,13 @@ need() {
     for part; do
         case $part in
         bullet-files) libraries+=(libbullet-extras-dev) ;; # compare --file level.bullet
-        measurements) libraries+=(libsqlite3-dev) ;;       # accuracy, paper, report
         charts) optional_tools+=(npm:npm) ;;               # pages have tables without
         viewer)                                            # draws on the processor where there is no GPU
             optional_libraries+=(libtbb-dev libglfw3-dev libimgui-dev libepoxy-dev libstb-dev libegl1
                 libegl-mesa0 libgl1-mesa-dri)
             ;;
         tests) # rapidcheck makes up operations
-            need bullet-files measurements charts viewer
+            need bullet-files charts viewer
             libraries+=(libgtest-dev libtbb-dev libgmp-dev)
             optional_libraries+=(librapidcheck-dev)
             with_tests=ON
@@ -81,8 +80,8 @@ missing_options() {
 install_missing_packages() {
     if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
         say "this is no Debian or Ubuntu: please see to CMake 3.22, Ninja, a C++20 compiler," \
-            "pkg-config, Bullet 3.05, Eigen 3, CLI11 and nlohmann-json, and, for what needs them," \
-            "Bullet's world importer, SQLite, GoogleTest, TBB and GMP; CMake tells what it cannot find"
+            "pkg-config, Bullet 3.05, Eigen 3, CLI11, nlohmann-json and SQLite, and, for what needs them," \
+            "Bullet's world importer, GoogleTest, TBB and GMP; CMake tells what it cannot find"
         return
     fi
     local missing=() options=() apt=(apt-get)

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/compare/comparison.hpp>
 #include <demos/compare/reference_pairs.hpp>
+#include <demos/compare/report.hpp>
 #include <demos/compare/verifier.hpp>
+#include <demos/report/json_values.hpp>
 #include <demos/report/statistics.hpp>
 #include <demos/scenes/random.hpp>
 
@@ -131,22 +132,50 @@ TEST(Statistics, OfASingleValueAreThatValue) {
     EXPECT_DOUBLE_EQ(spread.high, 7);
 }
 
-TEST(Statistics, LeaveOutWarmUpFramesFromTimesButNotFromCounts) {
-    Result result;
+TEST(CompareFindings, LeaveOutWarmUpFramesFromTimesButNotFromCounts) {
+    Measurements measured;
+    measured.create("faults", {"name", "fault_frame", "kind", "first", "second", "first_text",
+                               "second_text", "objects_json", "boxes_json"});
     for (int frame = 0; frame < 3; ++frame) {
-        FrameRow row;
-        row.measured = frame > 0;
-        row.setAabbMs = frame == 0 ? 100 : 2;
-        row.calculateMs = 1;
-        row.verdict.extra = frame == 0 ? 5 : 1;
-        result.rows.push_back(row);
+        measured.add("frames", {{"name", "dbvt"},
+                                {"frame", frame},
+                                {"measured", frame > 0},
+                                {"pairs", 7},
+                                {"exact_pairs", 2},
+                                {"missing", 0},
+                                {"extra", frame == 0 ? 5 : 1},
+                                {"stale", 0},
+                                {"set_aabb_ms", frame == 0 ? 100 : 2},
+                                {"calculate_ms", 1},
+                                {"step_ms", Datum()}});
     }
-    ASSERT_TRUE(timingOf(result).has_value());
-    EXPECT_DOUBLE_EQ(timingOf(result)->both.high, 3);
-    EXPECT_FALSE(timingOf(result)->step.has_value());
-    EXPECT_EQ(tallyOf(result, &FrameVerdict::extra).total, 7U);
-    EXPECT_EQ(tallyOf(result, &FrameVerdict::extra).most, 5U);
-    EXPECT_FALSE(timingOf(Result{}).has_value());
+    measured.add("broadphases", {{"name", "dbvt"},
+                                 {"title", "btDbvtBroadphase"},
+                                 {"ours", false},
+                                 {"fill_ms", 4},
+                                 {"left_out_after", Datum()},
+                                 {"remove_ms", Datum()},
+                                 {"memory", Datum()}});
+    measured.add("run", {{"scene", "s"},
+                         {"description", "a scene"},
+                         {"noun", "boxes"},
+                         {"from_file", false},
+                         {"objects", 9},
+                         {"frames_asked", 3},
+                         {"warm_up", 1},
+                         {"frames_done", 3},
+                         {"removed", 0},
+                         {"seed", 1},
+                         {"reference", "sweep"},
+                         {"time_limit", Datum()},
+                         {"limit_hit", false}});
+    const Findings findings = compareFindings(measured);
+    const Json result = rowsJson(findings.rows.at("broadphases")).front();
+    EXPECT_EQ(result["bothMs"]["p95"], 3);
+    EXPECT_TRUE(result["stepMs"].is_null());
+    EXPECT_EQ(result["extra"]["total"], 7);
+    EXPECT_EQ(result["extra"]["mostInAFrame"], 5);
+    EXPECT_EQ(oursWereExact(findings), std::nullopt) << "none of ours took part";
 }
 
 }  // namespace

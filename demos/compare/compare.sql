@@ -1,0 +1,202 @@
+R"sql(-- SPDX-License-Identifier: Zlib
+--
+-- What `hashphase compare` shows. Measured are: run (one row), broadphases, frames (a row for each frame of
+-- each broadphase) and faults (the first wrong pair of each broadphase that has one).
+
+-- Over all frames, warm-up included.
+CREATE TABLE counted AS
+SELECT name, count(*) AS frame_count, sum(pairs) AS pairs, max(pairs) AS most_pairs,
+       sum(missing) AS missing, max(missing) AS most_missing, sum(extra) AS extra,
+       max(extra) AS most_extra, sum(stale) AS stale, max(stale) AS most_stale
+FROM frames GROUP BY name;
+
+-- Medians, 5th and 95th percentiles [ms] of the frames that are timed.
+CREATE TABLE timed AS
+SELECT name, median(set_aabb_ms) AS set_aabb, percentile(set_aabb_ms, 0.05) AS set_aabb_low,
+       percentile(set_aabb_ms, 0.95) AS set_aabb_high, median(calculate_ms) AS calculate,
+       percentile(calculate_ms, 0.05) AS calculate_low,
+       percentile(calculate_ms, 0.95) AS calculate_high,
+       median(set_aabb_ms + calculate_ms) AS both,
+       percentile(set_aabb_ms + calculate_ms, 0.05) AS both_low,
+       percentile(set_aabb_ms + calculate_ms, 0.95) AS both_high, median(step_ms) AS step,
+       percentile(step_ms, 0.05) AS step_low, percentile(step_ms, 0.95) AS step_high
+FROM frames WHERE measured GROUP BY name;
+
+CREATE TABLE results AS
+SELECT *, (SELECT both FROM timed WHERE name = 'dbvt') / nullif(both, 0) AS speed,
+       name || ': left out, filling ' || thousands(objects) || ' ' || noun || ' was not done within '
+       || fixed(left_out_after, 1) || ' s.' AS left_out_sentence
+FROM broadphases LEFT JOIN counted USING (name) LEFT JOIN timed USING (name)
+     LEFT JOIN faults USING (name), run
+ORDER BY broadphases.rowid;
+
+-- Whether no broadphase of ours missed or invented a pair; null where none of ours took part in a frame.
+CREATE TABLE exactness AS
+SELECT (SELECT min(kind IS NULL) FROM results WHERE ours AND frame_count > 0) AS exact;
+
+CREATE TABLE verdict AS
+SELECT thousands(objects) || ' ' || noun || ', ' || frames_done || ' frames'
+       || ifnull((SELECT ': ' || group_concat(part, ', ') FROM (
+              SELECT title || ' ' || ms(both) || ' ms' || iif(name = 'hash', ' a frame', '') AS part
+              FROM results WHERE name IN ('hash', 'dbvt') AND both IS NOT NULL
+              ORDER BY name = 'dbvt')), '')
+       || ifnull((SELECT ', ' || fixed(speed, 1) || 'x' FROM results WHERE name = 'hash'), '') || '; '
+       || CASE WHEN frames_done = 0 THEN 'pair sets not verified: no frame was run'
+               WHEN exact IS NULL THEN 'none of ours took part'
+               WHEN exact THEN 'pair sets exact in every frame: yes'
+               ELSE (SELECT 'pair sets exact in every frame: NO: ''' || name || ''' first '
+                            || iif(kind = 'missing', 'missed', 'reported in excess') || ' the pair '
+                            || first || ', ' || second || ' in frame ' || fault_frame || '; box '
+                            || first || ' is ' || first_text || ', box ' || second || ' is '
+                            || second_text
+                     FROM results WHERE ours AND kind IS NOT NULL LIMIT 1) END AS text
+FROM run, exactness;
+
+-- Of charts; and how many frames a point of the trace stands for.
+CREATE VIEW texts AS
+SELECT scene || ', ' || thousands(objects) || ' ' || noun || ', ' || (frames_done - warm_up)
+       || ' frames timed after ' || warm_up || ' to warm up, seed ' || seed || ', one thread.' AS settings,
+       removed, (max(frames_done - warm_up, 1) - 1) / 1000 + 1 AS together
+FROM run;
+
+/* {"rows": "verdict"} */
+SELECT text, exact FROM verdict, exactness;
+
+-- --- On the terminal ------------------------------------------------------------------------------
+
+/* {"rows": "setting"} */
+SELECT scene || ': ' || description FROM run
+UNION ALL
+SELECT thousands(objects) || ' ' || noun || ', ' || frames_done || ' frames (the first ' || warm_up
+       || ' verified, not timed), seed ' || seed FROM run;
+
+/* {"rows": "left out"} */
+SELECT 'The time limit of ' || time_limit || ' s was reached after ' || frames_done || ' of '
+       || frames_asked || ' frames.' FROM run WHERE limit_hit
+UNION ALL
+SELECT left_out_sentence FROM results WHERE left_out_after IS NOT NULL;
+
+/* {"rows": "explanation"} */
+SELECT 'Times in ms a frame: median (5th-95th percentile). Speed: against dbvt, by setAabb + calculate.'
+UNION ALL
+SELECT 'Pairs: mean of all frames. Missing, extra and stale pairs: sum of all frames (most in one).'
+UNION ALL
+SELECT 'Fill: ms to make the broadphase and create all objects in it.'
+       || iif(EXISTS (SELECT 1 FROM broadphases WHERE remove_ms IS NOT NULL),
+              ' Remove: ms to destroy ' || thousands(removed) || ' of them at the end.', '')
+FROM run;
+
+/* {"rows": "table"} */
+SELECT name AS broadphase,
+       ifnull(ms(set_aabb) || ' (' || ms(set_aabb_low) || '-' || ms(set_aabb_high) || ')', '-')
+           AS "setAabb for all",
+       ifnull(ms(calculate) || ' (' || ms(calculate_low) || '-' || ms(calculate_high) || ')', '-')
+           AS calculate,
+       ifnull(ms(both) || ' (' || ms(both_low) || '-' || ms(both_high) || ')', '-') AS both,
+       ifnull(fixed(speed, iif(speed < 10, 2, 1)) || 'x', '-') AS speed,
+       ms(step) || ' (' || ms(step_low) || '-' || ms(step_high) || ')' AS "whole step",
+       ifnull(thousands(round(1.0 * pairs / frame_count)), '-') AS pairs,
+       ifnull(thousands(missing) || iif(missing > 0, ' (' || thousands(most_missing) || ')', ''), '-')
+           AS missing,
+       ifnull(thousands(extra) || iif(extra > 0, ' (' || thousands(most_extra) || ')', ''), '-') AS extra,
+       ifnull(thousands(stale) || iif(stale > 0, ' (' || thousands(most_stale) || ')', ''), '-') AS stale,
+       coalesce(bytes(memory), iif(left_out_after IS NULL, 'n/a', '-')) AS memory,
+       ifnull(ms(fill_ms), '-') AS fill, ms(remove_ms) AS remove
+FROM results;
+
+-- --- On the page ----------------------------------------------------------------------------------
+
+/* {"rows": "time limit"} */
+SELECT 'The time limit was reached after ' || frames_done || ' of ' || frames_asked || ' frames.'
+FROM run WHERE limit_hit;
+
+/* {"rows": "correctness"} */
+SELECT 'The scene: ' || description || '.' FROM run
+UNION ALL
+SELECT 'Sums over all frames. Missing pairs overlap but are not listed, so that bodies fall through each '
+       || 'other. Extra pairs are listed but do not overlap, which costs time further on; those that '
+       || 'overlapped once and were not removed since are stale.'
+UNION ALL
+SELECT left_out_sentence FROM results WHERE left_out_after IS NOT NULL;
+
+/* {"checks": "pairs"} */
+SELECT '''' || name || ''' lists exactly the pairs that overlap, in every frame', kind IS NULL,
+       thousands(missing) || ' missing and ' || thousands(extra) || ' extra in ' || frame_count || ' frames'
+FROM results WHERE ours AND frame_count > 0;
+
+/* {"table": "pairs"} */
+SELECT name AS broadphase, title AS class, ifnull(pairs, 0) AS "pairs: listed pairs",
+       ifnull(missing, 0) AS missing, ifnull(extra, 0) AS extra, ifnull(stale, 0) AS "stale: of these stale"
+FROM results WHERE left_out_after IS NULL;
+
+/* {"table": "times"} */
+SELECT name AS broadphase, set_aabb AS "set_aabb_ms: setAabb for all", calculate AS "calculate_ms: calculate",
+       both AS "both_ms: both", speed AS "speed: times as fast as dbvt", step AS "step_ms: whole step",
+       fill_ms AS "fill_ms: creating all objects", remove_ms AS "remove_ms: removing {thousands(removed)}",
+       memory / 1048576.0 AS "memory_mib: memory [MiB]"
+FROM results WHERE left_out_after IS NULL;
+
+/* {"chart": "compare-times",
+    "title": "Time of a frame: setAabb for all objects, then calculateOverlappingPairs",
+    "settings": "{settings} Medians, with the 5th to 95th percentile.", "mark": "bar",
+    "x": "broadphase names", "y": "frame_ms log", "series": "broadphase", "low": "p5_ms", "high": "p95_ms"} */
+SELECT title AS broadphase, both AS "frame_ms: median [ms a frame]",
+       both_low AS "p5_ms: 5th percentile [ms]", both_high AS "p95_ms: 95th percentile [ms]"
+FROM results WHERE left_out_after IS NULL;
+
+/* {"each": "SELECT together FROM texts WHERE together = 1",
+    "chart": "compare-trace", "title": "Time of each frame",
+    "settings": "{settings} setAabb for all objects, then calculateOverlappingPairs.", "mark": "line",
+    "x": "frame", "y": "frame_ms log", "series": "broadphase"} */
+SELECT title AS broadphase, frame, set_aabb_ms + calculate_ms AS "frame_ms: setAabb and calculate [ms]"
+FROM frames JOIN broadphases USING (name) WHERE measured ORDER BY broadphases.rowid, frame;
+
+/* {"each": "SELECT together FROM texts WHERE together > 1",
+    "chart": "compare-trace", "title": "Time of the frames, {together} together",
+    "settings": "{settings} setAabb for all objects, then calculateOverlappingPairs. Each point is the median of {together} frames, from the least to the most of them; --csv has each frame.",
+    "mark": "line", "x": "frame", "y": "frame_ms log", "series": "broadphase", "low": "least_ms",
+    "high": "most_ms"} */
+SELECT title AS broadphase, min(frame) AS frame,
+       median(set_aabb_ms + calculate_ms) AS "frame_ms: setAabb and calculate [ms]",
+       min(set_aabb_ms + calculate_ms) AS "least_ms: least [ms]",
+       max(set_aabb_ms + calculate_ms) AS "most_ms: most [ms]"
+FROM frames JOIN broadphases USING (name), run WHERE measured
+GROUP BY name, (frame - warm_up) / :together ORDER BY broadphases.rowid, frame;
+
+-- --- For programs ---------------------------------------------------------------------------------
+
+/* {"rows": "csv"} */
+SELECT name AS broadphase, frame, measured, pairs, exact_pairs, missing, extra, stale, set_aabb_ms,
+       calculate_ms, step_ms
+FROM frames JOIN broadphases USING (name) ORDER BY broadphases.rowid, frame;
+
+/* {"rows": "settings"} */
+SELECT scene, description, from_file AS "fromFile?", objects, frames_asked AS frames,
+       warm_up AS warmUpFrames, seed, reference, time_limit AS timeLimitSeconds
+FROM run;
+
+/* {"rows": "end"} */
+SELECT text, exact AS "exact?", frames_done AS framesDone, removed AS objectsRemoved,
+       limit_hit AS "timeLimitHit?"
+FROM verdict, exactness, run;
+
+/* {"rows": "broadphases"} */
+SELECT name, title, ours AS "ours?", fill_ms AS fillMs, left_out_after AS leftOutAfterSeconds,
+       remove_ms AS removeMs, set_aabb AS "setAabbMs.median", set_aabb_low AS "setAabbMs.p5",
+       set_aabb_high AS "setAabbMs.p95", calculate AS "calculateMs.median",
+       calculate_low AS "calculateMs.p5", calculate_high AS "calculateMs.p95", both AS "bothMs.median",
+       both_low AS "bothMs.p5", both_high AS "bothMs.p95", step AS "stepMs.median",
+       step_low AS "stepMs.p5", step_high AS "stepMs.p95", speed AS speedAgainstDbvt,
+       memory AS memoryBytes, ifnull(pairs, 0) AS "pairs.total", ifnull(most_pairs, 0) AS "pairs.mostInAFrame",
+       ifnull(missing, 0) AS "missing.total", ifnull(most_missing, 0) AS "missing.mostInAFrame",
+       ifnull(extra, 0) AS "extra.total", ifnull(most_extra, 0) AS "extra.mostInAFrame",
+       ifnull(stale, 0) AS "stale.total", ifnull(most_stale, 0) AS "stale.mostInAFrame",
+       fault_frame AS "firstFault.frame", kind AS "firstFault.kind", objects_json AS "firstFault.objects{}",
+       boxes_json AS "firstFault.boxes{}"
+FROM results;
+
+/* {"rows": "frames"} */
+SELECT name, frame, measured AS "measured?", pairs, exact_pairs AS exactPairs, missing, extra, stale,
+       set_aabb_ms AS setAabbMs, calculate_ms AS calculateMs, step_ms AS stepMs
+FROM frames;
+)sql"
