@@ -26,7 +26,9 @@ std::string printable(std::string_view word) {
 }
 
 std::string quotedWord(std::string_view word) {
-    return "'" + printable(word) + "'";
+    std::string quoted(1, '\'');
+    quoted += printable(word);
+    return quoted += '\'';
 }
 
 }  // namespace hashphase::demos

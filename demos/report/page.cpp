@@ -4,7 +4,6 @@
 #include <demos/console/format.hpp>
 #include <demos/report/chart_scripts.hpp>
 #include <demos/report/html.hpp>
-#include <demos/report/page_style.hpp>
 #include <demos/report/report_text.hpp>
 #include <demos/report/vega_lite.hpp>
 

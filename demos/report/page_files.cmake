@@ -23,15 +23,21 @@ function(hashphase_bundle_script name)
     set(${name}Sha256 ${hash} PARENT_SCOPE)
 endfunction()
 
+# hashphase_bundle_style(<name> <file>): sets <name> to the style sheet.
+function(hashphase_bundle_style name file)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${file})
+    file(READ ${file} text)
+    set(${name} "${text}" PARENT_SCOPE)
+endfunction()
+
 hashphase_bundle_script(tabsScript report/tabs.js)
-configure_file(report/tabs_script.cpp.in tabs_script.cpp @ONLY)
+hashphase_bundle_style(pageStyle report/page.css)
+configure_file(report/page_files.cpp.in page_files.cpp @ONLY)
 
 hashphase_bundle_script(replayScript replay/replay_data.js replay/replay_camera.js
                         replay/replay_shaders.js replay/replay_drawing.js replay/replay_controls.js
                         replay/replay.js)
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
-             ${CMAKE_CURRENT_SOURCE_DIR}/replay/replay.css)
-file(READ replay/replay.css replayStyle)
+hashphase_bundle_style(replayStyle replay/replay.css)
 configure_file(replay/replay_files.cpp.in replay_files.cpp @ONLY)
-set(HASHPHASE_PAGE_FILES ${CMAKE_CURRENT_BINARY_DIR}/tabs_script.cpp
+set(HASHPHASE_PAGE_FILES ${CMAKE_CURRENT_BINARY_DIR}/page_files.cpp
                          ${CMAKE_CURRENT_BINARY_DIR}/replay_files.cpp)

@@ -29,6 +29,9 @@ struct PageTab {
 /// How a content-security policy names the script.
 [[nodiscard]] std::string policyHash(const PageScript& script);
 
+/// The style sheet of all pages.
+[[nodiscard]] std::string_view pageStyle();
+
 /// What switches between tabs.
 [[nodiscard]] PageScript tabsScript();
 
