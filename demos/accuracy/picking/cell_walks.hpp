@@ -3,10 +3,9 @@
 
 // Ways of a ray through cells of 1 m, in the order in which it meets them. Each calls visit(cell).
 
-#include <demos/accuracy/picking/plain_cells.hpp>
+#include <demos/accuracy/baselines/hashed_cells.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <limits>
 
@@ -23,8 +22,8 @@ template <class Visit>
 void walkFaces(const Vector3<float>& from, const Vector3<float>& to, BorderTimes times,
                const Visit& visit) {
     const Vector3<float> direction = to - from;
-    Cell cell;
-    Cell last;
+    Cell cell = cellOf(from);
+    const Cell last = cellOf(to);
     Cell step;
     std::array<float, 3> next;   // when the next border is met
     std::array<float, 3> delta;  // from border to border
@@ -35,14 +34,11 @@ void walkFaces(const Vector3<float>& from, const Vector3<float>& to, BorderTimes
         return (border - from[axis]) / direction[axis];
     };
     for (std::size_t i = 0; i < 3; ++i) {
-        const auto axis = static_cast<Eigen::Index>(i);
-        cell[i] = static_cast<std::int64_t>(std::floor(from[axis]));
-        last[i] = static_cast<std::int64_t>(std::floor(to[axis]));
-        step[i] = direction[axis] < 0 ? -1 : 1;
-        stepsLeft += std::abs(last[i] - cell[i]);
-        const bool isStill = direction[axis] == 0;
-        next[i] = isStill ? std::numeric_limits<float>::infinity() : timeOf(i);
-        delta[i] = isStill ? 0 : 1 / std::abs(direction[axis]);
+        const float way = direction[static_cast<Eigen::Index>(i)];
+        step[i] = way < 0 ? -1 : 1;
+        stepsLeft += std::abs(std::int64_t{last[i]} - cell[i]);
+        next[i] = way == 0 ? std::numeric_limits<float>::infinity() : timeOf(i);
+        delta[i] = way == 0 ? 0 : 1 / std::abs(way);
     }
     for (visit(cell); cell != last && stepsLeft > 0; --stepsLeft) {
         const auto i =
@@ -62,38 +58,28 @@ void walkLayers(const Vector3<float>& from, const Vector3<float>& to, const Visi
     Eigen::Index along = 0;
     direction.cwiseAbs().maxCoeff(&along);
     const auto a = static_cast<std::size_t>(along);
-    const std::size_t b = (a + 1) % 3;
-    const std::size_t c = (a + 2) % 3;
     // Far above what rounding does to a point of the ray.
     const double margin =
         16 * std::numeric_limits<double>::epsilon() *
         std::max(start.cwiseAbs().maxCoeff(), to.cast<double>().cwiseAbs().maxCoeff());
-    const auto cellAt = [&](std::size_t axis, double time, double side) {
-        const auto i = static_cast<Eigen::Index>(axis);
-        return static_cast<std::int64_t>(
-            std::floor(start[i] + time * direction[i] + side * margin));
-    };
-    const auto first = static_cast<std::int64_t>(std::floor(from[along]));
-    const auto last = static_cast<std::int64_t>(std::floor(to[along]));
-    const std::int64_t step = last < first ? -1 : 1;
-    const auto timeAt = [&](std::int64_t border) {
+    const auto timeAt = [&](std::int32_t border) {
         const double time = (static_cast<double>(border) - start[along]) / direction[along];
         return direction[along] == 0 ? 0 : std::clamp(time, 0.0, 1.0);
     };
-    for (std::int64_t layer = first; layer != last + step; layer += step) {
-        const double t = timeAt(layer);
-        const double u = timeAt(layer + 1);
-        Cell cell;
-        cell[a] = layer;
-        const auto [lowB, highB] =
-            std::minmax({cellAt(b, t, -1), cellAt(b, t, 1), cellAt(b, u, -1), cellAt(b, u, 1)});
-        const auto [lowC, highC] =
-            std::minmax({cellAt(c, t, -1), cellAt(c, t, 1), cellAt(c, u, -1), cellAt(c, u, 1)});
-        for (cell[b] = lowB; cell[b] <= highB; ++cell[b]) {
-            for (cell[c] = lowC; cell[c] <= highC; ++cell[c]) {
-                visit(cell);
-            }
+    const std::int32_t last = cellOf(to)[a];
+    const std::int32_t step = last < cellOf(from)[a] ? -1 : 1;
+    for (std::int32_t layer = cellOf(from)[a]; layer != last + step; layer += step) {
+        const Vector3<double> enters = start + timeAt(layer) * direction;
+        const Vector3<double> leaves = start + timeAt(layer + 1) * direction;
+        Cell low;
+        Cell high;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto [least, most] = std::minmax(
+                {enters[static_cast<Eigen::Index>(i)], leaves[static_cast<Eigen::Index>(i)]});
+            low[i] = i == a ? layer : cellAt(least - margin);
+            high[i] = i == a ? layer : cellAt(most + margin);
         }
+        visitCells(low, high, visit);
     }
 }
 

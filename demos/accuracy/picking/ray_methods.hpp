@@ -7,7 +7,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,17 +29,8 @@ struct RayCost {
     std::uint64_t boxes = 0;
 };
 
-/// A method that has filed a scene.
-class RayCaster {
-public:
-    RayCaster() = default;
-    RayCaster(const RayCaster&) = delete;
-    RayCaster& operator=(const RayCaster&) = delete;
-    virtual ~RayCaster() = default;
-
-    /// Appends each box that it finds, once.
-    virtual RayCost cast(const Ray& ray, std::vector<RayHit>& hits) = 0;
-};
+/// A method that has filed a scene: appends each box that it finds, once.
+using RayCaster = std::function<RayCost(const Ray&, std::vector<RayHit>&)>;
 
 struct RayMethod {
     std::string name;
@@ -48,16 +38,10 @@ struct RayMethod {
     bool mustFindAll = false;  // a box that is hit and not found breaks a check
     bool findsNearestOnly = false;
     bool walksCells = false;  // takes time for each cell of a long ray
-    std::function<std::unique_ptr<RayCaster>(std::span<const Aabb<float>>)> make;
+    std::function<RayCaster(std::span<const Aabb<float>>)> make;
 };
 
-/// Through plain cells of 1 m; the paper's first.
-[[nodiscard]] std::vector<RayMethod> cellRayMethods();
-
-/// The library's, then Bullet's.
-[[nodiscard]] std::vector<RayMethod> treeRayMethods();
-
-/// All of them.
+/// Through plain cells of 1 m, the paper's first; the library's; Bullet's.
 [[nodiscard]] std::vector<RayMethod> rayMethods();
 
 }  // namespace hashphase::demos

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/picking/ray_scenes.hpp>
 
-#include <demos/accuracy/picking/exact_ray.hpp>
+#include <demos/accuracy/exact_entry.hpp>
 
 #include <algorithm>
 #include <cmath>

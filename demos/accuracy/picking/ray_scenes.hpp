@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Scenes for rays whose truth can be known exactly: all coordinates lie on the lattice of exact_ray.hpp.
+// Scenes for rays whose truth can be known exactly: all coordinates lie on the lattice of exact_entry.hpp.
 
 #include <demos/accuracy/picking/ray_methods.hpp>
 #include <demos/scenes/random.hpp>

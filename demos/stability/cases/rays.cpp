@@ -4,7 +4,7 @@
 
 #include <demos/stability/cases/cases.hpp>
 
-#include <demos/accuracy/picking/exact_ray.hpp>
+#include <demos/accuracy/exact_entry.hpp>
 #include <demos/scenes/random.hpp>
 #include <demos/stability/isolation.hpp>
 #include <demos/stability/pair_scene.hpp>
