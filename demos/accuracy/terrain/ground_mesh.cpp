@@ -3,10 +3,73 @@
 
 #include <demos/scenes/random.hpp>
 
-namespace hashphase::demos {
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
 
-GroundMesh::GroundMesh(const Height& height, float jitter, std::uint64_t seed)
-    : isRegular_(jitter == 0) {
+namespace hashphase::demos {
+namespace {
+
+using Real = long double;
+using Point = Vector3<Real>;
+using Corners = std::array<Point, 3>;
+
+constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
+
+Real squaredDistanceToSegment(const Point& a, const Point& b, const Point& p) {
+    const Point way = b - a;
+    const Real length = way.squaredNorm();
+    const Real share = length == 0 ? 0 : std::clamp<Real>((p - a).dot(way) / length, 0, 1);
+    return (a + share * way - p).squaredNorm();
+}
+
+// By the face where the point is above or below it, else by the edges.
+Real distanceTo(const Corners& triangle, const Point& p) {
+    const auto& [a, b, c] = triangle;
+    const Point normal = (b - a).cross(c - a);
+    if (normal.dot((b - a).cross(p - a)) >= 0 && normal.dot((c - b).cross(p - b)) >= 0 &&
+        normal.dot((a - c).cross(p - c)) >= 0 && !normal.isZero(0)) {
+        return std::abs(normal.dot(p - a)) / normal.norm();
+    }
+    return std::sqrt(std::min({squaredDistanceToSegment(a, b, p), squaredDistanceToSegment(b, c, p),
+                               squaredDistanceToSegment(c, a, p)}));
+}
+
+Real nearest(std::span<const Corners* const> triangles, const Point& p) {
+    Real least = kInfinity;
+    for (const Corners* each : triangles) {
+        least = std::min(least, distanceTo(*each, p));
+    }
+    return least;
+}
+
+// Whether the point of the map is within the triangle, or so near outside of an edge that rounding it
+// to single precision may have put it there.
+bool isWithin(const Corners& triangle, Real x, Real z) {
+    constexpr Real kOnEdge = 1e-5L;  // [m]
+    const auto areaOf = [](const Point& from, const Point& to, Real px, Real pz) {
+        return (to.z() - from.z()) * (px - from.x()) - (to.x() - from.x()) * (pz - from.z());
+    };
+    const auto& [a, b, c] = triangle;
+    const Real turn = areaOf(a, b, c.x(), c.z()) < 0 ? -1 : 1;
+    return std::all_of(triangle.begin(), triangle.end(), [&](const Point& from) {
+        const Point& to = &from == &a ? b : &from == &b ? c : a;
+        const Real length = std::hypot(to.x() - from.x(), to.z() - from.z());
+        return turn * areaOf(from, to, x, z) / length >= -kOnEdge;
+    });
+}
+
+Real heightOf(const Corners& triangle, Real x, Real z) {
+    const auto& [a, b, c] = triangle;
+    const Point normal = (b - a).cross(c - a);
+    return a.y() - (normal.x() * (x - a.x()) + normal.z() * (z - a.z())) / normal.y();
+}
+
+}  // namespace
+
+GroundMesh::GroundMesh(const std::function<float(float, float)>& height, float jitter,
+                       std::uint64_t seed) {
     Random random(seed);
     for (std::uint32_t k = 0; k <= kQuads; ++k) {
         for (std::uint32_t i = 0; i <= kQuads; ++i) {
@@ -16,7 +79,7 @@ GroundMesh::GroundMesh(const Height& height, float jitter, std::uint64_t seed)
                 x += random.between(-jitter, jitter);
                 z += random.between(-jitter, jitter);
             }
-            vertices_.emplace_back(x, height(x, z), z);
+            vertices.emplace_back(x, height(x, z), z);
         }
     }
     for (std::uint32_t k = 0; k < kQuads; ++k) {
@@ -25,23 +88,86 @@ GroundMesh::GroundMesh(const Height& height, float jitter, std::uint64_t seed)
             const std::uint32_t a = k * (kQuads + 1) + i;
             const std::uint32_t b = a + 1;
             const std::uint32_t c = a + kQuads + 1;
-            indices_.insert(indices_.end(), {a, c, b, b, c, c + 1});
+            indices.insert(indices.end(), {a, c, b, b, c, c + 1});
         }
     }
 }
 
-TriangleCorners GroundMesh::corners(std::uint32_t triangle) const {
-    const std::size_t first = 3 * std::size_t{triangle};
-    return {vertices_[indices_[first]], vertices_[indices_[first + 1]],
-            vertices_[indices_[first + 2]]};
+std::vector<Aabb<float>> GroundMesh::triangleBoxes() const {
+    std::vector<Aabb<float>> boxes(triangles());
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+        boxes[i / 3].extend(vertices[indices[i]]);
+    }
+    return boxes;
 }
 
 Aabb<float> GroundMesh::bounds() const {
     Aabb<float> bounds;
-    for (const Vector3<float>& vertex : vertices_) {
+    for (const Vector3<float>& vertex : vertices) {
         bounds.extend(vertex);
     }
     return bounds;
+}
+
+ExactGround::ExactGround(const GroundMesh& mesh) : boxes_(mesh.triangleBoxes()) {
+    for (std::uint32_t i = 0; i < mesh.triangles(); ++i) {
+        triangles_.push_back({mesh.corner(i, 0).cast<Real>(), mesh.corner(i, 1).cast<Real>(),
+                              mesh.corner(i, 2).cast<Real>()});
+    }
+}
+
+std::vector<const Corners*> ExactGround::trianglesBelow(float x, float z, float radius) const {
+    std::vector<const Corners*> found;
+    const float reach = radius + GroundMesh::kEdge;
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+        const Aabb<float>& box = boxes_[i];
+        if (box.min().x() <= x + reach && box.max().x() >= x - reach &&
+            box.min().z() <= z + reach && box.max().z() >= z - reach) {
+            found.push_back(&triangles_[i]);
+        }
+    }
+    return found;
+}
+
+std::optional<double> ExactGround::surface(float x, float z) const {
+    Real height = -kInfinity;
+    for (const Corners* each : trianglesBelow(x, z, 0)) {
+        if (isWithin(*each, x, z)) {
+            height = std::max(height, heightOf(*each, x, z));
+        }
+    }
+    return height > -kInfinity ? std::optional(static_cast<double>(height)) : std::nullopt;
+}
+
+bool ExactGround::isAt(std::uint32_t triangle, float x, float z) const {
+    return triangle < triangles_.size() && isWithin(triangles_[triangle], x, z);
+}
+
+double ExactGround::restingHeight(float x, float z, float radius) const {
+    const std::vector<const Corners*> below = trianglesBelow(x, z, radius);
+    // Between a centre that is in the ground and one that is free; whatever is above that is free.
+    Real low = surface(x, z).value_or(0);
+    Real high = low;
+    for (const Corners* each : below) {
+        for (const Point& corner : *each) {
+            high = std::max(high, corner.y() + static_cast<Real>(radius));
+        }
+    }
+    constexpr int halvings = 60;
+    for (int i = 0; i < halvings; ++i) {
+        const Real middle = (low + high) / 2;
+        const bool isFree = nearest(below, {x, middle, z}) >= static_cast<Real>(radius);
+        (isFree ? high : low) = middle;
+    }
+    return static_cast<double>(high);
+}
+
+double ExactGround::penetration(float x, double height, float z, float radius) const {
+    const Real distance = nearest(trianglesBelow(x, z, radius), {x, static_cast<Real>(height), z});
+    const std::optional<double> ground = surface(x, z);
+    const bool isBelow = ground && *ground > height;
+    const Real depth = static_cast<Real>(radius) + (isBelow ? distance : -distance);
+    return static_cast<double>(std::max<Real>(depth, 0));
 }
 
 }  // namespace hashphase::demos

@@ -5,13 +5,8 @@
 
 #include <demos/accuracy/terrain/ground_mesh.hpp>
 
-#include <cstdint>
-#include <functional>
-#include <memory>
-#include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 namespace hashphase::demos {
 
@@ -19,46 +14,28 @@ namespace hashphase::demos {
 struct SphereBatch {
     std::vector<Vector3<float>> centers;
     std::vector<float> radii;
-
-    [[nodiscard]] std::size_t size() const noexcept { return centers.size(); }
 };
 
 struct Standing {
-    static constexpr std::uint32_t kUntold = ~std::uint32_t{0};
-
-    float height = 0;                  // of the centre [m]
-    std::uint32_t triangle = kUntold;  // on which it stands
+    float height = 0;                       // of the centre [m]
+    std::optional<std::uint32_t> triangle;  // on which it stands, of methods that tell
 };
 
-/// A method that has filed a mesh.
-class GroundFinder {
-public:
-    GroundFinder() = default;
-    GroundFinder(const GroundFinder&) = delete;
-    GroundFinder& operator=(const GroundFinder&) = delete;
-    virtual ~GroundFinder() = default;
-
-    /// Writes where each sphere stands when it is moved down; nothing where there is no ground.
-    virtual void find(const SphereBatch& spheres, std::span<std::optional<Standing>> found) = 0;
-};
+/// A method that has filed a mesh: writes where each sphere stands when it is moved down; nothing where
+/// there is no ground.
+using GroundFinder = std::function<void(const SphereBatch&, std::span<std::optional<Standing>>)>;
 
 struct GroundMethod {
     std::string name;
+    std::function<GroundFinder(const GroundMesh&, float cellSize)> make;
     bool isOurs = false;
     bool mustRest = false;  // a sphere in the ground or above it, or without ground, breaks a check
-    bool sinksByLine = false;   // on a slope it must be in the ground as far as theory says
-    bool takesCells = false;    // the size of cells matters
-    bool needsRegular = false;  // of the mesh
-    bool findsPoints = true;    // takes spheres of radius 0
-    std::function<std::unique_ptr<GroundFinder>(const GroundMesh&, float cellSize)> make;
+    bool sinksByLine = false;  // on a slope it must be in the ground as far as theory says
+    bool takesCells = false;   // the size of cells matters
+    bool findsPoints = true;   // takes spheres of radius 0, and any mesh
 };
 
-/// The paper's, then the library's.
-[[nodiscard]] std::vector<GroundMethod> gridGroundMethods();
-
-[[nodiscard]] std::vector<GroundMethod> bulletGroundMethods();
-
-/// All of them.
+/// The paper's, the library's, Bullet's.
 [[nodiscard]] std::vector<GroundMethod> groundMethods();
 
 }  // namespace hashphase::demos

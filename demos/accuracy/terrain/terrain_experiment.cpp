@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/terrain/terrain_experiment.hpp>
 
-#include <demos/accuracy/binomial.hpp>
 #include <demos/accuracy/experiments.hpp>
-#include <demos/accuracy/percent.hpp>
 #include <demos/accuracy/timing.hpp>
-#include <demos/console/format.hpp>
+#include <demos/scenes/random.hpp>
+#include <demos/scenes/terrain.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -14,308 +13,224 @@
 namespace hashphase::demos {
 namespace {
 
-constexpr std::string_view kBullet = "Bullet: sphere swept down";
+constexpr std::string_view kTerrainDeclaration =
+#include <demos/accuracy/terrain/terrain.sql>
+    ;
 
-// Far above the rounding of heights to single precision, far below what anybody sees; a share of the
-// radius.
-constexpr double kRests = 1e-3;
+constexpr float kRoom = GroundMesh::kHalf - 2;  // no sphere reaches the border
+constexpr float kAbove = 2;                     // where spheres ask from, above where they rest [m]
+constexpr float kUsualCell = 2;                 // [m]
 
-// How deep a sphere is in a slope when it is lifted by its radius; a share of the radius.
-double theoryAt(double slope) {
-    return 1 - std::cos(slope * std::numbers::pi / 180);
+double radians(double degrees) {
+    return degrees * std::numbers::pi / 180;
 }
 
-std::string meshText(std::uint64_t seed) {
-    return "48 x 48 quads of 1 m, two triangles each; spheres of 0.3 to 1 m; seed " +
-           std::to_string(seed);
+/// What spheres stand on.
+struct GroundScene {
+    std::string_view kind;
+    double slope;  // [degrees]; 0 for hills
+    GroundMesh mesh;
+};
+
+GroundScene slopeOf(double degrees) {
+    const auto rise = static_cast<float>(std::tan(radians(degrees)));
+    return {"slope", degrees, GroundMesh([rise](float x, float) { return rise * x; })};
 }
 
-Chart slopeChart(const TerrainMeasurement& measured, GroundKind kind, const std::string& settings) {
-    const bool isSlope = kind == GroundKind::slope;
-    Chart chart;
-    chart.name = isSlope ? "P9-slope" : "P9-terraces";
-    chart.title = isSlope
-                      ? "How deep spheres are in a slope; dashed: r (1 - n_y)"
-                      : "How deep spheres are in terraces: flat, up, flat and down, over 4 m each";
-    chart.settings = settings;
-    chart.data.columns = {{"slope", "slope [degrees]"},
-                          {"method", "method"},
-                          {"depth", "mean depth in the ground [share of r]"},
-                          {"worst_depth", "worst depth"},
-                          {"height", "mean height above it [share of r]"},
-                          {"worst_height", "worst height"},
-                          {"no_ground", "no ground found [%]"},
-                          {"theory", "r (1 - n_y)"}};
-    for (const RestRow& row : measured.rests) {
-        if (row.kind == kind) {
-            chart.data.add({row.slope, row.method->name, row.meanDepth, row.worstDepth,
-                            row.meanHeight, row.worstHeight, percentOf(row.noGround, row.spheres),
-                            theoryAt(row.slope)});
-        }
+/// Flat, up, flat, down, each over 4 m.
+GroundScene terracesOf(double degrees) {
+    const auto rise = static_cast<float>(std::tan(radians(degrees)));
+    return {"terraces", degrees, GroundMesh([rise](float x, float) {
+                const float along = x - 16 * std::floor(x / 16);
+                return rise * std::clamp(std::min(along - 4, 16 - along), 0.0F, 4.0F);
+            })};
+}
+
+GroundScene hillsOf(float jitter, std::uint64_t seed) {
+    constexpr float steepness = 4;  // so many times as high as Terrain's
+    const auto height = [hills = Terrain(seed)](float x, float z) {
+        return steepness * hills.height(x, z);
+    };
+    return {"hills", 0, GroundMesh(height, jitter, seed)};
+}
+
+SphereBatch randomSpheres(std::size_t count, float height, Random& random) {
+    SphereBatch spheres;
+    for (std::size_t i = 0; i < count; ++i) {
+        spheres.centers.push_back(
+            Vector3<float>{random.between(-kRoom, kRoom), height, random.between(-kRoom, kRoom)});
+        spheres.radii.push_back(random.between(0.3F, 1));
     }
-    chart.x = {"slope"};
-    chart.y = {"depth"};
-    chart.series = "method";
-    chart.theory = isSlope ? "theory" : "";
-    return chart;
+    return spheres;
 }
 
-Chart pointsChart(const TerrainMeasurement& measured, const std::string& settings) {
-    Chart chart;
-    chart.name = "P9-points";
-    chart.title = "Points on the ground for which no triangle is found";
-    chart.settings = settings + "; hills, vertices moved by up to 0.3 m";
-    chart.mark = ChartMark::kBar;
-    chart.data.columns = {{"place", "points"},
-                          {"method", "method"},
-                          {"no_ground", "no ground found [%]"},
-                          {"low"},
-                          {"high"},
-                          {"wrong_triangle", "wrong triangle [%]"}};
-    for (const PointRow& row : measured.points) {
-        const ShareInterval share = wilsonInterval(row.noGround, row.points);
-        chart.data.add(
-            {std::string(nameOf(row.place)), row.method->name, percentOf(row.noGround, row.points),
-             100 * share.low, 100 * share.high,
-             row.tellsTriangle ? Value(percentOf(row.wrongTriangle, row.points)) : Value()});
-    }
-    chart.x = {"place", AxisScale::kNames};
-    chart.y = {"no_ground"};
-    chart.series = "method";
-    chart.low = "low";
-    chart.high = "high";
-    return chart;
-}
+/// A method at work on a ground.
+struct Contestant {
+    const GroundMethod* method;
+    float cellSize;  // [m]
+    GroundFinder find;
+};
 
-DataTable timeTable(const TerrainPlan& plan, const TerrainMeasurement& measured) {
-    DataTable table{{{"configuration", "method, on hills"},
-                     {"method", "kind"},
-                     {"time", "a sphere [ns]"},
-                     {"low", "5 % [ns]"},
-                     {"high", "95 % [ns]"},
-                     {"ratio", "of Bullet's sweep"},
-                     {"depth", "mean depth [share of r]"},
-                     {"worst_depth", "worst depth"},
-                     {"height", "mean height above"},
-                     {"worst_height", "worst height"},
-                     {"no_ground", "no ground [%]"}},
-                    {}};
-    const auto bullet =
-        std::find_if(measured.rests.begin(), measured.rests.end(),
-                     [](const RestRow& row) { return row.isTimed && row.method->name == kBullet; });
-    const double toNs = 1e6 / static_cast<double>(plan.spheresPerFrame);
-    for (const RestRow& row : measured.rests) {
-        if (row.isTimed) {
-            const Spread& time = row.milliseconds;
-            table.add({row.name(), row.method->name, time.median * toNs, time.low * toNs,
-                       time.high * toNs,
-                       bullet != measured.rests.end()
-                           ? Value(time.median / bullet->milliseconds.median)
-                           : Value(),
-                       row.meanDepth, row.worstDepth, row.meanHeight, row.worstHeight,
-                       percentOf(row.noGround, row.spheres)});
-        }
-    }
-    return table;
-}
-
-Chart timeChart(const DataTable& times, const std::string& settings) {
-    Chart chart;
-    chart.name = "P9-time";
-    chart.title = "Depth of spheres in hills against the time for one";
-    chart.settings = settings + "; medians of at least 60 frames";
-    chart.mark = ChartMark::kPoint;
-    chart.data = times;
-    chart.x = {"time", AxisScale::kLog};
-    chart.y = {"depth", AxisScale::kLogAndZero};
-    chart.series = "method";
-    chart.label = "configuration";
-    chart.showFront = true;
-    return chart;
-}
-
-DataTable slopeTable(const TerrainMeasurement& measured) {
-    DataTable table{{{"slope", "slope [degrees]"},
-                     {"method", "method"},
-                     {"depth", "on a slope: mean depth [share of r]"},
-                     {"theory", "r (1 - n_y)"},
-                     {"terraces", "on terraces: mean depth"},
-                     {"terraces_worst", "worst depth"},
-                     {"terraces_height", "mean height above"}},
-                    {}};
-    for (const RestRow& row : measured.rests) {
-        if (row.kind != GroundKind::slope || std::fmod(row.slope, 40) != 0) {
-            continue;
-        }
-        for (const RestRow& other : measured.rests) {
-            if (other.kind == GroundKind::terraces && other.slope == row.slope &&
-                other.method == row.method) {
-                table.add({row.slope, row.method->name, row.meanDepth, theoryAt(row.slope),
-                           other.meanDepth, other.worstDepth, other.meanHeight});
+std::vector<Contestant> contestants(const GroundMesh& mesh, std::span<const GroundMethod> methods,
+                                    std::span<const float> cellSizes) {
+    std::vector<Contestant> all;
+    for (const GroundMethod& method : methods) {
+        for (const float cellSize : cellSizes) {
+            if (method.takesCells || cellSize == kUsualCell) {
+                all.push_back({&method, cellSize, method.make(mesh, cellSize)});
             }
         }
     }
-    return table;
+    return all;
 }
 
-// Depth, height and missing ground, at worst, of all that a method did.
-void checkRest(const TerrainMeasurement& measured, const GroundMethod& method, Findings& findings) {
-    double worst = 0;
-    std::size_t spheres = 0;
-    std::size_t lost = 0;
-    for (const RestRow& row : measured.rests) {
-        if (row.method == &method) {
-            worst = std::max({worst, row.worstDepth, row.worstHeight});
-            spheres += row.spheres;
-            lost += row.noGround;
-        }
+/// Puts spheres on the ground; depths in it and heights above the place where they would touch it are
+/// shares of their radii.
+void rest(const GroundScene& ground, std::span<const Contestant> contestants, std::size_t count,
+          Random& random, Measurements& measured) {
+    const ExactGround truth(ground.mesh);
+    SphereBatch spheres = randomSpheres(count, 0, random);
+    std::vector<double> heights;
+    for (std::size_t i = 0; i < count; ++i) {
+        Vector3<float>& center = spheres.centers[i];
+        heights.push_back(truth.restingHeight(center.x(), center.z(), spheres.radii[i]));
+        center.y() = static_cast<float>(heights.back()) + kAbove;
     }
-    findings.checks.push_back(
-        {method.name + ": spheres touch the ground, to a thousandth of r",
-         spheres > 0 && worst <= kRests,
-         "off by " + valueText(worst) + " r at worst of " + withThousands(spheres)});
-    std::size_t points = 0;
-    std::size_t wrong = 0;
-    for (const PointRow& row : measured.points) {
-        if (row.method == &method) {
-            points += row.points;
-            lost += row.noGround;
-            wrong += row.wrongTriangle;
-        }
-    }
-    findings.checks.push_back({method.name + " finds ground, and the right triangle, everywhere",
-                               points > 0 && lost + wrong == 0,
-                               withThousands(lost) + " without ground, " + withThousands(wrong) +
-                                   " with a wrong triangle, of " +
-                                   withThousands(spheres + points)});
-}
-
-void checkLine(const TerrainMeasurement& measured, const GroundMethod& method, Findings& findings) {
-    double farthest = 0;
-    bool hasAny = false;
-    for (const RestRow& row : measured.rests) {
-        if (row.method == &method && row.kind == GroundKind::slope) {
-            hasAny = true;
-            farthest = std::max(farthest, std::abs(row.meanDepth - theoryAt(row.slope)));
-        }
-    }
-    findings.checks.push_back({method.name + ": on slopes the depth is r (1 - n_y)",
-                               hasAny && farthest <= kRests,
-                               "off by " + valueText(farthest) + " r at most"});
-}
-
-// What nobody sees is told as such.
-std::string radiusText(double share) {
-    return share <= kRests ? "less than 0.1 % of r" : valueText(100 * share) + " % of r";
-}
-
-std::string depthText(const RestRow& row) {
-    return "sinks in by " + radiusText(row.meanDepth) + ", " + radiusText(row.worstDepth) +
-           " at worst; hangs " + radiusText(row.meanHeight) + " above";
-}
-
-void addChoices(const TerrainPlan& plan, const TerrainMeasurement& measured, Findings& findings) {
-    const std::string task =
-        "Standing on hills, " + withThousands(plan.spheresPerFrame) + " spheres: depth by r";
-    for (const RestRow& row : measured.rests) {
-        if (row.isTimed) {
-            // What nobody sees is no error.
-            const double error = row.worstDepth <= kRests ? 0 : row.meanDepth;
-            findings.choices.push_back({task, row.name(), row.milliseconds.median, error,
-                                        depthText(row), row.method->isOurs});
+    std::vector<std::optional<Standing>> found(count);
+    for (const Contestant& each : contestants) {
+        each.find(spheres, found);
+        for (std::size_t i = 0; i < count; ++i) {
+            std::optional<double> depth;
+            std::optional<double> above;
+            if (found[i]) {
+                const Vector3<float>& center = spheres.centers[i];
+                const float radius = spheres.radii[i];
+                const auto height = static_cast<double>(found[i]->height);
+                depth = truth.penetration(center.x(), height, center.z(), radius) /
+                        static_cast<double>(radius);
+                above = std::max(height - heights[i], 0.0) / static_cast<double>(radius);
+            }
+            measured.add("spheres", {{"kind", ground.kind},
+                                     {"slope", ground.slope},
+                                     {"theory", 1 - std::cos(radians(ground.slope))},
+                                     {"method", each.method->name},
+                                     {"cell", each.cellSize},
+                                     {"depth", depth},
+                                     {"above", above}});
         }
     }
 }
 
-// How long the methods of ours take beside the fastest of all and Bullet's sweep.
-void addTimes(const TerrainPlan& plan, const TerrainMeasurement& measured, Findings& findings) {
-    const RestRow* fastest = nullptr;
-    const RestRow* sweep = nullptr;
-    for (const RestRow& row : measured.rests) {
-        if (row.isTimed &&
-            (fastest == nullptr || row.milliseconds.median < fastest->milliseconds.median)) {
-            fastest = &row;
-        }
-        sweep = row.isTimed && row.method->name == kBullet ? &row : sweep;
+void time(const GroundScene& ground, std::span<const Contestant> contestants,
+          const TerrainPlan& plan, Random& random, Measurements& measured) {
+    constexpr int warmUp = 2;
+    SphereBatch spheres;
+    std::vector<std::optional<Standing>> found(plan.spheresPerFrame);
+    std::vector<std::function<void()>> runs;
+    for (const Contestant& each : contestants) {
+        runs.emplace_back([&] { each.find(spheres, found); });
     }
-    const auto text = [&](const RestRow& row) {
-        return row.name() + " takes " +
-               valueText(1e6 * row.milliseconds.median /
-                         static_cast<double>(plan.spheresPerFrame)) +
-               " ns a sphere";
-    };
-    for (const RestRow& row : measured.rests) {
-        if (row.isTimed && row.method->isOurs && !row.method->takesCells) {
-            findings.conclusions.push_back(text(row) + "; the fastest, " + text(*fastest) +
-                                           (sweep != nullptr ? "; " + text(*sweep) + "." : "."));
+    const float height = ground.mesh.bounds().max().y() + kAbove;
+    const auto times = timesInTurn(
+        plan.frames, warmUp,
+        [&](int) { spheres = randomSpheres(plan.spheresPerFrame, height, random); }, runs);
+    for (std::size_t i = 0; i < contestants.size(); ++i) {
+        for (const double milliseconds : times[i]) {
+            measured.add("times", {{"method", contestants[i].method->name},
+                                   {"cell", contestants[i].cellSize},
+                                   {"ms", milliseconds}});
         }
     }
 }
 
-void addConclusions(const TerrainMeasurement& measured, Findings& findings) {
-    for (const RestRow& row : measured.rests) {
-        const bool isSteep = row.kind == GroundKind::terraces && row.slope == 60;
-        if (isSteep) {
-            findings.conclusions.push_back("On terraces of 60 degrees, " + row.method->name + ' ' +
-                                           depthText(row) + ".");
-        }
+/// A point of the map at that place of a random triangle.
+Vector3<float> pointAt(const GroundMesh& mesh, std::string_view place, Random& random) {
+    const auto triangle =
+        static_cast<std::uint32_t>(random.unit() * static_cast<float>(mesh.triangles()));
+    Vector3<float> point = mesh.corner(triangle, 0);
+    if (place != "on corners") {
+        point += random.unit() * (mesh.corner(triangle, 1) - point);
     }
-    for (const PointRow& row : measured.points) {
-        if (row.noGround + row.wrongTriangle > 0) {
-            findings.conclusions.push_back(
-                row.method->name + ": of points " + std::string(nameOf(row.place)) + ' ' +
-                withThousands(row.noGround) + " have no ground and " +
-                withThousands(row.wrongTriangle) + " a wrong triangle, of " +
-                withThousands(row.points) + ".");
-        }
+    if (place == "anywhere") {
+        point += random.unit() * (mesh.corner(triangle, 2) - point);
     }
+    return point;
 }
 
-TerrainPlan planOf(const Effort& effort) {
-    return {effort.quickOrFull<std::size_t>(60, 500),
-            effort.quickOrFull<std::size_t>(5000, 100'000),
-            effort.quickOrFull(kFewestFrames, 2 * kFewestFrames),
-            effort.quickOrFull<std::size_t>(1000, 5000)};
+void askPoints(const TerrainPlan& plan, std::uint64_t seed, std::span<const GroundMethod> methods,
+               Measurements& measured) {
+    const GroundMesh mesh = hillsOf(0.3F, seed).mesh;
+    const float height = mesh.bounds().max().y() + kAbove;
+    const ExactGround truth(mesh);
+    Random random(seed);
+    for (const std::string_view place : {"anywhere", "on edges", "on corners"}) {
+        SphereBatch points;
+        while (points.radii.size() < plan.points) {
+            const Vector3<float> point = pointAt(mesh, place, random);
+            if (std::max(std::abs(point.x()), std::abs(point.z())) < kRoom) {
+                points.centers.emplace_back(point.x(), height, point.z());
+                points.radii.push_back(0);
+            }
+        }
+        std::vector<std::optional<Standing>> found(plan.points);
+        for (const GroundMethod& method : methods) {
+            if (!method.findsPoints) {
+                continue;
+            }
+            method.make(mesh, kUsualCell)(points, found);
+            int noGround = 0;
+            int told = 0;
+            int wrong = 0;
+            for (std::size_t i = 0; i < plan.points; ++i) {
+                const bool tells = found[i] && found[i]->triangle;
+                noGround += found[i] ? 0 : 1;
+                told += tells ? 1 : 0;
+                wrong += tells && !truth.isAt(*found[i]->triangle, points.centers[i].x(),
+                                              points.centers[i].z())
+                             ? 1
+                             : 0;
+            }
+            measured.add("points", {{"place", place},
+                                    {"method", method.name},
+                                    {"points", plan.points},
+                                    {"no_ground", noGround},
+                                    {"told", told},
+                                    {"wrong", wrong}});
+        }
+    }
 }
 
 }  // namespace
 
-std::string RestRow::name() const {
-    return method->takesCells
-               ? method->name + ", " + valueText(static_cast<double>(cellSize)) + " m cells"
-               : method->name;
-}
-
 Findings findTerrain(const TerrainPlan& plan, std::uint64_t seed,
                      std::span<const GroundMethod> methods, const TellProgress& tell) {
-    const TerrainMeasurement measured = measureTerrain(plan, seed, methods, tell);
-    const std::string mesh = meshText(seed);
-    Findings findings;
-    findings.settings = {
-        mesh + ".",
-        "Slopes are one plane; terraces are flat, go up, are flat and go down, over 4 m each; "
-        "hills are random, up to 56 m high.",
-        "How deep a sphere is in the ground, or how far above, the nearest points of all triangles "
-        "say, in long double. Spheres that are judged ask from 2 m above where they rest, those "
-        "that are timed from 2 m above the highest point.",
-        "Points that ask for their triangle lie anywhere, on shared edges (as far as single "
-        "precision has them there), and on shared corners."};
-    findings.tables = {slopeTable(measured), timeTable(plan, measured)};
-    findings.charts = {slopeChart(measured, GroundKind::slope, mesh),
-                       slopeChart(measured, GroundKind::terraces, mesh),
-                       pointsChart(measured, mesh), timeChart(findings.tables.back(), mesh)};
+    constexpr std::array usual{kUsualCell};
+    constexpr std::array cellSizes{0.5F, 1.0F, kUsualCell, 4.0F, 8.0F};
+    Measurements measured;
+    measured.add("plan", {{"spheres_per_frame", plan.spheresPerFrame}, {"seed", seed}});
     for (const GroundMethod& method : methods) {
-        if (method.mustRest) {
-            checkRest(measured, method, findings);
-        }
-        if (method.sinksByLine) {
-            checkLine(measured, method, findings);
+        measured.add("methods", {{"number", &method - methods.data()},
+                                 {"method", method.name},
+                                 {"ours", method.isOurs},
+                                 {"must_rest", method.mustRest},
+                                 {"sinks_by_line", method.sinksByLine},
+                                 {"takes_cells", method.takesCells}});
+    }
+    Random random(seed + 1);
+    for (int slope = 0; slope <= 80; slope += 10) {
+        tell(0.3 * slope / 80, "slopes");
+        for (const GroundScene& ground : {slopeOf(slope), terracesOf(slope)}) {
+            rest(ground, contestants(ground.mesh, methods, usual), plan.spheres, random, measured);
         }
     }
-    addChoices(plan, measured, findings);
-    addConclusions(measured, findings);
-    addTimes(plan, measured, findings);
-    return findings;
+    tell(0.3, "points");
+    askPoints(plan, seed, methods, measured);
+    tell(0.4, "times");
+    const GroundScene hills = hillsOf(0, seed);
+    const std::vector<Contestant> all = contestants(hills.mesh, methods, cellSizes);
+    rest(hills, all, plan.spheres, random, measured);
+    time(hills, all, plan, random, measured);
+    return findingsOf(kTerrainDeclaration, measured);
 }
 
 Experiment terrainExperiment() {
@@ -325,7 +240,11 @@ Experiment terrainExperiment() {
             3,
             22,
             [](const Effort& effort, const TellProgress& tell) {
-                return findTerrain(planOf(effort), effort.seed, groundMethods(), tell);
+                const TerrainPlan plan{effort.quickOrFull<std::size_t>(60, 500),
+                                       effort.quickOrFull<std::size_t>(5000, 100'000),
+                                       effort.quickOrFull(kFewestFrames, 2 * kFewestFrames),
+                                       effort.quickOrFull<std::size_t>(1000, 5000)};
+                return findTerrain(plan, effort.seed, groundMethods(), tell);
             }};
 }
 
