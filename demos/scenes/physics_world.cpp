@@ -9,6 +9,7 @@
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/BroadphaseCollision/btSimpleBroadphase.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 
@@ -103,6 +104,12 @@ std::vector<PhysicsBroadphase> physicsBroadphases() {
          [](PairCache* cache) { return std::make_unique<ExactDbvt>(cache); }},
         {"bt32BitAxisSweep3", false, false, makeAxisSweep},
     };
+}
+
+PhysicsBroadphase physicsBroadphase(std::string_view name) {
+    const std::vector<PhysicsBroadphase> all = physicsBroadphases();
+    return *std::find_if(all.begin(), all.end(),
+                         [name](const PhysicsBroadphase& each) { return each.name == name; });
 }
 
 PhysicsWorld::PhysicsWorld(const PhysicsBroadphase& broadphase, ListOrder order)

@@ -49,6 +49,9 @@ inline constexpr std::string_view kExactDbvtName = "btDbvtBroadphase, exact boxe
 /// Those of the four names, and bt32BitAxisSweep3.
 [[nodiscard]] std::vector<PhysicsBroadphase> physicsBroadphases();
 
+/// That of the name, which must be one of theirs.
+[[nodiscard]] PhysicsBroadphase physicsBroadphase(std::string_view name);
+
 /// A world over a broadphase, and what is in it.
 class PhysicsWorld {
 public:

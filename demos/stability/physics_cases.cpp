@@ -16,14 +16,8 @@ namespace {
 constexpr unsigned short kMostBodies = 1024;
 constexpr double kReach = 128;  // of a world, from its middle [m]
 
-PhysicsBroadphase named(std::string_view name) {
-    const std::vector<PhysicsBroadphase> all = physicsBroadphases();
-    return *std::find_if(all.begin(), all.end(),
-                         [name](const PhysicsBroadphase& each) { return each.name == name; });
-}
-
 PhysicsBroadphase sweepingHash() {
-    PhysicsBroadphase broadphase = named(kHashName);
+    PhysicsBroadphase broadphase = physicsBroadphase(kHashName);
     broadphase.make = [](PairCache* cache) {
         SpatialHashConfig config;
         config.sweep = Sweep::automatic;
@@ -72,9 +66,9 @@ std::vector<HardWorld> physicsCases() {
 std::vector<PhysicsBroadphase> hardBroadphases(const HardWorld& world) {
     const double halfSide = world.offset + kReach;
     return {
-        world.bullets == Bullets::pass ? sweepingHash() : named(kHashName),
-        named(kSimpleName),
-        named(kDbvtName),
+        world.bullets == Bullets::pass ? sweepingHash() : physicsBroadphase(kHashName),
+        physicsBroadphase(kSimpleName),
+        physicsBroadphase(kDbvtName),
         {std::string(kDbvtName) + ", deferred", false, false, makeDeferredDbvt},
         {"btAxisSweep3", false, false,
          [halfSide](PairCache* cache) { return makeAxisSweep<btAxisSweep3>(cache, halfSide); }},

@@ -2,14 +2,178 @@
 #include <demos/accuracy/sweeps/sweep_experiment.hpp>
 
 #include <demos/accuracy/experiments.hpp>
-#include <demos/console/format.hpp>
+#include <demos/accuracy/sweeps/sweep_scenes.hpp>
+#include <demos/accuracy/timing.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace hashphase::demos {
 namespace {
+
+constexpr std::string_view kSweepDeclaration =
+#include <demos/accuracy/sweeps/sweeps.sql>
+    ;
+
+using Keys = std::vector<PairKey>;
+
+/// A method at work on a scene.
+struct Sweeping {
+    const SweepMethod* method;
+    std::unique_ptr<SweepFinder> finder;
+};
+
+std::vector<Sweeping> sweepings(std::span<const SweepMethod> methods, const SweptFrame& frame) {
+    std::vector<Sweeping> all;
+    for (const SweepMethod& method : methods) {
+        all.push_back({&method, method.make(frame)});
+    }
+    return all;
+}
+
+std::size_t countIn(const Keys& a, const Keys& notInB) {
+    Keys difference;
+    std::set_difference(a.begin(), a.end(), notInB.begin(), notInB.end(),
+                        std::back_inserter(difference));
+    return difference.size();
+}
+
+/// Pairs of one mover at least that did not touch when the frame began; sorted.
+void keepFresh(Keys& listed, std::uint32_t movers, const Keys& older) {
+    std::erase_if(listed, [&](PairKey pair) {
+        return firstOf(pair) >= movers || std::binary_search(older.begin(), older.end(), pair);
+    });
+    std::sort(listed.begin(), listed.end());
+}
+
+/// How far the times of contact are off at worst: in frames, and as a share of them. Infinite where none is
+/// given.
+std::pair<double, double> worstTimes(const SweepMethod& method, const SweptFrame& frame,
+                                     const SweepTruth& truth) {
+    std::pair<double, double> worst;
+    for (std::size_t i = 0; i < truth.contacts.size(); ++i) {
+        const std::optional<double> time = method.contactTime(
+            frame.objects[firstOf(truth.contacts[i])], frame.objects[secondOf(truth.contacts[i])]);
+        const double error =
+            time ? truth.moments[i].errorOf(*time) : std::numeric_limits<double>::infinity();
+        worst.first = std::max(worst.first, error);
+        worst.second = std::max(worst.second, error / truth.moments[i].value());
+    }
+    return worst;
+}
+
+/// Where a frame is: at walls, or among fast movers.
+struct Where {
+    Datum thickness;
+    Datum ratio;
+    Datum motion;
+};
+
+/// Lets all methods do the frame, those that are slow only where its number is a multiple of their
+/// oneFrameIn, and says what they get wrong.
+void judge(std::span<const Sweeping> sweepings, const SweptFrame& frame, int number,
+           const Where& where, Measurements& measured) {
+    const SweepTruth truth = findTruth(frame);
+    std::optional<Keys> ofFirstExact;
+    for (const auto& [method, finder] : sweepings) {
+        if (number % method->oneFrameIn != 0) {
+            continue;
+        }
+        finder->step(frame);
+        Keys listed;
+        const std::optional<SweepWork> work = finder->listPairs(listed);
+        keepFresh(listed, frame.movers, truth.older);
+        const bool isCompared = method->isExact() && method->oneFrameIn == 1;
+        const auto [timeError, relativeTimeError] =
+            method->contactTime ? worstTimes(*method, frame, truth) : std::pair<double, double>();
+        measured.add("frames", {{"method", method->name},
+                                {"thickness", where.thickness},
+                                {"ratio", where.ratio},
+                                {"motion", where.motion},
+                                {"movers", frame.movers},
+                                {"contacts", truth.contacts.size()},
+                                {"missed", countIn(truth.contacts, listed)},
+                                {"invented", countIn(listed, truth.contacts)},
+                                {"unlike", isCompared && ofFirstExact && listed != *ofFirstExact},
+                                {"time_error", timeError},
+                                {"relative_time_error", relativeTimeError},
+                                {"cells", work ? Datum(work->cells) : Datum()},
+                                {"tests", work ? Datum(work->tests) : Datum()}});
+        if (isCompared && !ofFirstExact) {
+            ofFirstExact = std::move(listed);
+        }
+    }
+}
+
+void shootAtWalls(const SweepPlan& plan, std::uint64_t seed, std::span<const SweepMethod> methods,
+                  const std::function<void(double)>& tell, Measurements& measured) {
+    Random random(seed);
+    std::size_t points = 0;
+    for (const double thickness : plan.thicknesses) {
+        for (const double ratio : plan.ratios) {
+            tell(static_cast<double>(points++) /
+                 static_cast<double>(plan.thicknesses.size() * plan.ratios.size()));
+            BulletsAtWalls lanes(thickness, ratio, random);
+            const std::vector<Sweeping> all = sweepings(methods, lanes.frame());
+            for (int frame = 0; frame < plan.wallFrames; ++frame) {
+                judge(all, lanes.frame(), frame, {thickness, ratio, {}}, measured);
+                lanes.advance();
+            }
+        }
+    }
+}
+
+void shootBodies(const SweepPlan& plan, std::uint64_t seed, Measurements& measured) {
+    Random random(seed);
+    for (const bool isContinuous : {false, true}) {
+        for (const double ratio : plan.ratios) {
+            for (const double thickness : plan.thicknesses) {
+                for (int round = 0; round < plan.bodyRounds; ++round) {
+                    measured.add(
+                        "bodies",
+                        {{"continuous", isContinuous},
+                         {"ratio", ratio},
+                         {"bodies", kFlyingBodies},
+                         {"tunnelled", countTunnelled(thickness, ratio, isContinuous, random)}});
+                }
+            }
+        }
+    }
+}
+
+void moveFast(const SweepPlan& plan, std::uint64_t seed, std::span<const SweepMethod> methods,
+              const std::function<void(double)>& tell, Measurements& measured) {
+    constexpr int warmUp = 4;
+    for (std::size_t i = 0; i < plan.motions.size(); ++i) {
+        const FastMotion& motion = plan.motions[i];
+        measured.add("motions", {{"motion", motion.cells}, {"judged_frames", motion.judgedFrames}});
+        FastMovers scene(plan.objects, plan.movers, motion.cells, seed);
+        const std::vector<Sweeping> all = sweepings(methods, scene.frame());
+        for (int frame = 0; frame < motion.judgedFrames; ++frame) {
+            judge(all, scene.frame(), 0, {{}, {}, motion.cells}, measured);
+            scene.advance();
+        }
+        std::vector<std::function<void()>> steps;
+        for (const Sweeping& each : all) {
+            steps.emplace_back([&] { each.finder->step(scene.frame()); });
+        }
+        const auto begin = [&](int frame) {
+            scene.advance();
+            tell((static_cast<double>(i) + frame / static_cast<double>(plan.timedFrames + warmUp)) /
+                 static_cast<double>(plan.motions.size()));
+        };
+        const auto times = timesInTurn(plan.timedFrames, warmUp, begin, steps);
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            for (const double milliseconds : times[k]) {
+                measured.add("times", {{"method", all[k].method->name},
+                                       {"motion", motion.cells},
+                                       {"ms", milliseconds}});
+            }
+        }
+    }
+}
 
 /// 0.1 to 1000, evenly on a logarithmic axis.
 std::vector<double> ratiosPerDecade(int count) {
@@ -20,153 +184,37 @@ std::vector<double> ratiosPerDecade(int count) {
     return ratios;
 }
 
-std::string missedText(const SweepTally& tally) {
-    return tally.missed == 0 ? "misses none of " + withThousands(tally.contacts) + " contacts"
-                             : "misses " + valueText(100 * tally.missedShare()) + " % of contacts";
-}
-
-// What lists false pairs leaves their test to others: it does not compete with what tests them.
-void addChoices(const SweepResults& results, std::vector<Choice>& choices) {
-    const FastMoversPlan& plan = results.plan.movers;
-    for (const MotionResult& at : results.motions) {
-        const std::string task = "Fast movers: " + withThousands(plan.movers) + " of " +
-                                 withThousands(plan.objects) + " at " + motionText(at.motion);
-        for (std::size_t i = 0; i < results.methods.size(); ++i) {
-            const SweepMethod& method = results.methods[i];
-            const SweepTally& tally = at.tallies[i];
-            if (method.inventsNothing) {
-                choices.push_back({task, method.name, at.milliseconds[i].median,
-                                   tally.missedShare(), missedText(tally),
-                                   method.origin == SweepOrigin::ours});
-            }
-        }
-    }
-}
-
-std::string missingSentence(const SweepResults& results) {
-    std::string text = "Bullets at walls:";
-    for (std::size_t i = 0; i < results.methods.size(); ++i) {
-        text +=
-            (i == 0 ? " " : "; ") + results.methods[i].name + " " + missedText(wallsOf(results, i));
-    }
-    return text + ".";
-}
-
-std::string bodiesSentence(const SweepResults& results) {
-    std::string text = "Bodies in Bullet's world that came out behind the wall";
-    for (const bool isContinuous : {false, true}) {
-        FlyingBodiesPoint sum{0, isContinuous};
-        for (const FlyingBodiesPoint& point : results.bodies) {
-            const bool counts = point.isContinuous == isContinuous;
-            sum.bodies += counts ? point.bodies : 0;
-            sum.tunnelled += counts ? point.tunnelled : 0;
-        }
-        text += std::string(isContinuous ? "; with " : ": without ") +
-                "continuous collision detection " + withThousands(sum.tunnelled) + " of " +
-                withThousands(sum.bodies);
-    }
-    return text + ".";
-}
-
-/// The fastest of those that see every contact and list nothing else, against Bullet's.
-std::string costSentence(const SweepResults& results, const MotionResult& at) {
-    const auto fastest = [&](SweepOrigin origin) -> std::optional<std::size_t> {
-        std::optional<std::size_t> best;
-        for (std::size_t i = 0; i < results.methods.size(); ++i) {
-            const SweepTally& tally = at.tallies[i];
-            if (results.methods[i].origin == origin && tally.missed + tally.invented == 0 &&
-                (!best || at.milliseconds[i].median < at.milliseconds[*best].median)) {
-                best = i;
-            }
-        }
-        return best;
-    };
-    const auto describe = [&](std::string_view whose, SweepOrigin origin) {
-        const auto best = fastest(origin);
-        return std::string(whose) + (best ? results.methods[*best].name + " in " +
-                                                milliseconds(at.milliseconds[*best].median) + " ms"
-                                          : std::string("none"));
-    };
-    return "At " + motionText(at.motion) + ", the fastest that erred nowhere is, of ours, " +
-           describe("", SweepOrigin::ours) + "; with the paper's grid, " +
-           describe("", SweepOrigin::paper) + "; of Bullet's, " +
-           describe("", SweepOrigin::bullet) + ".";
-}
-
 }  // namespace
 
-SweepPlan sweepPlan(const Effort& effort) {
-    SweepPlan plan;
-    plan.tunnelling.thicknesses = {0.001, 0.01, 0.1, 1};
-    plan.tunnelling.ratios = ratiosPerDecade(effort.quickOrFull(2, 4));
-    plan.tunnelling.frames = effort.quickOrFull(64, 768);
-    plan.bodyRounds = effort.quickOrFull(1, 4);
-    plan.movers.objects = effort.quickOrFull(6'000U, 30'000U);
-    plan.movers.movers = effort.quickOrFull(50U, 1'000U);
-    plan.movers.motions = {{1, effort.quickOrFull(200, 100)},
-                           {10, effort.quickOrFull(40, 32)},
-                           {100, effort.quickOrFull(10, 8)}};
-    plan.movers.timedFrames = 60;
-    return plan;
-}
-
-SweepTally wallsOf(const SweepResults& results, std::size_t method) {
-    SweepTally sum;
-    for (const TunnellingPoint& point : results.points) {
-        sum += point.tallies[method];
+Findings findSweeps(const SweepPlan& plan, std::uint64_t seed, std::span<const SweepMethod> methods,
+                    const TellProgress& tell) {
+    constexpr double shareOfWalls = 0.4;  // of the time, about
+    Measurements measured;
+    measured.add("plan", {{"objects", plan.objects},
+                          {"movers", plan.movers},
+                          {"timed_frames", plan.timedFrames},
+                          {"seed", seed}});
+    for (const SweepMethod& method : methods) {
+        measured.add("methods", {{"number", &method - methods.data()},
+                                 {"method", method.name},
+                                 {"origin", method.origin},
+                                 {"misses_nothing", method.missesNothing},
+                                 {"invents_nothing", method.inventsNothing},
+                                 {"exact", method.isExact()},
+                                 {"compared", method.isExact() && method.oneFrameIn == 1},
+                                 {"discrete", method.isDiscrete},
+                                 {"tells_time", method.contactTime != nullptr}});
     }
-    return sum;
-}
-
-SweepTally totalOf(const SweepResults& results, std::size_t method) {
-    SweepTally sum = wallsOf(results, method);
-    for (const MotionResult& at : results.motions) {
-        sum += at.tallies[method];
-    }
-    return sum;
-}
-
-Findings measureSweeps(const SweepPlan& plan, std::span<const SweepMethod> methods,
-                       std::uint64_t seed, const TellProgress& tell) {
-    constexpr double kShareOfWalls = 0.4;  // of the time, about
-    SweepResults results{plan, methods, seed, {}, {}, {}};
-    results.points = measureTunnelling(
-        plan.tunnelling, methods, seed,
-        [&](double share, std::string_view what) { tell(kShareOfWalls * share, what); });
-    tell(kShareOfWalls, "bodies at walls");
-    results.bodies = measureFlyingBodies(plan.tunnelling.thicknesses, plan.tunnelling.ratios,
-                                         plan.bodyRounds, seed);
-    results.motions =
-        measureFastMovers(plan.movers, methods, seed, [&](double share, std::string_view what) {
-            tell(kShareOfWalls + (1 - kShareOfWalls) * share, what);
-        });
-
-    Findings findings;
-    findings.charts = sweepCharts(results);
-    findings.tables = {tunnellingTable(results), shortMoversTable(results)};
-    findings.checks = sweepChecks(results);
-    for (const Chart* chart : {&findings.charts.front(), &findings.charts.back()}) {
-        findings.settings.push_back(chart->name + ": " + chart->settings + ".");
-    }
-    findings.settings.insert(
-        findings.settings.end(),
-        {"Contacts that last from the frame before are left out, for all. Discrete methods know "
-         "the "
-         "boxes at the end of the frame.",
-         "What shares a cell with the paper's methods counts when the boxes around the ways "
-         "overlap. Its grid files what stands once, is told its cell size, and keeps no pairs from "
-         "frame to frame, as the others do.",
-         "False pairs of btDbvtBroadphase, united, are also those that it keeps from earlier "
-         "frames.",
-         "Bullet's bodies are spheres without gravity; with CCD, their motion threshold and swept "
-         "sphere radius are their radius. Stopped are those that are not behind the wall at the "
-         "end."});
-    addChoices(results, findings.choices);
-    findings.conclusions = {missingSentence(results), bodiesSentence(results)};
-    for (const MotionResult& at : results.motions) {
-        findings.conclusions.push_back(costSentence(results, at));
-    }
-    return findings;
+    shootAtWalls(
+        plan, seed, methods, [&](double share) { tell(shareOfWalls * share, "bullets at walls"); },
+        measured);
+    tell(shareOfWalls, "bodies at walls");
+    shootBodies(plan, seed, measured);
+    moveFast(
+        plan, seed, methods,
+        [&](double share) { tell(shareOfWalls + (1 - shareOfWalls) * share, "fast movers"); },
+        measured);
+    return findingsOf(kSweepDeclaration, measured);
 }
 
 Experiment sweepExperiment() {
@@ -176,8 +224,17 @@ Experiment sweepExperiment() {
             4,
             100,
             [](const Effort& effort, const TellProgress& tell) {
-                const SweepPlan plan = sweepPlan(effort);
-                return measureSweeps(plan, sweepMethods(), effort.seed, tell);
+                const SweepPlan plan{{0.001, 0.01, 0.1, 1},
+                                     ratiosPerDecade(effort.quickOrFull(2, 4)),
+                                     effort.quickOrFull(64, 768),
+                                     effort.quickOrFull(1, 4),
+                                     effort.quickOrFull(6'000U, 30'000U),
+                                     effort.quickOrFull(50U, 1'000U),
+                                     {{1, effort.quickOrFull(200, 100)},
+                                      {10, effort.quickOrFull(40, 32)},
+                                      {100, effort.quickOrFull(10, 8)}},
+                                     60};
+                return findSweeps(plan, effort.seed, sweepMethods(), tell);
             }};
 }
 
