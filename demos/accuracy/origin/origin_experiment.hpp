@@ -5,41 +5,30 @@
 // them right.
 
 #include <demos/accuracy/experiment.hpp>
-#include <demos/accuracy/origin/origin_run.hpp>
-#include <demos/accuracy/origin/origin_settle.hpp>
-
-#include <cstdint>
-#include <span>
-#include <vector>
+#include <demos/accuracy/origin/origin_methods.hpp>
+#include <demos/scenes/physics_world.hpp>
 
 namespace hashphase::demos {
 
-struct OriginSettings {
+/// A world of Bullet's, in single precision, in which balls come to rest.
+struct SettleMethod {
+    std::string name;
+    PhysicsBroadphase broadphase;
+    bool shiftsOrigin = false;  // Bullet sees places relative to a whole-numbered origin nearby
+};
+
+/// In world coordinates over btDbvtBroadphase and over ours; over ours with the origin shifted.
+[[nodiscard]] std::vector<SettleMethod> settleMethods();
+
+struct OriginPlan {
     std::vector<double> offsets;  // 0 first, then powers of two, ascending, up to 2^30 [m]
     std::size_t boxes = 1000;
     std::size_t rays = 50;
-    std::uint64_t seed = 1;
 };
 
-/// Whether this power of two is the one next to a power of ten.
-[[nodiscard]] bool isNextToPowerOfTen(double offset);
-
-/// What was measured at one distance.
-struct OriginPoint {
-    double offset = 0;
-    OriginOutcomes fine;    // boxes of about a metre
-    OriginOutcomes coarse;  // of kilometres, so that all coordinates are exact in single precision
-    std::vector<SettleOutcome> settled;
-};
-
-[[nodiscard]] std::vector<OriginPoint> runOrigin(std::span<const OriginMethod> methods,
-                                                 std::span<const SettleMethod> settleMethods,
-                                                 const OriginSettings& settings,
-                                                 const TellProgress& tell);
-
-[[nodiscard]] Findings judgeOrigin(std::span<const OriginMethod> methods,
-                                   std::span<const SettleMethod> settleMethods,
-                                   const OriginSettings& settings,
-                                   std::span<const OriginPoint> points);
+/// Measures, and says what it shows (origin.sql).
+[[nodiscard]] Findings findOrigin(const OriginPlan& plan, std::uint64_t seed,
+                                  std::span<const OriginMethod> methods,
+                                  std::span<const SettleMethod> settling, const TellProgress& tell);
 
 }  // namespace hashphase::demos

@@ -2,8 +2,7 @@
 #include <demos/accuracy/origin/origin_methods.hpp>
 
 #include <broadphase/pairs.hpp>
-
-#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
+#include <demos/accuracy/baselines/dbvt_boxes.hpp>
 
 #include <cmath>
 #include <limits>
@@ -28,7 +27,7 @@ struct Nearest {
 };
 
 /// Boxes are rounded so that they contain the true ones; rays are as thick as their ends are coarse.
-struct Outward {
+struct Outward : Nearest<float> {
     static constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
     static float below(double number) {
@@ -40,22 +39,14 @@ struct Outward {
         return std::nextafter(std::abs(number), kInfinity) - std::abs(number);
     }
 
-    void look(std::span<const WorldBox> /*boxes*/) {}
     [[nodiscard]] Aabb<float> box(const WorldBox& box) const {
-        Aabb<float> rounded;
-        for (int axis = 0; axis < 3; ++axis) {
-            rounded.min()[axis] = below(box.centre[axis] - box.half[axis]);
-            rounded.max()[axis] = above(box.centre[axis] + box.half[axis]);
-        }
-        return rounded;
+        return {(box.centre - box.half).unaryExpr(&below),
+                (box.centre + box.half).unaryExpr(&above)};
     }
     [[nodiscard]] RayRegion<float> ray(const WorldRay& ray) const {
         const Vector3<float> from = ray.from.cast<float>();
         const Vector3<float> to = ray.to.cast<float>();
-        Vector3<float> thick;
-        for (int axis = 0; axis < 3; ++axis) {
-            thick[axis] = std::max(ulpOf(from[axis]), ulpOf(to[axis]));
-        }
+        const Vector3<float> thick = from.unaryExpr(&ulpOf).cwiseMax(to.unaryExpr(&ulpOf));
         return {from, to, {-thick, thick}};
     }
 };
@@ -72,7 +63,7 @@ struct FromPosition : Nearest<float> {
 
 /// The world is divided into cells that are numbered by whole numbers; numbers in single precision
 /// count from the corner of the cell in which the first box was when it was first seen.
-struct FromCell {
+struct FromCell : Nearest<float> {
     static constexpr double kCell = 1024;  // [m]
 
     void look(std::span<const WorldBox> boxes) {
@@ -81,12 +72,10 @@ struct FromCell {
         }
     }
     [[nodiscard]] Aabb<float> box(const WorldBox& box) const {
-        const Vector3<double> centre = box.centre - *origin;
-        return {(centre - box.half).cast<float>(), (centre + box.half).cast<float>()};
+        return Nearest::box({box.centre - *origin, box.half});
     }
     [[nodiscard]] RayRegion<float> ray(const WorldRay& ray) const {
-        return RayRegion<float>((ray.from - *origin).cast<float>(),
-                                (ray.to - *origin).cast<float>());
+        return Nearest::ray({ray.from - *origin, ray.to - *origin});
     }
 
     std::optional<Vector3<double>> origin;
@@ -94,6 +83,7 @@ struct FromCell {
 
 // --- Worlds -------------------------------------------------------------------------------------------
 
+/// Indices of an empty grid's proxies count up from 0.
 template <class Scalar, class Numbers>
 class GridWorld final : public OriginWorld {
 public:
@@ -104,7 +94,7 @@ public:
             if (i < ids_.size()) {
                 grid_.move(ids_[i], box);
             } else {
-                ids_.push_back(grid_.add(box));  // indices count up from 0
+                ids_.push_back(grid_.add(box));
             }
         }
         pairs_.update([](ProxyId, ProxyId) { return true; });
@@ -134,34 +124,6 @@ private:
     std::vector<ProxyId> ids_;
 };
 
-btVector3 toBullet(const Vector3<float>& point) {
-    return {point.x(), point.y(), point.z()};
-}
-
-/// Collects numbers as users of Bullet do; what a ray needs to know beforehand is as in
-/// btCollisionWorld::rayTest().
-class CollectNumbers : public btBroadphaseRayCallback {
-public:
-    CollectNumbers(const btVector3& from, const btVector3& to, std::vector<std::uint32_t>& numbers)
-        : numbers_(numbers) {
-        const btVector3 direction = (to - from).normalized();
-        for (int axis = 0; axis < 3; ++axis) {
-            m_rayDirectionInverse[axis] =
-                direction[axis] == 0 ? BT_LARGE_FLOAT : 1 / direction[axis];
-            m_signs[axis] = m_rayDirectionInverse[axis] < 0 ? 1 : 0;
-        }
-        m_lambda_max = direction.dot(to - from);
-    }
-    bool process(const btBroadphaseProxy* proxy) override {
-        // Unique ids count up from 1.
-        numbers_.push_back(static_cast<std::uint32_t>(proxy->m_uniqueId - 1));
-        return true;
-    }
-
-private:
-    std::vector<std::uint32_t>& numbers_;
-};
-
 class DbvtWorld final : public OriginWorld {
 public:
     ~DbvtWorld() override {
@@ -172,7 +134,7 @@ public:
 
     void set(std::span<const WorldBox> boxes) override {
         for (std::size_t i = 0; i < boxes.size(); ++i) {
-            const Aabb<float> box = numbers_.box(boxes[i]);
+            const Aabb<float> box = Nearest<float>().box(boxes[i]);
             const btVector3 low = toBullet(box.min());
             const btVector3 high = toBullet(box.max());
             if (i < proxies_.size()) {
@@ -190,23 +152,22 @@ public:
         const btBroadphasePairArray& all =
             broadphase_.getOverlappingPairCache()->getOverlappingPairArray();
         for (int i = 0; i < all.size(); ++i) {
-            pairs.push_back(pairKey(static_cast<std::uint32_t>(all[i].m_pProxy0->m_uniqueId - 1),
-                                    static_cast<std::uint32_t>(all[i].m_pProxy1->m_uniqueId - 1)));
+            pairs.push_back(pairKey(DbvtBoxes::objectOf(*all[i].m_pProxy0),
+                                    DbvtBoxes::objectOf(*all[i].m_pProxy1)));
         }
     }
 
     void listHits(const WorldRay& ray, std::vector<std::uint32_t>& boxes) override {
         const btVector3 from = toBullet(ray.from.cast<float>());
         const btVector3 to = toBullet(ray.to.cast<float>());
-        if (from == to) {
-            return;  // Bullet cannot cast a ray without direction
+        if (!(from == to)) {  // Bullet cannot cast a ray without direction
+            castRay(broadphase_, from, to, [&](const btBroadphaseProxy& proxy) {
+                boxes.push_back(DbvtBoxes::objectOf(proxy));
+            });
         }
-        CollectNumbers callback(from, to, boxes);
-        broadphase_.rayTest(from, to, callback);
     }
 
 private:
-    Nearest<float> numbers_;
     btDbvtBroadphase broadphase_;
     std::vector<btBroadphaseProxy*> proxies_;
 };

@@ -4,14 +4,12 @@
 // Ways to keep a world far from the origin: in what numbers boxes are filed and rays are cast.
 
 #include <demos/accuracy/origin/origin_scene.hpp>
-#include <demos/compare/reference_pairs.hpp>
+#include <demos/scenes/pair_key.hpp>
 
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
 #include <string>
-#include <vector>
 
 namespace hashphase::demos {
 

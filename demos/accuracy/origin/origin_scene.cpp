@@ -3,7 +3,6 @@
 
 #include <demos/scenes/random.hpp>
 
-#include <cmath>
 #include <cstdlib>
 
 namespace hashphase::demos {
@@ -17,8 +16,8 @@ std::int64_t multiple(Random& random, std::int64_t low, std::int64_t high, std::
     return low + step * static_cast<std::int64_t>(random.unit() * static_cast<float>(count));
 }
 
-IntegerPoint pointWithin(Random& random, std::int64_t most, std::int64_t step) {
-    IntegerPoint point{};
+WholePoint pointWithin(Random& random, std::int64_t most, std::int64_t step) {
+    WholePoint point{};
     for (std::int64_t& coordinate : point) {
         coordinate = multiple(random, -most, most, step);
     }
@@ -67,29 +66,16 @@ bool overlapExactly(const IntegerBox& a, const IntegerBox& b) {
     return true;
 }
 
-// The theorem of separating axes: the axes of the box, and those across each of them and the segment.
-// Everything is doubled, so that the middle of the segment is whole.
 bool meetExactly(const IntegerRay& ray, const IntegerBox& box) {
-    IntegerPoint way{};     // half the segment, doubled
-    IntegerPoint apart{};   // from the box's centre to the segment's, doubled
-    IntegerPoint extent{};  // half the box, doubled
+    WholePoint way;
+    WholePoint low;
+    WholePoint high;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         way[axis] = ray.to[axis] - ray.from[axis];
-        apart[axis] = ray.from[axis] + ray.to[axis] - 2 * box.centre[axis];
-        extent[axis] = 2 * box.half[axis];
-        if (std::abs(apart[axis]) > extent[axis] + std::abs(way[axis])) {
-            return false;
-        }
+        low[axis] = box.centre[axis] - box.half[axis] - ray.from[axis];
+        high[axis] = box.centre[axis] + box.half[axis] - ray.from[axis];
     }
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const std::size_t j = (axis + 1) % 3;
-        const std::size_t k = (axis + 2) % 3;
-        if (std::abs(way[j] * apart[k] - way[k] * apart[j]) >
-            extent[j] * std::abs(way[k]) + extent[k] * std::abs(way[j])) {
-            return false;
-        }
-    }
-    return true;
+    return exactEntry(way, low, high).has_value();
 }
 
 }  // namespace hashphase::demos

@@ -5,26 +5,21 @@
 // power of two as well, its coordinates are exact in double precision, and what overlaps what can be
 // said exactly, in integers.
 
-#include <broadphase/aabb.hpp>
+#include <demos/accuracy/exact_entry.hpp>
 
-#include <array>
-#include <cstdint>
-#include <span>
 #include <vector>
 
 namespace hashphase::demos {
 
-using IntegerPoint = std::array<std::int64_t, 3>;
-
 /// The closed box from centre - half to centre + half [units].
 struct IntegerBox {
-    IntegerPoint centre{};
-    IntegerPoint half{};
+    WholePoint centre{};
+    WholePoint half{};
 };
 
 struct IntegerRay {
-    IntegerPoint from{};
-    IntegerPoint to{};
+    WholePoint from{};
+    WholePoint to{};
 };
 
 /// The same in the world [m].
@@ -42,7 +37,7 @@ struct BodyPlacement {
     double offset = 0;  // along all three axes
     double unit = 1;
 
-    [[nodiscard]] Vector3<double> operator()(const IntegerPoint& point) const {
+    [[nodiscard]] Vector3<double> operator()(const WholePoint& point) const {
         return {offset + unit * static_cast<double>(point[0]),
                 offset + unit * static_cast<double>(point[1]),
                 offset + unit * static_cast<double>(point[2])};
@@ -72,7 +67,7 @@ public:
 
 private:
     std::vector<IntegerBox> boxes_;
-    std::vector<IntegerPoint> velocities_;
+    std::vector<WholePoint> velocities_;
     std::vector<IntegerRay> rays_;
 };
 

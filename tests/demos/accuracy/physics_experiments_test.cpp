@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Zlib
 //
-// The experiments with dynamics and with distance, at a tiny size: that their checks hold, and that
-// they notice a method that is broken.
+// The experiments with dynamics, at a tiny size: that their checks hold, and that they notice a method that
+// is broken.
 
-#include <demos/accuracy/origin/origin_experiment.hpp>
 #include <demos/accuracy/physics/time_step_experiment.hpp>
 #include <demos/accuracy/physics/trajectory_experiment.hpp>
 
@@ -127,79 +126,6 @@ TEST(TimeStepExperiment, NoticesAnEngineThatFallsOtherwise) {
         runTimeSteps(tasks, contestants, {{1}, {}, 7, 1}, kTellNobody);
     const Findings findings = judgeTimeSteps(tasks, contestants, points);
     EXPECT_NE(broken(findings).find("Free fall"), std::string::npos);
-}
-
-// --- P6 ---------------------------------------------------------------------------------------------
-
-/// Double precision, but the last pair and the first hit are lost.
-class Lossy : public OriginWorld {
-public:
-    explicit Lossy(std::unique_ptr<OriginWorld> world) : world_(std::move(world)) {}
-
-    void set(std::span<const WorldBox> boxes) override { world_->set(boxes); }
-    void listPairs(std::vector<PairKey>& pairs) override {
-        world_->listPairs(pairs);
-        pairs.pop_back();
-    }
-    void listHits(const WorldRay& ray, std::vector<std::uint32_t>& boxes) override {
-        world_->listHits(ray, boxes);
-        if (!boxes.empty()) {
-            boxes.pop_back();
-        }
-    }
-
-private:
-    std::unique_ptr<OriginWorld> world_;
-};
-
-Findings origin(const std::vector<OriginMethod>& methods,
-                const std::vector<SettleMethod>& settling) {
-    OriginSettings settings;
-    settings.offsets = {0, 0x1p20, 0x1p30};
-    settings.boxes = 150;
-    settings.rays = 20;
-    return judgeOrigin(methods, settling, settings,
-                       runOrigin(methods, settling, settings, kTellNobody));
-}
-
-TEST(OriginExperiment, FindsTheSamePairsAtAnyDistance) {
-    const Findings findings = origin(originMethods(), settleMethods());
-    EXPECT_EQ(broken(findings), "");
-    EXPECT_GT(findings.checks.size(), 10U);
-}
-
-TEST(OriginExperiment, NoticesALostPairAndALostHit) {
-    std::vector<OriginMethod> methods = originMethods();
-    const auto exact = std::find_if(methods.begin(), methods.end(),
-                                    [](const OriginMethod& method) { return method.isExact; });
-    const auto make = exact->make;
-    exact->make = [make] { return std::make_unique<Lossy>(make()); };
-    exact->name = "lossy";
-    const std::string found = broken(origin(methods, settleMethods()));
-    EXPECT_NE(found.find("lossy finds the same pairs at every distance ("), std::string::npos);
-    EXPECT_NE(found.find("lossy misses no hit"), std::string::npos);
-}
-
-TEST(OriginExperiment, NoticesBallsThatRestElsewhereFarAway) {
-    const std::vector<SettleMethod> settling = settleMethods();
-    const OriginSettings settings{{0, 0x1p20}, 20, 2, 1};
-    std::vector<OriginPoint> points = runOrigin(originMethods(), settling, settings, kTellNobody);
-    // As if the origin had not been shifted.
-    points.back().settled.back() = points.back().settled.front();
-    const Findings findings = judgeOrigin(originMethods(), settling, settings, points);
-    EXPECT_NE(broken(findings).find("origin shifted"), std::string::npos);
-}
-
-TEST(OriginScene, TellsExactlyWhetherARayMeetsABox) {
-    const IntegerBox box{{0, 0, 0}, {2, 2, 2}};
-    EXPECT_TRUE(meetExactly({{-5, 0, 0}, {5, 0, 0}}, box));
-    EXPECT_TRUE(meetExactly({{-5, 2, 2}, {5, 2, 2}}, box));   // along an edge
-    EXPECT_TRUE(meetExactly({{0, 4, 0}, {4, 0, 0}}, box));    // through an edge, at (2, 2, 0)
-    EXPECT_FALSE(meetExactly({{0, 5, 0}, {4, 0, 0}}, box));   // past it
-    EXPECT_TRUE(meetExactly({{-5, 0, 0}, {-2, 0, 0}}, box));  // ends on a face
-    EXPECT_FALSE(meetExactly({{-5, 0, 0}, {-3, 0, 0}}, box));
-    EXPECT_TRUE(meetExactly({{1, 1, 1}, {1, 1, 1}}, box));
-    EXPECT_FALSE(meetExactly({{3, 1, 1}, {3, 1, 1}}, box));
 }
 
 }  // namespace
