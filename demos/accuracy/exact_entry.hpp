@@ -34,12 +34,12 @@ struct Fraction {
 /// Multiples of a unit.
 using WholePoint = std::array<std::int64_t, 3>;
 
-/// The coordinate as a multiple of the unit, a power of two. Throws std::logic_error where it is none, or
-/// more than `most` of them, up to 2^40.
+/// The coordinate as a multiple of the unit, a power of two. Throws std::logic_error where it is
+/// none, or more than `most` of them, up to 2^40.
 [[nodiscard]] std::int64_t wholeUnits(float coordinate, float unit, float most);
 
-/// Where on its way from 0 the point enters the closed box, 0 when it begins inside; nothing when it
-/// misses it.
+/// Where on its way from 0 the point enters the closed box, 0 when it begins inside; nothing when
+/// it misses it.
 [[nodiscard]] std::optional<Fraction> exactEntry(const WholePoint& way, const WholePoint& low,
                                                  const WholePoint& high);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Boxes that stand still in Bullet's default broadphase, its trees as good as Bullet can make them; and
-// rays cast at a broadphase of Bullet's.
+// Boxes that stand still in Bullet's default broadphase, its trees as good as Bullet can make them;
+// and rays cast at a broadphase of Bullet's.
 
 #include <demos/scenes/box_scene.hpp>
 #include <integration/bullet/conversions.hpp>
@@ -17,7 +17,8 @@ namespace hashphase::demos {
 
 class DbvtBoxes {
 public:
-    /// Objects are the boxes' numbers. Static geometry pairs with nothing, and pairs are not asked for.
+    /// Objects are the boxes' numbers. Static geometry pairs with nothing, and pairs are not asked
+    /// for.
     explicit DbvtBoxes(std::span<const Aabb<float>> boxes) {
         for (const Aabb<float>& box : boxes) {
             proxies_.push_back(broadphase_.createProxy(
@@ -46,8 +47,8 @@ private:
     btDbvtBroadphase broadphase_;
 };
 
-/// Calls visit(proxy) of all whose boxes the ray meets, with what btCollisionWorld::rayTest() tells the
-/// broadphase beforehand.
+/// Calls visit(proxy) of all whose boxes the ray meets, with what btCollisionWorld::rayTest() tells
+/// the broadphase beforehand.
 template <class Visit>
 void castRay(btBroadphaseInterface& broadphase, const btVector3& from, const btVector3& to,
              const Visit& visit) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A plain grid of cells of 1 m, hashed, with lists of what is in them. A flat one has one layer of cells,
-// at y = 0: the columns over the ground of the paper.
+// A plain grid of cells of 1 m, hashed, with lists of what is in them. A flat one has one layer of
+// cells, at y = 0: the columns over the ground of the paper.
 
 #include <broadphase/aabb.hpp>
 
@@ -44,8 +44,8 @@ void visitBox(const Aabb<float>& box, bool isFlat, const Visit& visit) {
     visitCells(cellOf(box.min(), isFlat), cellOf(box.max(), isFlat), visit);
 }
 
-/// Which objects are in which cells. What is filed first stays; what is filed after keepFiled() lasts until
-/// unfile().
+/// Which objects are in which cells. What is filed first stays; what is filed after keepFiled()
+/// lasts until unfile().
 class HashedCells {
 public:
     explicit HashedCells(std::size_t expected) : heads_(std::bit_ceil(2 * expected + 1), kNone) {}

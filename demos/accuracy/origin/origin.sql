@@ -156,16 +156,15 @@ FROM did WHERE number = 0 AND point = 1;
 
 /* {"conclusions": "of each method"} */
 WITH begins AS (
-    SELECT number, min(offset) FILTER (WHERE missed_pairs > 0) AS missed,
-           min(offset) FILTER (WHERE extra_percent > 1) AS extra,
-           min(offset) FILTER (WHERE missed_hits > 0) AS missed_hits
+    SELECT number, thousands(min(offset) FILTER (WHERE missed_pairs > 0)) AS missed,
+           thousands(min(offset) FILTER (WHERE extra_percent > 1)) AS extra,
+           thousands(min(offset) FILTER (WHERE missed_hits > 0)) AS missed_hits
     FROM did GROUP BY number)
-SELECT method || ': misses pairs '
-       || iif(begins.missed IS NULL, 'at no distance', 'from ' || thousands(begins.missed) || ' m on')
+SELECT method || ': misses pairs ' || ifnull('from ' || begins.missed || ' m on', 'at no distance')
        || ', false ones are more than 1 % '
-       || iif(begins.extra IS NULL, 'at no distance', 'from ' || thousands(begins.extra) || ' m on')
+       || ifnull('from ' || begins.extra || ' m on', 'at no distance')
        || ', misses hits of rays '
-       || iif(begins.missed_hits IS NULL, 'at no distance', 'from ' || thousands(begins.missed_hits) || ' m on')
+       || ifnull('from ' || begins.missed_hits || ' m on', 'at no distance')
        || '; at ' || distance || ' ' || fixed(missed_percent, 1) || ' % of pairs missed, '
        || fixed(extra_percent, 1) || ' % false, a frame takes ' || fixed(times, 2)
        || ' times as long as float at the origin (' || fixed(at_origin, 2) || ' when there as well).'
@@ -175,7 +174,7 @@ ORDER BY number;
 
 /* {"conclusions": "of balls"} */
 SELECT method || ': balls rest more than a millimetre off '
-       || iif(first IS NULL, 'at no distance', 'from ' || thousands(first) || ' m on')
+       || ifnull('from ' || thousands(first) || ' m on', 'at no distance')
        || '; ' || number(1000 * position_error) || ' mm at ' || distance || ', '
        || number(1000 * at_origin) || ' mm at the origin.'
 FROM rested JOIN far USING (point)

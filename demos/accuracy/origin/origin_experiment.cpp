@@ -30,7 +30,7 @@ bool isNextToPowerOfTen(double offset) {
     return offset == std::exp2(std::round(std::log2(power)));
 }
 
-// --- Pairs and rays -----------------------------------------------------------------------------------
+// --- Pairs and rays ------------------------------------------------------------------------------
 
 using Worlds = std::vector<std::unique_ptr<OriginWorld>>;
 
@@ -113,8 +113,8 @@ void judge(const OriginScene& scene, const BodyPlacement& place,
     }
 }
 
-/// Moves the scene, all methods in turn in each frame, and the first one at the origin as well; compares
-/// every tenth frame with exact arithmetic.
+/// Moves the scene, all methods in turn in each frame, and the first one at the origin as well;
+/// compares every tenth frame with exact arithmetic.
 void moveScene(const BodyPlacement& place, OriginScene scene, std::span<const OriginMethod> methods,
                Measurements& measured) {
     constexpr int framesALook = 10;
@@ -152,7 +152,7 @@ void moveScene(const BodyPlacement& place, OriginScene scene, std::span<const Or
     }
 }
 
-// --- Balls that come to rest ----------------------------------------------------------------------
+// --- Balls that come to rest ---------------------------------------------------------------------
 
 constexpr int kBalls = 16;
 constexpr double kRadius = 0.5;
@@ -293,7 +293,8 @@ Experiment originExperiment() {
             4,
             40,
             [](const Effort& effort, const TellProgress& tell) {
-                // Those next to a thousand, ten thousand, ... up to a billion, or all in between as well.
+                // Those next to a thousand, ten thousand, ... up to a billion, or all in between as
+                // well.
                 OriginPlan plan{{0},
                                 effort.quickOrFull<std::size_t>(400, 1000),
                                 effort.quickOrFull<std::size_t>(50, 200)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/origin/origin_methods.hpp>
+#include <demos/accuracy/origin/origin_experiment.hpp>
 
 #include <broadphase/pairs.hpp>
 #include <demos/accuracy/baselines/dbvt_boxes.hpp>
@@ -11,7 +11,7 @@
 namespace hashphase::demos {
 namespace {
 
-// --- How numbers in double precision become those of the grid -----------------------------------------
+// --- How numbers in double precision become those of the grid ------------------------------------
 
 /// The nearest numbers. Rounding keeps order, so boxes that overlap go on to overlap.
 template <class Scalar>
@@ -26,7 +26,8 @@ struct Nearest {
     }
 };
 
-/// Boxes are rounded so that they contain the true ones; rays are as thick as their ends are coarse.
+/// Boxes are rounded so that they contain the true ones; rays are as thick as their ends are
+/// coarse.
 struct Outward : Nearest<float> {
     static constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -81,7 +82,7 @@ struct FromCell : Nearest<float> {
     std::optional<Vector3<double>> origin;
 };
 
-// --- Worlds -------------------------------------------------------------------------------------------
+// --- Worlds --------------------------------------------------------------------------------------
 
 /// Indices of an empty grid's proxies count up from 0.
 template <class Scalar, class Numbers>

@@ -2,8 +2,8 @@
 #pragma once
 
 // A scene of boxes in whole multiples of a unit that is a power of two: wherever it is put, by a
-// power of two as well, its coordinates are exact in double precision, and what overlaps what can be
-// said exactly, in integers.
+// power of two as well, its coordinates are exact in double precision, and what overlaps what can
+// be said exactly, in integers.
 
 #include <demos/accuracy/exact_entry.hpp>
 
@@ -52,8 +52,8 @@ struct BodyPlacement {
 
 class OriginScene {
 public:
-    /// Half of the boxes and rays have coordinates that are multiples of so many units, so that many
-    /// just touch or graze.
+    /// Half of the boxes and rays have coordinates that are multiples of so many units, so that
+    /// many just touch or graze.
     static constexpr std::int64_t kStep = 64;
 
     /// The coordinates of the others are multiples of `finest` units, a divisor of kStep.

@@ -16,8 +16,8 @@ namespace hashphase::demos {
 enum class BorderTimes : std::uint8_t { accumulated, multiplied };
 
 /// J. Amanatides, A. Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing", 1987, in single
-/// precision: one cell after another across one face each. Ends in the last cell; or, where rounding
-/// has led it astray, after as many steps as there are borders, and 3.
+/// precision: one cell after another across one face each. Ends in the last cell; or, where
+/// rounding has led it astray, after as many steps as there are borders, and 3.
 template <class Visit>
 void walkFaces(const Vector3<float>& from, const Vector3<float>& to, BorderTimes times,
                const Visit& visit) {
@@ -49,8 +49,8 @@ void walkFaces(const Vector3<float>& from, const Vector3<float>& to, BorderTimes
     }
 }
 
-/// All cells that come near the ray: layer by layer across the axis along which it is longest, in each
-/// layer what lies between its two ends, in double precision and a little more on each side.
+/// All cells that come near the ray: layer by layer across the axis along which it is longest, in
+/// each layer what lies between its two ends, in double precision and a little more on each side.
 template <class Visit>
 void walkLayers(const Vector3<float>& from, const Vector3<float>& to, const Visit& visit) {
     const Vector3<double> start = from.cast<double>();

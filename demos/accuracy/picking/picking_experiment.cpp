@@ -33,8 +33,8 @@ Entries exactEntries(const Ray& ray, Boxes boxes) {
     return entries;
 }
 
-/// How much later than the nearest box the ray meets the one that the method puts first, as a share of
-/// the ray; nothing where it meets none, or not that one.
+/// How much later than the nearest box the ray meets the one that the method puts first, as a share
+/// of the ray; nothing where it meets none, or not that one.
 std::optional<double> lateness(std::span<const RayHit> hits, const Entries& truth) {
     const auto first = std::min_element(hits.begin(), hits.end(), [](const auto& a, const auto& b) {
         return std::pair(a.fraction, a.object) < std::pair(b.fraction, b.object);

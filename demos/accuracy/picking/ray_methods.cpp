@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/picking/ray_methods.hpp>
+#include <demos/accuracy/picking/picking_experiment.hpp>
 
 #include <broadphase/grid.hpp>
 #include <broadphase/regions.hpp>
@@ -16,10 +16,10 @@ namespace {
 
 using Boxes = std::span<const Aabb<float>>;
 
-// --- Through plain cells ----------------------------------------------------------------------------
+// --- Through plain cells -------------------------------------------------------------------------
 //
-// Whichever cells a method visits, the boxes in them are tested in the same way, so that methods differ
-// by nothing else.
+// Whichever cells a method visits, the boxes in them are tested in the same way, so that methods
+// differ by nothing else.
 
 /// walk(ray, visit) calls visit(cell).
 template <class Walk>
@@ -61,8 +61,9 @@ RayMethod walker(std::string name, bool isFlat, const Walk& walk) {
             false,           true,  [=](Boxes boxes) { return cellCaster(boxes, isFlat, walk); }};
 }
 
-/// The paper's picking in a grid of two dimensions: the cell in which the ray meets the ground. That is in
-/// the middle of all boxes here: what the paper's ground is to a scene that is no ground.
+/// The paper's picking in a grid of two dimensions: the cell in which the ray meets the ground.
+/// That is in the middle of all boxes here: what the paper's ground is to a scene that is no
+/// ground.
 RayCaster planePoint(Boxes boxes) {
     Aabb<float> bounds;
     for (const Aabb<float>& box : boxes) {
@@ -92,7 +93,7 @@ constexpr auto faces(BorderTimes times) {
         [times](const Ray& ray, const auto& visit) { walkFaces(ray.from, ray.to, times, visit); };
 }
 
-// --- By the library -----------------------------------------------------------------------------------
+// --- By the library ------------------------------------------------------------------------------
 
 /// In an empty grid, ids count from 0.
 struct CollectHits {
@@ -125,10 +126,10 @@ RayCaster gridCaster(Boxes boxes, bool nearestOnly) {
     };
 }
 
-// --- By Bullet ----------------------------------------------------------------------------------------
+// --- By Bullet -----------------------------------------------------------------------------------
 
-/// What btCollisionWorld::rayTest() asks of its broadphase: all boxes that the ray meets. How far away
-/// each is, Bullet's btRayAabb() says; it may also decide whether it is a hit.
+/// What btCollisionWorld::rayTest() asks of its broadphase: all boxes that the ray meets. How far
+/// away each is, Bullet's btRayAabb() says; it may also decide whether it is a hit.
 RayCaster dbvtCaster(Boxes boxes, bool mustPassRayAabb) {
     const auto filed = std::make_shared<DbvtBoxes>(boxes);
     return [=](const Ray& ray, std::vector<RayHit>& hits) {

@@ -48,8 +48,8 @@ void keepFresh(Keys& listed, std::uint32_t movers, const Keys& older) {
     std::sort(listed.begin(), listed.end());
 }
 
-/// How far the times of contact are off at worst: in frames, and as a share of them. Infinite where none is
-/// given.
+/// How far the times of contact are off at worst: in frames, and as a share of them. Infinite where
+/// none is given.
 std::pair<double, double> worstTimes(const SweepMethod& method, const SweptFrame& frame,
                                      const SweepTruth& truth) {
     std::pair<double, double> worst;

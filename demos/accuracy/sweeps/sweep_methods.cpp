@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/sweeps/sweep_methods.hpp>
+#include <demos/accuracy/sweeps/sweep_experiment.hpp>
 
 #include <broadphase/pairs.hpp>
 #include <broadphase/sweeps.hpp>
@@ -15,7 +15,7 @@ namespace {
 
 using Moving = MovingBox<float>;
 
-// --- Of ours --------------------------------------------------------------------------------------
+// --- Of ours -------------------------------------------------------------------------------------
 
 /// With Sweep::none it knows the boxes at the end of the frame, as every broadphase does that knows
 /// nothing of motion. In an empty grid, ids count from 0.
@@ -56,15 +56,15 @@ private:
     std::vector<ProxyId> ids_;
 };
 
-// --- On the paper's grid -----------------------------------------------------------------------------
+// --- On the paper's grid -------------------------------------------------------------------------
 //
 // After Hastings, Mesit and Guha, "Optimization of Large-Scale, Real-Time Simulations by Spatial
-// Hashing", 2005: static objects are hashed once, mobile ones every frame, in all columns of their way
-// over the ground. The loops include their ends and run both ways, which those that were printed do not;
-// a box has all its corners.
+// Hashing", 2005: static objects are hashed once, mobile ones every frame, in all columns of their
+// way over the ground. The loops include their ends and run both ways, which those that were
+// printed do not; a box has all its corners.
 
-/// The line raster of the paper, after J. E. Bresenham, "Algorithm for Computer Control of a Digital
-/// Plotter", 1965: from the column of the centre at the start to that at the end.
+/// The line raster of the paper, after J. E. Bresenham, "Algorithm for Computer Control of a
+/// Digital Plotter", 1965: from the column of the centre at the start to that at the end.
 template <class Visit>
 void visitThinLine(const Moving& moving, const Visit& visit) {
     const Vector3<double> start = moving.box.center().cast<double>();
@@ -115,8 +115,8 @@ void visitThickLine(const Moving& moving, const Visit& visit) {
 
 enum class Raster : std::uint8_t { box, thinLine, thickLine };
 
-/// As the paper has it, what shares a column counts if the boxes around the ways overlap; of the thick
-/// line, firstContact() decides.
+/// As the paper has it, what shares a column counts if the boxes around the ways overlap; of the
+/// thick line, firstContact() decides.
 class ColumnFinder final : public SweepFinder {
 public:
     ColumnFinder(Raster raster, const SweptFrame& first)
@@ -178,11 +178,11 @@ private:
     SweepWork work_;
 };
 
-// --- Of Bullet ----------------------------------------------------------------------------------------
+// --- Of Bullet -----------------------------------------------------------------------------------
 
-/// The boxes at the end of the frame, without the pairs that btDbvtBroadphase keeps though they have come
-/// apart, in which the narrowphase finds nothing; the boxes around the ways, as m_useContinuous has it; and
-/// these with firstContact() for every pair that is listed.
+/// The boxes at the end of the frame, without the pairs that btDbvtBroadphase keeps though they
+/// have come apart, in which the narrowphase finds nothing; the boxes around the ways, as
+/// m_useContinuous has it; and these with firstContact() for every pair that is listed.
 enum class BulletSweep : std::uint8_t { discrete, united, unitedAndTested };
 
 class BulletFinder final : public SweepFinder {
@@ -252,7 +252,8 @@ private:
     std::vector<PairKey> touching_;
 };
 
-/// What a method promises: every contact; contacts only, and every one; only some, those at the end.
+/// What a method promises: every contact; contacts only, and every one; only some, those at the
+/// end.
 enum class Promise : std::uint8_t { neither, allContacts, both, contactsAtTheEnd };
 
 template <class Finder, class Kind>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Boxes that move during a frame, what they really touch, and when: in integers, so nothing is rounded, and
-// of all pairs. It shares no code with the library.
+// Boxes that move during a frame, what they really touch, and when: in integers, so nothing is
+// rounded, and of all pairs. It shares no code with the library.
 
 #include <broadphase/moving_box.hpp>
 #include <demos/accuracy/exact_entry.hpp>
@@ -37,8 +37,8 @@ struct SweptFrame {
     return moving.box.merged(endBox(moving));
 }
 
-/// When the two objects of the frame touch first, as a share of the frame; nothing when they never do.
-/// Throws std::logic_error for coordinates that are no multiples of the frame's unit.
+/// When the two objects of the frame touch first, as a share of the frame; nothing when they never
+/// do. Throws std::logic_error for coordinates that are no multiples of the frame's unit.
 [[nodiscard]] std::optional<Fraction> exactContact(const SweptFrame& frame, std::uint32_t a,
                                                    std::uint32_t b);
 

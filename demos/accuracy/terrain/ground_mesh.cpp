@@ -44,8 +44,8 @@ Real nearest(std::span<const Corners* const> triangles, const Point& p) {
     return least;
 }
 
-// Whether the point of the map is within the triangle, or so near outside of an edge that rounding it
-// to single precision may have put it there.
+// Whether the point of the map is within the triangle, or so near outside of an edge that rounding
+// it to single precision may have put it there.
 bool isWithin(const Corners& triangle, Real x, Real z) {
     constexpr Real kOnEdge = 1e-5L;  // [m]
     const auto areaOf = [](const Point& from, const Point& to, Real px, Real pz) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Ground of triangles: a square of quads, each cut along its diagonal, with heights of many kinds; and the
-// truth about spheres on it: the nearest point of all triangles, in long double.
+// Ground of triangles: a square of quads, each cut along its diagonal, with heights of many kinds;
+// and the truth about spheres on it: the nearest point of all triangles, in long double.
 
 #include <broadphase/aabb.hpp>
 
@@ -19,8 +19,8 @@ struct GroundMesh {
     static constexpr float kEdge = 1;            // of a quad [m]
     static constexpr float kHalf = 0.5F * kEdge * kQuads;
 
-    /// Of the height [m] at x and z. Vertices between the borders are moved by up to `jitter` [m] along x
-    /// and z, at random: with 0, what is between them is a heightfield of Bullet's.
+    /// Of the height [m] at x and z. Vertices between the borders are moved by up to `jitter` [m]
+    /// along x and z, at random: with 0, what is between them is a heightfield of Bullet's.
     explicit GroundMesh(const std::function<float(float, float)>& height, float jitter = 0,
                         std::uint64_t seed = 1);
 
@@ -50,8 +50,9 @@ public:
     /// How high the centre of a sphere is that rests on the ground, which has no overhangs.
     [[nodiscard]] double restingHeight(float x, float z, float radius) const;
 
-    /// How deep a sphere with its centre there is in the ground: the radius less the distance to the
-    /// nearest triangle, or plus it where the centre is below the ground; 0 where it does not touch.
+    /// How deep a sphere with its centre there is in the ground: the radius less the distance to
+    /// the nearest triangle, or plus it where the centre is below the ground; 0 where it does not
+    /// touch.
     [[nodiscard]] double penetration(float x, double height, float z, float radius) const;
 
 private:

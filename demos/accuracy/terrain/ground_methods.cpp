@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/terrain/ground_methods.hpp>
+#include <demos/accuracy/terrain/terrain_experiment.hpp>
 
 #include <demos/accuracy/baselines/paper_map.hpp>
 #include <integration/bullet/conversions.hpp>
@@ -26,10 +26,10 @@ GroundFinder oneByOne(const Stand& standing) {
     };
 }
 
-/// The paper's terrain: all triangles in a map of cells, the one that has the point within its three
-/// corners on the map, the height between them. A point that rounding puts outside of both triangles
-/// at an edge has none. The paper lifts the sphere by its radius; what is right on a slope without end is
-/// to divide by the normal's height.
+/// The paper's terrain: all triangles in a map of cells, the one that has the point within its
+/// three corners on the map, the height between them. A point that rounding puts outside of both
+/// triangles at an edge has none. The paper lifts the sphere by its radius; what is right on a
+/// slope without end is to divide by the normal's height.
 GroundFinder paperGround(const GroundMesh& mesh, float cellSize, bool mindsSlope) {
     const auto map = std::make_shared<PaperMap>(mesh.triangleBoxes(), cellSize);
     return oneByOne([=](const Vector3<float>& p, float radius) -> std::optional<Standing> {
@@ -52,7 +52,7 @@ GroundFinder paperGround(const GroundMesh& mesh, float cellSize, bool mindsSlope
 }
 
 /// The library's. Points ask for the surface.
-GroundFinder terrainGround(const GroundMesh& mesh, double cellSize, bool allAtOnce) {
+GroundFinder terrainGround(const GroundMesh& mesh, float cellSize, bool allAtOnce) {
     struct Filed {
         Grid<float> grid;
         Terrain<float> terrain{grid};
@@ -60,7 +60,7 @@ GroundFinder terrainGround(const GroundMesh& mesh, double cellSize, bool allAtOn
 
         explicit Filed(double size) : grid({.cellSize = size}) {}
     };
-    const auto filed = std::make_shared<Filed>(cellSize);
+    const auto filed = std::make_shared<Filed>(static_cast<double>(cellSize));
     filed->terrain.add(mesh.vertices, mesh.indices);
     filed->grid.update();
     const auto standing = [](const Terrain<float>::Found& ground) {
@@ -79,7 +79,7 @@ GroundFinder terrainGround(const GroundMesh& mesh, double cellSize, bool allAtOn
     };
 }
 
-// --- What programs do that have Bullet ----------------------------------------------------------------
+// --- What programs do that have Bullet -----------------------------------------------------------
 
 struct BulletMesh {
     explicit BulletMesh(const GroundMesh& mesh)
@@ -95,7 +95,8 @@ struct BulletMesh {
     btBvhTriangleMeshShape shape;
 };
 
-/// The vertices' heights, without their places. Bullet puts the middle of the range that it is told at 0.
+/// The vertices' heights, without their places. Bullet puts the middle of the range that it is told
+/// at 0.
 struct BulletHeightfield {
     explicit BulletHeightfield(const GroundMesh& mesh)
         : reach(mesh.bounds().min().cwiseAbs().cwiseMax(mesh.bounds().max().cwiseAbs()).y() + 1) {
@@ -114,57 +115,66 @@ struct BulletHeightfield {
     std::unique_ptr<btHeightfieldTerrainShape> shape;
 };
 
-/// The nearest hit of a ray, its triangle and its normal.
+/// Where something that goes down stops.
+struct Stop {
+    btScalar fraction;                      // of its way
+    float lift;                             // up to the centre [m]
+    std::optional<std::uint32_t> triangle;  // where it is told
+};
+
+/// Each sphere by itself: stop(from, to, radius), nothing without ground, on the way straight down.
+template <class FindStop>
+GroundFinder straightDown(const GroundMesh& mesh, const FindStop& findStop) {
+    const float below = mesh.bounds().min().y() - 1;
+    return oneByOne([=](const Vector3<float>& center, float radius) {
+        const btVector3 from = toBullet(center);
+        const std::optional<Stop> stop =
+            findStop(from, btVector3(from.x(), below, from.z()), radius);
+        return stop ? std::optional(
+                          Standing{from.y() + stop->fraction * (below - from.y()) + stop->lift,
+                                   stop->triangle})
+                    : std::nullopt;
+    });
+}
+
+/// The nearest hit of a ray at a shape, its triangle and its normal.
+template <class Shape>
 struct NearestHit : btTriangleRaycastCallback {
-    using btTriangleRaycastCallback::btTriangleRaycastCallback;
+    NearestHit(Shape& shape, const btVector3& from, const btVector3& to)
+        : btTriangleRaycastCallback(from, to) {
+        shape.performRaycast(this, from, to);
+    }
 
     btScalar reportHit(const btVector3& hitNormal, btScalar fraction, int /*part*/,
                        int index) override {
         normal = hitNormal;
-        triangle = index;
+        triangle = static_cast<std::uint32_t>(index);
         return fraction;
     }
 
     btVector3 normal{0, 1, 0};
-    int triangle = 0;
+    std::uint32_t triangle = 0;
 };
 
-/// A ray straight down, cast(hit, from, to); then up by the radius, or by what is right on a slope.
-template <class Cast>
-GroundFinder rayDown(const GroundMesh& mesh, bool mindsSlope, bool tellsTriangle,
-                     const Cast& cast) {
-    const float below = mesh.bounds().min().y() - 1;
-    return oneByOne([=](const Vector3<float>& center, float radius) -> std::optional<Standing> {
-        const btVector3 from = toBullet(center);
-        const btVector3 to(from.x(), below, from.z());
-        NearestHit hit(from, to);
-        cast(hit, from, to);
-        if (hit.m_hitFraction >= 1) {
-            return std::nullopt;
-        }
+/// A ray; then up by the radius, or by what is right on a slope.
+GroundFinder rayAtMesh(const GroundMesh& mesh, bool mindsSlope) {
+    const auto filed = std::make_shared<BulletMesh>(mesh);
+    return straightDown(mesh, [=](const btVector3& from, const btVector3& to, float radius) {
+        const NearestHit hit(filed->shape, from, to);
         const float up = mindsSlope ? std::abs(hit.normal.normalized().y()) : 1.0F;
-        Standing standing{from.y() + hit.m_hitFraction * (below - from.y()) + radius / up, {}};
-        if (tellsTriangle) {
-            standing.triangle = static_cast<std::uint32_t>(hit.triangle);
-        }
-        return standing;
+        return hit.m_hitFraction < 1
+                   ? std::optional(Stop{hit.m_hitFraction, radius / up, hit.triangle})
+                   : std::nullopt;
     });
 }
 
-GroundFinder rayAtMesh(const GroundMesh& mesh, bool mindsSlope) {
-    return rayDown(mesh, mindsSlope, true,
-                   [filed = std::make_shared<BulletMesh>(mesh)](
-                       NearestHit& hit, const btVector3& from, const btVector3& to) {
-                       filed->shape.performRaycast(&hit, from, to);
-                   });
-}
-
 GroundFinder rayAtHeightfield(const GroundMesh& mesh, float /*cellSize*/) {
-    return rayDown(mesh, false, false,
-                   [filed = std::make_shared<BulletHeightfield>(mesh)](
-                       NearestHit& hit, const btVector3& from, const btVector3& to) {
-                       filed->shape->performRaycast(&hit, from, to);
-                   });
+    const auto filed = std::make_shared<BulletHeightfield>(mesh);
+    return straightDown(mesh, [=](const btVector3& from, const btVector3& to, float radius) {
+        const NearestHit hit(*filed->shape, from, to);
+        return hit.m_hitFraction < 1 ? std::optional(Stop{hit.m_hitFraction, radius, {}})
+                                     : std::nullopt;
+    });
 }
 
 /// btCollisionWorld::convexSweepTest() of the sphere.
@@ -184,18 +194,12 @@ GroundFinder sweepDown(const GroundMesh& mesh, float /*cellSize*/) {
         btCollisionObject object;
     };
     const auto filed = std::make_shared<Filed>(mesh);
-    const float below = mesh.bounds().min().y() - 1;
-    return oneByOne([=](const Vector3<float>& center, float radius) -> std::optional<Standing> {
-        const btVector3 from = toBullet(center);
-        const btVector3 to(from.x(), below, from.z());
+    return straightDown(mesh, [=](const btVector3& from, const btVector3& to, float radius) {
         const btSphereShape sphere(radius);
         btCollisionWorld::ClosestConvexResultCallback hit(from, to);
         filed->world.convexSweepTest(&sphere, btTransform(btQuaternion::getIdentity(), from),
                                      btTransform(btQuaternion::getIdentity(), to), hit);
-        if (!hit.hasHit()) {
-            return std::nullopt;
-        }
-        return Standing{from.y() + hit.m_closestHitFraction * (below - from.y()), {}};
+        return hit.hasHit() ? std::optional(Stop{hit.m_closestHitFraction, 0, {}}) : std::nullopt;
     });
 }
 
@@ -206,13 +210,18 @@ std::vector<GroundMethod> groundMethods() {
         return
             [=](const GroundMesh& mesh, float size) { return paperGround(mesh, size, mindsSlope); };
     };
-    const auto terrain = [](bool allAtOnce, bool takesCells) {
-        return [=](const GroundMesh& mesh, float size) {
-            return terrainGround(mesh, takesCells ? static_cast<double>(size) : 0, allAtOnce);
-        };
-    };
     const auto ray = [](bool mindsSlope) {
         return [=](const GroundMesh& mesh, float) { return rayAtMesh(mesh, mindsSlope); };
+    };
+    const auto ours = [&](std::string name, bool allAtOnce, bool takesCells) {
+        return GroundMethod{.name = std::move(name),
+                            .make =
+                                [=](const GroundMesh& mesh, float size) {
+                                    return terrainGround(mesh, takesCells ? size : 0, allAtOnce);
+                                },
+                            .isOurs = true,
+                            .mustRest = true,
+                            .takesCells = takesCells};
     };
     return {
         {.name = "paper: height + r",
@@ -220,19 +229,9 @@ std::vector<GroundMethod> groundMethods() {
          .sinksByLine = true,
          .takesCells = true},
         {.name = "height + r / n_y", .make = paper(true), .takesCells = true},
-        {.name = "Terrain, one by one",
-         .make = terrain(false, false),
-         .isOurs = true,
-         .mustRest = true},
-        {.name = "Terrain, all at once",
-         .make = terrain(true, false),
-         .isOurs = true,
-         .mustRest = true},
-        {.name = "Terrain, all at once, fixed cells",
-         .make = terrain(true, true),
-         .isOurs = true,
-         .mustRest = true,
-         .takesCells = true},
+        ours("Terrain, one by one", false, false),
+        ours("Terrain, all at once", true, false),
+        ours("Terrain, all at once, fixed cells", true, true),
         {.name = "Bullet: ray at mesh, + r", .make = ray(false)},
         {.name = "Bullet: ray at mesh, + r / n_y", .make = ray(true)},
         {.name = "Bullet: ray at heightfield, + r", .make = rayAtHeightfield, .findsPoints = false},

@@ -84,8 +84,8 @@ std::vector<Contestant> contestants(const GroundMesh& mesh, std::span<const Grou
     return all;
 }
 
-/// Puts spheres on the ground; depths in it and heights above the place where they would touch it are
-/// shares of their radii.
+/// Puts spheres on the ground; depths in it and heights above the place where they would touch it
+/// are shares of their radii.
 void rest(const GroundScene& ground, std::span<const Contestant> contestants, std::size_t count,
           Random& random, Measurements& measured) {
     const ExactGround truth(ground.mesh);

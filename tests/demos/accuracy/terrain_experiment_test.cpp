@@ -12,8 +12,8 @@ namespace {
 
 const TerrainPlan kTinyTerrain{.spheres = 3, .points = 100, .frames = 2, .spheresPerFrame = 20};
 
-/// Which checks hold of the first method with the quality when what it finds for each eighth sphere is
-/// changed.
+/// Which checks hold of the first method with the quality when what it finds for each eighth sphere
+/// is changed.
 template <class Change>
 std::vector<bool> holdsWhenChanged(bool GroundMethod::*quality, const Change& change) {
     std::vector<GroundMethod> methods = groundMethods();
