@@ -63,20 +63,43 @@ public:
     explicit Shower(Measurements& measured) : measured_(measured) {}
 
     [[nodiscard]] Findings show(std::string_view sql) {
+        std::vector<Shown> together;
         for (Json heading = takeHeading(sql); !sql.empty(); heading = takeHeading(sql)) {
+            if (heading.is_null() ||
+                (!together.empty() &&
+                 heading.value("each", "") != together.front().heading.value("each", ""))) {
+                showInTurn(together);
+                together.clear();
+            }
             if (heading.is_null()) {
                 measured_.take(sql);
-                continue;
+            } else {
+                together.push_back({std::move(heading), sql});
+                measured_.skip(sql);
             }
-            for (const Record& parameters : parametersOf(heading)) {
-                showAs(heading, measured_.ask(sql, parameters), parameters);
-            }
-            measured_.skip(sql);
         }
+        showInTurn(together);
         return std::move(findings_);
     }
 
 private:
+    struct Shown {
+        Json heading;
+        std::string_view sql;
+    };
+
+    /// Statements with the same "each".
+    void showInTurn(const std::vector<Shown>& together) {
+        if (together.empty()) {
+            return;
+        }
+        for (const Record& parameters : parametersOf(together.front().heading)) {
+            for (const auto& [heading, sql] : together) {
+                showAs(heading, measured_.ask(sql, parameters), parameters);
+            }
+        }
+    }
+
     /// Of each time that the statement is shown.
     [[nodiscard]] std::vector<Record> parametersOf(const Json& heading) {
         if (!heading.contains("each")) {

@@ -137,7 +137,7 @@ private:
 PairMethod paperGridMethod(std::string name, double cellSize, FiledCells filed) {
     PairMethod method;
     method.name = std::move(name);
-    method.origin = MethodOrigin::kPaper;
+    method.origin = kOfPaper;
     method.isExact = filed == FiledCells::kAll;
     method.isComplete = method.isExact;
     method.make = [cellSize, filed](const BroadphaseNeeds& /*needs*/,

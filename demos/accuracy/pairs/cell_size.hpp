@@ -16,7 +16,7 @@ struct CellMethod {
     bool isAutomatic = false;           // competes with our fixed sizes
     double filingCellSize = 0;  // objects are filed in every cell of this size; 0: they are not
 
-    [[nodiscard]] bool isFixed() const { return factor && pairs.origin == MethodOrigin::kOurs; }
+    [[nodiscard]] bool isFixed() const { return factor && pairs.origin == kOurs; }
 
     /// "levels, cells 0.5", the factor last.
     [[nodiscard]] std::string name() const;

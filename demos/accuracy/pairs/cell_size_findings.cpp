@@ -35,7 +35,7 @@ void addChoices(const CellCaseResult& result, std::vector<Choice>& choices) {
             choices.push_back({"All pairs of a frame: " + result.name + " boxes",
                                result.methods[i].name(), measured.time->median,
                                missedShare(measured), pairResultText(measured),
-                               result.methods[i].pairs.origin == MethodOrigin::kOurs});
+                               result.methods[i].pairs.origin == kOurs});
         }
     }
 }
@@ -85,7 +85,7 @@ std::string paperSentence(const CellCaseResult& result) {
     std::uint64_t timedWays = 0;
     for (std::size_t i = 0; i < result.methods.size(); ++i) {
         const CellMethod& method = result.methods[i];
-        if (method.pairs.origin != MethodOrigin::kPaper) {
+        if (method.pairs.origin != kOfPaper) {
             continue;
         }
         const auto time = result.nanosecondsOf(i);
@@ -118,7 +118,7 @@ std::string bulletSentence(const CellCaseResult& result) {
 
 bool hasOthers(const CellCaseResult& result) {
     return std::any_of(result.methods.begin(), result.methods.end(), [](const CellMethod& each) {
-        return each.pairs.origin != MethodOrigin::kOurs;
+        return each.pairs.origin != kOurs;
     });
 }
 

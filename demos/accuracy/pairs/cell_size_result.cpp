@@ -36,7 +36,7 @@ std::optional<std::size_t> CellCaseResult::bestFixed() const {
 
 std::optional<std::size_t> CellCaseResult::bullet() const {
     for (std::size_t i = 0; i < methods.size(); ++i) {
-        if (methods[i].pairs.origin == MethodOrigin::kBullet && nanosecondsOf(i)) {
+        if (methods[i].pairs.origin == kOfBullet && nanosecondsOf(i)) {
             return i;
         }
     }

@@ -59,7 +59,7 @@ PairMethod dbvtMethod(bool isDeferred) {
     const BroadphaseKind& kind = broadphaseKind(isDeferred ? "dbvt-deferred" : "dbvt");
     PairMethod method;
     method.name = kind.title;
-    method.origin = MethodOrigin::kBullet;
+    method.origin = kOfBullet;
     method.isExact = false;
     method.make = [&kind](const BroadphaseNeeds& needs, std::span<const BulletBox> boxes) {
         return std::make_unique<BroadphaseSource>(kind, needs, boxes);

@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hashphase::demos {
@@ -34,11 +35,14 @@ public:
     [[nodiscard]] virtual std::optional<std::uint64_t> boxesTested() const { return std::nullopt; }
 };
 
-enum class MethodOrigin { kOurs, kPaper, kBullet };
+/// Whose a method is.
+inline constexpr std::string_view kOurs = "ours";
+inline constexpr std::string_view kOfPaper = "paper";
+inline constexpr std::string_view kOfBullet = "bullet";
 
 struct PairMethod {
     std::string name;
-    MethodOrigin origin = MethodOrigin::kOurs;
+    std::string_view origin = kOurs;
     bool isExact = true;     // promises the overlapping pairs, all of them and no other
     bool isComplete = true;  // promises all of them, perhaps with others
 

@@ -148,7 +148,7 @@ Check stillnessCheck(const Results& results) {
 /// What lists false pairs for the sake of speed leaves their test to others: it does not compete with
 /// the same way that tests them itself.
 bool isUnfinished(const PairMethod& policy) {
-    return policy.origin == MethodOrigin::kOurs && policy.isComplete && !policy.isExact;
+    return policy.origin == kOurs && policy.isComplete && !policy.isExact;
 }
 
 void addChoices(const Results& results, std::vector<Choice>& choices) {
@@ -165,7 +165,7 @@ void addChoices(const Results& results, std::vector<Choice>& choices) {
             }
             choices.push_back({task, results.policies[i].name, measured.time->median,
                                missedShare(measured), pairResultText(measured),
-                               results.policies[i].origin == MethodOrigin::kOurs});
+                               results.policies[i].origin == kOurs});
         }
     }
 }

@@ -7,6 +7,8 @@
 #include <demos/scenes/box_scene.hpp>
 #include <demos/scenes/random.hpp>
 
+#include <array>
+
 namespace hashphase::demos {
 
 struct AgentPlan {
@@ -21,18 +23,17 @@ class AgentScene : public BoxScene {
 public:
     AgentScene(const AgentPlan& plan, std::uint64_t seed);
 
-    void advance() override;
+    void advance() override { moveBy(-step_, step_); }
     [[nodiscard]] Aabb<float> bounds() const override;
 
 private:
-    /// In 1/256 m.
-    using Place = std::array<std::int32_t, 3>;
+    using Place = std::array<std::int32_t, 3>;  // [m / 256]
 
-    [[nodiscard]] std::int32_t draw(std::int32_t low, std::int32_t high);
-    void placeBoxes();
+    /// Each agent by a random way from low to high along each axis, and sets the boxes.
+    void moveBy(std::int32_t low, std::int32_t high);
 
     Random random_;
-    int axes_;  // along which agents move: x, z, and in a cube y
+    bool isFlat_;
     std::int32_t side_;
     std::int32_t step_;
     float halfEdge_;

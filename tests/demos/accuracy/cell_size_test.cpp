@@ -57,7 +57,7 @@ TEST(CellSizeExperiment, NoticesCornerCellsThatMissWhatIsNoLargerThanACell) {
     const CellMethods methods = [](const CellCase& each, double meanEdge) {
         std::vector<CellMethod> all = cellMethods(each, meanEdge);
         for (CellMethod& method : all) {
-            if (method.pairs.origin == MethodOrigin::kPaper && !method.pairs.isExact) {
+            if (method.pairs.origin == kOfPaper && !method.pairs.isExact) {
                 method.pairs = broken(Flaw::kMissesOne, method.pairs);
             }
         }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/proximity/agent_scene.hpp>
-#include <demos/accuracy/proximity/proximity.hpp>
+#include <demos/accuracy/proximity/proximity_experiment.hpp>
 #include <tests/demos/accuracy/findings_checks.hpp>
 
 #include <gtest/gtest.h>
@@ -10,17 +10,10 @@
 namespace hashphase::demos {
 namespace {
 
-ProximityExperimentPlan tinyProximity() {
-    ProximityExperimentPlan plan;
-    ProximityCase crowd;
-    crowd.name = "a few agents";
-    crowd.agents = 300;
-    crowd.neighbours = 5;
-    plan.crowds = {crowd};
-    crowd.radiusByCell = 4;
-    crowd.hasAllMethods = false;
-    plan.crowds.push_back(crowd);
-    plan.trial.rounds = 2;
+ProximityPlan tinyProximity() {
+    ProximityPlan plan;
+    plan.crowds = {{"a few agents", 300, 5}, {"a few agents", 300, 5, 5, 4, false}};
+    plan.rounds = 2;
     plan.statedEstimates = 100;
     return plan;
 }
@@ -74,7 +67,7 @@ TEST(ProximityExperiment, NoticesAnEstimateThatForgetsANeighbour) {
 }
 
 TEST(ProximityExperiment, RefusesASquareThatIsTooSmallForTheCells) {
-    ProximityExperimentPlan plan = tinyProximity();
+    ProximityPlan plan = tinyProximity();
     plan.crowds.front().radiusByCell = 0.1;
     EXPECT_THROW(static_cast<void>(measureProximity(plan, neighbourMethods(), 1, ignoreProgress)),
                  std::invalid_argument);

@@ -11,16 +11,16 @@
 
 namespace hashphase::demos {
 
-inline constexpr std::uint32_t kColourCount = 4;
+using ColourCounts = std::array<std::uint32_t, 4>;
+
+/// Of equally rare colours the lowest.
+[[nodiscard]] std::uint32_t rarestOf(const ColourCounts& counts);
 
 /// A frame: where the agents are. Agents are numbered by their place here.
 struct AgentFrame {
     std::span<const Aabb<float>> boxes;
     std::span<const BulletBox> bulletBoxes;  // the same
 };
-
-/// Of equally rare colours the lowest.
-[[nodiscard]] std::uint32_t rarestOf(const std::array<std::uint32_t, kColourCount>& counts);
 
 /// One way at work.
 class NeighbourSearch {
@@ -52,34 +52,17 @@ struct NeighbourNeeds {
 
 struct NeighbourMethod {
     std::string name;
-    MethodOrigin origin = MethodOrigin::kOurs;
+    std::string_view origin = kOurs;
     bool isExact = false;
     bool isComplete = false;  // misses nobody, but may name others
-    bool usesCells = true;    // of NeighbourNeeds::cellSize, in time or in errors
     bool isEstimate = false;  // the library's, by cells: precision as proximity.hpp tells
+    bool usesCells = true;    // of NeighbourNeeds::cellSize, in time or in errors
     std::function<std::unique_ptr<NeighbourSearch>(const NeighbourNeeds&)> make;
 };
 
-// --- Of the library --------------------------------------------------------------------------------
-
-[[nodiscard]] NeighbourMethod rarestColourMethod();  // RarestColour: counted, exactly
-[[nodiscard]] NeighbourMethod crowdMethod();         // RadiusSearch::forEach(): listed, exactly
-[[nodiscard]] NeighbourMethod findWithinMethod();    // agent by agent, exactly
-[[nodiscard]] NeighbourMethod estimateMethod();      // estimateWithin(): by cells
-[[nodiscard]] NeighbourMethod countedCellsMethod();  // the same, only counted
-[[nodiscard]] NeighbourMethod ballBoxMethod();       // whose box touches the ball's box
-[[nodiscard]] NeighbourMethod firstFewMethod(std::size_t most);  // the first that are found
-
-/// RarestColour in each `period`-th frame; decisions stand until the next.
-[[nodiscard]] NeighbourMethod staleNeighboursMethod(int period);
-
-// --- Of others -------------------------------------------------------------------------------------
-
-/// As the paper prints it: a flat grid, and the cells from base - offset to base + offset - 1.
-[[nodiscard]] NeighbourMethod paperProximityMethod();
-
-/// btDbvtBroadphase::aabbTest() around each agent, and the distance to all whom it finds. No pairs are
-/// found on the way.
-[[nodiscard]] NeighbourMethod bulletProximityMethod();
+/// The library's; then the paper's as it prints it, with a flat grid and the cells from base - offset to
+/// base + offset - 1; then Bullet's: btDbvtBroadphase::aabbTest() around each agent, and the distance to
+/// all whom it finds, without any pairs on the way.
+[[nodiscard]] std::vector<NeighbourMethod> neighbourMethods();
 
 }  // namespace hashphase::demos

@@ -1,0 +1,135 @@
+R"sql(-- SPDX-License-Identifier: Zlib
+--
+-- P3. Measured are: methods, trials (crowds, with cells of a size), judged (a row for each trial, method and
+-- frame), times (each mean of some frames); estimates (each query) and theory, by radius / cell.
+
+CREATE VIEW texts AS
+SELECT 'Agents with boxes of 0.5 m wander over a square by up to 1/50 of the radius on each axis and frame; '
+       || 'each counts four colours, drawn once, among those near it and takes the rarest (at random, 75 % '
+       || 'would be wrong). Time: agents moved in the index and decisions taken, for all; means of 8 frames '
+       || 'in a row, medians of 8 such means.' AS scene;
+
+CREATE TABLE did AS
+WITH sums AS (SELECT trial, method, count(*) AS frames, sum(neighbours) AS neighbours, sum(found) AS found,
+                     sum(wrongly) AS wrongly, sum(decisions) AS decisions, sum(wrong) AS wrong,
+                     sum(worse) AS worse FROM judged GROUP BY trial, method),
+     medians AS (SELECT trial, method, median(ms) AS ms FROM times GROUP BY trial, method)
+SELECT *, 1e6 * ms / agents AS ns, iif(neighbours = 0, 1, 1.0 * found / neighbours) AS recall,
+       1.0 * found / (found + wrongly) AS precision,  -- null where nobody is named
+       1.0 * wrong / decisions AS wrong_share,
+       found = neighbours AND wrongly = 0 AND wrong = 0 AS is_right,
+       iif(uses_cells, method || ', cells of ' || number(cell) || ' m', method) AS name
+FROM trials JOIN sums USING (trial) JOIN methods USING (method) JOIN medians USING (trial, method)
+ORDER BY trial, methods.number;
+
+-- It has no cells, so that once in a crowd is enough.
+CREATE TABLE bullet AS SELECT crowd, ns AS bullet_ns FROM did WHERE origin = 'bullet' GROUP BY crowd;
+
+CREATE VIEW results AS
+SELECT crowd, method, iif(uses_cells, ratio, NULL) AS "radius_by_cell: radius / cell",
+       ns AS "ns: time [ns/agent]", ns * decisions / neighbours AS "ns_neighbour: time [ns/neighbour]",
+       bullet_ns / ns AS "speed: times as fast as btDbvtBroadphase",
+       recall AS "recall: neighbours found (recall)",
+       precision AS "precision: of those named, neighbours (precision)",
+       iif(estimate, estimate_precision, NULL) AS "theory: precision in theory",
+       wrong_share AS "wrong: wrong decisions",
+       interval_low(wrong, decisions, frames) AS "wrong_low: at least",
+       interval_high(wrong, decisions, frames) AS "wrong_high: at most (95 %)",
+       1.0 * worse / decisions AS "worse: decisions for a colour that is not even equally rare"
+FROM did LEFT JOIN bullet USING (crowd) ORDER BY did.rowid;
+
+CREATE VIEW first_results AS SELECT * FROM results WHERE crowd = (SELECT crowd FROM trials);
+
+CREATE TABLE stated AS
+SELECT estimates.ratio, sum(found) AS found, iif(sum(found) = 0, 0, 1.0 * sum(within) / sum(found)) AS share,
+       precision AS theory, tenths / 10 AS stated, sum(missed) AS missed, sum(too_far) AS too_far
+FROM estimates JOIN theory USING (ratio)
+     JOIN (SELECT column1 AS ratio, column2 AS tenths FROM (VALUES (1, 1.0), (2, 2.0), (4, 3.0), (8, 4.0)))
+          USING (ratio)
+GROUP BY estimates.ratio;
+
+/* {"settings": "scene, truth, words"} */
+SELECT scene FROM texts
+UNION ALL VALUES
+('Truth: the distance to every other agent in double precision, for agents that have all the cells around them within the square. Coordinates are multiples of 1/256 m, so that single precision decides without rounding.'),
+('A decision is wrong when another colour is taken than the rarest, of equally rare ones the lowest.'),
+('Cells: everybody whose box touches a cell that the ball''s box touches; with boxes: whose box touches the ball''s box. As printed: the paper''s half-open loop over cells, which counts nobody where the radius is smaller than a cell, and an agent on a border twice.');
+
+/* {"chart": "P3-decisions-{:number}", "title": "Wrong decisions against time: {:crowd}",
+    "settings": "{scene}", "mark": "point", "x": "ns log", "y": "wrong log0", "series": "method",
+    "low": "wrong_low", "high": "wrong_high", "label": "radius_by_cell", "front": true,
+    "each": "SELECT crowd, row_number() OVER (ORDER BY min(trial)) AS number FROM trials GROUP BY crowd"} */
+SELECT * FROM results WHERE crowd = :crowd;
+
+/* {"chart": "P3-recall", "title": "How many of the neighbours are found", "settings": "{scene}",
+    "x": "radius_by_cell log", "y": "recall", "series": "method"} */
+SELECT * FROM first_results WHERE "radius_by_cell: radius / cell" IS NOT NULL;
+
+/* {"chart": "P3-precision", "title": "How many of those named are neighbours", "settings": "{scene}",
+    "x": "radius_by_cell log", "y": "precision", "series": "method", "theory": "theory"} */
+SELECT * FROM first_results WHERE "radius_by_cell: radius / cell" IS NOT NULL;
+
+/* {"table": "the first crowd"} */
+SELECT * FROM first_results;
+
+/* {"table": "what proximity.hpp states"} */
+SELECT ratio AS "radius_by_cell: estimateWithin in space: radius / cell", found,
+       share AS "precision: of these within the radius", theory AS "theory: in theory",
+       stated AS "stated: as proximity.hpp states", missed, too_far AS "too_far: beyond the stated distance"
+FROM stated;
+
+/* {"checks": "exact ways"} */
+SELECT 'Exact ways find every neighbour and no other, and take no wrong decision',
+       count(*) > 0 AND min(is_right),
+       thousands(sum(neighbours - found)) || ' missed and ' || thousands(sum(wrongly)) || ' false of '
+       || thousands(sum(neighbours)) || ' neighbours, ' || thousands(sum(wrong)) || ' wrong of '
+       || thousands(sum(decisions)) || ' decisions in ' || count(*) || ' runs'
+       || coalesce('; first ' || (SELECT method FROM did WHERE exact AND NOT is_right), '')
+FROM did WHERE exact;
+
+/* {"checks": "complete ways"} */
+SELECT 'Cells, with boxes and without, miss nobody who is within the radius', total(neighbours - found) = 0,
+       thousands(sum(neighbours - found)) || ' of ' || thousands(sum(neighbours))
+FROM did WHERE complete;
+
+/* {"checks": "what proximity.hpp states"} */
+SELECT 'estimateWithin in space: 1, 2, 3 and 4 in 10 are really within 1, 2, 4 and 8 cells',
+       max(abs(share - stated)) < 0.05,  -- half a tenth
+       group_concat(fixed(share, 3) || ' (theory ' || fixed(theory, 3) || ')', ', ')
+FROM stated
+UNION ALL
+SELECT 'estimateWithin misses nobody, and nobody is farther than sqrt(3) (radius + cell)',
+       sum(missed) = 0 AND sum(too_far) = 0,
+       thousands(sum(missed)) || ' missed, ' || thousands(sum(too_far)) || ' too far of '
+       || thousands(sum(found)) || ' found'
+FROM stated;
+
+/* {"choices": "by wrong decisions"} */
+SELECT 'Neighbours for AI: ' || crowd, name, ms, wrong_share,
+       iif(is_right, 'every neighbour, every decision right',
+           number(100 * wrong_share) || ' % of decisions wrong; finds ' || number(100 * recall)
+           || ' % of the neighbours'
+           || coalesce(', ' || iif(precision IS NULL, NULL, number(100 * precision))
+                       || ' % of those named are', '')),
+       origin = 'ours'
+FROM did;
+
+-- The fastest exact way, and who is faster at the price of what; then how agents that ask one by one fare, over
+-- all cell sizes.
+/* {"conclusions": "crowd by crowd", "each": "SELECT crowd FROM trials GROUP BY crowd ORDER BY min(trial)"} */
+WITH best AS (SELECT * FROM did WHERE crowd = :crowd AND exact ORDER BY ns LIMIT 1),
+     faster AS (SELECT did.name || ' (' || fixed(best.ns / did.ns, 1) || 'x, '
+                       || number(100 * did.wrong_share) || ' % of decisions wrong)' AS text
+                FROM did JOIN best USING (crowd) WHERE did.ns < best.ns ORDER BY did.rowid)
+SELECT crowd || ': the fastest exact way is ' || name || ' (' || fixed(ns, 0) || ' ns an agent).'
+       || coalesce(' Faster: ' || (SELECT group_concat(text, '; ') FROM faster) || '.',
+                   ' No rough way is faster.')
+       || iif(bullet_ns IS NULL, '',
+              ' btDbvtBroadphase takes ' || fixed(bullet_ns / ns, 0) || ' times as long.')
+FROM best LEFT JOIN bullet USING (crowd)
+UNION ALL
+SELECT crowd || ', asked one by one: ' || method || ' is '
+       || iif(count(*) > 1, fixed(min(bullet_ns / ns), 2) || ' to ', '') || fixed(max(bullet_ns / ns), 2)
+       || ' times as fast as btDbvtBroadphase' || iif(count(*) > 1, ', by cell size.', '.')
+FROM did JOIN bullet USING (crowd) WHERE crowd = :crowd AND method = 'findWithin';
+)sql"
