@@ -135,16 +135,14 @@ private:
 }  // namespace
 
 PairMethod paperGridMethod(std::string name, double cellSize, FiledCells filed) {
-    PairMethod method;
-    method.name = std::move(name);
-    method.origin = kOfPaper;
-    method.isExact = filed == FiledCells::kAll;
-    method.isComplete = method.isExact;
-    method.make = [cellSize, filed](const BroadphaseNeeds& /*needs*/,
-                                    std::span<const BulletBox> /*boxes*/) {
-        return std::make_unique<PaperGrid>(cellSize, filed);
-    };
-    return method;
+    const bool isExact = filed == FiledCells::kAll;
+    return {.name = std::move(name),
+            .origin = kOfPaper,
+            .isExact = isExact,
+            .isComplete = isExact,
+            .make = [=](const BroadphaseNeeds& /*needs*/, std::span<const BulletBox> /*boxes*/) {
+                return std::make_unique<PaperGrid>(cellSize, filed);
+            }};
 }
 
 double filedCellCount(std::span<const BulletBox> boxes, double cellSize) {

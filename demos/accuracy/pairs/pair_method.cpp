@@ -45,26 +45,22 @@ const BroadphaseKind& broadphaseKind(std::string_view name) {
 }
 
 PairMethod hashMethod(std::string name, const GridConfig& grid) {
-    PairMethod method;
-    method.name = std::move(name);
-    method.make = [grid](const BroadphaseNeeds& needs, std::span<const BulletBox> boxes) {
-        BroadphaseNeeds own = needs;
-        own.grid = grid;
-        return std::make_unique<BroadphaseSource>(broadphaseKind("hash"), own, boxes);
-    };
-    return method;
+    return {.name = std::move(name),
+            .make = [grid](const BroadphaseNeeds& needs, std::span<const BulletBox> boxes) {
+                BroadphaseNeeds own = needs;
+                own.grid = grid;
+                return std::make_unique<BroadphaseSource>(broadphaseKind("hash"), own, boxes);
+            }};
 }
 
 PairMethod dbvtMethod(bool isDeferred) {
     const BroadphaseKind& kind = broadphaseKind(isDeferred ? "dbvt-deferred" : "dbvt");
-    PairMethod method;
-    method.name = kind.title;
-    method.origin = kOfBullet;
-    method.isExact = false;
-    method.make = [&kind](const BroadphaseNeeds& needs, std::span<const BulletBox> boxes) {
-        return std::make_unique<BroadphaseSource>(kind, needs, boxes);
-    };
-    return method;
+    return {.name = std::string(kind.title),
+            .origin = kOfBullet,
+            .isExact = false,
+            .make = [&kind](const BroadphaseNeeds& needs, std::span<const BulletBox> boxes) {
+                return std::make_unique<BroadphaseSource>(kind, needs, boxes);
+            }};
 }
 
 }  // namespace hashphase::demos

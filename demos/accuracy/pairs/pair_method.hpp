@@ -43,8 +43,9 @@ inline constexpr std::string_view kOfBullet = "bullet";
 struct PairMethod {
     std::string name;
     std::string_view origin = kOurs;
-    bool isExact = true;     // promises the overlapping pairs, all of them and no other
-    bool isComplete = true;  // promises all of them, perhaps with others
+    bool isExact = true;                // promises the overlapping pairs, all of them and no other
+    bool isComplete = true;             // promises all of them, perhaps with others
+    std::optional<double> factor = {};  // cell size by mean edge, where somebody has that choice
 
     /// When it compares more boxes than this in a frame, it is judged, but not timed.
     double mostTestsTimed = std::numeric_limits<double>::infinity();

@@ -7,16 +7,29 @@
 namespace hashphase::demos {
 namespace {
 
+constexpr std::size_t kBruteForceUpTo = 20'000;
+
 class Trier {
 public:
-    Trier(BoxScene& scene, std::span<const PairMethod> methods)
-        : scene_(scene), needs_{scene.bounds(), scene.boxes().size(), {}} {
-        takeBoxes();
+    Trier(std::size_t trial, BoxScene& scene, std::span<const PairMethod> methods,
+          Measurements& measured)
+        : trial_(trial), scene_(scene), measured_(measured) {
+        const BroadphaseNeeds needs{scene.bounds(), scene.boxes().size(), {}};
+        toBulletBoxes(scene_.boxes(), boxes_);
         for (const PairMethod& method : methods) {
             Entry& entry = entries_.emplace_back();
             entry.mostTestsTimed = method.mostTestsTimed;
             const HeapScope scope(entry.heap);
-            entry.source = method.make(needs_, boxes_);
+            entry.source = method.make(needs, boxes_);
+        }
+        for (std::size_t way = 0; way < methods.size(); ++way) {
+            measured_.add("ways", {{"trial", trial},
+                                   {"way", way},
+                                   {"method", methods[way].name},
+                                   {"factor", methods[way].factor},
+                                   {"origin", methods[way].origin},
+                                   {"exact", methods[way].isExact},
+                                   {"complete", methods[way].isComplete}});
         }
     }
 
@@ -24,55 +37,48 @@ public:
         for (int frame = 0; frame < frames; ++frame) {
             advance();
             findTruth(frame == 0);
-            for (Entry& entry : entries_) {
-                judge(entry);
+            for (std::size_t way = 0; way < entries_.size(); ++way) {
+                judge(way);
             }
         }
     }
 
+    /// What the heap holds now is what the methods need.
+    void weigh() {
+        for (std::size_t way = 0; way < entries_.size(); ++way) {
+            measured_.add("heap",
+                          {{"trial", trial_}, {"way", way}, {"bytes", entries_[way].heap.bytes()}});
+        }
+    }
+
     void time(const PairTrialPlan& plan) {
-        std::vector<Entry*> timed;
+        std::vector<std::vector<BulletBox>> frames(static_cast<std::size_t>(plan.framesTogether));
+        std::vector<std::size_t> ways;
         std::vector<std::function<void()>> runs;
-        for (Entry& entry : entries_) {
-            if (entry.tests() <= entry.mostTestsTimed) {
-                timed.push_back(&entry);
-                runs.push_back([this, source = entry.source.get()] {
-                    for (const std::vector<BulletBox>& boxes : block_) {
-                        source->step(boxes);
+        for (std::size_t way = 0; way < entries_.size(); ++way) {
+            if (entries_[way].tested <= entries_[way].mostTestsTimed * entries_[way].testedFrames) {
+                ways.push_back(way);
+                runs.emplace_back([&frames, &source = *entries_[way].source] {
+                    for (const std::vector<BulletBox>& boxes : frames) {
+                        source.step(boxes);
                     }
                 });
             }
         }
         const auto begin = [&](int /*round*/) {
-            block_.resize(static_cast<std::size_t>(plan.framesTogether));
-            for (std::vector<BulletBox>& boxes : block_) {
+            for (std::vector<BulletBox>& boxes : frames) {
                 advance();
                 boxes = boxes_;
             }
         };
-        const std::vector<Spread> times = timeInTurn(plan.rounds, 1, begin, runs);
-        const double share = 1.0 / plan.framesTogether;
-        for (std::size_t i = 0; i < timed.size(); ++i) {
-            timed[i]->measured.time =
-                Spread{times[i].median * share, times[i].low * share, times[i].high * share};
-        }
-    }
-
-    /// What the heap holds now is what the method needs.
-    void takeBytes() {
-        for (Entry& entry : entries_) {
-            entry.measured.bytes = entry.heap.bytes();
-        }
-    }
-
-    [[nodiscard]] PairTrial result() {
-        for (Entry& entry : entries_) {
-            if (entry.testedFrames > 0) {
-                entry.measured.testsPerFrame = entry.tests();
+        const auto times = timesInTurn(plan.rounds, 1, begin, runs);
+        for (std::size_t i = 0; i < ways.size(); ++i) {
+            for (const double milliseconds : times[i]) {
+                measured_.add("times", {{"trial", trial_},
+                                        {"way", ways[i]},
+                                        {"ms", milliseconds / plan.framesTogether}});
             }
-            trial_.measurements.push_back(entry.measured);
         }
-        return trial_;
     }
 
 private:
@@ -80,66 +86,61 @@ private:
         std::unique_ptr<PairSource> source;
         HeapMeter heap;
         Verifier verifier;
-        PairMeasurement measured;
         double mostTestsTimed = 0;
         double tested = 0;
         int testedFrames = 0;
-
-        [[nodiscard]] double tests() const { return testedFrames == 0 ? 0 : tested / testedFrames; }
     };
 
-    void takeBoxes() { toBulletBoxes(scene_.boxes(), boxes_); }
     void advance() {
         scene_.advance();
-        takeBoxes();
+        toBulletBoxes(scene_.boxes(), boxes_);
     }
 
     void findTruth(bool byBruteForceToo) {
         findExactPairs(ReferenceMethod::kSweep, scene_.boxes(), {}, truth_);
-        if (byBruteForceToo && boxes_.size() <= PairTrial::kBruteForceUpTo) {
+        if (byBruteForceToo && boxes_.size() <= kBruteForceUpTo) {
             findExactPairs(ReferenceMethod::kBrute, scene_.boxes(), {}, listed_);
-            ++trial_.framesByBruteForce;
-            trial_.framesThatDiffer += listed_ == truth_ ? 0 : 1;
+            measured_.add("truths", {{"differs", listed_ != truth_}});
         }
     }
 
-    void judge(Entry& entry) {
+    void judge(std::size_t way) {
+        Entry& entry = entries_[way];
         {
             const HeapScope scope(entry.heap);
             entry.source->step(boxes_);
         }
-        if (const auto tested = entry.source->boxesTested()) {
-            entry.tested += static_cast<double>(*tested);
-            ++entry.testedFrames;
-        }
+        const std::optional<std::uint64_t> tested = entry.source->boxesTested();
+        entry.tested += static_cast<double>(tested.value_or(0));
+        ++entry.testedFrames;
         entry.source->listPairs(listed_);
         const FrameVerdict verdict = entry.verifier.judge(listed_, truth_);
-        ++entry.measured.judgedFrames;
-        entry.measured.truePairs += verdict.exactPairs;
-        entry.measured.missed += verdict.missing;
-        entry.measured.extra += verdict.extra;
+        measured_.add("judged", {{"trial", trial_},
+                                 {"way", way},
+                                 {"true_pairs", verdict.exactPairs},
+                                 {"missed", verdict.missing},
+                                 {"extra", verdict.extra},
+                                 {"tested", tested}});
     }
 
+    std::size_t trial_;
     BoxScene& scene_;
-    BroadphaseNeeds needs_;
+    Measurements& measured_;
     std::vector<BulletBox> boxes_;
-    std::vector<std::vector<BulletBox>> block_;
     std::vector<Entry> entries_;
     std::vector<PairKey> truth_;
     std::vector<PairKey> listed_;
-    PairTrial trial_;
 };
 
 }  // namespace
 
-PairTrial tryPairs(BoxScene& scene, std::span<const PairMethod> methods,
-                   const PairTrialPlan& plan) {
-    Trier trier(scene, methods);
+void tryPairs(std::size_t trial, BoxScene& scene, std::span<const PairMethod> methods,
+              const PairTrialPlan& plan, Measurements& measured) {
+    Trier trier(trial, scene, methods, measured);
     trier.judge(plan.judgedFrames);
-    trier.takeBytes();
+    trier.weigh();
     trier.time(plan);
     trier.judge(plan.judgedFrames);
-    return trier.result();
 }
 
 }  // namespace hashphase::demos

@@ -20,15 +20,14 @@ struct Motion {
 struct UpdatePlan {
     std::size_t objects = 0;
     std::vector<Motion> motions;  // at least one; those with the step of the first are compared
-    int judgedFrames = 0;         // a multiple of framesTogether
-    int rounds = 0;
-    int framesTogether = 8;  // a multiple of every period, so that each round has as many updates
+    PairTrialPlan trial;          // frames are multiples of every period, so that rounds are alike
 };
 
-[[nodiscard]] UpdatePlan updatePlan(const Effort& effort);
+/// When a broadphase is told that a box has moved: every time, as few times as boxes that are grown by a margin
+/// allow (btDbvtBroadphase does so by 5 cm), or in every so many frames only.
 [[nodiscard]] std::vector<PairMethod> updatePolicies();
 
-/// The experiment, with these policies.
+/// The experiment, with these policies (update_policies.sql).
 [[nodiscard]] Findings measurePolicies(const UpdatePlan& plan, std::span<const PairMethod> policies,
                                        std::uint64_t seed, const TellProgress& tell);
 

@@ -1,0 +1,111 @@
+R"sql(-- SPDX-License-Identifier: Zlib
+--
+-- P2. Beside what pairs.sql reads, trials have a population and its largest edge by the mean.
+
+CREATE VIEW texts AS
+SELECT 'Edges of 0.5-1.5 m, or of 1-1000 m with as many of each order of magnitude; each box overlaps about '
+       || 'two others and moves by up to a fifth of the mean edge on each axis and frame; clusters hold '
+       || '1,000 boxes. setAabb for all and all pairs of a frame, the pair cache included (the paper''s '
+       || 'grids keep none); medians of 60 frames.' AS scene;
+
+-- The sizes that the grid chooses itself against the best of those that are fixed.
+CREATE TABLE contests AS
+WITH best AS (SELECT trial, min(ns) AS best_ns, factor AS best_factor
+              FROM did WHERE origin = 'ours' AND factor IS NOT NULL GROUP BY trial)
+SELECT trial, name, ns AS automatic_ns, best_ns, best_factor, ns / best_ns - 1 AS regret
+FROM did LEFT JOIN best USING (trial) WHERE origin = 'ours' AND factor IS NULL ORDER BY did.rowid;
+
+-- Of each population the largest that was tried with all ways.
+CREATE TABLE showcases AS
+SELECT trial, name, max(objects), replace(replace(population, ' ', '-'), ':', '-') || '-' || objects AS slug
+FROM did WHERE origin <> 'ours' GROUP BY population ORDER BY trial;
+
+/* {"settings": "scene, truth, words"} */
+SELECT scene FROM texts
+UNION ALL VALUES
+('True pairs: a sweep along one axis, which brute force judges up to 20,000 objects.'),
+('Levels: hashphase with finest cells of that size and coarser ones of 4, 16 ... times, of which a box lies on the finest with cells no smaller than it; where most boxes are a little smaller than the cells of one level, all of them share it. Automatic: sizes chosen from the population. One grid: the paper''s, with one size for all.'),
+('Not measured: the paper''s grids where an object would lie in more than 64 cells on average, and their times where a frame compares more than 300 boxes an object; they and btDbvtBroadphase above 20,000 objects.');
+
+-- Where no box is larger than a cell, each spans at most two cells an axis: its corners are all.
+/* {"checks": "the paper's grids"} */
+SELECT 'The paper''s corner cells miss nothing where no box is larger than a cell', total(missed) = 0,
+       thousands(sum(missed)) || ' of ' || thousands(sum(true_pairs))
+FROM did WHERE NOT complete AND factor >= largest_edge;
+
+/* {"chart": "P2-time", "title": "Time an object and frame, by the size of the finest cells",
+    "settings": "{scene}", "mark": "cell", "x": "cell names", "y": "population names", "shade": "ns log"} */
+SELECT iif(factor IS NULL, 'automatic', number(factor)) AS "cell: cell / mean edge",
+       name AS "population: population, objects", ns AS "ns: time [ns/object]"
+FROM did WHERE origin = 'ours';
+
+/* {"chart": "P2-memory", "title": "Memory an object, by the size of the finest cells",
+    "settings": "{scene}", "mark": "cell", "x": "cell names", "y": "population names", "shade": "bytes log"} */
+SELECT iif(factor IS NULL, 'automatic', number(factor)) AS "cell: cell / mean edge",
+       name AS "population: population, objects", 1.0 * bytes / objects AS "bytes: memory [bytes/object]"
+FROM did WHERE origin = 'ours';
+
+CREATE VIEW regrets AS
+SELECT name AS population, automatic_ns AS "automatic_ns: automatic [ns/object]",
+       best_ns AS "best_ns: best fixed [ns/object]", number(best_factor) AS "best_cell: best cell / mean edge",
+       100 * regret AS "regret_percent: automatic is slower by [%]"
+FROM contests WHERE regret IS NOT NULL;
+
+/* {"chart": "P2-regret",
+    "title": "By how much the automatic cells are slower than the best fixed ones (below zero: faster)",
+    "settings": "{scene}", "mark": "bar", "x": "population names", "y": "regret_percent"} */
+SELECT * FROM regrets;
+
+/* {"table": "regrets"} */
+SELECT * FROM regrets;
+
+-- A row for each of `did`, under the same rowid.
+CREATE TABLE shown AS
+SELECT method, factor AS "cell: cell / mean edge", ns AS "ns: time [ns/object]",
+       speed AS "speed: times as fast as btDbvtBroadphase", true_pairs AS "true_pairs: true pairs judged",
+       missed AS "missed: missed pairs", missed_share AS "missed_share: missed share of the true pairs",
+       low AS "missed_low: at least", high AS "missed_high: at most (95 %)", extra AS "false: false pairs",
+       extra_share AS "false_share: false pairs a true pair",
+       tested * frames / true_pairs AS "tests: boxes compared a true pair",
+       1.0 * bytes / objects AS "bytes: memory [bytes/object]"
+FROM results;
+
+/* {"chart": "P2-missed-{:slug}", "title": "Missed pairs against time: {:name} boxes", "settings": "{scene}",
+    "mark": "point", "x": "ns log", "y": "missed_share log0", "series": "method", "low": "missed_low",
+    "high": "missed_high", "label": "cell", "front": true, "each": "SELECT * FROM showcases"} */
+SELECT * FROM shown WHERE rowid IN (SELECT rowid FROM did WHERE trial = :trial);
+
+/* {"chart": "P2-tests-{:slug}", "title": "Boxes compared for each true pair, by cell size: {:name} boxes",
+    "settings": "{scene}", "x": "cell log", "y": "tests log", "series": "method",
+    "each": "SELECT * FROM showcases"} */
+SELECT * FROM shown WHERE rowid IN (SELECT rowid FROM did WHERE trial = :trial AND factor IS NOT NULL);
+
+/* {"choices": "in the showcases"} */
+SELECT 'All pairs of a frame: ' || name || ' boxes',
+       method || iif(factor IS NULL, '', ', ' || number(factor)), ms, missed_share, result, origin = 'ours'
+FROM did WHERE trial IN (SELECT trial FROM showcases) AND ms IS NOT NULL;
+
+/* {"conclusions": "sizes"} */
+SELECT iif(count(*) = 0, 'No population was timed with automatic and fixed cells.',
+           'Automatic cells against the best fixed ones, ' || count(*) || ' populations: '
+           || fixed(100 * median(regret), 0) || ' % more time in the median, '
+           || fixed(100 * max(regret), 0) || ' % in the worst (' || name
+           || '); the goal of at most 15 % is ' || iif(max(regret) <= 0.15, 'met.', 'missed there.'))
+FROM contests WHERE regret IS NOT NULL
+UNION ALL
+SELECT 'The worst fixed cell size takes ' || fixed(max(ns / best_ns), 1) || ' times as long as the best one ('
+       || did.name || ', cells of ' || number(factor) || ' mean edges).'
+FROM did JOIN contests USING (trial) WHERE origin = 'ours' AND factor IS NOT NULL AND ns IS NOT NULL;
+
+/* {"conclusions": "the paper's grid, and Bullet", "each": "SELECT * FROM showcases"} */
+SELECT 'One grid as in the paper, ' || name || ': at its best cell size it takes '
+       || fixed(min(iif(exact, ns, NULL)) / automatic_ns, 1)
+       || ' times as long as automatic levels; filed by corners as printed, it misses up to '
+       || number(100 * max(missed_share)) || ' % of the pairs.'
+FROM did JOIN contests USING (trial, name) WHERE trial = :trial AND origin = 'paper'
+GROUP BY trial HAVING count(iif(exact, ns, NULL)) > 0 AND automatic_ns IS NOT NULL
+UNION ALL
+SELECT 'btDbvtBroadphase, ' || name || ': ' || fixed(bullet_ns / automatic_ns, 1)
+       || ' times as long as automatic levels, and ' || result || '.'
+FROM bullet JOIN contests USING (trial) WHERE trial = :trial AND bullet_ns / automatic_ns IS NOT NULL;
+)sql"
