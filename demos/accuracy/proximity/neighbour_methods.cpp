@@ -346,48 +346,22 @@ auto makes(Arguments... arguments) {
 
 std::vector<NeighbourMethod> neighbourMethods() {
     using FindWithin = AgentByAgent<Listed<findWithin<float>>>;
-    using Estimate = AgentByAgent<Listed<estimateWithin<float>>>;
-    const auto firstFew = [](std::size_t most) {
-        return NeighbourMethod{.name = "first " + std::to_string(most) + " found",
-                               .make = makes<AgentByAgent<FirstFew>>(FirstFew{most})};
-    };
-    const auto stale = [](int period) {
-        return NeighbourMethod{.name = "RarestColour, every " + std::to_string(period) + " frames",
-                               .usesCells = false,
-                               .make = makes<StaleSearch>(period)};
-    };
+    using EstimateWithin = AgentByAgent<Listed<estimateWithin<float>>>;
+    using enum NeighbourPromise;
     return {
-        {.name = "RarestColour, all at once",
-         .isExact = true,
-         .usesCells = false,
-         .make = makes<RarestColourSearch>()},
-        {.name = "RadiusSearch, listed",
-         .isExact = true,
-         .usesCells = false,
-         .make = makes<RadiusLists>()},
-        {.name = "findWithin", .isExact = true, .make = makes<FindWithin>()},
-        {.name = "cells and boxes",
-         .isComplete = true,
-         .make = makes<AgentByAgent<TouchingBoxes>>()},
-        {.name = "estimateWithin",
-         .isComplete = true,
-         .isEstimate = true,
-         .make = makes<Estimate>()},
-        {.name = "cells, counted",
-         .isComplete = true,
-         .isEstimate = true,
-         .make = makes<CountedCells>()},
-        firstFew(4),
-        firstFew(16),
-        stale(2),
-        stale(4),
-        stale(8),
-        {.name = "cells, as printed (paper)", .origin = kOfPaper, .make = makes<PaperProximity>()},
-        {.name = "btDbvtBroadphase, then distance",
-         .origin = kOfBullet,
-         .isExact = true,
-         .usesCells = false,
-         .make = makes<BulletProximity>()},
+        {"RarestColour, all at once", makes<RarestColourSearch>(), kExact, false},
+        {"RadiusSearch, listed", makes<RadiusLists>(), kExact, false},
+        {"findWithin", makes<FindWithin>(), kExact},
+        {"cells and boxes", makes<AgentByAgent<TouchingBoxes>>(), kComplete},
+        {"estimateWithin", makes<EstimateWithin>(), kEstimate},
+        {"cells, counted", makes<CountedCells>(), kEstimate},
+        {"first 4 found", makes<AgentByAgent<FirstFew>>(FirstFew{4})},
+        {"first 16 found", makes<AgentByAgent<FirstFew>>(FirstFew{16})},
+        {"RarestColour, every 2 frames", makes<StaleSearch>(2), kNone, false},
+        {"RarestColour, every 4 frames", makes<StaleSearch>(4), kNone, false},
+        {"RarestColour, every 8 frames", makes<StaleSearch>(8), kNone, false},
+        {"cells, as printed (paper)", makes<PaperProximity>(), kNone, true, kOfPaper},
+        {"btDbvtBroadphase, then distance", makes<BulletProximity>(), kExact, false, kOfBullet},
     };
 }
 

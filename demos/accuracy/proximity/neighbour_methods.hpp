@@ -50,14 +50,19 @@ struct NeighbourNeeds {
     float cellSize = 0;  // [m]
 };
 
+enum class NeighbourPromise {
+    kNone,
+    kComplete,  // misses nobody, but may name others
+    kEstimate,  // the same, by the library's cells: its precision is as proximity.hpp tells
+    kExact,
+};
+
 struct NeighbourMethod {
     std::string name;
-    std::string_view origin = kOurs;
-    bool isExact = false;
-    bool isComplete = false;  // misses nobody, but may name others
-    bool isEstimate = false;  // the library's, by cells: precision as proximity.hpp tells
-    bool usesCells = true;    // of NeighbourNeeds::cellSize, in time or in errors
     std::function<std::unique_ptr<NeighbourSearch>(const NeighbourNeeds&)> make;
+    NeighbourPromise promise = NeighbourPromise::kNone;
+    bool usesCells = true;  // of NeighbourNeeds::cellSize, in time or in errors
+    std::string_view origin = kOurs;
 };
 
 /// The library's; then the paper's as it prints it, with a flat grid and the cells from base - offset to

@@ -114,8 +114,8 @@ SELECT 'Neighbours for AI: ' || crowd, name, ms, wrong_share,
        origin = 'ours'
 FROM did;
 
--- The fastest exact way, and who is faster at the price of what; then how agents that ask one by one fare, over
--- all cell sizes.
+-- The fastest exact way, and who is faster at the price of what; then how agents that ask one by one fare,
+-- over all cell sizes.
 /* {"conclusions": "crowd by crowd", "each": "SELECT crowd FROM trials GROUP BY crowd ORDER BY min(trial)"} */
 WITH best AS (SELECT * FROM did WHERE crowd = :crowd AND exact ORDER BY ns LIMIT 1),
      faster AS (SELECT did.name || ' (' || fixed(best.ns / did.ns, 1) || 'x, '

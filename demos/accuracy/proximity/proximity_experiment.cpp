@@ -253,14 +253,16 @@ double Crowd::side() const {
 
 Findings measureProximity(const ProximityPlan& plan, std::span<const NeighbourMethod> methods,
                           std::uint64_t seed, const TellProgress& tell) {
+    using enum NeighbourPromise;
     Measurements measured;
     for (const NeighbourMethod& method : methods) {
+        const bool isEstimate = method.promise == kEstimate;
         measured.add("methods", {{"number", &method - methods.data()},
                                  {"method", method.name},
                                  {"origin", method.origin},
-                                 {"exact", method.isExact},
-                                 {"complete", method.isComplete},
-                                 {"estimate", method.isEstimate},
+                                 {"exact", method.promise == kExact},
+                                 {"complete", method.promise == kComplete || isEstimate},
+                                 {"estimate", isEstimate},
                                  {"uses_cells", method.usesCells}});
     }
     for (std::size_t i = 0; i < plan.crowds.size(); ++i) {

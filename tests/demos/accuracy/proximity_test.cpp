@@ -39,11 +39,11 @@ private:
     std::unique_ptr<NeighbourSearch> search_;
 };
 
-std::vector<std::string> brokenWithForgetful(bool isExact) {
+/// Of the first method that promises that.
+std::vector<std::string> brokenWithForgetful(NeighbourPromise promise) {
     std::vector<NeighbourMethod> methods = neighbourMethods();
-    const auto chosen = std::find_if(methods.begin(), methods.end(), [&](const auto& method) {
-        return method.isExact == isExact && method.isComplete != isExact;
-    });
+    const auto chosen = std::find_if(methods.begin(), methods.end(),
+                                     [&](const auto& method) { return method.promise == promise; });
     chosen->make = [make = chosen->make](const NeighbourNeeds& needs) {
         return std::make_unique<ForgetfulSearch>(make(needs));
     };
@@ -58,12 +58,11 @@ TEST(ProximityExperiment, HoldsForEveryMethod) {
     EXPECT_FALSE(findings.conclusions.empty());
 }
 
-TEST(ProximityExperiment, NoticesAnExactMethodThatForgetsANeighbour) {
-    EXPECT_EQ(brokenWithForgetful(true).size(), 1U);
-}
-
-TEST(ProximityExperiment, NoticesAnEstimateThatForgetsANeighbour) {
-    EXPECT_EQ(brokenWithForgetful(false).size(), 1U);
+TEST(ProximityExperiment, NoticesAMethodThatForgetsANeighbour) {
+    using enum NeighbourPromise;
+    for (const NeighbourPromise promise : {kExact, kComplete, kEstimate}) {
+        EXPECT_EQ(brokenWithForgetful(promise).size(), 1U);
+    }
 }
 
 TEST(ProximityExperiment, RefusesASquareThatIsTooSmallForTheCells) {
