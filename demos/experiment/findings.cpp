@@ -95,7 +95,9 @@ private:
         }
         for (const Record& parameters : parametersOf(together.front().heading)) {
             for (const auto& [heading, sql] : together) {
-                showAs(heading, measured_.ask(sql, parameters), parameters);
+                if (filled(heading.value("when", "1"), parameters) != "0") {
+                    showAs(heading, measured_.ask(sql, parameters), parameters);
+                }
             }
         }
     }

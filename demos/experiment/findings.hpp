@@ -18,9 +18,10 @@
 //                                   log0, names
 //
 // Beside these, "each" holds a SELECT for whose rows the statement is shown in turn, with their columns as
-// parameters ":name"; statements in a row with the same "each" are shown together for each of its rows. In
-// names, titles and settings of charts and titles of columns, "{...}" is an expression over the view
-// `texts`, which the declaration makes, and these parameters.
+// parameters ":name"; statements in a row with the same "each" are shown together for each of its rows, but
+// for those whose "when" is "0". In names, titles and settings of charts, in titles of columns and in
+// "when", "{...}" is an expression over the view `texts`, which the declaration makes, and these
+// parameters.
 
 #include <demos/experiment/measurements.hpp>
 #include <demos/report/chart.hpp>

@@ -47,6 +47,11 @@ void percent(Context context, int /*count*/, Arguments arguments) {
     sqlite3_result_double(context, whole == 0 ? 0 : 100 * numberAt(arguments, 0) / whole);
 }
 
+// Not every SQLite has one.
+void squareRoot(Context context, int /*count*/, Arguments arguments) {
+    sqlite3_result_double(context, std::sqrt(numberAt(arguments, 0)));
+}
+
 template <double ShareInterval::*bound>
 void interval(Context context, int count, Arguments arguments) {
     const std::uint64_t hits = countAt(arguments, 0);
@@ -128,6 +133,7 @@ struct Function {
 
 constexpr Function kFunctions[] = {
     {"percent", 2, percent},
+    {"sqrt", 1, squareRoot},
     {"interval_low", 2, interval<&ShareInterval::low>},
     {"interval_low", 3, interval<&ShareInterval::low>},
     {"interval_high", 2, interval<&ShareInterval::high>},

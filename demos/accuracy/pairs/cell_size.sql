@@ -40,14 +40,16 @@ SELECT iif(factor IS NULL, 'automatic', number(factor)) AS "cell: cell / mean ed
 FROM did WHERE origin = 'ours';
 
 /* {"chart": "P2-memory", "title": "Memory an object, by the size of the finest cells",
-    "settings": "{scene}", "mark": "cell", "x": "cell names", "y": "population names", "shade": "bytes log"} */
+    "settings": "{scene}", "mark": "cell", "x": "cell names", "y": "population names",
+    "shade": "bytes log"} */
 SELECT iif(factor IS NULL, 'automatic', number(factor)) AS "cell: cell / mean edge",
        name AS "population: population, objects", 1.0 * bytes / objects AS "bytes: memory [bytes/object]"
 FROM did WHERE origin = 'ours';
 
 CREATE VIEW regrets AS
 SELECT name AS population, automatic_ns AS "automatic_ns: automatic [ns/object]",
-       best_ns AS "best_ns: best fixed [ns/object]", number(best_factor) AS "best_cell: best cell / mean edge",
+       best_ns AS "best_ns: best fixed [ns/object]",
+       number(best_factor) AS "best_cell: best cell / mean edge",
        100 * regret AS "regret_percent: automatic is slower by [%]"
 FROM contests WHERE regret IS NOT NULL;
 

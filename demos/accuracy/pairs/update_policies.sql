@@ -62,8 +62,8 @@ SELECT * FROM shown WHERE rowid IN (SELECT rowid FROM did WHERE trial = :trial);
     "each": "SELECT * FROM trials WHERE share = 1"} */
 SELECT * FROM shown WHERE rowid IN (SELECT rowid FROM did WHERE trial = :trial);
 
--- What lists false pairs for the sake of speed leaves their test to others: it does not compete with the same way
--- that tests them itself.
+-- What lists false pairs for the sake of speed leaves their test to others: it does not compete with the
+-- same way that tests them itself.
 /* {"choices": "by missed pairs"} */
 SELECT 'Pairs of ' || thousands(objects) || ' boxes, ' || motion, method, ms, missed_share, result,
        origin = 'ours'
@@ -72,7 +72,8 @@ FROM did WHERE is_task AND NOT (origin = 'ours' AND complete AND NOT exact);
 /* {"conclusions": "where policies break even",
     "each": "SELECT column1 AS other FROM (VALUES ('all filed again'), ('btDbvtBroadphase'))"} */
 SELECT '''moved only'' against ''' || :other || ''': faster where '
-       || coalesce(group_concat(iif(ratio >= 1, text, NULL), ', '), 'nothing') || ' of the boxes move; slower at '
+       || coalesce(group_concat(iif(ratio >= 1, text, NULL), ', '), 'nothing')
+       || ' of the boxes move; slower at '
        || coalesce(group_concat(iif(ratio >= 1, NULL, text), ', '), 'none of the shares') || '.'
 FROM (SELECT ratio, number(100 * share) || ' % (' || fixed(ratio, iif(ratio < 10, 2, 0)) || 'x)' AS text
       FROM (SELECT trial, other.ns / own.ns AS ratio FROM did AS own JOIN did AS other USING (trial)

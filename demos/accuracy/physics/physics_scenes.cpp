@@ -86,20 +86,18 @@ void takeAndDrop(WorldContents& contents, int step) {
     }
 }
 
-void leaveAlone(WorldContents& /*contents*/, int /*step*/) {}
-
 }  // namespace
 
 std::vector<PhysicsScene> physicsScenes() {
     return {
-        {"pile", fillOfCompare("pile"), leaveAlone, 100, 200},
-        {"stack", fillOfCompare("stack"), leaveAlone, 100, 200},
-        {"chains", fillOfCompare("chains"), leaveAlone, 100, 200},
-        {"static-city", fillOfCompare("static-city"), leaveAlone, 300, 600},
-        {"lattice", fillLattice, leaveAlone, 125, 216},
-        {"bouncing", fillBouncing, leaveAlone, 100, 300},
-        {"compounds", fillCompounds, leaveAlone, 60, 100},
-        {"churn", fillOfCompare("pile"), takeAndDrop, 100, 200},
+        {"pile", fillOfCompare("pile"), 100, 200},
+        {"stack", fillOfCompare("stack"), 100, 200},
+        {"chains", fillOfCompare("chains"), 100, 200},
+        {"static-city", fillOfCompare("static-city"), 300, 600},
+        {"lattice", fillLattice, 125, 216},
+        {"bouncing", fillBouncing, 100, 300},
+        {"compounds", fillCompounds, 60, 100},
+        {"churn", fillOfCompare("pile"), 100, 200, takeAndDrop},
     };
 }
 

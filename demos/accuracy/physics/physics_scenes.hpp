@@ -18,9 +18,9 @@ namespace hashphase::demos {
 struct PhysicsScene {
     std::string name;
     void (*fill)(WorldContents& contents, std::size_t objects, std::uint64_t seed);
-    void (*disturb)(WorldContents& contents, int step);
     std::size_t quickObjects;
     std::size_t fullObjects;
+    void (*disturb)(WorldContents& contents, int step) = nullptr;
 };
 
 /// Eight: the four worlds of `compare`; spheres in a lattice that fall into a box; balls that bounce

@@ -214,21 +214,11 @@ std::vector<PhysicsTask> physicsTasks() {
          std::to_string(kBalls) + " sliding balls that begin to roll",
          fillRoll,
          {{"speed", "speed against the law of friction, as a share", "", rollSpeedSquared}}},
-        {std::string(kFallName),
+        {"fall",
          std::to_string(kBalls) + " balls in free fall",
          fillFall,
          {{"place", "place against the law of falling bodies", "mm", fallSquared}}},
     };
-}
-
-double fallErrorOf(double step, double seconds) {
-    return kGravity * seconds * step / 2;
-}
-
-double fallRoundingOf(double step, double seconds) {
-    constexpr double kUnitRoundoff = 0x1p-24;
-    const double depth = kGravity * square(seconds) / 2;
-    return 2 * depth * kUnitRoundoff * seconds / step;
 }
 
 }  // namespace hashphase::demos

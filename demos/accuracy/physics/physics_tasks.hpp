@@ -14,7 +14,6 @@
 #include <cstdint>
 #include <functional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace hashphase::demos {
@@ -35,17 +34,7 @@ struct PhysicsTask {
     std::vector<PhysicsMeasure> measures;  // the first is what the task is about
 };
 
-inline constexpr std::string_view kFallName = "fall";
-
 /// drop, elastic, bounce, roll, fall.
 [[nodiscard]] std::vector<PhysicsTask> physicsTasks();
-
-/// By how much a free fall goes wrong after `seconds` where speed is advanced before place, by steps
-/// of `step` [m]: half the step's length at the speed gained.
-[[nodiscard]] double fallErrorOf(double step, double seconds);
-
-/// The most that rounding in single precision adds to that, half a unit in the last place a step in
-/// speed and in place [m].
-[[nodiscard]] double fallRoundingOf(double step, double seconds);
 
 }  // namespace hashphase::demos

@@ -2,15 +2,138 @@
 #include <demos/accuracy/physics/time_step_experiment.hpp>
 
 #include <demos/accuracy/experiments.hpp>
+#include <demos/accuracy/timing.hpp>
 
-#include <string_view>
+#include <memory>
 
 namespace hashphase::demos {
 namespace {
 
-std::string nameOf(std::string_view broadphase, ListOrder order) {
-    return std::string(broadphase) +
-           (order == ListOrder::asShipped ? "" : ", lists in canonical order");
+constexpr std::string_view kTimeStepDeclaration =
+#include <demos/accuracy/physics/time_step.sql>
+    ;
+
+constexpr int kLooksPerSecond = 30;
+
+/// A task with one setting of the engine.
+struct Point {
+    std::size_t task;
+    std::string way;   // in which accuracy is bought
+    int substeps = 1;  // between two looks
+    int iterations = 10;
+
+    /// Only what touches is in contact (setContactProcessingThreshold(0)), and overlap is undone
+    /// without adding speed, however small it is (m_splitImpulsePenetrationThreshold above 0).
+    bool keepsEnergy = false;
+};
+
+std::vector<Point> pointsOf(std::size_t tasks, const TimeStepSettings& settings) {
+    std::vector<Point> points;
+    for (std::size_t task = 0; task < tasks; ++task) {
+        for (const int substeps : settings.substeps) {
+            points.push_back({task, "smaller steps, 10 iterations each", substeps});
+        }
+        for (const int substeps : settings.substeps) {
+            points.push_back({task, "smaller steps, 10 iterations each, contacts that keep energy",
+                              substeps, 10, true});
+        }
+    }
+    for (const int iterations : settings.iterations) {
+        points.push_back({0, "steps of 1/60 s, more iterations", 2, iterations});
+    }
+    for (const int substeps : settings.substeps) {
+        if (settings.product % substeps == 0) {
+            points.push_back(
+                {0,
+                 std::to_string(settings.product) + " iterations, shared among the steps of 1/30 s",
+                 substeps, settings.product / substeps});
+        }
+    }
+    return points;
+}
+
+std::unique_ptr<PhysicsWorld> worldOf(const Point& point, const PhysicsTask& task,
+                                      std::uint64_t seed, const PhysicsContestant& contestant) {
+    auto world = std::make_unique<PhysicsWorld>(contestant.broadphase, contestant.order);
+    btContactSolverInfo& solver = world->world().getSolverInfo();
+    solver.m_numIterations = point.iterations;
+    solver.m_restitutionVelocityThreshold = 0;  // what is lossless is so at any speed
+    task.fill(world->contents(), seed);
+    if (point.keepsEnergy) {
+        solver.m_splitImpulsePenetrationThreshold = 1;  // [m]
+        for (const auto& body : world->contents().bodies()) {
+            body->setContactProcessingThreshold(0);
+        }
+    }
+    return world;
+}
+
+/// Simulates two seconds: sixty looks, all contestants in turn between two of them.
+void run(const Point& point, std::size_t number, const PhysicsTask& task, std::uint64_t seed,
+         std::span<const PhysicsContestant> contestants, Measurements& measured) {
+    constexpr int kLooks = kFewestFrames;
+    const btScalar step = 1 / static_cast<btScalar>(kLooksPerSecond * point.substeps);
+    std::vector<std::unique_ptr<PhysicsWorld>> worlds;
+    std::vector<std::function<void()>> methods;
+    for (const PhysicsContestant& contestant : contestants) {
+        worlds.push_back(worldOf(point, task, seed, contestant));
+        methods.emplace_back(
+            [&point, step, &world = *worlds.back()] { world.step(step, point.substeps); });
+    }
+    const auto lookBefore = [&](int frame) {
+        if (frame == 0) {
+            return;
+        }
+        const double seconds = static_cast<double>(frame) / kLooksPerSecond;
+        for (std::size_t i = 0; i < worlds.size(); ++i) {
+            const WorldContents& contents = worlds[i]->contents();
+            measured.add("states", {{"point", number},
+                                    {"contestant", i},
+                                    {"look", frame},
+                                    {"state", std::to_string(stateHash(contents))}});
+            for (std::size_t k = 0; k < task.measures.size(); ++k) {
+                measured.add("errors",
+                             {{"point", number},
+                              {"contestant", i},
+                              {"measure", k},
+                              {"seconds", seconds},
+                              {"squared", task.measures[k].squaredError(contents, seconds)}});
+            }
+        }
+    };
+    const auto times = timesInTurn(kLooks, 0, lookBefore, methods);
+    lookBefore(kLooks);
+    for (std::size_t i = 0; i < worlds.size(); ++i) {
+        for (const double milliseconds : times[i]) {
+            measured.add("times", {{"point", number},
+                                   {"contestant", i},
+                                   {"second_ms", kLooksPerSecond * milliseconds}});
+        }
+    }
+}
+
+void name(std::span<const PhysicsTask> tasks, std::span<const PhysicsContestant> contestants,
+          Measurements& measured) {
+    for (std::size_t i = 0; i < contestants.size(); ++i) {
+        const auto& [name, broadphase, order] = contestants[i];
+        measured.add("contestants", {{"contestant", i},
+                                     {"method", name},
+                                     {"ours", broadphase.isOurs},
+                                     {"canonical", order == ListOrder::canonical ||
+                                                       order == ListOrder::canonicalByUniqueId}});
+    }
+    for (std::size_t task = 0; task < tasks.size(); ++task) {
+        for (std::size_t k = 0; k < tasks[task].measures.size(); ++k) {
+            const PhysicsMeasure& measure = tasks[task].measures[k];
+            measured.add("measures", {{"task", task},
+                                      {"measure", k},
+                                      {"task_name", tasks[task].name},
+                                      {"task_title", tasks[task].title},
+                                      {"name", measure.name},
+                                      {"title", measure.title},
+                                      {"unit", measure.unit}});
+        }
+    }
 }
 
 }  // namespace
@@ -20,46 +143,39 @@ std::vector<PhysicsContestant> timeStepContestants() {
     for (const ListOrder order : {ListOrder::canonicalByUniqueId, ListOrder::asShipped}) {
         for (const PhysicsBroadphase& each : physicsBroadphases()) {
             if (each.name == kHashName || each.name == kDbvtName) {
-                contestants.push_back({nameOf(each.name, order), each, order});
+                const char* ending =
+                    order == ListOrder::asShipped ? "" : ", lists in canonical order";
+                contestants.push_back({each.name + ending, each, order});
             }
         }
     }
     return contestants;
 }
 
-std::vector<TaskPoint> runTimeSteps(std::span<const PhysicsTask> tasks,
-                                    std::span<const PhysicsContestant> contestants,
-                                    const TimeStepSettings& settings, const TellProgress& tell) {
-    std::vector<TaskPoint> points;
-    for (const PhysicsTask& task : tasks) {
-        for (const int substeps : settings.substeps) {
-            points.push_back({&task, std::string(kSmallerSteps), {substeps, 10}, {}});
-        }
-        for (const int substeps : settings.substeps) {
-            points.push_back({&task, std::string(kKeepingEnergy), {substeps, 10, true}, {}});
-        }
-    }
-    for (const int iterations : settings.iterations) {
-        points.push_back({&tasks.front(), "steps of 1/60 s, more iterations", {2, iterations}, {}});
-    }
-    const std::string shared =
-        std::to_string(settings.product) + " iterations, shared among the steps of 1/30 s";
-    for (const int substeps : settings.substeps) {
-        if (settings.product % substeps == 0) {
-            points.push_back({&tasks.front(), shared, {substeps, settings.product / substeps}, {}});
-        }
-    }
+Findings measureTimeSteps(std::span<const PhysicsTask> tasks,
+                          std::span<const PhysicsContestant> contestants,
+                          const TimeStepSettings& settings, const TellProgress& tell) {
+    Measurements measured;
+    name(tasks, contestants, measured);
+    const std::vector<Point> points = pointsOf(tasks.size(), settings);
     double stepsOfAll = 0;
-    for (const TaskPoint& point : points) {
-        stepsOfAll += point.stepping.substeps;
+    for (const Point& point : points) {
+        stepsOfAll += point.substeps;
     }
     double done = 0;
-    for (TaskPoint& point : points) {
-        tell(done / stepsOfAll, point.task->name);
-        point.outcomes = runTask(*point.task, point.stepping, settings.seed, contestants);
-        done += point.stepping.substeps;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Point& point = points[i];
+        tell(done / stepsOfAll, tasks[point.task].name);
+        measured.add("points", {{"point", i},
+                                {"task", point.task},
+                                {"way", point.way},
+                                {"per_second", kLooksPerSecond * point.substeps},
+                                {"iterations", point.iterations},
+                                {"keeps_energy", point.keepsEnergy}});
+        run(point, i, tasks[point.task], settings.seed, contestants, measured);
+        done += point.substeps;
     }
-    return points;
+    return findingsOf(kTimeStepDeclaration, measured);
 }
 
 Experiment timeStepExperiment() {
@@ -76,11 +192,7 @@ Experiment timeStepExperiment() {
                     effort.quickOrFull<std::vector<int>>({2, 10, 50}, {1, 2, 5, 10, 20, 50, 100});
                 settings.product = effort.quickOrFull(16, 64);
                 settings.seed = effort.seed;
-                const std::vector<PhysicsTask> tasks = physicsTasks();
-                const std::vector<PhysicsContestant> contestants = timeStepContestants();
-                const std::vector<TaskPoint> points =
-                    runTimeSteps(tasks, contestants, settings, tell);
-                return judgeTimeSteps(tasks, contestants, points);
+                return measureTimeSteps(physicsTasks(), timeStepContestants(), settings, tell);
             }};
 }
 

@@ -4,15 +4,22 @@
 // P7: what smaller steps and more solver iterations buy, and that the broadphase does not change it.
 
 #include <demos/accuracy/experiment.hpp>
-#include <demos/accuracy/physics/task_run.hpp>
+#include <demos/accuracy/physics/physics_tasks.hpp>
+#include <demos/scenes/physics_world.hpp>
 
 #include <cstdint>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace hashphase::demos {
+
+/// Who does the tasks.
+struct PhysicsContestant {
+    std::string name;
+    PhysicsBroadphase broadphase;
+    ListOrder order = ListOrder::asShipped;
+};
 
 struct TimeStepSettings {
     std::vector<int> substeps;    // of 1/30 s, each with 10 iterations
@@ -24,29 +31,11 @@ struct TimeStepSettings {
 /// Ours and btDbvtBroadphase, both with their lists in canonical order and as shipped.
 [[nodiscard]] std::vector<PhysicsContestant> timeStepContestants();
 
-/// The ways in which all tasks are tried: Bullet as it is, and with Stepping::keepsEnergy.
-inline constexpr std::string_view kSmallerSteps = "smaller steps, 10 iterations each";
-inline constexpr std::string_view kKeepingEnergy =
-    "smaller steps, 10 iterations each, contacts that keep energy";
-
-/// A task with one setting of the engine, done.
-struct TaskPoint {
-    const PhysicsTask* task = nullptr;
-    std::string way;  // in which accuracy is bought: smaller steps, more iterations
-    Stepping stepping;
-    std::vector<TaskOutcome> outcomes;  // one a contestant
-};
-
-/// All tasks with each of the substeps, in both ways; the first task, the hardest on the solver, with each number
-/// of iterations and each way to share the product as well.
-[[nodiscard]] std::vector<TaskPoint> runTimeSteps(std::span<const PhysicsTask> tasks,
-                                                  std::span<const PhysicsContestant> contestants,
-                                                  const TimeStepSettings& settings,
-                                                  const TellProgress& tell);
-
-/// What the points show.
-[[nodiscard]] Findings judgeTimeSteps(std::span<const PhysicsTask> tasks,
-                                      std::span<const PhysicsContestant> contestants,
-                                      std::span<const TaskPoint> points);
+/// Does all tasks with each of the substeps, with Bullet as it is and with contacts that keep energy; the first
+/// task, the hardest on the solver, with each number of iterations and each way to share the product as
+/// well. Says what that shows (time_step.sql).
+[[nodiscard]] Findings measureTimeSteps(std::span<const PhysicsTask> tasks,
+                                        std::span<const PhysicsContestant> contestants,
+                                        const TimeStepSettings& settings, const TellProgress& tell);
 
 }  // namespace hashphase::demos

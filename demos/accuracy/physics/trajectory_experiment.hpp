@@ -19,7 +19,8 @@ struct TrajectorySettings {
     bool isQuick = false;
 };
 
-/// Among the broadphases must be btSimpleBroadphase and btDbvtBroadphase.
+/// Runs all scenes with the lists in each order, and says what that shows (trajectory.sql). Among the
+/// broadphases must be btSimpleBroadphase and btDbvtBroadphase.
 [[nodiscard]] Findings compareTrajectories(std::span<const PhysicsBroadphase> broadphases,
                                            std::span<const PhysicsScene> scenes,
                                            const TrajectorySettings& settings,

@@ -94,9 +94,7 @@ Findings timeSteps(const std::vector<PhysicsContestant>& contestants) {
     std::vector<PhysicsTask> tasks = physicsTasks();
     std::erase_if(
         tasks, [](const PhysicsTask& task) { return task.name != "roll" && task.name != "fall"; });
-    const TimeStepSettings settings{{1, 2}, {5}, 8, 1};
-    const std::vector<TaskPoint> points = runTimeSteps(tasks, contestants, settings, kTellNobody);
-    return judgeTimeSteps(tasks, contestants, points);
+    return measureTimeSteps(tasks, contestants, {{1, 2}, {5}, 8, 1}, kTellNobody);
 }
 
 TEST(TimeStepExperiment, FindsThatTheBroadphaseChangesNothing) {
@@ -121,10 +119,8 @@ TEST(TimeStepExperiment, NoticesAnEngineThatFallsOtherwise) {
         contents.world().setGravity(btVector3(0, -5, 0));
         fill(contents, seed);
     };
-    const std::vector<PhysicsContestant> contestants = timeStepContestants();
-    const std::vector<TaskPoint> points =
-        runTimeSteps(tasks, contestants, {{1}, {}, 7, 1}, kTellNobody);
-    const Findings findings = judgeTimeSteps(tasks, contestants, points);
+    const Findings findings =
+        measureTimeSteps(tasks, timeStepContestants(), {{1}, {}, 7, 1}, kTellNobody);
     EXPECT_NE(broken(findings).find("Free fall"), std::string::npos);
 }
 

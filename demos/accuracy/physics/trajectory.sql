@@ -1,0 +1,132 @@
+R"sql(-- SPDX-License-Identifier: Zlib
+--
+-- P8. Measured are: plan, methods (broadphases), runs (scenes with the lists in an order), states (a row for
+-- each run, method and step) and times (the same).
+
+CREATE VIEW texts AS
+SELECT thousands(steps) || ' steps of 1/60 s, 10 solver iterations, sleeping on, single precision, seed '
+       || seed AS scene, (SELECT count(DISTINCT scene) FROM runs) AS scenes, steps
+FROM plan;
+
+-- What a broadphase did in a run; `differs` is the first step after which a bit differs from brute force.
+CREATE TABLE did AS
+WITH medians AS (SELECT list, scene, method, median(ms) AS ms, percentile(ms, 0.05) AS low,
+                        percentile(ms, 0.95) AS high FROM times GROUP BY list, scene, method),
+     truth AS (SELECT list, scene, step, state AS truth FROM states WHERE method = 'btSimpleBroadphase'),
+     differences AS (SELECT list, scene, method, min(step) AS differs
+                     FROM states JOIN truth USING (list, scene, step) WHERE state <> truth
+                     GROUP BY list, scene, method),
+     sums AS (SELECT list, scene, method, sum(asleep) AS asleep, max(step), pairs  -- those of the last step
+              FROM states GROUP BY list, scene, method)
+SELECT runs.rowid AS run, methods.rowid AS number, *
+FROM runs JOIN sums USING (list, scene) JOIN methods USING (method) JOIN medians USING (list, scene, method)
+     LEFT JOIN differences USING (list, scene, method)
+ORDER BY run, number;
+
+-- In how many scenes bodies move as under brute force.
+CREATE TABLE sameness AS
+SELECT min(run) AS run, list, number, method, ours, exact, count(*) - count(differs) AS same,
+       (count(*) - count(differs)) || ' of ' || count(*) AS same_text, avg(ms) AS ms
+FROM did GROUP BY list, method ORDER BY min(run), number;
+CREATE VIEW sentences AS
+SELECT list, group_concat(method || ' in ' || same_text, ', ') AS sentence
+FROM (SELECT * FROM sameness WHERE method <> 'btSimpleBroadphase' ORDER BY run, number) GROUP BY list;
+
+/* {"settings": "scene, truth, words"} */
+SELECT scene || '.' FROM texts
+UNION ALL VALUES
+('Truth: btSimpleBroadphase, which compares all boxes with all. Place, velocities and activation of all bodies are compared after every step, bit by bit.'),
+('Canonical order: pairs sorted by the numbers of the bodies, contact manifolds by age, so that nothing but the set of pairs can matter.'),
+('m_deterministicOverlappingPairs sorts contacts by unique ids, which btSimpleBroadphase and bt32BitAxisSweep3 give away again when bodies come back (churn), and the others do not.'),
+('lattice: spheres that fall into an open box; bouncing: balls that bounce for ever; compounds: dumbbells and crosses that fall into a heap; churn: a pile out of which bodies are taken and dropped again; the others are those of `hashphase compare`.');
+
+CREATE VIEW words AS
+SELECT *, iif(differs IS NULL, 'yes', 'until step ' || differs) AS word FROM did;
+
+/* {"table": "whose bodies move as under brute force, scene by scene"} */
+SELECT list AS "order: order of lists", scene, objects,
+       max(iif(method = 'hashphase', word, NULL)) AS "hashphase: same bits with hashphase",
+       max(iif(method = 'btDbvtBroadphase', word, NULL))
+       AS "btDbvtBroadphase: same bits with btDbvtBroadphase",
+       max(iif(method = 'btDbvtBroadphase, exact boxes', word, NULL))
+       AS "btDbvtBroadphase, exact boxes: same bits with btDbvtBroadphase, exact boxes",
+       max(iif(method = 'bt32BitAxisSweep3', word, NULL))
+       AS "bt32BitAxisSweep3: same bits with bt32BitAxisSweep3"
+FROM words GROUP BY run ORDER BY run;
+
+CREATE VIEW step_times AS
+SELECT did.scene, did.objects, did.method, did.ms AS "step_ms: step [ms]",
+       did.low AS "low_ms: 5 % of steps [ms]", did.high AS "high_ms: 95 % of steps [ms]",
+       1000 / 60.0 / did.ms AS "real_time_factor: real-time factor",
+       dbvt.ms / did.ms AS "ratio_to_dbvt: times as fast as btDbvtBroadphase",
+       did.pairs AS "pairs: pairs at the end", 1.0 * did.asleep / steps AS "asleep: asleep on average"
+FROM did JOIN did AS dbvt USING (run), plan
+WHERE did.list = 'as shipped' AND dbvt.method = 'btDbvtBroadphase' ORDER BY run, did.number;
+
+/* {"table": "what a step costs, lists as shipped"} */
+SELECT * FROM step_times;
+
+/* {"chart": "P8-same-motion",
+    "title": "In how many scenes do all bodies move as under brute force, to the last bit?",
+    "settings": "{scene}; {scenes} scenes", "mark": "cell", "x": "method names", "y": "order names",
+    "shade": "same"} */
+SELECT method AS "method: broadphase", list AS "order: order of lists",
+       same AS "same: scenes with the same motion"
+FROM sameness;
+
+/* {"chart": "P8-step-time", "title": "What a whole step costs under each broadphase",
+    "settings": "{scene}; lists as shipped; bars from 5 % to 95 % of the steps", "mark": "point",
+    "x": "scene names", "y": "step_ms log", "series": "method", "low": "low_ms", "high": "high_ms"} */
+SELECT * FROM step_times;
+
+/* {"checks": "exact broadphases"} */
+SELECT method || ' moves all bodies as btSimpleBroadphase does, to the last bit, when pairs and contacts are '
+       || 'listed in canonical order', same = scenes, same_text || ' scenes, ' || steps || ' steps each'
+FROM sameness, texts WHERE list = 'canonical' AND exact AND method <> 'btSimpleBroadphase' ORDER BY number;
+
+/* {"choices": "by scenes with another motion"} */
+SELECT 'A step of a Bullet world that moves as under brute force (mean of ' || scenes || ' scenes)',
+       method || ', lists ' || list, ms, 1 - 1.0 * same / scenes,
+       'the same motion in ' || same_text || ' scenes', ours
+FROM sameness, texts ORDER BY run, number;
+
+-- Why the tree differs from brute force, as far as the runs tell.
+CREATE VIEW dbvt AS
+SELECT 100.0 * sum(dbvt.pairs - truth.pairs) / max(sum(truth.pairs), 1) AS extra_percent,
+       100.0 * sum(dbvt.asleep) / sum(truth.asleep) AS asleep_percent  -- null where none sleeps
+FROM did AS dbvt JOIN did AS truth USING (run, list)
+WHERE list = 'canonical' AND dbvt.method = 'btDbvtBroadphase' AND truth.method = 'btSimpleBroadphase';
+
+/* {"conclusions": "the same motion"} */
+SELECT 'Canonical order, the same motion as under btSimpleBroadphase: ' || sentence || ' scenes.'
+FROM sentences WHERE list = 'canonical'
+UNION ALL
+SELECT 'In canonical order btDbvtBroadphase moves bodies as brute force does in ' || canonical.same_text
+       || ' scenes, its contacts sorted by Bullet''s own flag in ' || flagged.same_text
+       || ': at the end it lists ' || fixed(extra_percent, 1) || ' % more pairs than overlap'
+       || iif(asleep_percent IS NULL, '', ', and bodies slept ' || fixed(asleep_percent, 1)
+              || ' % of the time that they sleep under brute force')
+       || '. These pairs have no contacts, but they change the order in which Bullet solves contacts and who '
+       || 'may sleep'
+       || coalesce('; the same tree held to exact boxes agrees in '
+                   || (SELECT same_text FROM sameness
+                       WHERE list = 'canonical' AND method = 'btDbvtBroadphase, exact boxes'), '') || '.'
+FROM dbvt, sameness AS canonical JOIN sameness AS flagged USING (method)
+WHERE method = 'btDbvtBroadphase' AND canonical.list = 'canonical'
+      AND flagged.list = 'm_deterministicOverlappingPairs'
+UNION ALL
+SELECT 'With m_deterministicOverlappingPairs alone: ' || sentence || '.'
+FROM sentences WHERE list = 'm_deterministicOverlappingPairs'
+UNION ALL
+SELECT 'As shipped: ' || sentence || '. Bullet''s own broadphases differ among each other as well: its '
+       || 'results depend on the order of pairs.'
+FROM sentences WHERE list = 'as shipped';
+
+/* {"conclusions": "time"} */
+SELECT 'A whole step over hashphase is ' || fixed(min(ratio), 2) || ' to ' || fixed(max(ratio), 2)
+       || ' times as fast as over btDbvtBroadphase, ' || fixed(median(ratio), 2)
+       || ' times in the median scene: of so few bodies, most of a step is narrowphase and solver.'
+FROM (SELECT "ratio_to_dbvt: times as fast as btDbvtBroadphase" AS ratio
+      FROM step_times WHERE method = 'hashphase')
+GROUP BY 1 = 1;
+)sql"
