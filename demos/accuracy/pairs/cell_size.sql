@@ -30,7 +30,7 @@ UNION ALL VALUES
 -- Where no box is larger than a cell, each spans at most two cells an axis: its corners are all.
 /* {"checks": "the paper's grids"} */
 SELECT 'The paper''s corner cells miss nothing where no box is larger than a cell', total(missed) = 0,
-       thousands(sum(missed)) || ' of ' || thousands(sum(true_pairs))
+       thousands(total(missed)) || ' of ' || thousands(total(true_pairs))
 FROM did WHERE NOT complete AND factor >= largest_edge;
 
 /* {"chart": "P2-time", "title": "Time an object and frame, by the size of the finest cells",

@@ -29,14 +29,14 @@ FROM did LEFT JOIN bullet USING (trial) ORDER BY did.rowid;
 /* {"checks": "what ways promise"} */
 SELECT 'Every exact way lists all overlapping pairs and no other',
        sum(missed) = 0 AND sum(extra) = 0 AND sum(true_pairs) > 0,
-       thousands(sum(missed)) || ' missed and ' || thousands(sum(extra)) || ' false of '
-       || thousands(sum(true_pairs)) || ' pairs in ' || count(*) || ' runs'
+       thousands(total(missed)) || ' missed and ' || thousands(total(extra)) || ' false of '
+       || thousands(total(true_pairs)) || ' pairs in ' || count(*) || ' runs'
        || coalesce('; first ' || (SELECT method FROM did WHERE exact AND missed + extra > 0), '')
 FROM did WHERE exact
 UNION ALL
 SELECT 'Ways that may list too many miss none', sum(missed) = 0,
-       thousands(sum(missed)) || ' missed and ' || thousands(sum(extra)) || ' false of '
-       || thousands(sum(true_pairs)) || ' pairs in ' || count(*) || ' runs'
+       thousands(total(missed)) || ' missed and ' || thousands(total(extra)) || ' false of '
+       || thousands(total(true_pairs)) || ' pairs in ' || count(*) || ' runs'
        || coalesce('; first ' || (SELECT method FROM did WHERE complete AND NOT exact AND missed > 0), '')
 FROM did WHERE complete AND NOT exact GROUP BY complete
 UNION ALL

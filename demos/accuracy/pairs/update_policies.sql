@@ -31,7 +31,7 @@ UNION ALL VALUES
 -- Where nothing moves, there is nothing to miss, whatever one is not told.
 /* {"checks": "stillness"} */
 SELECT 'No policy misses a pair where nothing moves', total(missed) = 0,
-       thousands(sum(missed)) || ' of ' || thousands(sum(true_pairs))
+       thousands(total(missed)) || ' of ' || thousands(total(true_pairs))
 FROM did WHERE share = 0;
 
 /* {"chart": "P10-break-even",

@@ -81,15 +81,15 @@ FROM stated;
 /* {"checks": "exact ways"} */
 SELECT 'Exact ways find every neighbour and no other, and take no wrong decision',
        count(*) > 0 AND min(is_right),
-       thousands(sum(neighbours - found)) || ' missed and ' || thousands(sum(wrongly)) || ' false of '
-       || thousands(sum(neighbours)) || ' neighbours, ' || thousands(sum(wrong)) || ' wrong of '
-       || thousands(sum(decisions)) || ' decisions in ' || count(*) || ' runs'
+       thousands(total(neighbours - found)) || ' missed and ' || thousands(total(wrongly)) || ' false of '
+       || thousands(total(neighbours)) || ' neighbours, ' || thousands(total(wrong)) || ' wrong of '
+       || thousands(total(decisions)) || ' decisions in ' || count(*) || ' runs'
        || coalesce('; first ' || (SELECT method FROM did WHERE exact AND NOT is_right), '')
 FROM did WHERE exact;
 
 /* {"checks": "complete ways"} */
 SELECT 'Cells, with boxes and without, miss nobody who is within the radius', total(neighbours - found) = 0,
-       thousands(sum(neighbours - found)) || ' of ' || thousands(sum(neighbours))
+       thousands(total(neighbours - found)) || ' of ' || thousands(total(neighbours))
 FROM did WHERE complete;
 
 /* {"checks": "what proximity.hpp states"} */
@@ -100,8 +100,8 @@ FROM stated
 UNION ALL
 SELECT 'estimateWithin misses nobody, and nobody is farther than sqrt(3) (radius + cell)',
        sum(missed) = 0 AND sum(too_far) = 0,
-       thousands(sum(missed)) || ' missed, ' || thousands(sum(too_far)) || ' too far of '
-       || thousands(sum(found)) || ' found'
+       thousands(total(missed)) || ' missed, ' || thousands(total(too_far)) || ' too far of '
+       || thousands(total(found)) || ' found'
 FROM stated;
 
 /* {"choices": "by wrong decisions"} */
