@@ -37,6 +37,23 @@ std::vector<Spread> timeInTurn(int frames, int warmUp, const std::function<void(
     return spreads;
 }
 
+void measureTimes(Measurements& measured, int frames, int warmUp,
+                  const std::function<void(int frame)>& begin, std::span<const TimedMethod> methods,
+                  double scale) {
+    std::vector<std::function<void()>> runs;
+    for (const TimedMethod& method : methods) {
+        runs.push_back(method.run);
+    }
+    const auto times = timesInTurn(frames, warmUp, begin, runs);
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        for (const double milliseconds : times[i]) {
+            Record row = methods[i].columns;
+            row.emplace_back("ms", milliseconds * scale);
+            measured.add("times", row);
+        }
+    }
+}
+
 void pinToThisCore() {
 #if defined(__linux__)
     const int core = sched_getcpu();

@@ -53,16 +53,15 @@ public:
 
     void time(const PairTrialPlan& plan) {
         std::vector<std::vector<BulletBox>> frames(static_cast<std::size_t>(plan.framesTogether));
-        std::vector<std::size_t> ways;
-        std::vector<std::function<void()>> runs;
+        std::vector<TimedMethod> methods;
         for (std::size_t way = 0; way < entries_.size(); ++way) {
             if (entries_[way].tested <= entries_[way].mostTestsTimed * entries_[way].testedFrames) {
-                ways.push_back(way);
-                runs.emplace_back([&frames, &source = *entries_[way].source] {
-                    for (const std::vector<BulletBox>& boxes : frames) {
-                        source.step(boxes);
-                    }
-                });
+                methods.push_back(
+                    {{{"trial", trial_}, {"way", way}}, [&frames, &source = *entries_[way].source] {
+                         for (const std::vector<BulletBox>& boxes : frames) {
+                             source.step(boxes);
+                         }
+                     }});
             }
         }
         const auto begin = [&](int /*round*/) {
@@ -71,14 +70,7 @@ public:
                 boxes = boxes_;
             }
         };
-        const auto times = timesInTurn(plan.rounds, 1, begin, runs);
-        for (std::size_t i = 0; i < ways.size(); ++i) {
-            for (const double milliseconds : times[i]) {
-                measured_.add("times", {{"trial", trial_},
-                                        {"way", ways[i]},
-                                        {"ms", milliseconds / plan.framesTogether}});
-            }
-        }
+        measureTimes(measured_, plan.rounds, 1, begin, methods, 1.0 / plan.framesTogether);
     }
 
 private:

@@ -22,8 +22,8 @@ CREATE TABLE did AS
 WITH roots AS (SELECT point, contestant, measure, sqrt(avg(squared)) AS error,
                       sqrt(avg(seconds * seconds)) AS seconds
                FROM errors GROUP BY point, contestant, measure),
-     medians AS (SELECT point, contestant, median(second_ms) AS ms, percentile(second_ms, 0.05) AS low,
-                        percentile(second_ms, 0.95) AS high
+     medians AS (SELECT point, contestant, median(ms) AS ms, percentile(ms, 0.05) AS low,
+                        percentile(ms, 0.95) AS high  -- of a simulated second
                  FROM times GROUP BY point, contestant)
 SELECT *, 1000 * 10 * seconds / per_second / 2 AS fall_error,
        iif(unit = '', number(100 * error) || ' %', number(error) || ' ' || unit) AS error_text

@@ -74,11 +74,12 @@ void run(const Point& point, std::size_t number, const PhysicsTask& task, std::u
     constexpr int kLooks = kFewestFrames;
     const btScalar step = 1 / static_cast<btScalar>(kLooksPerSecond * point.substeps);
     std::vector<std::unique_ptr<PhysicsWorld>> worlds;
-    std::vector<std::function<void()>> methods;
+    std::vector<TimedMethod> methods;
     for (const PhysicsContestant& contestant : contestants) {
         worlds.push_back(worldOf(point, task, seed, contestant));
-        methods.emplace_back(
-            [&point, step, &world = *worlds.back()] { world.step(step, point.substeps); });
+        methods.push_back(
+            {{{"point", number}, {"contestant", methods.size()}},
+             [&point, step, &world = *worlds.back()] { world.step(step, point.substeps); }});
     }
     const auto lookBefore = [&](int frame) {
         if (frame == 0) {
@@ -101,15 +102,8 @@ void run(const Point& point, std::size_t number, const PhysicsTask& task, std::u
             }
         }
     };
-    const auto times = timesInTurn(kLooks, 0, lookBefore, methods);
+    measureTimes(measured, kLooks, 0, lookBefore, methods, kLooksPerSecond);
     lookBefore(kLooks);
-    for (std::size_t i = 0; i < worlds.size(); ++i) {
-        for (const double milliseconds : times[i]) {
-            measured.add("times", {{"point", number},
-                                   {"contestant", i},
-                                   {"second_ms", kLooksPerSecond * milliseconds}});
-        }
-    }
 }
 
 void name(std::span<const PhysicsTask> tasks, std::span<const PhysicsContestant> contestants,

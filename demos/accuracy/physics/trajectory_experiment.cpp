@@ -21,21 +21,22 @@ void run(const PhysicsScene& scene, std::size_t objects, ListOrder order,
          Measurements& measured) {
     constexpr btScalar kStep = btScalar(1) / btScalar(60);
     std::vector<std::unique_ptr<PhysicsWorld>> worlds;
-    std::vector<std::function<void()>> methods;
+    std::vector<TimedMethod> methods;
     for (const PhysicsBroadphase& broadphase : broadphases) {
         worlds.push_back(std::make_unique<PhysicsWorld>(broadphase, order));
         scene.fill(worlds.back()->contents(), objects, settings.seed);
-        methods.emplace_back([&world = *worlds.back()] { world.step(kStep); });
+        methods.push_back(
+            {{{"list", titleOf(order)}, {"scene", scene.name}, {"method", broadphase.name}},
+             [&world = *worlds.back()] { world.step(kStep); }});
     }
     const auto lookAfter = [&](int step) {
         for (std::size_t i = 0; i < worlds.size(); ++i) {
-            measured.add("states", {{"list", titleOf(order)},
-                                    {"scene", scene.name},
-                                    {"method", broadphases[i].name},
-                                    {"step", step},
-                                    {"state", std::to_string(stateHash(worlds[i]->contents()))},
-                                    {"asleep", worlds[i]->sleepingCount()},
-                                    {"pairs", worlds[i]->pairCount()}});
+            Record row = methods[i].columns;
+            row.emplace_back("step", step);
+            row.emplace_back("state", std::to_string(stateHash(worlds[i]->contents())));
+            row.emplace_back("asleep", worlds[i]->sleepingCount());
+            row.emplace_back("pairs", worlds[i]->pairCount());
+            measured.add("states", row);
         }
     };
     const auto begin = [&](int step) {
@@ -48,16 +49,8 @@ void run(const PhysicsScene& scene, std::size_t objects, ListOrder order,
             }
         }
     };
-    const auto times = timesInTurn(settings.steps, 0, begin, methods);
+    measureTimes(measured, settings.steps, 0, begin, methods);
     lookAfter(settings.steps);
-    for (std::size_t i = 0; i < worlds.size(); ++i) {
-        for (const double milliseconds : times[i]) {
-            measured.add("times", {{"list", titleOf(order)},
-                                   {"scene", scene.name},
-                                   {"method", broadphases[i].name},
-                                   {"ms", milliseconds}});
-        }
-    }
 }
 
 }  // namespace

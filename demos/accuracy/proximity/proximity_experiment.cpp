@@ -79,28 +79,22 @@ public:
 
     void time(const ProximityPlan& plan) {
         std::vector<Frame> frames(static_cast<std::size_t>(plan.framesTogether));
-        std::vector<std::function<void()>> runs;
+        std::vector<TimedMethod> methods;
         for (Entry& entry : entries_) {
-            runs.emplace_back([this, &frames, &entry] {
-                for (const Frame& frame : frames) {
-                    entry.search->take(frame.view());
-                    entry.search->decide(colours_, entry.chosen);
-                }
-            });
+            methods.push_back(
+                {{{"trial", number_}, {"method", entry.method}}, [this, &frames, &entry] {
+                     for (const Frame& frame : frames) {
+                         entry.search->take(frame.view());
+                         entry.search->decide(colours_, entry.chosen);
+                     }
+                 }});
         }
         const auto begin = [&](int /*round*/) {
             for (Frame& frame : frames) {
                 advance(frame);
             }
         };
-        const auto times = timesInTurn(plan.rounds, 1, begin, runs);
-        for (std::size_t i = 0; i < entries_.size(); ++i) {
-            for (const double milliseconds : times[i]) {
-                measured_.add("times", {{"trial", number_},
-                                        {"method", entries_[i].method},
-                                        {"ms", milliseconds / plan.framesTogether}});
-            }
-        }
+        measureTimes(measured_, plan.rounds, 1, begin, methods, 1.0 / plan.framesTogether);
     }
 
 private:
