@@ -49,7 +49,9 @@ void percent(Context context, int /*count*/, Arguments arguments) {
 
 // Not every SQLite has one.
 void squareRoot(Context context, int /*count*/, Arguments arguments) {
-    sqlite3_result_double(context, std::sqrt(numberAt(arguments, 0)));
+    if (!isNull(arguments[0])) {
+        sqlite3_result_double(context, std::sqrt(numberAt(arguments, 0)));
+    }
 }
 
 template <double ShareInterval::*bound>

@@ -5,7 +5,7 @@
 //
 // Functions that its SQL has beside SQLite's own:
 //   percent(part, whole)                  0 of nothing is 0
-//   sqrt(x)
+//   sqrt(x)                               null of nothing
 //   interval_low(hits, trials), interval_high(hits, trials)
 //                                         the 95 % interval of a share (binomial.hpp); null of nothing
 //   interval_low(hits, trials, frames)    the same over frames in which the same objects are met again

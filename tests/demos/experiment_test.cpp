@@ -108,6 +108,7 @@ TEST_P(MeasurementsFunction, Computes) {
 INSTANTIATE_TEST_SUITE_P(
     All, MeasurementsFunction,
     testing::Values(Computed{"percent(1, 4)", 25.0}, Computed{"percent(0, 0)", 0.0},
+                    Computed{"sqrt(9)", 3.0}, Computed{"sqrt(NULL)", Value()},
                     Computed{"interval_low(3, 10)", wilsonInterval(3, 10).low},
                     Computed{"interval_high(3, 10)", wilsonInterval(3, 10).high},
                     Computed{"interval_low(0, 0)", Value()},
@@ -183,6 +184,22 @@ SELECT 1 AS one;
     EXPECT_TRUE(chart.showFront);
     EXPECT_EQ(chart.data.rows.size(), 2U);
     EXPECT_EQ(findings.tables.size(), 1U);
+}
+
+TEST(Findings, ShowStatementsOfTheSameQuestionTogetherRowByRow) {
+    Measurements measured = threeFrames();
+    const Findings findings = findingsOf(R"sql(
+CREATE VIEW texts AS SELECT 3 AS n;
+/* {"conclusions": "first", "each": "SELECT frame FROM frames"} */
+SELECT 'a' || :frame;
+/* {"conclusions": "second", "each": "SELECT frame FROM frames", "when": "{:frame < 2}"} */
+SELECT 'b' || :frame;
+/* {"conclusions": "last"} */
+SELECT 'c';
+)sql",
+                                         measured);
+    EXPECT_EQ(findings.conclusions,
+              (std::vector<std::string>{"a0", "b0", "a1", "b1", "a2", "c"}));
 }
 
 TEST(Findings, NameTheFaultOfADeclaration) {
