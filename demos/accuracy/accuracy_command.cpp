@@ -1,15 +1,38 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/accuracy_command.hpp>
 
+#include <demos/accuracy/accuracy_report.hpp>
+#include <demos/accuracy/timing.hpp>
+#include <demos/console/nearest_name.hpp>
 #include <demos/console/options.hpp>
+#include <demos/console/progress.hpp>
+#include <demos/console/result_file.hpp>
 #include <demos/console/subcommands.hpp>
+#include <demos/report/stopwatch.hpp>
+#include <demos/scenes/input_error.hpp>
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <exception>
+#include <filesystem>
 #include <memory>
+#include <ostream>
+#include <utility>
 
 namespace hashphase::demos {
 namespace {
+
+using Experiments = std::vector<const Experiment*>;
+
+struct AccuracyOptions {
+    std::vector<std::string> only;  // ids; empty: all
+    Effort effort;
+    std::string folder;               // for the report and its data; empty: none is written
+    std::optional<double> timeLimit;  // [s], after which no experiment begins
+    bool quiet = false;
+    bool list = false;
+};
 
 void declare(CLI::App& app, AccuracyOptions& options) {
     app.add_option("--only", options.only,
@@ -29,7 +52,110 @@ void declare(CLI::App& app, AccuracyOptions& options) {
     app.add_flag("--list", options.list, "say which experiments there are");
 }
 
+Experiments chosenExperiments(const std::vector<std::string>& ids,
+                              std::span<const Experiment> experiments) {
+    const auto isIn = [](const auto& all, std::string_view id) {
+        return std::find(all.begin(), all.end(), id) != all.end();
+    };
+    std::vector<std::string> known;
+    Experiments chosen;
+    for (const Experiment& each : experiments) {
+        known.emplace_back(each.id);
+        if (ids.empty() || isIn(ids, each.id)) {
+            chosen.push_back(&each);
+        }
+    }
+    for (const std::string& id : ids) {
+        if (!isIn(known, id)) {
+            throw InputError(unknownNameSentence("experiment", id, known));
+        }
+    }
+    return chosen;
+}
+
+// An experiment that cannot go on has not shown what it was to show.
+Findings findingsOf(const Experiment& experiment, const Effort& effort, const TellProgress& tell) {
+    try {
+        return experiment.run(effort, tell);
+    } catch (const std::exception& error) {
+        Findings findings;
+        findings.checks.push_back({"The experiment comes to its end", false, error.what()});
+        return findings;
+    }
+}
+
+/// Tells the progress of all experiments by how long each is expected to take.
+void run(const Experiments& chosen, const AccuracyOptions& options, AccuracyReport& report,
+         Console& console) {
+    constexpr std::size_t kSteps = 1000;
+    Progress progress(console.err, progressStyle(console, options.quiet), "accuracy", kSteps);
+    const auto secondsOf = [&](const Experiment& each) {
+        return options.effort.isQuick ? each.quickSeconds : each.fullSeconds;
+    };
+    double total = 0;
+    for (const Experiment* each : chosen) {
+        total += secondsOf(*each);
+    }
+    double done = 0;
+    const Stopwatch sinceBegin;
+    for (const Experiment* each : chosen) {
+        if (options.timeLimit && sinceBegin.milliseconds() > 1000 * *options.timeLimit) {
+            report.leftOut.emplace_back(each->id);
+            continue;
+        }
+        const auto tell = [&](double share, std::string_view what) {
+            const double now = done + secondsOf(*each) * std::clamp(share, 0.0, 1.0);
+            progress.update(static_cast<std::size_t>(kSteps * now / total),
+                            std::string(each->id) + ": " + std::string(what));
+        };
+        tell(0, each->title);
+        const Stopwatch stopwatch;
+        Findings findings = findingsOf(*each, options.effort, tell);
+        done += secondsOf(*each);
+        report.outcomes.push_back({each, std::move(findings), stopwatch.milliseconds() / 1000});
+    }
+}
+
+int runAccuracy(const AccuracyOptions& options, std::span<const Experiment> experiments,
+                Console& console) {
+    if (options.list) {
+        for (const Experiment& each : experiments) {
+            console.out << "  " << each.id << std::string(5 - each.id.size(), ' ') << each.title
+                        << ": " << each.question << '\n';
+        }
+        return kExitOk;
+    }
+    const Experiments chosen = chosenExperiments(options.only, experiments);
+    if (!options.folder.empty()) {
+        std::error_code error;
+        std::filesystem::create_directories(options.folder, error);
+        if (error) {
+            throw InputError(options.folder + " cannot be made: " + error.message() + ".");
+        }
+    }
+    ResultFile page(options.folder.empty() ? "" : options.folder + "/accuracy.html");
+    pinToThisCore();
+    AccuracyReport report{options.effort, {}, {}, gatherProvenance(console.commandLine)};
+    run(chosen, options, report, console);
+
+    printReport(report, console.out);
+    if (!options.folder.empty()) {
+        writeReport(report, options.folder);
+    }
+    deliverPage(pageOf(report), page, console);
+    return brokenChecks(report).empty() ? kExitOk : kExitCheckFailed;
+}
+
 }  // namespace
+
+std::span<const Experiment> experiments() {
+    static const std::vector<Experiment> all{
+        sweepExperiment(),   cellSizeExperiment(), proximityExperiment(), cullingExperiment(),
+        pickingExperiment(), originExperiment(),   timeStepExperiment(),  trajectoryExperiment(),
+        terrainExperiment(), updateExperiment(),
+    };
+    return all;
+}
 
 Subcommand accuracyCommand(std::span<const Experiment> known) {
     auto options = std::make_shared<AccuracyOptions>();

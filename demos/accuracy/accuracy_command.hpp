@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-#include <demos/accuracy/accuracy.hpp>
+// `hashphase accuracy`: runs experiments, writes what they found, and says what to choose.
+
+#include <demos/accuracy/experiments.hpp>
 #include <demos/console/program.hpp>
+
+#include <span>
 
 namespace hashphase::demos {
 
-/// The subcommand `accuracy`, over the given experiments.
+/// The subcommand, over the given experiments. Fails where a check does not hold, with kExitCheckFailed, and
+/// for unknown ids and files that cannot be written.
 [[nodiscard]] Subcommand accuracyCommand(std::span<const Experiment> known = experiments());
 
 }  // namespace hashphase::demos

@@ -5,6 +5,8 @@
 
 #include <demos/accuracy/experiment.hpp>
 
+#include <span>
+
 namespace hashphase::demos {
 
 [[nodiscard]] Experiment sweepExperiment();       // P1
@@ -17,5 +19,8 @@ namespace hashphase::demos {
 [[nodiscard]] Experiment trajectoryExperiment();  // P8
 [[nodiscard]] Experiment terrainExperiment();     // P9
 [[nodiscard]] Experiment updateExperiment();      // P10
+
+/// All of them, in that order.
+[[nodiscard]] std::span<const Experiment> experiments();
 
 }  // namespace hashphase::demos

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/advice.hpp>
+#include <demos/accuracy/accuracy_report.hpp>
 
 #include <gtest/gtest.h>
 
@@ -11,10 +11,12 @@ Choice choice(const std::string& task, const std::string& method, double millise
     return {task, method, milliseconds, error, "error of " + method, true};
 }
 
+/// The methods that the table advises.
 std::vector<std::string> frontOf(const std::vector<Choice>& choices) {
+    const DataTable table = adviceTable(choices);
     std::vector<std::string> methods;
-    for (const Choice& each : paretoFront(choices)) {
-        methods.push_back(each.method);
+    for (const std::vector<Value>& row : table.rows) {
+        methods.push_back(valueText(row[table.columnOf("method")]));
     }
     return methods;
 }

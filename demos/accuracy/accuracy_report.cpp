@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/accuracy/accuracy_report.hpp>
+
+#include <demos/console/format.hpp>
+#include <demos/console/result_file.hpp>
+#include <demos/console/table.hpp>
+#include <demos/report/json_values.hpp>
+#include <demos/report/report_text.hpp>
+#include <demos/report/vega_lite.hpp>
+
+#include <algorithm>
+#include <map>
+#include <ostream>
+#include <tuple>
+
+namespace hashphase::demos {
+namespace {
+
+constexpr const char* kIntroduction =
+    "hashphase is a spatial hash that replaces the broadphase of the Bullet physics engine. Where "
+    "a program may be a little wrong, it can be faster: this page shows what each such choice "
+    "costs in time and what it gets wrong, with Bullet's own way beside it. Errors are counted "
+    "against exact answers that none of the methods had a part in.";
+constexpr const char* kAdvice =
+    "Find your task and read down to the most that you can afford: each row costs more time than "
+    "the one above it, and gets less wrong. What is both slower and worse than another choice is "
+    "left out here, but not in the charts.";
+
+std::vector<Choice> allChoices(const AccuracyReport& report) {
+    std::vector<Choice> choices;
+    for (const Outcome& outcome : report.outcomes) {
+        const std::vector<Choice>& own = outcome.findings.choices;
+        choices.insert(choices.end(), own.begin(), own.end());
+    }
+    return choices;
+}
+
+/// How many experiments and checks, whether all hold, and what was left out.
+std::string verdictLine(const AccuracyReport& report) {
+    std::size_t checks = 0;
+    for (const Outcome& outcome : report.outcomes) {
+        checks += outcome.findings.checks.size();
+    }
+    const std::size_t broken = brokenChecks(report).size();
+    const auto counted = [](std::size_t count, const std::string& noun) {
+        return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+    };
+    return counted(report.outcomes.size(), "experiment") + ", " + counted(checks, "check") + ": " +
+           (broken == 0 ? "all hold" : std::to_string(broken) + " BROKEN") +
+           leftOutText(report.leftOut);
+}
+
+void print(const DataTable& data, std::ostream& out) {
+    std::vector<std::string> header;
+    for (const DataColumn& column : data.columns) {
+        header.push_back(titleOf(column));
+    }
+    Table table(header);
+    for (const std::vector<Value>& row : data.rows) {
+        std::vector<std::string> cells(row.size());
+        std::transform(row.begin(), row.end(), cells.begin(), valueText);
+        table.addRow(std::move(cells));
+    }
+    table.print(out);
+}
+
+template <class Range, class Make>
+Json listOf(const Range& range, const Make& make) {
+    Json list = Json::array();
+    for (const auto& each : range) {
+        list.push_back(make(each));
+    }
+    return list;
+}
+
+Json tableJson(const DataTable& data) {
+    const auto column = [](const DataColumn& each) -> Json {
+        return {{"name", each.name}, {"title", each.title}};
+    };
+    const auto row = [](const std::vector<Value>& cells) { return listOf(cells, valueJson); };
+    return {{"columns", listOf(data.columns, column)}, {"rows", listOf(data.rows, row)}};
+}
+
+Json outcomeJson(const AccuracyReport& report, const Outcome& outcome) {
+    const Findings& findings = outcome.findings;
+    const auto check = [](const Check& each) -> Json {
+        return {{"claim", each.claim}, {"holds", each.holds}, {"evidence", each.evidence}};
+    };
+    const auto chart = [](const Chart& each) -> Json {
+        return {{"name", each.name},
+                {"title", each.title},
+                {"settings", each.settings},
+                {"data", tableJson(each.data)}};
+    };
+    const auto choice = [](const Choice& each) -> Json {
+        return {{"task", each.task},
+                {"method", each.method},
+                {"milliseconds", valueJson(each.milliseconds)},
+                {"error", valueJson(each.error)},
+                {"result", each.result},
+                {"ours", each.isOurs}};
+    };
+    return {{"schema", "hashphase-accuracy"},
+            {"schemaVersion", 1},
+            {"provenance", provenanceJson(report.provenance)},
+            {"experiment", outcome.experiment->id},
+            {"title", outcome.experiment->title},
+            {"question", outcome.experiment->question},
+            {"quick", report.effort.isQuick},
+            {"seed", report.effort.seed},
+            {"seconds", outcome.seconds},
+            {"settings", findings.settings},
+            {"checks", listOf(findings.checks, check)},
+            {"conclusions", findings.conclusions},
+            {"charts", listOf(findings.charts, chart)},
+            {"tables", listOf(findings.tables, tableJson)},
+            {"choices", listOf(findings.choices, choice)}};
+}
+
+PageSection sectionOf(const Outcome& outcome, const Effort& effort) {
+    const Findings& findings = outcome.findings;
+    PageSection section{
+        std::string(outcome.experiment->id) + " " + std::string(outcome.experiment->title),
+        {std::string(outcome.experiment->question)},
+        findings.conclusions,
+        findings.checks,
+        findings.charts,
+        findings.tables,
+        findings.settings};
+    section.settings.push_back("It took " + fixed(outcome.seconds, 1) + " s" +
+                               (effort.isQuick ? " with --quick, which measures less" : "") +
+                               "; seed " + std::to_string(effort.seed) + ".");
+    return section;
+}
+
+}  // namespace
+
+std::vector<std::string> brokenChecks(const AccuracyReport& report) {
+    std::vector<std::string> broken;
+    for (const Outcome& outcome : report.outcomes) {
+        for (const Check& check : outcome.findings.checks) {
+            if (!check.holds) {
+                broken.push_back(std::string(outcome.experiment->id) + ": " + check.claim + " (" +
+                                 check.evidence + ")");
+            }
+        }
+    }
+    return broken;
+}
+
+DataTable adviceTable(std::span<const Choice> choices) {
+    std::map<std::string, std::size_t> orderOfTask;
+    std::vector<const Choice*> sorted;
+    for (const Choice& each : choices) {
+        orderOfTask.emplace(each.task, orderOfTask.size());
+        sorted.push_back(&each);
+    }
+    const auto rank = [&](const Choice* each) {
+        return std::tuple(orderOfTask[each->task], each->milliseconds, each->error);
+    };
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [&](const Choice* a, const Choice* b) { return rank(a) < rank(b); });
+    DataTable table{{{"task", "for"},
+                     {"milliseconds", "if you can afford [ms]"},
+                     {"method", "use"},
+                     {"result", "and you get"},
+                     {"error", "error"}},
+                    {}};
+    const Choice* last = nullptr;
+    for (const Choice* each : sorted) {
+        if (last == nullptr || each->task != last->task || each->error < last->error) {
+            table.add({each->task, each->milliseconds, each->method, each->result, each->error});
+            last = each;
+        }
+    }
+    return table;
+}
+
+void printReport(const AccuracyReport& report, std::ostream& out) {
+    for (const auto& [experiment, findings, seconds] : report.outcomes) {
+        out << experiment->id << ' ' << experiment->title << ": " << experiment->question << '\n';
+        for (const DataTable& table : findings.tables) {
+            out << '\n';
+            print(table, out);
+        }
+        out << '\n';
+        for (const Check& check : findings.checks) {
+            out << (check.holds ? "  holds   " : "  BROKEN  ") << check.claim << " ("
+                << check.evidence << ")\n";
+        }
+        for (const std::string& conclusion : findings.conclusions) {
+            out << "  " << conclusion << '\n';
+        }
+        out << '\n';
+    }
+    const DataTable advice = adviceTable(allChoices(report));
+    if (!advice.rows.empty()) {
+        print(advice, out);
+        out << '\n';
+    }
+    printProvenance(report.provenance, out);
+    out << verdictLine(report) << '\n';
+    for (const std::string& broken : brokenChecks(report)) {
+        out << broken << '\n';
+    }
+}
+
+Page pageOf(const AccuracyReport& report) {
+    const std::vector<std::string> broken = brokenChecks(report);
+    Page page{"What accuracy costs in time",
+              kIntroduction,
+              verdictLine(report) + ".",
+              std::nullopt,
+              {},
+              report.provenance};
+    for (const std::string& each : broken) {
+        page.verdict += " BROKEN: " + each + ".";
+    }
+    DataTable advice = adviceTable(allChoices(report));
+    if (!advice.rows.empty()) {
+        page.sections.push_back({"What to choose", {kAdvice}, {}, {}, {}, {std::move(advice)}, {}});
+    }
+    for (const Outcome& outcome : report.outcomes) {
+        if (!outcome.findings.checks.empty()) {
+            page.holds = broken.empty();
+        }
+        page.sections.push_back(sectionOf(outcome, report.effort));
+    }
+    return page;
+}
+
+void writeReport(const AccuracyReport& report, const std::string& folder) {
+    const auto write = [&folder](const std::string& name, const auto& writeTo) {
+        ResultFile(folder + "/" + name).write(writeTo);
+    };
+    const SeriesLooks looks = seriesLooks(pageOf(report));
+    for (const Outcome& outcome : report.outcomes) {
+        write(std::string(outcome.experiment->id) + ".json",
+              [&](std::ostream& file) { file << textOf(outcomeJson(report, outcome)); });
+        for (const Chart& chart : outcome.findings.charts) {
+            write(chart.name + ".csv", [&](std::ostream& file) { writeCsv(chart.data, file); });
+            write(chart.name + ".vl.json", [&](std::ostream& file) {
+                file << textOf(vegaLiteSpec(chart, looks, pictureTheme(), ChartTitle::kInside));
+            });
+        }
+    }
+    write("advice.csv",
+          [&](std::ostream& file) { writeCsv(adviceTable(allChoices(report)), file); });
+}
+
+}  // namespace hashphase::demos
