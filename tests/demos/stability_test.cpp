@@ -257,8 +257,8 @@ TEST(Stability, EndsWithStatus1WhenABroadphaseOfOursForgetsAPair) {
 
 // What the cases say of a broadphase in place of ours, by id; but for two that take brute force too
 // long, and one that takes it too much memory.
-using Findings = std::map<std::string, std::tuple<std::string, std::uint64_t, std::uint64_t>>;
-Findings findingsOf(const BroadphaseKind& kind) {
+using FoundByCase = std::map<std::string, std::tuple<std::string, std::uint64_t, std::uint64_t>>;
+FoundByCase findingsOf(const BroadphaseKind& kind) {
     std::string cases;
     for (const HardCase& each : hardCases()) {
         const std::string id = each.id;
@@ -272,7 +272,7 @@ Findings findingsOf(const BroadphaseKind& kind) {
     EXPECT_EQ(printed.exitCode, kExitCheckFailed);
     std::ifstream file(json);
     const nlohmann::json report = nlohmann::json::parse(file);
-    Findings findings;
+    FoundByCase findings;
     for (const nlohmann::json& each : report["cases"]) {
         const nlohmann::json& outcome = each["outcomes"][0];
         findings[each["id"]] = {outcome["outcome"], outcome["missing"], outcome["extra"]};
@@ -282,7 +282,7 @@ Findings findingsOf(const BroadphaseKind& kind) {
 }
 
 // The cases that say the same of both.
-std::string sameOf(const Findings& some, const Findings& others) {
+std::string sameOf(const FoundByCase& some, const FoundByCase& others) {
     std::string same;
     for (const auto& [id, finding] : some) {
         same += others.at(id) == finding ? id + ' ' : "";
@@ -298,7 +298,7 @@ std::string sameOf(const Findings& some, const Findings& others) {
 // to H43), and those in which ours is not asked as Bullet's are, by sweeps, worlds of bodies and
 // terrains of their own. In three cases everybody touches everybody, and no pair is too many.
 TEST(Stability, FindsAPairTooFewOrTooManyInEveryCaseThatAsksForPairs) {
-    const Findings control = findingsOf(inPlaceOfOurs<btSimpleBroadphase>());
+    const FoundByCase control = findingsOf(inPlaceOfOurs<btSimpleBroadphase>());
     EXPECT_EQ(sameOf(control, findingsOf(inPlaceOfOurs<Forgetful>())),
               "H13 H14 H15 H16 H17 H18 H19 H21 H22 H23 H24 H36 H37 H40 H41 H42 H43 ");
     EXPECT_EQ(sameOf(control, findingsOf(inPlaceOfOurs<Inventive>())),
