@@ -10,8 +10,8 @@
 
 namespace hashphase::demos {
 
-/// The subcommand, over the given experiments. Fails where a check does not hold, with kExitCheckFailed, and
-/// for unknown ids and files that cannot be written.
+/// The subcommand, over the given experiments. Fails where a check does not hold, with
+/// kExitCheckFailed, and for unknown ids and files that cannot be written.
 [[nodiscard]] Subcommand accuracyCommand(std::span<const Experiment> known = experiments());
 
 }  // namespace hashphase::demos

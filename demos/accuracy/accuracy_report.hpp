@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// What the experiments found: as text and as a page for people, JSON for programs, CSV for spreadsheets.
+// What the experiments found: as text and as a page for people, JSON for programs, CSV for
+// spreadsheets.
 
 #include <demos/accuracy/experiment.hpp>
 #include <demos/report/page.hpp>
@@ -30,7 +31,8 @@ struct AccuracyReport {
 /// The checks of all outcomes that do not hold, as "P1: claim (evidence)".
 [[nodiscard]] std::vector<std::string> brokenChecks(const AccuracyReport& report);
 
-/// Task by task what is worth choosing: each method costs more than those before it and gets less wrong.
+/// Task by task what is worth choosing: each method costs more than those before it and gets less
+/// wrong.
 [[nodiscard]] DataTable adviceTable(std::span<const Choice> choices);
 
 /// Experiment by experiment its tables, checks and conclusions; then the advice and the verdict.
@@ -39,9 +41,9 @@ void printReport(const AccuracyReport& report, std::ostream& out);
 /// The verdict, what to choose, experiment by experiment what was found, and where.
 [[nodiscard]] Page pageOf(const AccuracyReport& report);
 
-/// Writes to the folder, which exists, <id>.json of each experiment (schema "hashphase-accuracy"), <name>.csv
-/// and <name>.vl.json (as Vega-Lite draws it) of each chart, and advice.csv. Throws InputError when a
-/// file cannot be written.
+/// Writes to the folder, which exists, <id>.json of each experiment (schema "hashphase-accuracy"),
+/// <name>.csv and <name>.vl.json (as Vega-Lite draws it) of each chart, and advice.csv. Throws
+/// InputError when a file cannot be written.
 void writeReport(const AccuracyReport& report, const std::string& folder);
 
 }  // namespace hashphase::demos

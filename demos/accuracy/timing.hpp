@@ -33,8 +33,8 @@ struct TimedMethod {
     std::function<void()> run;
 };
 
-/// The same, but adds each time to the table "times": a row with the method's columns, and then "ms", multiplied by
-/// `scale`.
+/// The same, but adds each time to the table "times": a row with the method's columns, and then
+/// "ms", multiplied by `scale`.
 void measureTimes(Measurements& measured, int frames, int warmUp,
                   const std::function<void(int frame)>& begin, std::span<const TimedMethod> methods,
                   double scale = 1);

@@ -24,8 +24,8 @@ struct CellCase {
 using CellMethods = std::function<std::vector<PairMethod>(
     const CellCase& each, std::span<const BulletBox> boxes, double meanEdge)>;
 
-/// All ways: automatic sizes and fixed ones, the paper's grids where an object does not lie in too many cells, and
-/// btDbvtBroadphase.
+/// All ways: automatic sizes and fixed ones, the paper's grids where an object does not lie in too
+/// many cells, and btDbvtBroadphase.
 [[nodiscard]] std::vector<PairMethod> cellMethods(const CellCase& each,
                                                   std::span<const BulletBox> boxes,
                                                   double meanEdge);

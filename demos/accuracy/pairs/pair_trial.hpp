@@ -14,9 +14,9 @@ struct PairTrialPlan {
     int framesTogether = 1;
 };
 
-/// Runs all methods on the scene, which moves on. Adds to the tables that pairs.sql names, under the number of
-/// the trial. The true pairs come from a sweep along one axis; brute force, up to 20,000 objects,
-/// judges it.
+/// Runs all methods on the scene, which moves on. Adds to the tables that pairs.sql names, under
+/// the number of the trial. The true pairs come from a sweep along one axis; brute force, up to
+/// 20,000 objects, judges it.
 void tryPairs(std::size_t trial, BoxScene& scene, std::span<const PairMethod> methods,
               const PairTrialPlan& plan, Measurements& measured);
 

@@ -23,8 +23,8 @@ struct UpdatePlan {
     PairTrialPlan trial;          // frames are multiples of every period, so that rounds are alike
 };
 
-/// When a broadphase is told that a box has moved: every time, as few times as boxes that are grown by a margin
-/// allow (btDbvtBroadphase does so by 5 cm), or in every so many frames only.
+/// When a broadphase is told that a box has moved: every time, as few times as boxes that are grown
+/// by a margin allow (btDbvtBroadphase does so by 5 cm), or in every so many frames only.
 [[nodiscard]] std::vector<PairMethod> updatePolicies();
 
 /// The experiment, with these policies (update_policies.sql).

@@ -23,9 +23,9 @@ struct PhysicsScene {
     void (*disturb)(WorldContents& contents, int step) = nullptr;
 };
 
-/// Eight: the four worlds of `compare`; spheres in a lattice that fall into a box; balls that bounce
-/// for ever; spinning compounds that fall into a heap; a pile out of which bodies are taken and
-/// dropped again.
+/// Eight: the four worlds of `compare`; spheres in a lattice that fall into a box; balls that
+/// bounce for ever; spinning compounds that fall into a heap; a pile out of which bodies are taken
+/// and dropped again.
 [[nodiscard]] std::vector<PhysicsScene> physicsScenes();
 
 /// A floor whose top is at height 0, and four walls `halfWidth` from the middle.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// P7: what smaller steps and more solver iterations buy, and that the broadphase does not change it.
+// P7: what smaller steps and more solver iterations buy, and that the broadphase does not change
+// it.
 
 #include <demos/accuracy/experiment.hpp>
 #include <demos/accuracy/physics/physics_tasks.hpp>
@@ -31,9 +32,9 @@ struct TimeStepSettings {
 /// Ours and btDbvtBroadphase, both with their lists in canonical order and as shipped.
 [[nodiscard]] std::vector<PhysicsContestant> timeStepContestants();
 
-/// Does all tasks with each of the substeps, with Bullet as it is and with contacts that keep energy; the first
-/// task, the hardest on the solver, with each number of iterations and each way to share the product as
-/// well. Says what that shows (time_step.sql).
+/// Does all tasks with each of the substeps, with Bullet as it is and with contacts that keep
+/// energy; the first task, the hardest on the solver, with each number of iterations and each way
+/// to share the product as well. Says what that shows (time_step.sql).
 [[nodiscard]] Findings measureTimeSteps(std::span<const PhysicsTask> tasks,
                                         std::span<const PhysicsContestant> contestants,
                                         const TimeStepSettings& settings, const TellProgress& tell);

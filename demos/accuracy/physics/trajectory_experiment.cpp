@@ -14,8 +14,8 @@ constexpr std::string_view kTrajectoryDeclaration =
 #include <demos/accuracy/physics/trajectory.sql>
     ;
 
-/// Steps the scene over each of the broadphases, all in turn in each step; notes after each one the state of
-/// all bodies, and at the end the pairs.
+/// Steps the scene over each of the broadphases, all in turn in each step; notes after each one the
+/// state of all bodies and the number of pairs.
 void run(const PhysicsScene& scene, std::size_t objects, ListOrder order,
          std::span<const PhysicsBroadphase> broadphases, const TrajectorySettings& settings,
          Measurements& measured) {

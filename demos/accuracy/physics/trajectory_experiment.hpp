@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// P8: does the broadphase change how bodies move? Worlds over several broadphases are stepped side by
-// side and compared bit by bit with the one over btSimpleBroadphase, which is brute force.
+// P8: does the broadphase change how bodies move? Worlds over several broadphases are stepped side
+// by side and compared bit by bit with the one over btSimpleBroadphase, which is brute force.
 
 #include <demos/accuracy/experiment.hpp>
 #include <demos/accuracy/physics/physics_scenes.hpp>
@@ -19,8 +19,8 @@ struct TrajectorySettings {
     bool isQuick = false;
 };
 
-/// Runs all scenes with the lists in each order, and says what that shows (trajectory.sql). Among the
-/// broadphases must be btSimpleBroadphase and btDbvtBroadphase.
+/// Runs all scenes with the lists in each order, and says what that shows (trajectory.sql). Among
+/// the broadphases must be btSimpleBroadphase and btDbvtBroadphase.
 [[nodiscard]] Findings compareTrajectories(std::span<const PhysicsBroadphase> broadphases,
                                            std::span<const PhysicsScene> scenes,
                                            const TrajectorySettings& settings,

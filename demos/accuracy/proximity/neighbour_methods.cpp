@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 
-// The paper's way: Hastings, Mesit, Guha, "Optimization of Large-Scale, Real-Time Simulations by Spatial
-// Hashing", "AI and Decision Making".
+// The paper's way: Hastings, Mesit, Guha, "Optimization of Large-Scale, Real-Time Simulations by
+// Spatial Hashing", "AI and Decision Making".
 
 #include <demos/accuracy/proximity/neighbour_methods.hpp>
 
@@ -36,7 +36,7 @@ void NeighbourSearch::decide(std::span<const std::uint32_t> colours,
 
 namespace {
 
-// --- Of the library -------------------------------------------------------------------------------
+// --- Of the library ------------------------------------------------------------------------------
 
 /// Has a grid of its own, in which ProxyId::index is an agent's number: a new grid counts from 0.
 class GridSearch : public NeighbourSearch {
@@ -236,10 +236,11 @@ private:
     std::vector<std::uint32_t> decided_;
 };
 
-// --- Of others ------------------------------------------------------------------------------------
+// --- Of others -----------------------------------------------------------------------------------
 
-/// An agent lies in the buckets of all cells that its box touches, and is counted as often as it is met.
-/// The indices are clamped to the map, which the printed loop leaves at its borders.
+/// An agent lies in the buckets of all cells that its box touches (no cell is smaller than an
+/// agent: these are its corners'), and is counted as often as it is met. The indices are clamped
+/// to the map, which the printed loop leaves at its borders.
 class PaperProximity : public NeighbourSearch {
 public:
     explicit PaperProximity(const NeighbourNeeds& needs)

@@ -65,9 +65,9 @@ struct NeighbourMethod {
     std::string_view origin = kOurs;
 };
 
-/// The library's; then the paper's as it prints it, with a flat grid and the cells from base - offset to
-/// base + offset - 1; then Bullet's: btDbvtBroadphase::aabbTest() around each agent, and the distance to
-/// all whom it finds, without any pairs on the way.
+/// The library's; then the paper's as it prints it, with a flat grid and the cells from base -
+/// offset to base + offset - 1; then Bullet's: btDbvtBroadphase::aabbTest() around each agent, and
+/// the distance to all whom it finds, without any pairs on the way.
 [[nodiscard]] std::vector<NeighbourMethod> neighbourMethods();
 
 }  // namespace hashphase::demos

@@ -26,10 +26,10 @@ double square(double number) {
     return number * number;
 }
 
-/// How many of those that an estimate by cells finds are really near. Agents of edge e lie anywhere. The cells
-/// that the box of a ball of radius r touches are 2 r + c wide on average, c being their edge, and an
-/// agent touches them when its centre is at most e / 2 outside; so on a plain pi r^2 / (2 r + c + e)^2, and in
-/// space 4/3 pi r^3 / (2 r + c + e)^3.
+/// How many of those that an estimate by cells finds are really near. Agents of edge e lie
+/// anywhere. The cells that the box of a ball of radius r touches are 2 r + c wide on average, c
+/// being their edge, and an agent touches them when its centre is at most e / 2 outside; so on a
+/// plain pi r^2 / (2 r + c + e)^2, and in space 4/3 pi r^3 / (2 r + c + e)^3.
 double estimatePrecision(const Crowd& crowd) {
     return std::numbers::pi * square(crowd.radius) /
            square(2 * crowd.radius + crowd.cellSize() + kAgentEdge);
@@ -120,8 +120,8 @@ private:
         toBulletBoxes(frame.boxes, frame.bulletBoxes);
     }
 
-    /// By looking at everybody, for agents that have all around them what others have: nearer to the
-    /// border are fewer.
+    /// By looking at everybody, for agents that have all around them what others have: nearer to
+    /// the border are fewer.
     void findTruth(const Frame& frame, std::size_t most) {
         truths_.assign(crowd_.agents, std::nullopt);
         const double margin = crowd_.radius + crowd_.cellSize() + kAgentEdge;

@@ -30,15 +30,16 @@ struct ProximityPlan {
     std::size_t statedEstimates = 300;
 };
 
-/// Tries the methods in all crowds, and says what that shows (proximity.sql). Truth: the distance to every
-/// other agent, in double precision. Throws std::invalid_argument where no agent has its surroundings
-/// within the square.
+/// Tries the methods in all crowds, and says what that shows (proximity.sql). Truth: the distance
+/// to every other agent, in double precision. Throws std::invalid_argument where no agent has its
+/// surroundings within the square.
 [[nodiscard]] Findings measureProximity(const ProximityPlan& plan,
                                         std::span<const NeighbourMethod> methods,
                                         std::uint64_t seed, const TellProgress& tell);
 
-/// Counts what integration/ai/proximity.hpp states of estimateWithin() in space, for a radius of 1, 2, 4 and
-/// 8 cells, agents half as large as a cell, twenty others in the ball; `estimates` queries each.
+/// Counts what integration/ai/proximity.hpp states of estimateWithin() in space, for a radius of 1,
+/// 2, 4 and 8 cells, agents half as large as a cell, twenty others in the ball; `estimates` queries
+/// each.
 void measureStatedEstimates(std::size_t estimates, std::uint64_t seed, Measurements& measured);
 
 }  // namespace hashphase::demos

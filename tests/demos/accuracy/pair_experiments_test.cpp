@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 //
-// The experiments on pairs, P2 and P10, at a tiny size: that their checks hold, and that they notice a method
-// that gets a pair wrong.
+// The experiments on pairs, P2 and P10, at a tiny size: that their checks hold, and that they
+// notice a method that gets a pair wrong.
 
 #include <demos/accuracy/baselines/paper_grid.hpp>
 #include <demos/accuracy/pairs/cell_size.hpp>
