@@ -3,6 +3,8 @@
 // Writes a world as an editor saves it, by Bullet's own serializer: write-level KIND FILE. It knows
 // nothing of hashphase, and is built in each precision of Bullet.
 
+#include "try/programs/program.hpp"
+
 #include <BulletCollision/CollisionDispatch/btInternalEdgeUtility.h>
 #include <BulletCollision/CollisionShapes/btTriangleInfoMap.h>
 #include <BulletDynamics/Featherstone/btMultiBody.h>
@@ -13,7 +15,6 @@
 #include <BulletSoftBody/btSoftBodyHelpers.h>
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
-#include <btBulletDynamicsCommon.h>
 
 #include <cstdio>
 #include <cstring>
@@ -21,71 +22,47 @@
 
 namespace {
 
-bool save(btDiscreteDynamicsWorld& world, btDefaultSerializer& serializer, const char* path) {
-    world.serialize(&serializer);
-    std::FILE* const file = std::fopen(path, "wb");
-    const auto size = static_cast<std::size_t>(serializer.getCurrentBufferSize());
-    const bool isWritten =
-        file != nullptr && std::fwrite(serializer.getBufferPointer(), 1, size, file) == size;
-    return file != nullptr && std::fclose(file) == 0 && isWritten;
-}
-
 // A floor, two crates and a hinge between them, of which each has a name, and so have the shapes.
-struct Crates {
-    btBoxShape floorShape{btVector3(50, 1, 50)};
-    btBoxShape crateShape{btVector3(1, 1, 1)};
-    btRigidBody floor{body(0, floorShape, {0, -1, 0})};
-    btRigidBody first{body(1, crateShape, {0, 1, 0})};
-    btRigidBody second{body(1, crateShape, {0, 4, 0})};
-    btHingeConstraint hinge{first, second, {0, 1.5, 0}, {0, -1.5, 0}, {1, 0, 0}, {1, 0, 0}};
+template <class World = btDiscreteDynamicsWorld,
+          class Configuration = btDefaultCollisionConfiguration,
+          class Solver = btSequentialImpulseConstraintSolver>
+struct Level : programs::Scene<btDbvtBroadphase, World, Configuration, Solver> {
+    btBoxShape* floorShape = this->things.box(50, 1, 50);
+    btBoxShape* crateShape = this->things.box(1, 1, 1);
+    btRigidBody* floor = this->add(floorShape, 0, {0, -1, 0});
+    btRigidBody* first = this->add(crateShape, 1, {0, 1, 0});
+    btRigidBody* second = this->add(crateShape, 1, {0, 4, 0});
+    btHingeConstraint hinge{*first, *second, {0, 1.5, 0}, {0, -1.5, 0}, {1, 0, 0}, {1, 0, 0}};
+    btDefaultSerializer serializer;
 
-    explicit Crates(btDiscreteDynamicsWorld& world) {
-        for (btRigidBody* each : {&floor, &first, &second}) {
-            world.addRigidBody(each);
-        }
-        world.addConstraint(&hinge);
-    }
-
-    static btRigidBody::btRigidBodyConstructionInfo body(btScalar mass, btCollisionShape& shape,
-                                                         const btVector3& place) {
-        btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, &shape, btVector3(1, 1, 1));
-        info.m_startWorldTransform.setOrigin(place);
-        return info;
-    }
-
-    void name(btDefaultSerializer& serializer) const {
+    Level() {
+        this->world.addConstraint(&hinge);
         static const char* const kCrate = "crate";  // of two bodies: it is written once
-        serializer.registerNameForPointer(&floor, "the floor of the hall");
-        serializer.registerNameForPointer(&first, kCrate);
-        serializer.registerNameForPointer(&second, kCrate);
-        serializer.registerNameForPointer(&floorShape, "f");
-        serializer.registerNameForPointer(&crateShape, "Kiste (gro\xc3\x9f)");
+        serializer.registerNameForPointer(floor, "the floor of the hall");
+        serializer.registerNameForPointer(first, kCrate);
+        serializer.registerNameForPointer(second, kCrate);
+        serializer.registerNameForPointer(floorShape, "f");
+        serializer.registerNameForPointer(crateShape, "Kiste (gro\xc3\x9f)");
         serializer.registerNameForPointer(&hinge, "door hinge");
     }
-};
+    ~Level() { this->world.removeConstraint(&hinge); }
 
-template <class World, class Configuration = btDefaultCollisionConfiguration,
-          class Solver = btSequentialImpulseConstraintSolver>
-struct Place {
-    Configuration configuration;
-    btCollisionDispatcher dispatcher{&configuration};
-    btDbvtBroadphase broadphase;
-    Solver solver;
-    World world{&dispatcher, &broadphase, &solver, &configuration};
+    bool save(const char* path) {
+        this->world.serialize(&serializer);
+        std::FILE* const file = std::fopen(path, "wb");
+        const auto size = static_cast<std::size_t>(serializer.getCurrentBufferSize());
+        const bool isWritten =
+            file != nullptr && std::fwrite(serializer.getBufferPointer(), 1, size, file) == size;
+        return file != nullptr && std::fclose(file) == 0 && isWritten;
+    }
 };
 
 bool writeNames(const char* path) {
-    Place<btDiscreteDynamicsWorld> place;
-    const Crates crates(place.world);
-    btDefaultSerializer serializer;
-    crates.name(serializer);
-    return save(place.world, serializer, path);
+    return Level<>().save(path);
 }
 
 // A ground of triangles, whose edges Bullet keeps as arrays of plain numbers.
 bool writeMesh(const char* path) {
-    Place<btDiscreteDynamicsWorld> place;
-    const Crates crates(place.world);
     btTriangleMesh mesh;
     for (int i = 0; i < 20; ++i) {
         const btScalar x(i);
@@ -95,20 +72,12 @@ bool writeMesh(const char* path) {
     btBvhTriangleMeshShape shape(&mesh, true);
     btTriangleInfoMap edges;
     btGenerateInternalEdgeInfo(&shape, &edges);
-    btRigidBody ground(Crates::body(0, shape, {0, 0, 0}));
-    place.world.addRigidBody(&ground);
-    btDefaultSerializer serializer;
-    crates.name(serializer);
-    serializer.registerNameForPointer(&ground, "ground");
-    const bool isSaved = save(place.world, serializer, path);
-    place.world.removeRigidBody(&ground);
-    return isSaved;
+    Level<> level;
+    level.serializer.registerNameForPointer(level.add(&shape, 0, {0, 0, 0}), "ground");
+    return level.save(path);
 }
 
 bool writeMultiBody(const char* path) {
-    Place<btMultiBodyDynamicsWorld, btDefaultCollisionConfiguration, btMultiBodyConstraintSolver>
-        place;
-    const Crates crates(place.world);
     constexpr int kLinks = 3;
     btMultiBody arm(kLinks, 0, btVector3(0, 0, 0), true, false);
     arm.setBaseName("base");
@@ -119,35 +88,31 @@ bool writeMultiBody(const char* path) {
         arm.getLink(i).m_jointName = "joint";
     }
     arm.finalizeMultiDof();
-    place.world.addMultiBody(&arm);
     btBoxShape shape(btVector3(1, 1, 1));
     btMultiBodyLinkCollider collider(&arm, 0);
     collider.setCollisionShape(&shape);
     arm.getLink(0).m_collider = &collider;
-    place.world.addCollisionObject(&collider);
-    btDefaultSerializer serializer;
-    crates.name(serializer);
+    Level<btMultiBodyDynamicsWorld, btDefaultCollisionConfiguration, btMultiBodyConstraintSolver>
+        level;
+    level.world.addMultiBody(&arm);
+    level.world.addCollisionObject(&collider);
     for (const char* name :
          {arm.getBaseName(), arm.getLink(0).m_linkName, arm.getLink(0).m_jointName}) {
-        serializer.registerNameForPointer(name, name);
+        level.serializer.registerNameForPointer(name, name);
     }
-    const bool isSaved = save(place.world, serializer, path);
-    place.world.removeCollisionObject(&collider);
-    place.world.removeMultiBody(&arm);
+    const bool isSaved = level.save(path);
+    level.world.removeMultiBody(&arm);
     return isSaved;
 }
 
 bool writeSoftBody(const char* path) {
-    Place<btSoftRigidDynamicsWorld, btSoftBodyRigidBodyCollisionConfiguration> place;
-    const Crates crates(place.world);
+    Level<btSoftRigidDynamicsWorld, btSoftBodyRigidBodyCollisionConfiguration> level;
     const std::unique_ptr<btSoftBody> sheet(btSoftBodyHelpers::CreatePatch(
-        place.world.getWorldInfo(), {-4, 6, -4}, {4, 6, -4}, {-4, 6, 4}, {4, 6, 4}, 5, 5, 0, true));
+        level.world.getWorldInfo(), {-4, 6, -4}, {4, 6, -4}, {-4, 6, 4}, {4, 6, 4}, 5, 5, 0, true));
     sheet->setPose(true, true);
-    place.world.addSoftBody(sheet.get());
-    btDefaultSerializer serializer;
-    crates.name(serializer);
-    const bool isSaved = save(place.world, serializer, path);
-    place.world.removeSoftBody(sheet.get());
+    level.world.addSoftBody(sheet.get());
+    const bool isSaved = level.save(path);
+    level.world.removeSoftBody(sheet.get());
     return isSaved;
 }
 

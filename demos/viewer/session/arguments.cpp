@@ -4,7 +4,6 @@
 #include <demos/console/format.hpp>
 #include <demos/console/nearest_name.hpp>
 #include <demos/console/number_words.hpp>
-#include <demos/console/quoted_word.hpp>
 #include <demos/scenes/input_error.hpp>
 
 #include <limits>

@@ -29,7 +29,7 @@ struct Output {
 };
 
 /// What the shell makes of the command.
-inline Output runCommand(const std::string& command, const TemporaryFolder& folder) {
+inline Output runCommand(const std::string& command, const TemporaryFolder& folder = {}) {
     Output output;
     std::FILE* pipe = popen((command + " 2>'" + folder.file("err") + "'").c_str(), "r");
     for (int byte = 0; (byte = std::fgetc(pipe)) != EOF;) {
@@ -43,26 +43,28 @@ inline Output runCommand(const std::string& command, const TemporaryFolder& fold
     return output;
 }
 
-inline Output runCommand(const std::string& command) {
-    return runCommand(command, TemporaryFolder());
-}
+inline const std::string kTry = std::string(HASHPHASE_PROGRAM) + " try ";
 
+/// A file in the folder of the programs that know nothing of hashphase.
 inline std::string stock(const std::string& file) {
     return std::string(HASHPHASE_STOCK_FOLDER) + "/" + file;
 }
 
-inline Output tryProgram(const std::string& arguments, const TemporaryFolder& folder = {}) {
-    return runCommand(std::string(HASHPHASE_PROGRAM) + " try " + arguments, folder);
-}
+/// To be followed by the name of a program.
+inline const std::string kStock = stock("stock-programs") + " ";
 
-/// The outcome of `try`, and what it has written as JSON.
-inline std::pair<Output, Json> measure(const std::string& options, const std::string& program) {
+/// The outcome of `try` with these words, and what it has written as JSON.
+inline std::pair<Output, Json> measureWords(const std::string& words) {
     const TemporaryFolder folder;
     const std::string file = folder.file("try.json");
-    Output output = runCommand(std::string(HASHPHASE_PROGRAM) + " try --quiet " + options +
-                                   " --json '" + file + "' -- " + program,
+    Output output = runCommand("folder=" + stock("") + " stock=" + stock("stock-programs") + "\n" +
+                                   kTry + "--quiet --json '" + file + "' " + words,
                                folder);
     return {output, Json::parse(std::ifstream(file), nullptr, false)};
+}
+
+inline std::pair<Output, Json> measure(const std::string& options, const std::string& program) {
+    return measureWords(options + " -- " + program);
 }
 
 inline std::size_t countOf(const std::string& text, const std::string& part) {

@@ -9,76 +9,25 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 namespace hashphase::demos {
 namespace {
 
-TEST(Try, LeavesFurtherProcessesTheirBroadphase) {
-    const auto [output, json] = measure("", stock("stock-programs") + " starter");
-    EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
-    EXPECT_TRUE(
-        output.out.starts_with("first has trees\nsecond has trees\n"
-                               "first has none\nsecond has none\n"))
-        << output.out;
-    EXPECT_EQ(json["runs"][0]["otherProcesses"], 1);
-}
-
-TEST(Try, RecordsTheFirstProcessWithABroadphaseThatCanBeTaken) {
-    const auto [output, json] = measure("", stock("stock-programs") + " simple-starter");
-    EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
-    EXPECT_TRUE(output.out.starts_with("second has trees\nsecond has none\n")) << output.out;
-    EXPECT_EQ(json["runs"][1]["steps"].size(), 5U);
-}
-
 // The recorded one has ended; who has started it lives on for a minute, and has nothing to do with Bullet.
-TEST(Try, DoesNotWaitForTheDead) {
+TEST(TryProcesses, DoesNotWaitForTheDead) {
     const Output output =
-        runCommand("timeout 50 " + std::string(HASHPHASE_PROGRAM) + " try --quiet -- " +
-                   stock("stock-programs") + " leaves-zombie");
+        runCommand("timeout 50 " + kTry + "--quiet -- " + kStock + "leaves-zombie");
     EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
 }
 
 // Each run reads the same, and what a script has read before is not read again.
-TEST(Try, GivesEachRunTheSameInput) {
+TEST(TryProcesses, GivesEachRunTheSameInput) {
     const TemporaryFolder folder;
     const std::string input = folder.write("input", "first\nsecond\n");
-    const Output output =
-        runCommand("{ read line; " + std::string(HASHPHASE_PROGRAM) + " try --quiet -- " +
-                       stock("stock-programs") + " reads-input; } < " + input,
-                   folder);
+    const Output output = runCommand(
+        "{ read line; " + kTry + "--quiet -- " + kStock + "reads-input; } < " + input, folder);
     EXPECT_EQ(countOf(output.out, "read second\n"), 2U) << output.out << output.err;
-}
-
-TEST(Try, RecordsWhatTakesThePlaceOfTheRecorded) {
-    const auto [output, json] = measure("", stock("stock-programs") + " restarts");
-    EXPECT_EQ(json["runs"][0]["steps"].size(), 10U) << output.out << output.err;
-    EXPECT_EQ(json["runs"][0]["otherProcesses"], 0);
-}
-
-TEST(Try, WaitsForWhatALauncherLeavesBehind) {
-    for (const std::string name : {" launcher", " slow-launcher"}) {
-        const auto [output, json] = measure("--runs 4", stock("stock-programs") + name);
-        EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
-        ASSERT_EQ(json["runs"].size(), 8U) << name;
-        for (const Json& run : json["runs"]) {
-            EXPECT_EQ(run["steps"].size(), 5U) << name;
-        }
-    }
-}
-
-TEST(Try, TakesTheEndOfWhatALauncherLeavesBehind) {
-    const auto [output, json] = measure("", stock("stock-programs") + " crash-launcher");
-    EXPECT_EQ(output.status, kExitCheckFailed) << output.out << output.err;
-    EXPECT_TRUE(has(output.out,
-                    "ended with status 0 with Bullet's broadphase, and was ended by "
-                    "signal 6 (Aborted) with hashphase"))
-        << output.out;
-}
-
-TEST(Try, CountsForksThatStepTheWorldOfTheRecorded) {
-    const auto [output, json] = measure("", stock("stock-programs") + " forks-with-a-world");
-    EXPECT_EQ(json["runs"][0]["steps"].size(), 5U);
-    EXPECT_EQ(json["runs"][0]["otherProcesses"], 1);
 }
 
 /// A name of its own for the stock programs, by which their processes can be told from others'.
@@ -100,7 +49,7 @@ bool hasProcessOf(const std::string& program) {
 }
 
 // One of which is recorded.
-TEST(Try, EndsAllThatTheProgramHasStarted) {
+TEST(TryProcesses, EndsAllThatTheProgramHasStarted) {
     const TemporaryFolder folder;
     const std::string program = linkToStockPrograms(folder);
     const std::string call = "\"" + program + "\" endless";
@@ -111,65 +60,19 @@ TEST(Try, EndsAllThatTheProgramHasStarted) {
     EXPECT_FALSE(hasProcessOf(program));
 }
 
-TEST(Try, WaitsForAnOrphanUnderAnotherName) {
-    const auto [output, json] = measure("", stock("stock-programs") + " renamed-orphan");
-    EXPECT_EQ(countOf(output.out, "the orphan has ended\n"), 2U) << output.out << output.err;
-    for (const Json& run : json["runs"]) {
-        EXPECT_EQ(run["steps"].size(), 100U);
-        EXPECT_EQ(run["ended"], "ended with status 9");
-    }
-}
-
-// A shell that ends with status 0, whatever its program does.
-TEST(Try, SeesACrashThatItsStarterKeepsToItself) {
-    const auto starting = [](const std::string& name) {
-        return "/bin/sh -c '" + stock("stock-programs") + " " + name + "; true'";
-    };
-    const auto [output, json] = measure("--precision single", starting("crashes-without-trees"));
-    EXPECT_EQ(output.status, kExitCheckFailed);
-    EXPECT_TRUE(has(output.out,
-                    "ended with status 0 with Bullet's broadphase, and was ended otherwise than by "
-                    "exit(), after which what had started it ended with status 0 with hashphase."))
-        << output.out;
-    const Output verified =
-        tryProgram("--quiet --verify --precision single -- " + starting("crashing"));
-    EXPECT_EQ(verified.status, kExitCheckFailed);
-    EXPECT_TRUE(has(verified.out, "The program was ended otherwise than by exit()"))
-        << verified.out;
-    for (const std::string name : {"exit-anyhow", "failing", "quick-exit", "exit-at-once"}) {
-        const Output regular =
-            tryProgram("--quiet --verify --precision single -- " + starting(name));
-        EXPECT_EQ(regular.status, kExitOk) << name << regular.out;
-    }
-}
-
-TEST(Try, LetsAScriptCleanUpBehindItsProgram) {
-    const TemporaryFolder folder;
-    const auto [output, json] =
-        measure("--steps 20 --precision single", "/bin/sh -c 'trap \"echo cleaned up\" EXIT; " +
-                                                     stock("stock-programs") + " endless'");
-    EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
-    EXPECT_EQ(countOf(output.out, "cleaned up\n"), 2U) << output.out;
-}
-
 // The second time there is no line left to read.
-TEST(Try, KeepsWhatWasMeasuredBeforeARunWithoutABroadphase) {
-    const TemporaryFolder folder;
+TEST(TryProcesses, KeepsWhatWasMeasuredBeforeARunWithoutABroadphase) {
     const Output output =
-        runCommand("printf 'a\\nb\\n' | " + std::string(HASHPHASE_PROGRAM) + " try --quiet -- " +
-                       stock("stock-programs") + " waits-for-input",
-                   folder);
+        runCommand("printf 'a\\nb\\n' | " + kTry + "--quiet -- " + kStock + "waits-for-input");
     EXPECT_EQ(output.status, kExitCheckFailed) << output.out << output.err;
-    EXPECT_TRUE(has(output.out,
-                    "Run 2 has made no broadphase, and ended with status 1: it was "
-                    "the last."))
+    EXPECT_TRUE(
+        has(output.out, "Run 2 has made no broadphase, and ended with status 1: it was the last."))
         << output.out;
 }
 
 // Where the program has a number of its own for itself, which is that of another process here.
-TEST(Try, EndsTheProgramThatIsRecordedAndNoOtherOfItsNumber) {
-    const std::string unshare = "unshare --fork --pid ";
-    if (runCommand(unshare + "true").status != 0) {
+TEST(TryProcesses, EndsTheProgramThatIsRecordedAndNoOtherOfItsNumber) {
+    if (runCommand("unshare --fork --pid true").status != 0) {
         GTEST_SKIP() << "no namespace of processes can be made";
     }
     const TemporaryFolder folder;
@@ -185,81 +88,69 @@ TEST(Try, EndsTheProgramThatIsRecordedAndNoOtherOfItsNumber) {
 
 // --- Signals -------------------------------------------------------------------------------------
 
-/// Runs `script` in a shell, in the folder, in which $try is the program with the word `try`. The program that
-/// is tried says when it has made its first step; its output goes to the file `out`.
-Output runScript(const std::string& script, const TemporaryFolder& folder) {
+/// What a shell does, in which $try is the program with the word `try` and $stock the one that is tried, which
+/// says when it has made its first step; its output goes to the file `out`.
+struct Script {
+    std::string name;
+    std::string text;
+    std::vector<std::string> words;      // that it writes
+    std::vector<std::string> noWords{};  // that it does not
+};
+
+class TryScript : public testing::TestWithParam<Script> {};
+
+TEST_P(TryScript, Writes) {
+    const TemporaryFolder folder;
     const std::string begin =
-        "cd '" + folder.path().string() + "'\ntry=\"" + HASHPHASE_PROGRAM +
-        " try\"\nstock=" + stock("stock-programs") + "\n" +
-        "until_it_has_begun() {\n"
+        "cd '" + folder.path().string() + "'\ntry=\"" + kTry + "\"\nstock=" + kStock +
+        "\nuntil_it_has_begun() {\n"
         "  until grep -q 'has begun' out || ! kill -0 $!; do sleep 0.01; done\n}\n";
-    return runCommand("sh '" + folder.write("script", begin + script) + "'", folder);
+    const Output output =
+        runCommand("sh '" + folder.write("script", begin + GetParam().text) + "'", folder);
+    for (const std::string& word : GetParam().words) {
+        EXPECT_TRUE(has(output.out, word)) << word << " in " << output.out << output.err;
+    }
+    for (const std::string& word : GetParam().noWords) {
+        EXPECT_FALSE(has(output.out, word)) << word << " in " << output.out;
+    }
 }
 
-TEST(Try, EndsWithItsProgramWhenItIsEnded) {
-    const TemporaryFolder folder;
-    const Output output = runScript(
-        "TMPDIR=. $try --quiet -- $stock endless >out & until_it_has_begun\n"
-        "kill $!; wait $!; echo status $?; ls\n",
-        folder);
-    EXPECT_TRUE(has(output.out, "status 143\n")) << output.out;
-    EXPECT_FALSE(has(output.out, "hashphase-try-")) << output.out;
-}
+const std::vector<Script> kScripts{
+    {"EndsWithItsProgramWhenItIsEnded",
+     "TMPDIR=. $try --quiet -- $stock endless >out & until_it_has_begun\n"
+     "kill $!; wait $!; echo status $?; ls\n",
+     {"status 143\n"},
+     {"hashphase-try-"}},
+    {"PassesAnInterruptOnThatIsNotTheKeyboards",
+     "env --default-signal=INT $try --quiet -- $stock interruptible >out & until_it_has_begun\n"
+     "kill -INT $!; wait $!; echo status $?; cat out\n",
+     {"interrupted\n", "status 130\n"}},
+    // The first run reads the line, and the second waits for another.
+    {"SaysWhatWasMeasuredBeforeARunThatIsInterruptedAsItStarts",
+     "mkfifo input; exec 3<>input; echo go >&3; echo on >&3\n"
+     "$try --json json -- $stock waits-for-input <&3 2>progress &\n"
+     "until grep -q 'run 2 of 2' progress; do sleep 0.05; done\n"
+     "kill $!; wait $!; echo status $?; grep -c '\"broadphase\": \"bullet\"' json; cat json\n",
+     {"status 143\n1\n"},
+     {"\"broadphase\": \"hashphase\""}},
+    {"SaysWhatWasMeasuredInTheFirstRunAlone",
+     "$try --quiet -- $stock endless >out & until_it_has_begun\n"
+     "kill $!; wait $!; echo status $?; cat out\n",
+     {"There was no run with hashphase. With Bullet's broadphase, ", "status 143\n"}},
+    {"LeavesSignalsIgnoredThatAre",
+     "env --ignore-signal=HUP $try --quiet --seconds 0.5 -- $stock endless >out & "
+     "until_it_has_begun\n"
+     "kill -HUP $!; wait $!; echo status $?\n",
+     {"status 0\n"}},
+    {"WaitsWhereWhoStartedItIgnoresTheEndOfItsChildren",
+     "env --ignore-signal=CHLD $try --quiet -- $stock failing >out\n"
+     "HASHPHASE_TRY_RECORD=/no/such/file $try --quiet -- $stock failing >>out\n"
+     "grep -c 'With hashphase a step takes ' out\n",
+     {"2\n"}},
+};
 
-TEST(Try, PassesAnInterruptOnThatIsNotTheKeyboards) {
-    const TemporaryFolder folder;
-    const Output output = runScript(
-        "env --default-signal=INT $try --quiet -- $stock interruptible >out & "
-        "until_it_has_begun\n"
-        "kill -INT $!; wait $!; echo status $?; cat out\n",
-        folder);
-    EXPECT_TRUE(has(output.out, "interrupted\n")) << output.out << output.err;
-    EXPECT_TRUE(has(output.out, "status 130\n")) << output.out << output.err;
-}
-
-// The first run reads the line, and the second waits for another.
-TEST(Try, SaysWhatWasMeasuredBeforeARunThatIsInterruptedAsItStarts) {
-    const TemporaryFolder folder;
-    const Output output = runScript(
-        "mkfifo input; exec 3<>input; echo go >&3; echo on >&3\n"
-        "$try --json json -- $stock waits-for-input <&3 2>progress &\n"
-        "until grep -q 'run 2 of 2' progress; do sleep 0.05; done\n"
-        "kill $!; wait $!; echo status $?; cat json\n",
-        folder);
-    EXPECT_TRUE(has(output.out, "status 143\n")) << output.out << output.err;
-    EXPECT_EQ(countOf(output.out, "\"broadphase\": \"bullet\""), 1U) << output.out;
-    EXPECT_EQ(countOf(output.out, "\"broadphase\": \"hashphase\""), 0U) << output.out;
-}
-
-TEST(Try, SaysWhatWasMeasuredInTheFirstRunAlone) {
-    const TemporaryFolder folder;
-    const Output output = runScript(
-        "$try --quiet -- $stock endless >out & until_it_has_begun\n"
-        "kill $!; wait $!; echo status $?; cat out\n",
-        folder);
-    EXPECT_TRUE(has(output.out, "There was no run with hashphase. With Bullet's broadphase, "))
-        << output.out << output.err;
-    EXPECT_TRUE(has(output.out, "status 143\n")) << output.out << output.err;
-}
-
-TEST(Try, LeavesSignalsIgnoredThatAre) {
-    const TemporaryFolder folder;
-    const Output output = runScript(
-        "env --ignore-signal=HUP $try --quiet --seconds 0.5 -- $stock endless >out & "
-        "until_it_has_begun\n"
-        "kill -HUP $!; wait $!; echo status $?\n",
-        folder);
-    EXPECT_TRUE(has(output.out, "status 0\n")) << output.out << output.err;
-}
-
-TEST(Try, WaitsWhereWhoStartedItIgnoresTheEndOfItsChildren) {
-    const TemporaryFolder folder;
-    const Output output = runScript(
-        "env --ignore-signal=CHLD $try --quiet -- $stock failing\n"
-        "HASHPHASE_TRY_RECORD=/no/such/file $try --quiet -- $stock failing\n",
-        folder);
-    EXPECT_EQ(countOf(output.out, "With hashphase a step takes "), 2U) << output.out << output.err;
-}
+INSTANTIATE_TEST_SUITE_P(Signals, TryScript, testing::ValuesIn(kScripts),
+                         [](const auto& each) { return each.param.name; });
 
 }  // namespace
 }  // namespace hashphase::demos

@@ -18,85 +18,46 @@ namespace {
 
 void expectRefused(const std::string& arguments, const std::string& sentence,
                    const TemporaryFolder& folder = {}) {
-    const Output output = tryProgram(arguments, folder);
+    const Output output = runCommand(kTry + arguments, folder);
     EXPECT_EQ(output.status, kExitUsage) << output.out << output.err;
     EXPECT_TRUE(has(output.err, sentence)) << output.err;
 }
 
-TEST(TryRefuses, WhatIsNoProgram) {
-    expectRefused("", "name a program to try: hashphase try -- ./program");
-    expectRefused("-- no-such-program-anywhere",
-                  "'no-such-program-anywhere' was not found in PATH");
-    expectRefused("-- './[no,such]-program'",
-                  "'./[no,such]-program' is no program that can be run");
-    expectRefused("--no-such-option -- ls", "There is no option '--no-such-option'");
+TEST(TryRefuses, ScriptsAndTexts) {
     const TemporaryFolder folder;
     const std::string script = folder.write("script", "#!/bin/sh\necho\n");
     const std::string text = folder.write("text", "nothing that runs");
     for (const std::string& file : {script, text}) {
         std::filesystem::permissions(file, std::filesystem::perms::owner_all);
     }
-    expectRefused("''", "'' belongs behind --: hashphase try [options] -- ");
-    expectRefused("ls", "'ls' belongs behind --: hashphase try [options] -- ls");
-    expectRefused("--precision 1 -- ls", "{single,double}");
     expectRefused("-- '" + script + "'", "is a script; name the program that it starts", folder);
     expectRefused("-- '" + text + "'", "is no 64-bit program for this machine", folder);
 }
 
-TEST(TryRefuses, ProgramsWithoutASharedBulletOfThisVersion) {
-    expectRefused("-- " + stock("stock-static"), "is linked statically as a whole");
-    expectRefused("-- " + stock("stock-host"), "links no Bullet");
-    expectRefused("-- " + stock("stock-embedded"), "Bullet is linked statically into ");
-    expectRefused("--precision single -- " + stock("stock-embedded"),
-                  "Bullet is linked statically into ");
-    expectRefused("--precision double -- " + stock("stock-programs") + " pile",
-                  "is of single precision, and not double");
-    expectRefused("-- " + stock("stock-old"),
-                  " links libBulletCollision.so.2.83, and this hashphase was built with "
-                  "libBulletCollision.so.");
+/// By a program that links no Bullet, and loads that plugin as it runs.
+Output tryPlugin(const std::string& options, const std::string& plugin, const std::string& name) {
+    return runCommand(kTry + "--quiet " + options + " -- " + stock("stock-host") + " " +
+                      stock(plugin) + " " + name);
 }
 
-TEST(TryRefuses, ProgramsThatMakeNoBroadphaseOfThese) {
-    expectRefused("-- " + stock("stock-programs") + " simple-broadphase",
-                  "ended with status 0, and has made no btDbvtBroadphase and no axis sweep");
-}
-
-TEST(TryRefuses, ProgramsThatCrashBeforeTheyMakeABroadphase) {
-    for (const std::string mode : {"", "--verify "}) {
-        const Output output =
-            tryProgram("--quiet " + mode + "-- " + stock("stock-programs") + " crashing-at-once");
-        EXPECT_EQ(output.status, kExitUsage);
-        EXPECT_TRUE(lastLineOf(output.err).ends_with("when it was ended by signal 6 (Aborted)"))
-            << output.err;
-    }
-}
-
-TEST(TryRefuses, ClassesDerivedFromASweep) {
-    expectRefused("-- " + stock("stock-programs") + " derived-sweep",
-                  "has made no btDbvtBroadphase and no axis sweep that can be taken over");
-}
-
-TEST(Try, SaysWhenThePrecisionIsWrong) {
+TEST(TryRefuses, AWrongPrecision) {
     if (!std::filesystem::exists(stock("stock-programs-float64"))) {
         GTEST_SKIP() << "there is no library for double precision";
     }
-    const std::string plugin = stock("libstock-programs-plugin.so");
     for (const std::string name : {"churn", "sweep-16", "derived-sweep"}) {
-        const Output output = tryProgram("--quiet --precision double -- " + stock("stock-host") +
-                                         " " + plugin + " " + name);
+        const Output output = tryPlugin("--precision double", "libstock-programs-plugin.so", name);
         EXPECT_TRUE(has(output.err, "the program and hashphase use two Bullets, those of /"))
             << name << output.err;
         EXPECT_NE(output.status, kExitOk);
     }
 }
 
-TEST(Try, SaysWhenAPluginHasABulletOfItsOwn) {
-    const std::string plugin = stock("libstock-programs-embedding-plugin.so");
-    const Output output = tryProgram("--quiet --precision single -- " + stock("stock-host") + " " +
-                                     plugin + " churn");
-    EXPECT_TRUE(
-        has(output.err,
-            " and " + plugin + "; is the precision right, and is none of them linked statically?"))
+TEST(TryRefuses, APluginWithABulletOfItsOwn) {
+    const std::string plugin = "libstock-programs-embedding-plugin.so";
+    const Output output = tryPlugin("--precision single", plugin, "churn");
+    EXPECT_TRUE(has(output.err, " and " + stock(plugin) +
+                                    "; is the precision right, and is none of them linked "
+                                    "statically?"))
         << output.err;
     EXPECT_NE(output.status, kExitOk);
 }
@@ -119,15 +80,15 @@ TEST(TryRefuses, ProgramsThatDoNotLoadWhatIsPreloaded) {
                   folder);
 }
 
-// The file is made, and a limit on its length is no reason to leave it.
-TEST(TryRefuses, FilesThatMayNotBeSoLong) {
+// A folder that is none; and a limit on the length of files, which is no reason to leave the one that was made.
+TEST(TryRefuses, WithoutRoomForItsFile) {
     const TemporaryFolder folder;
-    const Output output =
-        runCommand("ulimit -f 1000; TMPDIR='" + folder.path().string() + "' " + HASHPHASE_PROGRAM +
-                       " try -- " + stock("stock-programs") + " pile",
-                   folder);
-    EXPECT_EQ(output.status, kExitUsage);
-    EXPECT_TRUE(has(output.err, "can be made in the folder of temporary files")) << output.err;
+    const std::string limited = "ulimit -f 1000; TMPDIR='" + folder.path().string() + "' ";
+    for (const std::string& place : {std::string("TMPDIR=/no/such/folder "), limited}) {
+        const Output output = runCommand(place + kTry + "-- " + kStock + "pile", folder);
+        EXPECT_EQ(output.status, kExitUsage);
+        EXPECT_TRUE(has(output.err, "can be made in the folder of temporary files")) << output.err;
+    }
     EXPECT_EQ(countOf(runCommand("ls '" + folder.path().string() + "'").out, "hashphase-try"), 0U);
 }
 
@@ -139,46 +100,29 @@ TEST(TryRefuses, LeavesAnEarlierResult) {
     EXPECT_EQ(runCommand("cat '" + earlier + "'").out, "{}");
 }
 
-TEST(TryRefuses, FoldersOfTemporaryFilesThatAreNone) {
-    const TemporaryFolder folder;
-    const Output output = runCommand(std::string("TMPDIR=/no/such/folder ") + HASHPHASE_PROGRAM +
-                                         " try -- " + stock("stock-programs") + " pile",
-                                     folder);
-    EXPECT_EQ(output.status, kExitUsage);
-    EXPECT_TRUE(has(output.err, "can be made in the folder of temporary files")) << output.err;
-}
-
-TEST(Try, LeavesSweepsAloneThatAreCalledDirectly) {
-    const std::string call = stock("stock-programs") + " bare-sweep";
+TEST(TryTakesOver, LeavesSweepsAloneThatAreCalledDirectly) {
+    const std::string call = kStock + "bare-sweep";
     const Output plain = runCommand(call);
-    const Output output = tryProgram("--quiet -- " + call);
+    const Output output = runCommand(kTry + "--quiet -- " + call);
     EXPECT_EQ(output.status, kExitCheckFailed) << output.out;  // nothing was compared
     EXPECT_EQ(countOf(output.out, plain.out), 2U) << plain.out << output.out;
 }
 
-TEST(Try, TakesOverABulletThatIsLoadedLater) {
+TEST(TryTakesOver, TakesOverABulletThatIsLoadedLater) {
     for (const auto& [precision, name] :
          {std::pair("single", "stock-programs"), std::pair("double", "stock-programs-float64")}) {
         if (!std::filesystem::exists(stock(name))) {
             continue;
         }
-        const std::string plugin = stock(std::string("lib") + name + "-plugin.so");
-        const auto [output, json] = measure(std::string("--verify --precision ") + precision,
-                                            stock("stock-host") + " " + plugin + " churn");
+        const std::string options = std::string("--precision ") + precision;
+        const std::string call =
+            stock("stock-host") + " " + stock(std::string("lib") + name + "-plugin.so") + " churn";
+        const auto [output, json] = measure("--verify " + options, call);
         EXPECT_EQ(output.status, kExitOk) << output.out << output.err;
         EXPECT_EQ(json["verification"]["calculations"], 200);
-        const auto [compared, figures] = measure(std::string("--precision ") + precision,
-                                                 stock("stock-host") + " " + plugin + " churn");
+        const auto [compared, figures] = measure(options, call);
         EXPECT_EQ(figures["runs"][1]["steps"].size(), 200U) << compared.out;
     }
-}
-
-TEST(Try, SaysWhichBroadphasesItDoesNotTakeOver) {
-    const auto [output, json] = measure("", stock("stock-programs") + " mixed");
-    EXPECT_EQ(json["runs"][0]["foreignCalculations"], 10);
-    EXPECT_EQ(json["runs"][0]["steps"].size(), 10U);
-    EXPECT_TRUE(has(output.out, "10 calculations of pairs were those of broadphases that are not"))
-        << output.out;
 }
 
 }  // namespace

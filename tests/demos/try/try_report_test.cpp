@@ -13,14 +13,42 @@
 namespace hashphase::demos {
 namespace {
 
+using tryout::StepRow;
+
 /// That has taken so long by either clock.
-tryout::StepRow stepOf(float milliseconds) {
-    tryout::StepRow row{};
+StepRow stepOf(float milliseconds) {
+    StepRow row{};
     row.isStep = 1;
     row.step = {milliseconds, milliseconds};
     row.calculations = 1;
-    row.allProcessor = tryout::StepRow::kNotTaken;
+    row.allProcessor = StepRow::kNotTaken;
     return row;
+}
+
+/// A run of these steps with either broadphase.
+Trial trialOf(const std::vector<StepRow>& stock, const std::vector<StepRow>& ours) {
+    Trial trial;
+    trial.runs.resize(2);
+    trial.runs[0].rows = stock;
+    trial.runs[1].broadphase = tryout::Broadphase::hash;
+    trial.runs[1].rows = ours;
+    return trial;
+}
+
+/// Of a hundred such steps.
+Trial trialOf(const StepRow& stock, const StepRow& ours) {
+    return trialOf(std::vector(100, stock), std::vector(100, ours));
+}
+
+/// What is made of such steps.
+StepSummary summaryOf(const std::vector<StepRow>& rows) {
+    return compareSteps(trialOf(rows, rows)).value().stock;
+}
+
+std::string textOf(const Trial& trial) {
+    std::ostringstream out;
+    printTrial(trial, out);
+    return out.str();
 }
 
 TEST(TryReport, ProjectsWhatAStepTakes) {
@@ -39,19 +67,13 @@ TEST(TryReport, ProjectsWhatAStepTakes) {
 }
 
 TEST(TryReport, ComparesTheStepsThatBothRunsHave) {
-    Trial trial;
-    TriedRun run;
-    tryout::StepRow row = stepOf(2);
-    row.calculate = {1, 1};
-    row.pairCount = 10;
-    run.rows.assign(100, row);
-    trial.runs.push_back(run);
-    run.broadphase = tryout::Broadphase::hash;
-    row.step = {1, 1};
-    row.calculate = {0.25F, 0.25F};
-    row.pairCount = 8;
-    run.rows.assign(60, row);
-    trial.runs.push_back(run);
+    StepRow stock = stepOf(2);
+    stock.calculate = {1, 1};
+    stock.pairCount = 10;
+    StepRow ours = stepOf(1);
+    ours.calculate = {0.25F, 0.25F};
+    ours.pairCount = 8;
+    Trial trial = trialOf(std::vector(100, stock), std::vector(60, ours));
     const StepComparison steps = compareSteps(trial).value();
     EXPECT_TRUE(steps.isCut);
     EXPECT_EQ(steps.stock.stepCount, 60U);
@@ -64,61 +86,42 @@ TEST(TryReport, ComparesTheStepsThatBothRunsHave) {
 
 // Work that is not in every step counts, and parts add up.
 TEST(TryReport, TakesMeans) {
-    Trial trial;
-    TriedRun run;
+    std::vector<StepRow> rows;
     for (int i = 0; i < 300; ++i) {
         const float rays = i % 3 == 0 ? 3.0F : 0.0F;
-        tryout::StepRow row = stepOf(1 + rays);
-        row.rays = rays;
-        run.rows.push_back(row);
+        rows.push_back(stepOf(1 + rays));
+        rows.back().rays = rays;
     }
-    trial.runs.push_back(run);
-    run.broadphase = tryout::Broadphase::hash;
-    trial.runs.push_back(run);
-    const StepSummary step = compareSteps(trial).value().stock;
+    const StepSummary step = summaryOf(rows);
     EXPECT_NEAR(step.rays, 1, 0.06);
     EXPECT_NEAR(step.step.value(), 1 + step.rays, 1e-6);
 }
 
 // Counts are those of all steps, and what the rare ones took is said.
 TEST(TryReport, SaysWhenRareStepsTakeLong) {
-    TriedRun run;
-    tryout::StepRow row = stepOf(1);
-    run.rows.assign(98, row);
-    row.step = {50, 50};
-    row.rays = 40;
-    row.rayCount = 200;
-    run.rows.insert(run.rows.end(), 2, row);
-    Trial trial;
-    trial.runs.push_back(run);
-    run.broadphase = tryout::Broadphase::hash;
-    trial.runs.push_back(run);
-    const StepSummary step = compareSteps(trial).value().stock;
+    std::vector<StepRow> rows(98, stepOf(1));
+    rows.resize(100, stepOf(50));
+    rows[98].rays = rows[99].rays = 40;
+    rows[98].rayCount = rows[99].rayCount = 200;
+    const StepSummary step = summaryOf(rows);
     EXPECT_DOUBLE_EQ(step.step.value(), 1);
     EXPECT_DOUBLE_EQ(step.rayCount, 4);
-    std::ostringstream out;
-    printTrial(trial, out);
-    EXPECT_TRUE(has(out.str(),
+    const std::string text = textOf(trialOf(rows, rows));
+    EXPECT_TRUE(has(text,
                     "without the slowest twentieth of the steps, which took 52 % of all time with "
                     "Bullet's and 52 % with hashphase: 20.6 and 20.6 ms a step"))
-        << out.str();
+        << text;
 }
 
 TEST(TryReport, CountsPairsByTheCalculation) {
-    TriedRun run;
-    tryout::StepRow row = stepOf(1);
-    row.pairCount = 10;
-    row.truePairCount = 5;
-    run.rows.push_back(row);
-    row.calculations = 3;
-    row.pairCount = 30;
-    row.truePairCount = 15;
-    run.rows.push_back(row);
-    Trial trial;
-    trial.runs.push_back(run);
-    run.broadphase = tryout::Broadphase::hash;
-    trial.runs.push_back(run);
-    const StepSummary step = compareSteps(trial).value().stock;
+    StepRow one = stepOf(1);
+    one.pairCount = 10;
+    one.truePairCount = 5;
+    StepRow three = stepOf(1);
+    three.calculations = 3;
+    three.pairCount = 30;
+    three.truePairCount = 15;
+    const StepSummary step = summaryOf({one, three});
     EXPECT_DOUBLE_EQ(step.pairCount, 10);
     EXPECT_DOUBLE_EQ(step.truePairCount.value(), 5);
     EXPECT_DOUBLE_EQ(step.stalePairCount().value(), 5);
@@ -126,31 +129,13 @@ TEST(TryReport, CountsPairsByTheCalculation) {
 
 // --- The verdict ---------------------------------------------------------------------------------
 
-std::string textOf(const Trial& trial) {
-    std::ostringstream out;
-    printTrial(trial, out);
-    return out.str();
-}
-
-/// A run of a hundred such steps with either broadphase.
-Trial trialOf(const tryout::StepRow& stock, const tryout::StepRow& ours) {
-    Trial trial;
-    TriedRun run;
-    run.rows.assign(100, stock);
-    trial.runs.push_back(run);
-    run.broadphase = tryout::Broadphase::hash;
-    run.rows.assign(100, ours);
-    trial.runs.push_back(run);
-    return trial;
-}
-
 TEST(TryReport, SaysOfWhatTheChangeOfAStepConsists) {
-    tryout::StepRow stock = stepOf(202);
+    StepRow stock = stepOf(202);
     stock.calculate = {12, 12};
     stock.narrowPhase = {180, 180};
     stock.pairCount = 50'000;
     stock.truePairCount = 1000;
-    tryout::StepRow ours = stepOf(42.3F);
+    StepRow ours = stepOf(42.3F);
     ours.calculate = {6, 6};
     ours.narrowPhase = {28, 28};
     ours.pairCount = 1000;
@@ -166,11 +151,11 @@ TEST(TryReport, SaysOfWhatTheChangeOfAStepConsists) {
 
 // Who has no processor works no slower for it.
 TEST(TryReport, TakesTheProcessorsTimeWhereOthersAreBusy) {
-    tryout::StepRow stock = stepOf(2.38F);
+    StepRow stock = stepOf(2.38F);
     stock.step.wall = 6.2F;
     stock.calculate = {3, 1};
     stock.rays = 0.62F;
-    tryout::StepRow ours = stepOf(2);
+    StepRow ours = stepOf(2);
     ours.step.wall = 10;
     ours.calculate = {0.5F, 0.5F};
     const Trial trial = trialOf(stock, ours);
@@ -189,12 +174,12 @@ TEST(TryReport, TakesTheProcessorsTimeWhereOthersAreBusy) {
 
 // Of which the time of the processor is that of one.
 TEST(TryReport, TakesTheTimeOnTheWallWhereSeveralThreadsWorkInAStep) {
-    tryout::StepRow stock = stepOf(2);
+    StepRow stock = stepOf(2);
     stock.step.wall = 8;
     stock.narrowPhase = {7, 1};
     stock.calculate = {0.5F, 0.5F};
     stock.allProcessor = 12;
-    tryout::StepRow ours = stock;
+    StepRow ours = stock;
     ours.step.wall = 4;
     ours.narrowPhase.wall = 3;
     const Trial trial = trialOf(stock, ours);
@@ -209,7 +194,7 @@ TEST(TryReport, TakesTheTimeOnTheWallWhereSeveralThreadsWorkInAStep) {
 }
 
 TEST(TryReport, TakesWhatTheClockItselfTakesForNoThread) {
-    tryout::StepRow row = stepOf(0.05F);
+    StepRow row = stepOf(0.05F);
     row.allProcessor = 0.065F;
     EXPECT_FALSE(compareSteps(trialOf(row, row)).value().onThreads);
 }

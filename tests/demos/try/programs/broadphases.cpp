@@ -9,10 +9,13 @@
 namespace programs {
 namespace {
 
+const btVector3 kLow(-100, -100, -100);
+const btVector3 kHigh(100, 100, 100);
+
 template <class Scene>
 void dropBoxes(Scene& scene) {
-    scene.add(scene.things.template shape<btBoxShape>(btVector3(20, 1, 20)), 0, {0, -1, 0});
-    auto* box = scene.things.template shape<btBoxShape>(btVector3(0.5, 0.5, 0.5));
+    scene.add(scene.things.box(20, 1, 20), 0, {0, -1, 0});
+    auto* box = scene.things.unitBox();
     for (int i = 0; i < 48; ++i) {
         scene.add(box, 1,
                   {btScalar(i % 4 * 2 - 4), btScalar(1 + i / 16 * 2), btScalar(i / 4 % 4 * 2 - 4)});
@@ -29,54 +32,45 @@ void dropBoxes(Scene& scene) {
     say("world has a size", high.x() > low.x() ? 1 : 0);
 }
 
-int sweep16() {
-    Scene<btAxisSweep3> scene(btVector3(-100, -100, -100), btVector3(100, 100, 100));
+COMPARED_PROGRAM(sweep16) {
+    Scene<btAxisSweep3> scene(kLow, kHigh);
     dropBoxes(scene);
-    btCollisionWorld::ClosestRayResultCallback ray({0, 50, 0}, {0, -50, 0});
-    scene.world.rayTest({0, 50, 0}, {0, -50, 0}, ray);
-    say("ray", ray.hasHit() ? 1 : 0);
-    return 0;
+    say("ray", isHit(scene.world, {0, 50, 0}, {0, -50, 0}) ? 1 : 0);
 }
 
-int sweep32() {
-    Scene<bt32BitAxisSweep3> scene(btVector3(-100, -100, -100), btVector3(100, 100, 100), 1000);
+COMPARED_PROGRAM(sweep32) {
+    Scene<bt32BitAxisSweep3> scene(kLow, kHigh, 1000);
     dropBoxes(scene);
-    return 0;
 }
 
-int sweepWithoutTrees() {
+COMPARED_PROGRAM(sweepWithoutTrees) {
     btHashedOverlappingPairCache cache;
-    Scene<btAxisSweep3> scene(btVector3(-100, -100, -100), btVector3(100, 100, 100),
-                              static_cast<unsigned short>(1000), &cache, true);
+    Scene<btAxisSweep3> scene(kLow, kHigh, static_cast<unsigned short>(1000), &cache, true);
     dropBoxes(scene);
     say("pairs are in our cache", cache.getNumOverlappingPairs() > 0 ? 1 : 0);
-    return 0;
 }
 
 // Statics whose boxes nobody sets again.
-int sweepAtRest() {
-    Scene<btAxisSweep3> scene(btVector3(-100, -100, -100), btVector3(100, 100, 100));
+COMPARED_PROGRAM(sweepAtRest) {
+    Scene<btAxisSweep3> scene(kLow, kHigh);
     scene.world.setForceUpdateAllAabbs(false);
     dropBoxes(scene);
-    return 0;
 }
 
-int ownCache() {
+COMPARED_PROGRAM(ownCache) {
     btHashedOverlappingPairCache cache;
     Scene<> scene(&cache);
     dropBoxes(scene);
     say("pairs are in our cache", cache.getNumOverlappingPairs() > 0 ? 1 : 0);
-    return 0;
 }
 
-int sortedCache() {
+COMPARED_PROGRAM(sortedCache) {
     btSortedOverlappingPairCache cache;
     Scene<> scene(&cache);
     dropBoxes(scene);
-    return 0;
 }
 
-int fieldsWritten() {
+COMPARED_PROGRAM(fieldsWritten) {
     gDbvtMargin = 0;
     Scene<> scene;
     scene.broadphase.m_deferedcollide = true;
@@ -86,7 +80,6 @@ int fieldsWritten() {
     say("prediction", scene.broadphase.getVelocityPrediction());
     scene.broadphase.optimize();
     scene.step(10);
-    return 0;
 }
 
 struct CountingBroadphase : btDbvtBroadphase {
@@ -98,15 +91,14 @@ struct CountingBroadphase : btDbvtBroadphase {
     int setCount = 0;
 };
 
-int derivedBroadphase() {
+COMPARED_PROGRAM(derivedBroadphase) {
     Scene<CountingBroadphase> scene;
     dropBoxes(scene);
     say("boxes set", scene.broadphase.setCount);
-    return 0;
 }
 
 // Without a world.
-int bareBroadphase() {
+COMPARED_PROGRAM(bareBroadphase) {
     btDbvtBroadphase broadphase;
     std::vector<btBroadphaseProxy*> proxies;
     int clients[100] = {};
@@ -144,39 +136,21 @@ int bareBroadphase() {
     broadphase.resetPool(nullptr);
     say("pairs left", broadphase.getOverlappingPairCache()->getNumOverlappingPairs());
     broadphase.printStats();
-    return 0;
 }
 
 // Zones that the program watches itself.
 int enteredZones = 0;
 int leftZones = 0;
 
-int ownProfiler() {
+COMPARED_PROGRAM(ownProfiler) {
     btSetCustomEnterProfileZoneFunc([](const char* /*name*/) { ++enteredZones; });
     btSetCustomLeaveProfileZoneFunc([] { ++leftZones; });
     Scene<> scene;
-    scene.add(scene.things.shape<btSphereShape>(btScalar(1)), 1, {0, 0, 0});
+    scene.add(scene.things.sphere(1), 1, {0, 0, 0});
     scene.step(60);
     say("zones are watched", enteredZones > 300 && enteredZones == leftZones ? 1 : 0);
-    const bool isOurs = btGetCurrentLeaveProfileZoneFunc() != nullptr;
-    say("and ours", isOurs ? 1 : 0);
-    return 0;
+    say("and ours", btGetCurrentLeaveProfileZoneFunc() != nullptr ? 1 : 0);
 }
 
 }  // namespace
-
-const std::vector<Program>& broadphasePrograms() {
-    static const std::vector<Program> list{{"sweep-16", sweep16},
-                                           {"sweep-32", sweep32},
-                                           {"sweep-without-trees", sweepWithoutTrees},
-                                           {"sweep-at-rest", sweepAtRest},
-                                           {"own-cache", ownCache},
-                                           {"sorted-cache", sortedCache},
-                                           {"fields-written", fieldsWritten},
-                                           {"derived-broadphase", derivedBroadphase},
-                                           {"bare-broadphase", bareBroadphase},
-                                           {"own-profiler", ownProfiler}};
-    return list;
-}
-
 }  // namespace programs

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <numeric>
 #include <random>
+#include <stdexcept>
 #include <thread>
 
 #include <sys/wait.h>
@@ -15,61 +16,49 @@
 namespace programs {
 namespace {
 
-std::unique_ptr<Scene<>> makeScene(int height) {
-    auto scene = std::make_unique<Scene<>>();
-    scene->addGround();
-    auto* box = scene->things.shape<btBoxShape>(btVector3(0.5, 0.5, 0.5));
-    for (int i = 0; i < 20; ++i) {
-        scene->add(box, 1, {btScalar(i % 5 * 2), btScalar(height + i / 5), 0});
-    }
-    return scene;
+int boxesOf(const Scene<>& scene) {
+    return scene.things.countNear({4, 2, 0}, 8) - 1;
 }
 
 // Three worlds in turn, destroyed in another order than they were made, and a fourth made in between.
-int severalWorlds() {
-    std::unique_ptr<Scene<>> scenes[4];
+COMPARED_PROGRAM(severalWorlds) {
+    std::unique_ptr<Pile> scenes[4];
     for (int i = 0; i < 3; ++i) {
-        scenes[i] = makeScene(1 + i);
+        scenes[i] = std::make_unique<Pile>(0, nullptr, 1 + i);
     }
     for (int i = 0; i < 60; ++i) {
         scenes[i % 3]->step(1);
     }
     scenes[1].reset();
-    scenes[3] = makeScene(2);
+    scenes[3] = std::make_unique<Pile>(0, nullptr, 2);
     for (int i = 0; i < 60; ++i) {
         scenes[i % 2 == 0 ? 0 : 3]->step(1);
     }
     scenes[0].reset();
     scenes[2]->step(30);
     scenes[3].reset();
-    say("boxes of the last world", countNear(scenes[2]->things, {4, 2, 0}, 8) - 1);
+    say("boxes of the last world", boxesOf(*scenes[2]));
     scenes[2].reset();
-    return 0;
 }
 
 // Worlds that are stepped on threads of their own, all at once.
-int threads() {
+COMPARED_PROGRAM(threads) {
     std::vector<std::thread> all;
     std::vector<int> resting(4);
     for (int i = 0; i < 4; ++i) {
-        all.emplace_back([i, &resting] {
-            const std::unique_ptr<Scene<>> scene = makeScene(1);
-            scene->step(50 + 10 * i);
-            resting[i] = countNear(scene->things, {4, 2, 0}, 8) - 1;
-        });
+        all.emplace_back([i, &resting] { resting[i] = boxesOf(Pile(50 + 10 * i)); });
     }
     for (std::thread& thread : all) {
         thread.join();
     }
     say("boxes", std::accumulate(resting.begin(), resting.end(), 0));
-    return 0;
 }
 
 // Bodies come and go while the world is stepped, at a fixed seed.
-int churn() {
+COMPARED_PROGRAM(churn) {
     Scene<> scene;
     scene.addGround();
-    auto* sphere = scene.things.shape<btSphereShape>(btScalar(0.5));
+    auto* sphere = scene.things.sphere(btScalar(0.5));
     std::mt19937 random(1);
     std::vector<btRigidBody*> alive;
     for (int i = 0; i < 200; ++i) {
@@ -89,21 +78,19 @@ int churn() {
         scene.step(1);
     }
     say("bodies", scene.world.getNumCollisionObjects());
-    return 0;
 }
 
 // The order of the tutorial "Hello World": world, solver, broadphase, dispatcher, all on the heap; bodies
 // are left to the world, and the broadphase is deleted through its base.
-int helloWorld() {
+COMPARED_PROGRAM(helloWorld) {
     auto* configuration = new btDefaultCollisionConfiguration();
     auto* dispatcher = new btCollisionDispatcher(configuration);
     btBroadphaseInterface* broadphase = new btDbvtBroadphase();
     auto* solver = new btSequentialImpulseConstraintSolver();
     auto* world = new btDiscreteDynamicsWorld(dispatcher, broadphase, solver, configuration);
     Things things;
-    world->addRigidBody(
-        things.body(things.shape<btBoxShape>(btVector3(50, 50, 50)), 0, {0, -50, 0}));
-    btRigidBody* ball = things.body(things.shape<btSphereShape>(btScalar(1)), 1, {2, 10, 0});
+    world->addRigidBody(things.body(things.box(50, 50, 50), 0, {0, -50, 0}));
+    btRigidBody* ball = things.body(things.sphere(1), 1, {2, 10, 0});
     world->addRigidBody(ball);
     for (int i = 0; i < 150; ++i) {
         world->stepSimulation(btScalar(1) / 60, 10);
@@ -114,11 +101,10 @@ int helloWorld() {
     delete broadphase;
     delete dispatcher;
     delete configuration;
-    return 0;
 }
 
 // A cache that dies before the broadphase that uses it; Bullet never looks at it then.
-int cacheGoesFirst() {
+COMPARED_PROGRAM(cacheGoesFirst) {
     btDefaultCollisionConfiguration configuration;
     btCollisionDispatcher dispatcher(&configuration);
     auto cache = std::make_unique<btHashedOverlappingPairCache>();
@@ -127,7 +113,7 @@ int cacheGoesFirst() {
     {
         btSequentialImpulseConstraintSolver solver;
         btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
-        auto* sphere = things.shape<btSphereShape>(btScalar(1));
+        auto* sphere = things.sphere(1);
         for (int i = 0; i < 10; ++i) {
             world.addRigidBody(things.body(sphere, 1, {btScalar(i), 0, 0}));
         }
@@ -135,39 +121,35 @@ int cacheGoesFirst() {
         say("pairs", cache->getNumOverlappingPairs() >= 9 ? 1 : 0);
     }
     cache.reset();
-    return 0;
 }
 
 // Leaves the program in the middle, with everything alive.
-int exitAnyhow() {
-    static const std::unique_ptr<Scene<>> scene = makeScene(1);
-    scene->step(30);
+COMPARED_PROGRAM(exitAnyhow) {
+    static const Pile scene(30);
     say("steps", 30);
     std::exit(0);
 }
 
 // A child that steps a world of its own beside its parent's.
-int forks() {
-    const std::unique_ptr<Scene<>> scene = makeScene(1);
-    scene->step(30);
+COMPARED_PROGRAM(forks) {
+    Pile scene(30);
     std::fflush(stdout);
     const pid_t child = fork();
     if (child == 0) {
-        scene->step(30);
+        scene.step(30);
         _exit(7);
     }
     int status = 0;
     waitpid(child, &status, 0);
     say("child", WEXITSTATUS(status));
-    scene->step(30);
-    return 0;
+    scene.step(30);
 }
 
 // A tick that fails in one step, which the program gets over.
-int throwsFromTick() {
-    const std::unique_ptr<Scene<>> scene = makeScene(1);
+COMPARED_PROGRAM(throwsFromTick) {
+    Pile scene;
     static int ticks = 0;
-    scene->world.setInternalTickCallback([](btDynamicsWorld* /*world*/, btScalar /*step*/) {
+    scene.world.setInternalTickCallback([](btDynamicsWorld* /*world*/, btScalar /*step*/) {
         if (++ticks == 10) {
             throw std::runtime_error("a tick has failed");
         }
@@ -175,27 +157,13 @@ int throwsFromTick() {
     int failures = 0;
     for (int i = 0; i < 30; ++i) {
         try {
-            scene->step(1);
+            scene.step(1);
         } catch (const std::runtime_error&) {
             ++failures;
         }
     }
     say("failures", failures);
-    return 0;
 }
 
 }  // namespace
-
-const std::vector<Program>& lifetimePrograms() {
-    static const std::vector<Program> list{{"several-worlds", severalWorlds},
-                                           {"churn", churn},
-                                           {"threads", threads},
-                                           {"hello-world", helloWorld},
-                                           {"cache-goes-first", cacheGoesFirst},
-                                           {"exit-anyhow", exitAnyhow},
-                                           {"forks", forks},
-                                           {"throws-from-tick", throwsFromTick}};
-    return list;
-}
-
 }  // namespace programs

@@ -1,71 +1,89 @@
 // SPDX-License-Identifier: Zlib
 
 //     stock-programs NAME     runs that program
-//     stock-programs          lists all but the last three kinds
+//     stock-programs          lists those whose outcome is compared
 
 #include "program.hpp"
 
+#include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <string>
 
 namespace programs {
+
+int exitStatus = 0;
+
+std::vector<Program>& allPrograms() {
+    static std::vector<Program> programs;
+    return programs;
+}
 
 void say(const char* name, double value) {
     // Not -0.0, which depends on the order of contacts.
     std::printf("%s = %.2f\n", name, std::round(value * 100) / 100 + 0.0);
 }
 
-btRigidBody* Things::body(btCollisionShape* shape, btScalar mass, const btVector3& place) {
-    btVector3 inertia(0, 0, 0);
-    if (mass > 0) {
-        shape->calculateLocalInertia(mass, inertia);
-    }
-    states_.push_back(
-        std::make_unique<btDefaultMotionState>(btTransform(btQuaternion::getIdentity(), place)));
-    bodies.push_back(std::make_unique<btRigidBody>(mass, states_.back().get(), shape, inertia));
-    return bodies.back().get();
-}
-
-void addPile(Scene<>& scene) {
+void addPile(Scene<>& scene, int height) {
     scene.addGround();
-    auto* box = scene.things.shape<btBoxShape>(btVector3(0.5, 0.5, 0.5));
+    auto* box = scene.things.unitBox();
     for (int i = 0; i < 20; ++i) {
-        scene.add(box, 1, {btScalar(i % 5 * 2), btScalar(1 + i / 5), 0});
+        scene.add(box, 1, {btScalar(i % 5 * 2), btScalar(height + i / 5), 0});
     }
 }
 
-int countNear(const Things& things, const btVector3& place, btScalar distance) {
-    int count = 0;
-    for (const auto& body : things.bodies) {
-        count += body->getWorldTransform().getOrigin().distance(place) < distance ? 1 : 0;
-    }
-    return count;
+bool isHit(const btCollisionWorld& world, const btVector3& from, const btVector3& to) {
+    btCollisionWorld::ClosestRayResultCallback hit(from, to);
+    world.rayTest(from, to, hit);
+    return hit.hasHit();
 }
 
-int run(const std::string& name) {
-    for (const auto* list :
-         {&rigidBodyPrograms(), &broadphasePrograms(), &queryPrograms(), &softBodyPrograms(),
-          &lifetimePrograms(), &measuredPrograms(), &processPrograms(), &misfitPrograms()}) {
-        for (const Program& program : *list) {
-            if (program.name == name) {
-                return program.run();
-            }
+int countHits(const btCollisionWorld& world, const btVector3& from, const btVector3& to) {
+    btCollisionWorld::AllHitsRayResultCallback hits(from, to);
+    world.rayTest(from, to, hits);
+    return hits.m_collisionObjects.size();
+}
+
+namespace {
+
+// "sweep-16" of sweep16.
+std::string nameOf(const Program& program) {
+    std::string name;
+    for (const char letter : std::string(program.function)) {
+        const bool isDigit = std::isdigit(letter) != 0;
+        if (std::isupper(letter) != 0 || (isDigit && std::isdigit(name.back()) == 0)) {
+            name += '-';
+        }
+        name += static_cast<char>(std::tolower(letter));
+    }
+    return name;
+}
+
+}  // namespace
+}  // namespace programs
+
+using namespace programs;
+
+// For a host that links no Bullet and loads the programs as it runs, too.
+extern "C" int runProgram(const char* name);
+
+int runProgram(const char* name) {
+    for (const Program& program : allPrograms()) {
+        if (nameOf(program) == name) {
+            program.run();
+            return exitStatus;
         }
     }
     return 2;
 }
 
-}  // namespace programs
-
 int main(int argc, char** argv) {
-    using namespace programs;
     if (argc == 2) {
-        return run(argv[1]);
+        return runProgram(argv[1]);
     }
-    for (const auto* list : {&rigidBodyPrograms(), &broadphasePrograms(), &queryPrograms(),
-                             &softBodyPrograms(), &lifetimePrograms()}) {
-        for (const Program& program : *list) {
-            std::puts(program.name.c_str());
+    for (const Program& program : allPrograms()) {
+        if (program.isCompared) {
+            std::puts(nameOf(program).c_str());
         }
     }
     return 0;

@@ -24,7 +24,7 @@ double threadMilliseconds() {
 
 // Times its own steps, with a ray from each tenth body: 4,000 spheres that fly about in a box without
 // weight.
-int traffic() {
+PROGRAM(traffic) {
     constexpr int kCount = 4000;
     constexpr int kSteps = 150;
     Scene<> scene;
@@ -36,7 +36,7 @@ int traffic() {
             scene.add(scene.things.shape<btStaticPlaneShape>(normal, btScalar(-30)), 0, {0, 0, 0});
         }
     }
-    auto* sphere = scene.things.shape<btSphereShape>(btScalar(0.5));
+    auto* sphere = scene.things.sphere(btScalar(0.5));
     for (int i = 0; i < kCount; ++i) {
         const btVector3 place(btScalar(i % 16 * 3 - 24), btScalar(i / 16 % 16 * 3 - 24),
                               btScalar(i / 256 * 3 - 24));
@@ -51,14 +51,12 @@ int traffic() {
         scene.step(1);
         for (int ray = 0; ray < kCount; ray += 10) {
             const btVector3 from = scene.things.bodies[6 + ray]->getWorldTransform().getOrigin();
-            btCollisionWorld::ClosestRayResultCallback hit(from, from + btVector3(20, 0, 0));
-            scene.world.rayTest(hit.m_rayFromWorld, hit.m_rayToWorld, hit);
+            isHit(scene.world, from, from + btVector3(20, 0, 0));
         }
         times.push_back(threadMilliseconds() - begin);
     }
     std::sort(times.begin(), times.end());
     std::printf("milliseconds a step: %.4f\n", times[times.size() / 2]);
-    return 0;
 }
 
 // Works for so long, whoever else is busy.
@@ -69,57 +67,39 @@ void workFor(double milliseconds) {
 }
 
 // Steps in which it has something else to do, by a callback.
-int stepsWith(btInternalTickCallback callback) {
-    Scene<> scene;
-    addPile(scene);
+void stepsWith(btInternalTickCallback callback) {
+    Pile scene;
     scene.world.setInternalTickCallback(callback);
     scene.step(80);
-    return 0;
 }
 
 // As a step does during which others have the processor, or which waits for something.
-int waitsInSteps() {
-    return stepsWith([](btDynamicsWorld*, btScalar) { usleep(3000); });
+PROGRAM(waitsInSteps) {
+    stepsWith([](btDynamicsWorld*, btScalar) { usleep(3000); });
 }
 
 // Waits, in a step, for another thread that works for it.
-int worksOnThreads() {
-    return stepsWith([](btDynamicsWorld*, btScalar) { std::thread(workFor, 3.0).join(); });
+PROGRAM(worksOnThreads) {
+    stepsWith([](btDynamicsWorld*, btScalar) { std::thread(workFor, 3.0).join(); });
 }
 
 // Two objects in each place, one of which goes on to the next place: trees keep the pairs of many steps.
-int leavesPairs() {
+PROGRAM(leavesPairs) {
     constexpr int kPlaces = 200;
-    btDefaultCollisionConfiguration configuration;
-    btCollisionDispatcher dispatcher(&configuration);
-    btDbvtBroadphase broadphase;
-    btCollisionWorld world(&dispatcher, &broadphase, &configuration);
-    btSphereShape sphere(1);
-    std::vector<std::unique_ptr<btCollisionObject>> objects;
-    for (int i = 0; i < 2 * kPlaces; ++i) {
-        objects.push_back(std::make_unique<btCollisionObject>());
-        objects.back()->setCollisionShape(&sphere);
-        world.addCollisionObject(objects.back().get());
-    }
+    MovedSpheres spheres(2 * kPlaces);
     for (int step = 0; step < 60; ++step) {
         for (int i = 0; i < 2 * kPlaces; ++i) {
             const int place = (i / 2 + i % 2 * step) % kPlaces;
-            objects[i]->setWorldTransform(btTransform(btQuaternion::getIdentity(),
-                                                      {btScalar(5 * place), btScalar(i % 2), 0}));
+            spheres.objects[i]->setWorldTransform(at({btScalar(5 * place), btScalar(i % 2), 0}));
         }
-        world.performDiscreteCollisionDetection();
+        spheres.world.performDiscreteCollisionDetection();
     }
-    for (const auto& object : objects) {
-        world.removeCollisionObject(object.get());
-    }
-    return 0;
 }
 
 // Says how long its steps are, in which it waits for a millisecond.
-int timedSteps() {
+PROGRAM(timedSteps) {
     using Clock = std::chrono::steady_clock;
-    Scene<> scene;
-    addPile(scene);
+    Pile scene;
     scene.world.setInternalTickCallback([](btDynamicsWorld*, btScalar) { usleep(1000); });
     Clock::duration all{};
     for (int i = 0; i < 200; ++i) {
@@ -128,18 +108,7 @@ int timedSteps() {
         all += Clock::now() - begin;
     }
     std::printf("milliseconds: %.6f\n", std::chrono::duration<double, std::milli>(all).count());
-    return 0;
 }
 
 }  // namespace
-
-const std::vector<Program>& measuredPrograms() {
-    static const std::vector<Program> list{{"traffic", traffic},
-                                           {"waits-in-steps", waitsInSteps},
-                                           {"works-on-threads", worksOnThreads},
-                                           {"leaves-pairs", leavesPairs},
-                                           {"timed-steps", timedSteps}};
-    return list;
-}
-
 }  // namespace programs

@@ -2,40 +2,50 @@
 #pragma once
 
 // Programs of users of Bullet, who know nothing of hashphase: this folder includes Bullet's headers and the
-// standard library, and links Bullet alone. Each program prints its outcome, which a right broadphase cannot
-// change, and ends with status 0.
+// standard library, and links Bullet alone.
 
 #include <btBulletDynamicsCommon.h>
 
 #include <memory>
-#include <string>
 #include <utility>
 #include <vector>
 
 namespace programs {
 
 struct Program {
-    std::string name;
-    int (*run)();
+    const char* function;  // raysFromTicks; the program's name is rays-from-ticks
+    void (*run)();
+    bool isCompared;
 };
 
-const std::vector<Program>& rigidBodyPrograms();
-const std::vector<Program>& broadphasePrograms();
-const std::vector<Program>& queryPrograms();
-const std::vector<Program>& softBodyPrograms();
-const std::vector<Program>& lifetimePrograms();
+/// All programs of all files.
+std::vector<Program>& allPrograms();
 
-// Of these, what is said of them is tested, not their outcome: they print times, or go wrong, or on for ever.
-const std::vector<Program>& measuredPrograms();
-const std::vector<Program>& processPrograms();
-const std::vector<Program>& misfitPrograms();
+struct Registered {
+    explicit Registered(const Program& program) { allPrograms().push_back(program); }
+};
 
-/// Runs the program of that name.
-int run(const std::string& name);
+#define REGISTERED_PROGRAM(function, isCompared)                                                   \
+    void function();                                                                               \
+    const Registered function##IsRegistered(Program{#function, &function, isCompared});            \
+    void function()
+
+/// COMPARED_PROGRAM(name) { ... } prints its outcome, which a right broadphase cannot change, and ends with
+/// status 0. Of a PROGRAM, what is said of it is tested, not its outcome: it prints times, or goes wrong, or
+/// on for ever.
+#define COMPARED_PROGRAM(function) REGISTERED_PROGRAM(function, true)
+#define PROGRAM(function) REGISTERED_PROGRAM(function, false)
+
+/// What the program ends with.
+extern int exitStatus;
 
 /// Says `name = value`, with as many digits as the float of either precision is good for after some seconds
 /// of physics.
 void say(const char* name, double value);
+
+inline btTransform at(const btVector3& place) {
+    return btTransform(btQuaternion::getIdentity(), place);
+}
 
 /// What owns bodies and shapes, and outlives the world that they are in.
 class Things {
@@ -47,9 +57,37 @@ public:
         shapes_.push_back(std::move(made));
         return shape;
     }
+    btBoxShape* box(btScalar x, btScalar y, btScalar z) {
+        return shape<btBoxShape>(btVector3(x, y, z));
+    }
+    btBoxShape* unitBox() { return box(btScalar(0.5), btScalar(0.5), btScalar(0.5)); }
+    btSphereShape* sphere(btScalar radius) { return shape<btSphereShape>(radius); }
 
     /// A body of that mass at that place; 0 for one that is static.
-    btRigidBody* body(btCollisionShape* shape, btScalar mass, const btVector3& place);
+    btRigidBody* body(btCollisionShape* shape, btScalar mass, const btVector3& place) {
+        btVector3 inertia(0, 0, 0);
+        if (mass > 0) {
+            shape->calculateLocalInertia(mass, inertia);
+        }
+        states_.push_back(std::make_unique<btDefaultMotionState>(at(place)));
+        bodies.push_back(std::make_unique<btRigidBody>(mass, states_.back().get(), shape, inertia));
+        return bodies.back().get();
+    }
+
+    template <class Is>
+    int count(const Is& is) const {
+        int number = 0;
+        for (const auto& body : bodies) {
+            number += is(*body) ? 1 : 0;
+        }
+        return number;
+    }
+    /// How many of the bodies are nearer to that place.
+    int countNear(const btVector3& place, btScalar distance) const {
+        return count([&](const btRigidBody& body) {
+            return body.getWorldTransform().getOrigin().distance(place) < distance;
+        });
+    }
 
     std::vector<std::unique_ptr<btRigidBody>> bodies;
 
@@ -59,7 +97,9 @@ private:
 };
 
 /// A world as tutorials make it, of any broadphase; results are the same in every run.
-template <class Broadphase = btDbvtBroadphase, class World = btDiscreteDynamicsWorld>
+template <class Broadphase = btDbvtBroadphase, class World = btDiscreteDynamicsWorld,
+          class Configuration = btDefaultCollisionConfiguration,
+          class Solver = btSequentialImpulseConstraintSolver>
 struct Scene {
     template <class... Arguments>
     explicit Scene(Arguments&&... arguments)
@@ -76,6 +116,8 @@ struct Scene {
             world.removeCollisionObject(world.getCollisionObjectArray()[i]);
         }
     }
+    Scene(const Scene&) = delete;
+    Scene& operator=(const Scene&) = delete;
 
     btRigidBody* add(btCollisionShape* shape, btScalar mass, const btVector3& place) {
         btRigidBody* body = things.body(shape, mass, place);
@@ -91,19 +133,57 @@ struct Scene {
             world.stepSimulation(btScalar(1) / 60, 0);
         }
     }
+    btOverlappingPairCache& cache() { return *broadphase.getOverlappingPairCache(); }
 
     Things things;
-    btDefaultCollisionConfiguration configuration;
+    Configuration configuration;
     btCollisionDispatcher dispatcher{&configuration};
-    btSequentialImpulseConstraintSolver solver;
+    Solver solver;
     Broadphase broadphase;
     World world;
 };
 
 /// Twenty boxes on a ground.
-void addPile(Scene<>& scene);
+void addPile(Scene<>& scene, int height = 1);
 
-/// How many of the bodies are nearer to their places than that.
-int countNear(const Things& things, const btVector3& place, btScalar distance);
+/// The same, after so many steps.
+struct Pile : Scene<> {
+    explicit Pile(int steps = 0, btOverlappingPairCache* cache = nullptr, int height = 1)
+        : Scene(cache) {
+        addPile(*this, height);
+        step(steps);
+    }
+};
+
+/// Spheres of radius 1 that are moved by hand, and no dynamics.
+struct MovedSpheres {
+    explicit MovedSpheres(int count) {
+        for (int i = 0; i < count; ++i) {
+            objects.push_back(std::make_unique<btCollisionObject>());
+            objects.back()->setCollisionShape(&sphere);
+            world.addCollisionObject(objects.back().get());
+        }
+    }
+    ~MovedSpheres() {
+        for (const auto& object : objects) {
+            world.removeCollisionObject(object.get());
+        }
+    }
+    MovedSpheres(const MovedSpheres&) = delete;
+    MovedSpheres& operator=(const MovedSpheres&) = delete;
+
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher{&configuration};
+    btDbvtBroadphase broadphase;
+    btCollisionWorld world{&dispatcher, &broadphase, &configuration};
+    btSphereShape sphere{1};
+    std::vector<std::unique_ptr<btCollisionObject>> objects;
+};
+
+/// Casts a ray, which stops at the first object.
+bool isHit(const btCollisionWorld& world, const btVector3& from, const btVector3& to);
+
+/// Casts a ray through all objects.
+int countHits(const btCollisionWorld& world, const btVector3& from, const btVector3& to);
 
 }  // namespace programs

@@ -10,10 +10,10 @@ namespace {
 int hitCount = 0;
 
 // From a tick callback, in each step, at the very boxes of the moment.
-int raysFromTicks() {
+COMPARED_PROGRAM(raysFromTicks) {
     Scene<> scene;
     scene.addGround();
-    auto* box = scene.things.shape<btBoxShape>(btVector3(0.5, 0.5, 0.5));
+    auto* box = scene.things.unitBox();
     for (int i = 0; i < 25; ++i) {
         scene.add(box, 1, {btScalar(i % 5 * 3), btScalar(3 + i % 4), btScalar(i / 5 * 3)});
     }
@@ -21,10 +21,7 @@ int raysFromTicks() {
     const auto castRays = [](btDynamicsWorld* world, btScalar /*timeStep*/) {
         for (int i = 0; i < 25; ++i) {
             const btVector3 from(btScalar(i % 5 * 3), 20, btScalar(i / 5 * 3));
-            const btVector3 to = from - btVector3(0, 40, 0);
-            btCollisionWorld::AllHitsRayResultCallback hits(from, to);
-            world->rayTest(from, to, hits);
-            hitCount += hits.m_collisionObjects.size();
+            hitCount += countHits(*world, from, from - btVector3(0, 40, 0));
         }
     };
     scene.world.setInternalTickCallback(castRays, nullptr, true);
@@ -32,13 +29,12 @@ int raysFromTicks() {
     scene.world.setInternalTickCallback(castRays);
     scene.step(60);
     say("hits", hitCount);
-    return 0;
 }
 
 // As games cast them: between the steps.
-int raysBetweenSteps() {
+COMPARED_PROGRAM(raysBetweenSteps) {
     Scene<> scene;
-    auto* box = scene.things.shape<btBoxShape>(btVector3(0.5, 0.5, 0.5));
+    auto* box = scene.things.unitBox();
     for (int i = 0; i < 25; ++i) {
         scene.add(box, 0, {btScalar(i % 5 * 3), 0, btScalar(i / 5 * 3)});
     }
@@ -47,35 +43,28 @@ int raysBetweenSteps() {
         scene.step(1);
         for (int i = 0; i < 50; ++i) {
             const btVector3 from(btScalar(i), 5, btScalar(step % 15));
-            btCollisionWorld::ClosestRayResultCallback hit(from, from - btVector3(0, 10, 0));
-            scene.world.rayTest(hit.m_rayFromWorld, hit.m_rayToWorld, hit);
-            hits += hit.hasHit() ? 1 : 0;
+            hits += isHit(scene.world, from, from - btVector3(0, 10, 0)) ? 1 : 0;
         }
     }
     say("hits", hits);
-    return 0;
 }
 
 // Pairs that are calculated by hand, after each step.
-int pairsByHand() {
+COMPARED_PROGRAM(pairsByHand) {
     Scene<> scene;
     scene.addGround();
-    auto* box = scene.things.shape<btBoxShape>(btVector3(0.5, 0.5, 0.5));
+    auto* box = scene.things.unitBox();
     for (int i = 0; i < 10; ++i) {
         scene.add(box, 1, {0, btScalar(1 + i), 0});
     }
-    const btVector3 from(0, 50, 0), to(0, -1, 0);
     int hits = 0;
     for (int i = 0; i < 40; ++i) {
         scene.step(1);
-        btCollisionWorld::ClosestRayResultCallback hit(from, to);
-        scene.world.rayTest(from, to, hit);
-        hits += hit.hasHit() ? 1 : 0;
+        hits += isHit(scene.world, {0, 50, 0}, {0, -1, 0}) ? 1 : 0;
         scene.world.updateAabbs();
         scene.world.computeOverlappingPairs();
     }
     say("hits", hits);
-    return 0;
 }
 
 struct CountContacts : btCollisionWorld::ContactResultCallback {
@@ -88,9 +77,9 @@ struct CountContacts : btCollisionWorld::ContactResultCallback {
     int count = 0;
 };
 
-int contactTests() {
+COMPARED_PROGRAM(contactTests) {
     Scene<> scene;
-    auto* box = scene.things.shape<btBoxShape>(btVector3(1, 1, 1));
+    auto* box = scene.things.box(1, 1, 1);
     for (int i = 0; i < 27; ++i) {
         scene.add(box, 0, {btScalar(i % 3 * 3), btScalar(i / 3 % 3 * 3), btScalar(i / 9 * 3)});
     }
@@ -98,50 +87,34 @@ int contactTests() {
     btSphereShape sphere(3);
     btCollisionObject probe;
     probe.setCollisionShape(&sphere);
-    probe.setWorldTransform(btTransform(btQuaternion::getIdentity(), {3, 3, 3}));
+    probe.setWorldTransform(at({3, 3, 3}));
     CountContacts contacts;
     scene.world.contactTest(&probe, contacts);
     say("touched", contacts.count);
     btSphereShape small(btScalar(0.4));
-    const btTransform from(btQuaternion::getIdentity(), {0, 20, 0});
-    const btTransform to(btQuaternion::getIdentity(), {0, -20, 0});
+    const btTransform from = at({0, 20, 0});
+    const btTransform to = at({0, -20, 0});
     btCollisionWorld::ClosestConvexResultCallback hit(from.getOrigin(), to.getOrigin());
     scene.world.convexSweepTest(&small, from, to, hit);
     say("swept to", 20 - 40 * hit.m_closestHitFraction);
-    return 0;
 }
 
 // Objects that are moved by hand, and no dynamics.
-int collisionWorld() {
-    btDefaultCollisionConfiguration configuration;
-    btCollisionDispatcher dispatcher(&configuration);
-    btDbvtBroadphase broadphase;
-    btCollisionWorld world(&dispatcher, &broadphase, &configuration);
-    btSphereShape sphere(1);
-    std::vector<std::unique_ptr<btCollisionObject>> objects;
-    for (int i = 0; i < 60; ++i) {
-        objects.push_back(std::make_unique<btCollisionObject>());
-        objects.back()->setCollisionShape(&sphere);
-        world.addCollisionObject(objects.back().get());
-    }
+COMPARED_PROGRAM(collisionWorld) {
+    MovedSpheres spheres(60);
     int contacts = 0;
     for (int step = 0; step < 90; ++step) {
         for (int i = 0; i < 60; ++i) {
             const btScalar angle = btScalar(step) * btScalar(0.05) * btScalar(1 + i % 3);
-            objects[i]->setWorldTransform(btTransform(
-                btQuaternion::getIdentity(),
+            spheres.objects[i]->setWorldTransform(at(
                 {btScalar(i % 8) * 3 + std::cos(angle), 0, btScalar(i / 8) * 3 + std::sin(angle)}));
         }
-        world.performDiscreteCollisionDetection();
-        for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
-            contacts += dispatcher.getManifoldByIndexInternal(i)->getNumContacts();
+        spheres.world.performDiscreteCollisionDetection();
+        for (int i = 0; i < spheres.dispatcher.getNumManifolds(); ++i) {
+            contacts += spheres.dispatcher.getManifoldByIndexInternal(i)->getNumContacts();
         }
     }
     say("contacts", contacts);
-    for (const auto& object : objects) {
-        world.removeCollisionObject(object.get());
-    }
-    return 0;
 }
 
 struct SameColour : btOverlapFilterCallback {
@@ -152,12 +125,12 @@ struct SameColour : btOverlapFilterCallback {
     }
 };
 
-int filterCallback() {
+COMPARED_PROGRAM(filterCallback) {
     SameColour filter;
     Scene<> scene;
-    scene.broadphase.getOverlappingPairCache()->setOverlapFilterCallback(&filter);
+    scene.cache().setOverlapFilterCallback(&filter);
     scene.addGround();
-    auto* sphere = scene.things.shape<btSphereShape>(btScalar(0.5));
+    auto* sphere = scene.things.sphere(btScalar(0.5));
     for (int i = 0; i < 40; ++i) {
         scene.add(sphere, 1, {0, btScalar(1 + i), 0})->setUserIndex(1 + i % 2);
     }
@@ -169,17 +142,7 @@ int filterCallback() {
             manifold->getBody0()->getUserIndex() == manifold->getBody1()->getUserIndex() ? 1 : 0;
     }
     say("of one colour", wrong);
-    return 0;
 }
 
 }  // namespace
-
-const std::vector<Program>& queryPrograms() {
-    static const std::vector<Program> list{
-        {"rays-from-ticks", raysFromTicks},  {"rays-between-steps", raysBetweenSteps},
-        {"pairs-by-hand", pairsByHand},      {"contact-tests", contactTests},
-        {"collision-world", collisionWorld}, {"filter-callback", filterCallback}};
-    return list;
-}
-
 }  // namespace programs

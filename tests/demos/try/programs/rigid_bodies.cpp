@@ -10,7 +10,7 @@ namespace programs {
 namespace {
 
 void addWall(Scene<>& scene, int width, int height) {
-    auto* brick = scene.things.shape<btBoxShape>(btVector3(0.5, 0.25, 0.25));
+    auto* brick = scene.things.box(0.5, 0.25, 0.25);
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
             scene.add(brick, 1,
@@ -20,18 +20,17 @@ void addWall(Scene<>& scene, int width, int height) {
 }
 
 // Bodies of all shapes fall into a heap: where they end is chaos, that they stay in the pit is not.
-int pile() {
+COMPARED_PROGRAM(pile) {
     Scene<> scene;
     scene.addGround();
-    auto* wall = scene.things.shape<btBoxShape>(btVector3(1, 5, 6));
-    auto* side = scene.things.shape<btBoxShape>(btVector3(6, 5, 1));
+    auto* wall = scene.things.box(1, 5, 6);
+    auto* side = scene.things.box(6, 5, 1);
     for (const int sign : {-1, 1}) {
         scene.add(wall, 0, {btScalar(sign * 6), 5, 0});
         scene.add(side, 0, {0, 5, btScalar(sign * 6)});
     }
     btCollisionShape* const shapes[] = {
-        scene.things.shape<btBoxShape>(btVector3(0.4, 0.4, 0.4)),
-        scene.things.shape<btSphereShape>(btScalar(0.5)),
+        scene.things.box(0.4, 0.4, 0.4), scene.things.sphere(btScalar(0.5)),
         scene.things.shape<btCapsuleShape>(btScalar(0.3), btScalar(0.6)),
         scene.things.shape<btCylinderShape>(btVector3(0.4, 0.5, 0.4))};
     for (int i = 0; i < 200; ++i) {
@@ -40,35 +39,28 @@ int pile() {
             {btScalar(i % 5 - 2) * btScalar(1.1), btScalar(1 + i / 25), btScalar(i / 5 % 5 - 2)});
     }
     scene.step(200);
-    say("in the pit", countNear(scene.things, {0, 2, 0}, 8) - 4);
-    return 0;
+    say("in the pit", scene.things.countNear({0, 2, 0}, 8) - 4);
 }
 
 // Stands, falls asleep, and is woken by a ball.
-int wall() {
+COMPARED_PROGRAM(wall) {
     Scene<> scene;
     scene.addGround();
     addWall(scene, 5, 6);
     scene.step(240);
-    int asleep = 0;
-    for (const auto& body : scene.things.bodies) {
-        asleep += body->getActivationState() == ISLAND_SLEEPING ? 1 : 0;
-    }
-    say("asleep", asleep);
-    btRigidBody* ball =
-        scene.add(scene.things.shape<btSphereShape>(btScalar(0.5)), 50, {2, 1.5, 8});
+    say("asleep", scene.things.count([](const btRigidBody& body) {
+        return body.getActivationState() == ISLAND_SLEEPING;
+    }));
+    btRigidBody* ball = scene.add(scene.things.sphere(btScalar(0.5)), 50, {2, 1.5, 8});
     ball->setLinearVelocity({0, 0, -30});
     scene.step(60);
     say("ball has passed", ball->getWorldTransform().getOrigin().z() < -2 ? 1 : 0);
-    return 0;
 }
 
-int hingedDoor() {
+COMPARED_PROGRAM(hingedDoor) {
     Scene<> scene;
-    btRigidBody* post =
-        scene.add(scene.things.shape<btBoxShape>(btVector3(0.1, 2, 0.1)), 0, {0, 2, 0});
-    btRigidBody* door =
-        scene.add(scene.things.shape<btBoxShape>(btVector3(1, 2, 0.1)), 5, {1.2, 2, 0});
+    btRigidBody* post = scene.add(scene.things.box(0.1, 2, 0.1), 0, {0, 2, 0});
+    btRigidBody* door = scene.add(scene.things.box(1, 2, 0.1), 5, {1.2, 2, 0});
     btHingeConstraint hinge(*post, *door, {0, 0, 0}, {-1.2, 0, 0}, {0, 1, 0}, {0, 1, 0});
     hinge.enableAngularMotor(true, 1, 10);
     scene.world.addConstraint(&hinge, true);
@@ -76,10 +68,9 @@ int hingedDoor() {
     say("angle", hinge.getHingeAngle());
     say("distance", door->getWorldTransform().getOrigin().distance({0, 2, 0}));
     scene.world.removeConstraint(&hinge);
-    return 0;
 }
 
-int spheresOnTerrain() {
+COMPARED_PROGRAM(spheresOnTerrain) {
     Scene<> scene;
     btTriangleMesh mesh;
     const auto corner = [](int x, int z) {
@@ -94,20 +85,19 @@ int spheresOnTerrain() {
     }
     btBvhTriangleMeshShape bowl(&mesh, true);
     scene.add(&bowl, 0, {0, 0, 0});
-    auto* sphere = scene.things.shape<btSphereShape>(btScalar(0.5));
+    auto* sphere = scene.things.sphere(btScalar(0.5));
     for (int i = 0; i < 36; ++i) {
         scene.add(sphere, 1, {btScalar(10 + i % 6 * 4), 9, btScalar(10 + i / 6 * 4)});
     }
     scene.step(240);
-    say("in the bowl", countNear(scene.things, {20, 3, 20}, 15) - 0);
-    return 0;
+    say("in the bowl", scene.things.countNear({20, 3, 20}, 15));
 }
 
-int bulletsWithCcd() {
+COMPARED_PROGRAM(bulletsWithCcd) {
     Scene<> scene;
     scene.world.setGravity({0, 0, 0});
-    scene.add(scene.things.shape<btBoxShape>(btVector3(0.05, 20, 20)), 0, {10, 0, 0});
-    auto* shot = scene.things.shape<btSphereShape>(btScalar(0.1));
+    scene.add(scene.things.box(0.05, 20, 20), 0, {10, 0, 0});
+    auto* shot = scene.things.sphere(btScalar(0.1));
     for (int i = 0; i < 20; ++i) {
         btRigidBody* body = scene.add(shot, 1, {0, btScalar(i - 10), btScalar(i % 3)});
         body->setLinearVelocity({300, 0, 0});
@@ -115,19 +105,15 @@ int bulletsWithCcd() {
         body->setCcdSweptSphereRadius(btScalar(0.05));
     }
     scene.step(30);
-    int through = 0;
-    for (const auto& body : scene.things.bodies) {
-        through += body->getWorldTransform().getOrigin().x() > 11 ? 1 : 0;
-    }
-    say("through the wall", through);
-    return 0;
+    say("through the wall", scene.things.count([](const btRigidBody& body) {
+        return body.getWorldTransform().getOrigin().x() > 11;
+    }));
 }
 
-int vehicle() {
+COMPARED_PROGRAM(vehicle) {
     Scene<> scene;
     scene.addGround();
-    btRigidBody* chassis =
-        scene.add(scene.things.shape<btBoxShape>(btVector3(1, 0.5, 2)), 800, {0, 1.2, 0});
+    btRigidBody* chassis = scene.add(scene.things.box(1, 0.5, 2), 800, {0, 1.2, 0});
     chassis->setActivationState(DISABLE_DEACTIVATION);
     btRaycastVehicle::btVehicleTuning tuning;
     btDefaultVehicleRaycaster raycaster(&scene.world);
@@ -152,18 +138,17 @@ int vehicle() {
     }
     say("wheels on the ground", onGround);
     scene.world.removeAction(&car);
-    return 0;
 }
 
-int character() {
+COMPARED_PROGRAM(character) {
     Scene<> scene;
     btGhostPairCallback ghosts;
-    scene.broadphase.getOverlappingPairCache()->setInternalGhostPairCallback(&ghosts);
+    scene.cache().setInternalGhostPairCallback(&ghosts);
     scene.addGround();
-    scene.add(scene.things.shape<btBoxShape>(btVector3(1, 3, 5)), 0, {6, 3, 0});
+    scene.add(scene.things.box(1, 3, 5), 0, {6, 3, 0});
     btCapsuleShape capsule(btScalar(0.4), 1);
     btPairCachingGhostObject body;
-    body.setWorldTransform(btTransform(btQuaternion::getIdentity(), {0, 1, 0}));
+    body.setWorldTransform(at({0, 1, 0}));
     body.setCollisionShape(&capsule);
     body.setCollisionFlags(btCollisionObject::CF_CHARACTER_OBJECT);
     btKinematicCharacterController walker(&body, &capsule, btScalar(0.35), {0, 1, 0});
@@ -179,23 +164,22 @@ int character() {
     say("pairs", body.getOverlappingPairCache()->getNumOverlappingPairs());
     scene.world.removeAction(&walker);
     scene.world.removeCollisionObject(&body);
-    return 0;
 }
 
 // Counts, in each step, what is in a zone that bodies fall through.
-int ghostZone() {
+COMPARED_PROGRAM(ghostZone) {
     Scene<> scene;
     btGhostPairCallback ghosts;
-    scene.broadphase.getOverlappingPairCache()->setInternalGhostPairCallback(&ghosts);
+    scene.cache().setInternalGhostPairCallback(&ghosts);
     btBoxShape box({2, 2, 2});
     btGhostObject zone;
     zone.setCollisionShape(&box);
-    zone.setWorldTransform(btTransform(btQuaternion::getIdentity(), {0, 10, 0}));
+    zone.setWorldTransform(at({0, 10, 0}));
     zone.setCollisionFlags(zone.getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
     scene.world.addCollisionObject(
         &zone, btBroadphaseProxy::SensorTrigger,
         btBroadphaseProxy::AllFilter & ~btBroadphaseProxy::SensorTrigger);
-    auto* sphere = scene.things.shape<btSphereShape>(btScalar(0.2));
+    auto* sphere = scene.things.sphere(btScalar(0.2));
     for (int i = 0; i < 9; ++i) {
         scene.add(sphere, 1, {btScalar(i % 3 - 1), btScalar(14 + i / 3 * 2), 0});
     }
@@ -207,11 +191,10 @@ int ghostZone() {
     say("most in the zone", most);
     say("left in the zone", zone.getNumOverlappingObjects());
     scene.world.removeCollisionObject(&zone);
-    return 0;
 }
 
 // Calls of six sub-steps each, and some of none.
-int subSteps() {
+COMPARED_PROGRAM(subSteps) {
     Scene<> scene;
     addWall(scene, 5, 6);
     scene.addGround();
@@ -221,39 +204,20 @@ int subSteps() {
         made += scene.world.stepSimulation(btScalar(1) / 10000, 6, btScalar(1) / 360);
     }
     say("sub-steps", made >= 300 ? 1 : 0);
-    return 0;
 }
 
-int simpleWorld() {
+COMPARED_PROGRAM(simpleWorld) {
     Scene<btDbvtBroadphase, btSimpleDynamicsWorld> scene;
-    scene.add(scene.things.shape<btBoxShape>(btVector3(10, 1, 10)), 0, {0, -1, 0});
-    auto* box = scene.things.shape<btBoxShape>(btVector3(0.5, 0.5, 0.5));
+    scene.add(scene.things.box(10, 1, 10), 0, {0, -1, 0});
+    auto* box = scene.things.unitBox();
     for (int i = 0; i < 9; ++i) {
         scene.add(box, 1, {btScalar(i % 3 * 3 - 3), 2, btScalar(i / 3 * 3 - 3)});
     }
     scene.step(120);
-    int onTop = 0;
-    for (const auto& body : scene.things.bodies) {
-        onTop += body->getWorldTransform().getOrigin().y() > btScalar(0.3) ? 1 : 0;
-    }
-    say("on the table", onTop);
-    return 0;
+    say("on the table", scene.things.count([](const btRigidBody& body) {
+        return body.getWorldTransform().getOrigin().y() > btScalar(0.3);
+    }));
 }
 
 }  // namespace
-
-const std::vector<Program>& rigidBodyPrograms() {
-    static const std::vector<Program> list{{"pile", pile},
-                                           {"wall", wall},
-                                           {"hinged-door", hingedDoor},
-                                           {"spheres-on-terrain", spheresOnTerrain},
-                                           {"bullets-with-ccd", bulletsWithCcd},
-                                           {"vehicle", vehicle},
-                                           {"character", character},
-                                           {"ghost-zone", ghostZone},
-                                           {"sub-steps", subSteps},
-                                           {"simple-world", simpleWorld}};
-    return list;
-}
-
 }  // namespace programs

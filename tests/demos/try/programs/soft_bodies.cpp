@@ -19,24 +19,17 @@
 namespace programs {
 namespace {
 
-int cloth() {
-    Things things;
-    btSoftBodyRigidBodyCollisionConfiguration configuration;
-    btCollisionDispatcher dispatcher(&configuration);
-    btDbvtBroadphase broadphase;
-    btSequentialImpulseConstraintSolver solver;
-    btSoftRigidDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
-    world.setGravity({0, -10, 0});
+COMPARED_PROGRAM(cloth) {
+    Scene<btDbvtBroadphase, btSoftRigidDynamicsWorld, btSoftBodyRigidBodyCollisionConfiguration>
+        scene;
+    btSoftRigidDynamicsWorld& world = scene.world;
     world.getWorldInfo().m_gravity.setValue(0, -10, 0);
-    btRigidBody* box = things.body(things.shape<btBoxShape>(btVector3(2, 2, 2)), 0, {0, 2, 0});
-    world.addRigidBody(box);
+    scene.add(scene.things.box(2, 2, 2), 0, {0, 2, 0});
     btSoftBody* sheet = btSoftBodyHelpers::CreatePatch(
         world.getWorldInfo(), {-4, 6, -4}, {4, 6, -4}, {-4, 6, 4}, {4, 6, 4}, 17, 17, 0, true);
     sheet->setTotalMass(1);
     world.addSoftBody(sheet);
-    for (int i = 0; i < 120; ++i) {
-        world.stepSimulation(btScalar(1) / 60, 0);
-    }
+    scene.step(120);
     int onTop = 0;
     for (int i = 0; i < sheet->m_nodes.size(); ++i) {
         onTop += sheet->m_nodes[i].m_x.y() > btScalar(3.5) ? 1 : 0;
@@ -44,11 +37,9 @@ int cloth() {
     say("cloth lies on the box", onTop > 20 ? 1 : 0);
     world.removeSoftBody(sheet);
     delete sheet;
-    world.removeRigidBody(box);
-    return 0;
 }
 
-int deformable() {
+COMPARED_PROGRAM(deformable) {
     Things things;
     btSoftBodyRigidBodyCollisionConfiguration configuration;
     btCollisionDispatcher dispatcher(&configuration);
@@ -62,8 +53,7 @@ int deformable() {
     world.getWorldInfo().m_gravity.setValue(0, -10, 0);
     world.getWorldInfo().m_sparsesdf.setDefaultVoxelsz(btScalar(0.25));
     world.getWorldInfo().m_sparsesdf.Reset();
-    btRigidBody* ground =
-        things.body(things.shape<btBoxShape>(btVector3(10, 1, 10)), 0, {0, -1, 0});
+    btRigidBody* ground = things.body(things.box(10, 1, 10), 0, {0, -1, 0});
     world.addRigidBody(ground);
     btSoftBody* sheet = btSoftBodyHelpers::CreatePatch(
         world.getWorldInfo(), {-2, 2, -2}, {2, 2, -2}, {-2, 2, 2}, {2, 2, 2}, 9, 9, 0, true);
@@ -88,19 +78,14 @@ int deformable() {
     world.removeSoftBody(sheet);
     delete sheet;
     world.removeRigidBody(ground);
-    return 0;
 }
 
-int multibody() {
-    Things things;
-    btDefaultCollisionConfiguration configuration;
-    btCollisionDispatcher dispatcher(&configuration);
-    btDbvtBroadphase broadphase;
-    btMultiBodyConstraintSolver solver;
-    btMultiBodyDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
-    world.setGravity({0, -10, 0});
-    btRigidBody* wall = things.body(things.shape<btBoxShape>(btVector3(0.5, 5, 5)), 0, {-3, 0, 0});
-    world.addRigidBody(wall);
+COMPARED_PROGRAM(multibody) {
+    Scene<btDbvtBroadphase, btMultiBodyDynamicsWorld, btDefaultCollisionConfiguration,
+          btMultiBodyConstraintSolver>
+        scene;
+    btMultiBodyDynamicsWorld& world = scene.world;
+    scene.add(scene.things.box(0.5, 5, 5), 0, {-3, 0, 0});
     constexpr int kLinks = 5;
     auto* chain = new btMultiBody(kLinks, 1, {1, 1, 1}, true, false);
     for (int i = 0; i < kLinks; ++i) {
@@ -110,7 +95,7 @@ int multibody() {
     chain->finalizeMultiDof();
     chain->setBasePos({0, 3, 0});
     world.addMultiBody(chain);
-    auto* box = things.shape<btBoxShape>(btVector3(0.4, 0.2, 0.2));
+    auto* box = scene.things.box(0.4, 0.2, 0.2);
     std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders;
     for (int i = 0; i < kLinks; ++i) {
         colliders.push_back(std::make_unique<btMultiBodyLinkCollider>(chain, i));
@@ -119,25 +104,14 @@ int multibody() {
                                  btBroadphaseProxy::StaticFilter);
         chain->getLink(i).m_collider = colliders.back().get();
     }
-    for (int i = 0; i < 180; ++i) {
-        world.stepSimulation(btScalar(1) / 60, 0);
-    }
+    scene.step(180);
     say("chain has swung", chain->getJointPos(0) < -btScalar(0.3) ? 1 : 0);
     for (const auto& collider : colliders) {
         world.removeCollisionObject(collider.get());
     }
     world.removeMultiBody(chain);
     delete chain;
-    world.removeRigidBody(wall);
-    return 0;
 }
 
 }  // namespace
-
-const std::vector<Program>& softBodyPrograms() {
-    static const std::vector<Program> list{
-        {"cloth", cloth}, {"deformable", deformable}, {"multibody", multibody}};
-    return list;
-}
-
 }  // namespace programs
