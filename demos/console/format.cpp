@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/console/format.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -49,6 +50,34 @@ std::string byteSize(std::int64_t bytes) {
     }
     const int digits = unit == 0 || std::abs(size) >= 100 ? 0 : std::abs(size) >= 10 ? 1 : 2;
     return fixed(size, digits) + " " + kUnits[unit];
+}
+
+std::string joined(std::span<const std::string> words, std::string_view separator) {
+    std::string text;
+    for (const std::string& word : words) {
+        text += &word == words.data() ? "" : separator;
+        text += word;
+    }
+    return text;
+}
+
+std::string printable(std::string_view word) {
+    constexpr std::size_t kMost = 40;
+    std::size_t length = std::min(word.size(), kMost);
+    // Not within a character.
+    while (length < word.size() && length > 0 && (word[length] & 0xc0) == 0x80) {
+        --length;
+    }
+    std::string text(word.substr(0, length));
+    std::ranges::replace_if(
+        text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+    return length < word.size() ? text + "..." : text;
+}
+
+std::string quotedWord(std::string_view word) {
+    std::string quoted(1, '\'');
+    quoted += printable(word);
+    return quoted += '\'';
 }
 
 }  // namespace hashphase::demos

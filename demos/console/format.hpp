@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Numbers as people read them.
+// Numbers, lists and a user's words as people read them.
 
 #include <cstdint>
+#include <span>
 #include <string>
+#include <string_view>
 
 namespace hashphase::demos {
 
@@ -22,5 +24,14 @@ namespace hashphase::demos {
 
 /// Bytes as "123 B", "12.3 KiB", "4.56 MiB", "7.89 GiB"; may be negative.
 [[nodiscard]] std::string byteSize(std::int64_t bytes);
+
+/// The words, and between each two the separator: "a, b, c".
+[[nodiscard]] std::string joined(std::span<const std::string> words, std::string_view separator);
+
+/// A word of a user's: not all of a long one, and nothing that a terminal would obey. UTF-8 stays whole.
+[[nodiscard]] std::string printable(std::string_view word);
+
+/// The same between quotes.
+[[nodiscard]] std::string quotedWord(std::string_view word);
 
 }  // namespace hashphase::demos

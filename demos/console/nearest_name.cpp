@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/console/nearest_name.hpp>
 
-#include <demos/console/quoted_word.hpp>
+#include <demos/console/format.hpp>
 
 #include <algorithm>
 #include <vector>
@@ -45,18 +45,17 @@ std::string nearestName(std::string_view name, std::span<const std::string> know
     return nearest;
 }
 
+std::string suggestion(std::string_view name, std::span<const std::string> known,
+                       const std::string& quote) {
+    const std::string nearest = nearestName(name, known);
+    return nearest.empty() ? "; there are " + joined(known, ", ") + "."
+                           : "; did you mean " + quote + nearest + quote + "?";
+}
+
 std::string unknownNameSentence(std::string_view whatItIs, std::string_view name,
                                 std::span<const std::string> known) {
-    std::string sentence = "There is no " + std::string(whatItIs) + " " + quotedWord(name);
-    const std::string nearest = nearestName(name, known);
-    if (!nearest.empty()) {
-        return sentence + "; did you mean '" + nearest + "'?";
-    }
-    sentence += "; there are";
-    for (const std::string& candidate : known) {
-        sentence += (&candidate == known.data() ? " " : ", ") + candidate;
-    }
-    return sentence + ".";
+    return "There is no " + std::string(whatItIs) + " " + quotedWord(name) +
+           suggestion(name, known, "'");
 }
 
 }  // namespace hashphase::demos

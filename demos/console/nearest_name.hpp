@@ -17,6 +17,11 @@ namespace hashphase::demos {
 /// misspelling (more than a third of the letters differ, and more than two).
 [[nodiscard]] std::string nearestName(std::string_view name, std::span<const std::string> known);
 
+/// What follows a sentence about a name that is none: "; did you mean 'paper'?", with such quotes, or the whole
+/// list where none is near.
+[[nodiscard]] std::string suggestion(std::string_view name, std::span<const std::string> known,
+                                     const std::string& quote);
+
 /// "There is no scene 'papr'; did you mean 'paper'?", or the whole list where none is near.
 [[nodiscard]] std::string unknownNameSentence(std::string_view whatItIs, std::string_view name,
                                               std::span<const std::string> known);

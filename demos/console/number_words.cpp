@@ -14,17 +14,12 @@ constexpr std::string_view kDigits = "0123456789";
 constexpr std::string_view kSeparators = ",_'";
 
 // Whether the digits come in groups of three, but for the first, which may be shorter.
-bool areGroups(std::string_view grouped, char separator) {
-    std::size_t group = grouped.find(separator);
-    if (group == 0 || group > 3) {
-        return false;
-    }
-    for (; group < grouped.size(); group += 4) {
-        const std::string_view digits = grouped.substr(group + 1, 3);
-        const bool goesOn = group + 4 < grouped.size();
-        if (grouped[group] != separator || digits.size() != 3 ||
-            digits.find_first_not_of(kDigits) != std::string_view::npos ||
-            (goesOn && grouped[group + 4] != separator)) {
+bool areGroups(std::string_view text, char separator) {
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const bool isBetween = (text.size() - i) % 4 == 0;
+        const bool isRight = isBetween ? i > 0 && text[i] == separator
+                                       : kDigits.find(text[i]) != std::string_view::npos;
+        if (!isRight) {
             return false;
         }
     }

@@ -3,7 +3,6 @@
 
 #include <demos/console/format.hpp>
 #include <demos/console/number_words.hpp>
-#include <demos/console/quoted_word.hpp>
 
 #include <charconv>
 #include <filesystem>
@@ -66,10 +65,6 @@ CLI::Option* addPath(CLI::App& app, const std::string& name, std::string& path,
 
 bool writes(const CLI::Option& option) {
     return option.get_type_name() == kFileToWrite;
-}
-
-bool namesFile(const CLI::Option& option) {
-    return writes(option) || option.get_type_name() == kFileToRead;
 }
 
 // Devices are no files that anything is lost in.
@@ -157,14 +152,13 @@ void checkValues(CLI::App& app) {
 }
 
 std::string pathClash(const CLI::App& app) {
-    const std::vector<const CLI::Option*> options =
-        app.get_options([](const CLI::Option* option) { return option->count() > 0; });
-    for (std::size_t b = 0; b < options.size(); ++b) {
+    const std::vector<const CLI::Option*> files = app.get_options([](const CLI::Option* option) {
+        return option->count() > 0 && (writes(*option) || option->get_type_name() == kFileToRead);
+    });
+    for (std::size_t b = 0; b < files.size(); ++b) {
         for (std::size_t a = 0; a < b; ++a) {
-            if (namesFile(*options[a]) && namesFile(*options[b])) {
-                if (std::string fault = clashOf(*options[a], *options[b]); !fault.empty()) {
-                    return fault;
-                }
+            if (std::string fault = clashOf(*files[a], *files[b]); !fault.empty()) {
+                return fault;
             }
         }
     }

@@ -6,7 +6,6 @@
 #include <demos/console/result_file.hpp>
 #include <demos/effects/effects_report.hpp>
 #include <demos/report/stopwatch.hpp>
-#include <demos/scenes/example_scenes.hpp>
 #include <demos/scenes/input_error.hpp>
 
 #include <ostream>

@@ -31,6 +31,36 @@ Vector3<float> halfEdgesOfAboutAMetre(Random& random) {
     return 0.5F * pointIn(random, {Vector3<float>::Constant(0.5F), Vector3<float>::Constant(1.5F)});
 }
 
+// Boxes with their centres anywhere in roomOf(their number, random).
+template <class RoomOf, class HalfEdges>
+BrownianBoxes scatterIn(const RoomOf& roomOf, std::size_t objects, std::uint64_t seed, float step,
+                        const HalfEdges& halfEdges) {
+    Random random(seed);
+    BrownianBoxes boxes;
+    boxes.bodies.reserve(objects);
+    for (std::size_t i = 0; i < objects; ++i) {
+        const Aabb<float> room = roomOf(i, random);
+        const Vector3<float> centre = pointIn(random, room);
+        boxes.bodies.push_back({centre, halfEdges(random), step, room});
+    }
+    return boxes;
+}
+
+auto always(const Aabb<float>& room) {
+    return [room](std::size_t /*number*/, Random& /*random*/) { return room; };
+}
+
+// Of those that rest, each `period`-th becomes static.
+BrownianBoxes withStatics(BrownianBoxes boxes, std::size_t period) {
+    boxes.filters.resize(boxes.bodies.size());
+    for (std::size_t i = 0; i < boxes.bodies.size(); i += period) {
+        if (boxes.bodies[i].step == 0) {
+            boxes.filters[i] = kStaticFilter;
+        }
+    }
+    return boxes;
+}
+
 }  // namespace
 
 BrownianScene::BrownianScene(BrownianBoxes boxes, std::uint64_t seed)
@@ -61,36 +91,25 @@ void BrownianScene::advance() {
 }
 
 BrownianBoxes uniformBoxes(std::size_t objects, std::uint64_t seed) {
-    Random random(seed);
-    const Aabb<float> room = roomFor(objects, kMeanCubedSum, 2);
-    BrownianBoxes boxes;
-    boxes.bodies.reserve(objects);
-    for (std::size_t i = 0; i < objects; ++i) {
-        const Vector3<float> centre = pointIn(random, room);
-        boxes.bodies.push_back({centre, halfEdgesOfAboutAMetre(random), kStep, room});
-    }
-    return boxes;
+    return scatterIn(always(roomFor(objects, kMeanCubedSum, 2)), objects, seed, kStep,
+                     halfEdgesOfAboutAMetre);
 }
 
 BrownianBoxes pileBoxes(std::size_t objects, std::uint64_t seed) {
     constexpr std::size_t kPerPile = 100;
     constexpr float kSide = 1e4F;
-    Random random(seed);
     const Vector3<float> pileEdges = roomFor(kPerPile, kMeanCubedSum, 5).max();
     const Aabb<float> ground(Vector3<float>::Zero(), Vector3<float>(kSide, 0, kSide) - pileEdges);
-    BrownianBoxes boxes;
-    boxes.bodies.reserve(objects);
     Aabb<float> pile;
-    for (std::size_t i = 0; i < objects; ++i) {
-        if (i % kPerPile == 0) {
+    const auto pileOf = [&](std::size_t number, Random& random) {
+        if (number % kPerPile == 0) {
             const Vector3<float> corner(random.between(0, ground.max().x()), 0,
                                         random.between(0, ground.max().z()));
             pile = {corner, corner + pileEdges};
         }
-        const Vector3<float> centre = pointIn(random, pile);
-        boxes.bodies.push_back({centre, halfEdgesOfAboutAMetre(random), kStep / 4, pile});
-    }
-    return boxes;
+        return pile;
+    };
+    return scatterIn(pileOf, objects, seed, kStep / 4, halfEdgesOfAboutAMetre);
 }
 
 BrownianBoxes logSizeBoxes(std::size_t objects, std::uint64_t seed) {
@@ -98,16 +117,12 @@ BrownianBoxes logSizeBoxes(std::size_t objects, std::uint64_t seed) {
     constexpr float kLargest = 30;
     // E[(a + b)^3] = 2 E[a^3] + 6 E[a^2] E[a] for log-uniform edges.
     constexpr float kLogMeanCubedSum = 5637;
-    Random random(seed);
-    const Aabb<float> room = roomFor(objects, kLogMeanCubedSum, 4);
-    BrownianBoxes boxes;
-    boxes.bodies.reserve(objects);
-    for (std::size_t i = 0; i < objects; ++i) {
-        const Vector3<float> centre = pointIn(random, room);
+    const auto halfEdges = [](Random& random) -> Vector3<float> {
         const float edge = kSmallest * std::pow(kLargest / kSmallest, random.unit());
-        boxes.bodies.push_back({centre, Vector3<float>::Constant(edge / 2), kStep, room});
-    }
-    return boxes;
+        return Vector3<float>::Constant(edge / 2);
+    };
+    return scatterIn(always(roomFor(objects, kLogMeanCubedSum, 4)), objects, seed, kStep,
+                     halfEdges);
 }
 
 BrownianBoxes someMovingBoxes(std::size_t objects, std::uint64_t seed, std::size_t period) {
@@ -121,44 +136,22 @@ BrownianBoxes someMovingBoxes(std::size_t objects, std::uint64_t seed, std::size
 }
 
 BrownianBoxes mostlyStaticBoxes(std::size_t objects, std::uint64_t seed) {
-    BrownianBoxes boxes = someMovingBoxes(objects, seed, 10);
-    boxes.filters.resize(objects);
-    for (std::size_t i = 0; i < objects; ++i) {
-        if (boxes.bodies[i].step == 0) {
-            boxes.filters[i] = kStaticFilter;
-        }
-    }
-    return boxes;
+    return withStatics(someMovingBoxes(objects, seed, 10), 1);
+}
+
+BrownianBoxes restingBoxes(std::size_t objects, std::uint64_t seed) {
+    return withStatics(someMovingBoxes(objects, seed, 50), 2);
 }
 
 BrownianBoxes broadmarkBoxes(std::size_t objects, std::uint64_t seed) {
     constexpr float kFilledShare = 0.1F;
     // On an axis, so that no move is longer than 2 m.
     const float step = 2 / std::sqrt(3.0F);
-    Random random(seed);
     const float side = std::cbrt(static_cast<float>(objects) / kFilledShare);
     const Aabb<float> room(Vector3<float>::Zero(), Vector3<float>::Constant(side));
-    BrownianBoxes boxes;
-    boxes.bodies.reserve(objects);
-    for (std::size_t i = 0; i < objects; ++i) {
-        boxes.bodies.push_back({pointIn(random, room), Vector3<float>::Constant(0.5F), step, room});
-    }
-    return boxes;
-}
-
-BrownianBoxes restingBoxes(std::size_t objects, std::uint64_t seed) {
-    BrownianBoxes boxes = uniformBoxes(objects, seed);
-    boxes.filters.resize(objects);
-    for (std::size_t i = 0; i < objects; ++i) {
-        if (i % 50 == 0) {
-            continue;
-        }
-        boxes.bodies[i].step = 0;
-        if (i % 2 == 0) {
-            boxes.filters[i] = kStaticFilter;
-        }
-    }
-    return boxes;
+    return scatterIn(always(room), objects, seed, step, [](Random& /*random*/) -> Vector3<float> {
+        return Vector3<float>::Constant(0.5F);
+    });
 }
 
 }  // namespace hashphase::demos

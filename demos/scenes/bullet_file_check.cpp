@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/scenes/bullet_file_check.hpp>
+#include <demos/scenes/bullet_world_file.hpp>
 
 #include <demos/scenes/input_error.hpp>
 
@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 namespace hashphase::demos {
@@ -18,56 +19,65 @@ constexpr std::size_t kBulletHeaderBytes = 12;
     throw InputError("byte " + std::to_string(byte) + ": " + fault);
 }
 
-// A cursor over the bytes that never leaves them.
+// A cursor over the bytes that never leaves them; `what` is what it reads there.
 class Cursor {
 public:
-    Cursor(std::string_view bytes, std::size_t position) : bytes_(bytes), position_(position) {}
+    Cursor(std::string_view bytes, std::size_t position, std::string what)
+        : bytes_(bytes), position_(position), what_(std::move(what)) {}
 
     [[nodiscard]] std::size_t position() const { return position_; }
 
     template <class Integer>
-    [[nodiscard]] Integer read(const char* what) {
+    [[nodiscard]] Integer read() {
         Integer value{};
-        std::memcpy(&value, take(sizeof value, what).data(), sizeof value);
+        std::memcpy(&value, take(sizeof value).data(), sizeof value);
         return value;
     }
 
-    std::string_view take(std::size_t count, const char* what) {
+    std::string_view take(std::size_t count) {
         if (count > bytes_.size() - position_) {
-            fail(bytes_.size(), std::string("the file ends inside ") + what);
+            fail(bytes_.size(), "the file ends inside " + what_);
         }
         position_ += count;
         return bytes_.substr(position_ - count, count);
     }
 
-    std::string_view takeText(const char* what) {
-        const std::size_t end = bytes_.find('\0', position_);
-        if (end == std::string_view::npos) {
-            fail(bytes_.size(), std::string("the file ends inside ") + what);
-        }
-        const std::string_view text = take(end - position_, what);
-        ++position_;
-        return text;
-    }
-
-    void expect(std::string_view tag, const char* what) {
+    void expect(std::string_view tag) {
         const std::size_t place = position_;
-        if (take(tag.size(), what) != tag) {
-            fail(place, std::string("expected '") + std::string(tag) + "' in " + what);
+        if (take(tag.size()) != tag) {
+            fail(place, "expected '" + std::string(tag) + "' in " + what_);
         }
     }
 
-    // Bullet rounds addresses, not offsets, up to multiples of four.
-    void align() {
+    [[nodiscard]] std::size_t readCount() {
+        const std::size_t place = position_;
+        const auto count = read<std::int32_t>();
+        if (count < 0 || count > 32'767) {
+            fail(place, "impossible count in " + what_);
+        }
+        return static_cast<std::size_t>(count);
+    }
+
+    // A count, so many texts, and bytes without meaning up to a multiple of four.
+    [[nodiscard]] std::vector<std::string_view> readTexts() {
+        std::vector<std::string_view> texts(readCount());
+        for (std::string_view& text : texts) {
+            const std::size_t end = std::min(bytes_.find('\0', position_), bytes_.size());
+            text = take(end - position_);
+            take(1);
+        }
+        // Bullet rounds addresses, not offsets.
         while ((reinterpret_cast<std::uintptr_t>(bytes_.data()) + position_) % 4 != 0 &&
                position_ < bytes_.size()) {
             ++position_;
         }
+        return texts;
     }
 
 private:
     std::string_view bytes_;
     std::size_t position_;
+    std::string what_;
 };
 
 struct Chunk {
@@ -113,14 +123,15 @@ void checkHeader(std::string_view bytes) {
     }
 }
 
-Chunk readChunk(std::string_view bytes, Cursor& cursor) {
+Chunk readChunk(std::string_view bytes, std::size_t place) {
+    Cursor cursor(bytes, place, "a chunk's header");
     Chunk chunk{};
-    chunk.place = cursor.position();
-    chunk.code = cursor.take(4, "a chunk's header");
-    chunk.length = cursor.read<std::int32_t>("a chunk's header");
-    cursor.take(pointerBytes(bytes), "a chunk's header");
-    chunk.structure = cursor.read<std::int32_t>("a chunk's header");
-    chunk.count = cursor.read<std::int32_t>("a chunk's header");
+    chunk.place = place;
+    chunk.code = cursor.take(4);
+    chunk.length = cursor.read<std::int32_t>();
+    cursor.take(pointerBytes(bytes));
+    chunk.structure = cursor.read<std::int32_t>();
+    chunk.count = cursor.read<std::int32_t>();
     if (chunk.length < 0 || chunk.count < 0) {
         fail(chunk.place, "the chunk has a negative length or count");
     }
@@ -131,72 +142,55 @@ Chunk readChunk(std::string_view bytes, Cursor& cursor) {
 // Ends at the type table, which the format puts last.
 std::vector<Chunk> readChunks(std::string_view bytes) {
     std::vector<Chunk> chunks;
-    Cursor cursor(bytes, kBulletHeaderBytes);
+    std::size_t position = kBulletHeaderBytes;
     do {
-        if (cursor.position() == bytes.size()) {
+        if (position == bytes.size()) {
             fail(bytes.size(), "the file ends before its type table (DNA1)");
         }
-        chunks.push_back(readChunk(bytes, cursor));
-        std::string code(chunks.back().code);
-        std::replace_if(
-            code.begin(), code.end(), [](unsigned char c) { return std::isprint(c) == 0; }, '?');
-        const std::string what =
-            "chunk '" + code + "' of " + std::to_string(chunks.back().length) + " bytes";
-        cursor.take(static_cast<std::size_t>(chunks.back().length), what.c_str());
+        chunks.push_back(readChunk(bytes, position));
+        const Chunk& chunk = chunks.back();
+        std::string code(chunk.code);
+        std::ranges::replace_if(
+            code, [](unsigned char c) { return std::isprint(c) == 0; }, '?');
+        Cursor data(bytes, chunk.start,
+                    "chunk '" + code + "' of " + std::to_string(chunk.length) + " bytes");
+        data.take(static_cast<std::size_t>(chunk.length));
+        position = data.position();
     } while (chunks.back().code != "DNA1");
     return chunks;
 }
 
-std::size_t readCount(Cursor& cursor, const char* what) {
-    const std::size_t place = cursor.position();
-    const auto count = cursor.read<std::int32_t>(what);
-    if (count < 0 || count > 32'767) {
-        fail(place, std::string("impossible count in ") + what);
-    }
-    return static_cast<std::size_t>(count);
-}
-
 Dna readDna(std::string_view bytes, const Chunk& chunk) {
-    constexpr const char* kWhat = "the type table (DNA1)";
     Cursor cursor(bytes.substr(0, chunk.start + static_cast<std::size_t>(chunk.length)),
-                  chunk.start);
-    cursor.expect("SDNANAME", kWhat);
-    const std::size_t names = readCount(cursor, kWhat);
-    for (std::size_t i = 0; i < names; ++i) {
-        cursor.takeText(kWhat);
+                  chunk.start, "the type table (DNA1)");
+    cursor.expect("SDNANAME");
+    const std::size_t names = cursor.readTexts().size();
+    cursor.expect("TYPE");
+    const std::vector<std::string_view> types = cursor.readTexts();
+    cursor.expect("TLEN");
+    std::vector<std::int16_t> lengths(types.size());
+    for (std::int16_t& length : lengths) {
+        length = cursor.read<std::int16_t>();
     }
-    cursor.align();
-    cursor.expect("TYPE", kWhat);
-    const std::size_t types = readCount(cursor, kWhat);
-    std::vector<std::string_view> typeNames;
-    for (std::size_t i = 0; i < types; ++i) {
-        typeNames.push_back(cursor.takeText(kWhat));
-    }
-    cursor.align();
-    cursor.expect("TLEN", kWhat);
-    std::vector<std::int16_t> lengths;
-    for (std::size_t i = 0; i < types; ++i) {
-        lengths.push_back(cursor.read<std::int16_t>(kWhat));
-    }
-    cursor.take(types % 2 * 2, kWhat);
-    cursor.expect("STRC", kWhat);
-
-    Dna dna;
-    const std::size_t structs = readCount(cursor, kWhat);
-    for (std::size_t i = 0; i < structs; ++i) {
+    cursor.take(types.size() % 2 * 2);
+    cursor.expect("STRC");
+    const auto isIndex = [](std::int16_t index, std::size_t count) {
+        return index >= 0 && static_cast<std::size_t>(index) < count;
+    };
+    Dna dna(cursor.readCount());
+    for (Structure& structure : dna) {
         const std::size_t place = cursor.position();
-        const auto type = cursor.read<std::int16_t>(kWhat);
-        const auto fields = cursor.read<std::int16_t>(kWhat);
-        if (type < 0 || static_cast<std::size_t>(type) >= types || fields < 0) {
+        const auto type = cursor.read<std::int16_t>();
+        const auto fields = cursor.read<std::int16_t>();
+        if (!isIndex(type, types.size()) || fields < 0) {
             fail(place, "a structure of the type table (DNA1) names no type");
         }
-        dna.push_back(
-            {typeNames[static_cast<std::size_t>(type)], lengths[static_cast<std::size_t>(type)]});
+        structure = {types[static_cast<std::size_t>(type)],
+                     lengths[static_cast<std::size_t>(type)]};
         for (std::int16_t field = 0; field < fields; ++field) {
-            const auto fieldType = cursor.read<std::int16_t>(kWhat);
-            const auto fieldName = cursor.read<std::int16_t>(kWhat);
-            if (fieldType < 0 || static_cast<std::size_t>(fieldType) >= types || fieldName < 0 ||
-                static_cast<std::size_t>(fieldName) >= names) {
+            const auto fieldType = cursor.read<std::int16_t>();
+            const auto fieldName = cursor.read<std::int16_t>();
+            if (!isIndex(fieldType, types.size()) || !isIndex(fieldName, names)) {
                 fail(cursor.position() - 4, "a field of the type table (DNA1) names no type");
             }
         }

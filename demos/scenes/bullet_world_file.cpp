@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/scenes/bullet_world_file.hpp>
 
-#include <demos/scenes/bullet_file_check.hpp>
 #include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/input_error.hpp>
 

@@ -29,10 +29,10 @@ struct TextField {
     std::string& (*place)(EffectsFile&);
 };
 
-struct WholeField {
-    std::uint32_t least;
-    std::uint32_t most;
-    std::uint32_t& (*place)(EffectsFile&);
+/// How a number, or an enumerator as a number, is read and written.
+struct Access {
+    double (*get)(EffectsFile&);
+    void (*set)(EffectsFile&, double);
 };
 
 struct NumberField {
@@ -40,7 +40,8 @@ struct NumberField {
 
     double least;
     double most;  // kInfinite: there may be no bound
-    double& (*place)(EffectsFile&);
+    Access access;
+    bool isWhole = false;
 };
 
 struct NamedValue {
@@ -51,8 +52,7 @@ struct NamedValue {
 /// One enumerator of several.
 struct ChoiceField {
     std::span<const NamedValue> choices;
-    std::uint8_t (*get)(EffectsFile&);
-    void (*set)(EffectsFile&, std::uint8_t);
+    Access access;
 };
 
 /// Three numbers, each of which may be without a bound.
@@ -61,8 +61,8 @@ struct CornerField {
     Vector3<double>& (*place)(EffectsFile&);
 };
 
-using FieldKind = std::variant<SectionField, EffectField, TextField, WholeField, NumberField,
-                               ChoiceField, CornerField>;
+using FieldKind =
+    std::variant<SectionField, EffectField, TextField, NumberField, ChoiceField, CornerField>;
 
 struct EffectsField {
     std::string_view section;  // the path of the object that it is in; empty for the file itself
@@ -77,6 +77,9 @@ struct EffectsField {
 
 /// "effects.sweep.mode"
 [[nodiscard]] std::string pathOf(std::string_view section, std::string_view name);
+
+/// A number as files and messages have it: "3", "0.25", "1e+30".
+[[nodiscard]] std::string numberText(double number);
 
 /// What a value must be, for messages: "a number from 0 to 1 [m]".
 [[nodiscard]] std::string requirementOf(const EffectsField& field);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/scenes/effects_file.hpp>
 
+#include <demos/console/format.hpp>
 #include <demos/console/nearest_name.hpp>
-#include <demos/console/quoted_word.hpp>
 #include <demos/scenes/effects_fields.hpp>
 #include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/input_error.hpp>
@@ -40,34 +40,24 @@ bool assign(const TextField& field, const JsonValue& value, EffectsFile& file) {
     return value.kind == Kind::text;
 }
 
-bool assign(const WholeField& field, const JsonValue& value, EffectsFile& file) {
-    const double number = value.number;
-    const bool isRight = value.kind == Kind::number && number == std::trunc(number) &&
-                         number >= field.least && number <= field.most;
+bool assign(const NumberField& field, const JsonValue& value, EffectsFile& file) {
+    const bool isOpen = hasNoBound(value) && field.most == NumberField::kInfinite;
+    const double number = isOpen ? NumberField::kInfinite : value.number;
+    const bool isRight = (isOpen || value.kind == Kind::number) && number >= field.least &&
+                         number <= field.most && (!field.isWhole || number == std::trunc(number));
     if (isRight) {
-        field.place(file) = static_cast<std::uint32_t>(number);
+        field.access.set(file, number);
     }
     return isRight;
 }
 
-bool assign(const NumberField& field, const JsonValue& value, EffectsFile& file) {
-    if (hasNoBound(value) && field.most == NumberField::kInfinite) {
-        field.place(file) = NumberField::kInfinite;
-        return true;
-    }
-    field.place(file) = value.number;
-    return value.kind == Kind::number && value.number >= field.least && value.number <= field.most;
-}
-
 bool assign(const ChoiceField& field, const JsonValue& value, EffectsFile& file) {
-    const auto found =
-        std::find_if(field.choices.begin(), field.choices.end(),
-                     [&](const NamedValue& choice) { return choice.name == value.text; });
-    if (value.kind != Kind::text || found == field.choices.end()) {
-        return false;
+    const auto found = std::ranges::find(field.choices, value.text, &NamedValue::name);
+    const bool isRight = value.kind == Kind::text && found != field.choices.end();
+    if (isRight) {
+        field.access.set(file, found->value);
     }
-    field.set(file, found->value);
-    return true;
+    return isRight;
 }
 
 bool assign(const CornerField& field, const JsonValue& value, EffectsFile& file) {
@@ -90,11 +80,11 @@ std::string found(const JsonValue& value) {
     if (value.kind != Kind::array || value.members.empty() || value.members.size() > 4) {
         return describe(value);
     }
-    std::string elements;
+    std::vector<std::string> elements;
     for (const JsonValue& element : value.members) {
-        elements += (elements.empty() ? "[" : ", ") + describe(element);
+        elements.push_back(describe(element));
     }
-    return elements + "]";
+    return "[" + joined(elements, ", ") + "]";
 }
 
 /// What fields that are right for themselves have against each other; begins with a path.
@@ -133,20 +123,17 @@ public:
 private:
     void readMembers(const JsonValue& object, const std::string& section) {
         for (const JsonValue& member : object.members) {
-            readField(fieldOf(member, section), member);
-        }
-    }
-
-    void readField(const EffectsField& field, const JsonValue& value) {
-        const std::string path = pathOf(field.section, field.name);
-        const bool isRight =
-            std::visit([&](const auto& kind) { return assign(kind, value, file_); }, field.kind);
-        if (!isRight) {
-            fail(value,
-                 path + " is " + found(value) + ", but must be " + requirementOf(field) + ".");
-        }
-        if (value.kind == Kind::object) {
-            readMembers(value, path);
+            const EffectsField& field = fieldOf(member, section);
+            const std::string path = pathOf(section, field.name);
+            const bool isRight = std::visit(
+                [&](const auto& kind) { return assign(kind, member, file_); }, field.kind);
+            if (!isRight) {
+                fail(member,
+                     path + " is " + found(member) + ", but must be " + requirementOf(field) + ".");
+            }
+            if (member.kind == Kind::object) {
+                readMembers(member, path);
+            }
         }
     }
 
@@ -161,26 +148,11 @@ private:
                 names.emplace_back(field.name);
             }
         }
-        failUnknown(member, section, names);
-    }
-
-    [[noreturn]] void failUnknown(const JsonValue& member, const std::string& section,
-                                  const std::vector<std::string>& names) const {
-        const std::string path = pathOf(section, printable(member.name));
-        if (names.empty()) {
-            fail(member, path + ": there is no such field; " + section + " has no settings.");
-        }
-        std::string sentence =
-            path + ": there is no such " + (section == "effects" ? "effect" : "field");
-        const std::string nearest = nearestName(printable(member.name), names);
-        if (!nearest.empty()) {
-            fail(member, sentence + "; did you mean " + nearest + "?");
-        }
-        sentence += "; there are";
-        for (const std::string& name : names) {
-            sentence += (&name == &names.front() ? " " : ", ") + name;
-        }
-        fail(member, sentence + ".");
+        const std::string unknown = printable(member.name);
+        const std::string what = section == "effects" ? "effect" : "field";
+        fail(member, pathOf(section, unknown) + ": there is no such " + what +
+                         (names.empty() ? "; " + section + " has no settings."
+                                        : suggestion(unknown, names, "")));
     }
 
     /// Fails with the sentence, which begins with a path, at the innermost value on it that there is.

@@ -41,17 +41,12 @@ Json valueOf(const EffectField& /*field*/, const Subject& of) {
 Json valueOf(const TextField& field, const Subject& of) {
     return field.place(of.file);
 }
-Json valueOf(const WholeField& field, const Subject& of) {
-    return field.place(of.file);
-}
 Json valueOf(const NumberField& field, const Subject& of) {
-    return numberJson(field.place(of.file));
+    return numberJson(field.access.get(of.file));
 }
 Json valueOf(const ChoiceField& field, const Subject& of) {
-    const auto found =
-        std::find_if(field.choices.begin(), field.choices.end(),
-                     [&](const NamedValue& choice) { return choice.value == field.get(of.file); });
-    return found == field.choices.end() ? Json(nullptr) : Json(found->name);
+    const auto value = static_cast<std::uint8_t>(field.access.get(of.file));
+    return std::ranges::find(field.choices, value, &NamedValue::value)->name;
 }
 Json valueOf(const CornerField& field, const Subject& of) {
     const Vector3<double>& corner = field.place(of.file);
@@ -70,15 +65,8 @@ Json ruleOf(const EffectField& /*field*/, const Subject& of) {
 Json ruleOf(const TextField& field, const Subject& of) {
     return {{"type", "string"}, {"default", valueOf(field, of)}};
 }
-Json ruleOf(const WholeField& field, const Subject& of) {
-    return {{"type", "integer"},
-            {"minimum", field.least},
-            {"maximum", field.most},
-            {"default", valueOf(field, of)}};
-}
 Json ruleOf(const NumberField& field, const Subject& of) {
-    Json rule{{"type", "number"}};
-    rule["minimum"] = numberJson(field.least);
+    Json rule{{"type", field.isWhole ? "integer" : "number"}, {"minimum", numberJson(field.least)}};
     if (field.most < NumberField::kInfinite) {
         rule["maximum"] = numberJson(field.most);
     } else {
@@ -111,30 +99,35 @@ bool isLeftOut(const EffectsField& field, const Subject& of) {
     return text != nullptr && text->place(of.file).empty();
 }
 
-Json membersOf(const Subject& section) {
-    Json members = Json::object();
+/// Calls add(field, its place) for each field of the section.
+template <class Add>
+void forEachIn(const Subject& section, const Add& add) {
     for (const EffectsField& field : effectsFields()) {
-        if (field.section == section.path && !isLeftOut(field, section)) {
-            const Subject member{section.file, pathOf(field.section, field.name)};
-            members[std::string(field.name)] =
-                std::visit([&](const auto& kind) { return valueOf(kind, member); }, field.kind);
+        if (field.section == section.path) {
+            add(field, Subject{section.file, pathOf(field.section, field.name)});
         }
     }
+}
+
+Json membersOf(const Subject& section) {
+    Json members = Json::object();
+    forEachIn(section, [&](const EffectsField& field, const Subject& of) {
+        if (!isLeftOut(field, of)) {
+            members[std::string(field.name)] =
+                std::visit([&](const auto& kind) { return valueOf(kind, of); }, field.kind);
+        }
+    });
     return members;
 }
 
 Json rulesOf(const Subject& section) {
     Json rules = Json::object();
-    for (const EffectsField& field : effectsFields()) {
-        if (field.section == section.path) {
-            const Subject member{section.file, pathOf(field.section, field.name)};
-            Json& rule = rules[std::string(field.name)];
-            rule["description"] = std::string(field.meaning) +
-                                  (field.unit.empty() ? "" : " [" + std::string(field.unit) + "]");
-            rule.update(
-                std::visit([&](const auto& kind) { return ruleOf(kind, member); }, field.kind));
-        }
-    }
+    forEachIn(section, [&](const EffectsField& field, const Subject& of) {
+        Json& rule = rules[std::string(field.name)];
+        rule["description"] = std::string(field.meaning) +
+                              (field.unit.empty() ? "" : " [" + std::string(field.unit) + "]");
+        rule.update(std::visit([&](const auto& kind) { return ruleOf(kind, of); }, field.kind));
+    });
     return rules;
 }
 

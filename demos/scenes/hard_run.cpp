@@ -2,6 +2,7 @@
 #include <demos/scenes/hard_run.hpp>
 
 #include <algorithm>
+#include <array>
 
 namespace hashphase::demos {
 namespace {
@@ -21,7 +22,54 @@ double kineticEnergy(const btRigidBody& body) {
     return twice / 2;
 }
 
+bool canPush(btRigidBody& a, btRigidBody& b) {
+    return !(a.isStaticObject() && b.isStaticObject()) && a.hasContactResponse() &&
+           b.hasContactResponse() && a.checkCollideWith(&b) && b.checkCollideWith(&a);
+}
+
 }  // namespace
+
+double PenetrationMeter::deepest(const WorldContents& contents) {
+    const auto bodies = contents.bodies();
+    std::vector<std::array<btVector3, 2>> boxes(bodies.size());
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        bodies[i]->getAabb(boxes[i][0], boxes[i][1]);
+    }
+    const auto doOverlap = [&boxes](std::size_t i, std::size_t j) {
+        return TestAabbAgainstAabb2(boxes[i][0], boxes[i][1], boxes[j][0], boxes[j][1]);
+    };
+    double most = 0;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        for (std::size_t j = i + 1; j < bodies.size(); ++j) {
+            if (doOverlap(i, j) && canPush(*bodies[i], *bodies[j])) {
+                most = std::max(most, depthOf(*bodies[i], *bodies[j]));
+            }
+        }
+    }
+    return most;
+}
+
+double PenetrationMeter::depthOf(const btCollisionObject& a, const btCollisionObject& b) {
+    const btCollisionObjectWrapper wrapA(nullptr, a.getCollisionShape(), &a, a.getWorldTransform(),
+                                         -1, -1);
+    const btCollisionObjectWrapper wrapB(nullptr, b.getCollisionShape(), &b, b.getWorldTransform(),
+                                         -1, -1);
+    btCollisionAlgorithm* const algorithm =
+        dispatcher_.findAlgorithm(&wrapA, &wrapB, nullptr, BT_CONTACT_POINT_ALGORITHMS);
+    btManifoldResult result(&wrapA, &wrapB);
+    algorithm->processCollision(&wrapA, &wrapB, btDispatcherInfo(), &result);
+    btManifoldArray manifolds;
+    algorithm->getAllContactManifolds(manifolds);
+    double most = 0;
+    for (int i = 0; i < manifolds.size(); ++i) {
+        for (int point = 0; point < manifolds[i]->getNumContacts(); ++point) {
+            most = std::max(most, -double{manifolds[i]->getContactPoint(point).getDistance()});
+        }
+    }
+    algorithm->~btCollisionAlgorithm();
+    dispatcher_.freeCollisionAlgorithm(algorithm);
+    return most;
+}
 
 HardRun::HardRun(const HardWorld& world, const PhysicsBroadphase& broadphase, ListOrder order)
     : hard_(world), world_(broadphase, order) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/scenes/json_tree.hpp>
 
-#include <demos/console/quoted_word.hpp>
+#include <demos/console/format.hpp>
 #include <demos/scenes/input_error.hpp>
 
 #include <nlohmann/json.hpp>
@@ -94,33 +94,29 @@ public:
     [[nodiscard]] LineCounter end() { return {text_.data() + text_.size(), &line_}; }
     [[nodiscard]] JsonValue takeRoot() { return std::move(root_); }
 
-    bool null() {
-        add(JsonValue::Kind::null);
-        return true;
-    }
-    bool boolean(bool truth) {
-        add(JsonValue::Kind::boolean).truth = truth;
-        return true;
-    }
+    bool null() { return add({.kind = JsonValue::Kind::null}); }
+    bool boolean(bool truth) { return add({.kind = JsonValue::Kind::boolean, .truth = truth}); }
     bool number_integer(std::int64_t number) {
-        return addNumber(static_cast<double>(number), std::to_string(number));
+        return number_float(static_cast<double>(number), std::to_string(number));
     }
     bool number_unsigned(std::uint64_t number) {
-        return addNumber(static_cast<double>(number), std::to_string(number));
+        return number_float(static_cast<double>(number), std::to_string(number));
     }
     bool number_float(double number, const std::string& spelling) {
-        return addNumber(number, spelling);
+        return add({.kind = JsonValue::Kind::number, .number = number, .text = spelling});
     }
     bool string(std::string& text) {
-        add(JsonValue::Kind::text).text = std::move(text);
-        return true;
+        return add({.kind = JsonValue::Kind::text, .text = std::move(text)});
     }
     // The text form has none.
     bool binary(std::vector<std::uint8_t>& /*bytes*/) { return false; }
     bool start_object(std::size_t /*count*/) { return open(JsonValue::Kind::object); }
     bool start_array(std::size_t /*count*/) { return open(JsonValue::Kind::array); }
-    bool end_object() { return close(); }
-    bool end_array() { return close(); }
+    bool end_object() { return end_array(); }
+    bool end_array() {
+        open_.pop_back();
+        return true;
+    }
 
     bool key(std::string& name) {
         if (const JsonValue* const first = open_.back()->find(name)) {
@@ -150,18 +146,12 @@ private:
         throw InputError(name_ + ":" + place + ": " + fault + ".");
     }
 
-    JsonValue& add(JsonValue::Kind kind) {
+    bool add(JsonValue value) {
         const bool isMember = !open_.empty() && open_.back()->kind == JsonValue::Kind::object;
-        JsonValue& value = open_.empty() ? root_ : open_.back()->members.emplace_back();
-        value.kind = kind;
         value.line = isMember || open_.empty() ? nextLine_ : open_.back()->line;
         value.name = isMember ? std::move(nextName_) : "";
-        return value;
-    }
-    bool addNumber(double number, std::string spelling) {
-        JsonValue& value = add(JsonValue::Kind::number);
-        value.number = number;
-        value.text = std::move(spelling);
+        last_ = open_.empty() ? &root_ : &open_.back()->members.emplace_back();
+        *last_ = std::move(value);
         return true;
     }
     bool open(JsonValue::Kind kind) {
@@ -169,18 +159,16 @@ private:
             fail(std::to_string(line_), "more than " + std::to_string(kMostLevels) +
                                             " objects and arrays lie in each other");
         }
+        add({.kind = kind});
         // Where it lies stays there until it is closed, for until then nothing is added beside it.
-        open_.push_back(&add(kind));
-        return true;
-    }
-    bool close() {
-        open_.pop_back();
+        open_.push_back(last_);
         return true;
     }
 
     std::string_view text_;
     const std::string& name_;
     JsonValue root_;
+    JsonValue* last_ = nullptr;  // that was added
     std::vector<JsonValue*> open_;
     std::size_t line_ = 1;
     std::string nextName_;

@@ -15,11 +15,11 @@ struct JsonValue {
 
     Kind kind = Kind::null;
     std::size_t line = 1;  // of the name, of an array's element the array's
-    std::string name;      // in an object
+    std::string name{};    // in an object
     bool truth = false;
     double number = 0;
-    std::string text;                // a text's, or a number as it is written
-    std::vector<JsonValue> members;  // of an object, or elements of an array
+    std::string text{};                // a text's, or a number as it is written
+    std::vector<JsonValue> members{};  // of an object, or elements of an array
 
     /// The member of that name, or nullptr.
     [[nodiscard]] const JsonValue* find(std::string_view memberName) const;

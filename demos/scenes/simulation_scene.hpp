@@ -3,7 +3,7 @@
 
 // What a scene file describes, in a simulation: bodies, ground, zones.
 
-#include <demos/scenes/effects_scene_settings.hpp>
+#include <demos/scenes/effects_file.hpp>
 
 #include <integration/effects/simulation.hpp>
 

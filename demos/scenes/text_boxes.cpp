@@ -2,7 +2,6 @@
 #include <demos/scenes/text_boxes.hpp>
 
 #include <demos/console/format.hpp>
-#include <demos/console/quoted_word.hpp>
 #include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/input_error.hpp>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/try/program_file.hpp>
 
-#include <demos/console/quoted_word.hpp>
+#include <demos/console/format.hpp>
 #include <demos/scenes/input_error.hpp>
 
 #include <algorithm>

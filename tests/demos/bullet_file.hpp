@@ -3,6 +3,7 @@
 
 // Small Bullet worlds, and the `.bullet` files that Bullet makes of them.
 
+#include <demos/scenes/bullet_world_file.hpp>
 #include <demos/scenes/world_contents.hpp>
 
 #include <LinearMath/btSerializer.h>
@@ -18,6 +19,12 @@ struct SmallWorld {
     btDbvtBroadphase broadphase;
     btSequentialImpulseConstraintSolver solver;
     btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
+};
+
+/// A world with what the file holds.
+struct FilledWorld : SmallWorld {
+    explicit FilledWorld(const BulletWorldFile& file) { file.fill(contents); }
+    WorldContents contents{world};
 };
 
 /// The bytes of a world of so many unit boxes stacked on a static one, of which the first has a name.

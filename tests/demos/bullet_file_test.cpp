@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/scenes/bullet_file_check.hpp>
 #include <demos/scenes/bullet_world_file.hpp>
+#include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <tests/demos/bullet_file.hpp>
 #include <tests/support/temporary_folder.hpp>
@@ -9,9 +9,8 @@
 
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <random>
-#include <sstream>
+#include <utility>
 
 namespace hashphase::demos {
 namespace {
@@ -24,16 +23,9 @@ std::vector<std::string> savedLevels(const std::string& kind) {
         const std::string path = folder.file("level.bullet");
         const std::string command = std::string(writer) + " " + kind + " " + path;
         EXPECT_EQ(std::system(command.c_str()), 0) << command;
-        std::ostringstream bytes;
-        bytes << std::ifstream(path, std::ios::binary).rdbuf();
-        levels.push_back(bytes.str());
+        levels.push_back(readFile(path));
     }
     return levels;
-}
-
-// The place of the first chunk without a structure that holds these bytes; its header has 24.
-std::size_t placeOfPlainChunk(const std::string& bytes, std::string_view content) {
-    return bytes.find(content) - 24;
 }
 
 TEST(BulletFile, IsAcceptedAsBulletWritesIt) {
@@ -53,13 +45,15 @@ TEST(BulletFile, IsRefusedWithoutACollisionObject) {
     EXPECT_EQ(bulletFileFault(serialisedWorld(0)), "the world in it holds no collision object");
 }
 
+// Of a whole world with this value in that place.
+template <class Value>
+std::string faultWith(std::size_t place, Value value) {
+    std::string bytes = serialisedWorld(1);
+    std::memcpy(bytes.data() + place, &value, sizeof value);
+    return bulletFileFault(bytes);
+}
+
 TEST(BulletFile, IsRefusedForAHeaderThatIsNone) {
-    const std::string whole = serialisedWorld(1);
-    const auto faultWith = [&whole](std::size_t place, char letter) {
-        std::string bytes = whole;
-        bytes[place] = letter;
-        return bulletFileFault(bytes);
-    };
     EXPECT_EQ(faultWith(0, 'X'),
               "byte 0: this is no .bullet file: it must begin with BULLETf or BULLETd");
     EXPECT_EQ(faultWith(7, '+').rfind("byte 7: ", 0), 0U);
@@ -69,12 +63,6 @@ TEST(BulletFile, IsRefusedForAHeaderThatIsNone) {
 }
 
 TEST(BulletFile, IsRefusedForChunksThatDoNotFit) {
-    const std::string whole = serialisedWorld(1);
-    const auto faultWith = [&whole](std::size_t place, int value) {
-        std::string bytes = whole;
-        std::memcpy(bytes.data() + place, &value, sizeof value);
-        return bulletFileFault(bytes);
-    };
     constexpr std::size_t kFirstChunk = 12;  // code, length, 8 bytes of pointer, type, count
     EXPECT_EQ(faultWith(kFirstChunk + 4, -1), "byte 12: the chunk has a negative length or count");
     EXPECT_NE(faultWith(kFirstChunk + 4, 0x7fffffff).find("the file ends inside chunk"),
@@ -95,14 +83,11 @@ TEST(BulletFile, IsAcceptedAsEditorsSaveItWithNamesAndPlainNumbers) {
 }
 
 TEST(BulletFile, SaysWhatTheImporterPassesOver) {
-    for (const std::string& level : savedLevels("multibody")) {
-        EXPECT_EQ(bulletFileOmissions(level), "1 multi-body");
-    }
-    for (const std::string& level : savedLevels("softbody")) {
-        EXPECT_EQ(bulletFileOmissions(level), "1 soft body");
-    }
-    for (const std::string& level : savedLevels("names")) {
-        EXPECT_EQ(bulletFileOmissions(level), "");
+    for (const auto& [kind, omissions] :
+         {std::pair("multibody", "1 multi-body"), {"softbody", "1 soft body"}, {"names", ""}}) {
+        for (const std::string& level : savedLevels(kind)) {
+            EXPECT_EQ(bulletFileOmissions(level), omissions);
+        }
     }
 }
 
@@ -117,23 +102,18 @@ TEST(BulletFile, OfNothingButMultiBodiesIsRefusedInThoseWords) {
     }
 }
 
-TEST(BulletFile, IsRefusedForANameWithoutAnEnd) {
-    for (std::string level : savedLevels("names")) {
-        const std::size_t place = placeOfPlainChunk(level, "crate");
-        level.replace(level.find("crate"), 8, "crateful");
-        EXPECT_EQ(bulletFileFault(level),
-                  "byte " + std::to_string(place) + ": the name in the chunk has no end");
-    }
-}
-
-TEST(BulletFile, IsRefusedForPlainNumbersThatDoNotFitTheirChunk) {
-    for (std::string level : savedLevels("names")) {
-        const std::size_t place = placeOfPlainChunk(level, "crate");
-        const std::int32_t count = 9;
-        std::memcpy(level.data() + place + 20, &count, sizeof count);
-        EXPECT_EQ(bulletFileFault(level),
-                  "byte " + std::to_string(place) +
-                      ": the chunk holds 8 bytes, but its 9 elements need 9");
+TEST(BulletFile, IsRefusedForANameWithoutAnEndAndForPlainNumbersThatDoNotFitTheirChunk) {
+    for (const std::string& level : savedLevels("names")) {
+        const std::size_t name = level.find("crate");
+        const std::size_t chunk = name - 24;  // a header of which the last 4 are the count
+        const std::string place = "byte " + std::to_string(chunk);
+        std::string endless = level;
+        endless.replace(name, 8, "crateful");
+        EXPECT_EQ(bulletFileFault(endless), place + ": the name in the chunk has no end");
+        std::string large = level;
+        large.replace(chunk + 20, 4, std::string("\x09\0\0\0", 4));
+        EXPECT_EQ(bulletFileFault(large),
+                  place + ": the chunk holds 8 bytes, but its 9 elements need 9");
     }
 }
 
@@ -146,9 +126,7 @@ TEST(BulletFile, SavedByAnEditorFillsAWorld) {
         for (const std::string& level : savedLevels(kind)) {
             const BulletWorldFile file(folder.write("w.bullet", level));
             EXPECT_EQ(file.omissions(), bulletFileOmissions(level));
-            SmallWorld small;
-            WorldContents contents(small.world);
-            file.fill(contents);
+            FilledWorld small(file);
             EXPECT_EQ(small.world.getNumCollisionObjects(), objects) << kind;
             EXPECT_EQ(small.world.getNumConstraints(), 1) << kind;
             for (int step = 0; step < 10; ++step) {
@@ -162,9 +140,7 @@ TEST(BulletFile, FillsAnyNumberOfWorldsAlike) {
     const TemporaryFolder folder;
     const BulletWorldFile file(folder.write("w.bullet", serialisedWorld(5)));
     for (int copy = 0; copy < 2; ++copy) {
-        SmallWorld small;
-        WorldContents contents(small.world);
-        file.fill(contents);
+        const FilledWorld small(file);
         ASSERT_EQ(small.world.getNumCollisionObjects(), 5);
         EXPECT_EQ(small.world.getCollisionObjectArray()[4]->getWorldTransform().getOrigin().y(),
                   btScalar(4));
@@ -182,10 +158,7 @@ TEST(BulletFile, DamagedAtRandomIsReadOrRefusedButNeverCrashes) {
             bytes[random() % bytes.size()] = static_cast<char>(random());
         }
         try {
-            const BulletWorldFile file(folder.write("w.bullet", bytes));
-            SmallWorld small;
-            WorldContents contents(small.world);
-            file.fill(contents);
+            const FilledWorld small(BulletWorldFile(folder.write("w.bullet", bytes)));
         } catch (const InputError& fault) {
             EXPECT_STRNE(fault.what(), "");
             ++refused;
@@ -203,9 +176,7 @@ TEST(BulletFile, WrittenByOtherProgramsIsAccepted) {
     int read = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
         if (entry.path().extension() == ".bullet") {
-            SmallWorld small;
-            WorldContents contents(small.world);
-            BulletWorldFile(entry.path()).fill(contents);
+            const FilledWorld small(BulletWorldFile(entry.path()));
             EXPECT_GT(small.world.getNumCollisionObjects(), 0) << entry.path();
             ++read;
         }
@@ -218,9 +189,7 @@ TEST(BulletFile, WrittenByOtherProgramsIsAccepted) {
 TEST(BulletFile, IsRefusedWithoutTheImporter) {
     const TemporaryFolder folder;
     const BulletWorldFile file(folder.write("w.bullet", serialisedWorld(1)));
-    SmallWorld small;
-    WorldContents contents(small.world);
-    EXPECT_THROW(file.fill(contents), InputError);
+    EXPECT_THROW(FilledWorld{file}, InputError);
 }
 
 #endif

@@ -1,15 +1,124 @@
 // SPDX-License-Identifier: Zlib
+
+// What is wrong with a scene file, for its reader and for its schema.
+
+#include <demos/scenes/effects_fields.hpp>
 #include <demos/scenes/effects_file.hpp>
+#include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <sstream>
 #include <string>
 #include <vector>
 
 namespace hashphase::demos {
 namespace {
+
+// --- The schema, asked as a validator asks it, by as much of one as it needs ----------------------
+
+using SchemaJson = nlohmann::json;
+
+SchemaJson schemaOfFiles() {
+    return SchemaJson::parse(effectsFileSchema());
+}
+
+bool isOfType(const SchemaJson& value, const std::string& type) {
+    return (type == "object" && value.is_object()) || (type == "array" && value.is_array()) ||
+           (type == "string" && value.is_string()) || (type == "boolean" && value.is_boolean()) ||
+           (type == "number" && value.is_number()) ||
+           (type == "integer" && value.is_number() &&
+            value.get<double>() == std::trunc(value.get<double>()));
+}
+
+bool hasType(const SchemaJson& value, const SchemaJson& rule) {
+    const SchemaJson types =
+        rule["type"].is_array() ? rule["type"] : SchemaJson::array({rule["type"]});
+    return std::any_of(types.begin(), types.end(),
+                       [&](const SchemaJson& type) { return isOfType(value, type); });
+}
+
+bool isInRange(const SchemaJson& number, const SchemaJson& rule) {
+    return number >= rule.value("minimum", number) && number <= rule.value("maximum", number);
+}
+
+bool isValid(const SchemaJson& value, const SchemaJson& rule);
+
+bool hasValidElements(const SchemaJson& array, const SchemaJson& rule) {
+    return array.size() >= rule["minItems"] && array.size() <= rule["maxItems"] &&
+           std::all_of(array.begin(), array.end(),
+                       [&](const SchemaJson& element) { return isValid(element, rule["items"]); });
+}
+
+// No object may have other members than those.
+bool hasValidMembers(const SchemaJson& object, const SchemaJson& rule) {
+    EXPECT_EQ(rule["additionalProperties"], false);
+    const auto members = object.items();
+    return std::all_of(members.begin(), members.end(), [&](const auto& member) {
+        return rule["properties"].contains(member.key()) &&
+               isValid(member.value(), rule["properties"][member.key()]);
+    });
+}
+
+bool isValid(const SchemaJson& value, const SchemaJson& rule) {
+    if (rule.contains("anyOf")) {
+        return std::any_of(rule["anyOf"].begin(), rule["anyOf"].end(),
+                           [&](const SchemaJson& each) { return isValid(value, each); });
+    }
+    if (rule.contains("const")) {
+        return value == rule["const"];
+    }
+    if (rule.contains("enum")) {
+        return std::count(rule["enum"].begin(), rule["enum"].end(), value) == 1;
+    }
+    return hasType(value, rule) && (!value.is_number() || isInRange(value, rule)) &&
+           (!value.is_array() || hasValidElements(value, rule)) &&
+           (!value.is_object() || hasValidMembers(value, rule));
+}
+
+TEST(EffectsSchema, IsOfTheDraftOf2020) {
+    EXPECT_EQ(schemaOfFiles()["$schema"], "https://json-schema.org/draft/2020-12/schema");
+}
+
+TEST(EffectsSchema, DescribesEveryField) {
+    const SchemaJson schema = schemaOfFiles();
+    for (const EffectsField& field : effectsFields()) {
+        std::string place;
+        std::istringstream path(pathOf(field.section, field.name));
+        for (std::string name; std::getline(path, name, '.');) {
+            place += "/properties/" + name;
+        }
+        ASSERT_TRUE(schema.contains(SchemaJson::json_pointer(place))) << place;
+        const SchemaJson& rule = schema[SchemaJson::json_pointer(place)];
+        EXPECT_EQ(rule["description"].get<std::string>().rfind(field.meaning, 0), 0U) << place;
+        const bool hasFields = std::holds_alternative<SectionField>(field.kind) ||
+                               std::holds_alternative<EffectField>(field.kind);
+        EXPECT_NE(rule.contains("properties"), rule.contains("default")) << place;
+        EXPECT_EQ(rule.contains("properties"), hasFields) << place;
+        EXPECT_TRUE(hasFields || isValid(rule["default"], rule)) << place;
+    }
+}
+
+TEST(EffectsSchema, HoldsForTheExamplesAndForWhatIsWritten) {
+    const SchemaJson schema = schemaOfFiles();
+    for (const char* name : {"paper", "projectiles", "lookers", "budget"}) {
+        const std::string text =
+            readFile(std::string(HASHPHASE_SCENE_EXAMPLES "/") + name + ".json");
+        EXPECT_TRUE(isValid(SchemaJson::parse(text), schema)) << name;
+    }
+    EffectsFile file;
+    for (const Effect effect : kAllEffects) {
+        file.effects.declare(effect);
+    }
+    EXPECT_TRUE(isValid(SchemaJson::parse(effectsFileText(file)), schema));
+}
+
+// --- Faults --------------------------------------------------------------------------------------
 
 struct Fault {
     std::string text;
@@ -18,14 +127,23 @@ struct Fault {
 
 void expectFaults(const std::vector<Fault>& faults) {
     for (const Fault& fault : faults) {
-        const std::string found = messageOf<InputError>(
-            [&] { static_cast<void>(parseEffectsFile(fault.text, "scene.json")); });
+        const std::string found =
+            messageOf<InputError>([&] { return parseEffectsFile(fault.text, "scene.json"); });
         EXPECT_EQ(found, "scene.json" + fault.sentence) << fault.text;
     }
 }
 
+/// Of which the schema knows, too.
+void expectFaultsBySchema(const std::vector<Fault>& faults) {
+    expectFaults(faults);
+    const SchemaJson schema = schemaOfFiles();
+    for (const Fault& fault : faults) {
+        EXPECT_FALSE(isValid(SchemaJson::parse(fault.text), schema)) << fault.text;
+    }
+}
+
 TEST(EffectsFileFaults, NameAnUnknownField) {
-    expectFaults({
+    expectFaultsBySchema({
         {"{\"effects\": {\n  \"culing\": true}}",
          ":2: effects.culing: there is no such effect; did you mean culling?"},
         {R"({"effects": {"levitation": true}})",
@@ -44,13 +162,18 @@ TEST(EffectsFileFaults, NameAnUnknownField) {
 }
 
 TEST(EffectsFileFaults, NameAFieldOfTheWrongKind) {
-    expectFaults({
+    expectFaultsBySchema({
         {"[]", ":1: the file holds an array, but must hold an object."},
         {"3", ":1: the file holds 3, but must hold an object."},
         {R"({"title": 3})", ":1: title is 3, but must be a text."},
         {R"({"scene": null})", ":1: scene is null, but must be an object."},
         {"{\"scene\":\n{\"radius\":\n\"large\"}}",
          ":2: scene.radius is 'large', but must be a number from 0.001 to 1000 [m]."},
+        {R"({"scene": {"radius": "none"}})",
+         ":1: scene.radius is 'none', but must be a number from 0.001 to 1000 [m]."},
+        {R"({"effects": {"sleeping": {"slowBelow": "fast"}}})",
+         ":1: effects.sleeping.slowBelow is 'fast', but must be a number, 0 or more, or 'none' "
+         "[m/s]."},
         {R"({"scene": {"objects": true}})",
          ":1: scene.objects is true, but must be a whole number from 1 to 10000000."},
         {R"({"scene": {"objects": {}}})",
@@ -75,7 +198,7 @@ TEST(EffectsFileFaults, NameAFieldOfTheWrongKind) {
 }
 
 TEST(EffectsFileFaults, NameANumberOutOfItsRange) {
-    expectFaults({
+    expectFaultsBySchema({
         {R"({"scene": {"objects": 0}})",
          ":1: scene.objects is 0, but must be a whole number from 1 to 10000000."},
         {R"({"scene": {"objects": -1}})",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/effects/effects_command.hpp>
 #include <demos/effects/effects_prices.hpp>
-#include <demos/scenes/example_scenes.hpp>
+#include <demos/scenes/effects_file.hpp>
 #include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>

@@ -10,7 +10,9 @@
 #include <demos/effects/effects_command.hpp>
 #include <demos/paper/paper_command.hpp>
 #include <demos/report/report_command.hpp>
+#include <demos/scenes/file_bytes.hpp>
 #include <demos/stability/stability_command.hpp>
+#include <tests/demos/typed.hpp>
 #include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
@@ -25,18 +27,8 @@ std::vector<Subcommand> allSubcommands() {
             effectsCommand(), stabilityCommand(), reportCommand({})};
 }
 
-struct Typed {
-    int exitCode = 0;
-    std::string out;
-    std::string err;
-};
-
 Typed typed(const std::vector<std::string>& arguments) {
-    std::ostringstream out;
-    std::ostringstream err;
-    const int exitCode =
-        runProgram(arguments, allSubcommands(), {out, err, false, "hashphase test"});
-    return {exitCode, out.str(), err.str()};
+    return typed(arguments, allSubcommands());
 }
 
 std::string refusalOf(const std::vector<std::string>& arguments) {
@@ -63,35 +55,11 @@ TEST(NumberWords, AreReadHoweverTheyAreWritten) {
 }
 
 TEST(NumberWords, AreNoneWhereTheyCouldMeanSomethingElse) {
-    for (const char* word : {"",
-                             " ",
-                             "-1",
-                             "0x10",
-                             "1.5",
-                             "15e-1",
-                             "1,00",
-                             "1,0000",
-                             ",100",
-                             "100,",
-                             "1,000_000",
-                             "1 000",
-                             "1e",
-                             "e5",
-                             "1e5.0",
-                             "--1",
-                             "+-1",
-                             "++1",
-                             "many",
-                             "1k",
-                             ".",
-                             "1.2.3",
-                             "nan",
-                             "inf",
-                             "18446744073709551616",
-                             "1e20",
-                             "1e99",
-                             "1e99999999999",
-                             "1e+-5"}) {
+    std::istringstream words(
+        "| |-1|0x10|1.5|15e-1|1,00|1,0000|,100|100,|1,000_000|1 "
+        "000|1e|e5|1e5.0|--1|+-1|++1|many|1k|"
+        ".|1.2.3|nan|inf|18446744073709551616|1e20|1e99|1e99999999999|1e+-5");
+    for (std::string word; std::getline(words, word, '|');) {
         EXPECT_EQ(wholeNumber(word), std::nullopt) << word;
     }
     for (const char* word : {"", "nan", "inf", "-inf", "1e999", "0x1p3", "1,5", "1.5s", "+-1"}) {
@@ -162,9 +130,7 @@ TEST(Options, AreRefusedWhenTheirFilesWouldOverwriteEachOther) {
     const std::string boxes = folder.write("boxes.txt", "0 0 0 1 1 1\n");
     EXPECT_EQ(refusalOf({"compare", "--file", boxes, "--json", folder.file("./boxes.txt")}),
               "hashphase: --json would be written over what --file reads: " + boxes + ".\n");
-    std::ostringstream kept;
-    kept << std::ifstream(boxes).rdbuf();
-    EXPECT_EQ(kept.str(), "0 0 0 1 1 1\n");
+    EXPECT_EQ(readFile(boxes), "0 0 0 1 1 1\n");
     const std::string report = folder.file("report");
     EXPECT_EQ(refusalOf({"compare", "--json", report, "--html", folder.file(".") + "/report"}),
               "hashphase: --json and --html would both be written to " + report + ".\n");

@@ -2,7 +2,7 @@
 #include <demos/compare/reference_pairs.hpp>
 #include <demos/scenes/box_scene.hpp>
 #include <demos/scenes/paper_scene.hpp>
-#include <demos/scenes/terdiman_scene.hpp>
+#include <demos/scenes/scatter.hpp>
 #include <demos/scenes/world_scenes.hpp>
 #include <tests/demos/bullet_file.hpp>
 
@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
 
 namespace hashphase::demos {
@@ -40,6 +41,20 @@ bool sameBoxes(const BoxScene& a, const BoxScene& b) {
                           return left.min() == right.min() && left.max() == right.max();
                       });
 }
+
+int movedSince(const std::vector<Aabb<float>>& before, const BoxScene& scene) {
+    int moved = 0;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        moved += isSameBits(before[i], scene.boxes()[i]) ? 0 : 1;
+    }
+    return moved;
+}
+
+const auto nameOf = [](const auto& kind) {
+    std::string name(kind.param.name);
+    std::erase(name, '-');
+    return name;
+};
 
 class EveryBoxScene : public testing::TestWithParam<BoxSceneKind> {};
 
@@ -78,12 +93,7 @@ TEST_P(EveryBoxScene, MakesDoWithOneObject) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, EveryBoxScene,
-                         testing::ValuesIn(boxSceneKinds().begin(), boxSceneKinds().end()),
-                         [](const auto& kind) {
-                             std::string name(kind.param.name);
-                             std::erase(name, '-');
-                             return name;
-                         });
+                         testing::ValuesIn(boxSceneKinds().begin(), boxSceneKinds().end()), nameOf);
 
 TEST(PaperScene, HasSpheresOfRadiusOneThatTouchTheGround) {
     const PaperScene scene(200, kSeed);
@@ -116,7 +126,8 @@ TEST(PaperScene, WalksAtFiveToFifteenMetresASecond) {
 TEST(TerdimanScene, BeginsWithThePublishedNumberOfPairs) {
     const auto pairsOf = [](std::size_t objects) {
         std::vector<PairKey> pairs;
-        findExactPairs(ReferenceMethod::kSweep, TerdimanScene(objects, 1).boxes(), {}, pairs);
+        findExactPairs(ReferenceMethod::kSweep, makeScene("terdiman", objects, 1)->boxes(), {},
+                       pairs);
         return pairs.size();
     };
     EXPECT_EQ(pairsOf(10'000), 11'811U);
@@ -129,11 +140,7 @@ TEST(MovingScenes, MoveTheSharesThatTheirNamesTell) {
         const auto scene = makeScene(name, 1000);
         const std::vector<Aabb<float>> before = scene->boxes();
         scene->advance();
-        double moved = 0;
-        for (std::size_t i = 0; i < before.size(); ++i) {
-            moved += isSameBits(before[i], scene->boxes()[i]) ? 0 : 1;
-        }
-        EXPECT_EQ(moved / 1000, share) << name;
+        EXPECT_EQ(movedSince(before, *scene) / 1000.0, share) << name;
     }
 }
 
@@ -193,15 +200,78 @@ TEST(RestingScene, MovesTheSameTwoPercentAlways) {
     const std::vector<Aabb<float>> start = scene->boxes();
     for (int frame = 0; frame < 10; ++frame) {
         scene->advance();
-        std::size_t moved = 0;
+        EXPECT_EQ(movedSince(start, *scene), 20);
         for (std::size_t i = 0; i < start.size(); ++i) {
-            const bool same = scene->boxes()[i].min() == start[i].min();
-            moved += same ? 0 : 1;
-            EXPECT_TRUE(same || scene->filters()[i].group == CollisionFilter{}.group)
+            EXPECT_TRUE(isSameBits(scene->boxes()[i], start[i]) ||
+                        scene->filters()[i].group == CollisionFilter{}.group)
                 << "a static box moved";
         }
-        EXPECT_EQ(moved, 20U);
     }
+}
+
+std::vector<ScatterPlan> allKindsOfPlans() {
+    std::vector<ScatterPlan> plans;
+    for (const SizeLaw sizes :
+         {SizeLaw::equal, SizeLaw::near, SizeLaw::logUniform, SizeLaw::fewLarge}) {
+        for (const Placement placement : {Placement::cube, Placement::plain, Placement::clusters}) {
+            ScatterPlan plan;
+            plan.sizes = sizes;
+            plan.sizeRatio = 20;
+            plan.placement = placement;
+            plan.movingShare = 0.5F;
+            plans.push_back(plan);
+        }
+    }
+    return plans;
+}
+
+TEST(Scatter, DependsOnPlanNumberAndSeedAlone) {
+    for (const ScatterPlan& plan : allKindsOfPlans()) {
+        const auto make = [&plan](std::uint64_t seed) {
+            return BrownianScene(scatter(plan, 500, seed), seed);
+        };
+        EXPECT_TRUE(sameBoxes(make(1), make(1))) << describe(plan);
+        EXPECT_FALSE(sameBoxes(make(1), make(2))) << describe(plan);
+    }
+}
+
+TEST(Scatter, IsAboutAsDenseAsPlanned) {
+    for (ScatterPlan plan : allKindsOfPlans()) {
+        plan.overlapsPerBox = 3;
+        // A box at a border has fewer neighbours than one in the middle, a large one many fewer.
+        const double overlaps = overlapsPerBox(BrownianScene(scatter(plan, 4000, 1), 1));
+        EXPECT_GT(overlaps, 1.5) << describe(plan);
+        EXPECT_LT(overlaps, 4.5) << describe(plan);
+    }
+}
+
+TEST(Scatter, MovesThePlannedShareWithinItsRooms) {
+    ScatterPlan plan;
+    plan.placement = Placement::clusters;
+    plan.movingShare = 0.25F;
+    BrownianScene scene(scatter(plan, 4000, 1), 1);
+    const std::vector<Aabb<float>> before = scene.boxes();
+    for (int frame = 0; frame < 50; ++frame) {
+        scene.advance();
+    }
+    EXPECT_NEAR(movedSince(before, scene), 1000, 100);
+    for (const Aabb<float>& box : scene.boxes()) {
+        ASSERT_TRUE(scene.bounds().contains(box));
+    }
+}
+
+TEST(RandomScenes, DependOnTheSeedAloneAndDiffer) {
+    std::set<std::string> descriptions;
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+        const RandomScene drawn = drawScene(seed);
+        EXPECT_EQ(describe(drawn.plan), describe(drawScene(seed).plan));
+        EXPECT_EQ(drawn.objects, drawScene(seed).objects);
+        EXPECT_GE(drawn.objects, 299U);
+        EXPECT_LE(drawn.objects, 50'000U);
+        EXPECT_LE(drawn.plan.movingShare, 1);
+        descriptions.insert(describe(drawn.plan));
+    }
+    EXPECT_GE(descriptions.size(), 39U);
 }
 
 class EveryWorldScene : public testing::TestWithParam<WorldSceneKind> {};
@@ -233,11 +303,7 @@ TEST_P(EveryWorldScene, FillsTwoWorldsAlikeAndSteps) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, EveryWorldScene,
                          testing::ValuesIn(worldSceneKinds().begin(), worldSceneKinds().end()),
-                         [](const auto& kind) {
-                             std::string name(kind.param.name);
-                             std::erase(name, '-');
-                             return name;
-                         });
+                         nameOf);
 
 }  // namespace
 }  // namespace hashphase::demos

@@ -5,12 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <utility>
+
 namespace hashphase::demos {
 namespace {
-
-std::string faultInText(const std::string& text) {
-    return messageOf<InputError>([&text] { static_cast<void>(parseTextBoxes(text)); });
-}
 
 TEST(TextBoxes, ReadsALineABox) {
     const auto boxes = parseTextBoxes("0 0 0 1 2 3\n-1.5 2e1 3 -1 21 3.25\n");
@@ -24,37 +23,32 @@ TEST(TextBoxes, SkipsEmptyLinesAndCommentsAndAcceptsTabsAndCarriageReturns) {
     EXPECT_EQ(parseTextBoxes("# boxes\r\n\r\n  0\t0 0 1 1 1 \r\n\n0 0 0 0 0 0").size(), 2U);
 }
 
-TEST(TextBoxes, NamesLineAndColumnOfWhatIsNoNumber) {
-    EXPECT_EQ(faultInText("0 0 0 1 1 1\n0 0 zero 1 1 1\n"),
-              "line 2, column 5: expected a number, found 'zero'.");
-    EXPECT_EQ(faultInText("0 0 0 1 1 1x\n"), "line 1, column 11: expected a number, found '1x'.");
-}
-
-TEST(TextBoxes, RefusesTooFewAndTooManyNumbers) {
-    EXPECT_EQ(faultInText("0 0 0 1 1\n"),
-              "line 1, column 10: the line ends, but six numbers are needed: min x y z max x y z.");
-    EXPECT_EQ(faultInText("0 0 0 1 1 1 7\n"),
-              "line 1, column 13: the line goes on after six numbers.");
-}
-
-TEST(TextBoxes, RefusesWhatIsNotFinite) {
-    EXPECT_EQ(faultInText("0 0 nan 1 1 1"), "line 1, column 5: 'nan' is not a finite number.");
-    EXPECT_EQ(faultInText("0 0 0 1 inf 1"), "line 1, column 9: 'inf' is not a finite number.");
-    EXPECT_EQ(faultInText("0 0 0 1 1 1e60"),
-              "line 1, column 11: '1e60' does not fit a single-precision number.");
-    EXPECT_EQ(faultInText("0 0 0 1 1 1e35"),
-              "line 1, column 11: '1e35' is beyond the largest coordinate, 1e30.");
-}
-
-TEST(TextBoxes, RefusesInvertedBoxesAndNamesTheAxis) {
-    EXPECT_EQ(faultInText("0 0 0 1 1 1\n0 0 0 1 -1 1\n"),
-              "line 2, column 9: the box is inverted: its max y is below its min.");
-}
-
-TEST(TextBoxes, RefusesATextWithoutBoxes) {
-    const std::string expected = "no boxes found; each line should be: min x y z max x y z.";
-    EXPECT_EQ(faultInText(""), expected);
-    EXPECT_EQ(faultInText("\n# nothing\n"), expected);
+TEST(TextBoxes, NamesLineAndColumnOfTheFirstFault) {
+    const std::string none = "no boxes found; each line should be: min x y z max x y z.";
+    const std::pair<std::string, std::string> faults[] = {
+        {"0 0 0 1 1 1\n0 0 zero 1 1 1\n", "line 2, column 5: expected a number, found 'zero'."},
+        {"0 0 0 1 1 1x\n", "line 1, column 11: expected a number, found '1x'."},
+        {"0 0 0 1 1\n",
+         "line 1, column 10: the line ends, but six numbers are needed: min x y z max x y z."},
+        {"0 0 0 1 1 1 7\n", "line 1, column 13: the line goes on after six numbers."},
+        {"0 0 nan 1 1 1", "line 1, column 5: 'nan' is not a finite number."},
+        {"0 0 0 1 inf 1", "line 1, column 9: 'inf' is not a finite number."},
+        {"0 0 0 1 1 1e60", "line 1, column 11: '1e60' does not fit a single-precision number."},
+        {"0 0 0 1 1 1e35", "line 1, column 11: '1e35' is beyond the largest coordinate, 1e30."},
+        {"0 0 0 1 1 1\n0 0 0 1 -1 1\n",
+         "line 2, column 9: the box is inverted: its max y is below its min."},
+        {"", none},
+        {"\n# nothing\n", none},
+        // Long words, and what a terminal would obey, in a short sentence.
+        {"0 0 " + std::string(1000, '9') + " 1 1 1",
+         "line 1, column 5: '" + std::string(40, '9') +
+             "...' does not fit a single-precision number."},
+        {std::string("0 \0\x1b[0m", 7) + " 1 1 1",
+         "line 1, column 3: expected a number, found '??[0m'."},
+    };
+    for (const auto& [text, fault] : faults) {
+        EXPECT_EQ(messageOf<InputError>([&] { return parseTextBoxes(text); }), fault) << text;
+    }
 }
 
 TEST(TextBoxes, RefusesEveryTruncationThatLosesANumber) {
@@ -74,7 +68,7 @@ TEST(TextBoxes, PutsThePathInFrontOfTheFault) {
     const TemporaryFolder folder;
     const std::string path = folder.write("boxes.txt", "1 2\n");
     const auto read = [](const std::string& file) {
-        return messageOf<InputError>([&file] { static_cast<void>(readTextBoxes(file)); });
+        return messageOf<InputError>([&file] { return readTextBoxes(file); });
     };
     EXPECT_EQ(read(path).rfind(path + ": line 1, column 4: ", 0), 0U) << read(path);
     EXPECT_EQ(read(folder.file("none.txt")),

@@ -8,7 +8,7 @@
 #include <tests/fuzz/subjects.hpp>
 #include <tests/fuzz/text_line.hpp>
 
-#include <demos/scenes/bullet_file_check.hpp>
+#include <demos/scenes/bullet_world_file.hpp>
 #include <demos/scenes/effects_file.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <demos/scenes/recording_scene.hpp>
@@ -19,7 +19,9 @@
 #include <array>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <string>
 
@@ -35,15 +37,7 @@ using demos::InputError;
 class MemoryFile {
 public:
     explicit MemoryFile(const std::string& bytes) : descriptor_(memfd_create("recording", 0)) {
-        std::size_t written = 0;
-        while (written < bytes.size()) {
-            const ssize_t count =
-                write(descriptor_, bytes.data() + written, bytes.size() - written);
-            if (count <= 0) {
-                break;
-            }
-            written += static_cast<std::size_t>(count);
-        }
+        std::ofstream(path(), std::ios::binary) << bytes;
     }
     ~MemoryFile() { close(descriptor_); }
     MemoryFile(const MemoryFile&) = delete;
@@ -84,6 +78,15 @@ std::string sceneOfEffects(std::uint32_t count) {
         file.effects.declare(kAllEffects[i]);
     }
     return demos::effectsFileText(file);
+}
+
+void expectBox(const Aabb<float>& box, std::span<const float> low, std::span<const float> high) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto at = static_cast<Eigen::Index>(axis);
+        ASSERT_EQ(box.min()[at], low[axis]);
+        ASSERT_EQ(box.max()[at], high[axis]);
+        ASSERT_LE(box.min()[at], box.max()[at]);
+    }
 }
 
 class FilePlay {
@@ -162,11 +165,11 @@ private:
         }
         std::size_t place = arguments.byte();
         place += 256U * arguments.byte();
-        std::int32_t value = 0;
+        std::uint32_t bits = 0;
         for (int i = 0; i < 4; ++i) {
-            value |=
-                static_cast<std::int32_t>(static_cast<std::uint32_t>(arguments.byte()) << (8 * i));
+            bits |= static_cast<std::uint32_t>(arguments.byte()) << (8 * i);
         }
+        const auto value = static_cast<std::int32_t>(bits);
         if (reader_ == 1 && kind % 4 == 0) {
             place = 256 + place % 24 / 4 * 4;
         }
@@ -227,11 +230,7 @@ private:
         ASSERT_TRUE(boxes.has_value()) << fault;
         ASSERT_EQ(boxes->size(), expected.size());
         for (std::size_t i = 0; i < expected.size(); ++i) {
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const auto at = static_cast<Eigen::Index>(axis);
-                EXPECT_EQ((*boxes)[i].min()[at], expected[i][axis]);
-                EXPECT_EQ((*boxes)[i].max()[at], expected[i][axis + 3]);
-            }
+            expectBox((*boxes)[i], expected[i], std::span(expected[i]).subspan(3));
         }
     }
 
@@ -253,12 +252,7 @@ private:
                     std::memcpy(numbers.data(), bytes_.data() + 304 + (state * objects + i) * 32,
                                 sizeof numbers);
                     const Aabb<float>& box = scene.boxes()[i];
-                    for (std::size_t axis = 0; axis < 3; ++axis) {
-                        const auto at = static_cast<Eigen::Index>(axis);
-                        ASSERT_EQ(box.min()[at], numbers[axis]);
-                        ASSERT_EQ(box.max()[at], numbers[axis + 4]);
-                        ASSERT_LE(box.min()[at], box.max()[at]);
-                    }
+                    expectBox(box, numbers, std::span(numbers).subspan(4));
                     ASSERT_TRUE(scene.bounds().contains(box));
                 }
                 scene.advance();
