@@ -3,6 +3,7 @@
 
 #include <demos/console/format.hpp>
 #include <demos/scenes/input_error.hpp>
+#include <demos/try/running_program.hpp>
 
 #include <algorithm>
 #include <array>
@@ -73,11 +74,7 @@ struct Output {
 
 // Both streams of a program that needs no input.
 Output outputOf(std::vector<std::string> words) {
-    std::vector<char*> pointers;
-    for (std::string& word : words) {
-        pointers.push_back(word.data());
-    }
-    pointers.push_back(nullptr);
+    const std::vector<char*> pointers = pointersTo(words);
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0) {
         return {};
@@ -105,18 +102,14 @@ Output outputOf(std::vector<std::string> words) {
 
 // A line such as "\tlibm.so.6 => /lib/x86_64-linux-gnu/libm.so.6 (0x00007f9a)".
 std::optional<SharedLibrary> libraryOf(const std::string& line) {
-    const std::string arrow = " => ";
-    const std::size_t begin = line.find_first_not_of(" \t");
-    const std::size_t middle = line.find(arrow);
-    if (begin == std::string::npos || middle == std::string::npos) {
+    std::istringstream words(line);
+    SharedLibrary library;
+    std::string arrow;
+    if (!(words >> library.name >> arrow >> std::ws) || arrow != "=>") {
         return std::nullopt;
     }
-    SharedLibrary library;
-    library.name = line.substr(begin, middle - begin);
-    const std::string place = line.substr(middle + arrow.size());
-    if (place.starts_with('/')) {
-        library.path = place.substr(0, place.rfind(" ("));
-    }
+    std::getline(words, library.path);
+    library.path.resize(library.path.starts_with('/') ? library.path.rfind(" (") : 0);
     return library;
 }
 
@@ -138,35 +131,18 @@ BulletPrecision precisionOf(const SharedLibrary& bullet) {
 }
 
 // Bullet's code in the program, or in a library of its own, as its type's name tells.
-std::string placeOfStaticBullet(const std::string& path,
-                                const std::vector<SharedLibrary>& libraries) {
-    const std::string typeName = "16btDbvtBroadphase";
-    if (fileContains(path, typeName)) {
-        return path;
-    }
+void refuseStaticBullet(const std::string& path, const std::vector<SharedLibrary>& libraries) {
+    std::vector<std::string> holders{path};
     for (const SharedLibrary& library : libraries) {
-        if (fileContains(library.path, typeName)) {
-            return library.path;
+        holders.push_back(library.path);
+    }
+    for (const std::string& holder : holders) {
+        if (fileContains(holder, "16btDbvtBroadphase")) {
+            throw InputError("Bullet is linked statically into " + holder +
+                             ", where its broadphase cannot be taken over; link Bullet's shared "
+                             "libraries, or swap the broadphase in the source");
         }
     }
-    return {};
-}
-
-void refuseStaticBullet(const std::string& path, const std::vector<SharedLibrary>& libraries) {
-    const std::string holder = placeOfStaticBullet(path, libraries);
-    if (!holder.empty()) {
-        throw InputError("Bullet is linked statically into " + holder +
-                         ", where its broadphase cannot be taken over; link Bullet's shared "
-                         "libraries, or swap the broadphase in the source");
-    }
-}
-
-std::string alternatives(const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& name : names) {
-        text += (text.empty() ? "" : " or ") + name;
-    }
-    return text;
 }
 
 }  // namespace
@@ -264,7 +240,7 @@ TriedProgram inspectProgram(const std::string& path, const std::vector<std::stri
     }
     if (std::find(ownBullets.begin(), ownBullets.end(), bullet->name) == ownBullets.end()) {
         throw InputError(path + " links " + bullet->name + ", and this hashphase was built with " +
-                         alternatives(ownBullets) +
+                         joined(ownBullets, " or ") +
                          ": build hashphase with the Bullet of the program");
     }
     program.bullet = bullet->name;

@@ -69,6 +69,24 @@ struct Verification {
     std::array<char, 480> firstFault{};  // of ours; empty: none
 };
 
+/// The counts of a verification, as reports call them.
+struct VerifiedCount {
+    const char* name;
+    std::uint64_t Verification::*count;
+};
+inline constexpr std::array kVerifiedCounts{
+    VerifiedCount{"calculations", &Verification::calculations},
+    VerifiedCount{"pairs", &Verification::pairs},
+    VerifiedCount{"missing", &Verification::missing},
+    VerifiedCount{"extra", &Verification::extra},
+    VerifiedCount{"waitForAMove", &Verification::unasked},
+    VerifiedCount{"removedByProgram", &Verification::removed},
+    VerifiedCount{"notJudged", &Verification::late},
+    VerifiedCount{"bulletPairs", &Verification::stockPairs},
+    VerifiedCount{"bulletMissing", &Verification::stockMissing},
+    VerifiedCount{"bulletExtra", &Verification::stockExtra},
+};
+
 struct Record {
     static constexpr std::uint32_t kMaxRows = 200'000;
     static constexpr std::uint32_t kFormat = 4;

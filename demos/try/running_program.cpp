@@ -4,7 +4,7 @@
 #include <demos/scenes/input_error.hpp>
 
 #include <algorithm>
-#include <csignal>
+#include <cstddef>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -20,17 +20,12 @@
 namespace hashphase::demos {
 namespace {
 
-std::vector<char*> pointersTo(std::vector<std::string>& words) {
-    std::vector<char*> pointers;
-    for (std::string& word : words) {
-        pointers.push_back(word.data());
-    }
-    pointers.push_back(nullptr);
-    return pointers;
-}
+volatile std::sig_atomic_t receivedSignal = 0;
+volatile std::sig_atomic_t isSentByKernel = 0;
 
-std::filesystem::path folderOf(pid_t process) {
-    return std::filesystem::path("/proc") / std::to_string(process);
+void note(int signal, siginfo_t* information, void* /*context*/) {
+    isSentByKernel = information->si_code == SI_KERNEL ? 1 : 0;
+    receivedSignal = signal;
 }
 
 struct ProcessStatus {
@@ -43,7 +38,7 @@ struct ProcessStatus {
 // As /proc tells; of one that is gone nothing.
 ProcessStatus statusOf(pid_t process) {
     ProcessStatus status{.ownNumber = process};
-    std::ifstream lines(folderOf(process) / "status");
+    std::ifstream lines("/proc/" + std::to_string(process) + "/status");
     for (std::string line; std::getline(lines, line);) {
         std::istringstream words(line);
         std::string label;
@@ -54,8 +49,7 @@ ProcessStatus statusOf(pid_t process) {
         } else if (label == "PPid:") {
             words >> status.parent;
         } else if (label == "State:") {
-            char letter = '\0';
-            words >> letter;
+            const auto letter = static_cast<char>((words >> std::ws).peek());
             status.isDead = letter == 'Z' || letter == 'X';
         } else if (label == "Threads:") {
             words >> status.threadCount;
@@ -112,6 +106,42 @@ std::vector<pid_t> descendantsBut(const std::vector<pid_t>& others) {
 }
 
 }  // namespace
+
+NotedSignals::NotedSignals() noexcept {
+    receivedSignal = 0;
+    struct sigaction action {};
+    action.sa_flags = SA_SIGINFO;
+    action.sa_sigaction = &note;
+    for (std::size_t i = 0; i < kSignals.size(); ++i) {
+        sigaction(kSignals[i], nullptr, &before_[i]);
+        if (before_[i].sa_handler != SIG_IGN) {
+            sigaction(kSignals[i], &action, nullptr);
+        }
+    }
+}
+
+NotedSignals::~NotedSignals() {
+    for (std::size_t i = 0; i < kSignals.size(); ++i) {
+        sigaction(kSignals[i], &before_[i], nullptr);
+    }
+}
+
+int NotedSignals::received() const noexcept {
+    return receivedSignal;
+}
+
+bool NotedSignals::isFromKeyboard() const noexcept {
+    return isSentByKernel != 0;
+}
+
+std::vector<char*> pointersTo(std::vector<std::string>& words) {
+    std::vector<char*> pointers;
+    for (std::string& word : words) {
+        pointers.push_back(word.data());
+    }
+    pointers.push_back(nullptr);
+    return pointers;
+}
 
 RunningProgram::RunningProgram(ProgramCall call, const tryout::Record& record)
     : earlier_(descendantsBut({})), record_(record) {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A program that is tried, while it runs: itself, and the processes that it starts and may leave behind.
+// A program that is tried, while it runs: itself, the processes that it starts and may leave behind, and the
+// signals that end it.
 
 #include <demos/try/record.hpp>
 
+#include <array>
+#include <csignal>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +15,29 @@
 #include <sys/types.h>
 
 namespace hashphase::demos {
+
+/// Notes the signals that would end this process (SIGINT, SIGQUIT, SIGTERM, SIGHUP), for as long as it lives,
+/// but for those that are ignored, as nohup asks. One at a time.
+class NotedSignals {
+public:
+    NotedSignals() noexcept;
+    ~NotedSignals();
+    NotedSignals(const NotedSignals&) = delete;
+    NotedSignals& operator=(const NotedSignals&) = delete;
+
+    /// The last that was received; 0: none.
+    [[nodiscard]] int received() const noexcept;
+
+    /// Whether that has reached all programs of the terminal as well.
+    [[nodiscard]] bool isFromKeyboard() const noexcept;
+
+private:
+    static constexpr std::array kSignals{SIGINT, SIGQUIT, SIGTERM, SIGHUP};
+    std::array<struct sigaction, kSignals.size()> before_{};
+};
+
+/// The words, for a call of the system's; nullptr is the last one.
+[[nodiscard]] std::vector<char*> pointersTo(std::vector<std::string>& words);
 
 struct ProgramCall {
     std::string path;

@@ -3,110 +3,77 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <numeric>
+#include <functional>
 
 namespace hashphase::demos {
 namespace {
 
-using tryout::Broadphase;
 using tryout::StepRow;
 using tryout::Times;
+using Rows = std::vector<StepRow>;
 
-template <class Number>
-double mean(const std::vector<StepRow>& rows, Number StepRow::*field) {
+template <class Of>
+double sumOf(const Rows& rows, const Of& of) {
     double sum = 0;
     for (const StepRow& row : rows) {
-        sum += static_cast<double>(row.*field);
+        sum += static_cast<double>(std::invoke(of, row));
     }
-    return sum / static_cast<double>(rows.size());
+    return sum;
 }
 
-double meanTime(const std::vector<StepRow>& rows, Times StepRow::*part, float Times::*clock) {
-    double sum = 0;
-    for (const StepRow& row : rows) {
-        sum += static_cast<double>(row.*part.*clock);
-    }
-    return sum / static_cast<double>(rows.size());
+template <class Of>
+double meanOf(const Rows& rows, const Of& of) {
+    return sumOf(rows, of) / static_cast<double>(rows.size());
+}
+
+auto timeOf(Times StepRow::*part, float Times::*clock) {
+    return [part, clock](const StepRow& row) { return row.*part.*clock; };
+}
+
+auto lengthBy(float Times::*clock) {
+    return [clock](const StepRow& row) {
+        return row.isStep != 0 ? row.step.*clock : row.updateAabbs.*clock + row.calculate.*clock;
+    };
 }
 
 // Without a look at the clock itself, which is not in the time on the wall: that is shorter then.
-double processorTime(const std::vector<StepRow>& rows, Times StepRow::*part) {
+double processorTime(const Rows& rows, Times StepRow::*part) {
     constexpr double kLook = 0.002;
-    const double processor = meanTime(rows, part, &Times::processor);
-    return std::clamp(meanTime(rows, part, &Times::wall), std::max(0.0, processor - kLook),
+    const double processor = meanOf(rows, timeOf(part, &Times::processor));
+    return std::clamp(meanOf(rows, timeOf(part, &Times::wall)), std::max(0.0, processor - kLook),
                       processor);
 }
 
-bool hasSteps(const std::vector<StepRow>& rows) {
+bool hasSteps(const Rows& rows) {
     return rows.front().isStep != 0;
 }
 
-float lengthOf(const StepRow& row, float Times::*clock) {
-    return row.isStep != 0 ? row.step.*clock : row.updateAabbs.*clock + row.calculate.*clock;
-}
-
-/// Steps by their length: a twentieth of them on either side is set apart, of few none.
-struct SortedSteps {
-    std::vector<StepRow> usual;
-    std::vector<StepRow> slowest;
-};
-
-SortedSteps sortByLength(std::vector<StepRow> rows, float Times::*clock) {
-    constexpr std::ptrdiff_t kShare = 20;
-    std::stable_sort(rows.begin(), rows.end(), [clock](const StepRow& a, const StepRow& b) {
-        return lengthOf(a, clock) < lengthOf(b, clock);
-    });
-    const std::ptrdiff_t cut = static_cast<std::ptrdiff_t>(rows.size()) / kShare;
-    return {{rows.begin() + cut, rows.end() - cut}, {rows.end() - cut, rows.end()}};
-}
-
-double timeOf(const std::vector<StepRow>& rows, float Times::*clock) {
-    return std::accumulate(rows.begin(), rows.end(), 0.0, [clock](double sum, const StepRow& row) {
-        return sum + lengthOf(row, clock);
-    });
-}
-
 // Where a step is on threads, in what waits for none of them.
-double processorShare(const std::vector<StepRow>& rows, bool onThreads) {
+double processorShare(const Rows& rows, bool onThreads) {
     const auto time = [&](float Times::*clock) {
-        return hasSteps(rows) && !onThreads ? meanTime(rows, &StepRow::step, clock)
-                                            : meanTime(rows, &StepRow::updateAabbs, clock) +
-                                                  meanTime(rows, &StepRow::calculate, clock);
+        return hasSteps(rows) && !onThreads ? sumOf(rows, timeOf(&StepRow::step, clock))
+                                            : sumOf(rows, timeOf(&StepRow::updateAabbs, clock)) +
+                                                  sumOf(rows, timeOf(&StepRow::calculate, clock));
     };
     const double wall = time(&Times::wall);
     return wall > 0 ? std::min(1.0, time(&Times::processor) / wall) : 1;
 }
 
-// Of a calculation, on average.
-double meanPairs(const std::vector<StepRow>& rows) {
-    double calculations = 0;
-    double pairs = 0;
-    for (const StepRow& row : rows) {
-        calculations += row.calculations;
-        pairs += row.pairCount;
-    }
-    return pairs / calculations;
-}
-
 // The share of pairs that overlap in the steps that were looked at, of all pairs.
-std::optional<double> truePairs(const std::vector<StepRow>& rows, double pairCount) {
-    double all = 0;
-    double overlapping = 0;
-    for (const StepRow& row : rows) {
-        if (row.truePairCount != StepRow::kNotCounted) {
-            all += row.pairCount;
-            overlapping += row.truePairCount;
-        }
-    }
-    if (all == 0) {
+std::optional<double> truePairs(const Rows& all, double pairCount) {
+    Rows rows = all;
+    std::erase_if(rows,
+                  [](const StepRow& row) { return row.truePairCount == StepRow::kNotCounted; });
+    const double pairs = sumOf(rows, &StepRow::pairCount);
+    if (pairs == 0) {
         return pairCount == 0 ? std::optional(0.0) : std::nullopt;
     }
-    return pairCount * overlapping / all;
+    return pairCount * sumOf(rows, &StepRow::truePairCount) / pairs;
 }
 
 }  // namespace
 
-bool isOnThreads(const std::vector<StepRow>& rows) {
+bool isOnThreads(const Rows& rows) {
     constexpr double kShareOfOthers = 0.1;
     constexpr double kLook = 0.02;  // [ms], at the clock itself, the first time
     double own = 0;
@@ -124,12 +91,16 @@ std::optional<double> StepSummary::stalePairCount() const {
     return truePairCount ? std::optional(std::max(0.0, pairCount - *truePairCount)) : std::nullopt;
 }
 
-StepSummary summaryOf(const std::vector<StepRow>& all, bool onThreads) {
+StepSummary summaryOf(const Rows& all, bool onThreads) {
     const auto clock = onThreads ? &Times::wall : &Times::processor;
-    const SortedSteps sorted = sortByLength(all, clock);
-    const std::vector<StepRow>& usual = sorted.usual;
+    // By their length a twentieth of the steps on either side is set apart, of few none.
+    Rows sorted = all;
+    std::ranges::stable_sort(sorted, {}, lengthBy(clock));
+    const auto cut = static_cast<std::ptrdiff_t>(sorted.size()) / 20;
+    const Rows usual(sorted.begin() + cut, sorted.end() - cut);
+    const Rows slowest(sorted.end() - cut, sorted.end());
     const auto wholeTime = [&](Times StepRow::*part) {
-        return onThreads ? meanTime(usual, part, clock) : processorTime(usual, part);
+        return onThreads ? meanOf(usual, timeOf(part, clock)) : processorTime(usual, part);
     };
     StepSummary summary;
     summary.stepCount = all.size();
@@ -141,21 +112,19 @@ StepSummary summaryOf(const std::vector<StepRow>& all, bool onThreads) {
     if (hasSteps(usual)) {
         summary.step = wholeTime(&StepRow::step);
     }
-    summary.stepOnWall = meanTime(usual, &StepRow::step, &Times::wall);
+    summary.stepOnWall = meanOf(usual, timeOf(&StepRow::step, &Times::wall));
     summary.processorShare = processorShare(onThreads ? all : usual, onThreads);
     const double shareOfRays = onThreads ? 1 : summary.processorShare;
-    summary.rays = mean(usual, &StepRow::rays) * shareOfRays;
-    summary.raysBetween = mean(usual, &StepRow::raysBetween) * shareOfRays;
-    const double time = timeOf(all, clock);
-    summary.slowestShare = time > 0 ? timeOf(sorted.slowest, clock) / time : 0;
-    summary.slowest =
-        timeOf(sorted.slowest, clock) / std::max(1.0, static_cast<double>(sorted.slowest.size()));
-    summary.rayCount = mean(all, &StepRow::rayCount);
-    summary.rayBetweenCount = mean(all, &StepRow::rayBetweenCount);
-    for (const StepRow& row : all) {
-        summary.objectCount = std::max(summary.objectCount, static_cast<double>(row.objectCount));
-    }
-    summary.pairCount = meanPairs(all);
+    summary.rays = meanOf(usual, &StepRow::rays) * shareOfRays;
+    summary.raysBetween = meanOf(usual, &StepRow::raysBetween) * shareOfRays;
+    const double time = sumOf(all, lengthBy(clock));
+    const double timeOfSlowest = sumOf(slowest, lengthBy(clock));
+    summary.slowestShare = time > 0 ? timeOfSlowest / time : 0;
+    summary.slowest = timeOfSlowest / std::max(1.0, static_cast<double>(slowest.size()));
+    summary.rayCount = meanOf(all, &StepRow::rayCount);
+    summary.rayBetweenCount = meanOf(all, &StepRow::rayBetweenCount);
+    summary.objectCount = std::ranges::max(all, {}, &StepRow::objectCount).objectCount;
+    summary.pairCount = sumOf(all, &StepRow::pairCount) / sumOf(all, &StepRow::calculations);
     summary.truePairCount = truePairs(all, summary.pairCount);
     return summary;
 }
@@ -171,19 +140,20 @@ std::vector<const TriedRun*> runsOf(const Trial& trial, tryout::Broadphase broad
 }
 
 std::optional<StepComparison> compareSteps(const Trial& trial) {
-    const std::vector<const TriedRun*> stock = runsOf(trial, Broadphase::stock);
-    const std::vector<const TriedRun*> ours = runsOf(trial, Broadphase::hash);
-    std::vector<StepRow> stockRows;
-    std::vector<StepRow> ourRows;
+    const std::vector<const TriedRun*> stock = runsOf(trial, tryout::Broadphase::stock);
+    const std::vector<const TriedRun*> ours = runsOf(trial, tryout::Broadphase::hash);
+    Rows stockRows;
+    Rows ourRows;
     StepComparison comparison;
     for (std::size_t i = 0; i < std::min(stock.size(), ours.size()); ++i) {
-        const std::size_t count = std::min(stock[i]->rows.size(), ours[i]->rows.size());
-        comparison.isCut |= stock[i]->rows.size() != ours[i]->rows.size();
-        comparison.allOfStock += stock[i]->rows.size();
-        comparison.allOfOurs += ours[i]->rows.size();
-        const auto end = static_cast<std::ptrdiff_t>(count);
-        stockRows.insert(stockRows.end(), stock[i]->rows.begin(), stock[i]->rows.begin() + end);
-        ourRows.insert(ourRows.end(), ours[i]->rows.begin(), ours[i]->rows.begin() + end);
+        const Rows& a = stock[i]->rows;
+        const Rows& b = ours[i]->rows;
+        comparison.isCut |= a.size() != b.size();
+        comparison.allOfStock += a.size();
+        comparison.allOfOurs += b.size();
+        const auto count = static_cast<std::ptrdiff_t>(std::min(a.size(), b.size()));
+        stockRows.insert(stockRows.end(), a.begin(), a.begin() + count);
+        ourRows.insert(ourRows.end(), b.begin(), b.begin() + count);
     }
     if (stockRows.empty()) {
         return std::nullopt;
@@ -195,10 +165,8 @@ std::optional<StepComparison> compareSteps(const Trial& trial) {
 }
 
 std::optional<double> projectedStep(const StepSummary& stock, const StepSummary& ours) {
-    if (!stock.step) {
-        return std::nullopt;
-    }
-    return *stock.step - stock.broadphase() + ours.broadphase();
+    return stock.step ? std::optional(*stock.step - stock.broadphase() + ours.broadphase())
+                      : std::nullopt;
 }
 
 }  // namespace hashphase::demos

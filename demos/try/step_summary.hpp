@@ -3,7 +3,7 @@
 
 // What the steps of a trial took.
 
-#include <demos/try/try.hpp>
+#include <demos/try/tried_run.hpp>
 
 #include <cstddef>
 #include <optional>

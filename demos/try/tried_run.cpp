@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/try/tried_run.hpp>
 
+#include <demos/console/format.hpp>
 #include <demos/scenes/input_error.hpp>
-#include <demos/try/running_program.hpp>
 
 #include <algorithm>
 #include <cerrno>
@@ -204,19 +204,15 @@ std::vector<tryout::StepRow> stepsOf(const Record& record) {
     return rows;
 }
 
-void requirePreloadable(const std::string& library) {
-    if (library.find_first_of(" :") != std::string::npos) {
-        throw InputError(library + " cannot be preloaded: there is a blank or a colon in the path");
-    }
-}
-
 ProgramCall callFor(const TriedRunSettings& settings, const std::string& recordPath) {
-    std::string preloads;
     for (const std::string& library : settings.preloads) {
-        requirePreloadable(library);
-        preloads += (preloads.empty() ? "" : ":") + library;
+        if (library.find_first_of(" :") != std::string::npos) {
+            throw InputError(library +
+                             " cannot be preloaded: there is a blank or a colon in the path");
+        }
     }
-    return {settings.path, settings.words, environmentFor(preloads, recordPath)};
+    return {settings.path, settings.words,
+            environmentFor(joined(settings.preloads, ":"), recordPath)};
 }
 
 }  // namespace

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// One run of a program that is tried: with a library preloaded, and a record that it fills.
+// A program that is tried, and its runs: each with a library preloaded, and a record that it fills.
 
-#include <demos/try/noted_signals.hpp>
+#include <demos/report/provenance.hpp>
+#include <demos/try/program_file.hpp>
 #include <demos/try/record.hpp>
+#include <demos/try/running_program.hpp>
 
 #include <cstdint>
 #include <functional>
@@ -52,6 +54,14 @@ struct TriedRun {
     std::uint32_t droppedRows = 0;
     std::vector<tryout::StepRow> rows;  // steps; of a program that makes none, calculations
     tryout::Verification verification;  // of Broadphase::verifying
+};
+
+/// What was tried, and all runs of it, by turns: Bullet's, ours, Bullet's, ours; or a verified one.
+struct Trial {
+    std::string commandLine;
+    TriedProgram program;
+    std::vector<TriedRun> runs;
+    Provenance provenance;  // after them: how busy the machine was
 };
 
 /// Runs the program to its end, or to a limit, with this process's streams, of which the input begins where it

@@ -2,10 +2,8 @@
 #pragma once
 
 #include <demos/try/step_summary.hpp>
-#include <demos/try/try.hpp>
 
 #include <iosfwd>
-#include <string>
 
 namespace hashphase::demos {
 

@@ -18,15 +18,17 @@ const char* jsonName(Broadphase broadphase) {
                                             : "verified";
 }
 
+Json nullUnless(bool isKnown, auto figure) {
+    return isKnown ? Json(figure) : Json(nullptr);
+}
+
 Json runJson(const TriedRun& run) {
     Json rows = Json::array();
     for (const StepRow& row : run.rows) {
-        const bool isStep = row.isStep != 0;
         rows.push_back(
-            {{"stepMs", isStep ? Json(row.step.wall) : Json(nullptr)},
-             {"stepProcessorMs", isStep ? Json(row.step.processor) : Json(nullptr)},
-             {"allThreadsMs",
-              row.allProcessor != StepRow::kNotTaken ? Json(row.allProcessor) : Json(nullptr)},
+            {{"stepMs", nullUnless(row.isStep != 0, row.step.wall)},
+             {"stepProcessorMs", nullUnless(row.isStep != 0, row.step.processor)},
+             {"allThreadsMs", nullUnless(row.allProcessor != StepRow::kNotTaken, row.allProcessor)},
              {"updateAabbsMs", row.updateAabbs.wall},
              {"updateAabbsProcessorMs", row.updateAabbs.processor},
              {"calculateMs", row.calculate.wall},
@@ -40,9 +42,8 @@ Json runJson(const TriedRun& run) {
              {"objects", row.objectCount},
              {"calculations", row.calculations},
              {"pairs", row.pairCount},
-             {"overlappingPairs", row.truePairCount != StepRow::kNotCounted
-                                      ? Json(row.truePairCount)
-                                      : Json(nullptr)}});
+             {"overlappingPairs",
+              nullUnless(row.truePairCount != StepRow::kNotCounted, row.truePairCount)}});
     }
     return {{"broadphase", jsonName(run.broadphase)},
             {"ended", textOf(run.end)},
@@ -62,7 +63,7 @@ Json summaryJson(const StepSummary& summary) {
             {"raysMs", summary.rays},
             {"narrowPhaseMs", orNull(summary.narrowPhase)},
             {"stepMs", orNull(summary.step)},
-            {"stepWallMs", summary.step ? Json(summary.stepOnWall) : Json(nullptr)},
+            {"stepWallMs", nullUnless(summary.step.has_value(), summary.stepOnWall)},
             {"processorShare", summary.processorShare},
             {"rays", summary.rayCount},
             {"raysBetweenMs", summary.raysBetween},
@@ -77,30 +78,23 @@ Json verifiedJson(const TriedRun& run) {
     if (run.broadphase != Broadphase::verifying) {
         return nullptr;
     }
-    const tryout::Verification& pairs = run.verification;
-    return {{"calculations", pairs.calculations},
-            {"pairs", pairs.pairs},
-            {"missing", pairs.missing},
-            {"extra", pairs.extra},
-            {"waitForAMove", pairs.unasked},
-            {"removedByProgram", pairs.removed},
-            {"notJudged", pairs.late},
-            {"bulletPairs", pairs.stockPairs},
-            {"bulletMissing", pairs.stockMissing},
-            {"bulletExtra", pairs.stockExtra},
-            {"firstFault", orNull(std::string(pairs.firstFault.data()))}};
+    Json json;
+    for (const tryout::VerifiedCount& each : tryout::kVerifiedCounts) {
+        json[each.name] = run.verification.*each.count;
+    }
+    json["firstFault"] = orNull(std::string(run.verification.firstFault.data()));
+    return json;
 }
 
 }  // namespace
 
 void writeTrialJson(const Trial& trial, std::ostream& out) {
-    Json json{
-        {"format", "hashphase-try"},
-        {"version", 2},
-        {"provenance", provenanceJson(trial.provenance)},
-        {"program", trial.commandLine},
-        {"bullet", orNull(trial.program.bullet)},
-        {"precision", trial.program.precision == BulletPrecision::kSingle ? "single" : "double"}};
+    Json json{{"format", "hashphase-try"},
+              {"version", 2},
+              {"provenance", provenanceJson(trial.provenance)},
+              {"program", trial.commandLine},
+              {"bullet", orNull(trial.program.bullet)},
+              {"precision", nameOf(trial.program.precision)}};
     const std::optional<StepComparison> steps = compareSteps(trial);
     json["clock"] = !steps ? Json(nullptr) : Json(steps->onThreads ? "wall" : "processor");
     json["bulletStep"] = steps ? summaryJson(steps->stock) : Json(nullptr);

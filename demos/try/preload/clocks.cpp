@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <optional>
 
 #include <time.h>
 
@@ -11,7 +10,7 @@ namespace hashphase::tryout {
 namespace {
 
 // The last look of this thread at its own clock, and what all have taken.
-thread_local Moment last;
+thread_local ClockTimes last;
 thread_local std::int64_t lookTime = 0;
 
 // Where there is no such clock, the one on the wall stands in for it.
@@ -23,13 +22,14 @@ std::int64_t processorNanoseconds(clockid_t clock) noexcept {
     return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
 }
 
-std::optional<Moment> momentByLastLook(std::int64_t wall) noexcept {
+// 0: a program may have made the clock stand still.
+bool isFresh(std::int64_t wall) noexcept {
     constexpr std::int64_t kFresh = 1000;
-    const std::int64_t since = wall - last.wall;
-    if (since <= 0 || since >= kFresh) {  // 0: a program may have made the clock stand still
-        return std::nullopt;
-    }
-    return Moment{wall, last.processor + since};
+    return wall - last.wall > 0 && wall - last.wall < kFresh;
+}
+
+ClockTimes byLastLook(std::int64_t wall) noexcept {
+    return {wall, last.processor + (wall - last.wall)};
 }
 
 // Others that run meanwhile do not count: as much as they take, no look does.
@@ -50,23 +50,22 @@ std::int64_t allProcessorNanoseconds() noexcept {
     return processorNanoseconds(CLOCK_PROCESS_CPUTIME_ID);
 }
 
-Moment beginMoment() noexcept {
+ClockTimes beginMoment() noexcept {
     const std::int64_t wall = wallNanoseconds();
-    if (const std::optional<Moment> moment = momentByLastLook(wall)) {
-        return *moment;
+    if (!isFresh(wall)) {
+        last.processor = lookAtProcessor(wall);
+        last.wall = wallNanoseconds();
+        return last;
     }
-    last.processor = lookAtProcessor(wall);
-    last.wall = wallNanoseconds();
-    return last;
+    return byLastLook(wall);
 }
 
-Moment endMoment() noexcept {
+ClockTimes endMoment() noexcept {
     const std::int64_t wall = wallNanoseconds();
-    if (const std::optional<Moment> moment = momentByLastLook(wall)) {
-        return *moment;
+    if (!isFresh(wall)) {
+        last = {wall, lookAtProcessor(wall)};
     }
-    last = {wall, lookAtProcessor(wall)};
-    return last;
+    return byLastLook(wall);
 }
 
 std::int64_t nanosecondsOfLooks() noexcept {

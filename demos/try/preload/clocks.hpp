@@ -8,10 +8,19 @@
 
 namespace hashphase::tryout {
 
-/// Of the calling thread [ns].
-struct Moment {
+/// A moment of the calling thread, or how long something took, by both clocks [ns].
+struct ClockTimes {
     std::int64_t wall = 0;
     std::int64_t processor = 0;
+
+    ClockTimes& operator+=(const ClockTimes& other) noexcept {
+        wall += other.wall;
+        processor += other.processor;
+        return *this;
+    }
+    friend ClockTimes operator-(const ClockTimes& a, const ClockTimes& b) noexcept {
+        return {a.wall - b.wall, a.processor - b.processor};
+    }
 };
 
 [[nodiscard]] std::int64_t wallNanoseconds() noexcept;
@@ -21,8 +30,8 @@ struct Moment {
 
 /// Now: for the begin and the end of what is timed, whose time on the wall holds no look at the other
 /// clock. That one is not looked at again within a microsecond, in which nothing else can have run.
-[[nodiscard]] Moment beginMoment() noexcept;
-[[nodiscard]] Moment endMoment() noexcept;
+[[nodiscard]] ClockTimes beginMoment() noexcept;
+[[nodiscard]] ClockTimes endMoment() noexcept;
 
 /// What these looks have taken this thread so far: to be taken from what they were made in the midst of.
 [[nodiscard]] std::int64_t nanosecondsOfLooks() noexcept;

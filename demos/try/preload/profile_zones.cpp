@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/try/preload/profile_zones.hpp>
-
 #include <demos/try/preload/recorder.hpp>
 #include <demos/try/preload/symbol.hpp>
 
@@ -10,7 +8,7 @@
 #include <array>
 #include <atomic>
 #include <cstddef>
-#include <cstring>
+#include <string_view>
 
 namespace hashphase::tryout {
 namespace {
@@ -20,21 +18,14 @@ struct StockProfile {
     void (*setLeave)(btLeaveProfileZoneFunc*) = Next{"_Z31btSetCustomLeaveProfileZoneFuncPFvvE"};
     btEnterProfileZoneFunc* (*enter)() = Next{"_Z32btGetCurrentEnterProfileZoneFuncv"};
     btLeaveProfileZoneFunc* (*leave)() = Next{"_Z32btGetCurrentLeaveProfileZoneFuncv"};
+
+    // What Bullet calls in its zones unless told otherwise, which does nothing.
+    btEnterProfileZoneFunc* defaultEnter = enter();
+    btLeaveProfileZoneFunc* defaultLeave = leave();
 };
 
 const StockProfile& stockProfile() {
     static const StockProfile functions;
-    return functions;
-}
-
-// What Bullet calls in its zones unless told otherwise, which does nothing.
-struct Defaults {
-    btEnterProfileZoneFunc* enter = stockProfile().enter();
-    btLeaveProfileZoneFunc* leave = stockProfile().leave();
-};
-
-const Defaults& defaults() {
-    static const Defaults functions;
     return functions;
 }
 
@@ -47,22 +38,13 @@ std::atomic<bool> isWatching = false;
 
 enum class Zone : std::uint8_t { other, step, updateAabbs, calculate, narrowPhase };
 
-Zone zoneOf(const char* name) noexcept {
-    const auto is = [name](const char* zone) { return std::strcmp(name, zone) == 0; };
-    switch (name[0]) {
-        case 'i':
-            return is("internalSingleStepSimulation") ? Zone::step : Zone::other;
-        case 'p':
-            return is("performDiscreteCollisionDetection") ? Zone::step : Zone::other;
-        case 'u':
-            return is("updateAabbs") ? Zone::updateAabbs : Zone::other;
-        case 'd':
-            return is("dispatchAllCollisionPairs") ? Zone::narrowPhase : Zone::other;
-        case 'c':
-            return is("calculateOverlappingPairs") ? Zone::calculate : Zone::other;
-        default:
-            return Zone::other;
-    }
+Zone zoneOf(std::string_view name) noexcept {
+    return name == "updateAabbs"                 ? Zone::updateAabbs
+           : name == "calculateOverlappingPairs" ? Zone::calculate
+           : name == "dispatchAllCollisionPairs" ? Zone::narrowPhase
+           : name == "internalSingleStepSimulation" || name == "performDiscreteCollisionDetection"
+               ? Zone::step
+               : Zone::other;
 }
 
 struct OpenZone {
@@ -126,7 +108,6 @@ void leaveZone() {
 }  // namespace
 
 void watchProfileZones() {
-    static_cast<void>(defaults());
     isWatching = true;
     stockProfile().setEnter(&enterZone);
     stockProfile().setLeave(&leaveZone);
@@ -139,14 +120,14 @@ void watchProfileZones() {
 using namespace hashphase::tryout;
 
 void btSetCustomEnterProfileZoneFunc(btEnterProfileZoneFunc* enterFunc) {
-    programsEnter = enterFunc != defaults().enter ? enterFunc : nullptr;
+    programsEnter = enterFunc != stockProfile().defaultEnter ? enterFunc : nullptr;
     if (!isWatching) {
         stockProfile().setEnter(enterFunc);
     }
 }
 
 void btSetCustomLeaveProfileZoneFunc(btLeaveProfileZoneFunc* leaveFunc) {
-    programsLeave = leaveFunc != defaults().leave ? leaveFunc : nullptr;
+    programsLeave = leaveFunc != stockProfile().defaultLeave ? leaveFunc : nullptr;
     if (!isWatching) {
         stockProfile().setLeave(leaveFunc);
     }
@@ -154,23 +135,20 @@ void btSetCustomLeaveProfileZoneFunc(btLeaveProfileZoneFunc* leaveFunc) {
 
 btEnterProfileZoneFunc* btGetCurrentEnterProfileZoneFunc() {
     btEnterProfileZoneFunc* const enter = programsEnter;
-    return enter != nullptr ? enter : defaults().enter;
+    return enter != nullptr ? enter : stockProfile().defaultEnter;
 }
 
 btLeaveProfileZoneFunc* btGetCurrentLeaveProfileZoneFunc() {
     btLeaveProfileZoneFunc* const leave = programsLeave;
-    return leave != nullptr ? leave : defaults().leave;
+    return leave != nullptr ? leave : stockProfile().defaultLeave;
 }
 
 // The name of a member that takes a number, an int and a number.
 #ifdef BT_USE_DOUBLE_PRECISION
-#define HASHPHASE_STEP(world) "_ZN" world "14stepSimulationEdid"
+#define HASHPHASE_STEP_NAME(world) "_ZN" world "14stepSimulationEdid"
 #else
-#define HASHPHASE_STEP(world) "_ZN" world "14stepSimulationEfif"
+#define HASHPHASE_STEP_NAME(world) "_ZN" world "14stepSimulationEfif"
 #endif
-#define HASHPHASE_STEP_DISCRETE HASHPHASE_STEP("23btDiscreteDynamicsWorld")
-#define HASHPHASE_STEP_SIMPLE HASHPHASE_STEP("21btSimpleDynamicsWorld")
-#define HASHPHASE_STEP_DEFORMABLE HASHPHASE_STEP("34btDeformableMultiBodyDynamicsWorld")
 
 namespace {
 
@@ -185,33 +163,20 @@ public:
     StepScope& operator=(const StepScope&) = delete;
 };
 
-int step(StepFunction* stock, void* world, btScalar timeStep, int maxSubSteps,
-         btScalar fixedTimeStep) {
-    const StepScope scope;
-    // cppcheck-suppress CastAddressToIntegerAtReturn; takes the function's type for a pointer
-    return stock(world, timeStep, maxSubSteps, fixedTimeStep);
-}
-
 }  // namespace
+
+// Stands in for the step of that world.
+#define HASHPHASE_STEP(function, world)                                                            \
+    StepFunction function asm(HASHPHASE_STEP_NAME(world));                                         \
+    int function(void* object, btScalar timeStep, int maxSubSteps, btScalar fixedTimeStep) {       \
+        static StepFunction* const stock = Next{HASHPHASE_STEP_NAME(world)};                       \
+        const StepScope scope;                                                                     \
+        return stock(object, timeStep, maxSubSteps, fixedTimeStep);                                \
+    }
 
 extern "C" {
 
-StepFunction stepDiscreteWorld asm(HASHPHASE_STEP_DISCRETE);
-StepFunction stepSimpleWorld asm(HASHPHASE_STEP_SIMPLE);
-StepFunction stepDeformableWorld asm(HASHPHASE_STEP_DEFORMABLE);
-
-int stepDiscreteWorld(void* world, btScalar timeStep, int maxSubSteps, btScalar fixedTimeStep) {
-    static StepFunction* const stock = Next{HASHPHASE_STEP_DISCRETE};
-    return step(stock, world, timeStep, maxSubSteps, fixedTimeStep);
-}
-
-int stepSimpleWorld(void* world, btScalar timeStep, int maxSubSteps, btScalar fixedTimeStep) {
-    static StepFunction* const stock = Next{HASHPHASE_STEP_SIMPLE};
-    return step(stock, world, timeStep, maxSubSteps, fixedTimeStep);
-}
-
-int stepDeformableWorld(void* world, btScalar timeStep, int maxSubSteps, btScalar fixedTimeStep) {
-    static StepFunction* const stock = Next{HASHPHASE_STEP_DEFORMABLE};
-    return step(stock, world, timeStep, maxSubSteps, fixedTimeStep);
-}
+HASHPHASE_STEP(stepDiscreteWorld, "23btDiscreteDynamicsWorld")
+HASHPHASE_STEP(stepSimpleWorld, "21btSimpleDynamicsWorld")
+HASHPHASE_STEP(stepDeformableWorld, "34btDeformableMultiBodyDynamicsWorld")
 }

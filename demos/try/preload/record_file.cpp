@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 namespace hashphase::tryout {
@@ -23,11 +24,8 @@ Record* mapRecord() noexcept {
         bytes = mmap(nullptr, sizeof(Record), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
     }
     close(file);
-    if (bytes == MAP_FAILED) {
-        return nullptr;
-    }
     auto* mapped = static_cast<Record*>(bytes);
-    if (mapped->format != Record::kFormat) {
+    if (bytes == MAP_FAILED || mapped->format != Record::kFormat) {
         return nullptr;
     }
     mapped->isLoaded = 1;
@@ -36,6 +34,21 @@ Record* mapRecord() noexcept {
 
 [[gnu::constructor]] void mapEarly() {
     static_cast<void>(mappedRecord());
+}
+
+// Whoever has started the process may not tell. Forks of the recorded process have its record, and another
+// number.
+[[gnu::destructor]] void noteEnd() {
+    if (Record* into = mappedRecord(); into != nullptr && into->process.load() == getpid()) {
+        into->hasEnded = 1;
+    }
+}
+
+[[noreturn]] void endWithoutDestructors(int status) noexcept {
+    noteEnd();
+    for (;;) {
+        syscall(SYS_exit_group, status);
+    }
 }
 
 }  // namespace
@@ -50,4 +63,20 @@ Record* mappedRecord() noexcept {
     return mapped;
 }
 
+void watchQuickExit() noexcept {
+    static_cast<void>(std::at_quick_exit(&noteEnd));  // fails where there are too many
+}
+
 }  // namespace hashphase::tryout
+
+// In place of those of the C library, which run nothing of ours.
+extern "C" {
+
+void _exit(int status) {
+    hashphase::tryout::endWithoutDestructors(status);
+}
+
+void _Exit(int status) noexcept {
+    hashphase::tryout::endWithoutDestructors(status);
+}
+}

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/try/preload/recorder.hpp>
 
-#include <demos/try/preload/clocks.hpp>
-#include <demos/try/preload/overlap.hpp>
-#include <demos/try/preload/profile_zones.hpp>
-#include <demos/try/preload/program_end.hpp>
 #include <demos/try/preload/record_file.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
@@ -23,28 +19,8 @@ float milliseconds(std::int64_t nanoseconds) noexcept {
     return static_cast<float>(static_cast<double>(nanoseconds) * 1e-6);
 }
 
-/// How long something took, by the two clocks [ns].
-struct Span {
-    std::int64_t wall = 0;
-    std::int64_t processor = 0;
-
-    Span& operator+=(const Span& other) noexcept {
-        wall += other.wall;
-        processor += other.processor;
-        return *this;
-    }
-    Span& operator-=(const Span& other) noexcept {
-        wall -= other.wall;
-        processor -= other.processor;
-        return *this;
-    }
-    [[nodiscard]] Times times() const noexcept {
-        return {milliseconds(wall), milliseconds(processor)};
-    }
-};
-
-Span between(const Moment& begin, const Moment& end) noexcept {
-    return {end.wall - begin.wall, end.processor - begin.processor};
+Times millisecondsOf(const ClockTimes& took) noexcept {
+    return {milliseconds(took.wall), milliseconds(took.processor)};
 }
 
 std::atomic<Record*> ownRecord = nullptr;
@@ -75,18 +51,20 @@ Record* claimRecord() {
 constexpr std::int64_t kNotTaken = -1;
 
 struct Step {
-    Moment begin;
+    ClockTimes begin;
     std::int64_t looksBefore = 0;
     std::int64_t allBegin = kNotTaken;  // of all threads
-    Span aside;                         // what looking at pairs took
-    std::array<Span, kPartCount> parts;
+    ClockTimes aside;                   // what looking at pairs took
+    std::array<ClockTimes, kPartCount> parts;
     std::int64_t rays = 0;
     std::uint32_t rayCount = 0;
     std::uint32_t calculations = 0;
     std::uint32_t pairCount = 0;
     std::uint32_t truePairCount = 0;
 
-    [[nodiscard]] Span& part(Part which) noexcept { return parts[static_cast<std::size_t>(which)]; }
+    [[nodiscard]] ClockTimes& part(Part which) noexcept {
+        return parts[static_cast<std::size_t>(which)];
+    }
 };
 
 thread_local Step current;
@@ -100,16 +78,16 @@ std::atomic<std::uint32_t> rayCountBetween = 0;
 std::atomic<std::int64_t> firstCalculation = 0;
 std::atomic<std::int64_t> lookTime = 0;
 
-void writeRow(Record& into, bool isStep, const Span& step, float allProcessor) noexcept {
+void writeRow(Record& into, bool isStep, const ClockTimes& step, float allProcessor) noexcept {
     const float between = milliseconds(rayTimeBetween.exchange(0));
     const std::uint32_t countBetween = rayCountBetween.exchange(0);
     const std::uint32_t index = into.rowCount.fetch_add(1);
     if (index < Record::kMaxRows) {
         into.rows[index] = {isStep ? 1U : 0U,
-                            step.times(),
-                            current.part(Part::updateAabbs).times(),
-                            current.part(Part::calculate).times(),
-                            current.part(Part::narrowPhase).times(),
+                            millisecondsOf(step),
+                            millisecondsOf(current.part(Part::updateAabbs)),
+                            millisecondsOf(current.part(Part::calculate)),
+                            millisecondsOf(current.part(Part::narrowPhase)),
                             allProcessor,
                             milliseconds(current.rays),
                             between,
@@ -142,7 +120,7 @@ void countPairs(btOverlappingPairCache& cache) {
     constexpr std::int64_t kShare = 200;
     constexpr std::int64_t kFree = 5'000'000;
     current.pairCount += static_cast<std::uint32_t>(cache.getNumOverlappingPairs());
-    const Moment now = beginMoment();
+    const ClockTimes now = beginMoment();
     std::int64_t none = 0;
     firstCalculation.compare_exchange_strong(none, now.wall);
     if (current.truePairCount == StepRow::kNotCounted ||
@@ -151,7 +129,7 @@ void countPairs(btOverlappingPairCache& cache) {
         return;
     }
     current.truePairCount += countTruePairs(cache);
-    const Span took = between(now, endMoment());
+    const ClockTimes took = endMoment() - now;
     lookTime += took.wall;
     current.aside += took;
 }
@@ -222,9 +200,8 @@ void endStep() noexcept {
     Record* into = ownRecord.load(std::memory_order_relaxed);
     if (into != nullptr && current.calculations > 0) {
         const std::int64_t looks = nanosecondsOfLooks() - current.looksBefore;
-        Span step = between(current.begin, endMoment());
-        step -= current.aside;
-        step -= {looks, looks};
+        const ClockTimes step =
+            endMoment() - current.begin - current.aside - ClockTimes{looks, looks};
         const float all = current.allBegin == kNotTaken
                               ? StepRow::kNotTaken
                               : milliseconds(allProcessorNanoseconds() - current.allBegin -
@@ -240,12 +217,11 @@ PartBegin beginPart() noexcept {
 
 // Rays take the same share of either clock: callbacks of a part may cast some, and parts add up.
 void endPart(Part part, const PartBegin& begin) noexcept {
-    Span took = between(begin.moment, endMoment());
+    ClockTimes took = endMoment() - begin.moment;
     if (const std::int64_t rays = rayTime - begin.rays; rays > 0 && took.wall > 0) {
         const double share = static_cast<double>(rays) / static_cast<double>(took.wall);
-        const auto processor =
-            static_cast<std::int64_t>(share * static_cast<double>(took.processor));
-        took -= {rays, processor};
+        const double processor = share * static_cast<double>(took.processor);
+        took = took - ClockTimes{rays, static_cast<std::int64_t>(processor)};
     }
     current.part(part) += took;
 }

@@ -9,12 +9,23 @@
 #include <demos/try/preload/clocks.hpp>
 #include <demos/try/record.hpp>
 
+#include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
+
 #include <cstddef>
 #include <cstdint>
 
 class btOverlappingPairCache;
 
 namespace hashphase::tryout {
+
+/// Whether the boxes of two proxies overlap: closed, and never with NaN. It shares no code with the
+/// library, whose judge it is.
+[[nodiscard]] inline bool overlaps(const btBroadphaseProxy& a,
+                                   const btBroadphaseProxy& b) noexcept {
+    return a.m_aabbMin.x() <= b.m_aabbMax.x() && b.m_aabbMin.x() <= a.m_aabbMax.x() &&
+           a.m_aabbMin.y() <= b.m_aabbMax.y() && b.m_aabbMin.y() <= a.m_aabbMax.y() &&
+           a.m_aabbMin.z() <= b.m_aabbMax.z() && b.m_aabbMin.z() <= a.m_aabbMax.z();
+}
 
 /// The record of this process; nullptr where none was asked for, or another process has it. Who asks
 /// first, for its first broadphase, has it from then on, and its steps are timed.
@@ -33,7 +44,7 @@ enum class Part : std::uint8_t { updateAabbs, calculate, narrowPhase };
 inline constexpr std::size_t kPartCount = 3;
 
 struct PartBegin {
-    Moment moment;
+    ClockTimes moment;
     std::int64_t rays = 0;  // what this thread's have taken before
 };
 
@@ -51,7 +62,12 @@ private:
     PartBegin begin_;
 };
 
-// Of what is watched around the broadphases (profile_zones.hpp), on the caller's thread.
+/// Watches, from now on, sub-steps, updateAabbs() and the narrow phase in them, by Bullet's own profile zones; and
+/// whole steps by the worlds' stepSimulation(), which has none: where Bullet is linked so that this library can
+/// stand in for it. What the program itself has Bullet call in its zones goes on being called.
+void watchProfileZones();
+
+// Of what is watched so, on the caller's thread.
 
 /// A step, or a part of one: a step ends with its outermost part.
 void beginStep() noexcept;

@@ -8,31 +8,34 @@
 
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 
+#include <memory>
+
 namespace hashphase::tryout {
+
+using BulletProxy = btBroadphaseProxy*;
+using Point = const btVector3&;
+using Dispatcher = btDispatcher*;
 
 struct StockDbvt {
     using Self = btDbvtBroadphase*;
     using Const = const btDbvtBroadphase*;
-    using Proxy = btBroadphaseProxy*;
-    using Point = const btVector3&;
-    using Dispatcher = btDispatcher*;
 
     void (*construct)(Self, btOverlappingPairCache*) = Next{
         "_ZN16btDbvtBroadphaseC1EP22btOverlappingPairCache"};
     void (*destruct)(Self) = Next{"_ZN16btDbvtBroadphaseD1Ev"};
     void (*collide)(Self, Dispatcher) = Next{"_ZN16btDbvtBroadphase7collideEP12btDispatcher"};
     void (*optimize)(Self) = Next{"_ZN16btDbvtBroadphase8optimizeEv"};
-    Proxy (*createProxy)(Self, Point, Point, int, void*, int, int, Dispatcher) = Next{
+    BulletProxy (*createProxy)(Self, Point, Point, int, void*, int, int, Dispatcher) = Next{
         "_ZN16btDbvtBroadphase11createProxyERK9btVector3S2_iPviiP12btDispatcher"};
-    void (*destroyProxy)(Self, Proxy, Dispatcher) = Next{
+    void (*destroyProxy)(Self, BulletProxy, Dispatcher) = Next{
         "_ZN16btDbvtBroadphase12destroyProxyEP17btBroadphaseProxyP12btDispatcher"};
-    void (*setAabb)(Self, Proxy, Point, Point, Dispatcher) = Next{
+    void (*setAabb)(Self, BulletProxy, Point, Point, Dispatcher) = Next{
         "_ZN16btDbvtBroadphase7setAabbEP17btBroadphaseProxyRK9btVector3S4_P12btDispatcher"};
     void (*rayTest)(Self, Point, Point, btBroadphaseRayCallback&, Point, Point) = Next{
         "_ZN16btDbvtBroadphase7rayTestERK9btVector3S2_R23btBroadphaseRayCallbackS2_S2_"};
     void (*aabbTest)(Self, Point, Point, btBroadphaseAabbCallback&) = Next{
         "_ZN16btDbvtBroadphase8aabbTestERK9btVector3S2_R24btBroadphaseAabbCallback"};
-    void (*getAabb)(Const, Proxy, btVector3&, btVector3&) = Next{
+    void (*getAabb)(Const, BulletProxy, btVector3&, btVector3&) = Next{
         "_ZNK16btDbvtBroadphase7getAabbEP17btBroadphaseProxyR9btVector3S3_"};
     void (*calculateOverlappingPairs)(Self, Dispatcher) = Next{
         "_ZN16btDbvtBroadphase25calculateOverlappingPairsEP12btDispatcher"};
@@ -42,7 +45,7 @@ struct StockDbvt {
     void (*resetPool)(Self, Dispatcher) = Next{"_ZN16btDbvtBroadphase9resetPoolEP12btDispatcher"};
     void (*performDeferredRemoval)(Self, Dispatcher) = Next{
         "_ZN16btDbvtBroadphase22performDeferredRemovalEP12btDispatcher"};
-    void (*setAabbForceUpdate)(Self, Proxy, Point, Point, Dispatcher) = Next{
+    void (*setAabbForceUpdate)(Self, BulletProxy, Point, Point, Dispatcher) = Next{
         "_ZN16btDbvtBroadphase18setAabbForceUpdateEP17btBroadphaseProxyRK9btVector3S4_"
         "P12btDispatcher"};
     void (*benchmark)(btBroadphaseInterface*) = Next{
@@ -53,5 +56,25 @@ struct StockDbvt {
     static const StockDbvt functions;
     return functions;
 }
+
+/// While it lives, what its thread makes are parts of one of Bullet's own broadphases: left as they are, and
+/// not counted.
+class StockParts {
+public:
+    StockParts() noexcept { ++depth_; }
+    ~StockParts() { --depth_; }
+    StockParts(const StockParts&) = delete;
+    StockParts& operator=(const StockParts&) = delete;
+
+    [[nodiscard]] static bool areBeingMade() noexcept { return depth_ > 0; }
+
+private:
+    inline static thread_local int depth_ = 0;
+};
+
+/// Our broadphase with Bullet's beside it (verified_broadphase.cpp). `settings` is the program's object, whose
+/// fields steer Bullet's broadphase; it outlives this one. `cache` as for SpatialHashBroadphase.
+[[nodiscard]] std::unique_ptr<btBroadphaseInterface> makeVerifiedBroadphase(
+    const btDbvtBroadphase& settings, btOverlappingPairCache* cache);
 
 }  // namespace hashphase::tryout

@@ -10,11 +10,10 @@
 // of the size that was asked for, and work as ever.
 
 #include <demos/try/preload/recorder.hpp>
-#include <demos/try/preload/stock_parts.hpp>
+#include <demos/try/preload/stock_dbvt.hpp>
 #include <demos/try/preload/symbol.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btAxisSweep3.h>
-#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 
 #include <cstring>
 #include <new>
@@ -28,11 +27,11 @@ class WatchedSweep : public Sweep {
 public:
     using Sweep::Sweep;
 
-    btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
-                                   int shapeType, void* userPtr, int collisionFilterGroup,
-                                   int collisionFilterMask, btDispatcher* dispatcher) override {
+    BulletProxy createProxy(Point aabbMin, Point aabbMax, int shapeType, void* userPtr,
+                            int collisionFilterGroup, int collisionFilterMask,
+                            Dispatcher dispatcher) override {
         noteObjects(1);
-        btBroadphaseProxy* proxy =
+        BulletProxy proxy =
             Sweep::createProxy(aabbMin, aabbMax, shapeType, userPtr, collisionFilterGroup,
                                collisionFilterMask, dispatcher);
         // Left as they were by the sweep, until the box is set.
@@ -40,17 +39,16 @@ public:
         proxy->m_aabbMax = aabbMax;
         return proxy;
     }
-    void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override {
+    void destroyProxy(BulletProxy proxy, Dispatcher dispatcher) override {
         noteObjects(-1);
         Sweep::destroyProxy(proxy, dispatcher);
     }
-    void calculateOverlappingPairs(btDispatcher* dispatcher) override {
+    void calculateOverlappingPairs(Dispatcher dispatcher) override {
         const CalculateScope scope(*this->m_pairCache);
         Sweep::calculateOverlappingPairs(dispatcher);
     }
-    void rayTest(const btVector3& rayFrom, const btVector3& rayTo,
-                 btBroadphaseRayCallback& rayCallback, const btVector3& aabbMin,
-                 const btVector3& aabbMax) override {
+    void rayTest(Point rayFrom, Point rayTo, btBroadphaseRayCallback& rayCallback, Point aabbMin,
+                 Point aabbMax) override {
         const RayScope scope;
         Sweep::rayTest(rayFrom, rayTo, rayCallback, aabbMin, aabbMax);
     }
@@ -62,35 +60,32 @@ class TakenSweep : public Sweep {
 public:
     using Sweep::Sweep;
 
-    btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
-                                   int shapeType, void* userPtr, int collisionFilterGroup,
-                                   int collisionFilterMask, btDispatcher* dispatcher) override {
+    BulletProxy createProxy(Point aabbMin, Point aabbMax, int shapeType, void* userPtr,
+                            int collisionFilterGroup, int collisionFilterMask,
+                            Dispatcher dispatcher) override {
         return taken().createProxy(aabbMin, aabbMax, shapeType, userPtr, collisionFilterGroup,
                                    collisionFilterMask, dispatcher);
     }
-    void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override {
+    void destroyProxy(BulletProxy proxy, Dispatcher dispatcher) override {
         taken().destroyProxy(proxy, dispatcher);
     }
-    void setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin, const btVector3& aabbMax,
-                 btDispatcher* dispatcher) override {
+    void setAabb(BulletProxy proxy, Point aabbMin, Point aabbMax, Dispatcher dispatcher) override {
         taken().setAabb(proxy, aabbMin, aabbMax, dispatcher);
     }
-    void getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin, btVector3& aabbMax) const override {
+    void getAabb(BulletProxy proxy, btVector3& aabbMin, btVector3& aabbMax) const override {
         taken().getAabb(proxy, aabbMin, aabbMax);
     }
-    void rayTest(const btVector3& rayFrom, const btVector3& rayTo,
-                 btBroadphaseRayCallback& rayCallback, const btVector3& aabbMin,
-                 const btVector3& aabbMax) override {
+    void rayTest(Point rayFrom, Point rayTo, btBroadphaseRayCallback& rayCallback, Point aabbMin,
+                 Point aabbMax) override {
         taken().rayTest(rayFrom, rayTo, rayCallback, aabbMin, aabbMax);
     }
-    void aabbTest(const btVector3& aabbMin, const btVector3& aabbMax,
-                  btBroadphaseAabbCallback& callback) override {
+    void aabbTest(Point aabbMin, Point aabbMax, btBroadphaseAabbCallback& callback) override {
         taken().aabbTest(aabbMin, aabbMax, callback);
     }
-    void calculateOverlappingPairs(btDispatcher* dispatcher) override {
+    void calculateOverlappingPairs(Dispatcher dispatcher) override {
         taken().calculateOverlappingPairs(dispatcher);
     }
-    void resetPool(btDispatcher* dispatcher) override { taken().resetPool(dispatcher); }
+    void resetPool(Dispatcher dispatcher) override { taken().resetPool(dispatcher); }
 
     /// Puts `trees` beside the sweep, as its constructor would have, for its destructor to destroy.
     void take(btDbvtBroadphase* trees) {
@@ -101,10 +96,6 @@ public:
 private:
     [[nodiscard]] btDbvtBroadphase& taken() const noexcept { return *this->m_raycastAccelerator; }
 };
-
-btDbvtBroadphase* makeTakenTrees(btOverlappingPairCache* cache) {
-    return new (btAlignedAlloc(sizeof(btDbvtBroadphase), 16)) btDbvtBroadphase(cache);
-}
 
 thread_local bool isMakingPattern = false;
 
@@ -123,87 +114,71 @@ Derived& turnInto(Sweep& sweep) {
     return static_cast<Derived&>(sweep);
 }
 
+/// What a constructor is called with.
 template <class Sweep, class Handle>
-using SweepConstructor = void(Sweep*, const btVector3&, const btVector3&, Handle,
-                              btOverlappingPairCache*, bool);
+struct SweepCall {
+    using Constructor = void(Sweep*, Point, Point, Handle, btOverlappingPairCache*, bool);
 
-template <class Sweep, class Handle>
-void constructSweep(SweepConstructor<Sweep, Handle>* stock, Sweep* sweep, const btVector3& worldMin,
-                    const btVector3& worldMax, Handle maxHandles, btOverlappingPairCache* cache,
-                    bool hasNoTrees) {
-    refuseOtherBullets();
-    noteAxisSweep();
-    if (wantedBroadphase() == Broadphase::stock) {
-        const StockParts parts;
+    Constructor* stock;
+    Sweep* sweep;
+    Point worldMin;
+    Point worldMax;
+    Handle maxHandles;
+
+    void makeStock(btOverlappingPairCache* cache, bool hasNoTrees) const {
         stock(sweep, worldMin, worldMax, maxHandles, cache, hasNoTrees);
-        turnInto<WatchedSweep<Sweep>>(*sweep);
-        return;
     }
-    btDbvtBroadphase* trees = makeTakenTrees(cache);
-    noteDbvts(-1);  // it is none of the program's
-    stock(sweep, worldMin, worldMax, maxHandles, trees->getOverlappingPairCache(), true);
-    turnInto<TakenSweep<Sweep>>(*sweep).take(trees);
-}
 
-// Of a derived class: the program's, or one that is to be a pattern.
-template <class Sweep, class Handle>
-void constructBaseSweep(SweepConstructor<Sweep, Handle>* stock, Sweep* sweep,
-                        const btVector3& worldMin, const btVector3& worldMax, Handle maxHandles,
-                        btOverlappingPairCache* cache, bool hasNoTrees) {
-    if (!isMakingPattern) {
+    void makeWhole(btOverlappingPairCache* cache, bool hasNoTrees) const {
         refuseOtherBullets();
-        noteDerivedSweep();
+        noteAxisSweep();
+        if (wantedBroadphase() == Broadphase::stock) {
+            const StockParts parts;
+            makeStock(cache, hasNoTrees);
+            turnInto<WatchedSweep<Sweep>>(*sweep);
+            return;
+        }
+        auto* trees = new (btAlignedAlloc(sizeof(btDbvtBroadphase), 16)) btDbvtBroadphase(cache);
+        noteDbvts(-1);  // it is none of the program's
+        makeStock(trees->getOverlappingPairCache(), true);
+        turnInto<TakenSweep<Sweep>>(*sweep).take(trees);
     }
-    const StockParts parts;
-    stock(sweep, worldMin, worldMax, maxHandles, cache, hasNoTrees);
-}
+
+    // Of a derived class: the program's, or one that is to be a pattern.
+    void makeBase(btOverlappingPairCache* cache, bool hasNoTrees) const {
+        if (!isMakingPattern) {
+            refuseOtherBullets();
+            noteDerivedSweep();
+        }
+        const StockParts parts;
+        makeStock(cache, hasNoTrees);
+    }
+};
 
 }  // namespace
 }  // namespace hashphase::tryout
 
 using namespace hashphase::tryout;
 
-#define HASHPHASE_SWEEP16(kind)                                                                    \
-    "_ZN12btAxisSweep3" kind "ERK9btVector3S2_tP22btOverlappingPairCacheb"
-#define HASHPHASE_SWEEP32(kind)                                                                    \
-    "_ZN17bt32BitAxisSweep3" kind "ERK9btVector3S2_jP22btOverlappingPairCacheb"
+// Stands in for the constructor of that mangled name.
+#define HASHPHASE_SWEEP(function, Sweep, Handle, make, mangled)                                    \
+    SweepCall<Sweep, Handle>::Constructor function asm(mangled);                                   \
+    void function(Sweep* sweep, Point worldMin, Point worldMax, Handle maxHandles,                 \
+                  btOverlappingPairCache* cache, bool hasNoTrees) {                                \
+        static SweepCall<Sweep, Handle>::Constructor* const stock = Next{mangled};                 \
+        SweepCall<Sweep, Handle>{stock, sweep, worldMin, worldMax, maxHandles}.make(cache,         \
+                                                                                    hasNoTrees);   \
+    }
 
 // C1 makes a whole object, C2 the base of a derived one.
 extern "C" {
 
-SweepConstructor<btAxisSweep3, unsigned short> constructSweep16 asm(HASHPHASE_SWEEP16("C1"));
-SweepConstructor<btAxisSweep3, unsigned short> constructBaseSweep16 asm(HASHPHASE_SWEEP16("C2"));
-SweepConstructor<bt32BitAxisSweep3, unsigned> constructSweep32 asm(HASHPHASE_SWEEP32("C1"));
-SweepConstructor<bt32BitAxisSweep3, unsigned> constructBaseSweep32 asm(HASHPHASE_SWEEP32("C2"));
-
-void constructSweep16(btAxisSweep3* sweep, const btVector3& worldMin, const btVector3& worldMax,
-                      unsigned short maxHandles, btOverlappingPairCache* cache, bool hasNoTrees) {
-    static SweepConstructor<btAxisSweep3, unsigned short>* const stock =
-        Next{HASHPHASE_SWEEP16("C1")};
-    constructSweep(stock, sweep, worldMin, worldMax, maxHandles, cache, hasNoTrees);
-}
-
-void constructBaseSweep16(btAxisSweep3* sweep, const btVector3& worldMin, const btVector3& worldMax,
-                          unsigned short maxHandles, btOverlappingPairCache* cache,
-                          bool hasNoTrees) {
-    static SweepConstructor<btAxisSweep3, unsigned short>* const stock =
-        Next{HASHPHASE_SWEEP16("C2")};
-    constructBaseSweep(stock, sweep, worldMin, worldMax, maxHandles, cache, hasNoTrees);
-}
-
-void constructSweep32(bt32BitAxisSweep3* sweep, const btVector3& worldMin,
-                      const btVector3& worldMax, unsigned maxHandles, btOverlappingPairCache* cache,
-                      bool hasNoTrees) {
-    static SweepConstructor<bt32BitAxisSweep3, unsigned>* const stock =
-        Next{HASHPHASE_SWEEP32("C1")};
-    constructSweep(stock, sweep, worldMin, worldMax, maxHandles, cache, hasNoTrees);
-}
-
-void constructBaseSweep32(bt32BitAxisSweep3* sweep, const btVector3& worldMin,
-                          const btVector3& worldMax, unsigned maxHandles,
-                          btOverlappingPairCache* cache, bool hasNoTrees) {
-    static SweepConstructor<bt32BitAxisSweep3, unsigned>* const stock =
-        Next{HASHPHASE_SWEEP32("C2")};
-    constructBaseSweep(stock, sweep, worldMin, worldMax, maxHandles, cache, hasNoTrees);
-}
+HASHPHASE_SWEEP(constructSweep16, btAxisSweep3, unsigned short, makeWhole,
+                "_ZN12btAxisSweep3C1ERK9btVector3S2_tP22btOverlappingPairCacheb")
+HASHPHASE_SWEEP(constructBaseSweep16, btAxisSweep3, unsigned short, makeBase,
+                "_ZN12btAxisSweep3C2ERK9btVector3S2_tP22btOverlappingPairCacheb")
+HASHPHASE_SWEEP(constructSweep32, bt32BitAxisSweep3, unsigned, makeWhole,
+                "_ZN17bt32BitAxisSweep3C1ERK9btVector3S2_jP22btOverlappingPairCacheb")
+HASHPHASE_SWEEP(constructBaseSweep32, bt32BitAxisSweep3, unsigned, makeBase,
+                "_ZN17bt32BitAxisSweep3C2ERK9btVector3S2_jP22btOverlappingPairCacheb")
 }

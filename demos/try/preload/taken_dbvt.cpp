@@ -8,8 +8,6 @@
 
 #include <demos/try/preload/recorder.hpp>
 #include <demos/try/preload/stock_dbvt.hpp>
-#include <demos/try/preload/stock_parts.hpp>
-#include <demos/try/preload/verified_broadphase.hpp>
 
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
@@ -26,11 +24,6 @@ constexpr int kIsTaken = 0x68617368;
 constexpr int kIsPart = 0x70617274;
 constexpr int kSlot = btDbvtBroadphase::STAGECOUNT;
 
-void setTaken(btDbvtBroadphase& object, btBroadphaseInterface* taken) noexcept {
-    object.m_pid = taken != nullptr ? kIsTaken : 0;
-    object.m_stageRoots[kSlot] = reinterpret_cast<btDbvtProxy*>(taken);
-}
-
 btBroadphaseInterface* takenFrom(const btDbvtBroadphase& object) noexcept {
     return object.m_pid == kIsTaken
                ? reinterpret_cast<btBroadphaseInterface*>(object.m_stageRoots[kSlot])
@@ -42,7 +35,7 @@ std::unique_ptr<btBroadphaseInterface> makeTaken(const btDbvtBroadphase& object,
     if (wantedBroadphase() == Broadphase::hash) {
         return std::make_unique<SpatialHashBroadphase>(cache);
     }
-    return std::make_unique<VerifiedBroadphase>(object, cache);
+    return makeVerifiedBroadphase(object, cache);
 }
 
 bool isPart(const btDbvtBroadphase& object) noexcept {
@@ -57,10 +50,18 @@ void constructStock(btDbvtBroadphase& object, btOverlappingPairCache* cache) {
     std::memcpy(static_cast<void*>(&object), &functions, sizeof(functions));
 }
 
+// Calls the member of what was put in place, or else Bullet's function.
+template <auto Member, class Object, class Stock, class... Arguments>
+auto passOn(Object* object, Stock* stock, Arguments&&... arguments) {
+    btBroadphaseInterface* taken = takenFrom(*object);
+    return taken != nullptr ? (taken->*Member)(arguments...) : stock(object, arguments...);
+}
+
 }  // namespace
 }  // namespace hashphase::tryout
 
 using namespace hashphase::tryout;
+using Ours = btBroadphaseInterface;
 
 // Bullet's constructor makes the members anew that the compiler has made here, which hold nothing yet; its
 // destructor destroys them, and something must be there for the compiler to destroy.
@@ -78,7 +79,8 @@ btDbvtBroadphase::btDbvtBroadphase(btOverlappingPairCache* paircache) {
     }
     std::unique_ptr<btBroadphaseInterface> taken = makeTaken(*this, paircache);
     constructStock(*this, taken->getOverlappingPairCache());
-    setTaken(*this, taken.release());
+    m_pid = kIsTaken;
+    m_stageRoots[kSlot] = reinterpret_cast<btDbvtProxy*>(taken.release());
 }
 
 btDbvtBroadphase::~btDbvtBroadphase() {
@@ -89,86 +91,54 @@ btDbvtBroadphase::~btDbvtBroadphase() {
     std::construct_at(&m_rayTestStacks);
 }
 
-btBroadphaseProxy* btDbvtBroadphase::createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
-                                                 int shapeType, void* userPtr,
-                                                 int collisionFilterGroup, int collisionFilterMask,
-                                                 btDispatcher* dispatcher) {
+BulletProxy btDbvtBroadphase::createProxy(Point aabbMin, Point aabbMax, int shapeType,
+                                          void* userPtr, int collisionFilterGroup,
+                                          int collisionFilterMask, Dispatcher dispatcher) {
     noteObjects(isPart(*this) ? 0 : 1);
-    if (btBroadphaseInterface* taken = takenFrom(*this)) {
-        return taken->createProxy(aabbMin, aabbMax, shapeType, userPtr, collisionFilterGroup,
-                                  collisionFilterMask, dispatcher);
-    }
-    return stockDbvt().createProxy(this, aabbMin, aabbMax, shapeType, userPtr, collisionFilterGroup,
-                                   collisionFilterMask, dispatcher);
+    return passOn<&Ours::createProxy>(this, stockDbvt().createProxy, aabbMin, aabbMax, shapeType,
+                                      userPtr, collisionFilterGroup, collisionFilterMask,
+                                      dispatcher);
 }
 
-void btDbvtBroadphase::destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
+void btDbvtBroadphase::destroyProxy(BulletProxy proxy, Dispatcher dispatcher) {
     noteObjects(isPart(*this) ? 0 : -1);
-    if (btBroadphaseInterface* taken = takenFrom(*this)) {
-        taken->destroyProxy(proxy, dispatcher);
-    } else {
-        stockDbvt().destroyProxy(this, proxy, dispatcher);
-    }
+    passOn<&Ours::destroyProxy>(this, stockDbvt().destroyProxy, proxy, dispatcher);
 }
 
-void btDbvtBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin,
-                               const btVector3& aabbMax, btDispatcher* dispatcher) {
-    if (btBroadphaseInterface* taken = takenFrom(*this)) {
-        taken->setAabb(proxy, aabbMin, aabbMax, dispatcher);
-    } else {
-        stockDbvt().setAabb(this, proxy, aabbMin, aabbMax, dispatcher);
-    }
+void btDbvtBroadphase::setAabb(BulletProxy proxy, Point aabbMin, Point aabbMax,
+                               Dispatcher dispatcher) {
+    passOn<&Ours::setAabb>(this, stockDbvt().setAabb, proxy, aabbMin, aabbMax, dispatcher);
 }
 
-void btDbvtBroadphase::setAabbForceUpdate(btBroadphaseProxy* proxy, const btVector3& aabbMin,
-                                          const btVector3& aabbMax, btDispatcher* dispatcher) {
-    if (btBroadphaseInterface* taken = takenFrom(*this)) {
-        taken->setAabb(proxy, aabbMin, aabbMax, dispatcher);
-    } else {
-        stockDbvt().setAabbForceUpdate(this, proxy, aabbMin, aabbMax, dispatcher);
-    }
+void btDbvtBroadphase::setAabbForceUpdate(BulletProxy proxy, Point aabbMin, Point aabbMax,
+                                          Dispatcher dispatcher) {
+    passOn<&Ours::setAabb>(this, stockDbvt().setAabbForceUpdate, proxy, aabbMin, aabbMax,
+                           dispatcher);
 }
 
-void btDbvtBroadphase::getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin,
-                               btVector3& aabbMax) const {
-    if (const btBroadphaseInterface* taken = takenFrom(*this)) {
-        taken->getAabb(proxy, aabbMin, aabbMax);
-    } else {
-        stockDbvt().getAabb(this, proxy, aabbMin, aabbMax);
-    }
+void btDbvtBroadphase::getAabb(BulletProxy proxy, btVector3& aabbMin, btVector3& aabbMax) const {
+    passOn<&Ours::getAabb>(this, stockDbvt().getAabb, proxy, aabbMin, aabbMax);
 }
 
-void btDbvtBroadphase::rayTest(const btVector3& rayFrom, const btVector3& rayTo,
-                               btBroadphaseRayCallback& rayCallback, const btVector3& aabbMin,
-                               const btVector3& aabbMax) {
+void btDbvtBroadphase::rayTest(Point rayFrom, Point rayTo, btBroadphaseRayCallback& rayCallback,
+                               Point aabbMin, Point aabbMax) {
     if (isPart(*this)) {
         stockDbvt().rayTest(this, rayFrom, rayTo, rayCallback, aabbMin, aabbMax);
         return;
     }
     const RayScope scope;
-    if (btBroadphaseInterface* taken = takenFrom(*this)) {
-        taken->rayTest(rayFrom, rayTo, rayCallback, aabbMin, aabbMax);
-    } else {
-        stockDbvt().rayTest(this, rayFrom, rayTo, rayCallback, aabbMin, aabbMax);
-    }
+    passOn<&Ours::rayTest>(this, stockDbvt().rayTest, rayFrom, rayTo, rayCallback, aabbMin,
+                           aabbMax);
 }
 
-void btDbvtBroadphase::aabbTest(const btVector3& aabbMin, const btVector3& aabbMax,
-                                btBroadphaseAabbCallback& callback) {
-    if (btBroadphaseInterface* taken = takenFrom(*this)) {
-        taken->aabbTest(aabbMin, aabbMax, callback);
-    } else {
-        stockDbvt().aabbTest(this, aabbMin, aabbMax, callback);
-    }
+void btDbvtBroadphase::aabbTest(Point aabbMin, Point aabbMax, btBroadphaseAabbCallback& callback) {
+    passOn<&Ours::aabbTest>(this, stockDbvt().aabbTest, aabbMin, aabbMax, callback);
 }
 
-void btDbvtBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
+void btDbvtBroadphase::calculateOverlappingPairs(Dispatcher dispatcher) {
     const CalculateScope scope(*m_paircache);
-    if (btBroadphaseInterface* taken = takenFrom(*this)) {
-        taken->calculateOverlappingPairs(dispatcher);
-    } else {
-        stockDbvt().calculateOverlappingPairs(this, dispatcher);
-    }
+    passOn<&Ours::calculateOverlappingPairs>(this, stockDbvt().calculateOverlappingPairs,
+                                             dispatcher);
 }
 
 btOverlappingPairCache* btDbvtBroadphase::getOverlappingPairCache() {
@@ -179,35 +149,23 @@ const btOverlappingPairCache* btDbvtBroadphase::getOverlappingPairCache() const 
 }
 
 void btDbvtBroadphase::getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax) const {
-    if (const btBroadphaseInterface* taken = takenFrom(*this)) {
-        taken->getBroadphaseAabb(aabbMin, aabbMax);
-    } else {
-        stockDbvt().getBroadphaseAabb(this, aabbMin, aabbMax);
-    }
+    passOn<&Ours::getBroadphaseAabb>(this, stockDbvt().getBroadphaseAabb, aabbMin, aabbMax);
 }
 
 void btDbvtBroadphase::printStats() {
     stockDbvt().printStats(this);
 }
 
-void btDbvtBroadphase::resetPool(btDispatcher* dispatcher) {
-    if (btBroadphaseInterface* taken = takenFrom(*this)) {
-        taken->resetPool(dispatcher);
-    } else {
-        stockDbvt().resetPool(this, dispatcher);
-    }
+void btDbvtBroadphase::resetPool(Dispatcher dispatcher) {
+    passOn<&Ours::resetPool>(this, stockDbvt().resetPool, dispatcher);
 }
 
 // Parts of calculateOverlappingPairs().
-void btDbvtBroadphase::collide(btDispatcher* dispatcher) {
-    if (btBroadphaseInterface* taken = takenFrom(*this)) {
-        taken->calculateOverlappingPairs(dispatcher);
-    } else {
-        stockDbvt().collide(this, dispatcher);
-    }
+void btDbvtBroadphase::collide(Dispatcher dispatcher) {
+    passOn<&Ours::calculateOverlappingPairs>(this, stockDbvt().collide, dispatcher);
 }
 
-void btDbvtBroadphase::performDeferredRemoval(btDispatcher* dispatcher) {
+void btDbvtBroadphase::performDeferredRemoval(Dispatcher dispatcher) {
     if (takenFrom(*this) == nullptr) {
         stockDbvt().performDeferredRemoval(this, dispatcher);
     }
