@@ -1,17 +1,43 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/effects/effects_command.hpp>
 
+#include <demos/console/nearest_name.hpp>
 #include <demos/console/options.hpp>
+#include <demos/console/progress.hpp>
+#include <demos/console/result_file.hpp>
 #include <demos/console/subcommands.hpp>
-#include <demos/effects/effects.hpp>
+#include <demos/effects/effects_report.hpp>
+#include <demos/report/stopwatch.hpp>
+#include <demos/scenes/input_error.hpp>
 
 #include <CLI/CLI.hpp>
 
+#include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
 
 namespace hashphase::demos {
 namespace {
+
+struct EffectsOptions {
+    std::string scene = "paper";
+    std::string file;  // instead of a scene, where not empty
+    std::optional<std::uint32_t> objects;
+    std::optional<std::uint32_t> frames;  // measured; the scene's own number otherwise
+    std::optional<std::uint32_t> seed;
+    std::string jsonFile;  // empty: none
+    std::string csvFile;
+    std::string htmlFile;
+    std::optional<double> timeLimit;  // [s]
+    bool quiet = false;
+    bool list = false;
+    bool show = false;    // only write the scene's file
+    bool schema = false;  // only write the schema of such files
+};
 
 void declareEffects(CLI::App& app, EffectsOptions& options) {
     CLI::Option* scene = app.add_option("--scene", options.scene, "built-in scene (see --list)")
@@ -33,6 +59,83 @@ void declareEffects(CLI::App& app, EffectsOptions& options) {
     app.add_flag("--list", options.list, "say which scenes there are");
     app.add_flag("--show", options.show, "write the scene as a file, to begin one of yours with");
     app.add_flag("--schema", options.schema, "write the JSON schema of scene files");
+}
+
+EffectsFile chosenScene(const EffectsOptions& options) {
+    if (!options.file.empty()) {
+        return readEffectsFile(options.file);
+    }
+    std::vector<std::string> known;
+    for (const ExampleScene& each : exampleScenes()) {
+        if (each.name == options.scene) {
+            return parseEffectsFile(each.text, std::string(each.name) + ".json");
+        }
+        known.emplace_back(each.name);
+    }
+    throw InputError(unknownNameSentence("scene", options.scene, known));
+}
+
+void printList(std::ostream& out) {
+    out << "Scenes:\n";
+    for (const ExampleScene& each : exampleScenes()) {
+        const EffectsFile file = parseEffectsFile(each.text, std::string(each.name));
+        out << "  " << each.name << std::string(13 - each.name.size(), ' ') << file.title
+            << "\n               " << file.scene.objects
+            << " bodies; effects: " << namesOf(file.effects.set()) << '\n';
+    }
+}
+
+EffectPrices measure(const EffectsFile& file, const EffectsOptions& options, Console& console,
+                     std::size_t (*allocationCount)()) {
+    PricingSettings settings;
+    settings.frames = file.scene.frames;
+    settings.allocationCount = allocationCount;
+    const Stopwatch watch;
+    settings.isTimeUp = [&] {
+        return options.timeLimit && watch.milliseconds() > 1000 * *options.timeLimit;
+    };
+    Progress progress(console.err, progressStyle(console, options.quiet), "effects",
+                      pricingSteps(file, settings));
+    settings.tellProgress = [&](std::size_t done, std::string_view what) {
+        progress.update(done, what);
+    };
+    return priceEffects(file, settings);
+}
+
+int runEffects(const EffectsOptions& options, Console& console, std::size_t (*allocationCount)()) {
+    if (options.list) {
+        printList(console.out);
+        return kExitOk;
+    }
+    if (options.schema) {
+        console.out << effectsFileSchema();
+        return kExitOk;
+    }
+    EffectsFile file = chosenScene(options);
+    file.scene.objects = options.objects.value_or(file.scene.objects);
+    file.scene.frames = options.frames.value_or(file.scene.frames);
+    file.scene.seed = options.seed.value_or(file.scene.seed);
+    if (options.show) {
+        console.out << effectsFileText(file);
+        return kExitOk;
+    }
+    const std::string name = options.file.empty() ? options.scene : options.file;
+    if (const std::string error = simulationError(file.effects); !error.empty()) {
+        throw InputError(name + ": " + error);
+    }
+    ResultFile json(options.jsonFile);
+    ResultFile csv(options.csvFile);
+    ResultFile html(options.htmlFile);
+
+    const Provenance provenance = gatherProvenance(console.commandLine);
+    EffectPrices prices = measure(file, options, console, allocationCount);
+    prices.name = name;
+    prices.provenance = provenance;
+    printReport(prices, console.out);
+    json.write([&prices](std::ostream& out) { writeJson(prices, out); });
+    csv.write([&prices](std::ostream& out) { writeCsv(prices, out); });
+    deliverPage(pageOf(prices), html, console);
+    return allHold(prices) ? kExitOk : kExitCheckFailed;
 }
 
 }  // namespace

@@ -1,132 +1,112 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/effects/effects_losses.hpp>
-
 #include <demos/console/format.hpp>
+#include <demos/effects/effects_prices.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hashphase::demos {
 namespace {
 
-std::string amount(double number) {
-    return number < 9.95 && number != std::floor(number)
-               ? fixed(number, 1)
-               : withThousands(static_cast<std::uint64_t>(std::llround(number)));
+std::string amount(double number, const char* noun) {
+    return (number < 9.95 && number != std::floor(number)
+                ? fixed(number, 1)
+                : withThousands(static_cast<std::uint64_t>(std::llround(number)))) +
+           " " + noun;
 }
 
-/// Numbers of the whole scene, a frame.
-class PerFrame {
-public:
-    explicit PerFrame(const EffectPrices& prices)
-        : cost_(prices.whole().cost), frames_(static_cast<double>(prices.frames)) {}
-
-    [[nodiscard]] double operator()(SceneCounter counter) const {
-        return static_cast<double>(cost_[counter]) / std::max(frames_, 1.0);
-    }
-    [[nodiscard]] std::string text(SceneCounter counter, const char* noun) const {
-        return amount((*this)(counter)) + " " + noun;
-    }
-
-private:
-    const SceneCost& cost_;
-    double frames_;
+/// Two counters, and what they count.
+struct Work {
+    Effect effect;
+    SceneCounter counter;
+    const char* noun;
+    SceneCounter counterOfMore{};
+    const char* more = nullptr;
 };
 
-std::string lateText(double late, const char* what) {
-    return late > 0 ? "; " + amount(late) + " " + what : std::string();
-}
-
-std::string lateFramesText(double share) {
-    return share > 0 ? "; late in " + fixed(100 * share, 0) + " % of frames with it"
-                     : std::string();
-}
-
-std::string lossOfLooking(const EffectPrices& prices, Effect effect, const PerFrame& whole) {
-    const auto objects = static_cast<double>(prices.file.scene.objects);
-    switch (effect) {
-        case Effect::picking:
-            return whole.text(SceneCounter::picks, "clicks without an answer");
-        case Effect::boxSelection:
-            return whole.text(SceneCounter::selections, "rectangles without an answer");
-        case Effect::culling:
-            return amount(objects - prices.whole().visible) + " bodies drawn in vain" +
-                   lateFramesText(whole(SceneCounter::framesCulledLate));
-        case Effect::proximity:
-            return amount(objects) + " agents that see nobody" +
-                   lateText(whole(SceneCounter::agentsLate), "are late with it");
-        case Effect::zones:
-            return whole.text(SceneCounter::zonesTested, "zones that tell nothing") +
-                   lateText(whole(SceneCounter::zonesLate), "are late with it");
-        case Effect::radar:
-            return "no radar" + lateFramesText(whole(SceneCounter::radarsLate));
-        default:
-            return {};
-    }
-}
+using enum SceneCounter;
+constexpr std::array kWorks{
+    Work{Effect::motion, bodiesMoved, "bodies moved"},
+    Work{Effect::terrain, groundsAsked, "bodies", trianglesTested, "triangles"},
+    Work{Effect::pairs, boxesTested, "boxes tested", pairsBorn, "births"},
+    Work{Effect::response, contactsTested, "contacts", contactsSolved, "bounces"},
+    Work{Effect::sweep, sweepsSolved, "sweeps", sweepBoxesTested, "boxes"},
+    Work{Effect::sleeping, fellAsleep, "fell asleep", wokeUp, "woke"},
+    Work{Effect::picking, picks, "rays", pickBoxesTested, "boxes"},
+    Work{Effect::boxSelection, selections, "rectangles", selectionBoxesTested, "boxes"},
+    Work{Effect::culling, cellRowsCulled, "rows of cells", cullingBoxesTested, "boxes"},
+    Work{Effect::proximity, agentsScanned, "agents", neighboursTested, "distances"},
+    Work{Effect::zones, zonesTested, "zones", zoneBoxesTested, "boxes"},
+    Work{Effect::radar, radarScans, "scans", radarBoxesTested, "boxes"},
+};
 
 }  // namespace
 
+double EffectPrices::perFrame(const PricedVariant& of, SceneCounter counter) const {
+    return static_cast<double>(of.cost[counter]) /
+           static_cast<double>(std::max<std::size_t>(frames, 1));
+}
+
 std::string workOf(const EffectPrices& prices, Effect effect) {
-    const PerFrame whole(prices);
-    using enum SceneCounter;
-    switch (effect) {
-        case Effect::motion:
-            return whole.text(bodiesMoved, "bodies moved");
-        case Effect::terrain:
-            return whole.text(groundsAsked, "bodies, ") + whole.text(trianglesTested, "triangles");
-        case Effect::pairs:
-            return whole.text(boxesTested, "boxes tested, ") + whole.text(pairsBorn, "births");
-        case Effect::response:
-            return whole.text(contactsTested, "contacts, ") + whole.text(contactsSolved, "bounces");
-        case Effect::sweep:
-            return whole.text(sweepsSolved, "sweeps, ") + whole.text(sweepBoxesTested, "boxes");
-        case Effect::sleeping:
-            return whole.text(fellAsleep, "fell asleep, ") + whole.text(wokeUp, "woke");
-        case Effect::picking:
-            return whole.text(picks, "rays, ") + whole.text(pickBoxesTested, "boxes");
-        case Effect::boxSelection:
-            return whole.text(selections, "rectangles, ") +
-                   whole.text(selectionBoxesTested, "boxes");
-        case Effect::culling:
-            return whole.text(cellRowsCulled, "rows of cells, ") +
-                   whole.text(cullingBoxesTested, "boxes");
-        case Effect::proximity:
-            return whole.text(agentsScanned, "agents, ") +
-                   whole.text(neighboursTested, "distances");
-        case Effect::zones:
-            return whole.text(zonesTested, "zones, ") + whole.text(zoneBoxesTested, "boxes");
-        case Effect::radar:
-            return whole.text(radarScans, "scans, ") + whole.text(radarBoxesTested, "boxes");
-        default:
-            return {};
+    const auto work = std::ranges::find(kWorks, effect, &Work::effect);
+    if (work == kWorks.end()) {
+        return {};
     }
+    const auto text = [&](SceneCounter counter, const char* noun) {
+        return amount(prices.perFrame(prices.whole(), counter), noun);
+    };
+    return text(work->counter, work->noun) +
+           (work->more != nullptr ? ", " + text(work->counterOfMore, work->more) : "");
 }
 
 std::string lossOf(const EffectPrices& prices, Effect effect, EffectSet without) {
-    const PerFrame whole(prices);
+    const PricedVariant& whole = prices.whole();
     const PricedVariant& lacking = prices.variant(without);
+    const auto objects = static_cast<double>(prices.file.scene.objects);
+    const auto counted = [&](SceneCounter counter, const char* noun) {
+        return amount(prices.perFrame(whole, counter), noun);
+    };
+    const auto late = [&](SceneCounter counter) {
+        const double number = prices.perFrame(whole, counter);
+        return number > 0 ? "; " + amount(number, "are late with it") : "";
+    };
+    const auto lateFrames = [&](SceneCounter counter) {
+        const double share = prices.perFrame(whole, counter);
+        return share > 0 ? "; late in " + fixed(100 * share, 0) + " % of frames with it" : "";
+    };
     switch (effect) {
         case Effect::motion:
-            return whole.text(SceneCounter::bodiesMoved, "bodies stand still");
+            return counted(bodiesMoved, "bodies stand still");
         case Effect::terrain:
-            return amount(lacking.offGround) + " bodies off the ground (" +
-                   amount(prices.whole().offGround) + " with it)";
+            return amount(lacking.offGround, "bodies off the ground (") +
+                   amount(whole.offGround, "with it)");
         case Effect::pairs:
-            return amount(prices.whole().present) + " pairs that nobody knows";
+            return amount(whole.present, "pairs that nobody knows");
         case Effect::response:
-            return amount(lacking.interpenetrating) + " pairs inside each other (" +
-                   amount(prices.whole().interpenetrating) + " with it)";
+            return amount(lacking.interpenetrating, "pairs inside each other (") +
+                   amount(whole.interpenetrating, "with it)");
         case Effect::sweep:
-            return whole.text(SceneCounter::sweepersStopped, "bodies fly through what they hit");
-        case Effect::sleeping: {
-            const auto moved = static_cast<double>(lacking.cost[SceneCounter::bodiesMoved]) /
-                               std::max(static_cast<double>(prices.frames), 1.0);
-            return amount(moved - whole(SceneCounter::bodiesMoved)) +
-                   " more bodies move where nobody looks";
-        }
+            return counted(sweepersStopped, "bodies fly through what they hit");
+        case Effect::sleeping:
+            return amount(
+                prices.perFrame(lacking, bodiesMoved) - prices.perFrame(whole, bodiesMoved),
+                "more bodies move where nobody looks");
+        case Effect::picking:
+            return counted(picks, "clicks without an answer");
+        case Effect::boxSelection:
+            return counted(selections, "rectangles without an answer");
+        case Effect::culling:
+            return amount(objects - whole.visible, "bodies drawn in vain") +
+                   lateFrames(framesCulledLate);
+        case Effect::proximity:
+            return amount(objects, "agents that see nobody") + late(agentsLate);
+        case Effect::zones:
+            return counted(zonesTested, "zones that tell nothing") + late(zonesLate);
+        case Effect::radar:
+            return "no radar" + lateFrames(radarsLate);
         default:
-            return lossOfLooking(prices, effect, whole);
+            return {};
     }
 }
 

@@ -2,13 +2,9 @@
 #include <demos/effects/effects_prices.hpp>
 
 #include <demos/console/format.hpp>
-#include <demos/effects/effects_losses.hpp>
-#include <demos/effects/effects_probe.hpp>
 #include <demos/report/frame_clock.hpp>
 
 #include <algorithm>
-#include <cmath>
-#include <map>
 #include <memory>
 
 namespace hashphase::demos {
@@ -40,17 +36,15 @@ Comparison inAllOf(EffectSet declared, Effect effect) {
 /// All that has to run, each once: the whole scene first, then nothing.
 std::vector<EffectSet> setsToRun(EffectSet declared) {
     std::vector<EffectSet> sets{declared, {}};
-    const auto add = [&sets](EffectSet set) {
-        if (std::find(sets.begin(), sets.end(), set) == sets.end()) {
-            sets.push_back(set);
-        }
-    };
     for (const Effect effect : kAllEffects) {
-        if (declared.contains(effect)) {
-            for (const auto& [with, without] :
-                 {aloneOf(declared, effect), inAllOf(declared, effect)}) {
-                add(with);
-                add(without);
+        if (!declared.contains(effect)) {
+            continue;
+        }
+        for (const auto& [with, without] : {aloneOf(declared, effect), inAllOf(declared, effect)}) {
+            for (const EffectSet set : {with, without}) {
+                if (std::ranges::find(sets, set) == sets.end()) {
+                    sets.push_back(set);
+                }
             }
         }
     }
@@ -65,8 +59,7 @@ public:
         for (const EffectSet effects : setsToRun(file.effects.set())) {
             worlds_.push_back(
                 std::make_unique<EffectsWorld>(file.scene, onlyThese(file.effects, effects)));
-            prices_.variants.emplace_back();
-            prices_.variants.back().effects = effects;
+            prices_.variants.emplace_back().effects = effects;
         }
     }
 
@@ -80,6 +73,7 @@ public:
             runFrame(frame);
         }
         finish();
+        addChecks();
         return std::move(prices_);
     }
 
@@ -170,10 +164,36 @@ private:
                 *variant.allocations /= frames;
             }
         }
-        addChecks();
     }
 
-    void addChecks();
+    void addChecks() {
+        std::size_t zeros = 0;
+        std::string strays;
+        for (const PricedVariant& variant : prices_.variants) {
+            const auto look = [&](const auto& items, const auto& numbers, auto first) {
+                for (std::size_t i = 0; i < items.size(); ++i) {
+                    const SceneItem& item = items[i];
+                    if (!item.owners.isEmpty() && !variant.effects.containsAny(item.owners)) {
+                        ++zeros;
+                        strays += numbers[static_cast<decltype(first)>(i)] == 0
+                                      ? ""
+                                      : " " + std::string(item.name) + " with " +
+                                            namesOf(variant.effects) + ";";
+                    }
+                }
+            };
+            look(sceneCounters(), variant.cost, SceneCounter{});
+            look(sceneTables(), variant.footprint, SceneTable{});
+        }
+        prices_.checks = {{"What is not declared does nothing and takes no memory", strays.empty(),
+                           strays.empty() ? withThousands(zeros) +
+                                                " counters and tables of undeclared effects are 0"
+                                          : "not 0:" + strays},
+                          {"What is declared finds the same, to the bit, whatever else is declared",
+                           differences_ == 0,
+                           withThousands(differences_) + " of " + withThousands(comparisons_) +
+                               " results differ"}};
+    }
 
     const PricingSettings& settings_;
     EffectsProbe probe_;
@@ -184,35 +204,16 @@ private:
     int probes_ = 0;
 };
 
-void Pricing::addChecks() {
-    std::size_t zeros = 0;
-    std::string strays;
-    const auto look = [&](const PricedVariant& variant, const SceneItem& item,
-                          std::uint64_t number) {
-        if (item.owners.isEmpty() || variant.effects.containsAny(item.owners)) {
-            return;
-        }
-        ++zeros;
-        if (number != 0) {
-            strays += " " + std::string(item.name) + " with " + namesOf(variant.effects) + ";";
-        }
-    };
-    for (const PricedVariant& variant : prices_.variants) {
-        for (std::size_t i = 0; i < kSceneCounterCount; ++i) {
-            look(variant, sceneCounters()[i], variant.cost[static_cast<SceneCounter>(i)]);
-        }
-        for (std::size_t i = 0; i < kSceneTableCount; ++i) {
-            look(variant, sceneTables()[i], variant.footprint[static_cast<SceneTable>(i)]);
-        }
+Price priceOf(const EffectPrices& prices, const Comparison& compared) {
+    const PricedVariant& with = prices.variant(compared.with);
+    const PricedVariant& without = prices.variant(compared.without);
+    std::vector<double> differences = with.frameMs;
+    for (std::size_t i = 0; i < differences.size(); ++i) {
+        differences[i] -= without.frameMs[i];
     }
-    prices_.checks.push_back(
-        {"What is not declared does nothing and takes no memory", strays.empty(),
-         strays.empty() ? withThousands(zeros) + " counters and tables of undeclared effects are 0"
-                        : "not 0:" + strays});
-    prices_.checks.push_back(
-        {"What is declared finds the same, to the bit, whatever else is declared",
-         differences_ == 0,
-         withThousands(differences_) + " of " + withThousands(comparisons_) + " results differ"});
+    return {spreadOf(std::move(differences)),
+            static_cast<std::int64_t>(totalBytes(with.footprint)) -
+                static_cast<std::int64_t>(totalBytes(without.footprint))};
 }
 
 }  // namespace
@@ -235,39 +236,18 @@ SceneEffects onlyThese(const SceneEffects& effects, EffectSet these) {
 }
 
 const PricedVariant& EffectPrices::variant(EffectSet effects) const {
-    return *std::find_if(variants.begin(), variants.end(),
-                         [&](const PricedVariant& each) { return each.effects == effects; });
+    return *std::ranges::find(variants, effects, &PricedVariant::effects);
 }
 
 EffectPrices priceEffects(const EffectsFile& file, const PricingSettings& settings) {
     EffectPrices prices = Pricing(file, settings).run();
     const EffectSet declared = file.effects.set();
-    const auto difference = [&](const Comparison& compared) {
-        const PricedVariant& with = prices.variant(compared.with);
-        const PricedVariant& without = prices.variant(compared.without);
-        std::vector<double> differences;
-        for (std::size_t i = 0; i < with.frameMs.size(); ++i) {
-            differences.push_back(with.frameMs[i] - without.frameMs[i]);
-        }
-        return spreadOf(std::move(differences));
-    };
-    const auto bytes = [&](const Comparison& compared) {
-        return static_cast<std::int64_t>(totalBytes(prices.variant(compared.with).footprint)) -
-               static_cast<std::int64_t>(totalBytes(prices.variant(compared.without).footprint));
-    };
     for (const Effect effect : kAllEffects) {
         if (declared.contains(effect)) {
-            const Comparison alone = aloneOf(declared, effect);
             const Comparison inAll = inAllOf(declared, effect);
-            EffectPrice price;
-            price.effect = effect;
-            price.alone = difference(alone);
-            price.inAll = difference(inAll);
-            price.bytesAlone = bytes(alone);
-            price.bytesInAll = bytes(inAll);
-            price.work = workOf(prices, effect);
-            price.lost = lossOf(prices, effect, inAll.without);
-            prices.prices.push_back(std::move(price));
+            prices.prices.push_back({effect, priceOf(prices, aloneOf(declared, effect)),
+                                     priceOf(prices, inAll), workOf(prices, effect),
+                                     lossOf(prices, effect, inAll.without)});
         }
     }
     return prices;

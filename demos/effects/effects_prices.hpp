@@ -9,6 +9,7 @@
 
 #include <demos/effects/effects_world.hpp>
 #include <demos/report/check.hpp>
+#include <demos/report/provenance.hpp>
 #include <demos/report/statistics.hpp>
 
 #include <functional>
@@ -32,19 +33,24 @@ struct PricedVariant {
     std::optional<double> allocations;
 };
 
+struct Price {
+    Spread time;  // [ms a frame]
+    std::int64_t bytes = 0;
+};
+
 /// What an effect costs, and what a scene loses without it.
 struct EffectPrice {
     Effect effect{};
-    Spread alone;  // [ms a frame]
-    Spread inAll;
-    std::int64_t bytesAlone = 0;
-    std::int64_t bytesInAll = 0;
+    Price alone;
+    Price inAll;
     std::string work;  // "10,000 bodies, 12,345 triangles"
     std::string lost;  // without it
 };
 
 struct EffectPrices {
     EffectsFile file;
+    std::string name;  // of the scene; this and the next are for the caller to fill in
+    Provenance provenance;
     std::size_t frames = 0;  // measured
     bool timeLimitHit = false;
     std::vector<PricedVariant> variants;  // the whole scene first, then nothing
@@ -52,8 +58,9 @@ struct EffectPrices {
     std::vector<Check> checks;
 
     [[nodiscard]] const PricedVariant& whole() const { return variants.front(); }
-    /// The variant with these effects, which is among them (asserted).
+    /// The variant with these effects, which is among them.
     [[nodiscard]] const PricedVariant& variant(EffectSet effects) const;
+    [[nodiscard]] double perFrame(const PricedVariant& of, SceneCounter counter) const;
 };
 
 struct PricingSettings {
@@ -72,5 +79,12 @@ struct PricingSettings {
 
 /// The declaration with those effects alone.
 [[nodiscard]] SceneEffects onlyThese(const SceneEffects& effects, EffectSet these);
+
+/// What the effect did in the whole scene, a frame.
+[[nodiscard]] std::string workOf(const EffectPrices& prices, Effect effect);
+
+/// What is wrong, or lacks, in the scene without it, as it was measured: of the variant that has the
+/// effects `without`, against the whole.
+[[nodiscard]] std::string lossOf(const EffectPrices& prices, Effect effect, EffectSet without);
 
 }  // namespace hashphase::demos

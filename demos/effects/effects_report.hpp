@@ -10,24 +10,18 @@
 
 namespace hashphase::demos {
 
-struct EffectsReport {
-    EffectPrices prices;
-    std::string name;  // of the scene
-    Provenance provenance;
-};
-
-void printReport(const EffectsReport& report, std::ostream& out);
+void printReport(const EffectPrices& prices, std::ostream& out);
 
 /// Every variant with its times, counters and bytes, and the prices.
-void writeJson(const EffectsReport& report, std::ostream& out);
+void writeJson(const EffectPrices& prices, std::ostream& out);
 
 /// A row for each variant: times, counters a frame, bytes.
-void writeCsv(const EffectsReport& report, std::ostream& out);
+void writeCsv(const EffectPrices& prices, std::ostream& out);
 
 /// The price list as a page with charts.
-[[nodiscard]] Page pageOf(const EffectsReport& report);
+[[nodiscard]] Page pageOf(const EffectPrices& prices);
 
 /// Whether all checks hold.
-[[nodiscard]] bool allHold(const EffectsReport& report);
+[[nodiscard]] bool allHold(const EffectPrices& prices);
 
 }  // namespace hashphase::demos

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A scene file come to life: bodies, ground, zones, a camera that looks about, and somebody who clicks.
+// A scene file come to life: bodies, ground, zones, a camera that looks about, and somebody who clicks; and what
+// is wrong in it.
 
 #include <demos/scenes/effects_file.hpp>
 
@@ -48,6 +49,23 @@ private:
     std::vector<ProxyId> picked_;       // by them
     std::vector<ProxyId> selected_;     // by the last rectangle
     std::vector<ProxyId> allSelected_;  // by all of the frame
+};
+
+/// What is wrong in a scene, found by looking at all of it: what effects are there to prevent.
+class EffectsProbe {
+public:
+    explicit EffectsProbe(const EffectsScene& scene);
+
+    /// Pairs of spheres that reach into each other by more than a twentieth of a radius.
+    [[nodiscard]] std::size_t interpenetrating(const EffectsWorld& world) const;
+
+    /// Bodies that walk, and whose height is wrong by more than a centimetre.
+    [[nodiscard]] std::size_t offGround(const EffectsWorld& world) const;
+
+private:
+    EffectsScene scene_;
+    Grid<float> grid_;
+    hashphase::Terrain<float> ground_;
 };
 
 }  // namespace hashphase::demos

@@ -1,42 +1,27 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/effects/effects_command.hpp>
 #include <demos/effects/effects_prices.hpp>
-#include <demos/scenes/effects_file.hpp>
+#include <demos/scenes/file_bytes.hpp>
+#include <tests/demos/typed.hpp>
 #include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
 
 #include <array>
-#include <fstream>
-#include <iterator>
-#include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hashphase::demos {
 namespace {
 
-struct EffectsOutput {
-    int exitCode = 0;
-    std::string out;
-    std::string err;
-};
-
-EffectsOutput runEffectsCommand(std::vector<std::string> arguments) {
-    std::ostringstream out;
-    std::ostringstream err;
+Typed runEffectsCommand(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "effects");
-    const std::array subcommands{effectsCommand()};
-    EffectsOutput output;
-    output.exitCode = runProgram(arguments, subcommands, {out, err, false, "hashphase test"});
-    output.out = out.str();
-    output.err = err.str();
-    return output;
+    return typed(arguments, std::array{effectsCommand()});
 }
 
-std::string contentsOf(const std::string& path) {
-    std::ifstream file(path);
-    return {std::istreambuf_iterator<char>(file), {}};
+bool has(const std::string& text, std::string_view part) {
+    return text.find(part) != std::string::npos;
 }
 
 EffectsFile smallExample(std::string_view name) {
@@ -64,50 +49,48 @@ TEST(EffectsCommand, PrintsThePriceOfEachEffectAndWhatIsLostWithoutIt) {
     const std::string json = folder.file("prices.json");
     const std::string csv = folder.file("prices.csv");
     const std::string html = folder.file("prices.html");
-    const EffectsOutput output = runEffectsCommand({"--objects", "400", "--frames", "3", "--json",
-                                                    json, "--csv", csv, "--html", html, "--quiet"});
+    const Typed output = runEffectsCommand({"--objects", "400", "--frames", "3", "--json", json,
+                                            "--csv", csv, "--html", html, "--quiet"});
     EXPECT_EQ(output.exitCode, kExitOk) << output.out << output.err;
     for (const char* name : {"motion", "terrain", "pairs", "response", "picking", "boxSelection",
                              "culling", "proximity", "zones"}) {
-        EXPECT_NE(output.out.find("\n" + std::string(name) + " "), std::string::npos) << name;
+        EXPECT_TRUE(has(output.out, "\n" + std::string(name) + " ")) << name;
     }
-    EXPECT_NE(output.out.find("what is not declared costs nothing"), std::string::npos);
-    EXPECT_EQ(output.out.find("BROKEN"), std::string::npos);
-    EXPECT_NE(contentsOf(json).find("\"schema\": \"hashphase-effects\""), std::string::npos);
-    EXPECT_EQ(contentsOf(csv).rfind("effects,frame_ms,", 0), 0U);
-    EXPECT_NE(contentsOf(html).find("The price list"), std::string::npos);
+    EXPECT_TRUE(has(output.out, "what is not declared costs nothing"));
+    EXPECT_FALSE(has(output.out, "BROKEN"));
+    EXPECT_TRUE(has(readFile(json), "\"schema\": \"hashphase-effects\""));
+    EXPECT_EQ(readFile(csv).rfind("effects,frame_ms,", 0), 0U);
+    EXPECT_TRUE(has(readFile(html), "The price list"));
 }
 
 TEST(EffectsCommand, RunsAFileThatItHasShown) {
     const TemporaryFolder folder;
-    const std::string path = folder.file("mine.json");
-    const EffectsOutput shown =
-        runEffectsCommand({"--scene", "projectiles", "--objects", "200", "--show"});
+    const Typed shown = runEffectsCommand({"--scene", "projectiles", "--objects", "200", "--show"});
     EXPECT_EQ(shown.exitCode, kExitOk);
-    std::ofstream(path) << shown.out;
-    const EffectsOutput output = runEffectsCommand({"--file", path, "--frames", "2", "--quiet"});
+    const std::string path = folder.write("mine.json", shown.out);
+    const Typed output = runEffectsCommand({"--file", path, "--frames", "2", "--quiet"});
     EXPECT_EQ(output.exitCode, kExitOk) << output.err;
-    EXPECT_NE(output.out.find("200 bodies, motion, pairs, response, sweep"), std::string::npos);
+    EXPECT_TRUE(has(output.out, "200 bodies, motion, pairs, response, sweep"));
 }
 
 TEST(EffectsCommand, ListsScenesAndWritesTheSchema) {
-    const EffectsOutput list = runEffectsCommand({"--list"});
+    const Typed list = runEffectsCommand({"--list"});
     for (const ExampleScene& each : exampleScenes()) {
-        EXPECT_NE(list.out.find(each.name), std::string::npos);
+        EXPECT_TRUE(has(list.out, each.name));
     }
     EXPECT_EQ(runEffectsCommand({"--schema"}).out, effectsFileSchema());
 }
 
 TEST(EffectsCommand, RefusesWhatItCannotRun) {
-    const EffectsOutput unknown = runEffectsCommand({"--scene", "papr"});
+    const Typed unknown = runEffectsCommand({"--scene", "papr"});
     EXPECT_EQ(unknown.exitCode, kExitUsage);
-    EXPECT_NE(unknown.err.find("did you mean 'paper'?"), std::string::npos) << unknown.err;
+    EXPECT_TRUE(has(unknown.err, "did you mean 'paper'?")) << unknown.err;
     const TemporaryFolder folder;
-    const std::string path = folder.file("turning.json");
-    std::ofstream(path) << "{\"effects\": {\"motion\": true, \"rotation\": true}}\n";
-    const EffectsOutput turning = runEffectsCommand({"--file", path});
+    const std::string path =
+        folder.write("turning.json", R"({"effects": {"motion": true, "rotation": true}})");
+    const Typed turning = runEffectsCommand({"--file", path});
     EXPECT_EQ(turning.exitCode, kExitUsage);
-    EXPECT_NE(turning.err.find("Bullet alone simulates it"), std::string::npos) << turning.err;
+    EXPECT_TRUE(has(turning.err, "Bullet alone simulates it")) << turning.err;
 }
 
 TEST(EffectPrices, RunTheSceneWithAndWithoutEachEffect) {
@@ -124,7 +107,7 @@ TEST(EffectPrices, RunTheSceneWithAndWithoutEachEffect) {
         EXPECT_TRUE(check.holds) << check.claim << ": " << check.evidence;
     }
     EXPECT_GT(prices.whole().cost[SceneCounter::sweepersStopped], 0U);
-    EXPECT_NE(prices.prices[3].lost.find("fly through"), std::string::npos);
+    EXPECT_TRUE(has(prices.prices[3].lost, "fly through"));
 }
 
 TEST(EffectPrices, FindWhatIsWrongWithoutAnEffect) {
