@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,10 @@ struct DescribedTrial {
     int status = -1;
     std::vector<std::string> lines;  // below the first
 };
+
+void PrintTo(const DescribedTrial& trial, std::ostream* out) {
+    *out << trial.words;
+}
 
 /// "Name: words -> status"
 DescribedTrial headOf(const std::string& line) {
