@@ -4,6 +4,7 @@
 #include <demos/report/json_values.hpp>
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 
 namespace hashphase::demos {
@@ -23,6 +24,27 @@ ChartMark markNamed(const std::string& name) {
            : name == "bar"  ? ChartMark::kBar
            : name == "cell" ? ChartMark::kCell
                             : ChartMark::kLine;
+}
+
+Grade gradeNamed(const std::string& name) {
+    return name == "good"   ? Grade::kGood
+           : name == "fair" ? Grade::kFair
+           : name == "poor" ? Grade::kPoor
+                            : Grade::kNone;
+}
+
+/// Adds a cell to the row of the graded table that it belongs to, which follow each other.
+void addGraded(const std::vector<Value>& cell, GradedTable& graded) {
+    const auto isSame = [&](const std::vector<GradedText>& row) {
+        return row[0].text == textAt(cell, 0) && row[1].text == textAt(cell, 1);
+    };
+    if (graded.rows.empty() || !isSame(graded.rows.back())) {
+        graded.rows.push_back({{textAt(cell, 0)}, {textAt(cell, 1)}});
+    }
+    graded.rows.back().push_back({textAt(cell, 3), gradeNamed(textAt(cell, 4))});
+    if (graded.rows.size() == 1) {
+        graded.header.push_back(textAt(cell, 2));
+    }
 }
 
 // "time log0"
@@ -145,25 +167,69 @@ private:
 
     void showAs(const Json& heading, DataTable found, const Record& parameters) {
         nameColumns(found, parameters);
-        if (heading.contains("chart")) {
-            findings_.charts.push_back(chartOf(heading, std::move(found), parameters));
-        } else if (heading.contains("table")) {
-            findings_.tables.push_back(std::move(found));
-        } else if (heading.contains("rows")) {
-            findings_.rows[heading["rows"].get<std::string>()] = std::move(found);
-        } else if (heading.contains("settings")) {
-            addSentences(found, findings_.settings);
-        } else if (heading.contains("conclusions")) {
-            addSentences(found, findings_.conclusions);
-        } else if (heading.contains("checks")) {
-            for (const std::vector<Value>& row : found.rows) {
-                findings_.checks.push_back({textAt(row, 0), numberAt(row, 1) != 0, textAt(row, 2)});
-            }
+        if (heading.contains("section")) {
+            showInSection(heading, std::move(found), parameters);
         } else if (heading.contains("choices")) {
             for (const std::vector<Value>& row : found.rows) {
                 findings_.choices.push_back({textAt(row, 0), textAt(row, 1), numberAt(row, 2),
                                              numberAt(row, 3), textAt(row, 4),
                                              numberAt(row, 5) != 0});
+            }
+        } else if (heading.contains("verdict")) {
+            const std::vector<Value>& row = found.rows.at(0);
+            findings_.verdict = textAt(row, 0);
+            findings_.holds =
+                row.at(1).index() == 0 ? std::nullopt : std::optional(numberAt(row, 1) != 0);
+        } else if (heading.contains("rows")) {
+            findings_.rows[heading["rows"].get<std::string>()] = std::move(found);
+        } else if (heading.contains("print")) {
+            findings_.printed.emplace_back(filled(heading["print"], parameters), std::move(found));
+        } else {
+            showIn(findings_, heading, std::move(found), parameters);
+        }
+    }
+
+    void showInSection(const Json& heading, DataTable found, const Record& parameters) {
+        const std::string name = filled(heading["section"], parameters);
+        const auto section =
+            std::find_if(findings_.sections.begin(), findings_.sections.end(),
+                         [&](const PageSection& each) { return each.heading == name; });
+        if (heading.contains("sentences")) {
+            PageSection begun;
+            begun.heading = name;
+            addSentences(found, begun.sentences);
+            if (!begun.sentences.empty()) {
+                findings_.sections.push_back(std::move(begun));
+            }
+        } else if (section == findings_.sections.end()) {
+            return;
+        } else if (heading.contains("graded")) {
+            GradedTable& graded = section->graded.emplace_back();
+            graded.caption = filled(heading["graded"], parameters);
+            graded.legend = heading.at("legend").get<std::array<std::string, 3>>();
+            graded.header = {titleOf(found.columns.at(0)), titleOf(found.columns.at(1))};
+            for (const std::vector<Value>& cell : found.rows) {
+                addGraded(cell, graded);
+            }
+        } else {
+            showIn(*section, heading, std::move(found), parameters);
+        }
+    }
+
+    /// In all findings, or in a section of them.
+    template <class Place>
+    void showIn(Place& place, const Json& heading, DataTable found, const Record& parameters) {
+        if (heading.contains("chart")) {
+            place.charts.push_back(chartOf(heading, std::move(found), parameters));
+        } else if (heading.contains("table")) {
+            place.tables.push_back(std::move(found));
+        } else if (heading.contains("settings")) {
+            addSentences(found, place.settings);
+        } else if (heading.contains("conclusions")) {
+            addSentences(found, place.conclusions);
+        } else if (heading.contains("checks")) {
+            for (const std::vector<Value>& row : found.rows) {
+                place.checks.push_back({textAt(row, 0), numberAt(row, 1) != 0, textAt(row, 2)});
             }
         } else {
             throw std::logic_error("Nothing is shown as " + heading.dump() + '.');

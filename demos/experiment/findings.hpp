@@ -17,20 +17,35 @@
 //                                   a chart (chart.hpp): marks line, point, bar, cell; scales linear, log,
 //                                   log0, names
 //
-// Beside these, "each" holds a SELECT for whose rows the statement is shown in turn, with their columns as
+//   {"verdict": "of all"}           a sentence, and whether all that is checked holds: 1, 0, or null where nothing
+//                                   was compared
+//   {"print": "caption"}            a table for the report of text
+//
+// Pages of several sections: what has "section": "heading" beside these goes there. A section begins with
+//
+//   {"sentences": "what", "section": "heading"}
+//                                   a row each; where there are none, the page goes without the section
+//   {"graded": "caption", "legend": [good, fair, poor], "section": ..}
+//                                   a row for each cell: what heads its row, twice; what heads its column; its
+//                                   text; its grade, "good", "fair", "poor" or null
+//
+// Beside all these, "each" holds a SELECT for whose rows the statement is shown in turn, with their columns as
 // parameters ":name"; statements in a row with the same "each" are shown together for each of its rows, but
-// for those whose "when" is "0". In names, titles and settings of charts, in titles of columns and in
-// "when", "{...}" is an expression over the view `texts`, which the declaration makes, and these
-// parameters.
+// for those whose "when" is "0". In names, titles and settings of charts, in captions, headings, titles of
+// columns and in "when", "{...}" is an expression over the view `texts`, which the declaration makes, and
+// these parameters.
 
 #include <demos/experiment/measurements.hpp>
 #include <demos/report/chart.hpp>
 #include <demos/report/check.hpp>
+#include <demos/report/page.hpp>
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace hashphase::demos {
@@ -53,6 +68,10 @@ struct Findings {
     std::vector<Choice> choices;
     std::vector<std::string> conclusions;
     std::map<std::string, DataTable, std::less<>> rows;
+    std::string verdict;
+    std::optional<bool> holds;  // all that is checked
+    std::vector<PageSection> sections;
+    std::vector<std::pair<std::string, DataTable>> printed;  // under their captions
 };
 
 /// The texts of the table's first column.

@@ -242,7 +242,7 @@ void Measurements::create(std::string_view table, const std::vector<std::string_
     insertions_.push_back({std::string(table), {columns.begin(), columns.end()}, prepare(sql)});
 }
 
-void Measurements::add(std::string_view table, const Record& record) {
+std::int64_t Measurements::add(std::string_view table, const Record& record) {
     if (find(table) == nullptr) {
         std::vector<std::string_view> columns;
         for (const auto& [name, datum] : record) {
@@ -269,6 +269,7 @@ void Measurements::add(std::string_view table, const Record& record) {
     if (done != SQLITE_DONE) {
         refuse(database_.get(), table);
     }
+    return sqlite3_last_insert_rowid(database_.get());
 }
 
 DataTable Measurements::take(std::string_view& sql, const Record& parameters) {

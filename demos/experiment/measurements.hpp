@@ -64,9 +64,9 @@ public:
     /// Makes a table, of which there may then be no row.
     void create(std::string_view table, const std::vector<std::string_view>& columns);
 
-    /// Appends a row to the table; the first one makes it where there is none, and all have the same columns
-    /// in the same order. Throws std::logic_error where they have not.
-    void add(std::string_view table, const Record& record);
+    /// Appends a row to the table and returns its rowid; the first one makes it where there is none, and all
+    /// have the same columns in the same order. Throws std::logic_error where they have not.
+    std::int64_t add(std::string_view table, const Record& record);
 
     /// Carries out the first statement of the SQL and takes it off. Its rows, with what it calls its
     /// columns; empty of one that gives none. `parameters` are those that it names, as ":name". Throws

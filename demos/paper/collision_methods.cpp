@@ -1,37 +1,128 @@
 // SPDX-License-Identifier: Zlib
+#include <broadphase/pairs.hpp>
 #include <demos/accuracy/baselines/paper_map.hpp>
-#include <demos/paper/collision_parts.hpp>
-#include <demos/paper/phase_makers.hpp>
+#include <demos/paper/phase_method.hpp>
+#include <integration/terrain/terrain.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <numeric>
 #include <utility>
-#include <vector>
 
 namespace hashphase::demos {
 namespace {
 
-PhaseAnswer sortedAnswer(std::vector<std::uint64_t> pairs, std::vector<float> numbers) {
-    std::sort(pairs.begin(), pairs.end());
-    return {std::move(pairs), std::move(numbers)};
+/// What becomes of the spheres once their pairs are found: where they stand and how they fly on.
+class CollisionMethod : public PhaseMethod {
+public:
+    CollisionMethod(const MethodPlan& /*plan*/, const TestBed& /*bed*/, Subjects subjects)
+        : subjects_(std::move(subjects)) {}
+
+    [[nodiscard]] PhaseAnswer answer() const override {
+        PhaseAnswer answer{keys_, {}};
+        std::sort(answer.found.begin(), answer.found.end());
+        for (const std::uint32_t object : subjects_.list()) {
+            const Vector3<float>& velocity = after_[object];
+            answer.numbers.insert(answer.numbers.end(),
+                                  {heights_[object], velocity.x(), velocity.y(), velocity.z()});
+        }
+        return answer;
+    }
+    [[nodiscard]] std::size_t memoryBytes() const override {
+        return after_.capacity() * sizeof(after_[0]) + heights_.capacity() * sizeof(float) +
+               keys_.capacity() * sizeof(keys_[0]);
+    }
+
+protected:
+    /// Begins a frame: nobody has met anybody.
+    void begin(const TestBed& bed) {
+        centres_ = bed.centres();
+        before_ = bed.velocities();
+        after_.assign(before_.begin(), before_.end());
+        heights_.assign(centres_.size(), 0);
+        keys_.clear();
+    }
+
+    /// Two whose boxes overlap: if the spheres touch and approach, they exchange their speeds along
+    /// the line between them, as they were when the frame began, so the order does not matter.
+    void meet(std::uint32_t a, std::uint32_t b) {
+        constexpr float kTouching = 2 * PaperScene::kRadius;
+        const Vector3<float> between = centres_[b] - centres_[a];
+        const float squared = between.squaredNorm();
+        const float approach = (before_[a] - before_[b]).dot(between);
+        if (squared <= kTouching * kTouching && approach > 0) {
+            const Vector3<float> exchanged = between * (approach / squared);
+            after_[a] -= exchanged;
+            after_[b] += exchanged;
+        }
+    }
+
+    /// The sphere rests on ground of that height [m].
+    void restOn(std::uint32_t object, float groundHeight) {
+        heights_[object] = groundHeight + PaperScene::kRadius;
+    }
+
+    Subjects subjects_;
+    std::vector<std::uint64_t> keys_;  // of what lists them itself
+
+private:
+    std::span<const Vector3<float>> centres_;
+    std::span<const Vector3<float>> before_;
+    std::vector<Vector3<float>> after_;
+    std::vector<float> heights_;
+};
+
+/// The height of the triangle at that place of the map, or nothing where the place is beside it. Edges
+/// belong to both sides.
+std::optional<float> heightOf(const TriangleGround& ground, std::size_t triangle, float x,
+                              float z) {
+    constexpr float kEdge = 1e-5F;  // rounding must not lose a point between two triangles
+    const Aabb<float>& box = ground.boxes[triangle];
+    if (x < box.min().x() || x > box.max().x() || z < box.min().z() || z > box.max().z()) {
+        return std::nullopt;
+    }
+    const auto [a, b, c] = ground.corners(triangle);
+    const float abX = b.x() - a.x();
+    const float abZ = b.z() - a.z();
+    const float acX = c.x() - a.x();
+    const float acZ = c.z() - a.z();
+    const float inverseArea = 1 / (abX * acZ - abZ * acX);
+    const float u = ((x - a.x()) * acZ - (z - a.z()) * acX) * inverseArea;
+    const float v = (abX * (z - a.z()) - abZ * (x - a.x())) * inverseArea;
+    if (u < -kEdge || v < -kEdge || u + v > 1 + kEdge) {
+        return std::nullopt;
+    }
+    return a.y() + u * (b.y() - a.y()) + v * (c.y() - a.y());
+}
+
+/// The height of the ground below the centre. No surface is vertical or above another one, so the first
+/// of the triangles that has the place is the answer; 0 where none has.
+float groundHeight(const TriangleGround& ground, std::span<const std::uint32_t> triangles,
+                   const Vector3<float>& centre) {
+    for (const std::uint32_t triangle : triangles) {
+        if (const auto height = heightOf(ground, triangle, centre.x(), centre.z())) {
+            return *height;
+        }
+    }
+    return 0;
 }
 
 /// All boxes with all boxes, and for each the triangles one by one until one has it.
-class BruteCollision final : public PhaseMethod {
+class BruteCollision final : public CollisionMethod {
 public:
-    explicit BruteCollision(Subjects subjects) : subjects_(std::move(subjects)) {}
+    using CollisionMethod::CollisionMethod;
 
     void run(const TestBed& bed) override {
-        states_.begin(bed);
-        pairs_.clear();
+        begin(bed);
         const std::vector<Aabb<float>>& boxes = bed.boxes();
         for (const std::uint32_t a : subjects_.list()) {
             const Aabb<float>& box = boxes[a];
             for (std::uint32_t b = subjects_.areAll() ? a + 1 : 0; b < boxes.size(); ++b) {
                 // Of two subjects, the first one has seen the pair.
                 if (overlaps(box, boxes[b]) && (b > a || !subjects_.contains(b))) {
-                    pairs_.push_back(pairKeyOf(a, b));
-                    states_.meet(a, b);
+                    keys_.push_back(pairKeyOf(a, b));
+                    meet(a, b);
                 }
             }
         }
@@ -41,36 +132,24 @@ public:
         std::vector<std::uint32_t> all(bed.ground().boxes.size());
         std::iota(all.begin(), all.end(), 0U);
         for (const std::uint32_t object : subjects_.list()) {
-            const Vector3<float>& centre = bed.centres()[object];
-            states_.stand(object, groundHeight(bed.ground(), all, centre.x(), centre.z()));
+            restOn(object, groundHeight(bed.ground(), all, bed.centres()[object]));
         }
     }
-
-    [[nodiscard]] PhaseAnswer answer() const override {
-        return sortedAnswer(pairs_, states_.numbers(subjects_));
-    }
-    [[nodiscard]] std::size_t memoryBytes() const override {
-        return states_.memoryBytes() + pairs_.capacity() * sizeof(pairs_[0]);
-    }
-
-private:
-    Subjects subjects_;
-    SphereStates states_;
-    std::vector<std::uint64_t> pairs_;
 };
 
 /// The paper's: all buckets wiped, every sphere filed in each cell that its box touches, those of a
 /// bucket compared with each other; triangles filed once, in cells of the same size.
-class PaperCollision final : public PhaseMethod {
+class PaperCollision final : public CollisionMethod {
 public:
-    PaperCollision(const TestBed& bed, float cellSize)
-        : spheres_(bed.domain(), cellSize), triangles_(bed.ground().boxes, cellSize) {}
+    PaperCollision(const MethodPlan& plan, const TestBed& bed, Subjects subjects)
+        : CollisionMethod(plan, bed, std::move(subjects)),
+          spheres_(bed.domain(), static_cast<float>(plan.cellSize)),
+          triangles_(bed.ground().boxes, static_cast<float>(plan.cellSize)) {}
 
     void hash(const TestBed& bed) override { spheres_.refile(bed.boxes()); }
 
     void run(const TestBed& bed) override {
-        states_.begin(bed);
-        pairs_.clear();
+        begin(bed);
         const PaperMap::Range all = spheres_.all();
         for (int z = all.lowZ; z <= all.highZ; ++z) {
             for (int x = all.lowX; x <= all.highX; ++x) {
@@ -81,20 +160,14 @@ public:
 
     void stand(const TestBed& bed) override {
         for (std::uint32_t object = 0; object < bed.objects(); ++object) {
-            const float x = bed.centres()[object].x();
-            const float z = bed.centres()[object].z();
-            const PaperMap::Cell cell = triangles_.cellAt(x, z);
-            states_.stand(object,
-                          groundHeight(bed.ground(), triangles_.objects(cell.x, cell.z), x, z));
+            const Vector3<float>& centre = bed.centres()[object];
+            const PaperMap::Cell cell = triangles_.cellAt(centre.x(), centre.z());
+            restOn(object, groundHeight(bed.ground(), triangles_.objects(cell.x, cell.z), centre));
         }
     }
 
-    [[nodiscard]] PhaseAnswer answer() const override {
-        return sortedAnswer(pairs_, states_.numbers(Subjects::all(states_.size())));
-    }
     [[nodiscard]] std::size_t memoryBytes() const override {
-        return spheres_.memoryBytes() + triangles_.memoryBytes() + states_.memoryBytes() +
-               pairs_.capacity() * sizeof(pairs_[0]);
+        return spheres_.memoryBytes() + triangles_.memoryBytes() + CollisionMethod::memoryBytes();
     }
 
 private:
@@ -104,8 +177,8 @@ private:
             const Aabb<float>& a = boxes[bucket[i]];
             for (const std::uint32_t other : bucket.subspan(i + 1)) {
                 if (overlaps(a, boxes[other]) && isHome(x, z, a, boxes[other])) {
-                    pairs_.push_back(pairKeyOf(bucket[i], other));
-                    states_.meet(bucket[i], other);
+                    keys_.push_back(pairKeyOf(bucket[i], other));
+                    meet(bucket[i], other);
                 }
             }
         }
@@ -121,28 +194,81 @@ private:
 
     PaperMap spheres_;
     PaperMap triangles_;
-    SphereStates states_;
-    std::vector<std::uint64_t> pairs_;
+};
+
+/// Pairs keep track from frame to frame, and file what has moved; the terrain is asked for all at
+/// once.
+class HashCollision final : public OnGrid<CollisionMethod> {
+public:
+    HashCollision(const MethodPlan& plan, const TestBed& bed, Subjects subjects)
+        : OnGrid(plan, bed, std::move(subjects)),
+          pairs_(grid_),
+          triangles_({.cellSize = plan.cellSize}),
+          terrain_(triangles_) {
+        terrain_.add(bed.ground().vertices, bed.ground().indices);
+        triangles_.update();
+    }
+
+    void hash(const TestBed& /*bed*/) override {}
+
+    void run(const TestBed& bed) override {
+        begin(bed);
+        moveAll(bed);
+        const PairChanges changes = pairs_.update([](ProxyId, ProxyId) { return true; });
+        survived_.clear();
+        std::set_difference(current_.begin(), current_.end(), changes.died.begin(),
+                            changes.died.end(), std::back_inserter(survived_));
+        current_.clear();
+        std::merge(survived_.begin(), survived_.end(), changes.born.begin(), changes.born.end(),
+                   std::back_inserter(current_));
+        for (const auto& [a, b] : current_) {
+            meet(a.index, b.index);
+        }
+    }
+
+    void stand(const TestBed& bed) override {
+        above_.resize(bed.objects());
+        grounds_.resize(bed.objects());
+        for (std::size_t i = 0; i < above_.size(); ++i) {
+            above_[i] = bed.centres()[i];
+            above_[i].y() = Terrain::kHighest + 1;
+        }
+        terrain_.surfacesBelow(above_, grounds_);
+        for (std::uint32_t i = 0; i < bed.objects(); ++i) {
+            restOn(i, grounds_[i] ? grounds_[i]->height : 0);
+        }
+    }
+
+    [[nodiscard]] PhaseAnswer answer() const override {
+        PhaseAnswer answer = OnGrid::answer();
+        for (const auto& [a, b] : current_) {
+            answer.found.push_back(pairKeyOf(a.index, b.index));
+        }
+        return answer;
+    }
+
+    [[nodiscard]] std::size_t memoryBytes() const override {
+        return pairs_.memoryBytes() + triangles_.memoryBytes() + terrain_.memoryBytes() +
+               OnGrid::memoryBytes() +
+               (current_.capacity() + survived_.capacity()) * sizeof(ProxyPair) +
+               above_.capacity() * sizeof(above_[0]) + grounds_.capacity() * sizeof(grounds_[0]);
+    }
+
+private:
+    Pairs<float> pairs_;
+    Grid<float> triangles_;
+    hashphase::Terrain<float> terrain_;
+    std::vector<ProxyPair> current_;  // sorted
+    std::vector<ProxyPair> survived_;
+    std::vector<Vector3<float>> above_;
+    std::vector<hashphase::Terrain<float>::Found> grounds_;
 };
 
 }  // namespace
 
-std::vector<float> SphereStates::numbers(const Subjects& subjects) const {
-    std::vector<float> numbers;
-    numbers.reserve(4 * subjects.list().size());
-    for (const std::uint32_t object : subjects.list()) {
-        const Vector3<float>& velocity = after_[object];
-        numbers.insert(numbers.end(), {heights_[object], velocity.x(), velocity.y(), velocity.z()});
-    }
-    return numbers;
-}
-
-std::unique_ptr<PhaseMethod> bruteCollision(Subjects subjects) {
-    return std::make_unique<BruteCollision>(std::move(subjects));
-}
-
-std::unique_ptr<PhaseMethod> paperCollision(const TestBed& bed, float cellSize) {
-    return std::make_unique<PaperCollision>(bed, cellSize);
+std::unique_ptr<PhaseMethod> makeCollisionMethod(const MethodPlan& plan, const TestBed& bed,
+                                                 Subjects subjects) {
+    return makeOneOf<BruteCollision, PaperCollision, HashCollision>(plan, bed, std::move(subjects));
 }
 
 }  // namespace hashphase::demos

@@ -1,17 +1,30 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// `hashphase paper`: figures 13, 14 and 15 of the paper, then and today.
+// `hashphase paper`: figures 13, 14 and 15 of the paper, then and today, and what the paper leaves open.
 
-#include <demos/console/program.hpp>
-#include <demos/paper/paper_results.hpp>
+#include <demos/experiment/findings.hpp>
+#include <demos/paper/phase_measurement.hpp>
 
-#include <cstdint>
+#include <functional>
+#include <iosfwd>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hashphase::demos {
+
+inline constexpr float kAiRadius = 10;  // [m]; the paper does not give it
+
+struct PaperPlan {
+    std::vector<std::uint32_t> objects{kPrintedObjects.begin(), kPrintedObjects.end()};
+    std::uint64_t seed = 1;
+    float aiRadius = kAiRadius;
+    std::uint32_t sweepObjects = 20'000;  // of the sweeps of radius and cell size
+    std::uint32_t sticks = 10'000;
+    PhaseEffort effort;
+};
 
 struct PaperOptions {
     bool quick = false;
@@ -30,12 +43,46 @@ struct PaperOptions {
 /// What the options ask for; hurried where there is a time limit.
 [[nodiscard]] PaperPlan planOf(const PaperOptions& options);
 
-/// Measures, writes the figures, and returns exitCodeOf() them. Throws InputError for files that
-/// cannot be written.
-int runPaper(const PaperOptions& options, Console& console);
+/// Who is told, and asked, while it is measured.
+struct PaperWatch {
+    IsTimeUp isTimeUp = [] { return false; };
+    std::function<void(std::size_t done, std::string_view what)> tellProgress =
+        [](std::size_t, std::string_view) {};
+};
+
+/// How many steps it tells of.
+[[nodiscard]] std::size_t paperSteps(const PaperPlan& plan);
+
+/// The row of `plan`.
+void addPlan(const PaperPlan& plan, Measurements& measured);
+
+/// All rows, which paper.sql names.
+[[nodiscard]] Measurements measurePaper(const PaperPlan& plan, const PaperWatch& watch = {});
+
+struct PaperReport {
+    /// What paper.sql shows of the measured.
+    PaperReport(PaperPlan itsPlan, Measurements itsMeasured, Provenance itsProvenance = {});
+
+    PaperPlan plan;
+    Measurements measured;
+    Provenance provenance;
+    Findings findings;
+};
 
 /// kExitCheckFailed when a method found something else than brute force, or nothing was compared.
 /// Times do not matter.
-[[nodiscard]] int exitCodeOf(const PaperResults& results);
+[[nodiscard]] int exitCodeOf(const PaperReport& report);
+
+/// The figures as tables; `showMilliseconds` in place of frames a second.
+void printReport(PaperReport& report, bool showMilliseconds, std::ostream& out);
+
+/// Schema "hashphase-paper".
+void writeJson(PaperReport& report, std::ostream& out);
+
+/// A row for each method of each part.
+void writeCsv(PaperReport& report, std::ostream& out);
+
+/// All of it as a page with charts.
+[[nodiscard]] Page pageOf(const PaperReport& report);
 
 }  // namespace hashphase::demos

@@ -2,11 +2,15 @@
 #include <demos/paper/paper_command.hpp>
 
 #include <demos/console/options.hpp>
+#include <demos/console/progress.hpp>
+#include <demos/console/result_file.hpp>
 #include <demos/console/subcommands.hpp>
 #include <demos/paper/paper.hpp>
+#include <demos/report/stopwatch.hpp>
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <memory>
 
 namespace hashphase::demos {
@@ -44,7 +48,59 @@ void declarePaper(CLI::App& app, PaperOptions& options) {
     app.add_flag("--quiet", options.quiet, "no progress on stderr");
 }
 
+int runPaper(const PaperOptions& options, Console& console) {
+    const PaperPlan plan = planOf(options);
+    ResultFile json(options.jsonFile);
+    ResultFile csv(options.csvFile);
+    ResultFile html(options.htmlFile);
+    Provenance provenance = gatherProvenance(console.commandLine);
+    const auto measure = [&] {
+        const Stopwatch watch;
+        Progress progress(console.err, progressStyle(console, options.quiet), "paper",
+                          paperSteps(plan));
+        PaperWatch watcher;
+        watcher.isTimeUp = [&] {
+            return options.timeLimit && watch.milliseconds() > 1000 * *options.timeLimit;
+        };
+        watcher.tellProgress = [&](std::size_t done, std::string_view what) {
+            progress.update(done, what);
+        };
+        return measurePaper(plan, watcher);
+    };
+    PaperReport report(plan, measure(), std::move(provenance));
+    printReport(report, options.showMilliseconds, console.out);
+    json.write([&report](std::ostream& out) { writeJson(report, out); });
+    csv.write([&report](std::ostream& out) { writeCsv(report, out); });
+    deliverPage(pageOf(report), html, console);
+    return exitCodeOf(report);
+}
+
 }  // namespace
+
+PaperPlan planOf(const PaperOptions& options) {
+    PaperPlan plan;
+    plan.seed = options.seed;
+    plan.aiRadius = options.aiRadius;
+    if (options.quick) {
+        plan.sweepObjects = 2'500;
+        plan.sticks = 2'000;
+        plan.effort.frames = 6;
+        plan.effort.fewestFrames = 1;
+        plan.effort.methodMilliseconds = 30;
+    }
+    if (!options.objects.empty()) {
+        plan.objects = options.objects;
+        std::sort(plan.objects.begin(), plan.objects.end());
+        plan.objects.erase(std::unique(plan.objects.begin(), plan.objects.end()),
+                           plan.objects.end());
+        plan.sweepObjects = std::min(plan.sweepObjects, plan.objects.back());
+        plan.sticks = std::min(plan.sticks, plan.objects.back());
+    }
+    plan.effort.frames = options.frames.value_or(plan.effort.frames);
+    plan.effort.fewestFrames = std::min(plan.effort.fewestFrames, plan.effort.frames);
+    plan.effort.isHurried = options.timeLimit.has_value();
+    return plan;
+}
 
 Subcommand paperCommand() {
     auto options = std::make_shared<PaperOptions>();

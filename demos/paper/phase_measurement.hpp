@@ -13,12 +13,14 @@
 // Checked   In every frame that the un-optimized method runs, for all objects. Without it in the
 //           first frame, unless hurried, and in the last one of each method for some objects drawn at
 //           random.
+// Rows      `runs`, one for each method; `frames`, what each timed frame took; `checks`, each frame that
+//           was compared, with its fault; `memory`, of what was timed. See paper.sql.
 
-#include <demos/paper/paper_check.hpp>
+#include <demos/experiment/measurements.hpp>
 #include <demos/paper/phase_method.hpp>
-#include <demos/report/statistics.hpp>
 
 #include <functional>
+#include <span>
 #include <string>
 
 namespace hashphase::demos {
@@ -39,60 +41,31 @@ struct PhaseTask {
     Phase phase = Phase::collision;
     std::uint32_t objects = 0;
     std::uint64_t seed = 1;
-    float aiRadius = 10;  // [m]
+    float aiRadius = 10;               // [m]
+    std::string_view part = "figure";  // that it is measured for
 };
 
 /// At most so many objects are compared with all where the un-optimized method has not run, in a last
 /// frame or where there are more than kMostBruteForced.
 inline constexpr std::uint32_t kSpotChecked = 1'000;
 
-struct MethodResult {
-    MethodKind kind = MethodKind::hashphase;
-    std::optional<double> cellSize;  // [m]
-    std::vector<double> frameMs;     // empty: the time was up before
-    std::vector<double> hashMs;      // of these, what PhaseMethod::hash() took
-    std::vector<double> standMs;     // ... and PhaseMethod::stand()
-    std::uint32_t checkedFrames = 0;
-    std::uint32_t checkedTimed = 0;    // of these, which were timed too
-    std::uint64_t checkedObjects = 0;  // of all these frames
-    std::uint32_t wrongFrames = 0;
-    std::string fault;  // of the first of these: "3 of 5,000 are missing, 0 are extra"
-    std::optional<std::size_t> bytes;      // of what is measured
-    std::optional<double> chosenCellSize;  // [m]; of what is measured and has cells
-
-    [[nodiscard]] bool isMeasured() const { return !frameMs.empty(); }
-    /// The frames less their hashing and the ground [ms].
-    [[nodiscard]] std::vector<double> lookMs() const;
-    /// [ms]; only of what is measured.
-    [[nodiscard]] Spread time() const { return spreadOf(frameMs); }
-    /// [frames/s], of the median; nothing where nothing is measured.
-    [[nodiscard]] std::optional<double> rate() const;
-};
-
-struct PhaseResult {
-    PhaseTask task;
-    float side = 0;                     // of the domain [m]
-    std::size_t triangles = 0;          // of the ground
-    std::vector<MethodResult> methods;  // in the order of their specs
-    std::size_t found = 0;  // most that a check has found right in a frame: PhaseAnswer::found
-
-    [[nodiscard]] const MethodResult* find(MethodKind kind, std::optional<double> cellSize) const;
-};
-
-/// "paper's grid, cells of 25 m".
-[[nodiscard]] std::string describe(const MethodResult& method);
-
 /// Where the time is up, what has not run is left out.
-[[nodiscard]] PhaseResult measurePhase(
+void measurePhase(
     const PhaseTask& task, std::span<const MethodSpec> specs, const PhaseEffort& effort,
+    Measurements& measured, const IsTimeUp& isTimeUp = [] { return false; });
+
+/// How well spheres, AABBs and OBBs work as a first pass for sticks, which are not round (the paper's
+/// "efficiency of hashing different bounding volume types"): a row of `volumes` for each in turn in each
+/// frame, as many as the effort allows until the time is up. In the first frame, which is not timed, they
+/// are compared with the exact test of all pairs: a row of `volume_checks` for each.
+void measureVolumes(
+    std::uint32_t sticks, const PhaseEffort& effort, std::uint64_t seed, Measurements& measured,
     const IsTimeUp& isTimeUp = [] { return false; });
 
-/// What is wrong with an answer for all objects, given the right one for the subjects; empty where
-/// nothing is.
-[[nodiscard]] std::string faultOf(Phase phase, const PhaseAnswer& answer, const PhaseAnswer& right,
-                                  const Subjects& subjects);
-
-/// That of all results no frame is wrong, with the first that are; not checked where no frame was.
-[[nodiscard]] PaperCheck agreement(std::span<const PhaseResult> results);
+/// What is wrong with an answer for all objects, given the right one for the subjects; nothing where
+/// nothing is: "3 of 5,000 are missing, 0 are extra".
+[[nodiscard]] std::optional<std::string> faultOf(Phase phase, const PhaseAnswer& answer,
+                                                 const PhaseAnswer& right,
+                                                 const Subjects& subjects);
 
 }  // namespace hashphase::demos

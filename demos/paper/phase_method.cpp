@@ -1,103 +1,60 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/paper/phase_method.hpp>
 
-#include <demos/paper/phase_makers.hpp>
-
-#include <numeric>
+#include <algorithm>
 #include <utility>
 
 namespace hashphase::demos {
 
+std::string_view nameOf(Phase phase) {
+    constexpr std::array<std::string_view, 3> kNames{"collision", "visibility", "AI"};
+    return kNames[static_cast<std::size_t>(phase)];
+}
+
+std::string_view nameOf(MethodKind kind) {
+    constexpr std::array<std::string_view, 3> kNames{"un-optimized", "paper's grid", "hashphase"};
+    return kNames[static_cast<std::size_t>(kind)];
+}
+
+Subjects::Subjects(std::vector<char> isOne) : isOne_(std::move(isOne)) {
+    for (std::uint32_t i = 0; i < isOne_.size(); ++i) {
+        if (contains(i)) {
+            list_.push_back(i);
+        }
+    }
+}
+
 Subjects Subjects::all(std::uint32_t objects) {
-    Subjects subjects;
-    subjects.isOne_.assign(objects, 1);
-    subjects.list_.resize(objects);
-    std::iota(subjects.list_.begin(), subjects.list_.end(), 0U);
-    return subjects;
+    return Subjects(std::vector<char>(objects, 1));
 }
 
 Subjects Subjects::drawn(std::uint32_t objects, std::uint32_t count, std::uint64_t seed) {
     Random random(seed);
-    Subjects subjects;
-    subjects.isOne_.assign(objects, 0);
+    std::vector<char> isOne(objects, 0);
     for (std::uint32_t i = 0; i < count; ++i) {
         const auto object = static_cast<std::uint32_t>(random.unit() * static_cast<float>(objects));
-        subjects.isOne_[std::min(object, objects - 1)] = 1;
+        isOne[std::min(object, objects - 1)] = 1;
     }
-    for (std::uint32_t i = 0; i < objects; ++i) {
-        if (subjects.contains(i)) {
-            subjects.list_.push_back(i);
-        }
-    }
-    return subjects;
+    return Subjects(std::move(isOne));
 }
 
-std::string_view nameOf(MethodKind kind) {
-    switch (kind) {
-        case MethodKind::unoptimized:
-            return "un-optimized";
-        case MethodKind::paperGrid:
-            return "paper's grid";
-        case MethodKind::hashphase:
-            return "hashphase";
-    }
-    return {};
+std::unique_ptr<PhaseMethod> makeMethod(const MethodPlan& plan, const TestBed& bed,
+                                        Subjects subjects) {
+    constexpr std::array<MakeMethod*, 3> kMakers{makeCollisionMethod, makeVisibilityMethod,
+                                                 makeAiMethod};
+    return kMakers[static_cast<std::size_t>(plan.phase)](plan, bed, std::move(subjects));
 }
 
-std::unique_ptr<PhaseMethod> bruteForce(Phase phase, Subjects subjects, float aiRadius) {
-    switch (phase) {
-        case Phase::collision:
-            return bruteCollision(std::move(subjects));
-        case Phase::visibility:
-            return bruteVisibility(std::move(subjects));
-        case Phase::ai:
-            return bruteAi(std::move(subjects), aiRadius);
-    }
-    return nullptr;
-}
-
-MethodSpec methodSpec(Phase phase, MethodKind kind, std::optional<double> cellSize,
-                      float aiRadius) {
-    MethodSpec spec{kind, cellSize, {}};
-    const double size = cellSize.value_or(0);
-    const auto cell = static_cast<float>(size);
-    if (kind == MethodKind::unoptimized) {
-        spec.make = [phase, aiRadius](const TestBed& bed) {
-            return bruteForce(phase, Subjects::all(bed.objects()), aiRadius);
-        };
-        return spec;
-    }
-    const bool isPaper = kind == MethodKind::paperGrid;
-    switch (phase) {
-        case Phase::collision:
-            spec.make = [=](const TestBed& bed) {
-                return isPaper ? paperCollision(bed, cell) : hashCollision(bed, size);
-            };
-            break;
-        case Phase::visibility:
-            spec.make = [=](const TestBed& bed) {
-                return isPaper ? paperVisibility(bed, cell) : hashVisibility(bed, size);
-            };
-            break;
-        case Phase::ai:
-            spec.make = [=](const TestBed& bed) {
-                return isPaper ? paperAi(bed, cell, aiRadius) : hashAi(bed, size, aiRadius);
-            };
-            break;
-    }
-    return spec;
-}
-
-std::vector<MethodSpec> figureMethods(Phase phase, std::uint32_t objects, float aiRadius) {
+std::vector<MethodSpec> figureMethods(std::uint32_t objects) {
     std::vector<MethodSpec> specs;
     if (objects <= kMostBruteForced) {
-        specs.push_back(methodSpec(phase, MethodKind::unoptimized, std::nullopt, aiRadius));
+        specs.push_back({MethodKind::unoptimized, std::nullopt});
     }
     for (const double cellSize : kPrintedCellSizes) {
-        specs.push_back(methodSpec(phase, MethodKind::paperGrid, cellSize, aiRadius));
-        specs.push_back(methodSpec(phase, MethodKind::hashphase, cellSize, aiRadius));
+        specs.push_back({MethodKind::paperGrid, cellSize});
+        specs.push_back({MethodKind::hashphase, cellSize});
     }
-    specs.push_back(methodSpec(phase, MethodKind::hashphase, std::nullopt, aiRadius));
+    specs.push_back({MethodKind::hashphase, std::nullopt});
     return specs;
 }
 

@@ -42,12 +42,14 @@ TriangleGround triangleGround(const Terrain& terrain, float side) {
     return ground;
 }
 
-}  // namespace
-
-float TestBed::sideFor(std::uint32_t objects) {
-    const float share = static_cast<float>(objects) / static_cast<float>(kMostInDomain);
-    return PaperScene::kSide * std::sqrt(std::max(share, 1.0F));
+/// The side of the domain of so many objects [m].
+float sideFor(std::uint32_t objects) {
+    constexpr float kMostInDomain = 50'000;  // of the paper's size
+    return PaperScene::kSide *
+           std::sqrt(std::max(static_cast<float>(objects) / kMostInDomain, 1.0F));
 }
+
+}  // namespace
 
 TestBed::TestBed(std::uint32_t objects, std::uint64_t seed)
     : side_(sideFor(objects)),
@@ -74,10 +76,6 @@ void TestBed::advance() {
         centres_[i] = centre;
     }
     ++frame_;
-    placeCamera();
-}
-
-void TestBed::placeCamera() {
     CameraPose pose;
     pose.eye = {side_ / 2, kEyeHeight, side_ / 2};
     pose.yaw = kTurn * static_cast<float>(frame_);

@@ -35,12 +35,8 @@ struct TriangleGround {
 class TestBed {
 public:
     static constexpr std::uint32_t kColours = 6;
-    static constexpr std::uint32_t kMostInDomain = 50'000;  // of the paper's size
 
     TestBed(std::uint32_t objects, std::uint64_t seed);
-
-    /// The side of the domain of so many objects [m].
-    [[nodiscard]] static float sideFor(std::uint32_t objects);
 
     /// Moves to the next frame.
     void advance();
@@ -64,8 +60,6 @@ public:
     [[nodiscard]] const TriangleGround& ground() const { return ground_; }
 
 private:
-    void placeCamera();
-
     float side_;
     PaperScene scene_;
     TriangleGround ground_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/baselines/paper_map.hpp>
-#include <demos/paper/phase_makers.hpp>
+#include <demos/paper/phase_method.hpp>
+#include <integration/culling/culler.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -13,39 +14,45 @@ ConvexRegion<float> frustumOf(const TestBed& bed, Containment containment = Cont
                                 containment);
 }
 
-/// Every object against the frustum.
-class BruteVisibility final : public PhaseMethod {
+/// Whose list has the visible objects.
+class VisibilityMethod : public ListMethod {
 public:
-    explicit BruteVisibility(Subjects subjects) : subjects_(std::move(subjects)) {}
+    using ListMethod::ListMethod;
+
+    [[nodiscard]] PhaseAnswer answer() const override {
+        PhaseAnswer answer;
+        for (const std::uint32_t object : list_) {
+            answer.found.push_back(keyOf(object, object));
+        }
+        std::sort(answer.found.begin(), answer.found.end());
+        return answer;
+    }
+};
+
+/// Every object against the frustum.
+class BruteVisibility final : public VisibilityMethod {
+public:
+    using VisibilityMethod::VisibilityMethod;
 
     void run(const TestBed& bed) override {
         const ConvexRegion<float> frustum = frustumOf(bed);
-        visible_.clear();
+        list_.clear();
         for (const std::uint32_t object : subjects_.list()) {
             if (frustum.key(bed.boxes()[object]) >= 0) {
-                visible_.push_back(object);
+                list_.push_back(object);
             }
         }
     }
-
-    [[nodiscard]] PhaseAnswer answer() const override {
-        return {{visible_.begin(), visible_.end()}, {}};
-    }
-    [[nodiscard]] std::size_t memoryBytes() const override {
-        return visible_.capacity() * sizeof(std::uint32_t);
-    }
-
-private:
-    Subjects subjects_;
-    std::vector<std::uint32_t> visible_;
 };
 
 /// The paper's free camera: every cell that has objects against the frustum. The boxes of cells are
 /// stored, as high as the domain; of a cell that is wholly inside all objects are taken, of one that
 /// is cut those that touch the frustum, and an object in several cells is listed once.
-class PaperVisibility final : public PhaseMethod {
+class PaperVisibility final : public VisibilityMethod {
 public:
-    PaperVisibility(const TestBed& bed, float cellSize) : map_(bed.domain(), cellSize) {
+    PaperVisibility(const MethodPlan& plan, const TestBed& bed, Subjects subjects)
+        : VisibilityMethod(plan, bed, std::move(subjects)),
+          map_(bed.domain(), static_cast<float>(plan.cellSize)) {
         const Aabb<float> domain = bed.domain();
         const PaperMap::Range all = map_.all();
         for (int z = all.lowZ; z <= all.highZ; ++z) {
@@ -67,7 +74,7 @@ public:
     void run(const TestBed& bed) override {
         const ConvexRegion<float> frustum = frustumOf(bed);
         const ConvexRegion<float> inside = frustumOf(bed, Containment::inside);
-        visible_.clear();
+        list_.clear();
         isListed_.assign(bed.objects(), 0);
         for (const Cell& cell : cells_) {
             const std::span<const std::uint32_t> bucket = map_.objects(cell.x, cell.z);
@@ -78,20 +85,15 @@ public:
             for (const std::uint32_t object : bucket) {
                 if (isListed_[object] == 0 && (isInside || frustum.key(bed.boxes()[object]) >= 0)) {
                     isListed_[object] = 1;
-                    visible_.push_back(object);
+                    list_.push_back(object);
                 }
             }
         }
     }
 
-    [[nodiscard]] PhaseAnswer answer() const override {
-        std::vector<std::uint64_t> found(visible_.begin(), visible_.end());
-        std::sort(found.begin(), found.end());
-        return {std::move(found), {}};
-    }
     [[nodiscard]] std::size_t memoryBytes() const override {
-        return map_.memoryBytes() + cells_.capacity() * sizeof(Cell) +
-               visible_.capacity() * sizeof(std::uint32_t) + isListed_.capacity();
+        return map_.memoryBytes() + cells_.capacity() * sizeof(Cell) + isListed_.capacity() +
+               VisibilityMethod::memoryBytes();
     }
 
 private:
@@ -103,18 +105,33 @@ private:
 
     PaperMap map_;
     std::vector<Cell> cells_;
-    std::vector<std::uint32_t> visible_;
     std::vector<char> isListed_;  // by object
+};
+
+class HashVisibility final : public OnGrid<VisibilityMethod> {
+public:
+    using OnGrid::OnGrid;
+
+    void run(const TestBed& bed) override {
+        culler_.look(grid_, frustumOf(bed));
+        list_.clear();
+        culler_.forEach([this](std::uint32_t object) { list_.push_back(object); });
+    }
+
+    [[nodiscard]] std::size_t memoryBytes() const override {
+        return culler_.memoryBytes() + OnGrid::memoryBytes();
+    }
+
+private:
+    Culler<float> culler_;
 };
 
 }  // namespace
 
-std::unique_ptr<PhaseMethod> bruteVisibility(Subjects subjects) {
-    return std::make_unique<BruteVisibility>(std::move(subjects));
-}
-
-std::unique_ptr<PhaseMethod> paperVisibility(const TestBed& bed, float cellSize) {
-    return std::make_unique<PaperVisibility>(bed, cellSize);
+std::unique_ptr<PhaseMethod> makeVisibilityMethod(const MethodPlan& plan, const TestBed& bed,
+                                                  Subjects subjects) {
+    return makeOneOf<BruteVisibility, PaperVisibility, HashVisibility>(plan, bed,
+                                                                       std::move(subjects));
 }
 
 }  // namespace hashphase::demos

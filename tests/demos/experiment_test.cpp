@@ -221,5 +221,42 @@ TEST(RowsJson, MakesMembersOfColumns) {
               "\"pair\":[1,2],\"whole\":3}]");
 }
 
+TEST(Findings, HaveSectionsOfAPageWithGradedTablesAndAVerdict) {
+    Measurements measured = threeFrames();
+    const Findings findings = findingsOf(R"sql(
+CREATE VIEW texts AS SELECT 'a' AS unit;
+/* {"sentences": "of each", "section": "of {:method}", "each": "SELECT DISTINCT method FROM frames"} */
+SELECT 'The ' || :method || ' one.';
+/* {"sentences": "none", "section": "nothing"} */
+SELECT NULL;
+/* {"table": "goes with its section", "section": "nothing"} */
+SELECT 1;
+/* {"graded": "{unit} caption", "legend": ["g", "f", "p"], "section": "of slow"} */
+VALUES ('1', 'x', 'c', '60+', 'good'), ('1', 'x', 'd', '<1', 'poor'), ('2', 'x', 'c', NULL, NULL),
+       ('2', 'x', 'd', '30', 'fair');
+/* {"conclusions": "of one", "section": "of quick"} */
+SELECT count(*) || ' frames' FROM frames WHERE method = 'quick';
+/* {"print": "{unit} table"} */
+SELECT 7 AS seven;
+/* {"verdict": "nothing compared"} */
+SELECT 'Fine', NULL;
+)sql",
+                                         measured);
+    ASSERT_EQ(findings.sections.size(), 2U);
+    EXPECT_EQ(findings.sections[0].heading, "of quick");
+    EXPECT_EQ(findings.sections[0].sentences, std::vector<std::string>{"The quick one."});
+    EXPECT_EQ(findings.sections[0].conclusions, std::vector<std::string>{"2 frames"});
+    const GradedTable& graded = findings.sections[1].graded.at(0);
+    EXPECT_EQ(graded.caption, "a caption");
+    EXPECT_EQ(graded.header, (std::vector<std::string>{"column1", "column2", "c", "d"}));
+    ASSERT_EQ(graded.rows.size(), 2U);
+    EXPECT_EQ(graded.rows[0][3].marked(), "<1!");
+    EXPECT_EQ(graded.rows[1][2].marked(), "-");
+    EXPECT_EQ(graded.rows[1][3].marked(), "30~");
+    EXPECT_EQ(findings.printed.at(0).first, "a table");
+    EXPECT_EQ(findings.verdict, "Fine");
+    EXPECT_EQ(findings.holds, std::nullopt);
+}
+
 }  // namespace
 }  // namespace hashphase::demos
