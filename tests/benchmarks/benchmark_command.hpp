@@ -2,7 +2,7 @@
 #pragma once
 
 #include <demos/console/program.hpp>
-#include <tests/benchmarks/catalog.hpp>
+#include <tests/benchmarks/workload.hpp>
 
 namespace hashphase::benchmarks {
 

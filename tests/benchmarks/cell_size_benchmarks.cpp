@@ -5,14 +5,11 @@
 
 #include <demos/console/format.hpp>
 #include <demos/scenes/scatter.hpp>
-#include <tests/benchmarks/catalog.hpp>
-#include <tests/benchmarks/cell_size.hpp>
 #include <tests/benchmarks/grid_contestant.hpp>
 #include <tests/benchmarks/pair_workload.hpp>
 
 #include <array>
 #include <string>
-#include <utility>
 
 namespace hashphase::benchmarks {
 namespace {
@@ -40,7 +37,7 @@ std::string factorText(double factor) {
 }
 
 std::vector<ContestantKind> gridsFor(const demos::BrownianBoxes& boxes) {
-    std::vector<ContestantKind> kinds{gridKind(std::string(kAutomaticCells), {})};
+    std::vector<ContestantKind> kinds{gridKind("cells-auto", {})};
     for (const double factor : kCellFactors) {
         GridConfig config;
         config.cellSize = factor * meanEdge(boxes);
@@ -56,23 +53,20 @@ Benchmark cellSizeBenchmark(const Distribution& distribution, float overlapsPerB
     plan.placement = distribution.placement;
     plan.overlapsPerBox = overlapsPerBox;
     const auto density = static_cast<double>(overlapsPerBox);
-    Benchmark benchmark;
-    benchmark.name = "cellsize-" + std::string(distribution.name) + "-" +
-                     demos::fixed(density, density < 1 ? 1 : 0);
-    benchmark.group = std::string(kCellSizeGroup);
-    benchmark.description = describe(plan);
-    benchmark.sizes = {1'000, 10'000, 100'000};
-    benchmark.onRequest = true;
-    benchmark.dropFactor = kHopeless;
-    benchmark.admits = [](const ContestantKind&, std::size_t) { return true; };
-    benchmark.contestants = [plan](std::size_t objects, std::uint64_t seed) {
-        return gridsFor(scatter(plan, objects, seed));
-    };
-    benchmark.make = [plan](std::size_t objects, std::uint64_t seed) {
-        return std::make_unique<PairWorkload>(
-            std::make_unique<demos::BrownianScene>(scatter(plan, objects, seed), seed));
-    };
-    return benchmark;
+    return {.name = "cellsize-" + std::string(distribution.name) + "-" +
+                    demos::fixed(density, density < 1 ? 1 : 0),
+            .group = "cell size",
+            .description = describe(plan),
+            .sizes = {1'000, 10'000, 100'000},
+            .onRequest = true,
+            .dropFactor = kHopeless,
+            .contestants =
+                [plan](std::size_t objects, std::uint64_t seed) {
+                    return gridsFor(scatter(plan, objects, seed));
+                },
+            .make = makePairWorkload(brownian([plan](std::size_t objects, std::uint64_t seed) {
+                return scatter(plan, objects, seed);
+            }))};
 }
 
 }  // namespace

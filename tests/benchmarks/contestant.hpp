@@ -45,25 +45,24 @@ struct OwnBytes {
     std::size_t forPairs = 0;
 };
 
-/// Adds and removes objects; not every library does.
-class Population {
+/// What is used through a base class.
+class Interface {
 public:
-    Population() = default;
-    Population(const Population&) = delete;
-    Population& operator=(const Population&) = delete;
-    virtual ~Population() = default;
+    Interface() = default;
+    Interface(const Interface&) = delete;
+    Interface& operator=(const Interface&) = delete;
+    virtual ~Interface() = default;
+};
 
+/// Adds and removes objects; not every library does.
+class Population : public Interface {
+public:
     virtual void add(std::span<const std::uint32_t> objects, const FrameBoxes& frame) = 0;
     virtual void remove(std::span<const std::uint32_t> objects) = 0;
 };
 
-class Contestant {
+class Contestant : public Interface {
 public:
-    Contestant() = default;
-    Contestant(const Contestant&) = delete;
-    Contestant& operator=(const Contestant&) = delete;
-    virtual ~Contestant() = default;
-
     /// Takes in all objects, once, into the empty structure.
     virtual void fill(const FrameBoxes& frame) = 0;
 
@@ -82,20 +81,26 @@ public:
     [[nodiscard]] virtual std::optional<OwnBytes> ownBytes() const { return std::nullopt; }
 };
 
+constexpr std::size_t kAnyNumber = std::numeric_limits<std::size_t>::max();
+
 struct ContestantKind {
-    std::string name;
-    std::string title;  // the class, for readers
-    std::string description;
-    std::string package;     // where it comes from, with its version
-    bool ours = false;       // a wrong answer of it fails the run
-    bool changes = false;    // takes in and removes objects at any time: population() is not null
+    std::string name = {};
+    std::string title = {};  // the class, for readers
+    std::string description = {};
+    std::string package = "this build";  // where it comes from, with its version
+    bool ours = false;                   // a wrong answer of it fails the run
+    bool changes = false;                // takes in and removes objects at any time: population()
     bool inBatches = false;  // ours, when they come and go in batches: measured where they do
-    bool onThreads = false;  // works on several threads: measured on the wall clock, on request
-    std::size_t upTo = std::numeric_limits<std::size_t>::max();       // objects; else too slow
-    std::size_t fillsUpTo = std::numeric_limits<std::size_t>::max();  // objects; else too slow
-    std::function<std::unique_ptr<Contestant>(const demos::BroadphaseNeeds&)> make;
+    bool onThreads = false;  // measured on the wall clock, on request
+    std::size_t upTo = kAnyNumber;       // objects; else too slow
+    std::size_t fillsUpTo = kAnyNumber;  // objects; else too slow
+    std::function<std::unique_ptr<Contestant>(const demos::BroadphaseNeeds&)> make =
+        {};                                         // of pairs
     const demos::BroadphaseKind* bullet = nullptr;  // where it is one of Bullet's kind
 };
+
+/// A broadphase of Bullet's kind, pair cache included. `bullet` must outlive what this returns.
+[[nodiscard]] ContestantKind bulletKind(const demos::BroadphaseKind& bullet);
 
 /// Everything that this build can measure: ours, Bullet's, then the libraries found.
 [[nodiscard]] const std::vector<ContestantKind>& contestantKinds();

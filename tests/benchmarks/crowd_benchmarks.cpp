@@ -3,45 +3,106 @@
 // Which crowds are asked who is near whom, and who answers.
 
 #include <broadphase/radius_search.hpp>
-#include <demos/scenes/brownian_scene.hpp>
 #include <integration/bullet/conversions.hpp>
-#include <tests/benchmarks/catalog.hpp>
-#include <tests/benchmarks/crowd_workload.hpp>
 #include <tests/benchmarks/peers/peers.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 namespace hashphase::benchmarks {
+
+void CrowdRunner::listAnswers(std::vector<Answer>& answers) {
+    std::vector<AgentAnswer> all(crowd_.exact.size());
+    const bool areSumsThere = setAnswers(all);
+    answers.clear();
+    for (std::size_t agent = 0; agent < all.size(); ++agent) {
+        const bool isWrong = areSumsThere && all[agent].sum != crowd_.exact[agent].sum;
+        answers.push_back(answerOf(agent, isWrong ? ~all[agent].count : all[agent].count));
+    }
+}
+
 namespace {
+
+// --- The exact answers -----------------------------------------------------------------------------
+
+struct Agent {
+    std::int64_t strip;  // of the plane, one radius wide
+    float z;
+    Vector3<float> position;
+    std::uint32_t object;
+};
+
+// Sorts the agents by strips along x and by z, and compares each with whoever may be near enough.
+void findExactNeighbours(Crowd& crowd) {
+    const float radius = crowd.radius;
+    std::vector<Agent> agents;
+    for (std::uint32_t object = 0; object < crowd.scene.size(); ++object) {
+        const Vector3<float> position = crowd.centreOf(object);
+        agents.push_back({static_cast<std::int64_t>(std::floor(position[0] / radius)), position[2],
+                          position, object});
+    }
+    const auto isBefore = [](const Agent& a, const Agent& b) {
+        return a.strip != b.strip ? a.strip < b.strip : a.z < b.z;
+    };
+    std::sort(agents.begin(), agents.end(), isBefore);
+    crowd.exact.assign(agents.size(), {});
+    const float reach = radius * 1.001F;
+    // In each strip, where those begin that may be near; it moves on as the agents do.
+    std::array<std::size_t, 3> begins{};
+    for (const Agent& agent : agents) {
+        for (std::size_t i = 0; i < begins.size(); ++i) {
+            // By rounding, an agent may be so many strips away.
+            const std::int64_t strip = agent.strip + static_cast<std::int64_t>(i) - 1;
+            const Agent first{strip, agent.z - reach, {}, 0};
+            std::size_t& begin = begins[i];
+            while (begin < agents.size() && isBefore(agents[begin], first)) {
+                ++begin;
+            }
+            for (std::size_t k = begin; k < agents.size(); ++k) {
+                const Agent& other = agents[k];
+                if (other.strip != strip || other.z > agent.z + reach) {
+                    break;
+                }
+                const Vector3<float> way = other.position - agent.position;
+                const float squared = (way[0] * way[0] + way[1] * way[1]) + way[2] * way[2];
+                if (squared <= radius * radius && other.object != agent.object) {
+                    crowd.exact[agent.object].add(other.object);
+                }
+            }
+        }
+    }
+}
 
 // --- Who answers ---------------------------------------------------------------------------------
 
-enum class Question { count, list };
+enum class Telling { count, list };
 
 /// A crowd of a grid's proxies.
-class OwnContestant : public CrowdContestant {
+class OwnCrowd final : public CrowdRunner {
 public:
-    OwnContestant(Question question, ParallelFor parallelFor)
-        : question_(question), parallelFor_(parallelFor) {}
-
-    void move(const FrameBoxes& frame) override {
-        for (std::size_t i = ids_.size(); i < frame.boxes.size(); ++i) {
-            ids_.push_back(grid_.add(frame.boxes[i]));
+    OwnCrowd(const Crowd& crowd, Telling telling, ParallelFor parallelFor)
+        : CrowdRunner(crowd), telling_(telling), parallelFor_(parallelFor) {
+        for (const Aabb<float>& box : crowd.scene.boxes()) {
+            ids_.push_back(grid_.add(box));
             objects_.resize(ids_.size());
-            objects_[ids_[i].index] = static_cast<std::uint32_t>(i);
+            objects_[ids_.back().index] = static_cast<std::uint32_t>(ids_.size() - 1);
         }
-        for (std::size_t i = 0; i < ids_.size(); ++i) {
-            grid_.move(ids_[i], frame.boxes[i]);
-        }
-        grid_.update();
         heads_.resize(ids_.size());
         counts_.resize(ids_.size());
     }
 
-    void ask(float radius) override {
-        search_.take(grid_, radius, acceptAll, parallelFor_);
-        if (question_ == Question::count) {
+    void beginFrame() override {
+        for (std::size_t i = 0; i < ids_.size(); ++i) {
+            grid_.move(ids_[i], crowd_.scene.boxes()[i]);
+        }
+        grid_.update();
+    }
+
+    void run() override {
+        search_.take(grid_, crowd_.radius, acceptAll, parallelFor_);
+        if (telling_ == Telling::count) {
             search_.count(counts_, parallelFor_);
             return;
         }
@@ -52,32 +113,32 @@ public:
             parallelFor_);
     }
 
-    void listAnswers(float /*radius*/, std::vector<AgentAnswer>& answers) override {
+    bool setAnswers(std::vector<AgentAnswer>& answers) override {
         const auto objectOf = [this](std::uint32_t agent) {
             return objects_[search_.id(agent).index];
         };
-        for (std::uint32_t agent = 0; question_ == Question::count && agent < counts_.size();
-             ++agent) {
-            answers[objectOf(agent)].count = counts_[agent];
+        if (telling_ == Telling::count) {
+            for (std::uint32_t agent = 0; agent < counts_.size(); ++agent) {
+                answers[objectOf(agent)].count = counts_[agent];
+            }
+            return false;
         }
-        if (question_ == Question::list) {
-            search_.forEach(
-                [&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) {
-                    for (const std::uint32_t neighbour : neighbours) {
-                        answers[objectOf(agent)].add(objectOf(neighbour));
-                    }
-                },
-                parallelFor_);
-        }
+        search_.forEach(
+            [&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) {
+                for (const std::uint32_t neighbour : neighbours) {
+                    answers[objectOf(agent)].add(objectOf(neighbour));
+                }
+            },
+            parallelFor_);
+        return true;
     }
 
-    [[nodiscard]] bool tellsWho() const override { return question_ == Question::list; }
     [[nodiscard]] std::optional<OwnBytes> ownBytes() const override {
         return OwnBytes{search_.memoryBytes(), 0};
     }
 
 private:
-    Question question_;
+    Telling telling_;
     ParallelFor parallelFor_;
     Grid<float> grid_;
     RadiusSearch<float> search_;
@@ -88,147 +149,89 @@ private:
 };
 
 /// A box query for each agent, whose finds are measured.
-class DbvtContestant : public CrowdContestant {
+class DbvtCrowd final : public CrowdRunner {
 public:
-    void move(const FrameBoxes& frame) override {
-        frame_ = frame;
-        if (filled_ == nullptr) {
-            filled_ = std::make_unique<demos::FilledBroadphase>(
-                *contestantKind(kBaseline).bullet, demos::BroadphaseNeeds{{}, frame.boxes.size()});
-            for (std::size_t i = 0; i < frame.boxes.size(); ++i) {
-                filled_->create(static_cast<std::uint32_t>(i), frame.bulletBoxes[i],
-                                frame.filterOf(i));
-            }
-        }
-        filled_->setAll(frame.bulletBoxes);
+    explicit DbvtCrowd(const Crowd& crowd)
+        : CrowdRunner(crowd),
+          filled_(filledWith(crowd.scene, *contestantKind(kBaseline).bullet)),
+          answers_(crowd.scene.size()) {}
+
+    void beginFrame() override {
+        filled_->setAll(crowd_.scene.frame().bulletBoxes);
         filled_->findPairs();
-        answers_.resize(frame.boxes.size());
     }
 
-    void ask(float radius) override {
-        const btVector3 reach(radius, radius, radius);
+    void run() override {
+        const btVector3 reach(crowd_.radius, crowd_.radius, crowd_.radius);
         for (std::uint32_t agent = 0; agent < answers_.size(); ++agent) {
-            const Vector3<float> centre = centreOf(agent);
             answers_[agent] = {};
-            Callback callback(*this, agent, centre, radius);
-            const btVector3 middle = toBullet(centre);
+            Callback callback(crowd_, agent, answers_[agent]);
+            const btVector3 middle = toBullet(callback.centre);
             filled_->broadphase().aabbTest(middle - reach, middle + reach, callback);
         }
     }
 
-    void listAnswers(float /*radius*/, std::vector<AgentAnswer>& answers) override {
+    bool setAnswers(std::vector<AgentAnswer>& answers) override {
         answers = answers_;
+        return true;
     }
 
 private:
     struct Callback : btBroadphaseAabbCallback {
-        Callback(DbvtContestant& itsOwner, std::uint32_t itsAgent, Vector3<float> itsCentre,
-                 float radius)
-            : owner(itsOwner),
+        Callback(const Crowd& itsCrowd, std::uint32_t itsAgent, AgentAnswer& itsAnswer)
+            : crowd(itsCrowd),
               agent(itsAgent),
-              centre(std::move(itsCentre)),
-              radiusSquared(radius * radius) {}
+              centre(itsCrowd.centreOf(itsAgent)),
+              radiusSquared(itsCrowd.radius * itsCrowd.radius),
+              answer(itsAnswer) {}
 
         bool process(const btBroadphaseProxy* proxy) override {
             const std::uint32_t object = demos::FilledBroadphase::objectOf(*proxy);
-            const Vector3<float> way = owner.centreOf(object) - centre;
+            const Vector3<float> way = crowd.centreOf(object) - centre;
             const float squared = (way[0] * way[0] + way[1] * way[1]) + way[2] * way[2];
             if (squared <= radiusSquared && object != agent) {
-                owner.answers_[agent].add(object);
+                answer.add(object);
             }
             return true;
         }
 
-        DbvtContestant& owner;
+        const Crowd& crowd;
         std::uint32_t agent;
         Vector3<float> centre;
         float radiusSquared;
+        AgentAnswer& answer;
     };
 
-    [[nodiscard]] Vector3<float> centreOf(std::uint32_t object) const {
-        const Aabb<float>& box = frame_.boxes[object];
-        return box.min() / 2 + box.max() / 2;
-    }
-
-    FrameBoxes frame_;
     std::unique_ptr<demos::FilledBroadphase> filled_;
     std::vector<AgentAnswer> answers_;
 };
 
-CrowdKind ownKind(std::string name, std::string description, Question question,
+CrowdKind ownKind(const char* name, const char* description, Telling telling,
                   ParallelFor parallelFor, bool onThreads) {
-    CrowdKind crowd;
-    crowd.kind.name = std::move(name);
-    crowd.kind.title = question == Question::count ? "hashphase::RadiusSearch::count"
-                                                   : "hashphase::RadiusSearch::forEach";
-    crowd.kind.description = std::move(description);
-    crowd.kind.package = "this build";
-    crowd.kind.ours = true;
-    crowd.kind.onThreads = onThreads;
-    crowd.make = [question, parallelFor] {
-        return std::make_unique<OwnContestant>(question, parallelFor);
-    };
-    return crowd;
+    return {{.name = name,
+             .title = telling == Telling::count ? "hashphase::RadiusSearch::count"
+                                                : "hashphase::RadiusSearch::forEach",
+             .description = description,
+             .ours = true,
+             .onThreads = onThreads},
+            [telling, parallelFor](const Crowd& crowd) {
+                return std::make_unique<OwnCrowd>(crowd, telling, parallelFor);
+            }};
 }
 
-// --- Which crowds --------------------------------------------------------------------------------
-
-/// Agents whose boxes have edges of 2 m, evenly spread, moving by up to half a metre an axis.
-demos::BrownianBoxes agentsIn(const Vector3<float>& room, std::size_t agents, std::uint64_t seed) {
-    demos::Random random(seed);
-    demos::BrownianBoxes boxes;
-    for (std::size_t i = 0; i < agents; ++i) {
-        const Vector3<float> share(random.unit(), random.unit(), random.unit());
-        boxes.bodies.push_back({share.cwiseProduct(room), Vector3<float>::Constant(1), 0.5F,
-                                Aabb<float>(Vector3<float>::Zero(), room)});
-    }
-    return boxes;
-}
-
-/// So many agents on each square metre of a plane, or in each cubic metre.
-Benchmark crowdBenchmark(std::string name, std::string description, std::size_t agents, int axes,
-                         double density, float radius) {
-    Benchmark benchmark;
-    benchmark.name = std::move(name);
-    benchmark.group = "crowds";
-    benchmark.description = std::move(description);
-    benchmark.operation = "agent";
-    benchmark.sizes = {agents};
-    benchmark.admits = [](const ContestantKind&, std::size_t) { return true; };
-    benchmark.contestants = [](std::size_t objects, std::uint64_t /*seed*/) {
-        std::vector<ContestantKind> kinds;
-        for (CrowdKind& crowd : crowdKinds(objects)) {
-            kinds.push_back(std::move(crowd.kind));
-        }
-        return kinds;
-    };
-    benchmark.make = [axes, density, radius](std::size_t objects, std::uint64_t seed) {
-        const double volume = static_cast<double>(objects) / density;
-        const auto side = static_cast<float>(std::pow(volume, 1.0 / axes));
-        const Vector3<float> room(side, axes == 3 ? side : 0, side);
-        return std::make_unique<CrowdWorkload>(
-            std::make_unique<demos::BrownianScene>(agentsIn(room, objects, seed), seed), radius);
-    };
-    return benchmark;
-}
-
-}  // namespace
-
+/// All that this build can measure, for so many agents.
 std::vector<CrowdKind> crowdKinds(std::size_t agents) {
     constexpr std::size_t kMostForDbvt = 100'000;
-    std::vector<CrowdKind> kinds;
-    kinds.push_back(ownKind("hash", "counts", Question::count, serialFor, false));
-    kinds.push_back(ownKind("hash-list", "lists", Question::list, serialFor, false));
+    std::vector<CrowdKind> kinds{ownKind("hash", "counts", Telling::count, serialFor, false),
+                                 ownKind("hash-list", "lists", Telling::list, serialFor, false)};
     if (const std::optional<ParallelFor> threaded = threadedLoop()) {
+        kinds.push_back(ownKind("hash-threads", "counts, tbbFor", Telling::count, *threaded, true));
         kinds.push_back(
-            ownKind("hash-threads", "counts, tbbFor", Question::count, *threaded, true));
-        kinds.push_back(
-            ownKind("hash-list-threads", "lists, tbbFor", Question::list, *threaded, true));
+            ownKind("hash-list-threads", "lists, tbbFor", Telling::list, *threaded, true));
     }
     if (agents <= kMostForDbvt) {
-        CrowdKind dbvt{contestantKind(kBaseline),
-                       [] { return std::make_unique<DbvtContestant>(); }};
-        kinds.push_back(std::move(dbvt));
+        kinds.push_back({contestantKind(kBaseline),
+                         [](const Crowd& crowd) { return std::make_unique<DbvtCrowd>(crowd); }});
     }
     for (CrowdKind& kind : nanoflannKinds()) {
         kinds.push_back(std::move(kind));
@@ -236,21 +239,71 @@ std::vector<CrowdKind> crowdKinds(std::size_t agents) {
     return kinds;
 }
 
-std::vector<Benchmark> crowdBenchmarks() {
-    std::vector<Benchmark> all;
-    all.push_back(crowdBenchmark(
-        "crowd", "every agent asks who is within 10 m; all move; 98 others on average", 50'000, 2,
-        0.3125, 10));
-    all.push_back(crowdBenchmark("circles-2d",
-                                 "FLAME GPU's Circles: one agent a square metre, within 2 m",
-                                 1'000'000, 2, 1, 2));
-    all.push_back(crowdBenchmark("circles-3d",
-                                 "FLAME GPU's Circles: one agent a cubic metre, within 2 m",
-                                 1'000'000, 3, 1, 2));
-    for (std::size_t i = 1; i < all.size(); ++i) {
-        all[i].onRequest = true;
+// --- Which crowds --------------------------------------------------------------------------------
+
+class CrowdWorkload final : public Workload {
+public:
+    CrowdWorkload(std::unique_ptr<demos::BoxScene> scene, float radius)
+        : crowd_{SceneBoxes(std::move(scene)), radius} {}
+
+    [[nodiscard]] std::unique_ptr<Runner> make(const ContestantKind& kind) override {
+        const std::vector<CrowdKind> kinds = crowdKinds(objects());
+        return std::find_if(kinds.begin(), kinds.end(),
+                            [&](const CrowdKind& each) { return each.kind.name == kind.name; })
+            ->make(crowd_);
     }
-    return all;
+    void beginFrame() override { crowd_.scene.advance(); }
+    void listExactAnswers(std::vector<Answer>& answers) override {
+        findExactNeighbours(crowd_);
+        answers.clear();
+        for (std::size_t agent = 0; agent < crowd_.exact.size(); ++agent) {
+            answers.push_back(answerOf(agent, crowd_.exact[agent].count));
+        }
+    }
+    [[nodiscard]] std::size_t objects() const override { return crowd_.scene.size(); }
+
+private:
+    Crowd crowd_;
+};
+
+/// Agents whose boxes have edges of 2 m; so many on each square metre of a plane, or in each cubic metre.
+Benchmark crowdBenchmark(const char* name, const char* description, std::size_t agents, int axes,
+                         double density, float radius) {
+    return {.name = name,
+            .group = "crowds",
+            .description = description,
+            .operation = "agent",
+            .sizes = {agents},
+            .onRequest = agents > 100'000,
+            .contestants =
+                [](std::size_t objects, std::uint64_t /*seed*/) {
+                    std::vector<ContestantKind> kinds;
+                    for (CrowdKind& crowd : crowdKinds(objects)) {
+                        kinds.push_back(std::move(crowd.kind));
+                    }
+                    return kinds;
+                },
+            .make =
+                [axes, density, radius](std::size_t objects, std::uint64_t seed) {
+                    const double volume = static_cast<double>(objects) / density;
+                    const auto side = static_cast<float>(std::pow(volume, 1.0 / axes));
+                    const Vector3<float> room(side, axes == 3 ? side : 0, side);
+                    return std::make_unique<CrowdWorkload>(cubesIn(room, 1, 0.5F)(objects, seed),
+                                                           radius);
+                }};
+}
+
+}  // namespace
+
+std::vector<Benchmark> crowdBenchmarks() {
+    return {
+        crowdBenchmark("crowd",
+                       "every agent asks who is within 10 m; all move; 98 others on average",
+                       50'000, 2, 0.3125, 10),
+        crowdBenchmark("circles-2d", "FLAME GPU's Circles: one agent a square metre, within 2 m",
+                       1'000'000, 2, 1, 2),
+        crowdBenchmark("circles-3d", "FLAME GPU's Circles: one agent a cubic metre, within 2 m",
+                       1'000'000, 3, 1, 2)};
 }
 
 }  // namespace hashphase::benchmarks

@@ -1,42 +1,355 @@
 // SPDX-License-Identifier: Zlib
 
-// Which cameras look at which scenes.
+// What does a camera see, or each of some? All objects move before each frame, and the cameras turn.
+// Everybody marks the visible ones by number.
 
-#include <tests/benchmarks/catalog.hpp>
-#include <tests/benchmarks/culling_workload.hpp>
+#include <broadphase/convex_region.hpp>
+#include <integration/bullet/conversions.hpp>
+#include <integration/camera/frustum.hpp>
+#include <integration/culling/culler.hpp>
+#include <tests/benchmarks/workload.hpp>
+#include <tests/support/cameras.hpp>
 
-#include <demos/scenes/brownian_scene.hpp>
-#include <demos/scenes/paper_scene.hpp>
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 
-#include <utility>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
 
 namespace hashphase::benchmarks {
 namespace {
 
-std::unique_ptr<demos::BoxScene> terrain(std::size_t objects, std::uint64_t seed) {
-    return std::make_unique<demos::PaperScene>(objects, seed);
-}
+/// The six planes of a frustum, which face inwards.
+using FrustumPlanes = std::array<Eigen::Hyperplane<float, 3>, 6>;
 
-std::unique_ptr<demos::BoxScene> space(std::size_t objects, std::uint64_t seed) {
-    return std::make_unique<demos::BrownianScene>(demos::uniformBoxes(objects, seed), seed);
-}
+/// Where the cameras stand, seen from the middle of the scene, and how far they see.
+struct CullingPlan {
+    double backwards = 0;    // from the middle, against its heading, in sides of the scene
+    double height = 0;       // above the middle [m]
+    double fieldOfView = 1;  // vertical [rad]
+    double farPlane = 1;     // in sides of the scene
+    int cameras = 1;         // a frame, one after another, in as many directions
+    bool isSecond = false;   // only a second look is timed: all that it reads is in the cache
+};
 
-using MakeScene = std::unique_ptr<demos::BoxScene> (*)(std::size_t objects, std::uint64_t seed);
+/// The boxes and the cameras of a frame.
+struct CullingScene {
+    SceneBoxes boxes;
+    CullingPlan plan;
+    std::vector<FrustumPlanes> views = {};
+};
 
-Benchmark culling(std::string name, std::string description, MakeScene makeScene,
-                  CullingPlan plan) {
-    constexpr std::size_t kObjects = 50'000;
-    Benchmark benchmark;
-    benchmark.name = std::move(name);
-    benchmark.group = "culling";
-    benchmark.description = std::move(description);
-    benchmark.sizes = {kObjects};
-    benchmark.admits = [](const ContestantKind&, std::size_t) { return true; };
-    benchmark.contestants = [](std::size_t, std::uint64_t) { return cullingKinds(); };
-    benchmark.make = [makeScene, plan](std::size_t objects, std::uint64_t seed) {
-        return std::make_unique<CullingWorkload>(makeScene(objects, seed), plan);
+/// Who culls.
+class CullingRunner : public Runner {
+public:
+    explicit CullingRunner(const CullingScene& scene) : scene_(scene) {}
+
+    void prepare() override {
+        if (scene_.plan.isSecond) {
+            run();
+        }
+    }
+    void run() override {
+        for (const FrustumPlanes& view : scene_.views) {
+            look(view);
+        }
+    }
+
+    // Of the last camera, what the frame left; the others look again.
+    void listAnswers(std::vector<Answer>& answers) override {
+        answers.clear();
+        for (std::size_t camera = scene_.views.size(); camera-- > 0;) {
+            if (camera + 1 < scene_.views.size()) {
+                look(scene_.views[camera]);
+            }
+            const std::size_t first = answers.size();
+            listVisible(answers);
+            for (std::size_t i = first; i < answers.size(); ++i) {
+                answers[i] += camera * scene_.boxes.size();
+            }
+        }
+    }
+
+protected:
+    /// Finds the visible objects.
+    virtual void look(const FrustumPlanes& planes) = 0;
+
+    /// Appends them, in any order.
+    virtual void listVisible(std::vector<Answer>& visible) const = 0;
+
+    static void listMarked(const std::vector<std::uint8_t>& marks, std::vector<Answer>& visible) {
+        for (std::size_t i = 0; i < marks.size(); ++i) {
+            if (marks[i] != 0) {
+                visible.push_back(i);
+            }
+        }
+    }
+
+    const CullingScene& scene_;
+};
+
+/// What Bullet's broadphases have in common.
+class FilledCulling : public CullingRunner {
+public:
+    FilledCulling(const CullingScene& scene, const demos::BroadphaseKind& kind)
+        : CullingRunner(scene), filled_(filledWith(scene.boxes, kind)) {}
+
+    void beginFrame() override {
+        filled_->setAll(scene_.boxes.frame().bulletBoxes);
+        filled_->findPairs();
+    }
+
+protected:
+    template <class Broadphase>
+    [[nodiscard]] Broadphase& broadphase() const {
+        return dynamic_cast<Broadphase&>(filled_->broadphase());
+    }
+
+private:
+    std::unique_ptr<demos::FilledBroadphase> filled_;
+};
+
+/// Bits by the proxies' own indices.
+class OwnCulling final : public FilledCulling {
+public:
+    using FilledCulling::FilledCulling;
+
+    void look(const FrustumPlanes& planes) override {
+        const ConvexRegion<float> view(planes, Containment::touching, Touch::byPlanes);
+        culler_.look(broadphase<SpatialHashBroadphase>().grid(), view);
+    }
+
+    void listVisible(std::vector<Answer>& visible) const override {
+        const auto& own = broadphase<SpatialHashBroadphase>();
+        own.grid().forEach([&](ProxyId id, const Aabb<float>& /*box*/) {
+            if (culler_.isVisible(id)) {
+                visible.push_back(demos::FilledBroadphase::objectOf(*own.proxyOf(id)));
+            }
+        });
+    }
+
+private:
+    Culler<float> culler_;
+};
+
+/// Bullet's own walk of its trees for planes.
+class DbvtCulling final : public FilledCulling {
+public:
+    DbvtCulling(const CullingScene& scene, const demos::BroadphaseKind& kind)
+        : FilledCulling(scene, kind), isVisible_(scene.boxes.size()) {}
+
+    void look(const FrustumPlanes& planes) override {
+        std::fill(isVisible_.begin(), isVisible_.end(), std::uint8_t{0});
+        std::array<btVector3, 6> normals;
+        std::array<btScalar, 6> offsets;
+        for (std::size_t i = 0; i < planes.size(); ++i) {
+            normals[i] = toBullet(planes[i].normal());
+            offsets[i] = planes[i].offset();
+        }
+        Mark mark(isVisible_);
+        for (const btDbvt& tree : broadphase<btDbvtBroadphase>().m_sets) {
+            btDbvt::collideKDOP(tree.m_root, normals.data(), offsets.data(), 6, mark);
+        }
+    }
+
+    void listVisible(std::vector<Answer>& visible) const override {
+        listMarked(isVisible_, visible);
+    }
+
+private:
+    struct Mark final : btDbvt::ICollide {
+        explicit Mark(std::vector<std::uint8_t>& marks) : isVisible(marks) {}
+        void Process(const btDbvtNode* leaf) override {
+            const auto* proxy = static_cast<const btBroadphaseProxy*>(leaf->data);
+            isVisible[demos::FilledBroadphase::objectOf(*proxy)] = 1;
+        }
+        std::vector<std::uint8_t>& isVisible;
     };
-    return benchmark;
+
+    std::vector<std::uint8_t> isVisible_;
+};
+
+using Columns = std::array<std::vector<float>, 6>;
+
+// Every box against every plane, a thousand boxes at a time so that they stay in the cache; compilers
+// make vector instructions of it.
+[[gnu::always_inline]] inline void testEveryBox(const Columns& columns, const FrustumPlanes& planes,
+                                                std::vector<std::uint8_t>& isVisible) {
+    constexpr std::size_t atOnce = 1024;
+    std::uint8_t* __restrict marks = isVisible.data();
+    for (std::size_t begin = 0; begin < isVisible.size(); begin += atOnce) {
+        const std::size_t end = std::min(begin + atOnce, isVisible.size());
+        std::fill(marks + begin, marks + end, std::uint8_t{1});
+        for (const auto& plane : planes) {
+            const Vector3<float> normal = plane.normal();
+            const float offset = plane.offset();
+            const auto corner = [&](int axis) {
+                const int column = axis + (normal[axis] > 0 ? 3 : 0);
+                return columns[static_cast<std::size_t>(column)].data();
+            };
+            const float* __restrict x = corner(0);
+            const float* __restrict y = corner(1);
+            const float* __restrict z = corner(2);
+            for (std::size_t i = begin; i < end; ++i) {
+                const float sum = normal[0] * x[i] + normal[1] * y[i] + normal[2] * z[i] + offset;
+                marks[i] &= static_cast<std::uint8_t>(sum >= 0);
+            }
+        }
+    }
+}
+
+[[gnu::noinline]] void testEveryBoxPlainly(const Columns& columns, const FrustumPlanes& planes,
+                                           std::vector<std::uint8_t>& isVisible) {
+    testEveryBox(columns, planes, isVisible);
+}
+
+#if defined(__x86_64__)
+[[gnu::noinline, gnu::target("avx512f,avx512vl,avx512bw,avx512dq,prefer-vector-width=512")]] void
+testEveryBoxWide(const Columns& columns, const FrustumPlanes& planes,
+                 std::vector<std::uint8_t>& isVisible) {
+    testEveryBox(columns, planes, isVisible);
+}
+
+bool hasWideInstructions() {
+    return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512vl") != 0 &&
+           __builtin_cpu_supports("avx512bw") != 0 && __builtin_cpu_supports("avx512dq") != 0;
+}
+#else
+constexpr auto testEveryBoxWide = testEveryBoxPlainly;
+bool hasWideInstructions() {
+    return false;
+}
+#endif
+
+/// A loop over the boxes, by column and by object.
+class LoopCulling final : public CullingRunner {
+public:
+    LoopCulling(const CullingScene& scene, bool isWide)
+        : CullingRunner(scene), isWide_(isWide), isVisible_(scene.boxes.size()) {
+        for (std::vector<float>& column : columns_) {
+            column.resize(scene.boxes.size());
+        }
+    }
+
+    void beginFrame() override {
+        const std::vector<Aabb<float>>& boxes = scene_.boxes.boxes();
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const auto at = static_cast<Eigen::Index>(axis);
+                columns_[axis][i] = boxes[i].min()[at];
+                columns_[axis + 3][i] = boxes[i].max()[at];
+            }
+        }
+    }
+
+    void look(const FrustumPlanes& planes) override {
+        (isWide_ ? testEveryBoxWide : testEveryBoxPlainly)(columns_, planes, isVisible_);
+    }
+
+    void listVisible(std::vector<Answer>& visible) const override {
+        listMarked(isVisible_, visible);
+    }
+
+private:
+    bool isWide_;
+    Columns columns_;
+    std::vector<std::uint8_t> isVisible_;
+};
+
+std::vector<ContestantKind> cullingKinds() {
+    ContestantKind own = contestantKind("hash");
+    own.title = "Culler";
+    own.description = "the visible set of the broadphase's own grid, as bits";
+    ContestantKind bullet = contestantKind(kBaseline);
+    bullet.title = "btDbvt::collideKDOP";
+    bullet.description = "Bullet's walk of its two trees of fattened boxes";
+    std::vector<ContestantKind> kinds{
+        own,
+        bullet,
+        {.name = "loop",
+         .title = "every box",
+         .description = "a loop over all boxes, compiled for any x86-64",
+         .package = "none"}};
+    if (hasWideInstructions()) {
+        kinds.push_back({.name = "loop-avx512",
+                         .title = "every box",
+                         .description = "the same, compiled for AVX-512",
+                         .package = "none"});
+    }
+    return kinds;
+}
+
+class CullingWorkload final : public Workload {
+public:
+    CullingWorkload(std::unique_ptr<demos::BoxScene> scene, const CullingPlan& plan)
+        : scene_{SceneBoxes(std::move(scene)), plan} {}
+
+    [[nodiscard]] std::unique_ptr<Runner> make(const ContestantKind& kind) override {
+        if (kind.name == kBaseline) {
+            return std::make_unique<DbvtCulling>(scene_, *kind.bullet);
+        }
+        if (kind.bullet != nullptr) {
+            return std::make_unique<OwnCulling>(scene_, *kind.bullet);
+        }
+        return std::make_unique<LoopCulling>(scene_, kind.name != "loop");
+    }
+
+    void beginFrame() override {
+        scene_.boxes.advance();
+        const CullingPlan& plan = scene_.plan;
+        const Aabb<float> all = scene_.boxes.needs().bounds;
+        const auto side = static_cast<double>(all.sizes().maxCoeff());
+        test::CameraLens lens;
+        lens.fieldOfView = plan.fieldOfView;
+        lens.farPlane = plan.farPlane * side;
+        const double turned = 0.37 * frame_++;
+        scene_.views.clear();
+        for (int camera = 0; camera < plan.cameras; ++camera) {
+            const double heading = turned + 2 * std::numbers::pi * camera / plan.cameras;
+            const Vector3<double> ahead(std::cos(heading), -0.1, std::sin(heading));
+            const Vector3<double> eye = all.center().cast<double>() +
+                                        Vector3<double>(0, plan.height, 0) -
+                                        ahead * (plan.backwards * side);
+            const auto matrix = test::cameraMatrix<float>(lens, eye, eye + ahead);
+            scene_.views.push_back(frustumPlanes<float>(matrix, lens.depthRange));
+        }
+    }
+
+    void listExactAnswers(std::vector<Answer>& answers) override {
+        answers.clear();
+        for (std::size_t camera = 0; camera < scene_.views.size(); ++camera) {
+            const ConvexRegion<float> view(scene_.views[camera], Containment::touching,
+                                           Touch::byPlanes);
+            for (std::size_t i = 0; i < objects(); ++i) {
+                if (view.key(scene_.boxes.boxes()[i]) >= 0) {
+                    answers.push_back(camera * objects() + i);
+                }
+            }
+        }
+    }
+
+    [[nodiscard]] std::size_t objects() const override { return scene_.boxes.size(); }
+    [[nodiscard]] std::size_t operations() const override {
+        return objects() * static_cast<std::size_t>(scene_.plan.cameras);
+    }
+
+private:
+    CullingScene scene_;
+    int frame_ = 0;
+};
+
+Benchmark culling(const char* name, const char* description, const char* scene,
+                  const CullingPlan& plan) {
+    return {.name = name,
+            .group = "culling",
+            .description = description,
+            .sizes = {50'000},
+            .contestants = [](std::size_t, std::uint64_t) { return cullingKinds(); },
+            .make =
+                [makeScene = sceneNamed(scene), plan](std::size_t objects, std::uint64_t seed) {
+                    return std::make_unique<CullingWorkload>(makeScene(objects, seed), plan);
+                }};
 }
 
 }  // namespace
@@ -47,19 +360,19 @@ std::vector<Benchmark> cullingBenchmarks() {
     again.isSecond = true;
     CullingPlan fourTenths = tenthOfTerrain;
     fourTenths.cameras = 4;
-    const CullingPlan tenthOfSpace{0.02, 0, 0.9, 0.7};
     const CullingPlan fromFar{3, 0, 1.2, 10};
     return {
         culling("culling-tenth", "a camera among the paper's spheres that sees a tenth of them",
-                terrain, tenthOfTerrain),
+                "paper", tenthOfTerrain),
         culling("culling-again", "the same camera once more, with all that it reads in the cache",
-                terrain, again),
-        culling("culling-four", "four cameras in turn, each of which sees a tenth of them", terrain,
+                "paper", again),
+        culling("culling-four", "four cameras in turn, each of which sees a tenth of them", "paper",
                 fourTenths),
-        culling("culling-all", "a camera far away that sees them all", terrain, fromFar),
-        culling("culling-space-tenth", "a camera among uniform boxes that sees a tenth", space,
-                tenthOfSpace),
-        culling("culling-space-all", "a camera far away that sees all of these", space, fromFar)};
+        culling("culling-all", "a camera far away that sees them all", "paper", fromFar),
+        culling("culling-space-tenth", "a camera among uniform boxes that sees a tenth", "uniform",
+                {0.02, 0, 0.9, 0.7}),
+        culling("culling-space-all", "a camera far away that sees all of these", "uniform",
+                fromFar)};
 }
 
 }  // namespace hashphase::benchmarks

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <tests/benchmarks/effects_by_hand.hpp>
+#include <tests/benchmarks/effects.hpp>
 
 #include <broadphase/pairs.hpp>
 #include <demos/compare/reference_pairs.hpp>
@@ -14,7 +14,7 @@ namespace hashphase::benchmarks {
 namespace {
 
 /// Motion, which all scenes have.
-class HandMoved : public EffectsContestant {
+class HandMoved : public EffectsBody {
 public:
     explicit HandMoved(const RoamingSpheres& spheres)
         : bounds_(spheres.bounds),
@@ -201,7 +201,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<EffectsContestant> makeByHand(EffectSet own, const RoamingSpheres& spheres) {
+std::unique_ptr<EffectsBody> makeByHand(EffectSet own, const RoamingSpheres& spheres) {
     if (own.contains(Effect::response)) {
         return std::make_unique<HandBounced>(spheres);
     }

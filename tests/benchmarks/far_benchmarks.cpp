@@ -3,8 +3,6 @@
 // What it costs to be far from the origin, and to shift the origin: the same frames for grids that
 // have them at home and far away.
 
-#include <demos/scenes/brownian_scene.hpp>
-#include <tests/benchmarks/catalog.hpp>
 #include <tests/benchmarks/grid_contestant.hpp>
 #include <tests/benchmarks/pair_workload.hpp>
 
@@ -46,7 +44,7 @@ private:
 };
 
 std::vector<ContestantKind> farKinds() {
-    std::vector<ContestantKind> kinds{
+    return {
         farGridKind("home", {}),
         farGridKind("at-2^20", {.distance = 0x1p20}),
         farGridKind("at-2^30", {.distance = 0x1p30}),
@@ -54,36 +52,27 @@ std::vector<ContestantKind> farKinds() {
         farGridKind("home-single", {.isDouble = false}),
         farGridKind("at-2^12-single", {.distance = 0x1p12, .isDouble = false}),
         farGridKind("shifting-single", {.distance = 0x1p12, .shift = 0x1p11, .isDouble = false})};
-    return kinds;
 }
 
-using MakeBoxes = demos::BrownianBoxes (*)(std::size_t objects, std::uint64_t seed);
-
-Benchmark far(std::string name, std::string description, MakeBoxes makeBoxes) {
-    Benchmark benchmark;
-    benchmark.name = std::move(name);
-    benchmark.group = "far";
-    benchmark.description = std::move(description);
-    benchmark.sizes = {30'000, 100'000};
-    benchmark.onRequest = true;
-    benchmark.admits = [](const ContestantKind&, std::size_t) { return true; };
-    benchmark.contestants = [](std::size_t, std::uint64_t) { return farKinds(); };
-    benchmark.make = [makeBoxes](std::size_t objects, std::uint64_t seed) {
-        return std::make_unique<PairWorkload>(std::make_unique<LatticeScene>(
-            std::make_unique<demos::BrownianScene>(makeBoxes(objects, seed), seed)));
-    };
-    return benchmark;
+Benchmark far(const char* name, const char* description, const MakeScene& makeScene) {
+    return {.name = name,
+            .group = "far",
+            .description = description,
+            .sizes = {30'000, 100'000},
+            .onRequest = true,
+            .contestants = [](std::size_t, std::uint64_t) { return farKinds(); },
+            .make = makePairWorkload([makeScene](std::size_t objects, std::uint64_t seed) {
+                return std::make_unique<LatticeScene>(makeScene(objects, seed));
+            })};
 }
 
 }  // namespace
 
 std::vector<Benchmark> farBenchmarks() {
-    std::vector<Benchmark> all;
-    all.push_back(
-        far("far-uniform", "S2-uniform, near the origin and far from it", demos::uniformBoxes));
-    all.push_back(
-        far("far-resting", "uniform boxes of which 2 % move, near and far", demos::restingBoxes));
-    return all;
+    return {far("far-uniform", "S2-uniform, near the origin and far from it",
+                brownian(demos::uniformBoxes)),
+            far("far-resting", "uniform boxes of which 2 % move, near and far",
+                brownian(demos::restingBoxes))};
 }
 
 }  // namespace hashphase::benchmarks

@@ -147,14 +147,11 @@ private:
     std::vector<PairKey> kept_;
 };
 
-ContestantKind kindOf(std::string name, std::string description) {
-    ContestantKind kind;
-    kind.name = std::move(name);
-    kind.title = "hashphase::Pairs";
-    kind.description = std::move(description);
-    kind.package = "this build";
-    kind.ours = true;
-    return kind;
+ContestantKind kindOf(std::string name, const char* description) {
+    return {.name = std::move(name),
+            .title = "hashphase::Pairs",
+            .description = description,
+            .ours = true};
 }
 
 }  // namespace

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Zlib
 #include <tests/benchmarks/measurement.hpp>
 
+#include <demos/compare/heap_meter.hpp>
 #include <demos/compare/verifier.hpp>
 #include <demos/report/frame_clock.hpp>
 #include <demos/report/stopwatch.hpp>
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 namespace hashphase::benchmarks {
 namespace {
@@ -24,109 +26,151 @@ bool isChecked(std::size_t objects, int frame) {
 
 class Run {
 public:
-    Run(const Case& toRun, const MeasurementSettings& settings)
-        : case_(toRun),
-          settings_(settings),
+    Run(const Case& toRun, const MeasurementSettings& settings, demos::Measurements& measured)
+        : settings_(settings),
+          measured_(measured),
+          dropFactor_(toRun.benchmark->dropFactor),
           workload_(toRun.benchmark->make(toRun.objects, settings.seed)) {
-        result_.name = toRun.name();
-        result_.group = toRun.benchmark->group;
-        result_.description = toRun.benchmark->description;
-        result_.operation = toRun.benchmark->operation;
-        result_.objects = workload_->objects();
-        result_.operations = workload_->operations();
-        result_.warmUpFrames = settings.warmUpFrames;
-        warmUpMs_.assign(toRun.contestants.size(), std::numeric_limits<double>::infinity());
+        const Benchmark& benchmark = *toRun.benchmark;
+        row_ = measured.add("cases", {{"name", toRun.name()},
+                                      {"group", benchmark.group},
+                                      {"description", benchmark.description},
+                                      {"operation", benchmark.operation},
+                                      {"objects", workload_->objects()},
+                                      {"operations", workload_->operations()},
+                                      {"warm_up_frames", settings.warmUpFrames},
+                                      {"frames_asked", settings.frames}});
+        for (const ContestantKind& kind : toRun.contestants) {
+            addContestant(kind);
+        }
     }
 
-    CaseResult run() {
-        for (const ContestantKind& kind : case_.contestants) {
-            const demos::Stopwatch watch;
-            workload_->add(kind);
-            ContestantResult contestant;
-            contestant.kind = kind;
-            contestant.fillMs = watch.milliseconds();
-            result_.contestants.push_back(std::move(contestant));
-        }
+    std::int64_t run() {
         const int frames = settings_.warmUpFrames + settings_.frames;
-        for (int frame = 0; frame < frames; ++frame) {
-            if (settings_.isTimeUp()) {
-                result_.timeLimitHit = true;
-                break;
-            }
+        for (int frame = 0; frame < frames && !settings_.isTimeUp(); ++frame) {
             runFrame(frame);
             settings_.tellProgress(frame + 1);
         }
-        return std::move(result_);
+        for (const Entry& entry : entries_) {
+            const auto own = entry.runner->ownBytes();
+            measured_.add(
+                "ends", {{"contestant", entry.row},
+                         {"dropped_out", entry.droppedOut},
+                         {"heap_bytes", entry.heapBytes},
+                         {"own_for_objects", own ? demos::Datum(own->forObjects) : demos::Datum()},
+                         {"own_for_pairs", own ? demos::Datum(own->forPairs) : demos::Datum()}});
+        }
+        return row_;
     }
 
 private:
+    struct Entry {
+        std::int64_t row;  // of `contestants`
+        bool onThreads;
+        std::unique_ptr<Runner> runner;
+        demos::HeapMeter heap;
+        std::optional<std::int64_t> heapBytes = std::nullopt;       // as warmed up
+        double warmUpMs = std::numeric_limits<double>::infinity();  // of the quickest such frame
+        bool droppedOut = false;  // too slow, see Benchmark::dropFactor
+    };
+
+    void addContestant(const ContestantKind& kind) {
+        const demos::Stopwatch watch;
+        Entry& entry = entries_.emplace_back(Entry{0, kind.onThreads, nullptr, {}});
+        watched(entry, [&] { entry.runner = workload_->make(kind); });
+        entry.row = measured_.add("contestants", {{"case", row_},
+                                                  {"name", kind.name},
+                                                  {"title", kind.title},
+                                                  {"package", kind.package},
+                                                  {"ours", kind.ours},
+                                                  {"fill_ms", watch.milliseconds()}});
+    }
+
+    /// While the contestant's heap is watched, which costs time of its own.
+    template <class Work>
+    void watched(Entry& entry, const Work& work) {
+        if (!workload_->watchesHeap()) {
+            return work();
+        }
+        const demos::HeapScope scope(entry.heap);
+        work();
+    }
+
     void runFrame(int frame) {
         workload_->beginFrame();
-        const bool checked = isChecked(result_.objects, frame);
+        for (const Entry& entry : entries_) {
+            if (!entry.droppedOut) {
+                entry.runner->beginFrame();
+            }
+        }
+        const bool checked = isChecked(workload_->objects(), frame);
         if (checked) {
             workload_->listExactAnswers(exact_);
         }
-        const std::size_t count = result_.contestants.size();
-        for (std::size_t turn = 0; turn < count; ++turn) {
-            const std::size_t i = (turn + static_cast<std::size_t>(frame)) % count;
-            if (result_.contestants[i].droppedOut) {
+        for (std::size_t turn = 0; turn < entries_.size(); ++turn) {
+            Entry& entry = entries_[(turn + static_cast<std::size_t>(frame)) % entries_.size()];
+            if (entry.droppedOut) {
                 continue;
             }
-            letRun(i, frame);
+            letRun(entry, frame);
             if (checked) {
-                check(i, frame);
+                check(entry, frame);
             }
-            workload_->endFrame(i);
+            entry.runner->endFrame();
         }
-        if (frame >= settings_.warmUpFrames) {
-            ++result_.framesDone;
-        } else if (frame + 1 >= kFramesBeforeDropping) {
+        if (frame < settings_.warmUpFrames && frame + 1 >= kFramesBeforeDropping) {
             dropHopeless();
         }
     }
 
-    void letRun(std::size_t i, int frame) {
-        ContestantResult& contestant = result_.contestants[i];
-        if (frame >= settings_.warmUpFrames) {
-            contestant.frameMs.push_back(workload_->runFrame(i));
+    void letRun(Entry& entry, int frame) {
+        entry.runner->prepare();
+        if (frame < settings_.warmUpFrames) {
+            const demos::FrameClock clock;
+            watched(entry, [&] { entry.runner->run(); });
+            entry.warmUpMs = std::min(entry.warmUpMs, clock.milliseconds());
+            entry.heapBytes = workload_->watchesHeap() ? entry.heap.bytes() : std::nullopt;
             return;
         }
-        const demos::FrameClock watch;
-        workload_->runWatchedFrame(i);
-        warmUpMs_[i] = std::min(warmUpMs_[i], watch.milliseconds());
-        contestant.memory = workload_->memory(i);
+        const demos::FrameClock clock(entry.onThreads);
+        entry.runner->run();
+        const double milliseconds = clock.milliseconds();
+        measured_.add("frames",
+                      {{"contestant", entry.row}, {"frame", frame}, {"ms", milliseconds}});
     }
 
-    void check(std::size_t i, int frame) {
-        ContestantResult& contestant = result_.contestants[i];
-        workload_->listAnswers(i, answers_);
-        const std::string fault = auditAnswers(answers_, exact_, contestant.tally);
-        if (contestant.firstFault.empty() && !fault.empty()) {
-            contestant.firstFault = fault + " in frame " + std::to_string(frame);
-        }
+    void check(Entry& entry, int frame) {
+        entry.runner->listAnswers(answers_);
+        const FrameAudit audit = auditAnswers(answers_, exact_);
+        measured_.add("checks", {{"contestant", entry.row},
+                                 {"frame", frame},
+                                 {"answers", audit.answers},
+                                 {"exact", exact_.size()},
+                                 {"missing", audit.missing},
+                                 {"extra", audit.extra},
+                                 {"duplicates", audit.duplicates},
+                                 {"fault", audit.fault.empty() ? demos::Datum() : audit.fault}});
     }
 
     void dropHopeless() {
-        const double factor = case_.benchmark->dropFactor;
-        if (factor <= 0) {
+        if (dropFactor_ <= 0) {
             return;
         }
         double fastest = std::numeric_limits<double>::infinity();
-        for (std::size_t i = 0; i < warmUpMs_.size(); ++i) {
-            if (!result_.contestants[i].droppedOut) {
-                fastest = std::min(fastest, warmUpMs_[i]);
-            }
+        for (const Entry& entry : entries_) {
+            fastest = entry.droppedOut ? fastest : std::min(fastest, entry.warmUpMs);
         }
-        for (std::size_t i = 0; i < warmUpMs_.size(); ++i) {
-            result_.contestants[i].droppedOut |= warmUpMs_[i] > factor * fastest;
+        for (Entry& entry : entries_) {
+            entry.droppedOut |= entry.warmUpMs > dropFactor_ * fastest;
         }
     }
 
-    const Case& case_;
     const MeasurementSettings& settings_;
+    demos::Measurements& measured_;
+    double dropFactor_;
     std::unique_ptr<Workload> workload_;
-    CaseResult result_;
-    std::vector<double> warmUpMs_;  // of the quickest warm-up frame, by contestant
+    std::int64_t row_;  // of `cases`
+    std::vector<Entry> entries_;
     std::vector<Answer> answers_;
     std::vector<Answer> exact_;
 };
@@ -138,60 +182,27 @@ std::string answerText(const char* fault, Answer answer) {
 
 }  // namespace
 
-std::string auditAnswers(std::vector<Answer>& answers, const std::vector<Answer>& exact,
-                         AnswerTally& tally) {
-    ++tally.framesChecked;
-    tally.answers += answers.size();
-    tally.exact += exact.size();
+FrameAudit auditAnswers(std::vector<Answer>& answers, const std::vector<Answer>& exact) {
+    FrameAudit audit;
+    audit.answers = answers.size();
     std::sort(answers.begin(), answers.end());
     const auto end = std::unique(answers.begin(), answers.end());
-    const auto duplicates = static_cast<std::uint64_t>(answers.end() - end);
-    tally.duplicates += duplicates;
+    audit.duplicates = static_cast<std::size_t>(answers.end() - end);
     answers.erase(end, answers.end());
     const demos::FrameVerdict verdict = demos::Verifier().judge(answers, exact);
-    tally.missing += verdict.missing;
-    tally.extra += verdict.extra;
-    if (verdict.firstMissing) {
-        return answerText("missed", *verdict.firstMissing);
-    }
-    if (verdict.firstExtra) {
-        return answerText("reported in excess", *verdict.firstExtra);
-    }
-    return duplicates > 0 ? "reported " + std::to_string(duplicates) + " answers again"
-                          : std::string();
+    audit.missing = verdict.missing;
+    audit.extra = verdict.extra;
+    audit.fault = verdict.firstMissing ? answerText("missed", *verdict.firstMissing)
+                  : verdict.firstExtra ? answerText("reported in excess", *verdict.firstExtra)
+                  : audit.duplicates > 0
+                      ? "reported " + std::to_string(audit.duplicates) + " answers again"
+                      : "";
+    return audit;
 }
 
-std::optional<demos::Spread> ContestantResult::spread() const {
-    return frameMs.empty() ? std::nullopt : std::optional(demos::spreadOf(frameMs));
-}
-
-const ContestantResult* CaseResult::find(std::string_view contestant) const {
-    const auto found =
-        std::find_if(contestants.begin(), contestants.end(),
-                     [contestant](const ContestantResult& c) { return c.kind.name == contestant; });
-    return found == contestants.end() ? nullptr : &*found;
-}
-
-bool CaseResult::oursWereExact() const {
-    return std::all_of(contestants.begin(), contestants.end(),
-                       [](const ContestantResult& c) { return !c.kind.ours || c.tally.isExact(); });
-}
-
-std::optional<double> speedAgainst(const ContestantResult* other, const ContestantResult& own) {
-    if (other == nullptr) {
-        return std::nullopt;
-    }
-    std::vector<double> ratios;
-    for (std::size_t i = 0; i < std::min(other->frameMs.size(), own.frameMs.size()); ++i) {
-        if (own.frameMs[i] > 0) {
-            ratios.push_back(other->frameMs[i] / own.frameMs[i]);
-        }
-    }
-    return ratios.empty() ? std::nullopt : std::optional(demos::spreadOf(ratios).median);
-}
-
-CaseResult measure(const Case& toRun, const MeasurementSettings& settings) {
-    return Run(toRun, settings).run();
+std::int64_t measure(const Case& toRun, const MeasurementSettings& settings,
+                     demos::Measurements& measured) {
+    return Run(toRun, settings, measured).run();
 }
 
 }  // namespace hashphase::benchmarks

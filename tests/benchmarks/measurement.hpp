@@ -2,14 +2,17 @@
 #pragma once
 
 // Runs one case: a benchmark at one size, all its contestants interleaved frame by frame, every
-// answer checked.
+// answer checked; and writes down what was measured as rows, of which case.sql and summary.sql make the tables.
+//
+// Why a runner of our own: the contestants take turns within each frame, frames differ, and what counts is
+// the ratio of both times in the same frame. Google Benchmark and nanobench run one function again and
+// again, one contestant after the other; what the machine does meanwhile goes into the ratio.
 
-#include <demos/report/statistics.hpp>
-#include <tests/benchmarks/catalog.hpp>
+#include <demos/experiment/measurements.hpp>
+#include <tests/benchmarks/workload.hpp>
 
 #include <algorithm>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,57 +29,18 @@ struct Case {
     }
 };
 
-/// How a contestant's answers compared with the exact ones, over all checked frames.
-struct AnswerTally {
-    int framesChecked = 0;
-    std::uint64_t answers = 0;     // with duplicates
-    std::uint64_t exact = 0;       // what there was to find
-    std::uint64_t missing = 0;     // of these, not reported
-    std::uint64_t extra = 0;       // reported, but not so: a superset
-    std::uint64_t duplicates = 0;  // reported again in the same frame
-
-    [[nodiscard]] bool isExact() const noexcept { return missing + extra + duplicates == 0; }
+/// How a contestant's answers in a frame compared with the exact ones.
+struct FrameAudit {
+    std::size_t answers = 0;     // with duplicates
+    std::size_t missing = 0;     // of the exact ones, not reported
+    std::size_t extra = 0;       // reported, but not so: a superset
+    std::size_t duplicates = 0;  // reported again
+    std::string fault;           // the first wrong answer in a sentence; empty when there is none
 };
 
-/// Adds one frame to the tally. `answers` may come in any order and is sorted; `exact` is sorted.
-/// Returns the first wrong answer in a sentence, empty when there is none.
-std::string auditAnswers(std::vector<Answer>& answers, const std::vector<Answer>& exact,
-                         AnswerTally& tally);
-
-struct ContestantResult {
-    ContestantKind kind;
-    double fillMs = 0;            // making and filling it
-    std::vector<double> frameMs;  // by measured frame
-    bool droppedOut = false;      // too slow, see Benchmark::dropFactor
-    AnswerTally tally;
-    std::string firstFault;  // empty when all was exact
-    Memory memory;
-
-    [[nodiscard]] std::optional<demos::Spread> spread() const;
-};
-
-struct CaseResult {
-    std::string name;
-    std::string group;
-    std::string description;
-    std::string operation;
-    std::size_t objects = 0;
-    std::size_t operations = 0;  // a frame
-    int warmUpFrames = 0;
-    int framesDone = 0;  // measured
-    bool timeLimitHit = false;
-    std::vector<ContestantResult> contestants;
-
-    [[nodiscard]] const ContestantResult* find(std::string_view contestant) const;
-
-    /// True when no checked answer of ours was wrong.
-    [[nodiscard]] bool oursWereExact() const;
-};
-
-/// The median over all frames of how many times longer `other` took than `own` in the same frame.
-/// Nothing where either was not measured.
-[[nodiscard]] std::optional<double> speedAgainst(const ContestantResult* other,
-                                                 const ContestantResult& own);
+/// `answers` may come in any order and is sorted; `exact` is sorted.
+[[nodiscard]] FrameAudit auditAnswers(std::vector<Answer>& answers,
+                                      const std::vector<Answer>& exact);
 
 struct MeasurementSettings {
     // Frames of so few objects are short and soon disturbed: more of them are measured.
@@ -95,6 +59,8 @@ struct MeasurementSettings {
     }
 };
 
-[[nodiscard]] CaseResult measure(const Case& toRun, const MeasurementSettings& settings);
+/// Adds the rows of the case, and returns its number.
+std::int64_t measure(const Case& toRun, const MeasurementSettings& settings,
+                     demos::Measurements& measured);
 
 }  // namespace hashphase::benchmarks

@@ -1,43 +1,45 @@
 // SPDX-License-Identifier: Zlib
-#include <tests/benchmarks/cell_size.hpp>
 #include <tests/benchmarks/fake_contestant.hpp>
-#include <tests/benchmarks/measurement.hpp>
 #include <tests/benchmarks/pair_workload.hpp>
-
-#include <demos/scenes/brownian_scene.hpp>
+#include <tests/benchmarks/report.hpp>
+#include <tests/demos/asked.hpp>
 
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <thread>
+#include <sstream>
 
 namespace hashphase::benchmarks {
 namespace {
 
+using demos::asked;
+using demos::Measurements;
 using demos::pairKey;
 using demos::PairKey;
 
-constexpr std::uint64_t kSeed = 5;
-
-Benchmark uniformBenchmark() {
-    Benchmark benchmark;
-    benchmark.name = "uniform";
-    benchmark.group = "pairs";
-    benchmark.make = [](std::size_t objects, std::uint64_t seed) {
-        return std::make_unique<PairWorkload>(
-            std::make_unique<demos::BrownianScene>(demos::uniformBoxes(objects, seed), seed));
-    };
-    return benchmark;
-}
-
-CaseResult measureFakes(const std::vector<ContestantKind>& kinds, double dropFactor = 0) {
-    Benchmark benchmark = uniformBenchmark();
-    benchmark.dropFactor = dropFactor;
+Measurements measureFakes(const std::vector<ContestantKind>& kinds, double dropFactor = 0) {
+    const Benchmark benchmark{.name = "uniform",
+                              .group = "pairs",
+                              .dropFactor = dropFactor,
+                              .make = makePairWorkload(brownian(demos::uniformBoxes))};
     MeasurementSettings settings;
     settings.frames = 4;
     settings.warmUpFrames = 3;
-    settings.seed = kSeed;
-    return measure({&benchmark, 200, kinds}, settings);
+    settings.seed = 5;
+    Measurements measured;
+    static_cast<void>(measure({&benchmark, 200, kinds}, settings, measured));
+    return measured;
+}
+
+/// What the reports make of it.
+std::string summaryOf(Measurements& measured) {
+    BenchmarkReport report;
+    report.measured = std::move(measured);
+    std::ostringstream out;
+    printCase(report, 1, out);
+    printSummary(report, out);
+    measured = std::move(report.measured);
+    return out.str();
 }
 
 void leaveAlone(std::vector<PairKey>& /*pairs*/) {}
@@ -51,129 +53,143 @@ void inventTwo(std::vector<PairKey>& pairs) {
     // Far beyond the objects that there are.
     pairs.insert(pairs.begin(), {pairKey(1'000'000, 7), pairKey(1'000'000, 8)});
 }
-
-void workForMilliseconds(int count) {
+void takeLong(std::vector<PairKey>& /*pairs*/) {
     // Work, not sleep: only the former counts as processor time.
-    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(count);
+    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(30);
     while (std::chrono::steady_clock::now() < end) {
     }
 }
 
 TEST(AnswerAudit, CountsWhatIsMissingExtraAndTwice) {
-    const std::vector<Answer> exact{1, 2, 3, 4};
-    std::vector<Answer> answers{9, 4, 2, 2, 2, 8};
-    AnswerTally tally;
-    EXPECT_EQ(auditAnswers(answers, exact, tally), "missed (0, 1)");
-    EXPECT_EQ(tally.framesChecked, 1);
-    EXPECT_EQ(tally.answers, 6U);
-    EXPECT_EQ(tally.exact, 4U);
-    EXPECT_EQ(tally.missing, 2U);
-    EXPECT_EQ(tally.extra, 2U);
-    EXPECT_EQ(tally.duplicates, 2U);
-    EXPECT_FALSE(tally.isExact());
-}
-
-TEST(AnswerAudit, AddsUpOverFramesAndIsExactWhenAllWere) {
-    AnswerTally tally;
-    std::vector<Answer> answers{2, 1};
-    EXPECT_EQ(auditAnswers(answers, {1, 2}, tally), "");
-    answers = {};
-    EXPECT_EQ(auditAnswers(answers, {}, tally), "");
-    EXPECT_TRUE(tally.isExact());
-    EXPECT_EQ(tally.framesChecked, 2);
-    answers = {5, 5};
-    EXPECT_EQ(auditAnswers(answers, {5}, tally), "reported 1 answers again");
-    EXPECT_FALSE(tally.isExact());
+    const auto auditOf = [](std::vector<Answer> answers, const std::vector<Answer>& exact) {
+        const FrameAudit audit = auditAnswers(answers, exact);
+        std::ostringstream text;
+        text << audit.answers << ' ' << audit.missing << ' ' << audit.extra << ' '
+             << audit.duplicates << ' ' << audit.fault;
+        return text.str();
+    };
+    EXPECT_EQ(auditOf({9, 4, 2, 2, 2, 8}, {1, 2, 3, 4}), "6 2 2 2 missed (0, 1)");
+    EXPECT_EQ(auditOf({2, 1}, {1, 2}), "2 0 0 0 ");
+    EXPECT_EQ(auditOf({}, {}), "0 0 0 0 ");
+    EXPECT_EQ(auditOf({5, 5}, {5}), "2 0 0 1 reported 1 answers again");
+    EXPECT_EQ(auditOf({5, 6}, {5}), "2 0 1 0 reported in excess (0, 6)");
 }
 
 TEST(Measurement, TellsAPeersMissesSupersetAndDuplicatesApart) {
-    const CaseResult result = measureFakes(
+    Measurements measured = measureFakes(
         {fakeKind("good", true, leaveAlone), fakeKind("forgets", false, forgetOne),
          fakeKind("repeats", false, repeatOne), fakeKind("invents", false, inventTwo)});
-    const std::uint64_t frames = 7;
-    const auto tally = [&result](const char* name) { return result.find(name)->tally; };
-    EXPECT_TRUE(tally("good").isExact());
-    EXPECT_GT(tally("good").answers, 0U);
-    EXPECT_EQ(tally("forgets").missing, frames);
-    EXPECT_EQ(tally("forgets").extra + tally("forgets").duplicates, 0U);
-    EXPECT_EQ(tally("repeats").duplicates, frames);
-    EXPECT_EQ(tally("repeats").extra + tally("repeats").missing, 0U);
-    EXPECT_EQ(tally("invents").extra, 2 * frames);
-    EXPECT_EQ(tally("invents").missing + tally("invents").duplicates, 0U);
-    EXPECT_TRUE(result.oursWereExact()) << "what peers get wrong is theirs";
+    EXPECT_NE(summaryOf(measured).find("All answers of ours exact: yes\n"), std::string::npos)
+        << "what peers get wrong is theirs";
+    EXPECT_EQ(
+        asked(measured, "SELECT name, checked, missing, extra, duplicates, answers > 0 FROM did"),
+        "good 7 0 0 0 1; forgets 7 7 0 0 1; repeats 7 0 0 7 1; invents 7 0 14 0 1");
 }
 
 TEST(Measurement, DoesNotPassAWrongAnswerOfOurs) {
     for (const Spoil& spoil : {Spoil(forgetOne), Spoil(repeatOne), Spoil(inventTwo)}) {
-        const CaseResult result = measureFakes({fakeKind("ours", true, spoil)});
-        EXPECT_FALSE(result.oursWereExact());
-        EXPECT_NE(result.contestants[0].firstFault.find("in frame 0"), std::string::npos)
-            << result.contestants[0].firstFault;
+        Measurements measured = measureFakes({fakeKind("ours", true, spoil)});
+        EXPECT_NE(summaryOf(measured).find("All answers of ours exact: NO\n"), std::string::npos);
+        EXPECT_EQ(asked(measured, "SELECT first_fault LIKE '% in frame 0' FROM case_tables"), "1");
     }
 }
 
-TEST(Measurement, TimesEveryMeasuredFrameOfEveryContestant) {
-    const CaseResult result =
+TEST(Measurement, TimesEveryMeasuredFrameOfEveryContestantInTurn) {
+    Measurements measured =
         measureFakes({fakeKind("a", true, leaveAlone), fakeKind("b", false, leaveAlone)});
-    EXPECT_EQ(result.framesDone, 4);
-    EXPECT_EQ(result.operations, 200U);
-    for (const ContestantResult& contestant : result.contestants) {
-        ASSERT_EQ(contestant.frameMs.size(), 4U);
-        EXPECT_GT(contestant.spread()->low, 0);
-        EXPECT_EQ(contestant.tally.framesChecked, 7);
-    }
+    static_cast<void>(summaryOf(measured));
+    EXPECT_EQ(asked(measured, "SELECT name, frames_done, operations FROM outcomes"),
+              "uniform/200 4 200");
+    EXPECT_EQ(asked(measured, "SELECT name, frames, low > 0 FROM did"), "a 4 1; b 4 1");
+    EXPECT_EQ(asked(measured,
+                    "SELECT group_concat(contestant) FROM (SELECT * FROM frames ORDER BY rowid)"),
+              "2,1,1,2,2,1,1,2");
 }
 
 TEST(Measurement, DropsTheHopelessWhereThatIsAllowed) {
-    const std::vector<ContestantKind> kinds{
-        fakeKind("quick", true, leaveAlone),
-        fakeKind("slow", true, [](std::vector<PairKey>&) { workForMilliseconds(30); })};
-    EXPECT_FALSE(measureFakes(kinds).find("slow")->droppedOut);
-    const CaseResult result = measureFakes(kinds, 3);
-    EXPECT_TRUE(result.find("slow")->droppedOut);
-    EXPECT_TRUE(result.find("slow")->frameMs.empty());
-    EXPECT_FALSE(result.find("quick")->droppedOut);
-    EXPECT_EQ(result.find("quick")->frameMs.size(), 4U);
+    const std::vector<ContestantKind> kinds{fakeKind("quick", true, leaveAlone),
+                                            fakeKind("slow", true, takeLong)};
+    Measurements all = measureFakes(kinds);
+    Measurements some = measureFakes(kinds, 3);
+    static_cast<void>(summaryOf(all) + summaryOf(some));
+    const char* outcome =
+        "SELECT name, ns LIKE 'too slow', dropped_out, frames "
+        "FROM case_tables JOIN did ON did.name = case_tables.contestant";
+    EXPECT_EQ(asked(all, outcome), "quick 0 0 4; slow 0 0 4");
+    EXPECT_EQ(asked(some, outcome), "quick 0 0 4; slow 1 1 0");
 }
 
 TEST(Measurement, StopsBetweenFramesWhenTimeIsUp) {
-    Benchmark benchmark = uniformBenchmark();
+    const Benchmark benchmark{.name = "uniform",
+                              .make = makePairWorkload(brownian(demos::uniformBoxes))};
     MeasurementSettings settings;
-    int asked = 0;
-    settings.isTimeUp = [&asked] { return ++asked > 12; };
-    const CaseResult result =
-        measure({&benchmark, 50, {fakeKind("a", true, leaveAlone)}}, settings);
-    EXPECT_TRUE(result.timeLimitHit);
-    EXPECT_EQ(result.framesDone, 2);
+    int count = 0;
+    settings.isTimeUp = [&count] { return ++count > 12; };
+    Measurements measured;
+    const Case toRun{&benchmark, 50, {fakeKind("a", true, leaveAlone)}};
+    static_cast<void>(measure(toRun, settings, measured));
+    EXPECT_EQ(asked(measured, "SELECT count(*) FROM frames"), "2");
+}
+
+/// Of contestants whose frames take so long [ms].
+Measurements measuredFrames(const char* group,
+                            const std::vector<std::pair<const char*, std::vector<double>>>& times) {
+    Measurements measured;
+    measured.add("cases", {{"name", "case/1"},
+                           {"group", group},
+                           {"description", ""},
+                           {"operation", "object"},
+                           {"objects", 1},
+                           {"operations", 1},
+                           {"warm_up_frames", 0},
+                           {"frames_asked", 3}});
+    for (const auto& [name, milliseconds] : times) {
+        const std::int64_t row = measured.add("contestants", {{"case", 1},
+                                                              {"name", name},
+                                                              {"title", ""},
+                                                              {"package", ""},
+                                                              {"ours", false},
+                                                              {"fill_ms", 0}});
+        for (std::size_t frame = 0; frame < milliseconds.size(); ++frame) {
+            measured.add("frames",
+                         {{"contestant", row}, {"frame", frame}, {"ms", milliseconds[frame]}});
+        }
+    }
+    return measured;
 }
 
 TEST(SpeedAgainst, IsTheMedianOfTheRatiosFrameByFrame) {
-    ContestantResult own;
-    ContestantResult other;
-    own.frameMs = {1, 10, 2};
-    other.frameMs = {3, 20, 8};  // ratios 3, 2, 4; the ratio of medians would be 4
-    EXPECT_EQ(speedAgainst(&other, own), 3);
-    EXPECT_EQ(speedAgainst(nullptr, own), std::nullopt);
-    EXPECT_EQ(speedAgainst(&other, {}), std::nullopt);
+    // Ratios 3, 2, 4; the ratio of medians would be 4.
+    Measurements measured =
+        measuredFrames("pairs", {{"own", {1, 10, 2}}, {"dbvt", {3, 20, 8}}, {"none", {}}});
+    static_cast<void>(summaryOf(measured));
+    EXPECT_EQ(asked(measured, "SELECT contestant, \"/ dbvt\" FROM case_tables"),
+              "own 3.00x; dbvt 1.00x; none -");
 }
 
 TEST(CellSizeRegret, ComparesWithTheBestFixedSize) {
-    CaseResult result;
-    result.group = kCellSizeGroup;
-    for (const auto& [name, ms] :
-         {std::pair(std::string(kAutomaticCells), 1.2), std::pair(std::string("cells-1"), 1.0),
-          std::pair(std::string("cells-2"), 2.0)}) {
-        ContestantResult contestant;
-        contestant.kind.name = name;
-        contestant.frameMs = {ms, ms};
-        result.contestants.push_back(contestant);
+    for (const bool isCellSize : {true, false}) {
+        Measurements measured =
+            measuredFrames(isCellSize ? "cell size" : "pairs", {{"cells-auto", {1.2, 1.2}},
+                                                                {"cells-1", {1, 1}},
+                                                                {"cells-2", {2, 2}},
+                                                                {"cells-4", {}}});
+        EXPECT_EQ(summaryOf(measured).find("Regret: median 20.0 %, worst 20.0 % of 1 cases.\n") !=
+                      std::string::npos,
+                  isCellSize);
+        EXPECT_EQ(asked(measured, "SELECT best, fixed(regret, 6) FROM regrets"),
+                  isCellSize ? "cells-1 0.200000" : "");
     }
-    const std::optional<CellSizeRegret> regret = cellSizeRegret(result);
-    ASSERT_TRUE(regret);
-    EXPECT_NEAR(regret->regret, 0.2, 1e-12);
-    EXPECT_EQ(regret->bestFixed, "cells-1");
-    result.group = "pairs";
-    EXPECT_FALSE(cellSizeRegret(result));
+}
+
+TEST(EffectsOverhead, IsTheRatioToTheFrameByHandAndHasBounds) {
+    Measurements measured = measuredFrames("effects", {{"by-hand", {1, 2, 4}},
+                                                       {"declared", {1.01, 2, 4.4}},
+                                                       {"nobody", {1.1, 2.2, 4}},
+                                                       {"by-hand-again", {1, 2, 8}}});
+    EXPECT_NE(summaryOf(measured).find("NO"), std::string::npos);
+    EXPECT_EQ(asked(measured, "SELECT name, ratio, bound, ratio <= bound FROM overheads"),
+              "declared 1.01 1.01 1; nobody 1.1 1.02 0; by-hand-again 1 - -");
 }
 
 }  // namespace

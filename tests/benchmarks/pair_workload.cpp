@@ -1,22 +1,40 @@
 // SPDX-License-Identifier: Zlib
 #include <tests/benchmarks/pair_workload.hpp>
 
-#include <demos/report/frame_clock.hpp>
-
 namespace hashphase::benchmarks {
+namespace {
 
-PairWorkload::PairWorkload(std::unique_ptr<demos::BoxScene> scene, Setting setting)
-    : scene_(std::move(scene)), setting_(setting) {}
-
-void PairWorkload::add(const ContestantKind& kind) {
-    Entry entry;
-    entry.kind = kind;
-    {
-        const demos::HeapScope scope(entry.heap);
-        entry.contestant = kind.make(scene_.needs());
-        entry.contestant->fill(scene_.frame());
+class PairRunner final : public Runner {
+public:
+    PairRunner(const PairWorkload& workload, const ContestantKind& kind)
+        : workload_(workload), kind_(kind), contestant_(kind.make(workload.scene().needs())) {
+        contestant_->fill(workload.scene().frame());
     }
-    entries_.push_back(std::move(entry));
+
+    void prepare() override { frame_ = workload_.frameFor(kind_); }
+    void run() override {
+        if (workload_.setting() == Setting::everything) {
+            contestant_->setAll(frame_);
+        }
+        contestant_->findPairs();
+    }
+    void listAnswers(std::vector<Answer>& answers) override { contestant_->listPairs(answers); }
+    void endFrame() override { contestant_->afterFrame(); }
+    [[nodiscard]] std::optional<OwnBytes> ownBytes() const override {
+        return contestant_->ownBytes();
+    }
+
+private:
+    const PairWorkload& workload_;
+    ContestantKind kind_;
+    std::unique_ptr<Contestant> contestant_;
+    FrameBoxes frame_;
+};
+
+}  // namespace
+
+std::unique_ptr<Runner> PairWorkload::make(const ContestantKind& kind) {
+    return std::make_unique<PairRunner>(*this, kind);
 }
 
 void PairWorkload::beginFrame() {
@@ -26,39 +44,16 @@ void PairWorkload::beginFrame() {
     begun_ = true;
 }
 
-double PairWorkload::runFrame(std::size_t contestant) {
-    const Entry& entry = entries_[contestant];
-    Contestant& current = *entry.contestant;
-    const FrameBoxes frame = frameFor(entry.kind);
-    const demos::FrameClock watch(entry.kind.onThreads);
-    if (setting_ == Setting::everything) {
-        current.setAll(frame);
-    }
-    current.findPairs();
-    return watch.milliseconds();
-}
-
-void PairWorkload::runWatchedFrame(std::size_t contestant) {
-    const demos::HeapScope scope(entries_[contestant].heap);
-    runFrame(contestant);
-}
-
-void PairWorkload::listAnswers(std::size_t contestant, std::vector<Answer>& answers) {
-    entries_[contestant].contestant->listPairs(answers);
-}
-
 void PairWorkload::listExactAnswers(std::vector<Answer>& answers) {
     demos::findExactPairs(demos::ReferenceMethod::kSweep, scene_.boxes(), scene_.frame().filters,
                           answers);
 }
 
-void PairWorkload::endFrame(std::size_t contestant) {
-    entries_[contestant].contestant->afterFrame();
-}
-
-Memory PairWorkload::memory(std::size_t contestant) const {
-    const Entry& entry = entries_[contestant];
-    return {entry.heap.bytes(), entry.contestant->ownBytes()};
+std::function<std::unique_ptr<Workload>(std::size_t, std::uint64_t)> makePairWorkload(
+    MakeScene makeScene, Setting setting) {
+    return [makeScene = std::move(makeScene), setting](std::size_t objects, std::uint64_t seed) {
+        return std::make_unique<PairWorkload>(makeScene(objects, seed), setting);
+    };
 }
 
 }  // namespace hashphase::benchmarks

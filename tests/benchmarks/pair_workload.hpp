@@ -3,7 +3,6 @@
 
 // The frame of a game: the boxes are set, and then the complete current set of pairs is there.
 
-#include <tests/benchmarks/scene_boxes.hpp>
 #include <tests/benchmarks/workload.hpp>
 
 namespace hashphase::benchmarks {
@@ -17,38 +16,31 @@ enum class Setting {
 class PairWorkload : public Workload {
 public:
     explicit PairWorkload(std::unique_ptr<demos::BoxScene> scene,
-                          Setting setting = Setting::everything);
+                          Setting setting = Setting::everything)
+        : scene_(std::move(scene)), setting_(setting) {}
 
-    void add(const ContestantKind& kind) override;
+    [[nodiscard]] std::unique_ptr<Runner> make(const ContestantKind& kind) override;
     void beginFrame() override;
-    double runFrame(std::size_t contestant) override;
-    void runWatchedFrame(std::size_t contestant) override;
-    void listAnswers(std::size_t contestant, std::vector<Answer>& answers) override;
     void listExactAnswers(std::vector<Answer>& answers) override;
-    void endFrame(std::size_t contestant) override;
-    [[nodiscard]] Memory memory(std::size_t contestant) const override;
     [[nodiscard]] std::size_t objects() const override { return scene_.size(); }
-    [[nodiscard]] std::size_t operations() const override { return scene_.size(); }
+    [[nodiscard]] bool watchesHeap() const override { return true; }
 
-protected:
     /// What is handed to contestants of the kind.
     [[nodiscard]] virtual FrameBoxes frameFor(const ContestantKind& /*kind*/) const {
         return scene_.frame();
     }
 
     [[nodiscard]] const SceneBoxes& scene() const noexcept { return scene_; }
+    [[nodiscard]] Setting setting() const noexcept { return setting_; }
 
 private:
-    struct Entry {
-        ContestantKind kind;
-        std::unique_ptr<Contestant> contestant;
-        demos::HeapMeter heap;
-    };
-
     SceneBoxes scene_;
     Setting setting_;
     bool begun_ = false;
-    std::vector<Entry> entries_;
 };
+
+/// Of the scene.
+[[nodiscard]] std::function<std::unique_ptr<Workload>(std::size_t, std::uint64_t)> makePairWorkload(
+    MakeScene makeScene, Setting setting = Setting::everything);
 
 }  // namespace hashphase::benchmarks

@@ -4,68 +4,75 @@
 // Questions to a filled broadphase: what do these rays, or boxes, or agents meet? Each frame asks
 // others. The exact answers come from testing every object.
 
-#include <broadphase/neighbours.hpp>
-#include <demos/scenes/random.hpp>
-#include <tests/benchmarks/scene_boxes.hpp>
 #include <tests/benchmarks/workload.hpp>
 
-#include <functional>
-
 namespace hashphase::benchmarks {
-
-[[nodiscard]] constexpr Answer answerOf(std::size_t query, std::uint32_t found) noexcept {
-    return Answer{query} << 32 | found;
-}
 
 /// What the query workloads have in common: broadphases of Bullet's kind, and their answers.
 class QueryWorkload : public Workload {
 public:
-    explicit QueryWorkload(std::unique_ptr<demos::BoxScene> scene) : scene_(std::move(scene)) {}
+    /// Where the scene moves, all boxes are set before each frame.
+    QueryWorkload(std::unique_ptr<demos::BoxScene> scene, bool moves)
+        : scene_(std::move(scene)), moves_(moves) {}
 
-    void add(const ContestantKind& kind) override;
-    double runFrame(std::size_t contestant) override;
-    void listAnswers(std::size_t contestant, std::vector<Answer>& answers) override;
+    [[nodiscard]] std::unique_ptr<Runner> make(const ContestantKind& kind) override {
+        return std::make_unique<Asking>(*this, kind);
+    }
+    void beginFrame() override {
+        if (moves_) {
+            scene_.advance();
+        }
+        drawQueries();
+    }
     [[nodiscard]] std::size_t objects() const override { return scene_.size(); }
 
 protected:
+    /// Those of the next frame.
+    virtual void drawQueries() {}
+
     /// The timed part: asks all queries of the frame and writes down the answers.
     virtual void ask(demos::FilledBroadphase& filled, std::vector<Answer>& answers) = 0;
 
-    /// Moves all boxes on, in every broadphase.
-    void advanceScene();
+    virtual void afterFrame(demos::FilledBroadphase& /*filled*/) {}
 
     [[nodiscard]] const SceneBoxes& scene() const noexcept { return scene_; }
-    [[nodiscard]] demos::FilledBroadphase& filled(std::size_t contestant) {
-        return *entries_[contestant].filled;
-    }
 
 private:
-    struct Entry {
-        std::unique_ptr<demos::FilledBroadphase> filled;
-        std::vector<Answer> answers;
+    class Asking final : public Runner {
+    public:
+        Asking(QueryWorkload& workload, const ContestantKind& kind)
+            : workload_(workload), filled_(filledWith(workload.scene_, *kind.bullet)) {}
+
+        void beginFrame() override {
+            if (workload_.moves_) {
+                filled_->setAll(workload_.scene_.frame().bulletBoxes);
+                filled_->findPairs();
+            }
+            answers_.clear();
+        }
+        void run() override { workload_.ask(*filled_, answers_); }
+        void listAnswers(std::vector<Answer>& answers) override { answers = answers_; }
+        void endFrame() override { workload_.afterFrame(*filled_); }
+
+    private:
+        QueryWorkload& workload_;
+        std::unique_ptr<demos::FilledBroadphase> filled_;
+        std::vector<Answer> answers_;
     };
 
     SceneBoxes scene_;
-    std::vector<Entry> entries_;
+    bool moves_;
 };
 
-/// Every agent asks who is within `radius` [m] of its centre; all agents move before each frame.
-class NeighbourWorkload : public QueryWorkload {
-public:
-    NeighbourWorkload(std::unique_ptr<demos::BoxScene> scene, float radius)
-        : QueryWorkload(std::move(scene)), radius_(radius) {}
+/// Hash and dbvt take part.
+[[nodiscard]] inline bool answersQueries(const ContestantKind& kind, std::size_t /*objects*/) {
+    return kind.name == "hash" || kind.name == kBaseline;
+}
 
-    void beginFrame() override { advanceScene(); }
-    void listExactAnswers(std::vector<Answer>& answers) override;
-    [[nodiscard]] std::size_t operations() const override { return scene().size(); }
-
-private:
-    void ask(demos::FilledBroadphase& filled, std::vector<Answer>& answers) override;
-    void askForAll(const SpatialHashBroadphase& broadphase, std::vector<Answer>& answers);
-
-    float radius_;
-    std::vector<SphereRegion<float>> regions_;  // of the agents
-    Neighbours<float> neighbours_;
-};
+/// A box, of whose places `random` takes any.
+[[nodiscard]] inline const Aabb<float>& anyBox(float share, const std::vector<Aabb<float>>& boxes) {
+    const auto place = static_cast<std::size_t>(share * static_cast<float>(boxes.size()));
+    return boxes[std::min(place, boxes.size() - 1)];
+}
 
 }  // namespace hashphase::benchmarks

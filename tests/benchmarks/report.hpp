@@ -4,18 +4,32 @@
 // What was measured, as text for people and as JSON for programs.
 
 #include <demos/report/provenance.hpp>
-#include <tests/benchmarks/selection.hpp>
+#include <tests/benchmarks/measurement.hpp>
 
 #include <iosfwd>
+#include <optional>
 
 namespace hashphase::benchmarks {
+
+struct BenchmarkOptions {
+    std::vector<std::string> only;         // regular expressions; empty: all but those on request
+    std::vector<std::size_t> sizes;        // empty: each benchmark's own
+    std::vector<std::string> contestants;  // empty: all
+    std::optional<int> frames;             // measured
+    std::uint64_t seed = 1;
+    std::optional<double> timeLimit;  // [s]
+    std::string jsonFile;             // empty: none
+    bool quick = false;               // small and few: checks, measures nothing worth reading
+    bool quiet = false;               // no progress
+    bool list = false;                // only say what there is
+};
 
 /// All that the reports say.
 struct BenchmarkReport {
     BenchmarkOptions options;
     MeasurementSettings settings;
     demos::Provenance provenance;
-    std::vector<CaseResult> cases;
+    demos::Measurements measured;
     std::size_t casesAsked = 0;
 };
 
@@ -23,17 +37,14 @@ struct BenchmarkReport {
 void printSetting(const BenchmarkReport& report, const std::vector<ContestantKind>& kinds,
                   std::ostream& out);
 
-/// One case, as soon as it is done.
-void printCase(const CaseResult& result, std::ostream& out);
+/// The case of that number, as soon as it is done.
+void printCase(BenchmarkReport& report, std::int64_t number, std::ostream& out);
 
 /// All cases in a table, the spread of the random scenes, the regret of the cell sizes, what
-/// declared effects cost, the verdict.
-void printSummary(const BenchmarkReport& report, std::ostream& out);
+/// declared effects cost, the verdict: whether no checked answer of ours was wrong, which it returns.
+bool printSummary(BenchmarkReport& report, std::ostream& out);
 
-/// True when no checked answer of ours was wrong in any case.
-[[nodiscard]] bool oursWereExact(const BenchmarkReport& report);
-
-/// Schema "hashphase-benchmarks"; what was not measured is null.
-void writeJson(const BenchmarkReport& report, std::ostream& out);
+/// Schema "hashphase-benchmarks"; what was not measured is null. After printSummary().
+void writeJson(BenchmarkReport& report, std::ostream& out);
 
 }  // namespace hashphase::benchmarks

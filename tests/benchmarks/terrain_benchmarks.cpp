@@ -1,54 +1,171 @@
 // SPDX-License-Identifier: Zlib
 
-// Who says how high the ground is: ours one by one, in a batch and on threads; Bullet's world, and its
-// shapes by themselves.
+// Where on the ground is everybody? Spheres roam over hills of triangles; in every frame all of them
+// move, and each asks for the height of the ground below, or for the height at which it rests. Who
+// answers: ours one by one, in a batch and on threads; Bullet's world, and its shapes by themselves.
+//
+// Answers   1 where the height is the exact one, but for 1 cm, else 2. Exact is what the nearest
+//           points of all triangles around say, in long double.
 
+#include <demos/scenes/random.hpp>
+#include <demos/scenes/terrain.hpp>
 #include <integration/bullet/conversions.hpp>
 #include <integration/terrain/terrain.hpp>
 #include <tests/benchmarks/peers/peers.hpp>
-#include <tests/benchmarks/terrain_workload.hpp>
+#include <tests/support/terrain_oracle.hpp>
 
 #include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btRaycastCallback.h>
 #include <btBulletCollisionCommon.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 
 namespace hashphase::benchmarks {
 namespace {
 
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+constexpr float kAbove = 30;  // [m], where all ask from
 constexpr float kBelow = -5;  // [m], where rays and sweeps end
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+constexpr double kTolerance = 0.01;  // [m]
+
+// --- The hills -------------------------------------------------------------------------------------
+
+/// Hills over a square: 160 x 160 quads of 2.5 m, in two triangles each.
+class HillMesh {
+public:
+    static constexpr std::uint32_t kQuads = 160;  // a side
+    static constexpr float kEdge = 2.5F;          // [m]
+    static constexpr float kHalf = 0.5F * kQuads * kEdge;
+
+    explicit HillMesh(std::uint64_t seed) {
+        const demos::Terrain hills(seed);
+        for (std::uint32_t k = 0; k <= kQuads; ++k) {
+            for (std::uint32_t i = 0; i <= kQuads; ++i) {
+                const float x = static_cast<float>(i) * kEdge - kHalf;
+                const float z = static_cast<float>(k) * kEdge - kHalf;
+                vertices_.emplace_back(x, hills.height(x, z), z);
+            }
+        }
+        for (std::uint32_t k = 0; k < kQuads; ++k) {
+            for (std::uint32_t i = 0; i < kQuads; ++i) {
+                // Along the diagonal that a heightfield of Bullet's takes.
+                const std::uint32_t a = k * (kQuads + 1) + i;
+                const std::uint32_t b = a + 1;
+                const std::uint32_t c = a + kQuads + 1;
+                indices_.insert(indices_.end(), {a, c, b, b, c, c + 1});
+            }
+        }
+    }
+
+    [[nodiscard]] const std::vector<Vector3<float>>& vertices() const noexcept { return vertices_; }
+    [[nodiscard]] const std::vector<std::uint32_t>& indices() const noexcept { return indices_; }
+
+    /// How far `height` is from what is exact for a sphere, radius 0 for the surface [m].
+    // On hills without overhangs, a sphere rests where the nearest point of all is the radius away.
+    [[nodiscard]] double error(const Vector3<float>& center, float radius, float height) const {
+        const auto quadAt = [](float x) {
+            const float quad = std::floor((x + kHalf) / kEdge);
+            return static_cast<std::uint32_t>(
+                std::clamp(quad, 0.0F, static_cast<float>(kQuads - 1)));
+        };
+        const test::RealPoint at(static_cast<test::Real>(center[0]),
+                                 static_cast<test::Real>(height),
+                                 static_cast<test::Real>(center[2]));
+        test::Real nearest = std::numeric_limits<test::Real>::infinity();
+        for (std::uint32_t k = quadAt(center[2] - radius); k <= quadAt(center[2] + radius); ++k) {
+            for (std::uint32_t i = quadAt(center[0] - radius); i <= quadAt(center[0] + radius);
+                 ++i) {
+                for (const std::uint32_t half : {0U, 1U}) {
+                    const test::RealTriangle corners = triangle(2 * (k * kQuads + i) + half);
+                    const auto surface = test::surfaceOf(corners, at);
+                    if (surface.claim != test::Claim::no && surface.height > at[1] + kTolerance) {
+                        return static_cast<double>(surface.height - at[1]);  // sunk in
+                    }
+                    nearest = std::min(nearest, (test::nearestPoint(corners, at) - at).norm());
+                }
+            }
+        }
+        return static_cast<double>(std::abs(nearest - static_cast<test::Real>(radius)));
+    }
+
+private:
+    [[nodiscard]] test::RealTriangle triangle(std::uint32_t number) const {
+        test::RealTriangle corners;
+        for (std::size_t i = 0; i < 3; ++i) {
+            corners[i] = vertices_[indices_[3 * number + i]].cast<test::Real>();
+        }
+        return corners;
+    }
+
+    std::vector<Vector3<float>> vertices_;
+    std::vector<std::uint32_t> indices_;
+};
+
+enum class GroundQuestion : std::uint8_t { surface, rest };
+
+/// Everybody's place and size in a frame, and what is asked.
+struct Spheres {
+    GroundQuestion question;
+    HillMesh mesh;
+    std::vector<Vector3<float>> centers = {};
+    std::vector<float> radii = {};
+};
+
+// --- Who answers -----------------------------------------------------------------------------------
+
+class GroundRunner : public Runner {
+public:
+    explicit GroundRunner(const Spheres& spheres)
+        : spheres_(spheres), heights_(spheres.centers.size()) {}
+
+    void listAnswers(std::vector<Answer>& answers) override {
+        answers.clear();
+        for (std::size_t i = 0; i < heights_.size(); ++i) {
+            if (!std::isnan(heights_[i])) {
+                const double error =
+                    spheres_.mesh.error(spheres_.centers[i], spheres_.radii[i], heights_[i]);
+                answers.push_back(answerOf(i, error <= kTolerance ? 1 : 2));
+            }
+        }
+    }
+
+protected:
+    const Spheres& spheres_;
+    std::vector<float> heights_;  // NaN for none
+};
 
 enum class Way : std::uint8_t { oneByOne, batch, threads };
 
-class Ours : public GroundContestant {
+class OwnGround final : public GroundRunner {
 public:
-    Ours(const HillMesh& mesh, Way way) : terrain_(grid_), way_(way) {
-        terrain_.add(mesh.vertices(), mesh.indices());
+    OwnGround(const Spheres& spheres, Way way) : GroundRunner(spheres), terrain_(grid_), way_(way) {
+        terrain_.add(spheres.mesh.vertices(), spheres.mesh.indices());
         grid_.update();
     }
 
-    void ask(GroundQuestion question, const Spheres& spheres, std::span<float> heights) override {
-        found_.resize(heights.size());
+    void run() override {
+        const auto& [question, mesh, centers, radii] = spheres_;
+        found_.resize(centers.size());
         if (way_ == Way::oneByOne) {
-            for (std::size_t i = 0; i < heights.size(); ++i) {
+            for (std::size_t i = 0; i < centers.size(); ++i) {
                 found_[i] = question == GroundQuestion::surface
-                                ? terrain_.surfaceBelow(spheres.centers[i])
-                                : terrain_.restingHeight(spheres.centers[i], spheres.radii[i]);
+                                ? terrain_.surfaceBelow(centers[i])
+                                : terrain_.restingHeight(centers[i], radii[i]);
             }
         } else {
             const ParallelFor loop =
                 way_ == Way::threads ? *threadedLoop() : ParallelFor(serialFor);
             if (question == GroundQuestion::surface) {
-                terrain_.surfacesBelow(spheres.centers, found_, loop);
+                terrain_.surfacesBelow(centers, found_, loop);
             } else {
-                terrain_.restingHeights(spheres.centers, spheres.radii, found_, loop);
+                terrain_.restingHeights(centers, radii, found_, loop);
             }
         }
-        for (std::size_t i = 0; i < heights.size(); ++i) {
-            heights[i] = found_[i] ? found_[i]->height : kNone;
+        for (std::size_t i = 0; i < centers.size(); ++i) {
+            heights_[i] = found_[i] ? found_[i]->height : kNone;
         }
     }
 
@@ -63,55 +180,56 @@ private:
     std::vector<Terrain<float>::Found> found_;
 };
 
-/// Rays straight down through a shape.
-class RaysAtShape : public GroundContestant {
+/// Something of Bullet's that is asked straight down, sphere by sphere.
+class BulletGround : public GroundRunner {
 public:
-    void ask(GroundQuestion /*question*/, const Spheres& spheres,
-             std::span<float> heights) override {
-        for (std::size_t i = 0; i < heights.size(); ++i) {
-            const btVector3 from = toBullet(spheres.centers[i]);
-            Closest closest(from, btVector3(from.x(), kBelow, from.z()));
-            cast(closest, from, btVector3(from.x(), kBelow, from.z()));
-            heights[i] = closest.m_hitFraction < 1
-                             ? from.y() + closest.m_hitFraction * (kBelow - from.y())
-                             : kNone;
+    using GroundRunner::GroundRunner;
+
+    void run() override {
+        for (std::size_t i = 0; i < heights_.size(); ++i) {
+            const btVector3 from = toBullet(spheres_.centers[i]);
+            const btVector3 to(from.x(), kBelow, from.z());
+            const btScalar fraction = fractionOf(from, to, spheres_.radii[i]);
+            heights_[i] = fraction < 1 ? from.y() + fraction * (kBelow - from.y()) : kNone;
         }
     }
 
-private:
-    struct Closest : btTriangleRaycastCallback {
-        using btTriangleRaycastCallback::btTriangleRaycastCallback;
-        btScalar reportHit(const btVector3& /*normal*/, btScalar fraction, int /*part*/,
-                           int /*index*/) override {
-            return fraction;
-        }
-    };
-
-    virtual void cast(btTriangleRaycastCallback& callback, const btVector3& from,
-                      const btVector3& to) = 0;
+protected:
+    /// Of the way, until it meets the ground; 1 where it does not.
+    virtual btScalar fractionOf(const btVector3& from, const btVector3& to, float radius) = 0;
 };
 
-class RaysAtHeightfield : public RaysAtShape {
+/// Of a ray at a shape.
+struct ClosestTriangle : btTriangleRaycastCallback {
+    using btTriangleRaycastCallback::btTriangleRaycastCallback;
+    btScalar reportHit(const btVector3& /*normal*/, btScalar fraction, int /*part*/,
+                       int /*index*/) override {
+        return fraction;
+    }
+};
+
+class HeightfieldGround final : public BulletGround {
 public:
-    explicit RaysAtHeightfield(const HillMesh& mesh) {
-        for (const Vector3<float>& vertex : mesh.vertices()) {
-            heights_.push_back(vertex[1]);
+    explicit HeightfieldGround(const Spheres& spheres) : BulletGround(spheres) {
+        for (const Vector3<float>& vertex : spheres.mesh.vertices()) {
+            ground_.push_back(vertex[1]);
         }
         constexpr int side = HillMesh::kQuads + 1;
         // From -20 to 20, so that its middle is at 0.
-        const float* heights = heights_.data();
+        const float* heights = ground_.data();
         shape_.emplace(side, side, heights, btScalar(-20), btScalar(20), 1, false);
         shape_->setLocalScaling({HillMesh::kEdge, 1, HillMesh::kEdge});
         shape_->buildAccelerator();
     }
 
 private:
-    void cast(btTriangleRaycastCallback& callback, const btVector3& from,
-              const btVector3& to) override {
-        shape_->performRaycast(&callback, from, to);
+    btScalar fractionOf(const btVector3& from, const btVector3& to, float /*radius*/) override {
+        ClosestTriangle closest(from, to);
+        shape_->performRaycast(&closest, from, to);
+        return closest.m_hitFraction;
     }
 
-    std::vector<float> heights_;
+    std::vector<float> ground_;
     std::optional<btHeightfieldTerrainShape> shape_;
 };
 
@@ -129,47 +247,36 @@ struct BulletMesh {
     btBvhTriangleMeshShape shape;
 };
 
-class RaysAtMesh : public RaysAtShape {
+class MeshGround final : public BulletGround {
 public:
-    explicit RaysAtMesh(const HillMesh& mesh) : mesh_(mesh) {}
+    explicit MeshGround(const Spheres& spheres) : BulletGround(spheres), mesh_(spheres.mesh) {}
 
 private:
-    void cast(btTriangleRaycastCallback& callback, const btVector3& from,
-              const btVector3& to) override {
-        mesh_.shape.performRaycast(&callback, from, to);
+    btScalar fractionOf(const btVector3& from, const btVector3& to, float /*radius*/) override {
+        ClosestTriangle closest(from, to);
+        mesh_.shape.performRaycast(&closest, from, to);
+        return closest.m_hitFraction;
     }
 
     BulletMesh mesh_;
 };
 
 /// What a program does that has a Bullet world: casts a ray down, or lets the sphere fall.
-class World : public GroundContestant {
+class WorldGround final : public BulletGround {
 public:
-    explicit World(const HillMesh& mesh) : mesh_(mesh) {
+    explicit WorldGround(const Spheres& spheres) : BulletGround(spheres), mesh_(spheres.mesh) {
         ground_.setCollisionShape(&mesh_.shape);
         world_.addCollisionObject(&ground_);
     }
-    ~World() override { world_.removeCollisionObject(&ground_); }
-
-    void ask(GroundQuestion question, const Spheres& spheres, std::span<float> heights) override {
-        for (std::size_t i = 0; i < heights.size(); ++i) {
-            const btVector3 from = toBullet(spheres.centers[i]);
-            const btVector3 to(from.x(), kBelow, from.z());
-            const btScalar fraction = question == GroundQuestion::surface
-                                          ? rayFraction(from, to)
-                                          : fallFraction(from, to, spheres.radii[i]);
-            heights[i] = fraction < 1 ? from.y() + fraction * (kBelow - from.y()) : kNone;
-        }
-    }
+    ~WorldGround() override { world_.removeCollisionObject(&ground_); }
 
 private:
-    btScalar rayFraction(const btVector3& from, const btVector3& to) {
-        btCollisionWorld::ClosestRayResultCallback hit(from, to);
-        world_.rayTest(from, to, hit);
-        return hit.m_closestHitFraction;
-    }
-
-    btScalar fallFraction(const btVector3& from, const btVector3& to, float radius) {
+    btScalar fractionOf(const btVector3& from, const btVector3& to, float radius) override {
+        if (spheres_.question == GroundQuestion::surface) {
+            btCollisionWorld::ClosestRayResultCallback hit(from, to);
+            world_.rayTest(from, to, hit);
+            return hit.m_closestHitFraction;
+        }
         const btSphereShape sphere(radius);
         btCollisionWorld::ClosestConvexResultCallback hit(from, to);
         world_.convexSweepTest(&sphere, btTransform(btQuaternion::getIdentity(), from),
@@ -185,81 +292,116 @@ private:
     btCollisionObject ground_;
 };
 
-Benchmark groundBenchmark(std::string name, std::string description, GroundQuestion question) {
-    Benchmark benchmark;
-    benchmark.name = std::move(name);
-    benchmark.group = "queries";
-    benchmark.description = std::move(description);
-    benchmark.operation = "sphere";
-    benchmark.sizes = {50'000};
-    benchmark.contestants = [question](std::size_t /*objects*/, std::uint64_t /*seed*/) {
-        return groundKinds(question);
-    };
-    benchmark.make = [question](std::size_t objects, std::uint64_t seed) {
-        return std::make_unique<TerrainWorkload>(question, objects, seed);
-    };
-    return benchmark;
+std::vector<ContestantKind> groundKinds(GroundQuestion question) {
+    const std::string bullet = contestantKind(kBaseline).package;
+    const std::string dbvt(kBaseline);
+    std::vector<ContestantKind> kinds{
+        {.name = "hash", .title = "Terrain, all at once", .ours = true},
+        {.name = "hash-single", .title = "Terrain, one by one", .ours = true}};
+    if (threadedLoop()) {
+        kinds.push_back({.name = "hash-threads",
+                         .title = "Terrain, all at once, tbbFor",
+                         .ours = true,
+                         .onThreads = true});
+    }
+    if (question == GroundQuestion::rest) {
+        kinds.push_back(
+            {.name = dbvt,
+             .title = "btCollisionWorld::convexSweepTest down, on a btBvhTriangleMeshShape",
+             .package = bullet});
+        return kinds;
+    }
+    kinds.push_back({.name = dbvt,
+                     .title = "btCollisionWorld::rayTest down, on a btBvhTriangleMeshShape",
+                     .package = bullet});
+    kinds.push_back(
+        {.name = "mesh", .title = "btBvhTriangleMeshShape::performRaycast", .package = bullet});
+    kinds.push_back({.name = "heightfield",
+                     .title = "btHeightfieldTerrainShape::performRaycast, with its accelerator",
+                     .package = bullet});
+    return kinds;
+}
+
+// --- The workload ----------------------------------------------------------------------------------
+
+class TerrainWorkload final : public Workload {
+public:
+    TerrainWorkload(GroundQuestion question, std::size_t spheres, std::uint64_t seed)
+        : spheres_{question, HillMesh(seed)}, random_(~seed) {
+        for (std::size_t i = 0; i < spheres; ++i) {
+            spheres_.centers.emplace_back(random_.between(-kRoom, kRoom), kAbove,
+                                          random_.between(-kRoom, kRoom));
+            spheres_.radii.push_back(question == GroundQuestion::rest ? random_.between(0.3F, 1)
+                                                                      : 0);
+            ways_.emplace_back(random_.between(-0.2F, 0.2F), 0, random_.between(-0.2F, 0.2F));
+        }
+    }
+
+    [[nodiscard]] std::unique_ptr<Runner> make(const ContestantKind& kind) override {
+        if (kind.name == kBaseline) {
+            return std::make_unique<WorldGround>(spheres_);
+        }
+        if (kind.name == "mesh") {
+            return std::make_unique<MeshGround>(spheres_);
+        }
+        if (kind.name == "heightfield") {
+            return std::make_unique<HeightfieldGround>(spheres_);
+        }
+        return std::make_unique<OwnGround>(spheres_, kind.name == "hash-single" ? Way::oneByOne
+                                                     : kind.onThreads           ? Way::threads
+                                                                                : Way::batch);
+    }
+
+    void beginFrame() override {
+        for (std::size_t i = 0; i < ways_.size(); ++i) {
+            Vector3<float>& center = spheres_.centers[i];
+            center += ways_[i];
+            for (const int axis : {0, 2}) {
+                if (std::abs(center[axis]) > kRoom) {
+                    ways_[i][axis] = -std::copysign(ways_[i][axis], center[axis]);
+                }
+            }
+        }
+    }
+
+    void listExactAnswers(std::vector<Answer>& answers) override {
+        answers.clear();
+        for (std::size_t i = 0; i < objects(); ++i) {
+            answers.push_back(answerOf(i, 1));
+        }
+    }
+
+    [[nodiscard]] std::size_t objects() const override { return spheres_.centers.size(); }
+
+private:
+    static constexpr float kRoom = HillMesh::kHalf - 2;
+
+    Spheres spheres_;
+    demos::Random random_;
+    std::vector<Vector3<float>> ways_;  // a frame [m]
+};
+
+Benchmark groundBenchmark(const char* name, const char* description, GroundQuestion question) {
+    return {.name = name,
+            .group = "queries",
+            .description = description,
+            .operation = "sphere",
+            .sizes = {50'000},
+            .contestants = [question](std::size_t, std::uint64_t) { return groundKinds(question); },
+            .make =
+                [question](std::size_t objects, std::uint64_t seed) {
+                    return std::make_unique<TerrainWorkload>(question, objects, seed);
+                }};
 }
 
 }  // namespace
 
-std::vector<ContestantKind> groundKinds(GroundQuestion question) {
-    std::vector<ContestantKind> kinds;
-    const auto add = [&kinds](std::string name, std::string title, bool ours) {
-        ContestantKind kind;
-        kind.name = std::move(name);
-        kind.title = std::move(title);
-        kind.package = contestantKind(ours ? "hash" : kBaseline).package;
-        kind.ours = ours;
-        kinds.push_back(std::move(kind));
-    };
-    add("hash", "Terrain, all at once", true);
-    add("hash-single", "Terrain, one by one", true);
-    if (threadedLoop()) {
-        add("hash-threads", "Terrain, all at once, tbbFor", true);
-        kinds.back().onThreads = true;
-    }
-    if (question == GroundQuestion::surface) {
-        add(std::string(kBaseline), "btCollisionWorld::rayTest down, on a btBvhTriangleMeshShape",
-            false);
-        add("mesh", "btBvhTriangleMeshShape::performRaycast", false);
-        add("heightfield", "btHeightfieldTerrainShape::performRaycast, with its accelerator",
-            false);
-    } else {
-        add(std::string(kBaseline),
-            "btCollisionWorld::convexSweepTest down, on a btBvhTriangleMeshShape", false);
-    }
-    return kinds;
-}
-
-std::unique_ptr<GroundContestant> makeGroundContestant(std::string_view name,
-                                                       const HillMesh& mesh) {
-    if (name == "hash-single") {
-        return std::make_unique<Ours>(mesh, Way::oneByOne);
-    }
-    if (name == "hash-threads") {
-        return std::make_unique<Ours>(mesh, Way::threads);
-    }
-    if (name == kBaseline) {
-        return std::make_unique<World>(mesh);
-    }
-    if (name == "mesh") {
-        return std::make_unique<RaysAtMesh>(mesh);
-    }
-    if (name == "heightfield") {
-        return std::make_unique<RaysAtHeightfield>(mesh);
-    }
-    return std::make_unique<Ours>(mesh, Way::batch);
-}
-
 std::vector<Benchmark> terrainBenchmarks() {
-    std::vector<Benchmark> all;
-    all.push_back(groundBenchmark(
-        "terrain", "the ground below each of spheres that roam over 51,200 triangles",
-        GroundQuestion::surface));
-    all.push_back(groundBenchmark(
-        "terrain-rest", "where each of these spheres, of 0.3 to 1 m, rests", GroundQuestion::rest));
-    return all;
+    return {groundBenchmark("terrain",
+                            "the ground below each of spheres that roam over 51,200 triangles",
+                            GroundQuestion::surface),
+            groundBenchmark("terrain-rest", "where each of these spheres, of 0.3 to 1 m, rests",
+                            GroundQuestion::rest)};
 }
 
 }  // namespace hashphase::benchmarks

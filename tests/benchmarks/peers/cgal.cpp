@@ -65,14 +65,13 @@ private:
 }  // namespace
 
 std::vector<ContestantKind> cgalKinds() {
-    ContestantKind kind;
-    kind.name = "cgal";
-    kind.title = "CGAL::box_self_intersection_d";
-    kind.description = "CGAL's streamed segment tree, from scratch in each frame";
-    kind.package = HASHPHASE_BENCHMARKS_CGAL_PACKAGE ", compiled with our flags";
-    kind.upTo = 300'000;
-    kind.make = [](const demos::BroadphaseNeeds&) { return std::make_unique<CgalContestant>(); };
-    return {kind};
+    return {
+        {.name = "cgal",
+         .title = "CGAL::box_self_intersection_d",
+         .description = "CGAL's streamed segment tree, from scratch in each frame",
+         .package = HASHPHASE_BENCHMARKS_CGAL_PACKAGE ", compiled with our flags",
+         .upTo = 300'000,
+         .make = [](const demos::BroadphaseNeeds&) { return std::make_unique<CgalContestant>(); }}};
 }
 
 }  // namespace hashphase::benchmarks

@@ -116,29 +116,25 @@ std::unique_ptr<Manager> makeHash(const FrameBoxes& frame, const Aabb<float>& bo
         static_cast<unsigned int>(2 * frame.boxes.size() + 1));
 }
 
-ContestantKind fclKind(FclContestant::MakeManager makeManager) {
-    ContestantKind kind;
-    kind.package = HASHPHASE_BENCHMARKS_FCL_PACKAGE ", its templates compiled with our flags";
-    kind.make = [makeManager](const demos::BroadphaseNeeds& needs) {
-        return std::make_unique<FclContestant>(makeManager, needs.bounds);
-    };
-    return kind;
+ContestantKind fclKind(const char* name, const char* title, const char* description,
+                       std::size_t upTo, FclContestant::MakeManager makeManager) {
+    return {.name = name,
+            .title = title,
+            .description = description,
+            .package = HASHPHASE_BENCHMARKS_FCL_PACKAGE ", its templates compiled with our flags",
+            .upTo = upTo,
+            .make = [makeManager](const demos::BroadphaseNeeds& needs) {
+                return std::make_unique<FclContestant>(makeManager, needs.bounds);
+            }};
 }
 
 }  // namespace
 
 std::vector<ContestantKind> fclKinds() {
-    ContestantKind tree = fclKind(makeTree);
-    tree.name = "fcl-tree";
-    tree.title = "fcl::DynamicAABBTreeCollisionManager";
-    tree.description = "FCL's dynamic tree of boxes (up to 100,000 objects)";
-    tree.upTo = 100'000;
-    ContestantKind hash = fclKind(makeHash);
-    hash.name = "fcl-hash";
-    hash.title = "fcl::SpatialHashingCollisionManager";
-    hash.description = "FCL's spatial hash (up to 10,000 objects)";
-    hash.upTo = 10'000;
-    return {tree, hash};
+    return {fclKind("fcl-tree", "fcl::DynamicAABBTreeCollisionManager",
+                    "FCL's dynamic tree of boxes (up to 100,000 objects)", 100'000, makeTree),
+            fclKind("fcl-hash", "fcl::SpatialHashingCollisionManager",
+                    "FCL's spatial hash (up to 10,000 objects)", 10'000, makeHash)};
 }
 
 }  // namespace hashphase::benchmarks

@@ -27,20 +27,20 @@ struct Points {
     std::vector<Vector3<float>> positions;
 };
 
-class NanoflannContestant : public CrowdContestant {
+class NanoflannCrowd final : public CrowdRunner {
 public:
-    void move(const FrameBoxes& frame) override { frame_ = frame; }
+    using CrowdRunner::CrowdRunner;
 
-    void ask(float radius) override {
+    void run() override {
         build();
         for (std::size_t agent = 0; agent < points_.positions.size(); ++agent) {
-            counts_[agent] = static_cast<std::uint32_t>(search(agent, radius) - 1);
+            counts_[agent] = static_cast<std::uint32_t>(search(agent) - 1);
         }
     }
 
-    void listAnswers(float radius, std::vector<AgentAnswer>& answers) override {
+    bool setAnswers(std::vector<AgentAnswer>& answers) override {
         for (std::size_t agent = 0; agent < points_.positions.size(); ++agent) {
-            search(agent, radius);
+            search(agent);
             for (const auto& [object, squared] : found_) {
                 if (object != agent) {
                     answers[agent].add(object);
@@ -49,6 +49,7 @@ public:
             // What was timed counts.
             answers[agent].sum += answers[agent].count == counts_[agent] ? 0 : 1;
         }
+        return true;
     }
 
 private:
@@ -56,10 +57,10 @@ private:
                                                      Points, 3, std::uint32_t>;
 
     void build() {
-        points_.positions.resize(frame_.boxes.size());
-        counts_.resize(frame_.boxes.size());
-        for (std::size_t i = 0; i < frame_.boxes.size(); ++i) {
-            points_.positions[i] = frame_.boxes[i].min() / 2 + frame_.boxes[i].max() / 2;
+        points_.positions.resize(crowd_.scene.size());
+        counts_.resize(crowd_.scene.size());
+        for (std::size_t i = 0; i < points_.positions.size(); ++i) {
+            points_.positions[i] = crowd_.centreOf(i);
         }
         // Ten points a leaf is the default.
         tree_ = std::make_unique<Tree>(3, points_, nanoflann::KDTreeSingleIndexAdaptorParams(10));
@@ -67,16 +68,15 @@ private:
     }
 
     // The agent itself is found as well.
-    std::size_t search(std::size_t agent, float radius) {
+    std::size_t search(std::size_t agent) {
         nanoflann::SearchParams parameters;
         parameters.sorted = false;
         // nanoflann's ball is open.
         const float squared =
-            std::nextafter(radius * radius, std::numeric_limits<float>::infinity());
+            std::nextafter(crowd_.radius * crowd_.radius, std::numeric_limits<float>::infinity());
         return tree_->radiusSearch(points_.positions[agent].data(), squared, found_, parameters);
     }
 
-    FrameBoxes frame_;
     Points points_;
     std::unique_ptr<Tree> tree_;
     std::vector<std::pair<std::uint32_t, float>> found_;
@@ -86,13 +86,11 @@ private:
 }  // namespace
 
 std::vector<CrowdKind> nanoflannKinds() {
-    CrowdKind crowd;
-    crowd.kind.name = "nanoflann";
-    crowd.kind.title = "nanoflann::KDTreeSingleIndexAdaptor";
-    crowd.kind.description = "a kd-tree made anew, radiusSearch without sorting for each agent";
-    crowd.kind.package = HASHPHASE_BENCHMARKS_NANOFLANN_PACKAGE;
-    crowd.make = [] { return std::make_unique<NanoflannContestant>(); };
-    return {std::move(crowd)};
+    return {{{.name = "nanoflann",
+              .title = "nanoflann::KDTreeSingleIndexAdaptor",
+              .description = "a kd-tree made anew, radiusSearch without sorting for each agent",
+              .package = HASHPHASE_BENCHMARKS_NANOFLANN_PACKAGE},
+             [](const Crowd& crowd) { return std::make_unique<NanoflannCrowd>(crowd); }}};
 }
 
 }  // namespace hashphase::benchmarks

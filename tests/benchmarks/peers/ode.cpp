@@ -89,30 +89,26 @@ private:
     std::vector<PairKey> pairs_;
 };
 
-ContestantKind odeKind(dSpaceID (*makeSpace)()) {
-    ContestantKind kind;
-    kind.package = HASHPHASE_BENCHMARKS_ODE_PACKAGE;
-    kind.make = [makeSpace](const demos::BroadphaseNeeds&) {
-        return std::make_unique<OdeContestant>(makeSpace);
-    };
-    return kind;
+ContestantKind odeKind(const char* name, const char* title, const char* description,
+                       std::size_t upTo, dSpaceID (*makeSpace)()) {
+    return {.name = name,
+            .title = title,
+            .description = description,
+            .package = HASHPHASE_BENCHMARKS_ODE_PACKAGE,
+            .upTo = upTo,
+            .make = [makeSpace](const demos::BroadphaseNeeds&) {
+                return std::make_unique<OdeContestant>(makeSpace);
+            }};
 }
 
 }  // namespace
 
 std::vector<ContestantKind> odeKinds() {
-    ContestantKind hash = odeKind([] { return dHashSpaceCreate(nullptr); });
-    hash.name = "ode-hash";
-    hash.title = "dHashSpaceCreate";
-    hash.description = "ODE's hash space (up to 3,000 objects)";
-    hash.upTo = 3'000;
-    ContestantKind sweep =
-        odeKind([] { return dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XZY); });
-    sweep.name = "ode-sap";
-    sweep.title = "dSweepAndPruneSpaceCreate";
-    sweep.description = "ODE's sweep and prune (up to 30,000 objects)";
-    sweep.upTo = 30'000;
-    return {hash, sweep};
+    return {odeKind("ode-hash", "dHashSpaceCreate", "ODE's hash space (up to 3,000 objects)", 3'000,
+                    [] { return dHashSpaceCreate(nullptr); }),
+            odeKind("ode-sap", "dSweepAndPruneSpaceCreate",
+                    "ODE's sweep and prune (up to 30,000 objects)", 30'000,
+                    [] { return dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XZY); })};
 }
 
 }  // namespace hashphase::benchmarks

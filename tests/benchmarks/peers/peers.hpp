@@ -9,7 +9,7 @@
 
 #include <broadphase/parallel_for.hpp>
 #include <tests/benchmarks/contestant.hpp>
-#include <tests/benchmarks/crowd_workload.hpp>
+#include <tests/benchmarks/crowd.hpp>
 
 #include <optional>
 

@@ -4,7 +4,6 @@
 
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 #include <integration/tbb/tbb_parallel_for.hpp>
-#include <tests/benchmarks/bullet_contestant.hpp>
 #include <tests/benchmarks/peers/peers.hpp>
 
 #include <limits>

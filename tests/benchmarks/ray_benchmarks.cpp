@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: Zlib
+
+// Rays and boxes through a scene, as btCollisionWorld casts them, and rays between two writes.
+
+#include <demos/scenes/random.hpp>
+#include <integration/bullet/conversions.hpp>
+#include <integration/bullet/spatial_hash_broadphase.hpp>
+#include <integration/camera/camera.hpp>
+#include <tests/benchmarks/query_workload.hpp>
+#include <tests/support/camera_matrices.hpp>
+
+#include <LinearMath/btAabbUtil2.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+
+namespace hashphase::benchmarks {
+namespace {
+
+using demos::Random;
+using Boxes = std::vector<Aabb<float>>;
+
+// --- Which rays ------------------------------------------------------------------------------------
+
+struct Ray {
+    btVector3 from;
+    btVector3 to;
+};
+
+/// Draws one ray through these boxes.
+using DrawRay = Ray (*)(Random&, const Boxes&);
+
+// From the neighbourhood of one box to that of another: rays where the boxes are.
+Ray rayBetweenBoxes(Random& random, const Boxes& boxes) {
+    const auto near = [&random](const Aabb<float>& box) {
+        const Vector3<float> off(random.between(-2, 2), random.between(-2, 2),
+                                 random.between(-2, 2));
+        return toBullet(box.center() + off);
+    };
+    const btVector3 from = near(anyBox(random.unit(), boxes));
+    return {from, near(anyBox(random.unit(), boxes))};
+}
+
+// The same start, and a way of so many metres.
+Ray shortened(const Ray& ray, float length) {
+    const btVector3 way = ray.to - ray.from;
+    return {ray.from, way.fuzzyZero() ? ray.from : ray.from + way.normalized() * length};
+}
+
+Ray shortRay(Random& random, const Boxes& boxes) {
+    constexpr float kShort = 5;  // [m]
+    return shortened(rayBetweenBoxes(random, boxes), kShort);
+}
+
+// A shot across the country: from eye level above one walker to the feet of another, up to 100 m on.
+Ray rayOverTerrain(Random& random, const Boxes& boxes) {
+    constexpr float kFarthest = 100;
+    const Aabb<float>& shooter = anyBox(random.unit(), boxes);
+    const Aabb<float>& target = anyBox(random.unit(), boxes);
+    const btVector3 from = toBullet(shooter.center()) + btVector3(0, 3, 0);
+    const btVector3 way = toBullet(target.center()) - from;
+    return shortened({from, from + way}, std::min(way.length(), kFarthest));
+}
+
+// What is under a pointer anywhere on the screen: the camera looks at one of the boxes from 40 m away.
+Ray rayThroughPixel(Random& random, const Boxes& boxes) {
+    constexpr Viewport kWindow{0, 0, 1920, 1080};
+    const test::CameraLens lens;
+    const Vector3<double> target = anyBox(random.unit(), boxes).center().cast<double>();
+    const Vector3<double> eye = target + Vector3<double>(24, 20, 24);
+    const Camera<float> view(test::cameraMatrix<float>(lens, eye, target), lens.depthRange,
+                             kWindow);
+    const RayRegion<float> ray =
+        view.rayThrough({random.between(0, 1920), random.between(0, 1080)});
+    return {toBullet(ray.from()), toBullet(ray.from() + ray.direction())};
+}
+
+Ray drawRay(DrawRay draw, Random& random, const Boxes& boxes) {
+    Ray ray = draw(random, boxes);
+    while (ray.from == ray.to) {
+        ray = draw(random, boxes);
+    }
+    return ray;
+}
+
+// --- What is asked ---------------------------------------------------------------------------------
+
+/// What the ray meets, or what overlaps a box of 2 m around its start, or only how far the nearest box of
+/// the ray is.
+enum class Probe { ray, box, closest };
+
+// The callback that btCollisionWorld::rayTest() makes, as far as broadphases see it.
+struct RayCallback : btBroadphaseRayCallback {
+    explicit RayCallback(const Ray& ray) {
+        const btVector3 way = ray.to - ray.from;
+        const btVector3 direction = way.normalized();
+        for (int axis = 0; axis < 3; ++axis) {
+            m_rayDirectionInverse[axis] =
+                direction[axis] == 0 ? BT_LARGE_FLOAT : 1 / direction[axis];
+            m_signs[axis] = m_rayDirectionInverse[axis] < 0 ? 1U : 0U;
+        }
+        m_lambda_max = direction.dot(way);
+    }
+
+    /// True when the cast box meets the box on its way: what every broadphase is to report.
+    [[nodiscard]] bool meets(const Ray& ray, const Aabb<float>& box,
+                             const btVector3& castHalfExtents) const {
+        const std::array bounds{toBullet(box.min()) - castHalfExtents,
+                                toBullet(box.max()) + castHalfExtents};
+        btScalar distance = 1;
+        return btRayAabb2(ray.from, m_rayDirectionInverse, m_signs, bounds.data(), distance, 0,
+                          m_lambda_max);
+    }
+};
+
+// Lists what a query finds: a ray, given as arguments of RayCallback, or a box.
+template <class Callback>
+struct Finds : Callback {
+    template <class... Args>
+    Finds(std::size_t number, std::vector<Answer>& answers, const Args&... args)
+        : Callback(args...), number_(number), answers_(answers) {}
+
+    bool process(const btBroadphaseProxy* proxy) override {
+        answers_.push_back(answerOf(number_, demos::FilledBroadphase::objectOf(*proxy)));
+        return true;
+    }
+
+private:
+    std::size_t number_;
+    std::vector<Answer>& answers_;
+};
+
+// The nearest of all hits: stock Bullet cannot stop early.
+struct ClosestHit : RayCallback {
+    explicit ClosestHit(const Ray& ray)
+        : RayCallback(ray), region_(toEigen(ray.from), toEigen(ray.to)) {}
+
+    bool process(const btBroadphaseProxy* proxy) override {
+        take(toAabb(proxy->m_aabbMin, proxy->m_aabbMax));
+        return true;
+    }
+    void take(const Aabb<float>& box) {
+        const float key = region_.key(box);
+        closest = key >= 0 ? std::min(closest, key) : closest;
+    }
+
+    float closest = std::numeric_limits<float>::infinity();
+
+private:
+    RayRegion<float> region_;
+};
+
+Aabb<float> probeBox(const Ray& ray) {
+    const Vector3<float> half = Vector3<float>::Constant(1);
+    return {toEigen(ray.from) - half, toEigen(ray.from) + half};
+}
+
+float closestTo(const Ray& ray, btBroadphaseInterface& broadphase) {
+    if (const auto* own = dynamic_cast<const SpatialHashBroadphase*>(&broadphase)) {
+        CollectClosest<float> closest;
+        own->grid().visit(RayRegion<float>(toEigen(ray.from), toEigen(ray.to)), closest);
+        return closest.key();
+    }
+    ClosestHit hit(ray);
+    broadphase.rayTest(ray.from, ray.to, hit);
+    return hit.closest;
+}
+
+struct Question {
+    Probe probe = Probe::ray;
+    btVector3 castHalfExtents{0, 0, 0};  // the box that is moved along the ray
+
+    void ask(std::size_t number, const Ray& ray, btBroadphaseInterface& broadphase,
+             std::vector<Answer>& answers) const {
+        if (probe == Probe::box) {
+            Finds<btBroadphaseAabbCallback> finds(number, answers);
+            const Aabb<float> box = probeBox(ray);
+            broadphase.aabbTest(toBullet(box.min()), toBullet(box.max()), finds);
+        } else if (probe == Probe::ray) {
+            Finds<RayCallback> hits(number, answers, ray);
+            broadphase.rayTest(ray.from, ray.to, hits, -castHalfExtents, castHalfExtents);
+        } else {
+            answers.push_back(
+                answerOf(number, std::bit_cast<std::uint32_t>(closestTo(ray, broadphase))));
+        }
+    }
+
+    /// By testing all boxes.
+    void askExactly(std::size_t number, const Ray& ray, const Boxes& boxes,
+                    std::vector<Answer>& answers) const {
+        ClosestHit test(ray);
+        for (std::uint32_t object = 0; object < boxes.size(); ++object) {
+            if (probe == Probe::closest) {
+                test.take(boxes[object]);
+            } else if (probe == Probe::ray ? test.meets(ray, boxes[object], castHalfExtents)
+                                           : overlaps(probeBox(ray), boxes[object])) {
+                answers.push_back(answerOf(number, object));
+            }
+        }
+        if (probe == Probe::closest) {
+            answers.push_back(answerOf(number, std::bit_cast<std::uint32_t>(test.closest)));
+        }
+    }
+};
+
+// --- Workloads -------------------------------------------------------------------------------------
+
+/// Of so many rays a frame. Scenes that do not move are asked as they are at first.
+class RayWorkload final : public QueryWorkload {
+public:
+    RayWorkload(std::unique_ptr<demos::BoxScene> scene, Question question, DrawRay draw, bool moves,
+                std::uint64_t seed)
+        : QueryWorkload(std::move(scene), moves), question_(question), draw_(draw), random_(seed) {}
+
+    void listExactAnswers(std::vector<Answer>& answers) override {
+        answers.clear();
+        for (std::size_t i = 0; i < rays_.size(); ++i) {
+            question_.askExactly(i, rays_[i], scene().boxes(), answers);
+        }
+    }
+    [[nodiscard]] std::size_t operations() const override { return rays_.size(); }
+
+private:
+    void drawQueries() override {
+        for (Ray& ray : rays_) {
+            ray = drawRay(draw_, random_, scene().boxes());
+        }
+    }
+    void ask(demos::FilledBroadphase& filled, std::vector<Answer>& answers) override {
+        for (std::size_t i = 0; i < rays_.size(); ++i) {
+            question_.ask(i, rays_[i], filled.broadphase(), answers);
+        }
+    }
+
+    Question question_;
+    DrawRay draw_;
+    Random random_;
+    std::array<Ray, 500> rays_;
+};
+
+/// Sets one box, asks one question, sets the next: what a game does that moves its characters one
+/// by one. The pairs are found after the frame, untimed.
+class InterleavedWorkload final : public QueryWorkload {
+public:
+    InterleavedWorkload(std::unique_ptr<demos::BoxScene> scene, Probe probe, std::uint64_t seed)
+        : QueryWorkload(std::move(scene), false), question_{probe}, random_(seed) {
+        boxesAtEnd_ = this->scene().boxes();
+    }
+
+    void listExactAnswers(std::vector<Answer>& answers) override {
+        answers.clear();
+        Boxes boxes = boxes_;
+        for (std::size_t i = 0; i < steps_.size(); ++i) {
+            const Step& step = steps_[i];
+            boxes[step.object] = toAabb(step.box.min, step.box.max);
+            question_.askExactly(i, step.ray, boxes, answers);
+        }
+    }
+    [[nodiscard]] std::size_t operations() const override { return steps_.size(); }
+
+private:
+    struct Step {
+        std::uint32_t object;
+        demos::BulletBox box;
+        Ray ray;
+    };
+
+    void drawQueries() override {
+        boxes_ = boxesAtEnd_;
+        for (Step& step : steps_) {
+            Aabb<float>& box = boxesAtEnd_[static_cast<std::size_t>(
+                &anyBox(random_.unit(), boxesAtEnd_) - boxesAtEnd_.data())];
+            box.translate(Vector3<float>(random_.between(-1, 1), random_.between(-1, 1),
+                                         random_.between(-1, 1)));
+            step.object = static_cast<std::uint32_t>(&box - boxesAtEnd_.data());
+            step.box = {toBullet(box.min()), toBullet(box.max())};
+            step.ray = drawRay(shortRay, random_, boxesAtEnd_);
+        }
+    }
+    void ask(demos::FilledBroadphase& filled, std::vector<Answer>& answers) override {
+        for (std::size_t i = 0; i < steps_.size(); ++i) {
+            filled.set(steps_[i].object, steps_[i].box);
+            question_.ask(i, steps_[i].ray, filled.broadphase(), answers);
+        }
+    }
+    void afterFrame(demos::FilledBroadphase& filled) override { filled.findPairs(); }
+
+    Question question_;
+    Random random_;
+    Boxes boxes_;  // as of the beginning of the frame
+    Boxes boxesAtEnd_;
+    std::array<Step, 200> steps_;
+};
+
+Benchmark rays(const char* name, const char* description, MakeScene makeScene, DrawRay draw,
+               Question question = {}, bool moves = false) {
+    return {.name = name,
+            .group = "queries",
+            .description = description,
+            .operation = question.probe == Probe::box ? "box" : "ray",
+            .sizes = {30'000},
+            .admits = answersQueries,
+            .make = [=](std::size_t objects, std::uint64_t seed) {
+                return std::make_unique<RayWorkload>(makeScene(objects, seed), question, draw,
+                                                     moves, ~seed);
+            }};
+}
+
+Benchmark interleaved(const char* name, const char* description, Probe probe) {
+    return {.name = name,
+            .group = "queries",
+            .description = description,
+            .operation = "write and query",
+            .sizes = {10'000},
+            .admits = answersQueries,
+            .make = [probe](std::size_t objects, std::uint64_t seed) {
+                return std::make_unique<InterleavedWorkload>(
+                    brownian(demos::uniformBoxes)(objects, seed), probe, ~seed);
+            }};
+}
+
+}  // namespace
+
+std::vector<Benchmark> rayBenchmarks() {
+    const MakeScene dense = brownian(demos::uniformBoxes);
+    const MakeScene sparse = cubesIn(Vector3<float>::Constant(3000), 0.5F, 0.2F);
+    return {
+        rays("rays-dense-short", "rays of 5 m among uniform boxes", dense, shortRay),
+        rays("rays-dense-long", "rays across a cube of uniform boxes", dense, rayBetweenBoxes),
+        rays("rays-sparse", "long rays through a nearly empty cube of 3,000 m", sparse,
+             rayBetweenBoxes),
+        rays("rays-piles", "rays from pile to pile, over 10 x 10 km", brownian(demos::pileBoxes),
+             rayBetweenBoxes),
+        rays("rays-terrain", "shots of up to 100 m across the paper's terrain, all moving",
+             sceneNamed("paper"), rayOverTerrain, {}, true),
+        rays("rays-closest", "rays-dense-long, but only the nearest box is wanted", dense,
+             rayBetweenBoxes, {Probe::closest}),
+        rays("picking", "all boxes under the pointer, 500 times, among uniform boxes", dense,
+             rayThroughPixel),
+        rays("picking-closest", "picking, but only the nearest box is wanted", dense,
+             rayThroughPixel, {Probe::closest}),
+        rays("rays-fat", "a box of 1 m cast 5 m far among uniform boxes", dense, shortRay,
+             {Probe::ray, btVector3(0.5F, 0.5F, 0.5F)}),
+        rays("boxes", "what overlaps a box of 2 m, one box at a time, among uniform boxes", dense,
+             rayBetweenBoxes, {Probe::box}),
+        interleaved("interleaved-rays", "set one box, cast one ray, set the next", Probe::ray),
+        interleaved("interleaved-boxes", "set one box, ask for one box, set the next", Probe::box)};
+}
+
+}  // namespace hashphase::benchmarks
