@@ -26,7 +26,7 @@ public:
 
 private:
     const PairWorkload& workload_;
-    ContestantKind kind_;
+    const ContestantKind& kind_;
     std::unique_ptr<Contestant> contestant_;
     FrameBoxes frame_;
 };

@@ -130,7 +130,7 @@ private:
 
     private:
         const SceneBoxes& scene_;
-        ContestantKind kind_;
+        const ContestantKind& kind_;
         std::unique_ptr<Contestant> contestant_;
     };
 

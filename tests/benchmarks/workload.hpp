@@ -53,7 +53,7 @@ public:
 
 class Workload : public Interface {
 public:
-    /// The contestant, filled. It goes on reading the workload.
+    /// The contestant, filled. It goes on reading the workload and the kind.
     [[nodiscard]] virtual std::unique_ptr<Runner> make(const ContestantKind& kind) = 0;
 
     /// Draws the next frame; the first call shows the initial state.
