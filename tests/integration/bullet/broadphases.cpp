@@ -1,9 +1,42 @@
 // SPDX-License-Identifier: Zlib
 #include <tests/integration/bullet/broadphases.hpp>
 
+#include <integration/bullet/pair_cache.hpp>
+
+#include <ostream>
 #include <utility>
 
 namespace hashphase::test {
+namespace {
+
+template <class Cache, auto... arguments>
+std::unique_ptr<btOverlappingPairCache> makeCache() {
+    return std::make_unique<Cache>(arguments...);
+}
+
+}  // namespace
+
+void PrintTo(const CacheKind& kind, std::ostream* out) {
+    *out << kind.name;
+}
+
+const std::vector<CacheKind>& cacheKinds() {
+    static const std::vector<CacheKind> kKinds{
+        {"own", [] { return std::unique_ptr<btOverlappingPairCache>(); }},
+        {"arrival", makeCache<PairCache>},
+        {"canonical", makeCache<PairCache, PairOrder::canonical>},
+        {"hashed", makeCache<btHashedOverlappingPairCache>},
+        {"deferred", makeCache<btSortedOverlappingPairCache>}};
+    return kKinds;
+}
+
+std::unique_ptr<SpatialHashBroadphase> hashOver(btOverlappingPairCache* cache,
+                                                const SpatialHashConfig& config) {
+    if (auto* const ours = dynamic_cast<PairCache*>(cache)) {
+        return std::make_unique<SpatialHashBroadphase>(ours, config);
+    }
+    return std::make_unique<SpatialHashBroadphase>(cache, config);
+}
 
 Player hashPlayer(int objectCount, std::unique_ptr<btOverlappingPairCache> cache,
                   const SpatialHashConfig& config) {

@@ -10,6 +10,10 @@
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/BroadphaseCollision/btSimpleBroadphase.h>
 
+#include <iosfwd>
+#include <memory>
+#include <vector>
+
 namespace hashphase::test {
 
 /// btDbvtBroadphase driven so that its pair set is exact: no fat boxes, and every pair is checked
@@ -23,6 +27,26 @@ struct ExactDbvt : btDbvtBroadphase {
         setAabbForceUpdate(proxy, min, max, dispatcher);
     }
 };
+
+template <class Broadphase>
+std::unique_ptr<btBroadphaseInterface> makeBroadphase() {
+    return std::make_unique<Broadphase>();
+}
+
+/// What our broadphase may put its pairs into.
+struct CacheKind {
+    const char* name;
+    std::unique_ptr<btOverlappingPairCache> (*make)();  ///< null: the broadphase has its own
+};
+
+void PrintTo(const CacheKind& kind, std::ostream* out);
+
+/// own, arrival, canonical, hashed, deferred; the last two are Bullet's.
+const std::vector<CacheKind>& cacheKinds();
+
+/// A broadphase over a cache; over a PairCache as one, so that it hears of what is taken out.
+[[nodiscard]] std::unique_ptr<SpatialHashBroadphase> hashOver(btOverlappingPairCache* cache,
+                                                              const SpatialHashConfig& config = {});
 
 /// Our broadphase over a cache, or over its own.
 Player hashPlayer(int objectCount, std::unique_ptr<btOverlappingPairCache> cache = nullptr,

@@ -5,200 +5,123 @@
 // compound, say.
 
 #include <tests/integration/bullet/broadphases.hpp>
-#include <tests/integration/bullet/ghost_world.hpp>
-#include <tests/integration/bullet/pair_journal.hpp>
+#include <tests/integration/bullet/dynamics.hpp>
 
 #include <integration/bullet/pair_cache.hpp>
 
-#include <btBulletDynamicsCommon.h>
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <memory>
-#include <ostream>
 #include <string>
 #include <vector>
 
 namespace hashphase::test {
 namespace {
 
-/// A body on a floor, in a world that tells ghosts of pairs.
-struct BodyOnFloor {
+/// A body of two boxes on a floor, in a world that tells ghosts of pairs.
+struct BodyOnFloor : DynamicsWorld {
     explicit BodyOnFloor(std::unique_ptr<btBroadphaseInterface> over)
-        : broadphase(std::move(over)) {
-        world.getPairCache()->setInternalGhostPairCallback(&ghostCallback);
-        compound.addChildShape(btTransform::getIdentity(), &box);
-        compound.addChildShape(btTransform(btQuaternion::getIdentity(), {0, 1, 0}), &box);
-        floor.setWorldTransform(GhostWorld::at({0, -1, 0}));
-        body.setWorldTransform(GhostWorld::at({0, btScalar(0.5), 0}));
-        world.addRigidBody(&floor);
-        world.addRigidBody(&body);
+        : DynamicsWorld(std::move(over)) {
+        tellGhosts();
+        addBox({50, 1, 50}, 0, {0, -1, 0});
+        compound.addChildShape(placeAt({0, 0, 0}), &box);
+        compound.addChildShape(placeAt({0, 1, 0}), &box);
+        add(&compound, 1, placeAt({0, btScalar(0.5), 0}));
     }
-    ~BodyOnFloor() {
-        world.removeRigidBody(&body);
-        world.removeRigidBody(&floor);
-        world.getPairCache()->setInternalGhostPairCallback(nullptr);
-    }
-    BodyOnFloor(const BodyOnFloor&) = delete;
-    BodyOnFloor& operator=(const BodyOnFloor&) = delete;
+    ~BodyOnFloor() { takeOut(1); }
 
-    void step(int count) {
-        body.activate(true);
-        for (int i = 0; i < count; ++i) {
-            world.stepSimulation(btScalar(1) / 60, 0);
-        }
+    [[nodiscard]] btRigidBody& lying() { return body(1); }
+    [[nodiscard]] double heightAfter(int steps) {
+        lying().activate(true);
+        step(steps);
+        return double(lying().getWorldTransform().getOrigin().y());
     }
-    [[nodiscard]] double height() const { return double(body.getWorldTransform().getOrigin().y()); }
     void shapeChanged(btCollisionObject& object) {
-        dynamic_cast<SpatialHashBroadphase&>(*broadphase)
-            .shapeChanged(object.getBroadphaseHandle(), &dispatcher);
+        world().updateSingleAabb(&object);
+        hash().shapeChanged(object.getBroadphaseHandle(), &dispatcher());
     }
 
-    btGhostPairCallback ghostCallback;
-    btDefaultCollisionConfiguration configuration;
-    btCollisionDispatcher dispatcher{&configuration};
-    std::unique_ptr<btBroadphaseInterface> broadphase;
-    btSequentialImpulseConstraintSolver solver;
-    btDiscreteDynamicsWorld world{&dispatcher, broadphase.get(), &solver, &configuration};
-    btBoxShape ground{btVector3(50, 1, 50)};
     btBoxShape box{btVector3(btScalar(0.5), btScalar(0.5), btScalar(0.5))};
     btSphereShape sphere{2};
     btCompoundShape compound;
-    btRigidBody floor{btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &ground)};
-    btRigidBody body{
-        btRigidBody::btRigidBodyConstructionInfo(1, nullptr, &compound, btVector3(1, 1, 1))};
 };
 
-using Renew = std::function<void(BodyOnFloor&)>;
+/// What is called when the body's shape has changed.
+using Renew = void (*)(BodyOnFloor&);
 
 void cleanPairs(BodyOnFloor& scene) {
-    scene.world.updateSingleAabb(&scene.body);
-    scene.world.getPairCache()->cleanProxyFromPairs(scene.body.getBroadphaseHandle(),
-                                                    &scene.dispatcher);
+    scene.world().updateSingleAabb(&scene.lying());
+    scene.cache().cleanProxyFromPairs(scene.lying().getBroadphaseHandle(), &scene.dispatcher());
 }
-
 void callShapeChanged(BodyOnFloor& scene) {
-    scene.world.updateSingleAabb(&scene.body);
-    scene.shapeChanged(scene.body);
+    scene.shapeChanged(scene.lying());
+}
+// As programs do under btDbvtBroadphase.
+void removeAndAdd(BodyOnFloor& scene) {
+    scene.takeOut(1);
+    scene.world().addRigidBody(&scene.lying());
+}
+void refresh(BodyOnFloor& scene) {
+    scene.world().refreshBroadphaseProxy(&scene.lying());
 }
 
-/// Where the body rests that was two boxes and is a sphere now.
-double heightAsSphere(std::unique_ptr<btBroadphaseInterface> over, const Renew& renew) {
+/// Where the body rests that was two boxes and is a sphere then, and where when that is half as large.
+std::pair<double, double> heights(std::unique_ptr<btBroadphaseInterface> over, Renew renew) {
     BodyOnFloor scene(std::move(over));
-    scene.step(60);
-    scene.body.setCollisionShape(&scene.sphere);
+    static_cast<void>(scene.heightAfter(60));
+    scene.lying().setCollisionShape(&scene.sphere);
     renew(scene);
-    scene.step(240);
-    return scene.height();
-}
-
-/// Where a sphere rests that has been scaled to half its size.
-double heightAsScaled(std::unique_ptr<btBroadphaseInterface> over, const Renew& renew) {
-    BodyOnFloor scene(std::move(over));
-    scene.body.setCollisionShape(&scene.sphere);
-    scene.body.setWorldTransform(GhostWorld::at({0, 2, 0}));
-    renew(scene);
-    scene.step(60);
+    const double whole = scene.heightAfter(240);
     scene.sphere.setLocalScaling(btVector3(1, 1, 1) / 2);
     renew(scene);
-    scene.step(240);
-    return scene.height();
+    return {whole, scene.heightAfter(240)};
 }
 
-struct Cache {
-    const char* name;
-    std::function<std::unique_ptr<btOverlappingPairCache>()> make;
-};
+class ChangedShapes : public testing::TestWithParam<CacheKind> {};
 
-void PrintTo(const Cache& cache, std::ostream* out) {
-    *out << cache.name;
-}
-
-std::vector<Cache> caches() {
-    return {{"own", [] { return nullptr; }},
-            {"arrival", [] { return std::make_unique<PairCache>(); }},
-            {"canonical", [] { return std::make_unique<PairCache>(PairOrder::canonical); }},
-            {"hashed", [] { return std::make_unique<btHashedOverlappingPairCache>(); }},
-            {"deferred", [] { return std::make_unique<btSortedOverlappingPairCache>(); }}};
-}
-
-class ChangedShapes : public testing::TestWithParam<Cache> {
-protected:
-    std::unique_ptr<btBroadphaseInterface> over() {
-        cache_ = GetParam().make();
-        return std::make_unique<SpatialHashBroadphase>(cache_.get());
-    }
-
-private:
-    std::unique_ptr<btOverlappingPairCache> cache_;
-};
-
-TEST_P(ChangedShapes, RestAsUnderBtDbvtBroadphase) {
-    const double expected = heightAsSphere(std::make_unique<btDbvtBroadphase>(), cleanPairs);
-    EXPECT_NEAR(expected, 2, 0.05);
-    EXPECT_NEAR(heightAsSphere(over(), callShapeChanged), expected, 0.01);
-}
-
-TEST_P(ChangedShapes, RestAsUnderBtDbvtBroadphaseWhenScaled) {
-    const double expected = heightAsScaled(std::make_unique<btDbvtBroadphase>(), cleanPairs);
-    EXPECT_NEAR(expected, 1, 0.05);
-    EXPECT_NEAR(heightAsScaled(over(), callShapeChanged), expected, 0.01);
-}
-
-INSTANTIATE_TEST_SUITE_P(Caches, ChangedShapes, testing::ValuesIn(caches()),
-                         [](const auto& cache) { return cache.param.name; });
-
-// What programs call under btDbvtBroadphase goes on to work.
-TEST(ChangedShapesOfPrograms, RestWhateverTheProgramCallsForThem) {
-    const Renew removeAndAdd = [](BodyOnFloor& scene) {
-        scene.world.removeRigidBody(&scene.body);
-        scene.world.addRigidBody(&scene.body);
-    };
-    const Renew refresh = [](BodyOnFloor& scene) {
-        scene.world.refreshBroadphaseProxy(&scene.body);
-    };
-    for (const Renew& renew : {Renew(cleanPairs), removeAndAdd, refresh}) {
-        EXPECT_NEAR(heightAsSphere(std::make_unique<SpatialHashBroadphase>(), renew), 2, 0.05);
-        EXPECT_NEAR(heightAsScaled(std::make_unique<SpatialHashBroadphase>(), renew), 1, 0.05);
+TEST_P(ChangedShapes, RestAsUnderBtDbvtBroadphaseWhateverIsCalled) {
+    const auto [whole, half] = heights(makeBroadphase<btDbvtBroadphase>(), cleanPairs);
+    EXPECT_NEAR(whole, 2, 0.05);
+    EXPECT_NEAR(half, 1, 0.05);
+    for (const Renew renew : {callShapeChanged, cleanPairs, removeAndAdd, refresh}) {
+        const std::unique_ptr<btOverlappingPairCache> cache = GetParam().make();
+        const auto [ourWhole, ourHalf] = heights(hashOver(cache.get()), renew);
+        EXPECT_NEAR(ourWhole, whole, 0.01);
+        EXPECT_NEAR(ourHalf, half, 0.01);
     }
 }
 
-/// The pair that a ghost keeps of another object.
-btBroadphasePair* pairOf(btPairCachingGhostObject& ghost, btCollisionObject& other) {
-    return ghost.getOverlappingPairCache()->findPair(ghost.getBroadphaseHandle(),
-                                                     other.getBroadphaseHandle());
-}
+INSTANTIATE_TEST_SUITE_P(Caches, ChangedShapes, testing::ValuesIn(cacheKinds()),
+                         [](const auto& kind) { return kind.param.name; });
 
 // A ghost's cache has algorithms of its own, which characters make in each step.
 TEST(ChangedShapesBesideGhosts, LeaveNoAlgorithmInTheirCaches) {
-    btHashedOverlappingPairCache hashed;
-    for (btOverlappingPairCache* cache : {static_cast<btOverlappingPairCache*>(nullptr),
-                                          static_cast<btOverlappingPairCache*>(&hashed)}) {
-        BodyOnFloor scene(std::make_unique<SpatialHashBroadphase>(cache));
-        btPairCachingGhostObject ghost;
+    for (const CacheKind& kind : {cacheKinds()[0], cacheKinds()[3]}) {
+        const std::unique_ptr<btOverlappingPairCache> cache = kind.make();
         btCapsuleShape capsule(1, 1);
-        ghost.setCollisionShape(&capsule);
-        ghost.setWorldTransform(GhostWorld::at({btScalar(1.2), 1, 0}));
-        scene.world.addCollisionObject(&ghost);  // a pair at once, before any step
+        BodyOnFloor scene(hashOver(cache.get()));
+        btPairCachingGhostObject& ghost = scene.addGhost(&capsule, {btScalar(1.2), 1, 0});
+        const auto algorithm = [&]() -> btCollisionAlgorithm* {
+            const btBroadphasePair* const pair = ghost.getOverlappingPairCache()->findPair(
+                ghost.getBroadphaseHandle(), scene.lying().getBroadphaseHandle());
+            EXPECT_NE(pair, nullptr) << "It is one before any step, and stays one.";
+            return pair != nullptr ? pair->m_algorithm : nullptr;
+        };
         const auto dispatch = [&] {
-            scene.dispatcher.dispatchAllCollisionPairs(
-                ghost.getOverlappingPairCache(), scene.world.getDispatchInfo(), &scene.dispatcher);
+            scene.dispatcher().dispatchAllCollisionPairs(ghost.getOverlappingPairCache(),
+                                                         scene.world().getDispatchInfo(),
+                                                         &scene.dispatcher());
+            EXPECT_NE(algorithm(), nullptr);
         };
         dispatch();
-        ASSERT_NE(pairOf(ghost, scene.body), nullptr);
-        ASSERT_NE(pairOf(ghost, scene.body)->m_algorithm, nullptr);
-        for (btCollisionObject* changed : {static_cast<btCollisionObject*>(&scene.body),
+        for (btCollisionObject* changed : {static_cast<btCollisionObject*>(&scene.lying()),
                                            static_cast<btCollisionObject*>(&ghost)}) {
             changed->setCollisionShape(&scene.sphere);
-            scene.world.updateSingleAabb(changed);
             scene.shapeChanged(*changed);
-            ASSERT_NE(pairOf(ghost, scene.body), nullptr) << "The pair stays.";
-            EXPECT_EQ(pairOf(ghost, scene.body)->m_algorithm, nullptr);
+            EXPECT_EQ(algorithm(), nullptr);
             dispatch();
-            ASSERT_NE(pairOf(ghost, scene.body)->m_algorithm, nullptr);
         }
         scene.step(10);
-        scene.world.removeCollisionObject(&ghost);
     }
 }
 
@@ -207,11 +130,9 @@ TEST(ChangedShapesInACache, KeepTheirPairsAndEndAndBeginForGhosts) {
     Player player = hashPlayer(20);
     player.cache().setInternalGhostPairCallback(&journal);
     for (int object = 0; object < 20; ++object) {
-        player.play({Action::create, object, boxAround({btScalar(object), 0, 0}, {1, 1, 1}),
-                     btBroadphaseProxy::DefaultFilter, btBroadphaseProxy::AllFilter});
+        player.create(object, boxAround({btScalar(object), 0, 0}, {1, 1, 1}));
     }
-    player.calculate();
-    const ObjectPairs before = player.pairs();
+    const ObjectPairs before = player.pairsAfterStep();
     journal.takeTouched();
     const auto& cache = dynamic_cast<const PairCache&>(player.cache());
     const std::uint64_t visited = cache.pairsVisited();

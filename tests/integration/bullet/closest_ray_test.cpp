@@ -3,13 +3,10 @@
 // closestRay() against btCollisionWorld::rayTest() over the same broadphase, and batches of rays
 // against rays alone.
 
-#include <tests/integration/bullet/bullet_scenes.hpp>
+#include <tests/integration/bullet/dynamics.hpp>
 #include <tests/integration/bullet/queries.hpp>
 
-#include <integration/bullet/spatial_hash_broadphase.hpp>
-
 #include <BulletCollision/NarrowPhaseCollision/btRaycastCallback.h>
-#include <btBulletCollisionCommon.h>
 #include <gtest/gtest.h>
 
 #include <deque>
@@ -20,40 +17,43 @@
 namespace hashphase::test {
 namespace {
 
-constexpr std::uint64_t kSeed = 12;
-
 /// Objects of all kinds of shapes on a plane and a mesh, some of which the filter hides.
-class ShapeWorld {
+class ShapeWorld : public DynamicsWorld {
 public:
-    explicit ShapeWorld(int count, btScalar side) : side_(side) {
-        for (int i = 0; i < 2; ++i) {
-            compound_.addChildShape(btTransform(btQuaternion::getIdentity(), random.vector(-1, 1)),
-                                    i == 0 ? static_cast<btCollisionShape*>(&sphere_) : &box_);
-        }
+    ShapeWorld(int count, btScalar side) : side_(side) {
+        auto* const sphere = keep(std::make_unique<btSphereShape>(btScalar(0.7)));
+        auto* const box = keep(
+            std::make_unique<btBoxShape>(btVector3(btScalar(0.5), btScalar(0.9), btScalar(0.3))));
+        auto* const compound = keep(std::make_unique<btCompoundShape>());
+        compound->addChildShape(placeAt(random.vector(-1, 1)), sphere);
+        compound->addChildShape(placeAt(random.vector(-1, 1)), box);
+        auto* const hull = keep(std::make_unique<btConvexHullShape>());
         for (int i = 0; i < 8; ++i) {
-            hull_.addPoint(random.vector(-1, 1));
+            hull->addPoint(random.vector(-1, 1));
         }
         addGround();
-        btCollisionShape* const shapes[] = {&sphere_, &box_,     &compound_,
-                                            &hull_,   &capsule_, &small_};
+        btCollisionShape* const shapes[] = {
+            sphere,
+            box,
+            compound,
+            hull,
+            keep(std::make_unique<btCapsuleShape>(btScalar(0.3), btScalar(1))),
+            keep(std::make_unique<btSphereShape>(btScalar(0.05)))};
         for (int i = 0; i < count; ++i) {
-            const btTransform place(btQuaternion(random.direction(), random.uniform(0, 3)),
-                                    random.vector(0, side));
-            add(shapes[i % 6], place,
-                i % 5 == 0 ? btBroadphaseProxy::DebrisFilter : btBroadphaseProxy::DefaultFilter);
+            const btQuaternion turn(random.direction(), random.uniform(0, 3));
+            const int number = add(shapes[i % 6], 0, placeAt(random.vector(0, side), turn));
+            body(number).getBroadphaseProxy()->m_collisionFilterGroup =
+                i % 5 == 0 ? btBroadphaseProxy::DebrisFilter : btBroadphaseProxy::DefaultFilter;
         }
-        world.updateAabbs();
-        broadphase.calculateOverlappingPairs(&dispatcher_);
+        hash().calculateOverlappingPairs(&dispatcher());
     }
 
     void jump(int i) {
-        objects_[static_cast<std::size_t>(i)].getWorldTransform().setOrigin(
-            random.vector(0, side_));
-        world.updateSingleAabb(&objects_[static_cast<std::size_t>(i)]);
+        body(i).getWorldTransform().setOrigin(random.vector(0, side_));
+        world().updateSingleAabb(&body(i));
     }
 
-    BulletRandom random{kSeed};
-    SpatialHashBroadphase broadphase;
+    BulletRandom random{12};
 
 private:
     void addGround() {
@@ -68,34 +68,14 @@ private:
             triangles_.addTriangle(at(x, y), at(x + 1, y), at(x, y + 1));
             triangles_.addTriangle(at(x + 1, y), at(x + 1, y + 1), at(x, y + 1));
         }
-        mesh_ = std::make_unique<btBvhTriangleMeshShape>(&triangles_, true);
-        add(mesh_.get(), btTransform::getIdentity(), btBroadphaseProxy::StaticFilter);
-        add(&plane_, btTransform::getIdentity(), btBroadphaseProxy::StaticFilter);
-    }
-
-    void add(btCollisionShape* shape, const btTransform& place, int group) {
-        btCollisionObject& object = objects_.emplace_back();
-        object.setCollisionShape(shape);
-        object.setWorldTransform(place);
-        world.addCollisionObject(&object, group, btBroadphaseProxy::AllFilter);
+        add(keep(std::make_unique<btBvhTriangleMeshShape>(&triangles_, true)), 0,
+            placeAt({0, 0, 0}));
+        add(keep(std::make_unique<btStaticPlaneShape>(btVector3(0, 1, 0), btScalar(-3))), 0,
+            placeAt({0, 0, 0}));
     }
 
     btScalar side_;
-    btSphereShape sphere_{btScalar(0.7)};
-    btBoxShape box_{{btScalar(0.5), btScalar(0.9), btScalar(0.3)}};
-    btCompoundShape compound_;
-    btConvexHullShape hull_;
-    btCapsuleShape capsule_{btScalar(0.3), 1};
-    btSphereShape small_{btScalar(0.05)};
-    btStaticPlaneShape plane_{{0, 1, 0}, -3};
     btTriangleMesh triangles_;
-    std::unique_ptr<btBvhTriangleMeshShape> mesh_;
-    btDefaultCollisionConfiguration configuration_;
-    btCollisionDispatcher dispatcher_{&configuration_};
-    std::deque<btCollisionObject> objects_;
-
-public:
-    btCollisionWorld world{&dispatcher_, &broadphase, &configuration_};
 };
 
 /// Counts what it is asked about.
@@ -129,7 +109,7 @@ TEST(ClosestRay, FindsWhatTheWorldsRayTestFindsAndAsksAboutLess) {
             scene.jump(2 + scene.random.below(1500));  // waits in the list
         }
         if (i % 500 == 499) {
-            scene.broadphase.calculateOverlappingPairs(nullptr);
+            scene.hash().calculateOverlappingPairs(nullptr);
         }
         const btScalar length = i % 4 == 0 ? 1 : i % 4 == 1 ? 10 : 100;
         const btVector3 from = scene.random.vector(-1, kSide + 1);
@@ -146,8 +126,8 @@ TEST(ClosestRay, FindsWhatTheWorldsRayTestFindsAndAsksAboutLess) {
                 callback->m_flags = btTriangleRaycastCallback::kF_FilterBackfaces;
             }
         }
-        scene.world.rayTest(from, to, expected);
-        const QueryCost cost = scene.broadphase.closestRay(from, to, actual);
+        scene.world().rayTest(from, to, expected);
+        const QueryCost cost = scene.hash().closestRay(from, to, actual);
         expectSame(actual, expected);
         EXPECT_GE(cost.hits, static_cast<std::uint64_t>(actual.asked));
         hits += actual.hasHit() ? 1 : 0;
@@ -162,11 +142,11 @@ TEST(ClosestRay, OfNoLengthOrWithNothingLeftToFindAsksAboutNothing) {
     ShapeWorld scene(100, 4);
     const btVector3 from(2, 2, 2);
     Closest atOnce(from, from);
-    scene.broadphase.closestRay(from, from, atOnce);
+    scene.hash().closestRay(from, from, atOnce);
     EXPECT_FALSE(atOnce.hasHit());
     Closest done(from, {9, 9, 9});
     done.m_closestHitFraction = 0;
-    EXPECT_EQ(scene.broadphase.closestRay(from, {9, 9, 9}, done).boxesTested, 0U);
+    EXPECT_EQ(scene.hash().closestRay(from, {9, 9, 9}, done).boxesTested, 0U);
     EXPECT_EQ(done.asked, 0);
 }
 
@@ -185,8 +165,8 @@ TEST(ClosestRay, ReportsAllHitsToACallbackThatWantsAll) {
         const btVector3 to = scene.random.vector(0, 16);
         btCollisionWorld::AllHitsRayResultCallback expected(from, to);
         btCollisionWorld::AllHitsRayResultCallback actual(from, to);
-        scene.world.rayTest(from, to, expected);
-        scene.broadphase.closestRay(from, to, actual);
+        scene.world().rayTest(from, to, expected);
+        scene.hash().closestRay(from, to, actual);
         ASSERT_EQ(actual.m_hitFractions.size(), expected.m_hitFractions.size());
     }
 }
@@ -233,20 +213,20 @@ TEST(RayBatches, CallEachCallbackAsARayAloneDoes) {
                 {ray.from, ray.to, &collectors.emplace_back(ray), ray.castMin, ray.castMax});
             closestBatch.push_back({ray.from, ray.to, &closest.emplace_back(ray.from, ray.to)});
         }
-        scene.broadphase.rayTests(batch, parallelFor);
-        scene.broadphase.closestRays(closestBatch, parallelFor);
+        scene.hash().rayTests(batch, parallelFor);
+        scene.hash().closestRays(closestBatch, parallelFor);
         for (std::size_t i = 0; i < rays.size(); ++i) {
             const Ray& ray = rays[i];
             CollectIds alone(ray);
-            scene.broadphase.rayTest(ray.from, ray.to, alone, ray.castMin, ray.castMax);
+            scene.hash().rayTest(ray.from, ray.to, alone, ray.castMin, ray.castMax);
             ASSERT_EQ(collectors[i].found, alone.found);
             Closest closestAlone(ray.from, ray.to);
-            scene.broadphase.closestRay(ray.from, ray.to, closestAlone);
+            scene.hash().closestRay(ray.from, ray.to, closestAlone);
             expectSame(closest[i], closestAlone);
         }
     }
-    scene.broadphase.rayTests({});
-    scene.broadphase.closestRays({});
+    scene.hash().rayTests({});
+    scene.hash().closestRays({});
 }
 
 }  // namespace

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Zlib
 #include <tests/integration/bullet/dynamics.hpp>
 
-#include <tests/integration/bullet/bullet_scenes.hpp>
+#include <gtest/gtest.h>
 
 #include <array>
 #include <cstring>
 #include <ostream>
+#include <set>
 
 namespace hashphase::test {
 
@@ -17,8 +18,8 @@ DynamicsWorld::~DynamicsWorld() {
     for (const auto& link : links_) {
         world_.removeConstraint(link.get());
     }
-    for (const auto& body : bodies_) {
-        world_.removeRigidBody(body.get());
+    for (int i = world_.getNumCollisionObjects(); i-- > 0;) {
+        world_.removeCollisionObject(world_.getCollisionObjectArray()[i]);
     }
 }
 
@@ -33,6 +34,23 @@ int DynamicsWorld::add(btCollisionShape* shape, btScalar mass, const btTransform
     bodies_.back()->setUserIndex(bodyCount() - 1);
     world_.addRigidBody(bodies_.back().get());
     return bodyCount() - 1;
+}
+
+btRigidBody& DynamicsWorld::addBox(const btVector3& halfExtents, btScalar mass,
+                                   const btVector3& place) {
+    return body(add(keep(std::make_unique<btBoxShape>(halfExtents)), mass, placeAt(place)));
+}
+
+btPairCachingGhostObject& DynamicsWorld::addGhost(btCollisionShape* shape, const btVector3& place) {
+    tellGhosts();
+    ghosts_.push_back(std::make_unique<btPairCachingGhostObject>());
+    btPairCachingGhostObject& ghost = *ghosts_.back();
+    ghost.setCollisionShape(shape);
+    ghost.setCollisionFlags(btCollisionObject::CF_NO_CONTACT_RESPONSE);
+    ghost.setWorldTransform(placeAt(place));
+    world_.addCollisionObject(&ghost, btBroadphaseProxy::SensorTrigger,
+                              btBroadphaseProxy::AllFilter);
+    return ghost;
 }
 
 void DynamicsWorld::readd(int number, const btTransform& place) {
@@ -65,6 +83,32 @@ int DynamicsWorld::sleepingCount() const {
     return count;
 }
 
+void DynamicsWorld::expectExactPairs() {
+    std::set<Uids> expected;
+    const btCollisionObjectArray& objects = world_.getCollisionObjectArray();
+    for (int i = 0; i < objects.size(); ++i) {
+        for (int k = 0; k < i; ++k) {
+            btBroadphaseProxy* const a = objects[i]->getBroadphaseHandle();
+            btBroadphaseProxy* const b = objects[k]->getBroadphaseHandle();
+            if (overlap({a->m_aabbMin, a->m_aabbMax}, {b->m_aabbMin, b->m_aabbMax}) &&
+                cache().needsBroadphaseCollision(a, b)) {
+                expected.insert(uidsOf(*a, *b));
+            }
+        }
+    }
+    EXPECT_EQ(uidPairs(cache()), expected);
+    EXPECT_EQ(hash().validate(), "");
+}
+
+void putAt(btCollisionObject& object, const btVector3& place) {
+    object.setWorldTransform(placeAt(place));
+    object.setInterpolationWorldTransform(placeAt(place));
+    object.setInterpolationLinearVelocity({0, 0, 0});
+    if (auto* const body = btRigidBody::upcast(&object)) {
+        body->setLinearVelocity({0, 0, 0});
+    }
+}
+
 namespace {
 
 using State = std::array<btScalar, 19>;
@@ -84,10 +128,6 @@ State stateOf(const btRigidBody& body) {
     return state;
 }
 
-btTransform placeAt(const btVector3& place, const btQuaternion& turn = btQuaternion(0, 0, 0, 1)) {
-    return btTransform(turn, place);
-}
-
 btTransform somewhereAbove(BulletRandom& random, btScalar low, btScalar high) {
     const btVector3 axis = random.direction();
     const btQuaternion turn(axis, random.uniform(0, 3));
@@ -102,8 +142,7 @@ void addPlane(DynamicsWorld& world) {
 }
 
 void addFloor(DynamicsWorld& world) {
-    world.add(world.keep(std::make_unique<btBoxShape>(btVector3(40, 1, 40))), 0,
-              placeAt({0, -1, 0}));
+    world.addBox({40, 1, 40}, 0, {0, -1, 0});
 }
 
 constexpr int kPileBodies = 180;
@@ -206,6 +245,20 @@ void churn(DynamicsWorld& world, int step) {
 }
 
 }  // namespace
+
+std::unique_ptr<btBroadphaseInterface> hashOverPairCache(PairCache* cache) {
+    return std::make_unique<SpatialHashBroadphase>(cache);
+}
+
+std::unique_ptr<DynamicsWorld> canonicalWorld(
+    std::unique_ptr<btBroadphaseInterface> (*make)(PairCache*)) {
+    auto cache =
+        std::make_unique<PairCache>(PairOrder::canonical, [](const btBroadphaseProxy& proxy) {
+            return static_cast<const btCollisionObject*>(proxy.m_clientObject)->getUserIndex();
+        });
+    auto broadphase = make(cache.get());
+    return std::make_unique<DynamicsWorld>(std::move(broadphase), std::move(cache));
+}
 
 int firstDifferentBody(const DynamicsWorld& a, const DynamicsWorld& b) {
     for (int i = 0; i < a.bodyCount(); ++i) {

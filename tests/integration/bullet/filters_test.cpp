@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Zlib
 //
-// When the filter is asked, and what happens when its answer changes.
+// When the filter is asked, and what happens when its answer changes: in words, by refilter(), or by
+// groups and masks that are written without a word.
 
+#include <tests/integration/bullet/boxes.hpp>
 #include <tests/integration/bullet/broadphases.hpp>
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <map>
 #include <memory>
 #include <utility>
 
@@ -16,213 +16,276 @@ namespace {
 
 using Proxy = btBroadphaseProxy;
 
+constexpr int kAll = Proxy::AllFilter;
+
 const Box kHere = boxAround({0, 0, 0}, {1, 1, 1});
 const Box kBeside = boxAround({1, 0, 0}, {1, 1, 1});
 const Box kThere = boxAround({9, 0, 0}, {1, 1, 1});
 
-/// Says what it was told to say, and counts how often it was asked.
-struct CountingFilter : btOverlapFilterCallback {
-    bool needBroadphaseCollision(Proxy* a, Proxy* b) const override {
-        ++asked[std::minmax({objectOf(a), objectOf(b)})];
-        return answer;
-    }
-    bool answer = true;
-    mutable std::map<std::pair<int, int>, int> asked;
-};
+const ObjectPairs kNone{};
+const ObjectPairs kBoth{{0, 1}};
 
 class Filters : public testing::Test {
 protected:
     explicit Filters(std::unique_ptr<btOverlappingPairCache> cache = nullptr)
         : player(hashPlayer(6, std::move(cache), eagerCharactersAndSensors())) {}
+    ~Filters() override { EXPECT_EQ(hashOf(player).validate(), ""); }
 
-    void create(int object, const Box& box) {
-        player.play({Action::create, object, box, Proxy::DefaultFilter, Proxy::AllFilter});
+    void createTwo() {
+        player.create(0, kHere);
+        player.create(1, kBeside);
     }
-    void set(int object, const Box& box) { player.play({Action::set, object, box, 0, 0}); }
-    void refilter(int object) { broadphase().refilter(player.proxy(object), nullptr); }
-    SpatialHashBroadphase& broadphase() { return hashOf(player); }
-    ObjectPairs pairs() const { return player.pairs(); }
+    /// Written, and told.
+    void refilter(int object, int mask) {
+        player.setMask(object, mask);
+        hashOf(player).refilter(player.proxy(object), nullptr);
+    }
+    void expect(const ObjectPairs& now) { EXPECT_EQ(player.pairs(), now); }
+    void expectNowAndAfterStep(const ObjectPairs& now) {
+        expect(now);
+        EXPECT_EQ(player.pairsAfterStep(), now);
+    }
 
+    FilterBy filter{true};  // to be set
     Player player;
-    const ObjectPairs none{};
-    const ObjectPairs both{{0, 1}};
 };
 
+// --- Whom the filter is asked about --------------------------------------------------------------
+
 TEST_F(Filters, AreAskedOnceForAPairThatLasts) {
-    CountingFilter filter;
     player.cache().setOverlapFilterCallback(&filter);
-    create(0, kHere);
-    create(1, kBeside);
-    create(2, kThere);
+    createTwo();
+    player.create(2, kThere);
     for (int frame = 0; frame < 30; ++frame) {
-        set(0, boxAround({btScalar(frame) / 100, 0, 0}, {1, 1, 1}));
-        player.calculate();
-        ASSERT_EQ(pairs(), both);
+        player.set(0, boxAround({btScalar(frame) / 100, 0, 0}, {1, 1, 1}));
+        ASSERT_EQ(player.pairsAfterStep(), kBoth);
     }
-    EXPECT_EQ(filter.asked, (std::map<std::pair<int, int>, int>{{{0, 1}, 1}}));
+    EXPECT_EQ(filter.asked, 1U);
 }
 
 TEST_F(Filters, AreAskedAgainForARefusedPairOnlyWhenEitherMoves) {
-    CountingFilter filter;
     filter.answer = false;
     player.cache().setOverlapFilterCallback(&filter);
-    create(0, kHere);
-    create(1, kBeside);
+    createTwo();
     player.calculate();
-    EXPECT_EQ(filter.asked.at({0, 1}), 1);
-    for (int frame = 0; frame < 30; ++frame) {  // long enough to come to rest
-        player.calculate();
-    }
-    EXPECT_EQ(filter.asked.at({0, 1}), 1);
-    set(1, kHere);
-    player.calculate();
-    EXPECT_EQ(filter.asked.at({0, 1}), 2);
-    EXPECT_EQ(pairs(), none);
+    EXPECT_EQ(filter.asked, 1U);
+    player.calculate(30);  // long enough to come to rest
+    EXPECT_EQ(filter.asked, 1U);
+    player.set(1, kHere);
+    EXPECT_EQ(player.pairsAfterStep(), kNone);
+    EXPECT_EQ(filter.asked, 2U);
     filter.answer = true;
-    set(0, kBeside);
-    player.calculate();
-    EXPECT_EQ(filter.asked.at({0, 1}), 3);
-    EXPECT_EQ(pairs(), both);
+    player.set(0, kBeside);
+    EXPECT_EQ(player.pairsAfterStep(), kBoth);
+    EXPECT_EQ(filter.asked, 3U);
 }
 
 TEST_F(Filters, LeaveAPairAloneUntilItSeparatesUnlessRefiltered) {
-    create(0, kHere);
-    create(1, kBeside);
+    createTwo();
     player.calculate();
-    player.proxy(0)->m_collisionFilterMask = 0;
-    set(0, kBeside);
+    player.setMask(0, 0);
+    player.set(0, kBeside);
+    EXPECT_EQ(player.pairsAfterStep(), kBoth) << "As in all of Bullet's broadphases.";
+    player.set(0, kThere);
     player.calculate();
-    EXPECT_EQ(pairs(), both) << "As in all of Bullet's broadphases.";
-    set(0, kThere);
-    player.calculate();
-    set(0, kHere);
-    player.calculate();
-    EXPECT_EQ(pairs(), none);
+    player.set(0, kHere);
+    EXPECT_EQ(player.pairsAfterStep(), kNone);
 }
 
+// --- refilter() ----------------------------------------------------------------------------------
+
 TEST_F(Filters, AreAskedAtOnceByRefilter) {
-    create(0, kHere);
-    create(1, kBeside);
+    createTwo();
     player.calculate();
-    player.proxy(0)->m_collisionFilterMask = 0;
-    refilter(0);
-    EXPECT_EQ(pairs(), none);
-    player.calculate();
-    EXPECT_EQ(pairs(), none);
-    player.proxy(0)->m_collisionFilterMask = Proxy::AllFilter;
-    refilter(1);
-    EXPECT_EQ(pairs(), both) << "Either of the two may be named.";
-    player.calculate();
-    EXPECT_EQ(pairs(), both);
-    EXPECT_EQ(broadphase().validate(), "");
+    refilter(0, 0);
+    expectNowAndAfterStep(kNone);
+    player.setMask(0, kAll);
+    refilter(1, kAll);
+    expectNowAndAfterStep(kBoth);  // Either of the two may be named.
 }
 
 TEST_F(Filters, AreAskedByRefilterAboutProxiesAtRestToo) {
-    create(0, kHere);
-    create(1, kBeside);
-    player.proxy(1)->m_collisionFilterMask = 0;
-    for (int frame = 0; frame < 40; ++frame) {
-        player.calculate();
-    }
-    EXPECT_EQ(pairs(), none);
-    player.proxy(1)->m_collisionFilterMask = Proxy::AllFilter;
-    refilter(0);
-    EXPECT_EQ(pairs(), both);
-    for (int frame = 0; frame < 40; ++frame) {
-        player.calculate();
-    }
-    player.proxy(1)->m_collisionFilterMask = 0;
-    refilter(1);
-    EXPECT_EQ(pairs(), none);
-    player.calculate();
-    EXPECT_EQ(pairs(), none);
-    EXPECT_EQ(broadphase().validate(), "");
+    createTwo();
+    player.setMask(1, 0);
+    player.calculate(40);
+    expect(kNone);
+    player.setMask(1, kAll);
+    refilter(0, kAll);
+    expect(kBoth);
+    player.calculate(40);
+    refilter(1, 0);
+    expectNowAndAfterStep(kNone);
 }
 
 TEST_F(Filters, AreAskedByRefilterAboutWhatBeganInThisStep) {
-    create(0, kHere);
-    create(1, kBeside);
-    refilter(0);
-    EXPECT_EQ(pairs(), both);
-    player.proxy(1)->m_collisionFilterMask = 0;
-    refilter(1);
-    EXPECT_EQ(pairs(), none);
-    player.calculate();
-    EXPECT_EQ(pairs(), none);
+    createTwo();
+    refilter(0, kAll);
+    expect(kBoth);
+    refilter(1, 0);
+    expectNowAndAfterStep(kNone);
 }
 
 // What separates and comes back within a step was together at both ends of it.
 TEST_F(Filters, AreAskedByRefilterAboutPairsThatAreApartForTheMoment) {
-    create(0, kHere);
-    create(1, kBeside);
+    createTwo();
     player.calculate();
-    set(0, kThere);
-    player.proxy(0)->m_collisionFilterMask = 0;
-    refilter(0);
-    set(0, kHere);
-    player.calculate();
-    EXPECT_EQ(pairs(), none);
-    EXPECT_EQ(broadphase().validate(), "");
+    player.set(0, kThere);
+    refilter(0, 0);
+    player.set(0, kHere);
+    EXPECT_EQ(player.pairsAfterStep(), kNone);
 }
 
 TEST_F(Filters, AreAskedByRefilterAboutEagerPairsThatAreApartForTheMoment) {
-    create(0, kHere);
-    player.play({Action::create, 1, kThere, Proxy::SensorTrigger, Proxy::AllFilter});
+    player.create(0, kHere);
+    player.create(1, kThere, Proxy::SensorTrigger);
     player.calculate();
-    set(1, kHere);
-    ASSERT_EQ(pairs(), both) << "Sensors have their pairs at once.";
-    set(1, kThere);
-    player.proxy(1)->m_collisionFilterMask = 0;
-    refilter(1);
-    set(1, kHere);
-    player.calculate();
-    EXPECT_EQ(pairs(), none);
-    EXPECT_EQ(broadphase().validate(), "");
+    player.set(1, kHere);
+    expect(kBoth);  // Sensors have their pairs at once.
+    player.set(1, kThere);
+    refilter(1, 0);
+    player.set(1, kHere);
+    EXPECT_EQ(player.pairsAfterStep(), kNone);
 }
 
 TEST_F(Filters, AskedByRefilterNeverNameADestroyedProxy) {
-    create(0, kHere);
-    create(1, kBeside);
-    create(2, kHere);
+    createTwo();
+    player.create(2, kHere);
     player.calculate();
-    player.play({Action::destroy, 1, {}, 0, 0});
-    refilter(0);
-    EXPECT_EQ(pairs(), (ObjectPairs{{0, 2}}));
-    player.calculate();
-    EXPECT_EQ(pairs(), (ObjectPairs{{0, 2}}));
-    EXPECT_EQ(broadphase().validate(), "");
+    player.destroy(1);
+    refilter(0, kAll);
+    expectNowAndAfterStep({{0, 2}});
+}
+
+TEST_F(Filters, OfManyProxiesAreAskedOnceAboutEachTwo) {
+    Boxes boxes;
+    boxes.cache.setOverlapFilterCallback(&filter);
+    for (int i = 0; i < 1000; ++i) {
+        boxes.create(boxAround({btScalar(1.5) * btScalar(i), 0, 0}, {1, 1, 1}));
+    }
+    boxes.check();
+    ASSERT_EQ(boxes.pairCount(), 999);
+    for (const bool areAll : {true, false}) {
+        filter.answer = !filter.answer;
+        filter.asked = 0;
+        if (areAll) {
+            boxes.broadphase.refilterAll(nullptr);
+        } else {
+            boxes.broadphase.refilter(boxes.proxies, nullptr);
+        }
+        EXPECT_EQ(filter.asked, 999U);
+        EXPECT_EQ(boxes.pairCount(), filter.answer ? 999 : 0);
+        EXPECT_EQ(boxes.broadphase.validate(), "");
+    }
 }
 
 class FiltersOverDeferredRemoval : public Filters {
 protected:
     FiltersOverDeferredRemoval() : Filters(std::make_unique<btSortedOverlappingPairCache>()) {
-        create(0, kHere);
-        create(1, kBeside);
-        create(2, kHere);
-        player.calculate();
+        createTwo();
+        player.create(2, kHere);
+        EXPECT_EQ(player.pairsAfterStep(), kThree);
     }
-    const ObjectPairs all{{0, 1}, {0, 2}, {1, 2}};
+    const ObjectPairs kThree{{0, 1}, {0, 2}, {1, 2}};
 };
 
 TEST_F(FiltersOverDeferredRemoval, AreObeyedAfterTheStep) {
-    ASSERT_EQ(pairs(), all);
-    player.proxy(2)->m_collisionFilterMask = 0;
-    refilter(2);
-    player.calculate();
-    EXPECT_EQ(pairs(), both);
-    player.proxy(2)->m_collisionFilterMask = Proxy::AllFilter;
-    refilter(2);
-    player.calculate();
-    EXPECT_EQ(pairs(), all);
+    refilter(2, 0);
+    EXPECT_EQ(player.pairsAfterStep(), kBoth);
+    refilter(2, kAll);
+    EXPECT_EQ(player.pairsAfterStep(), kThree);
 }
 
 TEST_F(FiltersOverDeferredRemoval, LeavePairsAloneThatAreApartForTheMoment) {
-    ASSERT_EQ(pairs(), all);
-    set(0, kThere);
-    refilter(2);
-    set(0, kHere);
-    player.calculate();
-    EXPECT_EQ(pairs(), all);
+    player.set(0, kThere);
+    refilter(2, kAll);
+    player.set(0, kHere);
+    EXPECT_EQ(player.pairsAfterStep(), kThree);
+}
+
+// --- Written without a word ----------------------------------------------------------------------
+
+TEST_F(Filters, ThatAreWrittenCountWhenEitherOfTheTwoMovesAsUnderDbvt) {
+    for (const bool isOurs : {false, true}) {
+        for (const int moved : {0, 1}) {
+            for (const int stepsBefore : {1, 40}) {
+                SCOPED_TRACE(testing::Message() << isOurs << moved << stepsBefore);
+                Player two = isOurs ? hashPlayer(6) : Player(6, makeBroadphase<ExactDbvt>());
+                two.create(0, kHere, 1, 0);
+                two.create(1, kThere, 1, kAll);
+                two.calculate(stepsBefore);
+                two.setMask(0, kAll);
+                EXPECT_EQ(two.pairsAfterStep(), kNone);
+                two.set(moved, moved == 0 ? kThere : kHere);
+                EXPECT_EQ(two.pairsAfterStep(), kBoth);
+            }
+        }
+    }
+}
+
+TEST_F(Filters, ThatAreWrittenCountWhenTheBoxIsSetToWhatItWas) {
+    player.create(0, kHere, 1, 0);
+    player.create(1, kBeside, 1, kAll);
+    player.calculate(20);
+    player.setMask(0, kAll);
+    player.set(0, kHere);
+    EXPECT_EQ(player.pairsAfterStep(), kBoth);
+    player.setMask(0, 0);
+    player.set(0, kHere);
+    EXPECT_EQ(player.pairsAfterStep(), kBoth) << "A pair stays one until its boxes part.";
+    player.set(0, kThere);
+    EXPECT_EQ(player.pairsAfterStep(), kNone);
+}
+
+TEST_F(Filters, ThatAreWrittenBringEagerPairsAtOnce) {
+    player.create(0, kHere, Proxy::SensorTrigger, 0);
+    player.create(1, kBeside, 1, kAll);
+    EXPECT_EQ(player.pairsAfterStep(), kNone);
+    player.setMask(0, kAll);
+    player.set(0, kHere);
+    expectNowAndAfterStep(kBoth);
+}
+
+// --- Callbacks that come and go ------------------------------------------------------------------
+
+TEST_F(Filters, DecideInPlaceOfGroupsAndMasksWhileTheyAreSet) {
+    for (const CacheKind& kind : {cacheKinds()[0], cacheKinds()[3]}) {
+        SCOPED_TRACE(kind.name);
+        Player three = hashPlayer(6, kind.make());
+        three.create(0, kHere, 1, 0);
+        three.create(1, kBeside);
+        three.create(2, kHere);
+        EXPECT_EQ(three.pairsAfterStep(), (ObjectPairs{{1, 2}}));
+        three.cache().setOverlapFilterCallback(&filter);
+        hashOf(three).refilterAll(nullptr);
+        EXPECT_EQ(three.pairs(), (ObjectPairs{{0, 1}, {0, 2}, {1, 2}}));
+        FilterBy refuse(false);
+        three.cache().setOverlapFilterCallback(&refuse);
+        hashOf(three).refilterAll(nullptr);
+        EXPECT_EQ(three.pairs(), kNone);
+        three.cache().setOverlapFilterCallback(nullptr);
+        three.calculate();
+        hashOf(three).refilterAll(nullptr);
+        EXPECT_EQ(three.pairs(), (ObjectPairs{{1, 2}}));
+        EXPECT_EQ(three.pairsAfterStep(), (ObjectPairs{{1, 2}}));
+        EXPECT_EQ(hashOf(three).validate(), "");
+    }
+}
+
+/// Of a kind that Bullet does not know, and takes the two whatever their masks.
+struct OwnCache : btHashedOverlappingPairCache {
+    bool needsBroadphaseCollision(Proxy* /*a*/, Proxy* /*b*/) const { return true; }
+};
+
+TEST_F(Filters, AreNotNeededByACacheThatDecidesItself) {
+    Player two = hashPlayer(6, std::make_unique<OwnCache>());
+    two.create(0, kHere, 1, 0);
+    two.create(1, kBeside, 1, 0);
+    two.calculate();
+    EXPECT_EQ(hashOf(two).validate(), "");
+    EXPECT_EQ(hashOf(two).lastCost().pairsWatched, 0U);
+    two.set(0, kBeside);
+    two.calculate();
+    EXPECT_EQ(hashOf(two).lastCost().pairsWatched, 1U) << "the cache was asked";
 }
 
 }  // namespace

@@ -3,12 +3,7 @@
 
 // Bullet's own ghosts, and bodies that come and go.
 
-#include <tests/integration/bullet/bullet_scenes.hpp>
-
-#include <integration/bullet/spatial_hash_broadphase.hpp>
-
-#include <BulletCollision/CollisionDispatch/btGhostObject.h>
-#include <btBulletDynamicsCommon.h>
+#include <tests/integration/bullet/dynamics.hpp>
 
 #include <memory>
 #include <utility>
@@ -19,37 +14,36 @@ namespace hashphase::test {
 /// A world without gravity, with a btGhostObject and a btPairCachingGhostObject at the origin and
 /// boxes in a row elsewhere, of which some come and go. The others touch, so that btDbvtBroadphase,
 /// which checks a part of its pairs in a step, would not check the ghosts' for long.
-struct GhostWorld {
+struct GhostWorld : DynamicsWorld {
     explicit GhostWorld(const SpatialHashConfig& config = {})
         : GhostWorld(std::make_unique<SpatialHashBroadphase>(config)) {}
 
-    explicit GhostWorld(std::unique_ptr<btBroadphaseInterface> over) : broadphase(std::move(over)) {
-        world.setGravity({0, 0, 0});
-        world.getPairCache()->setInternalGhostPairCallback(&ghostCallback);
-        for (btGhostObject* const object : {&ghost, static_cast<btGhostObject*>(&cachingGhost)}) {
+    explicit GhostWorld(std::unique_ptr<btBroadphaseInterface> over)
+        : DynamicsWorld(std::move(over)) {
+        world().setGravity({0, 0, 0});
+        tellGhosts();
+        for (btGhostObject* const object : ghosts()) {
             object->setCollisionShape(&large);
             object->setCollisionFlags(btCollisionObject::CF_NO_CONTACT_RESPONSE);
-            world.addCollisionObject(object, btBroadphaseProxy::SensorTrigger,
-                                     btBroadphaseProxy::AllFilter);
+            world().addCollisionObject(object, btBroadphaseProxy::SensorTrigger,
+                                       btBroadphaseProxy::AllFilter);
         }
         for (int i = 0; i < 30; ++i) {
-            bodies.push_back(std::make_unique<btRigidBody>(1, nullptr, &small));
-            bodies.back()->setActivationState(DISABLE_DEACTIVATION);
-            bodies.back()->setWorldTransform(at({100 + btScalar(i) * btScalar(1.01), 0, 0}));
-            world.addRigidBody(bodies.back().get());
+            const int number = add(&small, 1, placeAt({100 + btScalar(i) * btScalar(1.01), 0, 0}));
+            body(number).setActivationState(DISABLE_DEACTIVATION);
         }
     }
     ~GhostWorld() {
-        for (const auto& body : bodies) {
-            world.removeRigidBody(body.get());
+        for (btGhostObject* const object : ghosts()) {
+            world().removeCollisionObject(object);
         }
-        world.removeCollisionObject(&ghost);
-        world.removeCollisionObject(&cachingGhost);
+        for (int i = 0; i < bodyCount(); ++i) {
+            takeOut(i);
+        }
     }
 
-    static btTransform at(const btVector3& place) {
-        return btTransform(btQuaternion(0, 0, 0, 1), place);
-    }
+    std::vector<btGhostObject*> ghosts() { return {&ghost, &cachingGhost}; }
+    void detect() { world().performDiscreteCollisionDetection(); }
 
     /// Whether both are in the world, and their boxes overlap.
     static bool touches(const btCollisionObject& a, const btCollisionObject& b) {
@@ -59,44 +53,31 @@ struct GhostWorld {
                overlap({p->m_aabbMin, p->m_aabbMax}, {q->m_aabbMin, q->m_aabbMax});
     }
 
-    /// Numbers of the bodies that a ghost lists; the other ghost is not counted.
-    std::vector<int> listedBy(btGhostObject& object) const {
-        std::vector<int> listed;
-        for (int i = 0; i < static_cast<int>(bodies.size()); ++i) {
-            if (doesList(object, *bodies[static_cast<std::size_t>(i)])) {
-                listed.push_back(i);
-            }
-        }
-        return listed;
-    }
-
-    /// Whether it lists the other ghost.
     static bool doesList(btGhostObject& object, btCollisionObject& other) {
         btAlignedObjectArray<btCollisionObject*>& all = object.getOverlappingPairs();
         return all.findLinearSearch(&other) < all.size();
     }
 
-    std::vector<int> touching(const btCollisionObject& object) const {
-        std::vector<int> touched;
-        for (int i = 0; i < static_cast<int>(bodies.size()); ++i) {
-            if (touches(object, *bodies[static_cast<std::size_t>(i)])) {
-                touched.push_back(i);
+    /// Numbers of the bodies for which isSo(object, body); the other ghost is not counted.
+    template <class Object, class IsSo>
+    std::vector<int> bodiesWhere(Object& object, const IsSo& isSo) const {
+        std::vector<int> numbers;
+        for (int i = 0; i < bodyCount(); ++i) {
+            if (isSo(object, body(i))) {
+                numbers.push_back(i);
             }
         }
-        return touched;
+        return numbers;
+    }
+    std::vector<int> listedBy(btGhostObject& object) const { return bodiesWhere(object, doesList); }
+    std::vector<int> touching(const btCollisionObject& object) const {
+        return bodiesWhere(object, touches);
     }
 
-    btGhostPairCallback ghostCallback;  // outlives the world, which tells it of its end
-    btDefaultCollisionConfiguration configuration;
-    btCollisionDispatcher dispatcher{&configuration};
-    std::unique_ptr<btBroadphaseInterface> broadphase;
-    btSequentialImpulseConstraintSolver solver;
-    btDiscreteDynamicsWorld world{&dispatcher, broadphase.get(), &solver, &configuration};
     btBoxShape large{btVector3(2, 2, 2)};
     btBoxShape small{btVector3(btScalar(0.5), btScalar(0.5), btScalar(0.5))};
     btGhostObject ghost;
     btPairCachingGhostObject cachingGhost;
-    std::vector<std::unique_ptr<btRigidBody>> bodies;
 };
 
 }  // namespace hashphase::test

@@ -1,75 +1,81 @@
 // SPDX-License-Identifier: Zlib
 
-// What a caller of the broadphase or of its pair cache may not do is asserted.
+// What a caller of the broadphase or of its pair cache may not do is asserted, and changes nothing in
+// programs that are compiled without assertions.
 
-#include <integration/bullet/spatial_hash_broadphase.hpp>
+#include <tests/integration/bullet/boxes.hpp>
+#include <tests/integration/bullet/cache_side.hpp>
 #include <tests/support/handlers.hpp>
 
 #include <BulletCollision/CollisionDispatch/btGhostObject.h>
-#include <btBulletCollisionCommon.h>
+
 #include <gtest/gtest.h>
 
 #include <array>
-#include <vector>
+#include <functional>
+#include <string>
 
 namespace hashphase::test {
 namespace {
 
 #if HASHPHASE_ENABLE_ASSERTS
 
-btBroadphaseProxy numbered(int uniqueId) {
-    btBroadphaseProxy proxy({0, 0, 0}, {1, 1, 1}, nullptr, 1, 1);
-    proxy.m_uniqueId = uniqueId;
-    return proxy;
+const Box kHere = boxAround({0, 0, 0}, {1, 1, 1});
+
+struct Misuse {
+    const char* sentence;  // a part of the assertion's
+    std::function<void()> call;
+};
+
+void expectAsserted(const std::vector<Misuse>& all) {
+    const ThrowingAsserts throwing;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        try {
+            all[i].call();
+            ADD_FAILURE() << i << " is not asserted: " << all[i].sentence;
+        } catch (const BrokenAssert& broken) {
+            EXPECT_NE(std::string(broken.what()).find(all[i].sentence), std::string::npos)
+                << i << ": " << broken.what();
+        }
+    }
 }
 
-TEST(PairCacheMisuse, OfProxiesWithTheSameUniqueIdIsAsserted) {
-    const ThrowingAsserts throwing;
-    PairCache cache;
-    btBroadphaseProxy one = numbered(1);
-    btBroadphaseProxy two = numbered(2);
-    btBroadphaseProxy otherOne = numbered(1);
-    btBroadphaseProxy otherTwo = numbered(2);
-    cache.addAcceptedPair(&one, &two);
-    EXPECT_THROW(cache.addAcceptedPair(&otherOne, &otherTwo), BrokenAssert);
-    const BulletProxyPair pair(otherOne, otherTwo);
-    EXPECT_THROW(cache.update({}, std::span(&pair, 1), nullptr), BrokenAssert);
-    EXPECT_EQ(cache.getNumOverlappingPairs(), 1);
-}
+// --- The pair cache ------------------------------------------------------------------------------
 
-TEST(PairCacheMisuse, OfNoKeyIsAsserted) {
-    const ThrowingAsserts throwing;
-    EXPECT_THROW(PairCache(PairOrder::canonical, nullptr), BrokenAssert);
+TEST(PairCacheMisuse, OfProxiesWithTheSameUniqueIdOrOfNoKeyIsAsserted) {
+    CacheSide side;
+    side.add(1, 2);
+    side.proxies[3].m_uniqueId = 1;
+    side.proxies[4].m_uniqueId = 2;
+    const std::vector<BulletProxyPair> same = side.pairs({{3, 4}});
+    expectAsserted({{"", [&] { side.cache.addAcceptedPair(side.proxy(3), side.proxy(4)); }},
+                    {"", [&] { side.cache.update({}, same, nullptr); }},
+                    {"", [] { PairCache(PairOrder::canonical, nullptr); }}});
+    EXPECT_EQ(side.cache.getNumOverlappingPairs(), 1);
 }
 
 TEST(PairCacheMisuse, OfAFilterThatChangesIsAsserted) {
-    struct Filter : btOverlapFilterCallback {
-        bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override {
-            ++calls;
-            const BulletProxyPair pair(*a, *b);
-            EXPECT_THROW(cache.addAcceptedPair(a, b), BrokenAssert);
-            EXPECT_THROW(cache.update({}, {&pair, 1}, nullptr), BrokenAssert);
-            EXPECT_THROW(cache.removeOverlappingPair(a, known, nullptr), BrokenAssert);
-            EXPECT_THROW(cache.removeOverlappingPairsContainingProxy(a, nullptr), BrokenAssert);
-            EXPECT_THROW(cache.removeOverlappingPairsContainingProxies({&a, 1}, nullptr),
-                         BrokenAssert);
-            return true;
-        }
-        PairCache& cache;
-        btBroadphaseProxy* known;
-        mutable int calls = 0;
-        Filter(PairCache& asked, btBroadphaseProxy& proxy) : cache(asked), known(&proxy) {}
-    };
-    const ThrowingAsserts throwing;
-    PairCache cache;
-    btBroadphaseProxy one = numbered(1);
-    btBroadphaseProxy two = numbered(2);
-    btBroadphaseProxy three = numbered(3);
-    cache.addAcceptedPair(&one, &three);
-    Filter filter(cache, three);
+    CacheSide side;
+    PairCache& cache = side.cache;
+    side.add(1, 3);
+    FilterBy filter([&](btBroadphaseProxy& a, btBroadphaseProxy& b) {
+        const BulletProxyPair pair(a, b);
+        btBroadphaseProxy* const one = &a;
+        expectAsserted({{"", [&] { cache.addAcceptedPair(&a, &b); }},
+                        {"",
+                         [&] {
+                             cache.update({}, {&pair, 1}, nullptr);
+                         }},
+                        {"", [&] { cache.removeOverlappingPair(&a, side.proxy(3), nullptr); }},
+                        {"", [&] { cache.removeOverlappingPairsContainingProxy(&a, nullptr); }},
+                        {"", [&] {
+                             cache.removeOverlappingPairsContainingProxies({&one, 1}, nullptr);
+                         }}});
+        return true;
+    });
     cache.setOverlapFilterCallback(&filter);
-    EXPECT_NE(cache.addOverlappingPair(&one, &two), nullptr);
-    EXPECT_EQ(filter.calls, 1);
+    EXPECT_NE(side.add(1, 2), nullptr);
+    EXPECT_EQ(filter.asked, 1U);
     EXPECT_EQ(cache.getNumOverlappingPairs(), 2);
     EXPECT_EQ(cache.validate(), "");
 }
@@ -78,54 +84,110 @@ TEST(ProxyRanksMisuse, OfNobodyFindsNobody) {
     EXPECT_EQ(detail::ProxyRanks().lowestRank(1, 2), detail::ProxyRanks::kNone);
 }
 
-TEST(BroadphaseMisuse, OfACacheThatHasPairsIsAsserted) {
-    const ThrowingAsserts throwing;
-    PairCache cache;
-    btBroadphaseProxy one = numbered(1);
-    btBroadphaseProxy two = numbered(2);
-    cache.addAcceptedPair(&one, &two);
-    EXPECT_THROW(SpatialHashBroadphase{&cache}, BrokenAssert);
+// --- The broadphase ------------------------------------------------------------------------------
+
+TEST(BroadphaseMisuse, IsAsserted) {
+    CacheSide full;
+    full.add(1, 2);
+    Boxes boxes;
+    Boxes other;
+    SpatialHashBroadphase& broadphase = boxes.broadphase;
+    btBroadphaseProxy* const alive = boxes.create(kHere);
+    btBroadphaseProxy* const foreign = other.create(kHere);
+    btBroadphaseProxy* const dead = boxes.create(kHere);
+    const ProxyId deadId = SpatialHashBroadphase::idOf(dead);
+    boxes.destroy(dead);
+    const BroadphaseRay ray{{0, 0, 0}, {1, 0, 0}};
+    const ClosestRay closest{{0, 0, 0}, {1, 0, 0}};
+    std::array<btBroadphaseProxy*, 2> two{alive, nullptr};
+    const std::vector<ProxyDefinition> three(3);
+    const std::vector<btVector3> one(1, btVector3(0, 0, 0));
+    const std::vector<btVector3> both(2, btVector3(0, 0, 0));
+    const char* const gone = "did not destroy";
+    const char* const alien = "this broadphase created";
+    Box box;
+    expectAsserted(
+        {{"no pairs yet", [&] { SpatialHashBroadphase{&full.cache}; }},
+         {gone, [&] { broadphase.destroyProxy(dead, nullptr); }},
+         {gone, [&] { broadphase.destroyProxy(nullptr, nullptr); }},
+         {gone, [&] { boxes.set(dead, kHere); }},
+         {gone, [&] { broadphase.refilter(dead, nullptr); }},
+         {"", [&] { broadphase.getAabb(dead, box.min, box.max); }},
+         {"", [&] { broadphase.getAabb(nullptr, box.min, box.max); }},
+         {"", [&] { static_cast<void>(SpatialHashBroadphase::idOf(nullptr)); }},
+         {"alive", [&] { static_cast<void>(broadphase.proxyOf(deadId)); }},
+         {alien, [&] { broadphase.destroyProxy(foreign, nullptr); }},
+         {alien, [&] { boxes.set(foreign, kHere); }},
+         {alien,
+          [&] {
+              broadphase.destroyProxies({&foreign, 1}, nullptr);
+          }},
+         {alien,
+          [&] {
+              broadphase.setAabbs({&foreign, 1}, one, one, nullptr);
+          }},
+         {gone, [&] { broadphase.destroyProxies(two, nullptr); }},
+         {"one proxy a definition", [&] { broadphase.createProxies(three, two, nullptr); }},
+         {"one box a proxy",
+          [&] {
+              broadphase.setAabbs({&alive, 1}, both, one, nullptr);
+          }},
+         {"one box a proxy",
+          [&] {
+              broadphase.setAabbs({&alive, 1}, one, both, nullptr);
+          }},
+         {"",
+          [&] {
+              broadphase.rayTests({&ray, 1});
+          }},
+         {"",
+          [&] {
+              broadphase.closestRays({&closest, 1});
+          }},
+         {gone, [&] {
+              broadphase.destroyProxies(std::array{alive, alive}, nullptr);
+          }}});
+    boxes.proxies.clear();  // the last call has destroyed it, once
 }
 
-TEST(BroadphaseMisuse, OfProxiesThatAreNotAliveIsAsserted) {
+TEST(BroadphaseMisuse, OfResetPoolByACallbackIsAsserted) {
     const ThrowingAsserts throwing;
-    SpatialHashBroadphase broadphase;
-    btBroadphaseProxy* proxy =
-        broadphase.createProxy({0, 0, 0}, {1, 1, 1}, 0, nullptr, 1, 1, nullptr);
-    btVector3 low;
-    btVector3 high;
-    broadphase.getAabb(proxy, low, high);
-    EXPECT_EQ(high, btVector3(1, 1, 1));
-    broadphase.destroyProxy(proxy, nullptr);
-    EXPECT_THROW(broadphase.getAabb(proxy, low, high), BrokenAssert);
-    EXPECT_THROW(broadphase.getAabb(nullptr, low, high), BrokenAssert);
-    EXPECT_THROW(static_cast<void>(SpatialHashBroadphase::idOf(nullptr)), BrokenAssert);
+    Boxes boxes;
+    boxes.create(kHere);
+    ReportTo<btBroadphaseAabbCallback> report([&](btBroadphaseProxy* proxy) {
+        boxes.broadphase.resetPool(nullptr);  // a proxy is alive: does nothing
+        boxes.destroy(proxy);
+        EXPECT_THROW(boxes.broadphase.resetPool(nullptr), BrokenAssert);
+    });
+    boxes.broadphase.aabbTest(kHere.min, kHere.max, report);
+    EXPECT_EQ(boxes.broadphase.grid().size(), 0U);
+    boxes.broadphase.resetPool(nullptr);
+    EXPECT_EQ(boxes.create(kHere)->getUid(), 1);
 }
+
+#endif
 
 TEST(BroadphaseMisuse, OfProxiesThatAreNotAliveChangesNobodyWithoutAssertions) {
     const CaughtAsserts caught;
-    SpatialHashBroadphase broadphase;
-    std::vector<btBroadphaseProxy*> proxies;
+    const Box place = boxAround({0, 0, 0}, {1, 1, 1});
+    Boxes boxes;
     for (int i = 0; i < 3; ++i) {
-        proxies.push_back(broadphase.createProxy({0, 0, 0}, {1, 1, 1}, 0, nullptr, 1, 1, nullptr));
+        boxes.create(place);
     }
-    broadphase.calculateOverlappingPairs(nullptr);
-    const ProxyId destroyed = SpatialHashBroadphase::idOf(proxies[1]);
-    broadphase.destroyProxy(proxies[1], nullptr);
-    broadphase.destroyProxy(proxies[1], nullptr);
-    broadphase.setAabb(proxies[1], {5, 5, 5}, {6, 6, 6}, nullptr);
-    broadphase.refilter(proxies[1], nullptr);
-    EXPECT_EQ(broadphase.proxyOf(destroyed), nullptr);
-    EXPECT_EQ(broadphase.proxyOf(ProxyId{}), nullptr);
-    broadphase.calculateOverlappingPairs(nullptr);
-    EXPECT_EQ(broadphase.getOverlappingPairCache()->getNumOverlappingPairs(), 1);
-    for (const int alive : {0, 2}) {
-        btVector3 low;
-        btVector3 high;
-        broadphase.getAabb(proxies[static_cast<std::size_t>(alive)], low, high);
-        EXPECT_EQ(high, btVector3(1, 1, 1));
+    boxes.step();
+    btBroadphaseProxy* const dead = boxes.proxies[1];
+    const ProxyId deadId = SpatialHashBroadphase::idOf(dead);
+    boxes.destroy(dead);
+    boxes.broadphase.destroyProxy(dead, nullptr);
+    boxes.set(dead, {{5, 5, 5}, {6, 6, 6}});
+    boxes.broadphase.refilter(dead, nullptr);
+    EXPECT_EQ(boxes.broadphase.proxyOf(deadId), nullptr);
+    EXPECT_EQ(boxes.broadphase.proxyOf(ProxyId{}), nullptr);
+    boxes.check();
+    EXPECT_EQ(boxes.pairCount(), 1);
+    for (const btBroadphaseProxy* alive : boxes.proxies) {
+        EXPECT_TRUE(isSame(boxOf(*alive), place));
     }
-    EXPECT_EQ(broadphase.validate(), "");
     EXPECT_GE(caught.count(), HASHPHASE_ENABLE_ASSERTS ? 5 : 0);
 }
 
@@ -153,17 +215,6 @@ TEST(BroadphaseMisuse, OfProxiesThatAreNotAliveInABatchChangesNobodyWithoutAsser
     broadphase.destroyProxies(std::array{proxies[2], proxies[0], proxies[1]}, &dispatcher);
     EXPECT_EQ(broadphase.grid().size(), 0U);
 }
-
-TEST(BroadphaseMisuse, OfRaysWithoutACallbackIsAsserted) {
-    const ThrowingAsserts throwing;
-    SpatialHashBroadphase broadphase;
-    const BroadphaseRay ray{{0, 0, 0}, {1, 0, 0}};
-    const ClosestRay closest{{0, 0, 0}, {1, 0, 0}};
-    EXPECT_THROW(broadphase.rayTests(std::span(&ray, 1)), BrokenAssert);
-    EXPECT_THROW(broadphase.closestRays(std::span(&closest, 1)), BrokenAssert);
-}
-
-#endif
 
 }  // namespace
 }  // namespace hashphase::test

@@ -24,23 +24,31 @@ struct AskedWorld {
         : cache(order), broadphase(&cache, config) {
         cache.setInternalGhostPairCallback(&ghostCallback);
     }
+    ~AskedWorld() { unload(); }
     AskedWorld(const AskedWorld&) = delete;
     AskedWorld& operator=(const AskedWorld&) = delete;
 
+    btCollisionObject& add(bool isGhost, btCollisionShape* shape, const btVector3& at, int group) {
+        objects.push_back(isGhost ? std::make_unique<btPairCachingGhostObject>()
+                                  : std::make_unique<btCollisionObject>());
+        btCollisionObject& object = *objects.back();
+        object.setCollisionShape(shape);
+        object.getWorldTransform().setOrigin(at);
+        world.addCollisionObject(&object, group, btBroadphaseProxy::AllFilter);
+        return object;
+    }
+    void move(btCollisionObject& object, const btVector3& to) {
+        object.getWorldTransform().setOrigin(to);
+        world.updateSingleAabb(&object);
+    }
     /// Boxes on a floor, of which every fourth is a ghost that touches its neighbours.
     void load() {
         for (int i = 0; i < kPerLevel; ++i) {
             const bool isGhost = i % 4 == 3;
-            objects.push_back(isGhost ? std::make_unique<btPairCachingGhostObject>()
-                                      : std::make_unique<btCollisionObject>());
-            btCollisionObject& object = *objects.back();
-            object.setCollisionShape(isGhost ? &large : &small);
-            object.getWorldTransform().setOrigin({btScalar(i % 20) * 2, 0, btScalar(i / 20) * 2});
-            world.addCollisionObject(&object,
-                                     isGhost      ? btBroadphaseProxy::SensorTrigger
-                                     : i % 2 == 0 ? btBroadphaseProxy::StaticFilter
-                                                  : btBroadphaseProxy::DefaultFilter,
-                                     btBroadphaseProxy::AllFilter);
+            add(isGhost, isGhost ? &large : &small, {btScalar(i % 20) * 2, 0, btScalar(i / 20) * 2},
+                isGhost      ? btBroadphaseProxy::SensorTrigger
+                : i % 2 == 0 ? btBroadphaseProxy::StaticFilter
+                             : btBroadphaseProxy::DefaultFilter);
         }
     }
     void unload() {
@@ -49,6 +57,7 @@ struct AskedWorld {
         }
         objects.clear();
     }
+    void detect() { world.performDiscreteCollisionDetection(); }
     /// Casts rays down at the level.
     QueryCost ask() {
         QueryCost sum;
@@ -102,11 +111,11 @@ TEST(NeverSteppedWorld, HoldsNoMoreAndAsksNoMoreAfterManyLevelsThanAfterAFew) {
         EXPECT_LE(world.broadphase.grid().indexLimit(), indexLimit);
         EXPECT_LE(world.memoryBytes(), memory);
         world.load();
-        world.world.performDiscreteCollisionDetection();
+        world.detect();
         EXPECT_EQ(world.broadphase.validate(), "");
         EXPECT_EQ(world.cache.validate(), "");
         world.unload();
-        world.world.performDiscreteCollisionDetection();
+        world.detect();
         EXPECT_EQ(world.broadphase.validate(), "");
     }
 }
@@ -115,15 +124,15 @@ TEST(NeverSteppedWorld, HoldsNoMoreWhereObjectsAreDragged) {
     AskedWorld world;
     world.load();
     for (int step = 0; step < 20; ++step) {
-        world.world.performDiscreteCollisionDetection();  // once, until all is at rest
+        world.detect();  // once, until all is at rest
     }
     const std::size_t before = world.memoryBytes();
     std::size_t memory = 0;
     for (int turn = 0; turn < 60; ++turn) {
         for (std::size_t i = 0; i < world.objects.size(); i += 3) {
-            btCollisionObject& object = *world.objects[i];
-            object.getWorldTransform().getOrigin()[1] = btScalar(0.01) * btScalar(turn);
-            world.world.updateSingleAabb(&object);
+            btVector3 to = world.objects[i]->getWorldTransform().getOrigin();
+            to[1] = btScalar(0.01) * btScalar(turn);
+            world.move(*world.objects[i], to);
         }
         EXPECT_LE(world.ask().boxesTested, 30U * 150);
         memory = turn == 30 ? world.memoryBytes() : memory;
@@ -131,34 +140,24 @@ TEST(NeverSteppedWorld, HoldsNoMoreWhereObjectsAreDragged) {
     EXPECT_LE(world.memoryBytes(), memory);
     EXPECT_LE(memory, 4 * before);
     EXPECT_EQ(world.broadphase.grid().indexLimit(), static_cast<std::uint32_t>(kPerLevel));
-    world.unload();
 }
 
 TEST(NeverSteppedWorld, HoldsThePairsOfAGhostAroundAllOfThemAlone) {
-    AskedWorld world;
     btBoxShape around(btVector3(100, 100, 100));
-    btGhostObject ghost;
-    ghost.setCollisionShape(&around);
-    world.world.addCollisionObject(&ghost);
-    btCollisionObject objects[50];
+    AskedWorld world;
+    world.add(true, &around, {0, 0, 0}, btBroadphaseProxy::DefaultFilter);
     for (int i = 0; i < 50; ++i) {
-        objects[i].setCollisionShape(&world.small);
-        objects[i].getWorldTransform().setOrigin({btScalar(2 * i - 50), 0, 50});
-        world.world.addCollisionObject(&objects[i]);
+        world.add(false, &world.small, {btScalar(2 * i - 50), 0, 50},
+                  btBroadphaseProxy::DefaultFilter);
     }
-    world.world.performDiscreteCollisionDetection();
+    world.detect();
     for (int turn = 0; turn < 20; ++turn) {
         for (int i = 0; i < 50; ++i) {
-            objects[i].getWorldTransform().setOrigin(
-                {btScalar((i * 7 + turn * 13) % 50), btScalar(i % (turn + 2)), 0});
-            world.world.updateSingleAabb(&objects[i]);
+            world.move(*world.objects[std::size_t(i) + 1],
+                       {btScalar((i * 7 + turn * 13) % 50), btScalar(i % (turn + 2)), 0});
         }
         EXPECT_EQ(world.cache.getNumOverlappingPairs(), 50);
     }
-    for (btCollisionObject& object : objects) {
-        world.world.removeCollisionObject(&object);
-    }
-    world.world.removeCollisionObject(&ghost);
 }
 
 }  // namespace

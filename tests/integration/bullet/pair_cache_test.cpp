@@ -1,445 +1,295 @@
 // SPDX-License-Identifier: Zlib
-#include <integration/bullet/pair_cache.hpp>
+//
+// The pair cache in single calls; what any of them do to the set is asked by random operations.
 
-#include <btBulletDynamicsCommon.h>
+#include <tests/integration/bullet/cache_side.hpp>
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <functional>
-#include <memory>
 #include <random>
 #include <set>
 #include <utility>
-#include <vector>
 
-namespace hashphase {
+namespace hashphase::test {
 namespace {
-
-using IdPair = std::pair<int, int>;
-
-struct Proxies {
-    explicit Proxies(int count, int firstId = 1, int idStep = 1) {
-        for (int i = 0; i < count; ++i) {
-            owned.push_back(std::make_unique<btBroadphaseProxy>());
-            owned.back()->m_uniqueId = firstId + idStep * i;
-            owned.back()->m_collisionFilterGroup = btBroadphaseProxy::DefaultFilter;
-            owned.back()->m_collisionFilterMask = btBroadphaseProxy::AllFilter;
-        }
-    }
-    btBroadphaseProxy* operator[](std::size_t i) const { return owned[i].get(); }
-    [[nodiscard]] std::size_t size() const { return owned.size(); }
-
-    std::vector<std::unique_ptr<btBroadphaseProxy>> owned;
-};
-
-IdPair idsOf(const btBroadphasePair& pair) {
-    return std::minmax({pair.m_pProxy0->m_uniqueId, pair.m_pProxy1->m_uniqueId});
-}
-
-/// As listed by the array, in its order.
-std::vector<IdPair> listOf(btOverlappingPairCache& cache) {
-    std::vector<IdPair> list;
-    for (int i = 0; i < cache.getNumOverlappingPairs(); ++i) {
-        list.push_back(idsOf(cache.getOverlappingPairArrayPtr()[i]));
-    }
-    return list;
-}
-
-std::vector<IdPair> sortedListOf(btOverlappingPairCache& cache) {
-    std::vector<IdPair> list = listOf(cache);
-    std::sort(list.begin(), list.end());
-    return list;
-}
-
-struct Callback : btOverlapCallback {
-    explicit Callback(std::function<bool(btBroadphasePair&)> f) : function(std::move(f)) {}
-    bool processOverlap(btBroadphasePair& pair) override { return function(pair); }
-    std::function<bool(btBroadphasePair&)> function;
-};
-
-/// An algorithm that does nothing but count those alive.
-struct IdleAlgorithm : btCollisionAlgorithm {
-    explicit IdleAlgorithm(int& count) : aliveCount(count) { ++aliveCount; }
-    ~IdleAlgorithm() override { --aliveCount; }
-    void processCollision(const btCollisionObjectWrapper*, const btCollisionObjectWrapper*,
-                          const btDispatcherInfo&, btManifoldResult*) override {}
-    btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
-                                   btManifoldResult*) override {
-        return 1;
-    }
-    void getAllContactManifolds(btManifoldArray&) override {}
-    int& aliveCount;
-};
-
-struct Dispatch {
-    btDefaultCollisionConfiguration configuration;
-    btCollisionDispatcher dispatcher{&configuration};
-    int aliveCount = 0;
-
-    void giveAlgorithm(btBroadphasePair& pair) {
-        void* memory = dispatcher.allocateCollisionAlgorithm(sizeof(IdleAlgorithm));
-        pair.m_algorithm = new (memory) IdleAlgorithm(aliveCount);
-    }
-};
-
-/// Every proxy with the next three.
-void addBand(btOverlappingPairCache& cache, const Proxies& proxies) {
-    for (std::size_t i = 0; i < proxies.size(); ++i) {
-        for (std::size_t j = i + 1; j < std::min(i + 4, proxies.size()); ++j) {
-            cache.addOverlappingPair(proxies[i], proxies[j]);
-        }
-    }
-}
-
-bool isTouching(const IdPair& pair, int id) {
-    return pair.first == id || pair.second == id;
-}
 
 // --- The set of pairs ----------------------------------------------------------------------------
 
-TEST(PairCache, HoldsTheSamePairsAsBulletsCacheOverRandomOperations) {
-    Proxies proxies(60, 0, 30'000'000);
-    PairCache cache;
+TEST(PairCache, HoldsTheSamePairsInTheSameOrderAsBulletsCache) {
+    CacheSide side;
+    for (std::size_t i = 0; i < CacheSide::kProxies; ++i) {
+        side.proxies[i].m_uniqueId = 15'000'000 * int(i);
+    }
     PairCache canonical(PairOrder::canonical);
     btHashedOverlappingPairCache expected;
+    const std::array<btOverlappingPairCache*, 3> caches{&side.cache, &canonical, &expected};
     int spareId = 2'147'483'647;
     std::mt19937 random(11);
     for (int i = 0; i < 100'000; ++i) {
-        btBroadphaseProxy* a = proxies[random() % proxies.size()];
-        btBroadphaseProxy* b = proxies[random() % proxies.size()];
+        btBroadphaseProxy* const a = side.proxy(int(random() % 60));
+        btBroadphaseProxy* const b = side.proxy(int(random() % 60));
         const auto action = random() % 100;
-        if (action == 0) {
-            // Destroyed, and another one created with an id that another one had before.
-            cache.removeOverlappingPairsContainingProxy(a, nullptr);
-            canonical.removeOverlappingPairsContainingProxy(a, nullptr);
-            expected.removeOverlappingPairsContainingProxy(a, nullptr);
-            std::swap(a->m_uniqueId, spareId);
-        } else if (a == b) {
-            continue;
-        } else if (action < 55) {
-            cache.addOverlappingPair(a, b);
-            canonical.addOverlappingPair(a, b);
-            expected.addOverlappingPair(a, b);
-        } else if (action < 95) {
-            cache.removeOverlappingPair(a, b, nullptr);
-            canonical.removeOverlappingPair(a, b, nullptr);
-            expected.removeOverlappingPair(a, b, nullptr);
+        for (btOverlappingPairCache* const cache : caches) {
+            if (action == 0) {
+                cache->removeOverlappingPairsContainingProxy(a, nullptr);
+            } else if (action < 55 && a != b) {
+                cache->addOverlappingPair(a, b);
+            } else if (action < 95 && a != b) {
+                cache->removeOverlappingPair(a, b, nullptr);
+            }
         }
-        ASSERT_EQ(cache.findPair(b, a) != nullptr, expected.findPair(b, a) != nullptr);
+        if (action == 0) {  // destroyed, and one created with an id that another had before
+            std::swap(a->m_uniqueId, spareId);
+        }
+        if (a != b) {
+            ASSERT_EQ(side.cache.findPair(b, a) != nullptr, expected.findPair(b, a) != nullptr);
+        }
         if (i % 500 == 0) {
-            ASSERT_EQ(cache.validate(), "") << i;
-            ASSERT_EQ(listOf(cache), listOf(expected)) << "in the same order, too, " << i;
-            ASSERT_EQ(listOf(canonical), sortedListOf(expected)) << i;
-            ASSERT_EQ(canonical.validate(), "") << i;
+            ASSERT_EQ(side.cache.validate() + canonical.validate(), "") << i;
+            ASSERT_EQ(side.list(), uidList(expected)) << "in the same order, too, " << i;
+            ASSERT_EQ(uidList(canonical), inOrder(uidList(expected))) << i;
         }
     }
-    EXPECT_GT(cache.getNumOverlappingPairs(), 300);
+    EXPECT_GT(side.cache.getNumOverlappingPairs(), 300);
 }
 
 TEST(PairCache, ReturnsThePairItHasAndItsUserDataWhenRemoved) {
-    Proxies proxies(2);
-    PairCache cache;
+    CacheSide side;
+    PairCache& cache = side.cache;
     int data = 0;
     EXPECT_EQ(cache.getOverlappingPairArrayPtr(), nullptr);
-    EXPECT_EQ(cache.removeOverlappingPair(proxies[0], proxies[1], nullptr), nullptr);
-    btBroadphasePair* pair = cache.addOverlappingPair(proxies[1], proxies[0]);
+    EXPECT_EQ(cache.removeOverlappingPair(side.proxy(0), side.proxy(1), nullptr), nullptr);
+    btBroadphasePair* const pair = side.add(1, 0);
     ASSERT_NE(pair, nullptr);
-    EXPECT_EQ(pair->m_pProxy0, proxies[0]) << "oriented by unique id, as in Bullet";
+    EXPECT_EQ(pair->m_pProxy0, side.proxy(0)) << "oriented by unique id, as in Bullet";
     pair->m_internalInfo1 = &data;
-    EXPECT_EQ(cache.addOverlappingPair(proxies[0], proxies[1]), pair);
-    EXPECT_EQ(cache.findPair(proxies[0], proxies[1]), pair);
+    EXPECT_EQ(side.add(0, 1), pair);
+    EXPECT_EQ(side.find(0, 1), pair);
     EXPECT_EQ(cache.getOverlappingPairArrayPtr(), pair);
     EXPECT_EQ(std::as_const(cache).getOverlappingPairArrayPtr(), pair);
     EXPECT_EQ(cache.getNumOverlappingPairs(), 1);
-    EXPECT_EQ(cache.removeOverlappingPair(proxies[1], proxies[0], nullptr), &data);
+    EXPECT_EQ(cache.removeOverlappingPair(side.proxy(1), side.proxy(0), nullptr), &data);
     EXPECT_EQ(cache.getNumOverlappingPairs(), 0);
     EXPECT_FALSE(cache.hasDeferredRemoval());
 }
 
 TEST(PairCache, LetsTheFilterCallbackDecideAndElseGroupAndMaskBothWays) {
-    struct OddOnly : btOverlapFilterCallback {
-        bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override {
-            return (a->m_uniqueId + b->m_uniqueId) % 2 == 1;
-        }
-    } oddOnly;
-    Proxies proxies(3);
-    proxies[2]->m_collisionFilterGroup = btBroadphaseProxy::StaticFilter;
-    proxies[2]->m_collisionFilterMask = btBroadphaseProxy::DefaultFilter;
-    PairCache cache;
-    EXPECT_NE(cache.addOverlappingPair(proxies[0], proxies[2]), nullptr);
-    proxies[1]->m_collisionFilterMask = btBroadphaseProxy::DefaultFilter;
-    EXPECT_EQ(cache.addOverlappingPair(proxies[1], proxies[2]), nullptr) << "one way is not enough";
-    EXPECT_EQ(cache.addOverlappingPair(proxies[2], proxies[1]), nullptr);
+    FilterBy oddOnly([](btBroadphaseProxy& a, btBroadphaseProxy& b) {
+        return (a.m_uniqueId + b.m_uniqueId) % 2 == 1;
+    });
+    CacheSide side;
+    side.proxies[2].m_collisionFilterGroup = btBroadphaseProxy::StaticFilter;
+    side.proxies[2].m_collisionFilterMask = btBroadphaseProxy::DefaultFilter;
+    EXPECT_NE(side.add(0, 2), nullptr);
+    side.proxies[1].m_collisionFilterMask = btBroadphaseProxy::DefaultFilter;
+    EXPECT_EQ(side.add(1, 2), nullptr) << "one way is not enough";
+    EXPECT_EQ(side.add(2, 1), nullptr);
 
-    cache.setOverlapFilterCallback(&oddOnly);
-    EXPECT_EQ(cache.getOverlapFilterCallback(), &oddOnly);
-    EXPECT_NE(cache.addOverlappingPair(proxies[1], proxies[2]), nullptr);
-    EXPECT_NE(cache.findPair(proxies[0], proxies[2]), nullptr) << "pairs there are are not asked";
-    proxies[0]->m_uniqueId = 8;
-    EXPECT_EQ(cache.addOverlappingPair(proxies[0], proxies[1]), nullptr);
-    EXPECT_NE(cache.addAcceptedPair(proxies[0], proxies[1]), nullptr) << "does not ask";
+    side.cache.setOverlapFilterCallback(&oddOnly);
+    EXPECT_EQ(side.cache.getOverlapFilterCallback(), &oddOnly);
+    EXPECT_NE(side.add(1, 2), nullptr);
+    EXPECT_NE(side.find(0, 2), nullptr) << "present pairs are not asked about";
+    EXPECT_EQ(side.add(1, 3), nullptr);
+    EXPECT_NE(side.cache.addAcceptedPair(side.proxy(1), side.proxy(3)), nullptr) << "does not ask";
 }
 
 // --- The pairs of one proxy ----------------------------------------------------------------------
 
-TEST(PairCache, RemovesOnlyThePairsOfTheProxy) {
-    Proxies proxies(100);
-    PairCache cache;
-    addBand(cache, proxies);
-    std::vector<IdPair> expected = sortedListOf(cache);
-    for (int id : {50, 51, 1, 100, 50}) {
-        cache.removeOverlappingPairsContainingProxy(proxies[std::size_t(id) - 1], nullptr);
-        std::erase_if(expected, [=](const IdPair& pair) { return isTouching(pair, id); });
-        EXPECT_EQ(sortedListOf(cache), expected);
-        EXPECT_EQ(cache.validate(), "");
+TEST(PairCache, CleansAndRemovesAProxyInWorkProportionalToItsPairs) {
+    CacheSide side;
+    side.addBand();
+    for (int i = 3; i < 110; i += 7) {
+        const int before = side.cache.getNumOverlappingPairs();
+        const std::uint64_t visitedBefore = side.cache.pairsVisited();
+        side.cache.cleanProxyFromPairs(side.proxy(i), nullptr);
+        side.cache.removeOverlappingPairsContainingProxy(side.proxy(i), nullptr);
+        EXPECT_EQ(before - side.cache.getNumOverlappingPairs(), 6);
+        EXPECT_EQ(side.cache.pairsVisited() - visitedBefore, 2 * 6U);
     }
-    // Pairs made later are found as well.
-    cache.addOverlappingPair(proxies[49], proxies[10]);
-    cache.addOverlappingPair(proxies[10], proxies[90]);
-    cache.removeOverlappingPair(proxies[2], proxies[3], nullptr);
-    cache.removeOverlappingPairsContainingProxy(proxies[10], nullptr);
-    std::erase_if(expected, [](const IdPair& pair) {
-        return isTouching(pair, 11) || pair == IdPair{3, 4};
-    });
-    EXPECT_EQ(sortedListOf(cache), expected);
-}
-
-TEST(PairCache, RemovesAProxyInWorkProportionalToItsPairs) {
-    Proxies proxies(50'000);
-    PairCache cache;
-    addBand(cache, proxies);
-    for (std::size_t i = 0; i < 1000; ++i) {
-        btBroadphaseProxy* proxy = proxies[7 + 37 * i];
-        const int before = cache.getNumOverlappingPairs();
-        const std::uint64_t visitedBefore = cache.pairsVisited();
-        cache.cleanProxyFromPairs(proxy, nullptr);
-        cache.removeOverlappingPairsContainingProxy(proxy, nullptr);
-        ASSERT_EQ(before - cache.getNumOverlappingPairs(), 6);
-        ASSERT_EQ(cache.pairsVisited() - visitedBefore, 2 * 6U);
-    }
-    EXPECT_EQ(cache.validate(), "");
+    EXPECT_EQ(side.cache.validate(), "");
 }
 
 TEST(PairCache, FreesTheAlgorithmsOfThatProxyOnly) {
     for (const PairOrder order : {PairOrder::arrival, PairOrder::canonical}) {
-        Dispatch dispatch;
-        Proxies proxies(30);
-        PairCache cache(order);
-        addBand(cache, proxies);
-        const int count = cache.getNumOverlappingPairs();
+        CacheSide side(order);
+        side.addBand();
+        side.giveAlgorithms();
+        const int count = side.cache.getNumOverlappingPairs();
+        side.cache.cleanProxyFromPairs(side.proxy(15), nullptr);
+        EXPECT_EQ(side.freed.size(), 0U) << "without a dispatcher nothing is freed";
+        side.cache.cleanProxyFromPairs(side.proxy(15), &side.dispatcher);
+        EXPECT_EQ(side.freed.size(), 6U);
+        EXPECT_EQ(side.cache.getNumOverlappingPairs(), count) << "the pairs stay";
         for (int i = 0; i < count; ++i) {
-            dispatch.giveAlgorithm(cache.getOverlappingPairArray()[i]);
+            const btBroadphasePair& pair = side.cache.getOverlappingPairArray()[i];
+            const auto [a, b] = uidsOf(pair);
+            EXPECT_EQ(pair.m_algorithm == nullptr, a == 15 || b == 15);
         }
-        cache.cleanProxyFromPairs(proxies[15], nullptr);
-        EXPECT_EQ(dispatch.aliveCount, count) << "without a dispatcher nothing is freed";
-
-        cache.cleanProxyFromPairs(proxies[15], &dispatch.dispatcher);
-        EXPECT_EQ(dispatch.aliveCount, count - 6);
-        EXPECT_EQ(cache.getNumOverlappingPairs(), count) << "the pairs stay";
-        for (int i = 0; i < count; ++i) {
-            const btBroadphasePair& pair = cache.getOverlappingPairArray()[i];
-            EXPECT_EQ(pair.m_algorithm == nullptr, isTouching(idsOf(pair), 16));
+        side.remove(0, 1);
+        side.cache.getOverlappingPairArray();
+        EXPECT_EQ(side.freed.size(), 7U);
+        side.remove(0, 2);
+        side.cache.cleanProxyFromPairs(side.proxy(0), &side.dispatcher);
+        EXPECT_EQ(side.freed.size(), 9U) << "before the proxy can go";
+        for (btBroadphaseProxy& proxy : side.proxies) {
+            side.cache.removeOverlappingPairsContainingProxy(&proxy, &side.dispatcher);
         }
-
-        cache.removeOverlappingPair(proxies[0], proxies[1], &dispatch.dispatcher);
-        cache.getOverlappingPairArray();
-        EXPECT_EQ(dispatch.aliveCount, count - 7);
-        cache.removeOverlappingPair(proxies[0], proxies[2], &dispatch.dispatcher);
-        cache.cleanProxyFromPairs(proxies[0], &dispatch.dispatcher);
-        EXPECT_EQ(dispatch.aliveCount, count - 9) << "before the proxy can go";
-        for (std::size_t i = 0; i < proxies.size(); ++i) {
-            cache.removeOverlappingPairsContainingProxy(proxies[i], &dispatch.dispatcher);
-        }
-        EXPECT_EQ(dispatch.aliveCount, 0);
-        EXPECT_EQ(cache.getNumOverlappingPairs(), 0);
+        EXPECT_EQ(side.freed.size(), std::size_t(count));
+        EXPECT_EQ(side.cache.getNumOverlappingPairs(), 0);
     }
+}
+
+TEST(PairCache, ForgetsAProxyInCanonicalOrder) {
+    CacheSide side(PairOrder::canonical);
+    for (const int i : {7, 2, 9, 1, 8, 4}) {
+        side.add(5, i);
+    }
+    side.cache.setInternalGhostPairCallback(&side.ghosts);
+    side.cache.removeOverlappingPairsContainingProxy(side.proxy(5), nullptr);
+    EXPECT_EQ(side.ghosts.all, (std::vector<ToldPairs::Told>{{false, 1, 5},
+                                                             {false, 2, 5},
+                                                             {false, 4, 5},
+                                                             {false, 5, 7},
+                                                             {false, 5, 8},
+                                                             {false, 5, 9}}));
+}
+
+TEST(PairCache, FreesAlgorithmsInCanonicalOrderInWhateverOrderPairsDie) {
+    CacheSide side(PairOrder::canonical);
+    side.addBand();
+    side.giveAlgorithms();
+    for (const int i : {7, 2, 9, 1, 8, 4}) {
+        side.remove(i, i + 1);
+    }
+    side.cache.getOverlappingPairArray();
+    EXPECT_EQ(side.freed.size(), 6U);
+    EXPECT_EQ(side.freed, inOrder(side.freed));
 }
 
 // --- Looking at all pairs ------------------------------------------------------------------------
 
-TEST(PairCache, ShowsEveryPairOnceAndRemovesThoseTheCallbackSays) {
-    for (const PairOrder order : {PairOrder::arrival, PairOrder::canonical}) {
-        for (const bool isDeterministic : {false, true}) {
-            Proxies proxies(200);
-            PairCache cache(order);
-            addBand(cache, proxies);
-            std::vector<IdPair> before = sortedListOf(cache);
-            std::vector<IdPair> shown;
-            Callback removeSome([&](btBroadphasePair& pair) {
-                shown.push_back(idsOf(pair));
-                return (pair.m_pProxy0->m_uniqueId + pair.m_pProxy1->m_uniqueId) % 3 != 0;
-            });
-            btDispatcherInfo info;
-            info.m_deterministicOverlappingPairs = isDeterministic;
-            cache.processAllOverlappingPairs(&removeSome, nullptr, info);
-            std::sort(shown.begin(), shown.end());
-            EXPECT_EQ(shown, before);
-            std::erase_if(before, [](const IdPair& p) { return (p.first + p.second) % 3 != 0; });
-            EXPECT_EQ(sortedListOf(cache), before);
-            EXPECT_FALSE(before.empty());
-            EXPECT_EQ(cache.validate(), "");
-        }
-    }
-}
-
 TEST(PairCache, DispatchesInTheOrderOfBulletsCacheWhenAskedToBeDeterministic) {
-    Proxies proxies(300);
-    PairCache cache;
+    CacheSide side;
     btHashedOverlappingPairCache bullet;
-    const std::vector<btOverlappingPairCache*> caches{&cache, &bullet};
-    for (std::size_t i = 0; i < 1000; ++i) {
-        for (std::size_t c = 0; c < 2; ++c) {
-            const std::size_t turn = c == 0 ? i : 999 - i;
-            btBroadphaseProxy* a = proxies[turn * 7 % 300];
-            btBroadphaseProxy* b = proxies[turn * 31 / 7 % 300];
+    for (int i = 0; i < 1000; ++i) {
+        for (const bool isOurs : {true, false}) {
+            const int turn = isOurs ? i : 999 - i;
+            const int a = turn * 7 % 120;
+            const int b = turn * 31 / 7 % 120;
             if (a != b) {
-                caches[c]->addOverlappingPair(a, b);
+                (isOurs ? static_cast<btOverlappingPairCache&>(side.cache) : bullet)
+                    .addOverlappingPair(side.proxy(a), side.proxy(b));
             }
         }
     }
     btDispatcherInfo info;
     info.m_deterministicOverlappingPairs = true;
-    std::vector<std::vector<IdPair>> shown(2);
-    for (std::size_t i = 0; i < 2; ++i) {
-        Callback note([&](btBroadphasePair& pair) {
-            shown[i].emplace_back(pair.m_pProxy0->m_uniqueId, pair.m_pProxy1->m_uniqueId);
-            return false;
-        });
-        caches[i]->processAllOverlappingPairs(&note, nullptr, info);
+    std::vector<Uids> first;
+    for (btOverlappingPairCache* const cache : {static_cast<btOverlappingPairCache*>(&side.cache),
+                                                static_cast<btOverlappingPairCache*>(&bullet)}) {
+        ProcessBy keep([](btBroadphasePair&) { return false; });
+        cache->processAllOverlappingPairs(&keep, nullptr, info);
+        EXPECT_TRUE(first.empty() || first == keep.shown);
+        first = keep.shown;
     }
-    EXPECT_EQ(shown[0], shown[1]);
-    EXPECT_GT(shown[0].size(), 500U);
+    EXPECT_GT(first.size(), 500U);
 }
 
 TEST(PairCache, ToleratesChangesByTheCallback) {
-    Proxies proxies(400);
-    PairCache cache;
-    for (std::size_t i = 0; i < 10; ++i) {
-        cache.addOverlappingPair(proxies[i], proxies[i + 1]);
+    CacheSide side;
+    for (int i = 0; i < 10; ++i) {
+        side.add(i, i + 1);
     }
-    // Every pair of the first hundred brings another one, far beyond the array's first capacity.
-    std::vector<IdPair> shown;
-    Callback addAnother([&](btBroadphasePair& pair) {
-        const auto next = static_cast<std::size_t>(pair.m_pProxy1->m_uniqueId);
-        shown.push_back(idsOf(pair));
-        if (shown.size() <= 300) {
-            cache.addOverlappingPair(proxies[next], proxies[next + 1]);
+    // Every pair of the first ones brings another, far beyond the array's first capacity.
+    ProcessBy addAnother([&](btBroadphasePair& pair) {
+        const int next = pair.m_pProxy1->m_uniqueId;
+        if (next + 1 < int(CacheSide::kProxies)) {
+            side.add(next, next + 1);
         }
-        return shown.size() % 2 == 0;
+        return addAnother.shown.size() % 2 == 0;
     });
-    cache.processAllOverlappingPairs(&addAnother, nullptr);
-    EXPECT_EQ(std::set<IdPair>(shown.begin(), shown.end()).size(), shown.size());
-    EXPECT_GT(shown.size(), 290U) << "what the callback adds is shown";
-    EXPECT_EQ(cache.validate(), "");
+    side.cache.processAllOverlappingPairs(&addAnother, nullptr);
+    EXPECT_EQ(std::set<Uids>(addAnother.shown.begin(), addAnother.shown.end()).size(),
+              addAnother.shown.size());
+    EXPECT_GT(addAnother.shown.size(), 110U) << "what the callback adds is shown";
+    EXPECT_EQ(side.cache.validate(), "");
 
     // Takes every pair out and puts it back, and says that it is to stay; or only takes it out.
     for (const bool isPutBack : {true, false}) {
-        const auto count = static_cast<std::size_t>(cache.getNumOverlappingPairs());
-        shown.clear();
-        Callback takeOut([&](btBroadphasePair& pair) {
+        const int count = side.cache.getNumOverlappingPairs();
+        ProcessBy takeOut([&](btBroadphasePair& pair) {
             btBroadphaseProxy* const a = pair.m_pProxy0;
             btBroadphaseProxy* const b = pair.m_pProxy1;
-            shown.push_back(idsOf(pair));
-            cache.removeOverlappingPair(a, b, nullptr);
-            return isPutBack && cache.addOverlappingPair(a, b) == nullptr;
+            side.cache.removeOverlappingPair(a, b, nullptr);
+            return isPutBack && side.cache.addOverlappingPair(a, b) == nullptr;
         });
-        cache.processAllOverlappingPairs(&takeOut, nullptr);
-        EXPECT_EQ(shown.size(), count);
-        EXPECT_EQ(cache.getNumOverlappingPairs(), isPutBack ? static_cast<int>(count) : 0);
+        side.cache.processAllOverlappingPairs(&takeOut, nullptr);
+        EXPECT_EQ(takeOut.shown.size(), std::size_t(count));
+        EXPECT_EQ(side.cache.getNumOverlappingPairs(), isPutBack ? count : 0);
     }
 }
 
 // --- Order ---------------------------------------------------------------------------------------
 
-int clientKey(const btBroadphaseProxy& proxy) {
-    return *static_cast<int*>(proxy.m_clientObject);
+// Two of each, and negative ones.
+int twoOfEach(const btBroadphaseProxy& proxy) {
+    return proxy.m_uniqueId * 29 % 80 / 2 - 20;
 }
 
 TEST(PairCache, HasACanonicalOrderThatDependsOnlyOnTheSet) {
-    Proxies proxies(80);
-    std::vector<int> keys(proxies.size());
-    for (std::size_t i = 0; i < keys.size(); ++i) {
-        keys[i] = static_cast<int>(i * 29 % 80 / 2) - 20;  // two of each, and negative ones
-        proxies[i]->m_clientObject = &keys[i];
-    }
-    for (const ProxyKey key : {&PairCache::uniqueId, &clientKey}) {
-        Dispatch dispatch;
+    for (const ProxyKey key : {&PairCache::uniqueId, &twoOfEach}) {
+        CacheSide winding(PairOrder::canonical, key);
         PairCache straight(PairOrder::canonical, key);
-        PairCache winding(PairOrder::canonical, key);
-        addBand(straight, proxies);
         std::mt19937 random(15);
         for (int i = 0; i < 5000; ++i) {
-            btBroadphaseProxy* a = proxies[random() % proxies.size()];
-            btBroadphaseProxy* b = proxies[random() % proxies.size()];
+            const int a = int(random() % CacheSide::kProxies);
+            const int b = int(random() % CacheSide::kProxies);
             if (a != b && random() % 2 == 0) {
-                dispatch.giveAlgorithm(*winding.addOverlappingPair(a, b));
+                winding.add(a, b);
             } else if (a != b) {
-                winding.removeOverlappingPair(a, b, &dispatch.dispatcher);
+                winding.remove(a, b);
             }
             if (i % 100 == 0) {
-                winding.removeOverlappingPairsContainingProxy(a, &dispatch.dispatcher);
-                winding.getOverlappingPairArray();
+                winding.giveAlgorithms();
+                winding.cache.removeOverlappingPairsContainingProxy(winding.proxy(a),
+                                                                    &winding.dispatcher);
             }
         }
-        Callback removeFar([&](btBroadphasePair& pair) {
-            return straight.findPair(pair.m_pProxy0, pair.m_pProxy1) == nullptr;
-        });
-        winding.processAllOverlappingPairs(&removeFar, &dispatch.dispatcher);
-        addBand(winding, proxies);
-
-        ASSERT_EQ(winding.getNumOverlappingPairs(), straight.getNumOverlappingPairs());
-        const btBroadphasePairArray& a = straight.getOverlappingPairArray();
-        const btBroadphasePairArray& b = winding.getOverlappingPairArray();
-        for (int i = 0; i < a.size(); ++i) {
-            EXPECT_EQ(a[i].m_pProxy0, b[i].m_pProxy0) << i;
-            EXPECT_EQ(a[i].m_pProxy1, b[i].m_pProxy1) << i;
-            EXPECT_LE(key(*a[i].m_pProxy0), key(*a[i].m_pProxy1));
-            EXPECT_LE(key(*a[std::max(0, i - 1)].m_pProxy0), key(*a[i].m_pProxy0));
+        winding.addBand();
+        const std::vector<Uids> all = winding.list();
+        for (const auto& [a, b] : inOrder(all)) {
+            straight.addOverlappingPair(winding.proxy(b), winding.proxy(a));
         }
-        EXPECT_EQ(winding.validate(), "");
-        Callback removeAll([](btBroadphasePair&) { return true; });
-        winding.processAllOverlappingPairs(&removeAll, &dispatch.dispatcher);
+        EXPECT_EQ(uidList(straight), all);
+        EXPECT_EQ(winding.cache.validate(), "");
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const auto keyOf = [&](int uid) { return key(*winding.proxy(uid)); };
+            EXPECT_LE(keyOf(all[i].first), keyOf(all[i].second));
+            EXPECT_LE(keyOf(all[i == 0 ? 0 : i - 1].first), keyOf(all[i].first));
+        }
     }
 }
 
 TEST(PairCache, KeepsAlgorithmsAndTellsNoGhostWhenSorting) {
-    struct Counter : btOverlappingPairCallback {
-        btBroadphasePair* addOverlappingPair(btBroadphaseProxy*, btBroadphaseProxy*) override {
-            ++calls;
-            return nullptr;
-        }
-        void* removeOverlappingPair(btBroadphaseProxy*, btBroadphaseProxy*,
-                                    btDispatcher*) override {
-            ++calls;
-            return nullptr;
-        }
-        void removeOverlappingPairsContainingProxy(btBroadphaseProxy*, btDispatcher*) override {}
-        int calls = 0;
-    } ghosts;
-    Proxies proxies(50);
-    Dispatch dispatch;
-    PairCache cache;
-    std::vector<std::pair<IdPair, btCollisionAlgorithm*>> given;
-    for (std::size_t i = 0; i < 49; ++i) {
-        btBroadphasePair* pair = cache.addOverlappingPair(proxies[48 - i], proxies[49 - i]);
-        dispatch.giveAlgorithm(*pair);
-        given.emplace_back(idsOf(*pair), pair->m_algorithm);
+    CacheSide side;
+    for (int i = 0; i < 49; ++i) {
+        side.add(48 - i, 49 - i);
     }
-    EXPECT_EQ(listOf(cache).front(), IdPair(49, 50)) << "in the order of arrival";
-    cache.setInternalGhostPairCallback(&ghosts);
-    cache.sortOverlappingPairs(&dispatch.dispatcher);
-    EXPECT_EQ(ghosts.calls, 0);
-    EXPECT_EQ(listOf(cache), sortedListOf(cache));
-    for (const auto& [ids, algorithm] : given) {
-        const auto first = static_cast<std::size_t>(ids.first);
-        EXPECT_EQ(cache.findPair(proxies[first - 1], proxies[first])->m_algorithm, algorithm);
+    side.giveAlgorithms();
+    EXPECT_EQ(side.list().front(), Uids(48, 49)) << "in the order of arrival";
+    side.cache.setInternalGhostPairCallback(&side.ghosts);
+    side.cache.sortOverlappingPairs(&side.dispatcher);
+    EXPECT_EQ(side.ghosts.all.size(), 0U);
+    EXPECT_EQ(side.list(), inOrder(side.list()));
+    for (int i = 0; i < 49; ++i) {
+        const auto* kept = static_cast<NotedAlgorithm*>(side.find(i, i + 1)->m_algorithm);
+        EXPECT_EQ(kept->uids, Uids(i, i + 1));
     }
-    Callback removeAll([](btBroadphasePair&) { return true; });
-    cache.processAllOverlappingPairs(&removeAll, &dispatch.dispatcher);
-    EXPECT_EQ(dispatch.aliveCount, 0);
-    EXPECT_EQ(ghosts.calls, 49);
+    ProcessBy removeAll([](btBroadphasePair&) { return true; });
+    side.cache.processAllOverlappingPairs(&removeAll, &side.dispatcher);
+    EXPECT_EQ(side.freed.size(), 49U);
+    EXPECT_EQ(side.ghosts.all.size(), 49U);
 }
 
 }  // namespace
-}  // namespace hashphase
+}  // namespace hashphase::test

@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: Zlib
 #include <tests/integration/bullet/pair_journal.hpp>
 
-#include <algorithm>
+#include <tests/integration/bullet/player.hpp>
 
 namespace hashphase::test {
 namespace {
 
-PairJournal::Uids uidsOf(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
-    return std::minmax({a.m_uniqueId, b.m_uniqueId});
+std::string textOf(const Uids& uids) {
+    return "Pair " + std::to_string(uids.first) + ", " + std::to_string(uids.second);
 }
 
 }  // namespace
 
-PairJournal::Uids PairJournal::note(const btBroadphaseProxy& a, const btBroadphaseProxy& b,
-                                    const char* what) {
-    const Uids uids = uidsOf(a, b);
+Uids PairJournal::note(const btBroadphaseProxy& a, const btBroadphaseProxy& b, const char* what) {
     for (const btBroadphaseProxy* const proxy : {&a, &b}) {
         const auto* const client = static_cast<const Client*>(proxy->m_clientObject);
         if (client == nullptr || !client->isAlive) {
@@ -22,15 +20,13 @@ PairJournal::Uids PairJournal::note(const btBroadphaseProxy& a, const btBroadpha
                               std::to_string(proxy->m_uniqueId) + " is not alive.");
         }
     }
-    touched_.insert(uids);
-    return uids;
+    return *touched_.insert(uidsOf(a, b)).first;
 }
 
 btBroadphasePair* PairJournal::addOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b) {
     const Uids uids = note(*a, *b, "added");
     if (!alive_.insert(uids).second) {
-        errors_.push_back("Pair " + std::to_string(uids.first) + ", " +
-                          std::to_string(uids.second) + " was added twice.");
+        errors_.push_back(textOf(uids) + " was added twice.");
     }
     return nullptr;
 }
@@ -39,8 +35,7 @@ void* PairJournal::removeOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy
                                          btDispatcher* /*dispatcher*/) {
     const Uids uids = note(*a, *b, "removed");
     if (alive_.erase(uids) == 0) {
-        errors_.push_back("Pair " + std::to_string(uids.first) + ", " +
-                          std::to_string(uids.second) + " was removed, but had not been added.");
+        errors_.push_back(textOf(uids) + " was removed, but had not been added.");
     }
     return nullptr;
 }
@@ -50,11 +45,19 @@ void PairJournal::removeOverlappingPairsContainingProxy(btBroadphaseProxy* /*pro
     errors_.push_back("Pairs were not removed one by one, which Bullet's ghosts cannot bear.");
 }
 
-std::set<PairJournal::Uids> uidPairs(btOverlappingPairCache& cache) {
-    std::set<PairJournal::Uids> pairs;
+std::set<Uids> uidPairs(btOverlappingPairCache& cache) {
+    std::set<Uids> pairs;
+    for (const auto& [a, b] : uidList(cache)) {
+        pairs.insert(std::minmax({a, b}));
+    }
+    return pairs;
+}
+
+std::vector<Uids> uidList(btOverlappingPairCache& cache) {
+    std::vector<Uids> pairs;
     const btBroadphasePairArray& array = cache.getOverlappingPairArray();
     for (int i = 0; i < array.size(); ++i) {
-        pairs.insert(uidsOf(*array[i].m_pProxy0, *array[i].m_pProxy1));
+        pairs.emplace_back(array[i].m_pProxy0->m_uniqueId, array[i].m_pProxy1->m_uniqueId);
     }
     return pairs;
 }

@@ -3,9 +3,7 @@
 
 // A ghost callback that keeps the books: what it is told must balance.
 
-#include <tests/integration/bullet/player.hpp>
-
-#include <BulletCollision/BroadphaseCollision/btOverlappingPairCallback.h>
+#include <tests/integration/bullet/callbacks.hpp>
 
 #include <set>
 #include <string>
@@ -14,11 +12,9 @@
 
 namespace hashphase::test {
 
-/// Set through setInternalGhostPairCallback(). Pairs are pairs of m_uniqueId, lower first.
+/// Set through setInternalGhostPairCallback(). Pairs are those of unique ids, lower first.
 class PairJournal : public btOverlappingPairCallback {
 public:
-    using Uids = std::pair<int, int>;
-
     btBroadphasePair* addOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b) override;
     void* removeOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b,
                                 btDispatcher* dispatcher) override;
@@ -44,6 +40,9 @@ private:
 };
 
 /// The pairs of a cache, as the journal writes them.
-std::set<PairJournal::Uids> uidPairs(btOverlappingPairCache& cache);
+std::set<Uids> uidPairs(btOverlappingPairCache& cache);
+
+/// In the order of the array, and of the two in each pair.
+std::vector<Uids> uidList(btOverlappingPairCache& cache);
 
 }  // namespace hashphase::test

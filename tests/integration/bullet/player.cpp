@@ -100,7 +100,7 @@ Player::Player(int objectCount, std::unique_ptr<btBroadphaseInterface> broadphas
 Player::~Player() {
     for (std::size_t i = 0; i < proxies_.size(); ++i) {
         if (proxies_[i] != nullptr) {
-            destroy(static_cast<int>(i));  // btDbvtBroadphase leaks what is left to it
+            destroyProxy(static_cast<int>(i));  // btDbvtBroadphase leaks what is left to it
         }
     }
 }
@@ -114,10 +114,10 @@ void Player::play(const Frame& frame) {
 void Player::play(const Command& command) {
     switch (command.action) {
         case Action::create:
-            create(command);
+            createProxy(command);
             break;
         case Action::destroy:
-            destroy(command.object);
+            destroyProxy(command.object);
             break;
         case Action::set:
             broadphase_->setAabb(proxy(command.object), command.box.min, command.box.max, nullptr);
@@ -133,7 +133,7 @@ void Player::play(const Command& command) {
     }
 }
 
-void Player::create(const Command& command) {
+void Player::createProxy(const Command& command) {
     const auto object = static_cast<std::size_t>(command.object);
     clients_[object] = std::make_unique<Client>(command.object);
     proxies_[object] =
@@ -141,7 +141,7 @@ void Player::create(const Command& command) {
                                  clients_[object].get(), command.group, command.mask, nullptr);
 }
 
-void Player::destroy(int object) {
+void Player::destroyProxy(int object) {
     const auto index = static_cast<std::size_t>(object);
     broadphase_->destroyProxy(proxies_[index], nullptr);
     proxies_[index] = nullptr;

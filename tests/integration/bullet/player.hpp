@@ -95,8 +95,24 @@ public:
 
     /// One command.
     void play(const Command& command);
+    void create(int object, const Box& box, int group = btBroadphaseProxy::DefaultFilter,
+                int mask = btBroadphaseProxy::AllFilter) {
+        play({Action::create, object, box, group, mask});
+    }
+    void set(int object, const Box& box) { play({Action::set, object, box, 0, 0}); }
+    void destroy(int object) { play({Action::destroy, object, {}, 0, 0}); }
+    /// Written without a word.
+    void setMask(int object, int mask) { proxy(object)->m_collisionFilterMask = mask; }
 
-    void calculate() { broadphase_->calculateOverlappingPairs(nullptr); }
+    void calculate(int times = 1) {
+        for (int i = 0; i < times; ++i) {
+            broadphase_->calculateOverlappingPairs(nullptr);
+        }
+    }
+    [[nodiscard]] ObjectPairs pairsAfterStep() {
+        calculate();
+        return pairs();
+    }
 
     /// What the pair cache lists.
     [[nodiscard]] ObjectPairs pairs() const;
@@ -114,8 +130,8 @@ public:
     }
 
 private:
-    void create(const Command& command);
-    void destroy(int object);
+    void createProxy(const Command& command);
+    void destroyProxy(int object);
     void changeFilter(int divisor);
 
     std::unique_ptr<btOverlappingPairCache> cache_;

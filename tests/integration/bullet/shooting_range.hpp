@@ -5,12 +5,9 @@
 
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/detail/body_motion.hpp>
-#include <integration/bullet/spatial_hash_broadphase.hpp>
+#include <tests/integration/bullet/dynamics.hpp>
 #include <tests/support/random.hpp>
 
-#include <btBulletDynamicsCommon.h>
-
-#include <algorithm>
 #include <memory>
 #include <optional>
 #include <set>
@@ -21,113 +18,88 @@ namespace hashphase::test {
 
 inline constexpr btScalar kStep = btScalar(1) / 60;
 
-inline SpatialHashConfig withSweep(Sweep sweep) {
-    SpatialHashConfig config;
-    config.sweep = sweep;
-    return config;
-}
-
 /// Walls that stand, and balls that fly through them without touching: no response.
-struct ShootingRange {
-    using RawPair = std::pair<const btBroadphaseProxy*, const btBroadphaseProxy*>;
-
-    explicit ShootingRange(std::unique_ptr<btBroadphaseInterface> ofWhat)
-        : broadphase(std::move(ofWhat)),
-          world(&dispatcher, broadphase.get(), &solver, &configuration) {
-        world.setGravity(btVector3(0, 0, 0));
+struct ShootingRange : DynamicsWorld {
+    explicit ShootingRange(Sweep sweep)
+        : ShootingRange(
+              std::make_unique<SpatialHashBroadphase>(SpatialHashConfig{.sweep = sweep})) {}
+    explicit ShootingRange(std::unique_ptr<btBroadphaseInterface> over)
+        : DynamicsWorld(std::move(over)) {
+        world().setGravity(btVector3(0, 0, 0));
     }
     ~ShootingRange() {
-        for (const auto& body : bodies) {
-            world.removeRigidBody(body.get());
+        for (int i = 0; i < bodyCount(); ++i) {
+            takeOut(i);
         }
     }
 
     btRigidBody& add(btCollisionShape& shape, btScalar mass, const btVector3& position,
                      const btVector3& velocity = btVector3(0, 0, 0)) {
-        btVector3 inertia(0, 0, 0);
-        if (mass > 0) {
-            shape.calculateLocalInertia(mass, inertia);
-        }
-        auto body = std::make_unique<btRigidBody>(mass, nullptr, &shape, inertia);
-        body->setWorldTransform(btTransform(btMatrix3x3::getIdentity(), position));
-        body->setInterpolationWorldTransform(body->getWorldTransform());
-        body->setLinearVelocity(velocity);
-        body->setDamping(0, 0);
-        body->setActivationState(DISABLE_DEACTIVATION);
-        body->setCollisionFlags(body->getCollisionFlags() |
-                                btCollisionObject::CF_NO_CONTACT_RESPONSE);
-        world.addRigidBody(body.get());
-        bodies.push_back(std::move(body));
-        return *bodies.back();
+        btRigidBody& flying = body(DynamicsWorld::add(&shape, mass, placeAt(position)));
+        flying.setLinearVelocity(velocity);
+        flying.setDamping(0, 0);
+        flying.setActivationState(DISABLE_DEACTIVATION);
+        flying.setCollisionFlags(flying.getCollisionFlags() |
+                                 btCollisionObject::CF_NO_CONTACT_RESPONSE);
+        return flying;
     }
 
     /// 200 walls here and there, 60 balls and rods of which two in three are fast; all so far from
     /// the origin, along each axis.
-    void fill(Random& random, double reach = 9, double offset = 0, double speed = 400) {
+    void fill(std::uint64_t seed, double reach = 9, double offset = 0, double speed = 400) {
+        Random random(seed);
+        const auto somewhere = [&](double low, double high) {
+            return Vector3<double>(random.pointIn(low, high));
+        };
+        const auto bullets = [](const Vector3<double>& v) { return toBullet(v.cast<btScalar>()); };
         for (int i = 0; i < 200; ++i) {
-            const Vector3<double> place = random.pointIn(offset - reach, offset + reach);
-            add(wall, 0, btVector3(btScalar(place.x()), btScalar(place.y()), btScalar(place.z())));
+            add(wall, 0, bullets(somewhere(offset - reach, offset + reach)));
         }
         for (int i = 0; i < 60; ++i) {
-            const Vector3<double> place = random.pointIn(offset - reach, offset + reach);
-            const Vector3<double> way =
-                random.pointIn(-1, 1).normalized() * (i % 3 == 0 ? 2 : speed);
-            btRigidBody& body =
-                add(i % 2 == 0 ? static_cast<btCollisionShape&>(ball)
-                               : static_cast<btCollisionShape&>(rod),
-                    1, btVector3(btScalar(place.x()), btScalar(place.y()), btScalar(place.z())),
-                    btVector3(btScalar(way.x()), btScalar(way.y()), btScalar(way.z())));
-            body.setAngularVelocity(btVector3(0, btScalar(i), 0));
+            const Vector3<double> place = somewhere(offset - reach, offset + reach);
+            const Vector3<double> way = somewhere(-1, 1).normalized() * (i % 3 == 0 ? 2 : speed);
+            btCollisionShape* const shapes[] = {&ball, &rod};
+            add(*shapes[i % 2], 1, bullets(place), bullets(way))
+                .setAngularVelocity(btVector3(0, btScalar(i), 0));
+        }
+    }
+    /// From now on they touch what they meet, and Bullet sweeps them.
+    void letThemHit() {
+        for (int i = 0; i < bodyCount(); ++i) {
+            body(i).setCollisionFlags(body(i).getCollisionFlags() &
+                                      ~btCollisionObject::CF_NO_CONTACT_RESPONSE);
+            body(i).setCcdMotionThreshold(btScalar(0.05));
+            body(i).setCcdSweptSphereRadius(btScalar(0.04));
         }
     }
 
     /// What a broadphase must know of the step that begins, by looking at every two bodies.
-    [[nodiscard]] std::set<RawPair> expectedPairs(btScalar share) const {
+    [[nodiscard]] std::set<Uids> expectedPairs(btScalar share) const {
         std::vector<MovingBox<btScalar>> motions;
-        for (const auto& body : bodies) {
-            const btBroadphaseProxy& proxy = *body->getBroadphaseProxy();
+        for (int i = 0; i < bodyCount(); ++i) {
+            const btBroadphaseProxy& proxy = *body(i).getBroadphaseProxy();
             const std::optional<detail::BodyMotion> motion = detail::fastMotion(proxy, share);
             motions.push_back(motion
                                   ? motion->way
                                   : MovingBox<btScalar>{toAabb(proxy.m_aabbMin, proxy.m_aabbMax)});
         }
-        std::set<RawPair> pairs;
-        for (std::size_t i = 0; i < bodies.size(); ++i) {
-            for (std::size_t j = i + 1; j < bodies.size(); ++j) {
-                const bool doStand = bodies[i]->isStaticObject() && bodies[j]->isStaticObject();
-                if (!doStand && firstContact(motions[i], motions[j])) {
-                    pairs.insert(std::minmax<const btBroadphaseProxy*>(
-                        bodies[i]->getBroadphaseProxy(), bodies[j]->getBroadphaseProxy()));
+        std::set<Uids> expected;
+        for (int i = 0; i < bodyCount(); ++i) {
+            for (int k = i + 1; k < bodyCount(); ++k) {
+                if ((!body(i).isStaticObject() || !body(k).isStaticObject()) &&
+                    firstContact(motions[std::size_t(i)], motions[std::size_t(k)])) {
+                    expected.insert(
+                        uidsOf(*body(i).getBroadphaseProxy(), *body(k).getBroadphaseProxy()));
                 }
             }
         }
-        return pairs;
+        return expected;
     }
-
-    [[nodiscard]] std::set<RawPair> pairs() const {
-        const btBroadphasePairArray& listed =
-            broadphase->getOverlappingPairCache()->getOverlappingPairArray();
-        std::set<RawPair> pairs;
-        for (int i = 0; i < listed.size(); ++i) {
-            pairs.insert(
-                std::minmax<const btBroadphaseProxy*>(listed[i].m_pProxy0, listed[i].m_pProxy1));
-        }
-        return pairs;
-    }
+    [[nodiscard]] std::set<Uids> pairs() { return uidPairs(cache()); }
 
     btBoxShape wall{btVector3(1, 1, btScalar(0.01))};
     btSphereShape ball{btScalar(0.1)};
     btCapsuleShape rod{btScalar(0.05), 1};
-    btDefaultCollisionConfiguration configuration;
-    btCollisionDispatcher dispatcher{&configuration};
-    std::unique_ptr<btBroadphaseInterface> broadphase;
-    btSequentialImpulseConstraintSolver solver;
-    btDiscreteDynamicsWorld world;
-    std::vector<std::unique_ptr<btRigidBody>> bodies;
 };
-
-inline std::unique_ptr<SpatialHashBroadphase> swept(Sweep sweep) {
-    return std::make_unique<SpatialHashBroadphase>(withSweep(sweep));
-}
 
 }  // namespace hashphase::test

@@ -9,159 +9,135 @@
 #include <tests/integration/bullet/shooting_range.hpp>
 #include <tests/support/handlers.hpp>
 
-#include <BulletCollision/CollisionDispatch/btGhostObject.h>
-
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstddef>
-#include <functional>
 #include <limits>
-#include <memory>
 #include <vector>
 
 namespace hashphase::test {
 namespace {
 
-const SpatialHashBroadphase& hashOf(const ShootingRange& range) {
-    return static_cast<const SpatialHashBroadphase&>(*range.broadphase);
+ProxyId idOf(const btRigidBody& body) {
+    return SpatialHashBroadphase::idOf(body.getBroadphaseProxy());
 }
 
-const Aabb<btScalar>& boxInGrid(const ShootingRange& range, const btRigidBody& body) {
-    return hashOf(range).grid().box(SpatialHashBroadphase::idOf(body.getBroadphaseProxy()));
+const Aabb<btScalar>& boxInGrid(ShootingRange& range, const btRigidBody& body) {
+    return range.hash().grid().box(idOf(body));
 }
 
 bool isAt(const Aabb<btScalar>& box, const btVector3& point) {
     return box.contains(toEigen(point));
 }
 
+bool isWhereItIs(ShootingRange& range, const btRigidBody& body) {
+    return isAt(boxInGrid(range, body), body.getWorldTransform().getOrigin());
+}
+
 /// The same range without a sweep and with one.
 struct TwoRanges {
-    ShootingRange plain{swept(Sweep::none)};
-    ShootingRange fast{swept(Sweep::automatic)};
+    ShootingRange plain{Sweep::none};
+    ShootingRange fast{Sweep::automatic};
 
-    explicit TwoRanges(const std::function<void(ShootingRange&)>& fill) {
-        fill(plain);
-        fill(fast);
-    }
-
-    void step(btScalar seconds = kStep, int mostSteps = 0) {
-        plain.world.stepSimulation(seconds, mostSteps, kStep);
-        fast.world.stepSimulation(seconds, mostSteps, kStep);
+    TwoRanges(std::uint64_t seed, bool doHit) {
+        for (ShootingRange* range : {&plain, &fast}) {
+            range->fill(seed, 15);
+            btRigidBody& lift = range->add(range->wall, 0, btVector3(40, 0, 0));
+            lift.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+            lift.setInterpolationWorldTransform(placeAt({45, 0, 0}));
+            if (doHit) {
+                range->letThemHit();
+            }
+        }
     }
 
     /// The grids have the same boxes, and hand out the same.
-    void expectTheSameBoxes() const {
-        ASSERT_EQ(hashOf(fast).validate(), "");
-        for (std::size_t i = 0; i < plain.bodies.size(); ++i) {
-            const Aabb<btScalar>& expected = boxInGrid(plain, *plain.bodies[i]);
-            ASSERT_TRUE(isSameBits(boxInGrid(fast, *fast.bodies[i]), expected)) << "body " << i;
-            btVector3 low;
-            btVector3 high;
-            fast.broadphase->getAabb(fast.bodies[i]->getBroadphaseProxy(), low, high);
-            ASSERT_TRUE(isSameBits(toAabb(low, high), expected)) << "body " << i;
+    void expectTheSameBoxes() {
+        ASSERT_EQ(fast.hash().validate(), "");
+        for (int i = 0; i < plain.bodyCount(); ++i) {
+            const Aabb<btScalar>& expected = boxInGrid(plain, plain.body(i));
+            ASSERT_TRUE(isSameBits(boxInGrid(fast, fast.body(i)), expected)) << "body " << i;
+            Box box;
+            fast.hash().getAabb(fast.body(i).getBroadphaseProxy(), box.min, box.max);
+            ASSERT_TRUE(isSameBits(toAabb(box.min, box.max), expected)) << "body " << i;
         }
-        std::array<btVector3, 4> world;
-        plain.broadphase->getBroadphaseAabb(world[0], world[1]);
-        fast.broadphase->getBroadphaseAabb(world[2], world[3]);
-        EXPECT_TRUE(isSameBits(toAabb(world[0], world[1]), toAabb(world[2], world[3])));
+        Box expected;
+        Box all;
+        plain.hash().getBroadphaseAabb(expected.min, expected.max);
+        fast.hash().getBroadphaseAabb(all.min, all.max);
+        EXPECT_TRUE(isSameBits(toAabb(all.min, all.max), toAabb(expected.min, expected.max)));
     }
 };
 
-void letThemHit(const ShootingRange& range) {
-    for (const auto& body : range.bodies) {
-        body->setCollisionFlags(body->getCollisionFlags() &
-                                ~btCollisionObject::CF_NO_CONTACT_RESPONSE);
-        body->setCcdMotionThreshold(btScalar(0.05));
-        body->setCcdSweptSphereRadius(btScalar(0.04));
-    }
-}
-
 TEST(SweptQueries, SeeEachBoxOfTheGridAsWithoutASweep) {
     for (const bool doHit : {false, true}) {
-        TwoRanges ranges([doHit](ShootingRange& range) {
-            Random random(0x5eed0e10);
-            range.fill(random, 15);
-            btRigidBody& lift = range.add(range.wall, 0, btVector3(40, 0, 0));
-            lift.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
-            lift.setInterpolationWorldTransform(
-                btTransform(btMatrix3x3::getIdentity(), btVector3(45, 0, 0)));
-            if (doHit) {
-                letThemHit(range);
-            }
-        });
+        TwoRanges ranges(0x5eed0e10, doHit);
         ranges.expectTheSameBoxes();
         for (int step = 0; step < (doHit ? 2 : 8); ++step) {
-            ranges.step();
+            ranges.plain.step();
+            ranges.fast.step();
             ranges.expectTheSameBoxes();
         }
-        EXPECT_GT(hashOf(ranges.fast).sweeps()->size(), 30U);
+        EXPECT_GT(ranges.fast.hash().sweeps()->size(), 30U);
     }
 }
 
 TEST(SweptQueries, SeeThemSoBetweenSubSteps) {
-    TwoRanges ranges([](ShootingRange& range) {
-        Random random(0x5eed0e11);
-        range.fill(random, 15);
-    });
-    std::array<std::vector<Aabb<btScalar>>, 2> boxes;
-    ShootingRange* const both[] = {&ranges.plain, &ranges.fast};
-    for (std::size_t i = 0; i < 2; ++i) {
-        struct Tick {
-            const ShootingRange& range;
-            std::vector<Aabb<btScalar>>& boxes;
-        } tick{*both[i], boxes[i]};
-        both[i]->world.setInternalTickCallback(
+    TwoRanges ranges(0x5eed0e11, false);
+    struct Tick {
+        ShootingRange& range;
+        std::vector<Aabb<btScalar>> boxes;
+    };
+    std::array<Tick, 2> ticks{Tick{ranges.plain, {}}, Tick{ranges.fast, {}}};
+    for (Tick& tick : ticks) {
+        tick.range.world().setInternalTickCallback(
             [](btDynamicsWorld* world, btScalar) {
-                const auto& own = *static_cast<Tick*>(world->getWorldUserInfo());
-                for (const auto& body : own.range.bodies) {
-                    own.boxes.push_back(boxInGrid(own.range, *body));
-                    if (!body->isStaticObject()) {
-                        const btVector3& now = body->getWorldTransform().getOrigin();
-                        EXPECT_TRUE(isAt(own.boxes.back(), now));
-                    }
+                auto& own = *static_cast<Tick*>(world->getWorldUserInfo());
+                for (int i = 0; i < own.range.bodyCount(); ++i) {
+                    const btRigidBody& body = own.range.body(i);
+                    own.boxes.push_back(boxInGrid(own.range, body));
+                    EXPECT_TRUE(body.isStaticOrKinematicObject() || isWhereItIs(own.range, body));
                 }
             },
             &tick);
-        both[i]->world.stepSimulation(btScalar(3.5) * kStep, 4, kStep);
+        tick.range.world().stepSimulation(btScalar(3.5) * kStep, 4, kStep);
     }
-    ASSERT_EQ(boxes[0].size(), 3 * ranges.plain.bodies.size());
-    ASSERT_EQ(boxes[1].size(), boxes[0].size());
-    for (std::size_t i = 0; i < boxes[0].size(); ++i) {
-        ASSERT_TRUE(isSameBits(boxes[0][i], boxes[1][i])) << i;
+    ASSERT_EQ(ticks[0].boxes.size(), 3 * std::size_t(ranges.plain.bodyCount()));
+    ASSERT_EQ(ticks[1].boxes.size(), ticks[0].boxes.size());
+    for (std::size_t i = 0; i < ticks[0].boxes.size(); ++i) {
+        ASSERT_TRUE(isSameBits(ticks[0].boxes[i], ticks[1].boxes[i])) << i;
     }
     ranges.expectTheSameBoxes();
 }
 
 // A view of a metre around where the body is drawn.
 TEST(SweptQueries, OfACullerSeeABodyInEveryFrame) {
-    ShootingRange range(swept(Sweep::automatic));
+    ShootingRange range(Sweep::automatic);
     const btRigidBody& ball = range.add(range.ball, 1, {0, 0, 0}, {200, 0, 0});
     Culler<btScalar> culler;
-    int visible = 0;
     for (int frame = 0; frame < 20; ++frame) {
-        range.world.stepSimulation(kStep, 0);
+        range.step();
         const btScalar x = ball.getWorldTransform().getOrigin().x();
         using Plane = ConvexRegion<btScalar>::Plane;
         const std::array planes{Plane({1, 0, 0}, btScalar(0.5) - x),
                                 Plane({-1, 0, 0}, btScalar(0.5) + x)};
-        culler.look(hashOf(range).grid(), ConvexRegion<btScalar>(planes));
-        visible += culler.isVisible(SpatialHashBroadphase::idOf(ball.getBroadphaseProxy())) ? 1 : 0;
+        culler.look(range.hash().grid(), ConvexRegion<btScalar>(planes));
+        EXPECT_TRUE(culler.isVisible(idOf(ball)));
     }
-    EXPECT_EQ(visible, 20);
 }
 
 // The step in which a zone of a metre notices a shot of 3.3 m a step; -1 when never.
 int stepNoticed(Sweep sweep, btScalar start) {
-    ShootingRange range(swept(sweep));
+    ShootingRange range(sweep);
     range.add(range.ball, 1, {start, 0, 0}, {200, 0, 0});
     Zones<btScalar> zones;
-    static_cast<void>(zones.add(
-        {BoxRegion<btScalar>{boxBetween<btScalar>({29, -1, -1}, {30, 1, 1})}, Presence::box}));
+    const Vector3<btScalar> low(29, -1, -1);
+    const Vector3<btScalar> high(30, 1, 1);
+    static_cast<void>(zones.add({BoxRegion<btScalar>{{low, high}}, Presence::box}));
     int noticed = -1;
     for (int step = 0; step < 15; ++step) {
-        range.world.stepSimulation(kStep, 0);
-        if (!zones.update(hashOf(range).grid()).entered.empty()) {
+        range.step();
+        if (!zones.update(range.hash().grid()).entered.empty()) {
             EXPECT_EQ(noticed, -1) << "it enters once";
             noticed = step;
         }
@@ -180,136 +156,116 @@ TEST(SweptQueries, OfZonesNoticeEachShotInTheSameStepAsWithoutASweep) {
 
 // m_useContinuous off: Bullet hands in where the body is, and no more.
 TEST(SweptQueries, FindABodyWhereTheStepHasLeftItWithoutBulletsOwnBoxes) {
-    ShootingRange range(swept(Sweep::automatic));
-    range.world.getDispatchInfo().m_useContinuous = false;
+    ShootingRange range(Sweep::automatic);
+    range.world().getDispatchInfo().m_useContinuous = false;
     const btRigidBody& ball = range.add(range.ball, 1, {0, 0, 0}, {300, 300, 0});
     for (int step = 0; step < 3; ++step) {
         const btVector3 before = ball.getWorldTransform().getOrigin();
-        range.world.stepSimulation(kStep, 0);
+        range.step();
         EXPECT_TRUE(isAt(boxInGrid(range, ball), before));
-        EXPECT_TRUE(isAt(boxInGrid(range, ball), ball.getWorldTransform().getOrigin()));
+        EXPECT_TRUE(isWhereItIs(range, ball));
     }
 }
 
 TEST(SweptQueries, FindABodyThatAWallHasStopped) {
-    ShootingRange range(swept(Sweep::automatic));
+    ShootingRange range(Sweep::automatic);
     range.add(range.wall, 0, {0, 0, 2});
     const btRigidBody& ball = range.add(range.ball, 1, {0, 0, 0}, {0, 0, 240});
-    letThemHit(range);
-    range.world.stepSimulation(kStep, 0);
-    const btVector3 now = ball.getWorldTransform().getOrigin();
-    EXPECT_LT(now.z(), 2);
-    EXPECT_TRUE(isAt(boxInGrid(range, ball), now));
+    range.letThemHit();
+    range.step();
+    EXPECT_LT(ball.getWorldTransform().getOrigin().z(), 2);
+    EXPECT_TRUE(isWhereItIs(range, ball));
     EXPECT_EQ(range.pairs().size(), 1U);
 }
 
 // Both the box and the way go along.
 TEST(SweptQueries, FollowAShiftOfTheOriginInFlight) {
-    Random random(0x5eed0e12);
-    ShootingRange range(swept(Sweep::automatic));
-    range.fill(random);
-    auto& broadphase = static_cast<SpatialHashBroadphase&>(*range.broadphase);
-    range.world.stepSimulation(kStep, 0);
-    std::vector<MovingBox<btScalar>> ways;
-    for (const auto& body : range.bodies) {
-        ways.push_back(
-            broadphase.sweeps()->motion(SpatialHashBroadphase::idOf(body->getBroadphaseProxy())));
+    ShootingRange range(Sweep::automatic);
+    range.fill(0x5eed0e12);
+    range.step();
+    const auto wayOf = [&](int i) { return range.hash().sweeps()->motion(idOf(range.body(i))); };
+    std::vector<MovingBox<btScalar>> before;
+    for (int i = 0; i < range.bodyCount(); ++i) {
+        before.push_back(wayOf(i));
     }
     const auto pairs = range.pairs();
     const btVector3 shift(1024, btScalar(-0.3), 64);
-    ASSERT_TRUE(shiftWorldOrigin(range.world, broadphase, shift));
-    for (std::size_t i = 0; i < ways.size(); ++i) {
-        const btRigidBody& body = *range.bodies[i];
-        const MovingBox<btScalar> way =
-            broadphase.sweeps()->motion(SpatialHashBroadphase::idOf(body.getBroadphaseProxy()));
-        EXPECT_EQ(way.box.min(), Vector3<btScalar>(ways[i].box.min() - toEigen(shift)));
-        EXPECT_EQ(way.box.max(), Vector3<btScalar>(ways[i].box.max() - toEigen(shift)));
-        EXPECT_EQ(way.displacement, ways[i].displacement);
-        EXPECT_TRUE(isAt(boxInGrid(range, body), body.getWorldTransform().getOrigin()));
+    ASSERT_TRUE(shiftWorldOrigin(range.world(), range.hash(), shift));
+    for (int i = 0; i < range.bodyCount(); ++i) {
+        const MovingBox<btScalar>& expected = before[std::size_t(i)];
+        EXPECT_EQ(wayOf(i).box.min(), Vector3<btScalar>(expected.box.min() - toEigen(shift)));
+        EXPECT_EQ(wayOf(i).box.max(), Vector3<btScalar>(expected.box.max() - toEigen(shift)));
+        EXPECT_EQ(wayOf(i).displacement, expected.displacement);
+        EXPECT_TRUE(isWhereItIs(range, range.body(i)));
     }
     EXPECT_EQ(range.pairs(), pairs);
-    EXPECT_EQ(broadphase.validate(), "");
-    range.world.stepSimulation(kStep, 0);
-    EXPECT_EQ(broadphase.validate(), "");
+    EXPECT_EQ(range.hash().validate(), "");
+    range.step();
+    EXPECT_EQ(range.hash().validate(), "");
 }
 
 TEST(SweptQueries, FollowABodyThatSlowsDownIsMovedByHandAndGoes) {
     const CaughtMessages aboutNan;
-    ShootingRange range(swept(Sweep::automatic));
+    ShootingRange range(Sweep::automatic);
     const btRigidBody& wall = range.add(range.wall, 0, {0, 0, 2});
     btRigidBody& ball = range.add(range.ball, 1, {0, 0, 0}, {0, 0, 240});
-    auto& broadphase = static_cast<SpatialHashBroadphase&>(*range.broadphase);
-    range.world.stepSimulation(kStep, 0);
+    SpatialHashBroadphase& broadphase = range.hash();
+    range.step();
     EXPECT_EQ(broadphase.sweeps()->size(), 1U);
     EXPECT_EQ(range.pairs().size(), 1U);
 
     ball.setLinearVelocity({0, 0, 1});
-    range.world.stepSimulation(kStep, 0);
+    range.step();
     EXPECT_EQ(broadphase.sweeps()->size(), 0U);
     EXPECT_TRUE(range.pairs().empty());
-    EXPECT_TRUE(isAt(boxInGrid(range, ball), ball.getWorldTransform().getOrigin()));
+    EXPECT_TRUE(isWhereItIs(range, ball));
 
-    const btTransform back(btMatrix3x3::getIdentity(), {0, 0, 0});
-    ball.setWorldTransform(back);
-    ball.setInterpolationWorldTransform(back);
+    putAt(ball, {0, 0, 0});
     ball.setLinearVelocity({0, 0, 240});
-    range.world.updateSingleAabb(&ball);
+    range.world().updateSingleAabb(&ball);
     EXPECT_TRUE(isAt(boxInGrid(range, ball), {0, 0, 0}));
-    range.world.stepSimulation(kStep, 0);
+    range.step();
     EXPECT_EQ(range.pairs().size(), 1U);
 
     // By hand, to where the body is not, before it flies on and in flight.
-    broadphase.setAabb(ball.getBroadphaseProxy(), {90, 0, 0}, {91, 1, 1}, nullptr);
+    const auto set = [&](btScalar x) {
+        broadphase.setAabb(ball.getBroadphaseProxy(), {x, 0, 0}, {91, 1, 1}, nullptr);
+    };
+    set(90);
     EXPECT_TRUE(isAt(boxInGrid(range, ball), {90, 1, 1}));
-    ball.setInterpolationWorldTransform(btTransform(btMatrix3x3::getIdentity(), {0, 0, 50}));
-    broadphase.setAabb(ball.getBroadphaseProxy(), {90, 0, 0}, {91, 1, 1}, nullptr);
+    ball.setInterpolationWorldTransform(placeAt({0, 0, 50}));
+    set(90);
     EXPECT_TRUE(isAt(boxInGrid(range, ball), {90, 1, 1}));
-    EXPECT_TRUE(isAt(boxInGrid(range, ball), ball.getWorldTransform().getOrigin()));
+    EXPECT_TRUE(isWhereItIs(range, ball));
     EXPECT_TRUE(isAt(boxInGrid(range, ball), {0, 0, 50}));
-    const btScalar nan = std::numeric_limits<btScalar>::quiet_NaN();
-    broadphase.setAabb(ball.getBroadphaseProxy(), {nan, 0, 0}, {91, 1, 1}, nullptr);
-    broadphase.calculateOverlappingPairs(&range.dispatcher);
+    set(std::numeric_limits<btScalar>::quiet_NaN());
+    broadphase.calculateOverlappingPairs(&range.dispatcher());
     EXPECT_EQ(broadphase.grid().nanCount(), 1U);
     EXPECT_TRUE(range.pairs().empty());
 
-    range.world.stepSimulation(kStep, 0);
-    range.world.removeRigidBody(&ball);
+    range.step();
+    range.takeOut(1);
     EXPECT_EQ(broadphase.validate(), "");
     EXPECT_EQ(broadphase.grid().size(), 1U);
-    EXPECT_EQ(broadphase.sweeps()
-                  ->motion(SpatialHashBroadphase::idOf(wall.getBroadphaseProxy()))
-                  .displacement,
-              Vector3<btScalar>(0, 0, 0));
-    range.bodies.pop_back();
+    EXPECT_EQ(broadphase.sweeps()->motion(idOf(wall)).displacement, Vector3<btScalar>(0, 0, 0));
 }
 
 // The box around the way holds more than the way passes. What a ghost learns at once is exact, too.
 TEST(SweptQueries, OfAGhostTakeNoBodyForOneThatOnlyItsBoxTouches) {
-    ShootingRange range(swept(Sweep::automatic));
-    const btRigidBody& ball = range.add(range.ball, 1, {0, 0, 0}, {300, 300, 0});
-    range.world.stepSimulation(kStep, 0);  // to 5, 5, 0
-    btGhostPairCallback callback;
-    range.broadphase->getOverlappingPairCache()->setInternalGhostPairCallback(&callback);
-    btPairCachingGhostObject ghost;
     btBoxShape shape(btVector3(1, 1, 1));
-    ghost.setCollisionShape(&shape);
-    ghost.setCollisionFlags(btCollisionObject::CF_NO_CONTACT_RESPONSE);
-    const auto placeAt = [&](const btVector3& place) {
-        ghost.setWorldTransform(btTransform(btMatrix3x3::getIdentity(), place));
-        ghost.setInterpolationWorldTransform(ghost.getWorldTransform());
-    };
-    placeAt({4, 1, 0});
-    range.world.addCollisionObject(&ghost, btBroadphaseProxy::SensorTrigger,
-                                   btBroadphaseProxy::AllFilter);
-    ASSERT_TRUE(overlaps(boxInGrid(range, ball), toAabb(ghost.getBroadphaseHandle()->m_aabbMin,
-                                                        ghost.getBroadphaseHandle()->m_aabbMax)));
+    ShootingRange range(Sweep::automatic);
+    const btRigidBody& ball = range.add(range.ball, 1, {0, 0, 0}, {300, 300, 0});
+    range.step();  // to 5, 5, 0
+    btPairCachingGhostObject& ghost = range.addGhost(&shape, {4, 1, 0});
+    const btBroadphaseProxy& proxy = *ghost.getBroadphaseHandle();
+    ASSERT_TRUE(overlaps(boxInGrid(range, ball), toAabb(proxy.m_aabbMin, proxy.m_aabbMax)));
     EXPECT_EQ(ghost.getNumOverlappingObjects(), 0);
-    placeAt({0, 0, 0});
-    range.world.updateSingleAabb(&ghost);
+    putAt(ghost, {0, 0, 0});
+    range.world().updateSingleAabb(&ghost);
     EXPECT_EQ(ghost.getNumOverlappingObjects(), 1);
-    range.world.removeCollisionObject(&ghost);
-    range.broadphase->calculateOverlappingPairs(&range.dispatcher);
-    EXPECT_EQ(hashOf(range).validate(), "");
+    range.world().removeCollisionObject(&ghost);
+    range.hash().calculateOverlappingPairs(&range.dispatcher());
+    EXPECT_EQ(range.hash().validate(), "");
 }
 
 }  // namespace

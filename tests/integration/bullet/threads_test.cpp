@@ -1,60 +1,41 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/bullet/bullet_parallel_for.hpp>
-#include <integration/bullet/spatial_hash_broadphase.hpp>
-#include <tests/support/random.hpp>
+#include <tests/integration/bullet/boxes.hpp>
 #include <tests/support/threaded_for.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <utility>
 #include <vector>
 
 namespace hashphase::test {
 namespace {
 
-using UniqueIds = std::vector<std::pair<int, int>>;
-
-UniqueIds pairsOf(btBroadphaseInterface& broadphase) {
-    UniqueIds ids;
-    const btBroadphasePairArray& pairs =
-        broadphase.getOverlappingPairCache()->getOverlappingPairArray();
-    for (int i = 0; i < pairs.size(); ++i) {
-        ids.emplace_back(pairs[i].m_pProxy0->m_uniqueId, pairs[i].m_pProxy1->m_uniqueId);
-    }
-    return ids;
-}
-
 TEST(Threads, GiveTheSamePairsInTheSameOrder) {
-    Random random(0x5eed0901);
+    BulletRandom random(0x5eed0901);
     ThreadedFor threadedFor(3, 0x5eed0902);
     SpatialHashConfig config;
     config.parallelFor = [&](std::size_t count, std::size_t grain, LoopBody body) {
         threadedFor(count, grain, body);
     };
-    SpatialHashBroadphase serial;
-    SpatialHashBroadphase parallel(config);
-    std::vector<std::pair<btBroadphaseProxy*, btBroadphaseProxy*>> proxies;
+    Boxes serial;
+    Boxes parallel(config);
     for (int frame = 0; frame < 4; ++frame) {
         for (std::size_t i = 0; i < 12000; ++i) {
-            const Vector3<double> at = random.pointIn(0, 50);
-            const btVector3 low(static_cast<btScalar>(at[0]), static_cast<btScalar>(at[1]),
-                                static_cast<btScalar>(at[2]));
-            const btVector3 high = low + btVector3(1, 1, 1);
-            if (frame == 0) {
-                const auto create = [&](SpatialHashBroadphase& broadphase) {
-                    return broadphase.createProxy(low, high, 0, nullptr, 1, -1, nullptr);
-                };
-                proxies.emplace_back(create(serial), create(parallel));
-            } else {
-                serial.setAabb(proxies[i].first, low, high, nullptr);
-                parallel.setAabb(proxies[i].second, low, high, nullptr);
+            const btVector3 low = random.vector(0, 50);
+            for (Boxes* boxes : {&serial, &parallel}) {
+                const Box box{low, low + btVector3(1, 1, 1)};
+                if (frame == 0) {
+                    boxes->create(box);
+                } else {
+                    boxes->set(boxes->proxies[i], box);
+                }
             }
         }
-        serial.calculateOverlappingPairs(nullptr);
-        parallel.calculateOverlappingPairs(nullptr);
-        ASSERT_GT(pairsOf(serial).size(), 1000U);
-        ASSERT_EQ(pairsOf(parallel), pairsOf(serial));
+        serial.step();
+        parallel.step();
+        ASSERT_GT(serial.pairCount(), 1000);
+        ASSERT_EQ(parallel.list(), serial.list());
     }
     EXPECT_GT(threadedFor.mostRanges(), 1U);
 }

@@ -81,7 +81,7 @@ void fillWithSettings(EffectsRoom& room) {
 TEST(WorldConfigurator, CostNothingWhereUndeclaredAndGiveBackAllSettingsInAllSubsets) {
     EffectsRoom room;
     fillWithSettings(room);
-    const std::vector<btScalar> own = settingsOf(*room.scene);
+    const std::vector<btScalar> own = settingsOf(room);
     for (int number = 0; number < 64; ++number) {
         WorldConfigurator configurator(room.world());
         const WorldEffects effects = subset(number);
@@ -101,11 +101,11 @@ TEST(WorldConfigurator, CostNothingWhereUndeclaredAndGiveBackAllSettingsInAllSub
             EXPECT_TRUE(effects.rotation || cost.turningCount == 0) << number;
         }
         configurator.apply({});
-        EXPECT_EQ(settingsOf(*room.scene), own) << number;
+        EXPECT_EQ(settingsOf(room), own) << number;
         EXPECT_EQ(configurator.heldCount(), 0U);
         configurator.apply(effects);
     }
-    EXPECT_EQ(settingsOf(*room.scene), own) << "given back by the destructor";
+    EXPECT_EQ(settingsOf(room), own) << "given back by the destructor";
 }
 
 TEST(WorldConfigurator, FindBodiesWhereTheyRestUnlessTheirBoxesAreNotDeclared) {
@@ -116,7 +116,7 @@ TEST(WorldConfigurator, FindBodiesWhereTheyRestUnlessTheirBoxesAreNotDeclared) {
         WorldConfigurator configurator(room.world());
         configurator.apply({.restingBoxes = areDeclared});
         cube.forceActivationState(ISLAND_SLEEPING);
-        cube.setWorldTransform(btTransform(btQuaternion(0, 0, 0, 1), {40, 2, 0}));
+        cube.setWorldTransform(placeAt({40, 2, 0}));
         configurator.step(btScalar(1) / 64);
         const btVector3 from(40, 9, 0);
         const btVector3 to(40, 1, 0);
@@ -182,51 +182,59 @@ TEST(WorldConfigurator, GiveBackWhatABodyHadThatWasAway) {
     }
 }
 
-TEST(WorldConfigurator, TakeABodyMadeWhereAnotherWasForWhatItIs) {
-    EffectsRoom room;
-    btSphereShape shape(1);
-    alignas(btRigidBody) std::array<std::byte, sizeof(btRigidBody)> memory;
-    WorldConfigurator configurator(room.world());
-    WorldEffects effects{.friction = false};
-    for (const auto friction : {btScalar(0.7), btScalar(0.2)}) {
+/// Memory in which one body is made after another.
+struct BodyPlace {
+    btRigidBody& make(EffectsRoom& room) {
         auto* const body = new (memory.data()) btRigidBody(1, nullptr, &shape, {1, 1, 1});
-        body->setFriction(friction);
         room.world().addRigidBody(body);
-        configurator.apply(effects);
-        EXPECT_EQ(body->getFriction(), 0);
+        return *body;
+    }
+    static void destroy(EffectsRoom& room, btRigidBody& body) {
+        room.world().removeRigidBody(&body);
+        body.~btRigidBody();
+    }
+    btSphereShape shape{1};
+    alignas(btRigidBody) std::array<std::byte, sizeof(btRigidBody)> memory;
+};
+
+TEST(WorldConfigurator, TakeABodyMadeWhereAnotherWasForWhatItIs) {
+    BodyPlace place;
+    EffectsRoom room;
+    WorldConfigurator configurator(room.world());
+    for (const auto friction : {btScalar(0.7), btScalar(0.2)}) {
+        btRigidBody& body = place.make(room);
+        body.setFriction(friction);
+        configurator.apply({.friction = false});
+        EXPECT_EQ(body.getFriction(), 0);
         if (friction < btScalar(0.5)) {
             configurator.apply({});
-            EXPECT_EQ(body->getFriction(), friction);
+            EXPECT_EQ(body.getFriction(), friction);
         }
-        room.world().removeRigidBody(body);
-        body->~btRigidBody();
+        BodyPlace::destroy(room, body);
     }
 }
 
 // Some of what is set is what Bullet sets by itself.
 TEST(WorldConfigurator, TakeABodyMadeAfterAnotherThatWasNeverReleasedForANewOne) {
+    BodyPlace place;
     EffectsRoom room;
-    btSphereShape shape(1);
-    alignas(btRigidBody) std::array<std::byte, sizeof(btRigidBody)> memory;
     WorldConfigurator configurator(room.world());
     configurator.apply({.sweep = false, .friction = false});
     for (const bool isFirst : {true, false}) {
-        auto* const body = new (memory.data()) btRigidBody(1, nullptr, &shape, {1, 1, 1});
+        btRigidBody& body = place.make(room);
         if (isFirst) {
-            body->setRollingFriction(btScalar(0.1));
-            body->setCcdMotionThreshold(btScalar(0.5));
+            body.setRollingFriction(btScalar(0.1));
+            body.setCcdMotionThreshold(btScalar(0.5));
         }
-        room.world().addRigidBody(body);
-        configurator.prepare(*body);
-        EXPECT_EQ(body->getFriction(), 0);
+        configurator.prepare(body);
+        EXPECT_EQ(body.getFriction(), 0);
         if (!isFirst) {
             configurator.apply({});
-            EXPECT_EQ(body->getFriction(), btScalar(0.5));
-            EXPECT_EQ(body->getRollingFriction(), 0);
-            EXPECT_EQ(body->getCcdMotionThreshold(), 0);
+            EXPECT_EQ(body.getFriction(), btScalar(0.5));
+            EXPECT_EQ(body.getRollingFriction(), 0);
+            EXPECT_EQ(body.getCcdMotionThreshold(), 0);
         }
-        room.world().removeRigidBody(body);
-        body->~btRigidBody();
+        BodyPlace::destroy(room, body);
         configurator.apply(configurator.effects());
     }
 }
@@ -250,12 +258,12 @@ TEST(WorldConfigurator, LeaveSoftBodiesAlone) {
 
 TEST(WorldConfigurator, FileBodiesThatRestOnce) {
     EffectsRoom room;
-    btRigidBody& floor = room.scene->body(0);
+    btRigidBody& floor = room.body(0);
     WorldConfigurator configurator(room.world());
     configurator.apply({.restingBoxes = false});
     const auto top = [&] { return floor.getBroadphaseProxy()->m_aabbMax.y(); };
     EXPECT_EQ(top(), gContactBreakingThreshold) << "with the margin that Bullet adds in a step";
-    floor.setWorldTransform(upAt({0, 4, 0}));
+    floor.setWorldTransform(placeAt({0, 4, 0}));
     run(configurator, 1);
     EXPECT_EQ(top(), gContactBreakingThreshold);
     room.world().updateSingleAabb(&floor);
@@ -263,28 +271,24 @@ TEST(WorldConfigurator, FileBodiesThatRestOnce) {
 }
 
 TEST(WorldConfigurator, KeepTheFilterThatTheWorldHad) {
-    struct Nobody : btOverlapFilterCallback {
-        bool needBroadphaseCollision(btBroadphaseProxy*, btBroadphaseProxy*) const override {
-            return false;
-        }
-    } nobody;
+    FilterBy refuse(false);
     EffectsRoom room;
     room.addCube({0, btScalar(0.5), 0});
-    room.world().getPairCache()->setOverlapFilterCallback(&nobody);
+    room.cache().setOverlapFilterCallback(&refuse);
     WorldConfigurator configurator(room.world());
     configurator.apply({.effectsOf = [](const btCollisionObject&) { return BodyEffects(); }});
     run(configurator, 2);
     EXPECT_EQ(room.cost().pairCount, 0);
     configurator.apply({});
-    EXPECT_EQ(room.world().getPairCache()->getOverlapFilterCallback(), &nobody);
-    room.world().getPairCache()->setOverlapFilterCallback(nullptr);
+    EXPECT_EQ(room.cache().getOverlapFilterCallback(), &refuse);
+    room.cache().setOverlapFilterCallback(nullptr);
 }
 
 /// A room that has no pairs, and is then to have them without rotation and friction.
 struct AppliedOutOfMemory {
     AppliedOutOfMemory() {
         fillWithSettings(room);
-        own = settingsOf(*room.scene);
+        own = settingsOf(room);
         configurator.apply({.pairs = false});
         room.world().computeOverlappingPairs();
     }
@@ -309,10 +313,10 @@ TEST(WorldConfigurator, AppliesAgainWhatItHadNoMemoryFor) {
                            world.apply();
                            // Brings the cache up to date.
                            world.room.world().computeOverlappingPairs();
-                           EXPECT_EQ(settingsOf(*world.room.scene), settingsOf(*whole.room.scene));
+                           EXPECT_EQ(settingsOf(world.room), settingsOf(whole.room));
                            EXPECT_EQ(world.room.cost().pairCount, whole.room.cost().pairCount);
                            world.configurator.apply({});
-                           EXPECT_EQ(settingsOf(*world.room.scene), world.own);
+                           EXPECT_EQ(settingsOf(world.room), world.own);
                        });
     EXPECT_GE(failureCount, 5U);
 }

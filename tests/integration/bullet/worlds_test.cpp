@@ -1,42 +1,38 @@
 // SPDX-License-Identifier: Zlib
 //
-// The broadphase in the hands of a btDiscreteDynamicsWorld: who frees what, in which order.
+// The broadphase in the hands of a world: who frees what, in which order, and callbacks of a world that
+// remove bodies from it.
 
+#include <tests/integration/bullet/broadphases.hpp>
 #include <tests/integration/bullet/dynamics.hpp>
 
-#include <integration/bullet/spatial_hash_broadphase.hpp>
+#include <integration/bullet/pair_cache.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
-#include <BulletCollision/CollisionDispatch/btGhostObject.h>
 #include <LinearMath/btPoolAllocator.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <memory>
+#include <set>
 #include <utility>
 #include <vector>
 
 namespace hashphase::test {
 namespace {
 
-btTransform placeAt(const btVector3& place) {
-    return btTransform(btQuaternion(0, 0, 0, 1), place);
-}
-
-/// Everything a world needs, on the heap, so that tests choose what goes first. Objects go last.
+/// A full world, of which tests choose what goes first. Objects go last.
 struct Parts {
     btGhostPairCallback ghostCallback;
     btSphereShape shape{1};
     std::vector<std::unique_ptr<btCollisionObject>> objects;
-    std::unique_ptr<btDefaultCollisionConfiguration> configuration =
-        std::make_unique<btDefaultCollisionConfiguration>();
-    std::unique_ptr<btCollisionDispatcher> dispatcher =
-        std::make_unique<btCollisionDispatcher>(configuration.get());
-    std::unique_ptr<btBroadphaseInterface> broadphase = std::make_unique<SpatialHashBroadphase>();
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher{&configuration};
+    std::unique_ptr<btBroadphaseInterface> broadphase = makeBroadphase<SpatialHashBroadphase>();
     std::unique_ptr<btCollisionWorld> world =
-        std::make_unique<btCollisionWorld>(dispatcher.get(), broadphase.get(), configuration.get());
+        std::make_unique<btCollisionWorld>(&dispatcher, broadphase.get(), &configuration);
 
-    void fill() {
+    Parts() {
         world->getPairCache()->setInternalGhostPairCallback(&ghostCallback);
         for (int i = 0; i < 20; ++i) {
             objects.push_back(i % 5 == 0 ? std::make_unique<btPairCachingGhostObject>()
@@ -47,25 +43,23 @@ struct Parts {
         }
         world->performDiscreteCollisionDetection();
     }
-
-    int algorithmCount() const {
-        return configuration->getCollisionAlgorithmPool()->getUsedCount();
+    [[nodiscard]] int pairCount() const { return world->getPairCache()->getNumOverlappingPairs(); }
+    [[nodiscard]] int algorithmCount() {
+        return configuration.getCollisionAlgorithmPool()->getUsedCount();
     }
 };
 
 TEST(Worlds, MayBeDestroyedFullBeforeTheirBroadphase) {
     Parts parts;
-    parts.fill();
-    EXPECT_GT(parts.dispatcher->getNumManifolds(), 0);
+    EXPECT_GT(parts.dispatcher.getNumManifolds(), 0);
     parts.world.reset();
     EXPECT_EQ(parts.broadphase->getOverlappingPairCache()->getNumOverlappingPairs(), 0);
-    EXPECT_EQ(parts.dispatcher->getNumManifolds(), 0);
+    EXPECT_EQ(parts.dispatcher.getNumManifolds(), 0);
     parts.broadphase.reset();
 }
 
 TEST(Worlds, MayBeDestroyedEmptyAfterTheirBroadphase) {
     Parts parts;
-    parts.fill();
     for (const auto& object : parts.objects) {
         parts.world->removeCollisionObject(object.get());
     }
@@ -75,8 +69,7 @@ TEST(Worlds, MayBeDestroyedEmptyAfterTheirBroadphase) {
 
 TEST(Worlds, FreeEveryAlgorithmWithItsPair) {
     Parts parts;
-    parts.fill();
-    const int pairCount = parts.world->getPairCache()->getNumOverlappingPairs();
+    const int pairCount = parts.pairCount();
     EXPECT_GT(pairCount, 20);
     EXPECT_EQ(parts.algorithmCount(), pairCount);
     // Apart: pairs die in calculateOverlappingPairs.
@@ -86,64 +79,170 @@ TEST(Worlds, FreeEveryAlgorithmWithItsPair) {
     }
     parts.world->performDiscreteCollisionDetection();
     EXPECT_LT(parts.algorithmCount(), pairCount);
-    EXPECT_EQ(parts.algorithmCount(), parts.world->getPairCache()->getNumOverlappingPairs());
+    EXPECT_EQ(parts.algorithmCount(), parts.pairCount());
     for (const auto& object : parts.objects) {
         parts.world->removeCollisionObject(object.get());
-        EXPECT_EQ(parts.algorithmCount(), parts.world->getPairCache()->getNumOverlappingPairs());
+        EXPECT_EQ(parts.algorithmCount(), parts.pairCount());
     }
     EXPECT_EQ(parts.algorithmCount(), 0);
-    EXPECT_EQ(parts.dispatcher->getNumManifolds(), 0);
+    EXPECT_EQ(parts.dispatcher.getNumManifolds(), 0);
 }
 
 TEST(Worlds, GiveARefreshedObjectANewProxyWithTheSamePairs) {
     Parts parts;
-    parts.fill();
     btCollisionObject* const object = parts.objects[7].get();
-    const int pairCount = parts.world->getPairCache()->getNumOverlappingPairs();
-    const int uniqueId = object->getBroadphaseHandle()->getUid();
+    const int pairCount = parts.pairCount();
+    EXPECT_EQ(object->getBroadphaseHandle()->getUid(), 8);
     parts.world->refreshBroadphaseProxy(object);
     EXPECT_EQ(object->getBroadphaseHandle()->getUid(), 21);
-    EXPECT_NE(object->getBroadphaseHandle()->getUid(), uniqueId);
     parts.world->performDiscreteCollisionDetection();
-    EXPECT_EQ(parts.world->getPairCache()->getNumOverlappingPairs(), pairCount);
+    EXPECT_EQ(parts.pairCount(), pairCount);
 }
 
 // A body whose box is too large, or NaN, is taken out of the simulation by Bullet.
 TEST(Worlds, GoOnAroundABodyThatIsNotANumber) {
-    DynamicsWorld scene(std::make_unique<SpatialHashBroadphase>());
+    DynamicsWorld scene;
     dynamicsScenes().front().build(scene);
     const btScalar nan = std::numeric_limits<btScalar>::quiet_NaN();
     scene.body(3).setLinearVelocity({nan, 0, 0});
-    for (int step = 0; step < 60; ++step) {
-        scene.step();
-    }
+    scene.step(60);
     for (int i = 4; i < scene.bodyCount(); ++i) {
-        const btVector3& place = scene.body(i).getWorldTransform().getOrigin();
-        ASSERT_TRUE(place.length() < 100) << "body " << i;
+        ASSERT_TRUE(scene.body(i).getWorldTransform().getOrigin().length() < 100) << "body " << i;
     }
-    EXPECT_EQ(dynamic_cast<SpatialHashBroadphase&>(scene.broadphase()).validate(), "");
+    EXPECT_EQ(scene.hash().validate(), "");
 }
 
 TEST(Worlds, RunOverEveryPairCacheOfBullet) {
-    for (int kind = 0; kind < 3; ++kind) {
-        std::unique_ptr<btOverlappingPairCache> cache;
-        if (kind == 0) {
-            cache = std::make_unique<btHashedOverlappingPairCache>();
-        } else if (kind == 1) {
-            cache = std::make_unique<btSortedOverlappingPairCache>();
-        } else {
-            cache = std::make_unique<btNullPairCache>();
-        }
-        btOverlappingPairCache* const given = cache.get();
-        DynamicsWorld scene(std::make_unique<SpatialHashBroadphase>(given), std::move(cache));
-        dynamicsScenes()[4].build(scene);
+    const DynamicsScene& script = dynamicsScenes()[4];
+    std::vector<std::unique_ptr<btOverlappingPairCache>> caches;
+    caches.push_back(cacheKinds()[3].make());
+    caches.push_back(cacheKinds()[4].make());
+    caches.push_back(std::make_unique<btNullPairCache>());
+    for (std::size_t i = 0; i < caches.size(); ++i) {
+        DynamicsWorld scene(hashOver(caches[i].get()));
+        script.build(scene);
         for (int step = 0; step < 90; ++step) {
-            dynamicsScenes()[4].disturb(scene, step);
+            script.disturb(scene, step);
             scene.step();
         }
-        EXPECT_EQ(scene.dispatcher().getNumManifolds() > 0, kind != 2);
-        EXPECT_EQ(scene.body(9).getWorldTransform().getOrigin().y() < -1, kind == 2)
+        EXPECT_EQ(scene.dispatcher().getNumManifolds() > 0, i != 2);
+        EXPECT_EQ(scene.body(9).getWorldTransform().getOrigin().y() < -1, i == 2)
             << "Without pairs everything falls for ever.";
+    }
+}
+
+TEST(Worlds, OfBtDbvtBroadphaseMoveAlikeOverOurPairCacheAndBullets) {
+    const DynamicsScene& script = dynamicsScenes()[4];
+    btSphereShape large(3);
+    std::vector<std::unique_ptr<DynamicsWorld>> worlds;
+    std::vector<btPairCachingGhostObject*> ghosts;
+    for (const std::size_t kind : {1, 3}) {
+        std::unique_ptr<btOverlappingPairCache> cache = cacheKinds()[kind].make();
+        btOverlappingPairCache* const given = cache.get();
+        worlds.push_back(std::make_unique<DynamicsWorld>(std::make_unique<btDbvtBroadphase>(given),
+                                                         std::move(cache)));
+        script.build(*worlds.back());
+        ghosts.push_back(&worlds.back()->addGhost(&large, {0, 1, 0}));
+    }
+    for (int step = 0; step < 200; ++step) {
+        for (const auto& world : worlds) {
+            script.disturb(*world, step);
+            world->step();
+        }
+        ASSERT_EQ(uidList(worlds[0]->cache()), uidList(worlds[1]->cache())) << step;
+        ASSERT_EQ(ghosts[0]->getNumOverlappingObjects(), ghosts[1]->getNumOverlappingObjects());
+        ASSERT_EQ(firstDifferentBody(*worlds[0], *worlds[1]), -1) << step;
+        ASSERT_EQ(dynamic_cast<PairCache&>(worlds[0]->cache()).validate(), "") << step;
+    }
+    EXPECT_GT(worlds[0]->pairCount(), 300);
+    EXPECT_GT(ghosts[0]->getNumOverlappingObjects(), 10);
+}
+
+// --- Callbacks of a world ------------------------------------------------------------------------
+
+/// Boxes that fall on a floor.
+struct FallingBoxes : DynamicsWorld {
+    explicit FallingBoxes(int count) {
+        addBox({50, 10, 50}, 0, {0, -10, 0});
+        for (int i = 0; i < count; ++i) {
+            addBox({btScalar(0.5), btScalar(0.5), btScalar(0.5)}, 1,
+                   {btScalar(i % 5) * btScalar(0.9), btScalar(1 + i / 5), 0});
+        }
+        current = this;
+    }
+    void remove(btCollisionObject* object) { world().removeRigidBody(btRigidBody::upcast(object)); }
+    void stepThrough(int count) {
+        for (int i = 0; i < count; ++i) {
+            step();
+            EXPECT_EQ(hash().grid().validate(), "");
+        }
+    }
+    [[nodiscard]] int objectCount() { return world().getNumCollisionObjects(); }
+
+    static inline FallingBoxes* current = nullptr;  // of callbacks without a pointer of the user's
+};
+
+TEST(WorldCallbacks, OfTicksMayRemoveBodies) {
+    for (const bool isBefore : {false, true}) {
+        FallingBoxes boxes(30);
+        boxes.world().setInternalTickCallback(
+            [](btDynamicsWorld* world, btScalar) {
+                FallingBoxes::current->remove(
+                    world->getCollisionObjectArray()[world->getNumCollisionObjects() - 1]);
+            },
+            nullptr, isBefore);
+        boxes.stepThrough(20);
+        EXPECT_EQ(boxes.objectCount(), 31 - 20);
+        boxes.world().setInternalTickCallback(nullptr, nullptr, isBefore);
+        boxes.step();
+        EXPECT_EQ(boxes.hash().validate(), "");
+    }
+}
+
+TEST(WorldCallbacks, OfTheDispatcherMayRemoveBodiesWhenItIsDoneWithThem) {
+    static int calls = 0;
+    calls = 0;
+    FallingBoxes boxes(40);
+    boxes.dispatcher().setNearCallback([](btBroadphasePair& pair, btCollisionDispatcher& dispatcher,
+                                          const btDispatcherInfo& info) {
+        auto* const first = static_cast<btCollisionObject*>(pair.m_pProxy0->m_clientObject);
+        auto* const second = static_cast<btCollisionObject*>(pair.m_pProxy1->m_clientObject);
+        btCollisionDispatcher::defaultNearCallback(pair, dispatcher, info);
+        if (++calls % 9 == 0) {
+            FallingBoxes::current->remove(first->isStaticObject() ? second : first);
+        }
+    });
+    boxes.stepThrough(20);
+    EXPECT_GT(calls, 100);
+    EXPECT_LT(boxes.objectCount(), 35);
+}
+
+TEST(WorldCallbacks, OfAWorldsRayTestMayRemoveBodies) {
+    struct Removing : btCollisionWorld::RayResultCallback {
+        btScalar addSingleResult(btCollisionWorld::LocalRayResult& result, bool) override {
+            auto* const hit = const_cast<btCollisionObject*>(result.m_collisionObject);
+            EXPECT_TRUE(removed.insert(hit).second) << "what was removed is hit";
+            FallingBoxes::current->remove(hit);
+            return 1;
+        }
+        std::set<btCollisionObject*> removed;
+    };
+    for (const bool isClosest : {false, true}) {
+        FallingBoxes boxes(40);
+        boxes.step();
+        Removing removing;
+        const btVector3 from(btScalar(0.1), 20, btScalar(0.1));
+        const btVector3 to(btScalar(0.1), btScalar(0.6), btScalar(0.1));
+        if (isClosest) {
+            boxes.hash().closestRay(from, to, removing);
+        } else {
+            boxes.world().rayTest(from, to, removing);
+        }
+        EXPECT_GT(removing.removed.size(), 4U);
+        for (int step = 0; step < 3; ++step) {
+            boxes.step();
+            EXPECT_EQ(boxes.hash().validate(), "");
+        }
     }
 }
 
