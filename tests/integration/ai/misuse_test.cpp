@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Zlib
 
-// What callbacks of the AI's clients may not do to these.
+// What callbacks of the AI's clients may not do to these, and what callers may not.
 
 #include <integration/ai/radar.hpp>
-#include <integration/ai/rarest_colour.hpp>
 #include <integration/ai/sight.hpp>
 #include <integration/ai/zones.hpp>
 #include <tests/support/box_scenes.hpp>
@@ -11,7 +10,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <vector>
 
 namespace hashphase::test {
@@ -33,7 +31,7 @@ protected:
     int calls_ = 0;
 };
 
-TEST_F(AiMisuse, OfZonesByTheirFilterIsAsserted) {
+TEST_F(AiMisuse, OfZonesByTheirFilterOrAfterTheyAreRemovedIsAsserted) {
     Zones<float> zones;
     const ZoneId id = zones.add({SphereRegion<float>({0, 0, 0}, 9)});
     const auto filter = [&](ZoneId, ProxyId) {
@@ -48,22 +46,31 @@ TEST_F(AiMisuse, OfZonesByTheirFilterIsAsserted) {
     EXPECT_EQ(calls_, 3);
     zones.remove(id);
     EXPECT_EQ(zones.update(grid_).left.size(), 3U);
+    EXPECT_THROW(zones.set(id, {}), BrokenAssert);
+    EXPECT_THROW(zones.remove(id), BrokenAssert);
+    EXPECT_THROW(static_cast<void>(zones.zone(id)), BrokenAssert);
+    EXPECT_THROW(static_cast<void>(zones.occupants(ZoneId{})), BrokenAssert);
 }
 
-TEST_F(AiMisuse, OfARadarByItsGroupsIsAsserted) {
+TEST_F(AiMisuse, OfARadarByItsGroupsOrWithTooManyCountsIsAsserted) {
     Radar<float> radar;
-    const RadarWindow<float> window{.center = {0, 0, 0}, .cellSize = 10, .columns = 3, .rows = 3};
+    RadarWindow<float> window{.center = {0, 0, 0}, .cellSize = 10, .columns = 3, .rows = 3};
+    const auto nobody = [](ProxyId) { return 0U; };
     const auto groupOf = [&](ProxyId) {
         ++calls_;
-        EXPECT_THROW(radar.scan(grid_, window, 1, [](ProxyId) { return 0U; }), BrokenAssert);
+        EXPECT_THROW(radar.scan(grid_, window, 1, nobody), BrokenAssert);
         return 0U;
     };
     EXPECT_EQ(radar.scan(grid_, window, 1, groupOf).size(), 9U);
     EXPECT_EQ(calls_, 3);
+    window.columns = window.rows = 1U << 31;
+    window.layers = 4;
+    EXPECT_THROW(radar.scan(grid_, window, 1, nobody), BrokenAssert);
 }
 
-TEST_F(AiMisuse, OfSightByItsFilterIsAsserted) {
+TEST_F(AiMisuse, OfSightByItsFilterOrForWhoDidNotLookIsAsserted) {
     Sight<float> sight;
+    EXPECT_THROW(static_cast<void>(sight.seenBy(0)), BrokenAssert);
     const std::vector<Viewer<float>> viewers(
         2, {.eye = {0, 0, 5}, .direction = {0, 0, -1}, .range = 50, .halfAngle = 1});
     const auto filter = [&](ProxyId) {
@@ -73,9 +80,31 @@ TEST_F(AiMisuse, OfSightByItsFilterIsAsserted) {
     };
     sight.look(grid_, viewers, filter);
     EXPECT_GE(calls_, 6);
+    EXPECT_FALSE(sight.seenBy(1).empty());
+    sight.look(Grid<float>(), std::vector<Viewer<float>>(1));
+    EXPECT_TRUE(sight.seenBy(0).empty());
+    EXPECT_THROW(static_cast<void>(sight.seenBy(1)), BrokenAssert);
 }
 
 #endif
+
+TEST(ZonesMisuse, OfWhatWasRemovedChangesNobodyWithoutAssertions) {
+    const CaughtAsserts caught;
+    Zones<float> zones;
+    const ZoneId first = zones.add({SphereRegion<float>({0, 0, 0}, 1)});
+    const ZoneId removed = zones.add({SphereRegion<float>({5, 0, 0}, 1)});
+    zones.remove(removed);
+    for (const ZoneId id : {removed, ZoneId{}, ZoneId{99, 1}}) {
+        zones.set(id, {SphereRegion<float>({9, 0, 0}, 1)});
+        zones.remove(id);
+        EXPECT_TRUE(zones.occupants(id).empty());
+        static_cast<void>(zones.zone(id));
+    }
+    std::vector<ZoneId> found;
+    zones.zonesAt({0, 0, 0}, found);
+    EXPECT_EQ(found, std::vector{first});
+    EXPECT_GE(caught.count(), HASHPHASE_ENABLE_ASSERTS ? 9 : 0);
+}
 
 }  // namespace
 }  // namespace hashphase::test

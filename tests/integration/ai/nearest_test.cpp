@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Zlib
 
+// The nearest ones, where it is known who they are; in lives of all scenes: ai_scenes_test.cpp.
+
 #include <integration/ai/nearest.hpp>
-#include <tests/support/handlers.hpp>
+#include <tests/support/box_scenes.hpp>
 #include <tests/support/position_oracles.hpp>
-#include <tests/support/query_checks.hpp>
-#include <tests/support/script.hpp>
 
 #include <gtest/gtest.h>
 
@@ -31,9 +31,6 @@ protected:
 
     std::vector<KeyedProxy<Scalar>> nearest;
     std::vector<KeyedProxy<Scalar>> expected;
-
-private:
-    CaughtMessages aboutNan_;
 };
 
 using Scalars = testing::Types<float, double>;
@@ -50,51 +47,6 @@ TYPED_TEST(Nearest, LeaveOutWhoAsks) {
     EXPECT_EQ(nearestTo({}), self);
     EXPECT_EQ(nearestTo(self), other);
     EXPECT_EQ(nearestTo(other), self);
-}
-
-TYPED_TEST(Nearest, AreThoseOfBruteForceInEveryScene) {
-    std::size_t found = 0;
-    std::size_t cut = 0;
-    for (const BoxScene<TypeParam>& scene : allBoxScenes<TypeParam>()) {
-        for (const double cellSize : {0.0, 1e-3, 1.5, 1e4}) {
-            SCOPED_TRACE(testing::Message() << scene.name << ", cell size " << cellSize);
-            GridConfig config;
-            config.cellSize = cellSize;
-            GridWorld<TypeParam> world(config);
-            Script<TypeParam> script(scene, 0x5eed0911);
-            script.begin(world);
-            Random& random = script.random();
-            const auto isEven = [](ProxyId id) { return id.index % 2 == 0; };
-            for (int frame = 0; frame < 12; ++frame) {
-                RegionMaker<TypeParam> make(random, script.proxies());
-                for (int i = 0; i < 6; ++i) {
-                    const auto point = make.point();
-                    const std::size_t count =
-                        random.chance(0.1) ? 1000 : static_cast<std::size_t>(random.below(12));
-                    const TypeParam most = random.chance(0.3) ? this->kInfinity
-                                           : random.chance(0.1)
-                                               ? hostileNumber<TypeParam>(random)
-                                               : (make.point() - point).cwiseAbs().maxCoeff();
-                    if (random.chance(0.5)) {
-                        this->expectLikeBruteForce(world.grid, script.proxies(), point, count,
-                                                   most);
-                    } else {
-                        this->expectLikeBruteForce(world.grid, script.proxies(), point, count, most,
-                                                   isEven);
-                    }
-                    ASSERT_FALSE(this->HasFailure());
-                    found += this->nearest.size();
-                    cut += this->nearest.size() == count ? 1 : 0;
-                }
-                if (frame % 3 != 1) {
-                    world.grid.update();
-                }
-                script.playFrame(world);
-            }
-        }
-    }
-    EXPECT_GT(found, 10000U);
-    EXPECT_GT(cut, 1000U);
 }
 
 TYPED_TEST(Nearest, AreTheSameFromFarAwayAndFromTheMiddle) {

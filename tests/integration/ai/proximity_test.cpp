@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Zlib
 
-// Who is near an agent, exactly and by cells.
+// Who is near an agent, exactly and by cells; in lives of all scenes: ai_scenes_test.cpp.
 
-#include <broadphase/cells_region.hpp>
 #include <integration/ai/proximity.hpp>
-#include <tests/support/handlers.hpp>
-#include <tests/support/position_oracles.hpp>
-#include <tests/support/query_checks.hpp>
-#include <tests/support/script.hpp>
+#include <tests/support/box_scenes.hpp>
 
 #include <gtest/gtest.h>
 
@@ -20,58 +16,10 @@ namespace hashphase::test {
 namespace {
 
 template <class Scalar>
-class Proximity : public testing::Test {
-private:
-    CaughtMessages aboutNan_;
-};
+class Proximity : public testing::Test {};
 
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(Proximity, Scalars);
-
-TYPED_TEST(Proximity, IsThatOfBruteForceInEveryScene) {
-    std::vector<ProxyId> found;
-    std::vector<ProxyId> estimated;
-    std::vector<ProxyId> expected;
-    std::size_t foundCount = 0;
-    for (const BoxScene<TypeParam>& scene : allBoxScenes<TypeParam>()) {
-        SCOPED_TRACE(scene.name);
-        GridWorld<TypeParam> world;
-        Script<TypeParam> script(scene, 0x5eed0a01);
-        script.begin(world);
-        Random& random = script.random();
-        const auto isOdd = [](ProxyId id) { return id.index % 2 == 1; };
-        for (int frame = 0; frame < 30; ++frame) {
-            RegionMaker<TypeParam> make(random, script.proxies());
-            const auto count = static_cast<std::uint32_t>(script.proxies().size());
-            for (int i = 0; i < 10; ++i) {
-                const Placed<TypeParam>& agent = script.proxies()[random.below(count)];
-                const Vector3<TypeParam> position =
-                    random.chance(0.5) ? positionOf(agent.box) : make.point();
-                const TypeParam radius = random.chance(0.1)
-                                             ? hostileNumber<TypeParam>(random)
-                                             : (make.point() - position).cwiseAbs().maxCoeff();
-                const ProxyFilter filter = random.chance(0.5) ? ProxyFilter(acceptAll) : isOdd;
-                findWithin(world.grid, position, radius, found, filter, agent.id);
-                findWithinByBruteForce(script.proxies(), position, radius, expected, filter,
-                                       agent.id);
-                ASSERT_EQ(differences(found, expected), "") << position.transpose();
-                foundCount += found.size();
-
-                estimateWithin(world.grid, position, radius, estimated, filter, agent.id);
-                const CellsRegion<TypeParam> cells(position, radius, world.grid.cellSize());
-                findInByBruteForce(script.proxies(), cells, expected, filter, agent.id);
-                ASSERT_EQ(differences(estimated, expected), "") << position.transpose();
-                ASSERT_TRUE(
-                    std::includes(estimated.begin(), estimated.end(), found.begin(), found.end()));
-            }
-            if (frame % 3 != 1) {
-                world.grid.update();
-            }
-            script.playFrame(world);
-        }
-    }
-    EXPECT_GT(foundCount, 20000U);
-}
 
 TYPED_TEST(Proximity, LeavesOutTheAgentAndNobodyElse) {
     Grid<TypeParam> grid;

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Zlib
 
-// How many are where around an agent.
+// How many are where around an agent; in lives of all scenes: ai_scenes_test.cpp.
 
 #include <integration/ai/radar.hpp>
-#include <tests/support/ai_oracles.hpp>
-#include <tests/support/handlers.hpp>
-#include <tests/support/query_checks.hpp>
-#include <tests/support/script.hpp>
+#include <tests/support/random.hpp>
 
 #include <gtest/gtest.h>
 
@@ -38,57 +35,10 @@ protected:
 
     Grid<Scalar> grid;
     Radar<Scalar> radar;
-
-private:
-    CaughtMessages aboutNan_;
 };
 
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(RadarTest, Scalars);
-
-TYPED_TEST(RadarTest, CountsWhomBruteForceCountsInEveryScene) {
-    std::size_t counted = 0;
-    for (const BoxScene<TypeParam>& scene : allBoxScenes<TypeParam>()) {
-        SCOPED_TRACE(scene.name);
-        GridWorld<TypeParam> world;
-        Script<TypeParam> script(scene, 0x5eed0d01);
-        script.begin(world);
-        Random& random = script.random();
-        const auto groupOf = [](ProxyId id) { return id.index % 4; };
-        for (int frame = 0; frame < 12; ++frame) {
-            RegionMaker<TypeParam> make(random, script.proxies());
-            for (int i = 0; i < 5; ++i) {
-                RadarWindow<TypeParam> window;
-                window.center = make.point();
-                window.cellSize = random.chance(0.1)
-                                      ? hostileNumber<TypeParam>(random)
-                                      : (make.point() - window.center).cwiseAbs().maxCoeff() /
-                                            static_cast<TypeParam>(random.between(1, 9));
-                window.columns = random.below(8);
-                window.rows = random.below(8);
-                window.layers = random.chance(0.5) ? 0 : random.below(5);
-                window.up = static_cast<UpAxis>(random.below(3));
-                if (random.chance(0.5)) {
-                    window.heading = random.chance(0.1)
-                                         ? hostileNumber<TypeParam>(random)
-                                         : static_cast<TypeParam>(random.between(-7, 7));
-                }
-                const auto counts = this->radar.scan(world.grid, window, 3, groupOf);
-                const auto expected =
-                    scanByBruteForce<TypeParam>(script.proxies(), window, 3, groupOf);
-                ASSERT_TRUE(std::ranges::equal(counts, expected))
-                    << window.center.transpose() << " by " << window.cellSize << " turned "
-                    << window.heading.value_or(0) << ", up " << static_cast<int>(window.up);
-                counted += std::accumulate(counts.begin(), counts.end(), std::size_t{0});
-            }
-            if (frame % 3 != 1) {
-                world.grid.update();
-            }
-            script.playFrame(world);
-        }
-    }
-    EXPECT_GT(counted, 10000U);
-}
 
 TYPED_TEST(RadarTest, CountsABorderOnceInTheCellAboveIt) {
     for (int x = -3; x <= 3; ++x) {
@@ -194,24 +144,6 @@ TYPED_TEST(RadarTest, CountsByGroupAndLayerAndSkipsOtherGroups) {
     EXPECT_EQ(Counts(flat.begin(), flat.end()), (Counts{1, 2}));
 }
 
-TYPED_TEST(RadarTest, CountsEverybodyInTheWindowOnceWhateverTheHeading) {
-    Random random(0x5eed0d02);
-    for (int i = 0; i < 1000; ++i) {
-        this->addPoint(static_cast<TypeParam>(random.between(-50, 50)),
-                       static_cast<TypeParam>(random.between(-50, 50)),
-                       static_cast<TypeParam>(random.between(-50, 50)));
-    }
-    RadarWindow<TypeParam> window;
-    window.columns = 20;
-    window.rows = 20;
-    for (int i = 0; i < 50; ++i) {
-        const auto counts = this->scan(window);
-        ASSERT_EQ(std::accumulate(counts.begin(), counts.end(), 0U), 1000U);
-        window.heading = static_cast<TypeParam>(random.between(-9, 9));
-        window.center = random.pointIn(-20, 20).cast<TypeParam>();
-    }
-}
-
 TYPED_TEST(RadarTest, OfBadDataCountsNobody) {
     this->addPoint(0, 0, 0);
     const auto scanned = [&](auto change) {
@@ -236,20 +168,6 @@ TYPED_TEST(RadarTest, OfBadDataCountsNobody) {
     EXPECT_EQ(scanned([](W& w) { w.heading = TypeParam(1e30); }), Counts{1});
     EXPECT_TRUE(this->radar.scan(this->grid, {}, 0, [](ProxyId) { return 0U; }).empty());
 }
-
-#if HASHPHASE_ENABLE_ASSERTS
-TEST(RadarDeathTest, HasAtMostSoManyCountsAndOneOfThreeUpAxes) {
-    const ThrowingAsserts throwing;
-    const Grid<float> grid;
-    Radar<float> radar;
-    const auto groupOf = [](ProxyId) { return 0U; };
-    RadarWindow<float> window;
-    window.columns = 1U << 31;
-    window.rows = 1U << 31;
-    window.layers = 4;
-    EXPECT_THROW(radar.scan(grid, window, 1, groupOf), BrokenAssert);
-}
-#endif
 
 }  // namespace
 }  // namespace hashphase::test

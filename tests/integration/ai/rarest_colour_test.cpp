@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Zlib
 
+// Agents that take the colour that is rarest around them; in lives of all scenes: ai_scenes_test.cpp.
+
 #include <integration/ai/rarest_colour.hpp>
 #include <tests/support/box_scenes.hpp>
 #include <tests/support/handlers.hpp>
-#include <tests/support/query_checks.hpp>
-#include <tests/support/radius_oracle.hpp>
-#include <tests/support/script.hpp>
 #include <tests/support/threaded_for.hpp>
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -22,18 +20,6 @@ using Colours = std::vector<std::uint32_t>;
 template <class Scalar>
 class RarestColourTest : public testing::Test {
 protected:
-    /// RarestColour::update() by looking at every two agents.
-    static void updateByBruteForce(std::span<const Placed<Scalar>> proxies, Scalar radius,
-                                   std::uint32_t colourCount, Colours& colours) {
-        const Colours before = colours;
-        for (const auto& [id, neighbours] : neighboursByBruteForce(proxies, radius)) {
-            const auto counts = groupCounts(neighbours, colourCount,
-                                            [&before](ProxyId i) { return before[i.index]; });
-            const auto rarest = std::min_element(counts.begin(), counts.end());
-            colours[id.index] = static_cast<std::uint32_t>(rarest - counts.begin());
-        }
-    }
-
     static Colours drawColours(Random& random, std::size_t count, std::uint32_t colourCount) {
         Colours colours(count);
         for (std::uint32_t& colour : colours) {
@@ -48,74 +34,6 @@ protected:
 
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(RarestColourTest, Scalars);
-
-TYPED_TEST(RarestColourTest, IsThatOfBruteForceFrameByFrameInEveryScene) {
-    for (const BoxScene<TypeParam>& scene : allBoxScenes<TypeParam>()) {
-        GridWorld<TypeParam> world;
-        Script<TypeParam> script(scene, 0x5eed0f01);
-        script.begin(world);
-        constexpr std::size_t kPlaces = 4096;
-        Colours colours = this->drawColours(script.random(), kPlaces, 9);  // one too many
-        Colours expected = colours;
-        std::size_t changes = 0;
-        for (int frame = 0; frame < 12; ++frame) {
-            SCOPED_TRACE(testing::Message() << scene.name << ", frame " << frame);
-            const auto proxies = script.proxies();
-            const Vector3<TypeParam> way =
-                agentPosition(proxies[0].box) - agentPosition(proxies[1].box);
-            const TypeParam radius = way.cwiseAbs().maxCoeff() / 2;
-            const std::uint32_t colourCount = 1 + script.random().below(8);
-            this->updateByBruteForce(proxies, radius, colourCount, expected);
-            const Colours before = colours;
-            this->rarest_.update(world.grid, radius, colourCount, colours);
-            ASSERT_EQ(colours, expected);
-            changes += colours != before ? 1 : 0;
-            world.grid.update();
-            script.playFrame(world);
-        }
-        EXPECT_GT(changes, 6U) << scene.name;
-    }
-}
-
-TYPED_TEST(RarestColourTest, ChangesSomeAsIfAllHadLookedAndTheyAloneHadChanged) {
-    for (const BoxScene<TypeParam>& scene : allBoxScenes<TypeParam>()) {
-        GridWorld<TypeParam> world;
-        Script<TypeParam> script(scene, 0x5eed0f07);
-        script.begin(world);
-        Colours colours = this->drawColours(script.random(), 4096, 9);  // one too many
-        std::size_t changes = 0;
-        for (int frame = 0; frame < 6; ++frame) {
-            SCOPED_TRACE(testing::Message() << scene.name << ", frame " << frame);
-            const auto proxies = script.proxies();
-            const Vector3<TypeParam> way =
-                agentPosition(proxies[0].box) - agentPosition(proxies[1].box);
-            const TypeParam radius = way.cwiseAbs().maxCoeff() / 2;
-            const auto counts = [](ProxyId id) { return id.index % 7 != 0; };
-            std::vector<ProxyId> some;
-            for (const Placed<TypeParam>& proxy : proxies) {
-                if (counts(proxy.id) && script.random().chance(0.3)) {
-                    some.push_back(proxy.id);
-                }
-            }
-            Colours all = colours;
-            this->rarest_.update(world.grid, radius, 8, all, counts);
-            Colours expected = colours;
-            for (const ProxyId id : some) {
-                expected[id.index] = all[id.index];
-            }
-            changes += expected != colours ? 1 : 0;
-            Colours onThreads = colours;
-            ThreadedFor threadedFor(3, 3);
-            this->rarest_.updateSome(world.grid, radius, 8, onThreads, some, counts, threadedFor);
-            ASSERT_EQ(onThreads, expected);
-            this->rarest_.updateSome(world.grid, radius, 8, colours, some, counts);
-            ASSERT_EQ(colours, expected);
-            world.grid.update();
-            script.playFrame(world);
-        }
-        EXPECT_GT(changes, 3U) << scene.name;
-    }
-}
 
 TYPED_TEST(RarestColourTest, DoesNotCountTheAgentItselfAndPrefersTheLowestColour) {
     Grid<TypeParam> grid;

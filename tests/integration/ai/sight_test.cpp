@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Zlib
 
-// Who is seen from where.
+// Who is seen from where; in lives of all scenes: ai_scenes_test.cpp.
 
 #include <integration/ai/sight.hpp>
-#include <tests/support/ai_oracles.hpp>
-#include <tests/support/handlers.hpp>
-#include <tests/support/query_checks.hpp>
-#include <tests/support/script.hpp>
-#include <tests/support/threaded_for.hpp>
+#include <tests/support/box_scenes.hpp>
 
 #include <gtest/gtest.h>
 
@@ -26,34 +22,6 @@ protected:
     static constexpr Scalar kInfinity = std::numeric_limits<Scalar>::infinity();
     static constexpr Scalar kPi = std::numbers::pi_v<Scalar>;
 
-    /// Looks from a proxy or from anywhere, at somebody or anywhere; some see badly.
-    static Viewer<Scalar> anyViewer(Random& random, std::span<const Placed<Scalar>> proxies) {
-        RegionMaker<Scalar> make(random, proxies);
-        const auto count = static_cast<std::uint32_t>(proxies.size());
-        Viewer<Scalar> viewer;
-        const Placed<Scalar>& self = proxies[random.below(count)];
-        if (random.chance(0.6)) {
-            viewer.self = self.id;
-        }
-        viewer.eye = random.chance(0.6) ? positionOf(self.box) : make.point();
-        viewer.direction = random.chance(0.7)
-                               ? Vector3<Scalar>(make.point() - viewer.eye)
-                               : Vector3<Scalar>(random.pointIn(-1, 1).template cast<Scalar>());
-        viewer.range =
-            random.chance(0.3) ? kInfinity : (make.point() - viewer.eye).cwiseAbs().maxCoeff();
-        viewer.halfAngle = static_cast<Scalar>(random.between(0, 4));
-        if (random.chance(0.1)) {
-            viewer.direction[random.below(3)] = hostileNumber<Scalar>(random);
-        }
-        if (random.chance(0.05)) {
-            viewer.halfAngle = hostileNumber<Scalar>(random);
-        }
-        if (random.chance(0.05)) {
-            viewer.range = hostileNumber<Scalar>(random);
-        }
-        return viewer;
-    }
-
     ProxyId addPoint(Scalar x, Scalar y, Scalar z) {
         const Vector3<Scalar> point(x, y, z);
         return grid.add({point, point});
@@ -67,81 +35,10 @@ protected:
     }
 
     Grid<Scalar> grid;
-
-private:
-    CaughtMessages aboutNan_;
 };
 
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(SightTest, Scalars);
-
-TYPED_TEST(SightTest, IsThatOfBruteForceInEveryScene) {
-    std::size_t seenCount = 0;
-    std::size_t hiddenCount = 0;
-    Sight<TypeParam> sight;
-    for (const BoxScene<TypeParam>& scene : allBoxScenes<TypeParam>()) {
-        SCOPED_TRACE(scene.name);
-        GridWorld<TypeParam> world;
-        Script<TypeParam> script(scene, 0x5eed0b01);
-        script.begin(world);
-        Random& random = script.random();
-        const auto isTarget = [](ProxyId id) { return id.index % 4 != 0; };
-        const auto isBlocker = [](ProxyId id) { return id.index % 5 == 0; };
-        for (int frame = 0; frame < 10; ++frame) {
-            std::vector<Viewer<TypeParam>> viewers;
-            for (int i = 0; i < 10; ++i) {
-                viewers.push_back(this->anyViewer(random, script.proxies()));
-            }
-            sight.look(world.grid, viewers, isTarget, isBlocker);
-            for (std::size_t i = 0; i < viewers.size(); ++i) {
-                std::vector<ProxyId> expected;
-                visibleFromByBruteForce<TypeParam>(script.proxies(), viewers[i], expected, isTarget,
-                                                   isBlocker);
-                const auto seen = sight.seenBy(i);
-                const std::vector<ProxyId> found(seen.begin(), seen.end());
-                ASSERT_EQ(differences(found, expected), "");
-                seenCount += found.size();
-                for (const Placed<TypeParam>& target : script.proxies().first(20)) {
-                    const bool isSeen = canSee(world.grid, viewers[i], target.id, isBlocker);
-                    if (isTarget(target.id)) {
-                        ASSERT_EQ(isSeen,
-                                  std::binary_search(found.begin(), found.end(), target.id));
-                    }
-                    hiddenCount += isSeen ? 0 : 1;
-                }
-            }
-            if (frame % 3 != 1) {
-                world.grid.update();
-            }
-            script.playFrame(world);
-        }
-    }
-    EXPECT_GT(seenCount, 10000U);
-    EXPECT_GT(hiddenCount, 10000U);
-}
-
-TYPED_TEST(SightTest, OfAConeFindsWhatBruteForceFindsInEveryScene) {
-    std::size_t found = 0;
-    for (const BoxScene<TypeParam>& scene : allBoxScenes<TypeParam>()) {
-        SCOPED_TRACE(scene.name);
-        GridWorld<TypeParam> world;
-        Script<TypeParam> script(scene, 0x5eed0b02);
-        script.begin(world);
-        for (int i = 0; i < 150; ++i) {
-            const Viewer<TypeParam> viewer = this->anyViewer(script.random(), script.proxies());
-            found +=
-                expectLikeBruteForce(world.grid, script.proxies(), SightRegion<TypeParam>(viewer));
-            ASSERT_FALSE(this->HasFailure());
-            if (i % 5 == 0) {
-                script.playFrame(world);
-            }
-            if (i % 10 == 0) {
-                world.grid.update();
-            }
-        }
-    }
-    EXPECT_GT(found, 20000U);
-}
 
 TYPED_TEST(SightTest, OfAConeIsByTheAngleToItsAxis) {
     // The definition, in higher precision.
@@ -316,47 +213,6 @@ TYPED_TEST(SightTest, HasADefinedAnswerForDegenerateViewers) {
     EXPECT_FALSE(hasLineOfSight(this->grid, {0, 0, 0}, {infinity, 0, 0}));
     EXPECT_FALSE(canSee(this->grid, V{}, ProxyId{}));
 }
-
-TYPED_TEST(SightTest, OfManyIsTheSameOnAnyNumberOfThreads) {
-    const BoxScene<TypeParam> scene = spreadScene<TypeParam>("evenly spread", 1, 0);
-    GridWorld<TypeParam> world;
-    Script<TypeParam> script(scene, 0x5eed0b05);
-    script.begin(world);
-    std::vector<Viewer<TypeParam>> viewers;
-    for (int i = 0; i < 200; ++i) {
-        viewers.push_back(this->anyViewer(script.random(), script.proxies()));
-    }
-    Sight<TypeParam> alone;
-    Sight<TypeParam> together;
-    const auto isBlocker = [](ProxyId id) { return id.index % 3 == 0; };
-    for (const std::size_t count : {200, 20, 100}) {
-        const auto some = std::span<const Viewer<TypeParam>>(viewers).first(count);
-        const QueryCost cost = alone.look(world.grid, some, acceptAll, isBlocker);
-        ThreadedFor threads(4, 0x5eed0b06);
-        const QueryCost sameCost = together.look(world.grid, some, acceptAll, isBlocker, threads);
-        EXPECT_EQ(cost.boxesTested, sameCost.boxesTested);
-        std::size_t seenCount = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            ASSERT_TRUE(std::ranges::equal(alone.seenBy(i), together.seenBy(i)));
-            seenCount += alone.seenBy(i).size();
-        }
-        EXPECT_GT(seenCount, count);
-        world.grid.update();
-    }
-}
-
-#if HASHPHASE_ENABLE_ASSERTS
-TEST(SightDeathTest, OnlyTheViewersOfTheLastLookHaveSeenAnybody) {
-    const ThrowingAsserts throwing;
-    Sight<float> sight;
-    const Grid<float> grid;
-    EXPECT_THROW(static_cast<void>(sight.seenBy(0)), BrokenAssert);
-    sight.look(grid, std::vector<Viewer<float>>(2));
-    EXPECT_TRUE(sight.seenBy(1).empty());
-    sight.look(grid, std::vector<Viewer<float>>(1));
-    EXPECT_THROW(static_cast<void>(sight.seenBy(1)), BrokenAssert);
-}
-#endif
 
 }  // namespace
 }  // namespace hashphase::test

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Zlib
 
 #include <integration/camera/frustum.hpp>
-#include <integration/camera/ground_footprint.hpp>
 #include <integration/culling/culler.hpp>
+#include <tests/integration/scene_lives.hpp>
 #include <tests/support/cameras.hpp>
-#include <tests/support/handlers.hpp>
-#include <tests/support/query_checks.hpp>
-#include <tests/support/script.hpp>
 
 #include <gtest/gtest.h>
 
@@ -55,9 +52,6 @@ protected:
     }
 
     Random random_{0x5eed0701};
-
-private:
-    CaughtMessages aboutNan_;
 };
 
 using Scalars = testing::Types<float, double>;
@@ -65,33 +59,22 @@ TYPED_TEST_SUITE(CullerTest, Scalars);
 
 TYPED_TEST(CullerTest, SeesWhatBruteForceSeesThroughEveryCameraInEveryScene) {
     std::size_t visible = 0;
-    for (const BoxScene<TypeParam>& scene : allBoxScenes<TypeParam>()) {
-        SCOPED_TRACE(scene.name);
-        GridWorld<TypeParam> world;
-        Script<TypeParam> script(scene, 0x5eed0702);
-        script.begin(world);
-        Culler<TypeParam> culler;
-        for (int frame = 0; frame < 40; ++frame) {
-            if (frame % 2 == 0) {
-                world.grid.update();
-            }
-            RegionMaker<TypeParam> make(script.random(), script.proxies());
-            const Vector3<double> eye = make.point().template cast<double>();
-            const Vector3<double> target = make.point().template cast<double>();
-            const CameraLens lens = randomLens(script.random());
-            const auto view = this->viewFrom(lens, eye, target);
-            culler.look(world.grid, view);
-            ASSERT_EQ(this->expectNothingCulled(culler, view, script.proxies()), 0U);
-            visible += culler.count();
-            std::size_t listed = 0;
-            culler.forEach([&](std::uint32_t index) {
-                EXPECT_TRUE((culler.bits()[index / 64] >> (index % 64) & 1) != 0);
-                ++listed;
-            });
-            EXPECT_EQ(listed, culler.count());
-            script.playFrame(world);
-        }
-    }
+    Culler<TypeParam> culler;
+    playAllScenes<TypeParam>(0x5eed0702, 40, [&](const auto& grid, auto& script, int) {
+        RegionMaker<TypeParam> make(script.random(), script.proxies());
+        const Vector3<double> eye = make.point().template cast<double>();
+        const Vector3<double> target = make.point().template cast<double>();
+        const auto view = this->viewFrom(randomLens(script.random()), eye, target);
+        culler.look(grid, view);
+        EXPECT_EQ(this->expectNothingCulled(culler, view, script.proxies()), 0U);
+        std::size_t listed = 0;
+        culler.forEach([&](std::uint32_t index) {
+            EXPECT_TRUE((culler.bits()[index / 64] >> (index % 64) & 1) != 0);
+            ++listed;
+        });
+        EXPECT_EQ(listed, culler.count());
+        visible += listed;
+    });
     EXPECT_GT(visible, 3000U);
 }
 
@@ -278,45 +261,6 @@ TYPED_TEST(CullerTest, CountsWhatIsDrawnAndNotSeen) {
     }
     EXPECT_GT(unseenByPlanes, 0U);
     EXPECT_GT(unseenWithMargin, 10 * unseenByPlanes);
-}
-
-// What stands between the heights and is visible stands on the footprint; what floats above or is sunk
-// below is not asked about.
-TYPED_TEST(CullerTest, SeesFromAboveWhatStandsOnTheFootprintOfTheFourCorners) {
-    Grid<TypeParam> grid;
-    std::vector<Placed<TypeParam>> proxies;
-    for (int i = 0; i < 4000; ++i) {
-        const auto box = boxAround<TypeParam>(this->random_.pointIn({-60, 1, -60}, {60, 7, 60}),
-                                              Vector3<double>::Constant(1));
-        proxies.push_back({grid.add(box), box});
-    }
-    grid.update();
-    std::size_t visible = 0;
-    for (int i = 0; i < 60; ++i) {
-        CameraLens lens;
-        lens.fieldOfView = this->random_.between(0.3, 1.2);
-        const Vector3<double> eye = this->random_.pointIn({-40, 15, -40}, {40, 40, 40});
-        const Vector3<double> target = eye + this->random_.pointIn({-1, -1, -1}, {1, -0.3, 1});
-        const auto camera = cameraMatrix<TypeParam>(lens, eye, target);
-        const GroundFootprint<TypeParam> footprint(camera, lens.depthRange,
-                                                   {TypeParam(0), TypeParam(8)});
-        Culler<TypeParam> culler;
-        culler.look(grid, footprint.region());
-        const auto view = frustumRegion<TypeParam>(camera, lens.depthRange);
-        this->expectNothingCulled(culler, view, proxies);
-        ASSERT_FALSE(this->HasFailure()) << i;
-        visible += culler.count();
-    }
-    EXPECT_GT(visible, 3000U);
-}
-
-TYPED_TEST(CullerTest, ShowsOnlyWhatTheFilterAccepts) {
-    Grid<TypeParam> grid;
-    this->addBoxes(grid, 500, 10);
-    Culler<TypeParam> culler;
-    const auto isEven = [](ProxyId id) { return id.index % 2 == 0; };
-    culler.look(grid, ConvexRegion<TypeParam>({}), isEven);
-    EXPECT_EQ(culler.count(), 250U);
 }
 
 TYPED_TEST(CullerTest, SeesNothingThroughABadCameraOrInAnEmptyGrid) {

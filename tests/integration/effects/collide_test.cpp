@@ -20,10 +20,8 @@ std::vector<BodyId> addThrong(Simulation<float>& simulation) {
     std::vector<BodyId> bodies;
     for (int i = 0; i < 200; ++i) {
         Body<float> body;
-        body.position =
-            random.pointIn(Vector3<double>::Zero(), Vector3<double>::Constant(14)).cast<float>();
-        body.velocity = random.pointIn(Vector3<double>::Constant(-5), Vector3<double>::Constant(5))
-                            .cast<float>();
+        body.position = random.pointIn(0, 14).cast<float>();
+        body.velocity = random.pointIn(-5, 5).cast<float>();
         if (i % 10 == 3) {
             body.effects.erase(Effect::motion);
         }

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numeric>
 #include <set>
 #include <vector>
@@ -46,62 +47,28 @@ private:
     std::vector<ProxyId> ids_;
 };
 
-TEST(Observers, LetFarAgentsLookEachNthFrameAndNearOnesAlways) {
-    constexpr std::uint32_t kEvery = 4;
+/// Far agents look in each nth frame, or in each nth of their turns; the others always, or in turn.
+class LateAgents : public testing::TestWithParam<ProximityEffect> {};
+
+TEST_P(LateAgents, LookWhenTheyAreToAndKeepTheirColourUntilThen) {
+    const ProximityEffect& effect = GetParam();
     SceneEffects effects;
-    effects.proximity = ProximityEffect{.radius = 5};
+    effects.proximity = ProximityEffect{.radius = effect.radius};
     Observers<float> all(effects);
-    effects.proximity->interestRadius = 15;
-    effects.proximity->farFrames = kEvery;
+    effects.proximity = effect;
     Observers<float> some(effects);
     const Point player(30, 1, 30);
     some.setInterest(player);
     Walk walk(0x5eed0fef);
-    for (std::uint32_t frame = 0; frame < 12; ++frame) {
-        walk.step();
-        // The same colours for both, so that those who look take the same.
-        std::vector<std::uint32_t> before(walk.places().size());
-        for (std::uint32_t i = 0; i < before.size(); ++i) {
-            before[i] = (i + frame) % 4;
-            all.setColour(i, before[i]);
-            some.setColour(i, before[i]);
-        }
-        all.observe({walk.grid});
-        const SceneCost& cost = some.observe({walk.grid});
-        std::uint64_t late = 0;
-        for (std::uint32_t i = 0; i < before.size(); ++i) {
-            const bool looks = frame % kEvery == 0 || (walk.places()[i] - player).norm() <= 14.99F;
-            const bool waits = frame % kEvery != 0 && (walk.places()[i] - player).norm() > 15.01F;
-            late += waits ? 1 : 0;
-            if (looks) {
-                ASSERT_EQ(some.colours()[i], all.colours()[i]) << "frame " << frame;
-            } else if (waits) {
-                ASSERT_EQ(some.colours()[i], before[i]) << "frame " << frame;
-            }
-        }
-        EXPECT_EQ(cost[SceneCounter::agentsLate], late);
-        EXPECT_EQ(all.cost()[SceneCounter::agentsLate], 0U);
-        if (frame % kEvery != 0) {
-            EXPECT_LT(cost[SceneCounter::agentsScanned], 400U);
-        }
-    }
-}
-
-TEST(Observers, LetAgentsLookByTurns) {
-    constexpr std::uint32_t kTurns = 4;
-    SceneEffects effects;
-    effects.proximity = ProximityEffect{.radius = 5};
-    Observers<float> all(effects);
-    effects.proximity->turns = kTurns;
-    Observers<float> some(effects);
-    Walk walk(0x5eed0fef);
-    for (std::uint32_t frame = 0; frame < 3 * kTurns; ++frame) {
-        if (frame % 5 == 3) {  // whatever else is declared meanwhile
+    const auto agents = static_cast<std::uint32_t>(walk.places().size());
+    for (std::uint32_t frame = 0; frame < 24; ++frame) {
+        SCOPED_TRACE(frame);
+        if (effect.turns > 1 && frame % 5 == 3) {  // whatever else is declared meanwhile
             effects.culling.emplace();
             some.declare(effects);
         }
         walk.step();
-        const auto agents = static_cast<std::uint32_t>(walk.places().size());
+        // The same colours for both, so that those who look take the same.
         std::vector<std::uint32_t> before(agents);
         for (std::uint32_t i = 0; i < agents; ++i) {
             before[i] = (i + frame) % 4;
@@ -112,37 +79,28 @@ TEST(Observers, LetAgentsLookByTurns) {
         const SceneCost& cost = some.observe({walk.grid});
         std::uint64_t looking = 0;
         for (std::uint32_t i = 0; i < agents; ++i) {
-            const bool looks = i % kTurns == frame % kTurns;
+            const double away = static_cast<double>((walk.places()[i] - player).norm());
+            const std::uint32_t frames =
+                effect.turns * (away > effect.interestRadius ? effect.farFrames : 1);
+            // Without turns, all of those who are late look in the same frame.
+            const bool looks =
+                (effect.turns > 1 ? i % frames == frame % frames : frame % frames == 0);
             looking += looks ? 1 : 0;
-            ASSERT_EQ(some.colours()[i], looks ? all.colours()[i] : before[i]) << "frame " << frame;
+            ASSERT_GT(std::abs(away - effect.interestRadius), 1e-5) << "as near as rounding";
+            ASSERT_EQ(some.colours()[i], looks ? all.colours()[i] : before[i]) << "agent " << i;
         }
         EXPECT_EQ(cost[SceneCounter::agentsLate], agents - looking);
+        EXPECT_TRUE(looking == agents || cost[SceneCounter::agentsScanned] < agents);
+        EXPECT_EQ(all.cost()[SceneCounter::agentsLate], 0U);
     }
 }
 
-TEST(Observers, LetFarAgentsLookInEachNthOfTheirTurns) {
-    constexpr std::uint64_t kTurns = 3;
-    constexpr std::uint64_t kEvery = 2;
-    SceneEffects effects;
-    effects.proximity =
-        ProximityEffect{.radius = 5, .interestRadius = 15, .farFrames = kEvery, .turns = kTurns};
-    Observers<float> observers(effects);
-    const Point player(30, 1, 30);
-    observers.setInterest(player);
-    Walk walk(0x5eed0fee);
-    for (std::uint64_t frame = 0; frame < 4 * kTurns * kEvery; ++frame) {
-        walk.step();
-        std::uint64_t looking = 0;
-        for (std::uint32_t i = 0; i < walk.places().size(); ++i) {
-            const bool isFar = (walk.places()[i] - player).norm() > 15;
-            const std::uint64_t turns = isFar ? kTurns * kEvery : kTurns;
-            looking += i % turns == frame % turns ? 1 : 0;
-        }
-        const SceneCost& cost = observers.observe({walk.grid});
-        EXPECT_EQ(cost[SceneCounter::agentsScanned], looking);
-        EXPECT_EQ(cost[SceneCounter::agentsLate], walk.places().size() - looking);
-    }
-}
+INSTANTIATE_TEST_SUITE_P(
+    Observers, LateAgents,
+    testing::Values(ProximityEffect{.radius = 5, .interestRadius = 15, .farFrames = 4},
+                    ProximityEffect{.radius = 5, .turns = 4},
+                    ProximityEffect{
+                        .radius = 5, .interestRadius = 15, .farFrames = 2, .turns = 3}));
 
 TEST(Observers, LookIntoFarZonesEachNthFrameAndTellAllThen) {
     SceneEffects effects;

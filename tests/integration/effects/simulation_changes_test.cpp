@@ -10,9 +10,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
+#include <functional>
 #include <initializer_list>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -91,14 +92,8 @@ TEST(Simulation, KeepsItsProxiesWhenPairsAndSweepComeAndGo) {
                                       {true, false, 1},
                                       {true, true, 0},
                                       {true, false, 0}}) {
-        effects.pairs.reset();
-        if (arePairs) {
-            effects.pairs.emplace();
-        }
-        effects.sweep.reset();
-        if (doesSweep) {
-            effects.sweep.emplace();
-        }
+        effects.pairs = arePairs ? std::optional(PairsEffect()) : std::nullopt;
+        effects.sweep = doesSweep ? std::optional(SweepEffect()) : std::nullopt;
         simulation.declare(effects);
         simulation.advance(kStep);
         EXPECT_EQ(simulation.pick(ray).id, hit);
@@ -208,21 +203,30 @@ TEST(SimulationMisuse, NamesWhatIsToBeDeclared) {
                   static_cast<void>(simulation.pick({{0, 0, 0}, {1, 1, 1}}));
               }),
               "pick() needs picking, which the scene does not declare: set SceneEffects::picking.");
-    EXPECT_THROW(simulation.setVelocity(body, {1, 0, 0}), UndeclaredEffect);
-    EXPECT_THROW(static_cast<void>(simulation.isAsleep(body)), UndeclaredEffect);
-    EXPECT_THROW(static_cast<void>(simulation.ground()), UndeclaredEffect);
     EXPECT_EQ(undeclared([&] { static_cast<void>(simulation.grid()); }),
               "grid() needs one of these, of which the scene declares none: pairs, picking, "
               "boxSelection, culling, proximity, zones, radar.");
-    EXPECT_THROW(static_cast<void>(simulation.pairChanges()), UndeclaredEffect);
-    EXPECT_THROW(static_cast<void>(simulation.pairCount()), UndeclaredEffect);
-    EXPECT_THROW(simulation.select(smallSceneView(), {0, 0}, {1, 1}, selected), UndeclaredEffect);
-    EXPECT_THROW(static_cast<void>(simulation.observers().culler()), UndeclaredEffect);
-    EXPECT_THROW(static_cast<void>(simulation.observers().colours()), UndeclaredEffect);
-    EXPECT_THROW(static_cast<void>(simulation.observers().zones()), UndeclaredEffect);
-    EXPECT_THROW(static_cast<void>(simulation.observers().zoneEvents()), UndeclaredEffect);
-    EXPECT_THROW(static_cast<void>(simulation.observers().radarCounts()), UndeclaredEffect);
-    EXPECT_THROW(simulation.observers().setColour(0, 1), UndeclaredEffect);
+    const Observers<float>& observers = simulation.observers();
+    const std::vector<std::function<void()>> others{
+        [&] {
+            simulation.setVelocity(body, {1, 0, 0});
+        },
+        [&] { static_cast<void>(simulation.isAsleep(body)); },
+        [&] { static_cast<void>(simulation.ground()); },
+        [&] { static_cast<void>(simulation.pairChanges()); },
+        [&] { static_cast<void>(simulation.pairCount()); },
+        [&] {
+            simulation.select(smallSceneView(), {0, 0}, {1, 1}, selected);
+        },
+        [&] { static_cast<void>(observers.culler()); },
+        [&] { static_cast<void>(observers.colours()); },
+        [&] { static_cast<void>(observers.zoneEvents()); },
+        [&] { static_cast<void>(observers.radarCounts()); },
+        [&] { static_cast<void>(simulation.observers().zones()); },
+        [&] { simulation.observers().setColour(0, 1); }};
+    for (const std::function<void()>& other : others) {
+        EXPECT_THROW(other(), UndeclaredEffect);
+    }
 }
 
 TEST(SimulationMisuse, LeavesToBulletWhatIsBullets) {
@@ -259,9 +263,7 @@ TEST(SimulationMisuse, BearsBodiesThatAreNowhere) {
     simulation.add({.position = {5, 1, 5}, .velocity = {nan, infinity, 0}});
     simulation.add({.position = {infinity, 1, 5}, .radius = -1});
     simulation.add({.position = {5, 1, 5}, .radius = nan});
-    for (int frame = 0; frame < 5; ++frame) {
-        simulation.advance(kStep);
-    }
+    run(simulation, 5);
     EXPECT_EQ(simulation.size(), 44U);
     EXPECT_EQ(simulation.validate(), "");
 }

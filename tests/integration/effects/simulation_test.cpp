@@ -2,16 +2,11 @@
 
 #include <integration/effects/simulation.hpp>
 #include <tests/integration/effects/small_scene.hpp>
-#include <tests/support/handlers.hpp>
-#include <tests/support/threaded_for.hpp>
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
-#include <limits>
-#include <stdexcept>
-#include <string>
 #include <vector>
 
 namespace hashphase::test {
@@ -26,13 +21,9 @@ TEST(Simulation, FilesExactlyWhatMoves) {
     Simulation<float> simulation(declared({Effect::motion, Effect::pairs, Effect::culling}));
     for (int i = 0; i < 500; ++i) {
         const bool moves = static_cast<std::uint64_t>(i) < kMoving;
-        EffectSet effects = EffectSet::all();
-        if (!moves) {
-            effects.erase(Effect::motion);
-        }
         simulation.add({.position = {3.0F * static_cast<float>(i), 0, 0},
                         .velocity = {0, 1, 0},
-                        .effects = effects});
+                        .effects = moves ? EffectSet::all() : kStanding});
     }
     simulation.advance(kStep);  // all are new
     simulation.advance(kStep);  // those that stand come to rest
@@ -81,12 +72,10 @@ TEST(Simulation, SweepsExactlyWhatIsFastForItsSize) {
 
 TEST(Simulation, SweepsNobodyWhoDoesNotTakePart) {
     Simulation<float> simulation(declared({Effect::motion, Effect::pairs, Effect::sweep}));
-    EffectSet effects = EffectSet::all();
-    effects.erase(Effect::sweep);
     for (int i = 0; i < 30; ++i) {
         simulation.add({.position = {3.0F * static_cast<float>(i), 0, 0},
                         .velocity = {0, 1000, 0},
-                        .effects = effects});
+                        .effects = EffectSet::all() - EffectSet{Effect::sweep}});
     }
     EXPECT_EQ(simulation.advance(kStep)[SceneCounter::sweepsSolved], 0U);
 }
@@ -139,9 +128,7 @@ TEST(Simulation, BouncesOffByTheAngleOfImpact) {
     // It meets the other at 45 degrees: they part at a right angle, as billiard balls do.
     const BodyId cue = simulation.add({.position = {-2.5 - c, 0, 0}, .velocity = {4, 0, 0}});
     const BodyId ball = simulation.add({.position = {0, 0, 2 * c}});
-    for (int frame = 0; frame < 200; ++frame) {
-        simulation.advance(1.0 / 256);
-    }
+    run(simulation, 200, 1.0 / 256);
     const Vector3<double> a = simulation.velocity(cue);
     const Vector3<double> b = simulation.velocity(ball);
     EXPECT_NEAR(a.squaredNorm() + b.squaredNorm(), 16, 1e-9);
@@ -154,27 +141,18 @@ TEST(Simulation, BouncesOffWhatStands) {
     SceneEffects effects = declared({Effect::motion, Effect::pairs, Effect::response});
     effects.response->restitution = 0.5;
     Simulation<float> simulation(effects);
-    EffectSet standing = EffectSet::all();
-    standing.erase(Effect::motion);
     const BodyId ball = simulation.add({.position = {-3, 0, 0}, .velocity = {1, 0, 0}});
-    const BodyId post = simulation.add({.effects = standing});
-    for (int frame = 0; frame < 128; ++frame) {
-        simulation.advance(kStep);
-    }
+    const BodyId post = simulation.add({.effects = kStanding});
+    run(simulation, 128);
     EXPECT_EQ(simulation.velocity(ball), Vector3<float>(-0.5F, 0, 0));
     EXPECT_EQ(simulation.position(post), Vector3<float>(0, 0, 0));
 }
 
 TEST(Simulation, LetsSensorsFeelWithoutBouncing) {
     Simulation<float> simulation(declared({Effect::motion, Effect::pairs, Effect::response}));
-    EffectSet sensing = EffectSet::all();
-    sensing.erase(Effect::response);
     const BodyId ball = simulation.add({.position = {-3, 0, 0}, .velocity = {8, 0, 0}});
-    simulation.add({.effects = sensing});
-    SceneCost sum;
-    for (int frame = 0; frame < 64; ++frame) {
-        sum += simulation.advance(kStep);
-    }
+    simulation.add({.effects = EffectSet::all() - EffectSet{Effect::response}});
+    const SceneCost sum = run(simulation, 64);
     EXPECT_EQ(simulation.velocity(ball), Vector3<float>(8, 0, 0));
     EXPECT_EQ(sum[SceneCounter::pairsBorn], 1U);
     EXPECT_EQ(sum[SceneCounter::pairsDied], 1U);
@@ -184,14 +162,12 @@ TEST(Simulation, LetsSensorsFeelWithoutBouncing) {
 /// Whether a bullet that flies by `speed` [m/s] has come through a wall of spheres.
 bool comesThrough(const SceneEffects& effects, float speed) {
     Simulation<float> simulation(effects);
-    EffectSet standing = EffectSet::all();
-    standing.erase(Effect::motion);
     for (int i = -5; i <= 5; ++i) {
         for (int k = -5; k <= 5; ++k) {
             simulation.add(
                 {.position = {0, 0.2F * static_cast<float>(i), 0.2F * static_cast<float>(k)},
                  .radius = 0.2F,
-                 .effects = standing});
+                 .effects = kStanding});
         }
     }
     const BodyId bullet = simulation.add(
@@ -220,9 +196,7 @@ TEST(Simulation, StandsOnTheGround) {
                                    Point(100, 50, -50), Point(100, 50, 50),  Point(0, 0, 50)};
     simulation.ground().add(slope);
     const BodyId body = simulation.add({.position = {5, 6, 0}, .velocity = {10, 0, 0}});
-    for (int frame = 0; frame < 500; ++frame) {
-        simulation.advance(kStep);
-    }
+    run(simulation, 500);
     const float x = simulation.position(body).x();
     // On a slope of 1 : 2 the centre is higher by radius / cos(angle).
     EXPECT_NEAR(simulation.position(body).y(), x / 2 + std::sqrt(1.25F), 1e-3F);
@@ -262,10 +236,7 @@ TEST(Simulation, PutsTheSlowToSleepUntilSomebodyHitsThem) {
     }
     EXPECT_TRUE(simulation.isAsleep(slow));
     simulation.add({.position = {-4, 0, 0}, .velocity = {8, 0, 0}});
-    SceneCost sum;
-    for (int frame = 0; frame < 64; ++frame) {
-        sum += simulation.advance(kStep);
-    }
+    const SceneCost sum = run(simulation, 64);
     EXPECT_FALSE(simulation.isAsleep(slow));
     EXPECT_EQ(sum[SceneCounter::wokeUp], 1U);
     EXPECT_GT(simulation.position(slow).x(), 1);
@@ -280,9 +251,7 @@ TEST(Simulation, SeesWhoFliesIntoAViewFromTheOrigin) {
                             Plane(Point(0, 1, 1), 0), Plane(Point(0, -1, 1), 0)};
     simulation.observers().setView(ConvexRegion<float>(planes));
     simulation.add({.position = {0, 0, -50}, .velocity = {0, 0, 10}});
-    for (int frame = 0; frame < 12; ++frame) {
-        simulation.advance(1);
-    }
+    run(simulation, 12, 1.0F);
     EXPECT_EQ(simulation.observers().culler().count(), 1U);
 }
 
@@ -350,13 +319,11 @@ TEST(Simulation, StandsOnTheGroundWhereItIsStopped) {
                                    {0, 25, 50},   {-50, 0, 50}, {0, 25, -50}, {50, 0, -50},
                                    {0, 25, 50},   {50, 0, -50}, {50, 0, 50},  {0, 25, 50}};
     simulation.ground().add(ridge);
-    EffectSet standing = EffectSet::all();
-    standing.erase(Effect::motion);
     const auto onRidge = [](float x) { return 25 - std::abs(x) / 2 + std::sqrt(1.25F); };
     const BodyId bullet =
         simulation.add({.position = {-20, onRidge(-20), 0}, .velocity = {40, 0, 0}});
     // So wide that it is met at half way.
-    simulation.add({.position = {10, 12, 0}, .radius = 9, .effects = standing});
+    simulation.add({.position = {10, 12, 0}, .radius = 9, .effects = kStanding});
     EXPECT_EQ(simulation.advance(1)[SceneCounter::sweepersStopped], 1U);
     const Point position = simulation.position(bullet);
     EXPECT_LT(std::abs(position.x()), 10);

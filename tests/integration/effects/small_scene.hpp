@@ -21,6 +21,19 @@ inline constexpr EffectSet kSimulated =
 /// A frame [s].
 inline constexpr float kStep = 1.0F / 64;
 
+/// What a body takes part in that stands.
+inline const EffectSet kStanding = EffectSet::all() - EffectSet{Effect::motion};
+
+/// So many frames; returns what they cost altogether.
+template <class Scalar>
+SceneCost run(Simulation<Scalar>& simulation, int frames, Scalar seconds = Scalar(kStep)) {
+    SceneCost sum;
+    for (int frame = 0; frame < frames; ++frame) {
+        sum += simulation.advance(seconds);
+    }
+    return sum;
+}
+
 /// These effects, with default settings.
 [[nodiscard]] inline SceneEffects declared(std::initializer_list<Effect> effects) {
     SceneEffects all;

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Zlib
 
 #include <integration/picking/pick.hpp>
-#include <tests/support/handlers.hpp>
+#include <tests/integration/scene_lives.hpp>
 #include <tests/support/picking_oracle.hpp>
-#include <tests/support/query_checks.hpp>
-#include <tests/support/script.hpp>
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace hashphase::test {
@@ -23,14 +22,6 @@ protected:
         EXPECT_EQ(found.fraction, expected.fraction);
         EXPECT_EQ(found.point, expected.point);
     }
-
-    static void expectSame(std::span<const Picked<Scalar>> found,
-                           const std::vector<Picked<Scalar>>& expected) {
-        ASSERT_EQ(found.size(), expected.size());
-        for (std::size_t i = 0; i < found.size(); ++i) {
-            expectSame(found[i], expected[i]);
-        }
-    }
 };
 
 using Scalars = testing::Types<float, double>;
@@ -40,65 +31,51 @@ TYPED_TEST(Pick, FindsWhatBruteForceFindsByBoxAndByTest) {
     std::size_t picks = 0;
     std::size_t testedForNearest = 0;
     std::size_t testedForAll = 0;
-    const CaughtMessages messages;  // about boxes that are NaN
-    for (const BoxScene<TypeParam>& scene : allBoxScenes<TypeParam>()) {
-        SCOPED_TRACE(scene.name);
-        GridWorld<TypeParam> world;
-        Script<TypeParam> script(scene, 0x5eed0721);
-        script.begin(world);
+    playAllScenes<TypeParam>(0x5eed0721, 12, [&](const auto& grid, auto& script, int) {
+        const auto byBox = [&](ProxyId id, const RayRegion<TypeParam>& ray, TypeParam) {
+            return std::optional(ray.key(grid.box(id)));
+        };
+        // Shapes are missed by two rays of three, and lie somewhere in their boxes.
+        std::size_t tested = 0;
+        const auto byShape = [&](ProxyId id, const RayRegion<TypeParam>& ray,
+                                 TypeParam limit) -> std::optional<TypeParam> {
+            const TypeParam key = ray.key(grid.box(id));
+            EXPECT_LE(key, limit);
+            ++tested;
+            const std::uint32_t kind = id.index % 6;
+            return kind > 2 ? std::nullopt
+                            : std::optional(key + (1 - key) * static_cast<TypeParam>(kind) / 4);
+        };
+        const auto filter = [](ProxyId id) { return id.index % 3 != 1; };
         std::vector<Picked<TypeParam>> picked;
-        for (int frame = 0; frame < 12; ++frame) {
-            script.playFrame(world);
-            if (frame % 3 != 0) {
-                world.grid.update();
+        const auto expect = [&](const auto& expected, const Picked<TypeParam>& nearest) {
+            ASSERT_EQ(picked.size(), expected.size());
+            for (std::size_t i = 0; i < picked.size(); ++i) {
+                this->expectSame(picked[i], expected[i]);
             }
-            const auto byBox = [&](ProxyId id, const RayRegion<TypeParam>& ray, TypeParam) {
-                return std::optional(ray.key(world.grid.box(id)));
+            this->expectSame(nearest, expected.empty() ? Picked<TypeParam>{} : expected[0]);
+        };
+        RegionMaker<TypeParam> maker(script.random(), script.proxies());
+        for (int i = 0; i < 40; ++i) {
+            const RayRegion<TypeParam> ray = maker.ray(i % 4 == 3);
+            const auto expected = [&](const auto& test, ProxyFilter accept) {
+                return pickAllByBruteForce<TypeParam>(script.proxies(), ray, test, accept);
             };
-            // Shapes are missed by two rays of three, and lie somewhere in their boxes.
-            std::size_t tested = 0;
-            const auto byShape = [&](ProxyId id, const RayRegion<TypeParam>& ray,
-                                     TypeParam limit) -> std::optional<TypeParam> {
-                EXPECT_LE(ray.key(world.grid.box(id)), limit);
-                ++tested;
-                const TypeParam key = ray.key(world.grid.box(id));
-                const std::uint32_t kind = id.index % 6;
-                if (kind > 2) {
-                    return std::nullopt;
-                }
-                return key + (1 - key) * static_cast<TypeParam>(kind) / 4;
-            };
-            const auto filter = [](ProxyId id) { return id.index % 3 != 1; };
-            RegionMaker<TypeParam> maker(script.random(), script.proxies());
-            for (int i = 0; i < 40; ++i) {
-                const RayRegion<TypeParam> ray = maker.ray(i % 4 == 3);
-                const auto boxes =
-                    pickAllByBruteForce<TypeParam>(script.proxies(), ray, byBox, acceptAll);
-                const QueryCost cost = pickAll(world.grid, ray, picked);
-                EXPECT_EQ(cost.hits, boxes.size());
-                this->expectSame(picked, boxes);
-                this->expectSame(pickNearest(world.grid, ray),
-                                 boxes.empty() ? Picked<TypeParam>{} : boxes[0]);
-                const auto filtered =
-                    pickAllByBruteForce<TypeParam>(script.proxies(), ray, byBox, filter);
-                pickAll(world.grid, ray, picked, filter);
-                this->expectSame(picked, filtered);
-                this->expectSame(pickNearest(world.grid, ray, filter),
-                                 filtered.empty() ? Picked<TypeParam>{} : filtered[0]);
-                const auto shapes =
-                    pickAllByBruteForce<TypeParam>(script.proxies(), ray, byShape, filter);
-                tested = 0;
-                pickAll(world.grid, ray, picked, byShape, filter);
-                this->expectSame(picked, shapes);
-                testedForAll += tested;
-                tested = 0;
-                this->expectSame(pickNearest(world.grid, ray, byShape, filter),
-                                 shapes.empty() ? Picked<TypeParam>{} : shapes[0]);
-                testedForNearest += tested;
-                picks += boxes.size();
-            }
+            const QueryCost cost = pickAll(grid, ray, picked);
+            EXPECT_EQ(cost.hits, picked.size());
+            expect(expected(byBox, acceptAll), pickNearest(grid, ray));
+            picks += picked.size();
+            pickAll(grid, ray, picked, filter);
+            expect(expected(byBox, filter), pickNearest(grid, ray, filter));
+            const auto shapes = expected(byShape, filter);
+            tested = 0;
+            pickAll(grid, ray, picked, byShape, filter);
+            testedForAll += std::exchange(tested, 0);
+            const Picked<TypeParam> nearest = pickNearest(grid, ray, byShape, filter);
+            testedForNearest += tested;
+            expect(shapes, nearest);
         }
-    }
+    });
     EXPECT_GT(picks, 20000U);
     EXPECT_LT(testedForNearest * 4, testedForAll * 3);
 }

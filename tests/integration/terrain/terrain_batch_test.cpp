@@ -35,21 +35,26 @@ protected:
         found_.resize(count);
     }
 
-    void expectAsOneByOne(ParallelFor parallelFor) {
-        QueryCost cost = world_.terrain.surfacesBelow(points_, found_, parallelFor);
+    /// As the answers of one by one, which asks for point i and adds up its cost.
+    template <class OneByOne>
+    void expectAs(const OneByOne& oneByOne, const QueryCost& cost) {
         QueryCost sum;
         for (std::size_t i = 0; i < points_.size(); ++i) {
-            ASSERT_EQ(found_[i], world_.terrain.surfaceBelow(points_[i], &sum));
+            ASSERT_EQ(found_[i], oneByOne(i, &sum));
         }
         EXPECT_EQ(cost.hits, sum.hits);
         EXPECT_LE(cost.rowsVisited, sum.rowsVisited);  // near ones share them
-        cost = world_.terrain.restingHeights(points_, radii_, found_, parallelFor);
-        sum = {};
-        for (std::size_t i = 0; i < points_.size(); ++i) {
-            ASSERT_EQ(found_[i], world_.terrain.restingHeight(points_[i], radii_[i], &sum));
-        }
-        EXPECT_EQ(cost.hits, sum.hits);
-        EXPECT_LE(cost.rowsVisited, sum.rowsVisited);  // near ones share them
+    }
+    void expectAsOneByOne(ParallelFor parallelFor) {
+        const Terrain<Scalar>& terrain = world_.terrain;
+        QueryCost cost = terrain.surfacesBelow(points_, found_, parallelFor);
+        expectAs(
+            [&](std::size_t i, QueryCost* sum) { return terrain.surfaceBelow(points_[i], sum); },
+            cost);
+        cost = terrain.restingHeights(points_, radii_, found_, parallelFor);
+        expectAs([&](std::size_t i,
+                     QueryCost* sum) { return terrain.restingHeight(points_[i], radii_[i], sum); },
+                 cost);
     }
 
     Random random_{0x5eed2301};
@@ -102,29 +107,23 @@ TYPED_TEST(TerrainBatch, SeesChangesThatWaitToBeFiled) {
     EXPECT_EQ(found[0], (Ground<TypeParam>{number, 4}));
 }
 
-TYPED_TEST(TerrainBatch, CostsWhatTheColumnsMeet) {
+TYPED_TEST(TerrainBatch, CostsWhatTheColumnsMeetAndNoMoreAfterAShiftOfTheOrigin) {
     this->draw(10000);
-    const QueryCost cost = this->world_.terrain.surfacesBelow(this->points_, this->found_);
-    EXPECT_GT(cost.hits, 10000U);
-    EXPECT_LT(cost.hits, 80000U);
-    EXPECT_LT(cost.boxesTested, 1000000U);  // of 3,200 triangles a hundred each, at most
-}
-
-TYPED_TEST(TerrainBatch, CostsNoMoreAfterAShiftOfTheOrigin) {
-    using Point = Vector3<TypeParam>;
-    this->draw(10000);
-    auto& grid = this->world_.grid;
-    auto& terrain = this->world_.terrain;
-    const QueryCost before = terrain.surfacesBelow(this->points_, this->found_);
-    const Point shift(1024, 0, -4096);
-    grid.shiftOrigin(shift);
-    terrain.shiftOrigin(shift);
-    for (Point& point : this->points_) {
+    const auto ask = [this] {
+        const QueryCost cost = this->world_.terrain.surfacesBelow(this->points_, this->found_);
+        EXPECT_GT(cost.hits, 10000U);
+        EXPECT_LT(cost.hits, 80000U);
+        EXPECT_LT(cost.boxesTested, 1000000U);  // of 3,200 triangles a hundred each, at most
+        return cost.rowsVisited;
+    };
+    const std::uint64_t before = ask();
+    const Vector3<TypeParam> shift(1024, 0, -4096);
+    this->world_.grid.shiftOrigin(shift);
+    this->world_.terrain.shiftOrigin(shift);
+    for (Vector3<TypeParam>& point : this->points_) {
         point -= shift;
     }
-    const QueryCost after = terrain.surfacesBelow(this->points_, this->found_);
-    EXPECT_GT(after.hits, 10000U);
-    EXPECT_LE(after.rowsVisited, before.rowsVisited + before.rowsVisited / 50);
+    EXPECT_LE(ask(), before + before / 50);
 }
 
 TYPED_TEST(TerrainBatch, HasAPlaceForEachAnswer) {
