@@ -3,7 +3,6 @@
 
 #include <demos/console/format.hpp>
 #include <demos/console/result_file.hpp>
-#include <demos/console/table.hpp>
 #include <demos/report/json_values.hpp>
 #include <demos/report/report_text.hpp>
 #include <demos/report/vega_lite.hpp>
@@ -48,20 +47,6 @@ std::string verdictLine(const AccuracyReport& report) {
     return counted(report.outcomes.size(), "experiment") + ", " + counted(checks, "check") + ": " +
            (broken == 0 ? "all hold" : std::to_string(broken) + " BROKEN") +
            leftOutText(report.leftOut);
-}
-
-void print(const DataTable& data, std::ostream& out) {
-    std::vector<std::string> header;
-    for (const DataColumn& column : data.columns) {
-        header.push_back(titleOf(column));
-    }
-    Table table(header);
-    for (const std::vector<Value>& row : data.rows) {
-        std::vector<std::string> cells(row.size());
-        std::transform(row.begin(), row.end(), cells.begin(), valueText);
-        table.addRow(std::move(cells));
-    }
-    table.print(out);
 }
 
 template <class Range, class Make>
@@ -181,7 +166,7 @@ void printReport(const AccuracyReport& report, std::ostream& out) {
         out << experiment->id << ' ' << experiment->title << ": " << experiment->question << '\n';
         for (const DataTable& table : findings.tables) {
             out << '\n';
-            print(table, out);
+            printTable(table, out);
         }
         out << '\n';
         for (const Check& check : findings.checks) {
@@ -195,7 +180,7 @@ void printReport(const AccuracyReport& report, std::ostream& out) {
     }
     const DataTable advice = adviceTable(allChoices(report));
     if (!advice.rows.empty()) {
-        print(advice, out);
+        printTable(advice, out);
         out << '\n';
     }
     printProvenance(report.provenance, out);

@@ -28,15 +28,6 @@ std::vector<std::vector<double>> timesInTurn(int frames, int warmUp,
     return times;
 }
 
-std::vector<Spread> timeInTurn(int frames, int warmUp, const std::function<void(int frame)>& begin,
-                               std::span<const std::function<void()>> methods) {
-    std::vector<Spread> spreads;
-    for (std::vector<double>& each : timesInTurn(frames, warmUp, begin, methods)) {
-        spreads.push_back(spreadOf(std::move(each)));
-    }
-    return spreads;
-}
-
 void measureTimes(Measurements& measured, int frames, int warmUp,
                   const std::function<void(int frame)>& begin, std::span<const TimedMethod> methods,
                   double scale) {

@@ -4,7 +4,6 @@
 // Times methods against each other so that their ratios can be trusted.
 
 #include <demos/experiment/measurements.hpp>
-#include <demos/report/statistics.hpp>
 
 #include <functional>
 #include <span>
@@ -16,13 +15,8 @@ namespace hashphase::demos {
 inline constexpr int kFewestFrames = 60;
 
 /// Runs begin(frame) and then all methods, in an order that rotates, for each of `frames` frames
-/// after `warmUp` more that are not timed. Returns the time of each method
-/// [ms a frame], less what other programs took of the processor meanwhile; on this thread only.
-[[nodiscard]] std::vector<Spread> timeInTurn(int frames, int warmUp,
-                                             const std::function<void(int frame)>& begin,
-                                             std::span<const std::function<void()>> methods);
-
-/// The same, but returns the times of all frames, method by method.
+/// after `warmUp` more that are not timed. Returns the times of all frames, method by method [ms],
+/// less what other programs took of the processor meanwhile; on this thread only.
 [[nodiscard]] std::vector<std::vector<double>> timesInTurn(
     int frames, int warmUp, const std::function<void(int frame)>& begin,
     std::span<const std::function<void()>> methods);
