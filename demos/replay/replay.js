@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 //
 // Replays a recording in a canvas, once its tab is shown. What is shown is told by data attributes of
-// the replay's element, too: state (ready; lost while the browser has taken WebGL2 back), playing, frame, frames, pairs (that overlap), lines (that are drawn of
-// them), colouring, broadphase, missing, extra, drawn (of the wrong pairs), marks (where in the picture
+// the replay's element, too: state (ready; lost while the browser has taken WebGL2 back), playing, frame,
+// frames, pairs (that overlap), lines (that are drawn of them), colouring, broadphase, missing, extra, drawn (of the wrong pairs), marks (where in the picture
 // the first of them is drawn, from its lower left), draws.
 
 const KEYS_IN_WORDS =
@@ -32,8 +32,9 @@ class Replay {
         this.look = {
             camera: this.camera,
             colouring: "cell",
+            // The judged broadphase's, or else the first's that has cells.
             cellSize:
-                recording.withCells(this.broadphase)?.cellSize ??
+                [this.broadphase, ...recording.broadphases].find((each) => each.cellSize)?.cellSize ??
                 Number((recording.typicalEdge * 8).toPrecision(2)),
             heights: [heights.low, Math.max(heights.high, heights.low + 1e-3)],
             groundEdge: Math.max(radius, 10 * recording.typicalEdge),
@@ -107,24 +108,13 @@ class Replay {
     timeControls() {
         const { frames } = this.recording;
         this.play = button("\u25b6", "Play", () => this.togglePlaying());
-        this.slider = element("input", {
-            type: "range",
-            name: "frame",
-            min: 0,
-            max: frames - 1,
-            value: 0,
-            "aria-label": "Frame",
-            oninput: () => this.show(Number(this.slider.value)),
-        });
+        const range = { type: "range", name: "frame", min: 0, max: frames - 1, value: 0, "aria-label": "Frame" };
+        this.slider = element("input", { ...range, oninput: () => this.show(Number(this.slider.value)) });
         this.number = element("output", { class: "frame" });
-        const speed = choice(
-            "Speed",
-            "speed",
-            FRAMES_A_SECOND,
-            () => (this.framesASecond = Number(speed.select.value)),
-        );
-        speed.select.value = "10";
         this.framesASecond = 10;
+        const speed = choice("Speed", "speed", FRAMES_A_SECOND, this.framesASecond, (value) => {
+            this.framesASecond = Number(value);
+        });
         return element(
             "div",
             { class: "time" },
@@ -138,28 +128,27 @@ class Replay {
     }
 
     viewControls() {
-        const { recording } = this;
-        const broadphase = choice(
-            "Wrong pairs of",
-            "broadphase",
-            recording.broadphases.map(({ name }) => [name, name]),
-            () => this.judge(broadphase.select.value),
+        const { recording, look } = this;
+        const names = (all) => all.map((each) => [each, each]);
+        const broadphases = names(recording.broadphases.map(({ name }) => name));
+        const judged = choice("Wrong pairs of", "broadphase", broadphases, this.broadphase.name, (name) =>
+            this.judge(name),
         );
-        broadphase.select.value = this.broadphase.name;
-        this.colouring = choice(
-            "Colour by",
-            "colouring",
-            COLOURINGS.map((each) => [each, each]),
-            () => this.change({ colouring: this.colouring.select.value }),
+        const colourings = names(COLOURINGS);
+        const coloured = choice("Colour by", "colouring", colourings, look.colouring, (colouring) =>
+            this.change({ colouring }),
+        );
+        this.colouring = coloured.select;
+        const shape = choice("Draw", "shape", names(["spheres", "boxes"]), "spheres", (name) =>
+            this.change({ spheres: name === "spheres" }),
         );
         const cells = element("input", {
             type: "number",
             name: "cellSize",
             min: 0,
             step: "any",
-            value: Number(this.look.cellSize.toPrecision(4)),
-            oninput: () =>
-                Number(cells.value) > 0 && this.change({ cellSize: Number(cells.value) }),
+            value: Number(look.cellSize.toPrecision(4)),
+            oninput: () => Number(cells.value) > 0 && this.change({ cellSize: Number(cells.value) }),
         });
         const box = (name, onchange) => element("input", { type: "checkbox", name, onchange });
         this.dimmed = box("dim", () => this.change({ dimming: this.dimmed.checked ? 0.8 : 0 }));
@@ -167,27 +156,14 @@ class Replay {
         return element(
             "div",
             { class: "view" },
-            broadphase.label,
+            judged.label,
             button("First wrong pair", "Show the first wrong pair", () => this.showFirst()),
             element("label", {}, this.dimmed, " dim the others"),
             element("label", {}, this.pairs, " all pairs"),
-            this.colouring.label,
+            coloured.label,
             element("label", {}, "Cell ", cells, " m"),
-            ...(recording.spheres ? [this.shapeControl()] : []),
+            ...(recording.spheres ? [shape.label] : []),
         );
-    }
-
-    shapeControl() {
-        const shape = choice(
-            "Draw",
-            "shape",
-            [
-                ["spheres", "spheres"],
-                ["boxes", "boxes"],
-            ],
-            () => this.change({ spheres: shape.select.value === "spheres" }),
-        );
-        return shape.label;
     }
 
     // Pictures have as many pixels as the screen.
@@ -195,21 +171,18 @@ class Replay {
         const dark = matchMedia("(prefers-color-scheme: dark)");
         const follow = () => this.change({ screen: dark.matches ? "dark" : "light" });
         dark.addEventListener("change", follow);
-        this.look.screen = dark.matches ? "dark" : "light";
+        follow();
         new ResizeObserver(() => this.redraw()).observe(this.canvas);
-        this.followDensity();
-    }
-
-    // A query knows one density: when it is no longer that, another one waits for the next.
-    followDensity() {
-        matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener(
-            "change",
-            () => {
+        // A query knows one density: when it is no longer that, another one waits for the next.
+        const followDensity = () => {
+            const query = matchMedia(`(resolution: ${devicePixelRatio}dppx)`);
+            const changed = () => {
                 this.redraw();
-                this.followDensity();
-            },
-            { once: true },
-        );
+                followDensity();
+            };
+            query.addEventListener("change", changed, { once: true });
+        };
+        followDensity();
     }
 
     // All that WebGL2 held is gone; the browser gives another context, which begins with nothing.
@@ -241,7 +214,7 @@ class Replay {
 
     chooseColouring(index) {
         const colouring = COLOURINGS[index % COLOURINGS.length];
-        this.colouring.select.value = colouring;
+        this.colouring.value = colouring;
         this.change({ colouring });
     }
 
@@ -277,27 +250,27 @@ class Replay {
 
     tell() {
         const { broadphase, frame, recording } = this;
-        const pairs = recording.pairCounts(broadphase, frame);
         const [missing, extra] = [broadphase.missing[frame], broadphase.extra[frame]];
+        const { pairsInAll, pairs, pairsListed } = recording.tracks[broadphase.track];
+        const [inAll, here, listed] = [pairsInAll[frame], pairs[frame], pairsListed[frame]];
+        const when = (isSo, text) => (isSo ? text : "");
+        const drawn = this.wrong.length;
         this.number.textContent = `frame ${frame} of 0 to ${recording.frames - 1}`;
-        const drawn =
-            this.wrong.length < missing + extra
-                ? ` (${thousands(this.wrong.length)} of them drawn)`
-                : "";
-        const here =
-            pairs.here < pairs.inAll ? `, ${thousands(pairs.here)} of them between those drawn` : "";
-        const unlisted = pairs.listed < pairs.here ? ", too many to be drawn" : "";
         this.counts.textContent =
-            `${thousands(pairs.inAll)} pairs overlap${here}${unlisted}; of ` +
-            `${broadphase.name}'s, ${thousands(missing)} are missing and ${thousands(extra)} extra${drawn}.`;
+            `${thousands(inAll)} pairs overlap` +
+            when(here < inAll, `, ${thousands(here)} of them between those drawn`) +
+            when(listed < here, ", too many to be drawn") +
+            `; of ${broadphase.name}'s, ${thousands(missing)} are missing and ${thousands(extra)} extra` +
+            when(drawn < missing + extra, ` (${thousands(drawn)} of them drawn)`) +
+            ".";
         Object.assign(this.root.dataset, {
             frame,
             frames: recording.frames,
-            pairs: pairs.inAll,
+            pairs: inAll,
             broadphase: broadphase.name,
             missing,
             extra,
-            drawn: this.wrong.length,
+            drawn,
         });
     }
 
@@ -323,42 +296,24 @@ class Replay {
         }
         const { both } = this.drawing.draw(look);
         this.chart.draw(this.broadphase, this.frame, recording.frames);
-        this.legend.replaceChildren(
-            ...wrongLegend(),
-            ...legendOf(
-                look.colouring,
-                look.heights,
-                recording.low[1],
-                look.cellSize,
-                recording.broadphases.find((each) => each.cellSize === look.cellSize)?.name,
-            ),
+        this.legend.replaceChildren(...legendOf(look, recording));
+        const first = this.wrong.slice(0, 1).flatMap(({ a, b }) => [a, b]);
+        const marks = first.map((place) =>
+            placeInPicture(both, recording.box(this.numbers, place).centre, width, height),
         );
-        const first = this.wrong.find((pair) => this.isShown(pair)) ?? this.wrong[0];
-        const marks =
-            first &&
-            [first.a, first.b].map((place) =>
-                placeInPicture(both, recording.box(this.numbers, place).centre, width, height),
-            );
         Object.assign(this.root.dataset, {
             colouring: look.colouring,
             lines: look.pairs ? this.drawing.allLines.count : 0,
-            marks: JSON.stringify(marks ?? []),
+            marks: JSON.stringify(marks),
             draws: ++this.draws,
         });
-    }
-
-    isShown({ a, b }) {
-        const { first } = this.broadphase;
-        return first?.frame === this.frame && first.places[0] === a && first.places[1] === b;
     }
 
     showFirst() {
         const { first, name, wrong } = this.broadphase;
         if (!first) {
-            this.words.textContent =
-                wrong > 0
-                    ? `The wrong pairs of ${name} are of others than those drawn.`
-                    : `No pair of ${name} is wrong in the recorded frames.`;
+            const others = `The wrong pairs of ${name} are of others than those drawn.`;
+            this.words.textContent = wrong > 0 ? others : `No pair of ${name} is wrong in the recorded frames.`;
             return;
         }
         this.setPlaying(false);
@@ -393,36 +348,25 @@ class Replay {
 }
 
 function startReplay(root) {
-    const canvas = element("canvas", {
-        class: "replay",
-        tabindex: 0,
-        role: "img",
-        "aria-label": "The recorded objects; arrow keys turn the camera, plus and minus zoom",
-    });
+    const label = "The recorded objects; arrow keys turn the camera, plus and minus zoom";
+    const canvas = element("canvas", { class: "replay", tabindex: 0, role: "img", "aria-label": label });
+    const fail = (state, why) => {
+        root.dataset.state = state;
+        root.append(element("p", {}, why));
+    };
     // Kept after it was shown, so that it can be saved, and read by whoever checks it.
-    const gl = canvas.getContext("webgl2", {
-        alpha: false,
-        antialias: true,
-        preserveDrawingBuffer: true,
-    });
+    const kept = { alpha: false, antialias: true, preserveDrawingBuffer: true };
+    const gl = canvas.getContext("webgl2", kept);
     if (!gl) {
-        root.dataset.state = "without WebGL2";
-        root.append(
-            element(
-                "p",
-                {},
-                "The recording cannot be replayed here: this browser has no WebGL2, " +
-                    "or it is turned off. What was wrong in its frames is in the table.",
-            ),
-        );
+        const why = "this browser has no WebGL2, or it is turned off. What was wrong in its frames is in the table.";
+        fail("without WebGL2", `The recording cannot be replayed here: ${why}`);
         return;
     }
     try {
         const json = JSON.parse(root.querySelector("script").textContent);
         new Replay(root, gl, canvas, new Recording(json));
     } catch (error) {
-        root.dataset.state = "failed";
-        root.append(element("p", {}, `The recording could not be replayed: ${error.message}`));
+        fail("failed", `The recording could not be replayed: ${error.message}`);
     }
 }
 

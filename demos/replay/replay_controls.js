@@ -18,12 +18,11 @@ function element(tag, attributes = {}, ...children) {
 const button = (text, label, onclick) =>
     element("button", { type: "button", "aria-label": label, title: label, onclick }, text);
 
-function choice(label, name, options, onchange) {
-    const select = element(
-        "select",
-        { name, onchange },
-        ...options.map(([value, text]) => element("option", { value }, text)),
-    );
+// Of options, a value and a text each; `chosen` is told the value.
+function choice(label, name, options, now, chosen) {
+    const each = options.map(([value, text]) => element("option", { value }, text));
+    const select = element("select", { name, onchange: () => chosen(select.value) }, ...each);
+    select.value = now;
     return { select, label: element("label", {}, `${label} `, select) };
 }
 
@@ -37,41 +36,28 @@ const swatch = (colour, text) => {
     return element("span", {}, box, ` ${text}`);
 };
 
-// `owner`: the broadphase whose finest cells these are, where they are one's.
-function legendOf(colouring, heights, low, cellSize, owner) {
+function legendOf({ colouring, heights, cellSize }, { low, broadphases }) {
+    const legend = [
+        swatch(MISSING_COLOUR, "missing: overlap, not listed"),
+        swatch(EXTRA_COLOUR, "extra: listed, do not overlap"),
+    ];
+    if (colouring === "overlaps") {
+        const counts = ["overlaps none", "2", "4", "6", "8 or more others"];
+        return [...legend, ...counts.map((count, i) => swatch(OVERLAP_COLOURS[i], count))];
+    }
     if (colouring === "height") {
         const bar = element("span", { class: "ramp" });
         bar.style.background = `linear-gradient(to right, ${HEIGHT_COLOURS.join(", ")})`;
-        return [
-            element(
-                "span",
-                {},
-                `y = ${metres(low + heights[0])} `,
-                bar,
-                ` ${metres(low + heights[1])}`,
-            ),
-        ];
+        const [from, to] = heights.map((height) => metres(low[1] + height));
+        return [...legend, element("span", {}, `y = ${from} `, bar, ` ${to}`)];
     }
-    if (colouring === "overlaps") {
-        return OVERLAP_COLOURS.map((colour, i) =>
-            swatch(colour, ["overlaps none", "2", "4", "6", "8 or more others"][i]),
-        );
-    }
+    const owner = broadphases.find((each) => each.cellSize === cellSize)?.name;
     const whose = owner ? `the finest of ${owner}` : "which is no broadphase's own size";
-    return [
-        element(
-            "span",
-            {},
-            `cells of ${metres(cellSize)}, ${whose}, in eight colours: cells side by side differ; ` +
-                "a body is in that of its lowest corner",
-        ),
-    ];
+    const words =
+        `cells of ${metres(cellSize)}, ${whose}, in eight colours: cells side by side differ; ` +
+        "a body is in that of its lowest corner";
+    return [...legend, element("span", {}, words)];
 }
-
-const wrongLegend = () => [
-    swatch(MISSING_COLOUR, "missing: overlap, not listed"),
-    swatch(EXTRA_COLOUR, "extra: listed, do not overlap"),
-];
 
 // How many pairs are wrong in each frame, as bars over the slider.
 class WrongChart {
@@ -90,12 +76,7 @@ class WrongChart {
             // What is not zero is to be seen.
             const height = count > 0 ? Math.max(2, (count / most) * canvas.height) : 0;
             context.fillStyle = colour;
-            context.fillRect(
-                at * step,
-                canvas.height - from - height,
-                Math.max(1, step - 1),
-                height,
-            );
+            context.fillRect(at * step, canvas.height - from - height, Math.max(1, step - 1), height);
             return from + height;
         };
         context.fillStyle = "#8888884d";
@@ -138,15 +119,12 @@ function steerByPointer(canvas, camera, changed) {
         canvas.addEventListener(end, (event) => pointers.delete(event.pointerId));
     }
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-    canvas.addEventListener(
-        "wheel",
-        (event) => {
-            event.preventDefault();
-            camera.zoom(Math.exp(event.deltaY * 0.0015));
-            changed();
-        },
-        { passive: false },
-    );
+    const wheel = (event) => {
+        event.preventDefault();
+        camera.zoom(Math.exp(event.deltaY * 0.0015));
+        changed();
+    };
+    canvas.addEventListener("wheel", wheel, { passive: false });
 }
 
 function steerByKeys(canvas, camera, changed) {

@@ -124,10 +124,8 @@ class Track {
 
     step() {
         const frame = this.now.frame + 1;
-        const [ofBoxes, ofPairs] = [
-            new Reader(this.boxBytes, this.now.boxesAt),
-            new Reader(this.pairBytes, this.now.pairsAt),
-        ];
+        const ofBoxes = new Reader(this.boxBytes, this.now.boxesAt);
+        const ofPairs = new Reader(this.pairBytes, this.now.pairsAt);
         const boxes = nextBoxes(ofBoxes, this.now.boxes);
         const pairs = nextPairs(ofPairs, this.now.pairs, this.pairsListed[frame]);
         this.now = { frame, boxes, boxesAt: ofBoxes.at, pairs, pairsAt: ofPairs.at };
@@ -170,11 +168,6 @@ class Recording {
         });
     }
 
-    // The broadphase whose cells are shown: the one that is judged, or else the first that has cells.
-    withCells(broadphase) {
-        return broadphase.cellSize ? broadphase : this.broadphases.find((each) => each.cellSize);
-    }
-
     // What all objects are like, as the broadphase sees them.
     numbersOf(broadphase, frame) {
         return this.tracks[broadphase.track].at(frame).boxes;
@@ -185,22 +178,14 @@ class Recording {
         return this.tracks[broadphase.track].at(frame).pairs;
     }
 
-    pairCounts(broadphase, frame) {
-        const { pairsInAll, pairs, pairsListed } = this.tracks[broadphase.track];
-        return { inAll: pairsInAll[frame], here: pairs[frame], listed: pairsListed[frame] };
-    }
-
     // Those that are listed: places of two objects each, and whether the pair is missing.
     wrongPairs(broadphase, frame) {
         const missing = broadphase.missingListed[frame];
         const count = missing + broadphase.extraListed[frame];
         return Array.from({ length: count }, (_, i) => {
             const at = broadphase.begins[frame] + 2 * i;
-            return {
-                a: broadphase.places[at],
-                b: broadphase.places[at + 1],
-                isMissing: i < missing,
-            };
+            const [a, b] = broadphase.places.subarray(at, at + 2);
+            return { a, b, isMissing: i < missing };
         });
     }
 
@@ -208,20 +193,14 @@ class Recording {
     box(numbers, place) {
         const at = place * NUMBERS_AN_OBJECT;
         const metres = (k) => (numbers[at + k] / STEPS) * this.extent[k % 3];
-        return {
-            centre: [metres(0), metres(1), metres(2)],
-            edges: [metres(3), metres(4), metres(5)],
-        };
+        return { centre: [0, 1, 2].map(metres), edges: [3, 4, 5].map(metres) };
     }
 
     // Where nearly all objects are: middle, radius, and from where to where in height.
     outline(numbers) {
         const spread = [0, 1, 2].map((axis) => {
-            const sorted = Float64Array.from(
-                { length: this.objects },
-                (_, place) =>
-                    (numbers[place * NUMBERS_AN_OBJECT + axis] / STEPS) * this.extent[axis],
-            ).sort();
+            const centre = (_, place) => this.box(numbers, place).centre[axis];
+            const sorted = Float64Array.from({ length: this.objects }, centre).sort();
             const at = (share) => sorted[Math.round(share * (this.objects - 1))] ?? 0;
             return { low: at(0.01), high: at(0.99) };
         });

@@ -4,16 +4,8 @@
 
 // Of Okabe and Ito, "Color Universal Design", 2008, but for orange and vermilion, which mark wrong
 // pairs; with steps of blue, green and purple, which people of any colour vision can tell apart.
-const CELL_COLOURS = [
-    "#0072b2",
-    "#56b4e9",
-    "#009e73",
-    "#cc79a7",
-    "#f0e442",
-    "#7fc8b0",
-    "#8a7fd0",
-    "#b9bec4",
-];
+const CELL_COLOURS =
+    "#0072b2 #56b4e9 #009e73 #cc79a7 #f0e442 #7fc8b0 #8a7fd0 #b9bec4".split(" ");
 // Viridis, by Smith and van der Walt, at five places.
 const HEIGHT_COLOURS = ["#440154", "#3b528b", "#21918c", "#5ec962", "#fde725"];
 const OVERLAP_COLOURS = ["#c3ccd6", "#8db6dc", "#4f93cf", "#2a62b0", "#1a2f7a"];
@@ -29,24 +21,29 @@ const SCREENS = {
 const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
 const allRgb = (hexes) => new Float32Array(hexes.flatMap(rgb));
 
+const ITEMS_A_ROW = 1024; // of textures that hold two texels an item
+const GLSL = `#version 300 es
+precision highp float;
+precision highp int;
+#define ITEMS_A_ROW ${ITEMS_A_ROW}
+`;
+
+// Of shaders in files, both in each: the vertices' where VERTEX is defined.
 class Program {
-    constructor(gl, vertices, pixels) {
+    constructor(gl, ...files) {
         this.gl = gl;
         this.program = gl.createProgram();
-        for (const [type, source] of [
-            [gl.VERTEX_SHADER, vertices],
-            [gl.FRAGMENT_SHADER, pixels],
-        ]) {
+        for (const type of [gl.VERTEX_SHADER, gl.FRAGMENT_SHADER]) {
+            const define = type === gl.VERTEX_SHADER ? "#define VERTEX\n" : "";
             const shader = gl.createShader(type);
-            gl.shaderSource(shader, source);
+            gl.shaderSource(shader, GLSL + define + files.join(""));
             gl.compileShader(shader);
             gl.attachShader(this.program, shader);
         }
         gl.linkProgram(this.program);
         if (!gl.getProgramParameter(this.program, gl.LINK_STATUS)) {
-            const logs = gl
-                .getAttachedShaders(this.program)
-                .map((each) => gl.getShaderInfoLog(each));
+            const shaders = gl.getAttachedShaders(this.program);
+            const logs = shaders.map((each) => gl.getShaderInfoLog(each));
             throw new Error([gl.getProgramInfoLog(this.program), ...logs].join(" "));
         }
     }
@@ -56,26 +53,26 @@ class Program {
         gl.useProgram(this.program);
         for (const [name, value] of Object.entries(uniforms)) {
             const at = gl.getUniformLocation(this.program, name);
-            if (Number.isInteger(value) && name === "colouring") {
+            if (name === "colouring") {
                 gl.uniform1i(at, value);
-            } else if (typeof value === "number") {
-                gl.uniform1f(at, value);
             } else if (value.length === 16) {
                 gl.uniformMatrix4fv(at, false, value);
             } else if (value.length === 2) {
                 gl.uniform2fv(at, value);
-            } else {
+            } else if (value.length) {
                 gl.uniform3fv(at, value);
+            } else {
+                gl.uniform1f(at, value);
             }
         }
     }
 }
 
-// Rows of numbers that vertex shaders fetch, in texels of four. (Instances of six vertices each take
+// Items of eight numbers each that vertex shaders fetch, in two texels. (Instances of six vertices each take
 // 2.5 times as long where there is no GPU.)
-class Texels {
-    constructor(gl, inner, format, type) {
-        Object.assign(this, { gl, inner, format, type });
+class Items {
+    constructor(gl, Numbers, inner, format, type) {
+        Object.assign(this, { gl, Numbers, inner, format, type });
         this.count = 0;
         this.texture = gl.createTexture();
         this.nothing = gl.createVertexArray(); // all comes from the texels
@@ -85,17 +82,17 @@ class Texels {
         }
     }
 
-    // Room for so many items of eight numbers each.
-    static room(Numbers, count) {
-        return new Numbers(Math.max(1, Math.ceil(count / ITEMS_A_ROW)) * ITEMS_A_ROW * 8);
-    }
-
-    set(numbers, count) {
+    // `fill(texels, at, i)` sets the numbers of the i-th, from `at` on.
+    set(count, fill) {
         const { gl, inner, format, type } = this;
         this.count = count;
-        const [width, height] = [2 * ITEMS_A_ROW, numbers.length / (8 * ITEMS_A_ROW)];
+        const rows = Math.max(1, Math.ceil(count / ITEMS_A_ROW));
+        const texels = new this.Numbers(rows * ITEMS_A_ROW * 8);
+        for (let i = 0; i < count; ++i) {
+            fill(texels, 8 * i, i);
+        }
         gl.bindTexture(gl.TEXTURE_2D, this.texture);
-        gl.texImage2D(gl.TEXTURE_2D, 0, inner, width, height, 0, format, type, numbers);
+        gl.texImage2D(gl.TEXTURE_2D, 0, inner, 2 * ITEMS_A_ROW, rows, 0, format, type, texels);
     }
 
     draw(vertices) {
@@ -106,71 +103,29 @@ class Texels {
     }
 }
 
-// Boxes: their numbers as recorded, and their marks.
-class Objects extends Texels {
-    constructor(gl) {
-        super(gl, gl.RGBA16UI, gl.RGBA_INTEGER, gl.UNSIGNED_SHORT);
-    }
-
-    setAll(numbers, marks) {
-        const texels = Texels.room(Uint16Array, marks.length);
-        for (let i = 0; i < marks.length; ++i) {
-            const [from, to] = [i * NUMBERS_AN_OBJECT, i * 8];
-            for (let axis = 0; axis < 3; ++axis) {
-                texels[to + axis] = numbers[from + axis];
-                texels[to + 4 + axis] = numbers[from + 3 + axis];
-            }
-            texels[to + 3] = numbers[from + 6];
-            texels[to + 7] = marks[i];
-        }
-        this.set(texels, marks.length);
-    }
-}
-
-// Pairs: lines from centre to centre, with a ring where they are marked.
-class Lines extends Texels {
-    constructor(gl) {
-        super(gl, gl.RGBA32F, gl.RGBA, gl.FLOAT);
-    }
-
-    // `placesOf(i)`: the two objects of the i-th; `markOf(i)`: its mark.
-    setAll(count, placesOf, markOf, numbers, extent) {
-        const texels = Texels.room(Float32Array, count);
-        for (let i = 0; i < count; ++i) {
-            placesOf(i).forEach((place, end) => {
-                for (let axis = 0; axis < 3; ++axis) {
-                    const share = numbers[place * NUMBERS_AN_OBJECT + axis] / STEPS;
-                    texels[8 * i + 4 * end + axis] = share * extent[axis];
-                }
-            });
-            texels[8 * i + 3] = markOf(i);
-        }
-        this.set(texels, count);
-    }
-}
-
 class Drawing {
     // `gl` is the canvas's context.
     constructor(gl, recording) {
         this.gl = gl;
         this.recording = recording;
-        this.background = new Program(gl, BACKGROUND_VERTICES, BACKGROUND_PIXELS);
+        this.background = new Program(gl, BACKGROUND_GLSL);
         this.bodies = [
-            new Program(gl, BOX_VERTICES, BOX_PIXELS),
-            new Program(gl, SPHERE_VERTICES, SPHERE_PIXELS),
+            new Program(gl, OBJECTS_GLSL, BOXES_GLSL),
+            new Program(gl, OBJECTS_GLSL, SPHERES_GLSL),
         ];
-        this.pairs = new Program(gl, PAIR_VERTICES, PAIR_PIXELS);
-        this.all = new Objects(gl);
-        this.wrong = new Objects(gl);
+        this.pairs = new Program(gl, PAIRS_GLSL);
+        const objects = () =>
+            new Items(gl, Uint16Array, gl.RGBA16UI, gl.RGBA_INTEGER, gl.UNSIGNED_SHORT);
+        const lines = () => new Items(gl, Float32Array, gl.RGBA32F, gl.RGBA, gl.FLOAT);
+        [this.all, this.wrong] = [objects(), objects()];
+        [this.allLines, this.wrongLines] = [lines(), lines()];
         this.nothing = gl.createVertexArray();
-        this.allLines = new Lines(gl);
-        this.wrongLines = new Lines(gl);
         gl.enable(gl.DEPTH_TEST);
         gl.depthFunc(gl.LEQUAL); // the background is as far as can be
         gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     }
 
-    // The objects of a frame, and the wrong pairs that are to be seen.
+    // The objects of a frame, as recorded, and the wrong pairs that are to be seen.
     setFrame(numbers, wrongPairs) {
         this.numbers = numbers;
         const marks = new Uint8Array(this.recording.objects);
@@ -179,35 +134,43 @@ class Drawing {
                 marks[place] = Math.max(marks[place], isMissing ? 2 : 1);
             }
         }
-        this.all.setAll(numbers, marks);
+        const fill = (texels, to, place) => {
+            const from = place * NUMBERS_AN_OBJECT;
+            for (let axis = 0; axis < 3; ++axis) {
+                texels[to + axis] = numbers[from + axis];
+                texels[to + 4 + axis] = numbers[from + 3 + axis];
+            }
+            texels[to + 3] = numbers[from + 6];
+            texels[to + 7] = marks[place];
+        };
+        this.all.set(marks.length, fill);
         const places = [...new Set(wrongPairs.flatMap(({ a, b }) => [a, b]))];
-        const wrongNumbers = new Uint16Array(places.length * NUMBERS_AN_OBJECT);
-        places.forEach((place, i) => {
-            const at = place * NUMBERS_AN_OBJECT;
-            wrongNumbers.set(numbers.subarray(at, at + NUMBERS_AN_OBJECT), i * NUMBERS_AN_OBJECT);
+        this.wrong.set(places.length, (texels, to, i) => fill(texels, to, places[i]));
+        this.setLines(this.wrongLines, wrongPairs.length, (i) => {
+            const { a, b, isMissing } = wrongPairs[i];
+            return [a, b, isMissing ? 2 : 1];
         });
-        this.wrong.setAll(
-            wrongNumbers,
-            Uint8Array.from(places, (place) => marks[place]),
-        );
-        this.wrongLines.setAll(
-            wrongPairs.length,
-            (i) => [wrongPairs[i].a, wrongPairs[i].b],
-            (i) => (wrongPairs[i].isMissing ? 2 : 1),
-            numbers,
-            this.recording.extent,
-        );
     }
 
     // All pairs of the frame that was set last, two places each.
     setPairs(pairs) {
-        this.allLines.setAll(
-            pairs.length / 2,
-            (i) => pairs.subarray(2 * i, 2 * i + 2),
-            () => 0,
-            this.numbers,
-            this.recording.extent,
-        );
+        this.setLines(this.allLines, pairs.length / 2, (i) => [pairs[2 * i], pairs[2 * i + 1], 0]);
+    }
+
+    // Lines from centre to centre, with a ring where they are marked. `pairOf(i)`: the i-th's two objects, and
+    // its mark.
+    setLines(lines, count, pairOf) {
+        const { extent } = this.recording;
+        lines.set(count, (texels, to, i) => {
+            const pair = pairOf(i);
+            for (let end = 0; end < 2; ++end) {
+                for (let axis = 0; axis < 3; ++axis) {
+                    const share = this.numbers[pair[end] * NUMBERS_AN_OBJECT + axis] / STEPS;
+                    texels[to + 4 * end + axis] = share * extent[axis];
+                }
+            }
+            texels[to + 3] = pair[2];
+        });
     }
 
     // `look`: camera, colouring, cellSize, heights, groundEdge, spheres, pairs, dimming, screen, pixels.
@@ -246,27 +209,25 @@ class Drawing {
     // All of them; then those in wrong pairs once more, to shine through what hides them.
     drawBodies(look, screen, matrices) {
         const { gl, recording } = this;
-        const index = look.spheres ? 1 : 0;
+        const program = this.bodies[look.spheres ? 1 : 0];
         const vertices = look.spheres ? 6 : 18;
-        this.bodies[index].use({
-            both: matrices.both,
-            view: matrices.view,
-            eye: matrices.eye,
-            projection: matrices.projection,
+        const { heights, groundEdge, cellSize, dimming } = look;
+        program.use({
+            ...matrices,
             extent: recording.extent,
             low: recording.low,
-            heights: look.heights,
-            groundEdge: look.groundEdge,
+            heights,
+            groundEdge,
             colouring: COLOURINGS.indexOf(look.colouring),
-            cellSize: look.cellSize,
+            cellSize,
             cellColours: allRgb(CELL_COLOURS),
             heightColours: allRgb(HEIGHT_COLOURS),
             overlapColours: allRgb(OVERLAP_COLOURS),
             missingColour: rgb(MISSING_COLOUR),
             extraColour: rgb(EXTRA_COLOUR),
             dimColour: rgb(screen.dim),
-            dimming: look.dimming,
-            dimmingSingles: look.pairs ? Math.max(0.85, look.dimming) : look.dimming,
+            dimming,
+            dimmingSingles: look.pairs ? Math.max(0.85, dimming) : dimming,
             opacity: 1,
         });
         gl.enable(gl.SAMPLE_ALPHA_TO_COVERAGE);
@@ -274,7 +235,7 @@ class Drawing {
         gl.disable(gl.SAMPLE_ALPHA_TO_COVERAGE);
         gl.disable(gl.DEPTH_TEST);
         gl.enable(gl.BLEND);
-        this.bodies[index].use({ opacity: 0.4 });
+        program.use({ opacity: 0.4 });
         this.wrong.draw(vertices);
     }
 }

@@ -2,12 +2,13 @@
 #include <demos/replay/replay_recording.hpp>
 
 #include <demos/replay/replay_selection.hpp>
-#include <demos/replay/replay_words.hpp>
 #include <demos/report/base64.hpp>
+#include <demos/report/report_text.hpp>
 
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <sstream>
 #include <utility>
 
 namespace hashphase::demos {
@@ -35,6 +36,50 @@ std::size_t sumOf(const std::vector<std::size_t>& counts) {
 
 Json threeNumbers(const Vector3<float>& vector) {
     return {vector.x(), vector.y(), vector.z()};
+}
+
+/// How far the boxes are apart along the axis that parts them most; at most 0 where they overlap.
+struct Gap {
+    double metres = 0;
+    char axis = 'x';
+};
+
+Gap gapBetween(const Aabb<float>& a, const Aabb<float>& b) {
+    const Vector3<double> gaps = (b.min().cast<double>() - a.max().cast<double>())
+                                     .cwiseMax(a.min().cast<double>() - b.max().cast<double>());
+    Eigen::Index axis = 0;
+    const double metres = gaps.maxCoeff(&axis);
+    return {metres, "xyz"[axis]};
+}
+
+std::string lengthAlong(double metres, char axis) {
+    std::ostringstream text;
+    text.precision(3);
+    text << metres << " m along " << axis;
+    return text.str();
+}
+
+/// "Objects 3 and 17 overlap by 0.25 along y, but their pair is missing: 3 is [0 0 0 to 1 1 1], ..."
+std::string wrongPairWords(PairKey pair, bool isMissing, std::span<const Aabb<float>> boxes) {
+    const std::string a = std::to_string(firstOf(pair));
+    const std::string b = std::to_string(secondOf(pair));
+    const Aabb<float>& first = boxes[firstOf(pair)];
+    const Aabb<float>& second = boxes[secondOf(pair)];
+    const Gap gap = gapBetween(first, second);
+    std::string words = "Objects " + a + " and " + b;
+    if (gap.metres > 0) {
+        words += " are " + lengthAlong(gap.metres, gap.axis) + " apart";
+    } else {
+        words += " overlap by " + lengthAlong(-gap.metres, gap.axis);
+    }
+    if (isMissing) {
+        words += ", but their pair is missing";
+    } else if (gap.metres > 0) {
+        words += ", but their pair is listed";
+    } else {
+        words += ", but their pair is listed twice, or against their filters";
+    }
+    return words + ": " + a + " is " + boxText(first) + ", " + b + " is " + boxText(second) + ".";
 }
 
 }  // namespace
@@ -109,18 +154,22 @@ void ReplayRecording::begin(std::span<const Aabb<float>> boxes) {
                    {ReplayTrack(bounds_, objects_), ReplayPairs(settings_.pairs)});
 }
 
+std::optional<PairKey> ReplayRecording::placesOf(PairKey pair) const {
+    const std::uint32_t a = placeOf_[firstOf(pair)];
+    const std::uint32_t b = placeOf_[secondOf(pair)];
+    return a != kNotRecorded && b != kNotRecorded ? std::optional(pairKey(a, b)) : std::nullopt;
+}
+
 /// Places keep the order of the objects' numbers, so that sorted pairs stay sorted.
 std::vector<PairKey> ReplayRecording::amongRecorded(std::span<const PairKey> pairs,
                                                     std::size_t most) const {
     std::vector<PairKey> places;
     for (const PairKey pair : pairs) {
-        const std::uint32_t a = placeOf_[firstOf(pair)];
-        const std::uint32_t b = placeOf_[secondOf(pair)];
-        if (a != kNotRecorded && b != kNotRecorded) {
-            places.push_back(pairKey(a, b));
-            if (places.size() == most) {
-                break;
-            }
+        if (places.size() == most) {
+            break;
+        }
+        if (const std::optional<PairKey> place = placesOf(pair)) {
+            places.push_back(*place);
         }
     }
     return places;
@@ -137,14 +186,11 @@ std::size_t ReplayRecording::list(std::span<const PairKey> pairs, WrongPairs& wr
 void ReplayRecording::describeFirst(const ReplayFrame& frame, WrongPairs& wrong) const {
     for (const bool isMissing : {true, false}) {
         for (const PairKey pair : isMissing ? frame.missing : frame.extra) {
-            const std::uint32_t a = placeOf_[firstOf(pair)];
-            const std::uint32_t b = placeOf_[secondOf(pair)];
-            if (a != kNotRecorded && b != kNotRecorded) {
+            if (const std::optional<PairKey> places = placesOf(pair)) {
                 wrong.first = {{"frame", frames_},
                                {"missing", isMissing},
-                               {"places", {a, b}},
-                               {"words", wrongPairWords(pair, isMissing, frame.boxes[firstOf(pair)],
-                                                        frame.boxes[secondOf(pair)])}};
+                               {"places", {firstOf(*places), secondOf(*places)}},
+                               {"words", wrongPairWords(pair, isMissing, frame.boxes)}};
                 return;
             }
         }

@@ -9,7 +9,6 @@
 // Limits  frames, bytes, objects and pairs end where the settings say; the recording tells all that
 //         it leaves out.
 
-#include <demos/replay/replay_pairs.hpp>
 #include <demos/replay/replay_track.hpp>
 #include <demos/report/json_values.hpp>
 
@@ -95,6 +94,8 @@ private:
     };
 
     void begin(std::span<const Aabb<float>> boxes);
+    /// As places; nothing where one of them is not recorded.
+    [[nodiscard]] std::optional<PairKey> placesOf(PairKey pair) const;
     [[nodiscard]] std::vector<PairKey> amongRecorded(std::span<const PairKey> pairs,
                                                      std::size_t most) const;
     std::size_t list(std::span<const PairKey> pairs, WrongPairs& wrong) const;

@@ -2,7 +2,6 @@
 #include <demos/replay/replay_tab.hpp>
 
 #include <demos/console/format.hpp>
-#include <demos/replay/replay_files.hpp>
 #include <demos/report/html.hpp>
 
 #include <sstream>

@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/replay/replay_track.hpp>
 
-#include <demos/replay/replay_bytes.hpp>
-
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace hashphase::demos {
 namespace {
+
+void appendGroups(std::vector<std::uint8_t>& bytes, std::uint32_t number) {
+    while (number > 127) {
+        bytes.push_back(static_cast<std::uint8_t>(number | 128U));
+        number >>= 7;
+    }
+    bytes.push_back(static_cast<std::uint8_t>(number));
+}
 
 constexpr double kSteps = 65535;
 
@@ -90,6 +97,55 @@ void ReplayTrack::endRun() {
         appendGroups(stream_, unchanged_ - 1);
         unchanged_ = 0;
     }
+}
+
+// --- Pairs ---------------------------------------------------------------------------------------
+
+void ReplayPairs::add(std::span<const PairKey> pairs) {
+    counts_.push_back(pairs.size());
+    if (pairs.size() > most_) {
+        pairs = {};
+    }
+    listedCounts_.push_back(pairs.size());
+    lastBegin_ = stream_.size();
+    writeDeaths(pairs);
+    std::vector<PairKey> births;
+    std::ranges::set_difference(pairs, listed_, std::back_inserter(births));
+    appendGroups(stream_, static_cast<std::uint32_t>(births.size()));
+    std::uint32_t a = 0;
+    std::uint32_t b = 0;
+    for (const PairKey pair : births) {
+        const std::uint32_t from = firstOf(pair) == a ? b : firstOf(pair);
+        appendGroups(stream_, firstOf(pair) - a);
+        appendGroups(stream_, secondOf(pair) - from);
+        a = firstOf(pair);
+        b = secondOf(pair);
+    }
+    listed_.assign(pairs.begin(), pairs.end());
+}
+
+void ReplayPairs::writeDeaths(std::span<const PairKey> pairs) {
+    std::vector<std::uint32_t> stayedBetween;
+    std::uint32_t stayed = 0;
+    auto now = pairs.begin();
+    for (const PairKey pair : listed_) {
+        now = std::find_if(now, pairs.end(), [pair](PairKey each) { return each >= pair; });
+        if (now != pairs.end() && *now == pair) {
+            ++stayed;
+        } else {
+            stayedBetween.push_back(std::exchange(stayed, 0));
+        }
+    }
+    appendGroups(stream_, static_cast<std::uint32_t>(stayedBetween.size()));
+    for (const std::uint32_t number : stayedBetween) {
+        appendGroups(stream_, number);
+    }
+}
+
+void ReplayPairs::removeLast() {
+    stream_.resize(lastBegin_);
+    counts_.pop_back();
+    listedCounts_.pop_back();
 }
 
 }  // namespace hashphase::demos

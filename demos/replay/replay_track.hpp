@@ -1,22 +1,32 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The boxes of many frames in a few bytes each, as a page can hold and JavaScript can read them.
+// The boxes and the pairs of many frames in a few bytes each change, as a page can hold and JavaScript can
+// read them. Both streams are of bytes and of numbers in groups of seven bits, the lowest first, of which all
+// but the last have bit 7 set: small numbers take one byte.
 //
+// --- Boxes
 // Numbers  seven of 16 bits for an object in a frame: its centre and its edges along x, y, z, in steps
 //          of a 65535th of the bounds along that axis, and how many others it overlaps with.
 // Error    half a step in the centre, half a step in the edge. What leaves the bounds is cut off there;
 //          a box with a NaN has no size.
 // Stream   for the objects of a frame in order, a byte that tells which of the seven (bits 0 to 6)
 //          differ from the frame before (from 0 in the first); then those differences, modulo 2^16 as
-//          signed numbers, zigzag, in groups of seven bits (replay_bytes.hpp). After a byte of 0 comes,
-//          in such groups, how many more objects in a row have no differences.
+//          signed numbers, zigzag. After a byte of 0 comes how many more objects in a row have no differences.
+// --- Pairs
+// Stream   for each frame: how many pairs of the frame
+//          before are gone; of each, how many that stay lie between it and the one that went before;
+//          how many are new; of each, in order, how much larger its smaller place is than that of the
+//          one before (at first than 0), and how much larger its larger place is than the larger one
+//          before if the smaller ones are the same, else than its own smaller one.
+// Limit    of a frame with too many pairs none is listed; they are counted all the same.
 
 #include <demos/scenes/pair_key.hpp>
 
 #include <broadphase/aabb.hpp>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -53,6 +63,35 @@ private:
     std::vector<std::uint8_t> stream_;
     std::size_t lastBegin_ = 0;    // in the stream, of the frame that was added last
     std::uint32_t unchanged_ = 0;  // in a row, not yet in the stream
+};
+
+class ReplayPairs {
+public:
+    /// Lists at most so many pairs in a frame.
+    explicit ReplayPairs(std::size_t most) : most_(most) {}
+
+    /// Adds a frame: its pairs, sorted, each of them once.
+    void add(std::span<const PairKey> pairs);
+
+    /// Takes back the frame that was added last; after that, none can be added.
+    void removeLast();
+
+    /// How many pairs each frame has, and how many of them are listed: all or none.
+    [[nodiscard]] const std::vector<std::size_t>& counts() const noexcept { return counts_; }
+    [[nodiscard]] const std::vector<std::size_t>& listedCounts() const noexcept {
+        return listedCounts_;
+    }
+    [[nodiscard]] const std::vector<std::uint8_t>& stream() const noexcept { return stream_; }
+
+private:
+    void writeDeaths(std::span<const PairKey> pairs);
+
+    std::size_t most_;
+    std::vector<PairKey> listed_;  // of the last frame
+    std::vector<std::size_t> counts_;
+    std::vector<std::size_t> listedCounts_;
+    std::vector<std::uint8_t> stream_;
+    std::size_t lastBegin_ = 0;  // in the stream, of the frame that was added last
 };
 
 }  // namespace hashphase::demos

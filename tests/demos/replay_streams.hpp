@@ -3,7 +3,6 @@
 
 // Reads a replay's streams again, as their headers describe them.
 
-#include <demos/replay/replay_pairs.hpp>
 #include <demos/replay/replay_track.hpp>
 
 #include <cstddef>
