@@ -3,8 +3,7 @@
 
 // Pictures that were looked at and found right, in the folder golden/ beside a test.
 
-#include <demos/viewer/draw/image_difference.hpp>
-#include <demos/viewer/draw/png.hpp>
+#include <demos/viewer/draw/image.hpp>
 
 #include <gtest/gtest.h>
 

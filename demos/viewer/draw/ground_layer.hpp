@@ -3,12 +3,8 @@
 
 // The ground, with the lines of a grid and a map of how full its cells are.
 
-#include <demos/viewer/draw/gl_objects.hpp>
-#include <demos/viewer/draw/ground_levels.hpp>
-#include <demos/viewer/draw/ground_mesh.hpp>
-#include <demos/viewer/draw/shader_program.hpp>
-#include <demos/viewer/draw/shading.hpp>
-#include <demos/viewer/draw/stream_buffer.hpp>
+#include <demos/viewer/draw/ground.hpp>
+#include <demos/viewer/draw/layer.hpp>
 
 #include <array>
 #include <optional>
@@ -19,37 +15,29 @@ class GroundLayer {
 public:
     GroundLayer();
 
-    /// Takes over what the picture's ground is, if it is another one than in the last call. Returns
-    /// whether it was.
-    bool update(const DrawnGround& ground);
+    /// Takes over what the picture's ground is, if it is another one than in the last call.
+    void update(const DrawnGround& ground);
 
     /// As of the last update().
-    [[nodiscard]] const GroundMesh& mesh() const { return mesh_; }
+    [[nodiscard]] const Ground& ground() const { return ground_; }
 
     void draw(const Picture& picture, const View& view);
 
 private:
-    /// What is drawn on the ground; a program for each, so that nobody pays for what is not shown.
-    struct Variant {
-        explicit Variant(bool hasLines, bool hasHeat);
-        ShaderProgram program;
-    };
-
     void setUniforms(const ShaderProgram& program, const Picture& picture);
     void uploadHeat(const HeatMap& heatMap);
 
-    std::array<Variant, 4> variants_;
+    // With lines (1) or heat (2) or both, so that nobody pays for what is not shown.
+    std::array<ShaderProgram, 4> programs_;
     GlVertexArray vertexArray_;
     GlBuffer vertexBuffer_;
-    StreamBuffer indexBuffer_;
+    StreamBuffer indexBuffer_{GL_ELEMENT_ARRAY_BUFFER};
     GlTexture loads_;
-    GLsizei loadsWidth_ = 0;
-    GLsizei loadsHeight_ = 0;
     GlTexture ramp_;
-    GroundMesh mesh_;
-    GroundLevels levels_;
+    Ground ground_;
     std::vector<std::uint32_t> indices_;  // what is drawn
     std::optional<std::uint64_t> version_;
+    std::size_t cornerCount_ = 0;  // of that version
 };
 
 }  // namespace hashphase::demos

@@ -1,30 +1,22 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/viewer/draw/headless_context.hpp>
 
-#include <demos/viewer/draw/draw_error.hpp>
+#include <demos/viewer/draw/image.hpp>
 
 #include <epoxy/egl.h>
-#include <epoxy/gl.h>
 
 #include <array>
+#include <string>
+#include <vector>
 
 namespace hashphase::demos {
 
 namespace {
 
-constexpr const char* kAdvice =
-    " (Debian, Ubuntu: apt-get install libegl1 libegl-mesa0 libgl1-mesa-dri; they draw in software "
-    "where there is no GPU).";
-
-struct HeadlessDisplay {
-    EGLDisplay display = EGL_NO_DISPLAY;
-    EGLContext context = EGL_NO_CONTEXT;
-};
-
 /// A current context on the display, or none.
-HeadlessDisplay tryDisplay(EGLDisplay display) {
+EGLContext tryDisplay(EGLDisplay display) {
     if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) == EGL_FALSE) {
-        return {};
+        return EGL_NO_CONTEXT;
     }
     constexpr std::array<EGLint, 7> kAttributes{EGL_CONTEXT_MAJOR_VERSION,
                                                 3,
@@ -34,62 +26,56 @@ HeadlessDisplay tryDisplay(EGLDisplay display) {
                                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                                                 EGL_NONE};
     if (eglBindAPI(EGL_OPENGL_API) == EGL_TRUE) {
-        const EGLContext context =
+        EGLContext context =
             eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, kAttributes.data());
         if (context != EGL_NO_CONTEXT &&
             eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE) {
-            return {display, context};
+            return context;
         }
     }
     eglTerminate(display);
-    return {};
+    return EGL_NO_CONTEXT;
 }
 
-HeadlessDisplay tryDevices() {
+/// EGL's devices, then the one without surfaces.
+std::vector<EGLDisplay> displays() {
+    std::vector<EGLDisplay> all;
     std::array<EGLDeviceEXT, 8> devices{};
     EGLint count = 0;
-    if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device") ||
+    if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device") &&
         eglQueryDevicesEXT(static_cast<EGLint>(devices.size()), devices.data(), &count) ==
-            EGL_FALSE) {
-        return {};
-    }
-    for (EGLint i = 0; i < count; ++i) {
-        const auto found =
-            tryDisplay(eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr));
-        if (found.context != EGL_NO_CONTEXT) {
-            return found;
+            EGL_TRUE) {
+        for (EGLint i = 0; i < count; ++i) {
+            all.push_back(eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr));
         }
     }
-    return {};
+    if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless")) {
+        all.push_back(
+            eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
+    }
+    return all;
 }
 
-HeadlessDisplay trySurfaceless() {
-    if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless")) {
-        return {};
-    }
-    return tryDisplay(
-        eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
+[[noreturn]] void refuse(const std::string& why) {
+    throw DrawError("No picture can be drawn without a window, because EGL " + why +
+                    " (Debian, Ubuntu: apt-get install libegl1 libegl-mesa0 libgl1-mesa-dri; they "
+                    "draw in software where there is no GPU).");
 }
 
 }  // namespace
 
 HeadlessContext::HeadlessContext() {
     if (!epoxy_has_egl()) {
-        throw DrawError(std::string("No picture can be drawn without a window, because EGL is not "
-                                    "installed") +
-                        kAdvice);
+        refuse("is not installed");
     }
-    HeadlessDisplay found = tryDevices();
-    if (found.context == EGL_NO_CONTEXT) {
-        found = trySurfaceless();
+    for (EGLDisplay display : displays()) {
+        context_ = tryDisplay(display);
+        if (context_ != EGL_NO_CONTEXT) {
+            display_ = display;
+            return;
+        }
     }
-    if (found.context == EGL_NO_CONTEXT) {
-        throw DrawError(std::string("No picture can be drawn without a window, because EGL offers "
-                                    "no OpenGL 3.3 on any device: a driver is missing") +
-                        kAdvice);
-    }
-    display_ = found.display;
-    context_ = found.context;
+    refuse("offers no OpenGL 3.3 on any device: a driver is missing");
 }
 
 // The display is the process's, and stays: others may draw on it.
@@ -98,12 +84,6 @@ HeadlessContext::~HeadlessContext() {
         eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     }
     eglDestroyContext(display_, context_);
-}
-
-std::string HeadlessContext::description() const {
-    const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-    const auto* version = reinterpret_cast<const char*>(glGetString(GL_VERSION));
-    return std::string(renderer) + ", OpenGL " + version;
 }
 
 }  // namespace hashphase::demos

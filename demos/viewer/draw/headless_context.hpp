@@ -4,8 +4,6 @@
 // OpenGL without a window, a display or a GPU: for tests, and for pictures made where nobody looks
 // on.
 
-#include <string>
-
 namespace hashphase::demos {
 
 /// An OpenGL 3.3 context of the calling thread, current from its creation to its end. Draws
@@ -18,9 +16,6 @@ public:
     HeadlessContext(const HeadlessContext&) = delete;
     HeadlessContext& operator=(const HeadlessContext&) = delete;
     ~HeadlessContext();
-
-    /// The renderer's name and OpenGL's version, as the driver gives them.
-    [[nodiscard]] std::string description() const;
 
 private:
     void* display_ = nullptr;  // an EGLDisplay

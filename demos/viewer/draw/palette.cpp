@@ -50,6 +50,26 @@ const Palette& palette(Theme theme) {
     return theme == Theme::light ? kLight : kDark;
 }
 
+const ThemeColours& themeColours(Theme theme) {
+    static const ThemeColours kLight{.skyAbove = {0.36F, 0.57F, 0.82F},
+                                     .horizon = {0.87F, 0.91F, 0.94F},
+                                     .skyBelow = {0.72F, 0.74F, 0.74F},
+                                     .meadow = {0.71F, 0.76F, 0.63F},
+                                     .summit = {0.88F, 0.86F, 0.77F},
+                                     .slope = {0.66F, 0.61F, 0.52F},
+                                     .shadow = {0.42F, 0.45F, 0.55F},
+                                     .hazeAtMost = 0.95F};
+    static const ThemeColours kDark{.skyAbove = {0.035F, 0.045F, 0.085F},
+                                    .horizon = {0.16F, 0.19F, 0.26F},
+                                    .skyBelow = {0.06F, 0.065F, 0.08F},
+                                    .meadow = {0.155F, 0.19F, 0.21F},
+                                    .summit = {0.27F, 0.30F, 0.33F},
+                                    .slope = {0.13F, 0.14F, 0.18F},
+                                    .shadow = {0.30F, 0.32F, 0.42F},
+                                    .hazeAtMost = 0.9F};
+    return theme == Theme::light ? kLight : kDark;
+}
+
 const std::array<Colour, 8>& qualitativeColours(Theme theme) {
     static constexpr std::array<Colour, 8> kLight{kBlue,    kOrange,    kGreen,  kPurple,
                                                   kSkyBlue, kVermilion, kYellow, kGrey};

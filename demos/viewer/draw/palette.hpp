@@ -31,10 +31,29 @@ struct Palette {
 
 [[nodiscard]] const Palette& palette(Theme theme);
 
+/// What a theme paints the world with.
+struct ThemeColours {
+    Vector3<float> skyAbove;  // straight up
+    Vector3<float> horizon;   // and what haze fades to
+    Vector3<float> skyBelow;  // straight down, where there is no ground
+    Vector3<float> meadow;    // ground that lies level, in the lowlands
+    Vector3<float> summit;    // in the highlands
+    Vector3<float> slope;     // ground that is steep
+    Vector3<float> shadow;    // what the dark side of things turns to
+    float hazeAtMost;         // share of the haze at the far plane
+};
+
+[[nodiscard]] const ThemeColours& themeColours(Theme theme);
+
 /// Eight kinds, in the order in which they are best taken.
 [[nodiscard]] const std::array<Colour, 8>& qualitativeColours(Theme theme);
 
 /// From dark blue for 0 to yellow for 1; what lies outside is as what is nearest.
 [[nodiscard]] Colour sequentialColour(float share);
+
+/// As shaders have it, from 0 to 1.
+[[nodiscard]] inline Vector3<float> asVector(Colour colour) {
+    return Vector3<float>(colour.red, colour.green, colour.blue) / 255;
+}
 
 }  // namespace hashphase::demos

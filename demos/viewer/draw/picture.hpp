@@ -57,8 +57,8 @@ struct DrawnLine {
     bool isOnTop = false;
 };
 
-/// The ground: triangles, three corners each. What is drawn is smooth: corners at one place share their
-/// normal.
+/// The ground: triangles, three corners each, two for each square of a lattice over x and z. What is drawn is
+/// smooth: corners at one place share their normal.
 struct DrawnGround {
     std::span<const Vector3<float>> corners;
     std::uint64_t version = 0;  // another number whenever the corners are others

@@ -26,10 +26,8 @@ public:
     Renderer& operator=(const Renderer&) = delete;
     ~Renderer();
 
-    /// The next picture is of another size. What was drawn is lost.
+    /// The next picture is of that size. Where it is another one, what was drawn is lost.
     void resize(int width, int height);
-    [[nodiscard]] int width() const;
-    [[nodiscard]] int height() const;
 
     /// Returns when OpenGL has the picture; it may still be drawing it.
     void draw(const Picture& picture) { draw(picture, framebuffer()); }

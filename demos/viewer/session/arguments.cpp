@@ -6,7 +6,7 @@
 #include <demos/console/number_words.hpp>
 #include <demos/scenes/input_error.hpp>
 
-#include <limits>
+#include <algorithm>
 #include <optional>
 #include <sstream>
 #include <variant>
@@ -14,120 +14,121 @@
 namespace hashphase::demos {
 namespace {
 
-bool isNumber(const std::string& word, double& number) {
-    const std::optional<double> read = finiteNumber(word);
-    number = read.value_or(0);
-    return read.has_value();
+std::vector<std::string> wordsOf(std::string_view line) {
+    std::istringstream text{std::string(line)};
+    std::vector<std::string> words;
+    for (std::string word; text >> word && !word.starts_with('#');) {
+        words.push_back(word);
+    }
+    return words;
 }
 
-bool isNumber(const std::string& word, long long& number) {
+std::optional<double> wholeOf(const std::string& word) {
     const bool isNegative = word.starts_with('-');
     const std::optional<std::uint64_t> read = wholeNumber(word.substr(isNegative ? 1 : 0));
-    if (!read || *read > std::uint64_t{std::numeric_limits<long long>::max()}) {
-        return false;
+    return read ? std::optional(static_cast<double>(*read) * (isNegative ? -1 : 1)) : std::nullopt;
+}
+
+/// What a number is to be.
+std::string requirementOf(const Parameter& parameter) {
+    switch (parameter.kind) {
+        case Parameter::Kind::field:
+            return demos::requirementOf(*parameter.of);
+        case Parameter::Kind::whole:
+            return "a whole number from " + std::to_string(static_cast<long long>(parameter.low)) +
+                   " to " + std::to_string(static_cast<long long>(parameter.high));
+        default:
+            return "a number from " + plain(parameter.low) + " to " + plain(parameter.high);
     }
-    number = static_cast<long long>(*read) * (isNegative ? -1 : 1);
-    return true;
+}
+
+std::optional<double> numberOf(const Parameter& parameter, const std::string& word) {
+    double low = parameter.low;
+    double high = parameter.high;
+    if (parameter.kind == Parameter::Kind::field) {
+        const auto& limits = std::get<NumberField>(parameter.of->kind);
+        low = limits.least;
+        high = limits.most;
+        if (word == kNoBound && high == NumberField::kInfinite) {
+            return high;
+        }
+    }
+    const std::optional<double> number =
+        parameter.kind == Parameter::Kind::whole ? wholeOf(word) : finiteNumber(word);
+    return number && *number >= low && *number <= high ? number : std::nullopt;
+}
+
+double placeOf(const Parameter& parameter, const std::string& word) {
+    const auto place = std::ranges::find(parameter.known, word);
+    if (place == parameter.known.end()) {
+        const std::vector<std::string> names(parameter.known.begin(), parameter.known.end());
+        throw InputError(unknownNameSentence(parameter.what, word, names));
+    }
+    return static_cast<double>(place - parameter.known.begin());
+}
+
+/// Of a usage, as "X" of "[X Y Z]".
+std::string nameIn(std::string word) {
+    std::erase_if(word,
+                  [](char letter) { return letter == '[' || letter == ']' || letter == '.'; });
+    return word;
+}
+
+template <class Fail>
+double valueOf(const Parameter& parameter, const std::string& name, const std::string& word,
+               const Fail& fail) {
+    switch (parameter.kind) {
+        case Parameter::Kind::word:
+            return 0;
+        case Parameter::Kind::choice:
+            return placeOf(parameter, word);
+        case Parameter::Kind::onOff:
+            if (word != "on" && word != "off") {
+                fail(quotedWord(word) + " is neither on nor off.");
+            }
+            return word == "on" ? 1 : 0;
+        default:
+            break;
+    }
+    const std::optional<double> number = numberOf(parameter, word);
+    if (!number) {
+        fail(name + " is " + requirementOf(parameter) + ", not " + quotedWord(word) + ".");
+    }
+    return number.value_or(0);
 }
 
 }  // namespace
 
 std::string firstWord(std::string_view line) {
-    std::istringstream words{std::string(line)};
-    std::string first;
-    words >> first;
-    return first.starts_with('#') ? std::string() : first;
+    const std::vector<std::string> words = wordsOf(line);
+    return words.empty() ? std::string() : words.front();
 }
 
-Arguments::Arguments(std::string_view line, std::string_view usage) : usage_(usage) {
-    std::istringstream words{std::string(line)};
-    for (std::string word; words >> word && !word.starts_with('#');) {
-        words_.push_back(word);
-    }
-}
-
-void Arguments::fail(const std::string& fault) const {
-    throw InputError(fault + " The command is: " + usage_);
-}
-
-const std::string& Arguments::take(std::string_view name) {
-    if (isEmpty()) {
-        fail(std::string(name) + " is missing.");
-    }
-    return words_[next_++];
-}
-
-double Arguments::number(std::string_view name, double low, double high) {
-    const std::string& word = take(name);
-    double number = 0;
-    if (!isNumber(word, number) || !(number >= low && number <= high)) {
-        fail(std::string(name) + " is a number from " + plain(low) + " to " + plain(high) +
-             ", not " + quotedWord(word) + ".");
-    }
-    return number;
-}
-
-double Arguments::number(std::string_view name, const EffectsField& field) {
-    const auto& limits = std::get<NumberField>(field.kind);
-    const std::string& word = take(name);
-    if (word == kNoBound && limits.most == NumberField::kInfinite) {
-        return NumberField::kInfinite;
-    }
-    double number = 0;
-    if (!isNumber(word, number) || !(number >= limits.least && number <= limits.most)) {
-        fail(std::string(name) + " is " + requirementOf(field) + ", not " + quotedWord(word) + ".");
-    }
-    return number;
-}
-
-double Arguments::numberOr(std::string_view name, double low, double high, double otherwise) {
-    return isEmpty() ? otherwise : number(name, low, high);
-}
-
-long long Arguments::whole(std::string_view name, long long low, long long high) {
-    const std::string& word = take(name);
-    long long number = 0;
-    if (!isNumber(word, number) || number < low || number > high) {
-        fail(std::string(name) + " is a whole number from " + std::to_string(low) + " to " +
-             std::to_string(high) + ", not " + quotedWord(word) + ".");
-    }
-    return number;
-}
-
-long long Arguments::wholeOr(std::string_view name, long long low, long long high,
-                             long long otherwise) {
-    return isEmpty() ? otherwise : whole(name, low, high);
-}
-
-std::size_t Arguments::choice(std::string_view name, std::span<const std::string_view> known) {
-    const std::string& word = take(name);
-    for (std::size_t i = 0; i < known.size(); ++i) {
-        if (known[i] == word) {
-            return i;
+Arguments::Arguments(std::string_view line, std::string_view usage,
+                     std::span<const Parameter> parameters)
+    : words(wordsOf(line)) {
+    words.erase(words.begin());
+    const auto fail = [usage](const std::string& fault) {
+        throw InputError(fault + " The command is: " + std::string(usage));
+    };
+    const std::vector<std::string> names = wordsOf(usage);
+    const bool repeats = !parameters.empty() && parameters.back().repeats;
+    const std::size_t count = repeats ? std::max(words.size(), std::size_t{1}) : parameters.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const Parameter& parameter = parameters[std::min(i, parameters.size() - 1)];
+        const std::string name = parameter.what.empty()
+                                     ? nameIn(names[std::min(i + 1, names.size() - 1)])
+                                     : std::string(parameter.what);
+        if (!has(i) && parameter.isOptional) {
+            break;
         }
+        if (!has(i)) {
+            fail(name + " is missing.");
+        }
+        numbers.push_back(valueOf(parameter, name, words[i], fail));
     }
-    const std::vector<std::string> names(known.begin(), known.end());
-    throw InputError(unknownNameSentence(name, word, names));
-}
-
-bool Arguments::onOff(bool now) {
-    if (isEmpty()) {
-        return !now;
-    }
-    const std::string& word = take("on or off");
-    if (word != "on" && word != "off") {
-        fail(quotedWord(word) + " is neither on nor off.");
-    }
-    return word == "on";
-}
-
-std::string Arguments::word(std::string_view name) {
-    return take(name);
-}
-
-void Arguments::end() const {
-    if (!isEmpty()) {
-        fail(quotedWord(words_[next_]) + " is one word too many.");
+    if (words.size() > numbers.size()) {
+        fail(quotedWord(words[numbers.size()]) + " is one word too many.");
     }
 }
 

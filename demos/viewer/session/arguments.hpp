@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The words of a command, taken one by one. Each fault is an InputError that names the word and says what
-// would be right.
+// The words of a command, read. Each fault is an InputError that names the word and says what would be right.
 
 #include <demos/scenes/effects_fields.hpp>
 
@@ -13,42 +12,37 @@
 
 namespace hashphase::demos {
 
-class Arguments {
-public:
-    /// Words are separated by spaces; one that begins with '#' begins a comment. `usage` is the whole form, for messages: "pick X Y".
-    Arguments(std::string_view line, std::string_view usage);
+/// What a word of a command can be.
+struct Parameter {
+    enum class Kind : std::uint8_t { word, number, whole, field, choice, onOff };
 
-    [[nodiscard]] bool isEmpty() const noexcept { return next_ == words_.size(); }
+    Kind kind = Kind::word;
+    double low = 0;  // of a number, the least and the most
+    double high = 0;
+    std::string_view what = {};  // is chosen; else what the command's usage calls it
+    std::vector<std::string_view> known = {};
+    const EffectsField* of = nullptr;  // a scene file's, a NumberField: whatever it may have
+    bool isOptional = false;           // with all that follow
+    bool repeats = false;              // it is the last
+};
 
-    /// A number from `low` to `high`; `name` is what it stands for.
-    [[nodiscard]] double number(std::string_view name, double low, double high);
-    [[nodiscard]] double numberOr(std::string_view name, double low, double high, double otherwise);
-    /// One that a scene file may have in that field, which is a NumberField; without a bound as there.
-    [[nodiscard]] double number(std::string_view name, const EffectsField& field);
-    /// The same as the first of a whole one.
-    [[nodiscard]] long long whole(std::string_view name, long long low, long long high);
-    [[nodiscard]] long long wholeOr(std::string_view name, long long low, long long high,
-                                    long long otherwise);
+struct Arguments {
+    /// Words are separated by spaces; one that begins with '#' begins a comment. `usage` is the command's
+    /// whole form, which names its parameters: "push [X Y Z]".
+    Arguments(std::string_view line, std::string_view usage, std::span<const Parameter> parameters);
 
-    /// The position of the word among those that are known.
-    [[nodiscard]] std::size_t choice(std::string_view name,
-                                     std::span<const std::string_view> known);
-
+    [[nodiscard]] bool has(std::size_t i) const { return i < words.size(); }
+    [[nodiscard]] float number(std::size_t i) const { return static_cast<float>(numbers[i]); }
+    [[nodiscard]] std::size_t index(std::size_t i) const {
+        return static_cast<std::size_t>(numbers[i]);
+    }
     /// "on", "off", or what is not so now, where there is no word.
-    [[nodiscard]] bool onOff(bool now);
+    [[nodiscard]] bool onOff(std::size_t i, bool now) const {
+        return has(i) ? numbers[i] > 0 : !now;
+    }
 
-    [[nodiscard]] std::string word(std::string_view name);
-
-    /// Nothing may follow.
-    void end() const;
-
-private:
-    [[noreturn]] void fail(const std::string& fault) const;
-    [[nodiscard]] const std::string& take(std::string_view name);
-
-    std::vector<std::string> words_;
-    std::size_t next_ = 1;  // the first word is the command
-    std::string usage_;
+    std::vector<std::string> words;  // after the command's own
+    std::vector<double> numbers;     // the same; of a choice its place, of on 1, of other words 0
 };
 
 /// The first word of a line; empty for none.

@@ -20,18 +20,21 @@ bool isNear(const Aabb<float>& box) {
            box.max().cwiseAbs().maxCoeff() <= BoxRecorder::kFarthest;
 }
 
+std::string reach() {
+    return withThousands(static_cast<std::uint64_t>(BoxRecorder::kFarthest)) + " m";
+}
+
 }  // namespace
 
 BoxRecorder::BoxRecorder(const std::filesystem::path& path, int frames)
     : path_(path), partial_(path.string() + ".partial"), frames_(frames) {
     std::error_code ignored;
-    if (std::filesystem::is_directory(path_, ignored)) {
-        throw InputError(path_.string() + " cannot be written.");
-    }
+    refuseIf(std::filesystem::is_directory(path_, ignored));
     file_.open(partial_, std::ios::binary);
-    refuseIfBad();
+    refuseIf(!file_);
 }
 
+// By another one, so that the destructor takes the file back where this one throws.
 BoxRecorder::BoxRecorder(const std::filesystem::path& path, std::string_view title,
                          const Stage& stage, int frames)
     : BoxRecorder(path, frames) {
@@ -50,14 +53,16 @@ BoxRecorder::BoxRecorder(const std::filesystem::path& path, std::string_view tit
         throw InputError(this->path() + " is not written: there are no bodies" +
                          (leftOut_ > 0 ? " but " + leftOutText() : "") + ".");
     }
-    writeName(title);
-    writeName("hashphase wander");
+    for (const std::string_view name : {title, std::string_view("hashphase wander")}) {
+        std::array<char, 128> field{};
+        name.copy(field.data(), field.size() - 1);
+        file_.write(field.data(), field.size());
+    }
     for (const auto number :
          {static_cast<std::int32_t>(indices_.size()), std::int32_t{frames}, 0, 0}) {
         writeNumber(number);
     }
-    writeBox(
-        {Vector3<float>::Zero(), Vector3<float>::Zero()});  // the world's, which is not known yet
+    writeBox(Aabb<float>(Vector3<float>::Zero(), Vector3<float>::Zero()));  // see putInPlace()
     writeFrame();
 }
 
@@ -76,10 +81,8 @@ void BoxRecorder::add(const Stage& stage) {
         if (box.min().hasNaN() || !isNear(box)) {
             throw InputError(faultSentence(
                 "body " + std::to_string(index) +
-                (box.min().hasNaN()
-                     ? " is gone"
-                     : " is farther than " + withThousands(static_cast<std::uint64_t>(kFarthest)) +
-                           " m from the origin")));
+                (box.min().hasNaN() ? " is gone"
+                                    : " is farther than " + reach() + " from the origin")));
         }
     }
     writeFrame();
@@ -89,17 +92,19 @@ void BoxRecorder::add(const Stage& stage) {
     ++count_;
 }
 
+std::string BoxRecorder::summary() const {
+    return "wrote the boxes of " + withThousands(static_cast<std::uint64_t>(count_)) +
+           " frames to " + path() + (leftOut_ == 0 ? "" : ", without " + leftOutText());
+}
+
 std::string BoxRecorder::progress() const {
     return withThousands(static_cast<std::uint64_t>(count_)) + " of " +
            withThousands(static_cast<std::uint64_t>(frames_)) + " frames";
 }
 
 std::string BoxRecorder::leftOutText() const {
-    const std::string reach = withThousands(static_cast<std::uint64_t>(kFarthest)) + " m";
-    return leftOut_ == 0
-               ? ""
-               : withThousands(leftOut_) + (leftOut_ == 1 ? " body that is" : " bodies that are") +
-                     " farther than " + reach + " from the origin";
+    return withThousands(leftOut_) + (leftOut_ == 1 ? " body that is" : " bodies that are") +
+           " farther than " + reach() + " from the origin";
 }
 
 std::string BoxRecorder::faultSentence(const std::string& reason) const {
@@ -112,12 +117,6 @@ template <class Number>
 void BoxRecorder::writeNumber(Number value) {
     const auto bytes = std::bit_cast<std::array<char, sizeof(Number)>>(value);
     file_.write(bytes.data(), bytes.size());
-}
-
-void BoxRecorder::writeName(std::string_view text) {
-    std::array<char, 128> field{};
-    text.copy(field.data(), field.size() - 1);
-    file_.write(field.data(), field.size());
 }
 
 void BoxRecorder::writeBox(const Aabb<float>& box) {
@@ -134,23 +133,22 @@ void BoxRecorder::writeFrame() {
         writeBox(boxes_[index]);
         world_.extend(boxes_[index]);
     }
-    refuseIfBad();
+    refuseIf(!file_);
 }
 
+// The world's box is known at the end.
 void BoxRecorder::putInPlace() {
     file_.seekp(kWorldBoxPlace);
     writeBox(world_);
     file_.close();
-    refuseIfBad();
+    refuseIf(!file_);
     std::error_code error;
     std::filesystem::rename(partial_, path_, error);
-    if (error) {
-        throw InputError(path() + " cannot be written.");
-    }
+    refuseIf(bool(error));
 }
 
-void BoxRecorder::refuseIfBad() const {
-    if (!file_) {
+void BoxRecorder::refuseIf(bool isBad) const {
+    if (isBad) {
         throw InputError(path() + " cannot be written.");
     }
 }

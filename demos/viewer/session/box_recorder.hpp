@@ -34,11 +34,8 @@ public:
     /// Whether all frames are there, and the file is in its place.
     [[nodiscard]] bool isComplete() const noexcept { return count_ == frames_; }
 
-    /// Whom the recording is without, "3 bodies that are ..."; empty where all are in it.
-    [[nodiscard]] std::string leftOutText() const;
-    [[nodiscard]] std::uint64_t frameCount() const noexcept {
-        return static_cast<std::uint64_t>(count_);
-    }
+    /// What is to be said when it is: where it is, and without whom.
+    [[nodiscard]] std::string summary() const;
     /// How many frames there are, "3 of 60 frames"; and what is to be said where there will be no more.
     [[nodiscard]] std::string progress() const;
     [[nodiscard]] std::string faultSentence(const std::string& reason) const;
@@ -48,13 +45,13 @@ public:
 
 private:
     BoxRecorder(const std::filesystem::path& path, int frames);
+    [[nodiscard]] std::string leftOutText() const;
     template <class Number>
     void writeNumber(Number value);
-    void writeName(std::string_view text);
     void writeBox(const Aabb<float>& box);
     void writeFrame();
     void putInPlace();
-    void refuseIfBad() const;
+    void refuseIf(bool isBad) const;
 
     std::filesystem::path path_;
     std::filesystem::path partial_;  // what is written

@@ -29,7 +29,7 @@ public:
     /// Stays where it is, in a scene of these bounds.
     void setBounds(const Aabb<float>& bounds) { bounds_ = bounds; }
 
-    void setMode(CameraMode mode);
+    void setMode(CameraMode mode) { mode_ = mode; }
     [[nodiscard]] CameraMode mode() const noexcept { return mode_; }
 
     /// To the right, up and forward, as it looks; a camera that looks down goes over the ground. One that
@@ -65,24 +65,22 @@ public:
     [[nodiscard]] static std::span<const Limits, kStateSize> stateLimits();
 
 private:
+    /// What a mode remembers. From above, `at` is what lies below, and there is no pitch; free, it is the eye,
+    /// and there is no distance; else it is the body that is followed.
+    struct Stand {
+        Vector3<float> at = Vector3<float>::Zero();
+        float distance = 0;
+        float yaw = 0;
+        float pitch = 0;
+    };
+
+    [[nodiscard]] Stand& stand() { return stands_[static_cast<std::size_t>(mode_)]; }
+    [[nodiscard]] std::array<float*, kStateSize> numbers();
     void keepWithinLimits() { setState(mode_, state()); }
-    [[nodiscard]] float reach() const;
 
     CameraMode mode_ = CameraMode::top;
     Aabb<float> bounds_;
-    // From above.
-    Vector3<float> centre_ = Vector3<float>::Zero();
-    float height_ = 100;
-    float topYaw_ = 0;
-    // Free.
-    Vector3<float> eye_ = Vector3<float>::Zero();
-    float yaw_ = 0;
-    float pitch_ = 0;
-    // Following.
-    Vector3<float> target_ = Vector3<float>::Zero();
-    float distance_ = 20;
-    float followYaw_ = 0;
-    float followPitch_ = -0.4F;
+    std::array<Stand, kCameraModes.size()> stands_;
 };
 
 }  // namespace hashphase::demos

@@ -2,11 +2,15 @@
 #include <demos/viewer/session/command_log.hpp>
 
 #include <demos/report/json_values.hpp>
+#include <demos/scenes/effects_fields.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <demos/viewer/session/commands.hpp>
+#include <demos/viewer/session/session.hpp>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <sstream>
 
 namespace hashphase::demos {
 namespace {
@@ -60,29 +64,52 @@ void requireLogged(const std::string& line) {
     }
 }
 
-}  // namespace
-
-void CommandLog::begin(const SceneChoice& choice) {
-    *this = {};
-    choice_ = choice;
+// Read back as the same number, and not as the nearest with so many digits.
+std::string exactText(double number) {
+    if (number == NumberField::kInfinite) {
+        return std::string(kNoBound);
+    }
+    std::array<char, 32> text{};
+    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
 }
+
+// First what is not declared, then what is, which needs nothing that is not.
+void logEffects(const Stage& stage, CommandLog& log) {
+    const SceneEffects& effects = stage.effects();
+    for (const bool isOn : {false, true}) {
+        for (const Effect effect : kAllEffects) {
+            if (stage.possibleEffects().contains(effect) &&
+                effects.set().contains(effect) == isOn) {
+                log.add(0, "effect " + std::string(nameOf(effect)) + (isOn ? " on" : " off"));
+            }
+        }
+    }
+    log.add(0, "cell " + exactText(effects.grid.cellSize));
+    log.add(0, "ratio " + exactText(effects.grid.levelRatio));
+    if (effects.proximity) {
+        log.add(0, "radius " + exactText(effects.proximity->radius));
+    }
+    log.add(0, "broadphase " + std::string(stage.broadphase().name));
+}
+
+}  // namespace
 
 void CommandLog::note(std::uint64_t frame, std::uint64_t result) {
     // FNV-1a, by Fowler, Noll and Vo.
-    hash_ = (hash_ ^ result) * 0x100000001b3U;
-    frames_ = frame;
+    hash = (hash ^ result) * 0x100000001b3U;
+    frames = frame;
     if (frame % kHashEvery == 0) {
-        hashes_.push_back(hash_);
+        hashes.push_back(hash);
     }
 }
 
 std::uint64_t CommandLog::sameUntil(const CommandLog& other) const {
     const auto [mine, theirs] =
-        std::mismatch(hashes_.begin(), hashes_.end(), other.hashes_.begin(), other.hashes_.end());
-    const std::uint64_t shorter = std::min(frames_, other.frames_);
-    if ((mine != hashes_.end() && theirs != other.hashes_.end()) ||
-        (frames_ == other.frames_ && hash_ != other.hash_)) {
-        return kHashEvery * static_cast<std::uint64_t>(mine - hashes_.begin());
+        std::mismatch(hashes.begin(), hashes.end(), other.hashes.begin(), other.hashes.end());
+    const std::uint64_t shorter = std::min(frames, other.frames);
+    if ((mine != hashes.end() && theirs != other.hashes.end()) ||
+        (frames == other.frames && hash != other.hash)) {
+        return kHashEvery * static_cast<std::uint64_t>(mine - hashes.begin());
     }
     return shorter;
 }
@@ -91,20 +118,20 @@ std::string CommandLog::text() const {
     Json json;
     json["schema"] = "hashphase/wander-recording";
     json["version"] = kVersion;
-    json["scene"] = choice_.name;
-    json["file"] = choice_.file;
-    json["objects"] = orNull(choice_.objects);
-    json["seed"] = choice_.seed;
-    json["frames"] = frames_;
-    json["hash"] = hexadecimal(hash_);
+    json["scene"] = choice.name;
+    json["file"] = choice.file;
+    json["objects"] = orNull(choice.objects);
+    json["seed"] = choice.seed;
+    json["frames"] = frames;
+    json["hash"] = hexadecimal(hash);
     json["hashEvery"] = kHashEvery;
-    Json& hashes = json["hashes"] = Json::array();
-    for (const std::uint64_t hash : hashes_) {
-        hashes.push_back(hexadecimal(hash));
+    json["hashes"] = Json::array();
+    for (const std::uint64_t each : hashes) {
+        json["hashes"].push_back(hexadecimal(each));
     }
-    Json& commands = json["commands"] = Json::array();
-    for (const LoggedCommand& command : commands_) {
-        commands.push_back({{"frame", command.frame}, {"command", command.line}});
+    json["commands"] = Json::array();
+    for (const LoggedCommand& command : commands) {
+        json["commands"].push_back({{"frame", command.frame}, {"command", command.line}});
     }
     return textOf(json);
 }
@@ -114,30 +141,30 @@ CommandLog CommandLog::parse(std::string_view text, const std::string& name) {
         const Json json = Json::parse(text);
         requireVersion(json);
         CommandLog log;
-        log.choice_.name = json.at("scene").get<std::string>();
-        log.choice_.file = json.at("file").get<std::string>();
+        log.choice.name = json.at("scene").get<std::string>();
+        log.choice.file = json.at("file").get<std::string>();
         if (!json.at("objects").is_null()) {
-            log.choice_.objects = countIn(json, "objects", kMostObjects);
+            log.choice.objects = countIn(json, "objects", kMostObjects);
         }
-        log.choice_.seed = countIn(json, "seed", kMostSeed);
-        log.frames_ = countIn(json, "frames", kMostFrames);
-        log.hash_ = fromHexadecimal(json.at("hash").get<std::string>());
+        log.choice.seed = countIn(json, "seed", kMostSeed);
+        log.frames = countIn(json, "frames", kMostFrames);
+        log.hash = fromHexadecimal(json.at("hash").get<std::string>());
         for (const Json& hash : json.at("hashes")) {
-            log.hashes_.push_back(fromHexadecimal(hash.get<std::string>()));
+            log.hashes.push_back(fromHexadecimal(hash.get<std::string>()));
         }
         for (const Json& command : json.at("commands")) {
-            log.commands_.push_back(
+            log.commands.push_back(
                 {countIn(command, "frame", kMostFrames), command.at("command").get<std::string>()});
-            requireLogged(log.commands_.back().line);
+            requireLogged(log.commands.back().line);
         }
         const auto comesLater = [](const LoggedCommand& a, const LoggedCommand& b) {
             return a.frame < b.frame;
         };
-        if (!std::is_sorted(log.commands_.begin(), log.commands_.end(), comesLater) ||
-            log.hashes_.size() != log.frames_ / kHashEvery) {
+        if (!std::is_sorted(log.commands.begin(), log.commands.end(), comesLater) ||
+            log.hashes.size() != log.frames / kHashEvery) {
             throw InputError("its frames are out of order, or hashes are missing");
         }
-        if (log.frames_ > 0 && log.frames_ % kHashEvery == 0 && log.hashes_.back() != log.hash_) {
+        if (log.frames > 0 && log.frames % kHashEvery == 0 && log.hashes.back() != log.hash) {
             throw InputError("its last hash is not the one of all frames");
         }
         return log;
@@ -148,6 +175,37 @@ CommandLog CommandLog::parse(std::string_view text, const std::string& name) {
     } catch (const InputError& error) {
         throw InputError(name + " cannot be read as a recording: " + error.what() + ".");
     }
+}
+
+// --- What a session begins with ------------------------------------------------------------------
+
+void logSetting(const Session& session, CommandLog& log) {
+    const auto nameOf = [](const auto& names, auto value) {
+        return ' ' + std::string(names[static_cast<std::size_t>(value)]);
+    };
+    const ViewOptions& options = session.options;
+    std::ostringstream line;
+    line.precision(9);  // which a float is read back by
+    const auto add = [&](const auto&... parts) {
+        line.str({});
+        (line << ... << parts);
+        log.add(0, line.str());
+    };
+    add("size ", session.width, ' ', session.height);
+    std::ostringstream state;
+    state.precision(9);
+    for (const float number : session.camera.state()) {
+        state << ' ' << number;
+    }
+    add("pose", nameOf(kCameraModes, session.camera.mode()), state.str());
+    logEffects(*session.stage, log);
+    add("colour", nameOf(kColourings, options.colouring));
+    for (std::size_t i = 0; i < kOverlays.size(); ++i) {
+        add("overlay", nameOf(kOverlays, i), options.overlays[i] ? " on" : " off");
+    }
+    add("dots ", options.dots);
+    add("theme", nameOf(kThemes, options.theme));
+    add("check ", session.isChecking ? "on" : "off");
 }
 
 }  // namespace hashphase::demos

@@ -21,24 +21,17 @@ struct LoggedCommand {
     friend bool operator==(const LoggedCommand&, const LoggedCommand&) = default;
 };
 
-class CommandLog {
-public:
+struct CommandLog {
     /// Hashes are kept of every so many frames.
     static constexpr std::uint64_t kHashEvery = 60;
 
-    void begin(const SceneChoice& choice);
     void add(std::uint64_t frame, std::string_view line) {
-        commands_.push_back({frame, std::string(line)});
+        commands.push_back({frame, std::string(line)});
     }
     /// Takes in what came out of a frame.
     void note(std::uint64_t frame, std::uint64_t result);
 
-    [[nodiscard]] const SceneChoice& choice() const noexcept { return choice_; }
-    [[nodiscard]] const std::vector<LoggedCommand>& commands() const noexcept { return commands_; }
-    [[nodiscard]] std::uint64_t frameCount() const noexcept { return frames_; }
-    [[nodiscard]] std::uint64_t hash() const noexcept { return hash_; }
-
-    /// The frame up to which both have seen the same, as far as their hashes tell; frameCount() of the shorter
+    /// The frame up to which both have seen the same, as far as their hashes tell; `frames` of the shorter
     /// one where there is no difference.
     [[nodiscard]] std::uint64_t sameUntil(const CommandLog& other) const;
 
@@ -46,12 +39,16 @@ public:
     [[nodiscard]] std::string text() const;
     [[nodiscard]] static CommandLog parse(std::string_view text, const std::string& name);
 
-private:
-    SceneChoice choice_;
-    std::vector<LoggedCommand> commands_;
-    std::uint64_t frames_ = 0;
-    std::uint64_t hash_ = 0xcbf29ce484222325U;
-    std::vector<std::uint64_t> hashes_;  // after every kHashEvery frames
+    SceneChoice choice = {};
+    std::vector<LoggedCommand> commands = {};
+    std::uint64_t frames = 0;
+    std::uint64_t hash = 0xcbf29ce484222325U;
+    std::vector<std::uint64_t> hashes = {};  // after every kHashEvery frames
 };
+
+struct Session;
+
+/// Adds the commands that set up a new session as this one is set, where logged ones can.
+void logSetting(const Session& session, CommandLog& log);
 
 }  // namespace hashphase::demos

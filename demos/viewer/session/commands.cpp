@@ -1,18 +1,95 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/viewer/session/commands.hpp>
 
-#include <demos/console/nearest_name.hpp>
+#include <demos/console/format.hpp>
+#include <demos/console/result_file.hpp>
 #include <demos/scenes/effects_fields.hpp>
 #include <demos/scenes/input_error.hpp>
-#include <demos/viewer/session/command_actions.hpp>
+#include <demos/viewer/session/session.hpp>
 
+#include <algorithm>
 #include <array>
-#include <charconv>
-#include <sstream>
-#include <vector>
+#include <numbers>
 
 namespace hashphase::demos {
 namespace {
+
+using Names = std::vector<std::string_view>;
+using Kind = Parameter::Kind;
+
+/// Of a reading to a number.
+constexpr std::array<std::string_view, 6> kRelations{"=", "!=", "<", "<=", ">", ">="};
+constexpr double kDegree = std::numbers::pi / 180;
+
+// --- Parameters ----------------------------------------------------------------------------------
+
+const Parameter kWord{};
+const Parameter kOptionalWord{.isOptional = true};
+const Parameter kOnOff{.kind = Kind::onOff, .isOptional = true};
+const Parameter kFar{.kind = Kind::number, .low = -1e6, .high = 1e6};  // [m], [pixels]
+const Parameter kDegrees{.kind = Kind::number, .low = -360, .high = 360};
+const Parameter kSide{.kind = Kind::whole, .low = kLeastSide, .high = kMostSide};
+
+Parameter numberFrom(double low, double high, bool isOptional = false) {
+    return {.kind = Kind::number, .low = low, .high = high, .isOptional = isOptional};
+}
+
+Parameter wholeFrom(double low, double high, bool isOptional = false) {
+    return {.kind = Kind::whole, .low = low, .high = high, .isOptional = isOptional};
+}
+
+template <class Known>
+Parameter oneOf(std::string_view what, const Known& known) {
+    return {.kind = Kind::choice, .what = what, .known = Names(known.begin(), known.end())};
+}
+
+/// The one that is named, or the one after the present one: see chosenOrNext().
+template <class Known>
+Parameter oneOrNext(std::string_view what, const Known& known) {
+    Parameter parameter = oneOf(what, known);
+    parameter.known.push_back("next");
+    parameter.isOptional = true;
+    return parameter;
+}
+
+template <class Value>
+void chooseOrNext(const Arguments& given, std::size_t count, Value& value) {
+    const std::size_t chosen = given.has(0) ? given.index(0) : count;
+    value =
+        static_cast<Value>(chosen < count ? chosen : (static_cast<std::size_t>(value) + 1) % count);
+}
+
+/// Commands take what files may have, so that whatever a file has can be recorded.
+Parameter fileField(std::string_view section, std::string_view name) {
+    const std::span<const EffectsField> fields = effectsFields();
+    return {.kind = Kind::field,
+            .of = &*std::ranges::find_if(fields, [&](const EffectsField& field) {
+                return field.section == section && field.name == name;
+            })};
+}
+
+Names effectNames() {
+    Names names(kAllEffects.size());
+    std::ranges::transform(kAllEffects, names.begin(), nameOf);
+    return names;
+}
+
+Names broadphasesAndNext() {
+    Names names;
+    for (const BroadphaseKind& kind : broadphaseKinds()) {
+        names.push_back(kind.name);
+    }
+    names.push_back("next");
+    return names;
+}
+
+std::vector<Parameter> ofPose() {
+    std::vector<Parameter> parameters{oneOf("camera", kCameraModes)};
+    for (const auto& [low, high] : Camera::stateLimits()) {
+        parameters.push_back(numberFrom(double{low}, double{high}));
+    }
+    return parameters;
+}
 
 // "top|free|follow"
 std::string anyOf(std::span<const std::string_view> names) {
@@ -23,77 +100,293 @@ std::string anyOf(std::span<const std::string_view> names) {
     return all;
 }
 
-const auto& commands() {
+Vector3<float> vectorAt(const Arguments& given, std::size_t i) {
+    return {given.number(i), given.number(i + 1), given.number(i + 2)};
+}
+
+float radiansAt(const Arguments& given, std::size_t i) {
+    return static_cast<float>(given.numbers[i] * kDegree);
+}
+
+Pixel pixelAt(const Arguments& given, std::size_t i) {
+    return {given.numbers[i], given.numbers[i + 1]};
+}
+
+// --- The scene, and what runs --------------------------------------------------------------------
+
+void scene(Session& session, const Arguments& given) {
+    SceneChoice choice = session.choice;
+    const std::span<const ViewerScene> scenes = viewerScenes();
+    const std::string word = given.has(0) ? given.words[0] : "next";
+    if (word == "next" || word == "previous") {
+        const auto now = std::ranges::find(scenes, choice.name, &ViewerScene::name);
+        const auto place = static_cast<std::size_t>(now - scenes.begin());
+        const std::size_t step = word == "next" ? 1 : scenes.size() - 1;
+        choice.name = scenes[(place + step) % scenes.size()].name;
+    } else {
+        choice.name = word;
+    }
+    choice.file.clear();
+    choice.objects.reset();
+    session.choose(choice);
+}
+
+void objects(Session& session, const Arguments& given) {
+    SceneChoice choice = session.choice;
+    choice.objects = given.index(0);
+    session.choose(choice);
+}
+
+void seed(Session& session, const Arguments& given) {
+    SceneChoice choice = session.choice;
+    choice.seed = given.index(0);
+    if (isBoxRecording(choice)) {
+        throw InputError("A recording of boxes has no seed.");
+    }
+    session.choose(choice);
+}
+
+void pause(Session& session, const Arguments& given) {
+    const bool isStill = !session.isPlaying && !session.isWaiting();
+    session.isPlaying = !given.onOff(0, isStill);
+    if (!session.isPlaying) {
+        session.stepsWaiting = 0;
+    }
+}
+
+void effect(Session& session, const Arguments& given) {
+    EffectSet effects = session.stage->effects().set();
+    const Effect named = kAllEffects[given.index(0)];
+    const bool isOn = given.onOff(1, effects.contains(named));
+    if (isOn && !session.stage->possibleEffects().contains(named)) {
+        throw InputError("This scene cannot have " + std::string(nameOf(named)) + "; it can have " +
+                         namesOf(session.stage->possibleEffects()) + ".");
+    }
+    if (isOn) {
+        effects = effects | needsOf(named);
+        effects.insert(named);
+    } else {
+        for (const Effect other : kAllEffects) {
+            if (needsOf(other).contains(named)) {
+                effects.erase(other);
+            }
+        }
+        effects.erase(named);
+    }
+    session.declare(effects);
+}
+
+// The kind after the present one with which so many bodies can be watched. Ours is one, for any number.
+const BroadphaseKind& nextQuickKind(const Session& session, std::string& skipped) {
+    const std::span<const BroadphaseKind> kinds = broadphaseKinds();
+    auto place = static_cast<std::size_t>(&session.stage->broadphase() - kinds.data());
+    for (;;) {
+        place = (place + 1) % kinds.size();
+        const BroadphaseKind& kind = kinds[place];
+        if (session.stage->size() <= kind.liveUpTo) {
+            return kind;
+        }
+        skipped += (skipped.empty() ? "" : " and ") + std::string(kind.name) + " (for up to " +
+                   withThousands(kind.liveUpTo) + ")";
+    }
+}
+
+void broadphase(Session& session, const Arguments& given) {
+    const std::span<const BroadphaseKind> kinds = broadphaseKinds();
+    if (given.index(0) < kinds.size()) {
+        session.setBroadphase(kinds[given.index(0)]);
+        return;
+    }
+    std::string skipped;
+    session.setBroadphase(nextQuickKind(session, skipped));
+    if (!skipped.empty()) {
+        session.say("passed over " + skipped + ", as there are " +
+                    withThousands(session.stage->size()) +
+                    " bodies; \"broadphase NAME\" takes one all the same");
+    }
+}
+
+void changeGrid(Session& session, double GridConfig::*variable, double value) {
+    SceneEffects effects = session.stage->effects();
+    effects.grid.*variable = value;
+    session.declare(effects);
+}
+
+void radius(Session& session, const Arguments& given) {
+    SceneEffects effects = session.stage->effects();
+    if (!effects.proximity) {
+        throw InputError("The radius is that of proximity: run \"effect proximity on\" before.");
+    }
+    effects.proximity->radius = given.numbers[0];
+    session.declare(effects);
+}
+
+// --- The camera, and who is selected -------------------------------------------------------------
+
+void pose(Session& session, const Arguments& given) {
+    Camera::State state{};
+    for (std::size_t i = 0; i < state.size(); ++i) {
+        state[i] = given.number(i + 1);
+    }
+    session.camera.setState(static_cast<CameraMode>(given.index(0)), state);
+}
+
+void size(Session& session, const Arguments& given) {
+    session.width = static_cast<int>(given.index(0));
+    session.height = static_cast<int>(given.index(1));
+}
+
+void box(Session& session, const Arguments& given) {
+    session.rectangle.reset();
+    session.selectBetween(pixelAt(given, 0), pixelAt(given, 2));
+}
+
+void drag(Session& session, const Arguments& given) {
+    session.rectangle =
+        DrawnRectangle{pixelAt(given, 0).cast<float>(), pixelAt(given, 2).cast<float>()};
+}
+
+void clear(Session& session, const Arguments& /*given*/) {
+    session.rectangle.reset();
+    session.forgetSelection();
+}
+
+void push(Session& session, const Arguments& given) {
+    const Vector3<float> velocity = given.has(0) ? vectorAt(given, 0) : Vector3<float>(0, 12, 0);
+    const auto pushed = std::ranges::count_if(session.selected, [&](std::uint32_t index) {
+        return session.stage->push(index, velocity);
+    });
+    session.say("pushed " + withThousands(static_cast<std::uint64_t>(pushed)));
+}
+
+void overlay(Session& session, const Arguments& given) {
+    bool& isShown = session.options.overlays[given.index(0)];
+    isShown = given.onOff(1, isShown);
+}
+
+// --- Files and numbers ---------------------------------------------------------------------------
+
+void save(Session& session, const Arguments& given) {
+    const std::string path = given.has(0) ? given.words[0] : "hashphase-wander.json";
+    ResultFile file(path);
+    file.write([&session](std::ostream& out) { out << session.log.text(); });
+    session.say("recorded " + withThousands(session.log.frames) + " frames in " + path);
+}
+
+void print(Session& session, const Arguments& given) {
+    std::string line;
+    for (const std::string& name : given.words) {
+        line += (line.empty() ? "" : "  ") + name + " " + plain(session.reading(name));
+    }
+    session.say(line);
+}
+
+void expect(Session& session, const Arguments& given) {
+    const double read = session.reading(given.words[0]);
+    const double wanted = given.numbers[2];
+    const std::array<bool, 6> holds{read == wanted, read != wanted,
+                                    read<wanted, read <= wanted, read> wanted, read >= wanted};
+    if (!holds[given.index(1)]) {
+        session.noteFailure("frame " + std::to_string(session.frame) + ": " + given.words[0] +
+                            " is " + plain(read) + ", but was to be " + given.words[1] + " " +
+                            plain(wanted));
+    }
+}
+
+// --- The tables ----------------------------------------------------------------------------------
+
+using S = Session&;
+using A = const Arguments&;
+
+std::vector<CommandKind> makeCommands() {
     using enum CommandRole;
-    static const std::array all{
-        CommandKind{"scene", chooses, "scene NAME|next|previous", "put another scene on stage",
-                    actions::scene},
-        CommandKind{"objects", chooses, "objects N", "begin again with so many bodies",
-                    actions::objects},
-        CommandKind{"seed", chooses, "seed N", "begin again with another seed", actions::seed},
-        CommandKind{"restart", steers, "restart", "begin again", actions::restart},
-        CommandKind{"pause", steers, "pause [on|off]", "stand still, or go on", actions::pause},
-        CommandKind{"step", steers, "step [N]", "stand still after so many frames", actions::step},
-        CommandKind{"effect", changes, "effect NAME [on|off]",
-                    "declare an effect as the scene does, with what it needs, or take it back",
-                    actions::effect},
-        CommandKind{"broadphase", changes, "broadphase NAME|next",
-                    "who finds the pairs; the next one that is quick enough", actions::broadphase},
-        CommandKind{"check", shows, "check [on|off]", "compare all pairs with the exact ones",
-                    actions::check},
-        CommandKind{"cell", changes, "cell SIZE",
-                    "edge of the grid's cells [m]; 0 chooses by itself", actions::cell},
-        CommandKind{"ratio", changes, "ratio RATIO",
-                    "between the grid's levels, where the cell size is fixed", actions::ratio},
-        CommandKind{"radius", changes, "radius R", "how far agents look around [m]",
-                    actions::radius},
-        CommandKind{"camera", changes, "camera " + anyOf(kCameraModes),
-                    "look from above, fly, or follow who is picked", actions::camera},
-        CommandKind{"home", changes, "home", "take the camera to where it began", actions::home},
-        CommandKind{"move", changes, "move RIGHT UP FORWARD", "move the camera [m]", actions::move},
-        CommandKind{"turn", changes, "turn LEFT UP", "turn the camera [degrees]", actions::turn},
-        CommandKind{"zoom", changes, "zoom FACTOR", "go nearer (above 1) or farther away",
-                    actions::zoom},
-        CommandKind{"eye", changes, "eye X Y Z YAW PITCH", "put the free camera there [m, degrees]",
-                    actions::eye},
-        CommandKind{"pose", changes, "pose MODE NUMBER...", "put the camera as a recording has it",
-                    actions::pose},
-        CommandKind{"freeze", changes, "freeze [on|off]",
-                    "cull by the camera of this moment, and look from outside", actions::freeze},
-        CommandKind{"size", changes, "size WIDTH HEIGHT",
-                    "of the picture, up to 8,192 each way [pixels]", actions::size},
-        CommandKind{"pick", changes, "pick X Y", "ask who is at the pixel", actions::pick},
-        CommandKind{"box", changes, "box X0 Y0 X1 Y1", "select who is between two pixels",
-                    actions::box},
-        CommandKind{"drag", changes, "drag X0 Y0 X1 Y1", "show the rectangle between two pixels",
-                    actions::drag},
-        CommandKind{"clear", changes, "clear", "select nobody", actions::clear},
-        CommandKind{"push", changes, "push [X Y Z]", "add a velocity to who is selected [m/s]",
-                    actions::push},
-        CommandKind{"delete", changes, "delete", "remove who is selected", actions::remove},
-        CommandKind{"recolour", changes, "recolour", "mark who is selected", actions::recolour},
-        CommandKind{"colour", shows, "colour [" + anyOf(kColourings) + "|next]",
-                    "what colours tell", actions::colour},
-        CommandKind{"overlay", shows, "overlay " + anyOf(kOverlays) + " [on|off]",
-                    "what is shown of the scene, and laid over it", actions::overlay},
-        CommandKind{"dots", shows, "dots PIXELS", "draw bodies at least with that radius",
-                    actions::dots},
-        CommandKind{"theme", shows, "theme [" + anyOf(kThemes) + "|next]", "light or dark",
-                    actions::theme},
-        CommandKind{"panel", steers, "panel [on|off]", "show the panel", actions::panel},
-        CommandKind{"help", steers, "help [on|off]", "show keys and commands", actions::help},
-        CommandKind{"screenshot", writes, "screenshot [FILE]", "write a picture (PNG)",
-                    actions::screenshot},
-        CommandKind{"save", writes, "save [FILE]",
-                    "write a recording of all that was done since the scene began", actions::save},
-        CommandKind{"capture", writes, "capture FILE [FRAMES]",
-                    "write the boxes of so many frames as they are simulated (.aabbs)",
-                    actions::capture},
-        CommandKind{"quit", steers, "quit", "end the program", actions::quit},
-        CommandKind{"print", steers, "print READING...", "say numbers", actions::print},
-        CommandKind{"expect", steers, "expect READING " + anyOf(actions::kRelations) + " NUMBER",
-                    "complain unless it is so", actions::expect},
+    std::vector<CommandKind> all;
+    const auto add = [&all](CommandRole role, const std::string& usage, std::string_view help,
+                            CommandKind::Action run, std::vector<Parameter> parameters = {}) {
+        all.push_back({firstWord(usage), role, usage, help, std::move(parameters), run});
     };
+    add(chooses, "scene NAME|next|previous", "put another scene on stage", scene, {kOptionalWord});
+    add(chooses, "objects N", "begin again with so many bodies", objects,
+        {wholeFrom(1, kMostObjects)});
+    add(chooses, "seed N", "begin again with another seed", seed, {wholeFrom(0, kMostSeed)});
+    add(steers, "restart", "begin again", [](S s, A) { s.choose(s.choice); });
+    add(steers, "pause [on|off]", "stand still, or go on", pause, {kOnOff});
+    add(steers, "step [N]", "stand still after so many frames",
+        [](S s, A a) { s.askForSteps(a.has(0) ? a.index(0) : 1); }, {wholeFrom(1, 1e6, true)});
+    add(changes, "effect NAME [on|off]",
+        "declare an effect as the scene does, with what it needs, or take it back", effect,
+        {oneOf("effect", effectNames()), kOnOff});
+    add(changes, "broadphase NAME|next", "who finds the pairs; the next one that is quick enough",
+        broadphase, {oneOf("broadphase", broadphasesAndNext())});
+    add(shows, "check [on|off]", "compare all pairs with the exact ones",
+        [](S s, A a) { s.setChecking(a.onOff(0, s.isChecking)); }, {kOnOff});
+    add(changes, "cell SIZE", "edge of the grid's cells [m]; 0 chooses by itself",
+        [](S s, A a) { changeGrid(s, &GridConfig::cellSize, a.numbers[0]); },
+        {fileField("grid", "cellSize")});
+    add(changes, "ratio RATIO", "between the grid's levels, where the cell size is fixed",
+        [](S s, A a) { changeGrid(s, &GridConfig::levelRatio, a.numbers[0]); },
+        {fileField("grid", "levelRatio")});
+    add(changes, "radius R", "how far agents look around [m]", radius,
+        {fileField("effects.proximity", "radius")});
+    add(changes, "camera " + anyOf(kCameraModes), "look from above, fly, or follow who is picked",
+        [](S s, A a) { s.setCameraMode(static_cast<CameraMode>(a.index(0))); },
+        {oneOf("camera", kCameraModes)});
+    add(changes, "home", "take the camera to where it began", [](S s, A) { s.goHome(); });
+    add(changes, "move RIGHT UP FORWARD", "move the camera [m]",
+        [](S s, A a) { s.camera.move(vectorAt(a, 0)); }, {kFar, kFar, kFar});
+    add(changes, "turn LEFT UP", "turn the camera [degrees]",
+        [](S s, A a) { s.camera.turn(radiansAt(a, 0), radiansAt(a, 1)); }, {kDegrees, kDegrees});
+    add(changes, "zoom FACTOR", "go nearer (above 1) or farther away",
+        [](S s, A a) { s.camera.zoom(a.number(0)); }, {numberFrom(0.01, 100)});
+    add(changes, "eye X Y Z YAW PITCH", "put the free camera there [m, degrees]",
+        [](S s, A a) { s.camera.place(vectorAt(a, 0), radiansAt(a, 3), radiansAt(a, 4)); },
+        {kFar, kFar, kFar, kDegrees, kDegrees});
+    add(changes, "pose MODE NUMBER...", "put the camera as a recording has it", pose, ofPose());
+    add(changes, "freeze [on|off]", "cull by the camera of this moment, and look from outside",
+        [](S s, A a) { s.freeze(a.onOff(0, s.frozen.has_value())); }, {kOnOff});
+    add(changes, "size WIDTH HEIGHT", "of the picture, up to 8,192 each way [pixels]", size,
+        {kSide, kSide});
+    add(changes, "pick X Y", "ask who is at the pixel", [](S s, A a) { s.pick(pixelAt(a, 0)); },
+        {kFar, kFar});
+    add(changes, "box X0 Y0 X1 Y1", "select who is between two pixels", box,
+        {kFar, kFar, kFar, kFar});
+    add(changes, "drag X0 Y0 X1 Y1", "show the rectangle between two pixels", drag,
+        {kFar, kFar, kFar, kFar});
+    add(changes, "clear", "select nobody", clear);
+    add(changes, "push [X Y Z]", "add a velocity to who is selected [m/s]", push,
+        {numberFrom(kFar.low, kFar.high, true), kFar, kFar});
+    add(changes, "delete", "remove who is selected",
+        [](S s, A) { s.say("removed " + withThousands(s.removeSelected())); });
+    add(changes, "recolour", "mark who is selected",
+        [](S s, A) { s.say("recoloured " + withThousands(s.recolourSelected())); });
+    add(shows, "colour [" + anyOf(kColourings) + "|next]", "what colours tell",
+        [](S s, A a) { chooseOrNext(a, kColourings.size(), s.options.colouring); },
+        {oneOrNext("colouring", kColourings)});
+    add(shows, "overlay " + anyOf(kOverlays) + " [on|off]",
+        "what is shown of the scene, and laid over it", overlay,
+        {oneOf("overlay", kOverlays), kOnOff});
+    add(shows, "dots PIXELS", "draw bodies at least with that radius",
+        [](S s, A a) { s.options.dots = a.number(0); }, {numberFrom(0, 20)});
+    add(shows, "theme [" + anyOf(kThemes) + "|next]", "light or dark",
+        [](S s, A a) { chooseOrNext(a, kThemes.size(), s.options.theme); },
+        {oneOrNext("theme", kThemes)});
+    add(steers, "panel [on|off]", "show the panel",
+        [](S s, A a) { s.options.panel = a.onOff(0, s.options.panel); }, {kOnOff});
+    add(steers, "help [on|off]", "show keys and commands",
+        [](S s, A a) { s.options.help = a.onOff(0, s.options.help); }, {kOnOff});
+    add(writes, "screenshot [FILE]", "write a picture (PNG)",
+        [](S s, A a) { s.askForScreenshot(a.has(0) ? a.words[0] : "hashphase.png"); },
+        {kOptionalWord});
+    add(writes, "save [FILE]", "write a recording of all that was done since the scene began", save,
+        {kOptionalWord});
+    add(writes, "capture FILE [FRAMES]",
+        "write the boxes of so many frames as they are simulated (.aabbs)",
+        [](S s, A a) { s.capture(a.words[0], a.has(1) ? static_cast<int>(a.index(1)) : 60); },
+        {kWord, wholeFrom(1, 1e6, true)});
+    add(steers, "quit", "end the program", [](S s, A) { s.isOver = true; });
+    add(steers, "print READING...", "say numbers", print, {{.repeats = true}});
+    add(steers, "expect READING " + anyOf(kRelations) + " NUMBER", "complain unless it is so",
+        expect, {kWord, oneOf("relation", kRelations), numberFrom(-1e18, 1e18)});
     return all;
 }
 
@@ -131,7 +424,8 @@ constexpr std::array kKeys{
 }  // namespace
 
 std::span<const CommandKind> commandKinds() {
-    return commands();
+    static const std::vector<CommandKind> all = makeCommands();
+    return all;
 }
 
 std::span<const KeyBinding> keyBindings() {
@@ -140,78 +434,7 @@ std::span<const KeyBinding> keyBindings() {
 
 const CommandKind* findCommand(std::string_view line) {
     const std::string name = firstWord(line);
-    if (name.empty()) {
-        return nullptr;
-    }
-    std::vector<std::string> names;
-    for (const CommandKind& kind : commands()) {
-        if (kind.name == name) {
-            return &kind;
-        }
-        names.emplace_back(kind.name);
-    }
-    throw InputError(unknownNameSentence("command", name, names));
-}
-
-namespace {
-
-// Read back as the same number, and not as the nearest with so many digits.
-std::string exactText(double number) {
-    if (number == NumberField::kInfinite) {
-        return std::string(kNoBound);
-    }
-    std::array<char, 32> text{};
-    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
-}
-
-// First what is not declared, then what is, which needs nothing that is not.
-void logEffects(const Stage& stage, CommandLog& log) {
-    const SceneEffects& effects = stage.effects();
-    for (const bool isOn : {false, true}) {
-        for (const Effect effect : kAllEffects) {
-            if (stage.possibleEffects().contains(effect) &&
-                effects.set().contains(effect) == isOn) {
-                log.add(0, "effect " + std::string(nameOf(effect)) + (isOn ? " on" : " off"));
-            }
-        }
-    }
-    log.add(0, "cell " + exactText(effects.grid.cellSize));
-    log.add(0, "ratio " + exactText(effects.grid.levelRatio));
-    if (effects.proximity) {
-        log.add(0, "radius " + exactText(effects.proximity->radius));
-    }
-    log.add(0, "broadphase " + std::string(stage.broadphase().name));
-}
-
-}  // namespace
-
-void logSetting(Session& session, CommandLog& log) {
-    std::ostringstream line;
-    line.precision(9);  // which a float is read back by
-    const auto add = [&] {
-        log.add(0, line.str());
-        line.str({});
-    };
-    line << "size " << session.width() << ' ' << session.height();
-    add();
-    line << "pose " << kCameraModes[static_cast<std::size_t>(session.camera().mode())];
-    for (const float number : session.camera().state()) {
-        line << ' ' << number;
-    }
-    add();
-    logEffects(session.stage(), log);
-    line << "colour " << kColourings[static_cast<std::size_t>(session.options().colouring)];
-    add();
-    for (std::size_t i = 0; i < kOverlays.size(); ++i) {
-        line << "overlay " << kOverlays[i] << (session.options().overlays[i] ? " on" : " off");
-        add();
-    }
-    line << "dots " << session.options().dots;
-    add();
-    line << "theme " << kThemes[static_cast<std::size_t>(session.options().theme)];
-    add();
-    line << "check " << (session.isChecking() ? "on" : "off");
-    add();
+    return name.empty() ? nullptr : &rowNamed("command", name, commandKinds());
 }
 
 }  // namespace hashphase::demos

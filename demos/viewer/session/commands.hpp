@@ -4,16 +4,16 @@
 // The commands of the viewer: what a line, a key or a script can say.
 
 #include <demos/viewer/session/arguments.hpp>
-#include <demos/viewer/session/command_log.hpp>
 
 #include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace hashphase::demos {
 
-class Session;
+struct Session;
 
 /// What a command is to a recording, and to whoever looks on while one is replayed.
 enum class CommandRole : std::uint8_t {
@@ -33,11 +33,14 @@ enum class CommandRole : std::uint8_t {
 }
 
 struct CommandKind {
-    std::string_view name;
+    using Action = void (*)(Session& session, const Arguments& given);
+
+    std::string name;
     CommandRole role;
     std::string usage;  // "pick X Y"
     std::string_view help;
-    void (*run)(Session& session, Arguments& arguments);
+    std::vector<Parameter> parameters;
+    Action run;
 };
 
 [[nodiscard]] std::span<const CommandKind> commandKinds();
@@ -53,8 +56,5 @@ struct KeyBinding {
 };
 
 [[nodiscard]] std::span<const KeyBinding> keyBindings();
-
-/// Adds the commands that set up a new session as this one is set, where logged ones can.
-void logSetting(Session& session, CommandLog& log);
 
 }  // namespace hashphase::demos

@@ -5,8 +5,8 @@
 
 #include <demos/viewer/stage/phase_clock.hpp>
 
-#include <array>
 #include <cstddef>
+#include <deque>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -19,47 +19,42 @@ public:
 
     struct Row {
         std::string_view name;
-        double smoothed = 0;                  // lately, for who looks on [ms]
-        std::array<float, kFrames> frames{};  // a ring; 0 in frames without the phase [ms]
-        bool isPresent = false;               // in the last frame
+        double smoothed = 0;       // lately, for who looks on [ms]
+        std::deque<float> frames;  // the oldest first; 0 in frames without the phase [ms]
+        bool isPresent = false;    // in the last frame
     };
 
     /// Phases of a frame. Phases that have not been there for as long as the history reaches are gone.
     void add(std::span<const PhaseTime> times);
-    void clear();
 
     /// In the order in which they first came.
     [[nodiscard]] std::span<const Row> rows() const noexcept { return rows_; }
 
-    /// Frames that are known, at most kFrames; frame 0 is the oldest.
+    /// Frames that are known, at most kFrames.
     [[nodiscard]] std::size_t frameCount() const noexcept { return count_; }
-    [[nodiscard]] float at(const Row& row, std::size_t frame) const noexcept {
-        return row.frames[(next_ + kFrames - count_ + frame) % kFrames];
-    }
 
     /// Known frames that times are told of: all but the first of the scene, which fills tables and caches, unless
     /// there is no other.
     [[nodiscard]] std::size_t toldCount() const noexcept { return count_ - firstTold(); }
 
     /// Of those, the time that half of them do not exceed, and the one that one in twenty does [ms].
-    [[nodiscard]] double median(const Row& row) const;
-    [[nodiscard]] double p95(const Row& row) const;
+    [[nodiscard]] double median(const Row& row) const { return atRank(row.frames, 50); }
+    [[nodiscard]] double p95(const Row& row) const { return atRank(row.frames, 95); }
 
     /// All phases together [ms].
     [[nodiscard]] double smoothedTotal() const;
-    [[nodiscard]] double medianTotal() const;
-    [[nodiscard]] double p95Total() const;
+    [[nodiscard]] double medianTotal() const { return atRank(totals(), 50); }
+    [[nodiscard]] double p95Total() const { return atRank(totals(), 95); }
 
 private:
     [[nodiscard]] std::size_t firstTold() const noexcept {
         return knowsBeginning_ && count_ > 1 ? 1 : 0;
     }
-    [[nodiscard]] std::vector<float> timesOf(const Row& row) const;
-    [[nodiscard]] std::vector<float> totals() const;
+    [[nodiscard]] double atRank(const std::deque<float>& frames, std::size_t percent) const;
+    [[nodiscard]] std::deque<float> totals() const;
 
     std::vector<Row> rows_;
     bool knowsBeginning_ = true;  // the scene's first frame is still known, or to come
-    std::size_t next_ = 0;        // where the next frame goes
     std::size_t count_ = 0;
 };
 

@@ -2,9 +2,7 @@
 #include <demos/viewer/session/scene_choice.hpp>
 
 #include <demos/console/format.hpp>
-#include <demos/console/nearest_name.hpp>
 #include <demos/scenes/file_bytes.hpp>
-#include <demos/scenes/input_error.hpp>
 #include <demos/viewer/stage/bullet_stage.hpp>
 #include <demos/viewer/stage/paper_stage.hpp>
 #include <demos/viewer/stage/recording_stage.hpp>
@@ -82,10 +80,17 @@ std::unique_ptr<Stage> openFile(const SceneChoice& choice) {
 std::span<const ViewerScene> viewerScenes() {
     static const std::vector<ViewerScene> scenes = [] {
         std::vector<ViewerScene> all{
-            {"wander", "the paper's test bed: spheres that roam a random terrain", kWanderers}};
+            {"wander", "the paper's test bed: spheres that roam a random terrain", kWanderers,
+             [](const SceneChoice& choice, std::size_t objects) {
+                 return makePaperStage(wanderers(objects), choice);
+             }}};
         for (const WorldSceneKind& kind : worldSceneKinds()) {
-            all.push_back(
-                {std::string(kind.name), std::string(kind.description), kind.defaultObjects});
+            all.push_back({std::string(kind.name), std::string(kind.description),
+                           kind.defaultObjects,
+                           [&kind](const SceneChoice& choice, std::size_t objects) {
+                               return std::make_unique<BulletStage>(kind, objects, choice.seed,
+                                                                    bulletEffects());
+                           }});
         }
         return all;
     }();
@@ -106,9 +111,7 @@ std::uint64_t ownSeed(const SceneChoice& choice) {
 }
 
 std::size_t objectCount(const SceneChoice& choice) {
-    const auto scene =
-        std::find_if(viewerScenes().begin(), viewerScenes().end(),
-                     [&](const ViewerScene& known) { return known.name == choice.name; });
+    const auto scene = std::ranges::find(viewerScenes(), choice.name, &ViewerScene::name);
     return choice.objects.value_or(scene != viewerScenes().end() ? scene->objects : 0);
 }
 
@@ -120,20 +123,7 @@ std::unique_ptr<Stage> makeStage(const SceneChoice& choice) {
     if (!choice.file.empty()) {
         return openFile(choice);
     }
-    if (choice.name == viewerScenes().front().name) {
-        return makePaperStage(wanderers(choice.objects.value_or(kWanderers)), choice);
-    }
-    for (const WorldSceneKind& kind : worldSceneKinds()) {
-        if (kind.name == choice.name) {
-            return std::make_unique<BulletStage>(kind, choice.objects.value_or(kind.defaultObjects),
-                                                 choice.seed, bulletEffects());
-        }
-    }
-    std::vector<std::string> names;
-    for (const ViewerScene& scene : viewerScenes()) {
-        names.push_back(scene.name);
-    }
-    throw InputError(unknownNameSentence("scene", choice.name, names));
+    return rowNamed("scene", choice.name, viewerScenes()).make(choice, objectCount(choice));
 }
 
 }  // namespace hashphase::demos

@@ -3,15 +3,19 @@
 
 // Which scene is on stage, and how large.
 
+#include <demos/console/nearest_name.hpp>
 #include <demos/scenes/effects_file.hpp>
+#include <demos/scenes/input_error.hpp>
 #include <demos/viewer/stage/stage.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hashphase::demos {
@@ -21,10 +25,25 @@ struct ViewerScene {
     std::string name;
     std::string description;
     std::size_t objects = 0;  // unless others are asked for
+    std::function<std::unique_ptr<Stage>(const struct SceneChoice& choice, std::size_t objects)>
+        make;
 };
 
 /// "wander" first, then Bullet's.
 [[nodiscard]] std::span<const ViewerScene> viewerScenes();
+
+/// The row of a table that has this name. Throws InputError, which says which there are, where there is none.
+template <class Rows>
+[[nodiscard]] const auto& rowNamed(std::string_view what, std::string_view name, const Rows& rows) {
+    std::vector<std::string> names;
+    for (const auto& row : rows) {
+        if (row.name == name) {
+            return row;
+        }
+        names.emplace_back(row.name);
+    }
+    throw InputError(unknownNameSentence(what, name, names));
+}
 
 inline constexpr std::size_t kMostObjects = 1'000'000;
 inline constexpr std::uint64_t kMostSeed = std::numeric_limits<std::uint32_t>::max();

@@ -10,6 +10,7 @@
 #include <utility>
 
 namespace hashphase::demos {
+
 Script::Script(std::string_view text, std::string name) : name_(std::move(name)) {
     std::istringstream lines{std::string(text)};
     for (std::string line; std::getline(lines, line);) {
@@ -22,7 +23,7 @@ Script::Script(std::string_view text, std::string name) : name_(std::move(name))
 }
 
 void Script::feed(Session& session) {
-    while (!isDone() && !session.isWaiting() && !session.wantsScreenshot() && !session.isOver()) {
+    while (!isDone() && !session.isWaiting() && session.screenshots.empty() && !session.isOver) {
         const std::size_t line = next_++;
         try {
             session.run(lines_[line]);
@@ -37,16 +38,16 @@ std::string Script::verdict(const Session& session) const {
         return "script: stopped at line " + withThousands(next_) + " of " +
                withThousands(lines_.size());
     }
-    return session.failureCount() == 0 ? "script: all expectations hold" : "";
+    return session.failureCount == 0 ? "script: all expectations hold" : "";
 }
 
 void Playback::feed(Session& session) {
-    if (scene_ != session.sceneCount()) {
-        scene_ = session.sceneCount();
+    if (scene_ != session.sceneCount) {
+        scene_ = session.sceneCount;
         next_ = 0;
     }
-    const std::vector<LoggedCommand>& commands = log_.commands();
-    for (; next_ < commands.size() && commands[next_].frame <= session.frame(); ++next_) {
+    const std::vector<LoggedCommand>& commands = log_.commands;
+    for (; next_ < commands.size() && commands[next_].frame <= session.frame; ++next_) {
         try {
             session.run(commands[next_].line);
         } catch (const InputError& error) {
@@ -66,9 +67,9 @@ void Playback::refuseChange(std::string_view line) {
 }
 
 std::string Playback::verdict(const Session& session, bool& isSame) const {
-    const std::uint64_t all = log_.frameCount();
-    const std::uint64_t reached = std::min(session.log().frameCount(), all);
-    const std::uint64_t same = log_.sameUntil(session.log());
+    const std::uint64_t all = log_.frames;
+    const std::uint64_t reached = std::min(session.log.frames, all);
+    const std::uint64_t same = log_.sameUntil(session.log);
     isSame = same == reached;
     if (!isSame) {
         return "replay: not the same after frame " + withThousands(same) + " of " +

@@ -53,7 +53,7 @@ public:
     static void refuseChange(std::string_view line);
 
     [[nodiscard]] bool isDone(const Session& session) const noexcept {
-        return session.frame() >= log_.frameCount();
+        return session.frame >= log_.frames;
     }
 
     /// Says whether the session has come to the same, in a sentence, and how far it has come where that is not

@@ -46,12 +46,12 @@ void ask(const Call& call) {
 
 }  // namespace
 
-Session::Session(const SceneChoice& choice, int width, int height)
-    : choice_(choice),
-      stage_(makeStage(choice)),
-      ownEffects_(stage_->effects()),
-      width_(width),
-      height_(height) {
+Session::Session(const SceneChoice& chosen, int wide, int high)
+    : choice(chosen),
+      stage(makeStage(chosen)),
+      ownEffects(stage->effects()),
+      width(wide),
+      height(high) {
     beginAnew(true);
 }
 
@@ -60,31 +60,34 @@ void Session::run(std::string_view line) {
     if (kind == nullptr) {
         return;
     }
-    Arguments arguments(line, kind->usage);
-    const std::uint64_t frame = frame_;
+    const Arguments arguments(line, kind->usage, kind->parameters);
+    const std::uint64_t frameBefore = frame;
     kind->run(*this, arguments);
     if (isLogged(kind->role)) {
-        log_.add(frame, line);
+        log.add(frameBefore, line);
     }
 }
 
 // --- Frame ---------------------------------------------------------------------------------------
 
 void Session::advance() {
-    if (framesToRead_ > 0) {
-        --framesToRead_;
+    if (framesToRead > 0) {
+        --framesToRead;
         look();
         return;
     }
-    const bool steps = isPlaying_ || stepsWaiting_ > 0;
-    stepsWaiting_ -= stepsWaiting_ > 0 ? 1 : 0;
-    setView();
+    const bool steps = isPlaying || stepsWaiting > 0;
+    stepsWaiting -= stepsWaiting > 0 ? 1 : 0;
+    if (stage->effects().culling) {
+        stage->observers().setView(seenRegion());
+    }
+    stage->observers().setInterest(pose().eye);
     if (steps) {
-        stage_->step();
-        ++frame_;
-        knowsPairs_ = true;
-        history_.add(stage_->times());
-        log_.note(frame_, frameHash());
+        stage->step();
+        ++frame;
+        knowsPairs = true;
+        history.add(stage->times());
+        log.note(frame, frameHash());
         captureFrame();
     }
     look();
@@ -92,277 +95,241 @@ void Session::advance() {
 
 std::uint64_t Session::frameHash() const {
     ResultHash hash;
-    hash.add(stage_->placesHash());
-    if (stage_->effects().proximity) {
-        const auto colours = stage_->observers().colours();
+    hash.add(stage->placesHash());
+    if (stage->effects().proximity) {
+        const auto colours = stage->observers().colours();
         for (const std::uint32_t colour :
-             colours.first(std::min<std::size_t>(colours.size(), stage_->indexLimit()))) {
+             colours.first(std::min<std::size_t>(colours.size(), stage->indexLimit()))) {
             hash.add(std::uint64_t{colour});
         }
     }
     return hash.value();
 }
 
-void Session::setView() {
-    if (stage_->effects().culling) {
-        stage_->observers().setView(seenRegion());
-    }
-    stage_->observers().setInterest(pose().eye);
-}
-
 // --- What is asked about a frame -----------------------------------------------------------------
 
 ConvexRegion<float> Session::seenRegion() const {
-    return ConvexRegion<float>(cameraView(frozen_.value_or(pose())).planes, Containment::touching,
+    return ConvexRegion<float>(cameraView(frozen.value_or(pose())).planes, Containment::touching,
                                Touch::byPlanes);
 }
 
 // The camera that follows goes with its body.
 void Session::aim() {
-    if (picked_ && camera_.mode() == CameraMode::follow) {
-        camera_.setTarget(stage_->body(*picked_).centre);
+    if (picked && camera.mode() == CameraMode::follow) {
+        camera.setTarget(stage->body(*picked).centre);
     }
 }
 
 // What the stage has found serves where the picture is taken by the same camera.
 void Session::see() {
-    if (!stage_->effects().culling) {
-        usesOwnCuller_ = false;
+    if (!stage->effects().culling) {
+        usesOwnCuller = false;
         return;
     }
     const ConvexRegion<float> region = seenRegion();
-    usesOwnCuller_ = !(stage_->observers().culler().frustum() == region);
-    if (usesOwnCuller_) {
-        ownCuller_.look(*stage_->grid(), region);
+    usesOwnCuller = !(stage->observers().culler().frustum() == region);
+    if (usesOwnCuller) {
+        ownCuller.look(*stage->grid(), region);
     }
 }
 
 const Culler<float>& Session::culler() const {
-    if (usesOwnCuller_) {
-        return ownCuller_;
-    }
-    return stage_->observers().culler();
+    return usesOwnCuller ? ownCuller : stage->observers().culler();
 }
 
 // Whether the scene has moved or not.
 void Session::look() {
-    const Grid<float>* grid = stage_->grid();
-    if (picked_ && !stage_->contains(*picked_)) {
-        picked_.reset();
+    const Grid<float>* grid = stage->grid();
+    if (picked && !stage->contains(*picked)) {
+        picked.reset();
     }
     aim();
     see();
-    card_.reset();
-    if (picked_ && grid != nullptr) {
-        const auto& proximity = stage_->effects().proximity;
+    card.reset();
+    if (picked && grid != nullptr) {
+        const auto& proximity = stage->effects().proximity;
         const float radius = proximity ? static_cast<float>(proximity->radius) : 5.0F;
-        card_ = infoCard(*stage_, *grid, *picked_, radius);
+        card = infoCard(*stage, *grid, *picked, radius);
     }
-    const bool countsLoads = options_.has(Overlay::heat) || options_.colouring == Colouring::load;
-    if (countsLoads && grid != nullptr) {
-        loads_.count(*grid, stage_->bounds());
-    } else {
-        loads_ = {};
-    }
-    pairs_.clear();
-    if (card_ || options_.has(Overlay::pairs) || options_.colouring == Colouring::pairs) {
-        stage_->listPairs(pairs_);
+    const bool countsLoads = options.has(Overlay::heat) || options.colouring == Colouring::load;
+    loads = countsLoads && grid != nullptr ? CellLoads(*grid, stage->bounds()) : CellLoads();
+    pairs.clear();
+    if (card || options.has(Overlay::pairs) || options.colouring == Colouring::pairs) {
+        stage->listPairs(pairs);
     }
     if (check() != nullptr) {
-        check_.look(*stage_);
+        pairCheck = checkPairs(*stage);
     }
 }
 
 void Session::captureFrame() {
-    if (capture_ == nullptr) {
+    if (recorder == nullptr) {
         return;
     }
     try {
-        capture_->add(*stage_);
+        recorder->add(*stage);
     } catch (const InputError& error) {
-        giveUpCapture(error.what());
-        stepsWaiting_ = 0;
+        noteFailure(error.what());
+        recorder = nullptr;
+        stepsWaiting = 0;
         return;
     }
-    if (capture_->isComplete()) {
-        const std::string leftOut = capture_->leftOutText();
-        say("wrote the boxes of " + withThousands(capture_->frameCount()) + " frames to " +
-            capture_->path() + (leftOut.empty() ? "" : ", without " + leftOut));
-        capture_ = nullptr;
+    if (recorder->isComplete()) {
+        say(recorder->summary());
+        recorder = nullptr;
     }
-}
-
-void Session::giveUpCapture(const std::string& fault) {
-    noteFailure(fault);
-    capture_ = nullptr;
 }
 
 // --- Scene ---------------------------------------------------------------------------------------
 
-void Session::choose(const SceneChoice& choice) {
-    std::unique_ptr<Stage> next = makeStage(choice);
+void Session::choose(const SceneChoice& chosen) {
+    std::unique_ptr<Stage> next = makeStage(chosen);
     const SceneEffects own = next->effects();
-    const bool isOther = choice.name != choice_.name || choice.file != choice_.file;
+    const bool isOther = chosen.name != choice.name || chosen.file != choice.file;
     if (!isOther) {
         ask([&] {
-            next->declare(changed(own, stage_->effects().set(), stage_->effects()));
-            next->setBroadphase(stage_->broadphase());
+            next->declare(changed(own, stage->effects().set(), stage->effects()));
+            next->setBroadphase(stage->broadphase());
         });
     }
     const bool isOtherSize =
-        choice.objects != choice_.objects && !next->bounds().isApprox(stage_->bounds());
-    stage_ = std::move(next);
-    ownEffects_ = own;
-    choice_ = choice;
+        chosen.objects != choice.objects && !next->bounds().isApprox(stage->bounds());
+    stage = std::move(next);
+    ownEffects = own;
+    choice = chosen;
     beginAnew(isOther || isOtherSize);
 }
 
 void Session::beginAnew(bool goesHome) {
     endCapture("the scene ends");
-    frame_ = 0;
-    ++sceneCount_;
-    stepsWaiting_ = 0;
-    frozen_.reset();
+    frame = 0;
+    ++sceneCount;
+    stepsWaiting = 0;
+    frozen.reset();
     forgetSelection();
-    rectangle_.reset();
-    recoloured_.clear();
-    history_.clear();
-    pairs_.clear();
-    check_ = {};
-    knowsPairs_ = false;
-    camera_.setBounds(stage_->bounds());
+    rectangle.reset();
+    recoloured.clear();
+    history = {};
+    pairs.clear();
+    pairCheck = {};
+    knowsPairs = false;
+    camera.setBounds(stage->bounds());
     if (goesHome) {
         goHome();
     }
-    log_.begin(choice_);
-    logSetting(*this, log_);
+    log = {.choice = choice};
+    logSetting(*this, log);
     look();
 }
 
 void Session::goHome() {
-    camera_.goHome(stage_->bounds());
+    camera.goHome(stage->bounds());
     aim();
 }
 
 void Session::setCameraMode(CameraMode mode) {
-    if (mode == CameraMode::follow && !picked_) {
+    if (mode == CameraMode::follow && !picked) {
         throw InputError("Nobody is picked to be followed: click on a body, or run \"pick X Y\".");
     }
-    camera_.setMode(mode);
+    camera.setMode(mode);
     aim();
 }
 
-void Session::standStill() noexcept {
-    isPlaying_ = false;
-    stepsWaiting_ = 0;
-}
-
 void Session::askForSteps(std::uint64_t count) {
-    isPlaying_ = false;
-    stepsWaiting_ += count;
+    isPlaying = false;
+    stepsWaiting += count;
 }
 
 void Session::declare(const SceneEffects& effects) {
-    ask([&] { stage_->declare(effects); });
-    knowsPairs_ = false;
+    ask([&] { stage->declare(effects); });
+    knowsPairs = false;
     if (!effects.culling) {
-        frozen_.reset();
+        frozen.reset();
     }
 }
 
 void Session::declare(EffectSet effects) {
-    declare(changed(ownEffects_, effects, stage_->effects()));
+    declare(changed(ownEffects, effects, stage->effects()));
 }
 
 void Session::setBroadphase(const BroadphaseKind& kind) {
-    ask([&] { stage_->setBroadphase(kind); });
-    knowsPairs_ = false;
-    framesToRead_ = 0;
-    if (const std::size_t bodies = stage_->size(); bodies > kind.liveUpTo) {
+    ask([&] { stage->setBroadphase(kind); });
+    knowsPairs = false;
+    framesToRead = 0;
+    if (const std::size_t bodies = stage->size(); bodies > kind.liveUpTo) {
         say(std::string(kind.name) + " takes a time that grows with the square of the bodies: " +
             withThousands(bodies) + " are many, above " + withThousands(kind.liveUpTo) +
             " the scene may stand still for long.");
-        framesToRead_ = kFramesToRead;
+        framesToRead = kFramesToRead;
     }
 }
 
-void Session::setChecking(bool isChecking) {
-    isChecking_ = isChecking;
-    check_ = {};
+void Session::setChecking(bool isOn) {
+    isChecking = isOn;
+    pairCheck = {};
     look();
 }
 
 void Session::freeze(bool isFrozen) {
-    if (isFrozen && !stage_->effects().culling) {
+    if (isFrozen && !stage->effects().culling) {
         throw InputError(
             "Without culling there is no frustum to freeze: run \"effect culling on\".");
     }
-    frozen_ = isFrozen ? std::optional(frozen_.value_or(pose())) : std::nullopt;
-}
-
-void Session::resize(int width, int height) {
-    width_ = width;
-    height_ = height;
+    frozen = isFrozen ? std::optional(frozen.value_or(pose())) : std::nullopt;
 }
 
 CameraPose Session::pose() const {
-    return camera_.pose(double{static_cast<double>(width_)} / height_);
+    return camera.pose(double{static_cast<double>(width)} / height);
 }
 
 hashphase::Camera<float> Session::view() const {
     return {cameraView(pose()).viewProjection,
             kDepthRange,
-            {0, 0, static_cast<double>(width_), static_cast<double>(height_)}};
+            {0, 0, static_cast<double>(width), static_cast<double>(height)}};
 }
 
 // --- Selection -----------------------------------------------------------------------------------
 
 void Session::pick(const Pixel& pixel) {
-    if (!stage_->effects().picking) {
+    if (!stage->effects().picking) {
         throw InputError("Picking is not declared: run \"effect picking on\".");
     }
-    const Picked<float> found = stage_->pick(view().rayThrough(pixel));
+    const Picked<float> found = stage->pick(view().rayThrough(pixel));
     forgetSelection();
     if (!found.id.isNull()) {
-        picked_ = found.id.index;
-        selected_ = {found.id.index};
-        camera_.setTarget(stage_->body(*picked_).centre);
+        picked = found.id.index;
+        selected = {found.id.index};
+        camera.setTarget(stage->body(*picked).centre);
     }
     look();
 }
 
 void Session::selectBetween(const Pixel& a, const Pixel& b) {
-    if (!stage_->effects().boxSelection || stage_->grid() == nullptr) {
+    if (!stage->effects().boxSelection || stage->grid() == nullptr) {
         throw InputError("Box selection is not declared: run \"effect boxSelection on\".");
     }
     std::vector<ProxyId> found;
-    stage_->observers().select({*stage_->grid()}, view(), a, b, found);
+    stage->observers().select({*stage->grid()}, view(), a, b, found);
     forgetSelection();
     for (const ProxyId id : found) {
-        if (stage_->contains(id.index)) {
-            selected_.push_back(id.index);
+        if (stage->contains(id.index)) {
+            selected.push_back(id.index);
         }
     }
-    std::sort(selected_.begin(), selected_.end());
+    std::sort(selected.begin(), selected.end());
     look();
 }
 
 void Session::forgetSelection() {
-    selected_.clear();
-    picked_.reset();
-    card_.reset();
-}
-
-std::size_t Session::pushSelected(const Vector3<float>& velocity) {
-    return static_cast<std::size_t>(
-        std::count_if(selected_.begin(), selected_.end(),
-                      [&](std::uint32_t index) { return stage_->push(index, velocity); }));
+    selected.clear();
+    picked.reset();
+    card.reset();
 }
 
 std::size_t Session::removeSelected() {
-    const std::size_t count = stage_->remove(selected_);
-    std::erase_if(recoloured_, [this](std::uint32_t index) { return !stage_->contains(index); });
-    knowsPairs_ = knowsPairs_ && count == 0;
+    const std::size_t count = stage->remove(selected);
+    std::erase_if(recoloured, [this](std::uint32_t index) { return !stage->contains(index); });
+    knowsPairs = knowsPairs && count == 0;
     forgetSelection();
     look();
     return count;
@@ -370,78 +337,63 @@ std::size_t Session::removeSelected() {
 
 std::size_t Session::recolourSelected() {
     std::vector<std::uint32_t> all;
-    std::set_union(recoloured_.begin(), recoloured_.end(), selected_.begin(), selected_.end(),
+    std::set_union(recoloured.begin(), recoloured.end(), selected.begin(), selected.end(),
                    std::back_inserter(all));
-    recoloured_.swap(all);
-    return selected_.size();
+    recoloured.swap(all);
+    return selected.size();
 }
 
 void Session::capture(const std::string& path, int frames) {
-    if (capture_ != nullptr) {
-        throw InputError("Boxes are captured to " + capture_->path() +
-                         " already: " + capture_->progress() + " are there.");
+    if (recorder != nullptr) {
+        throw InputError("Boxes are captured to " + recorder->path() +
+                         " already: " + recorder->progress() + " are there.");
     }
-    capture_ = std::make_unique<BoxRecorder>(path, titleOf(choice_), *stage_, frames);
-    stepsWaiting_ = std::max(stepsWaiting_, static_cast<std::uint64_t>(frames));
+    recorder = std::make_unique<BoxRecorder>(path, titleOf(choice), *stage, frames);
+    stepsWaiting = std::max(stepsWaiting, static_cast<std::uint64_t>(frames));
 }
 
 void Session::endCapture(const std::string& reason) {
-    if (capture_ != nullptr) {
-        giveUpCapture(capture_->faultSentence(reason));
+    if (recorder != nullptr) {
+        noteFailure(recorder->faultSentence(reason));
+        recorder = nullptr;
     }
 }
 
 void Session::askForScreenshot(const std::string& path) {
-    screenshots_.push_back(path);
+    screenshots.push_back(path);
     see();
 }
 
 void Session::noteFailure(const std::string& message) {
-    ++failureCount_;
+    ++failureCount;
     say(message);
 }
 
 // --- What is to be seen --------------------------------------------------------------------------
 
 bool Session::isVisible(std::uint32_t index) const {
-    return !stage_->effects().culling || culler().isVisible({index, 1});
+    return !stage->effects().culling || culler().isVisible({index, 1});
 }
 
 std::size_t Session::visibleCount() const {
-    if (!stage_->effects().culling) {
-        return stage_->size();
+    if (!stage->effects().culling) {
+        return stage->size();
     }
     const ConvexRegion<float> region = seenRegion();
     if (culler().frustum() == region) {
         return culler().count();
     }
     Culler<float> now;
-    now.look(*stage_->grid(), region);
+    now.look(*stage->grid(), region);
     return now.count();
 }
 
-bool Session::isSelected(std::uint32_t index) const {
-    return std::binary_search(selected_.begin(), selected_.end(), index);
-}
-
-bool Session::isRecoloured(std::uint32_t index) const {
-    return std::binary_search(recoloured_.begin(), recoloured_.end(), index);
-}
-
 const PairCheck* Session::check() const {
-    return canCheck() && knowsPairs_ ? &check_ : nullptr;
+    return canCheck() && knowsPairs ? &pairCheck : nullptr;
 }
 
 bool Session::canCheck() const {
-    return isChecking_ && stage_->effects().pairs && !stage_->effects().sweep;
-}
-
-std::vector<std::string> Session::takeScreenshots() {
-    return std::exchange(screenshots_, {});
-}
-
-std::vector<std::string> Session::takeMessages() {
-    return std::exchange(messages_, {});
+    return isChecking && stage->effects().pairs && !stage->effects().sweep;
 }
 
 }  // namespace hashphase::demos

@@ -20,33 +20,32 @@
 #include <demos/viewer/session/camera.hpp>
 #include <demos/viewer/session/cell_loads.hpp>
 #include <demos/viewer/session/command_log.hpp>
-#include <demos/viewer/session/info_card.hpp>
-#include <demos/viewer/session/pair_check.hpp>
 #include <demos/viewer/session/phase_history.hpp>
 #include <demos/viewer/session/scene_choice.hpp>
+#include <demos/viewer/session/stage_queries.hpp>
 #include <demos/viewer/stage/stage.hpp>
 
 #include <integration/culling/culler.hpp>
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace hashphase::demos {
 
 /// What the colour of a body tells.
 enum class Colouring : std::uint8_t { agents, cells, load, speed, pairs, rest };
-
 inline constexpr std::array<std::string_view, 6> kColourings{"agents", "cells", "load",
                                                              "speed",  "pairs", "rest"};
 
 /// What is shown of the scene, and laid over it.
 enum class Overlay : std::uint8_t { bodies, grid, heat, boxes, pairs };
-
 inline constexpr std::array<std::string_view, 5> kOverlays{"bodies", "grid", "heat", "boxes",
                                                            "pairs"};
 
@@ -70,10 +69,10 @@ struct ViewOptions {
     }
 };
 
-class Session {
-public:
+/// Its data are for whoever shows it to read; commands change them.
+struct Session {
     /// Throws InputError as makeStage() does.
-    explicit Session(const SceneChoice& choice, int width = 1280, int height = 800);
+    explicit Session(const SceneChoice& chosen, int wide = 1280, int high = 800);
 
     /// Does what the line says. Lines that are empty or comments do nothing.
     void run(std::string_view line);
@@ -83,18 +82,15 @@ public:
     void advance();
 
     /// Whether steps that were asked for have not been simulated.
-    [[nodiscard]] bool isWaiting() const noexcept { return stepsWaiting_ > 0; }
-    [[nodiscard]] bool isPlaying() const noexcept { return isPlaying_; }
+    [[nodiscard]] bool isWaiting() const noexcept { return stepsWaiting > 0; }
 
     // --- What commands do ------------------------------------------------------------------------
 
     /// Puts a scene on stage from its beginning. Where it is another one, it is declared as it is by itself,
     /// and the camera goes home; else all that is declared, the broadphase and the camera stay, which goes home
     /// where other numbers of bodies take other room.
-    void choose(const SceneChoice& choice);
-    void setPlaying(bool isPlaying) noexcept { isPlaying_ = isPlaying; }
-    /// Plays no more, and waits for no steps. A capture takes up those that are simulated later.
-    void standStill() noexcept;
+    void choose(const SceneChoice& chosen);
+    /// Plays no more after so many frames. A capture takes up those that are simulated later.
     void askForSteps(std::uint64_t count);
     void declare(const SceneEffects& effects);
     /// Declares these effects and no others: each with what the scene says of it by itself, or with defaults
@@ -102,9 +98,8 @@ public:
     void declare(EffectSet effects);
     /// Says beforehand what to expect where so many bodies are too many for it: see advance().
     void setBroadphase(const BroadphaseKind& kind);
-    void setChecking(bool isChecking);
+    void setChecking(bool isOn);
     void freeze(bool isFrozen);
-    void resize(int width, int height);
     void goHome();
     /// Throws InputError where nobody is picked to be followed.
     void setCameraMode(CameraMode mode);
@@ -113,10 +108,8 @@ public:
     void pick(const Pixel& pixel);
     /// Selects what is between two pixels.
     void selectBetween(const Pixel& a, const Pixel& b);
-    void setRectangle(const std::optional<DrawnRectangle>& rectangle) { rectangle_ = rectangle; }
     void forgetSelection();
-    /// Of the selected bodies, or of the picked one; returns how many it was done to.
-    std::size_t pushSelected(const Vector3<float>& velocity);
+    /// Returns how many it was done to.
     std::size_t removeSelected();
     std::size_t recolourSelected();
 
@@ -124,130 +117,101 @@ public:
     /// simulated; says when the file is there, and notes a failure where that cannot be. One at a time. Who
     /// plays goes on playing after it.
     void capture(const std::string& path, int frames);
-    [[nodiscard]] bool isCapturing() const noexcept { return capture_ != nullptr; }
     /// Gives up a capture that is not complete, and says why: "the scene ends".
     void endCapture(const std::string& reason);
 
     void askForScreenshot(const std::string& path);
-    void say(const std::string& message) { messages_.push_back(message); }
+    void say(const std::string& message) { messages.push_back(message); }
     void noteFailure(const std::string& message);
-    void end() noexcept { isOver_ = true; }
 
     // --- What is to be seen ----------------------------------------------------------------------
 
-    [[nodiscard]] const SceneChoice& choice() const noexcept { return choice_; }
-    [[nodiscard]] Stage& stage() noexcept { return *stage_; }
-    [[nodiscard]] const Stage& stage() const noexcept { return *stage_; }
-    [[nodiscard]] Camera& camera() noexcept { return camera_; }
-    [[nodiscard]] ViewOptions& options() noexcept { return options_; }
-    [[nodiscard]] const ViewOptions& options() const noexcept { return options_; }
     [[nodiscard]] CameraPose pose() const;
     [[nodiscard]] hashphase::Camera<float> view() const;
-    [[nodiscard]] int width() const noexcept { return width_; }
-    [[nodiscard]] int height() const noexcept { return height_; }
-    [[nodiscard]] std::uint64_t frame() const noexcept { return frame_; }
-    /// How many scenes have been put on stage.
-    [[nodiscard]] std::uint64_t sceneCount() const noexcept { return sceneCount_; }
 
-    /// The camera whose view decides what is visible, where it was frozen.
-    [[nodiscard]] const std::optional<CameraPose>& frozenPose() const noexcept { return frozen_; }
     /// Whether it was when the scene was looked at for the last time, for a frame or for a screenshot.
     [[nodiscard]] bool isVisible(std::uint32_t index) const;
     /// By the camera of now. Cost: where it has moved since, that of a look.
     [[nodiscard]] std::size_t visibleCount() const;
 
-    [[nodiscard]] const std::vector<std::uint32_t>& selected() const noexcept { return selected_; }
-    [[nodiscard]] bool isSelected(std::uint32_t index) const;
-    [[nodiscard]] bool isRecoloured(std::uint32_t index) const;
-    [[nodiscard]] const std::vector<std::uint32_t>& recoloured() const noexcept {
-        return recoloured_;
-    }
-    [[nodiscard]] const std::optional<InfoCard>& card() const noexcept { return card_; }
-    [[nodiscard]] const std::optional<DrawnRectangle>& rectangle() const noexcept {
-        return rectangle_;
-    }
-
     /// Of the last frame; none while it is not checked or cannot be, and none since another broadphase or
     /// something else was declared or bodies were removed, as nobody has looked for pairs since.
     [[nodiscard]] const PairCheck* check() const;
-    [[nodiscard]] bool isChecking() const noexcept { return isChecking_; }
     /// Whether it is checked from the next frame on at the latest: pairs are declared, and not swept.
     [[nodiscard]] bool canCheck() const;
-    /// Of the last frame; empty while nobody shows them, and without a grid.
-    [[nodiscard]] const CellLoads& loads() const noexcept { return loads_; }
-    /// Those that the broadphase has found, sorted; none while nobody shows them.
-    [[nodiscard]] const std::vector<PairKey>& pairs() const noexcept { return pairs_; }
-    [[nodiscard]] const PhaseHistory& history() const noexcept { return history_; }
 
-    /// A number that can be seen, by its name: see readingNames(). Throws InputError for others, and for
-    /// what there is not, such as the neighbours of nobody.
+    /// A number that can be seen, by its name. Throws InputError for others, and for what there is not, such
+    /// as the neighbours of nobody.
     [[nodiscard]] double reading(std::string_view name) const;
-    [[nodiscard]] static std::span<const std::string_view> readingNames();
 
     /// The same where in each frame since the scene began bodies were at the same places and agents had the same
     /// colours, to the last bit. Whoever found the pairs: Bullet's broadphases list more than overlap.
-    [[nodiscard]] std::uint64_t hash() const noexcept { return log_.hash(); }
-    [[nodiscard]] const CommandLog& log() const noexcept { return log_; }
+    [[nodiscard]] std::uint64_t hash() const noexcept { return log.hash; }
 
-    // --- For who shows it ------------------------------------------------------------------------
+    /// Files that a picture of this moment is to be written to; and what is to be said.
+    [[nodiscard]] std::vector<std::string> takeScreenshots() {
+        return std::exchange(screenshots, {});
+    }
+    [[nodiscard]] std::vector<std::string> takeMessages() { return std::exchange(messages, {}); }
 
-    /// Files that a picture of this moment is to be written to.
-    [[nodiscard]] std::vector<std::string> takeScreenshots();
-    [[nodiscard]] bool wantsScreenshot() const noexcept { return !screenshots_.empty(); }
-    /// What is to be said, and how many expectations have failed.
-    [[nodiscard]] std::vector<std::string> takeMessages();
-    [[nodiscard]] int failureCount() const noexcept { return failureCount_; }
-    /// Whether it was ended by a command.
-    [[nodiscard]] bool isOver() const noexcept { return isOver_; }
+    // --- Data ------------------------------------------------------------------------------------
+
+    SceneChoice choice;
+    std::unique_ptr<Stage> stage;
+    SceneEffects ownEffects;  // those that the scene declares by itself
+    Camera camera;
+    ViewOptions options;
+    int width;
+    int height;
+    bool isPlaying = true;
+    std::uint64_t stepsWaiting = 0;
+    int framesToRead = 0;  // in which the scene stands still for what was said
+    std::uint64_t frame = 0;
+    std::uint64_t sceneCount = 0;  // scenes that have been put on stage
+
+    /// The camera whose view decides what is visible, where it was frozen.
+    std::optional<CameraPose> frozen;
+    Culler<float> ownCuller;  // where the camera has moved since the stage's has looked
+    bool usesOwnCuller = false;
+
+    std::vector<std::uint32_t> selected;    // sorted
+    std::vector<std::uint32_t> recoloured;  // sorted
+    std::optional<std::uint32_t> picked;
+    std::optional<InfoCard> card;
+    std::optional<DrawnRectangle> rectangle;
+
+    bool isChecking = false;
+    bool knowsPairs = false;  // whether the stage's are those of its bodies
+    PairCheck pairCheck;      // see check()
+    CellLoads loads;  // of the last frame; empty while nobody shows them, and without a grid
+    std::vector<PairKey>
+        pairs;  // those that the broadphase has found, sorted; none while nobody shows them
+    PhaseHistory history;
+
+    CommandLog log;
+    std::unique_ptr<BoxRecorder> recorder;  // one that is not complete; else null
+    std::vector<std::string> screenshots;
+    std::vector<std::string> messages;
+    int failureCount = 0;  // expectations that do not hold
+    bool isOver = false;   // ended by a command
 
 private:
     void beginAnew(bool goesHome);
     void captureFrame();
-    void giveUpCapture(const std::string& fault);
     [[nodiscard]] std::uint64_t frameHash() const;
     [[nodiscard]] ConvexRegion<float> seenRegion() const;
     [[nodiscard]] const Culler<float>& culler() const;
     void aim();
-    void setView();
     void look();
     void see();
-
-    SceneChoice choice_;
-    std::unique_ptr<Stage> stage_;
-    SceneEffects ownEffects_;  // those that the scene declares by itself
-    Camera camera_;
-    ViewOptions options_;
-    int width_;
-    int height_;
-    bool isPlaying_ = true;
-    std::uint64_t stepsWaiting_ = 0;
-    int framesToRead_ = 0;  // in which the scene stands still for what was said
-    std::uint64_t frame_ = 0;
-    std::uint64_t sceneCount_ = 0;
-
-    std::optional<CameraPose> frozen_;
-    Culler<float> ownCuller_;  // where the camera has moved since the stage's has looked
-    bool usesOwnCuller_ = false;
-
-    std::vector<std::uint32_t> selected_;    // sorted
-    std::vector<std::uint32_t> recoloured_;  // sorted
-    std::optional<std::uint32_t> picked_;
-    std::optional<InfoCard> card_;
-    std::optional<DrawnRectangle> rectangle_;
-
-    bool isChecking_ = false;
-    bool knowsPairs_ = false;  // whether the stage's are those of its bodies
-    PairCheck check_;
-    CellLoads loads_;
-    std::vector<PairKey> pairs_;
-    PhaseHistory history_;
-
-    CommandLog log_;
-    std::unique_ptr<BoxRecorder> capture_;  // one that is not complete; else null
-    std::vector<std::string> screenshots_;
-    std::vector<std::string> messages_;
-    int failureCount_ = 0;
-    bool isOver_ = false;
 };
+
+/// A number that can be seen.
+struct Reading {
+    std::string_view name;
+    std::function<double(const Session&)> read;  // throws InputError where there is none
+};
+
+[[nodiscard]] std::span<const Reading> readings();
 
 }  // namespace hashphase::demos

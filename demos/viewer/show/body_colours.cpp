@@ -26,22 +26,22 @@ Legend rampOf(std::string title, double most, int digits, bool isOpen = false) {
 }  // namespace
 
 void BodyColours::prepare(const Session& session) {
-    palette_ = palette(session.options().theme);
-    const std::uint32_t limit = session.stage().indexLimit();
-    if (session.options().colouring == Colouring::pairs) {
+    palette_ = palette(session.options.theme);
+    const std::uint32_t limit = session.stage->indexLimit();
+    if (session.options.colouring == Colouring::pairs) {
         pairCounts_.assign(limit, 0);
-        for (const PairKey pair : session.pairs()) {
+        for (const PairKey pair : session.pairs) {
             if (secondOf(pair) < limit) {
                 ++pairCounts_[firstOf(pair)];
                 ++pairCounts_[secondOf(pair)];
             }
         }
     }
-    if (session.options().colouring == Colouring::speed) {
+    if (session.options.colouring == Colouring::speed) {
         float fastest = 1;
         for (std::uint32_t index = 0; index < limit; ++index) {
             if (session.isVisible(index)) {
-                fastest = std::max(fastest, session.stage().body(index).speed);
+                fastest = std::max(fastest, session.stage->body(index).speed);
             }
         }
         fastest_ = std::max(fastest, 0.98F * fastest_);  // or colours would flicker
@@ -49,28 +49,30 @@ void BodyColours::prepare(const Session& session) {
 }
 
 Colour BodyColours::of(const Session& session, std::uint32_t index, const StageBody& body) const {
-    if (session.card() && session.card()->index == index) {
+    if (session.card && session.card->index == index) {
         return palette_.picked;
     }
-    if (session.isSelected(index)) {
+    if (std::ranges::binary_search(session.selected, index)) {
         return palette_.selected;
     }
-    return session.isRecoloured(index) ? palette_.accent : byColouring(session, index, body);
+    return std::ranges::binary_search(session.recoloured, index)
+               ? palette_.accent
+               : byColouring(session, index, body);
 }
 
 Colour BodyColours::byColouring(const Session& session, std::uint32_t index,
                                 const StageBody& body) const {
-    const auto& kinds = qualitativeColours(session.options().theme);
-    switch (session.options().colouring) {
+    const auto& kinds = qualitativeColours(session.options.theme);
+    switch (session.options.colouring) {
         case Colouring::agents: {
-            if (!session.stage().effects().proximity) {
+            if (!session.stage->effects().proximity) {
                 return body.isStatic ? palette_.fixed : kinds[index % kinds.size()];
             }
-            const auto colours = session.stage().observers().colours();
+            const auto colours = session.stage->observers().colours();
             return kinds[index < colours.size() ? colours[index] % kinds.size() : 0];
         }
         case Colouring::cells: {
-            const Grid<float>* grid = session.stage().grid();
+            const Grid<float>* grid = session.stage->grid();
             if (grid == nullptr) {
                 return palette_.calm;
             }
@@ -81,8 +83,8 @@ Colour BodyColours::byColouring(const Session& session, std::uint32_t index,
         }
         case Colouring::load: {
             const auto load =
-                static_cast<float>(session.loads().at(body.centre.x(), body.centre.z()));
-            return sequentialColour(load / static_cast<float>(session.loads().full()));
+                static_cast<float>(session.loads.at(body.centre.x(), body.centre.z()));
+            return sequentialColour(load / static_cast<float>(session.loads.full));
         }
         case Colouring::speed:
             return sequentialColour(body.speed / fastest_);
@@ -98,22 +100,24 @@ Colour BodyColours::byColouring(const Session& session, std::uint32_t index,
 
 std::vector<Legend> BodyColours::legends(const Session& session) const {
     std::vector<Legend> legends;
-    const ViewOptions& options = session.options();
-    const bool showsBodies = options.has(Overlay::bodies);
-    if (options.has(Overlay::heat) || (showsBodies && options.colouring == Colouring::load)) {
-        legends.push_back(rampOf("bodies in a column of cells", session.loads().full(), 0));
+    const ViewOptions& options = session.options;
+    const auto tells = [&](Colouring colouring) {
+        return options.has(Overlay::bodies) && options.colouring == colouring;
+    };
+    if (options.has(Overlay::heat) || tells(Colouring::load)) {
+        legends.push_back(rampOf("bodies in a column of cells", session.loads.full, 0));
     }
-    if (showsBodies && options.colouring == Colouring::speed) {
+    if (tells(Colouring::speed)) {
         legends.push_back(rampOf("speed [m/s]", fastest_, 1));
     }
-    if (showsBodies && options.colouring == Colouring::pairs) {
+    if (tells(Colouring::pairs)) {
         legends.push_back(rampOf("pairs of a body", kManyPairs, 0, true));
     }
-    if (showsBodies && options.colouring == Colouring::rest) {
-        const Palette& colours = palette(options.theme);
-        legends.push_back(
-            {"who rests",
-             {{colours.fixed, "never moves"}, {colours.calm, "asleep"}, {colours.awake, "awake"}}});
+    if (tells(Colouring::rest)) {
+        legends.push_back({"who rests",
+                           {{palette_.fixed, "never moves"},
+                            {palette_.calm, "asleep"},
+                            {palette_.awake, "awake"}}});
     }
     return legends;
 }

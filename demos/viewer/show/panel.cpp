@@ -4,13 +4,13 @@
 #include <demos/console/format.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <demos/viewer/draw/palette.hpp>
-#include <demos/viewer/session/commands.hpp>
-#include <demos/viewer/show/panel_parts.hpp>
+#include <demos/viewer/show/panel_figures.hpp>
 
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
 #include <algorithm>
+#include <ranges>
 
 namespace hashphase::demos {
 
@@ -28,8 +28,8 @@ Panel::~Panel() {
 
 void Panel::run(Session& session, std::string_view command) {
     try {
-        if (guard_) {
-            guard_(command);
+        if (guard) {
+            guard(command);
         }
         session.run(command);
     } catch (const InputError& error) {
@@ -50,7 +50,7 @@ bool Panel::hasPointer() const {
 void Panel::build(Session& session, std::span<const Legend> legends, const Pointer& pointer,
                   double seconds) {
     ImGuiIO& io = ImGui::GetIO();
-    io.DisplaySize = {static_cast<float>(session.width()), static_cast<float>(session.height())};
+    io.DisplaySize = {static_cast<float>(session.width), static_cast<float>(session.height)};
     io.DeltaTime = static_cast<float>(std::clamp(seconds, 1e-4, 1.0));
     io.MousePos = {pointer.x, pointer.y};
     io.MouseDown[0] = pointer.left;
@@ -60,27 +60,23 @@ void Panel::build(Session& session, std::span<const Legend> legends, const Point
         frameSeconds_ = frameSeconds_ == 0 ? seconds : 0.9 * frameSeconds_ + 0.1 * seconds;
     }
     messageSeconds_ -= seconds;
-    if (session.options().theme == Theme::dark) {
+    if (session.options.theme == Theme::dark) {
         ImGui::StyleColorsDark();
     } else {
         ImGui::StyleColorsLight();
     }
     ImGui_ImplOpenGL3_NewFrame();
     ImGui::NewFrame();
-    if (session.options().panel) {
+    if (session.options.panel) {
         ImGui::SetNextWindowPos({0, 0});
-        ImGui::SetNextWindowSize({kPanelWidth, static_cast<float>(session.height())});
+        ImGui::SetNextWindowSize({kPanelWidth, static_cast<float>(session.height)});
         ImGui::SetNextWindowBgAlpha(1);  // nothing is drawn below it
         ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
         ImGui::Begin(
             "hashphase", nullptr,
             ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoTitleBar);
         ImGui::PopStyleVar();
-        showScene(session);
-        showPhases(session);
-        showEffects(session);
-        showGrid(session);
-        showView(session);
+        showSwitches(session);
         showZones(session);
         ImGui::End();
         showCard(session);
@@ -88,7 +84,9 @@ void Panel::build(Session& session, std::span<const Legend> legends, const Point
         showLegends(session, legends);
     }
     showBadge(session);
-    showHelp(session);
+    if (session.options.help) {
+        showHelp(session, session.options.panel ? kPanelWidth : 0);
+    }
     showMessage(session);
     ImGui::Render();
 }
@@ -97,51 +95,115 @@ void Panel::draw() {
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
-// --- What is on stage ----------------------------------------------------------------------------
-
-void Panel::showScene(Session& session) {
-    ImGui::TextUnformatted(titleOf(session.choice()).c_str());
-    if (frameSeconds_ > 0) {
-        alignRight(fixed(1 / frameSeconds_, 0) + " pictures a second");
+void Panel::showMessage(const Session& session) const {
+    if (messageSeconds_ <= 0) {
+        return;
     }
-    numberRow("bodies", withThousands(session.stage().size()));
-    numberRow("visible", withThousands(session.visibleCount()));
-    numberRow("pairs", withThousands(session.stage().pairCount()));
-    numberRow("selected", withThousands(session.selected().size()));
-    if (!session.stage().tunnelMarks().empty()) {
-        numberRow("passed through walls", withThousands(session.stage().tunnelMarks().size()));
-    }
-    numberRow("frame", withThousands(session.frame()));
-    numberRow("memory of grid and tables",
-              byteSize(static_cast<std::int64_t>(session.stage().memoryBytes())));
-    if (ImGui::Button(session.isPlaying() ? "pause (P)" : "play (P)")) {
-        run(session, "pause");
-    }
-    ImGui::SameLine();
-    if (ImGui::Button("step (O)")) {
-        run(session, "step");
-    }
-    ImGui::SameLine();
-    if (ImGui::Button("restart (R)")) {
-        run(session, "restart");
-    }
-    ImGui::SameLine();
-    if (ImGui::Button("help (F1)")) {
-        run(session, "help");
-    }
-    ImGui::SetNextItemWidth(150);
-    const std::string title = titleOf(session.choice());
-    if (ImGui::BeginCombo("scene", title.c_str())) {
-        for (const ViewerScene& scene : viewerScenes()) {
-            if (ImGui::Selectable(scene.name.c_str(), scene.name == title)) {
-                run(session, "scene " + scene.name);
-            }
-        }
-        ImGui::EndCombo();
-    }
+    beginStill("message",
+               {static_cast<float>(session.width) / 2, static_cast<float>(session.height) - 12},
+               {0.5F, 1});
+    ImGui::PushStyleColor(ImGuiCol_Text, isFault_ ? colourOf(palette(session.options.theme).alert)
+                                                  : ImGui::GetStyleColorVec4(ImGuiCol_Text));
+    ImGui::PushTextWrapPos(700);
+    ImGui::TextUnformatted(message_.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+    ImGui::End();
 }
 
-void Panel::showEffects(Session& session) {
+// --- Switches ------------------------------------------------------------------------------------
+
+struct Panel::Switches {
+    Panel& panel;
+    Session& session;
+
+    void run(const std::string& command) const { panel.run(session, command); }
+
+    /// Side by side, where others are before them.
+    void press(const std::string& label, const char* command, bool isFirst = false) const {
+        if (!isFirst) {
+            ImGui::SameLine();
+        }
+        if (ImGui::Button(label.c_str())) {
+            run(command);
+        }
+    }
+
+    void check(const std::string& label, bool isOn, const std::string& command) const {
+        if (ImGui::Checkbox(label.c_str(), &isOn)) {
+            run(command);
+        }
+    }
+
+    /// One of these names; the command is "what NAME".
+    template <class Names>
+    void choose(const char* label, const std::string& now, const char* what,
+                const Names& names) const {
+        ImGui::SetNextItemWidth(kItemWidth);
+        if (ImGui::BeginCombo(label, now.c_str())) {
+            for (const auto& each : names) {
+                const std::string name(each);
+                if (ImGui::Selectable(name.c_str(), name == now)) {
+                    run(what + (' ' + name));
+                }
+            }
+            ImGui::EndCombo();
+        }
+    }
+
+    /// The command is "what NUMBER", with so many digits.
+    void slide(const char* label, double now, float low, float high, const char* what, int digits,
+               const char* format, ImGuiSliderFlags flags = 0) const {
+        auto number = static_cast<float>(now);
+        ImGui::SetNextItemWidth(kItemWidth);
+        if (ImGui::SliderFloat(label, &number, low, high, format, flags)) {
+            run(what + (' ' + fixed(double{number}, digits)));
+        }
+    }
+
+    void showScene(double frameSeconds) const;
+    void showEffects() const;
+    void showGrid() const;
+    void showView() const;
+
+    static constexpr float kItemWidth = 150;
+};
+
+void Panel::showSwitches(Session& session) {
+    const Switches switches{*this, session};
+    switches.showScene(frameSeconds_);
+    showPhases(session);
+    switches.showEffects();
+    switches.showGrid();
+    switches.showView();
+}
+
+void Panel::Switches::showScene(double frameSeconds) const {
+    const std::string title = titleOf(session.choice);
+    ImGui::TextUnformatted(title.c_str());
+    if (frameSeconds > 0) {
+        alignRight(fixed(1 / frameSeconds, 0) + " pictures a second");
+    }
+    const auto count = [this](const char* label, const char* reading) {
+        numberRow(label, withThousands(static_cast<std::uint64_t>(session.reading(reading))));
+    };
+    for (const char* reading : {"bodies", "visible", "pairs", "selected"}) {
+        count(reading, reading);
+    }
+    if (!session.stage->tunnelMarks().empty()) {
+        count("passed through walls", "tunnelled");
+    }
+    count("frame", "frame");
+    numberRow("memory of grid and tables",
+              byteSize(static_cast<std::int64_t>(session.stage->memoryBytes())));
+    press(session.isPlaying ? "pause (P)" : "play (P)", "pause", true);
+    press("step (O)", "step");
+    press("restart (R)", "restart");
+    press("help (F1)", "help");
+    choose("scene", title, "scene", viewerScenes() | std::views::transform(&ViewerScene::name));
+}
+
+void Panel::Switches::showEffects() const {
     if (!ImGui::CollapsingHeader("effects", ImGuiTreeNodeFlags_DefaultOpen)) {
         return;
     }
@@ -150,67 +212,41 @@ void Panel::showEffects(Session& session) {
     const float column = ImGui::GetContentRegionAvail().x / kColumns;
     int shown = 0;
     for (const Effect effect : kAllEffects) {
-        if (!session.stage().possibleEffects().contains(effect)) {
+        if (!session.stage->possibleEffects().contains(effect)) {
             continue;
         }
         if (const int place = shown++ % kColumns; place != 0) {
             ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + column * static_cast<float>(place));
         }
-        bool isDeclared = session.stage().effects().set().contains(effect);
         const std::string name(nameOf(effect));
-        if (ImGui::Checkbox(name.c_str(), &isDeclared)) {
-            run(session, "effect " + name + (isDeclared ? " on" : " off"));
-        }
+        const bool isDeclared = session.stage->effects().set().contains(effect);
+        check(name, isDeclared, "effect " + name + (isDeclared ? " off" : " on"));
     }
     ImGui::PopStyleVar();
-    if (session.stage().effects().proximity) {
-        auto radius = static_cast<float>(session.stage().effects().proximity->radius);
-        ImGui::SetNextItemWidth(150);
-        if (ImGui::SliderFloat("agents' radius [m]", &radius, 0.5F, 30, "%.1f")) {
-            run(session, "radius " + fixed(double{radius}, 1));
-        }
+    if (const auto& proximity = session.stage->effects().proximity) {
+        slide("agents' radius [m]", proximity->radius, 0.5F, 30, "radius", 1, "%.1f");
     }
 }
 
-void Panel::showGrid(Session& session) {
+void Panel::Switches::showGrid() const {
     if (!ImGui::CollapsingHeader("broadphase and grid", ImGuiTreeNodeFlags_DefaultOpen)) {
         return;
     }
-    ImGui::SetNextItemWidth(150);
-    const std::string now(session.stage().broadphase().name);
-    if (ImGui::BeginCombo("broadphase (B)", now.c_str())) {
-        for (const BroadphaseKind& kind : broadphaseKinds()) {
-            const std::string name(kind.name);
-            if (ImGui::Selectable(name.c_str(), name == now)) {
-                run(session, "broadphase " + name);
-            }
-        }
-        ImGui::EndCombo();
-    }
-    bool isChecking = session.isChecking();
-    if (ImGui::Checkbox("verify all pairs (V)", &isChecking)) {
-        run(session, "check");
-    }
-    const GridConfig config = session.stage().effects().grid;
-    auto cellSize = static_cast<float>(config.cellSize);
-    ImGui::SetNextItemWidth(150);
-    if (ImGui::SliderFloat("cell size [m]", &cellSize, 0, 100, cellSize == 0 ? "automatic" : "%.1f",
-                           ImGuiSliderFlags_Logarithmic)) {
-        run(session, "cell " + fixed(double{cellSize}, 1));
-    }
+    choose("broadphase (B)", std::string(session.stage->broadphase().name), "broadphase",
+           broadphaseKinds() | std::views::transform(&BroadphaseKind::name));
+    check("verify all pairs (V)", session.isChecking, "check");
+    const GridConfig config = session.stage->effects().grid;
+    slide("cell size [m]", config.cellSize, 0, 100, "cell", 1,
+          config.cellSize == 0 ? "automatic" : "%.1f", ImGuiSliderFlags_Logarithmic);
     if (config.cellSize > 0) {
-        auto ratio = static_cast<float>(config.levelRatio);
-        ImGui::SetNextItemWidth(150);
-        if (ImGui::SliderFloat("levels' ratio", &ratio, 2, 16, "%.0f")) {
-            run(session, "ratio " + fixed(double{ratio}, 0));
-        }
+        slide("levels' ratio", config.levelRatio, 2, 16, "ratio", 0, "%.0f");
     }
-    if (const Grid<float>* grid = session.stage().grid()) {
+    if (const Grid<float>* grid = session.stage->grid()) {
         numberRow("finest cells [m]", fixed(double{grid->cellSize()}, 2));
     }
 }
 
-void Panel::showView(Session& session) {
+void Panel::Switches::showView() const {
     if (!ImGui::CollapsingHeader("view")) {
         return;
     }
@@ -220,90 +256,23 @@ void Panel::showView(Session& session) {
         }
         const std::string name(kCameraModes[i]);
         if (ImGui::RadioButton(name.c_str(),
-                               static_cast<std::size_t>(session.camera().mode()) == i)) {
-            run(session, "camera " + name);
+                               static_cast<std::size_t>(session.camera.mode()) == i)) {
+            run("camera " + name);
         }
     }
-    bool isFrozen = session.frozenPose().has_value();
-    if (ImGui::Checkbox("freeze the frustum (F)", &isFrozen)) {
-        run(session, "freeze");
-    }
+    check("freeze the frustum (F)", session.frozen.has_value(), "freeze");
     for (std::size_t i = 0; i < kOverlays.size(); ++i) {
         if (i > 0) {
             ImGui::SameLine();
         }
-        bool isShown = session.options().overlays[i];
         const std::string name(kOverlays[i]);
-        if (ImGui::Checkbox(name.c_str(), &isShown)) {
-            run(session, "overlay " + name);
-        }
+        check(name, session.options.overlays[i], "overlay " + name);
     }
-    ImGui::SetNextItemWidth(150);
-    const std::string now(kColourings[static_cast<std::size_t>(session.options().colouring)]);
-    if (ImGui::BeginCombo("colours tell (M)", now.c_str())) {
-        for (const std::string_view colouring : kColourings) {
-            const std::string name(colouring);
-            if (ImGui::Selectable(name.c_str(), name == now)) {
-                run(session, "colour " + name);
-            }
-        }
-        ImGui::EndCombo();
-    }
-    float dots = session.options().dots;
-    ImGui::SetNextItemWidth(150);
-    if (ImGui::SliderFloat("least dot [pixels]", &dots, 0, 8, "%.1f")) {
-        run(session, "dots " + fixed(double{dots}, 1));
-    }
-    if (ImGui::Button("light or dark (T)")) {
-        run(session, "theme");
-    }
-}
-
-// --- What is said --------------------------------------------------------------------------------
-
-void Panel::showMessage(const Session& session) {
-    if (messageSeconds_ <= 0) {
-        return;
-    }
-    const Palette& colours = palette(session.options().theme);
-    ImGui::SetNextWindowPos(
-        {static_cast<float>(session.width()) / 2, static_cast<float>(session.height()) - 12},
-        ImGuiCond_Always, {0.5F, 1});
-    ImGui::Begin("message", nullptr, kStill);
-    ImGui::PushStyleColor(ImGuiCol_Text, isFault_ ? colourOf(colours.alert)
-                                                  : ImGui::GetStyleColorVec4(ImGuiCol_Text));
-    ImGui::PushTextWrapPos(700);
-    ImGui::TextUnformatted(message_.c_str());
-    ImGui::PopTextWrapPos();
-    ImGui::PopStyleColor();
-    ImGui::End();
-}
-
-void Panel::showHelp(Session& session) {
-    if (!session.options().help) {
-        return;
-    }
-    // Beside the panel, where there is room.
-    const float left = session.options().panel ? kPanelWidth : 0;
-    ImGui::SetNextWindowPos({(left + static_cast<float>(session.width())) / 2,
-                             static_cast<float>(session.height()) / 2},
-                            ImGuiCond_Always, {0.5F, 0.5F});
-    ImGui::Begin("help", nullptr, kStill);
-    ImGui::TextUnformatted(
-        "click: who is that    drag: select    right button: turn    wheel: nearer");
-    ImGui::Separator();
-    ImGui::BeginTable("keys", 4, ImGuiTableFlags_SizingFixedFit);
-    for (const KeyBinding& binding : keyBindings()) {
-        ImGui::TableNextColumn();
-        ImGui::TextColored(colourOf(palette(session.options().theme).accent), "%s",
-                           std::string(binding.key).c_str());
-        ImGui::TableNextColumn();
-        ImGui::TextUnformatted((std::string(binding.help) + "    ").c_str());
-    }
-    ImGui::EndTable();
-    ImGui::Separator();
-    ImGui::TextUnformatted("Each is a command that a script can run: hashphase wander --list");
-    ImGui::End();
+    choose("colours tell (M)",
+           std::string(kColourings[static_cast<std::size_t>(session.options.colouring)]), "colour",
+           kColourings);
+    slide("least dot [pixels]", session.options.dots, 0, 8, "dots", 1, "%.1f");
+    press("light or dark (T)", "theme", true);
 }
 
 }  // namespace hashphase::demos

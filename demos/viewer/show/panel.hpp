@@ -11,9 +11,10 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 
 namespace hashphase::demos {
+
+inline constexpr float kPanelWidth = 350;  // [pixels]
 
 class Panel {
 public:
@@ -47,28 +48,18 @@ public:
     /// What is shown for some seconds at the lower border: an error, or what a command said.
     void say(const std::string& message, bool isFault = false);
 
-    /// What is asked before a command of the user's is run; throws InputError for those that may not be.
-    using Guard = std::function<void(std::string_view command)>;
-    void setGuard(Guard guard) { guard_ = std::move(guard); }
-
-    /// Runs a command of the user's; says what was wrong, where it cannot be run.
+    /// Runs a command of the user's, unless `guard` throws InputError; says what was wrong, where it cannot be
+    /// run.
     void run(Session& session, std::string_view command);
+    std::function<void(std::string_view command)> guard;
 
 private:
-    void showScene(Session& session);
-    void showEffects(Session& session);
-    void showGrid(Session& session);
-    void showPhases(const Session& session);
-    void showZones(const Session& session);
-    void showView(Session& session);
-    void showCard(const Session& session);
-    void showRadar(const Session& session);
-    void showLegends(const Session& session, std::span<const Legend> legends);
-    void showHelp(Session& session);
-    void showBadge(const Session& session);
-    void showMessage(const Session& session);
+    /// Runs what was switched in the frame that is laid out.
+    struct Switches;
 
-    Guard guard_;
+    void showSwitches(Session& session);
+    void showMessage(const Session& session) const;
+
     std::string message_;
     bool isFault_ = false;
     double messageSeconds_ = 0;

@@ -1,29 +1,36 @@
 // SPDX-License-Identifier: Zlib
-//
-// The parts of the panel that only tell: phases, Bullet's zones, the card of who is picked, the badge.
-
-#include <demos/viewer/show/panel.hpp>
+#include <demos/viewer/show/panel_figures.hpp>
 
 #include <demos/console/format.hpp>
 #include <demos/viewer/draw/palette.hpp>
-#include <demos/viewer/show/panel_parts.hpp>
+#include <demos/viewer/session/commands.hpp>
 
 #include <algorithm>
 #include <cfloat>
+#include <optional>
 #include <vector>
 
 namespace hashphase::demos {
 namespace {
 
+/// Windows that only tell.
+constexpr ImGuiWindowFlags kStill = ImGuiWindowFlags_NoDecoration |
+                                    ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
+                                    ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing;
+
+ImU32 packed(Colour colour) {
+    return IM_COL32(colour.red, colour.green, colour.blue, colour.alpha);
+}
+
 ImU32 phaseColour(const Session& session, std::size_t row) {
-    const auto& kinds = qualitativeColours(session.options().theme);
-    return ImGui::ColorConvertFloat4ToU32(colourOf(kinds[row % kinds.size()]));
+    const auto& kinds = qualitativeColours(session.options.theme);
+    return packed(kinds[row % kinds.size()]);
 }
 
 // A column a frame, its phases on top of each other; a line where a frame would take 8 ms, named at its end.
 void drawStack(const Session& session) {
     constexpr float kHeight = 70;
-    const PhaseHistory& history = session.history();
+    const PhaseHistory& history = session.history;
     const std::span<const PhaseHistory::Row> rows = history.rows();
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x;
@@ -39,8 +46,7 @@ void drawStack(const Session& session) {
         const float x = corner.x + column * static_cast<float>(frame);
         float y = bottom;
         for (std::size_t row = 0; row < rows.size(); ++row) {
-            const float top =
-                std::max(corner.y, y - heightOf(double{history.at(rows[row], frame)}));
+            const float top = std::max(corner.y, y - heightOf(double{rows[row].frames[frame]}));
             list.AddRectFilled({x, top}, {x + std::max(1.0F, column), y},
                                phaseColour(session, row));
             y = top;
@@ -82,70 +88,94 @@ void rightInColumn(const std::string& text) {
     ImGui::TextUnformatted(text.c_str());
 }
 
-void beginNumbers(const char* name, const char* first, const char* second, const char* third) {
+/// A table of texts with two numbers each.
+void beginNumbers(const char* name, const char* first, const char* second) {
     ImGui::BeginTable(name, 3, ImGuiTableFlags_None);
-    ImGui::TableSetupColumn(first, ImGuiTableColumnFlags_WidthStretch);
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
+    ImGui::TableSetupColumn(first, ImGuiTableColumnFlags_WidthFixed, 60);
     ImGui::TableSetupColumn(second, ImGuiTableColumnFlags_WidthFixed, 60);
-    ImGui::TableSetupColumn(third, ImGuiTableColumnFlags_WidthFixed, 60);
+}
+
+void numbersRow(const std::string& text, const std::string& first, const std::string& second,
+                std::optional<ImU32> colour = {}) {
     ImGui::TableNextColumn();
-    ImGui::TextUnformatted(first);
+    if (colour) {
+        swatch(*colour);
+    }
+    ImGui::TextUnformatted(text.c_str());
+    rightInColumn(first);
     rightInColumn(second);
-    rightInColumn(third);
 }
 
 }  // namespace
 
-void Panel::showPhases(const Session& session) {
+ImVec4 colourOf(Colour colour) {
+    return ImGui::ColorConvertU32ToFloat4(packed(colour));
+}
+
+void beginStill(const char* name, ImVec2 place, ImVec2 pivot) {
+    ImGui::SetNextWindowPos(place, ImGuiCond_Always, pivot);
+    ImGui::Begin(name, nullptr, kStill);
+}
+
+void alignRight(const std::string& text) {
+    const float width = ImGui::CalcTextSize(text.c_str()).x;
+    ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - width);
+    ImGui::TextUnformatted(text.c_str());
+}
+
+void numberRow(const std::string& name, const std::string& number) {
+    ImGui::TextUnformatted(name.c_str());
+    alignRight(number);
+}
+
+// --- In the panel --------------------------------------------------------------------------------
+
+void showPhases(const Session& session) {
     if (!ImGui::CollapsingHeader("phases of a frame [ms]", ImGuiTreeNodeFlags_DefaultOpen)) {
         return;
     }
     drawStack(session);
-    const PhaseHistory& history = session.history();
-    beginNumbers("phases", "", "smoothed", "p95");
+    const PhaseHistory& history = session.history;
+    beginNumbers("phases", "smoothed", "p95");
+    numbersRow("", "smoothed", "p95");
     for (std::size_t row = 0; row < history.rows().size(); ++row) {
         const PhaseHistory::Row& phase = history.rows()[row];
-        ImGui::TableNextColumn();
-        swatch(phaseColour(session, row));
-        ImGui::TextUnformatted(std::string(phase.name).c_str());
-        rightInColumn(fixed(phase.smoothed, 2));
-        rightInColumn(fixed(history.p95(phase), 2));
+        numbersRow(std::string(phase.name), fixed(phase.smoothed, 2), fixed(history.p95(phase), 2),
+                   phaseColour(session, row));
     }
-    ImGui::TableNextColumn();
-    ImGui::TextUnformatted("together");
-    rightInColumn(fixed(history.smoothedTotal(), 2));
-    rightInColumn(fixed(history.p95Total(), 2));
+    numbersRow("together", fixed(history.smoothedTotal(), 2), fixed(history.p95Total(), 2));
     ImGui::EndTable();
 }
 
-void Panel::showZones(const Session& session) {
-    if (session.stage().zones().empty() || !ImGui::CollapsingHeader("Bullet's profile zones")) {
+void showZones(const Session& session) {
+    if (session.stage->zones().empty() || !ImGui::CollapsingHeader("Bullet's profile zones")) {
         return;
     }
-    beginNumbers("zones", "", "ms", "calls");
-    for (const Stage::Zone& zone : session.stage().zones()) {
-        ImGui::TableNextColumn();
+    beginNumbers("zones", "ms", "calls");
+    numbersRow("", "ms", "calls");
+    for (const Stage::Zone& zone : session.stage->zones()) {
         const std::string indent(2 * static_cast<std::size_t>(zone.depth), ' ');
-        ImGui::TextUnformatted((indent + std::string(zone.name)).c_str());
-        rightInColumn(fixed(zone.milliseconds, 2));
-        rightInColumn(withThousands(zone.calls));
+        numbersRow(indent + std::string(zone.name), fixed(zone.milliseconds, 2),
+                   withThousands(zone.calls));
     }
     ImGui::EndTable();
 }
 
-void Panel::showCard(const Session& session) {
-    if (!session.card()) {
+// --- Beside it -----------------------------------------------------------------------------------
+
+void showCard(const Session& session) {
+    if (!session.card) {
         return;
     }
-    const InfoCard& card = *session.card();
-    ImGui::SetNextWindowPos({static_cast<float>(session.width()) - 8, 8}, ImGuiCond_Always, {1, 0});
+    const InfoCard& card = *session.card;
     ImGui::SetNextWindowSizeConstraints({230, 0}, {230, FLT_MAX});
-    ImGui::Begin("card", nullptr, kStill);
-    ImGui::TextColored(colourOf(palette(session.options().theme).picked), "body %u", card.index);
+    beginStill("card", {static_cast<float>(session.width) - 8, 8}, {1, 0});
+    ImGui::TextColored(colourOf(palette(session.options.theme).picked), "body %u", card.index);
     numberRow("cell", std::to_string(card.cell[0]) + ", " + std::to_string(card.cell[1]) + ", " +
                           std::to_string(card.cell[2]));
     numberRow("bodies in that cell", withThousands(card.load));
-    numberRow(("within " + fixed(double{card.radius}, 1) + " m").c_str(),
-              withThousands(card.neighbours));
+    numberRow("within " + fixed(double{card.radius}, 1) + " m", withThousands(card.neighbours));
     numberRow("candidate pairs", withThousands(card.candidates));
     numberRow("speed [m/s]", fixed(double{card.body.speed}, 1));
     const Vector3<float>& at = card.body.centre;
@@ -158,8 +188,8 @@ void Panel::showCard(const Session& session) {
 }
 
 // Seen from above, x to the right and z downwards, as by the camera above.
-void Panel::showRadar(const Session& session) {
-    const std::optional<RadarView>& radar = session.stage().radar();
+void showRadar(const Session& session) {
+    const std::optional<RadarView>& radar = session.stage->radar();
     if (!radar || radar->columns == 0 || radar->rows == 0) {
         return;
     }
@@ -168,9 +198,7 @@ void Panel::showRadar(const Session& session) {
     const std::vector<std::uint32_t> counts = totalsOf(*radar);
     const std::uint32_t most = std::max(1U, *std::max_element(counts.begin(), counts.end()));
     const float side = kSide / static_cast<float>(std::max(radar->columns, radar->rows));
-    ImGui::SetNextWindowPos({static_cast<float>(session.width()) - 8, kBelowCard}, ImGuiCond_Always,
-                            {1, 0});
-    ImGui::Begin("radar", nullptr, kStill);
+    beginStill("radar", {static_cast<float>(session.width) - 8, kBelowCard}, {1, 0});
     ImGui::TextUnformatted(("radar, cells of " + fixed(double{radar->cellSize}, 0) + " m").c_str());
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     ImGui::Dummy(
@@ -180,62 +208,80 @@ void Panel::showRadar(const Session& session) {
         const float x = corner.x + side * static_cast<float>(cell % radar->columns);
         const float y = corner.y + side * static_cast<float>(cell / radar->columns);
         const float share = static_cast<float>(counts[cell]) / static_cast<float>(most);
-        list.AddRectFilled({x, y}, {x + side, y + side},
-                           ImGui::ColorConvertFloat4ToU32(colourOf(sequentialColour(share))));
+        list.AddRectFilled({x, y}, {x + side, y + side}, packed(sequentialColour(share)));
     }
     numberRow("most in a cell", withThousands(most));
     ImGui::End();
 }
 
-void Panel::showLegends(const Session& session, std::span<const Legend> legends) {
+void showLegends(const Session& session, std::span<const Legend> legends) {
     if (legends.empty()) {
         return;
     }
-    ImGui::SetNextWindowPos(
-        {static_cast<float>(session.width()) - 8, static_cast<float>(session.height()) - 8},
-        ImGuiCond_Always, {1, 1});
-    ImGui::Begin("legends", nullptr, kStill);
+    beginStill("legends",
+               {static_cast<float>(session.width) - 8, static_cast<float>(session.height) - 8},
+               {1, 1});
     for (const Legend& legend : legends) {
         ImGui::TextUnformatted(legend.title.c_str());
         for (const Legend::Entry& entry : legend.entries) {
-            swatch(ImGui::ColorConvertFloat4ToU32(colourOf(entry.colour)));
+            swatch(packed(entry.colour));
             ImGui::TextUnformatted(entry.meaning.c_str());
         }
     }
     ImGui::End();
 }
 
-void Panel::showBadge(const Session& session) {
-    if (!session.isChecking()) {
+void showBadge(const Session& session) {
+    if (!session.isChecking) {
         return;
     }
-    const Palette& colours = palette(session.options().theme);
+    const Palette& colours = palette(session.options.theme);
     const PairCheck* check = session.check();
     std::string text = "pairs are not verified: none are declared, or they are swept";
     Colour colour = colours.warning;
     if (check == nullptr && session.canCheck()) {
         text = "pairs are verified after the next frame";
         colour = colours.unknown;
-    } else if (check != nullptr && !check->missing().empty()) {
-        text = "WRONG: " + withThousands(check->missing().size()) + " of " +
-               withThousands(check->exactCount()) + " pairs are missing";
+    } else if (check != nullptr && !check->missing.empty()) {
+        text = "WRONG: " + withThousands(check->missing.size()) + " of " +
+               withThousands(check->exact.size()) + " pairs are missing";
         colour = colours.alert;
     } else if (check != nullptr) {
-        text = "all " + withThousands(check->exactCount()) + " pairs found";
-        colour = check->extra().empty() ? colours.confirmed : colours.warning;
-        text += check->extra().empty()
+        text = "all " + withThousands(check->exact.size()) + " pairs found";
+        colour = check->extra.empty() ? colours.confirmed : colours.warning;
+        text += check->extra.empty()
                     ? ", and no other"
-                    : ", and " + withThousands(check->extra().size()) + " that do not overlap";
+                    : ", and " + withThousands(check->extra.size()) + " that do not overlap";
     }
-    ImGui::SetNextWindowPos({static_cast<float>(session.width()) / 2, 8}, ImGuiCond_Always,
-                            {0.5F, 0});
     ImGui::PushStyleColor(ImGuiCol_WindowBg, colourOf(colour));
-    const bool isDarkText = !(check != nullptr && !check->missing().empty());
+    const bool isDarkText = !(check != nullptr && !check->missing.empty());
     ImGui::PushStyleColor(ImGuiCol_Text, isDarkText ? ImVec4(0, 0, 0, 1) : ImVec4(1, 1, 1, 1));
-    ImGui::Begin("badge", nullptr, kStill);
+    beginStill("badge", {static_cast<float>(session.width) / 2, 8}, {0.5F, 0});
     ImGui::TextUnformatted(text.c_str());
     ImGui::End();
     ImGui::PopStyleColor(2);
+}
+
+void showHelp(const Session& session, float left) {
+    beginStill(
+        "help",
+        {(left + static_cast<float>(session.width)) / 2, static_cast<float>(session.height) / 2},
+        {0.5F, 0.5F});
+    ImGui::TextUnformatted(
+        "click: who is that    drag: select    right button: turn    wheel: nearer");
+    ImGui::Separator();
+    ImGui::BeginTable("keys", 4, ImGuiTableFlags_SizingFixedFit);
+    for (const KeyBinding& binding : keyBindings()) {
+        ImGui::TableNextColumn();
+        ImGui::TextColored(colourOf(palette(session.options.theme).accent), "%s",
+                           std::string(binding.key).c_str());
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted((std::string(binding.help) + "    ").c_str());
+    }
+    ImGui::EndTable();
+    ImGui::Separator();
+    ImGui::TextUnformatted("Each is a command that a script can run: hashphase wander --list");
+    ImGui::End();
 }
 
 }  // namespace hashphase::demos

@@ -42,22 +42,24 @@ void addEdges(const Corners& corners, Colour colour, bool isOnTop, std::vector<D
 }  // namespace
 
 const Picture& PictureMaker::make(const Session& session, float contactFrom, int coveredLeft) {
-    const ViewOptions& options = session.options();
+    const ViewOptions& options = session.options;
     palette_ = palette(options.theme);
     colours_.prepare(session);
     spheres_.clear();
     boxes_.clear();
     capsules_.clear();
     lines_.clear();
-    if (options.has(Overlay::bodies)) {
-        addBodies(session);
+    for (std::uint32_t index = 0;
+         options.has(Overlay::bodies) && index < session.stage->indexLimit(); ++index) {
+        if (session.isVisible(index)) {
+            const StageBody body = session.stage->body(index);
+            addBody(body, colours_.of(session, index, body));
+        }
     }
-    if (session.frozenPose()) {
-        addFrustum(*session.frozenPose());
+    if (session.frozen) {
+        addEdges(frustumCorners(*session.frozen), palette_.line, true, lines_);
     }
-    for (const InterestZone& zone : session.stage().interestZones()) {
-        addZone(zone);
-    }
+    addZones(session);
     addPairs(session);
     addMarks(session);
 
@@ -67,7 +69,7 @@ const Picture& PictureMaker::make(const Session& session, float contactFrom, int
     picture_.boxes = boxes_;
     picture_.capsules = capsules_;
     picture_.lines = lines_;
-    picture_.rectangle = session.rectangle();
+    picture_.rectangle = session.rectangle;
     picture_.leastRadius = options.dots;
     picture_.contactFrom = contactFrom;
     picture_.coveredLeft = coveredLeft;
@@ -76,31 +78,18 @@ const Picture& PictureMaker::make(const Session& session, float contactFrom, int
 }
 
 void PictureMaker::setGround(const Session& session) {
-    const std::span<const Vector3<float>> ground = session.stage().ground();
-    picture_.ground = {ground, 2 * session.sceneCount() + (ground.empty() ? 0 : 1)};
+    const std::span<const Vector3<float>> ground = session.stage->ground();
+    picture_.ground = {ground, 2 * session.sceneCount + (ground.empty() ? 0 : 1)};
     picture_.gridLines.reset();
     picture_.heatMap.reset();
-    const Grid<float>* grid = session.stage().grid();
-    if (session.options().has(Overlay::grid) && grid != nullptr) {
+    const Grid<float>* grid = session.stage->grid();
+    if (session.options.has(Overlay::grid) && grid != nullptr) {
         picture_.gridLines = GroundCells{Eigen::Vector2f::Zero(), grid->cellSize()};
     }
-    const CellLoads& loads = session.loads();
-    if (session.options().has(Overlay::heat) && !loads.isEmpty()) {
-        picture_.heatMap = HeatMap{
-            {loads.corner(), loads.cellSize()}, loads.columns(), loads.rows(), loads.shades()};
-    }
-}
-
-// --- Bodies --------------------------------------------------------------------------------------
-
-void PictureMaker::addBodies(const Session& session) {
-    const std::uint32_t limit = session.stage().indexLimit();
-    for (std::uint32_t index = 0; index < limit; ++index) {
-        if (!session.isVisible(index)) {
-            continue;
-        }
-        const StageBody body = session.stage().body(index);
-        addBody(body, colours_.of(session, index, body));
+    const CellLoads& loads = session.loads;
+    if (session.options.has(Overlay::heat) && !loads.isEmpty()) {
+        picture_.heatMap =
+            HeatMap{{loads.corner, loads.cellSize}, loads.columns, loads.rows, loads.shades};
     }
 }
 
@@ -124,10 +113,6 @@ void PictureMaker::addBody(const StageBody& body, Colour colour) {
 
 // --- Lines ---------------------------------------------------------------------------------------
 
-void PictureMaker::addFrustum(const CameraPose& pose) {
-    addEdges(frustumCorners(pose), palette_.line, true, lines_);
-}
-
 // Around `centre`, through what `right` and `up` lead to.
 void PictureMaker::addCircle(const Vector3<float>& centre, const Vector3<float>& right,
                              const Vector3<float>& up, Colour colour) {
@@ -141,11 +126,13 @@ void PictureMaker::addCircle(const Vector3<float>& centre, const Vector3<float>&
     }
 }
 
-// A ball, as its circles across the axes.
-void PictureMaker::addZone(const InterestZone& zone) {
-    for (int axis = 0; axis < 3; ++axis) {
-        addCircle(zone.centre, zone.radius * Vector3<float>::Unit((axis + 1) % 3),
-                  zone.radius * Vector3<float>::Unit((axis + 2) % 3), palette_.accent);
+// Balls, as their circles across the axes.
+void PictureMaker::addZones(const Session& session) {
+    for (const InterestZone& zone : session.stage->interestZones()) {
+        for (int axis = 0; axis < 3; ++axis) {
+            addCircle(zone.centre, zone.radius * Vector3<float>::Unit((axis + 1) % 3),
+                      zone.radius * Vector3<float>::Unit((axis + 2) % 3), palette_.accent);
+        }
     }
 }
 
@@ -174,35 +161,31 @@ void PictureMaker::addRings(const StageBody& body, const CameraPose& pose) {
     }
 }
 
-void PictureMaker::addLink(const Session& session, PairKey pair, Colour colour, bool isOnTop) {
-    if (lines_.size() >= kMostLinks || !session.isVisible(firstOf(pair)) ||
-        !session.isVisible(secondOf(pair))) {
-        return;
-    }
-    const StageBody first = session.stage().body(firstOf(pair));
-    const StageBody second = session.stage().body(secondOf(pair));
-    const bool areThere =
-        first.shape != StageBody::Shape::none && second.shape != StageBody::Shape::none;
-    if (areThere) {
-        lines_.push_back({first.centre, second.centre, colour, isOnTop});
-    }
-}
-
 // Wrong pairs first: these must be seen.
 void PictureMaker::addPairs(const Session& session) {
-    if (const PairCheck* check = session.check()) {
-        for (const PairKey pair : check->missing()) {
-            addLink(session, pair, palette_.alert, true);
+    const auto addLink = [&](PairKey pair, Colour colour) {
+        const std::array ends{firstOf(pair), secondOf(pair)};
+        const bool isSeen = std::ranges::all_of(ends, [&](std::uint32_t index) {
+            return session.isVisible(index) && session.stage->contains(index);
+        });
+        if (isSeen && lines_.size() < kMostLinks) {
+            lines_.push_back({session.stage->body(ends[0]).centre,
+                              session.stage->body(ends[1]).centre, colour, true});
         }
-        for (const PairKey pair : check->extra()) {
-            addLink(session, pair, palette_.warning, true);
+    };
+    if (const PairCheck* check = session.check()) {
+        for (const PairKey pair : check->missing) {
+            addLink(pair, palette_.alert);
+        }
+        for (const PairKey pair : check->extra) {
+            addLink(pair, palette_.warning);
         }
     }
-    for (const PairKey pair : session.pairs()) {
-        const bool isOfPicked = session.card() && (firstOf(pair) == session.card()->index ||
-                                                   secondOf(pair) == session.card()->index);
-        if (isOfPicked || session.options().has(Overlay::pairs)) {
-            addLink(session, pair, palette_.line, true);
+    for (const PairKey pair : session.pairs) {
+        const bool isOfPicked = session.card && (firstOf(pair) == session.card->index ||
+                                                 secondOf(pair) == session.card->index);
+        if (isOfPicked || session.options.has(Overlay::pairs)) {
+            addLink(pair, palette_.line);
         }
     }
 }
@@ -222,18 +205,18 @@ void PictureMaker::addWireBox(const StageBody& body, Colour colour) {
 }
 
 void PictureMaker::addMarks(const Session& session) {
-    for (const TunnelMark& mark : session.stage().tunnelMarks()) {
+    for (const TunnelMark& mark : session.stage->tunnelMarks()) {
         lines_.push_back({mark.from, mark.to, palette_.alert, true});
     }
-    if (session.options().has(Overlay::boxes)) {
-        for (const std::uint32_t index : session.selected()) {
-            addWireBox(session.stage().body(index), palette_.selected);
+    if (session.options.has(Overlay::boxes)) {
+        for (const std::uint32_t index : session.selected) {
+            addWireBox(session.stage->body(index), palette_.selected);
         }
-    } else if (session.card()) {
-        addWireBox(session.card()->body, palette_.picked);
+    } else if (session.card) {
+        addWireBox(session.card->body, palette_.picked);
     }
-    if (session.card()) {
-        addRings(session.card()->body, session.pose());
+    if (session.card) {
+        addRings(session.card->body, session.pose());
     }
 }
 

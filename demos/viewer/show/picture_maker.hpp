@@ -26,15 +26,12 @@ public:
     }
 
 private:
-    void addBodies(const Session& session);
     void addBody(const StageBody& body, Colour colour);
-    void addFrustum(const CameraPose& pose);
     void addCircle(const Vector3<float>& centre, const Vector3<float>& right,
                    const Vector3<float>& up, Colour colour);
-    void addZone(const InterestZone& zone);
+    void addZones(const Session& session);
     void addRings(const StageBody& body, const CameraPose& pose);
     void addPairs(const Session& session);
-    void addLink(const Session& session, PairKey pair, Colour colour, bool isOnTop);
     void addWireBox(const StageBody& body, Colour colour);
     void addMarks(const Session& session);
     void setGround(const Session& session);

@@ -2,16 +2,12 @@
 #include <demos/viewer/show/viewer.hpp>
 
 #include <demos/scenes/input_error.hpp>
-#include <demos/viewer/draw/draw_error.hpp>
-#include <demos/viewer/draw/png.hpp>
-#include <demos/viewer/show/panel_parts.hpp>
 
 #include <epoxy/gl.h>
 
 #include <algorithm>
 
 namespace hashphase::demos {
-
 namespace {
 
 constexpr double kSlow = 0.038;        // [s]: with the simulation, 22 pictures a second
@@ -36,16 +32,14 @@ void Viewer::layOut(Session& session) {
 
 void Viewer::show(Session& session, const Panel::Pointer& pointer, double seconds,
                   bool fitsWindow) {
-    if (renderer_.width() != session.width() || renderer_.height() != session.height()) {
-        renderer_.resize(session.width(), session.height());
-    }
+    renderer_.resize(session.width, session.height);
     panel_.build(session, maker_.legends(session), pointer, seconds);
-    framebuffer_ = fitsWindow && !session.wantsScreenshot() ? 0 : renderer_.framebuffer();
-    const float contactFrom = session.wantsScreenshot() ? kContactFrom : contactFrom_;
-    const int covered = session.options().panel ? static_cast<int>(kPanelWidth) : 0;
+    framebuffer_ = fitsWindow && session.screenshots.empty() ? 0 : renderer_.framebuffer();
+    const float contactFrom = !session.screenshots.empty() ? kContactFrom : contactFrom_;
+    const int covered = session.options.panel ? static_cast<int>(kPanelWidth) : 0;
     renderer_.draw(maker_.make(session, contactFrom, covered), framebuffer_);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-    glViewport(0, 0, session.width(), session.height());
+    glViewport(0, 0, session.width, session.height);
     panel_.draw();
     for (const std::string& path : session.takeScreenshots()) {
         try {

@@ -2,18 +2,21 @@
 #include <demos/viewer/show/wander.hpp>
 
 #include <demos/console/format.hpp>
+#include <demos/console/options.hpp>
 #include <demos/console/progress.hpp>
 #include <demos/console/result_file.hpp>
+#include <demos/console/subcommands.hpp>
 #include <demos/report/stopwatch.hpp>
 #include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/input_error.hpp>
-#include <demos/viewer/draw/draw_error.hpp>
 #include <demos/viewer/draw/headless_context.hpp>
 #include <demos/viewer/session/script.hpp>
 #include <demos/viewer/show/viewer.hpp>
 #include <demos/viewer/show/wander_report.hpp>
 #include <demos/viewer/show/window.hpp>
 #include <demos/viewer/stage/threads.hpp>
+
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -25,6 +28,75 @@ namespace hashphase::demos {
 namespace {
 
 constexpr std::uint64_t kHeadlessFrames = 300;
+
+struct WanderOptions {
+    SceneChoice scene;                  // its seed is its own, unless there is one here:
+    std::optional<std::uint64_t> seed;  // that was asked for
+    std::string size = "1280x800";      // of the picture or window [pixels]
+    bool isHeadless = false;
+    std::vector<std::string> commands;    // run at the start
+    std::string scriptFile;               // run then
+    std::string replayFile;               // instead of a scene
+    std::string recordFile;               // written at the end; empty: none
+    std::string screenshotFile;           // the same
+    std::string jsonFile;                 // the same
+    std::optional<std::uint64_t> frames;  // to be simulated
+    std::optional<double> timeLimit;      // [s]
+    std::optional<std::size_t> threads;   // at most; all that there are otherwise
+    bool quiet = false;
+    bool list = false;
+};
+
+/// What is shown, and at its beginning; what is done with it, and for how long; and what is said and written.
+void declareWander(CLI::App& app, WanderOptions& options) {
+    CLI::Option* scene =
+        app.add_option("--scene", options.scene.name, "scene (see --list)")->capture_default_str();
+    CLI::Option* file =
+        addFileToRead(app, "--file", options.scene.file,
+                      "instead of a scene: a scene file (.json), or a recording of boxes (.aabbs)")
+            ->excludes(scene);
+    CLI::Option* objects = app.add_option("--objects", options.scene.objects,
+                                          "number of bodies (default: the scene's)");
+    objects->transform(wholeFrom(1, kMostObjects));
+    CLI::Option* seed =
+        app.add_option("--seed", options.seed, "seed of the scene (default: 1, or a scene file's)");
+    seed->transform(seedUpTo(kMostSeed));
+    CLI::Option* commands =
+        app.add_option("--do", options.commands, "run a command at the start; may be given again");
+    commands->allow_extra_args(false);
+    CLI::Option* script =
+        addFileToRead(app, "--script", options.scriptFile, "then run the commands of this file");
+    CLI::Option* replay = addFileToRead(
+        app, "--replay", options.replayFile,
+        "play back a recording, and compare what comes out; a window pauses it (P), steps "
+        "(O) and begins it again (R), but takes no command that would change it");
+    for (CLI::Option* other : {script, scene, file, objects, seed, commands}) {
+        replay->excludes(other);
+    }
+    app.add_option("--frames", options.frames,
+                   "so many frames (default: until the window is closed; 300 without a window, or "
+                   "fewer where a command pauses it)")
+        ->transform(wholeFrom(1, 1'000'000'000))
+        ->excludes(script)
+        ->excludes(replay);
+    app.add_option("--time-limit", options.timeLimit,
+                   "stop after so many seconds; a script or a replay that this cuts off has failed")
+        ->transform(positiveSeconds());
+    app.add_option("--threads", options.threads,
+                   "simulate on so many threads at most (default: all; Bullet's scenes on one)")
+        ->transform(wholeFrom(1, 1024));
+    app.add_option("--size", options.size, "of the picture in pixels, up to 8,192 each way")
+        ->capture_default_str();
+    app.add_flag("--headless", options.isHeadless,
+                 "without a window: pictures by screenshots only");
+    addFileToWrite(app, "--record", options.recordFile, "write a recording at the end");
+    addFileToWrite(app, "--screenshot", options.screenshotFile, "write a picture at the end (PNG)");
+    addFileToWrite(app, "--json", options.jsonFile, "write all numbers at the end to this file");
+    app.add_flag("--quiet", options.quiet, "no progress on stderr");
+    app.add_flag("--list", options.list, "say which scenes, commands, keys and readings there are");
+}
+
+// --- A run ---------------------------------------------------------------------------------------
 
 std::pair<int, int> parseSize(const std::string& text) {
     int width = 0;
@@ -50,130 +122,110 @@ SceneChoice chosen(const WanderOptions& options) {
     return choice;
 }
 
-/// OpenGL without a window, from the first picture on.
-class HeadlessViewer {
-public:
-    void show(Session& session) {
-        if (!viewer_) {
-            context_ = std::make_unique<HeadlessContext>();
-            viewer_ = std::make_unique<Viewer>(session.width(), session.height());
-        }
-        viewer_->layOut(session);
-        viewer_->show(session, {}, 0);
-    }
-
-private:
-    std::unique_ptr<HeadlessContext> context_;
-    std::unique_ptr<Viewer> viewer_;
+/// OpenGL without a window.
+struct HeadlessViewer {
+    HeadlessContext context;
+    Viewer viewer;
 };
 
 /// What is run and written, whoever shows it.
-class Run {
-public:
-    Run(const WanderOptions& options, Console& console);
+struct Run {
+    Run(const WanderOptions& given, Console& said);
 
     int play();
-
-private:
     void playHeadless();
     void playInWindow();
-    [[nodiscard]] std::uint64_t frameCount() const;
-    [[nodiscard]] bool isTimeOver();
-    [[nodiscard]] bool isHeadlessDone() const;
-    [[nodiscard]] bool standsStill() const;
     void feed();
     void tellMessages();
     int end();
+    [[nodiscard]] bool isTimeOver();
+    [[nodiscard]] bool isHeadlessDone() const;
+    [[nodiscard]] bool standsStill() const { return !session->isPlaying && !session->isWaiting(); }
     [[nodiscard]] std::string keep(const std::string& fault);
     [[nodiscard]] std::string writeFiles();
-    [[nodiscard]] WanderEnd played() const { return {*session_, drewPictures_, framesPerSecond_}; }
     [[nodiscard]] bool isAsExpected() const;
+    [[nodiscard]] WanderEnd played() const { return {*session, drewPictures, framesPerSecond}; }
+    /// How many are to be simulated without a window.
+    [[nodiscard]] std::uint64_t frameCount() const {
+        return playback ? playback->log().frames : options.frames.value_or(kHeadlessFrames);
+    }
 
-    const WanderOptions& options_;
-    Console& console_;
-    std::unique_ptr<Session> session_;
-    std::optional<Script> script_;
-    std::optional<Playback> playback_;
+    const WanderOptions& options;
+    Console& console;
+    std::unique_ptr<Session> session;
+    std::optional<Script> script;
+    std::optional<Playback> playback;
     // Opened before anything runs, but not before what may be read from files of the same name.
-    std::optional<ResultFile> record_;
-    std::optional<ResultFile> json_;
-    bool drewPictures_ = false;
-    bool isTimeOver_ = false;
-    std::optional<double> framesPerSecond_;  // shown in a window
-    Stopwatch watch_;
+    std::optional<ResultFile> record;
+    std::optional<ResultFile> json;
+    bool drewPictures = false;
+    bool timeIsOver = false;
+    std::optional<double> framesPerSecond;  // shown in a window
+    Stopwatch watch;
 };
 
-Run::Run(const WanderOptions& options, Console& console) : options_(options), console_(console) {
+Run::Run(const WanderOptions& given, Console& said) : options(given), console(said) {
     if (!options.screenshotFile.empty() && !options.isHeadless) {
         throw InputError("--screenshot is for --headless; in a window press F12.");
     }
     if (!options.replayFile.empty()) {
-        playback_.emplace(CommandLog::parse(readText(options.replayFile), options.replayFile));
+        playback.emplace(CommandLog::parse(readText(options.replayFile), options.replayFile));
     }
     if (!options.scriptFile.empty()) {
-        script_.emplace(readText(options.scriptFile), options.scriptFile);
+        script.emplace(readText(options.scriptFile), options.scriptFile);
     }
     const auto [width, height] = parseSize(options.size);
     {
-        const SceneChoice choice = playback_ ? playback_->log().choice() : chosen(options);
+        const SceneChoice choice = playback ? playback->log().choice : chosen(options);
         Progress opening(console.err, progressStyle(console, options.quiet),
                          "opening " + titleOf(choice), 1);
-        session_ = std::make_unique<Session>(choice, width, height);
+        session = std::make_unique<Session>(choice, width, height);
     }
-    record_.emplace(options.recordFile);
-    json_.emplace(options.jsonFile);
+    record.emplace(options.recordFile);
+    json.emplace(options.jsonFile);
     const ResultFile screenshot(options.screenshotFile);  // as a wrong path is to cost no waiting
-    session_->options().panel = !options.isHeadless;
+    session->options.panel = !options.isHeadless;
     for (const std::string& command : options.commands) {
-        session_->run(command);
+        session->run(command);
     }
 }
 
 void Run::tellMessages() {
-    for (const std::string& message : session_->takeMessages()) {
-        console_.out << message << '\n';
+    for (const std::string& message : session->takeMessages()) {
+        console.out << message << '\n';
     }
 }
 
 void Run::feed() {
-    if (playback_) {
-        playback_->feed(*session_);
-    } else if (script_) {
-        script_->feed(*session_);
+    if (playback) {
+        playback->feed(*session);
+    } else if (script) {
+        script->feed(*session);
     }
-}
-
-// How many are to be simulated without a window.
-std::uint64_t Run::frameCount() const {
-    return playback_ ? playback_->log().frameCount() : options_.frames.value_or(kHeadlessFrames);
 }
 
 bool Run::isTimeOver() {
-    isTimeOver_ =
-        isTimeOver_ || (options_.timeLimit && watch_.milliseconds() > 1000 * *options_.timeLimit);
-    return isTimeOver_;
-}
-
-bool Run::standsStill() const {
-    return !session_->isPlaying() && !session_->isWaiting();
+    timeIsOver =
+        timeIsOver || (options.timeLimit && watch.milliseconds() > 1000 * *options.timeLimit);
+    return timeIsOver;
 }
 
 bool Run::isHeadlessDone() const {
-    if (session_->isOver()) {
+    if (session->isOver) {
         return true;
     }
-    if (session_->wantsScreenshot()) {
+    if (!session->screenshots.empty()) {
         return false;
     }
-    if (script_) {
-        return script_->isComplete(*session_);
+    if (script) {
+        return script->isComplete(*session);
     }
-    return (session_->frame() >= frameCount() && !session_->isCapturing()) || standsStill();
+    return (session->frame >= frameCount() && !session->recorder) || standsStill();
 }
 
 int Run::play() {
     try {
-        if (options_.isHeadless) {
+        if (options.isHeadless) {
             playHeadless();
         } else {
             playInWindow();
@@ -187,53 +239,59 @@ int Run::play() {
 }
 
 void Run::playHeadless() {
-    HeadlessViewer viewer;
-    Progress progress(console_.err, progressStyle(console_, options_.quiet || script_),
-                      titleOf(session_->choice()), frameCount());
-    if (script_) {
-        session_->setPlaying(false);
+    std::unique_ptr<HeadlessViewer> pictures;  // from the first one on
+    const auto show = [&] {
+        if (pictures == nullptr) {
+            pictures.reset(new HeadlessViewer{{}, {session->width, session->height}});
+        }
+        pictures->viewer.layOut(*session);
+        pictures->viewer.show(*session, {}, 0);
+    };
+    Progress progress(console.err, progressStyle(console, options.quiet || script),
+                      titleOf(session->choice), frameCount());
+    if (script) {
+        session->isPlaying = false;
     }
     for (feed(); !isHeadlessDone() && !isTimeOver(); feed()) {
-        session_->advance();
-        if (session_->wantsScreenshot()) {
-            drewPictures_ = true;
-            viewer.show(*session_);
+        session->advance();
+        if (!session->screenshots.empty()) {
+            drewPictures = true;
+            show();
         }
         tellMessages();
-        progress.update(std::min(session_->frame(), frameCount()));
+        progress.update(std::min(session->frame, frameCount()));
     }
     progress.clear();
-    if (!script_ && !session_->isOver() && standsStill() && session_->frame() < frameCount()) {
-        console_.err << "hashphase: the scene stands still after "
-                     << withThousands(session_->frame()) << " of " << withThousands(frameCount())
-                     << " frames, because a command has paused it.\n";
+    if (!script && !session->isOver && standsStill() && session->frame < frameCount()) {
+        console.err << "hashphase: the scene stands still after " << withThousands(session->frame)
+                    << " of " << withThousands(frameCount())
+                    << " frames, because a command has paused it.\n";
     }
-    if (!options_.screenshotFile.empty()) {
-        session_->askForScreenshot(options_.screenshotFile);
-        viewer.show(*session_);
+    if (!options.screenshotFile.empty()) {
+        session->askForScreenshot(options.screenshotFile);
+        show();
     }
 }
 
 void Run::playInWindow() {
-    Window window(session_->width(), session_->height());
-    if (playback_) {
-        window.setGuard(Playback::refuseChange);
-    }
-    drewPictures_ = true;
-    const FrameRate rate = window.run(*session_, options_.frames.value_or(0), [this] {
-        feed();
-        return isTimeOver() || (playback_ && playback_->isDone(*session_));
-    });
-    framesPerSecond_ = rate.perSecond();
+    drewPictures = true;
+    const FrameRate rate = showInWindow(
+        *session, options.frames.value_or(0),
+        [this] {
+            feed();
+            return isTimeOver() || (playback && playback->isDone(*session));
+        },
+        playback ? Playback::refuseChange : nullptr);
+    framesPerSecond = rate.perSecond();
 }
 
 int Run::end() {
-    session_->endCapture("the run ends");
+    session->endCapture("the run ends");
     tellMessages();
-    if (!playback_ && !script_) {
-        tellPhases(played(), console_.out);
+    if (!playback && !script) {
+        tellPhases(played(), console.out);
     }
-    tellFrameRate(played(), console_.out);
+    tellFrameRate(played(), console.out);
     if (const std::string faults = writeFiles(); !faults.empty()) {
         throw InputError(faults);
     }
@@ -242,10 +300,10 @@ int Run::end() {
 
 // What was played until a fault is not lost. Returns that fault, and what cannot be written besides.
 std::string Run::keep(const std::string& fault) {
-    if (session_->frame() == 0) {
+    if (session->frame == 0) {
         return fault;
     }
-    session_->endCapture("the run ends");
+    session->endCapture("the run ends");
     tellMessages();
     const std::string others = writeFiles();
     return others.empty() ? fault : fault + " " + others;
@@ -261,8 +319,8 @@ std::string Run::writeFiles() {
             faults += (faults.empty() ? "" : " ") + std::string(fault.what());
         }
     };
-    write(*record_, [this](std::ostream& out) { out << session_->log().text(); });
-    write(*json_, [this](std::ostream& out) { writeNumbers(played(), out); });
+    write(*record, [this](std::ostream& out) { out << session->log.text(); });
+    write(*json, [this](std::ostream& out) { writeNumbers(played(), out); });
     return faults;
 }
 
@@ -270,28 +328,36 @@ std::string Run::writeFiles() {
 bool Run::isAsExpected() const {
     bool isSame = true;
     bool isComplete = true;
-    if (playback_) {
-        console_.out << playback_->verdict(*session_, isSame) << '\n';
-        isComplete = playback_->isDone(*session_);
+    if (playback) {
+        console.out << playback->verdict(*session, isSame) << '\n';
+        isComplete = playback->isDone(*session);
     }
-    if (script_) {
-        if (const std::string verdict = script_->verdict(*session_); !verdict.empty()) {
-            console_.out << verdict << '\n';
+    if (script) {
+        if (const std::string verdict = script->verdict(*session); !verdict.empty()) {
+            console.out << verdict << '\n';
         }
-        isComplete = script_->isComplete(*session_);
+        isComplete = script->isComplete(*session);
     }
-    return isSame && session_->failureCount() == 0 && (isComplete || !isTimeOver_);
+    return isSame && session->failureCount == 0 && (isComplete || !timeIsOver);
 }
 
 }  // namespace
 
-int runWander(const WanderOptions& options, Console& console) {
-    if (options.list) {
-        listWander(console.out);
-        return kExitOk;
-    }
-    const ThreadLimit threads(options.threads.value_or(threadCount()));
-    return Run(options, console).play();
+Subcommand wanderCommand() {
+    auto options = std::make_shared<WanderOptions>();
+    Subcommand command;
+    command.name = "wander";
+    command.description = descriptionOf(command.name);
+    command.declareOptions = [options](CLI::App& app) { declareWander(app, *options); };
+    command.run = [options](Console& console) {
+        if (options->list) {
+            listWander(console.out);
+            return int{kExitOk};
+        }
+        const auto threads = limitThreads(options->threads.value_or(threadCount()));
+        return Run(*options, console).play();
+    };
+    return command;
 }
 
 }  // namespace hashphase::demos

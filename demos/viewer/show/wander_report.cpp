@@ -20,13 +20,13 @@ void tellPhase(std::ostream& out, std::string_view name, double median, double p
 // The scene that was on stage at the end; of a recording of boxes all objects are bodies, and of a scene file,
 // in which one can be removed, each has an index.
 void addScene(const Session& session, Json& json) {
-    const SceneChoice& choice = session.choice();
+    const SceneChoice& choice = session.choice;
     const bool isFile = !choice.file.empty();
     json["scene"] = isFile ? Json(nullptr) : Json(choice.name);
     json["file"] = orNull(choice.file);
-    json["objects"] = isFile ? session.stage().indexLimit() : objectCount(choice);
+    json["objects"] = isFile ? session.stage->indexLimit() : objectCount(choice);
     json["seed"] = isBoxRecording(choice) ? Json(nullptr) : Json(choice.seed);
-    json["broadphase"] = session.stage().broadphase().name;
+    json["broadphase"] = session.stage->broadphase().name;
 }
 
 }  // namespace
@@ -47,15 +47,15 @@ void listWander(std::ostream& out) {
         out << "  " << std::left << std::setw(54) << kind.usage << kind.help << '\n';
     }
     out << "\nreadings, for print and expect\n  ";
-    for (const std::string_view name : Session::readingNames()) {
-        out << name << ' ';
+    for (const Reading& reading : readings()) {
+        out << reading.name << ' ';
     }
     out << '\n';
 }
 
 void tellPhases(const WanderEnd& end, std::ostream& out) {
     const Session& session = end.session;
-    const PhaseHistory& history = session.history();
+    const PhaseHistory& history = session.history;
     if (const std::size_t count = history.toldCount(); count > 0) {
         for (const PhaseHistory::Row& row : history.rows()) {
             tellPhase(out, row.name, history.median(row), history.p95(row));
@@ -64,10 +64,10 @@ void tellPhases(const WanderEnd& end, std::ostream& out) {
         out << "medians of the last " << (count == 1 ? "frame" : withThousands(count) + " frames")
             << (end.drewPictures ? ", of a run that drew pictures as well" : "") << '\n';
     }
-    out << withThousands(session.stage().size()) << " bodies, "
+    out << withThousands(session.stage->size()) << " bodies, "
         << withThousands(session.visibleCount()) << " visible, "
-        << withThousands(session.stage().pairCount()) << " pairs after "
-        << withThousands(session.frame()) << " frames\n";
+        << withThousands(session.stage->pairCount()) << " pairs after "
+        << withThousands(session.frame) << " frames\n";
 }
 
 void tellFrameRate(const WanderEnd& end, std::ostream& out) {
@@ -84,14 +84,15 @@ void writeNumbers(const WanderEnd& end, std::ostream& out) {
     json["version"] = 1;
     addScene(session, json);
     json["framesPerSecond"] = orNull(end.framesPerSecond);
-    for (const std::string_view name : Session::readingNames()) {
+    for (const Reading& reading : readings()) {
+        Json& number = json["readings"][std::string(reading.name)];
         try {
-            json["readings"][std::string(name)] = session.reading(name);
+            number = reading.read(session);
         } catch (const InputError&) {
-            json["readings"][std::string(name)] = nullptr;
+            number = nullptr;
         }
     }
-    const PhaseHistory& history = session.history();
+    const PhaseHistory& history = session.history;
     for (const PhaseHistory::Row& row : history.rows()) {
         json["phases"][std::string(row.name)] = {{"milliseconds", history.median(row)},
                                                  {"p95", history.p95(row)}};

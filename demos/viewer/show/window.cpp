@@ -13,9 +13,8 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -26,23 +25,13 @@ constexpr double kClickReach = 4;       // a drag begins beyond it [pixels]
 constexpr double kTurnPerPixel = 0.2;   // [degrees]
 constexpr double kStillSeconds = 0.25;  // between the pictures of what stands still [s]
 
-struct NamedKey {
-    std::string_view name;
-    int key;
-};
-
-// Those that have no character of their own.
-constexpr std::array kNamedKeys{
-    NamedKey{"Home", GLFW_KEY_HOME},     NamedKey{"Delete", GLFW_KEY_DELETE},
-    NamedKey{"Escape", GLFW_KEY_ESCAPE}, NamedKey{"Tab", GLFW_KEY_TAB},
-    NamedKey{"F1", GLFW_KEY_F1},         NamedKey{"F5", GLFW_KEY_F5},
-    NamedKey{"F10", GLFW_KEY_F10},       NamedKey{"F12", GLFW_KEY_F12},
-};
-
 int keyOf(std::string_view name) {
-    const auto named = std::find_if(kNamedKeys.begin(), kNamedKeys.end(),
-                                    [name](const NamedKey& key) { return key.name == name; });
-    return named != kNamedKeys.end() ? named->key : name.front();  // GLFW's codes are ASCII's
+    static const std::map<std::string_view, int> kNamedKeys{
+        {"Home", GLFW_KEY_HOME}, {"Delete", GLFW_KEY_DELETE}, {"Escape", GLFW_KEY_ESCAPE},
+        {"Tab", GLFW_KEY_TAB},   {"F1", GLFW_KEY_F1},         {"F5", GLFW_KEY_F5},
+        {"F10", GLFW_KEY_F10},   {"F12", GLFW_KEY_F12}};
+    const auto named = kNamedKeys.find(name);
+    return named != kNamedKeys.end() ? named->second : name.front();  // GLFW's codes are ASCII's
 }
 
 std::string line(std::string_view command, std::initializer_list<double> numbers) {
@@ -62,12 +51,30 @@ std::string line(std::string_view command, std::initializer_list<double> numbers
                      "before the command.");
 }
 
-}  // namespace
+/// The window, with an OpenGL context that is current while it lives; and what comes from the keyboard and the
+/// mouse until the next frame. Places are the window's, which is as large as the picture or not; commands and
+/// the panel have those of the picture.
+struct Window {
+    Window(int width, int height);
+    ~Window();
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
 
-/// What comes from the keyboard and the mouse until the next frame. Places are the window's, which is as large
-/// as the picture or not; commands and the panel have those of the picture.
-struct Window::Input {
-    GLFWwindow* window = nullptr;
+    static Window& of(GLFWwindow* window) {
+        return *static_cast<Window*>(glfwGetWindowUserPointer(window));
+    }
+    void setCallbacks();
+    void onKey(int key);
+    void onButton(int button, bool isPressed);
+    void onMove(double x, double y);
+    void steer(const Session& session, double seconds);
+    void listen(Session& session, Viewer& viewer, double seconds);
+    void present(Session& session, Viewer& viewer, double seconds);
+    void rest(const Session& session, double frameSeconds) const;
+    [[nodiscard]] Pixel inPicture(const Pixel& place) const { return place.cwiseProduct(scale); }
+    [[nodiscard]] bool isDown(int key) const { return glfwGetKey(handle, key) == GLFW_PRESS; }
+
+    GLFWwindow* handle = nullptr;
     std::vector<std::string> commands;
     Panel::Pointer pointer;
     bool overPanel = false;
@@ -79,58 +86,36 @@ struct Window::Input {
     bool rightIsDown = false;
     Pixel lastAt{0, 0};
     Pixel scale{1, 1};  // of the picture, by the window
-
-    static Input& of(GLFWwindow* window) {
-        return *static_cast<Input*>(glfwGetWindowUserPointer(window));
-    }
-    void listen();
-    void setScale(const Session& session);
-    void onKey(int key);
-    void onButton(int button, bool isDown);
-    void onMove(double x, double y);
-    void steer(const Session& session, double seconds);
-    [[nodiscard]] Pixel inPicture(const Pixel& place) const { return place.cwiseProduct(scale); }
-    [[nodiscard]] bool isBusy() const { return isSteering || leftIsDown || rightIsDown; }
-    [[nodiscard]] bool isDown(int key) const { return glfwGetKey(window, key) == GLFW_PRESS; }
 };
 
-void Window::Input::listen() {
-    glfwSetWindowUserPointer(window, this);
-    glfwSetKeyCallback(window, [](GLFWwindow* from, int key, int, int action, int modifiers) {
+void Window::setCallbacks() {
+    glfwSetWindowUserPointer(handle, this);
+    glfwSetKeyCallback(handle, [](GLFWwindow* from, int key, int, int action, int modifiers) {
         constexpr int kNotOurs = GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER;
         if (action == GLFW_PRESS && (modifiers & kNotOurs) == 0) {
             of(from).onKey(key);
         }
     });
-    glfwSetMouseButtonCallback(window, [](GLFWwindow* from, int button, int action, int) {
+    glfwSetMouseButtonCallback(handle, [](GLFWwindow* from, int button, int action, int) {
         of(from).onButton(button, action == GLFW_PRESS);
     });
-    glfwSetCursorPosCallback(window,
+    glfwSetCursorPosCallback(handle,
                              [](GLFWwindow* from, double x, double y) { of(from).onMove(x, y); });
-    glfwSetScrollCallback(window, [](GLFWwindow* from, double, double steps) {
-        Input& input = of(from);
+    glfwSetScrollCallback(handle, [](GLFWwindow* from, double, double steps) {
+        Window& input = of(from);
         input.pointer.wheel += static_cast<float>(steps);
         if (!input.overPanel) {
             input.commands.push_back(line("zoom", {std::pow(1.15, steps)}));
         }
     });
-    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* from, int width, int height) {
+    glfwSetFramebufferSizeCallback(handle, [](GLFWwindow* from, int width, int height) {
         if (width >= 16 && height >= 16) {
             of(from).commands.push_back(line("size", {double(width), double(height)}));
         }
     });
 }
 
-void Window::Input::setScale(const Session& session) {
-    int width = 0;
-    int height = 0;
-    glfwGetWindowSize(window, &width, &height);
-    if (width > 0 && height > 0) {  // it has none while it is an icon
-        scale = {double(session.width()) / width, double(session.height()) / height};
-    }
-}
-
-void Window::Input::onKey(int key) {
+void Window::onKey(int key) {
     for (const KeyBinding& binding : keyBindings()) {
         if (keyOf(binding.key) == key) {
             commands.emplace_back(binding.command);
@@ -138,19 +123,19 @@ void Window::Input::onKey(int key) {
     }
 }
 
-void Window::Input::onButton(int button, bool isDown) {
+void Window::onButton(int button, bool isPressed) {
     if (button == GLFW_MOUSE_BUTTON_RIGHT) {
-        rightIsDown = isDown;
-        pointer.right = pointer.right || isDown;
+        rightIsDown = isPressed;
+        pointer.right = pointer.right || isPressed;
     }
     if (button != GLFW_MOUSE_BUTTON_LEFT) {
         return;
     }
-    leftIsDown = isDown;
-    pointer.left = pointer.left || isDown;
-    if (isDown && !overPanel) {
+    leftIsDown = isPressed;
+    pointer.left = pointer.left || isPressed;
+    if (isPressed && !overPanel) {
         pressedAt = lastAt;
-    } else if (!isDown && pressedAt) {
+    } else if (!isPressed && pressedAt) {
         const Pixel from = inPicture(*std::exchange(pressedAt, std::nullopt));
         const Pixel to = inPicture(lastAt);
         commands.push_back(std::exchange(isDragging, false)
@@ -159,7 +144,7 @@ void Window::Input::onButton(int button, bool isDown) {
     }
 }
 
-void Window::Input::onMove(double x, double y) {
+void Window::onMove(double x, double y) {
     const Pixel way = Pixel(x, y) - lastAt;
     lastAt = {x, y};
     const Pixel at = inPicture(lastAt);
@@ -178,11 +163,11 @@ void Window::Input::onMove(double x, double y) {
 }
 
 // While keys are held down.
-void Window::Input::steer(const Session& session, double seconds) {
+void Window::steer(const Session& session, double seconds) {
     const auto held = [this](int plus, int minus) {
         return (isDown(plus) ? 1.0 : 0.0) - (isDown(minus) ? 1.0 : 0.0);
     };
-    const double pace = 0.15 * double{session.stage().bounds().sizes().norm()} * seconds;
+    const double pace = 0.15 * double{session.stage->bounds().sizes().norm()} * seconds;
     const double right = pace * held(GLFW_KEY_D, GLFW_KEY_A);
     const double up = pace * held(GLFW_KEY_E, GLFW_KEY_Q);
     const double forward = pace * held(GLFW_KEY_W, GLFW_KEY_S);
@@ -197,34 +182,39 @@ void Window::Input::steer(const Session& session, double seconds) {
     }
 }
 
-Window::Window(int width, int height) : input_(std::make_unique<Input>()) {
+Window::Window(int width, int height) {
     if (glfwInit() != GLFW_TRUE) {
         refuse();
     }
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    input_->window = glfwCreateWindow(width, height, "hashphase wander", nullptr, nullptr);
-    if (input_->window == nullptr) {
+    handle = glfwCreateWindow(width, height, "hashphase wander", nullptr, nullptr);
+    if (handle == nullptr) {
         glfwTerminate();
         refuse();
     }
-    glfwMakeContextCurrent(input_->window);
+    glfwMakeContextCurrent(handle);
     glfwSwapInterval(1);
-    input_->listen();
+    setCallbacks();
 }
 
 Window::~Window() {
-    glfwDestroyWindow(input_->window);
+    glfwDestroyWindow(handle);
     glfwTerminate();
 }
 
 // What has been pressed and moved since the last frame becomes commands, and they are run.
 void Window::listen(Session& session, Viewer& viewer, double seconds) {
-    input_->setScale(session);
+    int width = 0;
+    int height = 0;
+    glfwGetWindowSize(handle, &width, &height);
+    if (width > 0 && height > 0) {  // it has none while it is an icon
+        scale = {double(session.width) / width, double(session.height) / height};
+    }
     glfwPollEvents();
-    input_->steer(session, std::min(seconds, 0.1));
-    for (const std::string& command : std::exchange(input_->commands, {})) {
+    steer(session, std::min(seconds, 0.1));
+    for (const std::string& command : std::exchange(commands, {})) {
         viewer.panel().run(session, command);
     }
 }
@@ -232,32 +222,32 @@ void Window::listen(Session& session, Viewer& viewer, double seconds) {
 void Window::present(Session& session, Viewer& viewer, double seconds) {
     int width = 0;
     int height = 0;
-    glfwGetFramebufferSize(input_->window, &width, &height);
-    const bool fits = width == session.width() && height == session.height();
+    glfwGetFramebufferSize(handle, &width, &height);
+    const bool fits = width == session.width && height == session.height;
     const Stopwatch watch;
     try {
-        viewer.show(session, input_->pointer, seconds, fits);
+        viewer.show(session, pointer, seconds, fits);
     } catch (const InputError& error) {  // a picture that cannot be written
         viewer.panel().say(error.what(), true);
     }
-    input_->pointer.wheel = 0;
-    input_->pointer.left = input_->leftIsDown;
-    input_->pointer.right = input_->rightIsDown;
+    pointer.wheel = 0;
+    pointer.left = leftIsDown;
+    pointer.right = rightIsDown;
     if (viewer.framebuffer() != 0) {
         glBindFramebuffer(GL_READ_FRAMEBUFFER, viewer.framebuffer());
         glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-        glBlitFramebuffer(0, 0, session.width(), session.height(), 0, 0, width, height,
+        glBlitFramebuffer(0, 0, session.width, session.height, 0, 0, width, height,
                           GL_COLOR_BUFFER_BIT, GL_NEAREST);
     }
-    glfwSwapBuffers(input_->window);
+    glfwSwapBuffers(handle);
     viewer.keepPace(watch.milliseconds() / 1000);
 }
 
 // No frame is shorter than the scene's, or it would run too fast. What stands still is drawn again when
 // somebody does something, and now and then.
-void Window::rest(const Session& session, double frameSeconds) {
-    const bool isStill = !session.isPlaying() && !session.isWaiting() && !input_->isBusy();
-    if (isStill) {
+void Window::rest(const Session& session, double frameSeconds) const {
+    const bool isBusy = isSteering || leftIsDown || rightIsDown;
+    if (!session.isPlaying && !session.isWaiting() && !isBusy) {
         glfwWaitEventsTimeout(kStillSeconds);
     }
     const Stopwatch watch;
@@ -268,24 +258,28 @@ void Window::rest(const Session& session, double frameSeconds) {
     }
 }
 
-FrameRate Window::run(Session& session, std::uint64_t frames, const std::function<bool()>& isDone) {
-    Viewer viewer(session.width(), session.height());
-    viewer.panel().setGuard(guard_);
+}  // namespace
+
+FrameRate showInWindow(Session& session, std::uint64_t frames, const std::function<bool()>& isDone,
+                       const std::function<void(std::string_view)>& guard) {
+    Window window(session.width, session.height);
+    Viewer viewer(session.width, session.height);
+    viewer.panel().guard = guard;
     FrameRate rate;
     const Stopwatch watch;
     double before = 0;  // [s]
-    while (glfwWindowShouldClose(input_->window) == GLFW_FALSE &&
-           (frames == 0 || session.frame() < frames) && !isDone() && !session.isOver()) {
+    while (glfwWindowShouldClose(window.handle) == GLFW_FALSE &&
+           (frames == 0 || session.frame < frames) && !isDone() && !session.isOver) {
         const double now = watch.milliseconds() / 1000;
         const double seconds = now - std::exchange(before, now);
-        listen(session, viewer, seconds);
+        window.listen(session, viewer, seconds);
         session.advance();
-        present(session, viewer, seconds);
+        window.present(session, viewer, seconds);
         for (const std::string& message : session.takeMessages()) {
             viewer.panel().say(message);
         }
-        input_->overPanel = viewer.panel().hasPointer();
-        rest(session, watch.milliseconds() / 1000 - now);
+        window.overPanel = viewer.panel().hasPointer();
+        window.rest(session, watch.milliseconds() / 1000 - now);
         rate.note(watch.milliseconds() / 1000);
     }
     return rate;

@@ -3,12 +3,13 @@
 
 #include <demos/compare/trial.hpp>
 #include <demos/scenes/result_hash.hpp>
-#include <demos/viewer/stage/bullet_body.hpp>
+#include <demos/viewer/stage/body_shape.hpp>
 #include <demos/viewer/stage/bullet_zones.hpp>
 
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 #include <integration/effects/bullet_frame.hpp>
+#include <integration/picking/pick.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -16,7 +17,8 @@
 namespace hashphase::demos {
 namespace {
 
-constexpr float kRoomForAll = 500;  // around what is there, for axis sweeps [m]
+constexpr float kRoomForAll = 500;        // around what is there, for axis sweeps [m]
+constexpr std::size_t kMostMarks = 2000;  // of tunnels
 
 Aabb<float> boxOf(const btBroadphaseProxy& proxy) {
     return toAabb(proxy.m_aabbMin, proxy.m_aabbMax);
@@ -35,8 +37,9 @@ Aabb<float> presentBox(const btRigidBody& body) {
 
 BulletStage::BulletStage(const WorldSceneKind& scene, std::size_t objects, std::uint64_t seed,
                          const SceneEffects& effects)
-    : kind_(&broadphaseKinds().front()),
-      world_(std::make_unique<BulletWorld>(*kind_, scene, objects, seed)) {
+    : Stage({}, EffectSet::all() - EffectSet{Effect::terrain, Effect::zones}),
+      world_(std::make_unique<BulletWorld>(broadphase(), scene, objects, seed)) {
+    observers_ = &ownObservers_;
     size_ = world_->contents().bodies().size();
     measureBounds();
     declare(effects);
@@ -49,12 +52,11 @@ void BulletStage::measureBounds() {
             bounds_.extend(boxOf(*body->getBroadphaseHandle()));
         }
     }
-    constexpr float kRoom = 10;  // [m]
-    bounds_.extend(Vector3<float>(bounds_.max() + Vector3<float>(kRoom, 0, kRoom)));
-    bounds_.extend(Vector3<float>(bounds_.min() - Vector3<float>(kRoom, 0, kRoom)));
+    bounds_ = withRoom(bounds_, {10, 0, 10});
     const float room = bounds_.sizes().maxCoeff();
-    const Vector3<float> low(bounds_.min().x() - room, 0, bounds_.min().z() - room);
-    const Vector3<float> high(bounds_.max().x() + room, 0, bounds_.max().z() + room);
+    const Aabb<float> wide = withRoom(bounds_, Vector3<float>::Constant(room));
+    const Vector3<float> low(wide.min().x(), 0, wide.min().z());
+    const Vector3<float> high(wide.max().x(), 0, wide.max().z());
     const Vector3<float> left(low.x(), 0, high.z());
     const Vector3<float> right(high.x(), 0, low.z());
     ground_ = {low, left, right, right, left, high};
@@ -63,7 +65,10 @@ void BulletStage::measureBounds() {
 // --- Frame ---------------------------------------------------------------------------------------
 
 void BulletStage::runFrame() {
-    tunnels_.notePlaces(*this);
+    before_.resize(indexLimit());
+    for (std::uint32_t index = 0; index < before_.size(); ++index) {
+        before_[index] = body(index).centre;
+    }
     clock_.begin();
     {
         const BulletZones listening(zones_);
@@ -73,9 +78,9 @@ void BulletStage::runFrame() {
     noteGivenBoxes();
     clock_.skip();
     fileWhereBodiesAre();
-    observers_.watchPhases([this](std::string_view phase) { clock_.end(phase); });
-    observers_.observe({*grid()});
-    tunnels_.find(*this);
+    ownObservers_.watchPhases([this](std::string_view phase) { clock_.end(phase); });
+    ownObservers_.observe({*grid()});
+    markTunnels();
 }
 
 // What Bullet says of itself. (Its zones take some time themselves.)
@@ -124,6 +129,31 @@ void BulletStage::fileWhereBodiesAre() {
     clock_.end("second index");
 }
 
+// Marks spheres that have moved by more than their radius and have a static box between where they were and
+// where they are. Cost: a ray for each sphere that is so fast.
+void BulletStage::markTunnels() {
+    std::vector<Picked<float>> picked;
+    for (std::uint32_t index = 0; index < before_.size() && tunnelMarks_.size() < kMostMarks;
+         ++index) {
+        const StageBody mover = body(index);
+        const Vector3<float> way = mover.centre - before_[index];
+        if (mover.shape != StageBody::Shape::sphere || mover.isStatic ||
+            way.squaredNorm() <= mover.size.x() * mover.size.x()) {
+            continue;
+        }
+        pickAll(*grid(), RayRegion<float>(before_[index], mover.centre), picked);
+        const bool isThrough = std::ranges::any_of(picked, [&](const Picked<float>& met) {
+            const StageBody wall = body(met.id.index);
+            return wall.shape == StageBody::Shape::box && wall.isStatic &&
+                   meets(wall, before_[index], way).value_or(0) > 0 &&
+                   meets(wall, mover.centre, -way).value_or(0) > 0;
+        });
+        if (isThrough) {
+            tunnelMarks_.push_back({before_[index], mover.centre});
+        }
+    }
+}
+
 // --- Who is there --------------------------------------------------------------------------------
 
 btRigidBody* BulletStage::bodyAt(std::uint32_t index) const {
@@ -141,18 +171,13 @@ StageBody BulletStage::body(std::uint32_t index) const {
     return body == nullptr || isGround(*body) ? StageBody() : stageBody(*body);
 }
 
-std::size_t BulletStage::remove(std::span<const std::uint32_t> indices) {
-    return static_cast<std::size_t>(std::count_if(
-        indices.begin(), indices.end(), [this](std::uint32_t index) { return removeOne(index); }));
-}
-
 bool BulletStage::removeOne(std::uint32_t index) {
     btRigidBody* body = bodyAt(index);
     if (body == nullptr || isGround(*body)) {
         return false;
     }
     world_->remove(*body);
-    observers_.forget(index);
+    ownObservers_.forget(index);
     if (second_) {
         second_->grid.remove(second_->proxies[index]);
         second_->proxies[index] = {};
@@ -188,41 +213,28 @@ std::uint64_t BulletStage::placesHash() const {
 
 // --- What runs -----------------------------------------------------------------------------------
 
-EffectSet BulletStage::possibleEffects() const {
-    return EffectSet::all() - EffectSet{Effect::terrain, Effect::zones};
-}
-
 std::string BulletStage::faultOf(const SceneEffects& effects) const {
     return bulletEffectsError(effects);
 }
 
 void BulletStage::follow(const SceneEffects& before) {
-    observers_.declare(effects());
+    ownObservers_.declare(effects());
     world_->apply(worldEffectsOf(effects()));
     if (effects().grid != before.grid) {
-        fileAnew(*kind_);
-    }
-}
-
-void BulletStage::setBroadphase(const BroadphaseKind& kind) {
-    if (&kind != kind_) {
-        fileAnew(kind);
+        fileAnew(broadphase());
     }
 }
 
 // In that broadphase, and in the grid that is declared: its own, or the one beside it, for which a broadphase
 // that has none stays as it is.
 void BulletStage::fileAnew(const BroadphaseKind& kind) {
-    if (kind.ours || &kind != kind_) {
-        Aabb<float> room = bounds_;
-        room.extend(Vector3<float>(room.max() + Vector3<float>::Constant(kRoomForAll)));
-        room.extend(Vector3<float>(room.min() - Vector3<float>::Constant(kRoomForAll)));
-        world_->replaceBroadphase(kind, {.bounds = room,
-                                         .objects = world_->contents().bodies().size(),
-                                         .grid = effects().grid});
-        kind_ = &kind;
+    if (kind.ours || &kind != &broadphase()) {
+        world_->replaceBroadphase(
+            kind, {.bounds = withRoom(bounds_, Vector3<float>::Constant(kRoomForAll)),
+                   .objects = world_->contents().bodies().size(),
+                   .grid = effects().grid});
     }
-    observers_.forgetProxies();
+    ownObservers_.forgetProxies();
     second_ = nullptr;
     if (!kind.ours) {
         makeSecondIndex();

@@ -6,7 +6,6 @@
 
 #include <demos/viewer/stage/bullet_world.hpp>
 #include <demos/viewer/stage/stage.hpp>
-#include <demos/viewer/stage/tunnel_search.hpp>
 
 #include <array>
 #include <memory>
@@ -23,26 +22,14 @@ public:
     [[nodiscard]] std::size_t size() const override { return size_; }
     [[nodiscard]] std::uint32_t indexLimit() const override;
     [[nodiscard]] StageBody body(std::uint32_t index) const override;
-    std::size_t remove(std::span<const std::uint32_t> indices) override;
     bool push(std::uint32_t index, const Vector3<float>& velocity) override;
-    [[nodiscard]] Aabb<float> bounds() const override { return bounds_; }
     [[nodiscard]] std::span<const Vector3<float>> ground() const override { return ground_; }
-    [[nodiscard]] std::span<const TunnelMark> tunnelMarks() const override {
-        return tunnels_.marks();
-    }
     [[nodiscard]] std::uint64_t placesHash() const override;
-
-    [[nodiscard]] EffectSet possibleEffects() const override;
-    void setBroadphase(const BroadphaseKind& kind) override;
-    [[nodiscard]] const BroadphaseKind& broadphase() const override { return *kind_; }
     void listPairs(std::vector<PairKey>& pairs) const override;
     [[nodiscard]] std::size_t pairCount() const override;
     void listBoxes(std::vector<Aabb<float>>& boxes,
                    std::vector<CollisionFilter>& filters) const override;
     [[nodiscard]] const Grid<float>* grid() const override;
-    [[nodiscard]] Observers<float>& observers() override { return observers_; }
-    [[nodiscard]] const Observers<float>& observers() const override { return observers_; }
-    [[nodiscard]] std::span<const Zone> zones() const override { return zones_; }
     [[nodiscard]] std::uint64_t memoryBytes() const override;
 
 private:
@@ -57,26 +44,25 @@ private:
     void runFrame() override;
     [[nodiscard]] std::string faultOf(const SceneEffects& effects) const override;
     void follow(const SceneEffects& before) override;
+    void useBroadphase(const BroadphaseKind& kind) override { fileAnew(kind); }
+    bool removeOne(std::uint32_t index) override;
     /// Null where nobody has the index.
     [[nodiscard]] btRigidBody* bodyAt(std::uint32_t index) const;
-    bool removeOne(std::uint32_t index);
     void measureBounds();
     void fileAnew(const BroadphaseKind& kind);
     void makeSecondIndex();
     void noteGivenBoxes();
     void fileWhereBodiesAre();
     void takeTimes(double wholeMs);
+    void markTunnels();
 
-    const BroadphaseKind* kind_;
     std::unique_ptr<BulletWorld> world_;
     std::unique_ptr<SecondIndex> second_;
-    Observers<float> observers_;
+    Observers<float> ownObservers_;
     std::size_t size_ = 0;
-    Aabb<float> bounds_;
     std::array<Vector3<float>, 6> ground_;
-    std::vector<Aabb<float>> given_;  // boxes of which pairs were found, by index
-    TunnelSearch tunnels_;
-    std::vector<Zone> zones_;
+    std::vector<Aabb<float>> given_;      // boxes of which pairs were found, by index
+    std::vector<Vector3<float>> before_;  // where bodies were before the frame, by index
 };
 
 }  // namespace hashphase::demos

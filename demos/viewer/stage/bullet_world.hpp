@@ -8,6 +8,7 @@
 #include <demos/compare/observed_world.hpp>
 #include <demos/scenes/box_scene.hpp>
 #include <demos/scenes/world_scenes.hpp>
+#include <demos/viewer/stage/stage.hpp>
 
 #include <integration/bullet/world_effects.hpp>
 
@@ -16,6 +17,13 @@
 #include <vector>
 
 namespace hashphase::demos {
+
+/// What everything stands on: a plane, or the scene's first body, where that is a static slab, of which the
+/// upper face is at height 0.
+[[nodiscard]] bool isGround(const btRigidBody& body);
+
+/// What a body is on stage. A shape that is neither sphere, box nor capsule is shown as the box around it.
+[[nodiscard]] StageBody stageBody(const btRigidBody& body);
 
 class BulletWorld {
 public:

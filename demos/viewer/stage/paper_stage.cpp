@@ -7,24 +7,48 @@
 #include <demos/viewer/stage/threads.hpp>
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
+#include <utility>
 
 namespace hashphase::demos {
 
+namespace {
+
+SceneEffects withoutPairs(SceneEffects effects) {
+    effects.sweep.reset();
+    effects.response.reset();
+    effects.pairs.reset();
+    return effects;
+}
+
+// What bodies are made with: velocities as well, which are kept where they do not move by themselves.
+SceneEffects effectsOfBodies(SceneEffects effects) {
+    effects.declare(Effect::motion);
+    return withoutPairs(std::move(effects));
+}
+
+std::vector<PairKey> keysOf(std::span<const ProxyPair> pairs) {
+    std::vector<PairKey> keys(pairs.size());
+    std::ranges::transform(pairs, keys.begin(), [](const ProxyPair& pair) {
+        return pairKey(pair.first.index, pair.second.index);
+    });
+    return keys;
+}
+
+}  // namespace
+
 PaperStage::PaperStage(const EffectsFile& file)
-    : Stage(file.effects),
+    : Stage(file.effects, EffectSet::all() - EffectSet{Effect::rotation, Effect::friction}),
       scene_(file.scene),
       ground_(groundOf(file.scene)),
-      simulation_(ofScene(effects())),
-      kind_(&broadphaseKinds().front()) {
+      simulation_(effectsOfBodies(effects())) {
+    observers_ = &simulation_.observers();
+    const auto side = static_cast<float>(scene_.domain);
+    bounds_ = {Vector3<float>::Zero(), Vector3<float>(side, Terrain::kHighest, side)};
     bodies_ = addBodies(scene_, simulation_);
     simulation_.watchPhases([this](std::string_view phase) { clock_.end(phase); });
-    if (simulation_.declared().terrain) {
-        simulation_.ground().add(ground_);
-    }
-    if (simulation_.declared().zones) {
-        addZones(scene_, simulation_);
-    }
+    addGroundAndZones(false, false);
     declareToSimulation();
 }
 
@@ -51,30 +75,11 @@ void PaperStage::runFrame() {
 // were removed have died, too, and are not among them any more. The simulation has such a list only while
 // somebody responds.
 void PaperStage::takeChanges() {
-    const auto keyOf = [](const ProxyPair& pair) {
-        return pairKey(pair.first.index, pair.second.index);
-    };
     const auto [born, died] = simulation_.pairChanges();
-    nextPairs_.clear();
-    auto fresh = born.begin();
-    auto gone = died.begin();
-    for (const PairKey key : pairs_) {
-        while (gone != died.end() && keyOf(*gone) < key) {
-            ++gone;
-        }
-        if (gone != died.end() && keyOf(*gone) == key) {
-            ++gone;
-            continue;
-        }
-        for (; fresh != born.end() && keyOf(*fresh) < key; ++fresh) {
-            nextPairs_.push_back(keyOf(*fresh));
-        }
-        nextPairs_.push_back(key);
-    }
-    for (; fresh != born.end(); ++fresh) {
-        nextPairs_.push_back(keyOf(*fresh));
-    }
-    pairs_.swap(nextPairs_);
+    std::vector<PairKey> kept;
+    std::ranges::set_difference(pairs_, keysOf(died), std::back_inserter(kept));
+    pairs_.clear();
+    std::ranges::merge(kept, keysOf(born), std::back_inserter(pairs_));
 }
 
 void PaperStage::collideRivals() {
@@ -103,19 +108,6 @@ StageBody PaperStage::body(std::uint32_t index) const {
     return body;
 }
 
-std::size_t PaperStage::remove(std::span<const std::uint32_t> indices) {
-    const auto count = static_cast<std::size_t>(std::count_if(
-        indices.begin(), indices.end(), [this](std::uint32_t index) { return removeOne(index); }));
-    const auto isGone = [this](PairKey pair) {
-        return bodies_[firstOf(pair)].isNull() || bodies_[secondOf(pair)].isNull();
-    };
-    std::erase_if(pairs_, isGone);
-    if (rival_ != nullptr) {
-        rival_->eraseIf(isGone);
-    }
-    return count;
-}
-
 bool PaperStage::removeOne(std::uint32_t index) {
     if (!contains(index)) {
         return false;
@@ -123,6 +115,16 @@ bool PaperStage::removeOne(std::uint32_t index) {
     simulation_.remove(bodies_[index]);
     bodies_[index] = {};
     return true;
+}
+
+void PaperStage::forgetRemoved() {
+    const auto isGone = [this](PairKey pair) {
+        return bodies_[firstOf(pair)].isNull() || bodies_[secondOf(pair)].isNull();
+    };
+    std::erase_if(pairs_, isGone);
+    if (rival_ != nullptr) {
+        rival_->eraseIf(isGone);
+    }
 }
 
 bool PaperStage::push(std::uint32_t index, const Vector3<float>& velocity) {
@@ -141,15 +143,6 @@ std::span<const Vector3<float>> PaperStage::ground() const {
     return effects().terrain ? std::span(ground_) : std::span<const Vector3<float>>();
 }
 
-Aabb<float> PaperStage::bounds() const {
-    const auto side = static_cast<float>(scene_.domain);
-    return {Vector3<float>(0, 0, 0), Vector3<float>(side, Terrain::kHighest, side)};
-}
-
-float PaperStage::heightAt(float x, float z) const {
-    return groundHeight(scene_, x, z);
-}
-
 std::uint64_t PaperStage::placesHash() const {
     ResultHash hash;
     for (std::uint32_t index = 0; index < bodies_.size(); ++index) {
@@ -163,59 +156,36 @@ std::uint64_t PaperStage::placesHash() const {
 
 // --- What runs -----------------------------------------------------------------------------------
 
-SceneEffects PaperStage::withoutPairs(SceneEffects effects) {
-    effects.sweep.reset();
-    effects.response.reset();
-    effects.pairs.reset();
-    return effects;
-}
-
-// What bodies are made with: velocities as well, which are kept where they do not move by themselves.
-SceneEffects PaperStage::ofScene(SceneEffects effects) {
-    effects.declare(Effect::motion);
-    return withoutPairs(std::move(effects));
-}
-
 // What asks the grid has one, whatever finds the pairs. Pairs are declared after they were not, so that
-// all are told as born.
+// all are told as born. Bodies that stop moving get their velocities back when they move again.
 void PaperStage::declareToSimulation() {
-    const SceneEffects& before = simulation_.declared();
-    const bool hadMotion = before.motion.has_value();
-    const bool hadTerrain = before.terrain.has_value();
-    const bool hadZones = before.zones.has_value();
+    const EffectSet before = simulation_.declared().set();
+    const bool hadMotion = before.contains(Effect::motion);
     pairs_.clear();
     if (hadMotion && !effects().motion) {
-        keepVelocities();
+        kept_.resize(bodies_.size());
+        std::ranges::transform(bodies_, kept_.begin(), [this](BodyId id) {
+            return id.isNull() ? Vector3<float>(Vector3<float>::Zero()) : simulation_.velocity(id);
+        });
     }
     simulation_.declare(withoutPairs(effects()));
     if (rival_ == nullptr) {
         simulation_.declare(effects());
     }
-    if (effects().motion && !hadMotion) {
-        giveVelocitiesBack();
+    for (std::size_t index = 0; effects().motion && !hadMotion && index < bodies_.size(); ++index) {
+        if (!bodies_[index].isNull()) {
+            simulation_.setVelocity(bodies_[index], kept_[index]);
+        }
     }
-    if (simulation_.declared().terrain && !hadTerrain) {
+    addGroundAndZones(before.contains(Effect::terrain), before.contains(Effect::zones));
+}
+
+void PaperStage::addGroundAndZones(bool hadGround, bool hadZones) {
+    if (simulation_.declared().terrain && !hadGround) {
         simulation_.ground().add(ground_);
     }
     if (simulation_.declared().zones && !hadZones) {
         addZones(scene_, simulation_);
-    }
-}
-
-void PaperStage::keepVelocities() {
-    kept_.resize(bodies_.size());
-    for (std::size_t index = 0; index < bodies_.size(); ++index) {
-        if (!bodies_[index].isNull()) {
-            kept_[index] = simulation_.velocity(bodies_[index]);
-        }
-    }
-}
-
-void PaperStage::giveVelocitiesBack() {
-    for (std::size_t index = 0; index < bodies_.size(); ++index) {
-        if (!bodies_[index].isNull()) {
-            simulation_.setVelocity(bodies_[index], kept_[index]);
-        }
     }
 }
 
@@ -227,25 +197,15 @@ std::string PaperStage::faultOf(const SceneEffects& effects) const {
     return simulationError(effects);
 }
 
-EffectSet PaperStage::possibleEffects() const {
-    return EffectSet::all() - EffectSet{Effect::rotation, Effect::friction};
-}
-
-void PaperStage::setBroadphase(const BroadphaseKind& kind) {
-    if (&kind == kind_) {
-        return;
-    }
+void PaperStage::useBroadphase(const BroadphaseKind& kind) {
     if (effects().sweep && !kind.ours) {
         throw std::invalid_argument(
             "Only the grid finds whom a sweep passes: take back sweep to "
             "choose another broadphase.");
     }
     // Bodies may bounce up, and axis sweeps must know how far.
-    Aabb<float> room = bounds();
-    room.extend(Vector3<float>(room.max() + Vector3<float>::Constant(100)));
-    room.extend(Vector3<float>(room.min() - Vector3<float>::Constant(100)));
+    const Aabb<float> room = withRoom(bounds(), Vector3<float>::Constant(100));
     rival_ = kind.ours ? nullptr : std::make_unique<RivalPairs>(kind, room, bodies_.size());
-    kind_ = &kind;
     declareToSimulation();
 }
 

@@ -25,51 +25,37 @@ public:
         return static_cast<std::uint32_t>(bodies_.size());
     }
     [[nodiscard]] StageBody body(std::uint32_t index) const override;
-    std::size_t remove(std::span<const std::uint32_t> indices) override;
     bool push(std::uint32_t index, const Vector3<float>& velocity) override;
     [[nodiscard]] std::span<const Vector3<float>> ground() const override;
-    [[nodiscard]] Aabb<float> bounds() const override;
-    [[nodiscard]] float heightAt(float x, float z) const override;
     [[nodiscard]] std::uint64_t placesHash() const override;
-
-    [[nodiscard]] EffectSet possibleEffects() const override;
-    void setBroadphase(const BroadphaseKind& kind) override;
-    [[nodiscard]] const BroadphaseKind& broadphase() const override { return *kind_; }
     void listPairs(std::vector<PairKey>& pairs) const override { pairs = presentPairs(); }
     [[nodiscard]] std::size_t pairCount() const override { return presentPairs().size(); }
     void listBoxes(std::vector<Aabb<float>>& boxes,
                    std::vector<CollisionFilter>& filters) const override;
     [[nodiscard]] const Grid<float>* grid() const override;
-    [[nodiscard]] Observers<float>& observers() override { return simulation_.observers(); }
-    [[nodiscard]] const Observers<float>& observers() const override {
-        return simulation_.observers();
-    }
     [[nodiscard]] std::uint64_t memoryBytes() const override;
 
 private:
     void runFrame() override;
     [[nodiscard]] std::string faultOf(const SceneEffects& effects) const override;
     void follow(const SceneEffects& /*before*/) override { declareToSimulation(); }
-    [[nodiscard]] static SceneEffects withoutPairs(SceneEffects effects);
-    [[nodiscard]] static SceneEffects ofScene(SceneEffects effects);
+    void useBroadphase(const BroadphaseKind& kind) override;
+    bool removeOne(std::uint32_t index) override;
+    void forgetRemoved() override;
     [[nodiscard]] const std::vector<PairKey>& presentPairs() const;
     void declareToSimulation();
-    void keepVelocities();
-    void giveVelocitiesBack();
-    bool removeOne(std::uint32_t index);
+    void addGroundAndZones(bool hadGround, bool hadZones);
     void takeChanges();
     void collideRivals();
 
     EffectsScene scene_;
     std::vector<Vector3<float>> ground_;
-    Simulation<float> simulation_;      // declares no pairs where a rival finds them
-    std::vector<BodyId> bodies_;        // by index; null where nobody is
-    std::vector<Vector3<float>> kept_;  // their velocities while motion is not declared
-    const BroadphaseKind* kind_;
+    Simulation<float> simulation_;       // declares no pairs where a rival finds them
+    std::vector<BodyId> bodies_;         // by index; null where nobody is
+    std::vector<Vector3<float>> kept_;   // their velocities while motion is not declared
     std::unique_ptr<RivalPairs> rival_;  // none: the grid finds the pairs
     std::vector<PairKey> pairs_;         // the grid's
-    std::vector<PairKey> nextPairs_;     // scratch
-    std::vector<Aabb<float>> boxes_;     // the same
+    std::vector<Aabb<float>> boxes_;     // scratch
     std::vector<CollisionFilter> noFilters_;
 };
 

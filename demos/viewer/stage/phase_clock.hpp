@@ -40,9 +40,7 @@ public:
 
     /// Adds what somebody else has measured.
     void add(std::string_view phase, double milliseconds) {
-        const auto known =
-            std::find_if(times_.begin(), times_.end(),
-                         [phase](const PhaseTime& time) { return time.name == phase; });
+        const auto known = std::ranges::find(times_, phase, &PhaseTime::name);
         if (known != times_.end()) {
             known->milliseconds += milliseconds;
         } else {
@@ -52,14 +50,6 @@ public:
 
     /// In the order in which they first ended.
     [[nodiscard]] std::span<const PhaseTime> times() const noexcept { return times_; }
-
-    [[nodiscard]] double total() const noexcept {
-        double sum = 0;
-        for (const PhaseTime& time : times_) {
-            sum += time.milliseconds;
-        }
-        return sum;
-    }
 
 private:
     using Clock = std::chrono::steady_clock;

@@ -18,17 +18,19 @@ SceneEffects lookingEffects() {
 }  // namespace
 
 RecordingStage::RecordingStage(const std::filesystem::path& path, std::size_t objects)
-    : Stage(lookingEffects()),
+    : Stage(lookingEffects(), {Effect::pairs, Effect::picking, Effect::boxSelection,
+                               Effect::culling, Effect::proximity, Effect::radar}),
       scene_(path, objects),
-      observers_(effects()),
-      kind_(&broadphaseKinds().front()) {
+      ownObservers_(effects()) {
+    observers_ = &ownObservers_;
+    bounds_ = scene_.bounds();
     makeGrid();
 }
 
 void RecordingStage::makeGrid() {
     pairs_ = nullptr;
     grid_ = std::make_unique<Grid<float>>(effects().grid);
-    observers_.forgetProxies();
+    ownObservers_.forgetProxies();
     proxies_.clear();
     for (const Aabb<float>& box : scene_.boxes()) {
         proxies_.push_back(grid_->add(box));
@@ -47,22 +49,26 @@ void RecordingStage::runFrame() {
         grid_->move(proxies_[i], scene_.boxes()[i]);
     }
     clock_.end("set boxes");
+    findPairs();
+    ownObservers_.watchPhases([this](std::string_view phase) { clock_.end(phase); });
+    ownObservers_.observe({*grid_});
+}
+
+void RecordingStage::findPairs() {
     if (effects().pairs && rival_ == nullptr) {
         if (pairs_ == nullptr) {
             pairs_ = std::make_unique<Pairs<float>>(*grid_);
         }
         pairs_->update([](ProxyId, ProxyId) { return true; });
         clock_.end("find pairs");
-    } else {
-        pairs_ = nullptr;
-        grid_->update();
-        clock_.end("update");
+        return;
     }
-    if (effects().pairs && rival_ != nullptr) {
+    pairs_ = nullptr;
+    grid_->update();
+    clock_.end("update");
+    if (effects().pairs) {
         rival_->update(scene_.boxes(), scene_.filters(), clock_);
     }
-    observers_.watchPhases([this](std::string_view phase) { clock_.end(phase); });
-    observers_.observe({*grid_});
 }
 
 StageBody RecordingStage::body(std::uint32_t index) const {
@@ -85,11 +91,6 @@ std::uint64_t RecordingStage::placesHash() const {
     return hash.value();
 }
 
-EffectSet RecordingStage::possibleEffects() const {
-    return {Effect::pairs,   Effect::picking,   Effect::boxSelection,
-            Effect::culling, Effect::proximity, Effect::radar};
-}
-
 std::string RecordingStage::faultOf(const SceneEffects& effects) const {
     if (const EffectSet others = effects.set() - possibleEffects(); !others.isEmpty()) {
         return "A recording has no " + namesOf(others) + ".";
@@ -98,29 +99,20 @@ std::string RecordingStage::faultOf(const SceneEffects& effects) const {
 }
 
 void RecordingStage::follow(const SceneEffects& before) {
-    observers_.declare(effects());
+    ownObservers_.declare(effects());
     if (effects().grid != before.grid) {
         makeGrid();
     }
-    forgetUndeclaredPairs();
-}
-
-void RecordingStage::forgetUndeclaredPairs() {
-    if (effects().pairs) {
-        return;
-    }
-    pairs_ = nullptr;
-    if (rival_ != nullptr) {
-        rival_->eraseIf([](PairKey) { return true; });
+    if (!effects().pairs) {
+        pairs_ = nullptr;
+        if (rival_ != nullptr) {
+            rival_->eraseIf([](PairKey) { return true; });
+        }
     }
 }
 
-void RecordingStage::setBroadphase(const BroadphaseKind& kind) {
-    if (&kind != kind_) {
-        rival_ = kind.ours ? nullptr
-                           : std::make_unique<RivalPairs>(kind, scene_.bounds(), proxies_.size());
-        kind_ = &kind;
-    }
+void RecordingStage::useBroadphase(const BroadphaseKind& kind) {
+    rival_ = kind.ours ? nullptr : std::make_unique<RivalPairs>(kind, bounds(), proxies_.size());
 }
 
 void RecordingStage::listPairs(std::vector<PairKey>& pairs) const {

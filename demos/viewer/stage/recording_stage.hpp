@@ -27,39 +27,28 @@ public:
         return static_cast<std::uint32_t>(proxies_.size());
     }
     [[nodiscard]] StageBody body(std::uint32_t index) const override;
-    std::size_t remove(std::span<const std::uint32_t> /*indices*/) override { return 0; }
-    bool push(std::uint32_t /*index*/, const Vector3<float>& /*velocity*/) override {
-        return false;
-    }
-    [[nodiscard]] Aabb<float> bounds() const override { return scene_.bounds(); }
     [[nodiscard]] std::uint64_t placesHash() const override;
-
-    [[nodiscard]] EffectSet possibleEffects() const override;
-    void setBroadphase(const BroadphaseKind& kind) override;
-    [[nodiscard]] const BroadphaseKind& broadphase() const override { return *kind_; }
     void listPairs(std::vector<PairKey>& pairs) const override;
     [[nodiscard]] std::size_t pairCount() const override;
     void listBoxes(std::vector<Aabb<float>>& boxes,
                    std::vector<CollisionFilter>& filters) const override;
     [[nodiscard]] const Grid<float>* grid() const override { return grid_.get(); }
-    [[nodiscard]] Observers<float>& observers() override { return observers_; }
-    [[nodiscard]] const Observers<float>& observers() const override { return observers_; }
     [[nodiscard]] std::uint64_t memoryBytes() const override;
 
 private:
     void runFrame() override;
     [[nodiscard]] std::string faultOf(const SceneEffects& effects) const override;
     void follow(const SceneEffects& before) override;
+    void useBroadphase(const BroadphaseKind& kind) override;
     void makeGrid();
-    void forgetUndeclaredPairs();
+    void findPairs();
 
     RecordingScene scene_;
     int frame_ = 0;
     std::unique_ptr<Grid<float>> grid_;
     std::vector<ProxyId> proxies_;  // by object, which is their index
     std::unique_ptr<Pairs<float>> pairs_;
-    Observers<float> observers_;
-    const BroadphaseKind* kind_;
+    Observers<float> ownObservers_;
     std::unique_ptr<RivalPairs> rival_;
 };
 

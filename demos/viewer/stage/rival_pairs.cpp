@@ -7,9 +7,7 @@ namespace hashphase::demos {
 
 RivalPairs::RivalPairs(const BroadphaseKind& kind, const Aabb<float>& bounds,
                        std::size_t indexLimit)
-    : kind_(&kind),
-      broadphase_(kind, {.bounds = bounds, .objects = indexLimit}),
-      isThere_(indexLimit) {}
+    : broadphase_(kind, {.bounds = bounds, .objects = indexLimit}), isThere_(indexLimit) {}
 
 void RivalPairs::update(std::span<const Aabb<float>> boxes,
                         std::span<const CollisionFilter> filters, PhaseClock& clock) {

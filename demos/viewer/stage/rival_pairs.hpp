@@ -29,12 +29,9 @@ public:
 
     /// As the broadphase lists them, sorted.
     [[nodiscard]] const std::vector<PairKey>& pairs() const noexcept { return pairs_; }
-
-    [[nodiscard]] const BroadphaseKind& kind() const noexcept { return *kind_; }
     [[nodiscard]] std::uint64_t memoryBytes() const noexcept;
 
 private:
-    const BroadphaseKind* kind_;
     FilledBroadphase broadphase_;
     std::vector<char> isThere_;
     std::vector<BulletBox> bulletBoxes_;

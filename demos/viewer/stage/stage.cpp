@@ -11,6 +11,20 @@
 
 namespace hashphase::demos {
 
+std::size_t Stage::remove(std::span<const std::uint32_t> indices) {
+    const auto count =
+        std::ranges::count_if(indices, [this](std::uint32_t index) { return removeOne(index); });
+    forgetRemoved();
+    return static_cast<std::size_t>(count);
+}
+
+void Stage::setBroadphase(const BroadphaseKind& kind) {
+    if (&kind != broadphase_) {
+        useBroadphase(kind);
+        broadphase_ = &kind;
+    }
+}
+
 Picked<float> Stage::pick(const RayRegion<float>& ray) {
     const float groundShare = meets(ground(), ray.from(), ray.direction()).value_or(1);
     const auto exactly = [&](ProxyId id, const RayRegion<float>& along,

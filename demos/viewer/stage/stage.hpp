@@ -52,6 +52,11 @@ struct StageBody {
     return {corner, corner};
 }
 
+/// The box and this much around it, on each side [m].
+[[nodiscard]] inline Aabb<float> withRoom(const Aabb<float>& box, const Vector3<float>& room) {
+    return {box.min() - room, box.max() + room};
+}
+
 /// A place where something fast has passed through a wall.
 struct TunnelMark {
     Vector3<float> from;
@@ -93,18 +98,17 @@ public:
     }
 
     /// Takes bodies out, with their pairs, and returns how many; none of a recording, or of who is not there.
-    virtual std::size_t remove(std::span<const std::uint32_t> indices) = 0;
+    std::size_t remove(std::span<const std::uint32_t> indices);
     /// Gives the body another velocity as well as its own. False where that cannot be, as above.
-    virtual bool push(std::uint32_t index, const Vector3<float>& velocity) = 0;
+    virtual bool push(std::uint32_t /*index*/, const Vector3<float>& /*velocity*/) { return false; }
 
     /// Corners of triangles, three each; valid while the stage lives.
     [[nodiscard]] virtual std::span<const Vector3<float>> ground() const { return {}; }
 
-    /// Where bodies are to begin with, or may be; and how high the camera stands on the ground.
-    [[nodiscard]] virtual Aabb<float> bounds() const = 0;
-    [[nodiscard]] virtual float heightAt(float /*x*/, float /*z*/) const { return 0; }
+    /// Where bodies are to begin with, or may be.
+    [[nodiscard]] const Aabb<float>& bounds() const noexcept { return bounds_; }
 
-    [[nodiscard]] virtual std::span<const TunnelMark> tunnelMarks() const { return {}; }
+    [[nodiscard]] std::span<const TunnelMark> tunnelMarks() const noexcept { return tunnelMarks_; }
 
     /// The same number where all bodies are at the same places, to the last bit.
     [[nodiscard]] virtual std::uint64_t placesHash() const = 0;
@@ -116,11 +120,11 @@ public:
     void declare(const SceneEffects& effects);
 
     /// The effects that this scene can run.
-    [[nodiscard]] virtual EffectSet possibleEffects() const = 0;
+    [[nodiscard]] EffectSet possibleEffects() const noexcept { return possibleEffects_; }
 
     /// Who finds the pairs from the next frame on.
-    virtual void setBroadphase(const BroadphaseKind& kind) = 0;
-    [[nodiscard]] virtual const BroadphaseKind& broadphase() const = 0;
+    void setBroadphase(const BroadphaseKind& kind);
+    [[nodiscard]] const BroadphaseKind& broadphase() const noexcept { return *broadphase_; }
 
     /// As the broadphase has found them in the last frame, of who is still there, by indices, sorted; none while
     /// they are not declared. After a declaration or with another broadphase they are wrong until the next frame.
@@ -134,8 +138,8 @@ public:
 
     /// The grid of all bodies; null while no effect asks one.
     [[nodiscard]] virtual const Grid<float>* grid() const = 0;
-    [[nodiscard]] virtual Observers<float>& observers() = 0;
-    [[nodiscard]] virtual const Observers<float>& observers() const = 0;
+    [[nodiscard]] Observers<float>& observers() noexcept { return *observers_; }
+    [[nodiscard]] const Observers<float>& observers() const noexcept { return *observers_; }
 
     /// The nearest body that the ray meets, as it is drawn, before it comes to the ground. Needs picking.
     /// Cost: that of the query, and a look at each triangle of the ground.
@@ -163,14 +167,15 @@ public:
         double milliseconds = 0;
         std::uint32_t calls = 0;
     };
-    [[nodiscard]] virtual std::span<const Zone> zones() const { return {}; }
+    [[nodiscard]] std::span<const Zone> zones() const noexcept { return zones_; }
 
     /// Of all tables.
     [[nodiscard]] virtual std::uint64_t memoryBytes() const = 0;
 
 protected:
-    /// Declared from the beginning.
-    explicit Stage(const SceneEffects& effects = {}) : effects_(effects) {}
+    /// Declared from the beginning; and what can be.
+    Stage(const SceneEffects& effects, EffectSet possible)
+        : effects_(effects), possibleEffects_(possible) {}
 
     /// Simulates one frame and has it observed.
     virtual void runFrame() = 0;
@@ -178,7 +183,17 @@ protected:
     [[nodiscard]] virtual std::string faultOf(const SceneEffects& effects) const = 0;
     /// Goes on with effects(), which have no fault, after those before.
     virtual void follow(const SceneEffects& before) = 0;
+    /// Goes on with another broadphase than broadphase(), or throws std::invalid_argument.
+    virtual void useBroadphase(const BroadphaseKind& kind) = 0;
+    /// False where nobody has the index, or who has it cannot be removed.
+    virtual bool removeOne(std::uint32_t /*index*/) { return false; }
+    /// Bodies have been removed.
+    virtual void forgetRemoved() {}
 
+    Observers<float>* observers_ = nullptr;  // those of the one who derives
+    Aabb<float> bounds_;
+    std::vector<TunnelMark> tunnelMarks_;
+    std::vector<Zone> zones_;
     PhaseClock clock_;
 
 private:
@@ -189,6 +204,8 @@ private:
     void noteRadar();
 
     SceneEffects effects_;
+    EffectSet possibleEffects_;
+    const BroadphaseKind* broadphase_ = &broadphaseKinds().front();
     std::vector<InterestZone> interestZones_;
     std::optional<RadarView> radar_;
 };

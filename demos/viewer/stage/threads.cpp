@@ -5,29 +5,25 @@
 #include <integration/tbb/tbb_parallel_for.hpp>
 
 #include <tbb/global_control.h>
+#endif
 
 namespace hashphase::demos {
+
+#if HASHPHASE_HAS_TBB
+using Limit = tbb::global_control;
 
 void stageFor(std::size_t count, std::size_t grain, LoopBody body) {
     tbbFor(count, grain, body);
 }
 
 std::size_t threadCount() {
-    return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    return Limit::active_value(Limit::max_allowed_parallelism);
 }
 
-struct ThreadLimit::Control {
-    explicit Control(std::size_t count)
-        : control(tbb::global_control::max_allowed_parallelism, count) {}
-    tbb::global_control control;
-};
-
-ThreadLimit::ThreadLimit(std::size_t count) : control_(std::make_unique<Control>(count)) {}
-
-}  // namespace hashphase::demos
+std::shared_ptr<void> limitThreads(std::size_t count) {
+    return std::make_shared<Limit>(Limit::max_allowed_parallelism, count);
+}
 #else
-namespace hashphase::demos {
-
 void stageFor(std::size_t count, std::size_t grain, LoopBody body) {
     serialFor(count, grain, body);
 }
@@ -36,15 +32,9 @@ std::size_t threadCount() {
     return 1;
 }
 
-struct ThreadLimit::Control {};
-
-ThreadLimit::ThreadLimit(std::size_t /*count*/) {}
-
-}  // namespace hashphase::demos
+std::shared_ptr<void> limitThreads(std::size_t /*count*/) {
+    return nullptr;
+}
 #endif
-
-namespace hashphase::demos {
-
-ThreadLimit::~ThreadLimit() = default;
 
 }  // namespace hashphase::demos

@@ -16,17 +16,7 @@ void stageFor(std::size_t count, std::size_t grain, LoopBody body);
 /// How many there are at most: 1 without oneTBB.
 [[nodiscard]] std::size_t threadCount();
 
-/// While it lives, there are at most so many.
-class ThreadLimit {
-public:
-    explicit ThreadLimit(std::size_t count);
-    ~ThreadLimit();
-    ThreadLimit(const ThreadLimit&) = delete;
-    ThreadLimit& operator=(const ThreadLimit&) = delete;
-
-private:
-    struct Control;
-    std::unique_ptr<Control> control_;
-};
+/// While what is returned lives, there are at most so many.
+[[nodiscard]] std::shared_ptr<void> limitThreads(std::size_t count);
 
 }  // namespace hashphase::demos

@@ -2,7 +2,7 @@
 //
 // What can be said of a picture in numbers.
 
-#include <demos/viewer/draw/draw_error.hpp>
+#include <demos/viewer/draw/image.hpp>
 #include <tests/viewer/draw/sample_pictures.hpp>
 
 #include <gtest/gtest.h>

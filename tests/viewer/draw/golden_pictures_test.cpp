@@ -7,55 +7,57 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 namespace hashphase::demos {
 namespace {
 
-TEST(GoldenPictures, SpheresOnHills) {
-    const SampleWorld world;
-    expectGolden("spheres_on_hills", drawn(world.picture()));
-}
+/// Spheres on hills, after a change.
+struct Golden {
+    std::string name;
+    void (*change)(const SampleWorld& world, Picture& picture);
+};
 
-TEST(GoldenPictures, FromAbove) {
+class GoldenPicture : public testing::TestWithParam<Golden> {};
+
+TEST_P(GoldenPicture, IsDrawnAsItWas) {
     const SampleWorld world;
     Picture picture = world.picture();
-    picture.camera = sampleCamera({0, 160, 0}, {0, 0, 0});
-    expectGolden("from_above", drawn(picture));
+    GetParam().change(world, picture);
+    expectGolden(GetParam().name, drawn(picture));
 }
 
-TEST(GoldenPictures, HeatMapAndGridLines) {
-    const SampleWorld world;
-    Picture picture = world.picture();
-    picture.spheres = {};
-    picture.gridLines = world.cells();
-    picture.heatMap = world.heatMap();
-    expectGolden("heat_map_and_grid_lines", drawn(picture));
-}
-
-TEST(GoldenPictures, BoxesCapsulesAndLines) {
-    const SampleWorld world;
-    Picture picture = world.picture();
-    picture.spheres = {};
-    picture.boxes = world.boxes;
-    picture.capsules = world.capsules;
-    picture.lines = world.lines;
-    picture.camera = sampleCamera({4, 12, 26}, {0, 0, 0});
-    expectGolden("boxes_capsules_and_lines", drawn(picture));
-}
-
-TEST(GoldenPictures, DraggedRectangle) {
-    const SampleWorld world;
-    Picture picture = world.picture();
-    picture.rectangle = DrawnRectangle{{200, 55}, {80, 135}};
-    expectGolden("dragged_rectangle", drawn(picture));
-}
-
-TEST(GoldenPictures, DarkTheme) {
-    const SampleWorld world;
-    Picture picture = world.picture();
-    picture.theme = Theme::dark;
-    picture.gridLines = world.cells();
-    expectGolden("dark_theme", drawn(picture));
-}
+INSTANTIATE_TEST_SUITE_P(
+    Changes, GoldenPicture,
+    testing::Values(Golden{"spheres_on_hills", [](const SampleWorld&, Picture&) {}},
+                    Golden{"from_above",
+                           [](const SampleWorld&, Picture& picture) {
+                               picture.camera = sampleCamera({0, 160, 0}, {0, 0, 0});
+                           }},
+                    Golden{"heat_map_and_grid_lines",
+                           [](const SampleWorld& world, Picture& picture) {
+                               picture.spheres = {};
+                               picture.gridLines = world.cells();
+                               picture.heatMap = world.heatMap();
+                           }},
+                    Golden{"boxes_capsules_and_lines",
+                           [](const SampleWorld& world, Picture& picture) {
+                               picture.spheres = {};
+                               picture.boxes = world.boxes;
+                               picture.capsules = world.capsules;
+                               picture.lines = world.lines;
+                               picture.camera = sampleCamera({4, 12, 26}, {0, 0, 0});
+                           }},
+                    Golden{"dragged_rectangle",
+                           [](const SampleWorld&, Picture& picture) {
+                               picture.rectangle = DrawnRectangle{{200, 55}, {80, 135}};
+                           }},
+                    Golden{"dark_theme",
+                           [](const SampleWorld& world, Picture& picture) {
+                               picture.theme = Theme::dark;
+                               picture.gridLines = world.cells();
+                           }}),
+    [](const auto& golden) { return golden.param.name; });
 
 }  // namespace
 }  // namespace hashphase::demos

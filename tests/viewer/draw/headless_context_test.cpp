@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/viewer/draw/draw_error.hpp>
-#include <demos/viewer/draw/frame_target.hpp>
 #include <demos/viewer/draw/headless_context.hpp>
+#include <demos/viewer/draw/image.hpp>
+#include <demos/viewer/draw/renderer.hpp>
 
-#include <epoxy/gl.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -39,15 +38,14 @@ TEST(HeadlessContext, OutlivesAnotherOne) {
         auto first = std::make_unique<HeadlessContext>();
         const HeadlessContext second;
         first.reset();
-        const FrameTarget target(16, 16);
-        glClearColor(1, 0, 0, 1);
-        glClear(GL_COLOR_BUFFER_BIT);
-        image = target.read();
+        Renderer renderer(16, 16);
+        renderer.draw({});
+        image = renderer.read();
     })
         .join();
     ASSERT_EQ(image.pixels.size(), 4U * 16 * 16);
-    EXPECT_EQ(image.pixels[0], 255);
-    EXPECT_EQ(image.pixels[1], 0);
+    EXPECT_GT(image.pixels[0], 100) << "of the sky";
+    EXPECT_EQ(image.pixels[3], 255);
 }
 
 }  // namespace

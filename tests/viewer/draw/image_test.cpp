@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/viewer/draw/draw_error.hpp>
-#include <demos/viewer/draw/image_difference.hpp>
-#include <demos/viewer/draw/png.hpp>
+#include <demos/viewer/draw/image.hpp>
 #include <tests/viewer/draw/sample_pictures.hpp>
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-#include <demos/viewer/session/info_card.hpp>
+#include <demos/viewer/session/stage_queries.hpp>
 #include <demos/viewer/stage/body_shape.hpp>
 #include <demos/viewer/stage/bullet_stage.hpp>
 #include <tests/viewer/session/stages.hpp>

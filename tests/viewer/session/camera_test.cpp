@@ -37,8 +37,8 @@ void goFar(Session& session, float sign) {
             session.run(sign < 0 ? "zoom 100" : "zoom 0.01");
         }
     }
-    session.camera().setTarget(Vector3<float>::Constant(sign * 1e20F));
-    session.camera().setMode(CameraMode::follow);
+    session.camera.setTarget(Vector3<float>::Constant(sign * 1e20F));
+    session.camera.setMode(CameraMode::follow);
     for (int i = 0; i < 30; ++i) {
         session.run(sign < 0 ? "zoom 100" : "zoom 0.01");
     }
@@ -48,14 +48,14 @@ TEST(Camera, StaysWhereAPoseCanPutIt) {
     for (const float sign : {1.0F, -1.0F}) {
         Session session({.name = "wander", .file = {}, .objects = 20, .seed = 1}, 800, 600);
         goFar(session, sign);
-        const Camera::State far = session.camera().state();
-        const std::string line = poseLine(session.camera());
+        const Camera::State far = session.camera.state();
+        const std::string line = poseLine(session.camera);
         for (const float number : far) {
             EXPECT_TRUE(std::isfinite(number)) << line;
         }
         session.run("home");
         EXPECT_EQ(faultOf(session, line), "none");
-        EXPECT_EQ(session.camera().state(), far) << line;
+        EXPECT_EQ(session.camera.state(), far) << line;
         for (const char* mode : {"camera top", "camera free"}) {
             session.run(mode);
             step(session, 1);
@@ -67,7 +67,7 @@ TEST(Camera, StaysWhereAPoseCanPutIt) {
 
 TEST(Camera, IsPutNowhereElse) {
     Session session({.name = "wander", .file = {}, .objects = 20, .seed = 1}, 800, 600);
-    const Camera::State home = session.camera().state();
+    const Camera::State home = session.camera.state();
     for (std::size_t i = 0; i < home.size(); ++i) {
         for (const char* number : {"10000001", "-10000001", "nan"}) {
             std::string line = "pose free";
@@ -77,7 +77,7 @@ TEST(Camera, IsPutNowhereElse) {
             EXPECT_NE(faultOf(session, line), "none") << line;
         }
     }
-    EXPECT_EQ(session.camera().state(), home);
+    EXPECT_EQ(session.camera.state(), home);
 }
 
 TEST(Camera, ThatIsFarAwayIsPlayedBack) {
@@ -86,26 +86,26 @@ TEST(Camera, ThatIsFarAwayIsPlayedBack) {
     session.run("move 1000000 0 0");
     session.run("restart");
     step(session, 3);
-    Playback playback(CommandLog::parse(session.log().text(), "recording"));
-    Session again(playback.log().choice());
+    Playback playback(CommandLog::parse(session.log.text(), "recording"));
+    Session again(playback.log().choice);
     EXPECT_NO_THROW(playback.feed(again));
-    EXPECT_EQ(again.camera().state(), session.camera().state());
+    EXPECT_EQ(again.camera.state(), session.camera.state());
 }
 
 TEST(Camera, KnowsHowLargeTheSceneIsThatBeginsAgain) {
     Session session({.name = "pile", .file = {}, .objects = 50, .seed = 1}, 800, 600);
-    const Aabb<float> before = session.stage().bounds();
+    const Aabb<float> before = session.stage->bounds();
     session.run("camera free");
     session.run("seed 9");
-    ASSERT_FALSE(session.stage().bounds().isApprox(before));
+    ASSERT_FALSE(session.stage->bounds().isApprox(before));
     step(session, 1);
     session.run("zoom 2");
-    Playback playback(CommandLog::parse(session.log().text(), "recording"));
-    Session again(playback.log().choice());
+    Playback playback(CommandLog::parse(session.log.text(), "recording"));
+    Session again(playback.log().choice);
     for (playback.feed(again); !playback.isDone(again); playback.feed(again)) {
         again.advance();
     }
-    EXPECT_EQ(again.camera().state(), session.camera().state());
+    EXPECT_EQ(again.camera.state(), session.camera.state());
 }
 
 // --- Who is seen ---------------------------------------------------------------------------------
@@ -113,7 +113,7 @@ TEST(Camera, KnowsHowLargeTheSceneIsThatBeginsAgain) {
 /// Whom the camera of now sees, asked of the grid.
 std::size_t seenNow(const Session& session) {
     Culler<float> culler;
-    culler.look(*session.stage().grid(),
+    culler.look(*session.stage->grid(),
                 ConvexRegion<float>(cameraView(session.pose()).planes, Containment::touching,
                                     Touch::byPlanes));
     return culler.count();
@@ -122,8 +122,8 @@ std::size_t seenNow(const Session& session) {
 /// Those that a picture shows.
 std::size_t shown(const Session& session) {
     std::size_t count = 0;
-    for (std::uint32_t index = 0; index < session.stage().indexLimit(); ++index) {
-        count += session.stage().contains(index) && session.isVisible(index) ? 1 : 0;
+    for (std::uint32_t index = 0; index < session.stage->indexLimit(); ++index) {
+        count += session.stage->contains(index) && session.isVisible(index) ? 1 : 0;
     }
     return count;
 }
@@ -164,24 +164,24 @@ TEST(Culling, IsByTheCameraOfThePicture) {
 TEST(FollowingCamera, LooksAtTheBodyAsSoonAsItFollows) {
     Session session = crowd();
     session.run("pose top 200 7 200 60 0 0 0 0 0 0 0 0 0 20 0 0");
-    for (int x = 20; x < 800 && !session.card(); x += 4) {
+    for (int x = 20; x < 800 && !session.card; x += 4) {
         session.pick({double(x), 300});
     }
-    ASSERT_TRUE(session.card());
-    const Vector3<float> before = session.card()->body.centre;
+    ASSERT_TRUE(session.card);
+    const Vector3<float> before = session.card->body.centre;
     step(session, 60);
-    const Vector3<float> centre = session.card()->body.centre;
+    const Vector3<float> centre = session.card->body.centre;
     EXPECT_GT((centre - before).norm(), 1);
-    const float distance = session.camera().state()[13];
+    const float distance = session.camera.state()[13];
     session.run("camera follow");
     EXPECT_NEAR((session.pose().eye - centre).norm(), distance, 1e-3);
     session.run("home");
-    EXPECT_NEAR((session.pose().eye - centre).norm(), session.camera().state()[13], 1e-3);
+    EXPECT_NEAR((session.pose().eye - centre).norm(), session.camera.state()[13], 1e-3);
     session.run("turn 120 0");
     for (int frame = 0; frame < 20; ++frame) {
         step(session, 1);
-        EXPECT_NEAR((session.pose().eye - session.card()->body.centre).norm(),
-                    session.camera().state()[13], 1e-3);
+        EXPECT_NEAR((session.pose().eye - session.card->body.centre).norm(),
+                    session.camera.state()[13], 1e-3);
         EXPECT_EQ(shown(session), seenNow(session)) << frame;
         EXPECT_EQ(session.visibleCount(), seenNow(session)) << frame;
     }

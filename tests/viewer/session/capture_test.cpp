@@ -51,12 +51,12 @@ private:
 
 TEST_F(Capture, TakesFramesAsTheyAreSimulated) {
     session_.run("capture " + path() + " 20");
-    EXPECT_EQ(session_.frame(), 0U);
+    EXPECT_EQ(session_.frame, 0U);
     session_.advance();
-    EXPECT_EQ(session_.frame(), 1U);
+    EXPECT_EQ(session_.frame, 1U);
     EXPECT_TRUE(readFile(path()) == "of before");
     EXPECT_EQ(saidUntilEnd(session_), "wrote the boxes of 20 frames to " + path() + "\n");
-    EXPECT_EQ(session_.frame(), 20U);
+    EXPECT_EQ(session_.frame, 20U);
     RecordingScene recording(path(), 0);
     EXPECT_EQ(recording.frameLimit(), 21);
     EXPECT_EQ(recording.boxes().size(), 100U);
@@ -65,16 +65,16 @@ TEST_F(Capture, TakesFramesAsTheyAreSimulated) {
 TEST_F(Capture, IsDoneBeforeTheNextLineOfAScript) {
     const auto said = runScript(session_, "capture " + path() + " 7\nexpect frame = 7\n");
     EXPECT_EQ(said, std::vector<std::string>{"wrote the boxes of 7 frames to " + path()});
-    EXPECT_EQ(session_.failureCount(), 0);
+    EXPECT_EQ(session_.failureCount, 0);
 }
 
 TEST_F(Capture, LeavesAloneWhetherTheSceneIsPlayed) {
     for (const bool isPlaying : {true, false}) {
-        session_.setPlaying(isPlaying);
+        session_.isPlaying = isPlaying;
         session_.run("capture " + path() + " 3");
         saidUntilEnd(session_);
-        EXPECT_EQ(session_.isPlaying(), isPlaying);
-        EXPECT_FALSE(session_.isCapturing());
+        EXPECT_EQ(session_.isPlaying, isPlaying);
+        EXPECT_FALSE(session_.recorder);
     }
 }
 
@@ -92,8 +92,8 @@ TEST_F(Capture, LeavesTheFileAsItWasAndNamesTheBodyThatFliesTooFar) {
     EXPECT_NE(said.find(path() + " is not written: body "), std::string::npos) << said;
     EXPECT_NE(said.find("is farther than 1,000,000 m from the origin after "), std::string::npos)
         << said;
-    EXPECT_EQ(session.failureCount(), 1);
-    EXPECT_LT(session.frame(), 150U);
+    EXPECT_EQ(session.failureCount, 1);
+    EXPECT_LT(session.frame, 150U);
     expectUntouched();
 }
 
@@ -101,9 +101,9 @@ TEST_F(Capture, SaysHowManyAreTooFarToBeRecorded) {
     Session session({.name = "pile", .file = {}, .objects = 50, .seed = 1}, 1280, 800);
     step(session, 1);
     session.run("box 0 0 1280 800");
-    const std::size_t all = session.selected().size();
+    const std::size_t all = session.selected.size();
     session.run("box 0 0 640 800");
-    const std::size_t far = session.selected().size();
+    const std::size_t far = session.selected.size();
     ASSERT_GT(far, 1U);
     ASSERT_LT(far, all);
     session.run("push 1000000 0 0");
@@ -114,16 +114,16 @@ TEST_F(Capture, SaysHowManyAreTooFarToBeRecorded) {
     EXPECT_EQ(saidUntilEnd(session),
               "wrote the boxes of 2 frames to " + path() + ", without " + std::to_string(far) +
                   " bodies that are farther than 1,000,000 m from the origin\n");
-    EXPECT_EQ(session.failureCount(), 0);
+    EXPECT_EQ(session.failureCount, 0);
 }
 
 TEST_F(Capture, IsRefusedWhereThereIsNobody) {
     session_.run("box 0 0 800 600");
     session_.run("delete");
-    ASSERT_EQ(session_.stage().size(), 0U);
+    ASSERT_EQ(session_.stage->size(), 0U);
     EXPECT_EQ(faultOf(session_, "capture " + path() + " 5"),
               path() + " is not written: there are no bodies.");
-    EXPECT_FALSE(session_.isCapturing());
+    EXPECT_FALSE(session_.recorder);
     expectUntouched();
 }
 
@@ -132,8 +132,8 @@ TEST_F(Capture, GoesOnAfterAPause) {
     session_.advance();
     session_.run("pause");
     session_.advance();
-    EXPECT_EQ(session_.frame(), 1U);
-    EXPECT_TRUE(session_.isCapturing());
+    EXPECT_EQ(session_.frame, 1U);
+    EXPECT_TRUE(session_.recorder);
     session_.run("step 4");
     EXPECT_EQ(saidUntilEnd(session_), "wrote the boxes of 5 frames to " + path() + "\n");
 }
@@ -141,10 +141,10 @@ TEST_F(Capture, GoesOnAfterAPause) {
 TEST_F(Capture, LeavesTheFileAsItWasWhereABodyIsRemoved) {
     session_.run("capture " + path() + " 10");
     session_.advance();
-    EXPECT_EQ(session_.stage().remove(std::array{42U}), 1U);
+    EXPECT_EQ(session_.stage->remove(std::array{42U}), 1U);
     EXPECT_EQ(saidUntilEnd(session_),
               path() + " is not written: body 42 is gone after 1 of 10 frames.\n");
-    EXPECT_EQ(session_.failureCount(), 1);
+    EXPECT_EQ(session_.failureCount, 1);
     expectUntouched();
 }
 
@@ -155,7 +155,7 @@ TEST_F(Capture, LeavesTheFileAsItWasWhereTheSceneBeginsAgain) {
     EXPECT_EQ(
         session_.takeMessages(),
         std::vector<std::string>{path() + " is not written: the scene ends after 1 of 10 frames."});
-    EXPECT_EQ(session_.failureCount(), 1);
+    EXPECT_EQ(session_.failureCount, 1);
     expectUntouched();
 }
 

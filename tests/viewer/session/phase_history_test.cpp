@@ -105,8 +105,8 @@ TEST(PhaseHistory, ForgetsPhasesThatAreNoMore) {
 TEST(PhaseHistory, IsWhatASessionReads) {
     Session session({.name = "wander", .file = {}, .objects = 200, .seed = 1});
     step(session, 4);
-    EXPECT_EQ(session.reading("milliseconds"), session.history().medianTotal());
-    EXPECT_EQ(session.reading("p95"), session.history().p95Total());
+    EXPECT_EQ(session.reading("milliseconds"), session.history.medianTotal());
+    EXPECT_EQ(session.reading("p95"), session.history.p95Total());
     EXPECT_GE(session.reading("p95"), session.reading("milliseconds"));
 }
 

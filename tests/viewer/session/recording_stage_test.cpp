@@ -14,20 +14,36 @@
 namespace hashphase::demos {
 namespace {
 
-TEST(RecordingStage, PlaysWhatWasCapturedAndBeginsAgain) {
-    const TemporaryFolder folder;
-    const std::string path = folder.file("boxes.aabbs");
-    Session session({.name = "wander", .file = {}, .objects = 200, .seed = 3});
-    std::vector<Aabb<float>> before;
-    std::vector<CollisionFilter> filters;
-    session.stage().listBoxes(before, filters);
-    session.run("capture " + path + " 5");
+/// Boxes of so many frames of the session, in that file.
+void capture(Session& session, const std::string& path, int frames) {
+    session.run("capture " + path + " " + std::to_string(frames));
     while (session.isWaiting()) {
         session.advance();
     }
+}
+
+class RecordingStages : public testing::Test {
+protected:
+    [[nodiscard]] std::string path() const { return folder_.file("boxes.aabbs"); }
+
+    void capture(const char* scene, std::size_t objects, int frames) const {
+        Session session({.name = scene, .file = {}, .objects = objects, .seed = 3});
+        demos::capture(session, path(), frames);
+    }
+
+private:
+    TemporaryFolder folder_;
+};
+
+TEST_F(RecordingStages, PlaysWhatWasCapturedAndBeginsAgain) {
+    Session session({.name = "wander", .file = {}, .objects = 200, .seed = 3});
+    std::vector<Aabb<float>> before;
+    std::vector<CollisionFilter> filters;
+    session.stage->listBoxes(before, filters);
+    demos::capture(session, path(), 5);
     std::vector<Aabb<float>> after;
-    session.stage().listBoxes(after, filters);
-    RecordingStage stage(path, 0);
+    session.stage->listBoxes(after, filters);
+    RecordingStage stage(path(), 0);
     const auto expectBoxes = [&](const std::vector<Aabb<float>>& boxes) {
         std::vector<Aabb<float>> played;
         stage.listBoxes(played, filters);
@@ -48,20 +64,11 @@ TEST(RecordingStage, PlaysWhatWasCapturedAndBeginsAgain) {
     expectBoxes(before);
 }
 
-TEST(RecordingStage, GoesOnWithTheFileThatItOpenedWhateverTakesItsName) {
-    const TemporaryFolder folder;
-    const std::string path = folder.file("boxes.aabbs");
-    const auto capture = [&path](std::size_t objects) {
-        Session session({.name = "wander", .file = {}, .objects = objects, .seed = 3});
-        session.run("capture " + path + " 2");
-        while (session.isWaiting()) {
-            session.advance();
-        }
-    };
-    capture(200);
-    RecordingStage stage(path, 0);
+TEST_F(RecordingStages, GoesOnWithTheFileThatItOpenedWhateverTakesItsName) {
+    capture("wander", 200, 2);
+    RecordingStage stage(path(), 0);
     const std::uint64_t first = stage.placesHash();
-    capture(5);
+    capture("wander", 5, 2);
     for (int frame = 0; frame < 2; ++frame) {
         stage.step();
         EXPECT_NE(stage.placesHash(), first);
@@ -71,15 +78,9 @@ TEST(RecordingStage, GoesOnWithTheFileThatItOpenedWhateverTakesItsName) {
     EXPECT_EQ(stage.size(), 200U);
 }
 
-TEST(RecordingStage, HasNoPairsWhileTheyAreNotDeclared) {
-    const TemporaryFolder folder;
-    const std::string path = folder.file("boxes.aabbs");
-    Session session({.name = "pile", .file = {}, .objects = 200, .seed = 3});
-    session.run("capture " + path + " 5");
-    while (session.isWaiting()) {
-        session.advance();
-    }
-    RecordingStage stage(path, 0);
+TEST_F(RecordingStages, HasNoPairsWhileTheyAreNotDeclared) {
+    capture("pile", 200, 5);
+    RecordingStage stage(path(), 0);
     const SceneEffects all = stage.effects();
     SceneEffects without = all;
     without.remove(Effect::pairs);
@@ -103,15 +104,9 @@ TEST(RecordingStage, HasNoPairsWhileTheyAreNotDeclared) {
     }
 }
 
-TEST(RecordingStage, ColoursAgentsOnceWhenTheyBeginToLookAround) {
-    const TemporaryFolder folder;
-    const std::string path = folder.file("boxes.aabbs");
-    Session session({.name = "wander", .file = {}, .objects = 200, .seed = 3});
-    session.run("capture " + path + " 2");
-    while (session.isWaiting()) {
-        session.advance();
-    }
-    RecordingStage stage(path, 0);
+TEST_F(RecordingStages, ColoursAgentsOnceWhenTheyBeginToLookAround) {
+    capture("wander", 200, 2);
+    RecordingStage stage(path(), 0);
     SceneEffects effects = stage.effects();
     effects.declare(Effect::proximity);
     stage.declare(effects);

@@ -33,7 +33,7 @@ TEST(SceneChoice, ShowsAllOfASceneThatHasGrown) {
     Session session({.name = "wander", .file = {}, .objects = 1000, .seed = 1}, 800, 600);
     session.run("camera top");
     session.run("objects 120000");
-    EXPECT_EQ(session.stage().effects().motion->bounds.max().x(), 799);
+    EXPECT_EQ(session.stage->effects().motion->bounds.max().x(), 799);
     EXPECT_EQ(session.pose().eye.x(), 400);
     step(session, 1);
     EXPECT_EQ(session.visibleCount(), 120'000U);
@@ -55,12 +55,12 @@ TEST(SceneChoice, RefusesAFileWithAnEffectThatNoSimulationHas) {
         const std::string fault = faultOf(session, "restart");
         EXPECT_EQ(fault.substr(0, path.size() + 2), path + ": ") << fault;
         EXPECT_EQ(faultOf(session, "objects 30"), fault);
-        EXPECT_EQ(session.frame(), 3U);
-        EXPECT_EQ(session.stage().size(), 20U);
+        EXPECT_EQ(session.frame, 3U);
+        EXPECT_EQ(session.stage->size(), 20U);
     }
     write(R"(, "pairs": true)");
     session.run("restart");
-    EXPECT_EQ(session.frame(), 0U);
+    EXPECT_EQ(session.frame, 0U);
 }
 
 }  // namespace

@@ -2,7 +2,8 @@
 #pragma once
 
 #include <demos/scenes/world_scenes.hpp>
-#include <demos/viewer/session/pair_check.hpp>
+#include <demos/viewer/session/scene_choice.hpp>
+#include <demos/viewer/session/stage_queries.hpp>
 #include <demos/viewer/stage/stage.hpp>
 
 #include <gtest/gtest.h>
@@ -15,9 +16,11 @@
 namespace hashphase::demos {
 
 inline const BroadphaseKind& kindNamed(std::string_view name) {
-    const auto kinds = broadphaseKinds();
-    return *std::find_if(kinds.begin(), kinds.end(),
-                         [name](const BroadphaseKind& kind) { return kind.name == name; });
+    return rowNamed("broadphase", name, broadphaseKinds());
+}
+
+inline const WorldSceneKind& worldNamed(std::string_view name) {
+    return rowNamed("scene", name, worldSceneKinds());
 }
 
 inline SceneEffects worldEffects() {
@@ -30,17 +33,10 @@ inline SceneEffects worldEffects() {
     return effects;
 }
 
-inline const WorldSceneKind& worldNamed(std::string_view name) {
-    const auto kinds = worldSceneKinds();
-    return *std::find_if(kinds.begin(), kinds.end(),
-                         [name](const WorldSceneKind& kind) { return kind.name == name; });
-}
-
 inline void expectPairs(const Stage& stage, bool exact, const std::string& when) {
-    PairCheck check;
-    check.look(stage);
-    EXPECT_TRUE(check.missing().empty()) << when;
-    EXPECT_TRUE(!exact || check.extra().empty()) << when;
+    const PairCheck check = checkPairs(stage);
+    EXPECT_TRUE(check.missing.empty()) << when;
+    EXPECT_TRUE(!exact || check.extra.empty()) << when;
 }
 
 /// As many agents of each colour as of any other.

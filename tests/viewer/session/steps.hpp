@@ -33,7 +33,7 @@ inline std::string faultOf(Session& session, const std::string& line) {
 inline std::vector<std::string> runScript(Session& session, const std::string& text) {
     std::vector<std::string> said;
     Script script(text, "script");
-    session.setPlaying(false);
+    session.isPlaying = false;
     while (!script.isDone() || session.isWaiting()) {
         script.feed(session);
         session.advance();

@@ -17,7 +17,7 @@ namespace {
 struct Coloured {
     explicit Coloured(std::initializer_list<const char*> commands, const char* scene = "wander")
         : session({.name = scene, .file = {}, .objects = 400, .seed = 1}) {
-        session.setPlaying(false);
+        session.isPlaying = false;
         for (const char* command : commands) {
             session.run(command);
         }
@@ -29,7 +29,7 @@ struct Coloured {
     }
 
     [[nodiscard]] Colour of(std::uint32_t index) const {
-        return colours.of(session, index, session.stage().body(index));
+        return colours.of(session, index, session.stage->body(index));
     }
 
     Session session;
@@ -49,11 +49,11 @@ TEST(BodyColours, NeedNoLegendWhereTheyOnlyTellBodiesApart) {
 
 TEST(BodyColours, TellTheFastestFromTheFirstPictureOn) {
     const Coloured scene({"colour speed", "step 3"});
-    const auto limit = scene.session.stage().indexLimit();
+    const auto limit = scene.session.stage->indexLimit();
     float fastest = 0;
     std::uint32_t who = 0;
     for (std::uint32_t index = 0; index < limit; ++index) {
-        const float speed = scene.session.stage().body(index).speed;
+        const float speed = scene.session.stage->body(index).speed;
         if (scene.session.isVisible(index) && speed > fastest) {
             fastest = speed;
             who = index;
@@ -69,19 +69,19 @@ TEST(BodyColours, TellTheFastestFromTheFirstPictureOn) {
 TEST(BodyColours, TellLoadsOnceThoughBodiesAndGroundShowThem) {
     const Coloured scene({"cell 60", "colour load", "overlay heat on", "step 3"});
     ASSERT_EQ(scene.legends.size(), 1U);
-    const CellLoads& loads = scene.session.loads();
-    ASSERT_GT(loads.largest(), 8U);
-    EXPECT_EQ(lastOf(scene.legends[0]).meaning, std::to_string(loads.largest()));
-    const auto limit = scene.session.stage().indexLimit();
+    const CellLoads& loads = scene.session.loads;
+    ASSERT_GT(loads.largest, 8U);
+    EXPECT_EQ(lastOf(scene.legends[0]).meaning, std::to_string(loads.largest));
+    const auto limit = scene.session.stage->indexLimit();
     std::uint32_t inTheFullest = 0;
     for (std::uint32_t index = 0; index < limit; ++index) {
-        const Vector3<float> at = scene.session.stage().body(index).centre;
-        if (loads.at(at.x(), at.z()) == loads.largest()) {
+        const Vector3<float> at = scene.session.stage->body(index).centre;
+        if (loads.at(at.x(), at.z()) == loads.largest) {
             ++inTheFullest;
             EXPECT_EQ(scene.of(index), lastOf(scene.legends[0]).colour);
         }
     }
-    EXPECT_GE(inTheFullest, loads.largest());
+    EXPECT_GE(inTheFullest, loads.largest);
 }
 
 TEST(BodyColours, TellTheGroundsLoadsBesideWhatBodiesTell) {
@@ -95,10 +95,10 @@ TEST(BodyColours, TellTheGroundsLoadsBesideWhatBodiesTell) {
 TEST(BodyColours, TellWhoNeverMoves) {
     const Coloured scene({"colour rest", "step 3"}, "static-city");
     ASSERT_EQ(scene.legends.size(), 1U);
-    const auto limit = scene.session.stage().indexLimit();
+    const auto limit = scene.session.stage->indexLimit();
     std::size_t staticCount = 0;
     for (std::uint32_t index = 0; index < limit; ++index) {
-        const StageBody body = scene.session.stage().body(index);
+        const StageBody body = scene.session.stage->body(index);
         if (body.isStatic) {
             ++staticCount;
             EXPECT_EQ(scene.of(index), scene.legends[0].entries[0].colour);

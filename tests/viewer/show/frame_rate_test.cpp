@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-#include <demos/viewer/show/frame_rate.hpp>
+#include <demos/viewer/show/window.hpp>
 
 #include <gtest/gtest.h>
 

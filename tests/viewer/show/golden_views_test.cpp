@@ -27,87 +27,71 @@ namespace {
 constexpr int kWidth = 240;
 constexpr int kHeight = 150;
 
-/// Draws for all tests.
-class Eye {
-public:
-    static Image see(const Session& session) {
-        static Eye eye;
-        PictureMaker maker;
-        eye.renderer_.draw(maker.make(session));
-        return eye.renderer_.read();
-    }
-
-private:
-    HeadlessContext context_;
-    Renderer renderer_{kWidth, kHeight};
-};
+Image seen(const Session& session) {
+    const HeadlessContext context;
+    Renderer renderer(kWidth, kHeight);
+    PictureMaker maker;
+    renderer.draw(maker.make(session));
+    return renderer.read();
+}
 
 /// The picture after these commands, of which steps are simulated at once.
-Image after(const SceneChoice& choice, std::initializer_list<const char*> commands) {
+Image after(const SceneChoice& choice, const std::vector<const char*>& commands) {
     Session session(choice, kWidth, kHeight);
-    session.setPlaying(false);
+    session.isPlaying = false;
     for (const char* command : commands) {
         session.run(command);
         do {
             session.advance();
         } while (session.isWaiting());
     }
-    return Eye::see(session);
+    return seen(session);
 }
 
 const SceneChoice kWander{.name = "wander", .file = {}, .objects = 4000, .seed = 1};
+const SceneChoice kPile{.name = "pile", .file = {}, .objects = 300, .seed = 1};
+const SceneChoice kStorm{.name = "bullet-storm", .file = {}, .objects = 100, .seed = 1};
 
-TEST(GoldenViews, CameraAbove) {
-    expectGolden("camera_above", after(kWander, {"step 20", "camera top"}));
+struct GoldenView {
+    std::string name;
+    SceneChoice scene;
+    std::vector<const char*> commands;
+};
+
+class GoldenViews : public testing::TestWithParam<GoldenView> {};
+
+TEST_P(GoldenViews, AreDrawnAsTheyWere) {
+    expectGolden(GetParam().name, after(GetParam().scene, GetParam().commands));
 }
 
-TEST(GoldenViews, CameraFree) {
-    expectGolden("camera_free", after(kWander, {"step 20", "eye 200 30 400 10 -15"}));
-}
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, GoldenViews,
+    testing::Values(GoldenView{"camera_above", kWander, {"step 20", "camera top"}},
+                    GoldenView{"camera_free", kWander, {"step 20", "eye 200 30 400 10 -15"}},
+                    GoldenView{"camera_that_follows",
+                               kWander,
+                               {"pose top 200 7 200 40 0 0 0 0 0 0 0 0 0 20 0 -0.4", "pick 217 75",
+                                "camera follow", "step 20"}},
+                    GoldenView{"frozen_frustum_from_outside",
+                               kWander,
+                               {"step 20", "eye 120 30 300 -40 -14", "freeze on",
+                                "eye 220 170 520 0 -32", "step 1"}},
+                    GoldenView{"picked_and_its_pairs",
+                               kPile,
+                               {"step 40", "camera free", "pick 120 90", "overlay boxes on"}},
+                    GoldenView{"selected_in_a_rectangle",
+                               kWander,
+                               {"step 20", "box 45 40 150 110", "drag 45 40 150 110"}},
+                    GoldenView{"bucket_loads",
+                               kWander,
+                               {"cell 16", "step 20", "overlay bodies off", "overlay heat on",
+                                "eye 200 150 510 0 -34"}},
+                    GoldenView{"discrete_misses_in_the_dark",
+                               kStorm,
+                               {"theme dark", "camera free", "step 12"}}),
+    [](const auto& view) { return view.param.name; });
 
-TEST(GoldenViews, CameraThatFollows) {
-    Session session(kWander, kWidth, kHeight);
-    session.run("pose top 200 7 200 40 0 0 0 0 0 0 0 0 0 20 0 -0.4");
-    for (int x = 10; x < kWidth && !session.card(); x += 3) {
-        session.pick({x, kHeight / 2});
-    }
-    session.run("camera follow");
-    session.askForSteps(20);
-    while (session.isWaiting()) {
-        session.advance();
-    }
-    expectGolden("camera_that_follows", Eye::see(session));
-}
-
-TEST(GoldenViews, FrozenFrustumFromOutside) {
-    expectGolden("frozen_frustum_from_outside",
-                 after(kWander, {"step 20", "eye 120 30 300 -40 -14", "freeze on",
-                                 "eye 220 170 520 0 -32", "step 1"}));
-}
-
-TEST(GoldenViews, PickedAndItsPairs) {
-    expectGolden("picked_and_its_pairs",
-                 after({.name = "pile", .file = {}, .objects = 300, .seed = 1},
-                       {"step 40", "camera free", "pick 120 90", "overlay boxes on"}));
-}
-
-TEST(GoldenViews, SelectedInARectangle) {
-    expectGolden("selected_in_a_rectangle",
-                 after(kWander, {"step 20", "box 45 40 150 110", "drag 45 40 150 110"}));
-}
-
-TEST(GoldenViews, BucketLoads) {
-    expectGolden("bucket_loads", after(kWander, {"cell 16", "step 20", "overlay bodies off",
-                                                 "overlay heat on", "eye 200 150 510 0 -34"}));
-}
-
-TEST(GoldenViews, DiscreteMissesInTheDark) {
-    expectGolden("discrete_misses_in_the_dark",
-                 after({.name = "bullet-storm", .file = {}, .objects = 100, .seed = 1},
-                       {"theme dark", "camera free", "step 12"}));
-}
-
-TEST(GoldenViews, AreOthersAfterAStep) {
+TEST(Views, AreOthersAfterAStep) {
     const Image before = after(kWander, {"step 20", "eye 200 30 400 10 -15"});
     const Image later = after(kWander, {"step 50", "eye 200 30 400 10 -15"});
     EXPECT_FALSE(looksTheSame(imageDifference(before, later)));
@@ -121,7 +105,7 @@ TEST(PictureMaker, DrawsZonesAsBallsOfTheirRadiusWhileTheyAreDeclared) {
     const std::size_t without = maker.make(session).lines.size();
     session.run("effect zones on");
     session.advance();
-    const auto zones = session.stage().interestZones();
+    const auto zones = session.stage->interestZones();
     ASSERT_FALSE(zones.empty());
     const std::span<const DrawnLine> lines = maker.make(session).lines;
     ASSERT_GT(lines.size(), without);
@@ -157,16 +141,16 @@ TEST(PictureMaker, RingsWhatIsPickedWhereItIsOnTheScreen) {
         for (const float aside : {0.0F, 0.5F}) {
             SCOPED_TRACE(testing::Message() << away << " m away, to the side by " << aside);
             Session session(kWander, kWidth, kHeight);
-            session.setPlaying(false);
+            session.isPlaying = false;
             session.advance();
             session.run("pose top 200 7 200 40 0 0 0 0 0 0 0 0 0 20 0 -0.4");
-            for (int x = 10; x < kWidth && !session.card(); x += 3) {
+            for (int x = 10; x < kWidth && !session.card; x += 3) {
                 session.pick({x, kHeight / 2});
             }
-            ASSERT_TRUE(session.card());
-            const StageBody body = session.card()->body;
-            session.camera().place(body.centre + Vector3<float>(aside * away, aside * away, away),
-                                   0, 0);
+            ASSERT_TRUE(session.card);
+            const StageBody body = session.card->body;
+            session.camera.place(body.centre + Vector3<float>(aside * away, aside * away, away), 0,
+                                 0);
             PictureMaker maker;
             const Picture& picture = maker.make(session);
             ASSERT_GT(picture.lines.size(), 64U);
@@ -224,10 +208,10 @@ TEST(Panel, RunsWhatIsClicked) {
     show(false);
     show(false);
     EXPECT_TRUE(viewer.panel().hasPointer());
-    ASSERT_TRUE(session.isPlaying());
+    ASSERT_TRUE(session.isPlaying);
     show(true);
     show(false);
-    EXPECT_FALSE(session.isPlaying());
+    EXPECT_FALSE(session.isPlaying);
 }
 
 // --- The panel -----------------------------------------------------------------------------------
@@ -254,7 +238,7 @@ TEST(Panel, IsDrawnOverEachSceneInBothThemes) {
                     session.run(command);
                     session.advance();
                 }
-                session.setPlaying(false);
+                session.isPlaying = false;
                 viewer.layOut(session);
                 session.askForScreenshot(path);
                 viewer.show(session, {}, 0);
@@ -294,7 +278,7 @@ TEST(Panel, ShowsTheRadarAsAMapSeenFromAbove) {
     viewer.show(session, {}, 0);
     const Image picture = readPng(path);
 
-    const RadarView radar = session.stage().radar().value();
+    const RadarView radar = session.stage->radar().value();
     const std::uint32_t columns = radar.columns;
     std::vector<std::uint32_t> counts(std::size_t{columns} * radar.rows);
     for (std::size_t i = 0; i < radar.counts.size(); ++i) {

@@ -6,8 +6,7 @@
 // this pixel. Exit status 1 where it does not.
 
 #include <demos/scenes/file_bytes.hpp>
-#include <demos/viewer/draw/image_difference.hpp>
-#include <demos/viewer/draw/png.hpp>
+#include <demos/viewer/draw/image.hpp>
 
 #include <cstdint>
 #include <cstdio>

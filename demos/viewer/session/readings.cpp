@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Zlib
+//
+// What can be seen, as numbers by name.
+
+#include <demos/viewer/session/session.hpp>
+
+#include <demos/scenes/input_error.hpp>
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+namespace hashphase::demos {
+namespace {
+
+/// What is there, or else the fault that says why not.
+template <class Thing>
+const Thing& need(const Thing& thing, bool isThere, const char* fault) {
+    if (!isThere) {
+        throw InputError(fault);
+    }
+    return thing;
+}
+
+const InfoCard& cardOf(const Session& session) {
+    return *need(session.card, session.card.has_value(), "Nobody is picked.");
+}
+
+const PairCheck& checkOf(const Session& session) {
+    return need(session.pairCheck, session.check() != nullptr,
+                session.canCheck() ? "Pairs are verified after the next frame: run \"step\"."
+                                   : "Pairs are not verified: run \"check on\" and a step, with "
+                                     "pairs and without sweep.");
+}
+
+const CellLoads& loadsOf(const Session& session) {
+    return need(session.loads, !session.loads.isEmpty(),
+                "Loads are not counted: run \"overlay heat on\" and a step, with an effect that "
+                "asks the grid.");
+}
+
+template <class Holds>
+double countBodies(const Session& session, const Holds& holds) {
+    double count = 0;
+    for (std::uint32_t index = 0; index < session.stage->indexLimit(); ++index) {
+        const StageBody body = session.stage->body(index);
+        count += body.shape != StageBody::Shape::none && holds(body) ? 1 : 0;
+    }
+    return count;
+}
+
+std::size_t colourCount(const Session& session) {
+    need(session, session.stage->effects().proximity.has_value(),
+         "Agents have no colours: run \"effect proximity on\".");
+    const auto colours = session.stage->observers().colours();
+    return std::set<std::uint32_t>(colours.begin(), colours.end()).size();
+}
+
+// A body in two of them counts twice.
+std::size_t countInZones(const Session& session) {
+    need(session, session.stage->effects().zones.has_value(),
+         "No zones are declared: run \"effect zones on\" and a step.");
+    std::size_t count = 0;
+    for (const InterestZone& zone : session.stage->interestZones()) {
+        count += zone.bodyCount;
+    }
+    return count;
+}
+
+std::uint64_t countOnRadar(const Session& session) {
+    const std::optional<RadarView>& radar = session.stage->radar();
+    need(radar, radar.has_value(), "The radar has not looked: run \"effect radar on\" and a step.");
+    return std::accumulate(radar->counts.begin(), radar->counts.end(), std::uint64_t{0});
+}
+
+using S = const Session&;
+
+}  // namespace
+
+std::span<const Reading> readings() {
+    static const std::array kReadings{
+        Reading{"frame", [](S s) { return s.frame; }},
+        Reading{"playing", [](S s) { return s.isPlaying; }},
+        Reading{"bodies", [](S s) { return s.stage->size(); }},
+        Reading{"visible", [](S s) { return s.visibleCount(); }},
+        Reading{"frozen", [](S s) { return s.frozen.has_value(); }},
+        Reading{"selected", [](S s) { return s.selected.size(); }},
+        Reading{"recoloured", [](S s) { return s.recoloured.size(); }},
+        Reading{"picked", [](S s) { return s.card ? static_cast<double>(s.card->index) : -1; }},
+        Reading{"load", [](S s) { return cardOf(s).load; }},
+        Reading{"neighbours", [](S s) { return cardOf(s).neighbours; }},
+        Reading{"candidates", [](S s) { return cardOf(s).candidates; }},
+        Reading{"x", [](S s) { return cardOf(s).body.centre.x(); }},
+        Reading{"y", [](S s) { return cardOf(s).body.centre.y(); }},
+        Reading{"z", [](S s) { return cardOf(s).body.centre.z(); }},
+        Reading{"speed", [](S s) { return cardOf(s).body.speed; }},
+        Reading{"pairs", [](S s) { return s.stage->pairCount(); }},
+        Reading{"exact", [](S s) { return checkOf(s).exact.size(); }},
+        Reading{"missing", [](S s) { return checkOf(s).missing.size(); }},
+        Reading{"extra", [](S s) { return checkOf(s).extra.size(); }},
+        Reading{"cellSize",
+                [](S s) { return s.stage->grid() != nullptr ? s.stage->grid()->cellSize() : 0; }},
+        Reading{"largestLoad", [](S s) { return loadsOf(s).largest; }},
+        Reading{"columns", [](S s) { return loadsOf(s).columns; }},
+        Reading{"colours", colourCount},
+        Reading{"inZones", countInZones},
+        Reading{"onRadar", countOnRadar},
+        Reading{"tunnelled", [](S s) { return s.stage->tunnelMarks().size(); }},
+        Reading{"asleep",
+                [](S s) {
+                    return countBodies(s, [](const StageBody& body) { return body.isAsleep; });
+                }},
+        Reading{"moving",
+                [](S s) {
+                    return countBodies(s, [](const StageBody& body) { return body.speed > 0; });
+                }},
+        Reading{"memory", [](S s) { return s.stage->memoryBytes(); }},
+        Reading{"phases", [](S s) { return s.stage->times().size(); }},
+        Reading{"zones", [](S s) { return s.stage->zones().size(); }},
+        Reading{"milliseconds", [](S s) { return s.history.medianTotal(); }},
+        Reading{"p95", [](S s) { return s.history.p95Total(); }},
+        Reading{"eyeX", [](S s) { return s.pose().eye.x(); }},
+        Reading{"eyeY", [](S s) { return s.pose().eye.y(); }},
+        Reading{"eyeZ", [](S s) { return s.pose().eye.z(); }},
+        Reading{"dragging", [](S s) { return s.rectangle.has_value(); }},
+        Reading{"dots", [](S s) { return s.options.dots; }},
+        Reading{"dark", [](S s) { return s.options.theme == Theme::dark; }},
+        Reading{"panel", [](S s) { return s.options.panel; }},
+        Reading{"help", [](S s) { return s.options.help; }},
+        Reading{"width", [](S s) { return s.width; }},
+        Reading{"height", [](S s) { return s.height; }},
+        // So much of it as a double holds.
+        Reading{"hash", [](S s) { return s.hash() >> 12; }},
+    };
+    return kReadings;
+}
+
+double Session::reading(std::string_view name) const {
+    return rowNamed("reading", name, readings()).read(*this);
+}
+
+}  // namespace hashphase::demos
