@@ -65,7 +65,7 @@ function nextBoxes(reader, last) {
     return now;
 }
 
-// The sorted pairs of the next frame, two places each: the stream that replay_pairs.hpp describes.
+// The sorted pairs of the next frame, two places each: the stream that replay_track.hpp describes.
 function nextPairs(reader, last, count) {
     const stay = new Uint8Array(last.length / 2).fill(1);
     let at = -1;

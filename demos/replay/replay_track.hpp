@@ -5,7 +5,8 @@
 // read them. Both streams are of bytes and of numbers in groups of seven bits, the lowest first, of which all
 // but the last have bit 7 set: small numbers take one byte.
 //
-// --- Boxes
+// Of boxes
+//
 // Numbers  seven of 16 bits for an object in a frame: its centre and its edges along x, y, z, in steps
 //          of a 65535th of the bounds along that axis, and how many others it overlaps with.
 // Error    half a step in the centre, half a step in the edge. What leaves the bounds is cut off there;
@@ -13,12 +14,13 @@
 // Stream   for the objects of a frame in order, a byte that tells which of the seven (bits 0 to 6)
 //          differ from the frame before (from 0 in the first); then those differences, modulo 2^16 as
 //          signed numbers, zigzag. After a byte of 0 comes how many more objects in a row have no differences.
-// --- Pairs
-// Stream   for each frame: how many pairs of the frame
-//          before are gone; of each, how many that stay lie between it and the one that went before;
-//          how many are new; of each, in order, how much larger its smaller place is than that of the
-//          one before (at first than 0), and how much larger its larger place is than the larger one
-//          before if the smaller ones are the same, else than its own smaller one.
+//
+// Of pairs
+//
+// Stream   for each frame: how many pairs of the frame before are gone; of each, how many that stay lie between
+//          it and the one that went before; how many are new; of each, in order, how much larger its smaller
+//          place is than that of the one before (at first than 0), and how much larger its larger place is than
+//          the larger one before if the smaller ones are the same, else than its own smaller one.
 // Limit    of a frame with too many pairs none is listed; they are counted all the same.
 
 #include <demos/scenes/pair_key.hpp>

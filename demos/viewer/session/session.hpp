@@ -18,7 +18,6 @@
 #include <demos/viewer/draw/picture.hpp>
 #include <demos/viewer/session/box_recorder.hpp>
 #include <demos/viewer/session/camera.hpp>
-#include <demos/viewer/session/cell_loads.hpp>
 #include <demos/viewer/session/command_log.hpp>
 #include <demos/viewer/session/phase_history.hpp>
 #include <demos/viewer/session/scene_choice.hpp>

@@ -6,6 +6,7 @@
 #include <broadphase/proxy_filter.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 namespace hashphase::demos {
@@ -45,6 +46,42 @@ PairCheck checkPairs(const Stage& stage) {
     std::ranges::set_difference(check.exact, listed, std::back_inserter(check.missing));
     std::ranges::set_difference(listed, check.exact, std::back_inserter(check.extra));
     return check;
+}
+
+CellLoads::CellLoads(const Grid<float>& grid, const Aabb<float>& bounds) {
+    const float extent = std::max(bounds.sizes().x(), bounds.sizes().z());
+    const float finest = grid.cellSize();
+    cellSize = finest * std::max(1.0F, std::ceil(extent / (finest * (kMostColumns - 2))));
+    corner = cellSize * Eigen::Vector2f(std::floor(bounds.min().x() / cellSize),
+                                        std::floor(bounds.min().z() / cellSize));
+    // Far from the origin, cells may be smaller than what coordinates are rounded to.
+    const auto countTo = [this](float length) {
+        const float count = std::max(1.0F, std::floor(length / cellSize) + 1);
+        return static_cast<std::uint32_t>(std::min(count, float{kMostColumns}));
+    };
+    columns = countTo(bounds.max().x() - corner.x());
+    rows = countTo(bounds.max().z() - corner.y());
+    counts.assign(std::size_t{columns} * rows, 0);
+    grid.forEach([this](ProxyId, const Aabb<float>& box) {
+        if (const auto cell = cellAt(box.center().x(), box.center().z())) {
+            largest = std::max(largest, ++counts[*cell]);
+        }
+    });
+    full = std::max(largest, 8U);
+    shades.resize(counts.size());
+    std::ranges::transform(counts, shades.begin(), [this](std::uint32_t load) {
+        return static_cast<std::uint8_t>(load * 255 / full);
+    });
+}
+
+std::optional<std::size_t> CellLoads::cellAt(float x, float z) const {
+    const float column = (x - corner.x()) / cellSize;
+    const float row = (z - corner.y()) / cellSize;
+    const bool isInside = column >= 0 && row >= 0 && column < static_cast<float>(columns) &&
+                          row < static_cast<float>(rows);
+    return isInside ? std::optional(std::size_t{static_cast<std::uint32_t>(row)} * columns +
+                                    static_cast<std::uint32_t>(column))
+                    : std::nullopt;
 }
 
 }  // namespace hashphase::demos

@@ -67,7 +67,11 @@ void PaperStage::runFrame() {
     listBoxes(boxes_, noFilters_);
     rival_->update(boxes_, noFilters_, clock_);
     if (effects().response) {
-        collideRivals();
+        for (const PairKey key : rival_->pairs()) {
+            simulation_.collide(bodies_[firstOf(key)], bodies_[secondOf(key)],
+                                effects().response->restitution);
+        }
+        clock_.end("respond");
     }
 }
 
@@ -80,14 +84,6 @@ void PaperStage::takeChanges() {
     std::ranges::set_difference(pairs_, keysOf(died), std::back_inserter(kept));
     pairs_.clear();
     std::ranges::merge(kept, keysOf(born), std::back_inserter(pairs_));
-}
-
-void PaperStage::collideRivals() {
-    for (const PairKey key : rival_->pairs()) {
-        simulation_.collide(bodies_[firstOf(key)], bodies_[secondOf(key)],
-                            effects().response->restitution);
-    }
-    clock_.end("respond");
 }
 
 // --- Who is there --------------------------------------------------------------------------------

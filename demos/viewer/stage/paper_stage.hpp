@@ -46,7 +46,6 @@ private:
     void declareToSimulation();
     void addGroundAndZones(bool hadGround, bool hadZones);
     void takeChanges();
-    void collideRivals();
 
     EffectsScene scene_;
     std::vector<Vector3<float>> ground_;
