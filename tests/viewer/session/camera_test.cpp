@@ -65,6 +65,25 @@ TEST(Camera, StaysWhereAPoseCanPutIt) {
     }
 }
 
+TEST(Camera, IsWhereItsStateSays) {
+    const Camera::State state{1, 2, 3, 40, 0.1F, 6, 7, 8, 0.2F, 0.3F, 11, 12, 13, 140, 0.4F, -0.5F};
+    Camera camera;
+    const auto poseIn = [&](CameraMode mode) {
+        camera.setState(mode, state);
+        EXPECT_EQ(camera.state(), state);
+        return camera.pose(1);
+    };
+    EXPECT_EQ(poseIn(CameraMode::top).eye, Vector3<float>(1, 42, 3));
+    EXPECT_FLOAT_EQ(poseIn(CameraMode::top).yaw, 0.1F);
+    EXPECT_EQ(poseIn(CameraMode::free).eye, Vector3<float>(6, 7, 8));
+    EXPECT_FLOAT_EQ(poseIn(CameraMode::free).yaw, 0.2F);
+    EXPECT_FLOAT_EQ(poseIn(CameraMode::free).pitch, 0.3F);
+    const CameraPose following = poseIn(CameraMode::follow);
+    EXPECT_NEAR((following.eye - Vector3<float>(11, 12, 13)).norm(), 140, 1e-3);
+    EXPECT_FLOAT_EQ(following.yaw, 0.4F);
+    EXPECT_FLOAT_EQ(following.pitch, -0.5F);
+}
+
 TEST(Camera, IsPutNowhereElse) {
     Session session({.name = "wander", .file = {}, .objects = 20, .seed = 1}, 800, 600);
     const Camera::State home = session.camera.state();
