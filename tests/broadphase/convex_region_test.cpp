@@ -4,14 +4,14 @@
 #include <integration/camera/frustum.hpp>
 #include <tests/support/cameras.hpp>
 #include <tests/support/convex_oracle.hpp>
-#include <tests/support/handlers.hpp>
-#include <tests/support/query_checks.hpp>
-#include <tests/support/script.hpp>
+#include <tests/support/population.hpp>
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
-#include <bit>
+#include <cstdint>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -34,42 +34,61 @@ protected:
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(ConvexQuery, Scalars);
 
+/// The region finds the box as the oracle says; 1 if it does, -1 if not, 0 where rounding decides.
+template <class Scalar>
+int expectLikeOracle(const ConvexRegion<Scalar>& region, const Aabb<Scalar>& box, double depth,
+                     double rounding) {
+    const int expected = depth > -1e-12 ? 1 : depth < -rounding ? -1 : 0;
+    EXPECT_TRUE(expected == 0 || (region.key(box) >= 0) == (expected > 0)) << depth;
+    return expected;
+}
+
 // Of frusta, wedges and prisms of every shape; boxes from tiny to larger than the volume.
 TYPED_TEST(ConvexQuery, FindsExactlyTheBoxesThatShareAPointWithTheVolume) {
+    constexpr double kRounding = sizeof(TypeParam) == sizeof(float) ? 1e-4 : 1e-9;
     Random random(0x5eed0601);
     int touching = 0;
     int falseByPlanes = 0;
+    int inside = 0;
     for (int i = 0; i < 10000; ++i) {
         SCOPED_TRACE(i);
-        const auto planes = frustumPlanes<TypeParam>(
+        const auto frustum = frustumPlanes<TypeParam>(
             randomCamera<TypeParam>(random, Vector3<double>::Zero(), 10), DepthRange::zeroToOne);
-        const ConvexRegion<TypeParam> exact(planes);
-        const ConvexRegion<TypeParam> byPlanes(planes, Containment::touching, Touch::byPlanes);
-        const auto box = boxAround<TypeParam>(
-            random.pointIn(-30, 30), Vector3<double>::Constant(random.logBetween(0.01, 30)));
-        const std::vector<OraclePlane> volume = oraclePlanes<TypeParam>(planes);
-        const double depth = depthInVolume(volume, box.template cast<double>());
-        // Closer than rounding can tell, both answers are right.
-        constexpr double nearly = sizeof(TypeParam) == sizeof(float) ? 1e-4 : 1e-9;
-        if (depth > -1e-12) {
-            EXPECT_TRUE(this->has(exact, box)) << depth;
-            EXPECT_TRUE(this->has(byPlanes, box)) << depth;
-        } else if (depth < -nearly) {
-            EXPECT_FALSE(this->has(exact, box)) << depth;
-            falseByPlanes += this->has(byPlanes, box) ? 1 : 0;
+        const std::vector planes(frustum.begin(), frustum.end());
+        const auto box = cubesIn<TypeParam>(-30, 30, random.logBetween(0.01, 30))(random);
+        const std::vector<OraclePlane> oracle = oraclePlanes<TypeParam>(planes);
+        const double depth = depthInVolume(oracle, box.template cast<double>());
+        const int touches = expectLikeOracle(this->volumeOf(planes), box, depth, kRounding);
+        const bool touchesPlanes =
+            this->has(this->volumeOf(planes, Containment::touching, Touch::byPlanes), box);
+        EXPECT_TRUE(touchesPlanes || touches <= 0) << depth;
+        touching += touches > 0 ? 1 : 0;
+        falseByPlanes += touches < 0 && touchesPlanes ? 1 : 0;
+        // What lies inside does so with every corner.
+        const auto small = cubesIn<TypeParam>(-12, 12, random.logBetween(0.01, 3))(random);
+        double least = std::numeric_limits<double>::infinity();
+        for (const OraclePlane& plane : oracle) {
+            for (unsigned corner = 0; corner < 8; ++corner) {
+                const auto type = static_cast<typename Aabb<TypeParam>::CornerType>(corner);
+                const Vector3<double> at = small.corner(type).template cast<double>();
+                least = std::min(least, plane.signedDistance(at));
+            }
         }
-        touching += depth > -1e-12 ? 1 : 0;
+        const bool isIn = this->has(this->volumeOf(planes, Containment::inside), small);
+        EXPECT_TRUE(isIn == (least > 0) || std::abs(least) <= kRounding) << least;
+        inside += least > 0 ? 1 : 0;
     }
     EXPECT_GT(touching, 800);
     EXPECT_GT(falseByPlanes, 50);
+    EXPECT_GT(inside, 300);
 }
 
 // Prisms, wedges and slabs that go on for ever, and some that have no point.
 TYPED_TEST(ConvexQuery, FindsExactlyTheBoxesThatShareAPointWithAVolumeWithoutACorner) {
     using Plane = typename ConvexRegion<TypeParam>::Plane;
+    constexpr double kRounding = sizeof(TypeParam) == sizeof(float) ? 1e-3 : 1e-7;
     Random random(0x5eed0605);
-    int touching = 0;
-    int apart = 0;
+    std::array<int, 3> answers{};
     int empty = 0;
     for (int i = 0; i < 10000; ++i) {
         SCOPED_TRACE(i);
@@ -84,49 +103,15 @@ TYPED_TEST(ConvexQuery, FindsExactlyTheBoxesThatShareAPointWithAVolumeWithoutACo
                                 static_cast<TypeParam>(random.between(-1, 4)));
         }
         const ConvexRegion<TypeParam> region(planes);
-        const auto box = boxAround<TypeParam>(
-            random.pointIn(-20, 20), Vector3<double>::Constant(random.logBetween(0.01, 10)));
+        const auto box = cubesIn<TypeParam>(-20, 20, random.logBetween(0.01, 10))(random);
         const double depth =
             depthInVolume(oraclePlanes<TypeParam>(planes), box.template cast<double>());
-        constexpr double nearly = sizeof(TypeParam) == sizeof(float) ? 1e-3 : 1e-7;
-        if (depth > -1e-12) {
-            EXPECT_TRUE(this->has(region, box)) << depth;
-            ++touching;
-        } else if (depth < -nearly) {
-            EXPECT_FALSE(this->has(region, box)) << depth;
-            ++apart;
-        }
+        ++answers.at(static_cast<std::size_t>(1 + expectLikeOracle(region, box, depth, kRounding)));
         empty += region.isEmpty() ? 1 : 0;
     }
-    EXPECT_GT(touching, 500);
-    EXPECT_GT(apart, 500);
+    EXPECT_GT(answers[0], 500) << "apart";
+    EXPECT_GT(answers[2], 500) << "touching";
     EXPECT_GT(empty, 100);
-}
-
-TYPED_TEST(ConvexQuery, OfWhatLiesInsideAsksForEveryCorner) {
-    Random random(0x5eed0602);
-    int inside = 0;
-    for (int i = 0; i < 4000; ++i) {
-        const auto planes = frustumPlanes<TypeParam>(
-            randomCamera<TypeParam>(random, Vector3<double>::Zero(), 10), DepthRange::zeroToOne);
-        const ConvexRegion<TypeParam> region(planes, Containment::inside);
-        const auto box = boxAround<TypeParam>(
-            random.pointIn(-12, 12), Vector3<double>::Constant(random.logBetween(0.01, 3)));
-        double least = std::numeric_limits<double>::infinity();
-        for (const OraclePlane& plane : oraclePlanes<TypeParam>(planes)) {
-            for (unsigned corner = 0; corner < 8; ++corner) {
-                const auto type = static_cast<typename Aabb<TypeParam>::CornerType>(corner);
-                least =
-                    std::min(least, plane.signedDistance(box.corner(type).template cast<double>()));
-            }
-        }
-        constexpr double nearly = sizeof(TypeParam) == sizeof(float) ? 1e-4 : 1e-9;
-        if (std::abs(least) > nearly) {
-            EXPECT_EQ(this->has(region, box), least > 0) << i;
-        }
-        inside += least > 0 ? 1 : 0;
-    }
-    EXPECT_GT(inside, 300);
 }
 
 TYPED_TEST(ConvexQuery, IsClosed) {
@@ -144,37 +129,36 @@ TYPED_TEST(ConvexQuery, IsClosed) {
 
 TYPED_TEST(ConvexQuery, HasAnAnswerForEveryPlane) {
     using Plane = typename ConvexRegion<TypeParam>::Plane;
+    using Point = Vector3<TypeParam>;
     constexpr auto infinity = std::numeric_limits<TypeParam>::infinity();
     constexpr auto nan = std::numeric_limits<TypeParam>::quiet_NaN();
-    const Vector3<TypeParam> zero = Vector3<TypeParam>::Zero();
-    const Vector3<TypeParam> up = Vector3<TypeParam>::UnitY();
+    // The sum of the terms leaves the range of numbers unless normals are made shorter.
+    constexpr auto large = std::numeric_limits<TypeParam>::max() / 4;
+    const Point zero = Point::Zero();
+    const Point up = Point::UnitY();
     const auto unit = makeBox<TypeParam>(0, 0, 0, 1, 1, 1);
     EXPECT_TRUE(this->has(this->volumeOf({}), unit));
-    EXPECT_TRUE(this->has(this->volumeOf({Plane(zero, TypeParam(1))}), unit));
-    EXPECT_TRUE(this->has(this->volumeOf({Plane(zero, TypeParam(0))}), unit));
-    EXPECT_FALSE(this->has(this->volumeOf({Plane(zero, TypeParam(-1))}), unit));
-    EXPECT_TRUE(this->has(this->volumeOf({Plane(up, infinity)}), unit));
-    EXPECT_FALSE(this->has(this->volumeOf({Plane(up, -infinity)}), unit));
-    EXPECT_FALSE(this->has(this->volumeOf({Plane(up, nan)}), unit));
-    EXPECT_FALSE(this->has(this->volumeOf({Plane(up * nan, TypeParam(1))}), unit));
-    EXPECT_FALSE(this->has(this->volumeOf({Plane(up * infinity, TypeParam(1))}), unit));
+    for (const Plane& plane : {Plane(zero, TypeParam(1)), Plane(zero, TypeParam(0)),
+                               Plane(up, infinity), Plane(up * large, TypeParam(0))}) {
+        EXPECT_TRUE(this->has(this->volumeOf({plane}), unit)) << plane.coeffs().transpose();
+    }
+    for (const Plane& plane : {Plane(zero, TypeParam(-1)), Plane(up, -infinity), Plane(up, nan),
+                               Plane(up * nan, TypeParam(1)), Plane(up * infinity, TypeParam(1)),
+                               Plane(up * large, -large * 2)}) {
+        EXPECT_FALSE(this->has(this->volumeOf({plane}), unit)) << plane.coeffs().transpose();
+    }
     // A volume without a point, though no single plane has the box outside.
-    const std::vector<Plane> nothing{Plane(Vector3<TypeParam>(1, 0, 0), TypeParam(-0.6)),
-                                     Plane(Vector3<TypeParam>(-1, 0, 0), TypeParam(0.4)),
-                                     Plane(up, TypeParam(0)),
-                                     Plane(Vector3<TypeParam>(0, 0, 1), TypeParam(0))};
-    EXPECT_TRUE(this->volumeOf(nothing).isEmpty());
-    EXPECT_FALSE(this->has(this->volumeOf(nothing), unit));
-    const auto left = Plane(Vector3<TypeParam>(-1, 0, 0), TypeParam(0));
-    const auto right = Plane(Vector3<TypeParam>(1, 0, 0), TypeParam(-1));
+    const auto nothing = this->volumeOf(
+        {Plane(Point(1, 0, 0), TypeParam(-0.6)), Plane(Point(-1, 0, 0), TypeParam(0.4)),
+         Plane(up, TypeParam(0)), Plane(Point(0, 0, 1), TypeParam(0))});
+    EXPECT_TRUE(nothing.isEmpty());
+    EXPECT_FALSE(this->has(nothing, unit));
+    const auto left = Plane(Point(-1, 0, 0), TypeParam(0));
+    const auto right = Plane(Point(1, 0, 0), TypeParam(-1));
     EXPECT_TRUE(this->volumeOf({left, right}).isEmpty());
     EXPECT_TRUE(this->volumeOf({Plane(zero, TypeParam(-1))}).isEmpty());
     EXPECT_FALSE(this->volumeOf({}).isEmpty());
     EXPECT_FALSE(this->volumeOf({left}).isEmpty());
-    // The sum of the terms leaves the range of numbers unless normals are made shorter.
-    const auto large = static_cast<TypeParam>(std::numeric_limits<TypeParam>::max() / 4);
-    EXPECT_TRUE(this->has(this->volumeOf({Plane(up * large, TypeParam(0))}), unit));
-    EXPECT_FALSE(this->has(this->volumeOf({Plane(up * large, -large * 2)}), unit));
 }
 
 TYPED_TEST(ConvexQuery, HasAnAnswerForEveryBox) {
@@ -220,67 +204,43 @@ TEST(ConvexQueryDeathTest, AConvexRegionHasAtMost16Planes) {
 // --- In a grid -----------------------------------------------------------------------------------
 
 // Large enough that layers, rows and cells are clipped, and cells taken without a test.
-template <class Scalar>
-std::vector<BoxScene<Scalar>> largeScenes() {
-    BoxScene<Scalar> space = spreadScene<Scalar>("space", 1, 0);
-    space.draw = [](Random& random) {
-        return boxAround<Scalar>(random.pointIn(-30, 30), random.pointIn(0.1, 0.9));
-    };
-    BoxScene<Scalar> ground = spreadScene<Scalar>("ground", 1, 0);
-    ground.draw = [](Random& random) {
-        return boxAround<Scalar>(random.pointIn({-90, 0, -90}, {90, 6, 90}), {1, 1, 1});
-    };
-    BoxScene<Scalar> wall = spreadScene<Scalar>("wall", 1, 0);
-    wall.draw = [](Random& random) {
-        return boxAround<Scalar>(random.pointIn({0, -80, -80}, {1, 80, 80}), {1, 1, 1});
-    };
-    BoxScene<Scalar> sizes = spreadScene<Scalar>("sizes", 1, 0);
-    sizes.draw = [](Random& random) {
-        const double half = random.logBetween(0.05, 10);
-        return boxAround<Scalar>(random.pointIn(-40, 40), Vector3<double>::Constant(half));
-    };
-    return {space, ground, wall, sizes};
-}
-
 TYPED_TEST(ConvexQuery, OfAFrustumIsThatOfBruteForceInLargeScenes) {
+    using Corner = Vector3<double>;
+    const std::function<Aabb<TypeParam>(Random&)> scenes[] = {
+        boxesIn<TypeParam>(-30, 30, 0.1, 0.9),
+        cubesIn<TypeParam>(Corner(-90, 0, -90), Corner(90, 6, 90), 1),  // ground
+        cubesIn<TypeParam>(Corner(0, -80, -80), Corner(1, 80, 80), 1),  // a wall
+        [](Random& random) {
+            return cubesIn<TypeParam>(-40, 40, random.logBetween(0.05, 10))(random);
+        }};
     std::uint64_t taken = 0;
     std::uint64_t rows = 0;
-    for (const BoxScene<TypeParam>& scene : largeScenes<TypeParam>()) {
+    for (const auto& draw : scenes) {
         for (const double cellSize : {0.0, 0.4, 40.0}) {
-            SCOPED_TRACE(testing::Message() << scene.name << ", cell size " << cellSize);
-            Random random(0x5eed0603);
-            GridConfig config;
-            config.cellSize = cellSize;
-            Grid<TypeParam> grid(config);
-            std::vector<Placed<TypeParam>> proxies;
-            for (int i = 0; i < 12000; ++i) {
-                const Aabb<TypeParam> box = scene.draw(random);
-                const auto mobility = i % 2 == 0 ? Mobility::mobile : Mobility::resting;
-                proxies.push_back({grid.add(box, mobility), box});
-            }
+            SCOPED_TRACE(testing::Message() << "cell size " << cellSize);
+            Population<TypeParam> world(GridConfig{.cellSize = cellSize});
+            world.addMany(12000, draw, 2);
             for (int frame = 0; frame < 6; ++frame) {
                 for (int camera = 0; camera < 8; ++camera) {
                     const auto region = frustumRegion<TypeParam>(
-                        randomCamera<TypeParam>(random, Vector3<double>::Zero(), 60),
+                        randomCamera<TypeParam>(world.random, Corner::Zero(), 60),
                         DepthRange::zeroToOne, wholeScreen<TypeParam>(),
                         camera % 4 == 3 ? Containment::inside : Containment::touching,
                         camera % 2 == 0 ? Touch::exact : Touch::byPlanes);
                     CollectKeys<TypeParam> expected;
-                    visitByBruteForce<TypeParam>(proxies, region, expected);
+                    visitByBruteForce<TypeParam>(world.proxies, region, expected);
                     CollectKeys<TypeParam> found;
-                    const QueryCost cost = grid.visit(region, found);
+                    const QueryCost cost = world.grid.visit(region, found);
                     ASSERT_EQ(differences(found.sorted(), expected.sorted()), "");
                     taken += cost.hits - std::min(cost.hits, cost.boxesTested);
                     rows += cost.rowsVisited;
                 }
                 // Some move, of those at rest as well, and are listed, filed, or both.
                 for (int i = 0; i < (frame % 2 == 0 ? 40 : 3000); ++i) {
-                    auto& proxy = proxies[random.below(12000)];
-                    proxy.box = scene.draw(random);
-                    grid.move(proxy.id, proxy.box);
+                    world.moveTo(world.any(), draw(world.random));
                 }
                 if (frame % 3 != 0) {
-                    grid.update();
+                    world.update();
                 }
             }
         }

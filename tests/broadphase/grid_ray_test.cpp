@@ -3,20 +3,20 @@
 // Rays and moving boxes in the cases that break them: along axes, in cell faces, through corners,
 // without length, very long, with the smallest numbers, and boxes that are none.
 
-#include <tests/support/box_scenes.hpp>
-#include <tests/support/query_checks.hpp>
+#include <tests/support/population.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
-#include <vector>
+#include <utility>
 
 namespace hashphase::test {
 namespace {
 
+/// A block of 8 x 8 x 8 unit cubes that touch, each in a cell of its own.
 template <class Scalar>
 class RayQuery : public testing::Test {
 protected:
@@ -24,25 +24,22 @@ protected:
 
     static constexpr int kSide = 8;
 
-    static Point point(double x, double y, double z) {
-        return Vector3<double>(x, y, z).cast<Scalar>();
-    }
-
-    RayQuery() : grid_(unitCells()) {
-        // A block of unit cubes that touch, each in a cell of its own.
+    RayQuery() {
         for (int i = 0; i < kSide * kSide * kSide; ++i) {
             const double x = i % kSide;
             const double y = i / kSide % kSide;
             const double z = i / kSide / kSide;
-            const Aabb<Scalar> box = makeBox<Scalar>(x, y, z, x + 1, y + 1, z + 1);
-            proxies_.push_back({grid_.add(box), box});
+            block_.add(makeBox<Scalar>(x, y, z, x + 1, y + 1, z + 1));
         }
-        grid_.update();
+        block_.update();
     }
 
+    static Point point(double x, double y, double z) {
+        return Vector3<double>(x, y, z).cast<Scalar>();
+    }
     /// Number found, the same as by brute force.
     std::size_t count(const RayRegion<Scalar>& ray) const {
-        return expectLikeBruteForce<Scalar>(grid_, proxies_, ray);
+        return block_.expectLikeBruteForce(ray);
     }
     std::size_t count(const Point& from, const Point& to) const {
         return count(RayRegion<Scalar>(from, to));
@@ -59,53 +56,44 @@ protected:
         } while (std::next_permutation(order.begin(), order.end()));
     }
 
-    Grid<Scalar> grid_;
-    std::vector<Placed<Scalar>> proxies_;
-
-private:
-    static GridConfig unitCells() {
-        GridConfig config;
-        config.cellSize = 1;
-        return config;
-    }
+    Population<Scalar> block_{GridConfig{.cellSize = 1}};
 };
 
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(RayQuery, Scalars);
 
-TYPED_TEST(RayQuery, AlongAnAxisMeetsTheBoxesOfItsRow) {
-    this->expectCountInAllOrders(8, this->point(-1, 3.5, 4.5), this->point(9, 3.5, 4.5));
-    this->expectCountInAllOrders(3, this->point(2.5, 3.5, 4.5), this->point(4.5, 3.5, 4.5));
-    this->expectCountInAllOrders(0, this->point(-1, 8.5, 4.5), this->point(9, 8.5, 4.5));
-}
-
-TYPED_TEST(RayQuery, InAFaceMeetsTheBoxesOnBothSides) {
-    this->expectCountInAllOrders(16, this->point(-1, 3, 4.5), this->point(9, 3, 4.5));
-    this->expectCountInAllOrders(8, this->point(-1, 0, 4.5), this->point(9, 0, 4.5));
-    this->expectCountInAllOrders(8, this->point(-1, 8, 4.5), this->point(9, 8, 4.5));
-}
-
-TYPED_TEST(RayQuery, AlongAnEdgeMeetsTheBoxesAroundIt) {
-    this->expectCountInAllOrders(32, this->point(-1, 3, 4), this->point(9, 3, 4));
-    this->expectCountInAllOrders(8, this->point(-1, 0, 8), this->point(9, 0, 8));
-}
-
-TYPED_TEST(RayQuery, ThroughCornersMeetsAllBoxesThatTouchThem) {
-    // Those whose three numbers differ by one at most.
-    std::size_t expected = 0;
-    for (const auto& proxy : this->proxies_) {
-        expected += proxy.box.min().maxCoeff() - proxy.box.min().minCoeff() <= 1 ? 1U : 0U;
+TYPED_TEST(RayQuery, MeetsAllBoxesThatItTouchesAlongAxesInFacesOnEdgesAndThroughCorners) {
+    // On a diagonal those whose three numbers differ by one at most.
+    std::size_t diagonal = 0;
+    for (const auto& proxy : this->block_.proxies) {
+        diagonal += proxy.box.min().maxCoeff() - proxy.box.min().minCoeff() <= 1 ? 1U : 0U;
     }
-    this->expectCountInAllOrders(expected, this->point(-1, -1, -1), this->point(9, 9, 9));
-    this->expectCountInAllOrders(expected, this->point(0, 0, 0), this->point(8, 8, 8));
-    // In a face and through corners in it.
-    this->expectCountInAllOrders(2 * (8 + 7 * 2), this->point(-1, -1, 3), this->point(9, 9, 3));
-}
-
-TYPED_TEST(RayQuery, ThatEndsOnAFaceMeetsTheBoxBehindIt) {
-    this->expectCountInAllOrders(1, this->point(-1, 3.5, 4.5), this->point(0, 3.5, 4.5));
-    this->expectCountInAllOrders(3, this->point(-1, 3.5, 4.5), this->point(2, 3.5, 4.5));
-    this->expectCountInAllOrders(0, this->point(-1, 3.5, 4.5), this->point(-1e-3, 3.5, 4.5));
+    struct Case {
+        std::size_t expected;
+        std::array<double, 3> from;
+        std::array<double, 3> to;
+    };
+    const Case cases[] = {
+        {8, {-1, 3.5, 4.5}, {9, 3.5, 4.5}},      // a row
+        {3, {2.5, 3.5, 4.5}, {4.5, 3.5, 4.5}},   // within
+        {0, {-1, 8.5, 4.5}, {9, 8.5, 4.5}},      // beside
+        {16, {-1, 3, 4.5}, {9, 3, 4.5}},         // in a face: both sides of it
+        {8, {-1, 0, 4.5}, {9, 0, 4.5}},          //
+        {8, {-1, 8, 4.5}, {9, 8, 4.5}},          //
+        {32, {-1, 3, 4}, {9, 3, 4}},             // along an edge
+        {8, {-1, 0, 8}, {9, 0, 8}},              //
+        {diagonal, {-1, -1, -1}, {9, 9, 9}},     // through corners
+        {diagonal, {0, 0, 0}, {8, 8, 8}},        //
+        {44, {-1, -1, 3}, {9, 9, 3}},            // through corners, in a face
+        {1, {-1, 3.5, 4.5}, {0, 3.5, 4.5}},      // ends on a face
+        {3, {-1, 3.5, 4.5}, {2, 3.5, 4.5}},      //
+        {0, {-1, 3.5, 4.5}, {-1e-3, 3.5, 4.5}},  //
+        {8, {-1e9, 3.5, 4.5}, {1e9, 3.5, 4.5}},  // a billion cells
+    };
+    for (const auto& [expected, from, to] : cases) {
+        this->expectCountInAllOrders(expected, this->point(from[0], from[1], from[2]),
+                                     this->point(to[0], to[1], to[2]));
+    }
 }
 
 TYPED_TEST(RayQuery, WithoutLengthIsAPoint) {
@@ -123,47 +111,62 @@ TYPED_TEST(RayQuery, WithoutLengthIsAPoint) {
     EXPECT_EQ(this->count({3.5, 3.5, 0}, {3.5, 3.5, -TypeParam(0)}), 1U);
 }
 
-TYPED_TEST(RayQuery, ABoxThatStandsStillMeetsWhatItOverlaps) {
-    const auto at = this->point(4, 4, 4);
-    const Aabb<TypeParam> half = makeBox<TypeParam>(-1, -1, -1, 1, 1, 1);
-    EXPECT_EQ(this->count(RayRegion<TypeParam>(at, at, half)), 64U);
-    const Aabb<TypeParam> less = makeBox<TypeParam>(-0.5, -0.5, -0.5, 0.5, 0.5, 0.5);
-    EXPECT_EQ(this->count(RayRegion<TypeParam>(at, at, less)), 8U);
-}
-
 TYPED_TEST(RayQuery, AMovingBoxMeetsWhatItSweeps) {
     const Aabb<TypeParam> half = makeBox<TypeParam>(-0.75, -0.25, -0.25, 0.75, 0.25, 0.25);
-    using Ray = RayRegion<TypeParam>;
-    EXPECT_EQ(this->count(Ray({-5, 3.5, 3.5}, {20, 3.5, 3.5}, half)), 8U);
-    EXPECT_EQ(this->count(Ray({-5, 3.25, 3.5}, {20, 3.25, 3.5}, half)), 16U);  // grazes a face
-    EXPECT_EQ(this->count(Ray({-5, 3, 3}, {20, 3, 3}, half)), 32U);
-    EXPECT_EQ(this->count(Ray({-5, 8.25, 3.5}, {20, 8.25, 3.5}, half)), 8U);
-    const auto hits = find(this->grid_, Ray({-5, 3.5, 3.5}, {-0.75, 3.5, 3.5}, half));
+    const auto countAlong = [&](double y, double z) {
+        return this->count({this->point(-5, y, z), this->point(20, y, z), half});
+    };
+    EXPECT_EQ(countAlong(3.5, 3.5), 8U);
+    EXPECT_EQ(countAlong(3.25, 3.5), 16U);  // grazes a face
+    EXPECT_EQ(countAlong(3, 3), 32U);
+    EXPECT_EQ(countAlong(8.25, 3.5), 8U);
+    const RayRegion<TypeParam> ray({-5, 3.5, 3.5}, {-0.75, 3.5, 3.5}, half);
+    const auto hits = find(this->block_.grid, ray);
     ASSERT_EQ(hits.size(), 1U);
     EXPECT_EQ(hits[0].second, 1);  // the end of the way
+    // One that stands still meets what it overlaps.
+    const auto at = this->point(4, 4, 4);
+    EXPECT_EQ(this->count({at, at, makeBox<TypeParam>(-1, -1, -1, 1, 1, 1)}), 64U);
+    EXPECT_EQ(this->count({at, at, makeBox<TypeParam>(-0.5, -0.5, -0.5, 0.5, 0.5, 0.5)}), 8U);
 }
 
 TYPED_TEST(RayQuery, TellsTheFractionOfTheWay) {
     CollectClosest<TypeParam> closest;
-    this->grid_.visit(RayRegion<TypeParam>({-8, 3.5, 4.5}, {8, 3.5, 4.5}), closest);
+    this->block_.grid.visit(RayRegion<TypeParam>({-8, 3.5, 4.5}, {8, 3.5, 4.5}), closest);
     EXPECT_EQ(closest.key(), TypeParam(0.5));
     CollectClosest<TypeParam> fromInside;
-    this->grid_.visit(RayRegion<TypeParam>({3.5, 3.5, 4.5}, {8, 3.5, 4.5}), fromInside);
+    this->block_.grid.visit(RayRegion<TypeParam>({3.5, 3.5, 4.5}, {8, 3.5, 4.5}), fromInside);
     EXPECT_EQ(fromInside.key(), 0);
 }
 
-// --- Long rays -----------------------------------------------------------------------------------
+TYPED_TEST(RayQuery, MakesAnewWhatWasFreed) {
+    Population<TypeParam> world;
+    world.add(makeBox<TypeParam>(0, 0, 0, 1, 1, 1));
+    world.update();
+    for (int round = 0; round < 3; ++round) {
+        EXPECT_EQ(world.expectLikeBruteForce(RayRegion<TypeParam>({-1, 0, 0}, {2, 0, 0})), 1U);
+        EXPECT_GT(world.grid.rayMemoryBytes(), 0U);
+        world.grid.releaseRayMemory();
+        EXPECT_EQ(world.grid.rayMemoryBytes(), 0U);
+        EXPECT_EQ(world.grid.validate(), "");
+        if (round == 1) {
+            world.moveTo(0, makeBox<TypeParam>(0, -1, -1, 1, 1, 1));
+            world.update();
+        }
+    }
+}
 
-TYPED_TEST(RayQuery, OfABillionCellsEndsAndMissesNothing) {
-    this->expectCountInAllOrders(8, this->point(-1e9, 3.5, 4.5), this->point(1e9, 3.5, 4.5));
+// --- Long rays, and numbers at the ends of what there is -----------------------------------------
+
+TYPED_TEST(RayQuery, OfAnyLengthCostsNoMoreThanAllBoxes) {
     // Slanted: a billion cells along one axis, eight along another.
     EXPECT_GT(this->count({0, 0, TypeParam(3.5)}, {TypeParam(1e9), TypeParam(1e9), 4}), 7U);
     for (const double length : {1e5, 3.4e7, 1e9, 1e12, 1e18, 1e19}) {
         SCOPED_TRACE(testing::Message() << "length " << length);
-        const double y = 3.5;
         CollectCount found;
-        const RayRegion<TypeParam> ray(this->point(-length, y, 4.5), this->point(length, y, 4.5));
-        const QueryCost cost = this->grid_.visit(ray, found);
+        const QueryCost cost = this->block_.grid.visit(
+            RayRegion<TypeParam>(this->point(-length, 3.5, 4.5), this->point(length, 3.5, 4.5)),
+            found);
         EXPECT_EQ(found.count(), 8U);
         EXPECT_LE(cost.rowsVisited, 512U);
         EXPECT_LE(cost.boxesTested, 512U);
@@ -171,46 +174,21 @@ TYPED_TEST(RayQuery, OfABillionCellsEndsAndMissesNothing) {
 }
 
 TYPED_TEST(RayQuery, MeetsBoxesAllAlongAVeryLongWay) {
-    GridConfig config;
-    config.cellSize = 1;
-    Grid<TypeParam> grid(config);
-    std::vector<Placed<TypeParam>> proxies;
+    Population<TypeParam> world(GridConfig{.cellSize = 1});
     const Vector3<double> direction(1, 0.37, -0.011);
     for (int i = 0; i < 3000; ++i) {
         const double along = 100'000.0 / 3 * i;
         Vector3<double> center = direction * along;
         const Vector3<double> half(0.5, 0.5 + 4e-8 * along, 0.5 + 4e-8 * along);
         center[2] += i % 3 == 2 ? 8 * half[2] : 0;  // every third stands aside
-        const Aabb<TypeParam> box = boxAround<TypeParam>(center, half);
-        proxies.push_back({grid.add(box), box});
+        world.add(boxAround<TypeParam>(center, half));
     }
-    grid.update();
-    const Vector3<double> end = direction * 1e8;
-    const RayRegion<TypeParam> ray(Vector3<TypeParam>::Zero(), end.cast<TypeParam>());
-    const std::size_t count = expectLikeBruteForce<TypeParam>(grid, proxies, ray);
+    world.update();
+    const Vector3<TypeParam> end = Vector3<double>(direction * 1e8).cast<TypeParam>();
+    const std::size_t count =
+        world.expectLikeBruteForce(RayRegion<TypeParam>(Vector3<TypeParam>::Zero(), end));
     EXPECT_GT(count, 1900U);
     EXPECT_LE(count, 2000U);
-}
-
-// --- Numbers at the ends of what there is --------------------------------------------------------
-
-TYPED_TEST(RayQuery, MakesAnewWhatWasFreed) {
-    Grid<TypeParam> grid;
-    const ProxyId id = grid.add({this->point(0, 0, 0), this->point(1, 1, 1)});
-    grid.update();
-    for (int round = 0; round < 3; ++round) {
-        CollectCount hits;
-        grid.visit(RayRegion<TypeParam>(this->point(-1, 0, 0), this->point(2, 0, 0)), hits);
-        EXPECT_EQ(hits.count(), 1U);
-        EXPECT_GT(grid.rayMemoryBytes(), 0U);
-        grid.releaseRayMemory();
-        EXPECT_EQ(grid.rayMemoryBytes(), 0U);
-        EXPECT_EQ(grid.validate(), "");
-        if (round == 1) {
-            grid.move(id, {this->point(0, -1, -1), this->point(1, 1, 1)});
-            grid.update();
-        }
-    }
 }
 
 TYPED_TEST(RayQuery, WithADirectionTooSmallToInvertMeetsWhatItTouches) {
@@ -223,15 +201,12 @@ TYPED_TEST(RayQuery, WithADirectionTooSmallToInvertMeetsWhatItTouches) {
 }
 
 TYPED_TEST(RayQuery, MissesInvertedBoxesWhateverItsDirection) {
-    Grid<TypeParam> grid;
-    std::vector<Placed<TypeParam>> proxies;
-    const Aabb<TypeParam> inverted(Vector3<TypeParam>(1, 1, 1), Vector3<TypeParam>(0, 0, 0));
-    proxies.push_back({grid.add(inverted), inverted});
-    for (const Vector3<TypeParam>& to :
-         {Vector3<TypeParam>(0.5, 0.5, 9), Vector3<TypeParam>(1, 1, 1),
-          Vector3<TypeParam>(0.5, 1, 2)}) {
-        const RayRegion<TypeParam> ray(Vector3<TypeParam>(0.5, 0.5, -9), to);
-        EXPECT_EQ(expectLikeBruteForce<TypeParam>(grid, proxies, ray), 0U);
+    Population<TypeParam> world;
+    world.add(makeBox<TypeParam>(1, 1, 1, 0, 0, 0));
+    for (const Vector3<double>& to :
+         {Vector3<double>(0.5, 0.5, 9), Vector3<double>(1, 1, 1), Vector3<double>(0.5, 1, 2)}) {
+        const RayRegion<TypeParam> ray(this->point(0.5, 0.5, -9), to.cast<TypeParam>());
+        EXPECT_EQ(world.expectLikeBruteForce(ray), 0U);
     }
 }
 
@@ -267,8 +242,7 @@ TYPED_TEST(RayQuery, KeyMissesNothingAndIsTheFractionOfTheWay) {
     int grazes = 0;
     for (int i = 0; i < 200000; ++i) {
         const double offset = i % 2 == 0 ? 0 : 1000;
-        const Vector3<double> center = random.pointIn(offset - 4, offset + 4);
-        const Aabb<TypeParam> box = boxAround<TypeParam>(center, random.pointIn(0, 2));
+        const Aabb<TypeParam> box = boxesIn<TypeParam>(offset - 4, offset + 4, 0, 2)(random);
         const Vector3<TypeParam> from = random.pointIn(offset - 9, offset + 9).cast<TypeParam>();
         Vector3<TypeParam> to = random.pointIn(offset - 9, offset + 9).cast<TypeParam>();
         if (i % 3 == 0) {
@@ -301,23 +275,22 @@ TYPED_TEST(RayQuery, AnswersTheSameFarFromTheOrigin) {
         return Vector3<double>((random.pointIn(low, high) * 8).array().round() / 8);
     };
     const Aabb<TypeParam> fatness = makeBox<TypeParam>(-0.3, -0.7, -0.1, 0.3, 0.7, 0.1);
-    const Vector3<double> away = Vector3<double>::Constant(1 << 20);
     int hits = 0;
     for (int i = 0; i < 20000; ++i) {
         const Vector3<double> low = eighths(-4, 4);
         const Vector3<double> high = low + eighths(0, 3);
         const Vector3<double> from = eighths(-9, 9);
         const Vector3<double> to = eighths(-9, 9);
-        const auto key = [&](const Vector3<double>& offset) {
-            const auto at = [&offset](const Vector3<double>& x) {
-                return Vector3<TypeParam>((x + offset).template cast<TypeParam>());
+        const auto keyAway = [&](double away) {
+            const auto at = [away](const Vector3<double>& x) {
+                return Vector3<TypeParam>((x.array() + away).matrix().template cast<TypeParam>());
             };
             return RayRegion<TypeParam>(at(from), at(to), fatness)
                 .key(Aabb<TypeParam>(at(low), at(high)));
         };
-        const TypeParam here = key(Vector3<double>::Zero());
+        const TypeParam here = keyAway(0);
         hits += here >= 0 ? 1 : 0;
-        ASSERT_EQ(key(away), here) << from.transpose() << " to " << to.transpose();
+        ASSERT_EQ(keyAway(1 << 20), here) << from.transpose() << " to " << to.transpose();
     }
     EXPECT_GT(hits, 500);
 }

@@ -1,146 +1,106 @@
 // SPDX-License-Identifier: Zlib
 
-// Life in the grid: proxies come, move, rest and go. What queries find is in grid_query_test.cpp.
+// Life in the grid: proxies come, move, rest and go, and what an update of that costs. What queries find is in
+// grid_query_test.cpp; all of it at random in tests/fuzz.
 
 #include <broadphase/grid.hpp>
-#include <tests/broadphase/grid_cubes.hpp>
-#include <tests/support/box_scenes.hpp>
+#include <broadphase/grid_config.hpp>
 #include <tests/support/handlers.hpp>
-#include <tests/support/oracles.hpp>
+#include <tests/support/population.hpp>
 
 #include <gtest/gtest.h>
 
-#include <cstdint>
-#include <functional>
 #include <limits>
 #include <set>
+#include <stdexcept>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
 namespace hashphase::test {
 namespace {
 
-using Box = Aabb<float>;
-
-constexpr float kNanCoordinate = std::numeric_limits<float>::quiet_NaN();
-
-Box nanCube() {
-    Box box = rowCube(0);
-    box.min()[2] = kNanCoordinate;
-    return box;
+Aabb<float> rowCube(double x) {
+    return makeBox<float>(x, 0, 0, x + 1, 1, 1);
 }
 
-TEST(Grid, GivesEveryProxyAnIdOfItsOwnAndKeepsItsBox) {
-    Grid<float> grid;
-    std::set<ProxyId> ids;
-    for (int i = 0; i < 100; ++i) {
-        const ProxyId id = grid.add(rowCube(i));
-        EXPECT_FALSE(id.isNull());
-        EXPECT_TRUE(ids.insert(id).second);
-        EXPECT_TRUE(grid.contains(id));
-        EXPECT_EQ(grid.box(id).min(), rowCube(i).min());
-        EXPECT_LT(id.index, 100U);
-    }
-    EXPECT_EQ(grid.size(), 100U);
-    EXPECT_EQ(grid.validate(), "");
+Aabb<float> nanCube() {
+    return makeBox<float>(0, 0, std::numeric_limits<double>::quiet_NaN(), 1, 1, 1);
 }
 
-TEST(Grid, ForgetsARemovedProxyForEver) {
-    Grid<float> grid;
-    const ProxyId old = grid.add(rowCube(0));
-    grid.remove(old);
-    EXPECT_FALSE(grid.contains(old));
-    EXPECT_EQ(grid.size(), 0U);
-    EXPECT_EQ(countWithinBox(grid, rowCube(0)), 0U);
-    for (int i = 0; i < 10; ++i) {
-        grid.update();
-        const ProxyId id = grid.add(rowCube(0));
-        EXPECT_NE(id, old);
-        EXPECT_FALSE(grid.contains(old));
-        EXPECT_EQ(countWithinBox(grid, rowCube(0)), 1U);
-        grid.remove(id);
-        EXPECT_EQ(grid.validate(), "");
-    }
+std::size_t countIn(const Grid<float>& grid, const Aabb<float>& box) {
+    return find(grid, BoxRegion<float>{box}).size();
 }
 
-TEST(Grid, UsesSlotsAgainSoThatIndicesStayBelowTheMostEverAlive) {
-    Grid<float> grid;
-    std::vector<ProxyId> ids;
-    for (int i = 0; i < 50; ++i) {
-        ids.push_back(grid.add(rowCube(i)));
-    }
-    for (int frame = 0; frame < 40; ++frame) {
-        for (int i = 0; i < 10; ++i) {
-            grid.remove(ids.back());
-            ids.pop_back();
-        }
-        grid.update();
-        for (int i = 0; i < 10; ++i) {
-            ids.push_back(grid.add(rowCube(i)));
-            EXPECT_LT(ids.back().index, 50U);
-        }
-    }
-    EXPECT_EQ(grid.validate(), "");
-}
-
-TEST(Grid, ContainsNeitherNullNorStrangeIds) {
+TEST(Grid, HasAProxyUntilItIsRemovedAndItsIdNeverAgain) {
     Grid<float> grid;
     EXPECT_FALSE(grid.contains({}));
-    const ProxyId id = grid.add(rowCube(0));
-    EXPECT_FALSE(grid.contains({id.index, id.generation + 1}));
-    EXPECT_FALSE(grid.contains({id.index + 1, id.generation}));
-    EXPECT_FALSE(grid.contains({id.index, 0}));
-    EXPECT_FALSE(grid.contains({0xffffffffU, 0xffffffffU}));
-}
-
-TEST(Grid, LeadsFromAnIndexBackToTheProxyAliveThatHasIt) {
-    Grid<float> grid;
     EXPECT_TRUE(grid.idAt(0).isNull());
     const ProxyId first = grid.add(rowCube(0));
     const ProxyId second = grid.add(rowCube(1));
-    EXPECT_EQ(grid.idAt(first.index), first);
+    EXPECT_FALSE(first.isNull());
+    EXPECT_NE(first, second);
+    EXPECT_TRUE(grid.contains(first));
+    EXPECT_EQ(grid.box(second).min(), rowCube(1).min());
     EXPECT_EQ(grid.idAt(second.index), second);
     EXPECT_TRUE(grid.idAt(grid.indexLimit()).isNull());
+    for (const ProxyId strange : {ProxyId{first.index, first.generation + 1},
+                                  {second.index + 1, second.generation},
+                                  {first.index, 0},
+                                  {0xffffffffU, 0xffffffffU}}) {
+        EXPECT_FALSE(grid.contains(strange));
+    }
     grid.remove(first);
-    EXPECT_TRUE(grid.idAt(first.index).isNull());
-    grid.update();
-    const ProxyId third = grid.add(rowCube(2));
-    EXPECT_EQ(third.index, first.index);
-    EXPECT_EQ(grid.idAt(first.index), third);
+    for (int i = 0; i < 10; ++i) {
+        EXPECT_FALSE(grid.contains(first));
+        EXPECT_TRUE(grid.idAt(first.index).isNull());
+        EXPECT_EQ(grid.size(), 1U);
+        grid.update();
+        const ProxyId next = grid.add(rowCube(0));
+        EXPECT_EQ(next.index, first.index) << "indices are used again";
+        EXPECT_EQ(grid.idAt(first.index), next);
+        EXPECT_EQ(countIn(grid, rowCube(0)), 2U);
+        grid.remove(next);
+    }
 }
 
 TEST(ProxyId, IsAKeyOfUnorderedMaps) {
-    Grid<float> grid;
-    std::unordered_map<ProxyId, int> names;
+    std::unordered_map<ProxyId, std::uint32_t> names;
     std::set<std::size_t> hashes;
-    for (int i = 0; i < 100; ++i) {
-        const ProxyId id = grid.add(rowCube(i));
+    for (std::uint32_t i = 0; i < 200; ++i) {
+        const ProxyId id{i / 2, 1 + i % 2 * 2};
         names[id] = i;
         hashes.insert(std::hash<ProxyId>{}(id));
-        hashes.insert(std::hash<ProxyId>{}({id.index, id.generation + 2}));
         EXPECT_EQ(names.at(id), i);
     }
-    EXPECT_EQ(names.size(), 100U);
+    EXPECT_EQ(names.size(), 200U);
     EXPECT_EQ(hashes.size(), 200U);
 }
 
-TEST(Grid, VisitsEveryProxyInTheOrderOfIndices) {
-    const CaughtMessages messages;
+TEST(Grid, TakesTheBoxOfAnotherProxyForANewOne) {
     Grid<float> grid;
-    std::vector<ProxyId> ids;
-    for (int i = 0; i < 20; ++i) {
-        ids.push_back(grid.add(i == 7 ? nanCube() : rowCube(i)));
+    const ProxyId first = grid.add(rowCube(1));
+    for (int i = 0; i < 300; ++i) {
+        const ProxyId copy = grid.add(grid.box(first));  // records move now and then
+        ASSERT_EQ(grid.box(copy).min(), rowCube(1).min()) << "copy " << i;
     }
-    grid.remove(ids[3]);
-    ids.erase(ids.begin() + 3);
-    std::vector<ProxyId> visited;
-    grid.forEach([&](ProxyId id, const Box&) { visited.push_back(id); });
-    EXPECT_EQ(visited, ids);
 }
 
-// --- Bad data ------------------------------------------------------------------------------------
+TEST(Grid, VisitsAllWithoutThoseThatAreAddedOnTheWay) {
+    Grid<float> grid;
+    for (int i = 0; i < 3; ++i) {
+        static_cast<void>(grid.add(rowCube(i)));
+    }
+    int visited = 0;
+    grid.forEach([&](ProxyId, const Aabb<float>& box) {
+        static_cast<void>(grid.add(box));
+        ASSERT_LT(++visited, 100);
+    });
+    EXPECT_EQ(visited, 3);
+    EXPECT_EQ(grid.size(), 6U);
+}
 
-TEST(GridNan, IsReportedOnceAndCounted) {
+TEST(Grid, ReportsNanOnceAndCountsIt) {
     const CaughtMessages messages;
     Grid<float> grid;
     const ProxyId a = grid.add(rowCube(0));
@@ -150,98 +110,183 @@ TEST(GridNan, IsReportedOnceAndCounted) {
     ASSERT_EQ(messages.all().size(), 1U);
     EXPECT_NE(messages.all()[0].find("NaN"), std::string::npos);
     EXPECT_EQ(grid.nanCount(), 2U);
-    EXPECT_EQ(grid.size(), 2U);
     grid.move(a, rowCube(0));
-    EXPECT_EQ(grid.nanCount(), 1U);
     grid.remove(b);
     EXPECT_EQ(grid.nanCount(), 0U);
     grid.move(a, nanCube());
     EXPECT_EQ(messages.all().size(), 1U);
-}
-
-TEST(GridNan, InAnyFieldHidesTheBoxAndHarmsNoOther) {
-    const CaughtMessages messages;
-    for (int field = 0; field < 6; ++field) {
-        Grid<float> grid;
-        const ProxyId good = grid.add(rowCube(0.5));
-        const ProxyId bad = grid.add(rowCube(0));
-        for (int phase = 0; phase < 3; ++phase) {
-            Box box = rowCube(0);
-            (field < 3 ? box.min() : box.max())[field % 3] = kNanCoordinate;
-            grid.move(bad, box);
-            EXPECT_EQ(countWithinBox(grid, makeBox<float>(-9, -9, -9, 9, 9, 9)), 1U);
-            if (phase > 0) {
-                grid.update();
-            }
-            EXPECT_EQ(countWithinBox(grid, makeBox<float>(-9, -9, -9, 9, 9, 9)), 1U);
-            EXPECT_TRUE(hasNan(grid.box(bad)));
-            EXPECT_EQ(grid.validate(), "");
-            grid.move(bad, rowCube(0));
-            EXPECT_EQ(countWithinBox(grid, makeBox<float>(-9, -9, -9, 9, 9, 9)), 2U);
-        }
-        EXPECT_TRUE(grid.contains(good));
-    }
-}
-
-TEST(GridNan, AllProxiesMayHaveIt) {
-    const CaughtMessages messages;
-    Grid<float> grid;
+    // All may have it, said to rest or not.
     for (int i = 0; i < 200; ++i) {
         static_cast<void>(grid.add(nanCube(), i % 2 == 0 ? Mobility::mobile : Mobility::resting));
     }
     for (int i = 0; i < 12; ++i) {
         grid.update();
-        EXPECT_EQ(countWithinBox(grid, makeBox<float>(-9, -9, -9, 9, 9, 9)), 0U);
+        EXPECT_EQ(countIn(grid, makeBox<float>(-9, -9, -9, 9, 9, 9)), 0U);
         EXPECT_EQ(grid.validate(), "");
     }
-    EXPECT_EQ(grid.nanCount(), 200U);
+    EXPECT_EQ(grid.nanCount(), 201U);
 }
 
-// --- Accounts and misuse -------------------------------------------------------------------------
+// --- Updates -------------------------------------------------------------------------------------
 
-TEST(Grid, MemoryIsGivenAndGrowsWithTheProxies) {
-    Grid<float> grid;
-    EXPECT_GE(grid.memoryBytes(), sizeof(grid));
-    for (int i = 0; i < 10000; ++i) {
-        static_cast<void>(grid.add(rowCube(i)));
+/// Cubes in a row, two metres apart.
+struct GridUpdate : testing::Test {
+    void addRow(int count, Mobility mobility = Mobility::mobile) {
+        for (int i = 0; i < count; ++i) {
+            row.add(rowCube(2 * i), mobility);
+        }
     }
-    grid.update();
-    EXPECT_GE(grid.memoryBytes(), 10000 * 2 * sizeof(Box));
-    EXPECT_LT(grid.memoryBytes(), 10000U * 500U);
+    UpdateCost update() { return row.grid.update(); }
+
+    Population<float> row;
+};
+
+TEST_F(GridUpdate, CountsEachChangedProxyOnceAndAnUnchangedMoveNot) {
+    addRow(150);
+    addRow(150, Mobility::resting);
+    EXPECT_EQ(update().changed, 300U);
+    for (int frame = 0; frame < 30; ++frame) {
+        for (std::size_t i = 0; i < 300; ++i) {
+            row.moveTo(i, Aabb<float>(row.proxies[i].box));
+        }
+        const UpdateCost cost = update();
+        EXPECT_EQ(cost.changed, 0U);
+        EXPECT_EQ(cost.filed, 0U);
+    }
+    row.moveTo(0, rowCube(2));
+    row.moveTo(0, rowCube(3));
+    EXPECT_EQ(update().changed, 1U);
+    row.moveTo(0, rowCube(4));
+    row.removeAt(1);
+    EXPECT_EQ(update().changed, 2U);
 }
 
-#if HASHPHASE_ENABLE_ASSERTS
-TEST(Grid, MisuseOfIdsIsAsserted) {
-    const ThrowingAsserts throwing;
-    Grid<float> grid;
-    EXPECT_THROW(grid.move({}, rowCube(0)), BrokenAssert);
-    EXPECT_THROW(grid.remove({}), BrokenAssert);
-    EXPECT_THROW(static_cast<void>(grid.box({})), BrokenAssert);
-    const ProxyId id = grid.add(rowCube(0));
-    grid.remove(id);
-    EXPECT_THROW(grid.remove(id), BrokenAssert);
-    EXPECT_THROW(grid.move(id, rowCube(1)), BrokenAssert);
-    EXPECT_THROW(static_cast<void>(grid.box(id)), BrokenAssert);
-    EXPECT_THROW(static_cast<void>(grid.cellsOf(id)), BrokenAssert);
-    EXPECT_THROW(grid.move({77, 1}, rowCube(1)), BrokenAssert);
-    grid.update();
-    static_cast<void>(grid.add(rowCube(0)));
-    EXPECT_THROW(grid.remove(id), BrokenAssert);
-    EXPECT_EQ(grid.size(), 1U);
-    EXPECT_EQ(grid.validate(), "");
+TEST_F(GridUpdate, TellsHowManyShareACell) {
+    Population<float> world(GridConfig{.cellSize = 2});
+    EXPECT_EQ(world.grid.update().largestCell, 0U);
+    for (int i = 0; i < 1000; ++i) {
+        world.add(rowCube(0), Mobility::resting);
+    }
+    for (int i = 0; i < 1000; ++i) {
+        world.add(rowCube(100 + 10 * i));
+    }
+    EXPECT_EQ(world.grid.update().largestCell, 1000U);
+    EXPECT_EQ(world.grid.update().largestCell, 1000U) << "though nothing has changed";
+    for (std::size_t i = 0; i < 1000; ++i) {
+        world.moveTo(i, rowCube(1));
+    }
+    EXPECT_EQ(world.grid.update().largestCell, 1000U) << "of those that move";
+    world.keepOnly([](std::size_t i) { return i >= 1000; });
+    EXPECT_EQ(world.grid.update().largestCell, 1U);
 }
 
-TEST(Grid, CellsOfWhatIsNotFiniteAreAsserted) {
-    const CaughtMessages messages;
-    const ThrowingAsserts throwing;
-    Grid<float> grid;
-    const ProxyId nan = grid.add(nanCube());
-    EXPECT_THROW(static_cast<void>(grid.cellsOf(nan)), BrokenAssert);
-    EXPECT_THROW(static_cast<void>(grid.cellAt({kNanCoordinate, 0, 0})), BrokenAssert);
-    EXPECT_THROW(static_cast<void>(grid.cellAt({0, std::numeric_limits<float>::infinity(), 0})),
-                 BrokenAssert);
+TEST_F(GridUpdate, LeavesRestingProxiesAlone) {
+    addRow(1000);
+    for (int frame = 0; frame < 30; ++frame) {
+        for (std::size_t i = 0; i < 10; ++i) {
+            row.moveTo(i, rowCube(-5 - frame - 3 * static_cast<double>(i)));
+        }
+        const UpdateCost cost = update();
+        EXPECT_EQ(cost.changed, frame == 0 ? 1000U : 10U);
+        if (frame > 10) {
+            EXPECT_EQ(cost.filed, 10U);
+            EXPECT_EQ(cost.resting, 990U);
+        }
+        ASSERT_EQ(row.grid.validate(), "");
+    }
+    // One of them wakes: it is filed among the ten, the others stay where they are.
+    row.moveTo(500, rowCube(-900));
+    const UpdateCost cost = update();
+    EXPECT_EQ(cost.filed, 11U);
+    EXPECT_EQ(cost.resting, 989U);
+    EXPECT_EQ(countIn(row.grid, rowCube(1000)), 0U);
+    EXPECT_EQ(countIn(row.grid, rowCube(-900)), 1U);
+    // And many leave at once.
+    row.keepOnly([](std::size_t i) { return i % 2 == 0; });
+    EXPECT_EQ(row.grid.validate(), "");
+    row.moveTo(0, rowCube(-800));
+    update();
+    EXPECT_EQ(row.grid.validate(), "");
+    EXPECT_EQ(countIn(row.grid, makeBox<float>(-2000, 0, 0, 3000, 1, 1)), 500U);
 }
-#endif
+
+TEST_F(GridUpdate, PutsToRestAtOnceWhatIsSaidToRestUnlessItMoved) {
+    addRow(100, Mobility::resting);
+    row.add(rowCube(-2));
+    int at = -2;
+    const auto restingAfterAMove = [&] {
+        row.moveTo(100, rowCube(--at));
+        return update().resting;
+    };
+    EXPECT_EQ(update().resting, 0U);
+    EXPECT_EQ(restingAfterAMove(), 100U);
+    for (std::size_t i = 0; i < 50; ++i) {
+        row.moveTo(i, rowCube(2 * static_cast<double>(i) + 0.5));
+    }
+    EXPECT_EQ(update().resting, 50U);
+    EXPECT_EQ(restingAfterAMove(), 50U);
+    for (int frame = 0; frame < 10; ++frame) {
+        restingAfterAMove();
+    }
+    EXPECT_EQ(restingAfterAMove(), 100U);
+}
+
+// --- Configurations ------------------------------------------------------------------------------
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The sentence names the field, the value's valid range, and is what the constructors throw.
+void expectRefused(const GridConfig& config, const std::string& field, const std::string& range) {
+    const std::string error = configError(config);
+    EXPECT_NE(error.find(field), std::string::npos) << error;
+    EXPECT_NE(error.find(range), std::string::npos) << error;
+    const auto expectThrow = [&](auto construct) {
+        try {
+            construct();
+            ADD_FAILURE() << "accepted: " << error;
+        } catch (const std::invalid_argument& refused) {
+            EXPECT_EQ(refused.what(), error);
+        }
+    };
+    expectThrow([&] { const Grid<float> grid(config); });
+    expectThrow([&] { const Grid<double> grid(config); });
+}
+
+void expectAccepted(const GridConfig& config) {
+    EXPECT_EQ(configError(config), "");
+    const Grid<float> asFloat(config);
+    const Grid<double> asDouble(config);
+}
+
+TEST(GridConfig, CellSizeIsZeroOrFrom1em30To1e30) {
+    expectAccepted({});
+    for (const double bad : {-1.0, -1e-40, 9e-31, 1.1e30, kInfinity, -kInfinity, kNan}) {
+        expectRefused({.cellSize = bad}, "cellSize",
+                      "0 (choose automatically) or between 1e-30 and 1e30");
+    }
+    for (const double good : {0.0, -0.0, 1e-30, 1e-3, 1.0, 1e30}) {
+        expectAccepted({.cellSize = good});
+    }
+}
+
+TEST(GridConfig, LevelRatioIsFrom2To64) {
+    for (const double bad : {0.0, 1.0, 1.999, 64.1, -4.0, kInfinity, kNan}) {
+        expectRefused({.levelRatio = bad}, "levelRatio", "between 2 and 64");
+    }
+    for (const double good : {2.0, 2.5, 64.0}) {
+        expectAccepted({.levelRatio = good});
+    }
+}
+
+TEST(GridConfig, UpdatesBeforeRestAreFrom1To1000000) {
+    for (const std::uint32_t bad : {0U, 1'000'001U, std::numeric_limits<std::uint32_t>::max()}) {
+        expectRefused({.updatesBeforeRest = bad}, "updatesBeforeRest", "between 1 and 1000000");
+    }
+    for (const std::uint32_t good : {1U, 1'000'000U}) {
+        expectAccepted({.updatesBeforeRest = good});
+    }
+}
 
 }  // namespace
 }  // namespace hashphase::test

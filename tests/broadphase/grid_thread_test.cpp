@@ -3,138 +3,118 @@
 // Readers at the same time, right after many changes. What goes wrong here is mostly for the thread
 // sanitizer to see.
 
-#include <tests/support/box_scenes.hpp>
-#include <tests/support/query_checks.hpp>
+#include <broadphase/grid.hpp>
+#include <tests/support/population.hpp>
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
+#include <functional>
+#include <string>
 #include <thread>
 #include <vector>
 
 namespace hashphase::test {
 namespace {
 
-constexpr int kThreads = 4;
+constexpr std::size_t kThreads = 4;
 
-template <class Work>
-void runOnThreads(Work&& work) {
-    std::atomic<int> ready{0};
-    std::vector<std::thread> threads;
-    for (int t = 0; t < kThreads; ++t) {
-        threads.emplace_back([&, t] {
-            // All start together: the first query is the one that files.
-            ready.fetch_add(1);
-            while (ready.load() < kThreads) {
-                std::this_thread::yield();
-            }
-            work(t);
-        });
-    }
-    for (std::thread& thread : threads) {
-        thread.join();
-    }
-}
+/// Boxes that are added and not filed yet, for readers on several threads.
+struct GridThreads : testing::Test {
+    GridThreads() { boxes.addMany(1000, scene.draw); }
 
-struct SharedCrowd {
-    Grid<float> grid;
-    std::vector<Placed<float>> proxies;
-    Random random{0x5eed0801};
-
-    /// Added, not filed yet.
-    SharedCrowd() {
-        const BoxScene<float> scene = spreadScene<float>("evenly spread", 1, 0);
-        for (int i = 0; i < 1000; ++i) {
-            const Aabb<float> box = scene.draw(random);
-            proxies.push_back({grid.add(box), box});
+    void moveAll() {
+        for (std::size_t i = 0; i < boxes.proxies.size(); ++i) {
+            boxes.moveTo(i, shifted(boxes.random, boxes.proxies[i].box, 0.5));
         }
     }
 
-    void moveMany() {
-        for (Placed<float>& proxy : proxies) {
-            proxy.box = shifted(random, proxy.box, 0.5);
-            grid.move(proxy.id, proxy.box);
+    /// All start together: the first query is the one that files. Nothing that they say is wrong.
+    static void expectNothingWrong(
+        const std::function<void(std::size_t thread, std::string& wrong)>& read) {
+        std::atomic<std::size_t> ready{0};
+        std::array<std::string, kThreads> wrong;
+        std::vector<std::thread> threads;
+        for (std::size_t t = 0; t < kThreads; ++t) {
+            threads.emplace_back([&, t] {
+                ready.fetch_add(1);
+                while (ready.load() < kThreads) {
+                    std::this_thread::yield();
+                }
+                read(t, wrong[t]);
+            });
+        }
+        for (std::thread& thread : threads) {
+            thread.join();
+        }
+        for (const std::string& text : wrong) {
+            ASSERT_EQ(text, "");
         }
     }
+
+    template <class Region>
+    void check(const Region& region, std::string& wrong) {
+        CollectKeys<float> found;
+        CollectKeys<float> expected;
+        boxes.grid.visit(region, found);
+        visitByBruteForce<float>(boxes.proxies, region, expected);
+        wrong += differences(found.sorted(), expected.sorted());
+    }
+
+    BoxScene<float> scene = spreadScene<float>("evenly spread", 1, 0);
+    Population<float> boxes;
 };
 
-TEST(GridThreads, QueriesRightAfterManyChangesAllSeeThem) {
-    SharedCrowd crowd;
+TEST_F(GridThreads, QueriesRightAfterManyChangesAllSeeThem) {
     for (int round = 0; round < 20; ++round) {
-        crowd.moveMany();
-        std::vector<std::vector<std::string>> wrong(kThreads);
-        runOnThreads([&](int t) {
-            Random random(0x5eed0802U + static_cast<std::uint64_t>(t));
-            RegionMaker<float> make(random, crowd.proxies);
-            const auto check = [&](const auto& region) {
-                CollectKeys<float> found;
-                CollectKeys<float> expected;
-                crowd.grid.visit(region, found);
-                visitByBruteForce<float>(crowd.proxies, region, expected);
-                if (found.sorted() != expected.sorted()) {
-                    wrong[static_cast<std::size_t>(t)].push_back(
-                        differences(found.sorted(), expected.sorted()));
-                }
-            };
+        moveAll();
+        expectNothingWrong([&](std::size_t t, std::string& wrong) {
+            Random random(0x5eed0802U + t);
+            RegionMaker<float> make(random, boxes.proxies);
             for (int i = 0; i < 5; ++i) {
-                check(make.box());
-                check(make.sphere());
-                check(make.ray());
+                check(make.box(), wrong);
+                check(make.sphere(), wrong);
+                check(make.ray(), wrong);
             }
         });
-        for (const auto& ofThread : wrong) {
-            ASSERT_EQ(ofThread, std::vector<std::string>{});
-        }
         if (round % 3 == 0) {
-            crowd.grid.update();
+            boxes.update();
         }
     }
 }
 
-TEST(GridThreads, RaysRightAfterAnUpdateAllFindTheTreesMade) {
-    SharedCrowd crowd;
+TEST_F(GridThreads, RaysRightAfterAnUpdateAllFindTheTreesMade) {
     for (int round = 0; round < 20; ++round) {
-        crowd.moveMany();
-        crowd.grid.update();  // nothing waits: only the trees are to be made
-        std::atomic<int> wrong{0};
-        runOnThreads([&](int t) {
-            Random random(0x5eed0803U + static_cast<std::uint64_t>(t));
-            RegionMaker<float> make(random, crowd.proxies);
+        moveAll();
+        boxes.update();  // nothing waits: only the trees are to be made
+        expectNothingWrong([&](std::size_t t, std::string& wrong) {
+            Random random(0x5eed0803U + t);
+            RegionMaker<float> make(random, boxes.proxies);
             for (int i = 0; i < 5; ++i) {
-                const RayRegion<float> ray = make.ray();
-                CollectKeys<float> found;
-                CollectKeys<float> expected;
-                crowd.grid.visit(ray, found);
-                visitByBruteForce<float>(crowd.proxies, ray, expected);
-                wrong += found.sorted() == expected.sorted() ? 0 : 1;
+                check(make.ray(), wrong);
             }
         });
-        ASSERT_EQ(wrong.load(), 0);
     }
 }
 
-TEST(GridThreads, WhateverIsConstMayBeAskedBesideTheQueryThatFiles) {
+TEST_F(GridThreads, WhateverIsConstMayBeAskedBesideTheQueryThatFiles) {
+    const Grid<float>& grid = boxes.grid;
     for (int round = 0; round < 10; ++round) {
-        SharedCrowd crowd;
-        std::atomic<int> wrong{0};
-        runOnThreads([&](int t) {
-            const Placed<float>& proxy = crowd.proxies[static_cast<std::size_t>(t) * 100];
-            const Grid<float>& grid = crowd.grid;
+        moveAll();
+        expectNothingWrong([&](std::size_t t, std::string& wrong) {
+            const Placed<float>& proxy = boxes.proxies[t * 100];
             if (t == 0) {
-                CollectCount count;
-                grid.visit(BoxRegion<float>{proxy.box}, count);
-                wrong += count.count() >= 1 ? 0 : 1;
-            } else {
-                wrong += grid.contains(proxy.id) ? 0 : 1;
-                wrong += grid.box(proxy.id).isApprox(proxy.box) ? 0 : 1;
-                wrong += grid.size() == 1000 ? 0 : 1;
-                wrong += grid.cellsOf(proxy.id).lowest == grid.cellAt(proxy.box.min()) ? 0 : 1;
-                std::size_t seen = 0;
-                grid.forEach([&seen](ProxyId, const Aabb<float>&) { ++seen; });
-                wrong += seen == 1000 ? 0 : 1;
+                check(BoxRegion<float>{proxy.box}, wrong);
+                return;
             }
+            std::size_t seen = 0;
+            grid.forEach([&seen](ProxyId, const Aabb<float>&) { ++seen; });
+            const bool isRight = grid.contains(proxy.id) && grid.size() == 1000 && seen == 1000 &&
+                                 isSameBits(grid.box(proxy.id), proxy.box) &&
+                                 grid.cellsOf(proxy.id).lowest == grid.cellAt(proxy.box.min());
+            wrong += isRight ? "" : "const members";
         });
-        ASSERT_EQ(wrong.load(), 0);
     }
 }
 

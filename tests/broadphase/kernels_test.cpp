@@ -2,47 +2,39 @@
 
 // Every instruction set gives the pairs of the scalar kernels, in the same order.
 
+#include <broadphase/hash/levels.hpp>
+#include <broadphase/search/box_search.hpp>
 #include <broadphase/search/join.hpp>
+#include <broadphase/simd/kernels.hpp>
 #include <tests/support/box_scenes.hpp>
+#include <tests/support/count_allocations.hpp>
+#include <tests/support/fill_table.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numeric>
-#include <utility>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 namespace hashphase::detail {
 namespace {
 
 using test::BoxScene;
+using test::drawBoxes;
 using test::Random;
-
-constexpr std::array kVectorSets{InstructionSet::sse2, InstructionSet::avx2,
-                                 InstructionSet::avx512};
 
 template <class Scalar>
 class KernelsTest : public testing::Test {
 protected:
-    void SetUp() override { setBefore_ = instructionSet(); }
-    void TearDown() override { useInstructionSet(setBefore_); }
+    using Boxes = std::vector<Aabb<Scalar>>;
 
-    static std::vector<PaddedBox<Scalar>> draw(const BoxScene<Scalar>& scene, std::size_t count,
-                                               Random& random) {
-        std::vector<PaddedBox<Scalar>> boxes;
-        for (std::size_t i = 0; i < count; ++i) {
-            boxes.push_back(padded(scene.draw(random)));
+    static std::vector<PaddedBox<Scalar>> paddedOf(const Boxes& boxes) {
+        std::vector<PaddedBox<Scalar>> result;
+        for (const Aabb<Scalar>& box : boxes) {
+            result.push_back(padded(box));
         }
-        return boxes;
-    }
-
-    static Table<Scalar> tableOf(const std::vector<PaddedBox<Scalar>>& boxes,
-                                 const LevelSizes& sizes) {
-        std::vector<std::uint32_t> slots(boxes.size());
-        std::iota(slots.begin(), slots.end(), 0U);
-        Table<Scalar> table;
-        table.build(slots, boxes, sizes);
-        return table;
+        return result;
     }
 
     /// Ways from each box, with whatever is in it, to somewhere else.
@@ -81,19 +73,25 @@ protected:
         return found;
     }
 
-    static std::vector<IndexPair> copyOf(const PairList& list) {
-        return {list.pairs().begin(), list.pairs().end()};
-    }
+    /// What all kernels make of the boxes.
+    struct Results {
+        std::vector<IndexPair> joined, walked, together, onWays, apart, filed;
 
-    /// What all kernels make of the boxes, one after the other.
-    static std::vector<std::vector<IndexPair>> resultsOf(
-        const std::vector<PaddedBox<Scalar>>& boxes, const std::vector<PaddedBox<Scalar>>& moved,
-        const LevelSizes& sizes) {
-        const Table<Scalar> table = tableOf(boxes, sizes);
-        const Table<Scalar> movedTable = tableOf(moved, sizes);
+        friend bool operator==(const Results&, const Results&) = default;
+    };
+
+    static Results resultsOf(const Boxes& boxes, const Boxes& moved, const LevelSizes& sizes) {
+        Table<Scalar> table;
+        Table<Scalar> movedTable;
+        test::fill(table, boxes, sizes);
+        test::fill(movedTable, moved, sizes);
+        const std::vector<PaddedBox<Scalar>> movedBoxes = paddedOf(moved);
+        const auto copyOf = [](const PairList& list) {
+            return std::vector<IndexPair>(list.pairs().begin(), list.pairs().end());
+        };
         KernelCost cost;
-        PairList joined;
         PairParts parts;
+        PairList joined;
         joinTable(table, serialFor, parts, joined, cost);
         PairList walked;
         queryTable(table, movedTable.columns(), movedTable.size(), serialFor, parts, walked, cost);
@@ -101,27 +99,27 @@ protected:
         together.append([&](PairSink& sink) {
             queryBatch(table, movedTable.columns(), movedTable.size(), sink, cost);
         });
-        std::vector<IndexPair> apart(joined.size());
-        apart.resize(kernels<Scalar>().selectApart(joined.pairs().data(), joined.size(),
-                                                   table.order().data(), moved.data(),
-                                                   apart.data()));
-        std::vector<IndexPair> filed;
+        Results results{copyOf(joined),
+                        copyOf(walked),
+                        copyOf(together),
+                        copyOf(querySwept(table, movedTable, movedBoxes)),
+                        {},
+                        {}};
+        results.apart.resize(joined.size());
+        results.apart.resize(kernels<Scalar>().selectApart(joined.pairs().data(), joined.size(),
+                                                           table.order().data(), movedBoxes.data(),
+                                                           results.apart.data()));
         for (std::uint32_t i = 0; i < table.size(); ++i) {
-            filed.push_back({table.order()[i], table.proxyIndex(i)});
+            results.filed.push_back({table.order()[i], table.proxyIndex(i)});
         }
-        const PairList onWays = querySwept(table, movedTable, moved);
-        return {copyOf(joined), copyOf(walked), apart, filed, copyOf(together), copyOf(onWays)};
+        return results;
     }
 
     static std::vector<IndexPair> sorted(std::vector<IndexPair> pairs) {
-        std::sort(pairs.begin(), pairs.end(), [](const IndexPair& a, const IndexPair& b) {
-            return std::pair(a.a, a.b) < std::pair(b.a, b.b);
-        });
+        std::ranges::sort(pairs, {},
+                          [](const IndexPair& pair) { return std::pair(pair.a, pair.b); });
         return pairs;
     }
-
-private:
-    InstructionSet setBefore_{};
 };
 
 using Scalars = testing::Types<float, double>;
@@ -136,21 +134,19 @@ TYPED_TEST(KernelsTest, OfEveryInstructionSetGiveTheSamePairsInTheSameOrder) {
         for (const double cellSize : {0.0, 0.3, 2.0, 20.0}) {
             SCOPED_TRACE(testing::Message() << scene.name << ", cell size " << cellSize);
             const LevelSizes sizes = cellSize > 0 ? fixedLevels(cellSize, 4) : LevelSizes{};
-            const auto boxes = this->draw(scene, scene.count, random);
-            const auto moved = this->draw(scene, scene.count, random);
-            useInstructionSet(InstructionSet::scalar);
-            const auto expected = this->resultsOf(boxes, moved, sizes);
+            const auto boxes = drawBoxes<TypeParam>(random, scene.count, scene.draw);
+            const auto moved = drawBoxes<TypeParam>(random, scene.count, scene.draw);
+            typename TestFixture::Results expected;
+            test::forEachInstructionSet([&](InstructionSet set) {
+                const auto results = this->resultsOf(boxes, moved, sizes);
+                expected = set == InstructionSet::scalar ? results : expected;
+                ASSERT_TRUE(results == expected);
+            });
             // Boxes that are looked for together find what they find one by one.
-            ASSERT_EQ(this->sorted(expected[4]), this->sorted(expected[1]));
-            for (const InstructionSet set : kVectorSets) {
-                if (isAvailable(set)) {
-                    useInstructionSet(set);
-                    ASSERT_EQ(this->resultsOf(boxes, moved, sizes), expected) << nameOf(set);
-                }
-            }
-            found += expected[0].size() + expected[1].size() + expected[2].size();
-            passed += expected[5].size();
-            passedBy += expected[1].size() - expected[5].size();
+            ASSERT_EQ(this->sorted(expected.together), this->sorted(expected.walked));
+            found += expected.joined.size() + expected.walked.size() + expected.apart.size();
+            passed += expected.onWays.size();
+            passedBy += expected.walked.size() - expected.onWays.size();
         }
     }
     EXPECT_GT(found, 10000U);
@@ -160,28 +156,24 @@ TYPED_TEST(KernelsTest, OfEveryInstructionSetGiveTheSamePairsInTheSameOrder) {
 
 TYPED_TEST(KernelsTest, TellApartThePairsThatBruteForceTellsApart) {
     Random random(0x5eed0502);
-    const auto boxes = this->draw(test::hostileScene<TypeParam>(), 200, random);
+    const auto boxes = drawBoxes<TypeParam>(random, 200, test::hostileScene<TypeParam>().draw);
+    const auto paddedBoxes = this->paddedOf(boxes);
     std::vector<IndexPair> pairs;
     std::vector<IndexPair> expected;
     for (std::uint32_t a = 0; a < boxes.size(); ++a) {
         for (std::uint32_t b = 0; b < boxes.size(); ++b) {
             pairs.push_back({a, b});
-            if (!overlaps(unpadded(boxes[a]), unpadded(boxes[b]))) {
+            if (!overlaps(boxes[a], boxes[b])) {
                 expected.push_back({a, b});
             }
         }
     }
-    for (const InstructionSet set : {InstructionSet::scalar, InstructionSet::sse2,
-                                     InstructionSet::avx2, InstructionSet::avx512}) {
-        if (!isAvailable(set)) {
-            continue;
-        }
-        useInstructionSet(set);
+    test::forEachInstructionSet([&](InstructionSet) {
         std::vector<IndexPair> apart(pairs.size());
         apart.resize(kernels<TypeParam>().selectApart(pairs.data(), pairs.size(), nullptr,
-                                                      boxes.data(), apart.data()));
-        EXPECT_EQ(apart, expected) << nameOf(set);
-    }
+                                                      paddedBoxes.data(), apart.data()));
+        EXPECT_EQ(apart, expected);
+    });
 }
 
 TEST(InstructionSets, ScalarIsAlwaysAvailableAndTheBestOneIsInUse) {
@@ -203,6 +195,93 @@ TEST(PairList, KeepsWhatItHasWhenItGrows) {
     list.clear();
     EXPECT_EQ(list.size(), 0U);
     EXPECT_EQ(list.memoryBytes(), bytes);
+}
+
+// --- What boxes overlap, handed over as it is found ----------------------------------------------
+
+using test::columnsOf;
+using test::cubesIn;
+using test::makeBox;
+
+template <class Scalar>
+class BoxSearchTest : public testing::Test {
+protected:
+    using Boxes = std::vector<Aabb<Scalar>>;
+
+    /// What is handed over to somebody who wants no more than the first of it.
+    std::size_t takeOnce(const Boxes& queries) {
+        std::size_t taken = 0;
+        const BoxColumns<Scalar> columns = columnsOf(queries);
+        const auto take = [&](std::span<const IndexPair> pairs) {
+            EXPECT_EQ(taken, 0U) << "asked again";
+            taken += pairs.size();
+            return false;
+        };
+        cost_ = {};
+        EXPECT_FALSE(searchBoxes(table_, columns.columns(), columns.size(), take, cost_));
+        return taken;
+    }
+
+    Table<Scalar> table_;
+    KernelCost cost_;
+    test::Random random_{0x5eed0b01};
+};
+
+TYPED_TEST_SUITE(BoxSearchTest, Scalars);
+
+// Cells that are dense, cells that are hashed, a crowd in one cell, and a list.
+TYPED_TEST(BoxSearchTest, ReadsNoMoreThanItNeedsForTheFirstThatIsFound) {
+    struct World {
+        const char* name;
+        double side;
+        LevelSizes sizes;
+    };
+    LevelSizes tiny = fixedLevels(0.01, 4);
+    tiny.count = 1;
+    for (const World& world : {World{"dense", 30, {}},
+                               {"hashed", 1e5, fixedLevels(1, 4)},
+                               {"crowd", 90, fixedLevels(1000, 4)},
+                               {"list", 90, tiny}}) {
+        SCOPED_TRACE(world.name);
+        const auto draw = cubesIn<TypeParam>(0., world.side, 0.25);
+        test::fill(this->table_, test::drawBoxes<TypeParam>(this->random_, 20000, draw),
+                   world.sizes);
+        const double most = 2 * world.side;
+        EXPECT_LE(this->takeOnce({makeBox<TypeParam>(-1, -1, -1, most, most, most)}), kMostRoom);
+        EXPECT_LE(this->cost_.boxesTested, 2 * kMostRoom);
+        // Of a part, the first rows that have something.
+        const double half = world.side / 2;
+        this->takeOnce({makeBox<TypeParam>(0, 0, 0, half, half, half)});
+        EXPECT_LE(this->cost_.boxesTested, 20000 / 8 + 2 * kMostRoom);
+    }
+}
+
+TYPED_TEST(BoxSearchTest, EndsForSeveralBoxesAtOnce) {
+    auto boxes = test::drawBoxes<TypeParam>(this->random_, 5000, cubesIn<TypeParam>(0, 10, 0.5));
+    test::fill(this->table_, boxes);
+    boxes.resize(16);
+    EXPECT_GT(this->takeOnce(boxes), 0U);
+}
+
+TYPED_TEST(BoxSearchTest, AllocatesNothing) {
+    if (!test::kCountsAllocations) {
+        GTEST_SKIP() << "this program has another `new`";
+    }
+    std::vector<Aabb<TypeParam>> boxes(3000, makeBox<TypeParam>(0, 0, 0, 1, 1, 1));
+    test::fill(this->table_, boxes);
+    boxes.resize(2);
+    const BoxColumns<TypeParam> columns = columnsOf(boxes);
+    std::size_t taken = 0;
+    const auto take = [&](std::span<const IndexPair> pairs) {
+        taken += pairs.size();
+        return true;
+    };
+    const std::size_t before = test::allocationCount();
+    for (const std::uint32_t count : {1U, 2U}) {
+        EXPECT_TRUE(searchBoxes(this->table_, columns.columns(), count, take, this->cost_));
+    }
+    EXPECT_EQ(test::allocationCount(), before);
+    EXPECT_EQ(taken, 3 * 3000U);
 }
 
 }  // namespace

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Zlib
 
-// What a caller may not do is asserted; what a callback may do, and where, is safe.
+// What a caller may not do is asserted, and none of it happens. What callbacks may do is in callbacks_test.cpp.
 
-#include <broadphase/convex_region.hpp>
 #include <broadphase/pairs.hpp>
 #include <broadphase/radius_search.hpp>
 #include <broadphase/sweeps.hpp>
 #include <tests/support/box_scenes.hpp>
+#include <tests/support/call_each.hpp>
 #include <tests/support/handlers.hpp>
+#include <tests/support/oracles.hpp>
 #include <tests/support/query_checks.hpp>
 
 #include <gtest/gtest.h>
@@ -15,411 +16,151 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <map>
-#include <set>
+#include <limits>
+#include <memory>
+#include <span>
+#include <stdexcept>
 #include <vector>
 
 namespace hashphase::test {
 namespace {
 
-using Box = Aabb<float>;
-using Point = Vector3<float>;
-
-/// A collector that calls a function for each proxy found.
-struct CallEach {
-    std::function<void(ProxyId)> call;
-
-    void add(ProxyId id, float /*key*/) { call(id); }
-    static constexpr float limit() { return std::numeric_limits<float>::infinity(); }
-};
-
-Box cube(double x, double half = 1) {
-    return boxAround<float>({x, 0, 0}, Vector3<double>::Constant(half));
-}
-
-bool isCellOf(const std::array<std::int64_t, 3>& cell, const CellRange& range) {
-    bool isWithin = true;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        isWithin =
-            isWithin && range.lowest[axis] <= cell[axis] && cell[axis] <= range.highest[axis];
-    }
-    return isWithin;
-}
-
-/// A grid that a collector changes at will, and who is alive in it.
-struct Changed {
-    explicit Changed(int count) {
-        for (int i = 0; i < count; ++i) {
-            add(i % 2 == 0 ? Mobility::resting : Mobility::mobile);
-        }
-    }
-    void add(Mobility mobility = Mobility::mobile) {
-        const Box box = scene.draw(random);
-        alive[grid.add(box, mobility)] = box;
-    }
-    void removeOne(ProxyId id) {
-        grid.remove(id);
-        alive.erase(id);
-        touched.insert(id);
-    }
-    ProxyId any() {
-        auto at = alive.begin();
-        std::advance(at, random.below(static_cast<std::uint32_t>(alive.size())));
-        return at->first;
-    }
-    void changeSomething(ProxyId found) {
-        ASSERT_TRUE(alive.contains(found)) << "who was removed is offered";
-        const double choice = random.unit();
-        if (choice < 0.4) {
-            removeOne(found);
-        } else if (choice < 0.6 && alive.size() > 1) {
-            removeOne(any());
-        } else if (choice < 0.8) {
-            const ProxyId id = alive.empty() ? ProxyId{} : any();
-            if (!id.isNull()) {
-                grid.move(id, alive[id] = scene.draw(random));
-                touched.insert(id);
-            }
-        } else {
-            add();
-        }
-    }
-    /// query(collector), whose collector calls change() for each proxy offered, must offer all
-    /// those of which matches(id, box) was true before and that were neither moved nor removed
-    /// meanwhile, once each, and nothing else that stayed as it was. Returns how many they are.
-    template <class Matches, class Query>
-    std::size_t expectTheOthersOnce(const Matches& matches, const Query& query,
-                                    const std::function<void(ProxyId)>& change) {
-        touched.clear();
-        std::map<ProxyId, int> expected;
-        for (const auto& [id, box] : alive) {
-            expected[id] = matches(id, box) ? 1 : 0;
-        }
-        std::map<ProxyId, int> offered;
-        CallEach collector{[&](ProxyId id) {
-            ++offered[id];
-            change(id);
-        }};
-        query(collector);
-        std::size_t others = 0;
-        for (const auto& [id, times] : expected) {
-            if (!touched.contains(id)) {
-                EXPECT_EQ(offered[id], times) << testing::PrintToString(id);
-                others += static_cast<std::size_t>(times);
-            }
-        }
-        return others;
-    }
-    /// The same for a query of the grid.
-    template <class Region>
-    std::size_t visitAndChange(const Region& region) {
-        return expectTheOthersOnce([&](ProxyId, const Box& box) { return region.key(box) >= 0; },
-                                   [&](CallEach& collector) { grid.visit(region, collector); },
-                                   [&](ProxyId id) { changeSomething(id); });
-    }
-    std::size_t visitCellAndChange(const std::array<std::int64_t, 3>& cell) {
-        return expectTheOthersOnce(
-            [&](ProxyId id, const Box&) { return isCellOf(cell, grid.cellsOf(id)); },
-            [&](CallEach& collector) { grid.visitCell(cell, collector); },
-            [&](ProxyId id) { changeSomething(id); });
-    }
-    std::size_t forEachAndChange() {
-        return expectTheOthersOnce(
-            [](ProxyId, const Box&) { return true; },
-            [&](CallEach& collector) {
-                grid.forEach([&](ProxyId id, const Box&) { collector.add(id, 0); });
-            },
-            [&](ProxyId id) {
-                if (random.chance(0.1)) {
-                    changeSomething(id);
-                }
-            });
-    }
-    template <class Region>
-    void checkQuery(const Region& region) {
-        std::vector<Placed<float>> placed;
-        for (const auto& [id, box] : alive) {
-            placed.push_back({id, box});
-        }
-        expectLikeBruteForce<float>(grid, placed, region);
-    }
-
-    Random random{2};
-    BoxScene<float> scene = spreadScene<float>("spread", 1, 0);
-    Grid<float> grid;
-    std::map<ProxyId, Box> alive;
-    std::set<ProxyId> touched;  // moved or removed since a query began
-};
-
-TEST(GridCallbacks, MayChangeTheGridInAQueryOfTheirOwn) {
-    for (const int settled : {0, 1, 12}) {
-        Changed changed(300);
-        for (int i = 0; i < settled; ++i) {
-            changed.grid.update();
-        }
-        std::array<std::size_t, 5> others{};
-        for (int round = 0; round < 6; ++round) {
-            others[0] += changed.visitAndChange(BoxRegion<float>{cube(0, 5)});
-            others[1] += changed.visitAndChange(SphereRegion<float>({1, 0, 0}, 4));
-            others[2] += changed.visitAndChange(RayRegion<float>({-9, 0, 0}, {9, 1, 1}));
-            others[2] += changed.visitAndChange(RayRegion<float>({-9, 0, 0}, {9, 1, 1}, cube(0)));
-            for (int corner = 0; corner < 8; ++corner) {
-                others[3] += changed.visitCellAndChange(
-                    {corner % 2 - 1, corner / 2 % 2 - 1, corner / 4 - 1});
-            }
-            others[4] += changed.forEachAndChange();
-            EXPECT_EQ(changed.grid.validate(), "");
-            changed.checkQuery(BoxRegion<float>{cube(0, 3)});
-            changed.checkQuery(RayRegion<float>({-9, 0, 0}, {9, 1, 1}));
-            if (round % 2 == 0) {
-                changed.grid.update();
-            }
-            while (changed.alive.size() < 200) {
-                changed.add();
-            }
-        }
-        for (const std::size_t count : others) {
-            EXPECT_GT(count, 5U) << "were neither moved nor removed";
-        }
-    }
-}
-
-// The tables are being read, and nothing is filed for the queries within: what an update has filed, or
-// queries before this one.
-class GridCallbacksAfterFiling : public testing::TestWithParam<bool> {};
-
-TEST_P(GridCallbacksAfterFiling, MayChangeMuchAndAskAndFindWhatIsThere) {
-    Changed changed(500);
-    changed.grid.update();
-    for (int i = 0; i < 100 && GetParam(); ++i) {
-        changed.add();
-    }
-    const std::uint64_t filings = changed.grid.filingCount();
-    for (int i = 0; i < 1000 && GetParam() && changed.grid.filingCount() == filings; ++i) {
-        changed.checkQuery(BoxRegion<float>{cube(0, 3)});
-    }
-    const BoxRegion<float> asked{cube(0, 2)};
-    std::set<ProxyId> spared;  // every second of those who are asked for
-    for (const auto& [id, box] : changed.alive) {
-        if (asked.key(box) >= 0 && id.index % 2 == 0) {
-            spared.insert(id);
-        }
-    }
-    const auto changeMuch = [&](ProxyId) {
-        for (int i = 0; i < 50 && changed.alive.size() > 100; ++i) {
-            const ProxyId id = changed.any();
-            if (!spared.contains(id)) {
-                changed.removeOne(id);
-            }
-        }
-        for (int i = 0; i < 30; ++i) {
-            changed.add();
-        }
-        const BoxRegion<float> region{cube(0, 3)};
-        changed.checkQuery(region);
-        changed.checkQuery(RayRegion<float>({-9, 0, 0}, {9, 1, 1}));
-        changed.checkQuery(ConvexRegion<float>({}));
-        CollectCount one;
-        CollectCount each;
-        changed.grid.visit(region, one);
-        changed.grid.visitEach(std::span(&region, 1), std::span(&each, 1));
-        EXPECT_EQ(one.count(), each.count());
-        EXPECT_EQ(changed.grid.validate(), "");
-    };
-    const std::size_t others = changed.expectTheOthersOnce(
-        [&](ProxyId, const Box& box) { return asked.key(box) >= 0; },
-        [&](CallEach& collector) { changed.grid.visit(asked, collector); }, changeMuch);
-    EXPECT_GE(others, spared.size());
-    EXPECT_GT(spared.size(), 5U);
-    EXPECT_EQ(changed.grid.validate(), "");
-    changed.checkQuery(BoxRegion<float>{cube(0, 3)});
-    changed.grid.update();
-    changed.checkQuery(BoxRegion<float>{cube(0, 3)});
-}
-
-INSTANTIATE_TEST_SUITE_P(ByUpdateOrQueries, GridCallbacksAfterFiling, testing::Bool());
-
-TEST(SweepsCallbacks, MayChangeWhatSweeps) {
-    Grid<float> grid;
-    Sweeps<float> sweeps(grid);
-    std::vector<ProxyId> ids;
-    for (int i = 0; i < 40; ++i) {
-        ids.push_back(grid.add(cube(0)));
-        sweeps.set(ids.back(), {float(i), 0, 0});
-    }
-    std::size_t found = 0;
-    std::map<ProxyId, int> offered;
-    CallEach collector{[&](ProxyId id) {
-        EXPECT_TRUE(grid.contains(id));
-        ++offered[id];
-        sweeps.set(ids[(7 * found) % 30], found % 2 == 0 ? Point(0, 0, 0) : Point(0, 5, 0));
-        if (++found % 4 == 0) {
-            const ProxyId added = grid.add(cube(0));
-            sweeps.set(added, {1, 1, 1});
-        }
-    }};
-    sweeps.visit(BoxRegion<float>{cube(0)}, collector);
-    EXPECT_GT(found, 10U);
-    for (std::size_t i = 30; i < ids.size(); ++i) {
-        EXPECT_EQ(offered[ids[i]], 1) << "nobody has changed how it sweeps";
-    }
-    EXPECT_EQ(sweeps.validate(), "");
-    EXPECT_EQ(grid.validate(), "");
-}
-
 #if HASHPHASE_ENABLE_ASSERTS
 
-/// Calls everything that changes a grid; all of it must be asserted, and none of it happen.
-void expectThatNothingMayChange(Grid<float>& grid, ProxyId id) {
-    EXPECT_THROW(static_cast<void>(grid.add(cube(0))), BrokenAssert);
-    EXPECT_THROW(grid.move(id, cube(5)), BrokenAssert);
-    EXPECT_THROW(grid.remove(id), BrokenAssert);
-    EXPECT_THROW(grid.reserve(100), BrokenAssert);
+Aabb<float> blockAt(double x) {
+    return boxAround<float>({x, 0, 0}, {1, 1, 1});
 }
 
-TEST(GridCallbacks, MustNotChangeTheGridWhereManyAreDealtWithAtOnce) {
-    const ThrowingAsserts throwing;
+/// Two cubes that touch, with sweeps and pairs; broken assertions throw.
+struct Misuse : testing::Test {
+    static constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    static constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+    static bool accept(ProxyId, ProxyId) { return true; }
+
+    template <class Call>
+    static void expectAsserted(const Call& call) {
+        EXPECT_THROW(call(), BrokenAssert);
+    }
+    /// Calls everything that changes a grid; all of it must be asserted, and none of it happen.
+    void expectThatNothingMayChange() {
+        expectAsserted([&] { static_cast<void>(grid.add(blockAt(0))); });
+        expectAsserted([&] { grid.move(id, blockAt(5)); });
+        expectAsserted([&] { grid.remove(id); });
+        expectAsserted([&] { grid.reserve(100); });
+        expectAsserted([&] { sweeps.set(id, {9, 0, 0}); });
+    }
+    /// Calls everything that no query may do, of its own or not.
+    void expectThatTheGridStays() {
+        expectAsserted([&] { grid.clear(); });
+        expectAsserted([&] { grid.shiftOrigin({1, 0, 0}); });
+        expectAsserted([&] { pairs->clear(); });
+        expectAsserted([&] { pairs->update(); });
+    }
+    void TearDown() override {
+        EXPECT_EQ(grid.size(), 2U);
+        EXPECT_TRUE(isSameBits(grid.box(id), blockAt(0)));
+        EXPECT_TRUE(sweeps.motion(id).displacement.isZero(0));
+        EXPECT_EQ(grid.validate() + sweeps.validate(), "");
+        if (pairs != nullptr) {
+            pairs->update();
+            EXPECT_EQ(pairs->count(), 1U);
+            EXPECT_EQ(pairs->validate(), "");
+        }
+    }
+
+    ThrowingAsserts throwing;
     Grid<float> grid;
-    const ProxyId id = grid.add(cube(0));
-    std::size_t calls = 0;
-    CallEach collector{[&](ProxyId) {
+    Sweeps<float> sweeps{grid};
+    std::unique_ptr<Pairs<float>> pairs = std::make_unique<Pairs<float>>(grid, &sweeps);
+    ProxyId id = grid.add(blockAt(0), Mobility::resting);
+    ProxyId other = grid.add(blockAt(1));
+    int calls = 0;
+};
+
+TEST_F(Misuse, OfNumbersAndCountsIsAsserted) {
+    const CaughtMessages aboutNan;
+    grid.move(other, {Vector3<float>(0, 0, 0), Vector3<float>(1, kNan, 1)});
+    expectAsserted([&] { static_cast<void>(grid.cellsOf(other)); });
+    grid.move(other, blockAt(1));
+    expectAsserted([&] { static_cast<void>(grid.cellAt({kNan, 0, 0})); });
+    expectAsserted([&] { static_cast<void>(grid.cellAt({0, kInfinity, 0})); });
+    expectAsserted([&] { grid.shiftOrigin({0, kInfinity, 0}); });
+    expectAsserted([&] { grid.shiftOrigin({kNan, 0, 0}); });
+    EXPECT_THROW(grid.reserve(~std::size_t{0}), std::length_error);
+    const std::vector<BoxRegion<float>> regions(2, {blockAt(0)});
+    std::vector<CollectCount> counts(3);
+    expectAsserted([&] { grid.visitEach(std::span(regions), std::span(counts)); });
+}
+
+TEST_F(Misuse, OfWhatBelongsToPairsIsAsserted) {
+    expectAsserted([&] { grid.update(); });
+    expectAsserted([&] { grid.clear(); });
+    expectAsserted([&] { const Pairs<float> second(grid); });
+    Grid<float> another;
+    expectAsserted([&] { const Pairs<float> ofAnother(another, &sweeps); });
+    std::vector<ProxyPair> list;
+    expectAsserted([&] { pairs->collect(list); });
+    // They leave the grid free for others when they end.
+    pairs = nullptr;
+    grid.update();
+    pairs = std::make_unique<Pairs<float>>(grid);
+}
+
+TEST_F(Misuse, OfACollectorThatEndsFramesIsAsserted) {
+    sweeps.set(other, {9, 0, 0});
+    CallEach collector{[&](ProxyId, float) {
         ++calls;
-        expectThatNothingMayChange(grid, id);
+        expectThatTheGridStays();
     }};
-    const BoxRegion<float> region{cube(0)};
+    grid.visit(BoxRegion<float>{blockAt(0)}, collector);
+    sweeps.visit(BoxRegion<float>{blockAt(5)}, collector);
+    EXPECT_EQ(calls, 3);
+    sweeps.set(other, {0, 0, 0});
+}
+
+TEST_F(Misuse, OfACollectorThatChangesWhereManyAreDealtWithAtOnceIsAsserted) {
+    CallEach collector{[&](ProxyId, float) {
+        ++calls;
+        expectThatNothingMayChange();
+        expectThatTheGridStays();
+    }};
+    const BoxRegion<float> region{blockAt(0)};
     const RayRegion<float> ray({-9, 0, 0}, {9, 0, 0});
     grid.visitEach(std::span(&region, 1), std::span(&collector, 1));
     grid.visitEach(std::span(&ray, 1), std::span(&collector, 1));
     grid.visit(ConvexRegion<float>({}), collector);
-    EXPECT_EQ(calls, 3U);
-    grid.move(id, cube(1));
-    EXPECT_EQ(grid.validate(), "");
+    EXPECT_EQ(calls, 6);
 }
 
-TEST(GridCallbacks, MustNotBeginAnUpdate) {
-    const ThrowingAsserts throwing;
-    Grid<float> grid;
-    static_cast<void>(grid.add(cube(0)));
-    CallEach collector{[&](ProxyId) { grid.update(); }};
-    EXPECT_THROW(grid.visit(BoxRegion<float>{cube(0)}, collector), BrokenAssert);
-    grid.update();
-
-    Grid<float> paired;
-    Pairs<float> pairs(paired);
-    static_cast<void>(paired.add(cube(0)));
-    const auto all = [](ProxyId, ProxyId) { return true; };
-    CallEach updating{[&](ProxyId) { pairs.update(all); }};
-    EXPECT_THROW(paired.visit(BoxRegion<float>{cube(0)}, updating), BrokenAssert);
-    pairs.update(all);
-    EXPECT_EQ(pairs.validate(), "");
-}
-
-TEST(PairFilterCallback, MayAskTheGridButMustNotChangeItNorAskForPairs) {
-    const ThrowingAsserts throwing;
-    Grid<float> grid;
-    Pairs<float> pairs(grid);
-    const ProxyId a = grid.add(cube(0));
-    static_cast<void>(grid.add(cube(1)));
-    int calls = 0;
-    const auto all = [](ProxyId, ProxyId) { return true; };
+TEST_F(Misuse, OfAFilterThatChangesTheGridOrAsksForPairsIsAsserted) {
     const auto filter = [&](ProxyId, ProxyId) {
         ++calls;
-        expectThatNothingMayChange(grid, a);
-        EXPECT_THROW(pairs.update(all), BrokenAssert);
-        EXPECT_THROW(pairs.findPairsNow(a, all), BrokenAssert);
-        EXPECT_THROW(pairs.refilter(a, all), BrokenAssert);
-        CollectCount count;
-        grid.visit(BoxRegion<float>{cube(0)}, count);
-        EXPECT_EQ(count.count(), 2U);
+        expectThatNothingMayChange();
+        expectThatTheGridStays();
+        expectAsserted([&] { pairs->findPairsNow(id, accept); });
+        expectAsserted([&] { pairs->refilter(id, accept); });
+        EXPECT_EQ(find(grid, BoxRegion<float>{blockAt(0)}).size(), 2U) << "it may ask the grid";
         return true;
     };
-    EXPECT_EQ(pairs.update(filter).born.size(), 1U);
-    EXPECT_TRUE(pairs.refilter(a, filter).born.empty());
+    EXPECT_EQ(pairs->update(filter).born.size(), 1U);
+    EXPECT_TRUE(pairs->refilter(id, filter).born.empty());
     EXPECT_EQ(calls, 2);
-    EXPECT_EQ(pairs.validate(), "");
 }
 
-TEST(GridMisuse, OfUpdateWherePairsEndTheFrameIsAsserted) {
-    const ThrowingAsserts throwing;
-    Grid<float> grid;
-    const Pairs<float> pairs(grid);
-    EXPECT_THROW(grid.update(), BrokenAssert);
-}
-
-TEST(GridMisuse, OfVisitEachWithoutACollectorForEachRegionIsAsserted) {
-    const ThrowingAsserts throwing;
-    Grid<float> grid;
-    const std::vector<BoxRegion<float>> regions(2, {cube(0)});
-    std::vector<CollectCount> counts(3);
-    EXPECT_THROW(grid.visitEach(std::span(regions), std::span(counts)), BrokenAssert);
-}
-
-TEST(GridMisuse, OfRoomForMoreThanCanBeCountedIsRefused) {
-    Grid<float> grid;
-    grid.remove(grid.add(cube(0)));
-    EXPECT_THROW(grid.reserve(~std::size_t{0}), std::length_error);
-}
-
-TEST(SweepsMisuse, OfAFilterOrConvexQueryThatSetsIsAsserted) {
-    const ThrowingAsserts throwing;
-    Grid<float> grid;
-    Sweeps<float> sweeps(grid);
-    Pairs<float> pairs(grid, &sweeps);
-    const ProxyId id = grid.add(cube(0), Mobility::resting);
-    static_cast<void>(grid.add(cube(1)));
-    int calls = 0;
-    const auto setting = [&](ProxyId, ProxyId) {
-        ++calls;
-        EXPECT_THROW(sweeps.set(id, {9, 0, 0}), BrokenAssert);
-        return true;
-    };
-    EXPECT_EQ(pairs.update(setting).born.size(), 1U);
-    CallEach collector{[&](ProxyId found) { setting(found, found); }};
-    grid.visit(ConvexRegion<float>({}), collector);
-    EXPECT_EQ(calls, 3);
-    EXPECT_TRUE(sweeps.motion(id).displacement.isZero(0));
-    EXPECT_EQ(sweeps.validate(), "");
-}
-
-TEST(SweepsMisuse, OfACollectorThatUpdatesIsAssertedWhenItIsOfferedWhatSweeps) {
-    const ThrowingAsserts throwing;
-    Grid<float> grid;
-    Sweeps<float> sweeps(grid);
-    Pairs<float> pairs(grid, &sweeps);
-    sweeps.set(grid.add(cube(0)), {9, 0, 0});
-    const auto all = [](ProxyId, ProxyId) { return true; };
-    CallEach collector{[&](ProxyId) { pairs.update(all); }};
-    EXPECT_THROW(sweeps.visit(BoxRegion<float>{cube(5)}, collector), BrokenAssert);
-    pairs.update(all);
-    EXPECT_EQ(sweeps.validate(), "");
-}
-
-TEST(SweepsMisuse, OfAStaleIdIsAsserted) {
-    const ThrowingAsserts throwing;
-    Grid<float> grid;
-    const Sweeps<float> sweeps(grid);
-    const ProxyId id = grid.add(cube(0));
-    grid.remove(id);
-    EXPECT_THROW(static_cast<void>(sweeps.motion(id)), BrokenAssert);
-}
-
-TEST(RadiusSearchMisuse, OfItsOwnCallbacksIsAsserted) {
-    const ThrowingAsserts throwing;
-    Grid<float> grid;
-    const ProxyId id = grid.add(cube(0));
+TEST_F(Misuse, OfTheCallbacksOfARadiusSearchIsAsserted) {
     RadiusSearch<float> search;
-    int calls = 0;
     search.take(grid, 1, [&](ProxyId) {
         ++calls;
-        expectThatNothingMayChange(grid, id);
-        EXPECT_THROW(search.take(grid, 1), BrokenAssert);
+        expectThatNothingMayChange();
+        expectAsserted([&] { search.take(grid, 1); });
         return true;
     });
-    std::vector<std::uint32_t> counts(1);
+    std::vector<std::uint32_t> counts(2);
     const auto ask = [&] {
         ++calls;
-        EXPECT_THROW(search.take(grid, 2), BrokenAssert);
-        EXPECT_THROW(search.count(counts), BrokenAssert);
+        expectAsserted([&] { search.take(grid, 2); });
+        expectAsserted([&] { search.count(counts); });
     };
     search.forEach([&](std::uint32_t, std::span<const std::uint32_t>) { ask(); });
     const auto groupOf = [&](ProxyId) {
@@ -427,19 +168,125 @@ TEST(RadiusSearchMisuse, OfItsOwnCallbacksIsAsserted) {
         return 0U;
     };
     search.countGroups(1, groupOf, counts);
-    EXPECT_GE(calls, 4);
-    grid.move(id, cube(3));  // all scopes have ended
-    search.take(grid, 1);
-    EXPECT_EQ(search.position(0), Point(3, 0, 0));
+    EXPECT_GE(calls, 6);
+    // One count for each agent and group, no more groups than there may be, and agents that there are.
+    counts.resize(3);
+    expectAsserted([&] { search.count(counts); });
+    expectAsserted([&] { search.countGroups(3, groupOf, counts); });
+    counts.resize(66);
+    expectAsserted([&] { search.countGroups(33, groupOf, counts); });
+    expectAsserted([&] { static_cast<void>(search.id(2)); });
+    expectAsserted([&] { static_cast<void>(search.position(2)); });
+    search.take(grid, 1);  // all scopes have ended
+    EXPECT_EQ(search.size(), 2U);
 }
 
-TEST(GridMisuseDeathTest, EndsTheProgramWithASentence) {
+TEST(MisuseDeathTest, EndsTheProgramWithASentence) {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     Grid<float> grid;
     EXPECT_DEATH(grid.remove({}), "Only a proxy of this grid that was not removed can be removed");
+    const auto goesBeforeItsPairs = [] {
+        auto gone = std::make_unique<Grid<float>>();
+        const Pairs<float> pairs(*gone);
+        gone.reset();
+    };
+    EXPECT_DEATH(goesBeforeItsPairs(), "A grid outlives its Pairs");
+    static_cast<void>(grid.add(blockAt(0)));
+    CallEach releasing{[&](ProxyId, float) { grid.releaseUnusedMemory(); }};
+    EXPECT_DEATH(grid.visit(BoxRegion<float>{blockAt(0)}, releasing), "within a query");
 }
 
 #endif
+
+// --- Without assertions --------------------------------------------------------------------------
+
+Aabb<double> cubeAt(double x) {
+    return makeBox<double>(x, 0, 0, x + 1, 1, 1);
+}
+
+struct StaleIds : testing::Test {
+    StaleIds() {
+        for (int i = 0; i < 20; ++i) {
+            ids.push_back(grid.add(cubeAt(0.5 * i)));
+        }
+        pairs.update();
+        const ProxyId replaced = ids[3];
+        const ProxyId vacant = ids[7];
+        grid.remove(replaced);
+        pairs.update();
+        ids[3] = grid.add(cubeAt(1.5));
+        EXPECT_EQ(ids[3].index, replaced.index);
+        grid.remove(vacant);
+        ids.erase(ids.begin() + 7);
+        pairs.update();
+        stale = {ProxyId{}, replaced, vacant, ProxyId{1'000'000, 1}};
+    }
+
+    std::vector<ProxyId> ids;
+    std::array<ProxyId, 4> stale;
+    Grid<double> grid;
+    Sweeps<double> sweeps{grid};
+    Pairs<double> pairs{grid, &sweeps};
+};
+
+TEST_F(StaleIds, AreAssertedAndChangeNobodyWithoutAssertions) {
+    const CaughtAsserts caught;
+    const std::size_t pairCount = pairs.count();
+    const auto refuse = [](ProxyId, ProxyId) { return false; };
+    for (const ProxyId id : stale) {
+        const std::function<void()> calls[] = {
+            [&] { grid.move(id, cubeAt(-99)); },
+            [&] { grid.remove(id); },
+            [&] {
+                grid.setGroups(id, {2, 4});
+            },
+            [&] { sweeps.set(id, Vector3<double>(9, 0, 0)); },
+            [&] { EXPECT_TRUE(grid.groups(id) == ProxyGroups{}); },
+            [&] { EXPECT_TRUE(hasNan(grid.box(id))); },
+            [&] { static_cast<void>(grid.cellsOf(id)); },
+            [&] { EXPECT_TRUE(hasNan(sweeps.motion(id).box)); },
+            [&] { EXPECT_TRUE(pairs.findPairsNow(id, acceptAllPairs).born.empty()); },
+            [&] { EXPECT_TRUE(pairs.refilter(id, refuse).died.empty()); }};
+        for (const auto& call : calls) {
+            const int before = caught.count();
+            call();
+            EXPECT_EQ(caught.count() > before, HASHPHASE_ENABLE_ASSERTS != 0) << &call - calls;
+        }
+    }
+    EXPECT_TRUE(pairs.refilter(stale, refuse).died.empty());
+    const PairChanges changes = pairs.update();
+    EXPECT_TRUE(changes.born.empty() && changes.died.empty());
+    EXPECT_EQ(pairs.count(), pairCount);
+    EXPECT_EQ(grid.size(), ids.size());
+    EXPECT_EQ(sweeps.size(), 0U);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        EXPECT_EQ(grid.box(ids[i]).min().x(), 0.5 * static_cast<double>(i < 7 ? i : i + 1));
+    }
+    EXPECT_EQ(grid.validate() + pairs.validate(), "");
+}
+
+TEST_F(StaleIds, AmongOthersAreLeftOut) {
+    const CaughtAsserts caught;
+    std::vector<ProxyId> mixed(ids);
+    mixed.insert(mixed.end(), stale.begin(), stale.end());
+    const std::size_t pairCount = pairs.count();
+    EXPECT_EQ(pairs.refilter(mixed, [](ProxyId, ProxyId) { return false; }).died.size(), pairCount);
+    EXPECT_EQ(pairs.count(), 0U);
+}
+
+// What belongs to the pairs' own calls.
+TEST_F(StaleIds, LoseNoPairWhereTheGridIsUpdatedOrClearedBesideItsPairs) {
+    const CaughtAsserts caught;
+    const std::size_t pairCount = pairs.count();
+    const ProxyId fresh = grid.add(cubeAt(0));
+    EXPECT_EQ(grid.update().changed, 0U);
+    grid.clear();
+    EXPECT_TRUE(grid.contains(fresh));
+    EXPECT_EQ(pairs.update().born.size(), 3U);
+    EXPECT_EQ(pairs.count(), pairCount + 3);
+    EXPECT_EQ(pairs.validate(), "");
+    EXPECT_EQ(caught.count(), 2);
+}
 
 }  // namespace
 }  // namespace hashphase::test

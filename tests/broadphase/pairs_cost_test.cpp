@@ -1,46 +1,48 @@
 // SPDX-License-Identifier: Zlib
 
-// What an update does follows what changed, counted rather than timed.
+// What an update does follows what changed, counted rather than timed; and is the same on any number of threads.
 
-#include <tests/support/box_scenes.hpp>
-#include <tests/support/pair_world.hpp>
+#include <broadphase/pairs.hpp>
+#include <tests/support/population.hpp>
+#include <tests/support/threaded_for.hpp>
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <vector>
+#include <cstddef>
+#include <cstdint>
 
 namespace hashphase::test {
 namespace {
 
-using Box = Aabb<float>;
-
-constexpr auto acceptAll = [](ProxyId, ProxyId) { return true; };
-
-/// Boxes of size 1 to 2 with some overlap, spread over a cube.
-std::vector<ProxyId> fill(Grid<float>& grid, std::uint32_t count, Random& random) {
-    const double side = 2.5 * std::cbrt(count);
-    std::vector<ProxyId> ids;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const Vector3<double> center = random.pointIn(0, side);
-        ids.push_back(grid.add(boxAround<float>(center, random.pointIn(0.5, 1))));
+/// Boxes of 1 to 2 m with some overlap, spread over a cube, and their pairs.
+struct PairCosts : testing::Test {
+    void addMany(std::uint32_t count) {
+        boxes.addMany(count, boxesIn<float>(0., 2.5 * std::cbrt(count), 0.5, 1));
     }
-    return ids;
-}
+    void nudge(std::size_t i, double step) {
+        boxes.moveTo(i, shifted(boxes.random, boxes.proxies[i].box, step));
+    }
+    const PairCost& update() {
+        changes = pairs.update();
+        return pairs.lastCost();
+    }
 
-TEST(PairCost, OfAnUpdateAfterWhichNothingChangedIsZero) {
-    Random random(0x5eed0101);
-    Grid<float> grid;
-    Pairs<float> pairs(grid);
-    const std::vector<ProxyId> ids = fill(grid, 3000, random);
-    pairs.update(acceptAll);
+    Population<float> boxes;
+    Pairs<float> pairs{boxes.grid};
+    PairChanges changes;
+};
+
+TEST_F(PairCosts, OfAnUpdateAfterWhichNothingChangedIsZero) {
+    addMany(3000);
+    update();
     for (int i = 0; i < 20; ++i) {
-        for (const ProxyId id : ids) {
-            grid.move(id, Box(grid.box(id)));
+        for (std::size_t k = 0; k < boxes.proxies.size(); ++k) {
+            nudge(k, 0);
         }
-        const PairChanges changes = pairs.update(acceptAll);
-        EXPECT_TRUE(changes.born.empty());
-        EXPECT_TRUE(changes.died.empty());
+        update();
+        EXPECT_TRUE(changes.born.empty() && changes.died.empty());
         EXPECT_EQ(pairs.lastCost().grid.changed, 0U);
         EXPECT_EQ(pairs.lastCost().grid.filed, 0U);
         EXPECT_EQ(pairs.lastCost().boxesTested, 0U);
@@ -48,23 +50,18 @@ TEST(PairCost, OfAnUpdateAfterWhichNothingChangedIsZero) {
     EXPECT_EQ(pairs.lastCost().pairsWatched, 0U);
 }
 
-TEST(PairCost, FollowsWhatMovesNotWhatExists) {
+TEST_F(PairCosts, FollowsWhatMovesNotWhatExists) {
     constexpr std::uint32_t kCount = 20000;
     constexpr std::uint32_t kMoving = 50;
-    Random random(0x5eed0102);
-    Grid<float> grid;
-    Pairs<float> pairs(grid);
-    const std::vector<ProxyId> ids = fill(grid, kCount, random);
+    addMany(kCount);
     for (int frame = 0; frame < 40; ++frame) {
         for (std::uint32_t i = 0; i < kMoving; ++i) {
-            const ProxyId id = ids[i * 397];
-            grid.move(id, shifted(random, grid.box(id), 0.1));
+            nudge(i * 397, 0.1);
         }
-        pairs.update(acceptAll);
+        const auto& cost = update();
         if (frame < 20) {
             continue;
         }
-        const PairCost& cost = pairs.lastCost();
         EXPECT_EQ(cost.grid.changed, kMoving);
         EXPECT_LE(cost.grid.filed, 2 * kMoving);
         EXPECT_GE(cost.grid.resting, kCount - 2 * kMoving);
@@ -74,56 +71,93 @@ TEST(PairCost, FollowsWhatMovesNotWhatExists) {
     }
 }
 
-TEST(PairCost, OfStaticProxiesEndsAfterTheSecondUpdate) {
-    Random random(0x5eed0103);
-    Grid<float> grid;
-    Pairs<float> pairs(grid);
-    for (std::uint32_t i = 0; i < 5000; ++i) {
-        const Vector3<double> center = random.pointIn(0, 50);
-        static_cast<void>(grid.add(boxAround<float>(center, {1, 1, 1}), Mobility::resting));
-    }
-    const ProxyId mover = grid.add(makeBox<float>(0, 0, 0, 1, 1, 1));
-    pairs.update(acceptAll);
+TEST_F(PairCosts, OfStaticProxiesEndsAfterTheSecondUpdate) {
+    boxes.addMany(5000, cubesIn<float>(0, 50, 1), 1);
+    boxes.add(makeBox<float>(0, 0, 0, 1, 1, 1));
+    update();
     for (int frame = 0; frame < 5; ++frame) {
-        grid.move(mover, shifted(random, grid.box(mover), 1));
-        pairs.update(acceptAll);
-        EXPECT_EQ(pairs.lastCost().grid.changed, 1U);
-        EXPECT_EQ(pairs.lastCost().grid.resting, 5000U);
+        nudge(5000, 1);
+        const auto& cost = update();
+        EXPECT_EQ(cost.grid.changed, 1U);
+        EXPECT_EQ(cost.grid.resting, 5000U);
         if (frame > 0) {
-            EXPECT_EQ(pairs.lastCost().grid.filed, 1U);
-            EXPECT_LT(pairs.lastCost().boxesTested, 500U);
+            EXPECT_EQ(cost.grid.filed, 1U);
+            EXPECT_LT(cost.boxesTested, 500U);
         }
     }
 }
 
-TEST(PairCost, CountsTheSearchOnBehalfOfProxiesThatWake) {
-    Grid<float> grid;
-    Pairs<float> pairs(grid);
-    const ProxyId sleeper = grid.add(makeBox<float>(0, 0, 0, 1, 1, 1));
-    for (int i = 0; i < 500; ++i) {
-        static_cast<void>(grid.add(makeBox<float>(0.5, 0, 0, 1, 1, 1)));
-    }
-    const ProxyId mover = grid.add(makeBox<float>(-100, 0, 0, -99, 1, 1));
+TEST_F(PairCosts, CountsTheSearchOnBehalfOfProxiesThatWake) {
+    boxes.add(makeBox<float>(0, 0, 0, 1, 1, 1));
+    boxes.addMany(500, [](Random&) { return makeBox<float>(0.5, 0, 0, 1, 1, 1); });
+    boxes.add(makeBox<float>(-100, 0, 0, -99, 1, 1));
     for (int i = 0; i < 30; ++i) {
-        grid.move(mover, makeBox<float>(-100 - i, 0, 0, -99, 1, 1));
-        pairs.update(acceptAll);
+        boxes.moveTo(501, makeBox<float>(-100 - i, 0, 0, -99, 1, 1));
+        update();
     }
     EXPECT_EQ(pairs.lastCost().pairsWatched, 0U);
-    grid.move(sleeper, makeBox<float>(900, 0, 0, 901, 1, 1));  // to where nothing is
-    EXPECT_EQ(pairs.update(acceptAll).died.size(), 500U);
-    EXPECT_GE(pairs.lastCost().boxesTested, 500U);
+    boxes.moveTo(0, makeBox<float>(900, 0, 0, 901, 1, 1));  // to where nothing is
+    EXPECT_GE(update().boxesTested, 500U);
+    EXPECT_EQ(changes.died.size(), 500U);
 }
 
-TEST(PairCost, MemoryIsGivenAndGrowsWithThePairs) {
-    Random random(0x5eed0105);
-    Grid<float> grid;
-    Pairs<float> pairs(grid);
-    const std::size_t empty = pairs.memoryBytes();
-    const std::vector<ProxyId> ids = fill(grid, 3000, random);
-    pairs.update(acceptAll);
-    EXPECT_GE(pairs.memoryBytes(),
-              empty + ids.size() * sizeof(Box) + pairs.count() * sizeof(ProxyPair));
-    EXPECT_LT(pairs.memoryBytes(), 100 * (ids.size() + pairs.count()) * sizeof(ProxyPair));
+// --- Threads -------------------------------------------------------------------------------------
+
+template <class Scalar>
+class PairsOnThreads : public testing::Test {};
+
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(PairsOnThreads, Scalars);
+
+/// Two sizes, so that there are two levels, large enough for several ranges each.
+template <class Scalar>
+void addTwoSizes(Population<Scalar>& boxes, std::size_t count) {
+    const double side = 2.2 * std::cbrt(static_cast<double>(count));
+    boxes.addMany(count / 10, cubesIn<Scalar>(0., side, 2));
+    boxes.addMany(count - count / 10, cubesIn<Scalar>(0., side, 0.5));
+}
+
+TYPED_TEST(PairsOnThreads, AreTheSameOnAnyNumberOfThreads) {
+    const auto accepts = [](ProxyId a, ProxyId b) { return (a.index + b.index) % 7 != 0; };
+    for (const std::size_t threadCount : {1, 2, 3, 8, 16}) {
+        SCOPED_TRACE(testing::Message() << threadCount << " threads");
+        ThreadedFor threadedFor(threadCount, 0x5eed0702);
+        Population<TypeParam> serial;
+        Population<TypeParam> parallel;
+        Pairs<TypeParam> serialPairs(serial.grid);
+        Pairs<TypeParam> parallelPairs(parallel.grid);
+        addTwoSizes(serial, 20000);
+        addTwoSizes(parallel, 20000);
+        std::size_t changes = 0;
+        for (int frame = 0; frame < 14; ++frame) {
+            const PairChanges expected = serialPairs.update(accepts);
+            const PairChanges actual = parallelPairs.update(accepts, threadedFor);
+            ASSERT_TRUE(std::ranges::equal(expected.born, actual.born)) << "frame " << frame;
+            ASSERT_TRUE(std::ranges::equal(expected.died, actual.died)) << "frame " << frame;
+            ASSERT_EQ(serialPairs.lastCost().boxesTested, parallelPairs.lastCost().boxesTested);
+            ASSERT_EQ(serialPairs.lastCost().grid.resting, parallelPairs.lastCost().grid.resting);
+            changes += expected.born.size() + expected.died.size();
+            // Half of them come to rest after a while.
+            for (std::size_t i = 0; i < 20000; i += frame < 2 ? 1 : 2) {
+                const auto box = shifted(serial.random, serial.proxies[i].box, 0.3);
+                serial.moveTo(i, box);
+                parallel.moveTo(i, box);
+            }
+        }
+        EXPECT_GT(changes, 10000U);
+        EXPECT_GT(parallelPairs.lastCost().grid.resting, 5000U);
+        EXPECT_GT(threadedFor.mostRanges(), 4U);
+        EXPECT_EQ(parallel.grid.validate(), "");
+        EXPECT_EQ(parallelPairs.validate(), "");
+    }
+}
+
+TYPED_TEST(PairsOnThreads, OfAGridAloneAreFiledTheSame) {
+    ThreadedFor threadedFor(4, 0x5eed0704);
+    Population<TypeParam> boxes;
+    addTwoSizes(boxes, 20000);
+    EXPECT_EQ(boxes.grid.update(threadedFor).filed, 20000U);
+    EXPECT_EQ(boxes.grid.validate(), "");
 }
 
 }  // namespace

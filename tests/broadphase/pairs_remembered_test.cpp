@@ -6,14 +6,14 @@
 #include <tests/support/count_allocations.hpp>
 #include <tests/support/out_of_memory.hpp>
 #include <tests/support/pair_world.hpp>
-#include <tests/support/random.hpp>
+#include <tests/support/population.hpp>
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace hashphase::test {
@@ -21,104 +21,71 @@ namespace {
 
 /// A crowd of which few are pairs, and which can disperse.
 template <class Scalar>
-class RefusedCrowd {
-public:
+struct RefusedCrowd : Population<Scalar, PairWorld> {
+    static constexpr std::size_t kCount = 130;
+
     explicit RefusedCrowd(std::uint32_t seed, const GridConfig& config = {})
-        : world(config, [this](ProxyId a, ProxyId b) { return accepts(a, b); }), random(seed) {
-        for (int i = 0; i < kCount; ++i) {
-            add();
+        : Population<Scalar, PairWorld>(config) {
+        this->random = Random(seed);
+        addUpTo(kCount);
+    }
+    Aabb<Scalar> draw() { return boxesIn<Scalar>(-reach, reach, 0.8, 1.2)(this->random); }
+    void addUpTo(std::size_t count) {
+        while (this->proxies.size() < count) {
+            this->add(draw(), this->random.chance(0.3) ? Mobility::resting : Mobility::mobile);
+            paintAny(this->proxies.size() - 1);
         }
     }
-
-    static constexpr int kCount = 130;
-
-    [[nodiscard]] bool accepts(ProxyId a, ProxyId b) const {
-        return coloursPair(colours[a.index], colours[b.index]);
+    void paintAny(std::size_t i) {
+        this->paint(i, this->random.chance(0.95) ? 1 : this->random.below(3));
     }
-    [[nodiscard]] Aabb<Scalar> draw() {
-        return boxAround<Scalar>(random.pointIn(-reach, reach), random.pointIn(0.8, 1.2));
-    }
-    void add() {
-        const Aabb<Scalar> box = draw();
-        const auto mobility = random.chance(0.3) ? Mobility::resting : Mobility::mobile;
-        proxies.push_back({world.add(box, mobility), box});
-        colour(proxies.back());
-    }
-    void colour(Placed<Scalar>& proxy) {
-        proxy.colour = random.chance(0.95) ? 1 : random.below(3);
-        colours.resize(std::max<std::size_t>(colours.size(), proxy.id.index + 1));
-        colours[proxy.id.index] = proxy.colour;
-    }
-    void move(double share) {
-        for (Placed<Scalar>& proxy : proxies) {
-            if (random.chance(share)) {
-                proxy.box = draw();
-                world.move(proxy.id, proxy.box);
+    void moveSome(double share) {
+        for (std::size_t i = 0; i < this->proxies.size(); ++i) {
+            if (this->random.chance(share)) {
+                this->moveTo(i, draw());
             }
         }
     }
     void replaceSome() {
         for (int i = 0; i < 3; ++i) {
-            Placed<Scalar>& victim = any();
-            world.remove(victim.id);
-            victim = proxies.back();
-            proxies.pop_back();
-            add();
+            this->removeAt(this->any());
         }
+        addUpTo(kCount);
     }
     void setSomeGroups() {
         constexpr std::array kAll{ProxyGroups{}, ProxyGroups{2, 1}, ProxyGroups{4, 0}};
         for (int i = 0; i < 4; ++i) {
-            world.setGroups(any().id, kAll[random.below(kAll.size())]);
+            this->setGroups(anyId(), kAll[this->random.below(kAll.size())]);
         }
     }
     void sweepSome() {
         for (int i = 0; i < 5; ++i) {
-            const Vector3<Scalar> way = random.pointIn(-3, 3).template cast<Scalar>();
-            world.sweep(any().id, way, random.chance(0.2) ? Sweep::automatic : Sweep::none);
+            const Vector3<Scalar> way = this->random.pointIn(-3, 3).template cast<Scalar>();
+            const bool begins = this->random.chance(0.2);
+            this->sweep(anyId(), way, begins ? Sweep::automatic : Sweep::none);
         }
     }
     void askAgain() {
-        world.findPairsNow(any().id);
+        this->findPairsNow(anyId());
         std::array<ProxyId, 3> ids;
         for (ProxyId& id : ids) {
-            Placed<Scalar>& proxy = any();
-            colour(proxy);
-            id = proxy.id;
+            const std::size_t i = this->any();
+            paintAny(i);
+            id = this->proxies[i].id;
         }
-        switch (random.below(3)) {
-            case 0:
-                world.refilterAll();
-                break;
-            case 1:
-                world.refilter(ids);
-                break;
-            default:
-                for (const ProxyId id : ids) {
-                    world.refilter(id);
-                }
+        const std::uint32_t form = this->random.below(3);
+        if (form == 0) {
+            this->refilterAll();
+        } else if (form == 1) {
+            this->refilter(ids);
+        }
+        for (std::size_t i = 0; form == 2 && i < ids.size(); ++i) {
+            this->refilter(ids[i]);
         }
     }
-    void shift() {
-        const Vector3<Scalar> by(Scalar(0.5), Scalar(-2), Scalar(1));
-        world.shiftOrigin(by);
-        for (Placed<Scalar>& proxy : proxies) {
-            proxy.box = {proxy.box.min() - by, proxy.box.max() - by};
-        }
-    }
-    [[nodiscard]] Placed<Scalar>& any() {
-        return proxies[random.below(static_cast<std::uint32_t>(proxies.size()))];
-    }
-    void update() {
-        world.update();
-        world.checkThoroughly(proxies);
-    }
+    [[nodiscard]] ProxyId anyId() { return this->proxies[this->any()].id; }
 
     double reach = 0.7;  // [m]: everything overlaps everything
-    PairWorld<Scalar> world;
-    Random random;
-    std::vector<std::uint32_t> colours;
-    std::vector<Placed<Scalar>> proxies;
 };
 
 template <class Scalar>
@@ -129,19 +96,17 @@ TYPED_TEST_SUITE(PairsOfRefusedCrowds, Scalars);
 TYPED_TEST(PairsOfRefusedCrowds, EqualBruteForceAsTheyGatherAndDisperse) {
     for (std::uint32_t seed = 1; seed <= 6; ++seed) {
         SCOPED_TRACE(seed);
-        GridConfig config;
-        config.updatesBeforeRest = 2;
-        RefusedCrowd<TypeParam> crowd(seed, config);
+        RefusedCrowd<TypeParam> crowd(seed, {.updatesBeforeRest = 2});
         int remembered = 0;
         int changesOfSide = 0;
         constexpr int kPhase = 40;  // frames
         for (int frame = 0; frame < 4 * kPhase; ++frame) {
             SCOPED_TRACE(frame);
-            const bool before = crowd.world.pairs.remembersPairs();
+            const bool before = crowd.pairs.remembersPairs();
             const int inPhase = frame % kPhase;
             const bool isQuiet = inPhase > 10 && inPhase % 10 < 4;
             crowd.reach = frame / kPhase % 2 == 0 ? 0.7 : 30;
-            crowd.move(inPhase == 0 ? 1 : isQuiet ? 0 : 0.2);
+            crowd.moveSome(inPhase == 0 ? 1 : isQuiet ? 0 : 0.2);
             if (seed % 2 == 0 && !isQuiet) {
                 crowd.setSomeGroups();
             }
@@ -155,10 +120,11 @@ TYPED_TEST(PairsOfRefusedCrowds, EqualBruteForceAsTheyGatherAndDisperse) {
                 crowd.askAgain();
             }
             if (frame % 11 == 7) {
-                crowd.shift();
+                crowd.shift({TypeParam(0.5), -2, 1});
             }
-            ASSERT_NO_FATAL_FAILURE(crowd.update());
-            const bool after = crowd.world.pairs.remembersPairs();
+            crowd.updateAndCheck();
+            ASSERT_FALSE(this->HasFailure());
+            const bool after = crowd.pairs.remembersPairs();
             remembered += after ? 1 : 0;
             changesOfSide += before != after ? 1 : 0;
         }
@@ -169,148 +135,163 @@ TYPED_TEST(PairsOfRefusedCrowds, EqualBruteForceAsTheyGatherAndDisperse) {
 }
 
 TYPED_TEST(PairsOfRefusedCrowds, EqualBruteForceWhereTheyComeToRestOneByOne) {
-    GridConfig config;
-    config.updatesBeforeRest = 1;
-    RefusedCrowd<TypeParam> crowd(7, config);
+    RefusedCrowd<TypeParam> crowd(7, {.updatesBeforeRest = 1});
     crowd.reach = 30;
-    crowd.move(1);
-    for (int frame = 0; frame < 200; ++frame) {
+    crowd.moveSome(1);
+    crowd.reach = 0.7;
+    for (std::size_t frame = 0; frame < 200; ++frame) {
         SCOPED_TRACE(frame);
-        if (frame < RefusedCrowd<TypeParam>::kCount) {
-            crowd.reach = 0.7;
-            Placed<TypeParam>& next = crowd.proxies[static_cast<std::size_t>(frame)];
-            next.box = crowd.draw();
-            crowd.world.move(next.id, next.box);
+        if (frame < crowd.kCount) {
+            crowd.moveTo(frame, crowd.draw());
         } else {
-            crowd.move(frame % 7 == 0 ? 0.05 : 0);
+            crowd.moveSome(frame % 7 == 0 ? 0.05 : 0);
         }
-        ASSERT_NO_FATAL_FAILURE(crowd.update());
+        crowd.updateAndCheck();
+        ASSERT_FALSE(this->HasFailure());
     }
-    EXPECT_TRUE(crowd.world.pairs.remembersPairs());
+    EXPECT_TRUE(crowd.pairs.remembersPairs());
 }
 
+TEST(RefusedCrowdOutOfMemory, IsRepeated) {
+    if (!kCountsAllocations) {
+        GTEST_SKIP() << "this program has another `new`";
+    }
+    using Crowd = RefusedCrowd<float>;
+    const std::size_t failures = runOutOfMemory(
+        [] {
+            auto crowd = std::make_unique<Crowd>(8);
+            crowd->update();
+            crowd->moveSome(0.3);
+            crowd->addUpTo(180);
+            crowd->removeAt(1);
+            return crowd;
+        },
+        [](Crowd& crowd) {
+            updatePairsInWant(crowd);
+            crowd.grid.move(crowd.proxies[2].id, crowd.proxies[2].box = crowd.draw());
+            updatePairsInWant(crowd);
+        },
+        [](Crowd& crowd, std::size_t) {
+            crowd.update();
+            crowd.check(crowd.proxies);
+            EXPECT_EQ(crowd.pairs.validate(), "");
+        });
+    EXPECT_GE(failures, 30U);
+}
+
+// --- Piles at one place --------------------------------------------------------------------------
+
 /// So many in one place, of which the filter lets none pair.
-struct RefusedPileWorld {
-    explicit RefusedPileWorld(std::uint32_t count) {
+struct RefusedPile : testing::Test {
+    void addMany(std::uint32_t count) {
         for (std::uint32_t i = 0; i < count; ++i) {
             ids.push_back(grid.add(box));
         }
-        bytesOfBoxes = bytesHeld();
     }
-    PairChanges update() {
-        return pairs.update([&](ProxyId a, ProxyId b) {
-            ++asked;
-            return accept(a, b);
-        });
+    PairChanges update() { return pairs.update(filter); }
+    void moveUpTo(std::size_t i, double top) {
+        grid.move(ids[i], makeBox<float>(0, 0, 0, 1, 1, top));
     }
 
     Aabb<float> box = makeBox<float>(0, 0, 0, 1, 1, 1);
     std::function<bool(ProxyId, ProxyId)> accept = [](ProxyId, ProxyId) { return false; };
     std::size_t asked = 0;
+    std::function<bool(ProxyId, ProxyId)> filter = [this](ProxyId a, ProxyId b) {
+        ++asked;
+        return accept(a, b);
+    };
     Grid<float> grid;
     Pairs<float> pairs{grid};
     std::vector<ProxyId> ids;
-    std::size_t bytesOfBoxes = 0;
 };
 
-TEST(RefusedPile, TakesNoMemoryBeyondItsBoxes) {
+TEST_F(RefusedPile, TakesNoMemoryBeyondItsBoxes) {
     constexpr std::uint32_t kCount = 4000;
-    RefusedPileWorld pile(kCount);
+    addMany(kCount);
     for (int i = 0; i < 3; ++i) {
-        pile.update();
-        EXPECT_LT(pile.pairs.memoryBytes(), std::size_t{4} << 20);
+        update();
+        EXPECT_LT(pairs.memoryBytes(), std::size_t{4} << 20);
     }
-    EXPECT_EQ(pile.asked, std::size_t{kCount} * (kCount - 1) / 2);
-    pile.pairs.releaseUnusedMemory();
-    EXPECT_LT(pile.pairs.memoryBytes(), std::size_t{128} << 10);
+    EXPECT_EQ(asked, std::size_t{kCount} * (kCount - 1) / 2);
+    pairs.releaseUnusedMemory();
+    EXPECT_LT(pairs.memoryBytes(), std::size_t{128} << 10);
 }
 
-TEST(RefusedPile, CountsThePairsItRemembersAndGivesBackTheirRoomWhenTheyHaveGone) {
-    constexpr std::uint32_t kCount = 1500;
-    RefusedPileWorld pile(kCount);
-    pile.accept = [](ProxyId a, ProxyId /*b*/) { return a.index < 200; };
-    pile.update();
-    ASSERT_TRUE(pile.pairs.remembersPairs());
-    const std::size_t many = pile.pairs.count();
+TEST_F(RefusedPile, CountsThePairsItRemembersAndGivesBackTheirRoomWhenTheyHaveGone) {
+    addMany(1500);
+    accept = [](ProxyId a, ProxyId /*b*/) { return a.index < 200; };
+    update();
+    ASSERT_TRUE(pairs.remembersPairs());
+    const std::size_t many = pairs.count();
     ASSERT_GT(many, 200'000U);
-    pile.pairs.releaseUnusedMemory();
-    EXPECT_GT(pile.pairs.memoryBytes(), 15 * many);
-    EXPECT_LT(pile.pairs.memoryBytes(), 40 * many);
-    pile.accept = [](ProxyId, ProxyId) { return false; };
-    pile.pairs.refilterAll(pile.accept);
-    EXPECT_EQ(pile.pairs.count(), 0U);
+    pairs.releaseUnusedMemory();
+    EXPECT_GT(pairs.memoryBytes(), 15 * many);
+    EXPECT_LT(pairs.memoryBytes(), 40 * many);
+    accept = [](ProxyId, ProxyId) { return false; };
+    pairs.refilterAll(filter);
+    EXPECT_EQ(pairs.count(), 0U);
     for (int i = 0; i < 300; ++i) {
-        pile.grid.move(pile.ids[5], makeBox<float>(0, 0, 0, 1, 1, 1 + 0.001 * i));
-        pile.update();
+        moveUpTo(5, 1 + 0.001 * i);
+        update();
     }
-    EXPECT_TRUE(pile.pairs.remembersPairs());
-    EXPECT_LT(pile.pairs.memoryBytes(), 2 * many);
+    EXPECT_TRUE(pairs.remembersPairs());
+    EXPECT_LT(pairs.memoryBytes(), 2 * many);
 }
 
-TEST(RefusedPile, RefiltersAFewAtTheirOwnCost) {
-    constexpr std::uint32_t kCount = 1000;
-    RefusedPileWorld pile(kCount);
-    pile.update();
-    ASSERT_TRUE(pile.pairs.remembersPairs());
-    std::size_t asked = 0;
-    const auto acceptAndCount = [&](ProxyId, ProxyId) {
-        ++asked;
-        return true;
-    };
-    const std::array ids{pile.ids[3], pile.ids[7], pile.ids[3]};
-    EXPECT_EQ(pile.pairs.refilter(ids, acceptAndCount).born.size(), 2 * kCount - 3);
-    EXPECT_EQ(asked, 2 * kCount - 3) << "each once";
-    EXPECT_EQ(pile.pairs.validate(), "");
-}
-
-TEST(RefusedPile, AsksAboutWhatHasChangedOnly) {
+TEST_F(RefusedPile, AsksAboutWhatHasChangedOnly) {
     constexpr std::uint32_t kCount = 2000;
-    RefusedPileWorld pile(kCount);
-    pile.update();
+    addMany(kCount);
+    update();
     for (const bool isBack : {false, true, false}) {
-        pile.asked = 0;
-        pile.grid.move(pile.ids[5], isBack ? pile.box : makeBox<float>(9, 0, 0, 10, 1, 1));
-        pile.update();
-        EXPECT_EQ(pile.asked, isBack ? kCount - 1 : 0U);
-        EXPECT_EQ(pile.pairs.validate(), "");
+        asked = 0;
+        grid.move(ids[5], isBack ? box : makeBox<float>(9, 0, 0, 10, 1, 1));
+        update();
+        EXPECT_EQ(asked, isBack ? kCount - 1 : 0U);
+        EXPECT_EQ(pairs.validate(), "");
     }
+    grid.move(ids[5], box);
+    update();
+    // Of a few that are asked about again, each pair once.
+    asked = 0;
+    accept = [](ProxyId, ProxyId) { return true; };
+    const std::array few{ids[3], ids[7], ids[3]};
+    EXPECT_EQ(pairs.refilter(few, filter).born.size(), 2 * kCount - 3);
+    EXPECT_EQ(asked, 2 * kCount - 3);
+    EXPECT_EQ(pairs.validate(), "");
 }
 
-TEST(RefusedPile, BeginsAndEndsPairsByRefilter) {
+TEST_F(RefusedPile, BeginsAndEndsPairsByRefilter) {
     constexpr std::uint32_t kCount = 300;
-    RefusedPileWorld pile(kCount);
-    pile.update();
-    ASSERT_TRUE(pile.pairs.remembersPairs());
-    pile.accept = [&](ProxyId a, ProxyId /*b*/) { return a == pile.ids[0]; };
-    const auto filter = [&](ProxyId a, ProxyId b) { return pile.accept(a, b); };
-    EXPECT_EQ(pile.pairs.refilter(pile.ids[3], filter).born.size(), 1U);
-    EXPECT_EQ(pile.pairs.refilterAll(filter).born.size(), kCount - 2);
-    EXPECT_EQ(pile.pairs.count(), kCount - 1);
-    pile.grid.remove(pile.ids[9]);
-    EXPECT_EQ(pile.update().died.size(), 1U);
-    pile.accept = [](ProxyId, ProxyId) { return false; };
-    EXPECT_EQ(pile.pairs.refilterAll(filter).died.size(), kCount - 2);
-    EXPECT_EQ(pile.pairs.validate(), "");
+    addMany(kCount);
+    update();
+    ASSERT_TRUE(pairs.remembersPairs());
+    accept = [&](ProxyId a, ProxyId /*b*/) { return a == ids[0]; };
+    EXPECT_EQ(pairs.refilter(ids[3], filter).born.size(), 1U);
+    EXPECT_EQ(pairs.refilterAll(filter).born.size(), kCount - 2);
+    EXPECT_EQ(pairs.count(), kCount - 1);
+    grid.remove(ids[9]);
+    EXPECT_EQ(update().died.size(), 1U);
+    accept = [](ProxyId, ProxyId) { return false; };
+    EXPECT_EQ(pairs.refilterAll(filter).died.size(), kCount - 2);
+    EXPECT_EQ(pairs.validate(), "");
 }
 
 // Two that sweep may each find the other, one of them, or neither, by the boxes that they have in the grid.
-TEST(RefusedPile, AsksOnceAboutTwoThatSweep) {
+TEST(RefusedPileOfSweeps, AsksOnceAboutTwoThatSweep) {
     PairWorld<float> world({}, [](ProxyId, ProxyId) { return false; });
     Random random(0x5eed0d31);
-    const auto box = [&] {
-        return boxAround<float>(random.pointIn(-0.7, 0.7), random.pointIn(0.8, 1.2));
-    };
+    const auto draw = boxesIn<float>(-0.7, 0.7, 0.8, 1.2);
     for (int i = 0; i < 200; ++i) {
-        world.add(box());
+        world.add(draw(random));
     }
     world.update();
     ASSERT_TRUE(world.pairs.remembersPairs());
     std::vector<ProxyId> sweepers;
     for (int i = 0; i < 300; ++i) {
-        sweepers.push_back(world.add(box()));
+        sweepers.push_back(world.add(draw(random)));
         if (random.chance(0.8)) {
-            const MovingBox<float> way{box(), {5, 0, 0}};
-            world.sweep(sweepers.back(), way, Sweep::automatic);
+            world.sweep(sweepers.back(), MovingBox<float>{draw(random), {5, 0, 0}},
+                        Sweep::automatic);
         }
     }
     world.refilterAll();
@@ -320,77 +301,29 @@ TEST(RefusedPile, AsksOnceAboutTwoThatSweep) {
 }
 
 // A pile of pairs is asked in parts once; what follows is as fast as ever.
-TEST(RefusedPile, WhoseRefusedAreFewRemembersThem) {
-    RefusedPileWorld pile(300);
-    pile.accept = [](ProxyId, ProxyId) { return true; };
-    EXPECT_EQ(pile.update().born.size(), 300U * 299 / 2);
-    EXPECT_FALSE(pile.pairs.remembersPairs());
-    EXPECT_EQ(pile.pairs.validate(), "");
-    pile.asked = 0;
-    pile.grid.move(pile.ids[7], makeBox<float>(0.5F, 0, 0, 1.5F, 1, 1));
-    EXPECT_TRUE(pile.update().born.empty());
-    EXPECT_EQ(pile.asked, 0U);
+TEST_F(RefusedPile, WhoseRefusedAreFewRemembersThem) {
+    addMany(300);
+    accept = [](ProxyId, ProxyId) { return true; };
+    EXPECT_EQ(update().born.size(), 300U * 299 / 2);
+    EXPECT_FALSE(pairs.remembersPairs());
+    EXPECT_EQ(pairs.validate(), "");
+    asked = 0;
+    moveUpTo(7, 1.5);
+    EXPECT_TRUE(update().born.empty());
+    EXPECT_EQ(asked, 0U);
 }
 
-TEST(RefusedPile, OfWhichPairsAreAnnouncedIsBounded) {
-    RefusedPileWorld pile(0);
+TEST_F(RefusedPile, OfWhichPairsAreAnnouncedIsBounded) {
     constexpr std::uint32_t kCount = 2000;
-    std::size_t asked = 0;
     for (std::uint32_t i = 0; i < kCount; ++i) {
-        pile.ids.push_back(pile.grid.add(pile.box));
-        pile.pairs.findPairsNow(pile.ids.back(), [&](ProxyId, ProxyId) {
-            ++asked;
-            return false;
-        });
+        addMany(1);
+        pairs.findPairsNow(ids.back(), filter);
     }
     EXPECT_GE(asked, std::size_t{kCount} * (kCount - 1) / 2);
-    EXPECT_LT(pile.pairs.memoryBytes(), std::size_t{6} << 20);
-    pile.update();
-    EXPECT_EQ(pile.pairs.validate(), "");
-    EXPECT_EQ(pile.pairs.count(), 0U);
-}
-
-TEST(RefusedPile, IsRepeatedWhereMemoryRunsOut) {
-    if (!kCountsAllocations) {
-        GTEST_SKIP() << "this program has another `new`";
-    }
-    const std::size_t failures = runOutOfMemory(
-        [] {
-            auto pile = std::make_unique<RefusedPileWorld>(90);
-            pile->accept = [](ProxyId a, ProxyId b) { return (a.index + b.index) % 16 == 0; };
-            pile->update();
-            for (std::uint32_t i = 0; i < 90; i += 3) {
-                pile->grid.move(pile->ids[i], makeBox<float>(0.25F, 0, 0, 1.25F, 1, 1));
-            }
-            for (int i = 0; i < 60; ++i) {
-                pile->ids.push_back(pile->grid.add(pile->box));
-            }
-            pile->grid.remove(pile->ids[1]);
-            return pile;
-        },
-        [](RefusedPileWorld& pile) {
-            pile.update();
-            pile.grid.move(pile.ids[2], makeBox<float>(5, 0, 0, 6, 1, 1));
-            pile.update();
-        },
-        [](RefusedPileWorld& pile, std::size_t) {
-            pile.update();
-            pile.update();
-            EXPECT_EQ(pile.pairs.validate(), "");
-            std::size_t expected = 0;
-            for (std::size_t a = 0; a < pile.ids.size(); ++a) {
-                for (std::size_t b = a + 1; b < pile.ids.size(); ++b) {
-                    expected +=
-                        pile.grid.contains(pile.ids[a]) && pile.grid.contains(pile.ids[b]) &&
-                                overlaps(pile.grid.box(pile.ids[a]), pile.grid.box(pile.ids[b])) &&
-                                pile.accept(pile.ids[a], pile.ids[b])
-                            ? 1
-                            : 0;
-                }
-            }
-            EXPECT_EQ(pile.pairs.count(), expected);
-        });
-    EXPECT_GE(failures, 30U);
+    EXPECT_LT(pairs.memoryBytes(), std::size_t{6} << 20);
+    update();
+    EXPECT_EQ(pairs.validate(), "");
+    EXPECT_EQ(pairs.count(), 0U);
 }
 
 }  // namespace

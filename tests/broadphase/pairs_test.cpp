@@ -1,292 +1,166 @@
 // SPDX-License-Identifier: Zlib
 
-#include <tests/support/box_scenes.hpp>
-#include <tests/support/handlers.hpp>
-#include <tests/support/pair_world.hpp>
+// What pairs tell of a few cubes: from one update to the next, at once, when the filter is asked again, when
+// groups are set, and of what sweeps.
+
+#include <tests/support/cube_stories.hpp>
 
 #include <gtest/gtest.h>
 
-#include <limits>
-#include <memory>
+#include <algorithm>
+#include <functional>
+#include <span>
+#include <string>
 #include <vector>
 
 namespace hashphase::test {
 namespace {
 
-using Box = Aabb<float>;
+struct Story {
+    const char* name;
+    const char* words;  // tests/support/cube_stories.hpp
+};
 
-Box cubeAt(double x, double y = 0, double z = 0) {
-    return makeBox<float>(x, y, z, x + 1, y + 1, z + 1);
+class Stories : public testing::TestWithParam<Story> {};
+
+TEST_P(Stories, Hold) {
+    expectStory(GetParam().words);
 }
 
-Box nanCube() {
-    Box box = cubeAt(0);
-    box.max()[1] = std::numeric_limits<float>::quiet_NaN();
-    return box;
+std::string nameOf(const testing::TestParamInfo<Story>& info) {
+    return info.param.name;
 }
 
-std::vector<ProxyPair> listOf(std::span<const ProxyPair> pairs) {
-    return {pairs.begin(), pairs.end()};
-}
+constexpr Story kPairs[] = {
+    {"AreBornWhenBoxesTouchAndDieWhenTheyPart",
+     "| a=0 b=3 | b=1 | +ab | b=1.0000000000000002 | -ab |"},
+    {"ThatPartAndMeetAgainBetweenUpdatesAreNotToldAbout", "a=0 b=0.5 | +ab z a=9 a=0.25 |"},
+    {"ThatMeetOnlyBetweenUpdatesAreNotToldAbout", "a=9 b=0 | z a=0 a=5 | c=0 c- |"},
+    {"OfARemovedProxyDieUnderItsOldId", "a=0 b=0.5 | +ab z b- c=0.5 | -ab +ac"},
+    {"NeverMixUpTheProxiesThatFollowEachOtherInOneSlot",
+     "a=0 b=0.5 | +ab b- | -ab c=5 | c- d=0.5 | +ad d- | -ad e=0.5 | +ae e- f=5 | -ae"},
+    {"OfTwoProxiesRemovedTogetherDieOnce", "a=0 b=0.5 | +ab z a- b- | -ab"},
+    {"OfAProxyMovedAndThenRemovedDieOnce", "a=0 b=0.5 | +ab z b=0.75 b- | -ab"},
+    {"OfABoxWithNanDieAndAreBornAgainWhenItHeals", "a=0 b=0.5 | +ab b=nan | -ab z b=0.5 | +ab"},
+};
+INSTANTIATE_TEST_SUITE_P(Pairs, Stories, testing::ValuesIn(kPairs), nameOf);
 
-TEST(Pairs, OfAnEmptyGridAreNone) {
-    PairWorld<float> world;
-    const PairChanges changes = world.update();
-    EXPECT_TRUE(changes.born.empty());
-    EXPECT_TRUE(changes.died.empty());
-    world.checkThoroughly({});
-}
+constexpr Story kPairsNow[] = {
+    {"AreToldAtOnceAndNotAgainByTheUpdate", "a=0 | z b=0.5 b! +ab |"},
+    {"AreNotToldTwice", "a=0 b=0.5 a! +ab a! b! |"},
+    {"AreTakenBackWhenTheBoxesHaveParted", "a=0 b=0.5 b! +ab b=7 | -ab"},
+    {"AreTakenBackWhenOneWasRemoved", "a=0 b=0.5 b! +ab b- | -ab"},
+    {"OfWhatCameAndWentAreToldOnce", "a=0 | b=0.5 b! +ab b- c=0.25 | -ab +ac"},
+    {"AreThoseOfProxiesAtRestToo", "a:0 | z b=0.5 b! +ab | z b=10 | -ab"},
+};
+INSTANTIATE_TEST_SUITE_P(PairsNow, Stories, testing::ValuesIn(kPairsNow), nameOf);
 
-TEST(Pairs, AreBornWhenBoxesComeToTouchAndDieWhenTheyPart) {
-    PairWorld<float> world;
-    const ProxyId a = world.add(cubeAt(0));
-    const ProxyId b = world.add(cubeAt(3));
-    EXPECT_TRUE(world.update().born.empty());
+constexpr Story kFilter[] = {
+    {"IsAskedOnceWhileTheBoxesOverlap", "a=0 b=0.5 | +ab b=0.51 | z b=0.5 | b=0.6 |"},
+    {"IsAskedAgainAboutARefusedPairOnlyWhenOneOfThemChanged",
+     "a=0 b=0.5 a~1 b~1 | z b=0.51 | z a=0.1 | a~0 a=0 | +ab"},
+    {"MakesNoDeathOfARefusedPairThatParts", "a=0 b=0.5 a~1 b~1 | z b=5 |"},
+    {"MakesNoDeathOfARefusedPairOfWhichOneIsRemoved", "a=0 b=0.5 a~1 b~1 | z a- |"},
+};
+INSTANTIATE_TEST_SUITE_P(PairFilter, Stories, testing::ValuesIn(kFilter), nameOf);
 
-    world.move(b, cubeAt(1));  // they share a face
-    EXPECT_EQ(listOf(world.update().born), std::vector{makePair(a, b)});
-    EXPECT_TRUE(world.update().born.empty());
+constexpr Story kRefilter[] = {
+    {"EndsAndBeginsPairsAtOnceAlsoOfProxiesAtRest",
+     "a=0 b=0.5 | +ab z a~1 b~1 a? -ab z a~0 b? +ab z |"},
+    {"ThereAndBackWithinAFrameChangesNothing", "a=0 b=0.5 | +ab z a~1 b~1 a? -ab b~0 a? +ab |"},
+    {"WithTheSameFilterReportsNothing", "a=0 b=0.5 c=5 d=5.5 c~1 d~1 | +ab z a? c? ?? |"},
+    {"OfANewProxyTellsItsPairsOnce", "a=0 b=0.5 | +ab c=0.25 c? +ac +bc b~1 c~1 c? -bc |"},
+    {"DecidesAlsoForAPairThatIsApartForTheMoment", "a=0 b=0.5 | +ab z a=9 a~1 b~1 a? -ab a=0 |"},
+    {"OfAProxyThatMovedAwayLeavesTheDeathToTheUpdate", "a=0 b=0.5 | +ab z a=9 a? | -ab"},
+    {"OfAProxyWhosePartnerWasRemovedLeavesTheDeathToTheUpdate",
+     "a=0 b=0.5 | +ab z b- a~1 a? | -ab"},
+    {"CountsOnceWhatIsRefusedAtRestWhenOneHasWoken",
+     "a=0 b=0.5 a~1 b~1 | z b=0.25 a? | a~0 a? +ab | z b=0.5 a? |"},
+};
+INSTANTIATE_TEST_SUITE_P(Refilter, Stories, testing::ValuesIn(kRefilter), nameOf);
 
-    world.move(b, makeBox<float>(std::nextafter(1.0F, 2.0F), 0, 0, 2, 1, 1));
-    EXPECT_EQ(listOf(world.update().died), std::vector{makePair(a, b)});
-    EXPECT_TRUE(world.update().died.empty());
-}
+constexpr Story kGroups[] = {
+    {"BeginAPairWhenTheyAreSetSoThatItMayBe", "a=0 b=0.5 a#parked | z a#moving | +ab |"},
+    {"KeepAPairUntilItPartsWhenTheyAreSetSoThatItMayNotBe",
+     "a=0 b=0.5 | +ab z b#parked | z b=0.7 | b=9 | -ab b=0.5 |"},
+    {"KeepAPairThatMayBeAgainWithoutAskingTheFilter",
+     "a=0 b=0.5 | +ab z b#parked | z b#moving | z b=9 | -ab"},
+    {"EndAPairByRefilter",
+     "a=0 b=0.5 | +ab b#parked z a? -ab | b#moving | +ab b#parked z ?? -ab | b#moving | +ab"},
+};
+INSTANTIATE_TEST_SUITE_P(PairGroups, Stories, testing::ValuesIn(kGroups), nameOf);
 
-TEST(Pairs, ThatPartAndMeetAgainBetweenUpdatesAreNotToldAbout) {
-    PairWorld<float> world;
-    const ProxyId a = world.add(cubeAt(0));
-    world.add(cubeAt(0.5));
-    world.update();
-    world.move(a, cubeAt(9));
-    world.move(a, cubeAt(0.25));
-    const PairChanges changes = world.update();
-    EXPECT_TRUE(changes.born.empty());
-    EXPECT_TRUE(changes.died.empty());
-    EXPECT_EQ(world.pairs.count(), 1U);
-}
+constexpr Story kSweeps[] = {
+    {"FollowWhoStopsIsRemovedAndComesAgain",
+     "w:50 a=0 a>100 | +aw z a>0 | -aw a>100 | +aw a- | -aw b=0 | b>100 | +bw w- | -bw"},
+    {"MakePairsThatLiveOnWhenTheyOverlapLater", "b=10 a=4 a>6 | +ab a=10 | a=16 a>-6 | a>6 | -ab"},
+    {"AreAnnouncedWhereTheirWaysBegin",
+     "a=0 a>100 b=0.5 c=50 c! a! +ab b! | +ac a! a? z b- a? | -ab"},
+};
+INSTANTIATE_TEST_SUITE_P(Sweeps, Stories, testing::ValuesIn(kSweeps), nameOf);
 
-TEST(Pairs, ThatMeetOnlyBetweenUpdatesAreNotToldAbout) {
-    PairWorld<float> world;
-    const ProxyId a = world.add(cubeAt(9));
-    world.add(cubeAt(0));
-    world.update();
-    world.move(a, cubeAt(0));
-    world.move(a, cubeAt(5));
-    EXPECT_TRUE(world.update().born.empty());
-    const ProxyId brief = world.add(cubeAt(0));
-    world.remove(brief);
-    const PairChanges changes = world.update();
-    EXPECT_TRUE(changes.born.empty());
-    EXPECT_TRUE(changes.died.empty());
-}
-
-TEST(Pairs, OfARemovedProxyDieUnderItsOldId) {
-    PairWorld<float> world;
-    const ProxyId a = world.add(cubeAt(0));
-    const ProxyId b = world.add(cubeAt(0.5));
-    world.update();
-    world.remove(b);
-    const ProxyId successor = world.add(cubeAt(0.5));
-    const PairChanges changes = world.update();
-    EXPECT_EQ(listOf(changes.died), std::vector{makePair(a, b)});
-    EXPECT_EQ(listOf(changes.born), std::vector{makePair(a, successor)});
-}
-
-TEST(Pairs, NeverMixUpTheProxiesThatFollowEachOtherInOneSlot) {
-    PairWorld<float> world;
-    const ProxyId fixed = world.add(cubeAt(0));
-    ProxyId guest = world.add(cubeAt(0.5));
-    world.update();
-    bool isSlotUsedAgain = false;
-    for (int i = 0; i < 20; ++i) {
-        const ProxyId previous = guest;
-        world.remove(previous);
-        if (i % 2 == 0) {
-            world.update();  // the slot is free from here on
-        }
-        guest = world.add(cubeAt(i % 3 == 0 ? 5 : 0.5));
-        world.update();
-        isSlotUsedAgain = isSlotUsedAgain || guest.index == previous.index;
-        world.checkThoroughly(std::vector<Placed<float>>{{fixed, world.grid.box(fixed)},
-                                                         {guest, world.grid.box(guest)}});
-        ASSERT_FALSE(HasFatalFailure());
-    }
-    EXPECT_TRUE(isSlotUsedAgain);
-}
-
-TEST(Pairs, OfTwoProxiesRemovedTogetherDieOnce) {
-    PairWorld<float> world;
-    const ProxyId a = world.add(cubeAt(0));
-    const ProxyId b = world.add(cubeAt(0.5));
-    for (int i = 0; i < 30; ++i) {
-        world.update();  // long at rest
-    }
-    world.remove(a);
-    world.remove(b);
-    EXPECT_EQ(listOf(world.update().died), std::vector{makePair(a, b)});
-    EXPECT_EQ(world.pairs.count(), 0U);
-}
-
-TEST(Pairs, OfAProxyMovedAndThenRemovedDieOnce) {
-    PairWorld<float> world;
-    const ProxyId a = world.add(cubeAt(0));
-    const ProxyId b = world.add(cubeAt(0.5));
-    world.update();
-    world.move(b, cubeAt(0.75));
-    world.remove(b);
-    EXPECT_EQ(listOf(world.update().died), std::vector{makePair(a, b)});
-}
+// --- Many ----------------------------------------------------------------------------------------
 
 TEST(Pairs, OfIdenticalBoxesAreAllOfThem) {
-    PairWorld<double> world;
+    Grid<double> grid;
+    Pairs<double> pairs(grid);
     constexpr std::size_t kCount = 2000;
     for (std::size_t i = 0; i < kCount; ++i) {
-        world.add(makeBox<double>(1, 2, 3, 1, 2, 3));
+        static_cast<void>(grid.add(makeBox<double>(1, 2, 3, 1, 2, 3)));
     }
-    const PairChanges changes = world.pairs.update([](ProxyId, ProxyId) { return true; });
+    const PairChanges changes = pairs.update();
     EXPECT_EQ(changes.born.size(), kCount * (kCount - 1) / 2);
     EXPECT_EQ(std::adjacent_find(changes.born.begin(), changes.born.end(), std::greater_equal<>()),
               changes.born.end());
 }
 
-TEST(Pairs, AreReportedOnceThoughBoxesTouchInTheCornerOfEightCells) {
-    GridConfig config;
-    config.cellSize = 1;
-    PairWorld<float> world(config);
-    std::vector<Placed<float>> proxies;
-    // Enough around the corner that no level is thin, eight of them touching in it.
-    for (int x = -2; x < 2; ++x) {
-        for (int y = -2; y < 2; ++y) {
-            for (int z = -2; z < 2; ++z) {
-                const Box box = cubeAt(x, y, z);
-                proxies.push_back({world.add(box), box});
-            }
+TEST(PairFilter, OfManyAtOnceDecidesAsOneByOneDoes) {
+    const auto isAccepted = [](ProxyId a, ProxyId b) { return (a.index ^ b.index) % 3 != 0; };
+    PairWorld<double> oneByOne({}, isAccepted);
+    Grid<double> grid;
+    Pairs<double> pairs(grid);
+    std::size_t calls = 0;
+    const auto ask = [&](std::span<const ProxyPair> asked, std::span<char> accepted) {
+        ++calls;
+        ASSERT_EQ(asked.size(), accepted.size());
+        for (std::size_t i = 0; i < asked.size(); ++i) {
+            EXPECT_EQ(accepted[i], 0);
+            accepted[i] = isAccepted(asked[i].first, asked[i].second) ? 1 : 0;
         }
-    }
-    world.update();
-    world.checkThoroughly(proxies);
-}
-
-TEST(Pairs, OfABoxWithNanDieAndAreBornAgainWhenItHeals) {
-    const CaughtMessages messages;
-    PairWorld<float> world;
-    const ProxyId a = world.add(cubeAt(0));
-    const ProxyId b = world.add(cubeAt(0.5));
-    world.update();
-    world.move(b, nanCube());
-    EXPECT_EQ(listOf(world.update().died), std::vector{makePair(a, b)});
-    EXPECT_EQ(world.grid.nanCount(), 1U);
-    world.move(b, cubeAt(0.5));
-    EXPECT_EQ(listOf(world.update().born), std::vector{makePair(a, b)});
-    EXPECT_EQ(world.grid.nanCount(), 0U);
-}
-
-// --- Announcing ----------------------------------------------------------------------------------
-
-TEST(FindPairsNow, TellsThePairsOfANewProxyAtOnceAndUpdateDoesNotRepeatThem) {
-    PairWorld<float> world;
-    const ProxyId a = world.add(cubeAt(0));
-    world.update();
-    const ProxyId b = world.add(cubeAt(0.5));
-    world.findPairsNow(b);
-    EXPECT_TRUE(world.set().contains(makePair(a, b)));
-    EXPECT_EQ(world.pairs.count(), 1U);
-    EXPECT_TRUE(world.update().born.empty());
-    EXPECT_EQ(world.set().size(), 1U);
-}
-
-TEST(FindPairsNow, TellsNothingTwice) {
-    PairWorld<float> world;
-    const ProxyId a = world.add(cubeAt(0));
-    const ProxyId b = world.add(cubeAt(0.5));
-    world.findPairsNow(a);
-    world.findPairsNow(a);
-    EXPECT_TRUE(world.asked().empty());
-    world.findPairsNow(b);
-    EXPECT_TRUE(world.asked().empty());
-    EXPECT_EQ(world.pairs.count(), 1U);
-}
-
-TEST(FindPairsNow, IsTakenBackByTheUpdateWhenTheBoxesHaveParted) {
-    PairWorld<float> world;
-    const ProxyId a = world.add(cubeAt(0));
-    const ProxyId b = world.add(cubeAt(0.5));
-    world.findPairsNow(b);
-    world.move(b, cubeAt(7));
-    EXPECT_EQ(listOf(world.update().died), std::vector{makePair(a, b)});
-    EXPECT_EQ(world.pairs.count(), 0U);
-}
-
-TEST(FindPairsNow, IsTakenBackByTheUpdateWhenOneWasRemoved) {
-    PairWorld<float> world;
-    const ProxyId a = world.add(cubeAt(0));
-    const ProxyId b = world.add(cubeAt(0.5));
-    world.findPairsNow(b);
-    world.remove(b);
-    EXPECT_EQ(listOf(world.update().died), std::vector{makePair(a, b)});
-}
-
-TEST(FindPairsNow, FindsProxiesAtRest) {
-    PairWorld<float> world;
-    const ProxyId a = world.add(cubeAt(0), Mobility::resting);
-    std::vector<Placed<float>> proxies{{a, cubeAt(0)}};
-    for (int i = 0; i < 200; ++i) {
-        const Box box = cubeAt(3 * i + 20);
-        proxies.push_back({world.add(box, Mobility::resting), box});
-    }
-    for (int i = 0; i < 30; ++i) {
-        world.move(proxies.back().id, cubeAt(5000 + i));
-        world.update();
-        world.checkThoroughly(proxies);
-    }
-    const ProxyId b = world.add(cubeAt(0.5));
-    world.findPairsNow(b);
-    EXPECT_EQ(world.set().count(makePair(a, b)), 1U);
-    EXPECT_TRUE(world.update().born.empty());
-    for (int i = 0; i < 30; ++i) {
-        EXPECT_TRUE(world.update().died.empty());
-    }
-    world.move(b, cubeAt(10));
-    EXPECT_EQ(listOf(world.update().died), std::vector{makePair(a, b)});
-}
-
-// --- Misuse --------------------------------------------------------------------------------------
-
-#if HASHPHASE_ENABLE_ASSERTS
-
-TEST(PairsDeathTest, TheirGridThatGoesBeforeThemIsAsserted) {
-    GTEST_FLAG_SET(death_test_style, "threadsafe");
-    const auto goesFirst = [] {
-        auto grid = std::make_unique<Grid<float>>();
-        const Pairs<float> pairs(*grid);
-        grid.reset();
     };
-    EXPECT_DEATH(goesFirst(), "A grid outlives its Pairs");
+    const auto cubeAt = [](double x) { return makeBox<double>(x, 0, 0, x + 1, 1, 1); };
+    std::vector<ProxyId> ids;
+    for (int i = 0; i < 60; ++i) {
+        ids.push_back(grid.add(cubeAt(0.4 * i)));
+        ASSERT_EQ(oneByOne.add(cubeAt(0.4 * i)), ids.back());
+    }
+    for (std::size_t frame = 0; frame < 20; ++frame) {
+        for (std::size_t i = frame % 2; i < ids.size(); i += 2) {
+            const auto box = cubeAt(0.4 * static_cast<double>((i * 7 + frame) % ids.size()));
+            grid.move(ids[i], box);
+            oneByOne.move(ids[i], box);
+        }
+        calls = 0;
+        const PairChanges changes = pairs.update(ask);
+        const PairChanges expected = oneByOne.update();
+        ASSERT_TRUE(std::ranges::equal(changes.born, expected.born));
+        ASSERT_TRUE(std::ranges::equal(changes.died, expected.died));
+        EXPECT_EQ(calls, 1U);
+        EXPECT_EQ(pairs.refusedCount(), oneByOne.pairs.refusedCount());
+        ASSERT_EQ(pairs.validate(), "");
+    }
+    EXPECT_GT(pairs.count(), 0U);
 }
 
-TEST(Pairs, MisuseIsAsserted) {
-    const ThrowingAsserts throwing;
-    PairWorld<float> world;
-    EXPECT_THROW(Pairs<float> second(world.grid), BrokenAssert);
-    const ProxyId id = world.add(cubeAt(0));
-    std::vector<ProxyPair> pairs;
-    EXPECT_THROW(world.pairs.collect(pairs), BrokenAssert);
-    world.update();
-    world.remove(id);
-    const auto all = [](ProxyId, ProxyId) { return true; };
-    EXPECT_THROW(world.pairs.findPairsNow(id, all), BrokenAssert);
-    EXPECT_THROW(world.pairs.refilter(id, all), BrokenAssert);
-    EXPECT_THROW(world.pairs.findPairsNow({}, all), BrokenAssert);
-}
-#endif
-
-TEST(Pairs, LeaveTheGridFreeForOthersWhenTheyEnd) {
-    Grid<float> grid;
-    { const Pairs<float> pairs(grid); }
-    Pairs<float> pairs(grid);
-    static_cast<void>(grid.add(cubeAt(0)));
-    static_cast<void>(grid.add(cubeAt(0)));
-    EXPECT_EQ(pairs.update([](ProxyId, ProxyId) { return true; }).born.size(), 1U);
+TEST(PairFilter, MayTakeItsArgumentsAsAuto) {
+    Grid<double> grid;
+    Pairs<double> pairs(grid);
+    static_cast<void>(grid.add(makeBox<double>(0, 0, 0, 1, 1, 1)));
+    static_cast<void>(grid.add(makeBox<double>(0, 0, 0, 1, 1, 1)));
+    const auto accept = [](auto a, auto b) { return a != b; };
+    PairFilter filter = accept;
+    PairFilter copy = filter;
+    EXPECT_EQ(pairs.update(copy).born.size(), 1U);
 }
 
 }  // namespace

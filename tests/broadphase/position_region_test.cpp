@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Zlib
 
-// Who is within a distance, from position to position, and who is in the cells around.
+// Who is within a distance, from position to position, and who is in the cells around: what the regions say. In
+// a grid they are asked in grid_query_test.cpp.
 
 #include <broadphase/cells_region.hpp>
 #include <broadphase/position_region.hpp>
-#include <tests/support/handlers.hpp>
-#include <tests/support/query_checks.hpp>
-#include <tests/support/script.hpp>
+#include <tests/support/box_scenes.hpp>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
-#include <vector>
+#include <utility>
 
 namespace hashphase::test {
 namespace {
@@ -27,54 +26,10 @@ protected:
     static Aabb<Scalar> boxAt(Scalar low, Scalar high) {
         return {Vector3<Scalar>(0, low, 0), Vector3<Scalar>(2, high, 4)};
     }
-
-    static Scalar anyRadius(Random& random, RegionMaker<Scalar>& make) {
-        return random.chance(0.05)  ? hostileNumber<Scalar>(random)
-               : random.chance(0.1) ? Scalar(0)
-                                    : (make.point() - make.point()).cwiseAbs().maxCoeff() *
-                                          static_cast<Scalar>(random.logBetween(0.05, 2));
-    }
-
-private:
-    CaughtMessages aboutNan_;
 };
 
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(PositionQuery, Scalars);
-
-TYPED_TEST(PositionQuery, FindsWhatBruteForceFindsInEveryScene) {
-    std::size_t found = 0;
-    for (const BoxScene<TypeParam>& scene : allBoxScenes<TypeParam>()) {
-        for (const double cellSize : {0.0, 1.5, 1e4}) {
-            SCOPED_TRACE(testing::Message() << scene.name << ", cell size " << cellSize);
-            GridConfig config;
-            config.cellSize = cellSize;
-            GridWorld<TypeParam> world(config);
-            Script<TypeParam> script(scene, 0x5eed0901);
-            script.begin(world);
-            for (int frame = 0; frame < 12; ++frame) {
-                RegionMaker<TypeParam> make(script.random(), script.proxies());
-                for (int i = 0; i < 6; ++i) {
-                    const auto center = make.point();
-                    const TypeParam radius = this->anyRadius(script.random(), make);
-                    const PositionRegion<TypeParam> ball(center, radius);
-                    const CellsRegion<TypeParam> cells(center, radius, world.grid.cellSize());
-                    found += expectLikeBruteForce(world.grid, script.proxies(), ball);
-                    expectLikeBruteForce(world.grid, script.proxies(), cells);
-                    for (const auto& [id, key] : find(world.grid, ball)) {
-                        ASSERT_EQ(cells.key(world.grid.box(id)), 0) << "the estimate never misses";
-                    }
-                    ASSERT_FALSE(this->HasFailure()) << center.transpose() << ", " << radius;
-                }
-                if (frame % 3 != 1) {
-                    world.grid.update();
-                }
-                script.playFrame(world);
-            }
-        }
-    }
-    EXPECT_GT(found, 20000U);
-}
 
 TYPED_TEST(PositionQuery, MeasuresFromTheCentreOfTheBox) {
     // The definition, in higher precision.
@@ -148,18 +103,18 @@ TYPED_TEST(PositionQuery, OfWhoHasNoPositionFindsNobody) {
 }
 
 TYPED_TEST(PositionQuery, OfCellsTakesTheFirstAndTheLastOneWholly) {
-    // A ball smaller than a cell, and one that begins just before a border.
     const auto boundsOf = [](double x, double radius, double size) {
         return CellsRegion<TypeParam>(Vector3<TypeParam>(static_cast<TypeParam>(x), 0, 0),
                                       static_cast<TypeParam>(radius), static_cast<TypeParam>(size))
             .bounds();
     };
-    EXPECT_EQ(boundsOf(30, 10, 25).min()[0], 0);
-    EXPECT_EQ(boundsOf(30, 10, 25).max()[0], 50);
-    EXPECT_EQ(boundsOf(45, 30, 25).min()[0], 0);
-    EXPECT_EQ(boundsOf(45, 30, 25).max()[0], 100);
-    EXPECT_EQ(boundsOf(-3, 1, 25).min()[0], -25);
-    EXPECT_EQ(boundsOf(-3, 1, 25).max()[0], 0);
+    const auto expectBounds = [&](double x, double radius, double low, double high) {
+        EXPECT_EQ(boundsOf(x, radius, 25).min()[0], low) << x;
+        EXPECT_EQ(boundsOf(x, radius, 25).max()[0], high) << x;
+    };
+    expectBounds(30, 10, 0, 50);
+    expectBounds(45, 30, 0, 100);  // begins just before a border
+    expectBounds(-3, 1, -25, 0);   // smaller than a cell
     EXPECT_LE(boundsOf(0, 10, 0).min()[0], -10);
     EXPECT_GE(boundsOf(0, 10, 0).min()[0], -11);
     EXPECT_EQ(boundsOf(0, 1, 1e30).max()[0], TypeParam(1e30));

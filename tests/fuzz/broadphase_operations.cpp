@@ -40,12 +40,11 @@ public:
 
     void play(const Operation& operation) {
         Arguments arguments(operation);
-        constexpr std::uint32_t kOwn = 16;
-        const std::uint32_t kind = operation.kind % (life_.kKinds + kOwn);
+        const std::uint32_t kind = operation.kind % (life_.kKinds + kOwn.size());
         if (kind < life_.kKinds || life_.proxies().empty()) {
             life_.change(kind, arguments);
         } else {
-            act(kind - life_.kKinds, arguments);
+            (this->*kOwn[kind - life_.kKinds])(arguments);
         }
         EXPECT_TRUE(world_.journal.errors().empty()) << world_.journal.errors()[0];
         EXPECT_TRUE(world_.ours() == nullptr || world_.ours()->validate().empty())
@@ -59,53 +58,8 @@ public:
     }
 
 private:
-    void act(std::uint32_t kind, Arguments& arguments) {
-        switch (kind) {
-            case 0:
-            case 1:
-            case 2:
-                calculate(1, arguments);
-                break;
-            case 3:
-                calculate(1 + arguments.below(12), arguments);
-                break;
-            case 4:
-                regroup(arguments);
-                break;
-            case 5:
-                changeFilter(arguments);
-                break;
-            case 6:
-                createMany(arguments);
-                break;
-            case 7:
-                setMany(arguments);
-                break;
-            case 8:
-                destroyMany(arguments);
-                break;
-            case 9:
-                askBox(arguments);
-                break;
-            case 10:
-            case 11:
-                askRay(arguments);
-                break;
-            case 12:
-                askClosest(arguments);
-                break;
-            case 13:
-                regroupMany(arguments);
-                break;
-            case 14:
-                writeGroups(arguments);
-                break;
-            default:
-                cleanAndSort(arguments);
-                break;
-        }
-    }
-
+    void calculateOnce(Arguments& arguments) { calculate(1, arguments); }
+    void calculateOften(Arguments& arguments) { calculate(1 + arguments.below(12), arguments); }
     void calculate(std::uint32_t count, Arguments& arguments) {
         if (isSeldomStepped_ && arguments.byte() % 16 != 15) {
             story_.tell("nothing");
@@ -294,17 +248,14 @@ private:
     }
 
     Aabb<btScalar> anyBox(Random& random) {
-        Operation drawn;
-        for (std::uint8_t& byte : drawn.arguments) {
-            byte = static_cast<std::uint8_t>(random.below(256));
-        }
+        const Operation drawn = drawOperation(random);
         Arguments from(drawn);
         return life_.palette().box(from, life_.proxies());
     }
 
     void askBox(Arguments& arguments) {
         const Aabb<btScalar> box = life_.palette().box(arguments, life_.proxies());
-        story_.tell("box ", story_.isTold() ? textOf(box) : std::string());
+        story_.tell("box ", box);
         if (world_.hash() == nullptr || hasNan(box)) {
             return;
         }
@@ -388,6 +339,13 @@ private:
         }
         EXPECT_EQ(uidPairs(world_.cache()), before);
     }
+
+    using Self = BroadphasePlay;
+    static constexpr std::array<void (Self::*)(Arguments&), 16> kOwn{
+        &Self::calculateOnce, &Self::calculateOnce, &Self::calculateOnce, &Self::calculateOften,
+        &Self::regroup,       &Self::changeFilter,  &Self::createMany,    &Self::setMany,
+        &Self::destroyMany,   &Self::askBox,        &Self::askRay,        &Self::askRay,
+        &Self::askClosest,    &Self::regroupMany,   &Self::writeGroups,   &Self::cleanAndSort};
 
     OperationLog& story_;
     BulletLifeWorld world_;

@@ -75,31 +75,7 @@ public:
 
     void play(const Operation& operation) {
         Arguments arguments(operation);
-        switch (operation.kind % 10) {
-            case 0:
-            case 1:
-                add(arguments);
-                break;
-            case 2:
-                removeOne(arguments);
-                break;
-            case 3:
-            case 4:
-                update(arguments);
-                break;
-            case 5:
-                removeAllOf(arguments);
-                break;
-            case 6:
-                removeAllOfMany(arguments);
-                break;
-            case 7:
-                process(arguments);
-                break;
-            default:
-                look(operation.kind % 10 == 8, arguments);
-                break;
-        }
+        (this->*kOwn[operation.kind % kOwn.size()])(arguments);
         EXPECT_EQ(cache_.validate(), "");
         EXPECT_EQ(static_cast<std::size_t>(cache_.getNumOverlappingPairs()), expected_.size());
         std::set<Ids> pairs;
@@ -222,6 +198,8 @@ private:
         std::erase_if(expected_, [&callback](const Ids& ids) { return callback.isRemoved(ids); });
     }
 
+    void sortAndLook(Arguments& arguments) { look(true, arguments); }
+    void cleanAndLook(Arguments& arguments) { look(false, arguments); }
     void look(bool sorts, Arguments& arguments) {
         const auto [a, b] = proxiesOf(arguments);
         story_.tell(sorts ? "sort, and find " : "look, and find ", a->m_uniqueId, '-',
@@ -237,6 +215,18 @@ private:
         const btBroadphasePair* const pair = cache_.findPair(a, b);
         EXPECT_EQ(pair != nullptr, expected_.contains(uniqueIds({a, b})));
     }
+
+    static constexpr std::array<void (CachePlay::*)(Arguments&), 10> kOwn{
+        &CachePlay::add,
+        &CachePlay::add,
+        &CachePlay::removeOne,
+        &CachePlay::update,
+        &CachePlay::update,
+        &CachePlay::removeAllOf,
+        &CachePlay::removeAllOfMany,
+        &CachePlay::process,
+        &CachePlay::sortAndLook,
+        &CachePlay::cleanAndLook};
 
     OperationLog& story_;
     std::array<btBroadphaseProxy, kProxies> proxies_;

@@ -37,48 +37,19 @@ public:
 
     void play(const Operation& operation) {
         Arguments arguments(operation);
-        constexpr std::uint32_t kAsking = 14;
-        const std::uint32_t kind = operation.kind % (life_.kKinds + kAsking);
+        const std::uint32_t kind = operation.kind % (life_.kKinds + kAsking.size());
         if (kind < life_.kKinds || life_.proxies().empty()) {
             life_.change(kind, arguments);
             EXPECT_EQ(world_.grid.validate(), "");
-        } else if (kind < life_.kKinds + 9) {
-            ask(kind - life_.kKinds, arguments);
         } else {
-            stand(kind - life_.kKinds - 9, arguments);
+            (this->*kAsking[kind - life_.kKinds])(arguments);
         }
     }
 
 private:
-    void ask(std::uint32_t kind, Arguments& arguments) {
-        switch (kind) {
-            case 0:
-            case 1:
-                story_.tell("update");
-                world_.grid.update();
-                break;
-            case 2:
-                pick(arguments);
-                break;
-            case 3:
-                look(arguments);
-                break;
-            case 4:
-                changeZones(arguments);
-                break;
-            case 5:
-                updateZones(arguments);
-                break;
-            case 6:
-                scan(arguments);
-                break;
-            case 7:
-                see(arguments);
-                break;
-            default:
-                findNear(arguments);
-                break;
-        }
+    void update(Arguments& /*arguments*/) {
+        story_.tell("update");
+        world_.grid.update();
     }
 
     void pick(Arguments& arguments) {
@@ -87,7 +58,7 @@ private:
         const RayRegion<Scalar> ray(from, to);
         const bool isFiltered = arguments.flag();
         const auto filter = isFiltered ? ProxyFilter(isOdd) : ProxyFilter(acceptAll);
-        story_.tell("pick along ", story_.isTold() ? textOf(from) + textOf(to) : std::string());
+        story_.tell("pick along ", from, to);
         const auto byBox = [this](ProxyId id, const RayRegion<Scalar>& along, Scalar /*limit*/) {
             const Scalar key = along.key(world_.grid.box(id));
             return key >= 0 ? std::optional(key) : std::nullopt;
@@ -211,8 +182,7 @@ private:
         if (arguments.flag()) {
             window.heading = static_cast<Scalar>(arguments.byte()) / 40;
         }
-        story_.tell("radar at ", story_.isTold() ? textOf(window.center) : std::string(),
-                    " with cells of ", window.cellSize);
+        story_.tell("radar at ", window.center, " with cells of ", window.cellSize);
         const auto groupOf = [](ProxyId id) { return id.index % 3; };
         const auto counts = radar_.scan(world_.grid, window, 2, groupOf);
         EXPECT_EQ(std::vector<std::uint32_t>(counts.begin(), counts.end()),
@@ -230,9 +200,8 @@ private:
             viewer.self = life_.proxies()[life_.any(arguments)].id;
         }
         const auto blockers = arguments.flag() ? ProxyFilter(isOdd) : ProxyFilter(acceptAll);
-        story_.tell("see from ", story_.isTold() ? textOf(viewer.eye) : std::string(), " to ",
-                    story_.isTold() ? textOf(viewer.direction) : std::string(), " as far as ",
-                    viewer.range, " within ", viewer.halfAngle);
+        story_.tell("see from ", viewer.eye, " to ", viewer.direction, " as far as ", viewer.range,
+                    " within ", viewer.halfAngle);
         std::vector<ProxyId> seen;
         std::vector<ProxyId> expected;
         visibleFrom(world_.grid, viewer, seen, acceptAll, blockers);
@@ -253,8 +222,7 @@ private:
         const Scalar radius =
             byte >= 224 ? Palette<Scalar>::hostile(arguments.byte()) : life_.palette().extent(byte);
         const ProxyId self = life_.proxies()[life_.any(arguments)].id;
-        story_.tell("near ", story_.isTold() ? textOf(position) : std::string(), " within ",
-                    radius);
+        story_.tell("near ", position, " within ", radius);
         std::vector<ProxyId> found;
         std::vector<ProxyId> expected;
         findWithin(world_.grid, position, radius, found, isOdd, self);
@@ -265,18 +233,22 @@ private:
             << "the estimate never misses";
     }
 
-    void stand(std::uint32_t kind, Arguments& arguments) {
-        if (kind < 2) {
-            addTriangles(arguments);
-        } else if (kind < 4 && terrain_.size() > 0) {
-            const Vector3<Scalar> point = groundPoint(arguments);
-            const auto radius = static_cast<Scalar>(arguments.below(8)) / 4;
-            story_.tell("stand at ", story_.isTold() ? textOf(point) : std::string(), " with ",
-                        radius);
-            const TerrainOracle<Scalar> oracle(terrain_);
-            EXPECT_EQ(oracle.checkSurface(point, terrain_.surfaceBelow(point)), "");
-            EXPECT_EQ(oracle.checkRest(point, radius, terrain_.restingHeight(point, radius)), "");
-        } else if (arguments.byte() % 8 == 0) {
+    void stand(Arguments& arguments) {
+        if (terrain_.size() == 0) {
+            clearOrUpdateGround(arguments);
+            return;
+        }
+        const Vector3<Scalar> point = groundPoint(arguments);
+        const auto radius = static_cast<Scalar>(arguments.below(8)) / 4;
+        story_.tell("stand at ", point, " with ", radius);
+        const TerrainOracle<Scalar> oracle(terrain_);
+        EXPECT_EQ(oracle.checkSurface(point, terrain_.surfaceBelow(point)), "");
+        EXPECT_EQ(oracle.checkRest(point, radius, terrain_.restingHeight(point, radius)), "");
+        EXPECT_EQ(ground_.validate(), "");
+    }
+
+    void clearOrUpdateGround(Arguments& arguments) {
+        if (arguments.byte() % 8 == 0) {
             story_.tell("clear the ground");
             terrain_.clear();
             EXPECT_EQ(ground_.size(), 1U);
@@ -308,13 +280,22 @@ private:
         if (spoil >= 240) {
             corners[spoil % 3][spoil / 3 % 3] = std::numeric_limits<Scalar>::quiet_NaN();
         }
-        story_.tell("triangle ", story_.isTold()
-                                     ? textOf(corners[0]) + textOf(corners[1]) + textOf(corners[2])
-                                     : std::string());
+        story_.tell("triangle ", corners[0], corners[1], corners[2]);
         const AddedTriangles added = terrain_.add(corners);
         EXPECT_EQ(added.count, 1U);
         EXPECT_EQ(added.refused.size(), spoil >= 240 ? 1U : 0U);
+        EXPECT_EQ(ground_.validate(), "");
     }
+
+    using Self = ClientPlay;
+    static constexpr std::array<void (Self::*)(Arguments&), 14> kAsking{
+        &Self::update,       &Self::update,
+        &Self::pick,         &Self::look,
+        &Self::changeZones,  &Self::updateZones,
+        &Self::scan,         &Self::see,
+        &Self::findNear,     &Self::addTriangles,
+        &Self::addTriangles, &Self::stand,
+        &Self::stand,        &Self::clearOrUpdateGround};
 
     OperationLog& story_;
     GridWorld<Scalar> world_;

@@ -10,6 +10,7 @@
 #include <integration/ai/nearest.hpp>
 #include <tests/fuzz/grid_world.hpp>
 #include <tests/fuzz/subjects.hpp>
+#include <tests/support/neighbour_oracle.hpp>
 #include <tests/support/position_oracles.hpp>
 #include <tests/support/radius_oracle.hpp>
 
@@ -27,12 +28,11 @@ public:
 
     void play(const Operation& operation) {
         Arguments arguments(operation);
-        constexpr std::uint32_t kAsking = 18;
-        const std::uint32_t kind = operation.kind % (life_.kKinds + kAsking);
+        const std::uint32_t kind = operation.kind % (life_.kKinds + kAsking.size());
         if (kind < life_.kKinds || life_.proxies().empty()) {
             life_.change(kind, arguments);
         } else {
-            ask(kind - life_.kKinds, arguments);
+            (this->*kAsking[kind - life_.kKinds])(arguments);
         }
         expectHolds<Scalar>(world_.grid, life_.proxies(), life_.dead());
         const auto everything = Vector3<Scalar>::Constant(std::numeric_limits<Scalar>::infinity());
@@ -41,74 +41,6 @@ public:
     }
 
 private:
-    void ask(std::uint32_t kind, Arguments& arguments) {
-        switch (kind) {
-            case 0:
-            case 1:
-            case 2:
-                update(arguments);
-                break;
-            case 3:
-                rest(arguments);
-                break;
-            case 4: {
-                if (arguments.byte() % 2 == 1) {
-                    world_.grid.releaseUnusedMemory();
-                    story_.tell("release unused memory; ");
-                }
-                reserveOrClear(arguments);
-                break;
-            }
-            case 5:
-                askBox(arguments);
-                break;
-            case 6:
-                askBall(arguments);
-                break;
-            case 7:
-            case 8:
-                askRay(arguments);
-                break;
-            case 9:
-                askConvex(arguments);
-                break;
-            default:
-                askMany(kind, arguments);
-                break;
-        }
-    }
-
-    void askMany(std::uint32_t kind, Arguments& arguments) {
-        switch (kind) {
-            case 10:
-                askMovingBox(arguments);
-                break;
-            case 11:
-                askCells(arguments);
-                break;
-            case 12:
-                askNeighbours(arguments);
-                break;
-            case 13:
-                askCrowd(arguments);
-                break;
-            case 14:
-                askNearest(arguments);
-                break;
-            case 15:
-                askTogether<BoxRegion<Scalar>>(
-                    arguments, [this](Arguments& from) { return this->boxRegion(from); });
-                break;
-            case 16:
-                askTogether<RayRegion<Scalar>>(
-                    arguments, [this](Arguments& from) { return this->rayRegion(from); });
-                break;
-            default:
-                askCollectors(arguments);
-                break;
-        }
-    }
-
     void update(Arguments& arguments) {
         if (isNeverUpdated_) {
             story_.tell("nothing");
@@ -118,7 +50,11 @@ private:
         world_.grid.update(anyFor(arguments));
     }
 
-    void reserveOrClear(Arguments& arguments) {
+    void releaseReserveOrClear(Arguments& arguments) {
+        if (arguments.byte() % 2 == 1) {
+            world_.grid.releaseUnusedMemory();
+            story_.tell("release unused memory; ");
+        }
         const std::uint32_t count = arguments.byte();
         if (arguments.flag()) {
             life_.clear();
@@ -178,7 +114,7 @@ private:
 
     void askBox(Arguments& arguments) {
         const BoxRegion<Scalar> region = boxRegion(arguments);
-        story_.tell("box ", story_.isTold() ? textOf(region.box) : std::string());
+        story_.tell("box ", region.box);
         expectLikeBruteForce(world_.grid, life_.proxies(), region);
     }
 
@@ -186,8 +122,7 @@ private:
         const std::uint32_t form = arguments.below(3);
         const Vector3<Scalar> center = life_.palette().point(arguments);
         const Scalar reach = radius(arguments);
-        story_.tell("ball ", form, ' ', story_.isTold() ? textOf(center) : std::string(), ", ",
-                    reach);
+        story_.tell("ball ", form, ' ', center, ", ", reach);
         if (form == 0) {
             expectLikeBruteForce(world_.grid, life_.proxies(), SphereRegion<Scalar>(center, reach));
         } else if (form == 1) {
@@ -199,8 +134,7 @@ private:
 
     void askRay(Arguments& arguments) {
         const RayRegion<Scalar> ray = rayRegion(arguments);
-        story_.tell("ray ", story_.isTold() ? textOf(ray.from()) : std::string(), " by ",
-                    story_.isTold() ? textOf(ray.direction()) : std::string());
+        story_.tell("ray ", ray.from(), " by ", ray.direction());
         expectLikeBruteForce(world_.grid, life_.proxies(), ray);
     }
 
@@ -214,11 +148,10 @@ private:
     void askMovingBox(Arguments& arguments) {
         const Aabb<Scalar> box = life_.palette().box(arguments, life_.proxies());
         const Vector3<Scalar> way = life_.palette().point(arguments) - box.min();
-        story_.tell("moving box ", story_.isTold() ? textOf(box) + textOf(way) : std::string());
+        story_.tell("moving box ", box, way);
         expectFinds(MovingBoxRegion<Scalar>({box, way}));
     }
 
-    // By the definition: floor(coordinate / cell size).
     void askCells(Arguments& arguments) {
         const Placed<Scalar>& proxy = life_.proxies()[life_.any(arguments)];
         if (!proxy.box.min().allFinite() || !proxy.box.max().allFinite()) {
@@ -228,106 +161,22 @@ private:
         const CellRange range = world_.grid.cellsOf(proxy.id);
         const std::array<std::int64_t, 3> cell = arguments.flag() ? range.lowest : range.highest;
         story_.tell("cell ", cell[0], ", ", cell[1], ", ", cell[2], " of ", proxy.id.index);
-        std::vector<std::pair<ProxyId, Scalar>> expected;
-        for (const Placed<Scalar>& other : life_.proxies()) {
-            if (!other.box.min().allFinite() || !other.box.max().allFinite()) {
-                continue;
-            }
-            const CellRange cells = world_.grid.cellsOf(other.id);
-            EXPECT_EQ(cells.lowest, world_.grid.cellAt(other.box.min()));
-            bool isIn = true;
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                isIn =
-                    isIn && cells.lowest[axis] <= cell[axis] && cell[axis] <= cells.highest[axis];
-            }
-            if (isIn) {
-                expected.emplace_back(other.id, Scalar(0));
-            }
-        }
-        std::sort(expected.begin(), expected.end());
-        CollectKeys<Scalar> found;
-        world_.grid.visitCell(cell, found);
-        EXPECT_EQ(differences(found.sorted(), expected), "");
+        expectCellLikeBruteForce(world_.grid, life_.proxies(), cell);
     }
 
-    // What is surely near, and what may be by rounding, in higher precision.
     void askNeighbours(Arguments& arguments) {
         const Scalar distance = radius(arguments);
         story_.tell("neighbours within ", distance);
-        const auto pairs = neighbours_.find(world_.grid, distance, anyFor(arguments));
-        std::vector<ProxyPair> found(pairs.begin(), pairs.end());
-        std::sort(found.begin(), found.end());
-        EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end()) << "each once";
-        std::vector<ProxyPair> surely;
-        std::vector<ProxyPair> perhaps;
-        forEachPair([&](const Placed<Scalar>& a, const Placed<Scalar>& b) {
-            const long double apart = gapBetween(a.box, b.box);
-            const auto slack = static_cast<long double>(8 * std::numeric_limits<Scalar>::epsilon() *
-                                                        static_cast<double>(apart));
-            const auto reach = static_cast<long double>(distance);
-            const auto least =
-                static_cast<long double>(4 * std::numeric_limits<Scalar>::denorm_min());
-            if (apart == 0 ? reach >= 0 : apart + slack + least <= reach) {
-                surely.push_back(makePair(a.id, b.id));
-            }
-            if (reach >= 0 && apart - slack - least <= reach) {
-                perhaps.push_back(makePair(a.id, b.id));
-            }
-        });
-        std::sort(surely.begin(), surely.end());
-        std::sort(perhaps.begin(), perhaps.end());
-        EXPECT_TRUE(std::includes(found.begin(), found.end(), surely.begin(), surely.end()))
-            << differences(found, surely);
-        EXPECT_TRUE(std::includes(perhaps.begin(), perhaps.end(), found.begin(), found.end()))
-            << differences(found, perhaps);
-    }
-
-    // Inverted boxes have no straight line between them, and are left out.
-    template <class Visit>
-    void forEachPair(const Visit& visit) {
-        const auto proxies = life_.proxies();
-        for (std::size_t i = 0; i < proxies.size(); ++i) {
-            for (std::size_t k = i + 1; k < proxies.size(); ++k) {
-                if (!hasNan(proxies[i].box) && !hasNan(proxies[k].box)) {
-                    visit(proxies[i], proxies[k]);
-                }
-            }
-        }
-    }
-    static long double gapBetween(const Aabb<Scalar>& a, const Aabb<Scalar>& b) {
-        std::array<long double, 3> gaps{};
-        for (int axis = 0; axis < 3; ++axis) {
-            const auto gap = [axis](const Aabb<Scalar>& low, const Aabb<Scalar>& high) {
-                // Both at the same infinity are no distance apart.
-                return low.max()[axis] == high.min()[axis]
-                           ? 0.0L
-                           : static_cast<long double>(high.min()[axis]) -
-                                 static_cast<long double>(low.max()[axis]);
-            };
-            gaps[static_cast<std::size_t>(axis)] = std::max({0.0L, gap(a, b), gap(b, a)});
-        }
-        return std::hypot(gaps[0], gaps[1], gaps[2]);
+        expectNeighboursLikeBruteForce(neighbours_.find(world_.grid, distance, anyFor(arguments)),
+                                       life_.proxies(), distance);
     }
 
     void askCrowd(Arguments& arguments) {
         const Scalar reach = radius(arguments);
         story_.tell("crowd within ", reach);
         search_.take(world_.grid, reach, acceptAll, anyFor(arguments));
-        const NeighbourLists expected = neighboursByBruteForce(life_.proxies(), reach);
-        ASSERT_EQ(search_.size(), expected.size());
+        EXPECT_EQ(neighbourLists(search_), neighboursByBruteForce(life_.proxies(), reach));
         EXPECT_EQ(search_.size() + search_.leftOutCount(), life_.proxies().size());
-        std::vector<std::uint32_t> counts(search_.size());
-        search_.count(counts);
-        NeighbourLists found;
-        search_.forEach([&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) {
-            std::vector<ProxyId>& list = found[search_.id(agent)];
-            for (const std::uint32_t other : neighbours) {
-                list.push_back(search_.id(other));
-            }
-            std::sort(list.begin(), list.end());
-            EXPECT_EQ(counts[agent], neighbours.size());
-        });
-        EXPECT_EQ(found, expected);
     }
 
     void askNearest(Arguments& arguments) {
@@ -335,8 +184,7 @@ private:
         const std::size_t count = arguments.below(12);
         const Scalar farthest =
             arguments.flag() ? std::numeric_limits<Scalar>::infinity() : radius(arguments);
-        story_.tell("the nearest ", count, " to ", story_.isTold() ? textOf(point) : std::string(),
-                    " within ", farthest);
+        story_.tell("the nearest ", count, " to ", point, " within ", farthest);
         std::vector<KeyedProxy<Scalar>> nearest;
         std::vector<KeyedProxy<Scalar>> expected;
         const auto isEven = [](ProxyId id) { return id.index % 2 == 0; };
@@ -348,19 +196,22 @@ private:
         EXPECT_EQ(nearest, expected);
     }
 
-    template <class Region, class Make>
-    void askTogether(Arguments& arguments, const Make& make) {
+    void askBoxesTogether(Arguments& arguments) {
+        askTogether<BoxRegion<Scalar>>(arguments, &GridModel::boxRegion);
+    }
+    void askRaysTogether(Arguments& arguments) {
+        askTogether<RayRegion<Scalar>>(arguments, &GridModel::rayRegion);
+    }
+    template <class Region>
+    void askTogether(Arguments& arguments, Region (GridModel::*make)(Arguments&)) {
         const std::uint32_t count = 1 + arguments.below(24);
         Random random = arguments.random();
         story_.tell(count, " regions at once");
         std::vector<Region> regions;
         for (std::uint32_t i = 0; i < count; ++i) {
-            Operation drawn;
-            for (std::uint8_t& byte : drawn.arguments) {
-                byte = static_cast<std::uint8_t>(random.below(256));
-            }
+            const Operation drawn = drawOperation(random);
             Arguments from(drawn);
-            regions.push_back(make(from));
+            regions.push_back((this->*make)(from));
         }
         std::vector<CollectKeys<Scalar>> found(count);
         world_.grid.visitEach(std::span<const Region>(regions), std::span(found),
@@ -410,6 +261,26 @@ private:
         expectedNearest.resize(std::min(expectedNearest.size(), count));
         EXPECT_EQ(nearest, expectedNearest);
     }
+
+    static constexpr std::array<void (GridModel::*)(Arguments&), 18> kAsking{
+        &GridModel::update,
+        &GridModel::update,
+        &GridModel::update,
+        &GridModel::rest,
+        &GridModel::releaseReserveOrClear,
+        &GridModel::askBox,
+        &GridModel::askBall,
+        &GridModel::askRay,
+        &GridModel::askRay,
+        &GridModel::askConvex,
+        &GridModel::askMovingBox,
+        &GridModel::askCells,
+        &GridModel::askNeighbours,
+        &GridModel::askCrowd,
+        &GridModel::askNearest,
+        &GridModel::askBoxesTogether,
+        &GridModel::askRaysTogether,
+        &GridModel::askCollectors};
 
     OperationLog& story_;
     GridWorld<Scalar> world_;

@@ -47,27 +47,17 @@ public:
         if (kind < 2 || proxies_.empty()) {
             const auto mobility = arguments.flag() ? Mobility::resting : Mobility::mobile;
             addOne(palette_.box(arguments, proxies_), mobility);
-            return;
-        }
-        switch (kind) {
-            case 2:
-            case 3: {
-                const std::size_t i = any(arguments);
-                moveOne(i, palette_.box(arguments, proxies_));
-                break;
-            }
-            case 4:
-                removeOne(any(arguments));
-                break;
-            case 5:
-                addMany(arguments);
-                break;
-            case 6:
-                moveMany(arguments);
-                break;
-            default:
-                removeMany(arguments);
-                break;
+        } else if (kind < 4) {
+            const std::size_t i = any(arguments);
+            moveOne(i, palette_.box(arguments, proxies_));
+        } else if (kind == 4) {
+            removeOne(any(arguments));
+        } else if (kind == 5) {
+            addMany(arguments);
+        } else if (kind == 6) {
+            moveMany(arguments);
+        } else {
+            removeMany(arguments);
         }
     }
 
@@ -79,13 +69,11 @@ public:
         Placed<Scalar> proxy;
         proxy.box = box;
         proxy.id = world_.add(box, mobility);
-        story_.tell("add ", proxy.id.index, mobility == Mobility::resting ? " at rest " : " ",
-                    story_.isTold() ? textOf(box) : std::string());
+        story_.tell("add ", proxy.id.index, mobility == Mobility::resting ? " at rest " : " ", box);
         proxies_.push_back(proxy);
     }
     void moveOne(std::size_t i, const Aabb<Scalar>& box) {
-        story_.tell("move ", proxies_[i].id.index, " to ",
-                    story_.isTold() ? textOf(box) : std::string(), ' ');
+        story_.tell("move ", proxies_[i].id.index, " to ", box, ' ');
         proxies_[i].box = box;
         world_.move(proxies_[i].id, box);
     }

@@ -4,17 +4,31 @@
 // Plays operations on a world: a structure under test beside its naive model. What the world expects
 // by GoogleTest's macros is caught here, so that a life can be tried, cut short and told again.
 
+#include <broadphase/aabb.hpp>
 #include <tests/fuzz/operation.hpp>
 #include <tests/support/handlers.hpp>
 
 #include <gtest/gtest-spi.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <memory>
 #include <sstream>
 #include <string>
 
 namespace hashphase::test {
+
+template <class Scalar>
+[[nodiscard]] std::string textOf(const Vector3<Scalar>& v) {
+    std::ostringstream text;
+    text.precision(std::numeric_limits<Scalar>::max_digits10);
+    text << '(' << v[0] << ", " << v[1] << ", " << v[2] << ')';
+    return text.str();
+}
+template <class Scalar>
+[[nodiscard]] std::string textOf(const Aabb<Scalar>& box) {
+    return textOf<Scalar>(box.min()) + ".." + textOf<Scalar>(box.max());
+}
 
 /// What an operation does, in words, while a story is told; else nothing is written.
 class OperationLog {
@@ -24,10 +38,9 @@ public:
     template <class... Parts>
     void tell(const Parts&... parts) {
         if (isTold_) {
-            (text_ << ... << parts);
+            (write(parts), ...);
         }
     }
-    [[nodiscard]] bool isTold() const noexcept { return isTold_; }
     std::string take() {
         std::string text = text_.str();
         text_.str({});
@@ -35,6 +48,15 @@ public:
     }
 
 private:
+    template <class Part>
+    void write(const Part& part) {
+        if constexpr (requires { textOf(part); }) {
+            text_ << textOf(part);
+        } else {
+            text_ << part;
+        }
+    }
+
     bool isTold_;
     std::ostringstream text_;
 };

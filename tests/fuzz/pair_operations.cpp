@@ -13,12 +13,7 @@ template <class Scalar>
 class PairPlay {
 public:
     PairPlay(const Operation& first, OperationLog& story)
-        : story_(story),
-          world_(configOf(first),
-                 [this](ProxyId a, ProxyId b) {
-                     return coloursPair(colours_[a.index], colours_[b.index]);
-                 }),
-          life_(first, world_, story) {
+        : story_(story), world_(configOf(first)), life_(first, world_, story) {
         // Contacts of moving boxes are exact in double precision but for the extremes.
         maySweep_ = first.arguments[5] % 2 == 1;
         isSeldomUpdated_ = first.arguments[7] % 4 == 3;
@@ -29,13 +24,11 @@ public:
 
     void play(const Operation& operation) {
         Arguments arguments(operation);
-        constexpr std::uint32_t kOwn = 14;
-        const std::uint32_t kind = operation.kind % (life_.kKinds + kOwn);
-        noteColours();
+        const std::uint32_t kind = operation.kind % (life_.kKinds + kOwn.size());
         if (kind < life_.kKinds || life_.proxies().empty()) {
             life_.change(kind, arguments);
         } else {
-            act(kind - life_.kKinds, arguments);
+            (this->*kOwn[kind - life_.kKinds])(arguments);
         }
         EXPECT_EQ(world_.grid.validate(), "");
         EXPECT_EQ(world_.sweeps.validate(), "");
@@ -43,60 +36,40 @@ public:
     }
 
 private:
-    void act(std::uint32_t kind, Arguments& arguments) {
-        switch (kind) {
-            case 0:
-            case 1:
-            case 2:
-                update(1, arguments);
-                break;
-            case 3:
-                if (arguments.flag()) {
-                    life_.clear();
-                } else {
-                    update(1, arguments);
-                }
-                break;
-            case 4: {
-                const std::uint32_t count = 1 + arguments.below(12);
-                if (count % 2 == 0) {
-                    release(count % 4 == 0);
-                }
-                update(count, arguments);
-                break;
-            }
-            case 5: {
-                Placed<Scalar>& proxy = life_.list()[life_.any(arguments)];
-                proxy.colour = arguments.below(3);
-                story_.tell("colour ", proxy.id.index, " with ", proxy.colour);
-                noteColours();
-                world_.refilter(proxy.id);
-                break;
-            }
-            case 6: {
-                const ProxyId id = life_.proxies()[life_.any(arguments)].id;
-                story_.tell("findPairsNow ", id.index);
-                world_.findPairsNow(id);
-                break;
-            }
-            case 7:
-            case 8:
-                sweep(arguments);
-                break;
-            case 9:
-            case 10:
-                regroup(arguments);
-                break;
-            case 11:
-                regroupMany(arguments);
-                break;
-            case 12:
-                refilterMany(arguments);
-                break;
-            default:
-                ask(arguments);
-                break;
+    void updateOnce(Arguments& arguments) { update(1, arguments); }
+
+    void clearOrUpdate(Arguments& arguments) {
+        if (arguments.flag()) {
+            life_.clear();
+        } else {
+            update(1, arguments);
         }
+    }
+
+    void releaseAndRest(Arguments& arguments) {
+        const std::uint32_t count = 1 + arguments.below(12);
+        if (count % 2 == 0) {
+            release(count % 4 == 0);
+        }
+        update(count, arguments);
+    }
+
+    void paint(Placed<Scalar>& proxy, std::uint32_t colour) {
+        proxy.colour = colour;
+        world_.colours.set(proxy.id, colour);
+    }
+
+    void paintAndRefilter(Arguments& arguments) {
+        Placed<Scalar>& proxy = life_.list()[life_.any(arguments)];
+        paint(proxy, arguments.below(3));
+        story_.tell("colour ", proxy.id.index, " with ", proxy.colour);
+        world_.refilter(proxy.id);
+    }
+
+    void findPairsNow(Arguments& arguments) {
+        const ProxyId id = life_.proxies()[life_.any(arguments)].id;
+        story_.tell("findPairsNow ", id.index);
+        world_.findPairsNow(id);
     }
 
     void update(std::uint32_t count, Arguments& arguments) {
@@ -141,10 +114,9 @@ private:
         std::vector<ProxyId> ids;
         for (std::size_t i = 0; i < life_.list().size(); i += each) {
             Placed<Scalar>& proxy = life_.list()[i];
-            proxy.colour = colour < 3 ? colour : proxy.colour;
+            paint(proxy, colour < 3 ? colour : proxy.colour);
             ids.push_back(proxy.id);
         }
-        noteColours();
         const bool areAll = arguments.flag();
         story_.tell("colour each ", each, "th with ", colour, areAll ? ", filter all" : ", filter",
                     " again");
@@ -180,11 +152,10 @@ private:
             story_.tell("nothing: nobody sweeps here");
             return;
         }
-        story_.tell("sweep ", proxy.id.index, " in mode ", static_cast<int>(mode), " by ",
-                    story_.isTold() ? textOf(way) : std::string());
+        story_.tell("sweep ", proxy.id.index, " in mode ", static_cast<int>(mode), " by ", way);
         if (hasOwnBox) {
             const Aabb<Scalar> start = life_.proxies()[life_.any(arguments)].box;
-            story_.tell("from ", story_.isTold() ? textOf(start) : std::string());
+            story_.tell("from ", start);
             world_.sweep(proxy.id, MovingBox<Scalar>{start, way}, mode);
         } else {
             world_.sweep(proxy.id, way, mode);
@@ -194,7 +165,7 @@ private:
     // Nothing that is touched on a way is left out; nothing is found that no box around a way touches.
     void ask(Arguments& arguments) {
         const Aabb<Scalar> box = life_.palette().box(arguments, life_.proxies());
-        story_.tell("box ", story_.isTold() ? textOf(box) : std::string());
+        story_.tell("box ", box);
         std::vector<ProxyId> found;
         CollectAll collect(found);
         world_.sweeps.visit(BoxRegion<Scalar>{box}, collect);
@@ -214,17 +185,16 @@ private:
         }
     }
 
-    void noteColours() {
-        for (const Placed<Scalar>& proxy : life_.proxies()) {
-            if (colours_.size() <= proxy.id.index) {
-                colours_.resize(proxy.id.index + 1);
-            }
-            colours_[proxy.id.index] = proxy.colour;
-        }
-    }
+    static constexpr std::array<void (PairPlay::*)(Arguments&), 14> kOwn{
+        &PairPlay::updateOnce,     &PairPlay::updateOnce,
+        &PairPlay::updateOnce,     &PairPlay::clearOrUpdate,
+        &PairPlay::releaseAndRest, &PairPlay::paintAndRefilter,
+        &PairPlay::findPairsNow,   &PairPlay::sweep,
+        &PairPlay::sweep,          &PairPlay::regroup,
+        &PairPlay::regroup,        &PairPlay::regroupMany,
+        &PairPlay::refilterMany,   &PairPlay::ask};
 
     OperationLog& story_;
-    std::vector<std::uint32_t> colours_;  // by index of proxy
     bool maySweep_ = false;
     bool isSeldomUpdated_ = false;
     PairWorld<Scalar> world_;

@@ -16,8 +16,6 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <sstream>
-#include <string>
 
 namespace hashphase::test {
 
@@ -44,18 +42,6 @@ private:
     std::size_t next_ = 0;
 };
 
-template <class Scalar>
-[[nodiscard]] std::string textOf(const Vector3<Scalar>& v) {
-    std::ostringstream text;
-    text.precision(std::numeric_limits<Scalar>::max_digits10);
-    text << '(' << v[0] << ", " << v[1] << ", " << v[2] << ')';
-    return text.str();
-}
-template <class Scalar>
-[[nodiscard]] std::string textOf(const Aabb<Scalar>& box) {
-    return textOf<Scalar>(box.min()) + ".." + textOf<Scalar>(box.max());
-}
-
 /// The grid that the first operation asks for, from its arguments 0 to 2.
 [[nodiscard]] inline GridConfig configOf(const Operation& first) {
     constexpr std::array<double, 6> kCellSizes{0, 1, 0.1, 1e-3, 1e4, 1e-30};
@@ -66,6 +52,15 @@ template <class Scalar>
     config.levelRatio = kRatios[first.arguments[1] % kRatios.size()];
     config.updatesBeforeRest = kUpdatesBeforeRest[first.arguments[2] % kUpdatesBeforeRest.size()];
     return config;
+}
+
+/// One with any arguments.
+[[nodiscard]] inline Operation drawOperation(Random& random) {
+    Operation drawn;
+    for (std::uint8_t& byte : drawn.arguments) {
+        byte = static_cast<std::uint8_t>(random.below(256));
+    }
+    return drawn;
 }
 
 template <class Scalar>

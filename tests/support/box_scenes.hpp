@@ -33,6 +33,32 @@ template <class Scalar>
             Vector3<double>(maxX, maxY, maxZ).cast<Scalar>()};
 }
 
+/// Draws boxes with middles from `low` to `high` that reach from `least` to `most` to either side.
+template <class Scalar, class Corner>
+[[nodiscard]] auto boxesIn(const Corner& low, const Corner& high, double least, double most) {
+    return [=](Random& random) {
+        const Vector3<double> center = random.pointIn(low, high);
+        return boxAround<Scalar>(center, random.pointIn(least, most));
+    };
+}
+
+/// Draws cubes with middles from `low` to `high` that reach `half` to either side.
+template <class Scalar, class Corner>
+[[nodiscard]] auto cubesIn(const Corner& low, const Corner& high, double half) {
+    return [=](Random& random) {
+        return boxAround<Scalar>(random.pointIn(low, high), Vector3<double>::Constant(half));
+    };
+}
+
+template <class Scalar, class Draw>
+[[nodiscard]] std::vector<Aabb<Scalar>> drawBoxes(Random& random, std::size_t count, Draw draw) {
+    std::vector<Aabb<Scalar>> boxes;
+    while (boxes.size() < count) {
+        boxes.push_back(draw(random));
+    }
+    return boxes;
+}
+
 /// Moves by up to `step` along each axis.
 template <class Scalar>
 [[nodiscard]] Aabb<Scalar> shifted(Random& random, const Aabb<Scalar>& box, double step) {

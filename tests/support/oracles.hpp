@@ -46,6 +46,22 @@ struct Placed {
     return a != b || a == 0;
 }
 
+/// A filter that the colours of proxies make; 0 unless they are set.
+class Colours {
+public:
+    void set(ProxyId id, std::uint32_t colour) {
+        of_.resize(std::max<std::size_t>(of_.size(), id.index + std::size_t{1}));
+        of_[id.index] = colour;
+    }
+    [[nodiscard]] bool accept(ProxyId a, ProxyId b) const { return coloursPair(of(a), of(b)); }
+
+private:
+    [[nodiscard]] std::uint32_t of(ProxyId id) const {
+        return id.index < of_.size() ? of_[id.index] : 0;
+    }
+    std::vector<std::uint32_t> of_;  // by index of proxy
+};
+
 [[nodiscard]] inline ProxyPair makePair(ProxyId a, ProxyId b) noexcept {
     return a < b ? ProxyPair{a, b} : ProxyPair{b, a};
 }

@@ -41,6 +41,15 @@ std::size_t runOutOfMemory(const MakeWorld& make, const Attempt& attempt, const 
     }
 }
 
+/// Updates the pairs of a PairWorld while memory may run out: for them alone.
+template <class World>
+void updatePairsInWant(World& world) {
+    const auto accept = [&world](auto a, auto b) { return world.colours.accept(a, b); };
+    const auto changes = world.pairs.update(accept);
+    const WorkingAllocations lifted;
+    world.apply(changes);
+}
+
 /// A query that runs out of memory, and is asked again, is answered as if it had not: ask() of a fresh
 /// Asked fails at each of its allocations in turn, then ask() and answer() are as those of another.
 /// Returns how often it failed.

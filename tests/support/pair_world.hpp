@@ -32,12 +32,17 @@ class PairWorld {
 public:
     using Filter = std::function<bool(ProxyId, ProxyId)>;
 
-    explicit PairWorld(
-        const GridConfig& config = {}, Filter filter = [](ProxyId, ProxyId) { return true; })
-        : grid(config), sweeps(grid), pairs(grid, &sweeps), filter_(std::move(filter)) {}
+    /// Colours decide which pairs are accepted, unless a filter is given.
+    explicit PairWorld(const GridConfig& config = {}, Filter filter = {})
+        : grid(config), sweeps(grid), pairs(grid, &sweeps), filter_(std::move(filter)) {
+        if (!filter_) {
+            filter_ = [this](ProxyId a, ProxyId b) { return colours.accept(a, b); };
+        }
+    }
 
     ProxyId add(const Aabb<Scalar>& box, Mobility mobility = Mobility::mobile) {
         const ProxyId id = grid.add(box, mobility);
+        colours.set(id, 0);
         changed_.insert(id);
         return id;
     }
@@ -113,18 +118,14 @@ public:
             grid.update();
         }
         std::construct_at(&pairs, grid, &sweeps);
-        for (std::set<ProxyPair>* of : {&set_, &met_, &refused_, &decided_, &before_}) {
-            of->clear();
-        }
+        forgetPairs();
         grid.forEach([this](ProxyId id, const Aabb<Scalar>& /*box*/) { changed_.insert(id); });
     }
 
     /// Removes every proxy, and nothing is reported of any pair.
     void clear() {
         pairs.clear();
-        for (std::set<ProxyPair>* of : {&set_, &met_, &refused_, &decided_}) {
-            of->clear();
-        }
+        forgetPairs();
         changed_.clear();
         ways_.clear();
     }
@@ -145,6 +146,10 @@ public:
     void findPairsNow(ProxyId id) {
         asked_.clear();
         const PairChanges changes = pairs.findPairsNow(id, recordingFilter());
+        for (const ProxyPair& pair : asked_) {
+            EXPECT_TRUE(askedNow_.insert(pair).second)
+                << testing::PrintToString(pair) << " is asked about twice";
+        }
         for (const ProxyPair& pair : changes.died) {
             EXPECT_FALSE(grid.contains(pair.first) && grid.contains(pair.second))
                 << testing::PrintToString(pair) << " dies though both are alive";
@@ -157,6 +162,7 @@ public:
     /// Ends the frame. What the filter was asked is in asked() afterwards.
     PairChanges update() {
         asked_.clear();
+        askedNow_.clear();
         before_ = set_;
         const PairChanges changes = pairs.update(recordingFilter());
         apply(changes);
@@ -194,12 +200,36 @@ public:
     Grid<Scalar> grid;
     Sweeps<Scalar> sweeps;
     Pairs<Scalar> pairs;
+    Colours colours;
+
+    /// What a call on `pairs` itself reports.
+    void apply(const PairChanges& changes) {
+        ASSERT_TRUE(isAscending(changes.born)) << "births are sorted, each once";
+        ASSERT_TRUE(isAscending(changes.died)) << "deaths are sorted, each once";
+        for (const ProxyPair& pair : changes.died) {
+            ASSERT_EQ(set_.erase(pair), 1U)
+                << testing::PrintToString(pair) << " dies but was no pair";
+            ASSERT_FALSE(std::binary_search(changes.born.begin(), changes.born.end(), pair))
+                << testing::PrintToString(pair) << " is born and dies at once";
+        }
+        for (const ProxyPair& pair : changes.born) {
+            ASSERT_TRUE(set_.insert(pair).second)
+                << testing::PrintToString(pair) << " is born but was a pair";
+            ASSERT_LT(pair.first.index, pair.second.index);
+        }
+    }
 
 private:
     struct Way {
         std::optional<Aabb<Scalar>> box;  // none where it begins at the proxy's box
         Vector3<Scalar> displacement;
     };
+
+    void forgetPairs() {
+        for (auto* of : {&set_, &met_, &refused_, &decided_, &before_, &askedNow_}) {
+            of->clear();
+        }
+    }
 
     void noteWay(ProxyId id, const Way& way, Sweep mode) {
         if (mode != Sweep::none && way.displacement.allFinite() && !way.displacement.isZero(0)) {
@@ -274,22 +304,6 @@ private:
         }
     }
 
-    void apply(const PairChanges& changes) {
-        ASSERT_TRUE(isAscending(changes.born)) << "births are sorted, each once";
-        ASSERT_TRUE(isAscending(changes.died)) << "deaths are sorted, each once";
-        for (const ProxyPair& pair : changes.died) {
-            ASSERT_EQ(set_.erase(pair), 1U)
-                << testing::PrintToString(pair) << " dies but was no pair";
-            ASSERT_FALSE(std::binary_search(changes.born.begin(), changes.born.end(), pair))
-                << testing::PrintToString(pair) << " is born and dies at once";
-        }
-        for (const ProxyPair& pair : changes.born) {
-            ASSERT_TRUE(set_.insert(pair).second)
-                << testing::PrintToString(pair) << " is born but was a pair";
-            ASSERT_LT(pair.first.index, pair.second.index);
-        }
-    }
-
     [[nodiscard]] bool doMeet(const Placed<Scalar>& a, const Placed<Scalar>& b) const {
         if (!doesSweep(a.id) && !doesSweep(b.id)) {
             return overlaps(a.box, b.box);
@@ -347,7 +361,8 @@ private:
 
     std::map<ProxyId, Way> ways_;  // of what sweeps
     std::map<ProxyId, ProxyGroups> groups_;
-    std::set<ProxyPair> before_;  // the set before the last update
+    std::set<ProxyPair> before_;    // the set before the last update
+    std::set<ProxyPair> askedNow_;  // by findPairsNow() since the last update
 
     // As of the last update, or since.
     std::set<ProxyPair> met_;

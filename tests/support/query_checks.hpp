@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -27,6 +29,8 @@ struct GridWorld {
     ProxyId add(const Aabb<Scalar>& box, Mobility mobility) { return grid.add(box, mobility); }
     void move(ProxyId id, const Aabb<Scalar>& box) { grid.move(id, box); }
     void remove(ProxyId id) { grid.remove(id); }
+    void update() { grid.update(); }
+    void shiftOrigin(const Vector3<Scalar>& shift) { grid.shiftOrigin(shift); }
     void clear() { grid.clear(); }
     static void refilter(ProxyId /*id*/) {}
 };
@@ -72,6 +76,28 @@ std::size_t expectLikeBruteForce(const Grid<Scalar>& grid, std::span<const Place
     grid.visit(region, count);
     EXPECT_EQ(count.count(), expected.size());
     return expected.size();
+}
+
+/// visitCell() finds what has the cell among its own, each proxy once.
+template <class Scalar>
+void expectCellLikeBruteForce(const Grid<Scalar>& grid, std::span<const Placed<Scalar>> proxies,
+                              const std::array<std::int64_t, 3>& cell) {
+    typename CollectKeys<Scalar>::Found expected;
+    for (const Placed<Scalar>& proxy : proxies) {
+        bool isIn = proxy.box.min().allFinite() && proxy.box.max().allFinite();
+        const CellRange cells = isIn ? grid.cellsOf(proxy.id) : CellRange{};
+        EXPECT_TRUE(!isIn || cells.lowest == grid.cellAt(proxy.box.min()));
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            isIn = isIn && cells.lowest[axis] <= cell[axis] && cell[axis] <= cells.highest[axis];
+        }
+        if (isIn) {
+            expected.emplace_back(proxy.id, Scalar(0));
+        }
+    }
+    std::sort(expected.begin(), expected.end());
+    CollectKeys<Scalar> found;
+    grid.visitCell(cell, found);
+    EXPECT_EQ(differences(found.sorted(), expected), "");
 }
 
 /// Draws regions that begin and end at corners of proxies or near them.
@@ -161,5 +187,22 @@ private:
     Random& random_;
     std::span<const Placed<Scalar>> proxies_;
 };
+
+/// So many random regions of each kind, where proxies are. Returns how often they find one.
+template <class Scalar>
+std::size_t expectQueriesLikeBruteForce(const Grid<Scalar>& grid,
+                                        std::span<const Placed<Scalar>> proxies, Random& random,
+                                        int count) {
+    RegionMaker<Scalar> make(random, proxies);
+    std::size_t found = 0;
+    for (int i = 0; i < count && !testing::Test::HasFailure(); ++i) {
+        found += expectLikeBruteForce(grid, proxies, make.box());
+        found += expectLikeBruteForce(grid, proxies, make.sphere());
+        found += expectLikeBruteForce(grid, proxies, make.ray());
+        found += expectLikeBruteForce(grid, proxies, make.ray(true));
+        found += expectLikeBruteForce(grid, proxies, make.convex());
+    }
+    return found;
+}
 
 }  // namespace hashphase::test

@@ -8,8 +8,11 @@
 #include <broadphase/position_region.hpp>
 #include <tests/support/oracles.hpp>
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <span>
 #include <utility>
@@ -38,6 +41,23 @@ template <class Scalar>
     }
     return radius >= 0 &&
            (squares[0] + squares[1]) + squares[2] <= (radius * scale) * (radius * scale);
+}
+
+/// What a RadiusSearch lists, and counts.
+template <class Search>
+[[nodiscard]] NeighbourLists neighbourLists(Search& search) {
+    std::vector<std::uint32_t> counts(search.size());
+    search.count(counts);
+    NeighbourLists lists;
+    search.forEach([&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) {
+        std::vector<ProxyId>& list = lists[search.id(agent)];
+        for (const std::uint32_t other : neighbours) {
+            list.push_back(search.id(other));
+        }
+        std::sort(list.begin(), list.end());
+        EXPECT_EQ(counts[agent], neighbours.size());
+    });
+    return lists;
 }
 
 /// Of all proxies that are agents.

@@ -80,9 +80,7 @@ public:
     [[nodiscard]] std::span<const Placed<Scalar>> proxies() const noexcept { return proxies_; }
 
     /// The filter that the colours make.
-    [[nodiscard]] bool accepts(ProxyId a, ProxyId b) const {
-        return coloursPair(colours_[a.index], colours_[b.index]);
-    }
+    [[nodiscard]] bool accepts(ProxyId a, ProxyId b) const { return colours_.accept(a, b); }
 
     [[nodiscard]] Random& random() noexcept { return random_; }
 
@@ -104,7 +102,7 @@ private:
         proxy.id = world.add(proxy.box, plan.moves ? Mobility::mobile : Mobility::resting);
         proxies_.push_back(proxy);
         plans_.push_back(plan);
-        setColour(proxy.id, proxy.colour);
+        colours_.set(proxy.id, proxy.colour);
     }
 
     template <class World>
@@ -159,17 +157,10 @@ private:
         for (Placed<Scalar>& proxy : proxies_) {
             if (rates_.recolour > 0 && random_.chance(rates_.recolour * share)) {
                 proxy.colour = random_.below(3);
-                setColour(proxy.id, proxy.colour);
+                colours_.set(proxy.id, proxy.colour);
                 world.refilter(proxy.id);
             }
         }
-    }
-
-    void setColour(ProxyId id, std::uint32_t colour) {
-        if (colours_.size() <= id.index) {
-            colours_.resize(id.index + 1);
-        }
-        colours_[id.index] = colour;
     }
 
     BoxScene<Scalar> scene_;
@@ -177,8 +168,8 @@ private:
     ScriptRates rates_;
     std::uint32_t frame_ = 0;
     std::vector<Placed<Scalar>> proxies_;
-    std::vector<Plan> plans_;             // beside proxies_
-    std::vector<std::uint32_t> colours_;  // by index of proxy
+    std::vector<Plan> plans_;  // beside proxies_
+    Colours colours_;
 };
 
 }  // namespace hashphase::test

@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Zlib
 
+// How many proxies share a cell of a given size, and which cell a coordinate is in.
+
+#include <broadphase/geometry/quantise.hpp>
 #include <broadphase/hash/density_estimate.hpp>
 #include <tests/support/random.hpp>
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace hashphase::detail {
@@ -126,6 +132,92 @@ TEST(DensityEstimate, OfNothingOrOfNumbersAtTheirEndsIsAShare) {
     for (const double size : {1e-300, 1.0, 1e300}) {
         const double share = crowding.shareInCell(size, kNone);
         EXPECT_TRUE(share >= 0 && share <= 1) << share;
+    }
+}
+
+// --- Cells of coordinates ------------------------------------------------------------------------
+
+template <class Scalar>
+class Quantise : public testing::Test {
+protected:
+    using Limits = std::numeric_limits<Scalar>;
+
+    static Scalar below(Scalar x) { return std::nextafter(x, -Limits::infinity()); }
+    static Scalar above(Scalar x) { return std::nextafter(x, Limits::infinity()); }
+
+    /// Sorted numbers of every magnitude, and each one's neighbours.
+    static std::vector<Scalar> hostileNumbers() {
+        std::vector<Scalar> magnitudes{Limits::denorm_min(), Limits::min(),    Limits::max(),
+                                       Scalar(1e-30),        Scalar(3e9),      Scalar(1e18),
+                                       Scalar(1e30),         Scalar(16777216), Scalar(kCellLimit),
+                                       Scalar(2147483648)};
+        test::Random random(0x5eed0201);
+        for (int i = 0; i < 4000; ++i) {
+            magnitudes.push_back(static_cast<Scalar>(random.logBetween(1e-6, 1e10)));
+        }
+        std::vector<Scalar> numbers{0, -Scalar(0), Limits::infinity(), -Limits::infinity()};
+        for (const Scalar x : magnitudes) {
+            numbers.insert(numbers.end(), {below(x), x, above(x), below(-x), -x, above(-x)});
+        }
+        std::sort(numbers.begin(), numbers.end());
+        return numbers;
+    }
+};
+
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(Quantise, Scalars);
+
+TYPED_TEST(Quantise, NeverDecreasesWhateverTheNumbers) {
+    const std::vector<TypeParam> numbers = this->hostileNumbers();
+    for (const TypeParam origin : {TypeParam(0), TypeParam(0.1), TypeParam(-1e6), TypeParam(3e9)}) {
+        for (const double size : {1e-30, 1e-3, 0.1, 1.0, 7.0, 1e4, 1e30}) {
+            const auto inverse = static_cast<TypeParam>(1 / size);
+            std::int32_t previous = -kCellLimit;
+            for (const TypeParam x : numbers) {
+                const std::int32_t cell = quantise(x, origin, inverse);
+                ASSERT_LE(previous, cell) << x << " - " << origin << " in cells of " << size;
+                ASSERT_LE(cell, kCellLimit);
+                previous = cell;
+            }
+        }
+    }
+}
+
+TYPED_TEST(Quantise, IsTheFloorWhereNothingIsRounded) {
+    for (int eighths = -4000; eighths <= 4000; ++eighths) {
+        const auto x = static_cast<TypeParam>(eighths) / 8;
+        EXPECT_EQ(quantise(x, TypeParam(0), TypeParam(1)),
+                  static_cast<std::int32_t>(std::floor(x)));
+        EXPECT_EQ(quantise(x, TypeParam(16), TypeParam(0.25)),
+                  static_cast<std::int32_t>(std::floor((x - 16) / 4)));
+    }
+    EXPECT_EQ(quantise(-TypeParam(0), TypeParam(0), TypeParam(1)), 0);
+}
+
+TYPED_TEST(Quantise, ClampsWhatIsFarOutsideBeforeTheConversion) {
+    using Number = std::numeric_limits<TypeParam>;
+    for (const TypeParam far :
+         {TypeParam(3e9), TypeParam(1e18), Number::max(), Number::infinity()}) {
+        EXPECT_EQ(quantise(far, TypeParam(0), TypeParam(1)), kCellLimit);
+        EXPECT_EQ(quantise(-far, TypeParam(0), TypeParam(1)), -kCellLimit);
+    }
+    EXPECT_EQ(quantise(Number::quiet_NaN(), TypeParam(0), TypeParam(1)), kCellLimit);
+}
+
+// Borders k * cell as rounded: whichever side they fall on, the number below is never in a
+// higher cell, and none is more than one cell off.
+TYPED_TEST(Quantise, PutsTheNeighboursOfABorderIntoTheSameOrNeighbouringCells) {
+    for (int tenths = 1; tenths <= 1000; ++tenths) {
+        const double size = 0.1 * tenths;
+        const auto inverse = static_cast<TypeParam>(1 / size);
+        for (int k = -999; k <= 999; k += 3) {
+            const auto border = static_cast<TypeParam>(k) * static_cast<TypeParam>(size);
+            const std::int32_t below = quantise(this->below(border), TypeParam(0), inverse);
+            const std::int32_t at = quantise(border, TypeParam(0), inverse);
+            const std::int32_t above = quantise(this->above(border), TypeParam(0), inverse);
+            ASSERT_TRUE(k - 1 <= below && below <= at && at <= above && above <= k)
+                << below << ", " << at << ", " << above << " for " << k;
+        }
     }
 }
 

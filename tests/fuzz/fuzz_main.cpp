@@ -1,22 +1,20 @@
 // SPDX-License-Identifier: Zlib
-#pragma once
 
-// What a fuzzer does with bytes.
+// What a fuzzer does with bytes: plays them on the subject that it is compiled for. A fault is shrunk, written to
+// stderr as C++, and ends the program.
 
-#include <tests/fuzz/operation.hpp>
+#include <tests/fuzz/subjects.hpp>
 
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 
-namespace hashphase::test {
-
-/// Plays the bytes. A fault is shrunk, written to stderr as C++, and ends the program.
-inline int fuzz(const Subject& subject, const std::uint8_t* data, std::size_t size) {
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace hashphase::test;
+    constexpr const Subject& subject = HASHPHASE_FUZZ_SUBJECT;
     const Operations operations = operationsOf({data, size});
-    const Verdict verdict = subject.play(operations, false);
-    if (verdict.fault.empty()) {
+    if (subject.play(operations, false).fault.empty()) {
         return 0;
     }
     const Operations least = shrunk(subject, operations);
@@ -24,5 +22,3 @@ inline int fuzz(const Subject& subject, const std::uint8_t* data, std::size_t si
                  subject.play(least, false).fault.c_str(), asSource(subject, least).c_str());
     std::abort();
 }
-
-}  // namespace hashphase::test
