@@ -31,11 +31,11 @@ namespace hashphase::test {
 /// After each frame all promises of tests/support/pair_world.hpp are checked.
 class CubeStory {
 public:
-    /// `others` stand far away; one moves in each frame, so that the many of them, and cubes, come to rest.
+    /// `others` stand far away, of which one moves in each frame: where they are many, they come to rest, and
+    /// the cubes with them.
     CubeStory(std::size_t others, std::size_t framesOfRest) : framesOfRest_(framesOfRest) {
         for (std::size_t i = 0; i < others; ++i) {
-            const double x = 1000 + 2.0 * static_cast<double>(i);
-            others_.push_back(world_.add(cubeAt(x), Mobility::resting));
+            others_.push_back(world_.add(cubeAt(1000 + 2.0 * static_cast<double>(i))));
         }
     }
 
