@@ -7,7 +7,7 @@
 
 namespace hashphase::demos {
 
-Table::Table(std::vector<std::string> header) {
+Table::Table(std::vector<std::string> header, bool isOfWords) : isOfWords_(isOfWords) {
     rows_.push_back(std::move(header));
 }
 
@@ -25,7 +25,8 @@ void Table::print(std::ostream& out) const {
     for (const auto& row : rows_) {
         std::string line = row[0] + std::string(widths[0] - row[0].size(), ' ');
         for (std::size_t column = 1; column < widths.size(); ++column) {
-            line += std::string(2 + widths[column] - row[column].size(), ' ') + row[column];
+            const std::string blanks(widths[column] - row[column].size(), ' ');
+            line += isOfWords_ ? "  " + row[column] + blanks : "  " + blanks + row[column];
         }
         line.erase(line.find_last_not_of(' ') + 1);
         out << line << '\n';

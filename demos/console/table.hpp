@@ -9,10 +9,10 @@
 
 namespace hashphase::demos {
 
-/// The first column is aligned to the left, the others (numbers) to the right.
+/// The first column is aligned to the left, the others to the right, as numbers are, or as words are.
 class Table {
 public:
-    explicit Table(std::vector<std::string> header);
+    explicit Table(std::vector<std::string> header, bool isOfWords = false);
 
     /// As many cells as the header has.
     void addRow(std::vector<std::string> cells);
@@ -22,6 +22,7 @@ public:
 
 private:
     std::vector<std::vector<std::string>> rows_;  // the header first
+    bool isOfWords_;
 };
 
 }  // namespace hashphase::demos

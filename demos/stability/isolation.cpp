@@ -14,6 +14,7 @@
 #include <memory>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include <sys/resource.h>
 #include <sys/time.h>
@@ -36,70 +37,43 @@ File temporaryFile() {
     return file;
 }
 
-// The outcome, as its numbers and then its note.
-struct Numbers {
-    double ratio;
-    std::uint64_t hasRatio;
-    std::uint64_t kind;
-    std::uint64_t compared;
-    std::uint64_t missing;
-    std::uint64_t extra;
-};
-
-void writeOutcome(const CaseOutcome& outcome, std::FILE* file) {
-    const Numbers numbers{outcome.costRatio.value_or(0),
-                          outcome.costRatio.has_value(),
-                          static_cast<std::uint64_t>(outcome.kind),
-                          outcome.compared,
-                          outcome.missing,
-                          outcome.extra};
-    std::fwrite(&numbers, sizeof numbers, 1, file);
-    std::fwrite(outcome.note.data(), 1, outcome.note.size(), file);
-    std::fflush(file);
-}
-
 std::string textOf(std::FILE* file, std::size_t most) {
     std::string text(most, '\0');
     text.resize(std::fread(text.data(), 1, most, file));
     return text;
 }
 
-CaseOutcome readOutcome(std::FILE* file) {
-    std::rewind(file);
+CaseOutcome outcomeOf(OutcomeKind kind, std::string note) {
     CaseOutcome outcome;
-    Numbers numbers;
-    if (std::fread(&numbers, sizeof numbers, 1, file) != 1) {
-        outcome.kind = OutcomeKind::crashes;
-        outcome.note = "It ended without an answer.";
-        return outcome;
-    }
-    outcome.kind = static_cast<OutcomeKind>(numbers.kind);
-    outcome.compared = numbers.compared;
-    outcome.missing = numbers.missing;
-    outcome.extra = numbers.extra;
-    if (numbers.hasRatio != 0) {
-        outcome.costRatio = numbers.ratio;
-    }
-    outcome.note = textOf(file, 4000);
+    outcome.kind = kind;
+    outcome.note = std::move(note);
     return outcome;
 }
 
-itimerval timerOf(double seconds) {
-    itimerval timer{};
-    timer.it_value.tv_sec = static_cast<time_t>(seconds);
-    timer.it_value.tv_usec =
-        static_cast<suseconds_t>(std::max(1.0, (seconds - std::floor(seconds)) * 1e6));
-    return timer;
+// The outcome, as its numbers and then its note.
+void writeOutcome(const CaseOutcome& outcome, std::FILE* file) {
+    const CaseNumbers& numbers = outcome;
+    std::fwrite(&numbers, sizeof numbers, 1, file);
+    std::fwrite(outcome.note.data(), 1, outcome.note.size(), file);
+    std::fflush(file);
+}
+
+CaseOutcome readOutcome(std::FILE* file) {
+    std::rewind(file);
+    CaseOutcome outcome;
+    CaseNumbers& numbers = outcome;
+    if (std::fread(&numbers, sizeof numbers, 1, file) != 1) {
+        return outcomeOf(OutcomeKind::crashes, "It ended without an answer.");
+    }
+    outcome.note = textOf(file, 4000);
+    return outcome;
 }
 
 CaseOutcome callGuarded(const std::function<CaseOutcome()>& work) {
     try {
         return work();
     } catch (const std::exception& error) {
-        CaseOutcome outcome;
-        outcome.kind = OutcomeKind::wrong;
-        outcome.note = std::string("It threw: ") + error.what();
-        return outcome;
+        return outcomeOf(OutcomeKind::wrong, std::string("It threw: ") + error.what());
     }
 }
 
@@ -111,7 +85,10 @@ CaseOutcome callGuarded(const std::function<CaseOutcome()>& work) {
     dup2(fileno(said), STDERR_FILENO);
     // The timer's signal ends the process.
     std::signal(SIGPROF, SIG_DFL);
-    const itimerval timer = timerOf(seconds);
+    itimerval timer{};
+    timer.it_value.tv_sec = static_cast<time_t>(seconds);
+    timer.it_value.tv_usec =
+        static_cast<suseconds_t>(std::max(1.0, (seconds - std::floor(seconds)) * 1e6));
     setitimer(ITIMER_PROF, &timer, nullptr);
     writeOutcome(callGuarded(work), answer);
     _exit(0);
@@ -138,22 +115,16 @@ bool waitFor(pid_t child, double wallSeconds, const std::function<void()>& while
 }
 
 CaseOutcome crash(const std::string& how, std::FILE* said) {
-    CaseOutcome outcome;
-    outcome.kind = OutcomeKind::crashes;
-    outcome.note = how;
     std::rewind(said);
-    if (const std::string words = textOf(said, 600); !words.empty()) {
-        outcome.note += " It said: " + words;
-    }
-    return outcome;
+    const std::string words = textOf(said, 600);
+    return outcomeOf(OutcomeKind::crashes, words.empty() ? how : how + " It said: " + words);
 }
 
 CaseOutcome hang(double seconds, const char* ofWhat) {
-    CaseOutcome outcome;
-    outcome.kind = OutcomeKind::hangs;
+    CaseOutcome outcome = outcomeOf(
+        OutcomeKind::hangs,
+        "It did not end within " + fixed(seconds, seconds < 1 ? 2 : 0) + " s of " + ofWhat + ".");
     outcome.seconds = seconds;
-    outcome.note =
-        "It did not end within " + fixed(seconds, seconds < 1 ? 2 : 0) + " s of " + ofWhat + ".";
     return outcome;
 }
 
@@ -187,24 +158,6 @@ CaseOutcome runIsolated(const std::function<CaseOutcome()>& work, const Isolatio
                      said.get());
     }
     return readOutcome(answer.get());
-}
-
-LimitPause::LimitPause() {
-    const itimerval off{};
-    itimerval left{};
-    setitimer(ITIMER_PROF, &off, &left);
-    secondsLeft_ = left.it_value.tv_sec;
-    microsecondsLeft_ = left.it_value.tv_usec;
-}
-
-LimitPause::~LimitPause() {
-    if (secondsLeft_ == 0 && microsecondsLeft_ == 0) {
-        return;
-    }
-    itimerval left{};
-    left.it_value.tv_sec = secondsLeft_;
-    left.it_value.tv_usec = static_cast<suseconds_t>(microsecondsLeft_);
-    setitimer(ITIMER_PROF, &left, nullptr);
 }
 
 }  // namespace hashphase::demos

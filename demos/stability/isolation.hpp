@@ -7,7 +7,8 @@
 // Threads   The caller's process must have no other threads at work.
 // Output    What the work writes to stdout or stderr is caught.
 
-#include <demos/stability/case_outcome.hpp>
+#include <demos/stability/case_tally.hpp>
+#include <demos/stability/limit_pause.hpp>
 
 #include <functional>
 
@@ -25,19 +26,5 @@ struct IsolationLimits {
 [[nodiscard]] CaseOutcome runIsolated(const std::function<CaseOutcome()>& work,
                                       const IsolationLimits& limits,
                                       const std::function<void()>& whileWaiting = {});
-
-/// While it lives, time does not count: for the truth that answers are compared with. Within
-/// runIsolated()'s work, not nested; elsewhere it does nothing.
-class LimitPause {
-public:
-    LimitPause();
-    LimitPause(const LimitPause&) = delete;
-    LimitPause& operator=(const LimitPause&) = delete;
-    ~LimitPause();
-
-private:
-    long secondsLeft_ = 0;
-    long microsecondsLeft_ = 0;
-};
 
 }  // namespace hashphase::demos

@@ -53,16 +53,6 @@ const PhysicsOutcome* find(std::span<const PhysicsOutcome> all, std::string_view
 
 }  // namespace
 
-std::vector<HardWorld> physicsCases() {
-    std::vector<HardWorld> cases;
-    for (const double offset : kHardOffsets) {
-        for (const HardWorld& world : hardWorlds()) {
-            cases.push_back(movedTo(offset, world));
-        }
-    }
-    return cases;
-}
-
 std::vector<PhysicsBroadphase> hardBroadphases(const HardWorld& world) {
     const double halfSide = world.offset + kReach;
     return {

@@ -16,10 +16,6 @@
 
 namespace hashphase::demos {
 
-/// Every hard world, at each of kHardOffsets from the origin. All over all broadphases, for
-/// HardWorld::steps each, take some ten seconds of processor time.
-[[nodiscard]] std::vector<HardWorld> physicsCases();
-
 /// Ours first, then btSimpleBroadphase, btDbvtBroadphase, the same with m_deferedcollide,
 /// btAxisSweep3, bt32BitAxisSweep3. The last two are told to expect a cube around the origin that
 /// the world just fits into; ours sweeps where bullets are to be noticed.

@@ -2,16 +2,44 @@
 #include <demos/stability/report.hpp>
 
 #include <demos/console/format.hpp>
+#include <demos/console/table.hpp>
 #include <demos/report/data_table.hpp>
 #include <demos/report/json_values.hpp>
 #include <demos/report/page.hpp>
 #include <demos/report/report_text.hpp>
 
-#include <algorithm>
+#include <array>
 #include <ostream>
 
 namespace hashphase::demos {
 namespace {
+
+std::string nameOf(OutcomeKind kind) {
+    static constexpr std::array<const char*, 8> kNames{"nothing", "exact", "extra", "costly",
+                                                       "refuses", "wrong", "hangs", "crashes"};
+    return kNames.at(static_cast<std::size_t>(kind));
+}
+
+// The longest number that a narrow column shows in full is 99,999.
+std::string shortCount(std::uint64_t count) {
+    if (count < 100'000) {
+        return withThousands(count);
+    }
+    return count < 10'000'000 ? withThousands(count / 1000) + "k"
+                              : withThousands(count / 1'000'000) + "M";
+}
+
+std::string ratioText(double ratio) {
+    return ' ' + fixed(ratio, ratio < 9.95 ? 1 : 0) + "x";
+}
+
+std::string countsText(const CaseOutcome& outcome) {
+    std::string text = outcome.missing > 0 ? "-" + shortCount(outcome.missing) : "";
+    if (outcome.extra > 0) {
+        text += (text.empty() ? "+" : " +") + shortCount(outcome.extra);
+    }
+    return text;
+}
 
 std::string verdictOf(const StabilityReport& report, const CaseResult& result) {
     const std::optional<bool> isHeld = caseHolds(report, result);
@@ -20,53 +48,42 @@ std::string verdictOf(const StabilityReport& report, const CaseResult& result) {
 
 constexpr const char* kLegend =
     "-n: n answers missing; +n: n too many; nx: cost, by what the case measures it with; > n s: "
-    "did "
-    "not end within n s; -: nothing to ask it for";
+    "did not end within n s; -: nothing to ask it for";
+
+// A row for each case: what each broadphase does, and the verdict.
+DataTable tableOf(const StabilityReport& report) {
+    DataTable table{{{"id", "id"}, {"case", "case"}}, {}};
+    for (const BroadphaseKind* kind : report.kinds) {
+        table.columns.push_back({std::string(kind->name), std::string(kind->name)});
+    }
+    table.columns.push_back({"verdict", "verdict"});
+    for (const CaseResult& result : report.results) {
+        std::vector<Value> row{result.hardCase->id, result.hardCase->name};
+        for (const CaseOutcome& outcome : result.outcomes) {
+            row.emplace_back(outcomeText(outcome));
+        }
+        row.emplace_back(verdictOf(report, result));
+        table.add(std::move(row));
+    }
+    return table;
+}
 
 // --- Text -----------------------------------------------------------------------------------------
 
-// Columns stand to the left, as words do.
-void printColumns(const std::vector<std::vector<std::string>>& rows, std::ostream& out) {
-    std::vector<std::size_t> widths(rows.front().size(), 0);
-    for (const std::vector<std::string>& row : rows) {
-        for (std::size_t i = 0; i < row.size(); ++i) {
-            widths[i] = std::max(widths[i], row[i].size());
-        }
+void printWords(const DataTable& data, std::ostream& out) {
+    std::vector<std::string> header;
+    for (const DataColumn& column : data.columns) {
+        header.push_back(column.name == "id" ? "" : column.name);
     }
-    for (const std::vector<std::string>& row : rows) {
-        std::string line;
-        for (std::size_t i = 0; i < row.size(); ++i) {
-            line += row[i] + std::string(widths[i] + 2 - row[i].size(), ' ');
+    Table table(std::move(header), true);
+    for (const std::vector<Value>& row : data.rows) {
+        std::vector<std::string> cells;
+        for (const Value& value : row) {
+            cells.push_back(valueText(value));
         }
-        line.erase(line.find_last_not_of(' ') + 1);
-        out << line << '\n';
-        if (&row == &rows.front()) {
-            std::size_t width = 0;
-            for (const std::size_t each : widths) {
-                width += each + 2;
-            }
-            out << std::string(width - 2, '-') << '\n';
-        }
+        table.addRow(std::move(cells));
     }
-}
-
-void printTable(const StabilityReport& report, std::ostream& out) {
-    std::vector<std::vector<std::string>> rows;
-    std::vector<std::string> header{"", "case"};
-    for (const BroadphaseKind* kind : report.kinds) {
-        header.emplace_back(kind->name);
-    }
-    header.emplace_back("verdict");
-    rows.push_back(std::move(header));
-    for (const CaseResult& result : report.results) {
-        std::vector<std::string> row{result.hardCase->id, result.hardCase->name};
-        for (const CaseOutcome& outcome : result.outcomes) {
-            row.push_back(outcomeText(outcome));
-        }
-        row.push_back(verdictOf(report, result));
-        rows.push_back(std::move(row));
-    }
-    printColumns(rows, out);
+    table.print(out);
 }
 
 std::string detailOf(const CaseOutcome& outcome) {
@@ -93,32 +110,21 @@ void explain(const StabilityReport& report, const CaseResult& result, std::ostre
 
 // --- Data -----------------------------------------------------------------------------------------
 
-Value numberOrNothing(const std::optional<double>& number) {
-    return number ? Value(*number) : Value();
-}
-
 DataTable rowsOf(const StabilityReport& report) {
-    DataTable table{{{"case"},
-                     {"name"},
-                     {"broadphase"},
-                     {"outcome"},
-                     {"text"},
-                     {"holds"},
-                     {"compared"},
-                     {"missing"},
-                     {"extra"},
-                     {"cost_ratio"},
-                     {"note"}},
-                    {}};
+    DataTable table;
+    for (const char* name : {"case", "name", "broadphase", "outcome", "text", "holds", "compared",
+                             "missing", "extra", "cost_ratio", "note"}) {
+        table.columns.push_back({name});
+    }
     for (const CaseResult& result : report.results) {
         for (std::size_t i = 0; i < report.kinds.size(); ++i) {
             const CaseOutcome& outcome = result.outcomes[i];
-            table.add({std::string(result.hardCase->id), std::string(result.hardCase->name),
-                       std::string(report.kinds[i]->name), std::string(nameOf(outcome.kind)),
+            table.add({result.hardCase->id, result.hardCase->name,
+                       std::string(report.kinds[i]->name), nameOf(outcome.kind),
                        outcomeText(outcome), holds(outcome) ? 1.0 : 0.0,
                        static_cast<double>(outcome.compared), static_cast<double>(outcome.missing),
-                       static_cast<double>(outcome.extra), numberOrNothing(outcome.costRatio),
-                       outcome.note});
+                       static_cast<double>(outcome.extra),
+                       outcome.costRatio ? Value(*outcome.costRatio) : Value(), outcome.note});
         }
     }
     return table;
@@ -146,34 +152,10 @@ Json outcomesJson(const StabilityReport& report, const CaseResult& result) {
 
 constexpr const char* kIntroduction =
     "hashphase is a spatial hash that replaces the broadphase of the Bullet physics engine. These "
-    "are "
-    "inputs on which plain code goes wrong: numbers that are none, borders of cells, rays without "
-    "end, "
-    "crowds, speeds, changes at the wrong moment. Each was run with every broadphase, in a process "
-    "of "
-    "its own, and what it answered was compared with what looking at everything says.";
-
-PageSection tableSection(const StabilityReport& report) {
-    PageSection section;
-    section.heading = "What each one does";
-    section.sentences = {std::string(kLegend) + "."};
-    DataTable table{{{"id", "id"}, {"case", "case"}}, {}};
-    for (const BroadphaseKind* kind : report.kinds) {
-        table.columns.push_back({std::string(kind->name), std::string(kind->name)});
-    }
-    table.columns.push_back({"verdict", "verdict"});
-    for (const CaseResult& result : report.results) {
-        std::vector<Value> row{std::string(result.hardCase->id),
-                               std::string(result.hardCase->name)};
-        for (const CaseOutcome& outcome : result.outcomes) {
-            row.emplace_back(outcomeText(outcome));
-        }
-        row.emplace_back(verdictOf(report, result));
-        table.add(std::move(row));
-    }
-    section.tables = {table};
-    return section;
-}
+    "are inputs on which plain code goes wrong: numbers that are none, borders of cells, rays "
+    "without end, crowds, speeds, changes at the wrong moment. Each was run with every broadphase, "
+    "in a process of its own, and what it answered was compared with what looking at everything "
+    "says.";
 
 PageSection caseSection(const StabilityReport& report, const CaseResult& result) {
     const HardCase& hardCase = *result.hardCase;
@@ -200,8 +182,27 @@ PageSection caseSection(const StabilityReport& report, const CaseResult& result)
 
 }  // namespace
 
+std::string outcomeText(const CaseOutcome& outcome) {
+    switch (outcome.kind) {
+        case OutcomeKind::nothing:
+            return "-";
+        case OutcomeKind::exact:
+            return "exact" + (outcome.costRatio ? ratioText(*outcome.costRatio) : "");
+        case OutcomeKind::costly:
+            return "costly" + ratioText(outcome.costRatio.value_or(0));
+        case OutcomeKind::extra:
+            return countsText(outcome);
+        case OutcomeKind::wrong:
+            return outcome.missing > 0 ? countsText(outcome) : "wrong";
+        case OutcomeKind::hangs:
+            return "> " + fixed(outcome.seconds, outcome.seconds < 1 ? 2 : 0) + " s";
+        default:
+            return nameOf(outcome.kind);
+    }
+}
+
 void printReport(const StabilityReport& report, std::ostream& out) {
-    printTable(report, out);
+    printWords(tableOf(report), out);
     out << kLegend << '\n';
     for (const CaseResult& result : report.results) {
         if (report.options.isExplained || !caseHolds(report, result).value_or(true)) {
@@ -242,8 +243,12 @@ void writeCsv(const StabilityReport& report, std::ostream& out) {
 }
 
 Page pageOf(const StabilityReport& report) {
-    Page page{"Hard cases", kIntroduction,          verdictLine(report) + ".",
-              std::nullopt, {tableSection(report)}, report.provenance};
+    PageSection table;
+    table.heading = "What each one does";
+    table.sentences = {std::string(kLegend) + "."};
+    table.tables = {tableOf(report)};
+    Page page{"Hard cases", kIntroduction, verdictLine(report) + ".",
+              std::nullopt, {table},       report.provenance};
     for (const CaseResult& result : report.results) {
         if (caseHolds(report, result)) {
             page.holds = allHold(report);

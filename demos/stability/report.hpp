@@ -8,8 +8,12 @@
 #include <demos/stability/stability.hpp>
 
 #include <iosfwd>
+#include <string>
 
 namespace hashphase::demos {
+
+/// In a word or two: "exact", "-3 +12", "costly 12x", "> 2 s", "crashes"; "-" for nothing.
+[[nodiscard]] std::string outcomeText(const CaseOutcome& outcome);
 
 /// A row for each case; all about each case where that was asked for; what is not as required; the
 /// verdict.

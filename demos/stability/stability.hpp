@@ -4,6 +4,7 @@
 // `hashphase stability`: runs hard cases with our broadphase and Bullet's, each in a process of its own,
 // and says what each one does.
 
+#include <demos/compare/broadphase_kind.hpp>
 #include <demos/console/program.hpp>
 #include <demos/report/provenance.hpp>
 #include <demos/stability/hard_case.hpp>
@@ -22,8 +23,7 @@ struct StabilityOptions {
     bool isQuick = false;
     bool isExplained = false;
     std::uint64_t seed = 1;
-    double caseSeconds =
-        2;  // of processor time that a broadphase has for a case; ours ten times that
+    double caseSeconds = 2;           // of processor time for a case; ours has ten times that
     std::optional<double> timeLimit;  // [s] of wall time, after which no case begins
     std::string jsonFile;             // empty: none is written
     std::string csvFile;

@@ -3,7 +3,7 @@
 
 #include <demos/compare/broadphase_kind.hpp>
 #include <demos/console/program.hpp>
-#include <demos/stability/catalogue.hpp>
+#include <demos/stability/hard_case.hpp>
 
 #include <span>
 

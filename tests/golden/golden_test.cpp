@@ -10,8 +10,8 @@
 
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/simd/kernels.hpp>
+#include <demos/stability/flush_to_zero.hpp>
 #include <tests/golden/golden_results.hpp>
-#include <tests/support/denormal_mode.hpp>
 
 #include <gtest/gtest.h>
 
@@ -86,11 +86,11 @@ TEST(GoldenResults, AreTheSameInWhateverOrderObjectsWereAdded) {
 }
 
 TEST(GoldenResults, AreTheSameWhereDenormalsAreFlushed) {
-    if (!DenormalMode::kIsKnown) {
+    if (!demos::FlushToZero::isAvailable()) {
         GTEST_SKIP() << "it is not known how to set the mode of this processor";
     }
     const std::vector<GoldenLine> kept = goldenLines({.denormals = false});
-    const DenormalMode mode(true);
+    const demos::FlushToZero mode(true);
     EXPECT_EQ(differences(goldenLines({.denormals = false}), kept), "");
 }
 

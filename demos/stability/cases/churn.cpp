@@ -4,59 +4,43 @@
 
 #include <demos/stability/cases/cases.hpp>
 
-#include <broadphase/pairs.hpp>
-#include <demos/scenes/random.hpp>
-#include <demos/stability/grid_scene.hpp>
-#include <demos/stability/pair_scene.hpp>
-#include <integration/bullet/conversions.hpp>
+#include <broadphase/convex_region.hpp>
+#include <integration/culling/culler.hpp>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 
 namespace hashphase::demos {
 namespace {
 
-using Point = Vector3<float>;
-
 // --- Once -----------------------------------------------------------------------------------------
 
-CaseOutcome duplicates(const CaseContext& context) {
-    CaseTally tally;
-    Boxes boxes;
-    for (const float edge : {0.9F, 1.1F, 3.5F, 4.5F, 15.0F, 20.0F}) {
+template <class Scalar>
+void duplicates(CaseRun<Scalar>& run) {
+    using Point = Vector3<Scalar>;
+    const GridConfig config{.cellSize = 1, .levelRatio = 4};
+    Boxes<Scalar> boxes;
+    for (const Scalar edge : {0.9F, 1.1F, 3.5F, 4.5F, 15.0F, 20.0F}) {
         for (int i = 0; i < 5; ++i) {
-            boxes.push_back(cubeAt(Point::Constant(0.125F * static_cast<float>(i)), edge));
+            const Point at = Point::Constant(Scalar(0.125F) * static_cast<Scalar>(i));
+            boxes.push_back(cubeAt(at, edge));
         }
     }
-    PairScene scene(context, boxes, {.cellSize = 1, .levelRatio = 4});
-    scene.judge(tally);
-    if (context.kind.ours) {
-        Grid<float> grid({.cellSize = 1, .levelRatio = 4});
-        Pairs<float> pairs(grid);
-        std::vector<ProxyId> ids;
-        for (const Aabb<float>& box : boxes) {
-            ids.push_back(grid.add(box));
-        }
-        const auto all = [](ProxyId, ProxyId) { return true; };
-        const auto keysOf = [](std::span<const ProxyPair> of) {
-            std::vector<PairKey> keys;
-            for (const ProxyPair& pair : of) {
-                keys.push_back(keyOf(pair));
+    PairScene<Scalar> scene(run, boxes, config);
+    scene.judge();
+    if (!run.isOurs) {
+        return;
+    }
+    // To where others were, and away from everything, some a frame: all pairs are born and die once.
+    for (const Scalar way : {Scalar(16), Scalar(100)}) {
+        for (std::uint32_t i = 0; i < scene.size(); ++i) {
+            scene.move(i, boxes[i].translated(Point(way * static_cast<Scalar>(i + 1), 0, 0)));
+            if (i % 3 == 0) {
+                scene.judge();
             }
-            return keys;
-        };
-        tally.compare(keysOf(pairs.update(all).born), scene.exact());
-        tally.expect(pairs.update(all).born.empty(), "a pair is born once");
-        for (std::size_t i = 0; i < ids.size(); ++i) {
-            const float far = 100 * static_cast<float>(i + 1);
-            grid.move(ids[i], boxes[i].translated(Point(far, 0, 0)));
         }
-        tally.compare(keysOf(pairs.update(all).died), scene.exact());
-        tally.expect(pairs.update(all).died.empty(), "a pair dies once");
+        scene.judge();
     }
-    return tally.outcome();
+    run.expect(scene.reported().empty(), "all pairs have died");
 }
 
 // --- By a hair ------------------------------------------------------------------------------------
@@ -71,9 +55,11 @@ constexpr std::array kUlpsBeyond{-1.0F, 0.0F, 1.0F};
 
 // A cube at 0, and on each of its sides three boxes side by side that begin where the cube ends
 // when it has moved by the margin, an ulp less and an ulp more.
-Boxes boxesAtTheMargin() {
+template <class Scalar>
+Boxes<Scalar> boxesAtTheMargin() {
+    using Point = Vector3<float>;
     constexpr float kHalf = 0x1p20F * kMarginUlp;  // 4 mm
-    Boxes boxes{cubeAt({0, 0, 0}, 2 * kHalf)};
+    Boxes<Scalar> boxes{cubeAt<Scalar>({0, 0, 0}, 2 * kHalf)};
     for (int axis = 0; axis < 3; ++axis) {
         for (const bool isBelow : {false, true}) {
             for (const float ulps : kUlpsBeyond) {
@@ -83,92 +69,155 @@ Boxes boxesAtTheMargin() {
                 high[(axis + 1) % 3] += ulps * 0.75F * kHalf;
                 low[axis] = kHalf + kMargin + ulps * kMarginUlp;
                 high[axis] = low[axis] + kHalf;
-                boxes.push_back(isBelow ? Aabb<float>(-high, -low) : Aabb<float>(low, high));
+                const Aabb<float> box = isBelow ? Aabb<float>(-high, -low) : Aabb<float>(low, high);
+                boxes.push_back(box.cast<Scalar>());
             }
         }
     }
     return boxes;
 }
 
-// What is kept of the mover, however fat, has it at both ends.
-void expectFoundWhereItIs(PairScene& scene, CaseTally& tally) {
-    const Aabb<float> box = scene.boxes()[0];
-    for (const Point& end : {box.min(), box.max()}) {
-        NoteObjects callback;
-        scene.broadphase().aabbTest(toBullet(end), toBullet(end), callback);
-        tally.expect(std::count(callback.found.begin(), callback.found.end(), 0U) == 1,
-                     "a mover is found at both its ends");
-    }
-}
-
-void judgeMove(PairScene& scene, CaseTally& tally) {
-    scene.judge(tally);
-    expectFoundWhereItIs(scene, tally);
-    if (const SpatialHashBroadphase* hash = scene.hash()) {
-        tally.expect(hash->validate().empty(), "all invariants hold in every frame");
+// The pairs, and what is kept of the mover, however fat, has it at both ends.
+template <class Scalar>
+void judgeMove(CaseRun<Scalar>& run, PairScene<Scalar>& scene) {
+    scene.judge();
+    const Aabb<Scalar> box = scene.boxes()[0];
+    for (const Vector3<Scalar>& end : {box.min(), box.max()}) {
+        const Objects found = scene.touching({end, end});
+        run.expect(std::count(found.begin(), found.end(), 0U) == 1,
+                   "a mover is found at both its ends");
     }
 }
 
 // To the margin and back at a stroke, by an ulp less, nothing and an ulp more, then creeping across
 // it by an ulp a frame; along each axis, both ways.
-void moveByTheMargin(const CaseContext& context, CaseTally& tally, int frames) {
-    PairScene scene(context, boxesAtTheMargin());
-    const Aabb<float> rest = scene.boxes()[0];
-    constexpr float kAtRest = kInfinity;
+template <class Scalar>
+void moveByTheMargin(CaseRun<Scalar>& run, int frames) {
+    PairScene<Scalar> scene(run, boxesAtTheMargin<Scalar>());
+    const Aabb<Scalar> rest = scene.boxes()[0];
+    constexpr float kAtRest = kInfinity<float>;
     constexpr std::array kPlaces{-1.0F, kAtRest, 0.0F, kAtRest, 1.0F,  kAtRest,
                                  -1.0F, 0.0F,    1.0F, 0.0F,    -1.0F, kAtRest};
     for (int frame = 0; frame < frames; ++frame) {
         const std::size_t place = static_cast<std::size_t>(frame) % kPlaces.size();
         const int round = frame / static_cast<int>(kPlaces.size());
-        Point by = Point::Zero();
+        Vector3<Scalar> by = Vector3<Scalar>::Zero();
         if (kPlaces[place] != kAtRest) {
-            const float step = kMargin + kPlaces[place] * kMarginUlp;
+            const Scalar step = kMargin + kPlaces[place] * kMarginUlp;
             by[round % 3] = round / 3 % 2 == 0 ? step : -step;
         }
         scene.move(0, rest.translated(by));
-        judgeMove(scene, tally);
-        const Point moved = scene.boxes()[0].min() - rest.min();
-        tally.expect(moved == by && scene.boxes()[0].max() - rest.max() == by,
-                     "no move by the margin is rounded");
+        judgeMove(run, scene);
+        const Vector3<Scalar> moved = scene.boxes()[0].min() - rest.min();
+        run.expect(moved == by && scene.boxes()[0].max() - rest.max() == by,
+                   "no move by the margin is rounded");
     }
 }
 
 // On and on by the margin, past others.
-void walkByTheMargin(const CaseContext& context, CaseTally& tally, int frames) {
-    Boxes boxes{cubeAt({0, 0, 0}, 1)};
+template <class Scalar>
+void walkByTheMargin(CaseRun<Scalar>& run, int frames) {
+    using Point = Vector3<Scalar>;
+    Boxes<Scalar> boxes{cubeAt<Scalar>({0, 0, 0}, 1)};
     for (int i = 0; i < frames / 100; ++i) {
-        boxes.push_back(cubeAt({5 * static_cast<float>(i), 1, 0}, 1));
+        boxes.push_back(cubeAt<Scalar>({5 * static_cast<Scalar>(i), 1, 0}, 1));
     }
-    const Aabb<float> world(Point::Constant(-10),
-                            Point::Constant(0.1F * static_cast<float>(frames)));
-    PairScene scene(context, boxes, {}, world);
+    const Aabb<Scalar> world(Point::Constant(-10),
+                             Point::Constant(Scalar(0.1F) * static_cast<Scalar>(frames)));
+    PairScene<Scalar> scene(run, boxes, {}, world);
     for (int frame = 0; frame < frames; ++frame) {
         scene.move(0, scene.boxes()[0].translated(Point(kMargin, 0, 0)));
-        judgeMove(scene, tally);
+        judgeMove(run, scene);
     }
 }
 
-CaseOutcome smallMoves(const CaseContext& context) {
-    CaseTally tally;
-    const int frames = context.quickOrFull(1000, 10'000);
-    moveByTheMargin(context, tally, frames);
-    walkByTheMargin(context, tally, frames);
-    return tally.outcome();
+/// The boxes of `culler`'s margin: boxes approach a view by the margin, or by so little that a sum of
+/// such steps would be rounded down; what is visible is in the set, in every frame.
+template <class Scalar>
+void approachAView(CaseRun<Scalar>& run, Scalar step, int frames) {
+    using Point = Vector3<Scalar>;
+    const Scalar tiny = std::numeric_limits<Scalar>::epsilon() / 8;
+    std::array<Plane<Scalar>, 6> planes;  // of the cube from 0 to 8
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto at = static_cast<std::size_t>(axis);
+        planes[2 * at] = Plane<Scalar>(Point(Point::Unit(axis)), Scalar(0));
+        planes[2 * at + 1] = Plane<Scalar>(Point(-Point::Unit(axis)), Scalar(8));
+    }
+    const ConvexRegion<Scalar> view(planes);
+    Grid<Scalar> grid;
+    std::vector<std::pair<ProxyId, Aabb<Scalar>>> proxies;
+    for (int k = 0; k < 8; ++k) {
+        // Just outside of the margin, by 800 of the least steps at most.
+        const Scalar front = -1 - 100 * tiny * static_cast<Scalar>(k + 1);
+        const Scalar z = static_cast<Scalar>(k) / 2;
+        const Aabb<Scalar> box(Point(front - 1, 2, z), Point(front, 3, z));
+        proxies.emplace_back(grid.add(box), box);
+    }
+    Culler<Scalar> culler(1);
+    culler.look(grid, view);
+    const auto approach = [&](Scalar by) {
+        Scalar moved = 0;  // at most, of what rounding made of it
+        for (auto& [id, box] : proxies) {
+            const Scalar from = box.max()[0];
+            box.max()[0] += by;
+            moved = std::max(moved, above(box.max()[0] - from));
+            grid.move(id, box);
+        }
+        culler.look(grid, view, moved);
+    };
+    approach(1 - 20'000 * tiny);  // nearly the whole margin at once
+    std::size_t visible = 0;
+    bool areAllSeen = true;
+    for (int frame = 0; frame < frames; ++frame) {
+        approach(step);
+        for (const auto& [id, box] : proxies) {
+            const bool isInView = view.key(box) >= 0;
+            visible += isInView ? 1 : 0;
+            areAllSeen &= !isInView || culler.isVisible(id);
+        }
+        if (proxies[0].second.max()[0] > 8) {
+            for (auto& [id, box] : proxies) {
+                box.max()[0] -= 10;
+            }
+        }
+    }
+    run.expect(areAllSeen && visible > 0, "what comes into view by a hair is seen");
+}
+
+template <class Scalar>
+void smallMoves(CaseRun<Scalar>& run) {
+    const int frames = run.quickOrFull(1000, 10'000);
+    moveByTheMargin(run, frames);
+    walkByTheMargin(run, frames);
+    if (!run.isOurs) {
+        return;
+    }
+    // A quarter of what changes the last digit of a number between a half and one.
+    const Scalar tiny = std::numeric_limits<Scalar>::epsilon() / 8;
+    for (const Scalar step : {tiny, above(tiny)}) {
+        approachAView(run, step, 25'000);
+    }
+    for (const Scalar step : {Scalar(0.25), Scalar(1)}) {
+        for (const Scalar by : {step, above(step), below(step)}) {
+            approachAView(run, by, frames);
+        }
+    }
 }
 
 // --- Everything, at random ------------------------------------------------------------------------
 
 // The pairs by brute force, kept up to date change by change.
+template <class Scalar>
 class Truth {
 public:
     explicit Truth(std::size_t count) : boxes_(count), isThere_(count, false) {}
 
-    void set(std::uint32_t object, const Aabb<float>& box) {
+    void set(std::uint32_t object, const Aabb<Scalar>& box) {
         remove(object);
         boxes_[object] = box;
         isThere_[object] = true;
         for (std::uint32_t other = 0; other < boxes_.size(); ++other) {
-            if (other != object && isThere_[other] && overlaps(box, boxes_[other])) {
+            if (other != object && isThere_[other] && doTouch(box, boxes_[other])) {
                 const PairKey pair = pairKey(object, other);
                 pairs_.insert(std::lower_bound(pairs_.begin(), pairs_.end(), pair), pair);
             }
@@ -181,24 +230,26 @@ public:
         });
     }
     [[nodiscard]] bool has(std::uint32_t object) const { return isThere_[object]; }
-    [[nodiscard]] const std::vector<PairKey>& pairs() const noexcept { return pairs_; }
+    [[nodiscard]] const Keys& pairs() const noexcept { return pairs_; }
 
 private:
-    Boxes boxes_;
+    Boxes<Scalar> boxes_;
     std::vector<char> isThere_;
-    std::vector<PairKey> pairs_;
+    Keys pairs_;
 };
 
 // Mostly cubes in a crowd; sometimes points, plates, far ones, large ones.
-Aabb<float> anyBox(Random& random) {
-    const auto near = [&] { return random.between(-4, 4); };
+template <class Scalar>
+Aabb<Scalar> anyBox(Random& random) {
+    using Point = Vector3<Scalar>;
+    const auto near = [&] { return between<Scalar>(random, -4, 4); };
     const Point at(near(), near(), near());
     const float kind = random.unit();
     if (kind < 0.02F) {
         return cubeAt(at, 1e4F);
     }
     if (kind < 0.05F) {
-        return cubeAt(1000 * at, 0.5F);
+        return cubeAt<Scalar>(1000 * at, 0.5F);
     }
     if (kind < 0.1F) {
         return {at, at};
@@ -207,46 +258,40 @@ Aabb<float> anyBox(Random& random) {
         const Point low = at.array().floor();
         return {low, low + Point::Ones()};
     }
-    return cubeAt(at, random.between(0.1F, 1.5F));
+    return cubeAt(at, between<Scalar>(random, 0.1F, 1.5F));
 }
 
-CaseOutcome randomChanges(const CaseContext& context) {
+template <class Scalar>
+void randomChanges(CaseRun<Scalar>& run) {
     constexpr std::uint32_t kObjects = 40;
-    const int changes = context.quickOrFull(20'000, 1'000'000) / (context.kind.ours ? 1 : 50);
-    CaseTally tally;
-    Random random(context.seed);
-    Boxes boxes;
-    Truth truth(kObjects);
+    const int changes = run.quickOrFull(20'000, 1'000'000) / (run.isOurs ? 1 : 50);
+    Random random(run.seed);
+    Boxes<Scalar> boxes;
+    Truth<Scalar> truth(kObjects);
     for (std::uint32_t i = 0; i < kObjects; ++i) {
-        boxes.push_back(anyBox(random));
+        boxes.push_back(anyBox<Scalar>(random));
         truth.set(i, boxes[i]);
     }
-    PairScene scene(context, boxes, {}, cubeAt({0, 0, 0}, 1e4F));
+    PairScene<Scalar> scene(run, boxes, {}, cubeAt<Scalar>({0, 0, 0}, 1e4F));
     for (int i = 0; i < changes; ++i) {
-        const auto object = static_cast<std::uint32_t>(random.unit() * kObjects);
-        if (!truth.has(object)) {
-            const Aabb<float> box = anyBox(random);
-            scene.create(object, box);
-            truth.set(object, box);
-        } else if (random.unit() < 0.2F) {
+        const std::uint32_t object = indexBelow(random, kObjects);
+        if (truth.has(object) && random.unit() < 0.2F) {
             scene.destroy(object);
             truth.remove(object);
         } else {
-            const Aabb<float> box =
-                random.unit() < 0.5F
-                    ? anyBox(random)
-                    : scene.boxes()[object].translated(Point(random.between(-0.1F, 0.1F), 0, 0));
-            scene.move(object, box);
+            const bool isThere = truth.has(object);
+            const Aabb<Scalar> box = !isThere || random.unit() < 0.5F
+                                         ? anyBox<Scalar>(random)
+                                         : scene.boxes()[object].translated(Vector3<Scalar>(
+                                               between<Scalar>(random, -0.1F, 0.1F), 0, 0));
+            isThere ? scene.move(object, box) : scene.create(object, box);
             truth.set(object, box);
         }
         scene.findPairs();
-        tally.compare(scene.reported(), truth.pairs());
+        run.compare(scene.reported(), truth.pairs());
     }
-    if (const SpatialHashBroadphase* hash = scene.hash()) {
-        tally.expect(hash->validate().empty(), "all invariants hold");
-    }
-    tally.note(std::to_string(changes) + " changes, compared after each.");
-    return tally.outcome();
+    scene.expectValid();
+    run.note(std::to_string(changes) + " changes, compared after each.");
 }
 
 constexpr std::array kChurnCases{
@@ -254,19 +299,20 @@ constexpr std::array kChurnCases{
         "H33", "one pair in many cells",
         "30 cubes of 0.9 to 20 m in each other, cells of 1, 4 and 16 m: pairs that share up to 8 "
         "cells and span 3 levels",
-        "each pair once; born once, died once", duplicates},
+        "each pair once; born once, died once", duplicates<float>, duplicates<double>},
     HardCase{
         "H34", "moves by a margin, again and again",
         "a cube that moves by 5 cm and back, by 1 ulp less and 1 ulp more, and across by 1 ulp at "
         "a "
         "time, to where boxes begin, along each axis, both ways; one that moves on by 5 cm, past "
         "others; 10,000 frames each (--quick: 1,000); btDbvtBroadphase fattens boxes by 5 cm",
-        "exact pairs, and a mover that is found at both its ends, in every frame", smallMoves},
+        "exact pairs, and a mover that is found at both its ends, in every frame",
+        smallMoves<float>, smallMoves<double>},
     HardCase{
         "H35", "changes at random",
         "1,000,000 (--quick: 20,000; a fiftieth of it for the others) creations, moves and "
         "removals of 40 boxes, among them points, large and far ones, and such as touch exactly",
-        "the pairs of brute force after each", randomChanges},
+        "the pairs of brute force after each", randomChanges<float>, randomChanges<double>},
 };
 
 }  // namespace

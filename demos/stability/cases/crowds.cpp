@@ -5,76 +5,193 @@
 #include <demos/stability/cases/cases.hpp>
 
 #include <broadphase/radius_search.hpp>
-#include <demos/console/format.hpp>
-#include <demos/scenes/random.hpp>
-#include <demos/stability/isolation.hpp>
-#include <demos/stability/pair_scene.hpp>
 
-#include <algorithm>
 #include <array>
 #include <fstream>
 #include <new>
+#include <stdexcept>
 
 #include <sys/resource.h>
 #include <unistd.h>
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 
 namespace hashphase::demos {
 namespace {
 
-using Point = Vector3<float>;
-
 // What sorting along an axis and testing what overlaps there tests.
-double testsAlongAnAxis(const Boxes& boxes) {
+template <class Scalar>
+double testsAlongAnAxis(const Boxes<Scalar>& boxes) {
     const LimitPause pause;
-    std::vector<float> starts;
-    for (const Aabb<float>& box : boxes) {
+    std::vector<Scalar> starts;
+    for (const Aabb<Scalar>& box : boxes) {
         starts.push_back(box.min().x());
     }
     std::sort(starts.begin(), starts.end());
     double tests = 0;
-    for (const Aabb<float>& box : boxes) {
+    for (const Aabb<Scalar>& box : boxes) {
         const auto first = std::upper_bound(starts.begin(), starts.end(), box.min().x());
         tests += static_cast<double>(std::upper_bound(first, starts.end(), box.max().x()) - first);
     }
     return tests;
 }
 
-CaseOutcome oneCell(const CaseContext& context) {
-    const std::size_t count = context.quickOrFull<std::size_t>(20'000, 200'000);
-    const Boxes boxes = scatteredCubes(count, 0.98F, 0.008F, 0.008F, context.seed);
-    CaseTally tally;
-    PairScene scene(context, boxes, {.cellSize = 1});
-    scene.judge(tally);
-    if (const SpatialHashBroadphase* hash = scene.hash()) {
-        tally.addCost(static_cast<double>(hash->lastCost().boxesTested) / testsAlongAnAxis(boxes),
-                      1.25);
-        tally.note("Cost: boxes tested, by those that sorting along an axis leaves.");
-        tally.expect(hash->lastCost().grid.largestCell >= count / 2, "the crowd is told");
+template <class Scalar>
+Boxes<Scalar> crowd(std::size_t count, Scalar side, std::uint64_t seed) {
+    Random random(seed);
+    Boxes<Scalar> boxes;
+    while (boxes.size() < count) {
+        const Vector3<Scalar> center = pointIn<Scalar>(random, 1, side - 1);
+        const Vector3<Scalar> half = pointIn<Scalar>(random, Scalar(0.1), Scalar(0.5));
+        boxes.emplace_back(center - half, center + half);
     }
-    return tally.outcome();
+    return boxes;
 }
 
-// Bytes that ours holds for each pair of so many identical boxes.
-double bytesPerPair(const CaseContext& context, CaseTally& tally, std::size_t count) {
-    PairScene scene(context, Boxes(count, cubeAt({1, 2, 3}, 1)));
-    scene.judge(tally);
-    scene.judge(tally);
-    const SpatialHashBroadphase* hash = scene.hash();
-    return hash == nullptr ? 1
-                           : static_cast<double>(hash->memoryBytes()) /
-                                 static_cast<double>(scene.reported().size());
+/// As many boxes elsewhere, each in a cell of 1e4 m of its own, so that the crowd at the origin is not
+/// in the middle of all, where cells begin.
+template <class Scalar>
+void addAnchors(Boxes<Scalar>& boxes) {
+    const auto count = static_cast<int>(boxes.size() + 1);
+    for (int i = 0; i < count; ++i) {
+        const Vector3<Scalar> at =
+            Vector3<int>(i % 50, i / 50 % 50, i / 2500).cast<Scalar>() * Scalar(2e4);
+        boxes.push_back(cubeAt<Scalar>(at.array() + Scalar(25e3), 1));
+    }
 }
 
-CaseOutcome allTheSame(const CaseContext& context) {
-    const std::size_t count = context.quickOrFull<std::size_t>(600, 2000);
-    CaseTally tally;
-    const double many = bytesPerPair(context, tally, count);
-    if (context.kind.ours) {
-        tally.addCost(many / bytesPerPair(context, tally, count / 2), 2);
-        tally.note("Cost: bytes held for each pair, " + fixed(many, 0) +
-                   ", by those of half as many boxes.");
+/// However much too large the cells are, a crowd costs what sweeping along an axis does, and is told; in
+/// cells of its size it costs little.
+template <class Scalar>
+void judgeMuchTooLargeCells(CaseRun<Scalar>& run) {
+    constexpr std::size_t kCount = 102'000;
+    Boxes<Scalar> boxes = crowd<Scalar>(kCount, 400, run.seed);
+    const double alongAnAxis = testsAlongAnAxis(boxes);
+    PairScene<Scalar> fitting(run, boxes);
+    fitting.judge();
+    run.expect(fitting.cost().boxesTested < 10 * kCount && fitting.cost().grid.largestCell < 50,
+               "in cells of its size, a crowd is none");
+    addAnchors(boxes);
+    PairScene<Scalar> inOneCell(run, boxes, {.cellSize = 1e4});
+    inOneCell.judge();
+    run.expect(static_cast<double>(inOneCell.cost().boxesTested) <= 1.5 * alongAnAxis,
+               "a crowd costs what sweeping along an axis does");
+    run.expect(inOneCell.cost().grid.largestCell >= 100'000, "the crowd is told");
+}
+
+/// A long box is tested with everyone, and makes nobody else slower. Three crowds are each flat along
+/// another axis: no axis is good for all.
+template <class Scalar>
+void judgeUnevenCrowds(CaseRun<Scalar>& run) {
+    constexpr std::uint32_t kCount = 9'000;
+    Boxes<Scalar> boxes = crowd<Scalar>(kCount, 100, run.seed);
+    PairScene<Scalar> even(run, boxes, {.cellSize = 1e4});
+    even.judge();
+    for (int i = 0; i < 3; ++i) {
+        boxes.push_back(cubeAt<Scalar>(Vector3<Scalar>::Constant(20 * Scalar(i) + 27.5F), 55));
     }
-    return tally.outcome();
+    PairScene<Scalar> withLong(run, boxes, {.cellSize = 1e4});
+    withLong.judge();
+    run.expect(withLong.cost().boxesTested <= even.cost().boxesTested + 4 * kCount,
+               "a long box makes nobody else slower");
+
+    Random random(run.seed);
+    Boxes<Scalar> flat;
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+        const int axis = static_cast<int>(i % 3);
+        Vector3<Scalar> center = pointIn<Scalar>(random, 1, 99);
+        center[axis] = 50;
+        center[0] += static_cast<Scalar>(axis * 1000);
+        flat.push_back(cubeAt(center, Scalar(0.4)));
+    }
+    PairScene<Scalar> inPlanes(run, flat, {.cellSize = 1000});
+    inPlanes.judge();
+    run.expect(inPlanes.cost().boxesTested < 200 * kCount, "each crowd has an axis of its own");
+}
+
+/// Queries want a few of a crowd, of whom some have left, or moved, since they were sorted.
+template <class Scalar>
+void judgeQueriesInACrowd(CaseRun<Scalar>& run) {
+    constexpr std::uint32_t kCount = 8'000;
+    Boxes<Scalar> boxes = crowd<Scalar>(kCount, 100, run.seed);
+    for (int i = 0; i < 3; ++i) {
+        boxes.push_back(makeBox<Scalar>(30 * i, 1, 1, 30 * i + 35, 9, 9));
+    }
+    addAnchors(boxes);
+    PairScene<Scalar> scene(run, boxes, {.cellSize = 1e4});
+    scene.judge();
+    run.expect(scene.cost().grid.largestCell > kCount - 100, "the crowd is in one cell");
+    for (std::uint32_t i = 0; i < kCount; i += 50) {
+        scene.move(i, boxes[i + 1]);
+        scene.destroy(i + 25);
+    }
+    Random random(run.seed);
+    constexpr std::uint64_t kQueries = 60;
+    QueryCost cost;
+    for (std::uint64_t i = 0; i < kQueries; ++i) {
+        cost += scene.judgeQuery(SphereRegion<Scalar>{pointIn<Scalar>(random, 0, 100), 3});
+    }
+    run.expect(cost.hits > kQueries && cost.boxesTested < kQueries * kCount / 8,
+               "a crowd is searched along an axis");
+}
+
+template <class Scalar>
+void oneCell(CaseRun<Scalar>& run) {
+    const std::size_t count = run.template quickOrFull<std::size_t>(20'000, 200'000);
+    const Boxes<Scalar> boxes = scatteredCubes<Scalar>(count, 0.98F, 0.008F, 0.008F, run.seed);
+    PairScene<Scalar> scene(run, boxes, {.cellSize = 1});
+    scene.judge();
+    if (scene.grid() == nullptr) {
+        return;
+    }
+    run.addCost(static_cast<double>(scene.cost().boxesTested) / testsAlongAnAxis(boxes), 1.25);
+    run.note("Cost: boxes tested, by those that sorting along an axis leaves.");
+    run.expect(scene.cost().grid.largestCell >= count / 2, "the crowd is told");
+    judgeMuchTooLargeCells(run);
+    judgeUnevenCrowds(run);
+    judgeQueriesInACrowd(run);
+}
+
+// --- At one place ---------------------------------------------------------------------------------
+
+// Bytes that ours holds for each pair of so many identical boxes; no more when they have been apart in
+// between.
+template <class Scalar>
+double bytesPerPair(CaseRun<Scalar>& run, std::size_t count) {
+    const Boxes<Scalar> together(count, cubeAt<Scalar>({1, 2, 3}, 1));
+    PairScene<Scalar> scene(run, together);
+    scene.judge();
+    scene.judge();
+    const std::size_t bytes = scene.subject().memoryBytes();
+    const double pairs = static_cast<double>(scene.reported().size());
+    if (scene.grid() == nullptr) {
+        return 1;
+    }
+    Boxes<Scalar> apart;
+    for (std::size_t i = 0; i < count; ++i) {
+        apart.push_back(cubeAt<Scalar>({9 * static_cast<Scalar>(i), 0, 0}, 1));
+    }
+    std::array<std::size_t, 3> bytesThen{};
+    for (std::size_t i = 0; i < bytesThen.size(); ++i) {
+        scene.moveAll(i % 2 == 0 ? apart : together);
+        scene.judge();
+        bytesThen[i] = scene.subject().memoryBytes();
+    }
+    run.expect(bytesThen[2] <= bytesThen[0], "memory does not grow with time");
+    run.expect(static_cast<double>(bytes) < 200 * pairs, "a pair takes 200 bytes at most");
+    return static_cast<double>(bytes) / pairs;
+}
+
+template <class Scalar>
+void allTheSame(CaseRun<Scalar>& run) {
+    const std::size_t count = run.template quickOrFull<std::size_t>(600, 2000);
+    const double many = bytesPerPair(run, count);
+    if (run.isOurs) {
+        run.addCost(many / bytesPerPair(run, count / 2), 2);
+        run.note("Cost: bytes held for each pair, " + rounded(many, 0) +
+                 ", by those of half as many boxes.");
+    }
 }
 
 // --- Counts beyond 32 bits ------------------------------------------------------------------------
@@ -93,6 +210,9 @@ constexpr bool kCanRunOutOfMemory = true;
 class MemoryLimit {
 public:
     explicit MemoryLimit(std::uint64_t more) {
+#if defined(__GLIBC__)
+        malloc_trim(0);
+#endif
         std::uint64_t pages = 0;
         std::ifstream("/proc/self/statm") >> pages;
         getrlimit(RLIMIT_AS, &before_);
@@ -102,22 +222,24 @@ public:
     }
     MemoryLimit(const MemoryLimit&) = delete;
     MemoryLimit& operator=(const MemoryLimit&) = delete;
-    ~MemoryLimit() { setrlimit(RLIMIT_AS, &before_); }
+    ~MemoryLimit() {
+        setrlimit(RLIMIT_AS, &before_);
+    }
 
 private:
     rlimit before_{};
 };
 
 // Everybody is everybody's neighbour.
-void judgeCounts(const CaseContext& context, CaseTally& tally) {
-    const std::uint32_t count = context.quickOrFull(66'000U, 70'000U);
-    Grid<float> grid;
-    Random random(context.seed);
+template <class Scalar>
+void judgeCounts(CaseRun<Scalar>& run) {
+    const std::uint32_t count = run.quickOrFull(66'000U, 70'000U);
+    Grid<Scalar> grid;
+    Random random(run.seed);
     for (std::uint32_t i = 0; i < count; ++i) {
-        static_cast<void>(grid.add(
-            cubeAt({random.between(0, 1), random.between(0, 1), random.between(0, 1)}, 0.1F)));
+        static_cast<void>(grid.add(cubeAt(pointIn<Scalar>(random, 0, 1), Scalar(0.1F))));
     }
-    RadiusSearch<float> search;
+    RadiusSearch<Scalar> search;
     search.take(grid, 10);
     std::vector<std::uint32_t> counts(search.size());
     const QueryCost cost = search.count(counts);
@@ -126,20 +248,39 @@ void judgeCounts(const CaseContext& context, CaseTally& tally) {
     for (const std::uint32_t each : counts) {
         sum += each;
     }
-    tally.expect(sum == exact && cost.hits == exact, "all neighbours are counted");
+    run.expect(sum == exact && cost.hits == exact, "all neighbours are counted");
 }
 
-CaseOutcome beyond32Bits(const CaseContext& context) {
-    CaseTally tally;
+template <class Scalar>
+void expectMostIsRefused(CaseRun<Scalar>& run) {
+    Grid<Scalar> grid;
+    const ProxyId id = grid.add(cubeAt<Scalar>({0, 0, 0}, 1));
+    constexpr std::size_t kMost = std::size_t{1} << 28;
+    for (const std::size_t count : {kMost + 1, std::size_t{1} << 32, ~std::size_t{0}}) {
+        std::string refusal;
+        try {
+            grid.reserve(count);
+        } catch (const std::length_error& refused) {
+            refusal = refused.what();
+        }
+        run.expect(refusal == "A grid holds at most 268,435,456 proxies.",
+                   "more than there may be are refused in a sentence");
+    }
+    run.expect(grid.size() == 1 && grid.contains(id) && grid.validate().empty(),
+               "the grid is as it was");
+}
+
+template <class Scalar>
+void beyond32Bits(CaseRun<Scalar>& run) {
     if (kCanRunOutOfMemory) {
         constexpr std::size_t kCount = 8000;  // 32 million pairs
-        const Boxes together(kCount, cubeAt({0, 0, 0}, 1));
-        Boxes apart;
+        const Boxes<Scalar> together(kCount, cubeAt<Scalar>({0, 0, 0}, 1));
+        Boxes<Scalar> apart;
         for (std::size_t i = 0; i < kCount; ++i) {
-            apart.push_back(cubeAt({0.75F * static_cast<float>(i), 0, 0}, 1));
+            apart.push_back(cubeAt<Scalar>({Scalar(0.75F) * static_cast<Scalar>(i), 0, 0}, 1));
         }
-        PairScene scene(context, apart);
-        scene.judge(tally);
+        PairScene<Scalar> scene(run, apart);
+        scene.judge();
         bool isTold = false;
         {
             const MemoryLimit limit(64 << 20);
@@ -150,32 +291,33 @@ CaseOutcome beyond32Bits(const CaseContext& context) {
                 isTold = true;
             }
         }
-        tally.expect(isTold, "what does not fit is refused with std::bad_alloc");
+        run.expect(isTold, "what does not fit is refused with std::bad_alloc");
         // Apart again, all goes on.
         scene.moveAll(apart);
-        scene.judge(tally);
+        scene.judge();
     } else {
-        tally.note("Under a sanitizer memory cannot run out.");
+        run.note("Under a sanitizer memory cannot run out.");
     }
-    if (context.kind.ours) {
-        judgeCounts(context, tally);
+    if (run.isOurs) {
+        judgeCounts(run);
+        expectMostIsRefused(run);
     }
-    return tally.outcome();
 }
 
 constexpr std::array kCrowdCases{
     HardCase{"H25", "100,000 in one cell",
              "200,000 (--quick: 20,000) cubes of 8 mm in a cubic metre, half of them in one cell",
              "exact pairs; no more work than sorting along an axis; the cost names the crowd",
-             oneCell},
+             oneCell<float>, oneCell<double>},
     HardCase{"H26", "2,000 at one place", "2,000 (--quick: 600) times the same cube of 1 m",
-             "1,999,000 pairs, each once; memory in proportion to them", allTheSame},
+             "1,999,000 pairs, each once; memory in proportion to them", allTheSame<float>,
+             allTheSame<double>},
     HardCase{"H45", "more than memory and 32 bits hold",
              "8,000 in a row, each touching the next, all moved to one place with 64 MiB of memory "
              "left for 32 million pairs, and back; 4.9e9 neighbours to be counted (--quick: 4.4e9)",
              "an error that the caller can catch, and exact pairs afterwards; counts that do not "
              "wrap",
-             beyond32Bits},
+             beyond32Bits<float>, beyond32Bits<double>},
 };
 
 }  // namespace

@@ -1,88 +1,139 @@
 // SPDX-License-Identifier: Zlib
 //
-// Who is near: within no distance, a negative one, all the world, and none at all.
+// Who is near: within no distance, a negative one, all the world, and none at all; and nobody at all.
 
 #include <demos/stability/cases/cases.hpp>
 
-#include <demos/scenes/random.hpp>
-#include <demos/stability/isolation.hpp>
-#include <demos/stability/pair_scene.hpp>
-#include <integration/bullet/conversions.hpp>
-
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 
 namespace hashphase::demos {
 namespace {
 
-using Point = Vector3<float>;
-
 // The closed ball and the closed box, in double precision: no rounding decides on these boxes.
-bool isWithin(const Aabb<float>& box, const Point& center, float radius) {
+template <class Scalar>
+bool isWithin(const Aabb<Scalar>& box, const Vector3<Scalar>& center, Scalar radius) {
     double squared = 0;
     for (int axis = 0; axis < 3; ++axis) {
-        const double outside = std::max(
-            {static_cast<double>(box.min()[axis]) - static_cast<double>(center[axis]),
-             static_cast<double>(center[axis]) - static_cast<double>(box.max()[axis]), 0.0});
+        const auto at = static_cast<double>(center[axis]);
+        const double outside = std::max({static_cast<double>(box.min()[axis]) - at,
+                                         at - static_cast<double>(box.max()[axis]), 0.0});
         squared += outside * outside;
     }
     const auto reach = static_cast<double>(radius);
     return reach >= 0 && squared <= reach * reach;
 }
 
-void judgeBall(PairScene& scene, CaseTally& tally, const Point& center, float radius) {
+template <class Scalar>
+void judgeBall(CaseRun<Scalar>& run, PairScene<Scalar>& scene, const Vector3<Scalar>& center,
+               Scalar radius) {
     Objects exact;
     {
         const LimitPause pause;
-        for (std::uint32_t i = 0; i < scene.size(); ++i) {
-            if (isWithin(scene.boxes()[i], center, radius)) {
-                exact.push_back(i);
-            }
-        }
+        exact = objectsThat(scene.boxes(),
+                            [&](const Aabb<Scalar>& box) { return isWithin(box, center, radius); });
     }
-    Objects found;
-    if (const SpatialHashBroadphase* hash = scene.hash()) {
-        NoteIndices collector;
-        const QueryCost cost = hash->grid().visit(SphereRegion<float>(center, radius), collector);
-        found = std::move(collector.found);
-        tally.addCost(static_cast<double>(cost.boxesTested) / static_cast<double>(scene.size()), 1);
-    } else {
-        NoteObjects callback;
-        const Point reach = Point::Constant(radius);
-        scene.broadphase().aabbTest(toBullet(center - reach), toBullet(center + reach), callback);
-        found = std::move(callback.found);
+    if (scene.grid() == nullptr) {
+        const Vector3<Scalar> reach = Vector3<Scalar>::Constant(radius);
+        run.compare(scene.touching({center - reach, center + reach}), exact);
+        return;
     }
-    std::sort(found.begin(), found.end());
-    tally.compare(found, exact);
+    NoteIndices<Scalar> found;
+    const QueryCost cost = scene.grid()->visit(SphereRegion<Scalar>(center, radius), found);
+    run.addCost(static_cast<double>(cost.boxesTested) / static_cast<double>(scene.size()), 1);
+    run.compare(found.sorted(), exact);
 }
 
-CaseOutcome anyRadius(const CaseContext& context) {
-    Random random(context.seed);
-    Boxes boxes;
+template <class Scalar>
+void anyRadius(CaseRun<Scalar>& run) {
+    using Point = Vector3<Scalar>;
+    Random random(run.seed);
+    Boxes<Scalar> boxes;
     for (int i = 0; i < 1000; ++i) {
-        const auto on = [&] { return std::floor(random.between(-160, 160)) / 8; };
-        const float x = on();
-        const float y = on();
-        const float z = on();
-        boxes.emplace_back(Point(x, y, z), Point(x + 1, y + 0.5F, z + 0.25F));
+        const auto on = [&] { return std::floor(Scalar(random.between(-160, 160))) / 8; };
+        const Scalar x = on();
+        const Scalar y = on();
+        const Scalar z = on();
+        boxes.emplace_back(Point(x, y, z), Point(x + 1, y + Scalar(0.5), z + Scalar(0.25)));
     }
-    CaseTally tally;
-    PairScene scene(context, boxes);
+    PairScene<Scalar> scene(run, boxes);
     scene.findPairs();
     const std::array centers{boxes[0].min(),         boxes[1].max(),  Point(0, 0, 0),
                              Point(3.5F, -7.25F, 1), Point(60, 0, 0), Point(1e6F, -1e6F, 1e6F)};
     for (const Point& center : centers) {
-        for (const float radius : {0.0F, -1.0F, 0.125F, 3.0F, 40.0F, 1e30F, -1e30F,
-                                   std::numeric_limits<float>::quiet_NaN()}) {
-            judgeBall(scene, tally, center, radius);
+        for (const Scalar radius : {Scalar(0), Scalar(-1), Scalar(0.125F), Scalar(3), Scalar(40),
+                                    Scalar(1e30F), Scalar(-1e30F), kNan<Scalar>}) {
+            judgeBall(run, scene, center, radius);
         }
     }
-    judgeBall(scene, tally, Point::Constant(std::numeric_limits<float>::quiet_NaN()), 3);
-    tally.note(context.kind.ours ? "Cost: boxes tested at most, by all there are."
-                                 : "By aabbTest() with the box around the ball.");
-    return tally.outcome();
+    judgeBall(run, scene, Point(Point::Constant(kNan<Scalar>)), Scalar(3));
+    run.note(run.isOurs ? "Cost: boxes tested at most, by all there are."
+                        : "By aabbTest() with the box around the ball.");
+}
+
+// --- Nobody --------------------------------------------------------------------------------------
+
+/// Beyond all cells, each in a corner of its own: no pairs for many frames, and found all the same; two
+/// that touch are a pair.
+template <class Scalar>
+void judgeStrays(CaseRun<Scalar>& run) {
+    using Point = Vector3<Scalar>;
+    for (const double cellSize : {0.0, 1e-30, 1.0}) {
+        for (const int count : {0, 1, 40}) {
+            Boxes<Scalar> boxes;
+            for (int i = 0; i < count; ++i) {
+                const Scalar far = Scalar(1e25F) * static_cast<Scalar>(1 + i);
+                const Point at(far, -far, i % 2 == 0 ? far : -far);
+                boxes.emplace_back(at, at);
+            }
+            PairScene<Scalar> scene(run, boxes, {.cellSize = cellSize});
+            for (int frame = 0; frame < 12; ++frame) {
+                scene.judge();
+            }
+            const Point most = Point::Constant(std::numeric_limits<Scalar>::max());
+            run.compare(scene.touching({-most, most}),
+                        objectsThat(boxes, [](const Aabb<Scalar>&) { return true; }));
+            if (scene.grid() != nullptr) {
+                scene.judgeQuery(RayRegion<Scalar>({0, 0, 0}, {1, 1, 1}));
+            }
+            if (count > 1) {
+                scene.move(0, makeBox<Scalar>(0, 0, 0, 1, 1, 1));
+                scene.move(1, makeBox<Scalar>(1, 1, 1, 2, 2, 2));
+                scene.judge();
+            }
+            for (std::uint32_t i = 0; i < scene.size(); ++i) {
+                scene.destroy(i);
+            }
+            scene.judge();
+        }
+    }
+}
+
+template <class Scalar>
+void nothingThere(CaseRun<Scalar>& run) {
+    const Aabb<Scalar> world = cubeAt<Scalar>({0, 0, 0}, 2);
+    for (const std::size_t count : {0U, 1U, 40U}) {
+        Boxes<Scalar> boxes;
+        for (std::size_t i = 0; i < count; ++i) {
+            boxes.push_back(cubeAt<Scalar>({1000 + 3 * static_cast<Scalar>(i), 0, 0}, 1));
+        }
+        if (count > 1) {
+            boxes[1] = boxes[0];  // a pair, so that not everything is nothing
+        }
+        PairScene<Scalar> scene(run, boxes, {}, world);
+        scene.judge();
+        run.compare(scene.touching(world), Objects{});
+        const std::optional<Objects> onRay =
+            scene.subject().rayTest({-20, 0, 0}, {20, 0, 0}, pointBox<Scalar>());
+        run.compare(onRay.value_or(Objects{}), Objects{});
+        // Destroyed to the last one.
+        for (std::uint32_t i = 0; i < scene.size(); ++i) {
+            scene.destroy(i);
+        }
+        scene.judge();
+    }
+    if (run.isOurs) {
+        judgeStrays(run);
+    }
 }
 
 constexpr std::array kProximityCases{
@@ -90,7 +141,13 @@ constexpr std::array kProximityCases{
         "H43", "radii of 0, -1, 1e30 and NaN",
         "balls of such radii, and of 1/8, 3 and 40 m, around six points, on boxes, between them, "
         "and 1e6 m outside of all 1,000",
-        "the closed ball, empty for negative and NaN; no more tests than boxes", anyRadius},
+        "the closed ball, empty for negative and NaN; no more tests than boxes", anyRadius<float>,
+        anyRadius<double>},
+    HardCase{
+        "H44", "nobody, one, all outside",
+        "0, 1 and 40 boxes 1 km outside of the region that is asked about, and of the axis sweep's "
+        "world; then destroyed to the last one",
+        "no pair, no hit, no harm", nothingThere<float>, nothingThere<double>},
 };
 
 }  // namespace

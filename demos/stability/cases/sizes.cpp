@@ -1,120 +1,172 @@
 // SPDX-License-Identifier: Zlib
 //
-// Sizes that differ by twelve orders of magnitude, cells that were chosen to collide, and cells of
-// no size.
+// Sizes that differ by twelve orders of magnitude, and cells that were chosen to collide.
 
 #include <demos/stability/cases/cases.hpp>
 
-#include <demos/compare/reference_pairs.hpp>
-#include <demos/compare/trial.hpp>
-#include <demos/scenes/random.hpp>
-#include <demos/stability/pair_scene.hpp>
-#include <integration/bullet/conversions.hpp>
-
 #include <array>
-#include <cmath>
 #include <cstdlib>
-#include <limits>
-#include <memory>
-#include <stdexcept>
-#include <string_view>
-#include <utility>
 
 namespace hashphase::demos {
 namespace {
 
-using Point = Vector3<float>;
-
-Point direction(Random& random) {
-    Point way;
+template <class Scalar>
+Vector3<Scalar> direction(Random& random) {
+    Vector3<Scalar> way;
     do {
-        way = Point(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
-    } while (way.norm() > 1 || way.norm() < 0.1F);
+        way = Vector3<Scalar>(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
+    } while (way.norm() > 1 || way.norm() < Scalar(0.1F));
     return way.normalized();
 }
 
 // A frame in which everything has moved.
-void moveAll(PairScene& scene, float by) {
-    Boxes boxes = scene.boxes();
-    for (Aabb<float>& box : boxes) {
-        box.translate(Point(by * box.sizes().x(), 0, 0));
+template <class Scalar>
+void moveAll(PairScene<Scalar>& scene, Scalar by) {
+    Boxes<Scalar> boxes = scene.boxes();
+    for (Aabb<Scalar>& box : boxes) {
+        box.translate(Vector3<Scalar>(by * box.sizes().x(), 0, 0));
     }
     scene.moveAll(boxes);
     scene.findPairs();
 }
 
-// Boxes tested for each object and pair, in a frame in which everything moves.
-double testsOf(PairScene& scene) {
-    moveAll(scene, 0.125F);
-    moveAll(scene, -0.125F);
-    const double useful =
-        static_cast<double>(scene.boxes().size()) + static_cast<double>(scene.reported().size());
-    return static_cast<double>(scene.hash()->lastCost().boxesTested) / useful;
+template <class Scalar>
+double testsOf(const PairScene<Scalar>& scene) {
+    return static_cast<double>(scene.cost().boxesTested);
 }
 
-double timeOf(PairScene& scene) {
+// Boxes tested for each object and pair, in a frame in which everything moves.
+template <class Scalar>
+double testsOfMove(PairScene<Scalar>& scene) {
+    moveAll<Scalar>(scene, 0.125F);
+    moveAll<Scalar>(scene, -0.125F);
+    const double useful =
+        static_cast<double>(scene.boxes().size()) + static_cast<double>(scene.reported().size());
+    return testsOf(scene) / useful;
+}
+
+template <class Scalar>
+double timeOf(PairScene<Scalar>& scene) {
     return shortestTime(3, [&] {
-        moveAll(scene, 0.125F);
-        moveAll(scene, -0.125F);
+        moveAll<Scalar>(scene, 0.125F);
+        moveAll<Scalar>(scene, -0.125F);
     });
 }
 
-CaseOutcome allSizes(const CaseContext& context) {
-    Random random(context.seed);
-    const int count = context.quickOrFull(1000, 4000);
-    Boxes mixed;
-    for (int i = 0; i < count; ++i) {
-        const float edge = std::pow(10.0F, random.between(-6, 6));
-        mixed.push_back(cubeAt(direction(random) * (edge * random.between(0, 12)), edge));
+/// Boxes of which each order of magnitude is as frequent as any other, in a cube in which so many pairs
+/// are left for each box, on average.
+template <class Scalar>
+Boxes<Scalar> mixture(std::size_t count, double smallest, double largest, double pairsPerBox,
+                      std::uint64_t seed) {
+    // The mean of a power of the sizes, which are evenly spread in their logarithms.
+    const double spread = std::log(largest / smallest);
+    const auto mean = [&](int power) {
+        return spread == 0
+                   ? std::pow(largest, power)
+                   : (std::pow(largest, power) - std::pow(smallest, power)) / (power * spread);
+    };
+    // Of (a + b)^3: two boxes overlap when their centres are no farther apart than (a + b) / 2.
+    const double around = 2 * mean(3) + 6 * mean(2) * mean(1);
+    const double side = std::cbrt(static_cast<double>(count) * around / (2 * pairsPerBox));
+    Random random(seed);
+    Boxes<Scalar> boxes;
+    while (boxes.size() < count) {
+        const double size = smallest * std::exp(spread * between<double>(random, 0, 1));
+        const Vector3<double> center = pointIn<double>(random, 0, side);
+        boxes.push_back(cubeAt(center, size).template cast<Scalar>());
     }
-    const float side = 1.5F * std::cbrt(static_cast<float>(count));
-    PairScene many(context, mixed);
-    PairScene one(context, scatteredCubes(mixed.size(), side, 1, 1, context.seed));
-    CaseTally tally;
-    many.judge(tally);
-    one.judge(tally);
-    if (context.kind.ours && many.hash() != nullptr) {
-        tally.addCost(testsOf(many) / testsOf(one), 3);
-        tally.note("Cost: boxes tested for each object and pair, by those of one size.");
-    } else {
-        tally.addCost(timeOf(many) / timeOf(one), 3);
-        tally.note("Cost: time of a frame, by that of as many of one size.");
-    }
-    many.judge(tally);
-    return tally.outcome();
+    return boxes;
 }
 
-CaseOutcome oneLargeObject(const CaseContext& context) {
-    constexpr std::size_t kCount = 4000;
-    Boxes boxes = scatteredCubes(kCount, 60, 0.4F, 0.8F, context.seed);
-    PairScene without(context, boxes, {.cellSize = 1});
-    boxes.push_back(cubeAt({3, -2, 1}, 20));
-    PairScene with(context, boxes, {.cellSize = 1});
-    CaseTally tally;
-    with.judge(tally);
-    if (const SpatialHashBroadphase* hash = with.hash()) {
-        tally.expect(hash->lastCost().grid.filed == boxes.size(), "everyone is filed once");
-        without.findPairs();
-        tally.addCost(testsOf(with) / testsOf(without), 1.25);
-        tally.note("Cost: boxes tested for each object and pair, by those without it.");
+/// As many pairs a box of all sizes as of one. The larger ones are tested with many of the smaller,
+/// which follow one another in memory: about a hundred tests a box instead of four.
+template <class Scalar>
+void judgeMixtures(CaseRun<Scalar>& run) {
+    for (const double pairsPerBox : {0.1, 1.0}) {
+        for (const std::size_t count : {4000U, 20'000U}) {
+            const auto judge = [&](double smallest, double largest, double bound) {
+                PairScene<Scalar> scene(
+                    run, mixture<Scalar>(count, smallest, largest, pairsPerBox, run.seed));
+                scene.judge();
+                const double pairs = pairsPerBox * static_cast<double>(count);
+                run.expect(
+                    std::abs(static_cast<double>(scene.reported().size()) - pairs) <= pairs / 4,
+                    "a mixture has as many pairs as it is made for");
+                run.expect(testsOf(scene) <= bound * static_cast<double>(count),
+                           "boxes of all sizes cost a hundred tests each");
+            };
+            judge(1, 1, 6);
+            judge(1e-6, 1e6, 120);
+        }
     }
-    return tally.outcome();
+}
+
+template <class Scalar>
+void allSizes(CaseRun<Scalar>& run) {
+    Random random(run.seed);
+    const int count = run.quickOrFull(1000, 4000);
+    Boxes<Scalar> mixed;
+    for (int i = 0; i < count; ++i) {
+        const Scalar edge = std::pow(10.0F, random.between(-6, 6));
+        mixed.push_back(cubeAt<Scalar>(
+            direction<Scalar>(random) * (edge * Scalar(random.between(0, 12))), edge));
+    }
+    const Scalar side = 1.5F * std::cbrt(static_cast<float>(count));
+    PairScene<Scalar> many(run, mixed);
+    PairScene<Scalar> one(run, scatteredCubes<Scalar>(mixed.size(), side, 1, 1, run.seed));
+    many.judge();
+    one.judge();
+    if (many.grid() != nullptr) {
+        const double pairs = static_cast<double>(many.reported().size());
+        run.expect(testsOf(many) <= 120 * (pairs + count), "levels of cells spare tests");
+        run.addCost(testsOfMove(many) / testsOfMove(one), 3);
+        run.note("Cost: boxes tested for each object and pair, by those of one size.");
+        judgeMixtures(run);
+    } else {
+        run.addCost(timeOf(many) / timeOf(one), 3);
+        run.note("Cost: time of a frame, by that of as many of one size.");
+    }
+    many.judge();
+}
+
+template <class Scalar>
+void oneLargeObject(CaseRun<Scalar>& run) {
+    constexpr std::size_t kCount = 4000;
+    Boxes<Scalar> boxes = scatteredCubes<Scalar>(kCount, 60, 0.4F, 0.8F, run.seed);
+    PairScene<Scalar> without(run, boxes, {.cellSize = 1});
+    boxes.push_back(cubeAt<Scalar>({3, -2, 1}, 20));
+    PairScene<Scalar> with(run, boxes, {.cellSize = 1});
+    with.judge();
+    if (with.grid() == nullptr) {
+        return;
+    }
+    run.expect(with.cost().grid.filed == boxes.size(), "everyone is filed once");
+    without.findPairs();
+    run.addCost(testsOfMove(with) / testsOfMove(without), 1.25);
+    run.note("Cost: boxes tested for each object and pair, by those without it.");
 }
 
 // --- Collisions -----------------------------------------------------------------------------------
 
 // The step from a row of cells to the nearest one whose number, y * 0x9e3779b1 + z * 0x85ebca77 modulo
 // 2^32, is the same: our hash of rows, known to whoever means harm.
-std::array<std::int32_t, 2> stepOfEqualRows() {
-    constexpr std::uint32_t kY = 0x9e3779b1U;
-    constexpr std::uint32_t kZ = 0x85ebca77U;
-    std::uint32_t inverse = kY;  // modulo 2^32, by Newton's iteration
+constexpr std::uint32_t kHashY = 0x9e3779b1U;
+constexpr std::uint32_t kHashZ = 0x85ebca77U;
+
+// Modulo 2^32, by Newton's iteration.
+constexpr std::uint32_t inverseOf(std::uint32_t odd) {
+    std::uint32_t inverse = odd;
     for (int i = 0; i < 5; ++i) {
-        inverse *= 2 - kY * inverse;
+        inverse *= 2 - odd * inverse;
     }
+    return inverse;
+}
+
+std::array<std::int32_t, 2> stepOfEqualRows() {
     std::array<std::int32_t, 2> best{1 << 30, 0};
     for (std::int32_t z = 1; z < (1 << 17); ++z) {
-        const auto y = static_cast<std::int32_t>(0U - static_cast<std::uint32_t>(z) * kZ * inverse);
+        const auto y = static_cast<std::int32_t>(0U - static_cast<std::uint32_t>(z) * kHashZ *
+                                                          inverseOf(kHashY));
         if (std::max(std::abs(static_cast<std::int64_t>(y)), std::int64_t{z}) <
             std::max(std::abs(static_cast<std::int64_t>(best[0])), std::int64_t{best[1]})) {
             best = {y, z};
@@ -124,23 +176,127 @@ std::array<std::int32_t, 2> stepOfEqualRows() {
 }
 
 // Two that touch at each of the places, and some that are beside them in the next cells.
-Boxes pairsAt(const std::vector<Point>& places) {
-    Boxes boxes;
-    for (const Point& at : places) {
-        boxes.push_back(cubeAt(at + Point::Constant(0.5F), 0.5F));
-        boxes.push_back(cubeAt(at + Point(1, 0.5F, 0.5F), 0.5F));
-        boxes.push_back(cubeAt(at + Point(0.5F, 1.5F, 0.5F), 0.5F));
+template <class Scalar>
+Boxes<Scalar> pairsAt(const std::vector<Vector3<float>>& places) {
+    Boxes<Scalar> boxes;
+    for (const Vector3<float>& place : places) {
+        const Vector3<Scalar> at = place.cast<Scalar>();
+        boxes.push_back(cubeAt<Scalar>(at + Vector3<Scalar>::Constant(0.5F), 0.5F));
+        boxes.push_back(cubeAt<Scalar>(at + Vector3<Scalar>(1, 0.5F, 0.5F), 0.5F));
+        boxes.push_back(cubeAt<Scalar>(at + Vector3<Scalar>(0.5F, 1.5F, 0.5F), 0.5F));
     }
     return boxes;
 }
 
-CaseOutcome cellsThatCollide(const CaseContext& context) {
-    CaseTally tally;
-    const int side = context.quickOrFull(100, 400);
+// --- One bucket -----------------------------------------------------------------------------------
+
+constexpr std::int32_t kAttackers = 12'000;
+constexpr std::int32_t kBuckets = 32'768;  // for so many
+
+template <class Scalar>
+void addInCell(Boxes<Scalar>& boxes, double x, double y, double z) {
+    boxes.push_back(cubeAt<double>({x + 0.5, y + 0.5, z + 0.5}, 0.25).template cast<Scalar>());
+}
+
+/// In rows whose hash of 32 bits is one and the same, so near that numbers of single precision tell
+/// their cells apart.
+template <class Scalar>
+Boxes<Scalar> boxesInRowsOfOneHash() {
+    constexpr std::int32_t kMost = 1 << 22;
+    Boxes<Scalar> boxes;
+    for (std::int32_t y = -kMost; y < kMost && boxes.size() < kAttackers; ++y) {
+        const auto z = static_cast<std::int32_t>(0 - static_cast<std::uint32_t>(y) * kHashY *
+                                                         inverseOf(kHashZ));
+        if (std::abs(z) < kMost) {
+            addInCell(boxes, 7, y, z);
+        }
+    }
+    return boxes;
+}
+
+/// In rows of any hash, each as far along its row as makes up for it. Rows are counted from the median,
+/// which is 0, as half lie on a line of rows along each axis.
+template <class Scalar>
+Boxes<Scalar> boxesThatMakeUpForTheirRows() {
+    Boxes<Scalar> boxes;
+    for (std::int32_t i = 0; i < kAttackers; ++i) {
+        constexpr std::int32_t kHalf = kAttackers / 2;
+        const std::int32_t along = 4 * (i % kHalf - kHalf / 2);
+        const std::int32_t y = i < kHalf ? along : 0;
+        const std::int32_t z = i < kHalf ? 0 : along;
+        std::uint32_t hash =
+            static_cast<std::uint32_t>(y) * kHashY + static_cast<std::uint32_t>(z) * kHashZ;
+        hash ^= hash >> 16;
+        hash *= 0x7feb352dU;
+        hash ^= hash >> 15;
+        addInCell(boxes, static_cast<double>((0U - hash) % kBuckets), y, z);
+    }
+    return boxes;
+}
+
+/// In one row, farther apart than there are buckets.
+template <class Scalar>
+Boxes<Scalar> boxesInALongRow() {
+    Boxes<Scalar> boxes;
+    for (std::int32_t i = 0; i < kAttackers; ++i) {
+        addInCell(boxes, static_cast<double>(kBuckets) * (i - kAttackers / 2), 3, 5);
+    }
+    return boxes;
+}
+
+/// Though far apart, they are in one bucket: sorted there, so that pairs and queries cost little.
+template <class Scalar>
+void judgeOneBucket(CaseRun<Scalar>& run, Boxes<Scalar> boxes,
+                    std::uint64_t mostTestsInFittingCells) {
+    constexpr std::uint64_t kCrowd = 256;  // more than so many share a bucket: it is sorted
+    for (std::size_t i = 0; i < 300; ++i) {
+        const Aabb<Scalar> twin = boxes[i * 37];
+        boxes.push_back(twin);
+    }
+    for (const double cellSize : {1.0, 0.0}) {
+        PairScene<Scalar> scene(run, boxes, {.cellSize = cellSize});
+        scene.judge();
+        run.expect(cellSize == 0 || 2 * scene.cost().grid.largestCell >= kAttackers,
+                   "the crowd is in one bucket");
+        run.expect(scene.cost().boxesTested < 5 * kCrowd * boxes.size(), "a crowd is sorted");
+        for (std::uint32_t i = 0; i < scene.size(); i += 97) {
+            const QueryCost cost = scene.judgeQuery(BoxRegion<Scalar>{boxes[i]});
+            run.expect(cost.boxesTested <= (cellSize == 0 ? mostTestsInFittingCells : 3 * kCrowd),
+                       "a crowd is searched where a query is");
+        }
+    }
+}
+
+/// A long region in a sparse world has more cells than there are buckets.
+template <class Scalar>
+void judgeLongRegions(CaseRun<Scalar>& run) {
+    Random random(run.seed);
+    Boxes<Scalar> boxes;
+    for (int i = 0; i < 4000; ++i) {
+        const Scalar x = between<Scalar>(random, -1e6F, 1e6F);
+        const Scalar y = between<Scalar>(random, -30, 30);
+        boxes.push_back(cubeAt<Scalar>({x, y, between<Scalar>(random, -30, 30)}, 0.6F));
+    }
+    PairScene<Scalar> scene(run, boxes, {.cellSize = 1});
+    scene.judge();
+    for (const double length : {1.0, 100.0, 1e4, 1e5, 1e6}) {
+        for (int i = 0; i < 4; ++i) {
+            const double x = between<double>(random, -1e6, 1e6 - length);
+            const QueryCost cost = scene.judgeQuery(
+                BoxRegion<Scalar>{makeBox<Scalar>(x, -15, -15, x + length, 15, 15)});
+            run.expect(cost.boxesTested <= boxes.size(), "a box is tested once a query");
+        }
+    }
+}
+
+template <class Scalar>
+void cellsThatCollide(CaseRun<Scalar>& run) {
+    using Point = Vector3<float>;
+    const int side = run.quickOrFull(100, 400);
     std::vector<Point> equalRows;
     std::vector<Point> scattered;
     const auto [stepY, stepZ] = stepOfEqualRows();
-    Random random(context.seed);
+    Random random(run.seed);
     for (int i = -side / 2; i < side / 2; ++i) {
         const auto k = static_cast<float>(i);
         equalRows.emplace_back(0, k * static_cast<float>(stepY), k * static_cast<float>(stepZ));
@@ -151,10 +307,10 @@ CaseOutcome cellsThatCollide(const CaseContext& context) {
         };
         scattered.emplace_back(0, far(stepY), far(stepZ));
     }
-    PairScene adversary(context, pairsAt(equalRows), {.cellSize = 1});
-    PairScene harmless(context, pairsAt(scattered), {.cellSize = 1});
-    adversary.judge(tally);
-    harmless.judge(tally);
+    PairScene<Scalar> adversary(run, pairsAt<Scalar>(equalRows), {.cellSize = 1});
+    PairScene<Scalar> harmless(run, pairsAt<Scalar>(scattered), {.cellSize = 1});
+    adversary.judge();
+    harmless.judge();
 
     // Multiples of sizes that tables have, and of primes.
     for (const float stride : {64.0F, 1024.0F, 65536.0F, 19937.0F, 131071.0F, 524287.0F}) {
@@ -164,120 +320,34 @@ CaseOutcome cellsThatCollide(const CaseContext& context) {
                                             static_cast<float>(i / 5 % 5),
                                             static_cast<float>(i / 25)));
         }
-        judgePairs(context, tally, pairsAt(places), {.cellSize = 1});
+        judgePairs(run, pairsAt<Scalar>(places), {1});
     }
-    if (adversary.hash() != nullptr) {
-        tally.addCost(testsOf(adversary) / testsOf(harmless), 3);
-        tally.note(
-            "Cost: boxes tested for each object and pair, by those of rows that do not "
-            "collide.");
+    if (adversary.grid() == nullptr) {
+        return;
     }
-    return tally.outcome();
-}
-
-// --- Cells of no size -----------------------------------------------------------------------------
-
-// What a scene says: its pairs, and who is around the origin, in the order in which it tells.
-struct Answers {
-    explicit Answers(PairScene& scene) {
-        scene.findPairs();
-        pairs = scene.reported();
-        NoteObjects callback;
-        scene.broadphase().aabbTest({-2, -2, -2}, {2, 2, 2}, callback);
-        found = std::move(callback.found);
-    }
-    friend bool operator==(const Answers&, const Answers&) = default;
-
-    std::vector<PairKey> pairs;
-    Objects found;
-};
-
-template <class Make>
-bool isRefused(const Make& make) {
-    try {
-        static_cast<void>(make());
-    } catch (const std::invalid_argument& refusal) {
-        return *refusal.what() != '\0';
-    }
-    return false;
-}
-
-// A grid of either precision, and a broadphase, to which a pair cache is given.
-void expectRefused(double cellSize, PairCache& cache, CaseTally& tally) {
-    SpatialHashConfig config;
-    config.grid.cellSize = cellSize;
-    constexpr std::string_view kWhat = "a cell of that size is refused with a reason";
-    tally.expect(isRefused([&] { return std::make_unique<Grid<float>>(config.grid); }), kWhat);
-    tally.expect(isRefused([&] { return std::make_unique<Grid<double>>(config.grid); }), kWhat);
-    tally.expect(isRefused([&] { return std::make_unique<SpatialHashBroadphase>(&cache, config); }),
-                 kWhat);
-    tally.expect(!configError(config.grid).empty(), kWhat);
-}
-
-// The cache serves a broadphase.
-void judgeCache(PairCache& cache, const Boxes& boxes, CaseTally& tally) {
-    SpatialHashBroadphase broadphase(&cache);
-    for (const Aabb<float>& box : boxes) {
-        broadphase.createProxy(toBullet(box.min()), toBullet(box.max()), 0, nullptr, 1, -1,
-                               nullptr);
-    }
-    broadphase.calculateOverlappingPairs(nullptr);
-    const auto numberOf = [](const btBroadphaseProxy& proxy) {
-        return static_cast<std::uint32_t>(proxy.m_uniqueId) - 1;
-    };
-    std::vector<PairKey> reported;
-    std::vector<PairKey> exact;
-    listPairs(cache, numberOf, reported);
-    findExactPairs(ReferenceMethod::kBrute, boxes, {}, exact);
-    tally.compare(reported, exact);
-}
-
-CaseOutcome cellSizesThatAreNone(const CaseContext& context) {
-    if (!context.kind.ours) {
-        return {};
-    }
-    CaseTally tally;
-    PairScene scene(context, scatteredCubes(60, 8, 0.5F, 1.5F, context.seed));
-    scene.judge(tally);
-    const Answers before(scene);
-    PairCache cache;
-    const std::size_t cacheBytes = cache.memoryBytes();
-    using Limits = std::numeric_limits<double>;
-    for (const double size : {-1.0, Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity(),
-                              1e31, 1e-31, Limits::denorm_min()}) {
-        expectRefused(size, cache, tally);
-    }
-    tally.expect(configError({.cellSize = 0}).empty(), "0 chooses the size");
-    tally.expect(Answers(scene) == before, "what runs already answers as before");
-    tally.expect(cache.memoryBytes() == cacheBytes && cache.validate().empty(),
-                 "a pair cache given to what is refused stays as it was");
-    judgeCache(cache, scene.boxes(), tally);
-    for (std::uint32_t i = 0; i < scene.size(); i += 3) {
-        scene.move(i, scene.boxes()[i].translated(Point(0.5F, 0, 0)));
-    }
-    scene.judge(tally);
-    return tally.outcome();
+    run.addCost(testsOfMove(adversary) / testsOfMove(harmless), 3);
+    run.note("Cost: boxes tested for each object and pair, by those of rows that do not collide.");
+    judgeOneBucket(run, boxesInRowsOfOneHash<Scalar>(), 32);
+    judgeOneBucket(run, boxesThatMakeUpForTheirRows<Scalar>(), 128);
+    judgeOneBucket(run, boxesInALongRow<Scalar>(), 32);
+    judgeLongRegions(run);
 }
 
 constexpr std::array kSizeCases{
     HardCase{"H27", "sizes from 1e-6 to 1e6 m",
              "4,000 (--quick: 1,000) cubes of 1e-6 to 1e6 m, as many of each size, within 12 edges "
              "of the origin; as many of 1 m",
-             "exact pairs; at most three times the work of one size", allSizes},
+             "exact pairs; at most three times the work of one size", allSizes<float>,
+             allSizes<double>},
     HardCase{"H28", "one object of 8,000 cells",
              "a cube of 20 m among 4,000 of 0.4 to 0.8 m, cells of 1 m",
-             "exact pairs; it is filed once, and costs what its pairs do", oneLargeObject},
+             "exact pairs; it is filed once, and costs what its pairs do", oneLargeObject<float>,
+             oneLargeObject<double>},
     HardCase{
         "H29", "cells that collide in the hash",
         "cells of 1 m; pairs in rows of cells that our hash cannot tell apart, on multiples of "
         "table sizes, and of large primes",
-        "exact pairs, and bounded work", cellsThatCollide},
-    HardCase{"H31", "cell sizes that are none",
-             "a cell size of -1, NaN, +-infinity, 1e31, 1e-31, the smallest denormal; and 0",
-             "refused with a reason by grids of both precisions and the broadphase; 0 chooses one; "
-             "what runs already answers as before, and the pair cache that the refused one was "
-             "given serves another",
-             cellSizesThatAreNone},
+        "exact pairs, and bounded work", cellsThatCollide<float>, cellsThatCollide<double>},
 };
 
 }  // namespace

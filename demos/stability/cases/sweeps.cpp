@@ -1,38 +1,35 @@
 // SPDX-License-Identifier: Zlib
 //
-// What moves so fast that it matters what it passes. Ours sweeps; Bullet's broadphases are given the box
-// around start and end, as m_useContinuous does.
+// What moves so fast that it matters what it passes. Ours sweeps, in every mode; Bullet's broadphases are
+// given the box around start and end, as m_useContinuous does.
 
 #include <demos/stability/cases/cases.hpp>
 
-#include <broadphase/pairs.hpp>
 #include <broadphase/sweeps.hpp>
-#include <demos/accuracy/sweeps/sweep_truth.hpp>
-#include <demos/scenes/random.hpp>
-#include <demos/stability/grid_scene.hpp>
-#include <demos/stability/isolation.hpp>
-#include <demos/stability/pair_scene.hpp>
 
 #include <array>
-#include <cmath>
-#include <limits>
 
 namespace hashphase::demos {
 namespace {
 
-using Point = Vector3<float>;
-using Keys = std::vector<PairKey>;
-
 constexpr std::array kSweeps{Sweep::automatic, Sweep::box, Sweep::line};
 
-// The pairs of a frame that touch at some time, of one mover at least; in integers.
-Keys truthOf(const SweptFrame& frame) {
+/// Moving boxes, the first of which sweep; the others stand still.
+template <class Scalar>
+struct SweptFrame {
+    std::vector<MovingBox<Scalar>> objects;
+    std::uint32_t movers = 0;
+};
+
+/// The pairs that touch at some time, of one mover at least.
+template <class Scalar>
+Keys truthOf(const SweptFrame<Scalar>& frame, const Lattice& lattice) {
     const LimitPause pause;
     Keys pairs;
     const auto count = static_cast<std::uint32_t>(frame.objects.size());
     for (std::uint32_t a = 0; a < frame.movers; ++a) {
         for (std::uint32_t b = a + 1; b < count; ++b) {
-            if (exactContact(frame, a, b)) {
+            if (lattice.meet(frame.objects[a], frame.objects[b])) {
                 pairs.push_back(pairKey(a, b));
             }
         }
@@ -40,143 +37,217 @@ Keys truthOf(const SweptFrame& frame) {
     return pairs;
 }
 
-// What Sweeps and Pairs find.
+/// What Sweeps and Pairs find: pairs of at least one mover, sorted.
 struct Swept {
     Keys pairs;
     SweepCost cost;
+
+    [[nodiscard]] std::uint64_t tests() const { return cost.boxesTested + cost.contactsTested; }
 };
-Swept sweepOurs(const SweptFrame& frame, Sweep sweep = Sweep::automatic) {
-    Grid<float> grid;
-    Sweeps<float> sweeps(grid);
-    Pairs<float> pairs(grid, &sweeps);
+
+Keys withMovers(const Keys& pairs, std::uint32_t movers) {
+    Keys kept = pairs;
+    std::erase_if(kept, [movers](PairKey pair) { return firstOf(pair) >= movers; });
+    return kept;
+}
+
+template <class Scalar>
+Swept sweepOurs(const SweptFrame<Scalar>& frame, Sweep sweep, const GridConfig& config = {}) {
+    Grid<Scalar> grid(config);
+    Sweeps<Scalar> sweeps(grid);
+    Pairs<Scalar> pairs(grid, &sweeps);
     std::vector<ProxyId> ids;
-    for (const MovingBox<float>& object : frame.objects) {
+    for (const MovingBox<Scalar>& object : frame.objects) {
         ids.push_back(grid.add(object.box));
     }
     for (std::uint32_t i = 0; i < frame.movers; ++i) {
         sweeps.set(ids[i], frame.objects[i].displacement, sweep);
     }
     Swept swept;
-    for (const ProxyPair& pair : pairs.update([](ProxyId, ProxyId) { return true; }).born) {
-        swept.pairs.push_back(keyOf(pair));
+    for (const ProxyPair& pair : pairs.update().born) {
+        swept.pairs.push_back(pairKey(pair.first.index, pair.second.index));
     }
+    swept.pairs = withMovers(swept.pairs, frame.movers);
     swept.cost = sweeps.lastCost();
     return swept;
 }
 
-Keys withMovers(const Keys& pairs, std::uint32_t movers) {
-    Keys kept;
-    for (const PairKey pair : pairs) {
-        if (firstOf(pair) < movers) {
-            kept.push_back(pair);
+/// Of ours, in every mode; returns what each took, in tests.
+template <class Scalar>
+std::array<std::uint64_t, 3> judgeFrame(CaseRun<Scalar>& run, const SweptFrame<Scalar>& frame,
+                                        const Keys& exact, const GridConfig& config = {}) {
+    std::array<std::uint64_t, 3> tests{};
+    if (run.isOurs) {
+        for (std::size_t i = 0; i < kSweeps.size(); ++i) {
+            const Swept swept = sweepOurs(frame, kSweeps[i], config);
+            run.compare(swept.pairs, exact);
+            run.expect(swept.cost.segments <= 40 * std::uint64_t{frame.movers},
+                       "a way has 40 segments at most");
+            tests[i] = swept.tests();
         }
+        return tests;
     }
-    return kept;
-}
-
-// Of any broadphase: pairs of at least one mover, sorted.
-Keys foundBy(const CaseContext& context, const SweptFrame& frame, Sweep sweep = Sweep::automatic) {
-    if (context.kind.ours) {
-        return withMovers(sweepOurs(frame, sweep).pairs, frame.movers);
+    Boxes<Scalar> boxes;
+    for (const MovingBox<Scalar>& object : frame.objects) {
+        boxes.push_back(object.box.merged(object.box.translated(object.displacement)));
     }
-    Boxes boxes;
-    for (const MovingBox<float>& object : frame.objects) {
-        boxes.push_back(wayBox(object));
-    }
-    PairScene scene(context, boxes);
+    PairScene<Scalar> scene(run, boxes);
     scene.findPairs();
-    return withMovers(scene.reported(), frame.movers);
+    run.compare(withMovers(scene.reported(), frame.movers), exact);
+    return tests;
 }
 
-void judgeFrame(const CaseContext& context, CaseTally& tally, const SweptFrame& frame) {
-    tally.compare(foundBy(context, frame), truthOf(frame));
+template <class Scalar>
+std::array<std::uint64_t, 3> judgeFrame(CaseRun<Scalar>& run, const SweptFrame<Scalar>& frame,
+                                        double unit, const GridConfig& config = {}) {
+    return judgeFrame(run, frame, truthOf(frame, Lattice(unit)), config);
 }
+
+/// Where every box is of 1 m and begins at a point, all of them sweep.
+template <class Scalar>
+struct Flights : SweptFrame<Scalar> {
+    void add(const Vector3<Scalar>& low, const Vector3<Scalar>& way) {
+        this->objects.push_back({{low, low + Vector3<Scalar>::Ones()}, way});
+        ++this->movers;
+    }
+};
 
 // --- Far and fast ---------------------------------------------------------------------------------
 
 // Cubes that stand on multiples of the unit, and some that fly.
-SweptFrame flyingFrame(const CaseContext& context, int standing, int flying, float side, float way,
-                       float unit) {
-    Random random(context.seed);
+template <class Scalar>
+SweptFrame<Scalar> flyingFrame(std::uint64_t seed, int standing, int flying, float side, float way,
+                               float unit) {
+    using Point = Vector3<float>;
+    Random random(seed);
     const auto on = [&](float low, float high) {
         return std::floor(random.between(low, high) / unit) * unit;
     };
-    SweptFrame frame;
-    frame.unit.fill(unit);
+    SweptFrame<Scalar> frame;
     frame.movers = static_cast<std::uint32_t>(flying);
     for (int i = 0; i < flying + standing; ++i) {
-        MovingBox<float> object;
+        Point displacement = Point::Zero();
         const float edge = on(0.5F, 1.5F) + unit;
         Point low(on(-side / 2, side / 2), on(-side / 2, side / 2), on(-side / 2, side / 2));
         if (i < flying) {
             // From one side, through the middle, to the other.
             low[0] = -std::floor(way / 2 / unit) * unit;
-            object.displacement = Point(std::floor(way / unit) * unit, on(-4, 4), on(-4, 4));
+            displacement = Point(std::floor(way / unit) * unit, on(-4, 4), on(-4, 4));
         }
-        object.box = {low, low + Point::Constant(edge)};
-        frame.objects.push_back(object);
+        const Aabb<float> box(low, low + Point::Constant(edge));
+        frame.objects.push_back({box.cast<Scalar>(), displacement.cast<Scalar>()});
     }
     return frame;
 }
 
-CaseOutcome millionCells(const CaseContext& context) {
-    CaseTally tally;
-    const SweptFrame frame = flyingFrame(context, 2000, 20, 40, 1e6F, 0.125F);
-    judgeFrame(context, tally, frame);
-    if (context.kind.ours) {
-        // Far ways cost what near ones do that pass the same cubes.
-        const SweptFrame near = flyingFrame(context, 2000, 20, 40, 200, 0.125F);
-        const auto work = [](const SweptFrame& of) {
-            return static_cast<double>(sweepOurs(of).cost.boxesTested);
+/// A crowd far away decides where cells are counted from: here their numbers have as many digits as a
+/// coordinate, and what lies at the edge of the world may be filed some cells farther in.
+template <class Scalar>
+void judgeRoundedCells(CaseRun<Scalar>& run) {
+    using Point = Vector3<Scalar>;
+    constexpr double kUnit = 0x1p-20;
+    const Lattice lattice(kUnit);
+    for (const Scalar shift : {0.0F, 3.0F, 6.0F, 9.0F, 12.0F}) {
+        Random random(run.seed);
+        SweptFrame<Scalar> frame;
+        frame.movers = 100;
+        const auto add = [&](const Point& center, const Point& way) {
+            frame.objects.push_back({lattice.on<Scalar>(cubeAt(center, Scalar(0.9))), way});
         };
-        tally.addCost(work(frame) / std::max(1.0, work(near)), 4);
-        tally.note("Cost: boxes tested, by those for ways of 200 m through the same cubes.");
+        const Point way = lattice.on<Scalar>(Point(-200, Scalar(0.01), 0));
+        for (int i = 0; i < 400; ++i) {
+            Point at = pointIn<Scalar>(random, -10, 10);
+            at[0] = i < 100 ? Scalar(80) : 20 + 2 * at[0] + shift;
+            add(at, i < 100 ? way : Point(Point::Zero()));
+        }
+        const Keys exact = truthOf(frame, lattice);
+        for (int i = 0; i < 3000; ++i) {
+            add(Point(2e8F, static_cast<Scalar>(10 * i), 1000), Point::Zero());
+        }
+        judgeFrame(run, frame, exact, {.cellSize = 1});
+    }
+}
+
+template <class Scalar>
+void millionCells(CaseRun<Scalar>& run) {
+    using Point = Vector3<Scalar>;
+    const auto frame = flyingFrame<Scalar>(run.seed, 2000, 20, 40, 1e6F, 0.125F);
+    judgeFrame(run, frame, 0.125);
+    if (run.isOurs) {
+        // Far ways cost what near ones do that pass the same cubes.
+        const auto near = flyingFrame<Scalar>(run.seed, 2000, 20, 40, 200, 0.125F);
+        const auto work = [](const SweptFrame<Scalar>& of) {
+            return static_cast<double>(sweepOurs(of, Sweep::automatic).cost.boxesTested);
+        };
+        run.addCost(work(frame) / std::max(1.0, work(near)), 4);
+        run.note("Cost: boxes tested, by those for ways of 200 m through the same cubes.");
+        judgeRoundedCells(run);
     }
     // And teleported, without a way.
-    Boxes boxes = scatteredCubes(400, 20, 0.5F, 1.5F, context.seed);
-    PairScene scene(context, boxes, {.cellSize = 1},
-                    Aabb<float>(Point::Constant(-2e6F), Point::Constant(2e6F)));
-    scene.judge(tally);
-    for (const float to : {1e6F, -1e6F, 0.0F}) {
+    const Boxes<Scalar> boxes = scatteredCubes<Scalar>(400, 20, 0.5F, 1.5F, run.seed);
+    PairScene<Scalar> scene(run, boxes, {.cellSize = 1},
+                            Aabb<Scalar>(Point::Constant(-2e6F), Point::Constant(2e6F)));
+    scene.judge();
+    for (const Scalar to : {1e6F, -1e6F, 0.0F}) {
         for (std::uint32_t i = 0; i < 40; ++i) {
             scene.move(i, boxes[i].translated(Point(to, -to, to)));
         }
-        scene.judge(tally);
+        scene.judge();
     }
-    return tally.outcome();
 }
 
-CaseOutcome noMotion(const CaseContext& context) {
-    const Boxes boxes = scatteredCubes(150, 6, 0.5F, 1.5F, context.seed);
-    CaseTally tally;
-    for (const float speed : {0.0F, -0.0F, 1e-12F, 1e-30F, 1e-40F}) {
-        Keys exact;
-        Keys found;
-        {
-            PairScene still(context, boxes);
-            exact = still.exact();
-        }
-        if (context.kind.ours) {
-            SweptFrame frame;
-            frame.movers = static_cast<std::uint32_t>(boxes.size());
-            for (const Aabb<float>& box : boxes) {
-                frame.objects.push_back({box, Point(speed, 0, -speed)});
-            }
-            for (const Sweep sweep : kSweeps) {
-                found = sweepOurs(frame, sweep).pairs;
-                tally.compare(found, exact);
-            }
-        } else {
-            Boxes ways;
-            for (const Aabb<float>& box : boxes) {
-                ways.push_back(box.merged(box.translated(Point(speed, 0, -speed))));
-            }
-            PairScene scene(context, ways);
-            scene.findPairs();
-            tally.compare(scene.reported(), exact);
-        }
+/// Two unit boxes along x, of which the first begins at 0: how far the other is away, how much higher it is,
+/// their ways, and whether they touch.
+template <class Scalar>
+struct Meeting {
+    Scalar gap;
+    Scalar height;
+    Scalar way;
+    Scalar otherWay;
+    bool doTouch;
+};
+
+template <class Scalar>
+void judgeMeetings(CaseRun<Scalar>& run, Scalar face,
+                   const std::vector<Meeting<Scalar>>& meetings) {
+    using Point = Vector3<Scalar>;
+    for (const Meeting<Scalar>& meeting : meetings) {
+        const Point low(face + meeting.gap, meeting.height, 0);
+        const MovingBox<Scalar> one{{Point(face - 1, 0, 0), Point(face, 1, 1)},
+                                    {meeting.way, 0, 0}};
+        const MovingBox<Scalar> other{{low, low + Point::Ones()}, {meeting.otherWay, 0, 0}};
+        judgeFrame<Scalar>(run, {{one, other}, 2}, meeting.doTouch ? Keys{pairKey(0, 1)} : Keys{});
     }
-    return tally.outcome();
+}
+
+template <class Scalar>
+void noMotion(CaseRun<Scalar>& run) {
+    const Boxes<Scalar> boxes = scatteredCubes<Scalar>(150, 6, 0.5F, 1.5F, run.seed);
+    const Keys exact = touchingPairs(boxes);
+    for (const Scalar speed : {0.0F, -0.0F, 1e-12F, 1e-30F, 1e-40F}) {
+        SweptFrame<Scalar> frame;
+        frame.movers = static_cast<std::uint32_t>(boxes.size());
+        for (const Aabb<Scalar>& box : boxes) {
+            frame.objects.push_back({box, Vector3<Scalar>(speed, 0, -speed)});
+        }
+        judgeFrame(run, frame, exact);
+    }
+    if (run.isOurs) {
+        // By less than an ulp: as standing still, but for what is nearer than that.
+        using Limits = std::numeric_limits<Scalar>;
+        const Scalar face = 1000;
+        const Scalar ulp = above(face) - face;
+        judgeMeetings<Scalar>(run, face,
+                              {{0, 0, 0, 0, true},
+                               {ulp, 0, 0, 0, false},
+                               {0, 0, ulp / 8, 0, true},
+                               {0, 0, -ulp / 8, 0, true},
+                               {ulp, 0, ulp / 8, 0, false},
+                               {ulp, 0, ulp, 0, true},
+                               {ulp, 0, ulp * 7 / 8, 0, false},
+                               {0, 0, Limits::denorm_min(), 0, true},
+                               {ulp, 0, Limits::min(), 0, false}});
+    }
 }
 
 // --- Thin walls -----------------------------------------------------------------------------------
@@ -184,17 +255,18 @@ CaseOutcome noMotion(const CaseContext& context) {
 // Lanes, each with a wall somewhere along it and a bullet that begins somewhere in front of the
 // wall and ends behind; every other one flies the other way. Coordinates are multiples of an eighth
 // of a millimetre up to 1024 m, so that none is rounded.
-SweptFrame bulletsAtWalls(int lanes, float thickness, Random& random) {
+template <class Scalar>
+SweptFrame<Scalar> bulletsAtWalls(int lanes, float thickness, Random& random) {
+    using Point = Vector3<float>;
     constexpr float kUnit = 0x1p-13F;
     constexpr float kBullet = 0x1p-7F;  // 8 mm
     constexpr float kFarthest = 1000;
     const auto on = [](float x) { return std::floor(x / kUnit) * kUnit; };
     const float way = on(200.0F / 60);
     const float thick = std::max(kUnit, std::round(thickness / kUnit) * kUnit);
-    SweptFrame frame;
-    frame.unit = {kUnit, 0x1p-7F, 0x1p-7F};
+    SweptFrame<Scalar> frame;
     frame.movers = static_cast<std::uint32_t>(lanes);
-    std::vector<MovingBox<float>> walls;
+    std::vector<MovingBox<Scalar>> walls;
     for (int i = 0; i < lanes; ++i) {
         const float y = 0.5F * static_cast<float>(i % 128);
         const float z = 0.5F * static_cast<float>(i / 128);
@@ -202,90 +274,138 @@ SweptFrame bulletsAtWalls(int lanes, float thickness, Random& random) {
         const float phase = on(random.unit() * (way - kBullet - thick));
         const bool isForward = i % 2 == 0;
         const Point low(isForward ? wall - phase - kBullet : wall + thick + phase, y, z);
-        frame.objects.push_back(
-            {{low, low + Point::Constant(kBullet)}, Point(isForward ? way : -way, 0, 0)});
+        const Aabb<float> bullet(low, low + Point::Constant(kBullet));
+        const Scalar speed = isForward ? way : -way;
+        frame.objects.push_back({bullet.cast<Scalar>(), Vector3<Scalar>(speed, 0, 0)});
+        const auto reach = static_cast<double>(0.125F);
         walls.push_back(
-            {{Point(wall, y - 0.125F, z - 0.125F), Point(wall + thick, y + 0.125F, z + 0.125F)}});
+            {makeBox<Scalar>(static_cast<double>(wall), static_cast<double>(y) - reach,
+                             static_cast<double>(z) - reach, static_cast<double>(wall + thick),
+                             static_cast<double>(y) + reach, static_cast<double>(z) + reach)});
     }
     frame.objects.insert(frame.objects.end(), walls.begin(), walls.end());
     return frame;
 }
 
-CaseOutcome thinWalls(const CaseContext& context) {
-    CaseTally tally;
-    Random random(context.seed);
+template <class Scalar>
+void thinWalls(CaseRun<Scalar>& run) {
+    Random random(run.seed);
     constexpr int kLanes = 2000;
-    const int phases = context.kind.ours ? context.quickOrFull(10'000, 1'000'000) : 10'000;
+    const int phases = run.isOurs ? run.quickOrFull(10'000, 1'000'000) : 10'000;
     Keys exact;
     for (std::uint32_t i = 0; i < kLanes; ++i) {
         exact.push_back(pairKey(i, i + kLanes));
     }
     for (int tried = 0; tried < phases; tried += 3 * kLanes) {
         for (const float thickness : {0.1F, 0.01F, 0.001F}) {
-            const SweptFrame frame = bulletsAtWalls(kLanes, thickness, random);
-            for (const Sweep sweep : kSweeps) {
-                if (context.kind.ours || sweep == Sweep::automatic) {
-                    tally.compare(foundBy(context, frame, sweep), exact);
-                }
-            }
+            judgeFrame(run, bulletsAtWalls<Scalar>(kLanes, thickness, random), exact);
         }
     }
-    return tally.outcome();
 }
 
 // --- Grazing and crossing -------------------------------------------------------------------------
 
-CaseOutcome grazing(const CaseContext& context) {
-    CaseTally tally;
-    for (const int apart : {-1, 0, 1}) {
-        // Along an axis, past a face; 1 ulp of the coordinates at 1024 m.
-        const float gap = 0x1p-13F * static_cast<float>(apart);
-        SweptFrame straight;
-        straight.unit.fill(0x1p-13F);
-        straight.movers = 1;
-        straight.objects.push_back(
-            {{Point(0, 1024 + gap, 0), Point(1, 1025 + gap, 1)}, {500, 0, 0}});
-        straight.objects.push_back({{Point(250, 1023, 0), Point(251, 1024, 1)}});
-        judgeFrame(context, tally, straight);
-
-        // Slantwise, past an edge: the lower right corner, (1, 0), runs along y = x - 1 and meets
-        // the edge at (129, 128); 1 ulp there.
-        const float slantingGap = 0x1p-16F * static_cast<float>(apart);
-        SweptFrame slanting;
-        slanting.unit.fill(0x1p-16F);
-        slanting.movers = 1;
-        slanting.objects.push_back({{Point(0, 0, 0), Point(1, 1, 1)}, {240, 240, 0}});
-        slanting.objects.push_back(
-            {{Point(129 + slantingGap, 127, 0), Point(130 + slantingGap, 128, 1)}});
-        judgeFrame(context, tally, slanting);
+/// A box and its way, and another box that it touches for a moment, by an edge: along one axis it leaves
+/// it when along another one it arrives, at a time that is rounded; at 1,728 places.
+template <class Scalar>
+void judgeMoments(CaseRun<Scalar>& run) {
+    using Point = Vector3<Scalar>;
+    Random random(run.seed);
+    const auto draw = [&](std::uint32_t count) {
+        return static_cast<Scalar>(1 + indexBelow(random, count));
+    };
+    SweptFrame<Scalar> frame;
+    std::vector<MovingBox<Scalar>> others;
+    Keys exact;
+    for (int i = 0; i < 12 * 12 * 12; ++i) {
+        const Point where = Vector3<int>(i / 144, i / 12 % 12, i % 12).cast<Scalar>() * 1000;
+        const Scalar parts = draw(30);
+        const Scalar passed = draw(static_cast<std::uint32_t>(parts));
+        const Scalar x = draw(9);
+        const Scalar y = draw(9);
+        const Point step(x, y, draw(9) - 5);
+        const Point way = passed * step;
+        frame.objects.push_back({{where, where + Point(1, 1, 40)}, parts * step});
+        others.push_back({{where + Point(way[0] - 3, 1 + way[1], way[2] + 1),
+                           where + Point(way[0], 3 + way[1], way[2] + 2)}});
+        exact.push_back(pairKey(frame.movers, frame.movers + 1728));
+        ++frame.movers;
     }
-    return tally.outcome();
+    frame.objects.insert(frame.objects.end(), others.begin(), others.end());
+    judgeFrame(run, frame, exact);
 }
 
-CaseOutcome crossing(const CaseContext& context) {
-    CaseTally tally;
-    SweptFrame frame;
-    frame.unit.fill(0.125F);
-    const auto add = [&](const Point& low, const Point& way) {
-        frame.objects.push_back({{low, low + Point::Ones()}, way});
+template <class Scalar>
+void grazing(CaseRun<Scalar>& run) {
+    using Point = Vector3<Scalar>;
+    for (const int apart : {-1, 0, 1}) {
+        // Along an axis, past a face; 1 ulp of the coordinates at 1024 m.
+        const Scalar gap = 0x1p-13F * static_cast<Scalar>(apart);
+        const MovingBox<Scalar> passing{{Point(0, 1024 + gap, 0), Point(1, 1025 + gap, 1)},
+                                        {500, 0, 0}};
+        judgeFrame<Scalar>(run, {{passing, {{Point(250, 1023, 0), Point(251, 1024, 1)}}}, 1},
+                           0x1p-13);
+        // Slantwise, past an edge: the lower right corner, (1, 0), runs along y = x - 1 and meets
+        // the edge at (129, 128); 1 ulp there.
+        const Scalar aside = 0x1p-16F * static_cast<Scalar>(apart);
+        const MovingBox<Scalar> slanting{{Point(0, 0, 0), Point(1, 1, 1)}, {240, 240, 0}};
+        judgeFrame<Scalar>(
+            run, {{slanting, {{Point(129 + aside, 127, 0), Point(130 + aside, 128, 1)}}}, 1},
+            0x1p-16);
+    }
+    if (run.isOurs) {
+        judgeMoments(run);
+    }
+}
+
+/// Infinite corners, inverted boxes: differences of coordinates need not be numbers.
+template <class Scalar>
+void judgeInfiniteBoxes(CaseRun<Scalar>& run) {
+    using Point = Vector3<Scalar>;
+    constexpr Scalar kFar = kInfinity<Scalar>;
+    const auto judge = [&](const Aabb<Scalar>& mover, const Point& way, const Aabb<Scalar>& other) {
+        judgeFrame<Scalar>(run, {{{mover, way}, {other, {0, 0, 0}}}, 1}, Keys{pairKey(0, 1)});
     };
-    add({0, 0, 0}, {1000, 0, 0});  // these two meet in the middle
-    add({1000, 0, 0}, {-1000, 0, 0});
-    add({500, -500, 50}, {0, 1000, 0});  // these cross at the same time
-    add({0, 0, 50}, {1000, 0, 0});
-    add({500, -500, 100}, {0, 1000, 0});  // these cross one after the other
-    add({0, 0, 100}, {500, 0, 0});
-    add({0, 0, 200}, {100, 0, 0});  // touch at 0 and part
-    add({-1, 0, 200}, {-100, 0, 0});
-    add({0, 0, 300}, {100, 0, 0});  // touch at 1 only
-    add({102, 0, 300}, {-1, 0, 0});
-    add({0, 0, 400}, {100, 0, 0});  // miss by 1/8 m at 1
-    add({102.125F, 0, 400}, {-1, 0, 0});
-    add({0, 0, 500}, {1000, 0, 0});  // fly side by side, a cell apart
-    add({0, 2, 500}, {1000, 0, 0});
-    frame.movers = static_cast<std::uint32_t>(frame.objects.size());
-    judgeFrame(context, tally, frame);
-    return tally.outcome();
+    judge({Point(8, kFar, 3), Point(8.25F, kFar, 4.5F)}, {0, 10, 9.5F},
+          {Point(8, -4, 5.5F), Point(10, kFar, 6)});
+    judge({Point(-9, -7, kFar), Point(-8.5F, -5, 1e6F)}, {10, 1.7e38F, -1e6F},
+          {Point(0, 1e37F, 0), Point(1, 2e38F, kFar)});
+}
+
+template <class Scalar>
+void crossing(CaseRun<Scalar>& run) {
+    Flights<Scalar> frame;
+    frame.add({0, 0, 0}, {1000, 0, 0});  // these two meet in the middle
+    frame.add({1000, 0, 0}, {-1000, 0, 0});
+    frame.add({500, -500, 50}, {0, 1000, 0});  // these cross at the same time
+    frame.add({0, 0, 50}, {1000, 0, 0});
+    frame.add({500, -500, 100}, {0, 1000, 0});  // these cross one after the other
+    frame.add({0, 0, 100}, {500, 0, 0});
+    frame.add({0, 0, 200}, {100, 0, 0});  // touch at 0 and part
+    frame.add({-1, 0, 200}, {-100, 0, 0});
+    frame.add({0, 0, 300}, {100, 0, 0});  // touch at 1 only
+    frame.add({102, 0, 300}, {-1, 0, 0});
+    frame.add({0, 0, 400}, {100, 0, 0});  // miss by 1/8 m at 1
+    frame.add({102.125F, 0, 400}, {-1, 0, 0});
+    frame.add({0, 0, 500}, {1000, 0, 0});  // fly side by side, a cell apart
+    frame.add({0, 2, 500}, {1000, 0, 0});
+    judgeFrame<Scalar>(run, frame, 0.125);
+    if (run.isOurs) {
+        // Towards each other, at the first or the last moment, inside by an ulp, touching, and apart by
+        // one.
+        const Scalar one = 1;
+        judgeMeetings<Scalar>(run, 1,
+                              {{29, 0, 40, -40, true},
+                               {29, 0, 40, 40, false},
+                               {0, 0, -9, 9, true},
+                               {above(one) - 1, 0, -9, 9, false},
+                               {16, 0, 9, -7, true},
+                               {above(16 * one), 0, 9, -7, false},
+                               {29, below(one), 40, -40, true},
+                               {29, 1, 40, -40, true},
+                               {29, above(one), 40, -40, false}});
+        judgeInfiniteBoxes(run);
+    }
 }
 
 constexpr std::array kSweepCases{
@@ -293,26 +413,26 @@ constexpr std::array kSweepCases{
              "20 cubes that fly 1e6 m through 2,000 others, and 40 of 400 that are moved by 1e6 m "
              "without a way, and back",
              "what they touch on their way, exactly; the work does not follow the speed",
-             millionCells},
+             millionCells<float>, millionCells<double>},
     HardCase{"H21", "a sweep that does not move",
              "150 cubes that move by 0, -0, 1e-12, 1e-30, 1e-40 m",
-             "what they touch where they are", noMotion},
+             "what they touch where they are", noMotion<float>, noMotion<double>},
     HardCase{
         "H22", "200 m/s at walls of 1 to 100 mm",
         "bullets of 8 mm, 3.3 m a frame, both ways, at walls of 100, 10 and 1 mm, up to 1 km away, "
         "at random phases (ours a million, each with Sweep::automatic, box and line; 10,000 with "
         "--quick and for the others)",
-        "every bullet meets its wall", thinWalls},
+        "every bullet meets its wall", thinWalls<float>, thinWalls<double>},
     HardCase{
         "H23", "grazing by -1, 0 and 1 ulp",
         "a box that passes another one along an axis, and slantwise past an edge, 1 ulp inside, "
         "touching, 1 ulp apart",
-        "met when it touches, missed when it does not", grazing},
+        "met when it touches, missed when it does not", grazing<float>, grazing<double>},
     HardCase{
         "H24", "crossing ways",
         "fast boxes that meet head on, cross at the same time and one after the other, touch at "
         "the first and at the last moment only, miss by 1/8 m, and fly side by side",
-        "those who touch at some moment, exactly", crossing},
+        "those who touch at some moment, exactly", crossing<float>, crossing<double>},
 };
 
 }  // namespace

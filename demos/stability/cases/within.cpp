@@ -1,42 +1,45 @@
 // SPDX-License-Identifier: Zlib
 //
-// Questions: within questions, with changes in their midst, and about nothing.
+// Questions and changes within questions, and broadphases that are refused.
 
-#include <demos/stability/cases/cases.hpp>
+#include <demos/stability/bullet_subject.hpp>
 
-#include <demos/scenes/random.hpp>
-#include <demos/stability/pair_scene.hpp>
 #include <integration/bullet/conversions.hpp>
+#include <integration/bullet/spatial_hash_broadphase.hpp>
 
-#include <algorithm>
 #include <array>
+#include <stdexcept>
 
 namespace hashphase::demos {
 namespace {
 
-using Point = Vector3<float>;
+using Point = Vector3<btScalar>;
+using Bounds = Aabb<btScalar>;
+using Scene = PairScene<btScalar>;
+using Run = CaseRun<btScalar>;
 
 // --- In the midst of it ---------------------------------------------------------------------------
 
 // Asks again, for everything found, before it goes on.
 struct AskWithin final : btBroadphaseAabbCallback {
-    AskWithin(PairScene& asked, Objects& list, int howDeep)
+    AskWithin(Scene& asked, Objects& list, int howDeep)
         : scene(asked), found(list), depth(howDeep) {}
 
     bool process(const btBroadphaseProxy* proxy) override {
-        const std::uint32_t object = FilledBroadphase::objectOf(*proxy);
+        const std::uint32_t object = BulletSubject::objectOf(*proxy);
         found.push_back(object);
         if (depth > 0) {
             Objects inner;
             AskWithin callback(scene, inner, depth - 1);
-            const Aabb<float>& box = scene.boxes()[object];
-            scene.broadphase().aabbTest(toBullet(box.min()), toBullet(box.max()), callback);
+            const Bounds& box = scene.boxes()[object];
+            broadphaseOf(scene.subject())
+                .aabbTest(toBullet(box.min()), toBullet(box.max()), callback);
             hasFoundItself &= std::count(inner.begin(), inner.end(), object) == 1;
         }
         return true;
     }
 
-    PairScene& scene;
+    Scene& scene;
     Objects& found;
     int depth;
     bool hasFoundItself = true;
@@ -52,15 +55,15 @@ struct AlongX : btBroadphaseRayCallback {
 };
 
 struct RayWithin final : AlongX {
-    RayWithin(PairScene& asked, int howDeep) : scene(asked), depth(howDeep) {}
+    RayWithin(Scene& asked, int howDeep) : scene(asked), depth(howDeep) {}
 
     void cast() {
-        scene.broadphase().rayTest({-20, 0, 0}, {20, 0, 0}, *this);
+        broadphaseOf(scene.subject()).rayTest({-20, 0, 0}, {20, 0, 0}, *this);
         std::sort(found.begin(), found.end());
     }
 
     bool process(const btBroadphaseProxy* proxy) override {
-        found.push_back(FilledBroadphase::objectOf(*proxy));
+        found.push_back(BulletSubject::objectOf(*proxy));
         if (depth > 0) {
             RayWithin inner(scene, depth - 1);
             inner.cast();
@@ -70,60 +73,55 @@ struct RayWithin final : AlongX {
         return true;
     }
 
-    PairScene& scene;
+    Scene& scene;
     int depth;
     Objects found;
     Objects last;
     bool isRepeated = true;
 };
 
-Objects touching(const PairScene& scene, const Aabb<float>& region) {
-    Objects objects;
-    for (std::uint32_t i = 0; i < scene.size(); ++i) {
-        if (overlaps(scene.boxes()[i], region)) {
-            objects.push_back(i);
-        }
-    }
-    return objects;
+Objects touching(const Scene& scene, const Bounds& region) {
+    return objectsThat(scene.boxes(), [&](const Bounds& box) { return doTouch(box, region); });
 }
 
-Boxes someCubes(const CaseContext& context) {
-    return scatteredCubes(200, 10, 0.5F, 1.5F, context.seed);
+Boxes<btScalar> someCubes(const Run& run) {
+    return scatteredCubes<btScalar>(200, 10, 0.5F, 1.5F, run.seed);
 }
 
-void askNested(PairScene& scene, CaseTally& tally) {
+void askNested(Scene& scene, Run& run) {
     Objects found;
     AskWithin callback(scene, found, 1);
-    const Aabb<float> region = cubeAt({0, 0, 0}, 6);
-    scene.broadphase().aabbTest(toBullet(region.min()), toBullet(region.max()), callback);
+    const Bounds region = cubeAt<btScalar>({0, 0, 0}, 6);
+    broadphaseOf(scene.subject())
+        .aabbTest(toBullet(region.min()), toBullet(region.max()), callback);
     std::sort(found.begin(), found.end());
-    tally.compare(found, touching(scene, region));
-    tally.expect(callback.hasFoundItself, "a box query within a query finds the box it asks with");
+    run.compare(found, touching(scene, region));
+    run.expect(callback.hasFoundItself, "a box query within a query finds the box it asks with");
 
     RayWithin alone(scene, 0);
     alone.cast();
     RayWithin nested(scene, 1);
     nested.cast();
-    tally.expect(nested.found == alone.found, "a ray finds the same with rays within");
-    tally.expect(nested.isRepeated && nested.last == alone.found,
-                 "a ray within a ray finds the same as the ray alone");
+    run.expect(nested.found == alone.found, "a ray finds the same with rays within");
+    run.expect(nested.isRepeated && nested.last == alone.found,
+               "a ray within a ray finds the same as the ray alone");
 }
 
 // Bullet's way to remove pairs while walking over them.
 struct RemoveSome final : btOverlapCallback {
     bool processOverlap(btBroadphasePair& pair) override {
         ++seen;
-        return FilledBroadphase::objectOf(*pair.m_pProxy0) % 2 == 0;
+        return BulletSubject::objectOf(*pair.m_pProxy0) % 2 == 0;
     }
     std::size_t seen = 0;
 };
 
 // Destroys, moves and creates while it is told who is there: of whom it is told, and of others.
 struct Changes {
-    explicit Changes(PairScene& asked) : scene(asked), isChanged(asked.size(), false) {}
+    explicit Changes(Scene& asked) : scene(asked), isChanged(asked.size(), false) {}
 
     void hear(const btBroadphaseProxy& proxy) {
-        const std::uint32_t object = FilledBroadphase::objectOf(proxy);
+        const std::uint32_t object = BulletSubject::objectOf(proxy);
         found.push_back(object);
         isDeadOffered |= hasNan(scene.boxes()[object]);
         if (object % 3 == 0) {
@@ -140,7 +138,7 @@ struct Changes {
             return;
         }
         isChanged[object] = true;
-        const Aabb<float> box = scene.boxes()[object];
+        const Bounds box = scene.boxes()[object];
         if (how % 2 == 0) {
             scene.destroy(object);
             if (how % 4 == 0) {
@@ -151,7 +149,7 @@ struct Changes {
         }
     }
 
-    PairScene& scene;
+    Scene& scene;
     Objects found;
     std::vector<bool> isChanged;
     int selfCount = 0;  // how often who is told of was to be changed itself
@@ -178,118 +176,148 @@ struct ChangeOnRay final : AlongX {
 
 // What was not changed is found, once; nobody is found who is no more.
 template <class Ask>
-void judgeChanges(const CaseContext& context, CaseTally& tally, const Aabb<float>& region,
-                  const Ask& ask) {
-    PairScene scene(context, someCubes(context));
-    scene.judge(tally);
+void judgeChanges(Run& run, const Bounds& region, const Ask& ask) {
+    Scene scene(run, someCubes(run));
+    scene.judge();
     Objects before = touching(scene, region);
     Changes changes(scene);
-    ask(scene.broadphase(), changes);
+    ask(broadphaseOf(scene.subject()), changes);
     const auto isChanged = [&](std::uint32_t object) { return changes.isChanged[object]; };
     std::erase_if(before, isChanged);
     std::erase_if(changes.found, isChanged);
     std::sort(changes.found.begin(), changes.found.end());
-    tally.compare(changes.found, before);
-    tally.expect(!changes.isDeadOffered, "a query finds nobody whom its callback has destroyed");
-    tally.expect(changes.selfCount >= 8, "callbacks change the proxies that they are given");
-    scene.judge(tally);
-    if (const SpatialHashBroadphase* hash = scene.hash()) {
-        tally.expect(hash->validate().empty(), "all invariants hold after changes within");
-    }
+    run.compare(changes.found, before);
+    run.expect(!changes.isDeadOffered, "a query finds nobody whom its callback has destroyed");
+    run.expect(changes.selfCount >= 8, "callbacks change the proxies that they are given");
+    scene.judge();
 }
 
-void changeNested(const CaseContext& context, CaseTally& tally) {
-    const Aabb<float> region = cubeAt({0, 0, 0}, 6);
-    judgeChanges(context, tally, region, [&](btBroadphaseInterface& broadphase, Changes& changes) {
+void changeNested(Run& run) {
+    const Bounds region = cubeAt<btScalar>({0, 0, 0}, 6);
+    judgeChanges(run, region, [&](btBroadphaseInterface& broadphase, Changes& changes) {
         ChangeInBox callback(changes);
         broadphase.aabbTest(toBullet(region.min()), toBullet(region.max()), callback);
     });
     // A box of 6 m along x.
     const Point half(0, 3, 3);
-    const Aabb<float> way(Point(-20, -3, -3), Point(20, 3, 3));
-    judgeChanges(context, tally, way, [&](btBroadphaseInterface& broadphase, Changes& changes) {
+    const Bounds way(Point(-20, -3, -3), Point(20, 3, 3));
+    judgeChanges(run, way, [&](btBroadphaseInterface& broadphase, Changes& changes) {
         ChangeOnRay callback(changes);
         broadphase.rayTest({-20, 0, 0}, {20, 0, 0}, callback, toBullet(-half), toBullet(half));
     });
 }
 
-CaseOutcome changesWithin(const CaseContext& context) {
-    CaseTally tally;
-    PairScene scene(context, someCubes(context));
-    scene.judge(tally);
-    askNested(scene, tally);
+void changesWithin(Run& run) {
+    Scene scene(run, someCubes(run));
+    scene.judge();
+    askNested(scene, run);
 
     // The same proxies, moved, destroyed, created and moved again within a frame.
-    Random random(context.seed);
+    Random random(run.seed);
     for (int frame = 0; frame < 20; ++frame) {
         for (int change = 0; change < 10; ++change) {
-            const auto object = static_cast<std::uint32_t>(random.unit() * 10);
-            const Aabb<float> box = cubeAt({random.between(-5, 5), random.between(-5, 5), 0}, 1.5F);
+            const auto object = indexBelow(random, 10);
+            const Bounds box =
+                cubeAt<btScalar>({random.between(-5, 5), random.between(-5, 5), 0}, 1.5F);
             scene.move(object, box);
             scene.destroy(object);
             scene.create(object, box);
             scene.move(object, box.translated(Point(random.between(-1, 1), 0, 0)));
         }
-        scene.judge(tally);
+        scene.judge();
     }
-    askNested(scene, tally);
-    changeNested(context, tally);
+    askNested(scene, run);
+    changeNested(run);
 
     RemoveSome callback;
-    btOverlappingPairCache& cache = *scene.broadphase().getOverlappingPairCache();
+    btOverlappingPairCache& cache = *broadphaseOf(scene.subject()).getOverlappingPairCache();
     const auto pairs = static_cast<std::size_t>(cache.getNumOverlappingPairs());
     cache.processAllOverlappingPairs(&callback, nullptr);
-    tally.expect(callback.seen == pairs, "every pair is seen once while pairs are removed");
-    return tally.outcome();
+    run.expect(callback.seen == pairs, "every pair is seen once while pairs are removed");
 }
 
-// --- Nothing --------------------------------------------------------------------------------------
+// --- Cells of no size -----------------------------------------------------------------------------
 
-CaseOutcome nothingThere(const CaseContext& context) {
-    CaseTally tally;
-    const Aabb<float> world = cubeAt({0, 0, 0}, 2);
-    for (const std::size_t count : {0U, 1U, 40U}) {
-        Boxes boxes;
-        for (std::size_t i = 0; i < count; ++i) {
-            boxes.push_back(cubeAt({1000 + 3 * static_cast<float>(i), 0, 0}, 1));
-        }
-        if (count > 1) {
-            boxes[1] = boxes[0];  // a pair, so that not everything is nothing
-        }
-        PairScene scene(context, boxes, {}, world);
-        scene.judge(tally);
-        Objects found;
-        AskWithin box(scene, found, 0);
-        scene.broadphase().aabbTest(toBullet(world.min()), toBullet(world.max()), box);
-        tally.compare(found, Objects{});
-        RayWithin ray(scene, 0);
-        ray.cast();
-        tally.compare(ray.found, Objects{});
-        btVector3 low, high;
-        scene.broadphase().getBroadphaseAabb(low, high);
-        // Destroyed to the last one.
-        for (std::uint32_t i = 0; i < scene.size(); ++i) {
-            scene.destroy(i);
-        }
-        scene.judge(tally);
+// What a scene says: its pairs, and who is around the origin, in the order in which it tells.
+std::pair<Keys, Objects> answersOf(Scene& scene) {
+    scene.findPairs();
+    return {scene.reported(), scene.subject().touching(makeBox<btScalar>(-2, -2, -2, 2, 2, 2))};
+}
+
+template <class Make>
+bool isRefused(const Make& make) {
+    try {
+        static_cast<void>(make());
+    } catch (const std::invalid_argument& refusal) {
+        return *refusal.what() != '\0';
     }
-    return tally.outcome();
+    return false;
+}
+
+// A grid of either precision, and a broadphase, to which a pair cache is given.
+void expectRefused(double cellSize, PairCache& cache, Run& run) {
+    SpatialHashConfig config;
+    config.grid.cellSize = cellSize;
+    run.expect(
+        isRefused([&] { return std::make_unique<Grid<float>>(config.grid); }) &&
+            isRefused([&] { return std::make_unique<Grid<double>>(config.grid); }) &&
+            isRefused([&] { return std::make_unique<SpatialHashBroadphase>(&cache, config); }) &&
+            !configError(config.grid).empty(),
+        "a cell of that size is refused with a reason");
+}
+
+// The cache serves a broadphase.
+void judgeCache(PairCache& cache, const Boxes<btScalar>& boxes, Run& run) {
+    BulletSubject subject(std::make_unique<SpatialHashBroadphase>(&cache), boxes.size(), true);
+    for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+        subject.create(i, boxes[i]);
+    }
+    subject.findPairs();
+    Keys reported;
+    subject.listPairs(reported);
+    run.compare(reported, touchingPairs(boxes));
+}
+
+void cellSizesThatAreNone(Run& run) {
+    if (!run.isOurs) {
+        return;
+    }
+    Scene scene(run, scatteredCubes<btScalar>(60, 8, 0.5F, 1.5F, run.seed));
+    scene.judge();
+    const auto before = answersOf(scene);
+    PairCache cache;
+    const std::size_t cacheBytes = cache.memoryBytes();
+    using Limits = std::numeric_limits<double>;
+    for (const double size : {-1.0, Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity(),
+                              1e31, 1e-31, Limits::denorm_min()}) {
+        expectRefused(size, cache, run);
+    }
+    run.expect(configError({.cellSize = 0}).empty(), "0 chooses the size");
+    run.expect(answersOf(scene) == before, "what runs already answers as before");
+    run.expect(cache.memoryBytes() == cacheBytes && cache.validate().empty(),
+               "a pair cache given to what is refused stays as it was");
+    judgeCache(cache, scene.boxes(), run);
+    for (std::uint32_t i = 0; i < scene.size(); i += 3) {
+        scene.move(i, scene.boxes()[i].translated(Point(0.5F, 0, 0)));
+    }
+    scene.judge();
 }
 
 constexpr std::array kWithinCases{
-    HardCase{
+    bulletCase(
         "H32", "changes and questions within one",
         "box queries within box queries and rays within rays, by their callbacks; callbacks of "
         "both that destroy, create and move whom they are told of, and others; the same proxies "
         "moved, destroyed, created and moved again within a frame; pairs removed while walking "
         "over them; 200 cubes",
         "all answers as if asked alone, of what has not changed; exact pairs; every pair seen once",
-        changesWithin},
-    HardCase{
-        "H44", "nobody, one, all outside",
-        "0, 1 and 40 boxes 1 km outside of the region that is asked about, and of the axis sweep's "
-        "world; then destroyed to the last one",
-        "no pair, no hit, no harm", nothingThere},
+        changesWithin),
+    bulletCase("H31", "cell sizes that are none",
+               "a cell size of -1, NaN, +-infinity, 1e31, 1e-31, the smallest denormal; and 0",
+               "refused with a reason by grids of both precisions and the broadphase; 0 chooses "
+               "one; what runs already answers as before, and the pair cache that the refused one "
+               "was given serves another",
+               cellSizesThatAreNone),
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// What a broadphase did in a hard case, and how it is told.
+// What a subject did in a hard case, added up while the case runs.
 
 #include <cstdint>
 #include <optional>
@@ -23,7 +23,7 @@ enum class OutcomeKind : std::uint8_t {
     crashes,
 };
 
-struct CaseOutcome {
+struct CaseNumbers {
     OutcomeKind kind = OutcomeKind::nothing;
     std::uint64_t compared = 0;  // right answers, each of which was looked for
     std::uint64_t missing = 0;   // of these
@@ -31,7 +31,9 @@ struct CaseOutcome {
 
     /// What it cost, as a multiple of what the case compares it with.
     std::optional<double> costRatio;
+};
 
+struct CaseOutcome : CaseNumbers {
     /// What else is to be told, in sentences.
     std::string note;
 
@@ -39,13 +41,6 @@ struct CaseOutcome {
     double seconds = 0;
 };
 
-/// In a word or two: "exact", "-3 +12", "costly 12x", "> 2 s", "crashes"; "-" for nothing.
-[[nodiscard]] std::string outcomeText(const CaseOutcome& outcome);
-
-/// The kind's name: "exact", "hangs".
-[[nodiscard]] std::string_view nameOf(OutcomeKind kind);
-
-/// Adds up what one broadphase does in the parts of a case.
 class CaseTally {
 public:
     /// Both sorted. What is reported twice is once too many.
@@ -65,30 +60,47 @@ public:
     /// Appends a sentence.
     void note(std::string_view sentence);
 
+    /// Adds what another one found, but for its notes.
+    void add(const CaseTally& other);
+
+    /// OutcomeKind::nothing where nothing was compared, expected or measured.
     [[nodiscard]] CaseOutcome outcome() const;
 
+    /// The first answer that was missing or too many: "0-7 is missing"; empty when there is none.
+    [[nodiscard]] const std::string& firstDifference() const noexcept { return difference_; }
+
 private:
+    void noteDifference(std::uint64_t item, bool isPair, const char* what);
+
     CaseOutcome sum_;
     std::vector<std::string> broken_;
+    std::string difference_;
+    bool isAsked_ = false;
     bool isCostly_ = false;
 };
 
 template <class Item>
 void CaseTally::compare(std::span<const Item> reported, std::span<const Item> exact) {
+    const auto differs = [this](const Item& item, const char* what) {
+        if (difference_.empty()) {
+            noteDifference(static_cast<std::uint64_t>(item), sizeof(Item) == 8, what);
+        }
+    };
     std::size_t r = 0;
     std::size_t e = 0;
     std::size_t common = 0;
-    while (r < reported.size() && e < exact.size()) {
-        if (reported[r] < exact[e]) {
-            ++r;
-        } else if (exact[e] < reported[r]) {
-            ++e;
+    while (r < reported.size() || e < exact.size()) {
+        if (e == exact.size() || (r < reported.size() && reported[r] < exact[e])) {
+            differs(reported[r++], " is too many");
+        } else if (r == reported.size() || exact[e] < reported[r]) {
+            differs(exact[e++], " is missing");
         } else {
             ++common;
             ++r;
             ++e;
         }
     }
+    isAsked_ = true;
     sum_.compared += exact.size();
     sum_.missing += exact.size() - common;
     sum_.extra += reported.size() - common;
