@@ -17,8 +17,9 @@ template <class Scalar>
 constexpr double kDoubt = 8 * kEpsilon<Scalar>;
 
 // A ray far along x through boxes here and there; how much our walk reads is bounded by what is there.
+// Returns whether it was ours.
 template <class Scalar>
-void judgeFarAlong(CaseRun<Scalar>& run, Scalar length, const Vector3<Scalar>& slope,
+bool judgeFarAlong(CaseRun<Scalar>& run, Scalar length, const Vector3<Scalar>& slope,
                    Scalar aside) {
     using Point = Vector3<Scalar>;
     const Lattice fours(4);
@@ -45,6 +46,7 @@ void judgeFarAlong(CaseRun<Scalar>& run, Scalar length, const Vector3<Scalar>& s
         run.note("Cost: blocks of boxes read for each box that is there.");
     }
     noteRaysThroughBullet(run);
+    return scene.isOurs();
 }
 
 template <class Scalar>
@@ -90,8 +92,7 @@ void judgeSupercover(CaseRun<Scalar>& run, const Vector3<double>& from, const Ve
 
 template <class Scalar>
 void hundredThousandCells(CaseRun<Scalar>& run) {
-    judgeFarAlong<Scalar>(run, 1e5F, {1, 0.37F, 0.61F}, 12);
-    if (!run.isOurs) {
+    if (!judgeFarAlong<Scalar>(run, 1e5F, {1, 0.37F, 0.61F}, 12)) {
         return;
     }
     // What adds up steps is 98 cells off at the end.

@@ -140,6 +140,43 @@ SweptFrame<Scalar> flyingFrame(std::uint64_t seed, int standing, int flying, flo
     return frame;
 }
 
+/// Through crowds at the start and here and there along the ways, as far as numbers go: the cost does
+/// not follow the way.
+template <class Scalar>
+void judgeTeleports(CaseRun<Scalar>& run) {
+    using Point = Vector3<Scalar>;
+    constexpr double kUnit = 0x1p-20;
+    const Lattice lattice(kUnit);
+    std::array<std::uint64_t, 3> testsOfShortWays{};
+    for (const Scalar length : {1e6F, 2e9F}) {
+        Random random(run.seed);
+        SweptFrame<Scalar> frame;
+        frame.movers = 40;
+        for (std::uint32_t i = 0; i < 640; ++i) {
+            const Point around = pointIn<Scalar>(random, -9, 9);
+            if (i < frame.movers) {
+                const Scalar ahead = between<Scalar>(random, 0.5F, 1);
+                const Scalar y = between<Scalar>(random, -0.02F, 0.02F);
+                const Scalar z = between<Scalar>(random, -0.02F, 0.02F);
+                frame.objects.push_back({lattice.on<Scalar>(cubeAt(around, 1)),
+                                         lattice.on<Scalar>(Point(ahead, y, z) * length)});
+                continue;
+            }
+            const MovingBox<Scalar>& mover = frame.objects[i % frame.movers];
+            const Scalar share = i % 2 == 0 ? Scalar(0) : between<Scalar>(random, 0, 1);
+            const Point at = mover.box.center() + share * mover.displacement + around;
+            frame.objects.push_back({lattice.on<Scalar>(cubeAt(at, 4)), Point::Zero()});
+        }
+        const auto tests = judgeFrame(run, frame, kUnit, {.cellSize = 1});
+        for (std::size_t mode = 0; mode < tests.size(); ++mode) {
+            run.expect(tests[mode] <= 90'000 &&
+                           (length == 1e6F || 4 * tests[mode] <= 5 * testsOfShortWays[mode]),
+                       "far ways cost what short ones do");
+        }
+        testsOfShortWays = tests;
+    }
+}
+
 /// A crowd far away decides where cells are counted from: here their numbers have as many digits as a
 /// coordinate, and what lies at the edge of the world may be filed some cells farther in.
 template <class Scalar>
@@ -181,6 +218,7 @@ void millionCells(CaseRun<Scalar>& run) {
         };
         run.addCost(work(frame) / std::max(1.0, work(near)), 4);
         run.note("Cost: boxes tested, by those for ways of 200 m through the same cubes.");
+        judgeTeleports(run);
         judgeRoundedCells(run);
     }
     // And teleported, without a way.
