@@ -20,7 +20,7 @@ namespace {
 
 #if HASHPHASE_ENABLE_ASSERTS
 
-const Box kHere = boxAround({0, 0, 0}, {1, 1, 1});
+const Box kThisPlace = boxAround({0, 0, 0}, {1, 1, 1});
 
 struct Misuse {
     const char* sentence;  // a part of the assertion's
@@ -92,9 +92,9 @@ TEST(BroadphaseMisuse, IsAsserted) {
     Boxes boxes;
     Boxes other;
     SpatialHashBroadphase& broadphase = boxes.broadphase;
-    btBroadphaseProxy* const alive = boxes.create(kHere);
-    btBroadphaseProxy* const foreign = other.create(kHere);
-    btBroadphaseProxy* const dead = boxes.create(kHere);
+    btBroadphaseProxy* const alive = boxes.create(kThisPlace);
+    btBroadphaseProxy* const foreign = other.create(kThisPlace);
+    btBroadphaseProxy* const dead = boxes.create(kThisPlace);
     const ProxyId deadId = SpatialHashBroadphase::idOf(dead);
     boxes.destroy(dead);
     const BroadphaseRay ray{{0, 0, 0}, {1, 0, 0}};
@@ -110,14 +110,14 @@ TEST(BroadphaseMisuse, IsAsserted) {
         {{"no pairs yet", [&] { SpatialHashBroadphase{&full.cache}; }},
          {gone, [&] { broadphase.destroyProxy(dead, nullptr); }},
          {gone, [&] { broadphase.destroyProxy(nullptr, nullptr); }},
-         {gone, [&] { boxes.set(dead, kHere); }},
+         {gone, [&] { boxes.set(dead, kThisPlace); }},
          {gone, [&] { broadphase.refilter(dead, nullptr); }},
          {"", [&] { broadphase.getAabb(dead, box.min, box.max); }},
          {"", [&] { broadphase.getAabb(nullptr, box.min, box.max); }},
          {"", [&] { static_cast<void>(SpatialHashBroadphase::idOf(nullptr)); }},
          {"alive", [&] { static_cast<void>(broadphase.proxyOf(deadId)); }},
          {alien, [&] { broadphase.destroyProxy(foreign, nullptr); }},
-         {alien, [&] { boxes.set(foreign, kHere); }},
+         {alien, [&] { boxes.set(foreign, kThisPlace); }},
          {alien,
           [&] {
               broadphase.destroyProxies({&foreign, 1}, nullptr);
@@ -153,16 +153,16 @@ TEST(BroadphaseMisuse, IsAsserted) {
 TEST(BroadphaseMisuse, OfResetPoolByACallbackIsAsserted) {
     const ThrowingAsserts throwing;
     Boxes boxes;
-    boxes.create(kHere);
+    boxes.create(kThisPlace);
     ReportTo<btBroadphaseAabbCallback> report([&](btBroadphaseProxy* proxy) {
         boxes.broadphase.resetPool(nullptr);  // a proxy is alive: does nothing
         boxes.destroy(proxy);
         EXPECT_THROW(boxes.broadphase.resetPool(nullptr), BrokenAssert);
     });
-    boxes.broadphase.aabbTest(kHere.min, kHere.max, report);
+    boxes.broadphase.aabbTest(kThisPlace.min, kThisPlace.max, report);
     EXPECT_EQ(boxes.broadphase.grid().size(), 0U);
     boxes.broadphase.resetPool(nullptr);
-    EXPECT_EQ(boxes.create(kHere)->getUid(), 1);
+    EXPECT_EQ(boxes.create(kThisPlace)->getUid(), 1);
 }
 
 #endif
