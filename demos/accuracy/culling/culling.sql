@@ -55,6 +55,8 @@ FROM did WHERE scene = 'ground';
 /* {"chart": "P4-overdraw", "title": "Objects that are drawn though nothing of them is visible",
     "settings": "{scene}", "mark": "bar", "x": "setting names", "y": "in_vain", "series": "method"} */
 SELECT setting, method, lost_percent AS "lost: visible objects lost [%]",
+       100 * interval_low(lost, max(visible, 1)) AS low,
+       100 * interval_high(lost, max(visible, 1)) AS high,
        in_vain_percent AS "in_vain: drawn in vain [% of visible]",
        cells AS "cells: cells a frame", boxes AS "boxes: boxes tested a frame"
 FROM did WHERE scene = 'ground';
