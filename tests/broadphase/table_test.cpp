@@ -279,6 +279,25 @@ TYPED_TEST(TableTest, KeepsToTheCostOfAFewTestsABox) {
     this->filled_.expectEveryPairOnce(60);
 }
 
+// A larger one would be looked for in more cells than a join walks.
+TYPED_TEST(TableTest, FilesNoBoxThatIsLargerThanItsCells) {
+    this->filled_.build(drawBoxes<TypeParam>(this->random_, 3000,
+                                             [](Random& random) {
+                                                 const double edge = random.logBetween(0.5, 6);
+                                                 return cubesIn<TypeParam>(0, 60, edge / 2)(random);
+                                             }),
+                        fixedLevels(1, 4));
+    std::size_t filed = 0;
+    for (const Level<TypeParam>& level : this->filled_.table.levels()) {
+        for (std::uint32_t i = level.firstEntry; level.hasCells() && i < level.lastEntry; ++i) {
+            const auto edge = this->filled_.table.box(i).sizes().maxCoeff();
+            EXPECT_LE(edge * level.inverseCellSize[0], 1) << "of a cell";
+            ++filed;
+        }
+    }
+    EXPECT_GT(filed, 2000U);
+}
+
 // Sizes follow a population that shrinks or grows, soon after, and stay while it moves about.
 TYPED_TEST(TableTest, ChoosesCellSizesAnewOnlyWhereThePopulationHasChanged) {
     std::vector<double> sizes;
