@@ -18,8 +18,6 @@
 
 #include <concepts>
 #include <cstdint>
-#include <functional>
-#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,23 +30,24 @@ struct sqlite3_stmt;
 
 namespace hashphase::demos {
 
+template <class Type>
+concept Arithmetic = std::integral<Type> || std::floating_point<Type>;
+
 /// A value as it is written where it was measured: any number, a truth (1 or 0), a text, or nothing.
 struct Datum {
+    // NOLINTBEGIN(google-explicit-constructor): rows are written as lists of values.
     Datum() = default;
-    template <class Number>
-        requires std::integral<Number> || std::floating_point<Number> Datum(Number number)
-            : value(static_cast<double>(number)) {}          // NOLINT(google-explicit-constructor)
-        Datum(std::string text) : value(std::move(text)) {}  // NOLINT(google-explicit-constructor)
-        Datum(std::string_view text)
-            : value(std::string(text)) {}  // NOLINT(google-explicit-constructor)
-        Datum(const char* text)
-            : value(std::string(text)) {}            // NOLINT(google-explicit-constructor)
-        Datum(Value any) : value(std::move(any)) {}  // NOLINT(google-explicit-constructor)
-        template <class Number>
-        Datum(const std::optional<Number>& number)  // NOLINT(google-explicit-constructor)
-            : Datum(number ? Datum(*number) : Datum()) {}
+    template <Arithmetic Any>
+    Datum(Any number) : value(static_cast<double>(number)) {}
+    Datum(std::string text) : value(std::move(text)) {}
+    Datum(std::string_view text) : value(std::string(text)) {}
+    Datum(const char* text) : value(std::string(text)) {}
+    Datum(Value any) : value(std::move(any)) {}
+    template <class Any>
+    Datum(const std::optional<Any>& number) : Datum(number ? Datum(*number) : Datum()) {}
+    // NOLINTEND(google-explicit-constructor)
 
-        Value value;
+    Value value;
 };
 
 /// A row: values under the names of their columns.
