@@ -4,6 +4,7 @@
 #include <integration/bullet/conversions.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace hashphase::demos {
@@ -25,10 +26,10 @@ void takeShape(const btCollisionShape& shape, StageBody& body) {
             // Drawn upright, along y.
             const int axis = capsule.getUpAxis();
             if (axis != 1) {
+                const float half = std::sqrt(0.5F);
                 body.orientation =
-                    body.orientation *
-                    Eigen::Quaternionf::FromTwoVectors(Vector3<float>::UnitY(),
-                                                       Vector3<float>(Vector3<float>::Unit(axis)));
+                    body.orientation * (axis == 0 ? Eigen::Quaternionf(half, 0, 0, -half)
+                                                  : Eigen::Quaternionf(half, half, 0, 0));
             }
             return;
         }
