@@ -1,33 +1,21 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/accuracy_command.hpp>
 #include <tests/demos/sample_experiments.hpp>
+#include <tests/demos/typed.hpp>
 #include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <array>
 #include <iterator>
-#include <sstream>
 #include <stdexcept>
 
 namespace hashphase::demos {
 namespace {
 
-struct Ran {
-    int exitCode = 0;
-    std::string out;
-    std::string err;
-};
-
-Ran run(std::vector<std::string> arguments,
-        const std::vector<Experiment>& experiments = sampleExperiments()) {
-    arguments.insert(arguments.begin(), "accuracy");
-    std::ostringstream out;
-    std::ostringstream err;
-    const std::array subcommands{accuracyCommand(experiments)};
-    const int exitCode = runProgram(arguments, subcommands, {out, err, false, "hashphase test"});
-    return {exitCode, out.str(), err.str()};
+Typed run(const std::vector<std::string>& arguments,
+          const std::vector<Experiment>& experiments = sampleExperiments()) {
+    return typed(accuracyCommand(experiments), arguments);
 }
 
 Experiment experimentOf(std::string_view id, std::function<Findings(const Effort&)> find) {
@@ -57,7 +45,7 @@ TEST(Accuracy, SaysWhatItLeftOutForWantOfTime) {
 }
 
 TEST(Accuracy, EndsWithAVerdict) {
-    const Ran ran = run({});
+    const Typed ran = run({});
     EXPECT_EQ(ran.exitCode, kExitOk) << ran.err;
     EXPECT_TRUE(holds(ran.out, "\n2 experiments, 1 check: all hold\n")) << ran.out;
     EXPECT_TRUE(holds(ran.out, "  holds   Swept modes miss nothing (0 of 1,000,000)\n"));
@@ -67,7 +55,7 @@ TEST(Accuracy, EndsWithAVerdict) {
 }
 
 TEST(Accuracy, ListsTheExperiments) {
-    const Ran ran = run({"--list"});
+    const Typed ran = run({"--list"});
     EXPECT_EQ(ran.exitCode, kExitOk);
     EXPECT_EQ(ran.out,
               "  S1   Samples: What do charts look like?\n"
@@ -75,26 +63,26 @@ TEST(Accuracy, ListsTheExperiments) {
 }
 
 TEST(Accuracy, RunsOnlyWhatIsAskedFor) {
-    const Ran ran = run({"--only", "S2"});
+    const Typed ran = run({"--only", "S2"});
     EXPECT_EQ(ran.exitCode, kExitOk);
     EXPECT_TRUE(holds(ran.out, "1 experiment, 0 checks: all hold")) << ran.out;
     EXPECT_FALSE(holds(ran.out, "S1")) << ran.out;
 }
 
 TEST(Accuracy, SuggestsTheNearestNameOfAnUnknownExperiment) {
-    const Ran ran = run({"--only", "S1,S22"});
+    const Typed ran = run({"--only", "S1,S22"});
     EXPECT_EQ(ran.exitCode, kExitUsage);
     EXPECT_EQ(ran.err, "hashphase: There is no experiment 'S22'; did you mean 'S2'?\n");
     EXPECT_EQ(ran.out, "");
 }
 
 TEST(Accuracy, FailsAndNamesTheCheckThatIsBroken) {
-    const Ran ran = run({}, {experimentOf("B1", [](const Effort& /*effort*/) {
-                            Findings findings;
-                            findings.checks = {{"One is one", true, "1 of 1"},
-                                               {"Nothing is missed", false, "3 of 10"}};
-                            return findings;
-                        })});
+    const Typed ran = run({}, {experimentOf("B1", [](const Effort& /*effort*/) {
+                              Findings findings;
+                              findings.checks = {{"One is one", true, "1 of 1"},
+                                                 {"Nothing is missed", false, "3 of 10"}};
+                              return findings;
+                          })});
     EXPECT_EQ(ran.exitCode, kExitCheckFailed);
     EXPECT_TRUE(holds(ran.out, "  BROKEN  Nothing is missed (3 of 10)\n")) << ran.out;
     EXPECT_TRUE(holds(ran.out,
@@ -107,7 +95,7 @@ TEST(Accuracy, CountsAnExperimentThatThrowsAsBrokenAndRunsTheOthers) {
         "T1",
         [](const Effort& /*effort*/) -> Findings { throw std::runtime_error("out of luck"); })};
     experiments.push_back(sampleExperiments().front());
-    const Ran ran = run({}, experiments);
+    const Typed ran = run({}, experiments);
     EXPECT_EQ(ran.exitCode, kExitCheckFailed);
     EXPECT_TRUE(holds(ran.out, "T1: The experiment comes to its end (out of luck)\n")) << ran.out;
     EXPECT_TRUE(holds(ran.out, "  holds   Swept modes miss nothing")) << ran.out;
@@ -178,11 +166,11 @@ TEST(Accuracy, RefusesAFolderThatCannotBeWrittenBeforeItMeasures) {
         return Findings{};
     })};
     const std::string file = folder.write("file", "");
-    const Ran below = run({"--output", file + "/r"}, experiments);
+    const Typed below = run({"--output", file + "/r"}, experiments);
     EXPECT_EQ(below.exitCode, kExitUsage);
     EXPECT_TRUE(holds(below.err, file + "/r cannot be made: ")) << below.err;
     std::filesystem::create_directories(folder.file("taken/accuracy.html"));
-    const Ran taken = run({"--output", folder.file("taken")}, experiments);
+    const Typed taken = run({"--output", folder.file("taken")}, experiments);
     EXPECT_EQ(taken.exitCode, kExitUsage);
     EXPECT_EQ(taken.err,
               "hashphase: " + folder.file("taken") + "/accuracy.html is a folder, not a file.\n");

@@ -6,6 +6,7 @@
 #include <demos/compare/compare_command.hpp>
 #include <demos/compare/world_trial.hpp>
 #include <demos/report/stopwatch.hpp>
+#include <tests/demos/typed.hpp>
 #include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
@@ -19,20 +20,9 @@
 namespace hashphase::demos {
 namespace {
 
-struct Shown {
-    int exitCode = 0;
-    std::string out;
-    std::string err;
-};
-
-// As on a terminal.
-Shown compareOnTerminal(const std::vector<std::string>& arguments,
+Typed compareOnTerminal(const std::vector<std::string>& arguments,
                         std::span<const BroadphaseKind> kinds) {
-    std::ostringstream out;
-    std::ostringstream err;
-    const std::array subcommands{compareCommand(kinds)};
-    const int exitCode = runProgram(arguments, subcommands, {out, err, true, "hashphase test"});
-    return {exitCode, out.str(), err.str()};
+    return typed(arguments, std::array{compareCommand(kinds)}, true);
 }
 
 // Takes a millisecond for each object, and more on a slow machine.
@@ -69,7 +59,7 @@ TEST_P(CompareSlowToFill, IsLeftOutAndTheOthersAreCompared) {
     const std::array kinds{slowKind(false), broadphaseKinds()[0]};
     const std::string json = folder.file("r.json");
     const std::string html = folder.file("r.html");
-    const Shown outcome = compareOnTerminal(
+    const Typed outcome = compareOnTerminal(
         {"compare", "--scene", GetParam(), "--objects", "4000", "--frames", "1", "--time-limit",
          "4", "--json", json, "--html", html, "--csv", folder.file("r.csv")},
         kinds);
@@ -91,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(BoxesAndWorlds, CompareSlowToFill, testing::Values("uni
 
 TEST(Compare, FailsWhenOursIsNotFilledInTime) {
     const std::array kinds{slowKind(true), broadphaseKinds()[1]};
-    const Shown outcome = compareOnTerminal(
+    const Typed outcome = compareOnTerminal(
         {"compare", "--objects", "2000", "--frames", "1", "--time-limit", "2"}, kinds);
     EXPECT_EQ(outcome.exitCode, kExitCheckFailed) << outcome.out;
     EXPECT_NE(outcome.out.find("none of ours took part"), std::string::npos) << outcome.out;
@@ -114,7 +104,7 @@ TEST(Compare, TellsHowLongTheBroadphaseTakesToBeFilledAndNotHowLongTheWorldDoes)
 }
 
 TEST(Compare, SaysFromTheBeginningWhatIsBeingDone) {
-    const Shown outcome = compareOnTerminal(
+    const Typed outcome = compareOnTerminal(
         {"compare", "--objects", "300", "--frames", "4", "--broadphases", "hash,dbvt"},
         broadphaseKinds());
     for (const char* said : {"filling hash: 0 of 300", "filling dbvt: 0 of 300",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/compare/compare_command.hpp>
 #include <tests/demos/bullet_file.hpp>
+#include <tests/demos/typed.hpp>
 #include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
@@ -12,22 +13,9 @@
 namespace hashphase::demos {
 namespace {
 
-struct Outcome {
-    int exitCode = 0;
-    std::string out;
-    std::string err;
-};
-
-Outcome run(const std::vector<std::string>& arguments,
-            std::span<const BroadphaseKind> kinds = broadphaseKinds()) {
-    std::ostringstream out;
-    std::ostringstream err;
-    const std::array subcommands{compareCommand(kinds)};
-    Outcome outcome;
-    outcome.exitCode = runProgram(arguments, subcommands, {out, err, false, "hashphase test"});
-    outcome.out = out.str();
-    outcome.err = err.str();
-    return outcome;
+Typed run(const std::vector<std::string>& arguments,
+          std::span<const BroadphaseKind> kinds = broadphaseKinds()) {
+    return typed(arguments, std::array{compareCommand(kinds)});
 }
 
 // Bullet's brute force, but for what it does to one pair from frame 3 on.
@@ -90,7 +78,7 @@ BroadphaseKind kindOf(bool ours) {
 const std::string kThreeBoxes = "0 0 0 1 1 1\n0 0 0 1 1 1.1\n50 50 50 51 51 51\n";
 
 TEST(Compare, EndsWithAVerdictThatTheSetsAreExact) {
-    const Outcome outcome = run({"compare", "--objects", "300", "--frames", "12"});
+    const Typed outcome = run({"compare", "--objects", "300", "--frames", "12"});
     EXPECT_EQ(outcome.exitCode, kExitOk) << outcome.out << outcome.err;
     const std::size_t lastLine = outcome.out.rfind('\n', outcome.out.size() - 2) + 1;
     const std::string verdict = outcome.out.substr(lastLine);
@@ -106,8 +94,8 @@ class CompareScene : public testing::TestWithParam<const char*> {};
 
 TEST_P(CompareScene, IsExactByEitherReference) {
     for (const char* reference : {"sweep", "brute"}) {
-        const Outcome outcome = run({"compare", "--scene", GetParam(), "--objects", "150",
-                                     "--frames", "30", "--reference", reference});
+        const Typed outcome = run({"compare", "--scene", GetParam(), "--objects", "150", "--frames",
+                                   "30", "--reference", reference});
         EXPECT_EQ(outcome.exitCode, kExitOk) << outcome.out << outcome.err;
         EXPECT_NE(outcome.out.find("every frame: yes"), std::string::npos) << outcome.out;
     }
@@ -126,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, CompareScene,
 TEST(Compare, FailsAndNamesTheFirstMissedPair) {
     const TemporaryFolder folder;
     const std::array kinds{kindOf<MissesOnePair>(true)};
-    const Outcome outcome =
+    const Typed outcome =
         run({"compare", "--file", folder.write("b.txt", kThreeBoxes), "--frames", "6"}, kinds);
     EXPECT_EQ(outcome.exitCode, kExitCheckFailed);
     EXPECT_NE(outcome.out.find("pair sets exact in every frame: NO: 'broken' first missed the pair "
@@ -139,7 +127,7 @@ TEST(Compare, FailsAndNamesTheFirstInventedPair) {
     const TemporaryFolder folder;
     const std::array kinds{kindOf<InventsOnePair>(true)};
     const std::string json = folder.file("r.json");
-    const Outcome outcome = run(
+    const Typed outcome = run(
         {"compare", "--file", folder.write("b.txt", kThreeBoxes), "--frames", "6", "--json", json},
         kinds);
     EXPECT_EQ(outcome.exitCode, kExitCheckFailed);
@@ -156,7 +144,7 @@ TEST(Compare, FailsAndNamesTheFirstInventedPair) {
 TEST(Compare, DoesNotFailForWhatOthersGetWrong) {
     const TemporaryFolder folder;
     const std::array kinds{kindOf<MissesOnePair>(false)};
-    const Outcome outcome =
+    const Typed outcome =
         run({"compare", "--file", folder.write("b.txt", kThreeBoxes), "--frames", "6"}, kinds);
     EXPECT_EQ(outcome.exitCode, kExitOk);
     EXPECT_NE(outcome.out.find("none of ours took part"), std::string::npos);
@@ -216,7 +204,7 @@ TEST(Compare, WritesCsvWithALineForEveryFrameOfEveryBroadphase) {
 TEST(Compare, WritesAPageWithTheVerdictFirst) {
     const TemporaryFolder folder;
     const std::string path = folder.file("r.html");
-    const Outcome outcome = run({"compare", "--objects", "50", "--frames", "8", "--html", path});
+    const Typed outcome = run({"compare", "--objects", "50", "--frames", "8", "--html", path});
     ASSERT_EQ(outcome.exitCode, kExitOk) << outcome.err;
     std::ostringstream page;
     page << std::ifstream(path).rdbuf();
@@ -272,7 +260,7 @@ TEST(Compare, RefusesResultFilesThatCannotBeWritten) {
     const TemporaryFolder folder;
     const std::string path = folder.file("none/r");
     for (const char* option : {"--json", "--csv", "--html"}) {
-        const Outcome outcome = run({"compare", "--objects", "10", "--frames", "1", option, path});
+        const Typed outcome = run({"compare", "--objects", "10", "--frames", "1", option, path});
         EXPECT_EQ(outcome.exitCode, kExitUsage);
         EXPECT_EQ(outcome.err, "hashphase: " + path + " cannot be written.\n");
         EXPECT_EQ(outcome.out, "");
@@ -285,7 +273,7 @@ TEST(Compare, ReadsARecordingToItsEndAndNoFurther) {
     bytes[256] = 1;  // object
     bytes[260] = 2;  // frames
     const std::string path = folder.write("r.aabbs", bytes);
-    const Outcome outcome = run({"compare", "--file", path});
+    const Typed outcome = run({"compare", "--file", path});
     EXPECT_EQ(outcome.exitCode, kExitOk) << outcome.err;
     EXPECT_NE(outcome.out.find("1 boxes, 3 frames"), std::string::npos) << outcome.out;
     EXPECT_EQ(run({"compare", "--file", path, "--frames", "4"}).err,
@@ -298,10 +286,10 @@ TEST(Compare, ReadsARecordingToItsEndAndNoFurther) {
 TEST(Compare, RunsAWorldFromAFileInEveryBroadphase) {
     const TemporaryFolder folder;
     const std::string path = folder.write("w.bullet", serialisedWorld(6));
-    const Outcome outcome = run({"compare", "--file", path, "--frames", "20"});
+    const Typed outcome = run({"compare", "--file", path, "--frames", "20"});
     EXPECT_EQ(outcome.exitCode, kExitOk) << outcome.err;
     EXPECT_NE(outcome.out.find("6 bodies, 20 frames: "), std::string::npos) << outcome.out;
-    const Outcome capitals =
+    const Typed capitals =
         run({"compare", "--file", folder.write("W.BULLET", serialisedWorld(6)), "--frames", "2"});
     EXPECT_NE(capitals.out.find("6 bodies, 2 frames: "), std::string::npos) << capitals.err;
     EXPECT_EQ(run({"compare", "--file", path, "--objects", "3"}).exitCode, kExitUsage);
@@ -309,8 +297,8 @@ TEST(Compare, RunsAWorldFromAFileInEveryBroadphase) {
 #endif
 
 TEST(Compare, StopsAtTheTimeLimitAndSaysSo) {
-    const Outcome outcome = run({"compare", "--objects", "100", "--frames", "1000000",
-                                 "--time-limit", "1", "--broadphases", "hash"});
+    const Typed outcome = run({"compare", "--objects", "100", "--frames", "1000000", "--time-limit",
+                               "1", "--broadphases", "hash"});
     EXPECT_EQ(outcome.exitCode, kExitOk);
     EXPECT_NE(outcome.out.find("The time limit of 1 s was reached after "), std::string::npos)
         << outcome.out;
@@ -319,8 +307,8 @@ TEST(Compare, StopsAtTheTimeLimitAndSaysSo) {
 TEST(Compare, ReportsNothingMeasuredWhenTheTimeLimitLeavesNoFrame) {
     const TemporaryFolder folder;
     const std::string json = folder.file("r.json");
-    const Outcome outcome = run({"compare", "--objects", "2000", "--time-limit", "0.000001",
-                                 "--broadphases", "hash,dbvt", "--json", json});
+    const Typed outcome = run({"compare", "--objects", "2000", "--time-limit", "0.000001",
+                               "--broadphases", "hash,dbvt", "--json", json});
     EXPECT_EQ(outcome.exitCode, kExitCheckFailed) << "nothing was verified";
     EXPECT_NE(outcome.out.find("not verified: no frame was run"), std::string::npos) << outcome.out;
     const auto report = nlohmann::json::parse(std::ifstream(json));
@@ -329,7 +317,7 @@ TEST(Compare, ReportsNothingMeasuredWhenTheTimeLimitLeavesNoFrame) {
 }
 
 TEST(CommandLine, ListsScenesAndBroadphases) {
-    const Outcome outcome = run({"compare", "--list"});
+    const Typed outcome = run({"compare", "--list"});
     EXPECT_EQ(outcome.exitCode, kExitOk);
     for (const char* name : {"paper ", "static-city ", "axis-sweep ", "hash "}) {
         EXPECT_NE(outcome.out.find(std::string("\n  ") + name), std::string::npos) << name;
@@ -346,7 +334,7 @@ TEST(CommandLine, ShowsHelpAndVersion) {
 
 TEST(CommandLine, SuggestsTheNearNameForEveryKindOfWord) {
     const auto errorOf = [](const std::vector<std::string>& arguments) {
-        const Outcome outcome = run(arguments);
+        const Typed outcome = run(arguments);
         EXPECT_EQ(outcome.exitCode, kExitUsage) << outcome.out;
         return outcome.err;
     };
@@ -377,7 +365,7 @@ TEST(CommandLine, RefusesValuesOutOfRangeAndOptionsThatExcludeEachOther) {
              {"compare", "--file", "/nonexistent/x.txt"},
              {"compare", "--file", "/nonexistent/x.bullet"},
              {"compare", "--file", "/nonexistent/x.aabbs"}}) {
-        const Outcome outcome = run(arguments);
+        const Typed outcome = run(arguments);
         EXPECT_EQ(outcome.exitCode, kExitUsage) << testing::PrintToString(arguments) << outcome.out;
         EXPECT_EQ(outcome.err.rfind("hashphase: ", 0), 0U) << outcome.err;
     }

@@ -3,13 +3,13 @@
 #include <demos/paper/paper_command.hpp>
 #include <demos/report/json_values.hpp>
 #include <tests/demos/asked.hpp>
+#include <tests/demos/typed.hpp>
 #include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <iterator>
-#include <sstream>
 
 namespace hashphase::demos {
 namespace {
@@ -297,19 +297,8 @@ TEST(BoundingVolumes, PassAllThatTouchAndFewerTheBetterTheyFit) {
               "1 1 1; 1 1 1");
 }
 
-struct PaperOutput {
-    int exitCode = 0;
-    std::string out;
-    std::string err;
-};
-
-PaperOutput runPaperCommand(std::vector<std::string> arguments) {
-    std::ostringstream out;
-    std::ostringstream err;
-    arguments.insert(arguments.begin(), "paper");
-    const std::array subcommands{paperCommand()};
-    const int exitCode = runProgram(arguments, subcommands, {out, err, false, "hashphase test"});
-    return {exitCode, out.str(), err.str()};
+Typed runPaperCommand(const std::vector<std::string>& arguments) {
+    return typed(paperCommand(), arguments);
 }
 
 std::string contentsOfPaperFile(const std::string& path) {
@@ -322,9 +311,8 @@ TEST(PaperCommand, WritesTheFiguresAsTextJsonCsvAndPage) {
     const std::string json = folder.file("paper.json");
     const std::string csv = folder.file("paper.csv");
     const std::string html = folder.file("paper.html");
-    const PaperOutput output =
-        runPaperCommand({"--quick", "--objects", "500,1000", "--frames", "2", "--json", json,
-                         "--csv", csv, "--html", html, "--quiet"});
+    const Typed output = runPaperCommand({"--quick", "--objects", "500,1000", "--frames", "2",
+                                          "--json", json, "--csv", csv, "--html", html, "--quiet"});
     EXPECT_EQ(output.exitCode, kExitOk) << output.out << output.err;
     EXPECT_EQ(output.err, "");
     EXPECT_NE(output.out.find("Figure 15, AI: frames a second"), std::string::npos);
@@ -357,7 +345,7 @@ TEST(PaperCommand, WritesTheFiguresAsTextJsonCsvAndPage) {
 TEST(PaperCommand, LeavesOutWhatTheTimeLimitDoesNotAllowAndClaimsNothing) {
     const TemporaryFolder folder;
     const std::string json = folder.file("paper.json");
-    const PaperOutput output = runPaperCommand({"--time-limit", "1e-9", "--json", json, "--quiet"});
+    const Typed output = runPaperCommand({"--time-limit", "1e-9", "--json", json, "--quiet"});
     EXPECT_EQ(output.exitCode, kExitCheckFailed) << output.err;
     EXPECT_NE(output.out.find("Left out for want of time: collision of 50,000, hashphase\n"),
               std::string::npos);
@@ -377,7 +365,7 @@ TEST(PaperCommand, RefusesWhatItCannotRun) {
                                                       {"--radius", "nan"},
                                                       {"--object", "500"},
                                                       {"--html", "/no/such/folder/paper.html"}}) {
-        const PaperOutput output = runPaperCommand(arguments);
+        const Typed output = runPaperCommand(arguments);
         EXPECT_EQ(output.exitCode, kExitUsage) << arguments[0] << ' ' << arguments[1];
         EXPECT_NE(output.err, "");
     }

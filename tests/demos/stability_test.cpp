@@ -3,6 +3,7 @@
 #include <demos/stability/report.hpp>
 #include <demos/stability/stability_command.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
+#include <tests/demos/typed.hpp>
 #include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
@@ -28,25 +29,10 @@
 namespace hashphase::demos {
 namespace {
 
-struct Printed {
-    int exitCode = 0;
-    std::string out;
-    std::string err;
-};
-
-Printed run(const std::vector<std::string>& arguments,
-            std::span<const BroadphaseKind> kinds = broadphaseKinds(),
-            std::span<const HardCase> cases = hardCases()) {
-    std::ostringstream out;
-    std::ostringstream err;
-    std::vector<std::string> all{"stability"};
-    all.insert(all.end(), arguments.begin(), arguments.end());
-    const std::array subcommands{stabilityCommand(kinds, cases)};
-    Printed printed;
-    printed.exitCode = runProgram(all, subcommands, {out, err, false, "hashphase test"});
-    printed.out = out.str();
-    printed.err = err.str();
-    return printed;
+Typed run(const std::vector<std::string>& arguments,
+          std::span<const BroadphaseKind> kinds = broadphaseKinds(),
+          std::span<const HardCase> cases = hardCases()) {
+    return typed(stabilityCommand(kinds, cases), arguments);
 }
 
 std::string lastLineOf(const std::string& text) {
@@ -81,7 +67,7 @@ TEST(HardCases, SayWhatTheyAreInAWidthThatATableHas) {
 // --- The table ------------------------------------------------------------------------------------
 
 TEST(Stability, TellsWhatEachBroadphaseDoes) {
-    const Printed printed = run({"--quick", "--quiet", "--only", "H3,H24"});
+    const Typed printed = run({"--quick", "--quiet", "--only", "H3,H24"});
     EXPECT_EQ(printed.exitCode, kExitOk) << printed.out;
     for (const char* text :
          {"H3 ", "H24 ", "hash", "dbvt", "axis-sweep", "holds", "-n: n answers"}) {
@@ -98,7 +84,7 @@ TEST(Stability, TellsWhatEachBroadphaseDoes) {
 }
 
 TEST(Stability, ExplainsACase) {
-    const Printed printed = run({"--quick", "--quiet", "--only", "H31", "--explain"});
+    const Typed printed = run({"--quick", "--quiet", "--only", "H31", "--explain"});
     EXPECT_EQ(printed.exitCode, kExitOk) << printed.out;
     for (const char* text :
          {"  input: a cell size of -1", "  required: refused", "  hash: exact (", "  dbvt: -\n"}) {
@@ -107,7 +93,7 @@ TEST(Stability, ExplainsACase) {
 }
 
 TEST(Stability, ListsItsCases) {
-    const Printed printed = run({"--list"});
+    const Typed printed = run({"--list"});
     EXPECT_EQ(printed.exitCode, kExitOk);
     EXPECT_NE(printed.out.find("  H16  "), std::string::npos) << printed.out;
     EXPECT_NE(printed.out.find("  axis-sweep  "), std::string::npos) << printed.out;
@@ -118,12 +104,12 @@ TEST(Stability, RefusesWhatItDoesNotKnow) {
     EXPECT_EQ(run({"--only", "H99"}).exitCode, kExitUsage);
     EXPECT_EQ(run({"--only", "H4", "--case-time-limit", "0"}).exitCode, kExitUsage);
     for (const char* noSeed : {"-1", "", "x", "18446744073709551616"}) {
-        const Printed refused = run({"--seed", noSeed});
+        const Typed refused = run({"--seed", noSeed});
         EXPECT_EQ(refused.exitCode, kExitUsage) << noSeed;
         EXPECT_NE(refused.err.find("--seed"), std::string::npos) << refused.err;
     }
     EXPECT_EQ(run({"--only", "H4", "--json", "/no/such/folder/x.json"}).exitCode, kExitUsage);
-    const Printed printed = run({"--quik"});
+    const Typed printed = run({"--quik"});
     EXPECT_EQ(printed.exitCode, kExitUsage);
     EXPECT_NE(printed.err.find("--quick"), std::string::npos) << printed.err;
 }
@@ -133,7 +119,7 @@ TEST(Stability, WritesJsonCsvAndAPage) {
     const std::string json = folder.file("out.json");
     const std::string csv = folder.file("out.csv");
     const std::string html = folder.file("out.html");
-    const Printed printed = run(
+    const Typed printed = run(
         {"--quick", "--quiet", "--only", "H9,H31", "--json", json, "--csv", csv, "--html", html});
     ASSERT_EQ(printed.exitCode, kExitOk) << printed.out;
 
@@ -165,7 +151,7 @@ TEST(Stability, WritesJsonCsvAndAPage) {
 }
 
 TEST(Stability, SaysWhatItLeftOutForWantOfTime) {
-    const Printed printed = run({"--quick", "--quiet", "--only", "H9,H31", "--time-limit", "1e-9"});
+    const Typed printed = run({"--quick", "--quiet", "--only", "H9,H31", "--time-limit", "1e-9"});
     EXPECT_EQ(lastLineOf(printed.out),
               "0 of 0 hard cases hold; left out for want of time: H9, H31\n");
     EXPECT_EQ(run({"--time-limit", "0"}).exitCode, kExitUsage);
@@ -239,7 +225,7 @@ BroadphaseKind inPlaceOfOurs() {
 
 TEST(Stability, EndsWithStatus1WhenABroadphaseOfOursForgetsAPair) {
     const std::array kinds{inPlaceOfOurs<Forgetful>()};
-    const Printed printed = run({"--quick", "--quiet", "--only", "H1,H9,H31"}, kinds);
+    const Typed printed = run({"--quick", "--quiet", "--only", "H1,H9,H31"}, kinds);
     EXPECT_EQ(printed.exitCode, kExitCheckFailed);
     EXPECT_NE(printed.out.find("WRONG"), std::string::npos) << printed.out;
     EXPECT_NE(printed.out.find("H9 eight boxes at a cell's corner: WRONG"), std::string::npos)
@@ -260,7 +246,7 @@ CaseFindings findingsOf(const BroadphaseKind& kind) {
     cases.pop_back();
     const TemporaryFolder folder;
     const std::string json = folder.file("out.json");
-    const Printed printed =
+    const Typed printed =
         run({"--quick", "--quiet", "--only", cases, "--json", json}, std::array{kind});
     EXPECT_EQ(printed.exitCode, kExitCheckFailed);
     std::ifstream file(json);
@@ -302,13 +288,13 @@ TEST(Stability, FindsAPairTooFewOrTooManyInEveryCaseThatAsksForPairs) {
 TEST(Stability, FindsAHitTooFewInEveryCaseOfRays) {
     const std::array kinds{inPlaceOfOurs<ForgetfulOnRays>()};
     for (const char* id : {"H13", "H14", "H16", "H17", "H18", "H32"}) {
-        const Printed printed = run({"--quick", "--quiet", "--only", id}, kinds);
+        const Typed printed = run({"--quick", "--quiet", "--only", id}, kinds);
         EXPECT_EQ(printed.exitCode, kExitCheckFailed) << printed.out;
     }
 }
 
 TEST(Stability, DoesNotJudgeOursWhereItIsNotAsked) {
-    const Printed printed = run({"--quick", "--quiet", "--only", "H24", "--broadphases", "dbvt"});
+    const Typed printed = run({"--quick", "--quiet", "--only", "H24", "--broadphases", "dbvt"});
     EXPECT_EQ(printed.exitCode, kExitOk) << printed.out;
     EXPECT_EQ(printed.out.find("WRONG"), std::string::npos) << printed.out;
     EXPECT_EQ(lastLineOf(printed.out),
@@ -338,7 +324,7 @@ TEST(Stability, GoesOnAfterWhatCrashesAndWhatNeverEnds) {
                            HardCase{"H3", "fine", "what is fine", "that it is",
                                     [](CaseRun<float>& run) { run.expect(true, "it is fine"); }}};
     const std::array kinds{broadphaseKinds()[1], broadphaseKinds()[0]};
-    const Printed printed = run({"--case-time-limit", "0.02", "--quiet"}, kinds, cases);
+    const Typed printed = run({"--case-time-limit", "0.02", "--quiet"}, kinds, cases);
     EXPECT_EQ(printed.exitCode, kExitCheckFailed);
     EXPECT_EQ(lastLineOf(printed.out),
               "1 of 3 hard cases hold; Bullet's broadphases do not: dbvt in 2 of 3\n")

@@ -19,11 +19,19 @@ struct Typed {
 };
 
 inline Typed typed(const std::vector<std::string>& arguments,
-                   std::span<const Subcommand> subcommands) {
+                   std::span<const Subcommand> subcommands, bool isOnTerminal = false) {
     std::ostringstream out;
     std::ostringstream err;
-    const int exitCode = runProgram(arguments, subcommands, {out, err, false, "hashphase test"});
+    const int exitCode =
+        runProgram(arguments, subcommands, {out, err, isOnTerminal, "hashphase test"});
     return {exitCode, out.str(), err.str()};
+}
+
+/// The same of `command`, whose name stands in front of the arguments.
+inline Typed typed(const Subcommand& command, std::vector<std::string> arguments,
+                   bool isOnTerminal = false) {
+    arguments.insert(arguments.begin(), command.name);
+    return typed(arguments, std::span(&command, 1), isOnTerminal);
 }
 
 }  // namespace hashphase::demos
