@@ -3,7 +3,7 @@
 // hashphase: what the spatial hash does, shown and measured. Each subcommand is a folder here, and a program
 // of its own beside this one.
 
-#include <demos/console/subcommands.hpp>
+#include <demos/console/program.hpp>
 
 #include <cerrno>
 #include <cstring>
@@ -46,9 +46,8 @@ int become(const std::string& name, std::vector<std::string> arguments, Console&
 int main(int argc, char** argv) {
     using namespace hashphase::demos;
     Console console{std::cout, std::cerr, isatty(STDERR_FILENO) != 0, "hashphase"};
-    return startSubcommand({argv + 1, argv + argc}, subcommandNames(), console,
-                           [&console](std::size_t index, std::vector<std::string> rest) {
-                               const std::string name(subcommandNames()[index].name);
+    return startSubcommand({argv + 1, argv + argc}, console,
+                           [&console](const std::string& name, std::vector<std::string> rest) {
                                return become("hashphase-" + name, std::move(rest), console);
                            });
 }

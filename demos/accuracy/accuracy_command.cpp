@@ -3,11 +3,10 @@
 
 #include <demos/accuracy/accuracy_report.hpp>
 #include <demos/accuracy/timing.hpp>
-#include <demos/console/nearest_name.hpp>
+#include <demos/console/format.hpp>
 #include <demos/console/options.hpp>
 #include <demos/console/progress.hpp>
 #include <demos/console/result_file.hpp>
-#include <demos/console/subcommands.hpp>
 #include <demos/report/stopwatch.hpp>
 #include <demos/scenes/input_error.hpp>
 
@@ -16,7 +15,6 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
-#include <memory>
 #include <ostream>
 #include <utility>
 
@@ -158,15 +156,10 @@ std::span<const Experiment> experiments() {
 }
 
 Subcommand accuracyCommand(std::span<const Experiment> known) {
-    auto options = std::make_shared<AccuracyOptions>();
-    Subcommand command;
-    command.name = "accuracy";
-    command.description = descriptionOf(command.name);
-    command.declareOptions = [options](CLI::App& app) { declare(app, *options); };
-    command.run = [options, known](Console& console) {
-        return runAccuracy(*options, known, console);
-    };
-    return command;
+    return makeSubcommand<AccuracyOptions>("accuracy", declare,
+                                           [known](const auto& options, Console& console) {
+                                               return runAccuracy(options, known, console);
+                                           });
 }
 
 }  // namespace hashphase::demos

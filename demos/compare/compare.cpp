@@ -4,7 +4,7 @@
 #include <demos/compare/comparison.hpp>
 #include <demos/compare/open_trial.hpp>
 #include <demos/compare/report.hpp>
-#include <demos/console/nearest_name.hpp>
+#include <demos/console/format.hpp>
 #include <demos/console/result_file.hpp>
 #include <demos/scenes/box_scene.hpp>
 #include <demos/scenes/input_error.hpp>

@@ -3,12 +3,10 @@
 
 #include <demos/compare/compare.hpp>
 #include <demos/console/options.hpp>
-#include <demos/console/subcommands.hpp>
 
 #include <CLI/CLI.hpp>
 
 #include <map>
-#include <memory>
 
 namespace hashphase::demos {
 namespace {
@@ -56,15 +54,10 @@ void declare(CLI::App& app, CompareOptions& options) {
 }  // namespace
 
 Subcommand compareCommand(std::span<const BroadphaseKind> kinds) {
-    auto options = std::make_shared<CompareOptions>();
-    Subcommand command;
-    command.name = "compare";
-    command.description = descriptionOf(command.name);
-    command.declareOptions = [options](CLI::App& app) { declare(app, *options); };
-    command.run = [options, kinds](Console& console) {
-        return runCompare(*options, kinds, console);
-    };
-    return command;
+    return makeSubcommand<CompareOptions>("compare", declare,
+                                          [kinds](const auto& options, Console& console) {
+                                              return runCompare(options, kinds, console);
+                                          });
 }
 
 }  // namespace hashphase::demos

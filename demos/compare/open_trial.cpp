@@ -4,7 +4,6 @@
 #include <demos/compare/box_trial.hpp>
 #include <demos/compare/world_trial.hpp>
 #include <demos/console/format.hpp>
-#include <demos/console/nearest_name.hpp>
 #include <demos/scenes/bullet_world_file.hpp>
 #include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/input_error.hpp>

@@ -3,10 +3,94 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <limits>
+#include <vector>
 
 namespace hashphase::demos {
+namespace {
+
+// Whether the digits come in groups of three, but for the first, which may be shorter.
+bool areGroups(std::string_view text, char separator) {
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const bool isBetween = (text.size() - i) % 4 == 0;
+        const bool isRight =
+            isBetween ? i > 0 && text[i] == separator : text[i] >= '0' && text[i] <= '9';
+        if (!isRight) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// The number without blanks, separators and a leading '+'; empty where they are out of place.
+std::string plainSpelling(std::string_view word) {
+    word = withoutBlanks(word);
+    if (word.starts_with('+') && word.substr(1, 1).find_first_of("+-") == std::string_view::npos) {
+        word.remove_prefix(1);
+    }
+    const bool isNegative = word.starts_with('-');
+    const std::string_view whole = word.substr(0, word.find_first_of(".eE")).substr(isNegative);
+    std::string plain(word);
+    const std::size_t separator = whole.find_first_of(",_'");
+    if (separator != std::string_view::npos) {
+        if (!areGroups(whole, whole[separator])) {
+            return {};
+        }
+        std::erase(plain, whole[separator]);
+    }
+    return plain;
+}
+
+template <class Number>
+std::optional<Number> numberOf(std::string_view word) {
+    const std::string plain = plainSpelling(word);
+    const char* const end = plain.data() + plain.size();
+    Number number = 0;
+    const bool isNumber =
+        std::from_chars(plain.data(), end, number) == std::from_chars_result{end, std::errc()};
+    return isNumber && std::isfinite(number) ? std::optional(number) : std::nullopt;
+}
+
+// How many letters must be inserted, removed, replaced, or swapped with their neighbour to turn one word into
+// the other: a table of distances between their beginnings (optimal string alignment).
+std::size_t editDistance(std::string_view a, std::string_view b) {
+    std::vector<std::vector<std::size_t>> table(a.size() + 1,
+                                                std::vector<std::size_t>(b.size() + 1));
+    for (std::size_t i = 0; i <= a.size(); ++i) {
+        for (std::size_t j = 0; j <= b.size(); ++j) {
+            if (i == 0 || j == 0) {
+                table[i][j] = i + j;
+                continue;
+            }
+            const std::size_t replaced = table[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0U : 1U);
+            table[i][j] = std::min({table[i - 1][j] + 1, table[i][j - 1] + 1, replaced});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+                table[i][j] = std::min(table[i][j], table[i - 2][j - 2] + 1);
+            }
+        }
+    }
+    return table[a.size()][b.size()];
+}
+
+// The first of those that are nearest; empty where none is near.
+std::string nearestName(std::string_view name, std::span<const std::string> known) {
+    std::string nearest;
+    std::size_t least = std::max<std::size_t>(2, name.size() / 3) + 1;
+    for (const std::string& candidate : known) {
+        const std::size_t distance = editDistance(name, candidate);
+        // A word of which every letter differs is no misspelling, however short it is.
+        if (distance < least && distance < std::max(name.size(), candidate.size())) {
+            least = distance;
+            nearest = candidate;
+        }
+    }
+    return nearest;
+}
+
+}  // namespace
 
 std::string withThousands(std::uint64_t number) {
     const std::string digits = std::to_string(number);
@@ -78,6 +162,38 @@ std::string quotedWord(std::string_view word) {
     std::string quoted(1, '\'');
     quoted += printable(word);
     return quoted += '\'';
+}
+
+std::string suggestion(std::string_view name, std::span<const std::string> known,
+                       const std::string& quote) {
+    const std::string nearest = nearestName(name, known);
+    return nearest.empty() ? "; there are " + joined(known, ", ") + "."
+                           : "; did you mean " + quote + nearest + quote + "?";
+}
+
+std::string unknownNameSentence(std::string_view whatItIs, std::string_view name,
+                                std::span<const std::string> known) {
+    return "There is no " + std::string(whatItIs) + " " + quotedWord(name) +
+           suggestion(name, known, "'");
+}
+
+std::optional<std::uint64_t> wholeNumber(std::string_view word) {
+    static_assert(std::numeric_limits<long double>::digits >= 64);  // all whole numbers, exactly
+    const std::optional<long double> number = numberOf<long double>(word);
+    constexpr auto kMost = static_cast<long double>(std::numeric_limits<std::uint64_t>::max());
+    return number && !std::signbit(*number) && *number <= kMost && std::trunc(*number) == *number
+               ? std::optional(static_cast<std::uint64_t>(*number))
+               : std::nullopt;
+}
+
+std::optional<double> finiteNumber(std::string_view word) {
+    return numberOf<double>(word);
+}
+
+std::string_view withoutBlanks(std::string_view word) {
+    constexpr std::string_view kBlanks = " \t\r\n";
+    const std::size_t begin = std::min(word.find_first_not_of(kBlanks), word.size());
+    return word.substr(begin, word.find_last_not_of(kBlanks) + 1 - begin);
 }
 
 }  // namespace hashphase::demos

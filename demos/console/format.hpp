@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Numbers, lists and a user's words as people read them.
+// Numbers, lists and a user's words as people read them, and numbers as people type them: blanks around them
+// do not matter, and ',', '_' or '\'' may stand between groups of three digits, one of them throughout.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -33,5 +35,24 @@ namespace hashphase::demos {
 
 /// The same between quotes.
 [[nodiscard]] std::string quotedWord(std::string_view word);
+
+/// What follows a sentence about a name that is none: "; did you mean 'paper'?", with such quotes; or all names,
+/// where none is near enough to be meant: more than a third of the letters differ, and more than two.
+[[nodiscard]] std::string suggestion(std::string_view name, std::span<const std::string> known,
+                                     const std::string& quote);
+
+/// "There is no scene 'papr'; did you mean 'paper'?"
+[[nodiscard]] std::string unknownNameSentence(std::string_view whatItIs, std::string_view name,
+                                              std::span<const std::string> known);
+
+/// The whole number: "100000", "100,000", "1e5", "2.5e3", "+7". Nothing for what is none, is negative, or is
+/// beyond 2^64 - 1.
+[[nodiscard]] std::optional<std::uint64_t> wholeNumber(std::string_view word);
+
+/// The number, nearest double; nothing for what is none, is not finite, or is beyond 1.8e308.
+[[nodiscard]] std::optional<double> finiteNumber(std::string_view word);
+
+/// The word without the blanks around it.
+[[nodiscard]] std::string_view withoutBlanks(std::string_view word);
 
 }  // namespace hashphase::demos

@@ -2,7 +2,6 @@
 #include <demos/console/options.hpp>
 
 #include <demos/console/format.hpp>
-#include <demos/console/number_words.hpp>
 
 #include <charconv>
 #include <filesystem>
@@ -22,36 +21,29 @@ std::string limitText(std::uint64_t limit) {
     return limit == std::numeric_limits<std::uint64_t>::max() ? "2^64 - 1" : withThousands(limit);
 }
 
-// As CLI11 reads it: without separators and exponents, and not as octal.
-CLI::Validator wholeValidator(const std::string& whatItIs, std::uint64_t least, std::uint64_t most,
-                              const std::string& help) {
-    return {[whatItIs, least, most](std::string& text) {
-                const std::optional<std::uint64_t> number = wholeNumber(text);
-                if (!number || *number < least || *number > most) {
-                    return quotedWord(text) + " is not " + whatItIs + " from " + limitText(least) +
-                           " to " + limitText(most);
-                }
-                text = std::to_string(*number);
-                return std::string();
-            },
-            help};
-}
-
-template <class IsRight>
-CLI::Validator numberValidator(const std::string& whatItIs, const IsRight& isRight) {
-    return {[whatItIs, isRight](std::string& text) {
-                const std::optional<double> number = finiteNumber(text);
+// Gives CLI11 the digits that it reads: without separators and exponents, and not as octal.
+template <class Read, class IsRight>
+CLI::Validator numberValidator(const Read& read, const IsRight& isRight,
+                               const std::string& whatItIs, const std::string& help = "") {
+    return {[=](std::string& text) {
+                const auto number = read(text);
                 if (!number || !isRight(*number)) {
                     return quotedWord(text) + " is not " + whatItIs;
                 }
-                // All its digits, as CLI11 reads them.
                 std::array<char, 32> digits{};
                 text.assign(
                     digits.data(),
                     std::to_chars(digits.data(), digits.data() + digits.size(), *number).ptr);
                 return std::string();
             },
-            ""};
+            help};
+}
+
+CLI::Validator wholeValidator(const std::string& whatItIs, std::uint64_t least, std::uint64_t most,
+                              const std::string& help) {
+    return numberValidator(
+        wholeNumber, [=](std::uint64_t number) { return number >= least && number <= most; },
+        whatItIs + " from " + limitText(least) + " to " + limitText(most), help);
 }
 
 CLI::Option* addPath(CLI::App& app, const std::string& name, std::string& path,
@@ -103,14 +95,14 @@ CLI::Validator seedUpTo(std::uint64_t most) {
 }
 
 CLI::Validator positiveSeconds() {
-    return numberValidator("a number of seconds above 0",
-                           [](double seconds) { return seconds > 0; });
+    return numberValidator(
+        finiteNumber, [](double seconds) { return seconds > 0; }, "a number of seconds above 0");
 }
 
 CLI::Validator metresFrom(double least, double most) {
     return numberValidator(
-        "a number of metres from " + plain(least) + " to " + plain(most),
-        [least, most](double metres) { return metres >= least && metres <= most; });
+        finiteNumber, [=](double metres) { return metres >= least && metres <= most; },
+        "a number of metres from " + plain(least) + " to " + plain(most));
 }
 
 CLI::Option* addFileToRead(CLI::App& app, const std::string& name, std::string& path,

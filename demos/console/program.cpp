@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/console/program.hpp>
 
-#include <demos/console/nearest_name.hpp>
+#include <demos/console/format.hpp>
 #include <demos/console/options.hpp>
-#include <demos/console/subcommands.hpp>
 #include <demos/scenes/input_error.hpp>
 
 #include <CLI/CLI.hpp>
@@ -29,18 +28,15 @@ std::vector<std::string> optionNames(const CLI::App& app) {
     return names;
 }
 
-// `call` is what the user types to run the command, `takesRest` whether words follow after `--`.
-std::string unknownWordSentence(const CLI::App& command, const std::string& call,
-                                const std::string& word, bool takesRest) {
-    if (!word.starts_with('-')) {
-        if (takesRest) {
-            return "'" + word + "' belongs behind --: " + call + " [options] -- " + word;
-        }
-        return "'" + command.get_name() + "' takes no argument '" + word + "'; see " + call +
-               " --help.";
+std::string unknownWordSentence(const CLI::App& app, const Subcommand& command,
+                                const std::string& word) {
+    if (word.starts_with('-')) {
+        return unknownNameSentence("option", word.substr(0, word.find('=')), optionNames(app));
     }
-    const std::string name = word.substr(0, word.find('='));
-    return unknownNameSentence("option", name, optionNames(command));
+    return command.takesRest
+               ? "'" + word + "' belongs behind --: " + command.name + " [options] -- " + word
+               : "'" + command.name + "' takes no argument '" + word + "'; see " + command.name +
+                     " --help.";
 }
 
 // Takes what follows the first `--` off the arguments.
@@ -119,15 +115,14 @@ int runSingleCommand(std::vector<std::string> arguments, const Subcommand& comma
     app.allow_extras();
     command.declareOptions(app);
     checkValues(app);
-    if (command.takeRest) {
-        command.takeRest(takeRest(arguments));
+    if (command.takesRest) {
+        console.rest = takeRest(arguments);
     }
     if (const std::optional<int> ended = parse(app, arguments, console)) {
         return *ended;
     }
     if (const std::vector<std::string> extras = app.remaining(); !extras.empty()) {
-        return refuse(console, unknownWordSentence(app, command.name, extras.front(),
-                                                   command.takeRest != nullptr));
+        return refuse(console, unknownWordSentence(app, command, extras.front()));
     }
     return runGuarded(command, app, console);
 }
@@ -144,16 +139,12 @@ int runMain(int argc, char** argv, Subcommand command) {
 
 int runProgram(const std::vector<std::string>& arguments, std::span<const Subcommand> subcommands,
                Console console) {
-    std::vector<SubcommandName> names;
-    for (const Subcommand& each : subcommands) {
-        names.push_back({each.name, each.description});
-    }
-    return startSubcommand(arguments, names, console,
-                           [&](std::size_t index, std::vector<std::string> rest) {
-                               Subcommand command = subcommands[index];
-                               command.name = "hashphase " + command.name;
-                               return runSingleCommand(std::move(rest), command, console);
-                           });
+    return startSubcommand(
+        arguments, console, [&](const std::string& name, std::vector<std::string> rest) {
+            Subcommand command = *std::ranges::find(subcommands, name, &Subcommand::name);
+            command.name = "hashphase " + name;
+            return runSingleCommand(std::move(rest), command, console);
+        });
 }
 
 }  // namespace hashphase::demos

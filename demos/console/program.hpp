@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The command line of a command.
-
-#include <demos/console/console.hpp>
+// The command lines of `hashphase` and of its subcommands, each of which is a program of its own, as git's are:
+// `hashphase compare` is hashphase-compare.
+//
+// Exit codes  0 all well, 1 a check failed, 2 wrong usage or bad input.
+// Output      results go to `out`; progress, warnings and errors to `err`.
 
 #include <functional>
 #include <iosfwd>
+#include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace CLI {
@@ -17,6 +21,33 @@ class App;
 
 namespace hashphase::demos {
 
+struct Page;
+
+inline constexpr int kExitOk = 0;
+inline constexpr int kExitCheckFailed = 1;
+inline constexpr int kExitUsage = 2;
+
+/// Where a command writes.
+struct Console {
+    std::ostream& out;
+    std::ostream& err;
+    bool errIsTerminal = false;
+    std::string commandLine;  // as typed, for the record
+
+    /// Takes the page of a report, whether or not it goes to a file; empty: nobody does.
+    std::function<void(const Page&)> takePage = {};
+
+    std::vector<std::string> rest = {};  // words behind `--`
+};
+
+/// Says what is wrong, and returns kExitUsage.
+int refuse(Console& console, const std::string& sentence);
+
+/// The version of hashphase that this program was built from.
+[[nodiscard]] const char* programVersion() noexcept;
+
+// --- A subcommand --------------------------------------------------------------------------------
+
 struct Subcommand {
     std::string name;
     std::string description;
@@ -24,12 +55,22 @@ struct Subcommand {
     /// Declares the options, bound to storage that the subcommand owns.
     std::function<void(CLI::App&)> declareOptions;
 
-    /// Takes the words that follow the first `--`, as they are; empty: there are none to take.
-    std::function<void(std::vector<std::string>)> takeRest = {};
-
     /// Runs with the options as parsed; returns the exit code. May throw InputError.
     std::function<int(Console&)> run;
+
+    bool takesRest = false;  // words that follow the first `--`, as Console::rest
 };
+
+/// What `hashphase --help` says of the subcommand of that name, which there must be.
+[[nodiscard]] std::string descriptionOf(std::string_view name);
+
+/// The subcommand of that name, which declares its options and runs with them.
+template <class Options, class Declare, class Run>
+[[nodiscard]] Subcommand makeSubcommand(const std::string& name, Declare declare, Run run) {
+    auto options = std::make_shared<Options>();
+    return {name, descriptionOf(name), [=](CLI::App& app) { declare(app, *options); },
+            [=](Console& console) { return run(*options, console); }};
+}
 
 /// Parses the arguments, runs the command and returns its exit code; `command.name` is what the user types
 /// to run it. Unknown words are told together with what was probably meant.
@@ -39,7 +80,15 @@ int runSingleCommand(std::vector<std::string> arguments, const Subcommand& comma
 /// The same for the program `hashphase-<name>` of a subcommand `hashphase <name>`, as its main() does.
 int runMain(int argc, char** argv, Subcommand command);
 
-/// The same for a program of several (subcommands.hpp), which are all in it.
+// --- All of them ---------------------------------------------------------------------------------
+
+/// Tells the help, the version and what is wrong, or starts the subcommand of a name with what follows that;
+/// returns its exit code.
+int startSubcommand(
+    const std::vector<std::string>& arguments, Console& console,
+    const std::function<int(const std::string& name, std::vector<std::string> rest)>& start);
+
+/// The same where some are in one program.
 int runProgram(const std::vector<std::string>& arguments, std::span<const Subcommand> subcommands,
                Console console);
 

@@ -45,14 +45,19 @@ void Progress::update(std::size_t done, std::string_view what) {
         return;
     }
     lastDrawn_ = now;
-    const std::string line = text(done, what, now);
-    if (style_ == ProgressStyle::kLines) {
-        if (done < total_) {
-            out_ << line << std::endl;
-        }
-        return;
+    std::string line = task_ + ": ";
+    line += what.empty() ? withThousands(done) + " of " + withThousands(total_) : std::string(what);
+    if (done > 0) {
+        const double elapsed = std::chrono::duration<double>(now - start_).count();
+        const double left = elapsed * static_cast<double>(total_ - std::min(done, total_)) /
+                            static_cast<double>(done);
+        line += ", " + fixed(left, left < 10 ? 1 : 0) + " s to go";
     }
-    drawBar(done, line);
+    if (style_ == ProgressStyle::kBar) {
+        drawBar(done, line);
+    } else if (done < total_) {
+        out_ << line << std::endl;
+    }
 }
 
 void Progress::drawBar(std::size_t done, const std::string& line) {
@@ -63,18 +68,6 @@ void Progress::drawBar(std::size_t done, const std::string& line) {
     out_ << '\r' << bar << std::string(drawnWidth_ - std::min(drawnWidth_, bar.size()), ' ')
          << std::flush;
     drawnWidth_ = bar.size();
-}
-
-std::string Progress::text(std::size_t done, std::string_view what, Clock::time_point now) const {
-    std::string line = task_ + ": ";
-    line += what.empty() ? withThousands(done) + " of " + withThousands(total_) : std::string(what);
-    if (done > 0) {
-        const double elapsed = std::chrono::duration<double>(now - start_).count();
-        const double left = elapsed * static_cast<double>(total_ - std::min(done, total_)) /
-                            static_cast<double>(done);
-        line += ", " + fixed(left, left < 10 ? 1 : 0) + " s to go";
-    }
-    return line;
 }
 
 }  // namespace hashphase::demos

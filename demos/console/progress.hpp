@@ -44,9 +44,6 @@ private:
 
     using Clock = std::chrono::steady_clock;
 
-    [[nodiscard]] std::string text(std::size_t done, std::string_view what,
-                                   Clock::time_point now) const;
-
     std::ostream& out_;
     ProgressStyle style_;
     std::string task_;

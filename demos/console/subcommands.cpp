@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/console/subcommands.hpp>
+#include <demos/console/program.hpp>
 
-#include <demos/console/nearest_name.hpp>
+#include <demos/console/format.hpp>
 
 #include <algorithm>
 #include <array>
@@ -11,27 +11,32 @@
 namespace hashphase::demos {
 namespace {
 
+struct Description {
+    std::string_view name;
+    std::string_view text;
+};
+
 constexpr std::array kSubcommands{
-    SubcommandName{
+    Description{
         "compare",
         "Run a scene with our broadphase and Bullet's; verify the pairs; compare the times"},
-    SubcommandName{"paper", "Reproduce the paper's figures 13 to 15: its numbers beside today's"},
-    SubcommandName{"accuracy",
-                   "Measure what accuracy costs in time: every choice, its error and its ms"},
-    SubcommandName{"stability",
-                   "Run hard cases with our broadphase and Bullet's; say what each one does"},
-    SubcommandName{"effects", "Say what each effect of a scene costs, and what is lost without it"},
-    SubcommandName{"report",
-                   "Join in one page what these find: compare, paper, accuracy, effects, "
-                   "stability"},
-    SubcommandName{"try",
-                   "Run a program of yours, as it is, with Bullet's broadphase and with ours, "
-                   "and compare"},
-    SubcommandName{"wander", "Watch the paper's simulation, and play with it"},
+    Description{"paper", "Reproduce the paper's figures 13 to 15: its numbers beside today's"},
+    Description{"accuracy",
+                "Measure what accuracy costs in time: every choice, its error and its ms"},
+    Description{"stability",
+                "Run hard cases with our broadphase and Bullet's; say what each one does"},
+    Description{"effects", "Say what each effect of a scene costs, and what is lost without it"},
+    Description{"report",
+                "Join in one page what these find: compare, paper, accuracy, effects, "
+                "stability"},
+    Description{"try",
+                "Run a program of yours, as it is, with Bullet's broadphase and with ours, "
+                "and compare"},
+    Description{"wander", "Watch the paper's simulation, and play with it"},
 };
 
 // As CLI11 writes those of the subcommands.
-void writeHelp(std::span<const SubcommandName> subcommands, std::ostream& out) {
+void writeHelp(std::ostream& out) {
     const auto line = [&out](std::string_view name, std::string_view description) {
         constexpr std::size_t width = 28;
         out << "  " << name << std::string(width - std::min(name.size(), width), ' ') << description
@@ -42,7 +47,7 @@ void writeHelp(std::span<const SubcommandName> subcommands, std::ostream& out) {
     line("-h,--help", "Print this help message and exit");
     line("--version", "Display program version information and exit");
     out << "\nSubcommands:\n";
-    for (const auto& [name, description] : subcommands) {
+    for (const auto& [name, description] : kSubcommands) {
         line(name, description);
     }
 }
@@ -62,29 +67,23 @@ const char* programVersion() noexcept {
 #endif
 }
 
-std::span<const SubcommandName> subcommandNames() {
-    return kSubcommands;
-}
-
 std::string descriptionOf(std::string_view name) {
-    for (const SubcommandName& each : kSubcommands) {
-        if (each.name == name) {
-            return std::string(each.description);
-        }
+    const auto* found = std::ranges::find(kSubcommands, name, &Description::name);
+    if (found == kSubcommands.end()) {
+        throw std::logic_error("There is no subcommand '" + std::string(name) + "'.");
     }
-    throw std::logic_error("There is no subcommand '" + std::string(name) + "'.");
+    return std::string(found->text);
 }
 
-int startSubcommand(const std::vector<std::string>& arguments,
-                    std::span<const SubcommandName> subcommands, Console& console,
-                    const std::function<int(std::size_t, std::vector<std::string>)>& start) {
+int startSubcommand(const std::vector<std::string>& arguments, Console& console,
+                    const std::function<int(const std::string&, std::vector<std::string>)>& start) {
     if (arguments.empty()) {
-        writeHelp(subcommands, console.err);
+        writeHelp(console.err);
         return kExitUsage;
     }
     const std::string& first = arguments.front();
     if (first == "-h" || first == "--help") {
-        writeHelp(subcommands, console.out);
+        writeHelp(console.out);
         return kExitOk;
     }
     if (first == "--version") {
@@ -92,19 +91,18 @@ int startSubcommand(const std::vector<std::string>& arguments,
         return kExitOk;
     }
     if (first.starts_with('-')) {
-        const std::vector<std::string> options{"--help", "--version"};
-        return refuse(console, unknownNameSentence("option", first, options));
+        return refuse(
+            console,
+            unknownNameSentence("option", first, std::vector<std::string>{"--help", "--version"}));
     }
     std::vector<std::string> names;
-    for (const SubcommandName& each : subcommands) {
+    for (const Description& each : kSubcommands) {
         names.emplace_back(each.name);
     }
-    const auto found = std::find(names.begin(), names.end(), first);
-    if (found == names.end()) {
+    if (std::ranges::find(names, first) == names.end()) {
         return refuse(console, unknownNameSentence("subcommand", first, names));
     }
-    return start(static_cast<std::size_t>(found - names.begin()),
-                 {arguments.begin() + 1, arguments.end()});
+    return start(first, {arguments.begin() + 1, arguments.end()});
 }
 
 }  // namespace hashphase::demos

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/effects/effects_command.hpp>
 
-#include <demos/console/nearest_name.hpp>
+#include <demos/console/format.hpp>
 #include <demos/console/options.hpp>
 #include <demos/console/progress.hpp>
 #include <demos/console/result_file.hpp>
-#include <demos/console/subcommands.hpp>
 #include <demos/effects/effects_report.hpp>
 #include <demos/report/stopwatch.hpp>
 #include <demos/scenes/input_error.hpp>
@@ -14,7 +13,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -141,15 +139,10 @@ int runEffects(const EffectsOptions& options, Console& console, std::size_t (*al
 }  // namespace
 
 Subcommand effectsCommand(std::size_t (*allocationCount)()) {
-    auto options = std::make_shared<EffectsOptions>();
-    Subcommand command;
-    command.name = "effects";
-    command.description = descriptionOf(command.name);
-    command.declareOptions = [options](CLI::App& app) { declareEffects(app, *options); };
-    command.run = [options, allocationCount](Console& console) {
-        return runEffects(*options, console, allocationCount);
-    };
-    return command;
+    return makeSubcommand<EffectsOptions>("effects", declareEffects,
+                                          [allocationCount](const auto& options, Console& console) {
+                                              return runEffects(options, console, allocationCount);
+                                          });
 }
 
 }  // namespace hashphase::demos

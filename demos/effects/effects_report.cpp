@@ -2,7 +2,6 @@
 #include <demos/effects/effects_report.hpp>
 
 #include <demos/console/format.hpp>
-#include <demos/console/table.hpp>
 #include <demos/report/json_values.hpp>
 #include <demos/report/page.hpp>
 #include <demos/report/report_text.hpp>
@@ -151,13 +150,13 @@ bool allHold(const EffectPrices& prices) {
 
 void printReport(const EffectPrices& prices, std::ostream& out) {
     out << sceneLine(prices) << "\n\n";
-    Table table({"effect", "alone ms", "in all ms", "bytes alone", "in all"});
+    DataTable table{{{"effect"}, {"alone ms"}, {"in all ms"}, {"bytes alone"}, {"in all"}}, {}};
     for (const EffectPrice& each : prices.prices) {
-        table.addRow({std::string(nameOf(each.effect)), priceText(each.alone.time.median),
-                      priceText(each.inAll.time.median), byteSize(each.alone.bytes),
-                      byteSize(each.inAll.bytes)});
+        table.add({std::string(nameOf(each.effect)), priceText(each.alone.time.median),
+                   priceText(each.inAll.time.median), byteSize(each.alone.bytes),
+                   byteSize(each.inAll.bytes)});
     }
-    table.print(out);
+    printTable(table, out);
     out << "\nalone: with what it needs, less these; in all: the whole scene, less all but it and "
            "what needs it\n\n";
     for (const EffectPrice& each : prices.prices) {

@@ -4,14 +4,12 @@
 #include <demos/console/options.hpp>
 #include <demos/console/progress.hpp>
 #include <demos/console/result_file.hpp>
-#include <demos/console/subcommands.hpp>
 #include <demos/paper/paper.hpp>
 #include <demos/report/stopwatch.hpp>
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <memory>
 
 namespace hashphase::demos {
 namespace {
@@ -103,13 +101,7 @@ PaperPlan planOf(const PaperOptions& options) {
 }
 
 Subcommand paperCommand() {
-    auto options = std::make_shared<PaperOptions>();
-    Subcommand command;
-    command.name = "paper";
-    command.description = descriptionOf(command.name);
-    command.declareOptions = [options](CLI::App& app) { declarePaper(app, *options); };
-    command.run = [options](Console& console) { return runPaper(*options, console); };
-    return command;
+    return makeSubcommand<PaperOptions>("paper", declarePaper, runPaper);
 }
 
 }  // namespace hashphase::demos

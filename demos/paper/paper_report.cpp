@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/paper/paper.hpp>
 
-#include <demos/console/table.hpp>
 #include <demos/report/json_values.hpp>
 #include <demos/report/report_text.hpp>
 
@@ -27,23 +26,24 @@ void printGraded(const GradedTable& table, std::ostream& out) {
     if (table.rows.empty()) {
         return;
     }
-    std::vector<std::string> header{table.header[0]};
-    header.insert(header.end(), table.header.begin() + 2, table.header.end());
-    Table text(header);
+    DataTable text{{{table.header[0]}}, {}};
+    for (std::size_t column = 2; column < table.header.size(); ++column) {
+        text.columns.push_back({table.header[column]});
+    }
     for (std::size_t i = 0; i < table.rows.size(); ++i) {
         const std::vector<GradedText>& row = table.rows[i];
         constexpr std::size_t kObjectsWidth = 9;
         const bool isFirst = i == 0 || table.rows[i - 1][0].text != row[0].text;
         std::string first = isFirst ? row[0].text : "";
         first.resize(kObjectsWidth, ' ');
-        std::vector<std::string> cells{first + " " + row[1].text};
+        std::vector<Value> cells{first + " " + row[1].text};
         for (std::size_t column = 2; column < row.size(); ++column) {
-            cells.push_back(row[column].marked());
+            cells.emplace_back(row[column].marked());
         }
-        text.addRow(std::move(cells));
+        text.add(std::move(cells));
     }
     out << table.caption << '\n';
-    text.print(out);
+    printTable(text, out);
     out << '\n';
 }
 

@@ -2,7 +2,6 @@
 #include <demos/report/data_table.hpp>
 
 #include <demos/console/format.hpp>
-#include <demos/console/table.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -87,20 +86,34 @@ DataTable withoutEmptyColumns(const DataTable& table) {
     return kept;
 }
 
-void printTable(const DataTable& table, std::ostream& out) {
-    std::vector<std::string> header;
-    for (const DataColumn& column : table.columns) {
-        header.push_back(titleOf(column));
-    }
-    Table text(header);
-    for (const std::vector<Value>& row : table.rows) {
-        std::vector<std::string> cells;
-        for (const Value& value : row) {
-            cells.push_back(valueText(value));
+void printTable(const DataTable& table, std::ostream& out, bool isOfWords) {
+    std::vector<std::vector<std::string>> lines(table.rows.size() + 1);  // the header first
+    std::vector<std::size_t> widths;
+    std::size_t widthOfRule = 0;
+    for (std::size_t column = 0; column < table.columns.size(); ++column) {
+        lines[0].push_back(titleOf(table.columns[column]));
+        std::size_t width = lines[0].back().size();
+        for (std::size_t row = 0; row < table.rows.size(); ++row) {
+            lines[row + 1].push_back(valueText(table.rows[row].at(column)));
+            width = std::max(width, lines[row + 1].back().size());
         }
-        text.addRow(std::move(cells));
+        widths.push_back(width);
+        widthOfRule += (column > 0 ? 2 : 0) + width;
     }
-    text.print(out);
+    for (const std::vector<std::string>& cells : lines) {
+        std::string line;
+        for (std::size_t column = 0; column < cells.size(); ++column) {
+            const std::string blanks(widths[column] - cells[column].size(), ' ');
+            const bool isToTheLeft = column == 0 || isOfWords;
+            line += column > 0 ? "  " : "";
+            line += isToTheLeft ? cells[column] + blanks : blanks + cells[column];
+        }
+        line.erase(line.find_last_not_of(' ') + 1);
+        out << line << '\n';
+        if (&cells == lines.data()) {
+            out << std::string(widthOfRule, '-') << '\n';
+        }
+    }
 }
 
 void writeCsv(const DataTable& table, std::ostream& out) {

@@ -40,8 +40,9 @@ struct DataTable {
 /// Without the columns that have nothing in any row.
 [[nodiscard]] DataTable withoutEmptyColumns(const DataTable& table);
 
-/// As text with aligned columns; see console/table.hpp.
-void printTable(const DataTable& table, std::ostream& out);
+/// As text, a rule under the header, no blanks at line ends. The first column is aligned to the left, the others
+/// to the right, as numbers are, or as words are.
+void printTable(const DataTable& table, std::ostream& out, bool isOfWords = false);
 
 /// RFC 4180: a header line of the columns' names, numbers with all digits, nothing as an empty field.
 void writeCsv(const DataTable& table, std::ostream& out);

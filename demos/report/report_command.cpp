@@ -2,9 +2,7 @@
 #include <demos/report/report_command.hpp>
 
 #include <demos/console/format.hpp>
-#include <demos/console/nearest_name.hpp>
 #include <demos/console/options.hpp>
-#include <demos/console/subcommands.hpp>
 #include <demos/report/page.hpp>
 #include <demos/report/report_text.hpp>
 #include <demos/report/stopwatch.hpp>
@@ -14,7 +12,6 @@
 #include <algorithm>
 #include <exception>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <ostream>
 
@@ -218,15 +215,10 @@ int runReport(const std::vector<ReportPart>& parts, const ReportOptions& options
 }  // namespace
 
 Subcommand reportCommand(std::vector<ReportPart> parts) {
-    auto options = std::make_shared<ReportOptions>();
-    Subcommand command;
-    command.name = "report";
-    command.description = descriptionOf(command.name);
-    command.declareOptions = [options](CLI::App& app) { declareReport(app, *options); };
-    command.run = [options, parts = std::move(parts)](Console& console) {
-        return runReport(parts, *options, console);
-    };
-    return command;
+    return makeSubcommand<ReportOptions>(
+        "report", declareReport, [parts = std::move(parts)](const auto& options, Console& console) {
+            return runReport(parts, options, console);
+        });
 }
 
 }  // namespace hashphase::demos

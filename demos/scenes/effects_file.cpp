@@ -2,7 +2,6 @@
 #include <demos/scenes/effects_file.hpp>
 
 #include <demos/console/format.hpp>
-#include <demos/console/nearest_name.hpp>
 #include <demos/scenes/effects_fields.hpp>
 #include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/input_error.hpp>

@@ -2,7 +2,6 @@
 #include <demos/stability/report.hpp>
 
 #include <demos/console/format.hpp>
-#include <demos/console/table.hpp>
 #include <demos/report/data_table.hpp>
 #include <demos/report/json_values.hpp>
 #include <demos/report/page.hpp>
@@ -70,20 +69,9 @@ DataTable tableOf(const StabilityReport& report) {
 
 // --- Text -----------------------------------------------------------------------------------------
 
-void printWords(const DataTable& data, std::ostream& out) {
-    std::vector<std::string> header;
-    for (const DataColumn& column : data.columns) {
-        header.push_back(column.name == "id" ? "" : column.name);
-    }
-    Table table(std::move(header), true);
-    for (const std::vector<Value>& row : data.rows) {
-        std::vector<std::string> cells;
-        for (const Value& value : row) {
-            cells.push_back(valueText(value));
-        }
-        table.addRow(std::move(cells));
-    }
-    table.print(out);
+void printWords(DataTable table, std::ostream& out) {
+    table.columns[table.columnOf("id")].title = " ";
+    printTable(table, out, true);
 }
 
 std::string detailOf(const CaseOutcome& outcome) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/stability/stability.hpp>
 
-#include <demos/console/nearest_name.hpp>
+#include <demos/console/format.hpp>
 #include <demos/console/progress.hpp>
 #include <demos/console/result_file.hpp>
 #include <demos/report/report_text.hpp>

@@ -2,12 +2,9 @@
 #include <demos/stability/stability_command.hpp>
 
 #include <demos/console/options.hpp>
-#include <demos/console/subcommands.hpp>
 #include <demos/stability/stability.hpp>
 
 #include <CLI/CLI.hpp>
-
-#include <memory>
 
 namespace hashphase::demos {
 namespace {
@@ -43,15 +40,10 @@ void declareStability(CLI::App& app, StabilityOptions& options) {
 
 Subcommand stabilityCommand(std::span<const BroadphaseKind> kinds,
                             std::span<const HardCase> cases) {
-    auto options = std::make_shared<StabilityOptions>();
-    Subcommand command;
-    command.name = "stability";
-    command.description = descriptionOf(command.name);
-    command.declareOptions = [options](CLI::App& app) { declareStability(app, *options); };
-    command.run = [options, kinds, cases](Console& console) {
-        return runStability(*options, kinds, cases, console);
-    };
-    return command;
+    return makeSubcommand<StabilityOptions>("stability", declareStability,
+                                            [kinds, cases](const auto& options, Console& console) {
+                                                return runStability(options, kinds, cases, console);
+                                            });
 }
 
 }  // namespace hashphase::demos

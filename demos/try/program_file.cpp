@@ -65,7 +65,36 @@ std::optional<std::string> interpreterOf(std::ifstream& file, const Elf64_Ehdr& 
     return std::nullopt;
 }
 
+// Of what is no program of this machine, or is linked statically, a sentence is thrown.
+std::string loaderOf(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) {
+        throw InputError(path + " cannot be read, which is how its libraries are found");
+    }
+    Elf64_Ehdr header{};
+    const bool isWhole = readAt(file, 0, header);
+    if (header.e_ident[0] == '#' && header.e_ident[1] == '!') {
+        throw InputError(path +
+                         " is a script; name the program that it starts, or what runs it, with "
+                         "--precision");
+    }
+    if (!isWhole || !std::equal(ELFMAG, ELFMAG + SELFMAG, header.e_ident) ||
+        header.e_ident[EI_CLASS] != ELFCLASS64 || header.e_machine != kMachine) {
+        throw InputError(path + " is no 64-bit program for this machine");
+    }
+    const std::optional<std::string> loader = interpreterOf(file, header);
+    if (!loader) {
+        throw InputError(path + " is linked statically as a whole: nothing can be loaded into it");
+    }
+    return *loader;
+}
+
 // --- What is loaded ------------------------------------------------------------------------------
+
+struct SharedLibrary {
+    std::string name;  // "libm.so.6"
+    std::string path;  // empty: not found
+};
 
 struct Output {
     int status = -1;
@@ -113,19 +142,37 @@ std::optional<SharedLibrary> libraryOf(const std::string& line) {
     return library;
 }
 
+// What that loader would load for a program or library, in its order.
+std::vector<SharedLibrary> sharedLibrariesOf(const std::string& path, const std::string& loader) {
+    const Output output = outputOf({loader, "--list", path});
+    std::vector<SharedLibrary> libraries;
+    std::istringstream lines(output.text);
+    for (std::string line; std::getline(lines, line);) {
+        if (const std::optional<SharedLibrary> library = libraryOf(line)) {
+            libraries.push_back(*library);
+        }
+    }
+    if (output.status != 0) {
+        const std::string reason = printable(output.text.substr(0, output.text.find('\n')));
+        throw InputError(path + " cannot be loaded by " + loader +
+                         (reason.empty() ? "" : ": " + reason));
+    }
+    return libraries;
+}
+
 bool fileContains(const std::string& path, const std::string& bytes) {
     std::ifstream file(path, std::ios::binary);
     const std::string content{std::istreambuf_iterator<char>(file), {}};
     return content.find(bytes) != std::string::npos;
 }
 
-BulletPrecision precisionOf(const SharedLibrary& bullet) {
+std::string precisionOf(const SharedLibrary& bullet) {
     // The constructor of a capsule takes two numbers, so that its name tells them.
     if (fileContains(bullet.path, "_ZN14btCapsuleShapeC1Eff")) {
-        return BulletPrecision::kSingle;
+        return "single";
     }
     if (fileContains(bullet.path, "_ZN14btCapsuleShapeC1Edd")) {
-        return BulletPrecision::kDouble;
+        return "double";
     }
     throw InputError(bullet.path + " does not tell the precision of its numbers");
 }
@@ -147,10 +194,6 @@ void refuseStaticBullet(const std::string& path, const std::vector<SharedLibrary
 
 }  // namespace
 
-std::string nameOf(BulletPrecision precision) {
-    return precision == BulletPrecision::kSingle ? "single" : "double";
-}
-
 std::string findProgram(const std::string& word) {
     if (word.find('/') != std::string::npos) {
         if (!isExecutable(word)) {
@@ -171,48 +214,24 @@ std::string findProgram(const std::string& word) {
                      (isExecutable(word) ? "; did you mean ./" + word + "?" : ""));
 }
 
-std::string loaderOf(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file) {
-        throw InputError(path + " cannot be read, which is how its libraries are found");
-    }
-    Elf64_Ehdr header{};
-    const bool isWhole = readAt(file, 0, header);
-    if (header.e_ident[0] == '#' && header.e_ident[1] == '!') {
-        throw InputError(path +
-                         " is a script; name the program that it starts, or what runs it, with "
-                         "--precision");
-    }
-    if (!isWhole || !std::equal(ELFMAG, ELFMAG + SELFMAG, header.e_ident) ||
-        header.e_ident[EI_CLASS] != ELFCLASS64 || header.e_machine != kMachine) {
-        throw InputError(path + " is no 64-bit program for this machine");
-    }
-    const std::optional<std::string> loader = interpreterOf(file, header);
-    if (!loader) {
-        throw InputError(path + " is linked statically as a whole: nothing can be loaded into it");
-    }
-    return *loader;
-}
-
-std::vector<SharedLibrary> sharedLibrariesOf(const std::string& path, const std::string& loader) {
-    const Output output = outputOf({loader, "--list", path});
-    std::vector<SharedLibrary> libraries;
-    std::istringstream lines(output.text);
-    for (std::string line; std::getline(lines, line);) {
-        if (const std::optional<SharedLibrary> library = libraryOf(line)) {
-            libraries.push_back(*library);
+std::vector<std::string> bulletsOf(const std::vector<std::string>& libraries) {
+    const std::string loader = loaderOf("/proc/self/exe");
+    std::vector<std::string> names;
+    for (const std::string& path : libraries) {
+        if (access(path.c_str(), F_OK) != 0) {
+            continue;
+        }
+        for (const SharedLibrary& library : sharedLibrariesOf(path, loader)) {
+            if (library.name.starts_with(kCollisionLibrary)) {
+                names.push_back(library.name);
+            }
         }
     }
-    if (output.status != 0) {
-        const std::string reason = printable(output.text.substr(0, output.text.find('\n')));
-        throw InputError(path + " cannot be loaded by " + loader +
-                         (reason.empty() ? "" : ": " + reason));
-    }
-    return libraries;
+    return names;
 }
 
 TriedProgram inspectProgram(const std::string& path, const std::vector<std::string>& ownBullets,
-                            std::optional<BulletPrecision> precision) {
+                            const std::string& precision) {
     const std::vector<SharedLibrary> libraries = sharedLibrariesOf(path, loaderOf(path));
     TriedProgram program;
     program.path = path;
@@ -227,12 +246,12 @@ TriedProgram inspectProgram(const std::string& path, const std::vector<std::stri
         [](const SharedLibrary& library) { return library.name.starts_with(kCollisionLibrary); });
     if (bullet == libraries.end()) {
         refuseStaticBullet(path, libraries);
-        if (!precision) {
+        if (precision.empty()) {
             throw InputError(path +
                              " links no Bullet; if it loads Bullet as it runs, name its "
                              "precision by --precision");
         }
-        program.precision = *precision;
+        program.precision = precision;
         return program;
     }
     if (bullet->path.empty()) {
@@ -245,9 +264,9 @@ TriedProgram inspectProgram(const std::string& path, const std::vector<std::stri
     }
     program.bullet = bullet->name;
     program.precision = precisionOf(*bullet);
-    if (precision && *precision != program.precision) {
-        throw InputError(path + " links " + bullet->name + ", which is of " +
-                         nameOf(program.precision) + " precision, and not " + nameOf(*precision));
+    if (!precision.empty() && precision != program.precision) {
+        throw InputError(path + " links " + bullet->name + ", which is of " + program.precision +
+                         " precision, and not " + precision);
     }
     return program;
 }

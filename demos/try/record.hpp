@@ -8,7 +8,7 @@
 // A step   is a call of stepSimulation() in which pairs were calculated, with all its sub-steps; where
 //          Bullet is linked so that its functions cannot be stood in for (-Bsymbolic-functions), one of
 //          these sub-steps; and a performDiscreteCollisionDetection() outside of both.
-// Threads  the counters are atomic, a row is one thread's; the verification is added up under a lock.
+// Threads  counters are added to atomically, a row is one thread's; the verification is added up under a lock.
 // Units    milliseconds. Rays are timed by the clock on the wall alone: to look at the other takes longer.
 
 #include <array>
@@ -87,9 +87,17 @@ inline constexpr std::array kVerifiedCounts{
     VerifiedCount{"bulletExtra", &Verification::stockExtra},
 };
 
+struct Counts {
+    std::uint32_t dbvts;
+    std::uint32_t axisSweeps;
+    std::uint32_t derivedSweeps;        // which are not taken over
+    std::uint32_t foreignCalculations;  // of broadphases that are not taken over
+    std::uint32_t otherProcesses;
+};
+
 struct Record {
     static constexpr std::uint32_t kMaxRows = 200'000;
-    static constexpr std::uint32_t kFormat = 4;
+    static constexpr std::uint32_t kFormat = 5;
 
     // Asked for.
     std::uint32_t format;
@@ -99,11 +107,7 @@ struct Record {
     std::atomic<std::uint32_t> isLoaded;  // into a process at all
     std::atomic<std::int32_t> process;    // who made the first broadphase, by its own number
     std::atomic<std::uint32_t> hasEnded;  // that process, by exit() or its like
-    std::atomic<std::uint32_t> otherProcesses;
-    std::atomic<std::uint32_t> dbvtCount;
-    std::atomic<std::uint32_t> axisSweepCount;
-    std::atomic<std::uint32_t> derivedSweepCount;    // which are not taken over
-    std::atomic<std::uint32_t> foreignCalculations;  // of broadphases that are not taken over
+    Counts counts;
     std::atomic<std::uint32_t> stepCount;
     std::atomic<std::uint32_t> rowCount;  // those that had no room left included
     Verification verification;

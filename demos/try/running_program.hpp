@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A program that is tried, while it runs: itself, the processes that it starts and may leave behind, and the
-// signals that end it.
+// A program that is tried, while it runs, and the signals that end it.
 
 #include <demos/try/record.hpp>
 
 #include <array>
 #include <csignal>
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <sys/types.h>
 
 namespace hashphase::demos {
 
@@ -43,49 +42,23 @@ struct ProgramCall {
     std::string path;
     std::vector<std::string> words;      // argv, the name first
     std::vector<std::string> variables;  // its environment: "NAME=value"
+
+    std::optional<std::uint32_t> stepLimit;  // ends the program after so many steps
+    std::optional<double> secondLimit;       // or seconds
+    std::function<void()> sayThatItWaits;    // for what was left behind, and has no broadphase
 };
 
-/// Its processes are the descendants of this one, as /proc tells, but for those that were there before: orphans
-/// of the program become children of this process (PR_SET_CHILD_SUBREAPER). The one whose steps are recorded may
-/// have been left behind by what was started.
-class RunningProgram {
-public:
-    /// Starts the program, which fills `record`. Throws InputError when it cannot be started.
-    RunningProgram(ProgramCall call, const tryout::Record& record);
-
-    /// Whether what was started still runs, then the process whose steps are recorded, or, for as long as
-    /// there is none, any of it.
-    [[nodiscard]] bool isRunning();
-
-    /// Whether any process of it still runs.
-    [[nodiscard]] bool hasProcesses();
-
-    /// Whether what was started has ended.
-    [[nodiscard]] bool hasLeft() const { return status_.has_value(); }
-
-    /// Sends it to the process whose steps are recorded; to all, where there is none.
-    void sendToRecorded(int signal);
-
-    /// Sends it to all processes of it, or, with `reachedOurGroup`, to those that are not in the process group
-    /// of this one.
-    void send(int signal, bool reachedOurGroup = false) const;
-
-    /// As wait() has it: of the recorded process, or, where somebody else has waited for that, of what was
-    /// started.
-    [[nodiscard]] int status() const { return recordedStatus_.value_or(status_.value_or(0)); }
-    [[nodiscard]] bool isStatusOfRecorded() const { return recordedStatus_.has_value(); }
-
-private:
-    void reap();
-    [[nodiscard]] pid_t findRecorded();
-    [[nodiscard]] std::vector<pid_t> processes() const;
-
-    std::vector<pid_t> earlier_;  // descendants that are none of the program's
-    const tryout::Record& record_;
-    pid_t child_ = 0;
-    pid_t recorded_ = 0;  // once it was found
-    std::optional<int> status_;
-    std::optional<int> recordedStatus_;
+/// How a program ended.
+struct RunEnd {
+    // What the program did: "ended with status 0", "was ended by signal 11 (Segmentation fault)"; "was
+    // stopped", by us, at a limit or because we were interrupted.
+    std::string text = "ended with status 0";
+    bool isCrash = false;  // by a signal that nobody here has sent
 };
+
+/// Runs the program, which fills `record`, to its end or to a limit. What `signals` notes ends it, too: at first
+/// it is asked to, some seconds later no longer. Throws InputError when it cannot be started.
+[[nodiscard]] RunEnd runToTheEnd(ProgramCall call, const tryout::Record& record,
+                                 const NotedSignals& signals);
 
 }  // namespace hashphase::demos

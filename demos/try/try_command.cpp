@@ -4,7 +4,6 @@
 #include <demos/console/format.hpp>
 #include <demos/console/options.hpp>
 #include <demos/console/result_file.hpp>
-#include <demos/console/subcommands.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <demos/try/try_report.hpp>
 
@@ -13,7 +12,6 @@
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -29,9 +27,8 @@ namespace {
 using tryout::Broadphase;
 
 struct TryOptions {
-    std::vector<std::string> words;  // the program and its arguments
     bool verify = false;
-    std::optional<BulletPrecision> precision;
+    std::string precision;  // empty: not said
     std::optional<std::uint32_t> steps;
     std::optional<double> seconds;
     int runs = 1;
@@ -60,13 +57,8 @@ void declare(CLI::App& app, TryOptions& options) {
         ->transform(wholeFrom(1, tryout::Record::kMaxRows));
     app.add_option("--seconds", options.seconds, "end the program after so many seconds")
         ->transform(positiveSeconds());
-    app.add_option_function<std::string>(
-           "--precision",
-           [&options](const std::string& name) {
-               options.precision =
-                   name == "single" ? BulletPrecision::kSingle : BulletPrecision::kDouble;
-           },
-           "of the Bullet that the program loads as it runs")
+    app.add_option("--precision", options.precision,
+                   "of the Bullet that the program loads as it runs")
         ->check(CLI::IsMember({"single", "double"}))
         ->type_name("NAME");
     addFileToWrite(app, "--json", options.jsonFile, "write everything measured to this file");
@@ -84,45 +76,25 @@ std::filesystem::path preloadFolder() {
     return std::filesystem::is_directory(installed, error) ? installed : here;
 }
 
-std::string preloadFor(BulletPrecision precision) {
-    const char* name = precision == BulletPrecision::kSingle ? "libhashphase-try.so"
-                                                             : "libhashphase-try-float64.so";
+std::string preloadFor(const std::string& precision) {
+    const char* name =
+        precision == "single" ? "libhashphase-try.so" : "libhashphase-try-float64.so";
     return std::filesystem::weakly_canonical(preloadFolder() / name).string();
 }
 
-bool exists(const std::string& path) {
-    std::error_code error;
-    return std::filesystem::exists(path, error);
-}
-
-// The Bullets that the libraries link, by name.
-std::vector<std::string> ownBullets() {
-    const std::string loader = loaderOf("/proc/self/exe");
-    std::vector<std::string> names;
-    for (const BulletPrecision precision : {BulletPrecision::kSingle, BulletPrecision::kDouble}) {
-        const std::string preload = preloadFor(precision);
-        if (!exists(preload)) {
-            continue;
-        }
-        for (const SharedLibrary& library : sharedLibrariesOf(preload, loader)) {
-            if (library.name.starts_with("libBulletCollision")) {
-                names.push_back(library.name);
-            }
-        }
-    }
-    return names;
-}
-
-TriedRunSettings settingsFor(const TryOptions& options, const TriedProgram& program) {
+TriedRunSettings settingsFor(const TryOptions& options, const TriedProgram& program,
+                             Console& console) {
     TriedRunSettings settings;
-    settings.path = program.path;
-    settings.words = options.words;
+    settings.call = {
+        program.path, console.rest, {}, options.steps, options.seconds, [&err = console.err] {
+            err << "hashphase try: the program has ended, and has left others running; "
+                   "waiting for these (Ctrl-C ends them)"
+                << std::endl;
+        }};
     const std::string preload = preloadFor(program.precision);
-    settings.stepLimit = options.steps;
-    settings.secondLimit = options.seconds;
     // A script may have read some of it, and go on behind us.
     settings.inputBegin = lseek(STDIN_FILENO, 0, SEEK_CUR);
-    if (!exists(preload)) {
+    if (access(preload.c_str(), F_OK) != 0) {
         throw InputError("this hashphase was built without " +
                          std::filesystem::path(preload).filename().string() +
                          ": Bullet of that precision was not found when it was");
@@ -134,69 +106,57 @@ TriedRunSettings settingsFor(const TryOptions& options, const TriedProgram& prog
     return settings;
 }
 
-std::string nameOf(Broadphase broadphase) {
-    return broadphase == Broadphase::stock  ? "Bullet's broadphase"
-           : broadphase == Broadphase::hash ? "hashphase"
-                                            : "both, verified";
-}
-
-void sayWhatRuns(const TryOptions& options, Broadphase broadphase, std::size_t number,
-                 std::size_t count, Console& console) {
-    if (!options.quiet) {
-        console.err << "hashphase try: run " << number << " of " << count << ", with "
-                    << nameOf(broadphase) << std::endl;
-    }
-}
-
 // A program that makes none of the broadphases that are taken over runs as ever.
-[[noreturn]] void refuse(const Trial& trial, const TriedRun& run) {
-    if (run.isLoaded && run.end.isCrash) {
-        throw InputError(trial.program.path +
-                         " had made no btDbvtBroadphase and no axis sweep, and so nothing to "
-                         "compare, when it " +
-                         textOf(run.end));
-    }
+[[noreturn]] void refuse(const TriedProgram& program, const TriedRun& run) {
+    const std::string ended = program.path + " " + run.end.text;
     if (!run.isLoaded) {
-        throw InputError(trial.program.path + " " + textOf(run.end) +
+        throw InputError(ended +
                          ", and has not loaded what was preloaded: programs with rights of their "
                          "own (setuid) do not, nor those that are started without LD_PRELOAD");
     }
-    throw InputError(trial.program.path + " " + textOf(run.end) +
+    if (run.end.isCrash) {
+        throw InputError(program.path +
+                         " had made no btDbvtBroadphase and no axis sweep, and so nothing to "
+                         "compare, when it " +
+                         run.end.text);
+    }
+    throw InputError(ended +
                      ", and has made no btDbvtBroadphase and no axis sweep that can be taken over: "
                      "there is nothing to compare");
 }
 
-bool isSound(const Trial& trial) {
-    const bool isCompared =
-        trial.runs.front().broadphase == Broadphase::verifying || compareSteps(trial).has_value();
-    return isCompared && !isEndOfOurs(trial) &&
-           std::all_of(trial.runs.begin(), trial.runs.end(), [](const TriedRun& run) {
-               return run.hasBroadphase && run.verification.missing == 0 &&
-                      run.verification.extra == 0 &&
-                      (run.broadphase != Broadphase::verifying ||
-                       (run.verification.calculations > 0 && !run.end.isCrash));
-           });
+std::vector<Broadphase> turnsFor(const TryOptions& options) {
+    if (options.verify) {
+        return {Broadphase::verifying};
+    }
+    std::vector<Broadphase> turns;
+    for (int i = 0; i < options.runs; ++i) {
+        turns.insert(turns.end(), {Broadphase::stock, Broadphase::hash});
+    }
+    return turns;
 }
 
 // Until a signal ends them: returns it, or 0. Of a run that it ended before there was a broadphase nothing is
 // known.
-int runAll(const TryOptions& options, const std::vector<Broadphase>& turns, Trial& trial,
-           Console& console) {
-    TriedRunSettings settings = settingsFor(options, trial.program);
-    settings.sayThatItWaits = [&] {
-        console.err << "hashphase try: the program has ended, and has left others running; waiting "
-                       "for these (Ctrl-C ends them)"
-                    << std::endl;
-    };
+int runAll(const TryOptions& options, Trial& trial, Console& console) {
+    TriedRunSettings settings = settingsFor(options, trial.program, console);
+    const std::vector<Broadphase> turns = turnsFor(options);
     const NotedSignals signals;
     for (const Broadphase broadphase : turns) {
         settings.broadphase = broadphase;
-        sayWhatRuns(options, broadphase, trial.runs.size() + 1, turns.size(), console);
+        if (!options.quiet) {
+            console.err << "hashphase try: run " << trial.runs.size() + 1 << " of " << turns.size()
+                        << ", with "
+                        << (broadphase == Broadphase::stock  ? "Bullet's broadphase"
+                            : broadphase == Broadphase::hash ? "hashphase"
+                                                             : "both, verified")
+                        << std::endl;
+        }
         console.out.flush();
         TriedRun run = runTried(settings, signals);
-        const bool isEmpty = !run.hasBroadphase;
+        const bool isEmpty = !run.hasBroadphase();
         if (isEmpty && signals.received() == 0 && trial.runs.empty()) {
-            refuse(trial, run);
+            refuse(trial.program, run);
         }
         if (!isEmpty || signals.received() == 0) {
             trial.runs.push_back(std::move(run));
@@ -209,54 +169,41 @@ int runAll(const TryOptions& options, const std::vector<Broadphase>& turns, Tria
 }
 
 int runTry(const TryOptions& options, Console& console) {
-    if (options.words.empty()) {
+    if (console.rest.empty()) {
         throw InputError("name a program to try: hashphase try -- ./program its arguments");
     }
     // Whoever has started us may ignore them, and then none could be waited for.
     std::signal(SIGCHLD, SIG_DFL);
-    Trial trial;
-    trial.commandLine = joined(options.words, " ");
-    const std::vector<std::string> bullets = ownBullets();
+    const std::vector<std::string> bullets =
+        bulletsOf({preloadFor("single"), preloadFor("double")});
     if (bullets.empty()) {
-        throw InputError("this hashphase has no " + preloadFor(BulletPrecision::kSingle) +
+        throw InputError("this hashphase has no " + preloadFor("single") +
                          " to load into programs, as builds under a sanitizer have not");
     }
-    trial.program = inspectProgram(findProgram(options.words.front()), bullets, options.precision);
+    Trial trial;
+    trial.commandLine = joined(console.rest, " ");
+    trial.program = inspectProgram(findProgram(console.rest.front()), bullets, options.precision);
     ResultFile json(options.jsonFile);
-
-    std::vector<Broadphase> turns{Broadphase::verifying};
-    if (!options.verify) {
-        turns.clear();
-        for (int i = 0; i < options.runs; ++i) {
-            turns.insert(turns.end(), {Broadphase::stock, Broadphase::hash});
-        }
-    }
-    const int interruption = runAll(options, turns, trial, console);
+    const int interruption = runAll(options, trial, console);
     constexpr int kExitInterrupted = 128;  // and the signal, as shells have it
     if (trial.runs.empty()) {
         return kExitInterrupted + interruption;
     }
     trial.provenance = gatherProvenance(console.commandLine);
-    printTrial(trial, console.out);
-    json.write([&](std::ostream& out) { writeTrialJson(trial, out); });
+    TrialReport report = reportOf(trial);
+    printTrial(report, console.out);
+    json.write([&](std::ostream& out) { writeTrialJson(report, out); });
     if (interruption != 0) {
         return kExitInterrupted + interruption;
     }
-    return isSound(trial) ? kExitOk : kExitCheckFailed;
+    return report.findings.holds == true ? kExitOk : kExitCheckFailed;
 }
 
 }  // namespace
 
 Subcommand tryCommand() {
-    auto options = std::make_shared<TryOptions>();
-    Subcommand command;
-    command.name = "try";
-    command.description = descriptionOf(command.name);
-    command.declareOptions = [options](CLI::App& app) { declare(app, *options); };
-    command.takeRest = [options](std::vector<std::string> words) {
-        options->words = std::move(words);
-    };
-    command.run = [options](Console& console) { return runTry(*options, console); };
+    Subcommand command = makeSubcommand<TryOptions>("try", declare, runTry);
+    command.takesRest = true;
     return command;
 }
 

@@ -1,17 +1,25 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-#include <demos/try/step_summary.hpp>
+// What try.sql makes of a trial: text for people, JSON for programs.
+
+#include <demos/experiment/findings.hpp>
+#include <demos/try/tried_run.hpp>
 
 #include <iosfwd>
 
 namespace hashphase::demos {
 
-/// Whether a run with ours ended in a way in which none of Bullet's did.
-[[nodiscard]] bool isEndOfOurs(const Trial& trial);
+struct TrialReport {
+    Provenance provenance;
+    Measurements measured;
+    Findings findings;  // which hold where all is well
+};
+
+[[nodiscard]] TrialReport reportOf(const Trial& trial);
 
 /// How the program has ended comes last, where that is not with status 0.
-void printTrial(const Trial& trial, std::ostream& out);
-void writeTrialJson(const Trial& trial, std::ostream& out);
+void printTrial(const TrialReport& report, std::ostream& out);
+void writeTrialJson(TrialReport& report, std::ostream& out);
 
 }  // namespace hashphase::demos

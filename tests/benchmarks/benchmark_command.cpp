@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <tests/benchmarks/benchmark_command.hpp>
 
-#include <demos/console/nearest_name.hpp>
+#include <demos/console/format.hpp>
 #include <demos/console/options.hpp>
 #include <demos/console/progress.hpp>
 #include <demos/console/result_file.hpp>

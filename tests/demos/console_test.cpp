@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/console/format.hpp>
-#include <demos/console/nearest_name.hpp>
 #include <demos/console/progress.hpp>
-#include <demos/console/table.hpp>
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <sstream>
 #include <thread>
 
@@ -14,35 +13,29 @@ namespace {
 
 const std::vector<std::string> kNames{"paper", "uniform", "piles", "pile", "static-city"};
 
-TEST(NearestName, CountsInsertedRemovedReplacedAndSwappedLetters) {
-    EXPECT_EQ(editDistance("paper", "paper"), 0U);
-    EXPECT_EQ(editDistance("papr", "paper"), 1U);
-    EXPECT_EQ(editDistance("papeer", "paper"), 1U);
-    EXPECT_EQ(editDistance("piper", "paper"), 1U);
-    EXPECT_EQ(editDistance("papre", "paper"), 1U);
-    EXPECT_EQ(editDistance("", "paper"), 5U);
-    EXPECT_EQ(editDistance("kitten", "sitting"), 3U);
+TEST(UnknownName, BringsTheNearestAndTheFirstOfSeveralToMind) {
+    for (const auto& [name, meant] :
+         std::map<std::string, std::string>{{"papr", "paper"},
+                                            {"papeer", "paper"},
+                                            {"piper", "paper"},
+                                            {"papre", "paper"},
+                                            {"pil", "pile"},
+                                            {"pilex", "piles"},
+                                            {"statci_cty", "static-city"}}) {
+        EXPECT_EQ(unknownNameSentence("scene", name, kNames),
+                  "There is no scene '" + name + "'; did you mean '" + meant + "'?");
+    }
+    EXPECT_EQ(suggestion("papre", std::vector<std::string>{"pap", "paper"}, ""),
+              "; did you mean paper?")
+        << "letters that are swapped are one mistake, and two that are missing are two";
 }
 
-TEST(NearestName, SuggestsTheNearestAndTheFirstOfSeveral) {
-    EXPECT_EQ(nearestName("papre", kNames), "paper");
-    EXPECT_EQ(nearestName("pil", kNames), "pile");
-    EXPECT_EQ(nearestName("staticcity", kNames), "static-city");
-    EXPECT_EQ(nearestName("statci_cty", kNames), "static-city");
-}
-
-TEST(NearestName, SuggestsNothingForWhatIsNoMisspelling) {
-    EXPECT_EQ(nearestName("elephant", kNames), "");
-    EXPECT_EQ(nearestName("xy", std::vector<std::string>{"ab"}), "");
-}
-
-TEST(NearestName, ListsAllNamesWhereNoneIsNear) {
-    EXPECT_EQ(unknownNameSentence("scene", "papr", kNames),
-              "There is no scene 'papr'; did you mean 'paper'?");
-    EXPECT_EQ(unknownNameSentence("scene", "\x1b[2Jpapr", kNames).substr(0, 31),
-              "There is no scene '?[2Jpapr'; t");
+TEST(UnknownName, ListsAllNamesWhereItIsNoMisspelling) {
     EXPECT_EQ(unknownNameSentence("scene", "elephant", kNames),
               "There is no scene 'elephant'; there are paper, uniform, piles, pile, static-city.");
+    EXPECT_EQ(suggestion("xy", std::vector<std::string>{"ab"}, ""), "; there are ab.");
+    EXPECT_EQ(unknownNameSentence("scene", "\x1b[2Jpapr", kNames).substr(0, 31),
+              "There is no scene '?[2Jpapr'; t");
 }
 
 TEST(Format, GroupsThousands) {
@@ -65,19 +58,6 @@ TEST(Format, ChoosesAUnitForBytes) {
     EXPECT_EQ(byteSize(1536), "1.50 KiB");
     EXPECT_EQ(byteSize(12 * 1024 * 1024), "12.0 MiB");
     EXPECT_EQ(byteSize(-2048), "-2.00 KiB");
-}
-
-TEST(Table, AlignsColumnsAndLeavesNoBlanksAtLineEnds) {
-    Table table({"name", "ms", "note"});
-    table.addRow({"hash", "1.5", ""});
-    table.addRow({"dbvt-deferred", "12.25", "x"});
-    std::ostringstream out;
-    table.print(out);
-    EXPECT_EQ(out.str(),
-              "name              ms  note\n"
-              "--------------------------\n"
-              "hash             1.5\n"
-              "dbvt-deferred  12.25     x\n");
 }
 
 TEST(Progress, DrawsABarWithTheRemainingTimeAndWipesIt) {

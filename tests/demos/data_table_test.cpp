@@ -45,6 +45,18 @@ TEST(DataTable, ShowsFourDigitsAndThousands) {
     EXPECT_EQ(valueText("as it is"), "as it is");
 }
 
+TEST(DataTable, IsAlignedInTextAndLeavesNoBlanksAtLineEnds) {
+    const DataTable table{{{"name"}, {"ms"}, {"note"}},
+                          {{"hash", "1.5", ""}, {"dbvt-deferred", 12.25, "x"}}};
+    std::ostringstream out;
+    printTable(table, out);
+    EXPECT_EQ(out.str(),
+              "name              ms  note\n"
+              "--------------------------\n"
+              "hash             1.5\n"
+              "dbvt-deferred  12.25     x\n");
+}
+
 TEST(DataTable, FindsColumnsByName) {
     const DataTable table{{{"a"}, {"b", "the b"}}, {}};
     EXPECT_EQ(table.columnOf("b"), 1U);

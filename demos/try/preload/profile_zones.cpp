@@ -85,9 +85,7 @@ void endZone() noexcept {
     } else if (open.zone == Zone::narrowPhase) {
         endPart(Part::narrowPhase, open.begin);
     } else if (open.zone == Zone::calculate && open.calculations == calculationsOfThread()) {
-        if (Record* into = record()) {
-            into->foreignCalculations.fetch_add(1, std::memory_order_relaxed);
-        }
+        note(&Counts::foreignCalculations);
     }
 }
 

@@ -1,19 +1,77 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/try/preload/recorder.hpp>
 
-#include <demos/try/preload/record_file.hpp>
-
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 
 #include <array>
 #include <atomic>
 #include <cstddef>
+#include <cstdlib>
 
+#include <fcntl.h>
 #include <pthread.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 namespace hashphase::tryout {
 namespace {
+
+// --- The record that this process was asked for --------------------------------------------------
+
+// Whether there should be one.
+bool wasRecordAskedFor() noexcept {
+    static const bool wasAskedFor = std::getenv(kRecordVariable) != nullptr;
+    return wasAskedFor;
+}
+
+Record* mapRecord() noexcept {
+    const char* path = std::getenv(kRecordVariable);
+    const int file = path != nullptr ? open(path, O_RDWR | O_CLOEXEC) : -1;
+    if (file < 0) {
+        return nullptr;
+    }
+    struct stat status {};
+    void* bytes = MAP_FAILED;
+    if (fstat(file, &status) == 0 && status.st_size == static_cast<off_t>(sizeof(Record))) {
+        bytes = mmap(nullptr, sizeof(Record), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+    }
+    close(file);
+    auto* mapped = static_cast<Record*>(bytes);
+    if (bytes == MAP_FAILED || mapped->format != Record::kFormat) {
+        return nullptr;
+    }
+    mapped->isLoaded = 1;
+    return mapped;
+}
+
+// nullptr where none was asked for, or it cannot be had.
+Record* mappedRecord() noexcept {
+    static Record* const mapped = mapRecord();
+    return mapped;
+}
+
+// When the library is loaded: the program may change its folder, its root or its rights later.
+[[gnu::constructor]] void mapEarly() {
+    static_cast<void>(mappedRecord());
+}
+
+// By exit(), by the end of main(), by _exit() or _Exit() and, once it is watched, by quick_exit(); a signal, or
+// another program in its place, leave it. Whoever has started the process may not tell. Forks of the recorded
+// process have its record, and another number.
+[[gnu::destructor]] void noteEnd() {
+    if (Record* into = mappedRecord(); into != nullptr && into->process.load() == getpid()) {
+        into->hasEnded = 1;
+    }
+}
+
+[[noreturn]] void endWithoutDestructors(int status) noexcept {
+    noteEnd();
+    for (;;) {
+        syscall(SYS_exit_group, status);
+    }
+}
 
 float milliseconds(std::int64_t nanoseconds) noexcept {
     return static_cast<float>(static_cast<double>(nanoseconds) * 1e-6);
@@ -21,6 +79,10 @@ float milliseconds(std::int64_t nanoseconds) noexcept {
 
 Times millisecondsOf(const ClockTimes& took) noexcept {
     return {milliseconds(took.wall), milliseconds(took.processor)};
+}
+
+void add(std::uint32_t& count, int change = 1) noexcept {
+    std::atomic_ref(count).fetch_add(static_cast<std::uint32_t>(change));
 }
 
 std::atomic<Record*> ownRecord = nullptr;
@@ -35,14 +97,14 @@ Record* claimRecord() {
     }
     std::int32_t holder = 0;
     if (!mapped->process.compare_exchange_strong(holder, getpid()) && holder != getpid()) {
-        mapped->otherProcesses.fetch_add(1);
+        add(mapped->counts.otherProcesses);
         return nullptr;
     }
     pthread_atfork(nullptr, nullptr, [] {
         ownRecord = nullptr;
         isUncountedFork = true;
     });
-    watchQuickExit();
+    static_cast<void>(std::at_quick_exit(&noteEnd));  // fails where there are too many
     return mapped;
 }
 
@@ -157,21 +219,15 @@ Broadphase wantedBroadphase() noexcept {
                                  : Broadphase::hash;
 }
 
-void noteDbvts(int change) {
+void note(std::uint32_t Counts::*count, int change) {
     if (Record* into = record()) {
-        into->dbvtCount.fetch_add(static_cast<std::uint32_t>(change));
-    }
-}
-
-void noteAxisSweep() {
-    if (Record* into = record()) {
-        into->axisSweepCount.fetch_add(1);
+        add(into->counts.*count, change);
     }
 }
 
 void noteDerivedSweep() {
     if (Record* into = mappedRecord()) {  // and claims nothing: it is not recorded
-        into->derivedSweepCount.fetch_add(1);
+        add(into->counts.derivedSweeps);
     }
 }
 
@@ -237,7 +293,7 @@ CalculateScope::~CalculateScope() {
     Record* into = record();
     if (into == nullptr) {
         if (isUncountedFork.exchange(false)) {
-            mappedRecord()->otherProcesses.fetch_add(1);
+            add(mappedRecord()->counts.otherProcesses);
         }
         return;
     }
@@ -269,3 +325,15 @@ RayScope::~RayScope() {
 }
 
 }  // namespace hashphase::tryout
+
+// In place of those of the C library, which run nothing of ours.
+extern "C" {
+
+void _exit(int status) {
+    hashphase::tryout::endWithoutDestructors(status);
+}
+
+void _Exit(int status) noexcept {
+    hashphase::tryout::endWithoutDestructors(status);
+}
+}

@@ -34,8 +34,7 @@ namespace hashphase::tryout {
 /// Which broadphase the program gets: what the record says; ours without one.
 [[nodiscard]] Broadphase wantedBroadphase() noexcept;
 
-void noteDbvts(int change);
-void noteAxisSweep();
+void note(std::uint32_t Counts::*count, int change = 1);
 void noteDerivedSweep();
 void noteObjects(int change) noexcept;
 

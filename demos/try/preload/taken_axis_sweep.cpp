@@ -114,46 +114,38 @@ Derived& turnInto(Sweep& sweep) {
     return static_cast<Derived&>(sweep);
 }
 
-/// What a constructor is called with.
 template <class Sweep, class Handle>
-struct SweepCall {
-    using Constructor = void(Sweep*, Point, Point, Handle, btOverlappingPairCache*, bool);
+using Constructor = void(Sweep*, Point, Point, Handle, btOverlappingPairCache*, bool);
 
-    Constructor* stock;
-    Sweep* sweep;
-    Point worldMin;
-    Point worldMax;
-    Handle maxHandles;
-
-    void makeStock(btOverlappingPairCache* cache, bool hasNoTrees) const {
-        stock(sweep, worldMin, worldMax, maxHandles, cache, hasNoTrees);
-    }
-
-    void makeWhole(btOverlappingPairCache* cache, bool hasNoTrees) const {
-        refuseOtherBullets();
-        noteAxisSweep();
-        if (wantedBroadphase() == Broadphase::stock) {
-            const StockParts parts;
-            makeStock(cache, hasNoTrees);
-            turnInto<WatchedSweep<Sweep>>(*sweep);
-            return;
-        }
-        auto* trees = new (btAlignedAlloc(sizeof(btDbvtBroadphase), 16)) btDbvtBroadphase(cache);
-        noteDbvts(-1);  // it is none of the program's
-        makeStock(trees->getOverlappingPairCache(), true);
-        turnInto<TakenSweep<Sweep>>(*sweep).take(trees);
-    }
-
-    // Of a derived class: the program's, or one that is to be a pattern.
-    void makeBase(btOverlappingPairCache* cache, bool hasNoTrees) const {
-        if (!isMakingPattern) {
-            refuseOtherBullets();
-            noteDerivedSweep();
-        }
+// `makeStock` is Bullet's constructor, on what else the program has called it with.
+template <class Sweep, class MakeStock>
+void makeWhole(Sweep& sweep, btOverlappingPairCache* cache, bool hasNoTrees,
+               const MakeStock& makeStock) {
+    refuseOtherBullets();
+    note(&Counts::axisSweeps);
+    if (wantedBroadphase() == Broadphase::stock) {
         const StockParts parts;
         makeStock(cache, hasNoTrees);
+        turnInto<WatchedSweep<Sweep>>(sweep);
+        return;
     }
-};
+    auto* trees = new (btAlignedAlloc(sizeof(btDbvtBroadphase), 16)) btDbvtBroadphase(cache);
+    note(&Counts::dbvts, -1);  // it is none of the program's
+    makeStock(trees->getOverlappingPairCache(), true);
+    turnInto<TakenSweep<Sweep>>(sweep).take(trees);
+}
+
+// Of a derived class: the program's, or one that is to be a pattern.
+template <class Sweep, class MakeStock>
+void makeBase(Sweep& /*sweep*/, btOverlappingPairCache* cache, bool hasNoTrees,
+              const MakeStock& makeStock) {
+    if (!isMakingPattern) {
+        refuseOtherBullets();
+        noteDerivedSweep();
+    }
+    const StockParts parts;
+    makeStock(cache, hasNoTrees);
+}
 
 }  // namespace
 }  // namespace hashphase::tryout
@@ -162,12 +154,13 @@ using namespace hashphase::tryout;
 
 // Stands in for the constructor of that mangled name.
 #define HASHPHASE_SWEEP(function, Sweep, Handle, make, mangled)                                    \
-    SweepCall<Sweep, Handle>::Constructor function asm(mangled);                                   \
+    Constructor<Sweep, Handle> function asm(mangled);                                              \
     void function(Sweep* sweep, Point worldMin, Point worldMax, Handle maxHandles,                 \
                   btOverlappingPairCache* cache, bool hasNoTrees) {                                \
-        static SweepCall<Sweep, Handle>::Constructor* const stock = Next{mangled};                 \
-        SweepCall<Sweep, Handle>{stock, sweep, worldMin, worldMax, maxHandles}.make(cache,         \
-                                                                                    hasNoTrees);   \
+        static Constructor<Sweep, Handle>* const stock = Next{mangled};                            \
+        make(*sweep, cache, hasNoTrees, [&](btOverlappingPairCache* used, bool isWithoutTrees) {   \
+            stock(sweep, worldMin, worldMax, maxHandles, used, isWithoutTrees);                    \
+        });                                                                                        \
     }
 
 // C1 makes a whole object, C2 the base of a derived one.

@@ -72,7 +72,7 @@ btDbvtBroadphase::btDbvtBroadphase(btOverlappingPairCache* paircache) {
         return;
     }
     refuseOtherBullets();
-    noteDbvts(1);
+    note(&Counts::dbvts);
     if (wantedBroadphase() == Broadphase::stock) {
         constructStock(*this, paircache);
         return;

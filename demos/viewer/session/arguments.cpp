@@ -2,8 +2,6 @@
 #include <demos/viewer/session/arguments.hpp>
 
 #include <demos/console/format.hpp>
-#include <demos/console/nearest_name.hpp>
-#include <demos/console/number_words.hpp>
 #include <demos/scenes/input_error.hpp>
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 
 // Which scene is on stage, and how large.
 
-#include <demos/console/nearest_name.hpp>
+#include <demos/console/format.hpp>
 #include <demos/scenes/effects_file.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <demos/viewer/stage/stage.hpp>

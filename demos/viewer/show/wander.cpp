@@ -5,7 +5,6 @@
 #include <demos/console/options.hpp>
 #include <demos/console/progress.hpp>
 #include <demos/console/result_file.hpp>
-#include <demos/console/subcommands.hpp>
 #include <demos/report/stopwatch.hpp>
 #include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/input_error.hpp>
@@ -344,20 +343,15 @@ bool Run::isAsExpected() const {
 }  // namespace
 
 Subcommand wanderCommand() {
-    auto options = std::make_shared<WanderOptions>();
-    Subcommand command;
-    command.name = "wander";
-    command.description = descriptionOf(command.name);
-    command.declareOptions = [options](CLI::App& app) { declareWander(app, *options); };
-    command.run = [options](Console& console) {
-        if (options->list) {
-            listWander(console.out);
-            return int{kExitOk};
-        }
-        const auto threads = limitThreads(options->threads.value_or(threadCount()));
-        return Run(*options, console).play();
-    };
-    return command;
+    return makeSubcommand<WanderOptions>(
+        "wander", declareWander, [](const auto& options, Console& console) {
+            if (options.list) {
+                listWander(console.out);
+                return int{kExitOk};
+            }
+            const auto threads = limitThreads(options.threads.value_or(threadCount()));
+            return Run(options, console).play();
+        });
 }
 
 }  // namespace hashphase::demos

@@ -5,10 +5,9 @@
 
 #include "program.hpp"
 
-#include <cctype>
 #include <cmath>
 #include <cstdio>
-#include <string>
+#include <cstring>
 
 namespace programs {
 
@@ -44,22 +43,6 @@ int countHits(const btCollisionWorld& world, const btVector3& from, const btVect
     return hits.m_collisionObjects.size();
 }
 
-namespace {
-
-// "sweep-16" of sweep16.
-std::string nameOf(const Program& program) {
-    std::string name;
-    for (const char letter : std::string(program.function)) {
-        const bool isDigit = std::isdigit(letter) != 0;
-        if (std::isupper(letter) != 0 || (isDigit && std::isdigit(name.back()) == 0)) {
-            name += '-';
-        }
-        name += static_cast<char>(std::tolower(letter));
-    }
-    return name;
-}
-
-}  // namespace
 }  // namespace programs
 
 using namespace programs;
@@ -69,7 +52,7 @@ extern "C" int runProgram(const char* name);
 
 int runProgram(const char* name) {
     for (const Program& program : allPrograms()) {
-        if (nameOf(program) == name) {
+        if (std::strcmp(program.name, name) == 0) {
             program.run();
             return exitStatus;
         }
@@ -83,7 +66,7 @@ int main(int argc, char** argv) {
     }
     for (const Program& program : allPrograms()) {
         if (program.isCompared) {
-            std::puts(nameOf(program).c_str());
+            std::puts(program.name);
         }
     }
     return 0;

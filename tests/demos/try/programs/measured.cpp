@@ -83,16 +83,34 @@ PROGRAM(worksOnThreads) {
     stepsWith([](btDynamicsWorld*, btScalar) { std::thread(workFor, 3.0).join(); });
 }
 
-// Two objects in each place, one of which goes on to the next place: trees keep the pairs of many steps.
-PROGRAM(leavesPairs) {
+// Two spheres in each place, one of which goes on to the next place, moved by hand and without dynamics: trees
+// keep the pairs of many steps.
+COMPARED_PROGRAM(leavesPairs) {
     constexpr int kPlaces = 200;
-    MovedSpheres spheres(2 * kPlaces);
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher(&configuration);
+    btDbvtBroadphase broadphase;
+    btCollisionWorld world(&dispatcher, &broadphase, &configuration);
+    btSphereShape sphere(1);
+    std::vector<btCollisionObject> objects(2 * kPlaces);
+    for (btCollisionObject& object : objects) {
+        object.setCollisionShape(&sphere);
+        world.addCollisionObject(&object);
+    }
     for (int step = 0; step < 60; ++step) {
         for (int i = 0; i < 2 * kPlaces; ++i) {
             const int place = (i / 2 + i % 2 * step) % kPlaces;
-            spheres.objects[i]->setWorldTransform(at({btScalar(5 * place), btScalar(i % 2), 0}));
+            objects[i].setWorldTransform(at({btScalar(5 * place), btScalar(i % 2), 0}));
         }
-        spheres.world.performDiscreteCollisionDetection();
+        world.performDiscreteCollisionDetection();
+    }
+    int contacts = 0;
+    for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+        contacts += dispatcher.getManifoldByIndexInternal(i)->getNumContacts();
+    }
+    say("contacts", contacts);
+    for (btCollisionObject& object : objects) {
+        world.removeCollisionObject(&object);
     }
 }
 

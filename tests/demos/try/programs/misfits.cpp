@@ -297,7 +297,7 @@ PROGRAM(bareSweep) {
             sweep.createProxy(low, low + btVector3(1.5, 1, 1), 0, nullptr, 1, -1, nullptr));
     }
     for (int i = 0; i < 50; ++i) {
-        const btVector3 low(btScalar(i), btScalar(i % 2 * 3), 0);
+        const btVector3 low(btScalar(i), btScalar(i / 2 % 2 * 3), 0);
         sweep.setAabb(proxies[i], low, low + btVector3(1.5, 1, 1), nullptr);
     }
     sweep.calculateOverlappingPairs(nullptr);

@@ -60,7 +60,7 @@ PROGRAM(slowLauncher) {
 }
 
 PROGRAM(crashLauncher) {
-    launch("crashes-without-trees", 100);
+    launch("crashesWithoutTrees", 100);
 }
 
 // Goes on in a process of its own after some steps.

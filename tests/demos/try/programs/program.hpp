@@ -13,7 +13,7 @@
 namespace programs {
 
 struct Program {
-    const char* function;  // raysFromTicks; the program's name is rays-from-ticks
+    const char* name;
     void (*run)();
     bool isCompared;
 };
@@ -153,31 +153,6 @@ struct Pile : Scene<> {
         addPile(*this, height);
         step(steps);
     }
-};
-
-/// Spheres of radius 1 that are moved by hand, and no dynamics.
-struct MovedSpheres {
-    explicit MovedSpheres(int count) {
-        for (int i = 0; i < count; ++i) {
-            objects.push_back(std::make_unique<btCollisionObject>());
-            objects.back()->setCollisionShape(&sphere);
-            world.addCollisionObject(objects.back().get());
-        }
-    }
-    ~MovedSpheres() {
-        for (const auto& object : objects) {
-            world.removeCollisionObject(object.get());
-        }
-    }
-    MovedSpheres(const MovedSpheres&) = delete;
-    MovedSpheres& operator=(const MovedSpheres&) = delete;
-
-    btDefaultCollisionConfiguration configuration;
-    btCollisionDispatcher dispatcher{&configuration};
-    btDbvtBroadphase broadphase;
-    btCollisionWorld world{&dispatcher, &broadphase, &configuration};
-    btSphereShape sphere{1};
-    std::vector<std::unique_ptr<btCollisionObject>> objects;
 };
 
 /// Casts a ray, which stops at the first object.

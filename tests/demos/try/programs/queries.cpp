@@ -2,8 +2,6 @@
 
 #include "program.hpp"
 
-#include <cmath>
-
 namespace programs {
 namespace {
 
@@ -92,29 +90,11 @@ COMPARED_PROGRAM(contactTests) {
     scene.world.contactTest(&probe, contacts);
     say("touched", contacts.count);
     btSphereShape small(btScalar(0.4));
-    const btTransform from = at({0, 20, 0});
-    const btTransform to = at({0, -20, 0});
+    const btTransform from = at({btScalar(-1.2), 20, 0});  // beside the boxes, but for its width
+    const btTransform to = at({btScalar(-1.2), -20, 0});
     btCollisionWorld::ClosestConvexResultCallback hit(from.getOrigin(), to.getOrigin());
     scene.world.convexSweepTest(&small, from, to, hit);
     say("swept to", 20 - 40 * hit.m_closestHitFraction);
-}
-
-// Objects that are moved by hand, and no dynamics.
-COMPARED_PROGRAM(collisionWorld) {
-    MovedSpheres spheres(60);
-    int contacts = 0;
-    for (int step = 0; step < 90; ++step) {
-        for (int i = 0; i < 60; ++i) {
-            const btScalar angle = btScalar(step) * btScalar(0.05) * btScalar(1 + i % 3);
-            spheres.objects[i]->setWorldTransform(at(
-                {btScalar(i % 8) * 3 + std::cos(angle), 0, btScalar(i / 8) * 3 + std::sin(angle)}));
-        }
-        spheres.world.performDiscreteCollisionDetection();
-        for (int i = 0; i < spheres.dispatcher.getNumManifolds(); ++i) {
-            contacts += spheres.dispatcher.getManifoldByIndexInternal(i)->getNumContacts();
-        }
-    }
-    say("contacts", contacts);
 }
 
 struct SameColour : btOverlapFilterCallback {

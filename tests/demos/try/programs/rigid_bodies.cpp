@@ -19,29 +19,6 @@ void addWall(Scene<>& scene, int width, int height) {
     }
 }
 
-// Bodies of all shapes fall into a heap: where they end is chaos, that they stay in the pit is not.
-COMPARED_PROGRAM(pile) {
-    Scene<> scene;
-    scene.addGround();
-    auto* wall = scene.things.box(1, 5, 6);
-    auto* side = scene.things.box(6, 5, 1);
-    for (const int sign : {-1, 1}) {
-        scene.add(wall, 0, {btScalar(sign * 6), 5, 0});
-        scene.add(side, 0, {0, 5, btScalar(sign * 6)});
-    }
-    btCollisionShape* const shapes[] = {
-        scene.things.box(0.4, 0.4, 0.4), scene.things.sphere(btScalar(0.5)),
-        scene.things.shape<btCapsuleShape>(btScalar(0.3), btScalar(0.6)),
-        scene.things.shape<btCylinderShape>(btVector3(0.4, 0.5, 0.4))};
-    for (int i = 0; i < 200; ++i) {
-        scene.add(
-            shapes[i % 4], 1,
-            {btScalar(i % 5 - 2) * btScalar(1.1), btScalar(1 + i / 25), btScalar(i / 5 % 5 - 2)});
-    }
-    scene.step(200);
-    say("in the pit", scene.things.countNear({0, 2, 0}, 8) - 4);
-}
-
 // Stands, falls asleep, and is woken by a ball.
 COMPARED_PROGRAM(wall) {
     Scene<> scene;
@@ -55,59 +32,6 @@ COMPARED_PROGRAM(wall) {
     ball->setLinearVelocity({0, 0, -30});
     scene.step(60);
     say("ball has passed", ball->getWorldTransform().getOrigin().z() < -2 ? 1 : 0);
-}
-
-COMPARED_PROGRAM(hingedDoor) {
-    Scene<> scene;
-    btRigidBody* post = scene.add(scene.things.box(0.1, 2, 0.1), 0, {0, 2, 0});
-    btRigidBody* door = scene.add(scene.things.box(1, 2, 0.1), 5, {1.2, 2, 0});
-    btHingeConstraint hinge(*post, *door, {0, 0, 0}, {-1.2, 0, 0}, {0, 1, 0}, {0, 1, 0});
-    hinge.enableAngularMotor(true, 1, 10);
-    scene.world.addConstraint(&hinge, true);
-    scene.step(60);
-    say("angle", hinge.getHingeAngle());
-    say("distance", door->getWorldTransform().getOrigin().distance({0, 2, 0}));
-    scene.world.removeConstraint(&hinge);
-}
-
-COMPARED_PROGRAM(spheresOnTerrain) {
-    Scene<> scene;
-    btTriangleMesh mesh;
-    const auto corner = [](int x, int z) {
-        return btVector3(btScalar(x * 2), btScalar((x - 10) * (x - 10) + (z - 10) * (z - 10)) / 50,
-                         btScalar(z * 2));
-    };
-    for (int x = 0; x < 20; ++x) {
-        for (int z = 0; z < 20; ++z) {
-            mesh.addTriangle(corner(x, z), corner(x, z + 1), corner(x + 1, z));
-            mesh.addTriangle(corner(x + 1, z), corner(x, z + 1), corner(x + 1, z + 1));
-        }
-    }
-    btBvhTriangleMeshShape bowl(&mesh, true);
-    scene.add(&bowl, 0, {0, 0, 0});
-    auto* sphere = scene.things.sphere(btScalar(0.5));
-    for (int i = 0; i < 36; ++i) {
-        scene.add(sphere, 1, {btScalar(10 + i % 6 * 4), 9, btScalar(10 + i / 6 * 4)});
-    }
-    scene.step(240);
-    say("in the bowl", scene.things.countNear({20, 3, 20}, 15));
-}
-
-COMPARED_PROGRAM(bulletsWithCcd) {
-    Scene<> scene;
-    scene.world.setGravity({0, 0, 0});
-    scene.add(scene.things.box(0.05, 20, 20), 0, {10, 0, 0});
-    auto* shot = scene.things.sphere(btScalar(0.1));
-    for (int i = 0; i < 20; ++i) {
-        btRigidBody* body = scene.add(shot, 1, {0, btScalar(i - 10), btScalar(i % 3)});
-        body->setLinearVelocity({300, 0, 0});
-        body->setCcdMotionThreshold(btScalar(0.05));
-        body->setCcdSweptSphereRadius(btScalar(0.05));
-    }
-    scene.step(30);
-    say("through the wall", scene.things.count([](const btRigidBody& body) {
-        return body.getWorldTransform().getOrigin().x() > 11;
-    }));
 }
 
 COMPARED_PROGRAM(vehicle) {
@@ -164,33 +88,6 @@ COMPARED_PROGRAM(character) {
     say("pairs", body.getOverlappingPairCache()->getNumOverlappingPairs());
     scene.world.removeAction(&walker);
     scene.world.removeCollisionObject(&body);
-}
-
-// Counts, in each step, what is in a zone that bodies fall through.
-COMPARED_PROGRAM(ghostZone) {
-    Scene<> scene;
-    btGhostPairCallback ghosts;
-    scene.cache().setInternalGhostPairCallback(&ghosts);
-    btBoxShape box({2, 2, 2});
-    btGhostObject zone;
-    zone.setCollisionShape(&box);
-    zone.setWorldTransform(at({0, 10, 0}));
-    zone.setCollisionFlags(zone.getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
-    scene.world.addCollisionObject(
-        &zone, btBroadphaseProxy::SensorTrigger,
-        btBroadphaseProxy::AllFilter & ~btBroadphaseProxy::SensorTrigger);
-    auto* sphere = scene.things.sphere(btScalar(0.2));
-    for (int i = 0; i < 9; ++i) {
-        scene.add(sphere, 1, {btScalar(i % 3 - 1), btScalar(14 + i / 3 * 2), 0});
-    }
-    int most = 0;
-    for (int i = 0; i < 200; ++i) {
-        scene.step(1);
-        most = btMax(most, zone.getNumOverlappingObjects());
-    }
-    say("most in the zone", most);
-    say("left in the zone", zone.getNumOverlappingObjects());
-    scene.world.removeCollisionObject(&zone);
 }
 
 // Calls of six sub-steps each, and some of none.
