@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A picture in memory, as a file, and beside another one.
+// A picture in memory, and as a file.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace hashphase::demos {
 
-/// A picture cannot be drawn, written or read; what() says why, and what to do where there is something.
+/// A picture cannot be drawn or written; what() says why, and what to do where there is something.
 struct DrawError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -32,25 +32,5 @@ struct Image {
 
 /// Replaces the file. Throws DrawError, naming the path and the fault, when it cannot be written.
 void writePng(const std::filesystem::path& path, const Image& image);
-
-/// Of whatever kind the PNG is, as four bytes a pixel. Throws DrawError, naming the path and the
-/// fault, when there is none.
-[[nodiscard]] Image readPng(const std::filesystem::path& path);
-
-/// How much two pictures differ, as an eye would say: drivers may round in their own way, and move an edge by
-/// a part of a pixel. Of pictures after each pixel became the mean of its neighbourhood of three by three. The
-/// difference of two pixels is that of the channel that differs most, from 0 to 255.
-struct ImageDifference {
-    bool isComparable = false;  // the sizes are equal; otherwise, nothing else is said
-    double mean = 0;            // of the differences
-    double shareOff = 0;        // of pixels that differ by more than can be overlooked
-    Image map;                  // the differences, four times as strong, on black
-};
-
-[[nodiscard]] ImageDifference imageDifference(const Image& one, const Image& other);
-
-/// Whether two drivers could have drawn them from one Picture: less than one part in a thousand of
-/// the pixels is off, and the mean difference is below 1.
-[[nodiscard]] bool looksTheSame(const ImageDifference& difference);
 
 }  // namespace hashphase::demos

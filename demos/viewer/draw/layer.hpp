@@ -1,17 +1,115 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// What is drawn in one way, and how.
+// What is drawn in one way, and how. All of it needs a current OpenGL context.
 
-#include <demos/viewer/draw/depth_order.hpp>
-#include <demos/viewer/draw/gl_objects.hpp>
+#include <demos/viewer/draw/image.hpp>
+
+#include <broadphase/core/radix_sort.hpp>
+
+#include <epoxy/gl.h>
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace hashphase::demos {
+
+/// An object of OpenGL that is made with it, and gone with it.
+template <auto* kMake, auto* kDelete>
+class GlObject {
+public:
+    GlObject() { (*kMake)(1, &name_); }
+    GlObject(GlObject&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+    GlObject& operator=(GlObject&& other) noexcept {
+        std::swap(name_, other.name_);
+        return *this;
+    }
+    ~GlObject() { (*kDelete)(1, &name_); }
+
+    [[nodiscard]] GLuint name() const { return name_; }
+
+private:
+    GLuint name_ = 0;
+};
+
+using GlBuffer = GlObject<&glGenBuffers, &glDeleteBuffers>;
+using GlFramebuffer = GlObject<&glGenFramebuffers, &glDeleteFramebuffers>;
+using GlRenderbuffer = GlObject<&glGenRenderbuffers, &glDeleteRenderbuffers>;
+using GlTexture = GlObject<&glGenTextures, &glDeleteTextures>;
+using GlVertexArray = GlObject<&glGenVertexArrays, &glDeleteVertexArrays>;
+
+/// Vertices, or indices, that are others in each frame. Grows to the largest frame seen, and from then on
+/// allocates nothing. A frame's are written into memory that no earlier frame is still drawn from.
+class StreamBuffer {
+public:
+    explicit StreamBuffer(GLenum target) : target_(target) {}
+
+    void bind() const { glBindBuffer(target_, buffer_.name()); }
+
+    /// Has `write` fill `count` (at least one) of them: write(std::span<Item>), which must not read them.
+    template <typename Item, typename Write>
+    void fill(std::size_t count, const Write& write) {
+        bind();
+        const std::size_t bytes = count * sizeof(Item);
+        if (bytes > capacity_) {
+            capacity_ = bytes + bytes / 2;
+            glBufferData(target_, static_cast<GLsizeiptr>(capacity_), nullptr, GL_STREAM_DRAW);
+        }
+        void* memory = glMapBufferRange(target_, 0, static_cast<GLsizeiptr>(bytes),
+                                        GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT);
+        if (memory == nullptr) {
+            throw DrawError("OpenGL has no memory for the vertices of a frame.");
+        }
+        write(std::span(static_cast<Item*>(memory), count));
+        glUnmapBuffer(target_);
+    }
+
+private:
+    GLenum target_;
+    GlBuffer buffer_;
+    std::size_t capacity_ = 0;  // [bytes]
+};
+
+/// Things by their distance, the farthest first: what has soft edges is painted over what lies behind it. Or, by
+/// the inverse of it, the nearest first: what is hidden costs little. Depths that differ by less than one part in
+/// 8,000 count as equal; of equal ones those of smaller indices come first. Keeps its memory from frame to frame.
+class DepthOrder {
+public:
+    void clear() { keys_.clear(); }
+    [[nodiscard]] std::size_t size() const { return keys_.size(); }
+
+    /// Something so far in front of the eye; its `depth` is any positive number, its `index` the caller's.
+    void add(float depth, std::uint32_t index) {
+        // The bits of positive floats are in the order of the floats; inverted, the farthest come first.
+        const std::uint64_t key = ~std::bit_cast<std::uint32_t>(depth) >> (32 - kBits);
+        keys_.push_back(key << 32 | index);
+    }
+
+    /// Writes all that were added since clear(), in order and each so many times in a row; `to` has just
+    /// room for them.
+    template <class Thing>
+    void write(std::span<const Thing> things, std::span<Thing> to, std::size_t copies) {
+        detail::radixSort(keys_, 1U << kBits, scratch_);
+        auto next = to.begin();
+        for (const std::uint64_t key : keys_) {
+            next = std::fill_n(next, copies, things[static_cast<std::uint32_t>(key)]);
+        }
+    }
+
+private:
+    static constexpr unsigned kBits = 22;  // of a depth, and enough for any index
+
+    std::vector<std::uint64_t> keys_;  // depth << 32 | index
+    std::vector<std::uint64_t> scratch_;
+};
+
+// --- Programs and layers -------------------------------------------------------------------------
 
 /// A vertex and a fragment shader, compiled and linked. Both are in the file shaders/<name>.glsl, one where
 /// VERTEX is defined, one where it is not; before them come `definitions` and frame.glsl, whose block `Frame`

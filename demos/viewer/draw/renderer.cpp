@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/viewer/draw/renderer.hpp>
 
-#include <demos/viewer/draw/body_layers.hpp>
-#include <demos/viewer/draw/ground_layer.hpp>
 #include <demos/viewer/draw/palette.hpp>
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace hashphase::demos {
 
@@ -55,57 +54,6 @@ FrameUniforms frameUniforms(const View& view, const Picture& picture, float reac
             .shadow = join(colours.shadow)};
 }
 
-// --- What is drawn into --------------------------------------------------------------------------
-
-/// A framebuffer of colour and depth.
-struct FrameTarget {
-    FrameTarget(int wide, int high);
-    [[nodiscard]] Image read() const;
-
-    int width;
-    int height;
-    GlFramebuffer framebuffer;
-    GlRenderbuffer colour;
-    GlRenderbuffer depth;
-};
-
-FrameTarget::FrameTarget(int wide, int high) : width(wide), height(high) {
-    GLint largest = 0;
-    glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &largest);
-    const std::string size = std::to_string(width) + " x " + std::to_string(height);
-    if (std::min(width, height) < 1 || std::max(width, height) > largest) {
-        throw DrawError("A picture of " + size + " pixels cannot be drawn: each way, 1 to " +
-                        std::to_string(largest) + " are possible.");
-    }
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
-    const auto attach = [&](GLenum place, GLenum format, const GlRenderbuffer& buffer) {
-        glBindRenderbuffer(GL_RENDERBUFFER, buffer.name());
-        glRenderbufferStorage(GL_RENDERBUFFER, format, width, height);
-        glFramebufferRenderbuffer(GL_FRAMEBUFFER, place, GL_RENDERBUFFER, buffer.name());
-    };
-    attach(GL_COLOR_ATTACHMENT0, GL_RGBA8, colour);
-    attach(GL_DEPTH_ATTACHMENT, GL_DEPTH_COMPONENT24, depth);
-    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-        throw DrawError("OpenGL offers no framebuffer of " + size +
-                        " pixels with colour and depth.");
-    }
-}
-
-Image FrameTarget::read() const {
-    Image image{width, height, {}};
-    const std::size_t rowSize = std::size_t{4} * width;
-    image.pixels.resize(rowSize * height);
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer.name());
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, image.pixels.data());
-    // OpenGL's first row is the lowest one.
-    for (int row = 0; row < height / 2; ++row) {
-        std::uint8_t* const top = image.pixels.data() + rowSize * row;
-        std::swap_ranges(top, top + rowSize, image.pixels.data() + rowSize * (height - 1 - row));
-    }
-    return image;
-}
-
 // --- The sky, and the rectangle ------------------------------------------------------------------
 
 constexpr GLint kSkyColumns = 8;
@@ -131,39 +79,46 @@ void drawRectangle(const DrawnRectangle& rectangle, Theme theme, Layer& layer) {
 
 }  // namespace
 
+// --- What is drawn into --------------------------------------------------------------------------
+
+FrameTarget::FrameTarget(int wide, int high) : width(wide), height(high) {
+    GLint largest = 0;
+    glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &largest);
+    const std::string size = std::to_string(width) + " x " + std::to_string(height);
+    if (std::min(width, height) < 1 || std::max(width, height) > largest) {
+        throw DrawError("A picture of " + size + " pixels cannot be drawn: each way, 1 to " +
+                        std::to_string(largest) + " are possible.");
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
+    const auto attach = [&](GLenum place, GLenum format, const GlRenderbuffer& buffer) {
+        glBindRenderbuffer(GL_RENDERBUFFER, buffer.name());
+        glRenderbufferStorage(GL_RENDERBUFFER, format, width, height);
+        glFramebufferRenderbuffer(GL_FRAMEBUFFER, place, GL_RENDERBUFFER, buffer.name());
+    };
+    attach(GL_COLOR_ATTACHMENT0, GL_RGBA8, colour);
+    attach(GL_DEPTH_ATTACHMENT, GL_DEPTH_COMPONENT24, depth);
+    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+        throw DrawError("OpenGL offers no framebuffer of " + size +
+                        " pixels with colour and depth.");
+    }
+}
+
 // --- A frame -------------------------------------------------------------------------------------
 
-struct Renderer::Layers {
-    Layers(int width, int height) : target(width, height) {}
-    void drawFrame(const Picture& picture, unsigned framebuffer);
-    void prepare(const Picture& picture, const View& view, unsigned framebuffer);
-
-    FrameTarget target;
-    GlBuffer frame;
-    Layer sky{{.shader = "sky"}};
-    GroundLayer ground;
-    ContactLayer contacts;
-    BoxLayer boxes;
-    CapsuleLayer capsules;
-    SphereLayer spheres;
-    LineLayer lines;
-    Layer rectangle{{.shader = "rectangle"}};
-};
-
 // Whatever state there was.
-void Renderer::Layers::prepare(const Picture& picture, const View& view, unsigned framebuffer) {
-    const float reach = ground.ground().vertices().empty()
+void Renderer::prepare(const Picture& picture, const View& view, unsigned framebuffer) {
+    const float reach = ground_.ground().vertices().empty()
                             ? kReachOfNothing
-                            : kReachOfGround * ground.ground().bounds().diagonal().norm();
+                            : kReachOfGround * ground_.ground().bounds().diagonal().norm();
     const FrameUniforms uniforms = frameUniforms(view, picture, reach);
-    glBindBufferBase(GL_UNIFORM_BUFFER, ShaderProgram::kFrameBinding, frame.name());
+    glBindBufferBase(GL_UNIFORM_BUFFER, ShaderProgram::kFrameBinding, frame_.name());
     glBufferData(GL_UNIFORM_BUFFER, sizeof(uniforms), &uniforms, GL_STREAM_DRAW);
 
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-    glViewport(0, 0, target.width, target.height);
-    const int covered = std::clamp(picture.coveredLeft, 0, target.width);
+    glViewport(0, 0, target_.width, target_.height);
+    const int covered = std::clamp(picture.coveredLeft, 0, target_.width);
     glEnable(GL_SCISSOR_TEST);
-    glScissor(covered, 0, target.width - covered, target.height);
+    glScissor(covered, 0, target_.width - covered, target_.height);
     glFrontFace(GL_CCW);
     glEnable(GL_DEPTH_TEST);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
@@ -173,48 +128,45 @@ void Renderer::Layers::prepare(const Picture& picture, const View& view, unsigne
     glClear(GL_DEPTH_BUFFER_BIT);
 }
 
-void Renderer::Layers::drawFrame(const Picture& picture, unsigned framebuffer) {
+void Renderer::draw(const Picture& picture, unsigned framebuffer) {
     const View view(picture.camera,
-                    {static_cast<float>(target.width), static_cast<float>(target.height)});
-    ground.update(picture.ground);
+                    {static_cast<float>(target_.width), static_cast<float>(target_.height)});
+    ground_.update(picture.ground);
     prepare(picture, view, framebuffer);
-    ground.draw(picture, view);
-    drawSky(sky);
-    contacts.draw(picture.spheres, ground.ground(), view, picture.contactFrom);
-    boxes.draw(picture.boxes, view);
-    capsules.draw(picture.capsules, view);
-    spheres.draw(picture.spheres, view, picture.leastRadius);
-    lines.draw(picture.lines);
+    ground_.draw(picture, view);
+    drawSky(sky_);
+    bodies_.draw(picture, view, ground_.ground());
     if (picture.rectangle) {
-        drawRectangle(*picture.rectangle, picture.theme, rectangle);
+        drawRectangle(*picture.rectangle, picture.theme, rectangle_);
     }
     glDisable(GL_SCISSOR_TEST);
     setState({});
-}
-
-Renderer::Renderer(int width, int height) : layers_(std::make_unique<Layers>(width, height)) {}
-Renderer::~Renderer() = default;
-
-void Renderer::resize(int width, int height) {
-    if (width != layers_->target.width || height != layers_->target.height) {
-        layers_->target = FrameTarget(width, height);
-    }
-}
-
-unsigned Renderer::framebuffer() const {
-    return layers_->target.framebuffer.name();
-}
-
-Image Renderer::read() const {
-    return layers_->target.read();
-}
-
-void Renderer::draw(const Picture& picture, unsigned framebuffer) {
-    layers_->drawFrame(picture, framebuffer);
     if (const GLenum fault = glGetError(); fault != GL_NO_ERROR) {
         throw DrawError("OpenGL refused a part of the picture (error " + std::to_string(fault) +
                         ").");
     }
+}
+
+void Renderer::resize(int width, int height) {
+    if (width != target_.width || height != target_.height) {
+        target_ = FrameTarget(width, height);
+    }
+}
+
+Image Renderer::read() const {
+    const auto [width, height] = std::pair(target_.width, target_.height);
+    Image image{width, height, {}};
+    const std::size_t rowSize = std::size_t{4} * width;
+    image.pixels.resize(rowSize * height);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer());
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, image.pixels.data());
+    // OpenGL's first row is the lowest one.
+    for (int row = 0; row < height / 2; ++row) {
+        std::uint8_t* const top = image.pixels.data() + rowSize * row;
+        std::swap_ranges(top, top + rowSize, image.pixels.data() + rowSize * (height - 1 - row));
+    }
+    return image;
 }
 
 }  // namespace hashphase::demos

@@ -11,20 +11,28 @@
 // Memory   grows to the largest picture so far; from then on a draw() allocates nothing
 // Misuse   DrawError where OpenGL refuses: what() says what
 
+#include <demos/viewer/draw/body_layers.hpp>
+#include <demos/viewer/draw/ground_layer.hpp>
 #include <demos/viewer/draw/image.hpp>
 #include <demos/viewer/draw/picture.hpp>
 
-#include <memory>
-
 namespace hashphase::demos {
+
+/// A framebuffer of colour and depth.
+struct FrameTarget {
+    FrameTarget(int wide, int high);
+
+    int width;
+    int height;
+    GlFramebuffer framebuffer;
+    GlRenderbuffer colour;
+    GlRenderbuffer depth;
+};
 
 class Renderer {
 public:
     /// For pictures of so many pixels, at least one each way.
-    Renderer(int width, int height);
-    Renderer(const Renderer&) = delete;
-    Renderer& operator=(const Renderer&) = delete;
-    ~Renderer();
+    Renderer(int width, int height) : target_(width, height) {}
 
     /// The next picture is of that size. Where it is another one, what was drawn is lost.
     void resize(int width, int height);
@@ -39,11 +47,17 @@ public:
     [[nodiscard]] Image read() const;
 
     /// OpenGL's name of its own framebuffer.
-    [[nodiscard]] unsigned framebuffer() const;
+    [[nodiscard]] unsigned framebuffer() const { return target_.framebuffer.name(); }
 
 private:
-    struct Layers;
-    std::unique_ptr<Layers> layers_;
+    void prepare(const Picture& picture, const View& view, unsigned framebuffer);
+
+    FrameTarget target_;
+    GlBuffer frame_;
+    Layer sky_{{.shader = "sky"}};
+    GroundLayer ground_;
+    BodyLayers bodies_;
+    Layer rectangle_{{.shader = "rectangle"}};
 };
 
 }  // namespace hashphase::demos

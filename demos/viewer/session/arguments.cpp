@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/viewer/session/arguments.hpp>
+//
+// The words of a command, read by its usage.
+
+#include <demos/viewer/session/commands.hpp>
 
 #include <demos/console/format.hpp>
 #include <demos/scenes/input_error.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <optional>
 #include <sstream>
 #include <variant>
@@ -56,43 +60,32 @@ std::optional<double> numberOf(const Parameter& parameter, const std::string& wo
     return number && *number >= low && *number <= high ? number : std::nullopt;
 }
 
-double placeOf(const Parameter& parameter, const std::string& word) {
-    const auto place = std::ranges::find(parameter.known, word);
-    if (place == parameter.known.end()) {
-        const std::vector<std::string> names(parameter.known.begin(), parameter.known.end());
-        throw InputError(unknownNameSentence(parameter.what, word, names));
-    }
-    return static_cast<double>(place - parameter.known.begin());
-}
-
-/// Of a usage, as "X" of "[X Y Z]".
-std::string nameIn(std::string word) {
-    std::erase_if(word,
-                  [](char letter) { return letter == '[' || letter == ']' || letter == '.'; });
-    return word;
-}
-
-template <class Fail>
-double valueOf(const Parameter& parameter, const std::string& name, const std::string& word,
-               const Fail& fail) {
-    switch (parameter.kind) {
-        case Parameter::Kind::word:
-            return 0;
-        case Parameter::Kind::choice:
-            return placeOf(parameter, word);
-        case Parameter::Kind::onOff:
-            if (word != "on" && word != "off") {
-                fail(quotedWord(word) + " is neither on nor off.");
+/// What stands for a word in a usage: "X" of "[X Y Z]", "top|free|follow".
+struct Place {
+    explicit Place(std::string text) : isOptional(text.starts_with('[')), name(std::move(text)) {
+        std::erase_if(name, [](char each) { return each == '[' || each == ']' || each == '.'; });
+        if (name.find('|') != std::string::npos && std::ranges::none_of(name, ::isupper)) {
+            std::istringstream all(name);
+            for (std::string choice; std::getline(all, choice, '|');) {
+                choices.push_back(choice);
             }
-            return word == "on" ? 1 : 0;
-        default:
-            break;
+        }
     }
-    const std::optional<double> number = numberOf(parameter, word);
-    if (!number) {
-        fail(name + " is " + requirementOf(parameter) + ", not " + quotedWord(word) + ".");
+
+    [[nodiscard]] bool isOnOff() const { return name == "on|off"; }
+
+    bool isOptional;  // with all that follow
+    std::string name;
+    std::vector<std::string> choices;  // where the usage tells them
+};
+
+double placeIn(const std::vector<std::string>& choices, std::string_view what,
+               const std::string& word) {
+    const auto place = std::ranges::find(choices, word);
+    if (place == choices.end()) {
+        throw InputError(unknownNameSentence(what, word, choices));
     }
-    return number.value_or(0);
+    return static_cast<double>(place - choices.begin());
 }
 
 }  // namespace
@@ -102,28 +95,47 @@ std::string firstWord(std::string_view line) {
     return words.empty() ? std::string() : words.front();
 }
 
-Arguments::Arguments(std::string_view line, std::string_view usage,
-                     std::span<const Parameter> parameters)
-    : words(wordsOf(line)) {
+Arguments::Arguments(std::string_view line, const CommandKind& kind) : words(wordsOf(line)) {
     words.erase(words.begin());
-    const auto fail = [usage](const std::string& fault) {
-        throw InputError(fault + " The command is: " + std::string(usage));
+    const auto fail = [&kind](const std::string& fault) {
+        throw InputError(fault + " The command is: " + kind.usage);
     };
-    const std::vector<std::string> names = wordsOf(usage);
-    const bool repeats = !parameters.empty() && parameters.back().repeats;
-    const std::size_t count = repeats ? std::max(words.size(), std::size_t{1}) : parameters.size();
+    const std::vector<std::string> usage = wordsOf(kind.usage);
+    const std::span<const Parameter> parameters = kind.parameters;
+    std::size_t count = std::max(usage.size() - 1, parameters.size());
+    if (kind.usage.ends_with("...") && parameters.size() < usage.size()) {
+        count = std::max(count, words.size());
+    }
     for (std::size_t i = 0; i < count; ++i) {
-        const Parameter& parameter = parameters[std::min(i, parameters.size() - 1)];
-        const std::string name = parameter.what.empty()
-                                     ? nameIn(names[std::min(i + 1, names.size() - 1)])
-                                     : std::string(parameter.what);
-        if (!has(i) && parameter.isOptional) {
+        const Place place(usage[std::min(i + 1, usage.size() - 1)]);
+        const Parameter parameter =
+            parameters.empty() ? Parameter() : parameters[std::min(i, parameters.size() - 1)];
+        const std::vector<std::string>& choices =
+            place.choices.empty() ? parameter.choices : place.choices;
+        const std::string what = !parameter.what.empty() ? parameter.what
+                                 : choices.empty()       ? place.name
+                                                         : kind.name;
+        if (!has(i) && (place.isOptional || parameter.isOptional)) {
             break;
         }
         if (!has(i)) {
-            fail(name + " is missing.");
+            fail(what + " is missing.");
         }
-        numbers.push_back(valueOf(parameter, name, words[i], fail));
+        const std::string& word = words[i];
+        if (place.isOnOff() && word != "on" && word != "off") {
+            fail(quotedWord(word) + " is neither on nor off.");
+        }
+        if (place.isOnOff()) {
+            numbers.push_back(word == "on" ? 1 : 0);
+        } else if (!choices.empty()) {
+            numbers.push_back(placeIn(choices, what, word));
+        } else if (parameter.kind == Parameter::Kind::word) {
+            numbers.push_back(0);
+        } else if (const std::optional<double> number = numberOf(parameter, word)) {
+            numbers.push_back(*number);
+        } else {
+            fail(what + " is " + requirementOf(parameter) + ", not " + quotedWord(word) + ".");
+        }
     }
     if (words.size() > numbers.size()) {
         fail(quotedWord(words[numbers.size()]) + " is one word too many.");

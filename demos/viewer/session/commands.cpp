@@ -10,11 +10,12 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
+#include <ranges>
+#include <utility>
 
 namespace hashphase::demos {
 namespace {
 
-using Names = std::vector<std::string_view>;
 using Kind = Parameter::Kind;
 
 /// Of a reading to a number.
@@ -24,34 +25,23 @@ constexpr double kDegree = std::numbers::pi / 180;
 // --- Parameters ----------------------------------------------------------------------------------
 
 const Parameter kWord{};
-const Parameter kOptionalWord{.isOptional = true};
-const Parameter kOnOff{.kind = Kind::onOff, .isOptional = true};
 const Parameter kFar{.kind = Kind::number, .low = -1e6, .high = 1e6};  // [m], [pixels]
 const Parameter kDegrees{.kind = Kind::number, .low = -360, .high = 360};
-const Parameter kSide{.kind = Kind::whole, .low = kLeastSide, .high = kMostSide};
 
-Parameter numberFrom(double low, double high, bool isOptional = false) {
-    return {.kind = Kind::number, .low = low, .high = high, .isOptional = isOptional};
+Parameter numberFrom(double low, double high) {
+    return {.kind = Kind::number, .low = low, .high = high};
 }
 
-Parameter wholeFrom(double low, double high, bool isOptional = false) {
-    return {.kind = Kind::whole, .low = low, .high = high, .isOptional = isOptional};
+Parameter wholeFrom(double low, double high) {
+    return {.kind = Kind::whole, .low = low, .high = high};
 }
 
-template <class Known>
-Parameter oneOf(std::string_view what, const Known& known) {
-    return {.kind = Kind::choice, .what = what, .known = Names(known.begin(), known.end())};
+template <class Names>
+Parameter oneOf(std::string what, const Names& names) {
+    return {.what = std::move(what), .choices = {names.begin(), names.end()}};
 }
 
-/// The one that is named, or the one after the present one: see chosenOrNext().
-template <class Known>
-Parameter oneOrNext(std::string_view what, const Known& known) {
-    Parameter parameter = oneOf(what, known);
-    parameter.known.push_back("next");
-    parameter.isOptional = true;
-    return parameter;
-}
-
+/// Of "a|b|next": the one that is named, or the one after the present one.
 template <class Value>
 void chooseOrNext(const Arguments& given, std::size_t count, Value& value) {
     const std::size_t chosen = given.has(0) ? given.index(0) : count;
@@ -68,19 +58,11 @@ Parameter fileField(std::string_view section, std::string_view name) {
             })};
 }
 
-Names effectNames() {
-    Names names(kAllEffects.size());
-    std::ranges::transform(kAllEffects, names.begin(), nameOf);
-    return names;
-}
-
-Names broadphasesAndNext() {
-    Names names;
-    for (const BroadphaseKind& kind : broadphaseKinds()) {
-        names.push_back(kind.name);
-    }
-    names.push_back("next");
-    return names;
+Parameter oneBroadphaseOrNext() {
+    Parameter parameter =
+        oneOf("broadphase", broadphaseKinds() | std::views::transform(&BroadphaseKind::name));
+    parameter.choices.emplace_back("next");
+    return parameter;
 }
 
 std::vector<Parameter> ofPose() {
@@ -305,21 +287,22 @@ std::vector<CommandKind> makeCommands() {
                             CommandKind::Action run, std::vector<Parameter> parameters = {}) {
         all.push_back({firstWord(usage), role, usage, help, std::move(parameters), run});
     };
-    add(chooses, "scene NAME|next|previous", "put another scene on stage", scene, {kOptionalWord});
+    add(chooses, "scene NAME|next|previous", "put another scene on stage", scene,
+        {{.isOptional = true}});
     add(chooses, "objects N", "begin again with so many bodies", objects,
         {wholeFrom(1, kMostObjects)});
     add(chooses, "seed N", "begin again with another seed", seed, {wholeFrom(0, kMostSeed)});
     add(steers, "restart", "begin again", [](S s, A) { s.choose(s.choice); });
-    add(steers, "pause [on|off]", "stand still, or go on", pause, {kOnOff});
+    add(steers, "pause [on|off]", "stand still, or go on", pause);
     add(steers, "step [N]", "stand still after so many frames",
-        [](S s, A a) { s.askForSteps(a.has(0) ? a.index(0) : 1); }, {wholeFrom(1, 1e6, true)});
+        [](S s, A a) { s.askForSteps(a.has(0) ? a.index(0) : 1); }, {wholeFrom(1, 1e6)});
     add(changes, "effect NAME [on|off]",
         "declare an effect as the scene does, with what it needs, or take it back", effect,
-        {oneOf("effect", effectNames()), kOnOff});
+        {oneOf("effect", kAllEffects | std::views::transform(nameOf))});
     add(changes, "broadphase NAME|next", "who finds the pairs; the next one that is quick enough",
-        broadphase, {oneOf("broadphase", broadphasesAndNext())});
+        broadphase, {oneBroadphaseOrNext()});
     add(shows, "check [on|off]", "compare all pairs with the exact ones",
-        [](S s, A a) { s.setChecking(a.onOff(0, s.isChecking)); }, {kOnOff});
+        [](S s, A a) { s.setChecking(a.onOff(0, s.isChecking)); });
     add(changes, "cell SIZE", "edge of the grid's cells [m]; 0 chooses by itself",
         [](S s, A a) { changeGrid(s, &GridConfig::cellSize, a.numbers[0]); },
         {fileField("grid", "cellSize")});
@@ -329,64 +312,57 @@ std::vector<CommandKind> makeCommands() {
     add(changes, "radius R", "how far agents look around [m]", radius,
         {fileField("effects.proximity", "radius")});
     add(changes, "camera " + anyOf(kCameraModes), "look from above, fly, or follow who is picked",
-        [](S s, A a) { s.setCameraMode(static_cast<CameraMode>(a.index(0))); },
-        {oneOf("camera", kCameraModes)});
+        [](S s, A a) { s.setCameraMode(static_cast<CameraMode>(a.index(0))); });
     add(changes, "home", "take the camera to where it began", [](S s, A) { s.goHome(); });
     add(changes, "move RIGHT UP FORWARD", "move the camera [m]",
-        [](S s, A a) { s.camera.move(vectorAt(a, 0)); }, {kFar, kFar, kFar});
+        [](S s, A a) { s.camera.move(vectorAt(a, 0)); }, {kFar});
     add(changes, "turn LEFT UP", "turn the camera [degrees]",
-        [](S s, A a) { s.camera.turn(radiansAt(a, 0), radiansAt(a, 1)); }, {kDegrees, kDegrees});
+        [](S s, A a) { s.camera.turn(radiansAt(a, 0), radiansAt(a, 1)); }, {kDegrees});
     add(changes, "zoom FACTOR", "go nearer (above 1) or farther away",
         [](S s, A a) { s.camera.zoom(a.number(0)); }, {numberFrom(0.01, 100)});
     add(changes, "eye X Y Z YAW PITCH", "put the free camera there [m, degrees]",
         [](S s, A a) { s.camera.place(vectorAt(a, 0), radiansAt(a, 3), radiansAt(a, 4)); },
-        {kFar, kFar, kFar, kDegrees, kDegrees});
+        {kFar, kFar, kFar, kDegrees});
     add(changes, "pose MODE NUMBER...", "put the camera as a recording has it", pose, ofPose());
     add(changes, "freeze [on|off]", "cull by the camera of this moment, and look from outside",
-        [](S s, A a) { s.freeze(a.onOff(0, s.frozen.has_value())); }, {kOnOff});
+        [](S s, A a) { s.freeze(a.onOff(0, s.frozen.has_value())); });
     add(changes, "size WIDTH HEIGHT", "of the picture, up to 8,192 each way [pixels]", size,
-        {kSide, kSide});
+        {wholeFrom(kLeastSide, kMostSide)});
     add(changes, "pick X Y", "ask who is at the pixel", [](S s, A a) { s.pick(pixelAt(a, 0)); },
-        {kFar, kFar});
-    add(changes, "box X0 Y0 X1 Y1", "select who is between two pixels", box,
-        {kFar, kFar, kFar, kFar});
-    add(changes, "drag X0 Y0 X1 Y1", "show the rectangle between two pixels", drag,
-        {kFar, kFar, kFar, kFar});
+        {kFar});
+    add(changes, "box X0 Y0 X1 Y1", "select who is between two pixels", box, {kFar});
+    add(changes, "drag X0 Y0 X1 Y1", "show the rectangle between two pixels", drag, {kFar});
     add(changes, "clear", "select nobody", clear);
-    add(changes, "push [X Y Z]", "add a velocity to who is selected [m/s]", push,
-        {numberFrom(kFar.low, kFar.high, true), kFar, kFar});
+    add(changes, "push [X Y Z]", "add a velocity to who is selected [m/s]", push, {kFar});
     add(changes, "delete", "remove who is selected",
         [](S s, A) { s.say("removed " + withThousands(s.removeSelected())); });
     add(changes, "recolour", "mark who is selected",
         [](S s, A) { s.say("recoloured " + withThousands(s.recolourSelected())); });
     add(shows, "colour [" + anyOf(kColourings) + "|next]", "what colours tell",
         [](S s, A a) { chooseOrNext(a, kColourings.size(), s.options.colouring); },
-        {oneOrNext("colouring", kColourings)});
+        {{.what = "colouring"}});
     add(shows, "overlay " + anyOf(kOverlays) + " [on|off]",
-        "what is shown of the scene, and laid over it", overlay,
-        {oneOf("overlay", kOverlays), kOnOff});
+        "what is shown of the scene, and laid over it", overlay);
     add(shows, "dots PIXELS", "draw bodies at least with that radius",
         [](S s, A a) { s.options.dots = a.number(0); }, {numberFrom(0, 20)});
     add(shows, "theme [" + anyOf(kThemes) + "|next]", "light or dark",
-        [](S s, A a) { chooseOrNext(a, kThemes.size(), s.options.theme); },
-        {oneOrNext("theme", kThemes)});
+        [](S s, A a) { chooseOrNext(a, kThemes.size(), s.options.theme); });
     add(steers, "panel [on|off]", "show the panel",
-        [](S s, A a) { s.options.panel = a.onOff(0, s.options.panel); }, {kOnOff});
+        [](S s, A a) { s.options.panel = a.onOff(0, s.options.panel); });
     add(steers, "help [on|off]", "show keys and commands",
-        [](S s, A a) { s.options.help = a.onOff(0, s.options.help); }, {kOnOff});
+        [](S s, A a) { s.options.help = a.onOff(0, s.options.help); });
     add(writes, "screenshot [FILE]", "write a picture (PNG)",
-        [](S s, A a) { s.askForScreenshot(a.has(0) ? a.words[0] : "hashphase.png"); },
-        {kOptionalWord});
-    add(writes, "save [FILE]", "write a recording of all that was done since the scene began", save,
-        {kOptionalWord});
+        [](S s, A a) { s.askForScreenshot(a.has(0) ? a.words[0] : "hashphase.png"); });
+    add(writes, "save [FILE]", "write a recording of all that was done since the scene began",
+        save);
     add(writes, "capture FILE [FRAMES]",
         "write the boxes of so many frames as they are simulated (.aabbs)",
         [](S s, A a) { s.capture(a.words[0], a.has(1) ? static_cast<int>(a.index(1)) : 60); },
-        {kWord, wholeFrom(1, 1e6, true)});
+        {kWord, wholeFrom(1, 1e6)});
     add(steers, "quit", "end the program", [](S s, A) { s.isOver = true; });
-    add(steers, "print READING...", "say numbers", print, {{.repeats = true}});
+    add(steers, "print READING...", "say numbers", print);
     add(steers, "expect READING " + anyOf(kRelations) + " NUMBER", "complain unless it is so",
-        expect, {kWord, oneOf("relation", kRelations), numberFrom(-1e18, 1e18)});
+        expect, {kWord, {.what = "relation"}, numberFrom(-1e18, 1e18)});
     return all;
 }
 

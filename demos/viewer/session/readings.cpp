@@ -73,64 +73,65 @@ std::uint64_t countOnRadar(const Session& session) {
     return std::accumulate(radar->counts.begin(), radar->counts.end(), std::uint64_t{0});
 }
 
-using S = const Session&;
+using Seen = const Session&;
 
 }  // namespace
 
 std::span<const Reading> readings() {
     static const std::array kReadings{
-        Reading{"frame", [](S s) { return s.frame; }},
-        Reading{"playing", [](S s) { return s.isPlaying; }},
-        Reading{"bodies", [](S s) { return s.stage->size(); }},
-        Reading{"visible", [](S s) { return s.visibleCount(); }},
-        Reading{"frozen", [](S s) { return s.frozen.has_value(); }},
-        Reading{"selected", [](S s) { return s.selected.size(); }},
-        Reading{"recoloured", [](S s) { return s.recoloured.size(); }},
-        Reading{"picked", [](S s) { return s.card ? static_cast<double>(s.card->index) : -1; }},
-        Reading{"load", [](S s) { return cardOf(s).load; }},
-        Reading{"neighbours", [](S s) { return cardOf(s).neighbours; }},
-        Reading{"candidates", [](S s) { return cardOf(s).candidates; }},
-        Reading{"x", [](S s) { return cardOf(s).body.centre.x(); }},
-        Reading{"y", [](S s) { return cardOf(s).body.centre.y(); }},
-        Reading{"z", [](S s) { return cardOf(s).body.centre.z(); }},
-        Reading{"speed", [](S s) { return cardOf(s).body.speed; }},
-        Reading{"pairs", [](S s) { return s.stage->pairCount(); }},
-        Reading{"exact", [](S s) { return checkOf(s).exact.size(); }},
-        Reading{"missing", [](S s) { return checkOf(s).missing.size(); }},
-        Reading{"extra", [](S s) { return checkOf(s).extra.size(); }},
-        Reading{"cellSize",
-                [](S s) { return s.stage->grid() != nullptr ? s.stage->grid()->cellSize() : 0; }},
-        Reading{"largestLoad", [](S s) { return loadsOf(s).largest; }},
-        Reading{"columns", [](S s) { return loadsOf(s).columns; }},
+        Reading{"frame", [](Seen s) { return s.frame; }},
+        Reading{"playing", [](Seen s) { return s.isPlaying; }},
+        Reading{"bodies", [](Seen s) { return s.stage->size(); }},
+        Reading{"visible", [](Seen s) { return s.visibleCount(); }},
+        Reading{"frozen", [](Seen s) { return s.frozen.has_value(); }},
+        Reading{"selected", [](Seen s) { return s.selected.size(); }},
+        Reading{"recoloured", [](Seen s) { return s.recoloured.size(); }},
+        Reading{"picked", [](Seen s) { return s.card ? static_cast<double>(s.card->index) : -1; }},
+        Reading{"load", [](Seen s) { return cardOf(s).load; }},
+        Reading{"neighbours", [](Seen s) { return cardOf(s).neighbours; }},
+        Reading{"candidates", [](Seen s) { return cardOf(s).candidates; }},
+        Reading{"x", [](Seen s) { return cardOf(s).body.centre.x(); }},
+        Reading{"y", [](Seen s) { return cardOf(s).body.centre.y(); }},
+        Reading{"z", [](Seen s) { return cardOf(s).body.centre.z(); }},
+        Reading{"speed", [](Seen s) { return cardOf(s).body.speed; }},
+        Reading{"pairs", [](Seen s) { return s.stage->pairCount(); }},
+        Reading{"exact", [](Seen s) { return checkOf(s).exact.size(); }},
+        Reading{"missing", [](Seen s) { return checkOf(s).missing.size(); }},
+        Reading{"extra", [](Seen s) { return checkOf(s).extra.size(); }},
+        Reading{
+            "cellSize",
+            [](Seen s) { return s.stage->grid() != nullptr ? s.stage->grid()->cellSize() : 0; }},
+        Reading{"largestLoad", [](Seen s) { return loadsOf(s).largest; }},
+        Reading{"columns", [](Seen s) { return loadsOf(s).columns; }},
         Reading{"colours", colourCount},
         Reading{"inZones", countInZones},
         Reading{"onRadar", countOnRadar},
-        Reading{"tunnelled", [](S s) { return s.stage->tunnelMarks().size(); }},
+        Reading{"tunnelled", [](Seen s) { return s.stage->tunnelMarks().size(); }},
         Reading{"asleep",
-                [](S s) {
+                [](Seen s) {
                     return countBodies(s, [](const StageBody& body) { return body.isAsleep; });
                 }},
         Reading{"moving",
-                [](S s) {
+                [](Seen s) {
                     return countBodies(s, [](const StageBody& body) { return body.speed > 0; });
                 }},
-        Reading{"memory", [](S s) { return s.stage->memoryBytes(); }},
-        Reading{"phases", [](S s) { return s.stage->times().size(); }},
-        Reading{"zones", [](S s) { return s.stage->zones().size(); }},
-        Reading{"milliseconds", [](S s) { return s.history.medianTotal(); }},
-        Reading{"p95", [](S s) { return s.history.p95Total(); }},
-        Reading{"eyeX", [](S s) { return s.pose().eye.x(); }},
-        Reading{"eyeY", [](S s) { return s.pose().eye.y(); }},
-        Reading{"eyeZ", [](S s) { return s.pose().eye.z(); }},
-        Reading{"dragging", [](S s) { return s.rectangle.has_value(); }},
-        Reading{"dots", [](S s) { return s.options.dots; }},
-        Reading{"dark", [](S s) { return s.options.theme == Theme::dark; }},
-        Reading{"panel", [](S s) { return s.options.panel; }},
-        Reading{"help", [](S s) { return s.options.help; }},
-        Reading{"width", [](S s) { return s.width; }},
-        Reading{"height", [](S s) { return s.height; }},
+        Reading{"memory", [](Seen s) { return s.stage->memoryBytes(); }},
+        Reading{"phases", [](Seen s) { return s.stage->times().size(); }},
+        Reading{"zones", [](Seen s) { return s.stage->zones().size(); }},
+        Reading{"milliseconds", [](Seen s) { return s.history.medianTotal(); }},
+        Reading{"p95", [](Seen s) { return s.history.p95Total(); }},
+        Reading{"eyeX", [](Seen s) { return s.pose().eye.x(); }},
+        Reading{"eyeY", [](Seen s) { return s.pose().eye.y(); }},
+        Reading{"eyeZ", [](Seen s) { return s.pose().eye.z(); }},
+        Reading{"dragging", [](Seen s) { return s.rectangle.has_value(); }},
+        Reading{"dots", [](Seen s) { return s.options.dots; }},
+        Reading{"dark", [](Seen s) { return s.options.theme == Theme::dark; }},
+        Reading{"panel", [](Seen s) { return s.options.panel; }},
+        Reading{"help", [](Seen s) { return s.options.help; }},
+        Reading{"width", [](Seen s) { return s.width; }},
+        Reading{"height", [](Seen s) { return s.height; }},
         // So much of it as a double holds.
-        Reading{"hash", [](S s) { return s.hash() >> 12; }},
+        Reading{"hash", [](Seen s) { return s.hash() >> 12; }},
     };
     return kReadings;
 }

@@ -28,28 +28,15 @@ EffectsFile wanderers(std::size_t objects) {
     file.scene.domain = domain;
     file.scene.terrain = static_cast<std::uint32_t>(std::lround(64 * growth));
     file.scene.zones = 20;
-    for (const Effect effect :
-         {Effect::motion, Effect::terrain, Effect::pairs, Effect::response, Effect::picking,
-          Effect::boxSelection, Effect::culling, Effect::proximity}) {
-        file.effects.declare(effect);
-    }
+    file.effects =
+        effectsOf({Effect::motion, Effect::terrain, Effect::pairs, Effect::response,
+                   Effect::picking, Effect::boxSelection, Effect::culling, Effect::proximity});
     file.effects.motion->bounds = {Vector3<double>(1, -infinity, 1),
                                    Vector3<double>(domain - 1, infinity, domain - 1)};
     file.effects.response->restitution = 0.9;
     file.effects.proximity->radius = 5;
     file.effects.proximity->turns = 30;  // else whole regions would flicker
     return file;
-}
-
-// What Bullet does by itself, and what the viewer asks.
-SceneEffects bulletEffects() {
-    SceneEffects effects;
-    for (const Effect effect :
-         {Effect::motion, Effect::pairs, Effect::response, Effect::sleeping, Effect::rotation,
-          Effect::friction, Effect::picking, Effect::boxSelection, Effect::culling}) {
-        effects.declare(effect);
-    }
-    return effects;
 }
 
 std::unique_ptr<Stage> makePaperStage(EffectsFile file, const SceneChoice& choice) {
@@ -88,8 +75,7 @@ std::span<const ViewerScene> viewerScenes() {
             all.push_back({std::string(kind.name), std::string(kind.description),
                            kind.defaultObjects,
                            [&kind](const SceneChoice& choice, std::size_t objects) {
-                               return std::make_unique<BulletStage>(kind, objects, choice.seed,
-                                                                    bulletEffects());
+                               return std::make_unique<BulletStage>(kind, objects, choice.seed);
                            }});
         }
         return all;

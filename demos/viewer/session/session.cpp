@@ -60,7 +60,7 @@ void Session::run(std::string_view line) {
     if (kind == nullptr) {
         return;
     }
-    const Arguments arguments(line, kind->usage, kind->parameters);
+    const Arguments arguments(line, *kind);
     const std::uint64_t frameBefore = frame;
     kind->run(*this, arguments);
     if (isLogged(kind->role)) {

@@ -19,7 +19,6 @@
 #include <demos/viewer/session/box_recorder.hpp>
 #include <demos/viewer/session/camera.hpp>
 #include <demos/viewer/session/command_log.hpp>
-#include <demos/viewer/session/phase_history.hpp>
 #include <demos/viewer/session/scene_choice.hpp>
 #include <demos/viewer/session/stage_queries.hpp>
 #include <demos/viewer/stage/stage.hpp>

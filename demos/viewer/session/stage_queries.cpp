@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/viewer/session/stage_queries.hpp>
 
-#include <demos/viewer/stage/body_shape.hpp>
-
 #include <broadphase/proxy_filter.hpp>
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 // All that is switched goes through the session's commands.
 
 #include <demos/viewer/session/session.hpp>
-#include <demos/viewer/show/body_colours.hpp>
+#include <demos/viewer/show/picture_maker.hpp>
 
 #include <functional>
 #include <span>

@@ -4,7 +4,7 @@
 // The parts of the panel that only tell.
 
 #include <demos/viewer/session/session.hpp>
-#include <demos/viewer/show/body_colours.hpp>
+#include <demos/viewer/show/picture_maker.hpp>
 
 #include <imgui.h>
 

@@ -11,9 +11,8 @@
 #include <demos/viewer/draw/headless_context.hpp>
 #include <demos/viewer/session/script.hpp>
 #include <demos/viewer/show/viewer.hpp>
-#include <demos/viewer/show/wander_report.hpp>
 #include <demos/viewer/show/window.hpp>
-#include <demos/viewer/stage/threads.hpp>
+#include <demos/viewer/stage/paper_stage.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -143,7 +142,6 @@ struct Run {
     [[nodiscard]] std::string keep(const std::string& fault);
     [[nodiscard]] std::string writeFiles();
     [[nodiscard]] bool isAsExpected() const;
-    [[nodiscard]] WanderEnd played() const { return {*session, drewPictures, framesPerSecond}; }
     /// How many are to be simulated without a window.
     [[nodiscard]] std::uint64_t frameCount() const {
         return playback ? playback->log().frames : options.frames.value_or(kHeadlessFrames);
@@ -288,9 +286,12 @@ int Run::end() {
     session->endCapture("the run ends");
     tellMessages();
     if (!playback && !script) {
-        tellPhases(played(), console.out);
+        tellPhases(*session, drewPictures, console.out);
     }
-    tellFrameRate(played(), console.out);
+    if (framesPerSecond) {
+        console.out << fixed(*framesPerSecond, 1)
+                    << " frames shown per second, the first second left out\n";
+    }
     if (const std::string faults = writeFiles(); !faults.empty()) {
         throw InputError(faults);
     }
@@ -319,7 +320,7 @@ std::string Run::writeFiles() {
         }
     };
     write(*record, [this](std::ostream& out) { out << session->log.text(); });
-    write(*json, [this](std::ostream& out) { writeNumbers(played(), out); });
+    write(*json, [this](std::ostream& out) { writeNumbers(*session, framesPerSecond, out); });
     return faults;
 }
 
@@ -349,7 +350,7 @@ Subcommand wanderCommand() {
                 listWander(console.out);
                 return int{kExitOk};
             }
-            const auto threads = limitThreads(options.threads.value_or(threadCount()));
+            const auto threads = options.threads ? limitThreads(*options.threads) : nullptr;
             return Run(options, console).play();
         });
 }

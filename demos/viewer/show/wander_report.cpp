@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/viewer/show/wander_report.hpp>
+#include <demos/viewer/show/wander.hpp>
 
 #include <demos/console/format.hpp>
 #include <demos/report/json_values.hpp>
@@ -53,8 +53,7 @@ void listWander(std::ostream& out) {
     out << '\n';
 }
 
-void tellPhases(const WanderEnd& end, std::ostream& out) {
-    const Session& session = end.session;
+void tellPhases(const Session& session, bool drewPictures, std::ostream& out) {
     const PhaseHistory& history = session.history;
     if (const std::size_t count = history.toldCount(); count > 0) {
         for (const PhaseHistory::Row& row : history.rows()) {
@@ -62,7 +61,7 @@ void tellPhases(const WanderEnd& end, std::ostream& out) {
         }
         tellPhase(out, "together", history.medianTotal(), history.p95Total());
         out << "medians of the last " << (count == 1 ? "frame" : withThousands(count) + " frames")
-            << (end.drewPictures ? ", of a run that drew pictures as well" : "") << '\n';
+            << (drewPictures ? ", of a run that drew pictures as well" : "") << '\n';
     }
     out << withThousands(session.stage->size()) << " bodies, "
         << withThousands(session.visibleCount()) << " visible, "
@@ -70,20 +69,13 @@ void tellPhases(const WanderEnd& end, std::ostream& out) {
         << withThousands(session.frame) << " frames\n";
 }
 
-void tellFrameRate(const WanderEnd& end, std::ostream& out) {
-    if (end.framesPerSecond) {
-        out << fixed(*end.framesPerSecond, 1)
-            << " frames shown per second, the first second left out\n";
-    }
-}
-
-void writeNumbers(const WanderEnd& end, std::ostream& out) {
-    const Session& session = end.session;
+void writeNumbers(const Session& session, std::optional<double> framesPerSecond,
+                  std::ostream& out) {
     Json json;
     json["schema"] = "hashphase/wander";
     json["version"] = 1;
     addScene(session, json);
-    json["framesPerSecond"] = orNull(end.framesPerSecond);
+    json["framesPerSecond"] = orNull(framesPerSecond);
     for (const Reading& reading : readings()) {
         Json& number = json["readings"][std::string(reading.name)];
         try {

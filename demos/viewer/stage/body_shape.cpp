@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/viewer/stage/body_shape.hpp>
+#include <demos/viewer/stage/stage.hpp>
+
+#include <broadphase/regions.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -21,26 +23,6 @@ std::optional<float> meetsSphere(const Vector3<float>& from, const Vector3<float
     }
     const double share = distance / (closing + std::sqrt(discriminant));
     return share <= 1 ? std::optional(static_cast<float>(share)) : std::nullopt;
-}
-
-// Slab by slab (Kay and Kajiya, 1986).
-std::optional<float> meetsBox(const Vector3<float>& from, const Vector3<float>& way,
-                              const Vector3<float>& half) {
-    float first = 0;
-    float last = 1;
-    for (int axis = 0; axis < 3; ++axis) {
-        if (way[axis] == 0) {
-            if (std::abs(from[axis]) > half[axis]) {
-                return std::nullopt;
-            }
-            continue;
-        }
-        const float a = (-half[axis] - from[axis]) / way[axis];
-        const float b = (half[axis] - from[axis]) / way[axis];
-        first = std::max(first, std::min(a, b));
-        last = std::min(last, std::max(a, b));
-    }
-    return first <= last ? std::optional(first) : std::nullopt;
 }
 
 // An upright one: the round wall between its ends, or one of the balls there.
@@ -99,13 +81,15 @@ std::optional<float> meets(const StageBody& body, const Vector3<float>& from,
     const Eigen::Quaternionf turnBack = body.orientation.conjugate();
     const Vector3<float> start = turnBack * (from - body.centre);
     const Vector3<float> turned = turnBack * way;
+    float share = 0;
     switch (body.shape) {
         case StageBody::Shape::none:
             return std::nullopt;
         case StageBody::Shape::sphere:
             return meetsSphere(start, turned, body.size.x());
         case StageBody::Shape::box:
-            return meetsBox(start, turned, body.size);
+            share = RayRegion<float>(start, start + turned).key({-body.size, body.size});
+            return share < 0 ? std::nullopt : std::optional(share);
         case StageBody::Shape::capsule:
             return meetsCapsule(start, turned, body.size.x(), body.size.y());
     }

@@ -3,8 +3,6 @@
 
 #include <demos/compare/trial.hpp>
 #include <demos/scenes/result_hash.hpp>
-#include <demos/viewer/stage/body_shape.hpp>
-#include <demos/viewer/stage/bullet_zones.hpp>
 
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
@@ -33,21 +31,36 @@ Aabb<float> presentBox(const btRigidBody& body) {
     return {toEigen(low) - margin, toEigen(high) + margin};
 }
 
+/// The time of all zones of that name that lie in none of the same name [ms].
+double millisecondsIn(std::span<const Stage::Zone> zones, std::string_view name) {
+    double sum = 0;
+    int depthOfLast = -1;  // within that one nothing counts again
+    for (const Stage::Zone& zone : zones) {
+        if (depthOfLast >= 0 && zone.depth > depthOfLast) {
+            continue;
+        }
+        depthOfLast = zone.name == name ? zone.depth : -1;
+        sum += zone.name == name ? zone.milliseconds : 0;
+    }
+    return sum;
+}
+
 }  // namespace
 
-BulletStage::BulletStage(const WorldSceneKind& scene, std::size_t objects, std::uint64_t seed,
-                         const SceneEffects& effects)
+BulletStage::BulletStage(const WorldSceneKind& scene, std::size_t objects, std::uint64_t seed)
     : Stage({}, EffectSet::all() - EffectSet{Effect::terrain, Effect::zones}),
       world_(std::make_unique<BulletWorld>(broadphase(), scene, objects, seed)) {
     observers_ = &ownObservers_;
-    size_ = world_->contents().bodies().size();
+    size_ = world_->contents.bodies().size();
     measureBounds();
-    declare(effects);
+    declare(effectsOf({Effect::motion, Effect::pairs, Effect::response, Effect::sleeping,
+                       Effect::rotation, Effect::friction, Effect::picking, Effect::boxSelection,
+                       Effect::culling}));
     noteGivenBoxes();
 }
 
 void BulletStage::measureBounds() {
-    for (const auto& body : world_->contents().bodies()) {
+    for (const auto& body : world_->contents.bodies()) {
         if (!isGround(*body)) {
             bounds_.extend(boxOf(*body->getBroadphaseHandle()));
         }
@@ -70,10 +83,7 @@ void BulletStage::runFrame() {
         before_[index] = body(index).centre;
     }
     clock_.begin();
-    {
-        const BulletZones listening(zones_);
-        world_->configurator().step(kFrameSeconds);
-    }
+    zones_ = world_->step();
     takeTimes(clock_.skip());
     noteGivenBoxes();
     clock_.skip();
@@ -103,7 +113,7 @@ void BulletStage::takeTimes(double wholeMs) {
 
 // Of these the broadphase has found the pairs.
 void BulletStage::noteGivenBoxes() {
-    const auto bodies = world_->contents().bodies();
+    const auto bodies = world_->contents.bodies();
     given_.resize(bodies.size());
     for (std::uint32_t index = 0; index < bodies.size(); ++index) {
         const btRigidBody* body = bodyAt(index);
@@ -116,7 +126,7 @@ void BulletStage::noteGivenBoxes() {
 // are left alone.
 void BulletStage::fileWhereBodiesAre() {
     if (second_ == nullptr) {
-        world_->world().updateAabbs();
+        world_->world.updateAabbs();
         clock_.end("boxes anew");
         return;
     }
@@ -157,13 +167,13 @@ void BulletStage::markTunnels() {
 // --- Who is there --------------------------------------------------------------------------------
 
 btRigidBody* BulletStage::bodyAt(std::uint32_t index) const {
-    const auto bodies = world_->contents().bodies();
+    const auto bodies = world_->contents.bodies();
     const bool isThere = index < bodies.size() && bodies[index]->getBroadphaseHandle() != nullptr;
     return isThere ? bodies[index].get() : nullptr;
 }
 
 std::uint32_t BulletStage::indexLimit() const {
-    return static_cast<std::uint32_t>(world_->contents().bodies().size());
+    return static_cast<std::uint32_t>(world_->contents.bodies().size());
 }
 
 StageBody BulletStage::body(std::uint32_t index) const {
@@ -199,7 +209,7 @@ bool BulletStage::push(std::uint32_t index, const Vector3<float>& velocity) {
 
 std::uint64_t BulletStage::placesHash() const {
     ResultHash hash;
-    for (std::uint32_t index = 0; index < world_->contents().bodies().size(); ++index) {
+    for (std::uint32_t index = 0; index < world_->contents.bodies().size(); ++index) {
         if (const btRigidBody* body = bodyAt(index)) {
             hash.add(std::uint64_t{index});
             for (int row = 0; row < 3; ++row) {
@@ -231,7 +241,7 @@ void BulletStage::fileAnew(const BroadphaseKind& kind) {
     if (kind.ours || &kind != &broadphase()) {
         world_->replaceBroadphase(
             kind, {.bounds = withRoom(bounds_, Vector3<float>::Constant(kRoomForAll)),
-                   .objects = world_->contents().bodies().size(),
+                   .objects = world_->contents.bodies().size(),
                    .grid = effects().grid});
     }
     ownObservers_.forgetProxies();
@@ -243,7 +253,7 @@ void BulletStage::fileAnew(const BroadphaseKind& kind) {
 
 void BulletStage::makeSecondIndex() {
     second_ = std::make_unique<SecondIndex>(effects().grid);
-    const auto bodies = world_->contents().bodies();
+    const auto bodies = world_->contents.bodies();
     for (const auto& body : bodies) {
         second_->proxies.push_back(second_->grid.add(presentBox(*body)));
     }
@@ -256,12 +266,12 @@ void BulletStage::makeSecondIndex() {
 
 const Grid<float>* BulletStage::grid() const {
     return second_ ? &second_->grid
-                   : &dynamic_cast<const SpatialHashBroadphase&>(world_->broadphase()).grid();
+                   : &dynamic_cast<const SpatialHashBroadphase&>(*world_->broadphase).grid();
 }
 
 void BulletStage::listPairs(std::vector<PairKey>& pairs) const {
     demos::listPairs(
-        *world_->broadphase().getOverlappingPairCache(),
+        *world_->broadphase->getOverlappingPairCache(),
         [](const btBroadphaseProxy& proxy) {
             const auto* body = static_cast<btCollisionObject*>(proxy.m_clientObject);
             return static_cast<std::uint32_t>(body->getUserIndex());
@@ -271,7 +281,7 @@ void BulletStage::listPairs(std::vector<PairKey>& pairs) const {
 
 std::size_t BulletStage::pairCount() const {
     return static_cast<std::size_t>(
-        world_->broadphase().getOverlappingPairCache()->getNumOverlappingPairs());
+        world_->broadphase->getOverlappingPairCache()->getNumOverlappingPairs());
 }
 
 void BulletStage::listBoxes(std::vector<Aabb<float>>& boxes,

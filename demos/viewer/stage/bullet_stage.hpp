@@ -16,8 +16,8 @@ namespace hashphase::demos {
 
 class BulletStage final : public Stage {
 public:
-    BulletStage(const WorldSceneKind& scene, std::size_t objects, std::uint64_t seed,
-                const SceneEffects& effects);
+    /// Declares what Bullet does by itself, and what the viewer asks.
+    BulletStage(const WorldSceneKind& scene, std::size_t objects, std::uint64_t seed);
 
     [[nodiscard]] std::size_t size() const override { return size_; }
     [[nodiscard]] std::uint32_t indexLimit() const override;

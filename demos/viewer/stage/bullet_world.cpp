@@ -3,7 +3,10 @@
 
 #include <integration/bullet/conversions.hpp>
 
+#include <LinearMath/btQuickprof.h>
+
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -73,68 +76,118 @@ StageBody stageBody(const btRigidBody& body) {
 
 // --- The world -----------------------------------------------------------------------------------
 
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Listener {
+    struct Open {
+        std::size_t zone;
+        Clock::time_point since;
+    };
+
+    std::vector<Stage::Zone> zones;
+    std::vector<Open> open;  // from the outside inwards
+
+    void enter(const char* name) {
+        open.push_back({zoneInside(name), Clock::now()});
+        ++zones[open.back().zone].calls;
+    }
+
+    void leave() {
+        const std::chrono::duration<double, std::milli> passed = Clock::now() - open.back().since;
+        zones[open.back().zone].milliseconds += passed.count();
+        open.pop_back();
+    }
+
+    // The zone of that name directly within the innermost open one. Those within a zone follow it.
+    std::size_t zoneInside(std::string_view name) {
+        const int depth = static_cast<int>(open.size());
+        std::size_t zone = open.empty() ? 0 : open.back().zone + 1;
+        for (; zone < zones.size() && zones[zone].depth >= depth; ++zone) {
+            if (zones[zone].depth == depth && zones[zone].name == name) {
+                return zone;
+            }
+        }
+        zones.insert(zones.begin() + static_cast<std::ptrdiff_t>(zone), {name, depth});
+        return zone;
+    }
+};
+
+Listener listener;  // the callbacks have no argument for it
+
+}  // namespace
+
 BulletWorld::BulletWorld(const BroadphaseKind& kind, const WorldSceneKind& scene,
                          std::size_t objects, std::uint64_t seed)
-    : dispatcher_(&configuration_),
-      broadphase_(kind.make({.bounds = {}, .objects = objects})),
-      world_(&dispatcher_, broadphase_.get(), &solver_, &configuration_),
-      contents_(world_) {
-    scene.fill(contents_, objects, seed);
-    configurator_ = std::make_unique<WorldConfigurator>(world_);
+    : broadphase(kind.make({.bounds = {}, .objects = objects})),
+      world(&dispatcher, broadphase.get(), &solver, &configuration) {
+    scene.fill(contents, objects, seed);
+    configurator = std::make_unique<WorldConfigurator>(world);
     apply({});
+}
+
+std::vector<Stage::Zone> BulletWorld::step() {
+    listener = {};
+    btSetCustomEnterProfileZoneFunc([](const char* name) { listener.enter(name); });
+    btSetCustomLeaveProfileZoneFunc([] { listener.leave(); });
+    configurator->step(kFrameSeconds);
+    btSetCustomEnterProfileZoneFunc([](const char* /*name*/) {});
+    btSetCustomLeaveProfileZoneFunc([] {});
+    return std::move(listener.zones);
 }
 
 // Nobody moves what rests by hand.
 void BulletWorld::apply(WorldEffects effects) {
     effects.restingBoxes = false;
-    configurator_->apply(effects);
+    configurator->apply(effects);
 }
 
 std::uint64_t BulletWorld::memoryBytes() const noexcept {
-    return static_cast<std::uint64_t>(std::max<std::int64_t>(world_.heap().bytes().value_or(0), 0));
+    return static_cast<std::uint64_t>(std::max<std::int64_t>(world.heap().bytes().value_or(0), 0));
 }
 
 void BulletWorld::remove(btRigidBody& body) {
     // The world would go on solving them.
-    for (int i = world_.getNumConstraints() - 1; i >= 0; --i) {
-        btTypedConstraint& joint = *world_.getConstraint(i);
+    for (int i = world.getNumConstraints() - 1; i >= 0; --i) {
+        btTypedConstraint& joint = *world.getConstraint(i);
         if (&joint.getRigidBodyA() == &body || &joint.getRigidBodyB() == &body) {
             joint.getRigidBodyA().activate();
             joint.getRigidBodyB().activate();
-            world_.removeConstraint(&joint);
+            world.removeConstraint(&joint);
         }
     }
-    for (int i = 0; i < dispatcher_.getNumManifolds(); ++i) {
-        const btPersistentManifold& contact = *dispatcher_.getManifoldByIndexInternal(i);
+    for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+        const btPersistentManifold& contact = *dispatcher.getManifoldByIndexInternal(i);
         if (contact.getBody0() == &body || contact.getBody1() == &body) {
             contact.getBody0()->activate();
             contact.getBody1()->activate();
         }
     }
-    configurator_->release(body);
-    world_.removeRigidBody(&body);
+    configurator->release(body);
+    world.removeRigidBody(&body);
 }
 
 void BulletWorld::replaceBroadphase(const BroadphaseKind& kind, const BroadphaseNeeds& needs) {
-    const WorldEffects effects = configurator_->effects();
-    configurator_ = nullptr;
+    const WorldEffects effects = configurator->effects();
+    configurator = nullptr;
     HeapMeter used;
     {
         const HeapScope scope(used);
         std::unique_ptr<btBroadphaseInterface> next = kind.make(needs);
         std::vector<btBroadphaseProxy*> removed;
-        for (const auto& body : contents_.bodies()) {
+        for (const auto& body : contents.bodies()) {
             moveProxy(*body, *next, removed);
         }
         for (btBroadphaseProxy* proxy : removed) {
-            next->destroyProxy(proxy, &dispatcher_);
+            next->destroyProxy(proxy, &dispatcher);
         }
-        world_.setBroadphase(next.get());
-        broadphase_ = std::move(next);
+        world.setBroadphase(next.get());
+        broadphase = std::move(next);
     }
-    world_.heap() = used;
-    configurator_ = std::make_unique<WorldConfigurator>(world_);
-    configurator_->apply(effects);
+    world.heap() = used;
+    configurator = std::make_unique<WorldConfigurator>(world);
+    configurator->apply(effects);
 }
 
 void BulletWorld::moveProxy(btRigidBody& body, btBroadphaseInterface& next,
@@ -147,13 +200,13 @@ void BulletWorld::moveProxy(btRigidBody& body, btBroadphaseInterface& next,
         before ? CollisionFilter{before->m_collisionFilterGroup, before->m_collisionFilterMask}
                : CollisionFilter{0, 0};
     btBroadphaseProxy* proxy = next.createProxy(low, high, body.getCollisionShape()->getShapeType(),
-                                                &body, filter.group, filter.mask, &dispatcher_);
+                                                &body, filter.group, filter.mask, &dispatcher);
     if (before == nullptr) {
         removed.push_back(proxy);
         return;
     }
-    broadphase_->getOverlappingPairCache()->cleanProxyFromPairs(before, &dispatcher_);
-    broadphase_->destroyProxy(before, &dispatcher_);
+    broadphase->getOverlappingPairCache()->cleanProxyFromPairs(before, &dispatcher);
+    broadphase->destroyProxy(before, &dispatcher);
     body.setBroadphaseHandle(proxy);
 }
 

@@ -25,17 +25,16 @@ namespace hashphase::demos {
 /// What a body is on stage. A shape that is neither sphere, box nor capsule is shown as the box around it.
 [[nodiscard]] StageBody stageBody(const btRigidBody& body);
 
-class BulletWorld {
-public:
+struct BulletWorld {
     BulletWorld(const BroadphaseKind& kind, const WorldSceneKind& scene, std::size_t objects,
                 std::uint64_t seed);
 
-    [[nodiscard]] ObservedWorld& world() noexcept { return world_; }
-    [[nodiscard]] const WorldContents& contents() const noexcept { return contents_; }
-    [[nodiscard]] WorldConfigurator& configurator() noexcept { return *configurator_; }
+    /// Simulates a frame, and returns Bullet's own profile zones of it. One world at a time, on one thread:
+    /// Bullet's listener is global.
+    [[nodiscard]] std::vector<Stage::Zone> step();
+
     /// Sets what Bullet computes.
     void apply(WorldEffects effects);
-    [[nodiscard]] btBroadphaseInterface& broadphase() noexcept { return *broadphase_; }
 
     /// Of the broadphase.
     [[nodiscard]] std::uint64_t memoryBytes() const noexcept;
@@ -47,17 +46,17 @@ public:
     /// if all had been added in their order, and those that were removed had been then.
     void replaceBroadphase(const BroadphaseKind& kind, const BroadphaseNeeds& needs);
 
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher{&configuration};
+    btSequentialImpulseConstraintSolver solver;
+    std::unique_ptr<btBroadphaseInterface> broadphase;
+    ObservedWorld world;
+    WorldContents contents{world};
+    std::unique_ptr<WorldConfigurator> configurator;
+
 private:
     void moveProxy(btRigidBody& body, btBroadphaseInterface& next,
                    std::vector<btBroadphaseProxy*>& removed);
-
-    btDefaultCollisionConfiguration configuration_;
-    btCollisionDispatcher dispatcher_;
-    btSequentialImpulseConstraintSolver solver_;
-    std::unique_ptr<btBroadphaseInterface> broadphase_;
-    ObservedWorld world_;
-    WorldContents contents_;
-    std::unique_ptr<WorldConfigurator> configurator_;
 };
 
 }  // namespace hashphase::demos

@@ -4,16 +4,26 @@
 #include <demos/scenes/result_hash.hpp>
 #include <demos/scenes/simulation_scene.hpp>
 #include <demos/scenes/terrain.hpp>
-#include <demos/viewer/stage/threads.hpp>
 
 #include <algorithm>
 #include <iterator>
 #include <stdexcept>
 #include <utility>
 
-namespace hashphase::demos {
+#if HASHPHASE_HAS_TBB
+#include <integration/tbb/tbb_parallel_for.hpp>
 
+#include <tbb/global_control.h>
+#endif
+
+namespace hashphase::demos {
 namespace {
+
+#if HASHPHASE_HAS_TBB
+constexpr auto* kParallelFor = tbbFor;
+#else
+constexpr auto* kParallelFor = serialFor;
+#endif
 
 SceneEffects withoutPairs(SceneEffects effects) {
     effects.sweep.reset();
@@ -56,7 +66,7 @@ PaperStage::PaperStage(const EffectsFile& file)
 
 void PaperStage::runFrame() {
     clock_.begin();
-    simulation_.advance(kFrameSeconds, stageFor);
+    simulation_.advance(kFrameSeconds, kParallelFor);
     if (!effects().pairs) {
         return;
     }
@@ -229,6 +239,15 @@ const Grid<float>* PaperStage::grid() const {
 
 std::uint64_t PaperStage::memoryBytes() const {
     return totalBytes(simulation_.footprint()) + (rival_ ? rival_->memoryBytes() : 0);
+}
+
+std::shared_ptr<void> limitThreads([[maybe_unused]] std::size_t count) {
+#if HASHPHASE_HAS_TBB
+    using Limit = tbb::global_control;
+    return std::make_shared<Limit>(Limit::max_allowed_parallelism, count);
+#else
+    return nullptr;
+#endif
 }
 
 }  // namespace hashphase::demos

@@ -58,4 +58,8 @@ private:
     std::vector<CollisionFilter> noFilters_;
 };
 
+/// While what is returned lives, it is simulated on at most so many threads: those of oneTBB, where that was found
+/// when the program was built, and on one thread else.
+[[nodiscard]] std::shared_ptr<void> limitThreads(std::size_t count);
+
 }  // namespace hashphase::demos

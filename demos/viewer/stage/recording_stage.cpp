@@ -4,22 +4,10 @@
 #include <demos/scenes/result_hash.hpp>
 
 namespace hashphase::demos {
-namespace {
-
-SceneEffects lookingEffects() {
-    SceneEffects effects;
-    for (const Effect effect :
-         {Effect::pairs, Effect::picking, Effect::boxSelection, Effect::culling}) {
-        effects.declare(effect);
-    }
-    return effects;
-}
-
-}  // namespace
-
 RecordingStage::RecordingStage(const std::filesystem::path& path, std::size_t objects)
-    : Stage(lookingEffects(), {Effect::pairs, Effect::picking, Effect::boxSelection,
-                               Effect::culling, Effect::proximity, Effect::radar}),
+    : Stage(effectsOf({Effect::pairs, Effect::picking, Effect::boxSelection, Effect::culling}),
+            {Effect::pairs, Effect::picking, Effect::boxSelection, Effect::culling,
+             Effect::proximity, Effect::radar}),
       scene_(path, objects),
       ownObservers_(effects()) {
     observers_ = &ownObservers_;

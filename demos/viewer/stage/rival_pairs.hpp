@@ -4,7 +4,7 @@
 // Pairs found by one of Bullet's broadphases, of boxes that somebody else moves.
 
 #include <demos/compare/filled_broadphase.hpp>
-#include <demos/viewer/stage/phase_clock.hpp>
+#include <demos/viewer/stage/phases.hpp>
 
 #include <span>
 #include <vector>

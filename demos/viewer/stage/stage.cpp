@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/viewer/stage/stage.hpp>
 
-#include <demos/viewer/stage/body_shape.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -10,6 +8,16 @@
 #include <variant>
 
 namespace hashphase::demos {
+
+SceneEffects effectsOf(EffectSet effects) {
+    SceneEffects declared;
+    for (const Effect effect : kAllEffects) {
+        if (effects.contains(effect)) {
+            declared.declare(effect);
+        }
+    }
+    return declared;
+}
 
 std::size_t Stage::remove(std::span<const std::uint32_t> indices) {
     const auto count =

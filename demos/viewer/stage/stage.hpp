@@ -13,7 +13,7 @@
 
 #include <demos/compare/broadphase_kind.hpp>
 #include <demos/compare/reference_pairs.hpp>
-#include <demos/viewer/stage/phase_clock.hpp>
+#include <demos/viewer/stage/phases.hpp>
 
 #include <integration/effects/observers.hpp>
 
@@ -45,6 +45,21 @@ struct StageBody {
     bool isStatic = false;
     bool isAsleep = false;
 };
+
+/// Where the way from a point first meets the body, as a share of the way: 0 where it begins inside, nothing
+/// where it does not.
+[[nodiscard]] std::optional<float> meets(const StageBody& body, const Vector3<float>& from,
+                                         const Vector3<float>& way);
+
+/// The same of triangles, three corners each, from either side. Cost: O(triangles).
+[[nodiscard]] std::optional<float> meets(std::span<const Vector3<float>> triangles,
+                                         const Vector3<float>& from, const Vector3<float>& way);
+
+/// The box around it.
+[[nodiscard]] Aabb<float> boxAround(const StageBody& body);
+
+/// Those effects, each with its defaults.
+[[nodiscard]] SceneEffects effectsOf(EffectSet effects);
 
 /// The box of nobody.
 [[nodiscard]] inline Aabb<float> nowhere() {

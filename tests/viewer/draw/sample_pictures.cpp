@@ -3,40 +3,43 @@
 
 #include <demos/viewer/draw/headless_context.hpp>
 #include <demos/viewer/draw/palette.hpp>
+#include <tests/support/camera_matrices.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 
 namespace hashphase::demos {
-
 namespace {
 
 constexpr float kHalfExtent = 80;  // of the hills [m]
-constexpr int kSquares = 40;
 constexpr int kCellCount = 20;
-constexpr float kAspect = static_cast<float>(kSampleWidth) / kSampleHeight;
 const float kTangent = std::tan(0.5F);
+
+std::vector<Vector3<float>> cornersOfHills() {
+    constexpr int kSquares = 40;
+    const auto corner = [](int column, int row) {
+        const float x = kHalfExtent * (2 * static_cast<float>(column) / kSquares - 1);
+        const float z = kHalfExtent * (2 * static_cast<float>(row) / kSquares - 1);
+        return Vector3<float>(x, SampleWorld::height(x, z), z);
+    };
+    std::vector<Vector3<float>> corners;
+    for (int row = 0; row < kSquares; ++row) {
+        for (int column = 0; column < kSquares; ++column) {
+            corners.insert(corners.end(), {corner(column, row), corner(column, row + 1),
+                                           corner(column + 1, row), corner(column + 1, row),
+                                           corner(column, row + 1), corner(column + 1, row + 1)});
+        }
+    }
+    return corners;
+}
 
 }  // namespace
 
 DrawnCamera sampleCamera(const Vector3<float>& eye, const Vector3<float>& target) {
-    const Vector3<float> forward = (target - eye).normalized();
-    const Vector3<float> above =
-        std::abs(forward.y()) > 0.99F ? Vector3<float>(0, 0, -1) : Vector3<float>(0, 1, 0);
-    const Vector3<float> right = forward.cross(above).normalized();
-    Eigen::Matrix4f view = Eigen::Matrix4f::Identity();
-    view.block<1, 3>(0, 0) = right.transpose();
-    view.block<1, 3>(1, 0) = right.cross(forward).transpose();
-    view.block<1, 3>(2, 0) = -forward.transpose();
-    view.block<3, 1>(0, 3) = -view.block<3, 3>(0, 0) * eye;
-    Eigen::Matrix4f projection = Eigen::Matrix4f::Zero();
-    projection(0, 0) = 1 / (kTangent * kAspect);
-    projection(1, 1) = 1 / kTangent;
-    projection(2, 2) = kSampleFar / (kSampleNear - kSampleFar);
-    projection(2, 3) = kSampleNear * projection(2, 2);
-    projection(3, 2) = -1;
-    return {projection * view, eye};
+    const test::CameraLens lens{
+        .aspect = double{kSampleWidth} / kSampleHeight, .nearPlane = 0.5, .farPlane = 400};
+    return {test::cameraMatrix<float>(lens, eye.cast<double>(), target.cast<double>()), eye};
 }
 
 Eigen::Vector2f onScreen(const DrawnCamera& camera, const Vector3<float>& point) {
@@ -50,32 +53,11 @@ float radiusOnScreen(float radius, float distance) {
     return tangent / kTangent * kSampleHeight / 2;
 }
 
-SampleWorld::SampleWorld() {
-    addGround();
-    addBodies();
-    addLoads();
-}
-
 float SampleWorld::height(float x, float z) {
     return 4 * std::sin(x * 0.06F) * std::cos(z * 0.05F) + 2 * std::sin(z * 0.11F + 1);
 }
 
-void SampleWorld::addGround() {
-    const auto corner = [](int column, int row) {
-        const float x = kHalfExtent * (2 * static_cast<float>(column) / kSquares - 1);
-        const float z = kHalfExtent * (2 * static_cast<float>(row) / kSquares - 1);
-        return Vector3<float>(x, height(x, z), z);
-    };
-    for (int row = 0; row < kSquares; ++row) {
-        for (int column = 0; column < kSquares; ++column) {
-            corners.insert(corners.end(), {corner(column, row), corner(column, row + 1),
-                                           corner(column + 1, row), corner(column + 1, row),
-                                           corner(column, row + 1), corner(column + 1, row + 1)});
-        }
-    }
-}
-
-void SampleWorld::addBodies() {
+SampleWorld::SampleWorld() : corners(cornersOfHills()), loads(kCellCount * kCellCount) {
     const auto& colours = qualitativeColours(Theme::light);
     std::mt19937 random(11);
     const auto share = [&random] { return static_cast<float>(random() % 4096) / 4096; };
@@ -86,6 +68,11 @@ void SampleWorld::addBodies() {
         spheres.push_back({{x, height(x, z) + (1 + lift) * radius, z},
                            radius,
                            colours[i % 5 == 0 ? i / 5 % 7 : 0]});
+        const auto cell = [](float at) {
+            return std::clamp(static_cast<int>((at + kHalfExtent) / 8), 0, kCellCount - 1);
+        };
+        std::uint8_t& load = loads[cell(z) * kCellCount + cell(x)];
+        load = static_cast<std::uint8_t>(std::min(255, load + 50));
     }
     for (std::uint32_t i = 0; i < 5; ++i) {
         const float turn = 0.4F * static_cast<float>(i);
@@ -101,17 +88,6 @@ void SampleWorld::addBodies() {
         const Vector3<float> foot(x, height(x, -8), -8);
         lines.push_back({foot, foot + Vector3<float>(0, 5, 0), palette(Theme::light).line, false});
         lines.push_back({from, foot, palette(Theme::light).alert, true});
-    }
-}
-
-void SampleWorld::addLoads() {
-    loads.assign(kCellCount * kCellCount, 0);
-    for (const DrawnSphere& sphere : spheres) {
-        const auto cell = [](float x) {
-            return std::clamp(static_cast<int>((x + kHalfExtent) / 8), 0, kCellCount - 1);
-        };
-        std::uint8_t& load = loads[cell(sphere.centre.z()) * kCellCount + cell(sphere.centre.x())];
-        load = static_cast<std::uint8_t>(std::min(255, load + 50));
     }
 }
 

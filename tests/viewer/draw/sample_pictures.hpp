@@ -11,11 +11,8 @@ namespace hashphase::demos {
 
 inline constexpr int kSampleWidth = 288;
 inline constexpr int kSampleHeight = 180;
-inline constexpr float kSampleNear = 0.5F;  // [m]
-inline constexpr float kSampleFar = 400;    // [m]
 
-/// A camera at `eye` that looks at `target`, one radian high. Straight down, up on the screen is
-/// -z.
+/// A camera at `eye` that looks at `target`, one radian high. Straight down, up on the screen is +z.
 [[nodiscard]] DrawnCamera sampleCamera(const Vector3<float>& eye, const Vector3<float>& target);
 
 /// Where the camera sees the point: x, y in pixels from the upper left corner.
@@ -25,12 +22,15 @@ inline constexpr float kSampleFar = 400;    // [m]
 [[nodiscard]] float radiusOnScreen(float radius, float distance);
 
 /// Hills with spheres, boxes, capsules and lines on them, and how full the cells of 8 m are.
-class SampleWorld {
-public:
+struct SampleWorld {
     SampleWorld();
 
     /// The height of the hills [m].
     [[nodiscard]] static float height(float x, float z);
+    /// Hills and spheres, seen from a hill.
+    [[nodiscard]] Picture picture() const;
+    [[nodiscard]] GroundCells cells() const;
+    [[nodiscard]] HeatMap heatMap() const;
 
     std::vector<Vector3<float>> corners;
     std::vector<DrawnSphere> spheres;
@@ -38,16 +38,6 @@ public:
     std::vector<DrawnCapsule> capsules;
     std::vector<DrawnLine> lines;
     std::vector<std::uint8_t> loads;
-
-    /// Hills and spheres, seen from a hill.
-    [[nodiscard]] Picture picture() const;
-    [[nodiscard]] GroundCells cells() const;
-    [[nodiscard]] HeatMap heatMap() const;
-
-private:
-    void addGround();
-    void addBodies();
-    void addLoads();
 };
 
 /// Everything that draws, once for all tests.

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Zlib
 
 #include <demos/viewer/session/camera.hpp>
-#include <demos/viewer/session/script.hpp>
 #include <demos/viewer/session/session.hpp>
-#include <tests/viewer/session/steps.hpp>
+#include <tests/viewer/session/stages.hpp>
 
 #include <gtest/gtest.h>
 
@@ -97,34 +96,6 @@ TEST(Camera, IsPutNowhereElse) {
         }
     }
     EXPECT_EQ(session.camera.state(), home);
-}
-
-TEST(Camera, ThatIsFarAwayIsPlayedBack) {
-    Session session({.name = "wander", .file = {}, .objects = 100, .seed = 1}, 800, 600);
-    session.run("move 1000000 0 0");
-    session.run("move 1000000 0 0");
-    session.run("restart");
-    step(session, 3);
-    Playback playback(CommandLog::parse(session.log.text(), "recording"));
-    Session again(playback.log().choice);
-    EXPECT_NO_THROW(playback.feed(again));
-    EXPECT_EQ(again.camera.state(), session.camera.state());
-}
-
-TEST(Camera, KnowsHowLargeTheSceneIsThatBeginsAgain) {
-    Session session({.name = "pile", .file = {}, .objects = 50, .seed = 1}, 800, 600);
-    const Aabb<float> before = session.stage->bounds();
-    session.run("camera free");
-    session.run("seed 9");
-    ASSERT_FALSE(session.stage->bounds().isApprox(before));
-    step(session, 1);
-    session.run("zoom 2");
-    Playback playback(CommandLog::parse(session.log.text(), "recording"));
-    Session again(playback.log().choice);
-    for (playback.feed(again); !playback.isDone(again); playback.feed(again)) {
-        again.advance();
-    }
-    EXPECT_EQ(again.camera.state(), session.camera.state());
 }
 
 // --- Who is seen ---------------------------------------------------------------------------------

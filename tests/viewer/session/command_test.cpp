@@ -2,13 +2,13 @@
 
 #include <demos/scenes/input_error.hpp>
 #include <demos/viewer/session/commands.hpp>
-#include <demos/viewer/session/script.hpp>
 #include <demos/viewer/session/session.hpp>
-#include <tests/viewer/session/steps.hpp>
+#include <tests/support/temporary_folder.hpp>
+#include <tests/viewer/session/stages.hpp>
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <fstream>
 #include <set>
 #include <string>
 #include <vector>
@@ -18,44 +18,6 @@ namespace {
 
 Session smallSession() {
     return Session({.name = "wander", .file = {}, .objects = 200, .seed = 1}, 800, 600);
-}
-
-TEST(ViewerScript, ComplainsOfWhatIsNotSo) {
-    Session session = smallSession();
-    const auto said = runScript(session, "step 2\nexpect frame = 3\nexpect bodies > 199\n");
-    ASSERT_EQ(said.size(), 1U);
-    EXPECT_EQ(said.front(), "frame 2: frame is 2, but was to be = 3");
-    EXPECT_EQ(session.failureCount, 1);
-}
-
-TEST(ViewerScript, NamesTheLineOfAFault) {
-    Session session = smallSession();
-    try {
-        runScript(session, "# a comment\n\nstep 1\npik 3 4\n");
-        FAIL();
-    } catch (const InputError& error) {
-        EXPECT_EQ(std::string(error.what()).substr(0, 49),
-                  "script:4: There is no command 'pik'; did you mean");
-    }
-}
-
-TEST(ViewerScript, SaysHowFarItHasComeAndWhatHasComeOfIt) {
-    Session session = smallSession();
-    session.isPlaying = false;
-    Script script("step 3\n\nstep 2\nexpect frame = 5\n", "script");
-    script.feed(session);
-    EXPECT_EQ(script.verdict(session), "script: stopped at line 1 of 4");
-    for (int frame = 0; frame < 4; ++frame) {
-        session.advance();
-        script.feed(session);
-    }
-    EXPECT_EQ(script.verdict(session), "script: stopped at line 3 of 4");
-    session.advance();
-    script.feed(session);
-    EXPECT_EQ(script.verdict(session), "script: all expectations hold");
-    Script last("step 2", "script");
-    last.feed(session);
-    EXPECT_EQ(last.verdict(session), "script: stopped at line 1 of 1");
 }
 
 TEST(Commands, GiveAnEffectBackWhatTheSceneDeclaresOfIt) {
@@ -75,19 +37,6 @@ TEST(Commands, GiveAnEffectBackWhatTheSceneDeclaresOfIt) {
     EXPECT_EQ(effects.motion->bounds.max().x(), 399);
     session.run("effect radar on");  // which the scene does not declare
     EXPECT_EQ(effects.radar->columns, RadarEffect().columns);
-}
-
-TEST(Commands, CountMarkedBodiesThatAreStillThere) {
-    Session session = smallSession();
-    session.run("box 0 0 800 600");
-    session.run("recolour");
-    session.run("box 0 0 400 600");
-    const std::size_t removed = session.selected.size();
-    EXPECT_GT(removed, 0U);
-    EXPECT_LT(removed, 200U);
-    session.run("delete");
-    EXPECT_EQ(session.reading("recoloured"), 200 - static_cast<double>(removed));
-    EXPECT_EQ(session.reading("recoloured"), session.reading("bodies"));
 }
 
 TEST(Loads, AreCountedWhereCellsAreSmallerThanTheRoundingOfCoordinates) {
@@ -119,36 +68,46 @@ TEST(Commands, AreBoundToKeysOnceEach) {
     }
 }
 
-// --- Whether pairs are right ---------------------------------------------------------------------
+// --- Scenes --------------------------------------------------------------------------------------
 
-TEST(Check, KnowsNoPairsOfBodiesThatWereRemoved) {
-    for (const char* broadphase : {"hash", "dbvt"}) {
-        Session session({.name = "wander", .file = {}, .objects = 3000, .seed = 1}, 800, 600);
-        session.run("check on");
-        step(session, 10);
-        session.run(std::string("broadphase ") + broadphase);
-        step(session, 1);
-        const double all = session.reading("pairs");
-        session.run("box 300 200 500 400");
-        session.run("delete");
-        EXPECT_EQ(session.check(), nullptr);
-        std::vector<PairKey> pairs;
-        session.stage->listPairs(pairs);
-        EXPECT_LT(pairs.size(), all) << broadphase;
-        EXPECT_GT(pairs.size(), 0U) << broadphase;
-        EXPECT_EQ(session.reading("pairs"), pairs.size()) << broadphase;
-        for (const PairKey pair : pairs) {
-            EXPECT_TRUE(session.stage->contains(firstOf(pair)) &&
-                        session.stage->contains(secondOf(pair)))
-                << broadphase;
+TEST(SceneChoice, GivesWanderersAsMuchRoomEachAsTheThirtyThousandHave) {
+    const auto pairsOf = [](std::size_t objects, float side) {
+        const auto stage = makeStage({.name = "wander", .file = {}, .objects = objects, .seed = 1});
+        EXPECT_EQ(stage->bounds().max().x(), side);
+        EXPECT_EQ(stage->effects().motion->bounds.max().x(), double{side} - 1);
+        for (int frame = 0; frame < 3; ++frame) {
+            stage->step();
         }
-        step(session, 5);
-        EXPECT_EQ(session.reading("missing"), 0) << broadphase;
-        session.run("box 0 0 800 600");
-        session.run("delete");
-        EXPECT_EQ(session.reading("bodies"), 0) << broadphase;
-        EXPECT_EQ(session.reading("pairs"), 0) << broadphase;
+        return static_cast<double>(stage->pairCount());
+    };
+    const double few = pairsOf(30'000, 400);
+    const double many = pairsOf(120'000, 800);
+    EXPECT_NEAR(many / few, 4, 0.2);
+    static_cast<void>(pairsOf(1'000, 400));
+}
+
+TEST(SceneChoice, RefusesAFileWithAnEffectThatNoSimulationHas) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("scene.json");
+    const auto write = [&path](const std::string& effects) {
+        std::ofstream(path) << R"({"scene": {"objects": 20}, "effects": {"motion": true)" << effects
+                            << "}}";
+    };
+    write("");
+    Session session({.name = {}, .file = path, .objects = {}, .seed = 1});
+    step(session, 3);
+    for (const char* effects :
+         {R"(, "rotation": true)", R"(, "pairs": true, "response": true, "friction": true)"}) {
+        write(effects);
+        const std::string fault = faultOf(session, "restart");
+        EXPECT_EQ(fault.substr(0, path.size() + 2), path + ": ") << fault;
+        EXPECT_EQ(faultOf(session, "objects 30"), fault);
+        EXPECT_EQ(session.frame, 3U);
+        EXPECT_EQ(session.stage->size(), 20U);
     }
+    write(R"(, "pairs": true)");
+    session.run("restart");
+    EXPECT_EQ(session.frame, 0U);
 }
 
 // --- What is found -------------------------------------------------------------------------------

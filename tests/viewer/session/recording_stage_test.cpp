@@ -4,7 +4,6 @@
 #include <demos/viewer/stage/recording_stage.hpp>
 #include <tests/support/temporary_folder.hpp>
 #include <tests/viewer/session/stages.hpp>
-#include <tests/viewer/session/steps.hpp>
 
 #include <gtest/gtest.h>
 
@@ -76,41 +75,6 @@ TEST_F(RecordingStages, GoesOnWithTheFileThatItOpenedWhateverTakesItsName) {
     stage.step();
     EXPECT_EQ(stage.placesHash(), first);
     EXPECT_EQ(stage.size(), 200U);
-}
-
-TEST_F(RecordingStages, HasNoPairsWhileTheyAreNotDeclared) {
-    capture("pile", 200, 5);
-    RecordingStage stage(path(), 0);
-    const SceneEffects all = stage.effects();
-    SceneEffects without = all;
-    without.remove(Effect::pairs);
-    std::vector<PairKey> pairs;
-    for (const char* name : {"hash", "dbvt"}) {
-        stage.setBroadphase(kindNamed(name));
-        stage.step();
-        EXPECT_GT(stage.pairCount(), 0U) << name;
-        stage.declare(without);
-        for (int frame = 0; frame < 2; ++frame) {
-            stage.listPairs(pairs);
-            EXPECT_TRUE(pairs.empty()) << name;
-            EXPECT_EQ(stage.pairCount(), 0U) << name;
-            stage.step();
-        }
-        stage.declare(all);
-        EXPECT_EQ(stage.pairCount(), 0U) << name << ": those of the past";
-        stage.step();
-        EXPECT_GT(stage.pairCount(), 0U) << name;
-        expectPairs(stage, false, name);
-    }
-}
-
-TEST_F(RecordingStages, ColoursAgentsOnceWhenTheyBeginToLookAround) {
-    capture("wander", 200, 2);
-    RecordingStage stage(path(), 0);
-    SceneEffects effects = stage.effects();
-    effects.declare(Effect::proximity);
-    stage.declare(effects);
-    expectEvenColours(stage);
 }
 
 }  // namespace

@@ -4,15 +4,13 @@
 #include <demos/viewer/session/script.hpp>
 #include <demos/viewer/session/session.hpp>
 #include <tests/support/temporary_folder.hpp>
-#include <tests/viewer/session/steps.hpp>
+#include <tests/viewer/session/stages.hpp>
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cstdint>
 #include <fstream>
-#include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,69 +20,6 @@ namespace {
 
 Session wanderers(std::size_t objects, int width = 1280, int height = 800) {
     return Session({.name = "wander", .file = {}, .objects = objects, .seed = 5}, width, height);
-}
-
-/// Where the body is in the picture.
-Pixel pixelOf(const Session& session, std::uint32_t index) {
-    const Eigen::Vector4f clip =
-        session.view().viewProjection() * session.stage->body(index).centre.homogeneous();
-    const Eigen::Vector2f device = clip.head<2>() / clip.w();
-    return {0.5 * double{1 + device.x()} * session.width,
-            0.5 * double{1 - device.y()} * session.height};
-}
-
-/// Which no other hides from above.
-std::uint32_t highestBody(const Session& session) {
-    std::optional<std::uint32_t> highest;
-    const auto heightOf = [&session](std::uint32_t index) {
-        return session.stage->body(index).centre.y();
-    };
-    for (std::uint32_t index = 0; index < session.stage->indexLimit(); ++index) {
-        const bool isThere = session.stage->contains(index) &&
-                             session.stage->body(index).shape != StageBody::Shape::none;
-        if (isThere && (!highest || heightOf(index) > heightOf(*highest))) {
-            highest = index;
-        }
-    }
-    EXPECT_TRUE(highest);
-    return highest.value_or(0);
-}
-
-void runAt(Session& session, const char* command, const Pixel& pixel) {
-    std::ostringstream line;
-    line << command << ' ' << pixel.x() << ' ' << pixel.y();
-    session.run(line.str());
-}
-
-/// From so near that no ground is between, where bodies have fallen through it without pairs.
-void lookDownOn(Session& session, std::uint32_t index) {
-    const Vector3<float> at = session.stage->body(index).centre;
-    std::ostringstream line;
-    line << "eye " << at.x() << ' ' << at.y() + 2 << ' ' << at.z() << " 0 -80";
-    session.run(line.str());
-}
-
-/// Somebody plays: the camera moves, bodies are selected, pushed and removed, effects come and go.
-void play(Session& session) {
-    session.run("camera free");
-    session.run("turn 10 0");
-    step(session, 20);
-    session.run("camera top");
-    session.run("home");
-    session.run("box 0 0 400 600");  // those on the left
-    EXPECT_GT(session.selected.size(), 5U);
-    session.run("push 1 0 2");
-    step(session, 31);
-    session.run("delete");
-    session.run("effect response off");
-    step(session, 15);
-    session.run("broadphase dbvt");
-    session.run("effect response on");
-    lookDownOn(session, highestBody(session));
-    runAt(session, "pick", pixelOf(session, highestBody(session)));
-    EXPECT_TRUE(session.card);
-    session.run("camera follow");
-    step(session, 64);
 }
 
 Session playBack(const CommandLog& log) {
@@ -105,52 +40,6 @@ Verdict verdictOf(const Playback& playback, const Session& session) {
 }
 
 const Verdict kAllTheSame{"replay: all 130 frames are the same, to the last bit", true};
-
-class Replay : public testing::TestWithParam<const char*> {};
-
-TEST_P(Replay, GivesTheSameHash) {
-    Session session({.name = GetParam(), .file = {}, .objects = 400, .seed = 5}, 800, 600);
-    const std::size_t atFirst = session.stage->size();
-    play(session);
-    const CommandLog log = CommandLog::parse(session.log.text(), "recording");
-    const Session again = playBack(log);
-    EXPECT_EQ(again.hash(), session.hash());
-    ASSERT_TRUE(session.card && again.card);
-    EXPECT_EQ(again.card->index, session.card->index);
-    EXPECT_EQ(again.frame, 130U);
-    EXPECT_EQ(again.stage->size(), session.stage->size());
-    EXPECT_LT(session.stage->size() + 5, atFirst);
-    EXPECT_EQ(verdictOf(Playback(log), again), kAllTheSame);
-}
-
-/// Which colours the agents have; none while they do not look around.
-std::vector<std::uint32_t> coloursOf(const Session& session) {
-    if (!session.stage->effects().proximity) {
-        return {};
-    }
-    const auto colours = session.stage->observers().colours();
-    return {colours.begin(), colours.end()};
-}
-
-TEST_P(Replay, GivesTheSameHashAfterARestartWithOtherSettings) {
-    for (const char* settings :
-         {"effect pairs off\nbroadphase axis-sweep\nzoom 2",
-          "effect response off\neffect response on\ncell 4\nratio 3",
-          "effect motion off\neffect response on\neffect sleeping on\nbroadphase dbvt",
-          "effect proximity off\neffect proximity on\nradius 9\nobjects 350\nseed 8"}) {
-        Session session({.name = GetParam(), .file = {}, .objects = 300, .seed = 5}, 800, 600);
-        runScript(session, settings);
-        step(session, 7);
-        session.run("restart");
-        play(session);
-        const Session again = playBack(CommandLog::parse(session.log.text(), "recording"));
-        EXPECT_EQ(again.hash(), session.hash()) << settings;
-        EXPECT_EQ(coloursOf(again), coloursOf(session)) << settings;
-    }
-}
-
-INSTANTIATE_TEST_SUITE_P(Scenes, Replay, testing::Values("wander", "pile"),
-                         [](const auto& scene) { return std::string(scene.param); });
 
 /// As recorded, but for one text.
 std::string textWhereReplaced(const CommandLog& log, const std::string& what,
@@ -233,27 +122,6 @@ TEST(CommandLog, SetsUpWhatASceneFileMayHave) {
             EXPECT_EQ(playBack(log).hash(), session.hash()) << grid << radius;
         }
     }
-}
-
-TEST(CommandLog, SetsUpASessionThatBeginsAgainAsItWas) {
-    Session session({.name = "wander", .file = {}, .objects = 20, .seed = 1}, 800, 600);
-    for (const char* line :
-         {"check on", "colour speed", "overlay heat on", "overlay bodies off", "dots 3",
-          "theme dark", "camera free", "cell 7", "broadphase dbvt", "effect zones on"}) {
-        session.run(line);
-    }
-    session.run("objects 30");
-    Session fed(session.log.choice);
-    Playback(session.log).feed(fed);
-    EXPECT_TRUE(fed.isChecking);
-    EXPECT_EQ(fed.options.colouring, Colouring::speed);
-    EXPECT_EQ(fed.options.overlays, session.options.overlays);
-    EXPECT_EQ(fed.options.dots, 3);
-    EXPECT_EQ(fed.options.theme, Theme::dark);
-    EXPECT_EQ(fed.camera.mode(), CameraMode::free);
-    EXPECT_EQ(fed.stage->effects().grid.cellSize, 7);
-    EXPECT_EQ(fed.stage->broadphase().name, "dbvt");
-    EXPECT_TRUE(fed.stage->effects().zones);
 }
 
 // Of a session of 130 frames in which bodies are pushed and removed.
@@ -346,12 +214,7 @@ TEST(Playback, SaysBeforeItsEndWhereItIsNotTheSame) {
 }
 
 std::string faultOf(const std::string& text) {
-    try {
-        static_cast<void>(CommandLog::parse(text, "file"));
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "none";
+    return messageOf<InputError>([&] { static_cast<void>(CommandLog::parse(text, "file")); });
 }
 
 // Of a recording of 60 frames in which one text is replaced by another.
@@ -390,7 +253,6 @@ TEST(CommandLog, RefusesWhatNoSessionHasRecorded) {
     EXPECT_EQ(faultOf("{}"), "file cannot be read as a recording: key 'schema' not found.");
     EXPECT_EQ(faultOf("nonsense").substr(0, 72),
               "file cannot be read as a recording: parse error at line 1, column 2: syn");
-    EXPECT_EQ(faultWhereReplaced("\"frames\": 60", "\"frames\": 60"), "none");
 }
 
 }  // namespace

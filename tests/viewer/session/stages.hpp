@@ -1,19 +1,41 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
+// Stages and sessions as tests make, move and judge them.
+
+#include <demos/scenes/input_error.hpp>
 #include <demos/scenes/world_scenes.hpp>
 #include <demos/viewer/session/scene_choice.hpp>
+#include <demos/viewer/session/session.hpp>
 #include <demos/viewer/session/stage_queries.hpp>
-#include <demos/viewer/stage/stage.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
 namespace hashphase::demos {
+
+/// Simulates so many frames.
+inline void step(Session& session, std::uint64_t frames) {
+    session.askForSteps(frames);
+    while (session.isWaiting()) {
+        session.advance();
+    }
+}
+
+/// What is wrong with a command; "none" where it can be run.
+inline std::string faultOf(Session& session, const std::string& line) {
+    try {
+        session.run(line);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "none";
+}
 
 inline const BroadphaseKind& kindNamed(std::string_view name) {
     return rowNamed("broadphase", name, broadphaseKinds());
@@ -21,16 +43,6 @@ inline const BroadphaseKind& kindNamed(std::string_view name) {
 
 inline const WorldSceneKind& worldNamed(std::string_view name) {
     return rowNamed("scene", name, worldSceneKinds());
-}
-
-inline SceneEffects worldEffects() {
-    SceneEffects effects;
-    for (const Effect effect :
-         {Effect::motion, Effect::pairs, Effect::response, Effect::sleeping, Effect::rotation,
-          Effect::friction, Effect::picking, Effect::boxSelection, Effect::culling}) {
-        effects.declare(effect);
-    }
-    return effects;
 }
 
 inline void expectPairs(const Stage& stage, bool exact, const std::string& when) {

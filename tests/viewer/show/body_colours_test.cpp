@@ -2,7 +2,7 @@
 //
 // What colours tell: a body has the colour that the legend says.
 
-#include <demos/viewer/show/body_colours.hpp>
+#include <demos/viewer/show/picture_maker.hpp>
 
 #include <gtest/gtest.h>
 

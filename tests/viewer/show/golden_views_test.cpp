@@ -8,7 +8,7 @@
 #include <demos/viewer/show/picture_maker.hpp>
 #include <demos/viewer/show/viewer.hpp>
 #include <tests/support/temporary_folder.hpp>
-#include <tests/viewer/expect_golden.hpp>
+#include <tests/viewer/pictures.hpp>
 
 #include <gtest/gtest.h>
 
@@ -61,7 +61,7 @@ struct GoldenView {
 class GoldenViews : public testing::TestWithParam<GoldenView> {};
 
 TEST_P(GoldenViews, AreDrawnAsTheyWere) {
-    expectGolden(GetParam().name, after(GetParam().scene, GetParam().commands));
+    expectGolden("show/golden/" + GetParam().name, after(GetParam().scene, GetParam().commands));
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Views, AreOthersAfterAStep) {
     const Image before = after(kWander, {"step 20", "eye 200 30 400 10 -15"});
     const Image later = after(kWander, {"step 50", "eye 200 30 400 10 -15"});
-    EXPECT_FALSE(looksTheSame(imageDifference(before, later)));
+    EXPECT_FALSE(looksTheSame(before, later));
 }
 
 // --- What is laid over a scene -------------------------------------------------------------------
@@ -118,20 +118,6 @@ TEST(PictureMaker, DrawsZonesAsBallsOfTheirRadiusWhileTheyAreDeclared) {
     session.run("effect zones off");
     session.advance();
     EXPECT_EQ(maker.make(session).lines.size(), without);
-}
-
-/// The corners of the box around a sphere or a box that is not turned.
-std::vector<Vector3<float>> cornersOf(const StageBody& body) {
-    const Vector3<float> half = body.shape == StageBody::Shape::sphere
-                                    ? Vector3<float>::Constant(body.size.x())
-                                    : body.size;
-    std::vector<Vector3<float>> corners;
-    for (int i = 0; i < 8; ++i) {
-        const Vector3<float> side((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1,
-                                  (i & 4) != 0 ? 1 : -1);
-        corners.push_back(body.centre + half.cwiseProduct(side));
-    }
-    return corners;
 }
 
 // A ring and the light one around it are the last lines. From far away and from nearby, in the middle of
@@ -162,8 +148,10 @@ TEST(PictureMaker, RingsWhatIsPickedWhereItIsOnTheScreen) {
                     return (place - pose.eye - ahead * axis).norm() / ahead;
                 };
             float reach = 0;
-            for (const Vector3<float>& corner : cornersOf(body)) {
-                reach = std::max(reach, tangentOf(corner));
+            const Aabb<float> box = boxAround(body);
+            for (int i = 0; i < 8; ++i) {
+                reach =
+                    std::max(reach, tangentOf(box.corner(static_cast<Aabb<float>::CornerType>(i))));
             }
             for (const DrawnLine& line : picture.lines.last(64)) {
                 EXPECT_GT(tangentOf(line.from), reach);
@@ -225,11 +213,18 @@ Image from(int x, int y, Image image) {
     return image;
 }
 
+/// The session with the panel over it, as a screenshot.
+Image screenshotOf(Viewer& viewer, Session& session) {
+    const TemporaryFolder folder;
+    viewer.layOut(session);
+    session.askForScreenshot(folder.file("picture.png"));
+    viewer.show(session, {}, 0);
+    return readPng(folder.file("picture.png"));
+}
+
 TEST(Panel, IsDrawnOverEachSceneInBothThemes) {
     const HeadlessContext context;
     Viewer viewer(900, 700);
-    const TemporaryFolder folder;
-    const std::string path = folder.file("picture.png");
     for (const char* scene : {"wander", "pile", "bullet-storm"}) {
         for (const char* theme : {"theme light", "theme dark"}) {
             Session session({.name = scene, .file = {}, .objects = 200, .seed = 1}, 900, 700);
@@ -239,24 +234,19 @@ TEST(Panel, IsDrawnOverEachSceneInBothThemes) {
                     session.advance();
                 }
                 session.isPlaying = false;
-                viewer.layOut(session);
-                session.askForScreenshot(path);
-                viewer.show(session, {}, 0);
-                return readPng(path);
+                return screenshotOf(viewer, session);
             };
             const Image without = picture({"pause off", theme, "panel off"});
             const Image with = picture({"panel on"});
             const Image checked = picture({"check on", "step 1", "help on"});
-            EXPECT_FALSE(looksTheSame(imageDifference(without, with)));
-            EXPECT_FALSE(looksTheSame(imageDifference(with, checked)));
+            EXPECT_FALSE(looksTheSame(without, with));
+            EXPECT_FALSE(looksTheSame(with, checked));
             // The panel is to the left, the scene to the right is as it was.
-            EXPECT_TRUE(looksTheSame(imageDifference(from(360, 0, with), from(360, 0, without))))
-                << scene << theme;
+            EXPECT_TRUE(looksTheSame(from(360, 0, with), from(360, 0, without))) << scene << theme;
             // What colours tell is said in the lower right corner, where else there is the scene.
             const Image told = picture({"help off", "check off", "overlay heat on"});
             const Image untold = picture({"panel off"});
-            EXPECT_FALSE(
-                looksTheSame(imageDifference(from(700, 600, told), from(700, 600, untold))))
+            EXPECT_FALSE(looksTheSame(from(700, 600, told), from(700, 600, untold)))
                 << scene << theme;
         }
     }
@@ -266,18 +256,12 @@ TEST(Panel, ShowsTheRadarAsAMapSeenFromAbove) {
     const HeadlessContext context;
     Viewer viewer(900, 700);
     Session session(kWander, 900, 700);
-    const TemporaryFolder folder;
-    const std::string path = folder.file("picture.png");
     session.run("effect radar on");
     session.run("overlay bodies off");
     for (int frame = 0; frame < 30; ++frame) {
         session.advance();
     }
-    viewer.layOut(session);
-    session.askForScreenshot(path);
-    viewer.show(session, {}, 0);
-    const Image picture = readPng(path);
-
+    const Image picture = screenshotOf(viewer, session);
     const RadarView radar = session.stage->radar().value();
     const std::uint32_t columns = radar.columns;
     std::vector<std::uint32_t> counts(std::size_t{columns} * radar.rows);

@@ -4,6 +4,7 @@
 
 #include <demos/scenes/file_bytes.hpp>
 #include <demos/viewer/show/wander.hpp>
+#include <demos/viewer/show/window.hpp>
 #include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
@@ -232,8 +233,6 @@ TEST_F(Wander, HasNoSeedForARecordingOfBoxes) {
     const std::string path = boxes();
     EXPECT_EQ(faultOf("--file " + path + " --seed 3"),
               "hashphase: --seed is for scenes; " + path + " is a recording of boxes.\n");
-    EXPECT_EQ(faultOf("--file " + path, {"--do", "seed 3"}),
-              "hashphase: A recording of boxes has no seed.\n");
 }
 
 TEST_F(Wander, RefusesOptionsThatWouldBeIgnored) {
@@ -316,6 +315,32 @@ TEST_F(Wander, SaysWhatIsWrong) {
     expectIn(faultOf("--objects 2e6"), "from 1 to 1,000,000");
     expectIn(faultOf("", {"--do", ""}), "--do: the value is empty");
     expectIn(faultOf("--replay " + file("empty", "{}")), "cannot be read as a recording");
+}
+
+// --- Frames a second -----------------------------------------------------------------------------
+
+TEST(FrameRate, LeavesOutTheFirstSecond) {
+    FrameRate rate;
+    rate.note(0.25);
+    rate.note(0.75);
+    for (int frame = 0; frame <= 120; ++frame) {
+        rate.note(1.5 + frame / 60.0);
+    }
+    ASSERT_TRUE(rate.perSecond());
+    EXPECT_NEAR(*rate.perSecond(), 60, 1e-9);
+}
+
+TEST(FrameRate, IsNoneWhereNothingWasShownAfterIt) {
+    FrameRate rate;
+    EXPECT_FALSE(rate.perSecond());
+    for (int frame = 0; frame < 60; ++frame) {
+        rate.note(frame / 60.0);
+    }
+    EXPECT_FALSE(rate.perSecond());
+    rate.note(1.25);
+    EXPECT_FALSE(rate.perSecond());
+    rate.note(1.5);
+    EXPECT_EQ(rate.perSecond(), 4);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 // this pixel. Exit status 1 where it does not.
 
 #include <demos/scenes/file_bytes.hpp>
-#include <demos/viewer/draw/image.hpp>
+#include <tests/viewer/pictures.hpp>
 
 #include <cstdint>
 #include <cstdio>
@@ -71,7 +71,7 @@ int main(int count, char** arguments) {
     const Image seen =
         Screen(arguments[1])
             .cut(std::atoi(arguments[3]), std::atoi(arguments[4]), picture.width, picture.height);
-    const ImageDifference difference = imageDifference(picture, seen);
+    const ImageDifference difference(picture, seen);
     std::printf("mean difference %.3f, %.3f %% off\n", difference.mean, 100 * difference.shareOff);
-    return looksTheSame(difference) ? 0 : 1;
+    return difference.isSeen() ? 1 : 0;
 }

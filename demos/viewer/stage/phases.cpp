@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/viewer/session/phase_history.hpp>
+#include <demos/viewer/stage/phases.hpp>
 
-#include <algorithm>
 #include <functional>
 #include <iterator>
 
