@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/compare/report.hpp>
 
-#include <demos/replay/replay_tab.hpp>
 #include <demos/report/json_values.hpp>
 #include <demos/report/report_text.hpp>
 

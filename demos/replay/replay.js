@@ -5,26 +5,16 @@
 // frames, pairs (that overlap), lines (that are drawn of them), colouring, broadphase, missing, extra, drawn (of the wrong pairs), marks (where in the picture
 // the first of them is drawn, from its lower left), draws.
 
-const KEYS_IN_WORDS =
-    "Keys: Space plays and pauses, comma and full stop go a frame back and on, Home and End to the ends, " +
-    "W to the first wrong pair; P shows all pairs, D dims, C colours. In the picture arrows turn the " +
-    "camera, plus and minus zoom; dragging turns, with Shift it moves, the wheel zooms.";
-
-const FRAMES_A_SECOND = [
-    [60, "as recorded"],
-    [30, "at half speed"],
-    [10, "at 1/6"],
-    [3, "at 1/20"],
-];
-
 class Replay {
-    constructor(root, gl, canvas, recording) {
+    constructor(root, contents, gl, recording) {
         this.root = root;
-        this.canvas = canvas;
+        this.part = (place) => root.querySelector(place);
         this.recording = recording;
         this.frame = 0;
+        this.framesASecond = 10;
         this.broadphase = recording.worst();
         this.gl = gl;
+        this.canvas = gl.canvas;
         this.drawing = new Drawing(gl, recording);
         this.outline = recording.outline(recording.numbersOf(this.broadphase, 0));
         const { centre, radius, heights } = this.outline;
@@ -45,31 +35,84 @@ class Replay {
             pixels: 1,
         };
         this.draws = 0;
-        this.build();
+        root.append(...contents.childNodes);
+        this.words = this.part(".words");
+        this.fillControls();
+        this.followControls();
+        this.followKeys();
         this.followScreen();
         this.followLoss();
         this.show(0);
         root.dataset.state = "ready";
     }
 
-    build() {
-        const changed = () => this.redraw();
-        steerByPointer(this.canvas, this.camera, changed);
-        steerByKeys(this.canvas, this.camera, changed);
-        this.followKeys();
-        this.words = element("p", { class: "words", "aria-live": "polite" });
-        this.counts = element("p", { class: "counts" });
-        this.legend = element("p", { class: "legend" });
-        this.chart = new WrongChart();
-        this.root.append(
-            element("div", { class: "picture" }, this.canvas, cameraButtons(this.camera, changed)),
-            this.timeControls(),
-            this.counts,
-            this.viewControls(),
-            this.legend,
-            this.words,
-            element("p", { class: "keys" }, KEYS_IN_WORDS),
-        );
+    // With what depends on the recording.
+    fillControls() {
+        const { broadphases, frames, spheres } = this.recording;
+        this.control("frame").max = frames - 1;
+        this.control("broadphase").append(...broadphases.map(({ name }) => new Option(name)));
+        this.control("broadphase").value = this.broadphase.name;
+        this.control("cellSize").value = Number(this.look.cellSize.toPrecision(4));
+        if (!spheres) {
+            this.control("shape").parentElement.remove();
+        }
+    }
+
+    control(name) {
+        return this.part(`[name=${name}]`);
+    }
+
+    followControls() {
+        const { camera } = this;
+        const steers = (act) => () => {
+            act();
+            this.redraw();
+        };
+        const acts = {
+            turnLeft: steers(() => camera.orbit(-0.3, 0)),
+            turnRight: steers(() => camera.orbit(0.3, 0)),
+            closer: steers(() => camera.zoom(0.7)),
+            farther: steers(() => camera.zoom(1 / 0.7)),
+            lookDown: steers(() => camera.lookDown()),
+            reset: steers(() => camera.reset()),
+            play: () => this.togglePlaying(),
+            before: () => this.step(-1),
+            after: () => this.step(1),
+            showFirst: () => this.showFirst(),
+        };
+        for (const button of this.root.querySelectorAll("[data-act]")) {
+            button.addEventListener("click", acts[button.dataset.act]);
+        }
+        const values = {
+            frame: (frame) => this.show(Number(frame)),
+            speed: (framesASecond) => (this.framesASecond = Number(framesASecond)),
+            broadphase: (name) => this.judge(name),
+            dim: (isOn) => this.change({ dimming: isOn ? 0.8 : 0 }),
+            pairs: (isOn) => this.change({ pairs: isOn }),
+            colouring: (colouring) => this.change({ colouring }),
+            cellSize: (size) => Number(size) > 0 && this.change({ cellSize: Number(size) }),
+            shape: (name) => this.change({ spheres: name === "spheres" }),
+        };
+        for (const [name, act] of Object.entries(values)) {
+            const control = this.control(name);
+            const isBox = control?.type === "checkbox";
+            control?.addEventListener("input", () => act(isBox ? control.checked : control.value));
+        }
+        steerByPointer(this.canvas, camera, () => this.redraw());
+        const keys = {
+            ArrowLeft: steers(() => camera.orbit(-0.1, 0)),
+            ArrowRight: steers(() => camera.orbit(0.1, 0)),
+            ArrowUp: steers(() => camera.orbit(0, 0.1)),
+            ArrowDown: steers(() => camera.orbit(0, -0.1)),
+            "+": steers(() => camera.zoom(0.8)),
+            "-": steers(() => camera.zoom(1.25)),
+        };
+        this.canvas.addEventListener("keydown", (event) => {
+            if (keys[event.key]) {
+                event.preventDefault();
+                keys[event.key]();
+            }
+        });
     }
 
     // Wherever they are pressed while the tab is shown, but where something is typed or chosen; a focused
@@ -82,8 +125,8 @@ class Replay {
             Home: () => this.show(0),
             End: () => this.show(this.recording.frames - 1),
             w: () => this.showFirst(),
-            p: () => this.pairs.click(),
-            d: () => this.dimmed.click(),
+            p: () => this.control("pairs").click(),
+            d: () => this.control("dim").click(),
             c: () => this.chooseColouring(1 + COLOURINGS.indexOf(this.look.colouring)),
         };
         const typed = "input[type=number], select";
@@ -103,67 +146,6 @@ class Replay {
                 keys[key]();
             }
         });
-    }
-
-    timeControls() {
-        const { frames } = this.recording;
-        this.play = button("\u25b6", "Play", () => this.togglePlaying());
-        const range = { type: "range", name: "frame", min: 0, max: frames - 1, value: 0, "aria-label": "Frame" };
-        this.slider = element("input", { ...range, oninput: () => this.show(Number(this.slider.value)) });
-        this.number = element("output", { class: "frame" });
-        this.framesASecond = 10;
-        const speed = choice("Speed", "speed", FRAMES_A_SECOND, this.framesASecond, (value) => {
-            this.framesASecond = Number(value);
-        });
-        return element(
-            "div",
-            { class: "time" },
-            this.play,
-            button("\u2039", "Frame before", () => this.step(-1)),
-            button("\u203a", "Frame after", () => this.step(1)),
-            element("div", { class: "scrub" }, this.chart.canvas, this.slider),
-            this.number,
-            speed.label,
-        );
-    }
-
-    viewControls() {
-        const { recording, look } = this;
-        const names = (all) => all.map((each) => [each, each]);
-        const broadphases = names(recording.broadphases.map(({ name }) => name));
-        const judged = choice("Wrong pairs of", "broadphase", broadphases, this.broadphase.name, (name) =>
-            this.judge(name),
-        );
-        const colourings = names(COLOURINGS);
-        const coloured = choice("Colour by", "colouring", colourings, look.colouring, (colouring) =>
-            this.change({ colouring }),
-        );
-        this.colouring = coloured.select;
-        const shape = choice("Draw", "shape", names(["spheres", "boxes"]), "spheres", (name) =>
-            this.change({ spheres: name === "spheres" }),
-        );
-        const cells = element("input", {
-            type: "number",
-            name: "cellSize",
-            min: 0,
-            step: "any",
-            value: Number(look.cellSize.toPrecision(4)),
-            oninput: () => Number(cells.value) > 0 && this.change({ cellSize: Number(cells.value) }),
-        });
-        const box = (name, onchange) => element("input", { type: "checkbox", name, onchange });
-        this.dimmed = box("dim", () => this.change({ dimming: this.dimmed.checked ? 0.8 : 0 }));
-        this.pairs = box("pairs", () => this.change({ pairs: this.pairs.checked }));
-        return element(
-            "div",
-            { class: "view" },
-            judged.label,
-            button("First wrong pair", "Show the first wrong pair", () => this.showFirst()),
-            element("label", {}, this.dimmed, " dim the others"),
-            element("label", {}, this.pairs, " all pairs"),
-            coloured.label,
-            element("label", {}, "Cell ", cells, " m"),
-            ...(recording.spheres ? [shape.label] : []),
-        );
     }
 
     // Pictures have as many pixels as the screen.
@@ -214,7 +196,7 @@ class Replay {
 
     chooseColouring(index) {
         const colouring = COLOURINGS[index % COLOURINGS.length];
-        this.colouring.value = colouring;
+        this.control("colouring").value = colouring;
         this.change({ colouring });
     }
 
@@ -235,7 +217,7 @@ class Replay {
         this.drawing.setFrame(this.numbers, this.wrong);
         this.linesOf = undefined;
         this.setPairs();
-        this.slider.value = String(frame);
+        this.control("frame").value = frame;
         this.tell();
         this.redraw();
     }
@@ -255,23 +237,18 @@ class Replay {
         const [inAll, here, listed] = [pairsInAll[frame], pairs[frame], pairsListed[frame]];
         const when = (isSo, text) => (isSo ? text : "");
         const drawn = this.wrong.length;
-        this.number.textContent = `frame ${frame} of 0 to ${recording.frames - 1}`;
-        this.counts.textContent =
+        this.part("output").textContent = `frame ${frame} of 0 to ${recording.frames - 1}`;
+        this.part(".counts").textContent =
             `${thousands(inAll)} pairs overlap` +
             when(here < inAll, `, ${thousands(here)} of them between those drawn`) +
             when(listed < here, ", too many to be drawn") +
             `; of ${broadphase.name}'s, ${thousands(missing)} are missing and ${thousands(extra)} extra` +
             when(drawn < missing + extra, ` (${thousands(drawn)} of them drawn)`) +
             ".";
-        Object.assign(this.root.dataset, {
-            frame,
-            frames: recording.frames,
-            pairs: inAll,
-            broadphase: broadphase.name,
-            missing,
-            extra,
-            drawn,
-        });
+        const { frames } = recording;
+        const { name } = broadphase;
+        const told = { frame, frames, pairs: inAll, broadphase: name, missing, extra, drawn };
+        Object.assign(this.root.dataset, told);
     }
 
     // Once for all changes until the next picture of the screen.
@@ -295,8 +272,9 @@ class Replay {
             Object.assign(canvas, { width, height });
         }
         const { both } = this.drawing.draw(look);
-        this.chart.draw(this.broadphase, this.frame, recording.frames);
-        this.legend.replaceChildren(...legendOf(look, recording));
+        const chart = this.part(".wrong-chart");
+        drawWrongPairs(chart, this.broadphase, this.frame, recording.frames);
+        this.part(".legend").replaceChildren(...legendOf(look, recording));
         const first = this.wrong.slice(0, 1).flatMap(({ a, b }) => [a, b]);
         const marks = first.map((place) =>
             placeInPicture(both, recording.box(this.numbers, place).centre, width, height),
@@ -317,11 +295,11 @@ class Replay {
             return;
         }
         this.setPlaying(false);
-        this.dimmed.checked = true;
+        this.control("dim").checked = true;
         this.look.dimming = 0.8;
         this.show(first.frame);
         const [a, b] = first.places.map((place) => this.recording.box(this.numbers, place));
-        const middle = scaled(plus(a.centre, b.centre), 0.5);
+        const middle = a.centre.map((each, axis) => (each + b.centre[axis]) / 2);
         const small = Math.min(Math.max(...a.edges), Math.max(...b.edges));
         const apart = Math.hypot(...minus(a.centre, b.centre));
         this.camera.lookAt(middle, Math.min(this.outline.radius, 4 * small + 2 * apart));
@@ -334,8 +312,9 @@ class Replay {
 
     setPlaying(playing) {
         this.playing = playing;
-        this.play.textContent = playing ? "\u23f8" : "\u25b6";
-        this.play.setAttribute("aria-label", playing ? "Pause" : "Play");
+        const button = this.part("[data-act=play]");
+        button.textContent = playing ? "\u23f8" : "\u25b6";
+        button.setAttribute("aria-label", playing ? "Pause" : "Play");
         this.root.dataset.playing = playing;
         clearTimeout(this.timer);
         if (playing) {
@@ -348,15 +327,15 @@ class Replay {
 }
 
 function startReplay(root) {
-    const label = "The recorded objects; arrow keys turn the camera, plus and minus zoom";
-    const canvas = element("canvas", { class: "replay", tabindex: 0, role: "img", "aria-label": label });
+    const contents = element("div", "");
+    contents.innerHTML = REPLAY_HTML;
     const fail = (state, why) => {
         root.dataset.state = state;
-        root.append(element("p", {}, why));
+        root.append(element("p", "", why));
     };
     // Kept after it was shown, so that it can be saved, and read by whoever checks it.
     const kept = { alpha: false, antialias: true, preserveDrawingBuffer: true };
-    const gl = canvas.getContext("webgl2", kept);
+    const gl = contents.querySelector("canvas.replay").getContext("webgl2", kept);
     if (!gl) {
         const why = "this browser has no WebGL2, or it is turned off. What was wrong in its frames is in the table.";
         fail("without WebGL2", `The recording cannot be replayed here: ${why}`);
@@ -364,7 +343,7 @@ function startReplay(root) {
     }
     try {
         const json = JSON.parse(root.querySelector("script").textContent);
-        new Replay(root, gl, canvas, new Recording(json));
+        new Replay(root, contents, gl, new Recording(json));
     } catch (error) {
         fail("failed", `The recording could not be replayed: ${error.message}`);
     }

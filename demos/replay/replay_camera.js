@@ -1,33 +1,12 @@
 // SPDX-License-Identifier: Zlib
 //
-// A camera that orbits around a point. Matrices are columns one after another, as WebGL takes them.
+// A camera that orbits around a point.
 
 const FIELD_OF_VIEW = 0.7; // from bottom to top [rad]
 const STEEPEST = 1.5; // above the horizon [rad]
 
 const minus = (a, b) => a.map((each, i) => each - b[i]);
-const dot = (a, b) => a.reduce((sum, each, i) => sum + each * b[i], 0);
-const cross = (a, b) => [
-    a[1] * b[2] - a[2] * b[1],
-    a[2] * b[0] - a[0] * b[2],
-    a[0] * b[1] - a[1] * b[0],
-];
-const scaled = (a, factor) => a.map((each) => each * factor);
-const plus = (a, b) => a.map((each, i) => each + b[i]);
-const unit = (a) => scaled(a, 1 / Math.hypot(...a));
-
-function product(a, b) {
-    return Float32Array.from({ length: 16 }, (_, i) => {
-        const row = i % 4;
-        const column = i - row;
-        return (
-            a[row] * b[column] +
-            a[row + 4] * b[column + 1] +
-            a[row + 8] * b[column + 2] +
-            a[row + 12] * b[column + 3]
-        );
-    });
-}
+const degrees = (radians) => (radians * 180) / Math.PI;
 
 class OrbitCamera {
     constructor(centre, radius) {
@@ -61,45 +40,89 @@ class OrbitCamera {
     // By shares of the picture's height.
     pan(right, up) {
         const height = 2 * this.distance * Math.tan(FIELD_OF_VIEW / 2);
-        const { rightward, upward } = this.axes();
-        this.target = plus(
-            this.target,
-            plus(scaled(rightward, -right * height), scaled(upward, up * height)),
-        );
+        const way = this.inWorld({ x: -right * height, y: up * height });
+        this.target = minus(this.target, minus([0, 0, 0], way));
     }
 
-    axes() {
-        const [s, c] = [Math.sin(this.elevation), Math.cos(this.elevation)];
-        const backward = [Math.sin(this.azimuth) * c, s, Math.cos(this.azimuth) * c];
-        const rightward = unit(cross([0, 1, 0], backward));
-        return { backward, rightward, upward: cross(backward, rightward) };
+    // From the world's axes to the picture's: rightward, upward, backward.
+    turn() {
+        return new DOMMatrix()
+            .rotateAxisAngle(1, 0, 0, degrees(this.elevation))
+            .rotateAxisAngle(0, 1, 0, -degrees(this.azimuth));
+    }
+
+    inWorld(wayInPicture) {
+        const { x, y, z } = this.turn().inverse().transformPoint(wayInPicture);
+        return [x, y, z];
     }
 
     view(aspect) {
-        const { backward, rightward, upward } = this.axes();
-        const eye = plus(this.target, scaled(backward, this.distance));
-        const view = new Float32Array(16);
-        [rightward, upward, backward].forEach((axis, row) => {
-            axis.forEach((each, column) => (view[4 * column + row] = each));
-            view[12 + row] = -dot(axis, eye);
-        });
-        view[15] = 1;
+        const [x, y, z] = this.target;
+        const view = new DOMMatrix()
+            .translate(0, 0, -this.distance)
+            .multiply(this.turn())
+            .translate(-x, -y, -z);
         const near = this.distance / 100;
         const far = this.distance + 20 * this.radius;
         const scale = 1 / Math.tan(FIELD_OF_VIEW / 2);
-        const projection = new Float32Array(16);
-        projection[0] = scale / aspect;
-        projection[5] = scale;
-        projection[10] = (near + far) / (near - far);
-        projection[11] = -1;
-        projection[14] = (2 * near * far) / (near - far);
-        return { eye, view, projection, both: product(projection, view) };
+        const [slope, shift] = [(near + far) / (near - far), (2 * near * far) / (near - far)];
+        // Columns one after another.
+        const projection = new DOMMatrix([
+            scale / aspect, 0, 0, 0, 0, scale, 0, 0, 0, 0, slope, -1, 0, 0, shift, 0,
+        ]);
+        return {
+            eye: minus(this.target, this.inWorld({ z: -this.distance })),
+            view: view.toFloat32Array(),
+            projection: projection.toFloat32Array(),
+            both: projection.multiply(view).toFloat32Array(),
+        };
     }
 }
 
 // Where the point is in a picture of that size, from its lower left; nothing behind the camera.
 function placeInPicture(matrix, [x, y, z], width, height) {
-    const row = (i) => matrix[i] * x + matrix[i + 4] * y + matrix[i + 8] * z + matrix[i + 12];
-    const w = row(3);
-    return w > 0 ? [((row(0) / w + 1) / 2) * width, ((row(1) / w + 1) / 2) * height] : undefined;
+    const at = DOMMatrix.fromFloat32Array(matrix).transformPoint({ x, y, z });
+    return at.w > 0
+        ? [((at.x / at.w + 1) / 2) * width, ((at.y / at.w + 1) / 2) * height]
+        : undefined;
+}
+
+// Dragging orbits, with Shift or the right button it pans, two fingers zoom; so does the wheel.
+function steerByPointer(canvas, camera, changed) {
+    const pointers = new Map();
+    const fingersApart = () => {
+        const [a, b] = [...pointers.values()];
+        return Math.hypot(a.x - b.x, a.y - b.y);
+    };
+    canvas.addEventListener("pointerdown", (event) => {
+        canvas.setPointerCapture(event.pointerId);
+        pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+    });
+    canvas.addEventListener("pointermove", (event) => {
+        const last = pointers.get(event.pointerId);
+        if (!last) {
+            return;
+        }
+        const apart = pointers.size === 2 ? fingersApart() : 0;
+        const [dx, dy] = [event.clientX - last.x, event.clientY - last.y];
+        Object.assign(last, { x: event.clientX, y: event.clientY });
+        if (apart > 0) {
+            camera.zoom(apart / Math.max(1, fingersApart()));
+        } else if (event.shiftKey || event.buttons & 2) {
+            camera.pan(dx / canvas.clientHeight, dy / canvas.clientHeight);
+        } else {
+            camera.orbit(-dx * 0.008, dy * 0.008);
+        }
+        changed();
+    });
+    for (const end of ["pointerup", "pointercancel"]) {
+        canvas.addEventListener(end, (event) => pointers.delete(event.pointerId));
+    }
+    canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+    const wheel = (event) => {
+        event.preventDefault();
+        camera.zoom(Math.exp(event.deltaY * 0.0015));
+        changed();
+    };
+    canvas.addEventListener("wheel", wheel, { passive: false });
 }

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/replay/replay_recording.hpp>
 
-#include <demos/replay/replay_selection.hpp>
 #include <demos/report/base64.hpp>
 #include <demos/report/report_text.hpp>
 
 #include <algorithm>
-#include <limits>
-#include <numeric>
 #include <sstream>
 #include <utility>
 
@@ -28,10 +25,6 @@ std::string littleEndian(std::span<const std::uint32_t> numbers) {
         }
     }
     return base64(bytes);
-}
-
-std::size_t sumOf(const std::vector<std::size_t>& counts) {
-    return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
 }
 
 Json threeNumbers(const Vector3<float>& vector) {
@@ -90,15 +83,12 @@ ReplayRecording::ReplayRecording(ReplaySettings settings)
       wrong_(settings_.broadphases.size()) {}
 
 void ReplayRecording::add(std::size_t broadphase, const ReplayFrame& frame) {
-    if (shared_.empty()) {
+    if (tracks_.empty()) {
         begin(frame.boxes);
     }
-    Shared& shared = shared_[settings_.sharesBoxes ? 0 : broadphase];
-    if (shared.inAll.size() == frames_) {
-        constexpr auto kAll = std::numeric_limits<std::size_t>::max();
-        shared.boxes.add(frame.boxes, frame.exact);
-        shared.pairs.add(amongRecorded(frame.exact, kAll));
-        shared.inAll.push_back(frame.exact.size());
+    ReplayTrack& track = tracks_[settings_.sharesBoxes ? 0 : broadphase];
+    if (track.pairsInAll.size() == frames_) {
+        track.add(frame.boxes, frame.exact, amongRecorded(frame.exact));
     }
     WrongPairs& wrong = wrong_[broadphase];
     wrong.missing.push_back(frame.missing.size());
@@ -122,10 +112,8 @@ void ReplayRecording::finishFrame() {
 }
 
 void ReplayRecording::removeLastFrame() {
-    for (Shared& shared : shared_) {
-        shared.boxes.removeLast();
-        shared.pairs.removeLast();
-        shared.inAll.pop_back();
+    for (ReplayTrack& track : tracks_) {
+        track.removeLast();
     }
     for (WrongPairs& wrong : wrong_) {
         const std::size_t listed = wrong.missingListed.back() + wrong.extraListed.back();
@@ -141,17 +129,14 @@ void ReplayRecording::removeLastFrame() {
 }
 
 void ReplayRecording::begin(std::span<const Aabb<float>> boxes) {
-    objectCount_ = boxes.size();
-    ReplaySelection selection = selectForReplay(boxes, settings_.bounds, settings_.objects);
-    objects_ = std::move(selection.objects);
-    bounds_ = selection.bounds;
-    typicalEdge_ = selection.typicalEdge;
+    selection_ = selectForReplay(boxes, settings_.bounds, settings_.objects);
+    const std::vector<std::uint32_t>& objects = selection_.objects;
     placeOf_.assign(boxes.size(), kNotRecorded);
-    for (std::size_t place = 0; place < objects_.size(); ++place) {
-        placeOf_[objects_[place]] = static_cast<std::uint32_t>(place);
+    for (std::size_t place = 0; place < objects.size(); ++place) {
+        placeOf_[objects[place]] = static_cast<std::uint32_t>(place);
     }
-    shared_.assign(settings_.sharesBoxes ? 1 : wrong_.size(),
-                   {ReplayTrack(bounds_, objects_), ReplayPairs(settings_.pairs)});
+    tracks_.assign(settings_.sharesBoxes ? 1 : wrong_.size(),
+                   ReplayTrack(selection_.bounds, objects, settings_.pairs));
 }
 
 std::optional<PairKey> ReplayRecording::placesOf(PairKey pair) const {
@@ -199,63 +184,39 @@ void ReplayRecording::describeFirst(const ReplayFrame& frame, WrongPairs& wrong)
 
 std::size_t ReplayRecording::bytes() const {
     std::size_t raw = 0;
-    for (const Shared& shared : shared_) {
-        raw += shared.boxes.stream().size() + shared.pairs.stream().size();
+    for (const ReplayTrack& track : tracks_) {
+        raw += track.boxStream.size() + track.pairStream.size();
     }
     for (const WrongPairs& wrong : wrong_) {
         raw += wrong.places.size() * 4;
     }
-    const std::size_t counts = (shared_.size() + wrong_.size()) * (frames_ + 1) * kBytesOfCounts;
+    const std::size_t counts = (tracks_.size() + wrong_.size()) * (frames_ + 1) * kBytesOfCounts;
     return raw * 4 / 3 + counts;
 }
 
-std::size_t ReplayRecording::missingCount(std::size_t broadphase) const {
-    return sumOf(wrong_[broadphase].missing);
-}
-
-std::size_t ReplayRecording::extraCount(std::size_t broadphase) const {
-    return sumOf(wrong_[broadphase].extra);
-}
-
-std::size_t ReplayRecording::cutCount() const {
-    std::size_t count = 0;
-    for (std::size_t place = 0; place < objects_.size(); ++place) {
-        count += std::any_of(shared_.begin(), shared_.end(), [place](const Shared& shared) {
-            return shared.boxes.isCut()[place] != 0;
-        });
-    }
-    return count;
-}
-
-std::size_t ReplayRecording::framesWithoutPairs() const {
-    std::size_t most = 0;
-    for (const Shared& shared : shared_) {
-        std::size_t without = 0;
-        for (std::size_t frame = 0; frame < frames_; ++frame) {
-            without += shared.pairs.listedCounts()[frame] < shared.pairs.counts()[frame];
-        }
-        most = std::max(most, without);
-    }
-    return most;
-}
-
 Json ReplayRecording::json() const {
+    std::size_t cutCount = 0;
+    for (std::size_t place = 0; place < selection_.objects.size(); ++place) {
+        cutCount += std::ranges::any_of(
+            tracks_, [place](const ReplayTrack& track) { return track.isCut[place] != 0; });
+    }
     Json json{{"frames", frames_},
-              {"objects", objects_.size()},
-              {"objectsInAll", objectCount_},
+              {"objects", selection_.objects.size()},
+              {"objectsInAll", placeOf_.size()},
+              {"objectsCut", cutCount},
               {"noun", settings_.noun},
               {"spheres", settings_.areSpheres},
-              {"low", threeNumbers(bounds_.min())},
-              {"high", threeNumbers(bounds_.max())},
-              {"typicalEdge", typicalEdge_},
+              {"low", threeNumbers(selection_.bounds.min())},
+              {"high", threeNumbers(selection_.bounds.max())},
+              {"typicalEdge", selection_.typicalEdge},
               {"tracks", Json::array()},
               {"broadphases", Json::array()}};
-    for (const Shared& shared : shared_) {
-        json["tracks"].push_back({{"pairsInAll", shared.inAll},
-                                  {"pairs", shared.pairs.counts()},
-                                  {"pairsListed", shared.pairs.listedCounts()},
-                                  {"pairStream", base64(shared.pairs.stream())},
-                                  {"boxStream", base64(shared.boxes.stream())}});
+    for (const ReplayTrack& track : tracks_) {
+        json["tracks"].push_back({{"pairsInAll", track.pairsInAll},
+                                  {"pairs", track.pairCounts},
+                                  {"pairsListed", track.pairsListed},
+                                  {"pairStream", base64(track.pairStream)},
+                                  {"boxStream", base64(track.boxStream)}});
     }
     for (std::size_t i = 0; i < wrong_.size(); ++i) {
         const WrongPairs& wrong = wrong_[i];

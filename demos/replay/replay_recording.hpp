@@ -11,11 +11,15 @@
 
 #include <demos/replay/replay_track.hpp>
 #include <demos/report/json_values.hpp>
+#include <demos/report/page_tab.hpp>
 
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hashphase::demos {
@@ -33,6 +37,20 @@ struct ReplaySettings {
     std::size_t pairs = 150'000;           // in a frame, at most; of more, none is listed
     std::size_t wrongPairs = 200;          // missing, and as many extra, in a frame, at most
 };
+
+/// Which objects of a run are recorded, and how large the world is in which they are drawn.
+struct ReplaySelection {
+    std::vector<std::uint32_t> objects;  // by their numbers, in order
+    Aabb<float> bounds;                  // finite; lower than upper, or the same
+    float typicalEdge = 1;               // the median of the boxes' longest edges; above 0
+};
+
+/// At most so many objects: of more, those in a square column around the middle of all, so that few
+/// pairs among them and others are lost. The bounds hold the world as far as it is no more than four
+/// times as large as what nearly all of the objects take: a few that are far away, or have no end,
+/// would leave the others no resolution.
+[[nodiscard]] ReplaySelection selectForReplay(std::span<const Aabb<float>> boxes,
+                                              const Aabb<float>& world, std::size_t most);
 
 /// What one broadphase had and found in one frame; the pairs sorted.
 struct ReplayFrame {
@@ -56,32 +74,12 @@ public:
     /// Keeps the frame, or leaves it out and is full, where it would take too many bytes.
     void finishFrame();
 
-    [[nodiscard]] std::size_t frameCount() const noexcept { return frames_; }
-    [[nodiscard]] std::size_t objectCount() const noexcept { return objectCount_; }
-    [[nodiscard]] std::size_t recordedObjectCount() const noexcept { return objects_.size(); }
     [[nodiscard]] const ReplaySettings& settings() const noexcept { return settings_; }
-
-    /// The wrong pairs of a broadphase in all recorded frames.
-    [[nodiscard]] std::size_t missingCount(std::size_t broadphase) const;
-    [[nodiscard]] std::size_t extraCount(std::size_t broadphase) const;
-
-    /// How many of the recorded objects left the drawn world, or had a NaN.
-    [[nodiscard]] std::size_t cutCount() const;
-
-    /// In how many frames there are too many pairs to be listed.
-    [[nodiscard]] std::size_t framesWithoutPairs() const;
 
     /// As replay_data.js reads it.
     [[nodiscard]] Json json() const;
 
 private:
-    /// What the broadphases that see the same boxes have in common.
-    struct Shared {
-        ReplayTrack boxes;
-        ReplayPairs pairs;                    // of recorded objects, as places among those
-        std::vector<std::size_t> inAll = {};  // pairs of all objects, a number for each frame
-    };
-
     /// Pairs of recorded objects, as places among those.
     struct WrongPairs {
         std::vector<std::size_t> missing;  // a number for each frame
@@ -96,8 +94,9 @@ private:
     void begin(std::span<const Aabb<float>> boxes);
     /// As places; nothing where one of them is not recorded.
     [[nodiscard]] std::optional<PairKey> placesOf(PairKey pair) const;
-    [[nodiscard]] std::vector<PairKey> amongRecorded(std::span<const PairKey> pairs,
-                                                     std::size_t most) const;
+    [[nodiscard]] std::vector<PairKey> amongRecorded(
+        std::span<const PairKey> pairs,
+        std::size_t most = std::numeric_limits<std::size_t>::max()) const;
     std::size_t list(std::span<const PairKey> pairs, WrongPairs& wrong) const;
     void describeFirst(const ReplayFrame& frame, WrongPairs& wrong) const;
     void removeLastFrame();
@@ -105,14 +104,21 @@ private:
 
     ReplaySettings settings_;
     std::size_t frames_ = 0;
-    std::size_t objectCount_ = 0;
     bool isFull_ = false;
-    Aabb<float> bounds_;                  // of what is drawn
-    std::vector<std::uint32_t> objects_;  // that are recorded
-    std::vector<std::uint32_t> placeOf_;  // among those, of each object
-    std::vector<Shared> shared_;          // one, or one a broadphase
+    ReplaySelection selection_;
+    std::vector<std::uint32_t> placeOf_;  // among the recorded objects, of each object
+    std::vector<ReplayTrack> tracks_;     // one, or one a broadphase
     std::vector<WrongPairs> wrong_;       // of each broadphase
-    float typicalEdge_ = 1;
 };
+
+struct Page;
+
+/// Adds the tab "Replay" to the page, unless no frame was recorded. `framesRun` is how many frames the
+/// run had, the recorded ones included.
+void addReplayTab(const ReplayRecording& recording, std::size_t framesRun, Page& page);
+
+/// The JavaScript and the style sheet of the tab, as they were when the program was built.
+[[nodiscard]] PageScript replayScript();
+[[nodiscard]] std::string_view replayStyle();
 
 }  // namespace hashphase::demos

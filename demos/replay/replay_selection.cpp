@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/replay/replay_selection.hpp>
+#include <demos/replay/replay_recording.hpp>
 
 #include <algorithm>
 #include <cmath>

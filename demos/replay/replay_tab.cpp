@@ -1,35 +1,54 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/replay/replay_tab.hpp>
-
 #include <demos/console/format.hpp>
+#include <demos/replay/replay_recording.hpp>
 #include <demos/report/html.hpp>
+#include <demos/report/page.hpp>
 
+#include <algorithm>
+#include <numeric>
 #include <sstream>
+#include <vector>
 
 namespace hashphase::demos {
 namespace {
 
-std::string whatIsRecorded(const ReplayRecording& recording, std::size_t framesRun) {
-    const ReplaySettings& settings = recording.settings();
+std::string thousands(const Json& number) {
+    return withThousands(number.get<std::uint64_t>());
+}
+
+/// In how many frames a track has pairs that are too many to be listed, at most.
+std::uint64_t framesWithoutPairs(const Json& recording) {
+    std::uint64_t most = 0;
+    for (const Json& track : recording["tracks"]) {
+        std::uint64_t without = 0;
+        for (std::size_t frame = 0; frame < track["pairs"].size(); ++frame) {
+            without += track["pairsListed"][frame] < track["pairs"][frame] ? 1 : 0;
+        }
+        most = std::max(most, without);
+    }
+    return most;
+}
+
+std::string whatIsRecorded(const Json& recording, const ReplaySettings& settings,
+                           std::size_t framesRun) {
     std::string text = "Recorded of " + settings.scene + ": the first " +
-                       withThousands(recording.frameCount()) + " of " + withThousands(framesRun) +
+                       thousands(recording["frames"]) + " of " + withThousands(framesRun) +
                        " frames";
-    if (recording.recordedObjectCount() < recording.objectCount()) {
-        text += ", and of " + withThousands(recording.objectCount()) + " " + settings.noun +
-                " the " + withThousands(recording.recordedObjectCount()) +
+    const std::string inAll = thousands(recording["objectsInAll"]) + " " + settings.noun;
+    if (recording["objects"] < recording["objectsInAll"]) {
+        text += ", and of " + inAll + " the " + thousands(recording["objects"]) +
                 " that stand nearest to the middle in the first of them; pairs are drawn where "
                 "both are among these";
     } else {
-        text += " with all " + withThousands(recording.objectCount()) + " " + settings.noun;
+        text += " with all " + inAll;
     }
     text += ". ";
-    if (recording.framesWithoutPairs() > 0) {
-        text += "In " + withThousands(recording.framesWithoutPairs()) +
-                " of the frames there are more than " + withThousands(settings.pairs) +
-                " pairs, which are counted but not drawn. ";
+    if (const std::uint64_t frames = framesWithoutPairs(recording); frames > 0) {
+        text += "In " + withThousands(frames) + " of the frames there are more than " +
+                withThousands(settings.pairs) + " pairs, which are counted but not drawn. ";
     }
-    if (recording.cutCount() > 0) {
-        text += withThousands(recording.cutCount()) + " of the " + settings.noun +
+    if (recording["objectsCut"] > 0) {
+        text += thousands(recording["objectsCut"]) + " of the " + settings.noun +
                 " reach beyond the drawn world, or hold a NaN: they are cut off at its end. ";
     }
     return text +
@@ -37,15 +56,17 @@ std::string whatIsRecorded(const ReplayRecording& recording, std::size_t framesR
            "a 65,535th of the drawn world. For more frames, in a larger page: --replay-frames.";
 }
 
-DataTable wrongPairsTable(const ReplayRecording& recording) {
+DataTable wrongPairsTable(const Json& recording) {
     DataTable table{{{"broadphase", "broadphase"},
                      {"missing", "missing in these frames"},
                      {"extra", "extra in these frames"}},
                     {}};
-    for (std::size_t i = 0; i < recording.settings().broadphases.size(); ++i) {
-        table.add({recording.settings().broadphases[i],
-                   static_cast<double>(recording.missingCount(i)),
-                   static_cast<double>(recording.extraCount(i))});
+    for (const Json& broadphase : recording["broadphases"]) {
+        const auto sumOf = [&](const char* counts) {
+            const auto each = broadphase[counts].get<std::vector<double>>();
+            return std::accumulate(each.begin(), each.end(), 0.0);
+        };
+        table.add({broadphase["name"].get<std::string>(), sumOf("missing"), sumOf("extra")});
     }
     return table;
 }
@@ -53,16 +74,17 @@ DataTable wrongPairsTable(const ReplayRecording& recording) {
 }  // namespace
 
 void addReplayTab(const ReplayRecording& recording, std::size_t framesRun, Page& page) {
-    if (recording.frameCount() == 0) {
+    const Json json = recording.json();
+    if (json["frames"] == 0) {
         return;
     }
     std::ostringstream html;
     html << "<h2>Replay</h2>\n<div class=\"replay\">\n<noscript><p>The recording is replayed by "
             "JavaScript, which is off, and WebGL2. What was wrong in its frames is in the "
             "table.</p></noscript>\n<script type=\"application/json\">"
-         << jsonInScript(recording.json()) << "</script>\n</div>\n<p class=\"quiet\">"
-         << escaped(whatIsRecorded(recording, framesRun)) << "</p>\n";
-    writeTable(wrongPairsTable(recording), html);
+         << jsonInScript(json) << "</script>\n</div>\n<p class=\"quiet\">"
+         << escaped(whatIsRecorded(json, recording.settings(), framesRun)) << "</p>\n";
+    writeTable(wrongPairsTable(json), html);
     page.tabs.push_back({"replay", "Replay", html.str(), replayStyle(), replayScript()});
 }
 

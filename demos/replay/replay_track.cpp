@@ -27,23 +27,48 @@ std::uint16_t stepsOf(double part, double extent) {
 
 }  // namespace
 
-ReplayTrack::ReplayTrack(const Aabb<float>& bounds, std::vector<std::uint32_t> objects)
-    : bounds_(bounds),
+ReplayTrack::ReplayTrack(const Aabb<float>& bounds, std::vector<std::uint32_t> objects,
+                         std::size_t mostPairs)
+    : isCut(objects.size(), 0),
+      bounds_(bounds),
       objects_(std::move(objects)),
-      last_(objects_.size(), Sample{}),
-      isCut_(objects_.size(), 0) {}
+      mostPairs_(mostPairs),
+      last_(objects_.size(), Sample{}) {}
 
-void ReplayTrack::add(std::span<const Aabb<float>> boxes, std::span<const PairKey> pairs) {
+void ReplayTrack::add(std::span<const Aabb<float>> boxes, std::span<const PairKey> pairs,
+                      std::span<const PairKey> recordedPairs) {
+    boxesBegin_ = boxStream.size();
+    pairsBegin_ = pairStream.size();
+    addBoxes(boxes, pairs);
+    pairsInAll.push_back(pairs.size());
+    pairCounts.push_back(recordedPairs.size());
+    if (recordedPairs.size() > mostPairs_) {
+        recordedPairs = {};
+    }
+    pairsListed.push_back(recordedPairs.size());
+    addPairs(recordedPairs);
+}
+
+void ReplayTrack::removeLast() {
+    boxStream.resize(boxesBegin_);
+    pairStream.resize(pairsBegin_);
+    for (auto* counts : {&pairsInAll, &pairCounts, &pairsListed}) {
+        counts->pop_back();
+    }
+}
+
+// --- Boxes ---------------------------------------------------------------------------------------
+
+void ReplayTrack::addBoxes(std::span<const Aabb<float>> boxes, std::span<const PairKey> pairs) {
     overlaps_.assign(boxes.size(), 0);
     for (const PairKey pair : pairs) {
         ++overlaps_[firstOf(pair)];
         ++overlaps_[secondOf(pair)];
     }
-    lastBegin_ = stream_.size();
     for (std::size_t i = 0; i < objects_.size(); ++i) {
         const Aabb<float>& box = boxes[objects_[i]];
         if (!bounds_.contains(box)) {
-            isCut_[i] = 1;
+            isCut[i] = 1;
         }
         const Sample sample = sampleOf(box, overlaps_[objects_[i]]);
         Sample& last = last_[i];
@@ -56,22 +81,18 @@ void ReplayTrack::add(std::span<const Aabb<float>> boxes, std::span<const PairKe
         for (std::size_t k = 0; k < sample.size(); ++k) {
             changed |= sample[k] != last[k] ? 1U << k : 0U;
         }
-        stream_.push_back(static_cast<std::uint8_t>(changed));
+        boxStream.push_back(static_cast<std::uint8_t>(changed));
         for (std::size_t k = 0; k < sample.size(); ++k) {
             if (sample[k] != last[k]) {
                 const auto difference = static_cast<std::int16_t>(sample[k] - last[k]);
                 const std::int32_t twice = 2 * difference;
-                appendGroups(stream_,
+                appendGroups(boxStream,
                              static_cast<std::uint32_t>(difference < 0 ? -twice - 1 : twice));
             }
         }
         last = sample;
     }
     endRun();
-}
-
-void ReplayTrack::removeLast() {
-    stream_.resize(lastBegin_);
 }
 
 ReplayTrack::Sample ReplayTrack::sampleOf(const Aabb<float>& box, std::uint32_t overlaps) const {
@@ -93,59 +114,43 @@ ReplayTrack::Sample ReplayTrack::sampleOf(const Aabb<float>& box, std::uint32_t 
 
 void ReplayTrack::endRun() {
     if (unchanged_ > 0) {
-        stream_.push_back(0);
-        appendGroups(stream_, unchanged_ - 1);
+        boxStream.push_back(0);
+        appendGroups(boxStream, unchanged_ - 1);
         unchanged_ = 0;
     }
 }
 
 // --- Pairs ---------------------------------------------------------------------------------------
 
-void ReplayPairs::add(std::span<const PairKey> pairs) {
-    counts_.push_back(pairs.size());
-    if (pairs.size() > most_) {
-        pairs = {};
-    }
-    listedCounts_.push_back(pairs.size());
-    lastBegin_ = stream_.size();
-    writeDeaths(pairs);
-    std::vector<PairKey> births;
-    std::ranges::set_difference(pairs, listed_, std::back_inserter(births));
-    appendGroups(stream_, static_cast<std::uint32_t>(births.size()));
-    std::uint32_t a = 0;
-    std::uint32_t b = 0;
-    for (const PairKey pair : births) {
-        const std::uint32_t from = firstOf(pair) == a ? b : firstOf(pair);
-        appendGroups(stream_, firstOf(pair) - a);
-        appendGroups(stream_, secondOf(pair) - from);
-        a = firstOf(pair);
-        b = secondOf(pair);
-    }
-    listed_.assign(pairs.begin(), pairs.end());
-}
-
-void ReplayPairs::writeDeaths(std::span<const PairKey> pairs) {
+void ReplayTrack::addPairs(std::span<const PairKey> pairs) {
+    // Of each that is gone, how many stay between it and the one before.
     std::vector<std::uint32_t> stayedBetween;
     std::uint32_t stayed = 0;
-    auto now = pairs.begin();
     for (const PairKey pair : listed_) {
-        now = std::find_if(now, pairs.end(), [pair](PairKey each) { return each >= pair; });
-        if (now != pairs.end() && *now == pair) {
+        if (std::ranges::binary_search(pairs, pair)) {
             ++stayed;
         } else {
             stayedBetween.push_back(std::exchange(stayed, 0));
         }
     }
-    appendGroups(stream_, static_cast<std::uint32_t>(stayedBetween.size()));
+    appendGroups(pairStream, static_cast<std::uint32_t>(stayedBetween.size()));
     for (const std::uint32_t number : stayedBetween) {
-        appendGroups(stream_, number);
+        appendGroups(pairStream, number);
     }
-}
 
-void ReplayPairs::removeLast() {
-    stream_.resize(lastBegin_);
-    counts_.pop_back();
-    listedCounts_.pop_back();
+    std::vector<PairKey> births;
+    std::ranges::set_difference(pairs, listed_, std::back_inserter(births));
+    appendGroups(pairStream, static_cast<std::uint32_t>(births.size()));
+    std::uint32_t a = 0;
+    std::uint32_t b = 0;
+    for (const PairKey pair : births) {
+        const std::uint32_t from = firstOf(pair) == a ? b : firstOf(pair);
+        appendGroups(pairStream, firstOf(pair) - a);
+        appendGroups(pairStream, secondOf(pair) - from);
+        a = firstOf(pair);
+        b = secondOf(pair);
+    }
+    listed_.assign(pairs.begin(), pairs.end());
 }
 
 }  // namespace hashphase::demos

@@ -37,63 +37,46 @@ namespace hashphase::demos {
 
 class ReplayTrack {
 public:
-    /// The seven numbers of an object in a frame.
-    using Sample = std::array<std::uint16_t, 7>;
+    /// Records those objects, by their numbers, and lists at most so many pairs in a frame.
+    ReplayTrack(const Aabb<float>& bounds, std::vector<std::uint32_t> objects,
+                std::size_t mostPairs);
 
-    /// Records the boxes of those objects, by their numbers.
-    ReplayTrack(const Aabb<float>& bounds, std::vector<std::uint32_t> objects);
-
-    /// Adds a frame: the boxes and the overlapping pairs of all objects.
-    void add(std::span<const Aabb<float>> boxes, std::span<const PairKey> pairs);
+    /// Adds a frame: the boxes and the overlapping pairs of all objects; and those of recorded objects, as
+    /// places among these. Pairs are sorted, each of them once.
+    void add(std::span<const Aabb<float>> boxes, std::span<const PairKey> pairs,
+             std::span<const PairKey> recordedPairs);
 
     /// Takes back the frame that was added last; after that, none can be added.
     void removeLast();
 
-    /// Of each object, in order, whether it has ever left the bounds, or had a NaN: 1, else 0.
-    [[nodiscard]] const std::vector<std::uint8_t>& isCut() const noexcept { return isCut_; }
-    [[nodiscard]] const std::vector<std::uint8_t>& stream() const noexcept { return stream_; }
+    std::vector<std::uint8_t> boxStream;
+    std::vector<std::uint8_t> pairStream;
+    std::vector<std::uint8_t>
+        isCut;  // of each object, whether it ever left the bounds, or had a NaN: 1, else 0
+    // Of each frame: pairs of all objects; of recorded ones; and how many of these are listed, all or none.
+    std::vector<std::size_t> pairsInAll;
+    std::vector<std::size_t> pairCounts;
+    std::vector<std::size_t> pairsListed;
 
 private:
+    /// The seven numbers of an object in a frame.
+    using Sample = std::array<std::uint16_t, 7>;
+
     [[nodiscard]] Sample sampleOf(const Aabb<float>& box, std::uint32_t overlaps) const;
+    void addBoxes(std::span<const Aabb<float>> boxes, std::span<const PairKey> pairs);
+    void addPairs(std::span<const PairKey> pairs);
     void endRun();
 
     Aabb<float> bounds_;
     std::vector<std::uint32_t> objects_;
+    std::size_t mostPairs_;
     std::vector<Sample> last_;
     std::vector<std::uint32_t> overlaps_;  // of all objects
-    std::vector<std::uint8_t> isCut_;
-    std::vector<std::uint8_t> stream_;
-    std::size_t lastBegin_ = 0;    // in the stream, of the frame that was added last
-    std::uint32_t unchanged_ = 0;  // in a row, not yet in the stream
-};
-
-class ReplayPairs {
-public:
-    /// Lists at most so many pairs in a frame.
-    explicit ReplayPairs(std::size_t most) : most_(most) {}
-
-    /// Adds a frame: its pairs, sorted, each of them once.
-    void add(std::span<const PairKey> pairs);
-
-    /// Takes back the frame that was added last; after that, none can be added.
-    void removeLast();
-
-    /// How many pairs each frame has, and how many of them are listed: all or none.
-    [[nodiscard]] const std::vector<std::size_t>& counts() const noexcept { return counts_; }
-    [[nodiscard]] const std::vector<std::size_t>& listedCounts() const noexcept {
-        return listedCounts_;
-    }
-    [[nodiscard]] const std::vector<std::uint8_t>& stream() const noexcept { return stream_; }
-
-private:
-    void writeDeaths(std::span<const PairKey> pairs);
-
-    std::size_t most_;
-    std::vector<PairKey> listed_;  // of the last frame
-    std::vector<std::size_t> counts_;
-    std::vector<std::size_t> listedCounts_;
-    std::vector<std::uint8_t> stream_;
-    std::size_t lastBegin_ = 0;  // in the stream, of the frame that was added last
+    std::vector<PairKey> listed_;          // in the last frame
+    // In the streams, of the frame that was added last.
+    std::size_t boxesBegin_ = 0;
+    std::size_t pairsBegin_ = 0;
+    std::uint32_t unchanged_ = 0;  // objects in a row, not yet in the stream
 };
 
 }  // namespace hashphase::demos

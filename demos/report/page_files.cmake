@@ -3,15 +3,15 @@
 # Files that go into pages as they are: scripts and style sheets, as strings in C++ sources.
 
 # hashphase_bundle_script(<name> <file>...): sets <name> to the files' code, one after another within
-# a function of its own, and <name>Sha256 to its hash. A shader becomes a string: boxes.glsl is BOXES_GLSL.
+# a function of its own, and <name>Sha256 to its hash. What is no script becomes a string: boxes.glsl is BOXES_GLSL.
 function(hashphase_bundle_script name)
     set(code "(() => {\n\"use strict\";\n")
     foreach(file IN LISTS ARGN)
         set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${file})
         file(READ ${file} text)
-        if(file MATCHES "([a-z]+)\\.glsl$")
-            string(TOUPPER ${CMAKE_MATCH_1} shader)
-            set(text "const ${shader}_GLSL = `${text}`;\n")
+        if(file MATCHES "([a-z]+)\\.(glsl|html)$")
+            string(TOUPPER ${CMAKE_MATCH_1}_${CMAKE_MATCH_2} constant)
+            set(text "const ${constant} = `${text}`;\n")
         endif()
         string(APPEND code "${text}")
     endforeach()
@@ -41,7 +41,8 @@ configure_file(report/page_files.cpp.in page_files.cpp @ONLY)
 hashphase_bundle_script(
     replayScript replay/replay_data.js replay/replay_camera.js replay/shaders/background.glsl
     replay/shaders/objects.glsl replay/shaders/boxes.glsl replay/shaders/spheres.glsl
-    replay/shaders/pairs.glsl replay/replay_drawing.js replay/replay_controls.js replay/replay.js)
+    replay/shaders/pairs.glsl replay/replay_drawing.js replay/replay_legend.js replay/replay.html
+    replay/replay.js)
 hashphase_bundle_style(replayStyle replay/replay.css)
 configure_file(replay/replay_files.cpp.in replay_files.cpp @ONLY)
 set(HASHPHASE_PAGE_FILES ${CMAKE_CURRENT_BINARY_DIR}/page_files.cpp

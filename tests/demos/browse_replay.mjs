@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Zlib
 //
-// node browse_replay.mjs <chromium> <page>...
+// node browse_replay.mjs <chromium> <found.json> <page> <row> <heap>
 //
-// Plays the recordings of pages in headless Chromium, whose WebGL2 is drawn by the processor, and tells
-// as JSON, page by page, what was to be seen in each frame. Of the first page also how the picture changes
-// with what is chosen, where the first wrong pair is, how fast it draws, what comes of a loss of WebGL2 or
-// of another size or density of the screen, and what is said where there is no WebGL2; of the others
-// what is said of the pairs, and the colours of bodies in a row.
+// Plays the recordings of pages in headless Chromium, whose WebGL2 is drawn by the processor, and fails where it is
+// not as it is to be. Of the first page, a comparison that found what is in the file: each frame, how the picture
+// changes with what is chosen, keys, the first wrong pair, a loss of WebGL2, other sizes and densities of the screen,
+// and what is said where there is no WebGL2. Of boxes in a row: their colours; of a heap: too many pairs.
 
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { Browser, scheme } from "./browser.mjs";
 
 // What the page's own checks need: its replay, and pictures of it as numbers.
@@ -145,38 +146,45 @@ async function pictureAfter(evaluate, act) {
     return { frame: Number(frame), colouring };
 }
 
-async function byKeys({ tab, evaluate }) {
+// --- What is to be so ----------------------------------------------------------------------------
+
+async function checkKeys({ tab, evaluate }, frames) {
     const after = (key) => pictureAfter(evaluate, () => press(tab, key));
     await evaluate("canvas.focus()");
     await evaluate("scrub(0)");
-    const seen = { next: await after("."), last: await after("End"), home: await after("Home") };
-    seen.coloured = await after("c");
+    assert.equal((await after(".")).frame, 1);
+    assert.equal((await after("End")).frame, frames - 1);
+    assert.equal((await after("Home")).frame, 0);
+    assert.equal((await after("c")).colouring, "height");
     await evaluate("remember('key')");
     await after("ArrowLeft");
-    seen.changedByTurning = await evaluate("changedSince('key')");
-    seen.played = await after(" ");
+    assert((await evaluate("changedSince('key')")) > 100, "it does not turn");
+    assert.equal((await after(" ")).frame, 1, "it does not play");
     await press(tab, " ");
-    seen.playing = await evaluate("root.dataset.playing");
-    return seen;
+    assert.equal(await evaluate("root.dataset.playing"), "false", "paused by the same key");
 }
 
 // Keys that are pressed while the focus is not in the tab's contents.
-async function byKeysElsewhere({ tab, evaluate }) {
-    const after = async (key) => {
+async function checkKeysElsewhere({ tab, evaluate }) {
+    const after = async (key, frame, isPlaying) => {
         await press(tab, key);
-        return evaluate("[Number(root.dataset.frame), root.dataset.playing === 'true']");
+        const now = await evaluate("[Number(root.dataset.frame), root.dataset.playing === 'true']");
+        assert.deepEqual(now, [frame, isPlaying], `after ${key}`);
     };
     const focus = (what) => evaluate(`scrub(3).then(() => ${what})`);
     await focus("document.getElementById('tab-replay').focus()");
-    const seen = { onTab: [await after("."), await after(" ")] };
+    await after(".", 4, false);
+    await after(" ", 4, false); // Space is the tab's own
     await focus("document.activeElement.blur()");
-    seen.nowhere = [await after("."), await after("End"), await after(" "), await after(" ")];
+    await after(".", 4, false);
+    await after("End", 13, false);
+    await after(" ", 13, true);
+    await after(" ", 13, false);
     await focus("root.querySelector('[name=cellSize]').focus()");
-    seen.typing = await after(".");
+    await after(".", 3, false);
     await focus("document.getElementById('tab-report').click()");
-    seen.hidden = await after(",");
+    await after(",", 3, false);
     await evaluate("document.getElementById('tab-replay').click()");
-    return seen;
 }
 
 const lossOfContext = `(async () => {
@@ -204,29 +212,77 @@ const lossOfContext = `(async () => {
 })()`;
 
 // The picture has as many pixels as the screen.
-async function onScreens({ tab, evaluate }) {
-    const sizes = [];
+async function checkScreens({ tab, evaluate }) {
+    let number = 0;
     for (const [width, deviceScaleFactor] of [[900, 1], [700, 1], [700, 2], [700, 1.5], [700, 1]]) {
-        await tab("Emulation.setDeviceMetricsOverride", {
-            width,
-            height: 900,
-            deviceScaleFactor,
-            mobile: false,
-        });
+        const size = { width, height: 900, deviceScaleFactor, mobile: false };
+        await tab("Emulation.setDeviceMetricsOverride", size);
         // Chromium tells media queries of an emulated density when another medium changes, too.
         await tab("Emulation.setEmulatedMedia", {
             features: [
                 { name: "prefers-color-scheme", value: "light" },
-                { name: "prefers-reduced-motion", value: sizes.length % 2 ? "reduce" : "no-preference" },
+                { name: "prefers-reduced-motion", value: number++ % 2 ? "reduce" : "no-preference" },
             ],
         });
         await evaluate("settled().then(settled)");
-        sizes.push(await evaluate("[canvas.width, canvas.clientWidth * devicePixelRatio]"));
+        const [pixels, wanted] = await evaluate("[canvas.width, canvas.clientWidth * devicePixelRatio]");
+        assert(Math.abs(pixels - wanted) <= 1, `${pixels} pixels, not ${wanted}`);
     }
     await tab("Emulation.clearDeviceMetricsOverride");
     await evaluate("settled()");
-    return sizes;
 }
+
+async function checkChanges({ tab, evaluate }, found) {
+    const changed = await evaluate(changes);
+    assert(changed.colours > 100, "an empty picture has few");
+    assert.equal(changed.backByCell, 0, "the same picture again, to the last bit");
+    for (const change of ["byHeight", "byLargerCell", "byPairs", "byLastFrame"]) {
+        assert(changed[change] > 100, change);
+    }
+    assert.equal(changed.lines, found.frames[0].exactPairs, "all pairs are drawn");
+    const ink = await evaluate("pixels()[0]");
+    await pictureAfter(evaluate, () => scheme(tab, "dark"));
+    assert.notEqual(await evaluate("pixels()[0]"), ink, "on a light and a dark screen");
+}
+
+async function checkWrongPair({ tab, evaluate }, { frame, objects: [a, b] }) {
+    await evaluate("scrub(0)");
+    await pictureAfter(evaluate, () => press(tab, "w"));
+    const seen = await evaluate(wrongPair);
+    assert.equal(seen.broadphase, "forgetful", "the worst");
+    assert.equal(seen.frame, frame);
+    assert(seen.words.includes(`Objects ${a} and ${b} overlap`), seen.words);
+    assert(seen.inPicture);
+    for (const red of seen.redAtMarks) {
+        assert(red > 20, "pixels in the colour of what is missing");
+    }
+}
+
+async function begin({ tab, evaluate }) {
+    await scheme(tab, "light");
+    assert.equal(await evaluate(ready), "ready");
+    await evaluate(helpers);
+    await evaluate("settled()");
+}
+
+const checkAll = (found) => async (page) => {
+    const { evaluate } = page;
+    await begin(page);
+    const legend = await evaluate("root.querySelector('.legend').textContent");
+    assert(legend.includes("which is no broadphase's own size"), `none has cells: ${legend}`);
+    await checkKeysElsewhere(page);
+    const loss = await evaluate(lossOfContext);
+    assert.deepEqual(loss.during, { state: "lost", playing: "false" });
+    assert.equal(loss.state, "ready", "where WebGL2 comes back");
+    assert.equal(loss.changed, 0, "the same picture again, to the last bit");
+    await checkScreens(page);
+    const frames = found.frames.map(({ exactPairs, missing, extra }, i) => [i, exactPairs, missing, extra]);
+    assert.deepEqual(await evaluate(allFrames), frames);
+    await checkChanges(page, found);
+    await checkKeys(page, frames.length);
+    console.log("frames a second:", await evaluate(framesASecond));
+    await checkWrongPair(page, found.firstFault);
+};
 
 // The colours along the middle of the picture, each where it covers some pixels of bodies.
 const coloursOfRow = `(async () => {
@@ -248,77 +304,54 @@ const coloursOfRow = `(async () => {
     return colours;
 })()`;
 
-async function inShort({ tab, evaluate }) {
-    await scheme(tab, "light");
-    const seen = { state: await evaluate(ready) };
-    await evaluate(helpers);
-    await evaluate("settled()");
-    const textOf = (place) => evaluate(`root.querySelector("${place}").textContent`);
-    seen.frames = await evaluate(allFrames);
-    seen.lines = Number((await evaluate("choose('pairs', true)")).lines);
-    await evaluate("choose('pairs', false)");
+const checkRow = (bodies) => async (page) => {
+    const { tab, evaluate } = page;
+    await begin(page);
     await evaluate("canvas.focus()");
     for (const key of [..."123456"].map(() => "ArrowLeft").concat([..."12345"].map(() => "ArrowDown"))) {
         await press(tab, key); // until the camera looks along z
     }
     await evaluate("choose('cellSize', '1')");
-    seen.colours = await evaluate(coloursOfRow);
-    seen.counts = await textOf(".counts");
-    seen.played = await pictureAfter(evaluate, () => press(tab, " "));
-    return seen;
-}
+    const colours = await evaluate(coloursOfRow);
+    assert.equal(colours.length, bodies, `one a body: ${colours}`);
+    assert(colours.every((colour, i) => i === 0 || colour !== colours[i - 1]), "cells side by side differ");
+    assert.equal((await pictureAfter(evaluate, () => press(tab, " "))).frame, 0, "round and round");
+};
 
-async function withWebGL2({ tab, evaluate }) {
-    await scheme(tab, "light");
-    const seen = { state: await evaluate(ready) };
-    await evaluate(helpers);
-    await evaluate("settled()");
-    seen.cells = await evaluate(`({
-        size: Number(root.querySelector("[name=cellSize]").value),
-        legend: root.querySelector(".legend").textContent,
-    })`);
-    seen.keysElsewhere = await byKeysElsewhere({ tab, evaluate });
-    seen.loss = await evaluate(lossOfContext);
-    seen.screens = await onScreens({ tab, evaluate });
-    seen.frames = await evaluate(allFrames);
-    seen.changes = await evaluate(changes);
-    seen.inks = [await evaluate("pixels()[0]")];
-    await pictureAfter(evaluate, () => scheme(tab, "dark"));
-    seen.inks.push(await evaluate("pixels()[0]"));
-    seen.keys = await byKeys({ tab, evaluate });
-    seen.framesASecond = await evaluate(framesASecond);
-    await evaluate("scrub(0)");
-    await pictureAfter(evaluate, () => press(tab, "w"));
-    seen.wrongPair = await evaluate(wrongPair);
-    return seen;
-}
+const checkHeap = (pairs) => async (page) => {
+    const { evaluate } = page;
+    await begin(page);
+    assert.deepEqual((await evaluate(allFrames)).map(([, each]) => each), [pairs]);
+    assert.equal((await evaluate("choose('pairs', true)")).lines, "0", "more pairs than are listed");
+    const counts = await evaluate("root.querySelector('.counts').textContent");
+    assert(counts.startsWith(`${pairs.toLocaleString("en")} pairs overlap, too many`), counts);
+};
 
-const withoutWebGL2 = async ({ evaluate }) => ({
-    state: await evaluate(ready),
-    canvases: await evaluate(`document.querySelectorAll("canvas").length`),
-    words: await evaluate(`document.querySelector("div.replay > p").textContent`),
-});
+async function checkWithoutWebGL2({ evaluate }) {
+    assert.equal(await evaluate(ready), "without WebGL2");
+    assert.equal(await evaluate(`document.querySelectorAll("canvas").length`), 0);
+    const words = await evaluate(`document.querySelector("div.replay > p").textContent`);
+    assert(words.includes("this browser has no WebGL2"), words);
+}
 
 const hideWebGL2 = (tab) =>
     tab("Page.addScriptToEvaluateOnNewDocument", {
         source: "HTMLCanvasElement.prototype.getContext = () => null;",
     });
 
-const [chromium, ...pages] = process.argv.slice(2);
-const browser = new Browser(
-    chromium,
-    ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--window-size=900,900"],
-    180,
-);
-const seen = [];
-const fragment = "#replay";
-const [whole, ...small] = pages;
-seen.push({
-    withWebGL2: await browser.inTab(whole, { fragment }, withWebGL2),
-    withoutWebGL2: await browser.inTab(whole, { fragment, setUp: hideWebGL2 }, withoutWebGL2),
-});
-for (const page of small) {
-    seen.push(await browser.inTab(page, { fragment }, inShort));
+const [chromium, foundFile, page, row, heap] = process.argv.slice(2);
+const options = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--window-size=900,900"];
+const browser = new Browser(chromium, options, 180);
+const check = async (path, task, setUp) => {
+    const { faults, requests } = await browser.inTab(path, { fragment: "#replay", setUp }, task);
+    assert.deepEqual(faults, []);
+    assert.equal(requests.length, 1, "of the page alone");
+};
+try {
+    await check(page, checkAll(JSON.parse(readFileSync(foundFile, "utf8"))));
+    await check(page, checkWithoutWebGL2, hideWebGL2);
+    await check(row, checkRow(50));
+    await check(heap, checkHeap(150_975));
+} finally {
+    await browser.close();
 }
-console.log(JSON.stringify(seen, null, 1));
-await browser.close();

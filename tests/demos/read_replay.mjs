@@ -2,9 +2,8 @@
 //
 // node read_replay.mjs <recording.json>
 //
-// Reads a recording with the script that pages read it with, and tells as JSON, frame by frame, the
-// pairs and the middles of all objects. Frames are asked for from the last to the first and with few of
-// them kept, which is harder.
+// Reads a recording with the script that pages read it with, and tells as JSON, frame by frame, the numbers of all
+// objects and the pairs. Frames are asked for from the last to the first and with few of them kept, which is harder.
 
 import { readFileSync } from "node:fs";
 
@@ -15,15 +14,7 @@ const recording = new Recording(JSON.parse(readFileSync(process.argv[2], "utf8")
 const [broadphase] = recording.broadphases;
 const frames = [];
 for (let frame = recording.frames - 1; frame >= 0; --frame) {
-    const numbers = recording.numbersOf(broadphase, frame);
-    const centre = (_, place) =>
-        recording.box(numbers, place).centre.map((each, axis) => each + recording.low[axis]);
-    frames.unshift({
-        pairs: [...recording.pairsOf(broadphase, frame)],
-        centres: Array.from({ length: recording.objects }, centre),
-    });
+    const [numbers, pairs] = [recording.numbersOf(broadphase, frame), recording.pairsOf(broadphase, frame)];
+    frames.unshift({ numbers: [...numbers], pairs: [...pairs] });
 }
-if (recording.tracks[0].every < 2) {
-    throw new Error("All frames were kept.");
-}
-console.log(JSON.stringify(frames));
+console.log(JSON.stringify({ every: recording.tracks[0].every, frames }));

@@ -1,21 +1,65 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/compare/compare_command.hpp>
+#include <demos/compare/reference_pairs.hpp>
 #include <demos/replay/replay_recording.hpp>
-#include <demos/replay/replay_tab.hpp>
+#include <demos/report/base64.hpp>
+#include <demos/report/page.hpp>
 #include <demos/report/report_command.hpp>
-#include <tests/demos/replay_streams.hpp>
+#include <tests/demos/typed.hpp>
 #include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <iterator>
+#include <limits>
+#include <numeric>
+#include <random>
 #include <regex>
 #include <sstream>
 
 namespace hashphase::demos {
 namespace {
+
+using Boxes = std::vector<Aabb<float>>;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kEndless = std::numeric_limits<float>::infinity();
+const Aabb<float> kTenMetres(Vector3<float>::Zero(), Vector3<float>::Constant(10));
+
+/// So many boxes of about a metre in a cube, of which every other one drifts from frame to frame.
+std::vector<Boxes> driftingFrames(std::size_t objects, std::size_t frames) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> place(0, 8);
+    std::uniform_real_distribution<float> step(-0.2F, 0.2F);
+    const auto vector = [&random](auto& numbers) {
+        const float x = numbers(random);
+        const float y = numbers(random);
+        return Vector3<float>(x, y, numbers(random));
+    };
+    Boxes boxes;
+    for (std::size_t i = 0; i < objects; ++i) {
+        const Vector3<float> low = vector(place);
+        boxes.emplace_back(low, low + Vector3<float>(1, 1.25F, 0.75F));
+    }
+    std::vector<Boxes> all;
+    for (std::size_t frame = 0; frame < frames; ++frame) {
+        all.push_back(boxes);
+        for (std::size_t i = 0; i < objects; i += 2) {
+            boxes[i].translate(vector(step));
+        }
+    }
+    return all;
+}
+
+/// All pairs that overlap, sorted.
+std::vector<PairKey> overlappingPairs(const Boxes& boxes) {
+    std::vector<PairKey> pairs;
+    findExactPairs(ReferenceMethod::kBrute, boxes, {}, pairs);
+    return pairs;
+}
 
 ReplaySettings replaySettings() {
     ReplaySettings settings;
@@ -25,8 +69,7 @@ ReplaySettings replaySettings() {
 }
 
 /// Records the frames until the recording is full; "wrong" misses the first pair from frame 2 on.
-ReplayRecording recorded(ReplaySettings settings,
-                         const std::vector<std::vector<Aabb<float>>>& frames) {
+ReplayRecording recorded(ReplaySettings settings, const std::vector<Boxes>& frames) {
     ReplayRecording recording(std::move(settings));
     for (std::size_t frame = 0; frame < frames.size() && !recording.isFull(); ++frame) {
         const std::vector<PairKey> exact = overlappingPairs(frames[frame]);
@@ -50,14 +93,13 @@ bool includes(const std::string& text, const std::string& part) {
 
 TEST(ReplayRecording, TellsCountsAndTheFirstWrongPair) {
     const auto frames = driftingFrames(200, 6);
-    const ReplayRecording recording = recorded(replaySettings(), frames);
-    EXPECT_EQ(recording.frameCount(), 6U);
-    EXPECT_EQ(recording.missingCount(0), 0U);
-    EXPECT_EQ(recording.missingCount(1), 4U);
-    EXPECT_EQ(recording.extraCount(1), 0U);
-    EXPECT_EQ(recording.cutCount(), 0U);
-    const Json json = recording.json();
+    const Json json = recorded(replaySettings(), frames).json();
+    EXPECT_EQ(json["frames"], 6);
     EXPECT_EQ(json["objects"], 200);
+    EXPECT_EQ(json["objectsCut"], 0);
+    EXPECT_EQ(json["broadphases"][0]["missing"], Json({0, 0, 0, 0, 0, 0}));
+    EXPECT_EQ(json["broadphases"][1]["missing"], Json({0, 0, 1, 1, 1, 1}));
+    EXPECT_EQ(json["broadphases"][1]["extra"], Json({0, 0, 0, 0, 0, 0}));
     ASSERT_EQ(json["tracks"].size(), 1U) << "all see the same boxes";
     for (std::size_t frame = 0; frame < frames.size(); ++frame) {
         EXPECT_EQ(json["tracks"][0]["pairsInAll"][frame], overlappingPairs(frames[frame]).size());
@@ -66,19 +108,17 @@ TEST(ReplayRecording, TellsCountsAndTheFirstWrongPair) {
     EXPECT_TRUE(json["broadphases"][0]["first"].is_null());
     const Json& first = json["broadphases"][1]["first"];
     const PairKey pair = overlappingPairs(frames[2]).front();
+    const std::string a = std::to_string(firstOf(pair));
+    const std::string b = std::to_string(secondOf(pair));
     EXPECT_EQ(first["frame"], 2);
     EXPECT_EQ(first["places"], Json({firstOf(pair), secondOf(pair)}));
-    EXPECT_TRUE(includes(first["words"].get<std::string>(),
-                         "Objects " + std::to_string(firstOf(pair)) + " and " +
-                             std::to_string(secondOf(pair)) + " overlap by "))
-        << first;
+    EXPECT_TRUE(includes(first["words"], "Objects " + a + " and " + b + " overlap by ")) << first;
 }
 
 TEST(ReplayRecording, TellsTheFinestCellsOfWhatHasCells) {
-    ReplaySettings settings = replaySettings();
-    ReplayRecording recording(settings);
+    ReplayRecording recording(replaySettings());
     for (const float cellSize : {1.0F, 2.5F}) {
-        const auto boxes = driftingFrames(5, 1)[0];
+        const Boxes boxes = driftingFrames(5, 1)[0];
         recording.add(0, {boxes, {}, {}, {}, cellSize});
         recording.add(1, {boxes, {}, {}, {}});
         recording.finishFrame();
@@ -91,25 +131,26 @@ TEST(ReplayRecording, EndsWhereTheSettingsSay) {
     const auto frames = driftingFrames(200, 6);
     ReplaySettings few = replaySettings();
     few.frames = 3;
-    EXPECT_EQ(recorded(few, frames).frameCount(), 3U);
+    EXPECT_EQ(recorded(few, frames).json()["frames"], 3);
     EXPECT_TRUE(recorded(few, frames).isFull());
 
     ReplaySettings small = replaySettings();
     small.bytes = 12'000;
     const ReplayRecording cut = recorded(small, frames);
+    const Json json = cut.json();
     EXPECT_TRUE(cut.isFull());
-    EXPECT_GT(cut.frameCount(), 1U);
-    EXPECT_LT(cut.frameCount(), 6U);
-    EXPECT_LT(cut.json().dump().size(), 12'000U + 1'000U);
-    EXPECT_EQ(cut.json()["broadphases"][1]["missing"].size(), cut.frameCount());
-    EXPECT_TRUE(includes(tabOf(cut), std::to_string(cut.frameCount()) + " of 500 frames"));
+    EXPECT_GT(json["frames"], 1);
+    EXPECT_LT(json["frames"], 6);
+    EXPECT_LT(json.dump().size(), 12'000U + 1'000U);
+    EXPECT_EQ(json["broadphases"][1]["missing"].size(), json["frames"]);
+    EXPECT_TRUE(includes(tabOf(cut), json["frames"].dump() + " of 500 frames"));
 
     ReplaySettings none = replaySettings();
     none.frames = 0;
     EXPECT_TRUE(ReplayRecording(none).isFull());
     none = replaySettings();
     none.bytes = 1'000;
-    EXPECT_EQ(recorded(none, frames).frameCount(), 0U);
+    EXPECT_EQ(recorded(none, frames).json()["frames"], 0);
     EXPECT_EQ(tabOf(recorded(none, frames)), "");
 }
 
@@ -130,10 +171,10 @@ TEST(ReplayRecording, SaysWhatItLeavesOut) {
 }
 
 TEST(ReplayRecording, TakesOneFrameAndNoObjects) {
-    EXPECT_EQ(recorded(replaySettings(), driftingFrames(3, 1)).frameCount(), 1U);
+    EXPECT_EQ(recorded(replaySettings(), driftingFrames(3, 1)).json()["frames"], 1);
     const ReplayRecording empty = recorded(replaySettings(), driftingFrames(0, 2));
-    EXPECT_EQ(empty.frameCount(), 2U);
-    EXPECT_EQ(empty.json()["objects"], 0);
+    EXPECT_EQ(empty.json()["frames"], 2);
+    EXPECT_EQ(empty.json()["tracks"][0]["boxStream"], "");
     EXPECT_TRUE(includes(tabOf(empty), "with all 0 objects"));
 }
 
@@ -145,44 +186,201 @@ TEST(ReplayRecording, KeepsTheBoxesOfEachBroadphaseWhereTheyDiffer) {
     EXPECT_EQ(json["broadphases"][1]["track"], 1);
 }
 
-TEST(ReplayRecording, IsReadByJavaScriptAsItWasWritten) {
-    if (std::string(HASHPHASE_NODE).empty()) {
-        GTEST_SKIP() << "Node.js is needed (Debian: nodejs).";
+// --- As pages read it ----------------------------------------------------------------------------
+
+class ReplayRead : public testing::Test {
+protected:
+    void SetUp() override {
+        if (std::string(HASHPHASE_NODE).empty()) {
+            GTEST_SKIP() << "Node.js is needed (Debian: nodejs).";
+        }
     }
+
+    /// What tests/demos/read_replay.mjs says of the recording.
+    static Json read(const Json& recording) {
+        const TemporaryFolder folder;
+        const std::string command = "'" HASHPHASE_NODE "' '" HASHPHASE_READ_REPLAY_SCRIPT "' '" +
+                                    folder.write("replay.json", recording.dump()) + "' >'" +
+                                    folder.file("read.json") + "'";
+        EXPECT_EQ(std::system(command.c_str()), 0) << command;
+        return Json::parse(std::ifstream(folder.file("read.json")), nullptr, false);
+    }
+
+    /// The same of a track, frame by frame.
+    static Json read(const ReplayTrack& track) {
+        const Json none = Json::array();
+        return read(Json{{"frames", track.pairCounts.size()},
+                         {"objects", track.isCut.size()},
+                         {"low", {0, 0, 0}},
+                         {"high", {10, 10, 10}},
+                         {"tracks", Json::array({{{"pairsListed", track.pairsListed},
+                                                  {"boxStream", base64(track.boxStream)},
+                                                  {"pairStream", base64(track.pairStream)}}})},
+                         {"broadphases", Json::array({{{"track", 0},
+                                                       {"missing", none},
+                                                       {"extra", none},
+                                                       {"missingListed", none},
+                                                       {"extraListed", none},
+                                                       {"places", ""}}})}})["frames"];
+    }
+
+    static Json placesOf(const std::vector<PairKey>& pairs) {
+        Json places = Json::array();
+        for (const PairKey pair : pairs) {
+            places.push_back(firstOf(pair));
+            places.push_back(secondOf(pair));
+        }
+        return places;
+    }
+};
+
+std::vector<std::uint32_t> firstNumbers(std::size_t count) {
+    std::vector<std::uint32_t> numbers(count);
+    std::iota(numbers.begin(), numbers.end(), 0U);
+    return numbers;
+}
+
+TEST_F(ReplayRead, GivesPairsBackAndBoxesToHalfAStep) {
     const auto frames = driftingFrames(150, 12);
     const Json json = recorded(replaySettings(), frames).json();
-    const TemporaryFolder folder;
-    const std::string command = "'" HASHPHASE_NODE "' '" HASHPHASE_READ_REPLAY_SCRIPT "' '" +
-                                folder.write("replay.json", json.dump()) + "' >'" +
-                                folder.file("read.json") + "'";
-    ASSERT_EQ(std::system(command.c_str()), 0) << command;
-    const Json read = Json::parse(std::ifstream(folder.file("read.json")));
-    ASSERT_EQ(read.size(), frames.size());
+    const Json seen = read(json);
+    ASSERT_EQ(seen["frames"].size(), frames.size());
+    EXPECT_GT(seen["every"], 1) << "not all frames were kept";
     for (std::size_t frame = 0; frame < frames.size(); ++frame) {
-        std::vector<PairKey> pairs;
-        for (std::size_t i = 0; i < read[frame]["pairs"].size(); i += 2) {
-            pairs.push_back(pairKey(read[frame]["pairs"][i], read[frame]["pairs"][i + 1]));
+        const Boxes& boxes = frames[frame];
+        const std::vector<PairKey> pairs = overlappingPairs(boxes);
+        EXPECT_EQ(seen["frames"][frame]["pairs"], placesOf(pairs)) << frame;
+        std::vector<int> overlapCounts(boxes.size());
+        for (const PairKey pair : pairs) {
+            ++overlapCounts[firstOf(pair)];
+            ++overlapCounts[secondOf(pair)];
         }
-        EXPECT_EQ(pairs, overlappingPairs(frames[frame])) << "frame " << frame;
-        for (std::size_t i = 0; i < frames[frame].size(); ++i) {
-            for (int axis = 0; axis < 3; ++axis) {
-                EXPECT_NEAR(read[frame]["centres"][i][static_cast<std::size_t>(axis)],
-                            frames[frame][i].center()[axis], 1e-3);
+        const auto numbers = seen["frames"][frame]["numbers"].get<std::vector<double>>();
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const double low = json["low"][axis];
+                const double step = (json["high"][axis].get<double>() - low) / 65535;
+                const auto k = static_cast<int>(axis);
+                EXPECT_NEAR(numbers[7 * i + axis] * step + low, boxes[i].center()[k], step * 0.501);
+                EXPECT_NEAR(numbers[7 * i + 3 + axis] * step, boxes[i].sizes()[k], step * 0.501);
             }
+            EXPECT_EQ(numbers[7 * i + 6], overlapCounts[i]);
         }
+    }
+    const std::string stream = json["tracks"][0]["pairStream"];
+    const std::vector<std::size_t> counts = json["tracks"][0]["pairs"];
+    EXPECT_LT(stream.size() * 3 / 4, std::accumulate(counts.begin(), counts.end(), std::size_t{0}))
+        << "less than a byte for a pair in a frame";
+}
+
+TEST_F(ReplayRead, HasAFewBytesOfAFrameInWhichNothingMoves) {
+    const Boxes boxes = driftingFrames(1'000, 1).front();
+    ReplayTrack track(kTenMetres, firstNumbers(1'000), 0);
+    track.add(boxes, {}, {});
+    const std::size_t first = track.boxStream.size();
+    track.add(boxes, {}, {});
+    EXPECT_EQ(track.boxStream.size(), first + 3) << "0, and 999 in two groups of seven bits";
+    const Json seen = read(track);
+    EXPECT_EQ(seen[0]["numbers"].size(), 7'000U);
+    EXPECT_EQ(seen[1]["numbers"], seen[0]["numbers"]);
+    track.removeLast();
+    EXPECT_EQ(track.boxStream.size(), first);
+}
+
+TEST_F(ReplayRead, CutsOffWhatIsHugeOrHasNoNumbers) {
+    const float most = std::numeric_limits<float>::max();
+    const Vector3<float> one = Vector3<float>::Ones();
+    const Boxes boxes{{one, 2 * one},
+                      {-kEndless * one, kEndless * one},
+                      {-most * one, most * one},
+                      {Vector3<float>(kNan, 1, 1), 2 * one},
+                      {Vector3<float>(1e30F, 0, 0), Vector3<float>(1e30F, 1, 1)}};
+    ReplayTrack track(kTenMetres, firstNumbers(boxes.size()), 0);
+    track.add(boxes, {}, {});
+    EXPECT_EQ(read(track)[0]["numbers"],
+              Json({9830,  9830,  9830,  6554,  6554,  6554,  0,    // inside
+                    32768, 32768, 32768, 65535, 65535, 65535, 0,    // everywhere
+                    32768, 32768, 32768, 65535, 65535, 65535, 0,    //
+                    0,     0,     0,     0,     0,     0,     0,    // no size
+                    65535, 3277,  3277,  0,     6554,  6554,  0}))  // at the world's end
+        << "of each its centre, its edges, and its overlaps";
+    EXPECT_EQ(track.isCut, (std::vector<std::uint8_t>{0, 1, 1, 1, 1}));
+}
+
+TEST_F(ReplayRead, HasNoPairsWhereThereAreTooManyToBeListed) {
+    const std::vector<PairKey> few{pairKey(0, 1), pairKey(0, 100'000)};
+    const std::vector<PairKey> many{pairKey(0, 1), pairKey(1, 2), pairKey(1, 3)};
+    ReplayTrack track(kTenMetres, {}, 2);
+    for (const auto& frame : {few, many, few, {}}) {
+        track.add({}, {}, frame);
+    }
+    EXPECT_EQ(track.pairCounts, (std::vector<std::size_t>{2, 3, 2, 0}));
+    EXPECT_EQ(track.pairsListed, (std::vector<std::size_t>{2, 0, 2, 0}));
+    track.removeLast();
+    const Json seen = read(track);
+    ASSERT_EQ(seen.size(), 3U);
+    EXPECT_EQ(seen[0]["pairs"], placesOf(few));
+    EXPECT_EQ(seen[1]["pairs"], Json::array());
+    EXPECT_EQ(seen[2]["pairs"], placesOf(few));
+}
+
+// --- Who is recorded -----------------------------------------------------------------------------
+
+TEST(ReplaySelection, TakesThoseAroundTheMiddleOfTooMany) {
+    Boxes boxes;
+    for (int i = 0; i < 100; ++i) {
+        const Vector3<float> low(static_cast<float>(i), 0, 0);
+        boxes.emplace_back(low, low + Vector3<float>::Ones());
+    }
+    const ReplaySelection selection = selectForReplay(boxes, Aabb<float>(), 10);
+    ASSERT_EQ(selection.objects.size(), 10U);
+    EXPECT_GE(selection.objects.front(), 44U);
+    EXPECT_LE(selection.objects.back(), 55U);
+    EXPECT_TRUE(std::ranges::is_sorted(selection.objects));
+    EXPECT_EQ(selectForReplay(boxes, Aabb<float>(), 100).objects, firstNumbers(100));
+    EXPECT_TRUE(selectForReplay(boxes, Aabb<float>(), 0).objects.empty());
+}
+
+TEST(ReplaySelection, KeepsTheResolutionWhereAFewAreFarAway) {
+    Boxes boxes = driftingFrames(1'000, 1).front();
+    boxes[3].translate(Vector3<float>(1e30F, 0, 0));
+    boxes[4] = {Vector3<float>::Constant(-kEndless), Vector3<float>::Constant(kEndless)};
+    boxes[5] = {Vector3<float>::Constant(kNan), Vector3<float>::Constant(kNan)};
+    Aabb<float> world;
+    for (const Aabb<float>& box : boxes) {
+        world.extend(box);
+    }
+    const ReplaySelection selection = selectForReplay(boxes, world, 1'000);
+    EXPECT_FLOAT_EQ(selection.typicalEdge, 1.25F);
+    EXPECT_TRUE(selection.bounds.contains(kTenMetres));
+    EXPECT_LT(selection.bounds.sizes().maxCoeff(), 60);
+    const Aabb<float> tight(Vector3<float>::Zero(), Vector3<float>::Constant(9.25F));
+    const ReplaySelection within = selectForReplay(boxes, tight, 1'000);
+    EXPECT_EQ(within.bounds.min(), tight.min());
+    EXPECT_EQ(within.bounds.max(), tight.max());
+}
+
+TEST(ReplaySelection, IsFiniteForNothingAndForAPoint) {
+    const Vector3<float> point = Vector3<float>::Constant(5);
+    for (const Boxes& boxes : {Boxes{}, Boxes{{point, point}}}) {
+        const ReplaySelection selection = selectForReplay(boxes, Aabb<float>(), 10);
+        EXPECT_TRUE(selection.bounds.min().allFinite());
+        EXPECT_TRUE(selection.bounds.max().allFinite());
+        EXPECT_EQ(selection.typicalEdge, 1);
+        EXPECT_EQ(selection.objects.size(), boxes.size());
     }
 }
 
+// --- In pages ------------------------------------------------------------------------------------
+
 std::string pageOfCommand(std::vector<std::string> arguments, const TemporaryFolder& folder) {
-    std::ostringstream out;
-    std::ostringstream err;
     const std::array subcommands{
         compareCommand(),
         reportCommand({{compareCommand(), {"--objects", "50", "--frames", "12"}}})};
     const std::string path = folder.file("page.html");
     arguments.insert(arguments.end(), {"--html", path});
-    EXPECT_EQ(runProgram(arguments, subcommands, {out, err, false, "hashphase test"}), kExitOk)
-        << err.str();
+    const Typed ran = typed(arguments, subcommands);
+    EXPECT_EQ(ran.exitCode, kExitOk) << ran.err;
     std::ifstream file(path);
     return {std::istreambuf_iterator<char>(file), {}};
 }

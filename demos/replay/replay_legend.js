@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Zlib
+//
+// What is told beside the picture: what its colours mean, and how many pairs are wrong in each frame.
+
+function element(tag, className, ...children) {
+    const made = document.createElement(tag);
+    made.className = className;
+    made.append(...children);
+    return made;
+}
+
+const thousands = (number) => number.toLocaleString("en");
+const metres = (number) => `${Number(number.toPrecision(3))} m`;
+
+// A colour and what it stands for.
+const swatch = (colour, text) => {
+    const box = element("span", "swatch");
+    box.style.background = colour;
+    return element("span", "", box, ` ${text}`);
+};
+
+function legendOf({ colouring, heights, cellSize }, { low, broadphases }) {
+    const legend = [
+        swatch(MISSING_COLOUR, "missing: overlap, not listed"),
+        swatch(EXTRA_COLOUR, "extra: listed, do not overlap"),
+    ];
+    if (colouring === "overlaps") {
+        const counts = ["overlaps none", "2", "4", "6", "8 or more others"];
+        return [...legend, ...counts.map((count, i) => swatch(OVERLAP_COLOURS[i], count))];
+    }
+    if (colouring === "height") {
+        const bar = element("span", "ramp");
+        bar.style.background = `linear-gradient(to right, ${HEIGHT_COLOURS.join(", ")})`;
+        const [from, to] = heights.map((height) => metres(low[1] + height));
+        return [...legend, element("span", "", `y = ${from} `, bar, ` ${to}`)];
+    }
+    const owner = broadphases.find((each) => each.cellSize === cellSize)?.name;
+    const whose = owner ? `the finest of ${owner}` : "which is no broadphase's own size";
+    const words =
+        `cells of ${metres(cellSize)}, ${whose}, in eight colours: cells side by side differ; ` +
+        "a body is in that of its lowest corner";
+    return [...legend, element("span", "", words)];
+}
+
+// How many pairs are wrong in each frame, as bars over the slider.
+function drawWrongPairs(canvas, { missing, extra }, frame, frames) {
+    canvas.width = Math.round(canvas.clientWidth * devicePixelRatio) || 1;
+    canvas.height = Math.round(canvas.clientHeight * devicePixelRatio) || 1;
+    const context = canvas.getContext("2d");
+    const most = Math.max(1, ...missing.map((count, i) => count + extra[i]));
+    const step = canvas.width / frames;
+    const bar = (at, from, count, colour) => {
+        // What is not zero is to be seen.
+        const height = count > 0 ? Math.max(2, (count / most) * canvas.height) : 0;
+        context.fillStyle = colour;
+        context.fillRect(at * step, canvas.height - from - height, Math.max(1, step - 1), height);
+        return from + height;
+    };
+    context.fillStyle = "#8888884d";
+    context.fillRect(frame * step, 0, Math.max(2, step - 1), canvas.height);
+    for (let at = 0; at < frames; ++at) {
+        bar(at, bar(at, 0, missing[at], MISSING_COLOUR), extra[at], EXTRA_COLOUR);
+    }
+}
