@@ -91,12 +91,6 @@ INSTANTIATE_TEST_SUITE_P(
                                {"theme dark", "camera free", "step 12"}}),
     [](const auto& view) { return view.param.name; });
 
-TEST(Views, AreOthersAfterAStep) {
-    const Image before = after(kWander, {"step 20", "eye 200 30 400 10 -15"});
-    const Image later = after(kWander, {"step 50", "eye 200 30 400 10 -15"});
-    EXPECT_FALSE(looksTheSame(before, later));
-}
-
 // --- What is laid over a scene -------------------------------------------------------------------
 
 TEST(PictureMaker, DrawsZonesAsBallsOfTheirRadiusWhileTheyAreDeclared) {
