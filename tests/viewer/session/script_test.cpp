@@ -3,7 +3,7 @@
 // Plays the scripts in the folder scripts/; FOLDER in their lines is an empty one. What was done in a session since
 // its scene began is played back at its end, and comes to the same. Comments that begin with "#!" are for this test:
 //
-//   #! session SCENE N [S]  plays what follows in a new session; SCENE may be the path of a file, S is a seed
+//   #! session SCENE N [S]  in the first line: what follows is played in a new one, of seed S; SCENE may be a file
 //   #! says TEXT            the next command says that, or #! rest does, and others nothing
 //   #! fails TEXT           the next command cannot be run, for that reason; or one that begins so, before "..."
 //   #! begins               the steps that the next command asks for are not waited for
@@ -194,6 +194,7 @@ private:
     }
 
     void run(const std::string& line) {
+        ASSERT_TRUE(session_) << "a script begins with #! session";
         const std::size_t logged = session_->log.commands.size();
         const std::string fault = faultOf(*session_, line);
         const std::string wanted = std::exchange(fault_, "none");
