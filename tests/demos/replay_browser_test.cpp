@@ -50,11 +50,9 @@ std::array<BroadphaseKind, 2> kindsToReplay() {
 nlohmann::json comparePage(const TemporaryFolder& folder, const std::string& name,
                            std::vector<std::string> arguments) {
     const auto kinds = kindsToReplay();
-    const std::array subcommands{compareCommand(kinds)};
     const std::string json = folder.file("comparison.json");
-    arguments.insert(arguments.begin(), "compare");
     arguments.insert(arguments.end(), {"--html", folder.file(name), "--json", json});
-    const Typed ran = typed(arguments, subcommands);
+    const Typed ran = typed(compareCommand(kinds), arguments);
     EXPECT_EQ(ran.exitCode, kExitOk) << ran.err;
     return nlohmann::json::parse(std::ifstream(json))["broadphases"][1];
 }
