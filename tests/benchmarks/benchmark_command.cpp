@@ -7,7 +7,6 @@
 #include <demos/console/result_file.hpp>
 #include <demos/report/stopwatch.hpp>
 #include <demos/scenes/input_error.hpp>
-#include <tests/benchmarks/report.hpp>
 
 #include <algorithm>
 #include <memory>

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Zlib
-#include <tests/benchmarks/pair_workload.hpp>
 
-#include <demos/scenes/random.hpp>
+// All benchmarks, and those of pairs: of which scenes, in which frames, with cells of which size, and how far
+// away.
+
+#include <demos/console/format.hpp>
 #include <demos/scenes/scatter.hpp>
+#include <tests/benchmarks/grid_contestant.hpp>
+#include <tests/benchmarks/pair_workload.hpp>
 
 #include <algorithm>
 #include <array>
@@ -20,56 +24,52 @@ const demos::BoxSceneKind& sceneKind(std::string_view name) {
                          [name](const demos::BoxSceneKind& kind) { return kind.name == name; });
 }
 
-Benchmark pairsOf(const char* name, std::string_view scene,
-                  Sizes sizes = {1'000, 3'000, 10'000, 30'000, 100'000}) {
-    return {.name = name,
-            .group = "pairs",
-            .description = std::string(sceneKind(scene).description),
+MakeScene scattered(const demos::ScatterPlan& plan) {
+    return brownian([plan](std::size_t objects, std::uint64_t seed) {
+        return demos::scatter(plan, objects, seed);
+    });
+}
+
+Benchmark pairs(std::string name, const char* group, std::string description, Sizes sizes,
+                MakeScene makeScene, PairFrame what = PairFrame::setAll) {
+    return {.name = std::move(name),
+            .group = group,
+            .description = std::move(description),
             .sizes = std::move(sizes),
             .admits = takesPartInFrames,
-            .make = makePairWorkload(sceneNamed(scene))};
+            .make = makePairWorkload(std::move(makeScene), what)};
+}
+
+Benchmark pairsIn(const char* name, std::string_view scene,
+                  Sizes sizes = {1'000, 3'000, 10'000, 30'000, 100'000}) {
+    return pairs(name, "pairs", std::string(sceneKind(scene).description), std::move(sizes),
+                 sceneNamed(scene));
 }
 
 // A world in which nothing moves, and what is handed in nevertheless.
-Benchmark stillBenchmark(const char* name, const char* description, Setting setting) {
-    return {.name = name,
-            .group = "pairs",
-            .description = description,
-            .sizes = {1'000, 3'000, 100'000},
-            .admits = takesPartInFrames,
-            .make = makePairWorkload(brownian([](std::size_t objects, std::uint64_t seed) {
-                                         demos::ScatterPlan plan;
-                                         plan.movingShare = 0;
-                                         demos::BrownianBoxes boxes = scatter(plan, objects, seed);
-                                         boxes.filters.resize(objects);
-                                         for (std::size_t i = 0; i < objects; i += 2) {
-                                             boxes.filters[i] = demos::kStaticFilter;
-                                         }
-                                         return boxes;
-                                     }),
-                                     setting)};
+Benchmark stillPairs(const char* name, const char* description, PairFrame what) {
+    const MakeScene makeScene = brownian([](std::size_t objects, std::uint64_t seed) {
+        demos::BrownianBoxes boxes = demos::scatter({.movingShare = 0}, objects, seed);
+        boxes.filters.resize(objects);
+        for (std::size_t i = 0; i < objects; i += 2) {
+            boxes.filters[i] = demos::kStaticFilter;
+        }
+        return boxes;
+    });
+    return pairs(name, "pairs", description, {1'000, 3'000, 100'000}, makeScene, what);
 }
 
-Benchmark scatterBenchmark(std::string name, const char* group, const demos::ScatterPlan& plan,
-                           std::size_t objects) {
-    return {.name = std::move(name),
-            .group = group,
-            .description = describe(plan),
-            .sizes = {objects},
-            .takesOtherSizes = false,
-            .admits = takesPartInFrames,
-            .make = makePairWorkload(brownian([plan](std::size_t count, std::uint64_t seed) {
-                return scatter(plan, count, seed);
-            }))};
+Benchmark scatteredPairs(std::string name, const char* group, const demos::ScatterPlan& plan,
+                         std::size_t objects) {
+    Benchmark benchmark = pairs(std::move(name), group, describe(plan), {objects}, scattered(plan));
+    benchmark.takesOtherSizes = false;
+    return benchmark;
 }
 
 // One size, and sizes from a micrometre to a thousand kilometres, so to speak, as dense.
-Benchmark sizesBenchmark(const char* name, demos::SizeLaw sizes, float ratio) {
-    demos::ScatterPlan plan;
-    plan.overlapsPerBox = 1;
-    plan.sizes = sizes;
-    plan.sizeRatio = ratio;
-    Benchmark benchmark = scatterBenchmark(name, "pairs", plan, 20'000);
+Benchmark pairsOfSizes(const char* name, demos::SizeLaw sizes, float ratio) {
+    Benchmark benchmark = scatteredPairs(
+        name, "pairs", {.sizes = sizes, .sizeRatio = ratio, .overlapsPerBox = 1}, 20'000);
     benchmark.onRequest = true;
     return benchmark;
 }
@@ -80,12 +80,141 @@ std::vector<Benchmark> randomBenchmarks(std::uint64_t seed) {
     for (std::size_t i = 1; i <= kRandomScenes; ++i) {
         const demos::RandomScene drawn = demos::drawScene(seed * kRandomScenes + i);
         all.push_back(
-            scatterBenchmark("random-" + std::to_string(i), "random", drawn.plan, drawn.objects));
+            scatteredPairs("random-" + std::to_string(i), "random", drawn.plan, drawn.objects));
     }
     return all;
 }
 
+// --- Objects that come and go --------------------------------------------------------------------
+
+std::vector<Benchmark> populationBenchmarks() {
+    const auto population = [](const char* name, const char* description, PairFrame what) {
+        const bool areRemoved = what != PairFrame::create;
+        Benchmark benchmark = pairs(name, "population", description,
+                                    areRemoved ? Sizes{50'000} : Sizes{1'000, 3'000, 10'000},
+                                    sceneNamed("uniform"), what);
+        benchmark.operation = areRemoved ? "removal" : "object";
+        benchmark.admits = [what, areRemoved](const ContestantKind& kind, std::size_t objects) {
+            // The grid alone notes a removal and deals with it when it is asked for pairs.
+            const bool isComplete = kind.bullet != nullptr || what != PairFrame::remove;
+            return isFastEnough(kind, objects) && objects <= kind.fillsUpTo && !kind.onThreads &&
+                   (!areRemoved || (kind.changes && isComplete));
+        };
+        return benchmark;
+    };
+    return {population("removal", "1,000 of uniform boxes are destroyed", PairFrame::remove),
+            population("removal-and-pairs", "the same, until the pairs are complete",
+                       PairFrame::removeAndFind),
+            population("creation", "uniform boxes are created, until the pairs are complete",
+                       PairFrame::create)};
+}
+
+// --- Cell sizes ----------------------------------------------------------------------------------
+
+// What the automatic cell sizes cost against the best fixed one: the same frames for a grid that
+// chooses for itself and for grids with cells of 0.25 to 64 times the mean edge.
+Benchmark cellSizes(const std::string& name, demos::ScatterPlan plan, float overlapsPerBox) {
+    plan.overlapsPerBox = overlapsPerBox;
+    const auto density = static_cast<double>(overlapsPerBox);
+    Benchmark benchmark =
+        pairs("cellsize-" + name + "-" + demos::fixed(density, density < 1 ? 1 : 0), "cell size",
+              describe(plan), {1'000, 10'000, 100'000}, scattered(plan));
+    benchmark.onRequest = true;
+    benchmark.dropFactor = 5;  // a size that takes so much longer cannot be the best
+    benchmark.contestants = [plan](std::size_t objects, std::uint64_t seed) {
+        const double edge = meanEdge(demos::scatter(plan, objects, seed));
+        std::vector<ContestantKind> kinds{gridKind("cells-auto")};
+        for (const double factor : {0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0}) {
+            const int digits = factor < 0.5 ? 2 : factor < 1 ? 1 : 0;
+            kinds.push_back(gridKind("cells-" + demos::fixed(factor, digits),
+                                     {.config = {.cellSize = factor * edge}}));
+        }
+        return kinds;
+    };
+    return benchmark;
+}
+
+std::vector<Benchmark> cellSizeBenchmarks() {
+    using demos::Placement;
+    using demos::SizeLaw;
+    std::vector<Benchmark> all;
+    for (const auto& [name, plan] :
+         {std::pair("uniform", demos::ScatterPlan{}),
+          std::pair("clustered", demos::ScatterPlan{.placement = Placement::clusters}),
+          std::pair("sizes-1000",
+                    demos::ScatterPlan{.sizes = SizeLaw::logUniform, .sizeRatio = 1000})}) {
+        for (const float overlapsPerBox : {0.2F, 2.0F, 10.0F}) {
+            all.push_back(cellSizes(name, plan, overlapsPerBox));
+        }
+    }
+    return all;
+}
+
+// --- Far away ------------------------------------------------------------------------------------
+
+// A scene whose coordinates are multiples of a millimetre, about, so that they are exact far away.
+class LatticeScene : public demos::BoxScene {
+public:
+    explicit LatticeScene(std::unique_ptr<demos::BoxScene> scene) : scene_(std::move(scene)) {
+        filters_ = scene_->filters();
+        round();
+    }
+    void advance() override {
+        scene_->advance();
+        round();
+    }
+    [[nodiscard]] Aabb<float> bounds() const override {
+        const Vector3<float> step = Vector3<float>::Constant(kStep);
+        return {scene_->bounds().min() - step, scene_->bounds().max() + step};
+    }
+
+private:
+    static constexpr float kStep = 0x1p-10F;
+
+    void round() {
+        const auto rounded = [](const Vector3<float>& x) -> Vector3<float> {
+            return (x / kStep).array().round() * kStep;
+        };
+        boxes_.clear();
+        for (const Aabb<float>& box : scene_->boxes()) {
+            boxes_.emplace_back(rounded(box.min()), rounded(box.max()));
+        }
+    }
+
+    std::unique_ptr<demos::BoxScene> scene_;
+};
+
+// What it costs to be far from the origin, and to shift the origin: the same frames for grids that
+// have them at home and far away.
+std::vector<Benchmark> farBenchmarks() {
+    const auto far = [](const char* name, const char* description, const MakeScene& makeScene) {
+        Benchmark benchmark =
+            pairs(name, "far", description, {30'000, 100'000},
+                  [makeScene](std::size_t objects, std::uint64_t seed) {
+                      return std::make_unique<LatticeScene>(makeScene(objects, seed));
+                  });
+        benchmark.onRequest = true;
+        benchmark.contestants = [](std::size_t, std::uint64_t) {
+            return std::vector{
+                gridKind("home", {.distance = 0, .isDouble = true}),
+                gridKind("at-2^20", {.distance = 0x1p20, .isDouble = true}),
+                gridKind("at-2^30", {.distance = 0x1p30, .isDouble = true}),
+                gridKind("shifting", {.distance = 0x1p30, .shift = 0x1p20, .isDouble = true}),
+                gridKind("home-single", {.distance = 0}),
+                gridKind("at-2^12-single", {.distance = 0x1p12}),
+                gridKind("shifting-single", {.distance = 0x1p12, .shift = 0x1p11})};
+        };
+        return benchmark;
+    };
+    return {far("far-uniform", "S2-uniform, near the origin and far from it",
+                brownian(demos::uniformBoxes)),
+            far("far-resting", "uniform boxes of which 2 % move, near and far",
+                brownian(demos::restingBoxes))};
+}
+
 }  // namespace
+
+// --- Scenes --------------------------------------------------------------------------------------
 
 MakeScene brownian(std::function<demos::BrownianBoxes(std::size_t, std::uint64_t)> scatter) {
     return [scatter = std::move(scatter)](std::size_t objects, std::uint64_t seed) {
@@ -110,6 +239,8 @@ MakeScene sceneNamed(std::string_view name) {
     return sceneKind(name).make;
 }
 
+// --- The catalog ---------------------------------------------------------------------------------
+
 bool isFastEnough(const ContestantKind& kind, std::size_t objects) {
     return objects <= kind.upTo;
 }
@@ -119,41 +250,41 @@ bool takesPartInFrames(const ContestantKind& kind, std::size_t objects) {
 }
 
 std::vector<Benchmark> pairBenchmarks() {
-    Benchmark paper = pairsOf("S1-paper", "paper");
+    Benchmark paper = pairsIn("S1-paper", "paper");
     // At a million every sphere would overlap a hundred others.
     paper.largest = 300'000;
-    Benchmark terdiman = pairsOf("terdiman", "terdiman", {1'000, 3'000, 10'000, 100'000});
+    Benchmark terdiman = pairsIn("terdiman", "terdiman", {1'000, 3'000, 10'000, 100'000});
     // In its fixed cube, pairs grow with the square of the boxes.
     terdiman.takesOtherSizes = false;
-    Benchmark tiny = pairsOf("tiny", "uniform", {10, 32, 100, 300, 1000});
+    Benchmark tiny = pairsIn("tiny", "uniform", {10, 32, 100, 300, 1000});
     tiny.takesOtherSizes = false;
-    Benchmark threads = pairsOf("threads", "uniform", {30'000, 100'000});
+    Benchmark threads = pairsIn("threads", "uniform", {30'000, 100'000});
     threads.description = "S2-uniform, with hashphase on one thread and on all";
     threads.admits = [](const ContestantKind& kind, std::size_t /*objects*/) {
         return kind.name == kBaseline || kind.name == "hash" || kind.onThreads;
     };
     threads.onRequest = true;
-    Benchmark trillion = sizesBenchmark("sizes-trillion", demos::SizeLaw::logUniform, 0x1p40F);
+    Benchmark trillion = pairsOfSizes("sizes-trillion", demos::SizeLaw::logUniform, 0x1p40F);
     trillion.admits = [](const ContestantKind& kind, std::size_t objects) {
         // ODE's hash space ends the program where its cells have too large numbers.
         return takesPartInFrames(kind, objects) && !kind.name.starts_with("ode-");
     };
     return {std::move(paper),
-            pairsOf("S2-uniform", "uniform"),
-            pairsOf("S3-logsizes", "logsizes"),
-            pairsOf("S4-moving-5", "moving-5"),
-            pairsOf("S4-moving-2", "moving-2"),
-            pairsOf("S5-static-90", "static-90"),
-            pairsOf("S6-piles", "piles"),
+            pairsIn("S2-uniform", "uniform"),
+            pairsIn("S3-logsizes", "logsizes"),
+            pairsIn("S4-moving-5", "moving-5"),
+            pairsIn("S4-moving-2", "moving-2"),
+            pairsIn("S5-static-90", "static-90"),
+            pairsIn("S6-piles", "piles"),
             std::move(terdiman),
-            pairsOf("brownian", "brownian"),
+            pairsIn("brownian", "brownian"),
             std::move(tiny),
-            stillBenchmark("quiet", "uniform boxes, all set again in each frame, unchanged",
-                           Setting::everything),
-            stillBenchmark("sleeping", "uniform boxes, half static, half asleep: none is set",
-                           Setting::nothing),
+            stillPairs("quiet", "uniform boxes, all set again in each frame, unchanged",
+                       PairFrame::setAll),
+            stillPairs("sleeping", "uniform boxes, half static, half asleep: none is set",
+                       PairFrame::setNothing),
             std::move(threads),
-            sizesBenchmark("sizes-one", demos::SizeLaw::equal, demos::ScatterPlan().sizeRatio),
+            pairsOfSizes("sizes-one", demos::SizeLaw::equal, demos::ScatterPlan().sizeRatio),
             std::move(trillion)};
 }
 

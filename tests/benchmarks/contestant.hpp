@@ -54,13 +54,6 @@ public:
     virtual ~Interface() = default;
 };
 
-/// Adds and removes objects; not every library does.
-class Population : public Interface {
-public:
-    virtual void add(std::span<const std::uint32_t> objects, const FrameBoxes& frame) = 0;
-    virtual void remove(std::span<const std::uint32_t> objects) = 0;
-};
-
 class Contestant : public Interface {
 public:
     /// Takes in all objects, once, into the empty structure.
@@ -75,8 +68,9 @@ public:
     /// Replaces `pairs` by what was found, in any order; what was reported twice is listed twice.
     virtual void listPairs(std::vector<demos::PairKey>& pairs) = 0;
 
-    /// Null where objects cannot be added and removed one by one.
-    virtual Population* population() { return nullptr; }
+    /// Objects come and go, where the kind `changes`.
+    virtual void add(std::span<const std::uint32_t> /*objects*/, const FrameBoxes& /*frame*/) {}
+    virtual void remove(std::span<const std::uint32_t> /*objects*/) {}
 
     [[nodiscard]] virtual std::optional<OwnBytes> ownBytes() const { return std::nullopt; }
 };
@@ -85,11 +79,11 @@ constexpr std::size_t kAnyNumber = std::numeric_limits<std::size_t>::max();
 
 struct ContestantKind {
     std::string name = {};
-    std::string title = {};  // the class, for readers
-    std::string description = {};
+    std::string title = {};              // the class, for readers
+    std::string description = {};        // for the list of contestants
     std::string package = "this build";  // where it comes from, with its version
     bool ours = false;                   // a wrong answer of it fails the run
-    bool changes = false;                // takes in and removes objects at any time: population()
+    bool changes = false;                // takes in and removes objects at any time
     bool inBatches = false;  // ours, when they come and go in batches: measured where they do
     bool onThreads = false;  // measured on the wall clock, on request
     std::size_t upTo = kAnyNumber;       // objects; else too slow

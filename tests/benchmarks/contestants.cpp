@@ -18,10 +18,11 @@ namespace {
 // A sweep and prune sorts each new box in along three axes: filling it takes quadratic time.
 constexpr std::size_t kAxisSweepFillsUpTo = 3'000;
 
-class BulletContestant : public Contestant, private Population {
+class BulletContestant final : public Contestant {
 public:
-    BulletContestant(const demos::BroadphaseKind& kind, const demos::BroadphaseNeeds& needs)
-        : filled_(kind, needs) {}
+    BulletContestant(const demos::BroadphaseKind& kind, const demos::BroadphaseNeeds& needs,
+                     bool inBatches = false)
+        : filled_(kind, needs), inBatches_(inBatches) {}
 
     void fill(const FrameBoxes& frame) override {
         std::vector<std::uint32_t> all(frame.boxes.size());
@@ -32,7 +33,24 @@ public:
     void findPairs() override { filled_.findPairs(); }
     void listPairs(std::vector<demos::PairKey>& pairs) override { filled_.listPairs(pairs); }
 
-    Population* population() override { return this; }
+    void add(std::span<const std::uint32_t> objects, const FrameBoxes& frame) override {
+        if (inBatches_) {
+            filled_.createInBatch(objects, frame.bulletBoxes, frame.filters);
+            return;
+        }
+        for (const std::uint32_t object : objects) {
+            filled_.create(object, frame.bulletBoxes[object], frame.filterOf(object));
+        }
+    }
+    void remove(std::span<const std::uint32_t> objects) override {
+        if (inBatches_) {
+            filled_.destroyInBatch(objects);
+            return;
+        }
+        for (const std::uint32_t object : objects) {
+            filled_.destroy(object);
+        }
+    }
 
     [[nodiscard]] std::optional<OwnBytes> ownBytes() const override {
         const auto* own = dynamic_cast<const SpatialHashBroadphase*>(&filled_.broadphase());
@@ -43,32 +61,9 @@ public:
         return OwnBytes{own->memoryBytes() - cache.memoryBytes(), cache.memoryBytes()};
     }
 
-protected:
-    void add(std::span<const std::uint32_t> objects, const FrameBoxes& frame) override {
-        for (const std::uint32_t object : objects) {
-            filled_.create(object, frame.bulletBoxes[object], frame.filterOf(object));
-        }
-    }
-    void remove(std::span<const std::uint32_t> objects) override {
-        for (const std::uint32_t object : objects) {
-            filled_.destroy(object);
-        }
-    }
-
-    demos::FilledBroadphase filled_;
-};
-
-class BatchContestant : public BulletContestant {
-public:
-    using BulletContestant::BulletContestant;
-
 private:
-    void add(std::span<const std::uint32_t> objects, const FrameBoxes& frame) override {
-        filled_.createInBatch(objects, frame.bulletBoxes, frame.filters);
-    }
-    void remove(std::span<const std::uint32_t> objects) override {
-        filled_.destroyInBatch(objects);
-    }
+    demos::FilledBroadphase filled_;
+    bool inBatches_;
 };
 
 std::vector<ContestantKind> allKinds() {
@@ -81,12 +76,12 @@ std::vector<ContestantKind> allKinds() {
             batches.description = "the same, told of many objects in one call";
             batches.inBatches = true;
             batches.make = [&bullet](const demos::BroadphaseNeeds& needs) {
-                return std::make_unique<BatchContestant>(bullet, needs);
+                return std::make_unique<BulletContestant>(bullet, needs, true);
             };
             kinds.push_back(std::move(batches));
         }
     }
-    kinds.insert(kinds.begin() + 2, gridKind("grid", {}));
+    kinds.insert(kinds.begin() + 2, gridKind("grid"));
     for (const auto& peersOf : {threadedKinds, cgalKinds, fclKinds, odeKinds}) {
         for (ContestantKind& kind : peersOf()) {
             kinds.push_back(std::move(kind));

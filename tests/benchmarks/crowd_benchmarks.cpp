@@ -206,28 +206,26 @@ private:
     std::vector<AgentAnswer> answers_;
 };
 
-CrowdKind ownKind(const char* name, const char* description, Telling telling,
-                  ParallelFor parallelFor, bool onThreads) {
+CrowdKind ownKind(const char* name, Telling telling,
+                  std::optional<ParallelFor> threaded = std::nullopt) {
     return {{.name = name,
              .title = telling == Telling::count ? "hashphase::RadiusSearch::count"
                                                 : "hashphase::RadiusSearch::forEach",
-             .description = description,
              .ours = true,
-             .onThreads = onThreads},
-            [telling, parallelFor](const Crowd& crowd) {
-                return std::make_unique<OwnCrowd>(crowd, telling, parallelFor);
+             .onThreads = threaded.has_value()},
+            [=](const Crowd& crowd) {
+                return std::make_unique<OwnCrowd>(crowd, telling, threaded.value_or(serialFor));
             }};
 }
 
 /// All that this build can measure, for so many agents.
 std::vector<CrowdKind> crowdKinds(std::size_t agents) {
     constexpr std::size_t kMostForDbvt = 100'000;
-    std::vector<CrowdKind> kinds{ownKind("hash", "counts", Telling::count, serialFor, false),
-                                 ownKind("hash-list", "lists", Telling::list, serialFor, false)};
+    std::vector<CrowdKind> kinds{ownKind("hash", Telling::count),
+                                 ownKind("hash-list", Telling::list)};
     if (const std::optional<ParallelFor> threaded = threadedLoop()) {
-        kinds.push_back(ownKind("hash-threads", "counts, tbbFor", Telling::count, *threaded, true));
-        kinds.push_back(
-            ownKind("hash-list-threads", "lists, tbbFor", Telling::list, *threaded, true));
+        kinds.push_back(ownKind("hash-threads", Telling::count, threaded));
+        kinds.push_back(ownKind("hash-list-threads", Telling::list, threaded));
     }
     if (agents <= kMostForDbvt) {
         kinds.push_back({contestantKind(kBaseline),

@@ -89,57 +89,26 @@ protected:
     const CullingScene& scene_;
 };
 
-/// What Bullet's broadphases have in common.
-class FilledCulling : public CullingRunner {
+/// Our culler, of bits by the proxies' own indices, or Bullet's own walk of its trees for planes.
+class FilledCulling final : public CullingRunner {
 public:
     FilledCulling(const CullingScene& scene, const demos::BroadphaseKind& kind)
-        : CullingRunner(scene), filled_(filledWith(scene.boxes, kind)) {}
+        : CullingRunner(scene),
+          filled_(filledWith(scene.boxes, kind)),
+          own_(dynamic_cast<const SpatialHashBroadphase*>(&filled_->broadphase())),
+          isVisible_(scene.boxes.size()) {}
 
     void beginFrame() override {
         filled_->setAll(scene_.boxes.frame().bulletBoxes);
         filled_->findPairs();
     }
 
-protected:
-    template <class Broadphase>
-    [[nodiscard]] Broadphase& broadphase() const {
-        return dynamic_cast<Broadphase&>(filled_->broadphase());
-    }
-
-private:
-    std::unique_ptr<demos::FilledBroadphase> filled_;
-};
-
-/// Bits by the proxies' own indices.
-class OwnCulling final : public FilledCulling {
-public:
-    using FilledCulling::FilledCulling;
-
     void look(const FrustumPlanes& planes) override {
-        const ConvexRegion<float> view(planes, Containment::touching, Touch::byPlanes);
-        culler_.look(broadphase<SpatialHashBroadphase>().grid(), view);
-    }
-
-    void listVisible(std::vector<Answer>& visible) const override {
-        const auto& own = broadphase<SpatialHashBroadphase>();
-        own.grid().forEach([&](ProxyId id, const Aabb<float>& /*box*/) {
-            if (culler_.isVisible(id)) {
-                visible.push_back(demos::FilledBroadphase::objectOf(*own.proxyOf(id)));
-            }
-        });
-    }
-
-private:
-    Culler<float> culler_;
-};
-
-/// Bullet's own walk of its trees for planes.
-class DbvtCulling final : public FilledCulling {
-public:
-    DbvtCulling(const CullingScene& scene, const demos::BroadphaseKind& kind)
-        : FilledCulling(scene, kind), isVisible_(scene.boxes.size()) {}
-
-    void look(const FrustumPlanes& planes) override {
+        if (own_ != nullptr) {
+            const ConvexRegion<float> view(planes, Containment::touching, Touch::byPlanes);
+            culler_.look(own_->grid(), view);
+            return;
+        }
         std::fill(isVisible_.begin(), isVisible_.end(), std::uint8_t{0});
         std::array<btVector3, 6> normals;
         std::array<btScalar, 6> offsets;
@@ -148,13 +117,21 @@ public:
             offsets[i] = planes[i].offset();
         }
         Mark mark(isVisible_);
-        for (const btDbvt& tree : broadphase<btDbvtBroadphase>().m_sets) {
+        for (const btDbvt& tree : dynamic_cast<btDbvtBroadphase&>(filled_->broadphase()).m_sets) {
             btDbvt::collideKDOP(tree.m_root, normals.data(), offsets.data(), 6, mark);
         }
     }
 
     void listVisible(std::vector<Answer>& visible) const override {
-        listMarked(isVisible_, visible);
+        if (own_ == nullptr) {
+            listMarked(isVisible_, visible);
+            return;
+        }
+        own_->grid().forEach([&](ProxyId id, const Aabb<float>& /*box*/) {
+            if (culler_.isVisible(id)) {
+                visible.push_back(demos::FilledBroadphase::objectOf(*own_->proxyOf(id)));
+            }
+        });
     }
 
 private:
@@ -167,6 +144,9 @@ private:
         std::vector<std::uint8_t>& isVisible;
     };
 
+    std::unique_ptr<demos::FilledBroadphase> filled_;
+    const SpatialHashBroadphase* own_;
+    Culler<float> culler_;
     std::vector<std::uint8_t> isVisible_;
 };
 
@@ -222,7 +202,7 @@ bool hasWideInstructions() {
 }
 #endif
 
-/// A loop over the boxes, by column and by object.
+/// A loop over the boxes, by column and by object, compiled for any x86-64 or for AVX-512.
 class LoopCulling final : public CullingRunner {
 public:
     LoopCulling(const CullingScene& scene, bool isWide)
@@ -260,22 +240,12 @@ private:
 std::vector<ContestantKind> cullingKinds() {
     ContestantKind own = contestantKind("hash");
     own.title = "Culler";
-    own.description = "the visible set of the broadphase's own grid, as bits";
     ContestantKind bullet = contestantKind(kBaseline);
     bullet.title = "btDbvt::collideKDOP";
-    bullet.description = "Bullet's walk of its two trees of fattened boxes";
     std::vector<ContestantKind> kinds{
-        own,
-        bullet,
-        {.name = "loop",
-         .title = "every box",
-         .description = "a loop over all boxes, compiled for any x86-64",
-         .package = "none"}};
+        own, bullet, {.name = "loop", .title = "every box", .package = "none"}};
     if (hasWideInstructions()) {
-        kinds.push_back({.name = "loop-avx512",
-                         .title = "every box",
-                         .description = "the same, compiled for AVX-512",
-                         .package = "none"});
+        kinds.push_back({.name = "loop-avx512", .title = "every box", .package = "none"});
     }
     return kinds;
 }
@@ -286,11 +256,8 @@ public:
         : scene_{SceneBoxes(std::move(scene)), plan} {}
 
     [[nodiscard]] std::unique_ptr<Runner> make(const ContestantKind& kind) override {
-        if (kind.name == kBaseline) {
-            return std::make_unique<DbvtCulling>(scene_, *kind.bullet);
-        }
         if (kind.bullet != nullptr) {
-            return std::make_unique<OwnCulling>(scene_, *kind.bullet);
+            return std::make_unique<FilledCulling>(scene_, *kind.bullet);
         }
         return std::make_unique<LoopCulling>(scene_, kind.name != "loop");
     }

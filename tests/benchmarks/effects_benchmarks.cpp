@@ -217,20 +217,12 @@ Benchmark effectsBenchmark(const char* name, const char* description, EffectSet 
         .contestants =
             [](std::size_t, std::uint64_t) {
                 return std::vector<ContestantKind>{
-                    {.name = "by-hand",
-                     .title = "Grid and Pairs, Culler or RarestColour",
-                     .description = "a loop over the bodies, and what the scene's effect needs"},
-                    {.name = "declared",
-                     .title = "Simulation",
-                     .description = "the scene's own effects are declared",
-                     .ours = true},
-                    {.name = "nobody",
-                     .title = "Simulation",
-                     .description = "all are declared, bodies take part in the scene's own",
-                     .ours = true},
-                    {.name = "by-hand-again",
-                     .title = "as by-hand",
-                     .description = "tells what differs by chance"}};
+                    {.name = "by-hand", .title = "Grid and Pairs, Culler or RarestColour"},
+                    // The scene's own effects are declared; all are, and bodies take part in those.
+                    {.name = "declared", .title = "Simulation", .ours = true},
+                    {.name = "nobody", .title = "Simulation", .ours = true},
+                    // What differs by chance.
+                    {.name = "by-hand-again", .title = "as by-hand"}};
             },
         .make =
             [own](std::size_t objects, std::uint64_t seed) {

@@ -12,23 +12,21 @@
 
 namespace hashphase::benchmarks {
 
-/// Its frame ends with the sorted births and deaths. The list that they add up to, which is what is
-/// checked, is kept outside of the timing.
-[[nodiscard]] ContestantKind gridKind(std::string name, const GridConfig& config);
+struct GridPlan {
+    GridConfig config = {};
+    ParallelFor parallelFor = serialFor;
 
-/// The same with a hashphase::Sweeps, in which the objects in motion sweep as told; with Sweep::none
-/// nobody does.
-[[nodiscard]] ContestantKind sweepingGridKind(std::string name, Sweep sweep,
-                                              ParallelFor parallelFor);
+    /// With a hashphase::Sweeps, in which the objects in motion sweep so; with Sweep::none nobody does.
+    std::optional<Sweep> sweep = std::nullopt;
 
-/// A grid that has the scene far away.
-struct FarGrid {
-    double distance = 0;   ///< of the scene's origin on each axis [m]
-    double shift = 0;      ///< by which the origin is shifted in every frame, there and back [m]
-    bool isDouble = true;  ///< else in single precision
+    // Far away, for scenes of which the boxes are exact there.
+    std::optional<double> distance = std::nullopt;  // of the scene's origin on each axis [m]
+    double shift = 0;  // by which the origin is shifted in every frame, there and back [m]
+    bool isDouble = false;
 };
 
-/// gridKind() of a scene of which the boxes are exact there, see farBenchmarks().
-[[nodiscard]] ContestantKind farGridKind(std::string name, const FarGrid& far);
+/// Its frame ends with the sorted births and deaths. The list that they add up to, which is what is
+/// checked, is kept outside of the timing.
+[[nodiscard]] ContestantKind gridKind(std::string name, const GridPlan& plan = {});
 
 }  // namespace hashphase::benchmarks

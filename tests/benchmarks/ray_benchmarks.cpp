@@ -205,119 +205,99 @@ struct Question {
     }
 };
 
-// --- Workloads -------------------------------------------------------------------------------------
+// --- The workload ----------------------------------------------------------------------------------
 
-/// Of so many rays a frame. Scenes that do not move are asked as they are at first.
+/// What moves: nothing, everything before each frame, or one box before each question, as a game does that
+/// moves its characters one by one; then pairs are found after the frame, untimed.
+enum class Moves { nothing, all, oneByOne };
+
 class RayWorkload final : public QueryWorkload {
 public:
-    RayWorkload(std::unique_ptr<demos::BoxScene> scene, Question question, DrawRay draw, bool moves,
-                std::uint64_t seed)
-        : QueryWorkload(std::move(scene), moves), question_(question), draw_(draw), random_(seed) {}
+    RayWorkload(std::unique_ptr<demos::BoxScene> scene, Question question, DrawRay draw,
+                Moves moves, std::uint64_t seed)
+        : QueryWorkload(std::move(scene), moves == Moves::all),
+          question_(question),
+          draw_(draw),
+          areBoxesSet_(moves == Moves::oneByOne),
+          random_(seed),
+          boxesAtEnd_(this->scene().boxes()),
+          steps_(areBoxesSet_ ? 200 : 500) {}
 
     void listExactAnswers(std::vector<Answer>& answers) override {
         answers.clear();
-        for (std::size_t i = 0; i < rays_.size(); ++i) {
-            question_.askExactly(i, rays_[i], scene().boxes(), answers);
-        }
-    }
-    [[nodiscard]] std::size_t operations() const override { return rays_.size(); }
-
-private:
-    void drawQueries() override {
-        for (Ray& ray : rays_) {
-            ray = drawRay(draw_, random_, scene().boxes());
-        }
-    }
-    void ask(demos::FilledBroadphase& filled, std::vector<Answer>& answers) override {
-        for (std::size_t i = 0; i < rays_.size(); ++i) {
-            question_.ask(i, rays_[i], filled.broadphase(), answers);
-        }
-    }
-
-    Question question_;
-    DrawRay draw_;
-    Random random_;
-    std::array<Ray, 500> rays_;
-};
-
-/// Sets one box, asks one question, sets the next: what a game does that moves its characters one
-/// by one. The pairs are found after the frame, untimed.
-class InterleavedWorkload final : public QueryWorkload {
-public:
-    InterleavedWorkload(std::unique_ptr<demos::BoxScene> scene, Probe probe, std::uint64_t seed)
-        : QueryWorkload(std::move(scene), false), question_{probe}, random_(seed) {
-        boxesAtEnd_ = this->scene().boxes();
-    }
-
-    void listExactAnswers(std::vector<Answer>& answers) override {
-        answers.clear();
-        Boxes boxes = boxes_;
         for (std::size_t i = 0; i < steps_.size(); ++i) {
-            const Step& step = steps_[i];
-            boxes[step.object] = toAabb(step.box.min, step.box.max);
-            question_.askExactly(i, step.ray, boxes, answers);
+            if (areBoxesSet_) {
+                boxes_[steps_[i].object] = toAabb(steps_[i].box.min, steps_[i].box.max);
+            }
+            question_.askExactly(i, steps_[i].ray, boxes_, answers);
         }
     }
     [[nodiscard]] std::size_t operations() const override { return steps_.size(); }
 
 private:
     struct Step {
-        std::uint32_t object;
+        std::uint32_t object = 0;
         demos::BulletBox box;
         Ray ray;
     };
 
     void drawQueries() override {
+        if (!areBoxesSet_) {
+            boxesAtEnd_ = scene().boxes();
+        }
         boxes_ = boxesAtEnd_;
         for (Step& step : steps_) {
-            Aabb<float>& box = boxesAtEnd_[static_cast<std::size_t>(
-                &anyBox(random_.unit(), boxesAtEnd_) - boxesAtEnd_.data())];
-            box.translate(Vector3<float>(random_.between(-1, 1), random_.between(-1, 1),
-                                         random_.between(-1, 1)));
-            step.object = static_cast<std::uint32_t>(&box - boxesAtEnd_.data());
-            step.box = {toBullet(box.min()), toBullet(box.max())};
-            step.ray = drawRay(shortRay, random_, boxesAtEnd_);
+            if (areBoxesSet_) {
+                setOne(step);
+            }
+            step.ray = drawRay(draw_, random_, boxesAtEnd_);
         }
+    }
+    void setOne(Step& step) {
+        step.object =
+            static_cast<std::uint32_t>(&anyBox(random_.unit(), boxesAtEnd_) - boxesAtEnd_.data());
+        Aabb<float>& box = boxesAtEnd_[step.object];
+        box.translate(
+            Vector3<float>(random_.between(-1, 1), random_.between(-1, 1), random_.between(-1, 1)));
+        step.box = {toBullet(box.min()), toBullet(box.max())};
     }
     void ask(demos::FilledBroadphase& filled, std::vector<Answer>& answers) override {
         for (std::size_t i = 0; i < steps_.size(); ++i) {
-            filled.set(steps_[i].object, steps_[i].box);
+            if (areBoxesSet_) {
+                filled.set(steps_[i].object, steps_[i].box);
+            }
             question_.ask(i, steps_[i].ray, filled.broadphase(), answers);
         }
     }
-    void afterFrame(demos::FilledBroadphase& filled) override { filled.findPairs(); }
+    void afterFrame(demos::FilledBroadphase& filled) override {
+        if (areBoxesSet_) {
+            filled.findPairs();
+        }
+    }
 
     Question question_;
+    DrawRay draw_;
+    bool areBoxesSet_;
     Random random_;
-    Boxes boxes_;  // as of the beginning of the frame
+    Boxes boxes_;  // as of the beginning of the frame, until the exact answers are listed
     Boxes boxesAtEnd_;
-    std::array<Step, 200> steps_;
+    std::vector<Step> steps_;
 };
 
 Benchmark rays(const char* name, const char* description, MakeScene makeScene, DrawRay draw,
-               Question question = {}, bool moves = false) {
+               Question question = {}, Moves moves = Moves::nothing) {
+    const bool areBoxesSet = moves == Moves::oneByOne;
     return {.name = name,
             .group = "queries",
             .description = description,
-            .operation = question.probe == Probe::box ? "box" : "ray",
-            .sizes = {30'000},
+            .operation = areBoxesSet                    ? "write and query"
+                         : question.probe == Probe::box ? "box"
+                                                        : "ray",
+            .sizes = {areBoxesSet ? std::size_t{10'000} : 30'000},
             .admits = answersQueries,
             .make = [=](std::size_t objects, std::uint64_t seed) {
                 return std::make_unique<RayWorkload>(makeScene(objects, seed), question, draw,
                                                      moves, ~seed);
-            }};
-}
-
-Benchmark interleaved(const char* name, const char* description, Probe probe) {
-    return {.name = name,
-            .group = "queries",
-            .description = description,
-            .operation = "write and query",
-            .sizes = {10'000},
-            .admits = answersQueries,
-            .make = [probe](std::size_t objects, std::uint64_t seed) {
-                return std::make_unique<InterleavedWorkload>(
-                    brownian(demos::uniformBoxes)(objects, seed), probe, ~seed);
             }};
 }
 
@@ -326,27 +306,28 @@ Benchmark interleaved(const char* name, const char* description, Probe probe) {
 std::vector<Benchmark> rayBenchmarks() {
     const MakeScene dense = brownian(demos::uniformBoxes);
     const MakeScene sparse = cubesIn(Vector3<float>::Constant(3000), 0.5F, 0.2F);
-    return {
-        rays("rays-dense-short", "rays of 5 m among uniform boxes", dense, shortRay),
-        rays("rays-dense-long", "rays across a cube of uniform boxes", dense, rayBetweenBoxes),
-        rays("rays-sparse", "long rays through a nearly empty cube of 3,000 m", sparse,
-             rayBetweenBoxes),
-        rays("rays-piles", "rays from pile to pile, over 10 x 10 km", brownian(demos::pileBoxes),
-             rayBetweenBoxes),
-        rays("rays-terrain", "shots of up to 100 m across the paper's terrain, all moving",
-             sceneNamed("paper"), rayOverTerrain, {}, true),
-        rays("rays-closest", "rays-dense-long, but only the nearest box is wanted", dense,
-             rayBetweenBoxes, {Probe::closest}),
-        rays("picking", "all boxes under the pointer, 500 times, among uniform boxes", dense,
-             rayThroughPixel),
-        rays("picking-closest", "picking, but only the nearest box is wanted", dense,
-             rayThroughPixel, {Probe::closest}),
-        rays("rays-fat", "a box of 1 m cast 5 m far among uniform boxes", dense, shortRay,
-             {Probe::ray, btVector3(0.5F, 0.5F, 0.5F)}),
-        rays("boxes", "what overlaps a box of 2 m, one box at a time, among uniform boxes", dense,
-             rayBetweenBoxes, {Probe::box}),
-        interleaved("interleaved-rays", "set one box, cast one ray, set the next", Probe::ray),
-        interleaved("interleaved-boxes", "set one box, ask for one box, set the next", Probe::box)};
+    return {rays("rays-dense-short", "rays of 5 m among uniform boxes", dense, shortRay),
+            rays("rays-dense-long", "rays across a cube of uniform boxes", dense, rayBetweenBoxes),
+            rays("rays-sparse", "long rays through a nearly empty cube of 3,000 m", sparse,
+                 rayBetweenBoxes),
+            rays("rays-piles", "rays from pile to pile, over 10 x 10 km",
+                 brownian(demos::pileBoxes), rayBetweenBoxes),
+            rays("rays-terrain", "shots of up to 100 m across the paper's terrain, all moving",
+                 sceneNamed("paper"), rayOverTerrain, {}, Moves::all),
+            rays("rays-closest", "rays-dense-long, but only the nearest box is wanted", dense,
+                 rayBetweenBoxes, {Probe::closest}),
+            rays("picking", "all boxes under the pointer, 500 times, among uniform boxes", dense,
+                 rayThroughPixel),
+            rays("picking-closest", "picking, but only the nearest box is wanted", dense,
+                 rayThroughPixel, {Probe::closest}),
+            rays("rays-fat", "a box of 1 m cast 5 m far among uniform boxes", dense, shortRay,
+                 {Probe::ray, btVector3(0.5F, 0.5F, 0.5F)}),
+            rays("boxes", "what overlaps a box of 2 m, one box at a time, among uniform boxes",
+                 dense, rayBetweenBoxes, {Probe::box}),
+            rays("interleaved-rays", "set one box, cast one ray, set the next", dense, shortRay, {},
+                 Moves::oneByOne),
+            rays("interleaved-boxes", "set one box, ask for one box, set the next", dense, shortRay,
+                 {Probe::box}, Moves::oneByOne)};
 }
 
 }  // namespace hashphase::benchmarks

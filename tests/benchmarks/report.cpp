@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <tests/benchmarks/report.hpp>
+#include <tests/benchmarks/benchmark_command.hpp>
 
 #include <demos/console/format.hpp>
 #include <demos/experiment/findings.hpp>

@@ -48,7 +48,7 @@ public:
     /// Every 30th object moves by so many cells a frame: the finest cells that a grid chooses for the
     /// scene as it begins.
     SweepWorkload(std::unique_ptr<demos::BoxScene> itsScene, float cells, std::uint64_t seed)
-        : PairWorkload(std::move(itsScene)) {
+        : PairWorkload(std::move(itsScene), PairFrame::setAll, seed) {
         demos::Random random(seed);
         const float length = cells * cellSizeOf(scene().boxes());
         for (std::size_t object = 0; object < objects(); object += kPeriod) {
@@ -136,59 +136,50 @@ private:
     std::vector<Parts> parts_;  // by motion
 };
 
-// The same without what is passed: it shows what sweeping costs.
-ContestantKind discrete(ContestantKind kind, std::string description) {
-    kind.description = std::move(description);
-    kind.ours = false;
-    return kind;
-}
-
+// Without what is passed, the grid shows what sweeping costs: "hash" has no Sweeps, those unused do.
 std::vector<ContestantKind> sweepKinds() {
-    std::vector<ContestantKind> kinds{
-        discrete(gridKind("hash", {}), "the grid without Bullet; what is passed is missing"),
-        discrete(sweepingGridKind("hash-unused", Sweep::none, serialFor),
-                 "the same, and a Sweeps that nobody uses"),
-        sweepingGridKind("sweep-box", Sweep::box, serialFor),
-        sweepingGridKind("sweep-line", Sweep::line, serialFor),
-        sweepingGridKind("sweep-automatic", Sweep::automatic, serialFor)};
+    std::vector<ContestantKind> kinds{gridKind("hash"),
+                                      gridKind("hash-unused", {.sweep = Sweep::none}),
+                                      gridKind("sweep-box", {.sweep = Sweep::box}),
+                                      gridKind("sweep-line", {.sweep = Sweep::line}),
+                                      gridKind("sweep-automatic", {.sweep = Sweep::automatic})};
     if (const std::optional<ParallelFor> threaded = threadedLoop()) {
-        kinds.push_back(discrete(sweepingGridKind("hash-unused-threads", Sweep::none, *threaded),
-                                 "hash-unused, tbbFor"));
-        kinds.back().onThreads = true;
-        kinds.push_back(sweepingGridKind("sweep-line-threads", Sweep::line, *threaded));
-        kinds.back().onThreads = true;
+        for (const auto& [name, sweep] : {std::pair("hash-unused-threads", Sweep::none),
+                                          std::pair("sweep-line-threads", Sweep::line)}) {
+            kinds.push_back(gridKind(name, {.parallelFor = *threaded, .sweep = sweep}));
+            kinds.back().onThreads = true;
+        }
     }
-    ContestantKind dbvt = contestantKind(kBaseline);
-    dbvt.description = "Bullet's trees, given the box around start and end";
-    kinds.push_back(std::move(dbvt));
+    for (ContestantKind& kind : kinds) {
+        kind.ours = kind.name.starts_with("sweep-");
+    }
+    kinds.push_back(contestantKind(kBaseline));  // given the box around start and end
     return kinds;
 }
 
-Benchmark sweeps(const char* name, const char* description, const char* scene, float cells) {
+Benchmark sweeps(const char* name, const char* whose, const char* scene, int cells) {
     return {.name = name,
             .group = "sweeps",
-            .description = description,
+            .description = "every 30th of " + std::string(whose) + " sweeps, by " +
+                           std::to_string(cells) + " cells a frame",
             .sizes = {30'000},
             .largest = 100'000,       // the exact answers take quadratic time
             .onRequest = cells > 10,  // Bullet takes seconds a frame for these
             .contestants = [](std::size_t, std::uint64_t) { return sweepKinds(); },
             .make =
                 [makeScene = sceneNamed(scene), cells](std::size_t objects, std::uint64_t seed) {
-                    return std::make_unique<SweepWorkload>(makeScene(objects, seed), cells, ~seed);
+                    return std::make_unique<SweepWorkload>(makeScene(objects, seed),
+                                                           static_cast<float>(cells), ~seed);
                 }};
 }
 
 }  // namespace
 
 std::vector<Benchmark> sweepBenchmarks() {
-    return {sweeps("sweeps-10", "every 30th of uniform boxes sweeps, by 10 cells a frame",
-                   "uniform", 10),
-            sweeps("sweeps-10-paper",
-                   "every 30th of the paper's spheres sweeps, by 10 cells a frame", "paper", 10),
-            sweeps("sweeps-100", "every 30th of uniform boxes sweeps, by 100 cells a frame",
-                   "uniform", 100),
-            sweeps("sweeps-100-paper",
-                   "every 30th of the paper's spheres sweeps, by 100 cells a frame", "paper", 100)};
+    return {sweeps("sweeps-10", "uniform boxes", "uniform", 10),
+            sweeps("sweeps-10-paper", "the paper's spheres", "paper", 10),
+            sweeps("sweeps-100", "uniform boxes", "uniform", 100),
+            sweeps("sweeps-100-paper", "the paper's spheres", "paper", 100)};
 }
 
 }  // namespace hashphase::benchmarks

@@ -180,23 +180,24 @@ private:
     std::vector<Terrain<float>::Found> found_;
 };
 
-/// Something of Bullet's that is asked straight down, sphere by sphere.
-class BulletGround : public GroundRunner {
+/// Something of Bullet's that is asked straight down, sphere by sphere: its fractionOf(from, to, radius) is how
+/// much of the way it is until the ground is met; 1 where it is not.
+template <class Ground>
+class BulletGround final : public GroundRunner {
 public:
-    using GroundRunner::GroundRunner;
+    explicit BulletGround(const Spheres& spheres) : GroundRunner(spheres), ground_(spheres) {}
 
     void run() override {
         for (std::size_t i = 0; i < heights_.size(); ++i) {
             const btVector3 from = toBullet(spheres_.centers[i]);
             const btVector3 to(from.x(), kBelow, from.z());
-            const btScalar fraction = fractionOf(from, to, spheres_.radii[i]);
+            const btScalar fraction = ground_.fractionOf(from, to, spheres_.radii[i]);
             heights_[i] = fraction < 1 ? from.y() + fraction * (kBelow - from.y()) : kNone;
         }
     }
 
-protected:
-    /// Of the way, until it meets the ground; 1 where it does not.
-    virtual btScalar fractionOf(const btVector3& from, const btVector3& to, float radius) = 0;
+private:
+    Ground ground_;
 };
 
 /// Of a ray at a shape.
@@ -208,9 +209,9 @@ struct ClosestTriangle : btTriangleRaycastCallback {
     }
 };
 
-class HeightfieldGround final : public BulletGround {
+class HeightfieldGround {
 public:
-    explicit HeightfieldGround(const Spheres& spheres) : BulletGround(spheres) {
+    explicit HeightfieldGround(const Spheres& spheres) {
         for (const Vector3<float>& vertex : spheres.mesh.vertices()) {
             ground_.push_back(vertex[1]);
         }
@@ -221,25 +222,30 @@ public:
         shape_->setLocalScaling({HillMesh::kEdge, 1, HillMesh::kEdge});
         shape_->buildAccelerator();
     }
-
-private:
-    btScalar fractionOf(const btVector3& from, const btVector3& to, float /*radius*/) override {
+    btScalar fractionOf(const btVector3& from, const btVector3& to, float /*radius*/) {
         ClosestTriangle closest(from, to);
         shape_->performRaycast(&closest, from, to);
         return closest.m_hitFraction;
     }
 
+private:
     std::vector<float> ground_;
     std::optional<btHeightfieldTerrainShape> shape_;
 };
 
-struct BulletMesh {
-    explicit BulletMesh(const HillMesh& mesh)
-        : vertices(mesh.vertices()),
-          indices(mesh.indices().begin(), mesh.indices().end()),
+struct MeshGround {
+    explicit MeshGround(const Spheres& spheres)
+        : vertices(spheres.mesh.vertices()),
+          indices(spheres.mesh.indices().begin(), spheres.mesh.indices().end()),
           array(static_cast<int>(indices.size() / 3), indices.data(), 3 * sizeof(int),
                 static_cast<int>(vertices.size()), vertices.data()->data(), sizeof(Vector3<float>)),
           shape(&array, true) {}
+
+    btScalar fractionOf(const btVector3& from, const btVector3& to, float /*radius*/) {
+        ClosestTriangle closest(from, to);
+        shape.performRaycast(&closest, from, to);
+        return closest.m_hitFraction;
+    }
 
     std::vector<Vector3<float>> vertices;
     std::vector<int> indices;
@@ -247,32 +253,19 @@ struct BulletMesh {
     btBvhTriangleMeshShape shape;
 };
 
-class MeshGround final : public BulletGround {
-public:
-    explicit MeshGround(const Spheres& spheres) : BulletGround(spheres), mesh_(spheres.mesh) {}
-
-private:
-    btScalar fractionOf(const btVector3& from, const btVector3& to, float /*radius*/) override {
-        ClosestTriangle closest(from, to);
-        mesh_.shape.performRaycast(&closest, from, to);
-        return closest.m_hitFraction;
-    }
-
-    BulletMesh mesh_;
-};
-
 /// What a program does that has a Bullet world: casts a ray down, or lets the sphere fall.
-class WorldGround final : public BulletGround {
+class WorldGround {
 public:
-    explicit WorldGround(const Spheres& spheres) : BulletGround(spheres), mesh_(spheres.mesh) {
+    explicit WorldGround(const Spheres& spheres) : mesh_(spheres), question_(spheres.question) {
         ground_.setCollisionShape(&mesh_.shape);
         world_.addCollisionObject(&ground_);
     }
-    ~WorldGround() override { world_.removeCollisionObject(&ground_); }
+    WorldGround(const WorldGround&) = delete;
+    WorldGround& operator=(const WorldGround&) = delete;
+    ~WorldGround() { world_.removeCollisionObject(&ground_); }
 
-private:
-    btScalar fractionOf(const btVector3& from, const btVector3& to, float radius) override {
-        if (spheres_.question == GroundQuestion::surface) {
+    btScalar fractionOf(const btVector3& from, const btVector3& to, float radius) {
+        if (question_ == GroundQuestion::surface) {
             btCollisionWorld::ClosestRayResultCallback hit(from, to);
             world_.rayTest(from, to, hit);
             return hit.m_closestHitFraction;
@@ -284,7 +277,9 @@ private:
         return hit.m_closestHitFraction;
     }
 
-    BulletMesh mesh_;
+private:
+    MeshGround mesh_;
+    GroundQuestion question_;
     btDefaultCollisionConfiguration configuration_;
     btCollisionDispatcher dispatcher_{&configuration_};
     btDbvtBroadphase broadphase_;
@@ -293,8 +288,6 @@ private:
 };
 
 std::vector<ContestantKind> groundKinds(GroundQuestion question) {
-    const std::string bullet = contestantKind(kBaseline).package;
-    const std::string dbvt(kBaseline);
     std::vector<ContestantKind> kinds{
         {.name = "hash", .title = "Terrain, all at once", .ours = true},
         {.name = "hash-single", .title = "Terrain, one by one", .ours = true}};
@@ -304,21 +297,18 @@ std::vector<ContestantKind> groundKinds(GroundQuestion question) {
                          .ours = true,
                          .onThreads = true});
     }
-    if (question == GroundQuestion::rest) {
-        kinds.push_back(
-            {.name = dbvt,
-             .title = "btCollisionWorld::convexSweepTest down, on a btBvhTriangleMeshShape",
-             .package = bullet});
-        return kinds;
+    const auto add = [&](const char* name, std::string title) {
+        kinds.push_back({.name = name,
+                         .title = std::move(title),
+                         .package = contestantKind(kBaseline).package});
+    };
+    const std::string worldsQuestion =
+        question == GroundQuestion::rest ? "convexSweepTest" : "rayTest";
+    add("dbvt", "btCollisionWorld::" + worldsQuestion + " down, on a btBvhTriangleMeshShape");
+    if (question == GroundQuestion::surface) {
+        add("mesh", "btBvhTriangleMeshShape::performRaycast");
+        add("heightfield", "btHeightfieldTerrainShape::performRaycast, with its accelerator");
     }
-    kinds.push_back({.name = dbvt,
-                     .title = "btCollisionWorld::rayTest down, on a btBvhTriangleMeshShape",
-                     .package = bullet});
-    kinds.push_back(
-        {.name = "mesh", .title = "btBvhTriangleMeshShape::performRaycast", .package = bullet});
-    kinds.push_back({.name = "heightfield",
-                     .title = "btHeightfieldTerrainShape::performRaycast, with its accelerator",
-                     .package = bullet});
     return kinds;
 }
 
@@ -339,13 +329,13 @@ public:
 
     [[nodiscard]] std::unique_ptr<Runner> make(const ContestantKind& kind) override {
         if (kind.name == kBaseline) {
-            return std::make_unique<WorldGround>(spheres_);
+            return std::make_unique<BulletGround<WorldGround>>(spheres_);
         }
         if (kind.name == "mesh") {
-            return std::make_unique<MeshGround>(spheres_);
+            return std::make_unique<BulletGround<MeshGround>>(spheres_);
         }
         if (kind.name == "heightfield") {
-            return std::make_unique<HeightfieldGround>(spheres_);
+            return std::make_unique<BulletGround<HeightfieldGround>>(spheres_);
         }
         return std::make_unique<OwnGround>(spheres_, kind.name == "hash-single" ? Way::oneByOne
                                                      : kind.onThreads           ? Way::threads

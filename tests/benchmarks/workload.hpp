@@ -149,15 +149,12 @@ struct Benchmark {
 
 // The parts of the catalog.
 [[nodiscard]] std::vector<Benchmark> pairBenchmarks();
-[[nodiscard]] std::vector<Benchmark> populationBenchmarks();
 [[nodiscard]] std::vector<Benchmark> rayBenchmarks();
 [[nodiscard]] std::vector<Benchmark> neighbourBenchmarks();
 [[nodiscard]] std::vector<Benchmark> crowdBenchmarks();
 [[nodiscard]] std::vector<Benchmark> cullingBenchmarks();
 [[nodiscard]] std::vector<Benchmark> sweepBenchmarks();
 [[nodiscard]] std::vector<Benchmark> terrainBenchmarks();
-[[nodiscard]] std::vector<Benchmark> cellSizeBenchmarks();
-[[nodiscard]] std::vector<Benchmark> farBenchmarks();
 [[nodiscard]] std::vector<Benchmark> effectsBenchmarks();
 
 /// True for contestants that are not too slow for so many objects.

@@ -88,7 +88,6 @@ private:
 std::vector<CrowdKind> nanoflannKinds() {
     return {{{.name = "nanoflann",
               .title = "nanoflann::KDTreeSingleIndexAdaptor",
-              .description = "a kd-tree made anew, radiusSearch without sorting for each agent",
               .package = HASHPHASE_BENCHMARKS_NANOFLANN_PACKAGE},
              [](const Crowd& crowd) { return std::make_unique<NanoflannCrowd>(crowd); }}};
 }

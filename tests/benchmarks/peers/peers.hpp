@@ -15,17 +15,46 @@
 
 namespace hashphase::benchmarks {
 
+#ifdef HASHPHASE_BENCHMARKS_CGAL_PACKAGE
 [[nodiscard]] std::vector<ContestantKind> cgalKinds();
+#else
+inline std::vector<ContestantKind> cgalKinds() {
+    return {};
+}
+#endif
+#ifdef HASHPHASE_BENCHMARKS_FCL_PACKAGE
 [[nodiscard]] std::vector<ContestantKind> fclKinds();
+#else
+inline std::vector<ContestantKind> fclKinds() {
+    return {};
+}
+#endif
+#ifdef HASHPHASE_BENCHMARKS_ODE_PACKAGE
 [[nodiscard]] std::vector<ContestantKind> odeKinds();
+#else
+inline std::vector<ContestantKind> odeKinds() {
+    return {};
+}
+#endif
+#ifdef HASHPHASE_BENCHMARKS_NANOFLANN_PACKAGE
+[[nodiscard]] std::vector<CrowdKind> nanoflannKinds();  // for crowds
+#else
+inline std::vector<CrowdKind> nanoflannKinds() {
+    return {};
+}
+#endif
 
-/// Ours, on the threads of oneTBB.
+// Ours, on the threads of oneTBB, and loops on them.
+#ifdef HASHPHASE_BENCHMARKS_TBB_PACKAGE
 [[nodiscard]] std::vector<ContestantKind> threadedKinds();
-
-/// Loops on them.
 [[nodiscard]] std::optional<ParallelFor> threadedLoop();
-
-/// For crowds.
-[[nodiscard]] std::vector<CrowdKind> nanoflannKinds();
+#else
+inline std::vector<ContestantKind> threadedKinds() {
+    return {};
+}
+inline std::optional<ParallelFor> threadedLoop() {
+    return std::nullopt;
+}
+#endif
 
 }  // namespace hashphase::benchmarks
