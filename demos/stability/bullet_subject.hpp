@@ -73,20 +73,7 @@ template <class ObjectOf>
     return pairs;
 }
 
-/// A case of Bullet's interface, in its precision.
-template <class Scalar>
-[[nodiscard]] constexpr HardCase bulletCase(const char* id, const char* name, const char* input,
-                                            const char* required, void (*run)(CaseRun<Scalar>&)) {
-    HardCase hardCase{id, name, input, required};
-    if constexpr (std::is_same_v<Scalar, float>) {
-        hardCase.inSingle = run;
-    } else {
-        hardCase.inDouble = run;
-    }
-    return hardCase;
-}
-
-[[nodiscard]] std::span<const HardCase> bodyCases();    // bodies in a world
-[[nodiscard]] std::span<const HardCase> withinCases();  // questions and changes within questions
+/// Bodies in a world; in bulletCases() beside questions and changes within questions.
+[[nodiscard]] std::span<const HardCase> bodyCases();
 
 }  // namespace hashphase::demos

@@ -29,20 +29,18 @@ public:
     }
 
     void findPairs() override {
-        const PairChanges changes = pairs_.update([](ProxyId, ProxyId) { return true; });
-        const Keys born = keysOf(changes.born);
+        const PairChanges changes = pairs_.update();
+        const std::size_t before = known_.size();
+        Keys changed = keysOf(changes.born);
         const Keys died = keysOf(changes.died);
+        changed.insert(changed.end(), died.begin(), died.end());
+        std::sort(changed.begin(), changed.end());
         removed_.clear();
-        Keys kept;
-        std::set_difference(known_.begin(), known_.end(), died.begin(), died.end(),
-                            std::back_inserter(kept));
-        isConsistent_ &= kept.size() + died.size() == known_.size();
-        Keys common;
-        std::set_intersection(known_.begin(), known_.end(), born.begin(), born.end(),
-                              std::back_inserter(common));
-        isConsistent_ &= common.empty();
-        known_.clear();
-        std::merge(kept.begin(), kept.end(), born.begin(), born.end(), std::back_inserter(known_));
+        Keys known;
+        std::set_symmetric_difference(known_.begin(), known_.end(), changed.begin(), changed.end(),
+                                      std::back_inserter(known));
+        known_.swap(known);
+        isConsistent_ &= known_.size() + changes.died.size() == before + changes.born.size();
     }
     void listPairs(Keys& pairs) const override { pairs = known_; }
 

@@ -47,6 +47,19 @@ struct HardCase {
     void (*inSingle)(CaseRun<float>& run) = nullptr;
     void (*inDouble)(CaseRun<double>& run) = nullptr;
 
+    /// `run` takes a CaseRun of either precision, or of Bullet's.
+    template <class Run>
+    constexpr HardCase(const char* itsId, const char* itsName, const char* itsInput,
+                       const char* isRequired, const Run& run)
+        : id(itsId), name(itsName), input(itsInput), required(isRequired) {
+        if constexpr (std::is_convertible_v<Run, decltype(inSingle)>) {
+            inSingle = run;
+        }
+        if constexpr (std::is_convertible_v<Run, decltype(inDouble)>) {
+            inDouble = run;
+        }
+    }
+
     template <class Scalar>
     [[nodiscard]] auto in() const {
         if constexpr (std::is_same_v<Scalar, float>) {

@@ -169,24 +169,21 @@ void massRatios(Run& run) {
     runWorlds(run, {"heavy-100", "heavy-1000"}, 4);
 }
 
-constexpr std::array kBodyCases{
-    bulletCase(
-        "H4", "a dynamic body of 1.2e6 m",
-        "a world with five small bodies, a static one and a dynamic one of 1.2e6 m, three steps",
-        "Bullet disables the dynamic one as under any broadphase, keeps the static one; pairs "
-        "exact",
-        bodyBeyondBullet),
-    bulletCase(
-        "H36", "a tower, a pyramid, a house of cards",
-        "the three worlds of bodies for as many steps as they take to come to rest (--quick: small "
-        "ones, 400 steps), over lists in an order that depends on the pairs alone",
-        "every body moves as under btSimpleBroadphase, to the last bit, and sleeps no later than "
-        "under btDbvtBroadphase",
-        piles),
-    bulletCase("H37", "heavy bodies on light ones",
-               "mass ratios of 100 and 1,000, the heavy ones on top, over such lists",
-               "the solver's errors, and no others: every body moves as under btSimpleBroadphase",
-               massRatios),
+constexpr HardCase kBodyCases[] = {
+    {"H4", "a dynamic body of 1.2e6 m",
+     "a world with five small bodies, a static one and a dynamic one of 1.2e6 m, three steps",
+     "Bullet disables the dynamic one as under any broadphase, keeps the static one; pairs exact",
+     bodyBeyondBullet},
+    {"H36", "a tower, a pyramid, a house of cards",
+     "the three worlds of bodies for as many steps as they take to come to rest (--quick: small "
+     "ones, 400 steps), over lists in an order that depends on the pairs alone",
+     "every body moves as under btSimpleBroadphase, to the last bit, and sleeps no later than "
+     "under btDbvtBroadphase",
+     piles},
+    {"H37", "heavy bodies on light ones",
+     "mass ratios of 100 and 1,000, the heavy ones on top, over such lists",
+     "the solver's errors, and no others: every body moves as under btSimpleBroadphase",
+     massRatios},
 };
 
 }  // namespace

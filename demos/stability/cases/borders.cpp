@@ -11,8 +11,7 @@ namespace {
 
 // --- No extent ------------------------------------------------------------------------------------
 
-template <class Scalar>
-void pointsAndPlates(CaseRun<Scalar>& run) {
+constexpr auto pointsAndPlates = []<class Scalar>(CaseRun<Scalar>& run) {
     using Point = Vector3<Scalar>;
     Boxes<Scalar> boxes;
     const auto add = [&](const Point& low, const Point& high) { boxes.emplace_back(low, high); };
@@ -38,10 +37,9 @@ void pointsAndPlates(CaseRun<Scalar>& run) {
         }
         judgePairs(run, boxes, {0, 0.1, 1, 100});
     }
-}
+};
 
-template <class Scalar>
-void signsOfZero(CaseRun<Scalar>& run) {
+constexpr auto signsOfZero = []<class Scalar>(CaseRun<Scalar>& run) {
     using Point = Vector3<Scalar>;
     Boxes<Scalar> boxes;
     for (int signs = 0; signs < 64; ++signs) {
@@ -62,7 +60,7 @@ void signsOfZero(CaseRun<Scalar>& run) {
     if (run.isOurs) {
         judgePairs(run, boxes, {0, 0.3, 100});
     }
-}
+};
 
 // --- Borders --------------------------------------------------------------------------------------
 
@@ -121,8 +119,7 @@ void judgeBorders(CaseRun<Scalar>& run, const Boxes<Scalar>& boxes, Scalar cell)
     run.compare(scene.reported(), exact);
 }
 
-template <class Scalar>
-void multiplesOfTheCell(CaseRun<Scalar>& run) {
+constexpr auto multiplesOfTheCell = []<class Scalar>(CaseRun<Scalar>& run) {
     // Only ours has cells. The others are asked about some of the same boxes.
     const int step = run.isOurs ? run.quickOrFull(20, 1) : run.quickOrFull(250, 125);
     const int borders = run.isOurs ? 1000 : run.quickOrFull(100, 200);
@@ -140,10 +137,9 @@ void multiplesOfTheCell(CaseRun<Scalar>& run) {
     }
     run.note(std::to_string(borders) + " borders of each sign for " + std::to_string(sizes) +
              " cell sizes.");
-}
+};
 
-template <class Scalar>
-void cornersOfCells(CaseRun<Scalar>& run) {
+constexpr auto cornersOfCells = []<class Scalar>(CaseRun<Scalar>& run) {
     using Point = Vector3<Scalar>;
     Boxes<Scalar> boxes;
     const Scalar cell = 0.7F;
@@ -168,28 +164,25 @@ void cornersOfCells(CaseRun<Scalar>& run) {
             judgePairs(run, block, {size});
         }
     }
-}
+};
 
-constexpr std::array kBorderCases{
-    HardCase{"H6", "points, plates and lines",
-             "boxes without extent on three, one and two axes, each twice, at the same places, and "
-             "boxes that touch them",
-             "closed boxes: what touches pairs", pointsAndPlates<float>, pointsAndPlates<double>},
-    HardCase{"H7", "-0 and +0 as a border",
-             "boxes that end or begin at 0, in all 64 combinations of signs; then mirrored",
-             "-0 is +0: the same pairs, whatever the signs", signsOfZero<float>,
-             signsOfZero<double>},
-    HardCase{
-        "H8", "multiples of the cell size",
-        "for cells of 0.1, 0.2 ... 100 m (ours; some of them for the others, which have no "
-        "cells), at x = fl(k * cell), k = 0 ... 999 and the negatives, boxes that touch, overlap "
-        "by an ulp, miss by an ulp on either side, and boxes from one border to the next, along "
-        "one axis after the other; cells begin at 0",
-        "exact pairs on both sides of every border", multiplesOfTheCell<float>,
-        multiplesOfTheCell<double>},
-    HardCase{"H9", "eight boxes at a cell's corner",
-             "eight boxes that touch in the corner (k, k, k) of cells of 0.7 m, k = -1000 ... 999",
-             "each of the 28 pairs once", cornersOfCells<float>, cornersOfCells<double>},
+constexpr HardCase kBorderCases[] = {
+    {"H6", "points, plates and lines",
+     "boxes without extent on three, one and two axes, each twice, at the same places, and boxes "
+     "that touch them",
+     "closed boxes: what touches pairs", pointsAndPlates},
+    {"H7", "-0 and +0 as a border",
+     "boxes that end or begin at 0, in all 64 combinations of signs; then mirrored",
+     "-0 is +0: the same pairs, whatever the signs", signsOfZero},
+    {"H8", "multiples of the cell size",
+     "for cells of 0.1, 0.2 ... 100 m (ours; some of them for the others, which have no cells), at "
+     "x = fl(k * cell), k = 0 ... 999 and the negatives, boxes that touch, overlap by an ulp, miss "
+     "by an ulp on either side, and boxes from one border to the next, along one axis after the "
+     "other; cells begin at 0",
+     "exact pairs on both sides of every border", multiplesOfTheCell},
+    {"H9", "eight boxes at a cell's corner",
+     "eight boxes that touch in the corner (k, k, k) of cells of 0.7 m, k = -1000 ... 999",
+     "each of the 28 pairs once", cornersOfCells},
 };
 
 }  // namespace

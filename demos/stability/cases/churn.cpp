@@ -14,8 +14,7 @@ namespace {
 
 // --- Once -----------------------------------------------------------------------------------------
 
-template <class Scalar>
-void duplicates(CaseRun<Scalar>& run) {
+constexpr auto duplicates = []<class Scalar>(CaseRun<Scalar>& run) {
     using Point = Vector3<Scalar>;
     const GridConfig config{.cellSize = 1, .levelRatio = 4};
     Boxes<Scalar> boxes;
@@ -41,7 +40,7 @@ void duplicates(CaseRun<Scalar>& run) {
         scene.judge();
     }
     run.expect(scene.reported().empty(), "all pairs have died");
-}
+};
 
 // --- By a hair ------------------------------------------------------------------------------------
 
@@ -184,8 +183,7 @@ void approachAView(CaseRun<Scalar>& run, Scalar step, int frames) {
     run.expect(areAllSeen && visible > 0, "what comes into view by a hair is seen");
 }
 
-template <class Scalar>
-void smallMoves(CaseRun<Scalar>& run) {
+constexpr auto smallMoves = []<class Scalar>(CaseRun<Scalar>& run) {
     const int frames = run.quickOrFull(1000, 10'000);
     moveByTheMargin(run, frames);
     walkByTheMargin(run, frames);
@@ -202,7 +200,7 @@ void smallMoves(CaseRun<Scalar>& run) {
             approachAView(run, by, frames);
         }
     }
-}
+};
 
 // --- Everything, at random ------------------------------------------------------------------------
 
@@ -261,8 +259,7 @@ Aabb<Scalar> anyBox(Random& random) {
     return cubeAt(at, between<Scalar>(random, 0.1F, 1.5F));
 }
 
-template <class Scalar>
-void randomChanges(CaseRun<Scalar>& run) {
+constexpr auto randomChanges = []<class Scalar>(CaseRun<Scalar>& run) {
     constexpr std::uint32_t kObjects = 40;
     const int changes = run.quickOrFull(20'000, 1'000'000) / (run.isOurs ? 1 : 50);
     Random random(run.seed);
@@ -292,27 +289,22 @@ void randomChanges(CaseRun<Scalar>& run) {
     }
     scene.expectValid();
     run.note(std::to_string(changes) + " changes, compared after each.");
-}
+};
 
-constexpr std::array kChurnCases{
-    HardCase{
-        "H33", "one pair in many cells",
-        "30 cubes of 0.9 to 20 m in each other, cells of 1, 4 and 16 m: pairs that share up to 8 "
-        "cells and span 3 levels",
-        "each pair once; born once, died once", duplicates<float>, duplicates<double>},
-    HardCase{
-        "H34", "moves by a margin, again and again",
-        "a cube that moves by 5 cm and back, by 1 ulp less and 1 ulp more, and across by 1 ulp at "
-        "a "
-        "time, to where boxes begin, along each axis, both ways; one that moves on by 5 cm, past "
-        "others; 10,000 frames each (--quick: 1,000); btDbvtBroadphase fattens boxes by 5 cm",
-        "exact pairs, and a mover that is found at both its ends, in every frame",
-        smallMoves<float>, smallMoves<double>},
-    HardCase{
-        "H35", "changes at random",
-        "1,000,000 (--quick: 20,000; a fiftieth of it for the others) creations, moves and "
-        "removals of 40 boxes, among them points, large and far ones, and such as touch exactly",
-        "the pairs of brute force after each", randomChanges<float>, randomChanges<double>},
+constexpr HardCase kChurnCases[] = {
+    {"H33", "one pair in many cells",
+     "30 cubes of 0.9 to 20 m in each other, cells of 1, 4 and 16 m: pairs that share up to 8 "
+     "cells and span 3 levels",
+     "each pair once; born once, died once", duplicates},
+    {"H34", "moves by a margin, again and again",
+     "a cube that moves by 5 cm and back, by 1 ulp less and 1 ulp more, and across by 1 ulp at a "
+     "time, to where boxes begin, along each axis, both ways; one that moves on by 5 cm, past "
+     "others; 10,000 frames each (--quick: 1,000); btDbvtBroadphase fattens boxes by 5 cm",
+     "exact pairs, and a mover that is found at both its ends, in every frame", smallMoves},
+    {"H35", "changes at random",
+     "1,000,000 (--quick: 20,000; a fiftieth of it for the others) creations, moves and removals "
+     "of 40 boxes, among them points, large and far ones, and such as touch exactly",
+     "the pairs of brute force after each", randomChanges},
 };
 
 }  // namespace

@@ -49,11 +49,10 @@ bool judgeFarAlong(CaseRun<Scalar>& run, Scalar length, const Vector3<Scalar>& s
     return scene.isOurs();
 }
 
-template <class Scalar>
-void manyCells(CaseRun<Scalar>& run) {
+constexpr auto manyCells = []<class Scalar>(CaseRun<Scalar>& run) {
     // A ray errs to the side of a hit by what its coordinates are rounded by: metres, there.
     judgeFarAlong<Scalar>(run, 3.4e7F, {1, 0.5F, -0.25F}, 1024);
-}
+};
 
 // --- A box in each cell ---------------------------------------------------------------------------
 
@@ -90,8 +89,7 @@ void judgeSupercover(CaseRun<Scalar>& run, const Vector3<double>& from, const Ve
     scene.judge(from.cast<Scalar>(), to.cast<Scalar>(), Lattice(0x1p-13), doubt);
 }
 
-template <class Scalar>
-void hundredThousandCells(CaseRun<Scalar>& run) {
+constexpr auto hundredThousandCells = []<class Scalar>(CaseRun<Scalar>& run) {
     if (!judgeFarAlong<Scalar>(run, 1e5F, {1, 0.37F, 0.61F}, 12)) {
         return;
     }
@@ -107,7 +105,7 @@ void hundredThousandCells(CaseRun<Scalar>& run) {
     judgeSupercover(run, {-3, 9, 1}, {1021, 649, -383});           // through some corners
     judgeSupercover(run, {0.25, 0.5, 0.75}, {1200.25, 1.5, 1});    // nearly in faces
     judgeSupercover(run, {0.375, 0.125, -7}, {-811.5, 402.125, 737.25});
-}
+};
 
 // --- Too long -------------------------------------------------------------------------------------
 
@@ -153,8 +151,7 @@ void judgeScaledUp(CaseRun<Scalar>& run, double scale) {
     }
 }
 
-template <class Scalar>
-void tooLongForSquares(CaseRun<Scalar>& run) {
+constexpr auto tooLongForSquares = []<class Scalar>(CaseRun<Scalar>& run) {
     using Point = Vector3<Scalar>;
     for (const Scalar length : {1e18F, 1e19F, 1e25F, 1e38F}) {
         Boxes<Scalar> boxes = latticeBoxes<Scalar>(200, 20, run.seed);
@@ -181,23 +178,19 @@ void tooLongForSquares(CaseRun<Scalar>& run) {
             judgeScaledUp(run, scale);
         }
     }
-}
+};
 
-constexpr std::array kLongRayCases{
-    HardCase{"H16", "a ray through 3.4e7 cells",
-             "cells of 1 m, a ray of 3.4e7 m there and back, 201 boxes of 8 m on it, as many 1 km "
-             "aside",
-             "all hits; the work follows the boxes that there are, not the cells", manyCells<float>,
-             manyCells<double>},
-    HardCase{
-        "H17", "a ray through 1e5 cells",
-        "cells of 1 m, a slanting ray of 1e5 m there and back, 201 boxes of 8 m on it, as many "
-        "12 m aside",
-        "all hits, up to the end; the work follows the boxes", hundredThousandCells<float>,
-        hundredThousandCells<double>},
-    HardCase{"H18", "rays of 1e18 to 1e38 m",
-             "rays along the axes, as long as that, whose squared lengths overflow; 201 boxes",
-             "what the segment meets", tooLongForSquares<float>, tooLongForSquares<double>},
+constexpr HardCase kLongRayCases[] = {
+    {"H16", "a ray through 3.4e7 cells",
+     "cells of 1 m, a ray of 3.4e7 m there and back, 201 boxes of 8 m on it, as many 1 km aside",
+     "all hits; the work follows the boxes that there are, not the cells", manyCells},
+    {"H17", "a ray through 1e5 cells",
+     "cells of 1 m, a slanting ray of 1e5 m there and back, 201 boxes of 8 m on it, as many 12 m "
+     "aside",
+     "all hits, up to the end; the work follows the boxes", hundredThousandCells},
+    {"H18", "rays of 1e18 to 1e38 m",
+     "rays along the axes, as long as that, whose squared lengths overflow; 201 boxes",
+     "what the segment meets", tooLongForSquares},
 };
 
 }  // namespace

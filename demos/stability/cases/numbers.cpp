@@ -25,8 +25,7 @@ Aabb<Scalar> along(int axis, Scalar low, Scalar high) {
     return box;
 }
 
-template <class Scalar>
-void hugeCoordinates(CaseRun<Scalar>& run) {
+constexpr auto hugeCoordinates = []<class Scalar>(CaseRun<Scalar>& run) {
     using Point = Vector3<Scalar>;
     const CountedMessages messages;
     Boxes<Scalar> boxes = ordinaryBoxes(run);
@@ -62,7 +61,7 @@ void hugeCoordinates(CaseRun<Scalar>& run) {
     for (const Aabb<Scalar>& box : boxes) {
         scene.judgeQuery(BoxRegion<Scalar>{box});
     }
-}
+};
 
 // --- Planes without end ---------------------------------------------------------------------------
 
@@ -103,8 +102,7 @@ public:
     PairScene<Scalar> scene;
 };
 
-template <class Scalar>
-void endlessPlane(CaseRun<Scalar>& run) {
+constexpr auto endlessPlane = []<class Scalar>(CaseRun<Scalar>& run) {
     const std::size_t count = run.template quickOrFull<std::size_t>(500, 2000);
     PlaneWorld<Scalar> with(run, count, true);
     PlaneWorld<Scalar> without(run, count, false);
@@ -143,7 +141,7 @@ void endlessPlane(CaseRun<Scalar>& run) {
         run.expect(first.scene.cost().grid.filed == count + 1, "the plane is filed once");
         addWork(first, alone);
     }
-}
+};
 
 // --- NaN ------------------------------------------------------------------------------------------
 
@@ -154,8 +152,7 @@ Aabb<Scalar> withNan(Aabb<Scalar> box, int field) {
     return box;
 }
 
-template <class Scalar>
-void nanInOneField(CaseRun<Scalar>& run) {
+constexpr auto nanInOneField = []<class Scalar>(CaseRun<Scalar>& run) {
     for (int field = 0; field < 6; ++field) {
         const CountedMessages messages;
         Boxes<Scalar> boxes = ordinaryBoxes(run);
@@ -176,12 +173,11 @@ void nanInOneField(CaseRun<Scalar>& run) {
             run.expect(messages.count() == 1, "NaN is reported once");
         }
     }
-}
+};
 
 // --- Boxes inside out -----------------------------------------------------------------------------
 
-template <class Scalar>
-void invertedBoxes(CaseRun<Scalar>& run) {
+constexpr auto invertedBoxes = []<class Scalar>(CaseRun<Scalar>& run) {
     using Point = Vector3<Scalar>;
     Boxes<Scalar> boxes = ordinaryBoxes(run);
     const Scalar most = std::numeric_limits<Scalar>::max();
@@ -219,7 +215,7 @@ void invertedBoxes(CaseRun<Scalar>& run) {
     boxes.push_back(makeBox<Scalar>(30, 0, 0, 10, 1, 1));
     boxes.push_back(makeBox<Scalar>(10, 0, 0, 9.97, 1, 1));
     judgePairs(run, boxes, {0, 1, 100});
-}
+};
 
 // --- Cell numbers ---------------------------------------------------------------------------------
 
@@ -242,8 +238,7 @@ void expectCellsBeyond32Bits(CaseRun<Scalar>& run) {
                "there is a last cell");
 }
 
-template <class Scalar>
-void cellNumbersThatOverflow(CaseRun<Scalar>& run) {
+constexpr auto cellNumbersThatOverflow = []<class Scalar>(CaseRun<Scalar>& run) {
     using Point = Vector3<Scalar>;
     const auto cornerAt = [](int corner, Scalar far) {
         return Point((corner & 1) != 0 ? far : -far, (corner & 2) != 0 ? far : -far,
@@ -270,33 +265,29 @@ void cellNumbersThatOverflow(CaseRun<Scalar>& run) {
     addBlock(boxes, {0, 0, 0});
     judgePairs(run, boxes, {1, 0, 0.25});
     expectCellsBeyond32Bits(run);
-}
+};
 
-constexpr std::array kNumberCases{
-    HardCase{"H1", "coordinates beyond any cell",
-             "60 boxes around the origin, cells of 1 m, and boxes at or reaching to 3e9, 1e18, "
-             "infinity (each sign) and NaN, on one axis and on all; automatic cells too",
-             "pairs as comparing the coordinates says; no conversion overflows",
-             hugeCoordinates<float>, hugeCoordinates<double>},
-    HardCase{"H2", "a plane of 1e18 m",
-             "btStaticPlaneShape's box, +-1e18 m on all axes (+-1e30 in double precision), below "
-             "boxes that all move",
-             "the plane pairs once with everyone, and costs no more than its pairs",
-             endlessPlane<float>, endlessPlane<double>},
-    HardCase{"H3", "NaN in one field of a box",
-             "60 boxes, of which one has NaN in one of its six fields; others move for six frames, "
-             "and another one is NaN in one of them",
-             "NaN pairs with nothing, is reported once and counted; all other pairs are exact",
-             nanInOneField<float>, nanInOneField<double>},
-    HardCase{"H5", "boxes inside out",
-             "60 boxes, and boxes with min > max on one, two and three axes, small and large, and "
-             "the empty box of +-FLT_MAX and +-infinity",
-             "pairs as comparing the coordinates says, as Bullet's own overlap test does",
-             invertedBoxes<float>, invertedBoxes<double>},
-    HardCase{"H30", "cell numbers beyond 2^31",
-             "cells of 1 m, boxes of 1 to 2 ulp at the eight corners +-2^31, 2^32, 2^62, 2^64",
-             "exact pairs; no product overflows", cellNumbersThatOverflow<float>,
-             cellNumbersThatOverflow<double>},
+constexpr HardCase kNumberCases[] = {
+    {"H1", "coordinates beyond any cell",
+     "60 boxes around the origin, cells of 1 m, and boxes at or reaching to 3e9, 1e18, infinity "
+     "(each sign) and NaN, on one axis and on all; automatic cells too",
+     "pairs as comparing the coordinates says; no conversion overflows", hugeCoordinates},
+    {"H2", "a plane of 1e18 m",
+     "btStaticPlaneShape's box, +-1e18 m on all axes (+-1e30 in double precision), below boxes "
+     "that all move",
+     "the plane pairs once with everyone, and costs no more than its pairs", endlessPlane},
+    {"H3", "NaN in one field of a box",
+     "60 boxes, of which one has NaN in one of its six fields; others move for six frames, and "
+     "another one is NaN in one of them",
+     "NaN pairs with nothing, is reported once and counted; all other pairs are exact",
+     nanInOneField},
+    {"H5", "boxes inside out",
+     "60 boxes, and boxes with min > max on one, two and three axes, small and large, and the "
+     "empty box of +-FLT_MAX and +-infinity",
+     "pairs as comparing the coordinates says, as Bullet's own overlap test does", invertedBoxes},
+    {"H30", "cell numbers beyond 2^31",
+     "cells of 1 m, boxes of 1 to 2 ulp at the eight corners +-2^31, 2^32, 2^62, 2^64",
+     "exact pairs; no product overflows", cellNumbersThatOverflow},
 };
 
 }  // namespace

@@ -43,8 +43,7 @@ void judgeBall(CaseRun<Scalar>& run, PairScene<Scalar>& scene, const Vector3<Sca
     run.compare(found.sorted(), exact);
 }
 
-template <class Scalar>
-void anyRadius(CaseRun<Scalar>& run) {
+constexpr auto anyRadius = []<class Scalar>(CaseRun<Scalar>& run) {
     using Point = Vector3<Scalar>;
     Random random(run.seed);
     Boxes<Scalar> boxes;
@@ -68,7 +67,7 @@ void anyRadius(CaseRun<Scalar>& run) {
     judgeBall(run, scene, Point(Point::Constant(kNan<Scalar>)), Scalar(3));
     run.note(run.isOurs ? "Cost: boxes tested at most, by all there are."
                         : "By aabbTest() with the box around the ball.");
-}
+};
 
 // --- Nobody --------------------------------------------------------------------------------------
 
@@ -108,8 +107,7 @@ void judgeStrays(CaseRun<Scalar>& run) {
     }
 }
 
-template <class Scalar>
-void nothingThere(CaseRun<Scalar>& run) {
+constexpr auto nothingThere = []<class Scalar>(CaseRun<Scalar>& run) {
     const Aabb<Scalar> world = cubeAt<Scalar>({0, 0, 0}, 2);
     for (const std::size_t count : {0U, 1U, 40U}) {
         Boxes<Scalar> boxes;
@@ -134,20 +132,17 @@ void nothingThere(CaseRun<Scalar>& run) {
     if (run.isOurs) {
         judgeStrays(run);
     }
-}
+};
 
-constexpr std::array kProximityCases{
-    HardCase{
-        "H43", "radii of 0, -1, 1e30 and NaN",
-        "balls of such radii, and of 1/8, 3 and 40 m, around six points, on boxes, between them, "
-        "and 1e6 m outside of all 1,000",
-        "the closed ball, empty for negative and NaN; no more tests than boxes", anyRadius<float>,
-        anyRadius<double>},
-    HardCase{
-        "H44", "nobody, one, all outside",
-        "0, 1 and 40 boxes 1 km outside of the region that is asked about, and of the axis sweep's "
-        "world; then destroyed to the last one",
-        "no pair, no hit, no harm", nothingThere<float>, nothingThere<double>},
+constexpr HardCase kProximityCases[] = {
+    {"H43", "radii of 0, -1, 1e30 and NaN",
+     "balls of such radii, and of 1/8, 3 and 40 m, around six points, on boxes, between them, and "
+     "1e6 m outside of all 1,000",
+     "the closed ball, empty for negative and NaN; no more tests than boxes", anyRadius},
+    {"H44", "nobody, one, all outside",
+     "0, 1 and 40 boxes 1 km outside of the region that is asked about, and of the axis sweep's "
+     "world; then destroyed to the last one",
+     "no pair, no hit, no harm", nothingThere},
 };
 
 }  // namespace

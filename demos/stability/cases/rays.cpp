@@ -47,8 +47,7 @@ void judgeSignsOfZero(CaseRun<Scalar>& run) {
     }
 }
 
-template <class Scalar>
-void alongAxes(CaseRun<Scalar>& run) {
+constexpr auto alongAxes = []<class Scalar>(CaseRun<Scalar>& run) {
     using Point = Vector3<Scalar>;
     Boxes<Scalar> boxes = latticeBoxes<Scalar>(399, 24, run.seed);
     boxes.insert(boxes.begin(), {Point::Zero(), Point::Ones()});
@@ -76,7 +75,7 @@ void alongAxes(CaseRun<Scalar>& run) {
     if (run.isOurs) {
         judgeSignsOfZero(run);
     }
-}
+};
 
 // Boxes that a box just touches with a face, an edge or a corner, somewhere on its way or at its end:
 // what is met is found, and rounding decides in some.
@@ -121,8 +120,7 @@ void judgeGrazingBoxes(CaseRun<Scalar>& run) {
     run.expect(extra < kRays / 2, "of what a box misses by a hair, it meets some");
 }
 
-template <class Scalar>
-void alongBorders(CaseRun<Scalar>& run) {
+constexpr auto alongBorders = []<class Scalar>(CaseRun<Scalar>& run) {
     using Point = Vector3<Scalar>;
     constexpr int kSide = 8;
     RayScene<Scalar> scene(run, block<Scalar>(kSide), {.cellSize = 1});
@@ -160,10 +158,9 @@ void alongBorders(CaseRun<Scalar>& run) {
     if (run.isOurs) {
         judgeGrazingBoxes(run);
     }
-}
+};
 
-template <class Scalar>
-void noLength(CaseRun<Scalar>& run) {
+constexpr auto noLength = []<class Scalar>(CaseRun<Scalar>& run) {
     using Point = Vector3<Scalar>;
     RayScene<Scalar> scene(run, latticeBoxes<Scalar>(200, 10, run.seed));
     const Aabb<Scalar> fatness = makeBox<Scalar>(-0.25, -0.25, -0.25, 0.25, 0.25, 0.25);
@@ -181,7 +178,7 @@ void noLength(CaseRun<Scalar>& run) {
         }
     });
     noteRaysThroughBullet(run);
-}
+};
 
 // --- None ----------------------------------------------------------------------------------------
 
@@ -223,8 +220,7 @@ void judgeWorseRays(CaseRun<Scalar>& run, RayScene<Scalar>& scene, const Vector3
     }
 }
 
-template <class Scalar>
-void noRay(CaseRun<Scalar>& run) {
+constexpr auto noRay = []<class Scalar>(CaseRun<Scalar>& run) {
     using Point = Vector3<Scalar>;
     const CountedMessages messages;
     RayScene<Scalar> scene(run, latticeBoxes<Scalar>(2000, 40, run.seed));
@@ -253,24 +249,23 @@ void noRay(CaseRun<Scalar>& run) {
         run.note("Cost: blocks read, by those of a ray that is one.");
     }
     noteRaysThroughBullet(run);
-}
+};
 
-constexpr std::array kRayCases{
-    HardCase{
-        "H13", "rays along an axis",
-        "rays along x, y and z, both ways, through the corners and centres of 50 of 400 boxes, one "
-        "of them with a corner at 0; other components of the direction 0 and -0",
-        "what the segment meets, closed", alongAxes<float>, alongAxes<double>},
-    HardCase{"H14", "rays in faces, edges and corners",
-             "512 cubes side by side, cells of 1 m; rays in the faces that they share, along their "
-             "edges, through their corners",
-             "the cubes on all sides", alongBorders<float>, alongBorders<double>},
-    HardCase{"H15", "rays of no length",
-             "from a point to itself: corners and insides of 40 of 200 boxes, and beside them",
-             "what contains the point", noLength<float>, noLength<double>},
-    HardCase{"H19", "rays with NaN or infinity",
-             "NaN and both infinities in each component of each end; 2,000 boxes",
-             "no hit, at no more than 2.5 times the work of a ray", noRay<float>, noRay<double>},
+constexpr HardCase kRayCases[] = {
+    {"H13", "rays along an axis",
+     "rays along x, y and z, both ways, through the corners and centres of 50 of 400 boxes, one of "
+     "them with a corner at 0; other components of the direction 0 and -0",
+     "what the segment meets, closed", alongAxes},
+    {"H14", "rays in faces, edges and corners",
+     "512 cubes side by side, cells of 1 m; rays in the faces that they share, along their edges, "
+     "through their corners",
+     "the cubes on all sides", alongBorders},
+    {"H15", "rays of no length",
+     "from a point to itself: corners and insides of 40 of 200 boxes, and beside them",
+     "what contains the point", noLength},
+    {"H19", "rays with NaN or infinity",
+     "NaN and both infinities in each component of each end; 2,000 boxes",
+     "no hit, at no more than 2.5 times the work of a ray", noRay},
 };
 
 }  // namespace

@@ -123,8 +123,7 @@ void judgeModesOfDenormals(CaseRun<Scalar>& run) {
                "not flushed, some do");
 }
 
-template <class Scalar>
-void denormalNumbers(CaseRun<Scalar>& run) {
+constexpr auto denormalNumbers = []<class Scalar>(CaseRun<Scalar>& run) {
     for (const bool flushes : {false, true}) {
         // What is compared, and by whom, goes by the same rules.
         const FlushToZero flush(flushes);
@@ -153,7 +152,7 @@ void denormalNumbers(CaseRun<Scalar>& run) {
     if (!FlushToZero::isAvailable()) {
         run.note("This processor cannot flush to zero.");
     }
-}
+};
 
 // --- Far from the origin --------------------------------------------------------------------------
 
@@ -198,8 +197,7 @@ void judgeLifeFarOut(CaseRun<Scalar>& run, double far) {
     }
 }
 
-template <class Scalar>
-void unitBoxesFarOut(CaseRun<Scalar>& run) {
+constexpr auto unitBoxesFarOut = []<class Scalar>(CaseRun<Scalar>& run) {
     std::uint64_t beyondTruth = 0;
     for (const double far : {0x1p24, 1e7, 5e7, 1e8, 1e9}) {
         Boxes<double> boxes;
@@ -226,7 +224,7 @@ void unitBoxesFarOut(CaseRun<Scalar>& run) {
     run.note("Rounding outward adds " + std::to_string(beyondTruth) +
              " pairs to those of the boxes in double precision" +
              (run.isOurs ? "; Grid<double> has exactly the latter." : "."));
-}
+};
 
 /// A scene of multiples of a unit, shifted by so much.
 Boxes<double> shiftedBoxes(double unit, const Vector3<double>& shift, std::uint64_t seed) {
@@ -292,8 +290,7 @@ void judgeShiftedLife(CaseRun<Scalar>& run, double unit, const Vector3<double>& 
     run.expect(tests[1] <= tests[0] + tests[0] / 10 + 1000, "it costs as much there as here");
 }
 
-template <class Scalar>
-void shiftedScene(CaseRun<Scalar>& run) {
+constexpr auto shiftedScene = []<class Scalar>(CaseRun<Scalar>& run) {
     // Multiples of 1/8 m stay themselves at 2^20 m, and multiples of 128 m at 2^30 m.
     const auto judgeShift = [&](double unit, double shift) {
         const auto boxes = [&](double by) {
@@ -319,27 +316,25 @@ void shiftedScene(CaseRun<Scalar>& run) {
         judgeShiftedLife(run, unit, Vector3<double>::Unit(axis++ % 3) * distance);
         judgeShiftedLife(run, unit, {distance, -distance, distance});
     }
-}
+};
 
-constexpr std::array kRoundingCases{
-    HardCase{
-        "H10", "denormal numbers",
-        "boxes of 1.5e-40 m and such as differ in denormal digits; cells of 1e-30 m; the "
-        "processor set to flush denormals to zero (FTZ, DAZ), and not",
-        "pairs as comparing says under the same setting, and the same ones where no two denormal "
-        "numbers are compared; smaller cells are refused",
-        denormalNumbers<float>, denormalNumbers<double>},
-    HardCase{
-        "H11", "unit boxes 2^24 to 1e9 m away",
-        "150 boxes of 1 m at 2^24, 1e7, 5e7, 1e8, 1e9 m in double precision, rounded outward to "
-        "single",
-        "exact pairs of the rounded boxes, so none of the true ones is lost; in double "
-        "precision exactly those",
-        unitBoxesFarOut<float>, unitBoxesFarOut<double>},
-    HardCase{"H12", "a scene at 0, 2^20 and 2^30 m",
-             "200 boxes on multiples of 1/8 m shifted by 2^20 m, of 128 m by 2^30 m; in double "
-             "precision of 1/8 m by 2^30 m",
-             "identical pairs", shiftedScene<float>, shiftedScene<double>},
+constexpr HardCase kRoundingCases[] = {
+    {"H10", "denormal numbers",
+     "boxes of 1.5e-40 m and such as differ in denormal digits; cells of 1e-30 m; the processor "
+     "set to flush denormals to zero (FTZ, DAZ), and not",
+     "pairs as comparing says under the same setting, and the same ones where no two denormal "
+     "numbers are compared; smaller cells are refused",
+     denormalNumbers},
+    {"H11", "unit boxes 2^24 to 1e9 m away",
+     "150 boxes of 1 m at 2^24, 1e7, 5e7, 1e8, 1e9 m in double precision, rounded outward to "
+     "single",
+     "exact pairs of the rounded boxes, so none of the true ones is lost; in double precision "
+     "exactly those",
+     unitBoxesFarOut},
+    {"H12", "a scene at 0, 2^20 and 2^30 m",
+     "200 boxes on multiples of 1/8 m shifted by 2^20 m, of 128 m by 2^30 m; in double precision "
+     "of 1/8 m by 2^30 m",
+     "identical pairs", shiftedScene},
 };
 
 }  // namespace

@@ -101,8 +101,7 @@ void judgeMixtures(CaseRun<Scalar>& run) {
     }
 }
 
-template <class Scalar>
-void allSizes(CaseRun<Scalar>& run) {
+constexpr auto allSizes = []<class Scalar>(CaseRun<Scalar>& run) {
     Random random(run.seed);
     const int count = run.quickOrFull(1000, 4000);
     Boxes<Scalar> mixed;
@@ -127,10 +126,9 @@ void allSizes(CaseRun<Scalar>& run) {
         run.note("Cost: time of a frame, by that of as many of one size.");
     }
     many.judge();
-}
+};
 
-template <class Scalar>
-void oneLargeObject(CaseRun<Scalar>& run) {
+constexpr auto oneLargeObject = []<class Scalar>(CaseRun<Scalar>& run) {
     constexpr std::size_t kCount = 4000;
     Boxes<Scalar> boxes = scatteredCubes<Scalar>(kCount, 60, 0.4F, 0.8F, run.seed);
     PairScene<Scalar> without(run, boxes, {.cellSize = 1});
@@ -144,7 +142,7 @@ void oneLargeObject(CaseRun<Scalar>& run) {
     without.findPairs();
     run.addCost(testsOfMove(with) / testsOfMove(without), 1.25);
     run.note("Cost: boxes tested for each object and pair, by those without it.");
-}
+};
 
 // --- Collisions -----------------------------------------------------------------------------------
 
@@ -289,8 +287,7 @@ void judgeLongRegions(CaseRun<Scalar>& run) {
     }
 }
 
-template <class Scalar>
-void cellsThatCollide(CaseRun<Scalar>& run) {
+constexpr auto cellsThatCollide = []<class Scalar>(CaseRun<Scalar>& run) {
     using Point = Vector3<float>;
     const int side = run.quickOrFull(100, 400);
     std::vector<Point> equalRows;
@@ -331,23 +328,19 @@ void cellsThatCollide(CaseRun<Scalar>& run) {
     judgeOneBucket(run, boxesThatMakeUpForTheirRows<Scalar>(), 128);
     judgeOneBucket(run, boxesInALongRow<Scalar>(), 32);
     judgeLongRegions(run);
-}
+};
 
-constexpr std::array kSizeCases{
-    HardCase{"H27", "sizes from 1e-6 to 1e6 m",
-             "4,000 (--quick: 1,000) cubes of 1e-6 to 1e6 m, as many of each size, within 12 edges "
-             "of the origin; as many of 1 m",
-             "exact pairs; at most three times the work of one size", allSizes<float>,
-             allSizes<double>},
-    HardCase{"H28", "one object of 8,000 cells",
-             "a cube of 20 m among 4,000 of 0.4 to 0.8 m, cells of 1 m",
-             "exact pairs; it is filed once, and costs what its pairs do", oneLargeObject<float>,
-             oneLargeObject<double>},
-    HardCase{
-        "H29", "cells that collide in the hash",
-        "cells of 1 m; pairs in rows of cells that our hash cannot tell apart, on multiples of "
-        "table sizes, and of large primes",
-        "exact pairs, and bounded work", cellsThatCollide<float>, cellsThatCollide<double>},
+constexpr HardCase kSizeCases[] = {
+    {"H27", "sizes from 1e-6 to 1e6 m",
+     "4,000 (--quick: 1,000) cubes of 1e-6 to 1e6 m, as many of each size, within 12 edges of the "
+     "origin; as many of 1 m",
+     "exact pairs; at most three times the work of one size", allSizes},
+    {"H28", "one object of 8,000 cells", "a cube of 20 m among 4,000 of 0.4 to 0.8 m, cells of 1 m",
+     "exact pairs; it is filed once, and costs what its pairs do", oneLargeObject},
+    {"H29", "cells that collide in the hash",
+     "cells of 1 m; pairs in rows of cells that our hash cannot tell apart, on multiples of table "
+     "sizes, and of large primes",
+     "exact pairs, and bounded work", cellsThatCollide},
 };
 
 }  // namespace

@@ -12,8 +12,6 @@
 namespace hashphase::demos {
 namespace {
 
-constexpr std::array kSweeps{Sweep::automatic, Sweep::box, Sweep::line};
-
 /// Moving boxes, the first of which sweep; the others stand still.
 template <class Scalar>
 struct SweptFrame {
@@ -37,39 +35,30 @@ Keys truthOf(const SweptFrame<Scalar>& frame, const Lattice& lattice) {
     return pairs;
 }
 
-/// What Sweeps and Pairs find: pairs of at least one mover, sorted.
-struct Swept {
-    Keys pairs;
-    SweepCost cost;
-
-    [[nodiscard]] std::uint64_t tests() const { return cost.boxesTested + cost.contactsTested; }
-};
-
 Keys withMovers(const Keys& pairs, std::uint32_t movers) {
     Keys kept = pairs;
     std::erase_if(kept, [movers](PairKey pair) { return firstOf(pair) >= movers; });
     return kept;
 }
 
+/// What Sweeps and Pairs find: pairs of at least one mover, sorted; and what it cost.
 template <class Scalar>
-Swept sweepOurs(const SweptFrame<Scalar>& frame, Sweep sweep, const GridConfig& config = {}) {
+std::pair<Keys, SweepCost> sweepOurs(const SweptFrame<Scalar>& frame, Sweep sweep,
+                                     const GridConfig& config = {}) {
     Grid<Scalar> grid(config);
     Sweeps<Scalar> sweeps(grid);
     Pairs<Scalar> pairs(grid, &sweeps);
-    std::vector<ProxyId> ids;
-    for (const MovingBox<Scalar>& object : frame.objects) {
-        ids.push_back(grid.add(object.box));
+    for (std::uint32_t i = 0; i < frame.objects.size(); ++i) {
+        const ProxyId id = grid.add(frame.objects[i].box);
+        if (i < frame.movers) {
+            sweeps.set(id, frame.objects[i].displacement, sweep);
+        }
     }
-    for (std::uint32_t i = 0; i < frame.movers; ++i) {
-        sweeps.set(ids[i], frame.objects[i].displacement, sweep);
-    }
-    Swept swept;
+    Keys found;
     for (const ProxyPair& pair : pairs.update().born) {
-        swept.pairs.push_back(pairKey(pair.first.index, pair.second.index));
+        found.push_back(pairKey(pair.first.index, pair.second.index));
     }
-    swept.pairs = withMovers(swept.pairs, frame.movers);
-    swept.cost = sweeps.lastCost();
-    return swept;
+    return {withMovers(found, frame.movers), sweeps.lastCost()};
 }
 
 /// Of ours, in every mode; returns what each took, in tests.
@@ -78,12 +67,13 @@ std::array<std::uint64_t, 3> judgeFrame(CaseRun<Scalar>& run, const SweptFrame<S
                                         const Keys& exact, const GridConfig& config = {}) {
     std::array<std::uint64_t, 3> tests{};
     if (run.isOurs) {
-        for (std::size_t i = 0; i < kSweeps.size(); ++i) {
-            const Swept swept = sweepOurs(frame, kSweeps[i], config);
-            run.compare(swept.pairs, exact);
-            run.expect(swept.cost.segments <= 40 * std::uint64_t{frame.movers},
+        constexpr std::array kModes{Sweep::automatic, Sweep::box, Sweep::line};
+        for (std::size_t i = 0; i < kModes.size(); ++i) {
+            const auto [pairs, cost] = sweepOurs(frame, kModes[i], config);
+            run.compare(pairs, exact);
+            run.expect(cost.segments <= 40 * std::uint64_t{frame.movers},
                        "a way has 40 segments at most");
-            tests[i] = swept.tests();
+            tests[i] = cost.boxesTested + cost.contactsTested;
         }
         return tests;
     }
@@ -102,15 +92,6 @@ std::array<std::uint64_t, 3> judgeFrame(CaseRun<Scalar>& run, const SweptFrame<S
                                         double unit, const GridConfig& config = {}) {
     return judgeFrame(run, frame, truthOf(frame, Lattice(unit)), config);
 }
-
-/// Where every box is of 1 m and begins at a point, all of them sweep.
-template <class Scalar>
-struct Flights : SweptFrame<Scalar> {
-    void add(const Vector3<Scalar>& low, const Vector3<Scalar>& way) {
-        this->objects.push_back({{low, low + Vector3<Scalar>::Ones()}, way});
-        ++this->movers;
-    }
-};
 
 // --- Far and fast ---------------------------------------------------------------------------------
 
@@ -182,8 +163,7 @@ void judgeTeleports(CaseRun<Scalar>& run) {
 template <class Scalar>
 void judgeRoundedCells(CaseRun<Scalar>& run) {
     using Point = Vector3<Scalar>;
-    constexpr double kUnit = 0x1p-20;
-    const Lattice lattice(kUnit);
+    const Lattice lattice(0x1p-20);
     for (const Scalar shift : {0.0F, 3.0F, 6.0F, 9.0F, 12.0F}) {
         Random random(run.seed);
         SweptFrame<Scalar> frame;
@@ -205,8 +185,7 @@ void judgeRoundedCells(CaseRun<Scalar>& run) {
     }
 }
 
-template <class Scalar>
-void millionCells(CaseRun<Scalar>& run) {
+constexpr auto millionCells = []<class Scalar>(CaseRun<Scalar>& run) {
     using Point = Vector3<Scalar>;
     const auto frame = flyingFrame<Scalar>(run.seed, 2000, 20, 40, 1e6F, 0.125F);
     judgeFrame(run, frame, 0.125);
@@ -214,7 +193,7 @@ void millionCells(CaseRun<Scalar>& run) {
         // Far ways cost what near ones do that pass the same cubes.
         const auto near = flyingFrame<Scalar>(run.seed, 2000, 20, 40, 200, 0.125F);
         const auto work = [](const SweptFrame<Scalar>& of) {
-            return static_cast<double>(sweepOurs(of, Sweep::automatic).cost.boxesTested);
+            return static_cast<double>(sweepOurs(of, Sweep::automatic).second.boxesTested);
         };
         run.addCost(work(frame) / std::max(1.0, work(near)), 4);
         run.note("Cost: boxes tested, by those for ways of 200 m through the same cubes.");
@@ -232,7 +211,7 @@ void millionCells(CaseRun<Scalar>& run) {
         }
         scene.judge();
     }
-}
+};
 
 /// Two unit boxes along x, of which the first begins at 0: how far the other is away, how much higher it is,
 /// their ways, and whether they touch.
@@ -258,8 +237,7 @@ void judgeMeetings(CaseRun<Scalar>& run, Scalar face,
     }
 }
 
-template <class Scalar>
-void noMotion(CaseRun<Scalar>& run) {
+constexpr auto noMotion = []<class Scalar>(CaseRun<Scalar>& run) {
     const Boxes<Scalar> boxes = scatteredCubes<Scalar>(150, 6, 0.5F, 1.5F, run.seed);
     const Keys exact = touchingPairs(boxes);
     for (const Scalar speed : {0.0F, -0.0F, 1e-12F, 1e-30F, 1e-40F}) {
@@ -273,9 +251,8 @@ void noMotion(CaseRun<Scalar>& run) {
     if (run.isOurs) {
         // By less than an ulp: as standing still, but for what is nearer than that.
         using Limits = std::numeric_limits<Scalar>;
-        const Scalar face = 1000;
-        const Scalar ulp = above(face) - face;
-        judgeMeetings<Scalar>(run, face,
+        const Scalar ulp = above(Scalar(1000)) - 1000;
+        judgeMeetings<Scalar>(run, 1000,
                               {{0, 0, 0, 0, true},
                                {ulp, 0, 0, 0, false},
                                {0, 0, ulp / 8, 0, true},
@@ -286,7 +263,7 @@ void noMotion(CaseRun<Scalar>& run) {
                                {0, 0, Limits::denorm_min(), 0, true},
                                {ulp, 0, Limits::min(), 0, false}});
     }
-}
+};
 
 // --- Thin walls -----------------------------------------------------------------------------------
 
@@ -298,7 +275,6 @@ SweptFrame<Scalar> bulletsAtWalls(int lanes, float thickness, Random& random) {
     using Point = Vector3<float>;
     constexpr float kUnit = 0x1p-13F;
     constexpr float kBullet = 0x1p-7F;  // 8 mm
-    constexpr float kFarthest = 1000;
     const auto on = [](float x) { return std::floor(x / kUnit) * kUnit; };
     const float way = on(200.0F / 60);
     const float thick = std::max(kUnit, std::round(thickness / kUnit) * kUnit);
@@ -308,25 +284,22 @@ SweptFrame<Scalar> bulletsAtWalls(int lanes, float thickness, Random& random) {
     for (int i = 0; i < lanes; ++i) {
         const float y = 0.5F * static_cast<float>(i % 128);
         const float z = 0.5F * static_cast<float>(i / 128);
-        const float wall = on(random.between(-kFarthest, kFarthest));
+        const float wall = on(random.between(-1000, 1000));
         const float phase = on(random.unit() * (way - kBullet - thick));
         const bool isForward = i % 2 == 0;
         const Point low(isForward ? wall - phase - kBullet : wall + thick + phase, y, z);
         const Aabb<float> bullet(low, low + Point::Constant(kBullet));
-        const Scalar speed = isForward ? way : -way;
-        frame.objects.push_back({bullet.cast<Scalar>(), Vector3<Scalar>(speed, 0, 0)});
-        const auto reach = static_cast<double>(0.125F);
-        walls.push_back(
-            {makeBox<Scalar>(static_cast<double>(wall), static_cast<double>(y) - reach,
-                             static_cast<double>(z) - reach, static_cast<double>(wall + thick),
-                             static_cast<double>(y) + reach, static_cast<double>(z) + reach)});
+        frame.objects.push_back(
+            {bullet.cast<Scalar>(), Vector3<Scalar>(isForward ? way : -way, 0, 0)});
+        const Aabb<float> box(Point(wall, y - 0.125F, z - 0.125F),
+                              Point(wall + thick, y + 0.125F, z + 0.125F));
+        walls.push_back({box.cast<Scalar>()});
     }
     frame.objects.insert(frame.objects.end(), walls.begin(), walls.end());
     return frame;
 }
 
-template <class Scalar>
-void thinWalls(CaseRun<Scalar>& run) {
+constexpr auto thinWalls = []<class Scalar>(CaseRun<Scalar>& run) {
     Random random(run.seed);
     constexpr int kLanes = 2000;
     const int phases = run.isOurs ? run.quickOrFull(10'000, 1'000'000) : 10'000;
@@ -339,7 +312,7 @@ void thinWalls(CaseRun<Scalar>& run) {
             judgeFrame(run, bulletsAtWalls<Scalar>(kLanes, thickness, random), exact);
         }
     }
-}
+};
 
 // --- Grazing and crossing -------------------------------------------------------------------------
 
@@ -373,8 +346,7 @@ void judgeMoments(CaseRun<Scalar>& run) {
     judgeFrame(run, frame, exact);
 }
 
-template <class Scalar>
-void grazing(CaseRun<Scalar>& run) {
+constexpr auto grazing = []<class Scalar>(CaseRun<Scalar>& run) {
     using Point = Vector3<Scalar>;
     for (const int apart : {-1, 0, 1}) {
         // Along an axis, past a face; 1 ulp of the coordinates at 1024 m.
@@ -394,7 +366,7 @@ void grazing(CaseRun<Scalar>& run) {
     if (run.isOurs) {
         judgeMoments(run);
     }
-}
+};
 
 /// Infinite corners, inverted boxes: differences of coordinates need not be numbers.
 template <class Scalar>
@@ -410,67 +382,63 @@ void judgeInfiniteBoxes(CaseRun<Scalar>& run) {
           {Point(0, 1e37F, 0), Point(1, 2e38F, kFar)});
 }
 
-template <class Scalar>
-void crossing(CaseRun<Scalar>& run) {
-    Flights<Scalar> frame;
-    frame.add({0, 0, 0}, {1000, 0, 0});  // these two meet in the middle
-    frame.add({1000, 0, 0}, {-1000, 0, 0});
-    frame.add({500, -500, 50}, {0, 1000, 0});  // these cross at the same time
-    frame.add({0, 0, 50}, {1000, 0, 0});
-    frame.add({500, -500, 100}, {0, 1000, 0});  // these cross one after the other
-    frame.add({0, 0, 100}, {500, 0, 0});
-    frame.add({0, 0, 200}, {100, 0, 0});  // touch at 0 and part
-    frame.add({-1, 0, 200}, {-100, 0, 0});
-    frame.add({0, 0, 300}, {100, 0, 0});  // touch at 1 only
-    frame.add({102, 0, 300}, {-1, 0, 0});
-    frame.add({0, 0, 400}, {100, 0, 0});  // miss by 1/8 m at 1
-    frame.add({102.125F, 0, 400}, {-1, 0, 0});
-    frame.add({0, 0, 500}, {1000, 0, 0});  // fly side by side, a cell apart
-    frame.add({0, 2, 500}, {1000, 0, 0});
+constexpr auto crossing = []<class Scalar>(CaseRun<Scalar>& run) {
+    SweptFrame<Scalar> frame;
+    const auto add = [&frame](const Vector3<Scalar>& low, const Vector3<Scalar>& way) {
+        frame.objects.push_back({{low, low + Vector3<Scalar>::Ones()}, way});
+        ++frame.movers;
+    };
+    add({0, 0, 0}, {1000, 0, 0});  // these two meet in the middle
+    add({1000, 0, 0}, {-1000, 0, 0});
+    add({500, -500, 50}, {0, 1000, 0});  // these cross at the same time
+    add({0, 0, 50}, {1000, 0, 0});
+    add({500, -500, 100}, {0, 1000, 0});  // these cross one after the other
+    add({0, 0, 100}, {500, 0, 0});
+    add({0, 0, 200}, {100, 0, 0});  // touch at 0 and part
+    add({-1, 0, 200}, {-100, 0, 0});
+    add({0, 0, 300}, {100, 0, 0});  // touch at 1 only
+    add({102, 0, 300}, {-1, 0, 0});
+    add({0, 0, 400}, {100, 0, 0});  // miss by 1/8 m at 1
+    add({102.125F, 0, 400}, {-1, 0, 0});
+    add({0, 0, 500}, {1000, 0, 0});  // fly side by side, a cell apart
+    add({0, 2, 500}, {1000, 0, 0});
     judgeFrame<Scalar>(run, frame, 0.125);
     if (run.isOurs) {
-        // Towards each other, at the first or the last moment, inside by an ulp, touching, and apart by
-        // one.
-        const Scalar one = 1;
+        // Towards each other, at the first or the last moment: inside by an ulp, touching, apart by one.
         judgeMeetings<Scalar>(run, 1,
                               {{29, 0, 40, -40, true},
                                {29, 0, 40, 40, false},
                                {0, 0, -9, 9, true},
-                               {above(one) - 1, 0, -9, 9, false},
+                               {above(Scalar(1)) - 1, 0, -9, 9, false},
                                {16, 0, 9, -7, true},
-                               {above(16 * one), 0, 9, -7, false},
-                               {29, below(one), 40, -40, true},
+                               {above(Scalar(16)), 0, 9, -7, false},
+                               {29, below(Scalar(1)), 40, -40, true},
                                {29, 1, 40, -40, true},
-                               {29, above(one), 40, -40, false}});
+                               {29, above(Scalar(1)), 40, -40, false}});
         judgeInfiniteBoxes(run);
     }
-}
+};
 
-constexpr std::array kSweepCases{
-    HardCase{"H20", "a million cells in a frame",
-             "20 cubes that fly 1e6 m through 2,000 others, and 40 of 400 that are moved by 1e6 m "
-             "without a way, and back",
-             "what they touch on their way, exactly; the work does not follow the speed",
-             millionCells<float>, millionCells<double>},
-    HardCase{"H21", "a sweep that does not move",
-             "150 cubes that move by 0, -0, 1e-12, 1e-30, 1e-40 m",
-             "what they touch where they are", noMotion<float>, noMotion<double>},
-    HardCase{
-        "H22", "200 m/s at walls of 1 to 100 mm",
-        "bullets of 8 mm, 3.3 m a frame, both ways, at walls of 100, 10 and 1 mm, up to 1 km away, "
-        "at random phases (ours a million, each with Sweep::automatic, box and line; 10,000 with "
-        "--quick and for the others)",
-        "every bullet meets its wall", thinWalls<float>, thinWalls<double>},
-    HardCase{
-        "H23", "grazing by -1, 0 and 1 ulp",
-        "a box that passes another one along an axis, and slantwise past an edge, 1 ulp inside, "
-        "touching, 1 ulp apart",
-        "met when it touches, missed when it does not", grazing<float>, grazing<double>},
-    HardCase{
-        "H24", "crossing ways",
-        "fast boxes that meet head on, cross at the same time and one after the other, touch at "
-        "the first and at the last moment only, miss by 1/8 m, and fly side by side",
-        "those who touch at some moment, exactly", crossing<float>, crossing<double>},
+constexpr HardCase kSweepCases[] = {
+    {"H20", "a million cells in a frame",
+     "20 cubes that fly 1e6 m through 2,000 others, and 40 of 400 that are moved by 1e6 m without "
+     "a way, and back",
+     "what they touch on their way, exactly; the work does not follow the speed", millionCells},
+    {"H21", "a sweep that does not move", "150 cubes that move by 0, -0, 1e-12, 1e-30, 1e-40 m",
+     "what they touch where they are", noMotion},
+    {"H22", "200 m/s at walls of 1 to 100 mm",
+     "bullets of 8 mm, 3.3 m a frame, both ways, at walls of 100, 10 and 1 mm, up to 1 km away, at "
+     "random phases (ours a million, each with Sweep::automatic, box and line; 10,000 with --quick "
+     "and for the others)",
+     "every bullet meets its wall", thinWalls},
+    {"H23", "grazing by -1, 0 and 1 ulp",
+     "a box that passes another one along an axis, and slantwise past an edge, 1 ulp inside, "
+     "touching, 1 ulp apart",
+     "met when it touches, missed when it does not", grazing},
+    {"H24", "crossing ways",
+     "fast boxes that meet head on, cross at the same time and one after the other, touch at the "
+     "first and at the last moment only, miss by 1/8 m, and fly side by side",
+     "those who touch at some moment, exactly", crossing},
 };
 
 }  // namespace

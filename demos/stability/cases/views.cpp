@@ -103,8 +103,7 @@ Boxes<Scalar> town(std::uint64_t seed) {
     return boxes;
 }
 
-template <class Scalar>
-void strangeViews(CaseRun<Scalar>& run) {
+constexpr auto strangeViews = []<class Scalar>(CaseRun<Scalar>& run) {
     PairScene<Scalar> scene(run, town<Scalar>(run.seed));
     Random random(run.seed);
     using Corner = typename ScreenRectangle<Scalar>::VectorType;
@@ -133,12 +132,11 @@ void strangeViews(CaseRun<Scalar>& run) {
     if (run.isOurs) {
         run.expect(ConvexRegion<Scalar>(inverted).isEmpty(), "what is turned inside out is empty");
     }
-}
+};
 
 // --- Dragged rectangles ---------------------------------------------------------------------------
 
-template <class Scalar>
-void strangeRectangles(CaseRun<Scalar>& run) {
+constexpr auto strangeRectangles = []<class Scalar>(CaseRun<Scalar>& run) {
     PairScene<Scalar> scene(run, town<Scalar>(run.seed));
     if (scene.grid() == nullptr) {
         return;
@@ -179,23 +177,20 @@ void strangeRectangles(CaseRun<Scalar>& run) {
                        !selectionError(view, {-300, 10}, {-10, 500}).empty(),
                    "what selects nothing says why");
     }
-}
+};
 
-constexpr std::array kViewCases{
-    HardCase{
-        "H41", "strange cameras",
-        "1,503 boxes, one around the camera, one around all that it sees, one 3 km away; far "
-        "planes at 10 m, 400 m and infinity; a line and a dot of the screen; all planes inverted",
-        "never without what is seen (where one of 400 points that are seen lies inside of a "
-        "box); nothing behind inverted planes",
-        strangeViews<float>, strangeViews<double>},
-    HardCase{
-        "H42", "strange rectangles",
-        "rectangles dragged from any corner, without area, as a line, partly and wholly beside "
-        "the window, of 2e9 pixels, over the horizon, with NaN; 1,503 boxes",
-        "what is seen there, whichever way it was dragged; nothing beside the window, with a "
-        "reason",
-        strangeRectangles<float>, strangeRectangles<double>},
+constexpr HardCase kViewCases[] = {
+    {"H41", "strange cameras",
+     "1,503 boxes, one around the camera, one around all that it sees, one 3 km away; far planes "
+     "at 10 m, 400 m and infinity; a line and a dot of the screen; all planes inverted",
+     "never without what is seen (where one of 400 points that are seen lies inside of a box); "
+     "nothing behind inverted planes",
+     strangeViews},
+    {"H42", "strange rectangles",
+     "rectangles dragged from any corner, without area, as a line, partly and wholly beside the "
+     "window, of 2e9 pixels, over the horizon, with NaN; 1,503 boxes",
+     "what is seen there, whichever way it was dragged; nothing beside the window, with a reason",
+     strangeRectangles},
 };
 
 }  // namespace

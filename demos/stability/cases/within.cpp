@@ -303,27 +303,32 @@ void cellSizesThatAreNone(Run& run) {
     scene.judge();
 }
 
-constexpr std::array kWithinCases{
-    bulletCase(
-        "H32", "changes and questions within one",
-        "box queries within box queries and rays within rays, by their callbacks; callbacks of "
-        "both that destroy, create and move whom they are told of, and others; the same proxies "
-        "moved, destroyed, created and moved again within a frame; pairs removed while walking "
-        "over them; 200 cubes",
-        "all answers as if asked alone, of what has not changed; exact pairs; every pair seen once",
-        changesWithin),
-    bulletCase("H31", "cell sizes that are none",
-               "a cell size of -1, NaN, +-infinity, 1e31, 1e-31, the smallest denormal; and 0",
-               "refused with a reason by grids of both precisions and the broadphase; 0 chooses "
-               "one; what runs already answers as before, and the pair cache that the refused one "
-               "was given serves another",
-               cellSizesThatAreNone),
+constexpr HardCase kWithinCases[] = {
+    {"H32", "changes and questions within one",
+     "box queries within box queries and rays within rays, by their callbacks; callbacks of both "
+     "that destroy, create and move whom they are told of, and others; the same proxies moved, "
+     "destroyed, created and moved again within a frame; pairs removed while walking over them; "
+     "200 cubes",
+     "all answers as if asked alone, of what has not changed; exact pairs; every pair seen once",
+     changesWithin},
+    {"H31", "cell sizes that are none",
+     "a cell size of -1, NaN, +-infinity, 1e31, 1e-31, the smallest denormal; and 0",
+     "refused with a reason by grids of both precisions and the broadphase; 0 chooses one; what "
+     "runs already answers as before, and the pair cache that the refused one was given serves "
+     "another",
+     cellSizesThatAreNone},
 };
 
 }  // namespace
 
-std::span<const HardCase> withinCases() {
-    return kWithinCases;
+std::span<const HardCase> bulletCases() {
+    static const std::vector<HardCase> kAll = inOrder({bodyCases(), kWithinCases});
+    return kAll;
+}
+
+std::span<const HardCase> hardCases() {
+    static const std::vector<HardCase> kAll = inOrder({gridCases(), bulletCases()});
+    return kAll;
 }
 
 }  // namespace hashphase::demos
