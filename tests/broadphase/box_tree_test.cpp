@@ -148,19 +148,6 @@ TYPED_TEST(BoxTreeTest, HoldsAnyNumberOfBoxes) {
     EXPECT_EQ(this->countAll(), 4097U - 2048U);
 }
 
-TYPED_TEST(BoxTreeTest, HoldsBoxesAtOnePlaceAndOnALine) {
-    for (const double apart : {0.0, 1000.0}) {
-        std::vector<Aabb<TypeParam>> boxes;
-        for (int i = 0; i < 1000; ++i) {
-            boxes.push_back(makeBox<TypeParam>(apart * i, 5, 5, apart * i, 5, 5));
-        }
-        this->build(std::move(boxes));
-        EXPECT_EQ(this->walk({{-10, 5, 5}, {1000000, 5, 5}}).size(), 1000U);
-        this->expectNoneMissed({{0, 0, 0}, {10, 10, 10}});
-        EXPECT_EQ(this->walk({{-10, 6, 5}, {1000000, 6, 5}}).size(), 0U);
-    }
-}
-
 TYPED_TEST(BoxTreeTest, PassesByWhatIsFarApartAtItsTop) {
     // Two piles: a ray between them reads the top, and not the blocks of either.
     this->buildOf(2000, [i = 0](Random& random) mutable {
@@ -222,23 +209,6 @@ TYPED_TEST(BoxTreeTest, OffersNothingBeyondALimitThatShrinks) {
     EXPECT_GE(offered, 100U);
     EXPECT_LT(offered, 120U);
     EXPECT_LT(cost.boxesTested, 130U);
-}
-
-TYPED_TEST(BoxTreeTest, IsSearchedInTheSameOrderByEveryInstructionSet) {
-    this->buildOf(3000, boxesIn<TypeParam>(-30, 30, 0, 1));
-    std::size_t found = 0;
-    for (int i = 0; i < 200; ++i) {
-        const Vector3<TypeParam> from = this->pointIn(-40, 40);
-        const RayRegion<TypeParam> ray(from, this->pointIn(-40, 40));
-        std::vector<std::uint32_t> expected;
-        test::forEachInstructionSet([&](InstructionSet set) {
-            const auto slots = this->search(ray);
-            expected = set == InstructionSet::scalar ? slots : expected;
-            EXPECT_EQ(slots, expected);
-        });
-        found += expected.size();
-    }
-    EXPECT_GT(found, 100U);
 }
 
 // --- Kernel --------------------------------------------------------------------------------------

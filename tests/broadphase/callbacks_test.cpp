@@ -22,7 +22,6 @@ namespace hashphase::test {
 namespace {
 
 using Box = Aabb<float>;
-using Point = Vector3<float>;
 
 Box cube(double x, double half = 1) {
     return boxAround<float>({x, 0, 0}, Vector3<double>::Constant(half));
@@ -241,7 +240,8 @@ TEST(SweepsCallbacks, MayChangeWhatSweeps) {
     CallEach collector{[&](ProxyId id, float) {
         EXPECT_TRUE(grid.contains(id));
         ++offered[id];
-        sweeps.set(ids[(7 * found) % 30], found % 2 == 0 ? Point(0, 0, 0) : Point(0, 5, 0));
+        sweeps.set(ids[(7 * found) % 30],
+                   found % 2 == 0 ? Vector3<float>(0, 0, 0) : Vector3<float>(0, 5, 0));
         if (++found % 4 == 0) {
             sweeps.set(grid.add(cube(0)), {1, 1, 1});
         }

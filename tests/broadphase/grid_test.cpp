@@ -5,11 +5,15 @@
 
 #include <broadphase/grid.hpp>
 #include <broadphase/grid_config.hpp>
+#include <broadphase/pairs.hpp>
+#include <tests/support/box_scenes.hpp>
 #include <tests/support/handlers.hpp>
 #include <tests/support/population.hpp>
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <set>
 #include <stdexcept>
@@ -84,20 +88,6 @@ TEST(Grid, TakesTheBoxOfAnotherProxyForANewOne) {
         const ProxyId copy = grid.add(grid.box(first));  // records move now and then
         ASSERT_EQ(grid.box(copy).min(), rowCube(1).min()) << "copy " << i;
     }
-}
-
-TEST(Grid, VisitsAllWithoutThoseThatAreAddedOnTheWay) {
-    Grid<float> grid;
-    for (int i = 0; i < 3; ++i) {
-        static_cast<void>(grid.add(rowCube(i)));
-    }
-    int visited = 0;
-    grid.forEach([&](ProxyId, const Aabb<float>& box) {
-        static_cast<void>(grid.add(box));
-        ASSERT_LT(++visited, 100);
-    });
-    EXPECT_EQ(visited, 3);
-    EXPECT_EQ(grid.size(), 6U);
 }
 
 TEST(Grid, ReportsNanOnceAndCountsIt) {
@@ -253,39 +243,77 @@ void expectRefused(const GridConfig& config, const std::string& field, const std
     expectThrow([&] { const Grid<double> grid(config); });
 }
 
-void expectAccepted(const GridConfig& config) {
-    EXPECT_EQ(configError(config), "");
-    const Grid<float> asFloat(config);
-    const Grid<double> asDouble(config);
-}
-
-TEST(GridConfig, CellSizeIsZeroOrFrom1em30To1e30) {
-    expectAccepted({});
+TEST(GridConfig, IsRefusedWithASentenceWhereANumberIsOutOfItsRange) {
     for (const double bad : {-1.0, -1e-40, 9e-31, 1.1e30, kInfinity, -kInfinity, kNan}) {
         expectRefused({.cellSize = bad}, "cellSize",
                       "0 (choose automatically) or between 1e-30 and 1e30");
     }
-    for (const double good : {0.0, -0.0, 1e-30, 1e-3, 1.0, 1e30}) {
-        expectAccepted({.cellSize = good});
-    }
-}
-
-TEST(GridConfig, LevelRatioIsFrom2To64) {
     for (const double bad : {0.0, 1.0, 1.999, 64.1, -4.0, kInfinity, kNan}) {
         expectRefused({.levelRatio = bad}, "levelRatio", "between 2 and 64");
     }
-    for (const double good : {2.0, 2.5, 64.0}) {
-        expectAccepted({.levelRatio = good});
-    }
-}
-
-TEST(GridConfig, UpdatesBeforeRestAreFrom1To1000000) {
     for (const std::uint32_t bad : {0U, 1'000'001U, std::numeric_limits<std::uint32_t>::max()}) {
         expectRefused({.updatesBeforeRest = bad}, "updatesBeforeRest", "between 1 and 1000000");
     }
-    for (const std::uint32_t good : {1U, 1'000'000U}) {
-        expectAccepted({.updatesBeforeRest = good});
+    std::vector<GridConfig> accepted{
+        {}, {.updatesBeforeRest = 1}, {.updatesBeforeRest = 1'000'000}};
+    for (const double good : {0.0, -0.0, 1e-30, 1e-3, 1.0, 1e30}) {
+        accepted.push_back({.cellSize = good});
     }
+    for (const double good : {2.0, 2.5, 64.0}) {
+        accepted.push_back({.levelRatio = good});
+    }
+    for (const GridConfig& config : accepted) {
+        EXPECT_EQ(configError(config), "");
+        const Grid<float> asFloat(config);
+        const Grid<double> asDouble(config);
+    }
+}
+
+// --- Where numbers that are counted up come round ------------------------------------------------
+
+struct LongLimits : testing::Test {
+    void SetUp() override {
+        if (std::getenv("HASHPHASE_LONG_TESTS") == nullptr) {
+            GTEST_SKIP() << "takes minutes; set HASHPHASE_LONG_TESTS";
+        }
+    }
+    Grid<float> grid;
+    const Aabb<float> box = makeBox<float>(0, 0, 0, 1, 1, 1);
+};
+
+TEST_F(LongLimits, OfTheNumbersOfUpdatesAreNotNoticed) {
+    Pairs<float> pairs(grid);
+    static_cast<void>(grid.add(box, Mobility::resting));
+    static_cast<void>(grid.add(box));
+    const ProxyId mover = grid.add(box);
+    EXPECT_EQ(pairs.update().born.size(), 3U);
+    for (std::uint64_t update = 0; update < (std::uint64_t{1} << 32) + 1000; ++update) {
+        if ((update & 0xffffff) < 20 || update + 1000 > (std::uint64_t{1} << 32)) {
+            const auto y = static_cast<double>(update % 2) / 2;
+            grid.move(mover, makeBox<float>(0, y, 0, 1, y + 1, 1));
+        }
+        const PairChanges changes = pairs.update();
+        ASSERT_EQ(changes.born.size() + changes.died.size(), 0U) << update;
+    }
+    EXPECT_EQ(pairs.count(), 3U);
+    EXPECT_EQ(grid.validate(), "");
+    EXPECT_EQ(pairs.validate(), "");
+}
+
+TEST_F(LongLimits, OfIdsAreReachedWithoutOneThatNamesTwoProxies) {
+    const ProxyId first = grid.add(box);
+    ProxyId id = first;
+    std::uint64_t count = 0;
+    for (; id.index == first.index; ++count) {
+        grid.remove(id);
+        ASSERT_FALSE(grid.contains(id));
+        grid.update();
+        id = grid.add(box);
+        ASSERT_FALSE(grid.contains(first));
+    }
+    EXPECT_EQ(count, (std::uint64_t{1} << 31) - 1);
+    EXPECT_EQ(grid.size(), 1U);
+    EXPECT_EQ(grid.validate(), "");
 }
 
 }  // namespace

@@ -182,21 +182,6 @@ TEST(InstructionSets, ScalarIsAlwaysAvailableAndTheBestOneIsInUse) {
     EXPECT_STREQ(nameOf(InstructionSet::avx512), "AVX-512");
 }
 
-TEST(PairList, KeepsWhatItHasWhenItGrows) {
-    PairList list;
-    for (std::uint32_t i = 0; i < 1000; ++i) {
-        list.push({i, i + 1});
-    }
-    ASSERT_EQ(list.size(), 1000U);
-    for (std::uint32_t i = 0; i < 1000; ++i) {
-        ASSERT_EQ(list.pairs()[i], (IndexPair{i, i + 1}));
-    }
-    const std::size_t bytes = list.memoryBytes();
-    list.clear();
-    EXPECT_EQ(list.size(), 0U);
-    EXPECT_EQ(list.memoryBytes(), bytes);
-}
-
 // --- What boxes overlap, handed over as it is found ----------------------------------------------
 
 using test::columnsOf;

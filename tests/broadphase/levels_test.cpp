@@ -158,34 +158,28 @@ TEST(AutomaticLevels, AreTheCheapestOfAllUnderTheirOwnModel) {
     }
 }
 
-TEST(AutomaticLevels, SurviveHostileBoxes) {
-    Random random(0x5eed0308);
-    SizeCensus census;
-    for (int i = 0; i < 5000; ++i) {
-        census.add(test::hostileBox<float>(random));
-        census.add(test::hostileBox<double>(random));
-    }
-    const LevelSizes levels = census.cheapestLevels();
-    expectAscending(levels);
-    for (int i = 0; i < levels.count; ++i) {
-        const double size = levels.cellSize[static_cast<std::size_t>(i)];
-        EXPECT_TRUE(std::isfinite(size) && size > 0) << size;
-    }
-    for (const double x : census.middle()) {
-        EXPECT_TRUE(std::isfinite(x));
-    }
-}
-
-TEST(AutomaticLevels, OfAPopulationAcrossTheWholeRangeOfNumbersAreFinite) {
-    Random random(0x5eed0309);
-    SizeCensus census;
+TEST(AutomaticLevels, OfHostileBoxesAndOfTheWholeRangeOfNumbersAreFinite) {
     const double extreme = std::numeric_limits<double>::max() * 0.9;
-    for (int i = 0; i < 1000; ++i) {
-        census.add(boxAround<double>(random.pointIn(-extreme, extreme), {1, 1, 1}));
-    }
-    const LevelSizes levels = census.cheapestLevels();
-    for (int i = 0; i < levels.count; ++i) {
-        EXPECT_TRUE(std::isfinite(levels.cellSize[static_cast<std::size_t>(i)]));
+    for (const bool areHostile : {false, true}) {
+        Random random(0x5eed0308);
+        SizeCensus census;
+        for (int i = 0; i < 5000; ++i) {
+            if (areHostile) {
+                census.add(test::hostileBox<float>(random));
+                census.add(test::hostileBox<double>(random));
+            } else {
+                census.add(boxAround<double>(random.pointIn(-extreme, extreme), {1, 1, 1}));
+            }
+        }
+        const LevelSizes levels = census.cheapestLevels();
+        expectAscending(levels);
+        for (int i = 0; i < levels.count; ++i) {
+            const double size = levels.cellSize[static_cast<std::size_t>(i)];
+            EXPECT_TRUE(std::isfinite(size) && size > 0) << size;
+        }
+        for (const double x : census.middle()) {
+            EXPECT_TRUE(std::isfinite(x));
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 // What a caller may not do is asserted, and none of it happens. What callbacks may do is in callbacks_test.cpp.
 
+#include <broadphase/diagnostics.hpp>
 #include <broadphase/pairs.hpp>
 #include <broadphase/radius_search.hpp>
 #include <broadphase/sweeps.hpp>
@@ -286,6 +287,52 @@ TEST_F(StaleIds, LoseNoPairWhereTheGridIsUpdatedOrClearedBesideItsPairs) {
     EXPECT_EQ(pairs.count(), pairCount + 3);
     EXPECT_EQ(pairs.validate(), "");
     EXPECT_EQ(caught.count(), 2);
+}
+
+// --- Handlers ------------------------------------------------------------------------------------
+
+void ignoreMessage(const char* /*message*/) {}
+void ignoreAssert(const char* /*condition*/, const char* /*sentence*/, const char* /*file*/,
+                  int /*line*/) {}
+
+TEST(Diagnostics, ReplacingAHandlerReturnsThePreviousOne) {
+    const MessageHandler messageDefault = setMessageHandler(&ignoreMessage);
+    EXPECT_NE(messageDefault, nullptr);
+    EXPECT_EQ(setMessageHandler(nullptr), &ignoreMessage);
+    EXPECT_EQ(setMessageHandler(nullptr), messageDefault);
+
+    const AssertHandler assertDefault = setAssertHandler(&ignoreAssert);
+    EXPECT_NE(assertDefault, nullptr);
+    EXPECT_EQ(setAssertHandler(nullptr), &ignoreAssert);
+    EXPECT_EQ(setAssertHandler(nullptr), assertDefault);
+}
+
+TEST(Diagnostics, TheDefaultMessageHandlerWritesToStderr) {
+    testing::internal::CaptureStderr();
+    detail::reportMessage("A sentence.");
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "hashphase: A sentence.\n");
+}
+
+TEST(Diagnostics, AHandlerReceivesTheMessage) {
+    const CaughtMessages messages;
+    detail::reportMessage("A sentence.");
+    EXPECT_EQ(messages.all(), std::vector<std::string>{"A sentence."});
+}
+
+TEST(Diagnostics, ABrokenAssertReachesTheHandlerWithItsSentence) {
+    const ThrowingAsserts throwing;
+    try {
+        detail::reportBrokenAssert("a < b", "What would be right.", "file.cpp", 7);
+        FAIL();
+    } catch (const BrokenAssert& broken) {
+        EXPECT_STREQ(broken.what(), "What would be right.");
+    }
+}
+
+TEST(DiagnosticsDeathTest, TheDefaultAssertHandlerNamesTheFaultAndAborts) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    EXPECT_DEATH(detail::reportBrokenAssert("a < b", "What would be right.", "file.cpp", 7),
+                 "What would be right.*file.cpp:7.*a < b");
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 // When moving boxes first touch, against rational numbers.
 
 #include <broadphase/moving_box.hpp>
+#include <tests/support/box_scenes.hpp>
 #include <tests/support/motion_oracle.hpp>
-#include <tests/support/population.hpp>
 
 #include <gtest/gtest.h>
 
@@ -164,20 +164,6 @@ TYPED_TEST(MovingBoxes, WithoutAFinitePlaceTouchNothing) {
     nowhere.box.min().x() = Limits::quiet_NaN();
     nowhere.displacement.x() = 1;
     EXPECT_FALSE(firstContact(nowhere, good));
-}
-
-// Through a grid as well, which looks along the ray that is the region's segment.
-TYPED_TEST(MovingBoxes, FindInAGridWhatBruteForceFinds) {
-    for (const BoxScene<TypeParam>& scene : allBoxScenes<TypeParam>()) {
-        SCOPED_TRACE(scene.name);
-        Population<TypeParam> world;
-        world.addMany(scene.count, scene.draw);
-        world.update();
-        for (int i = 0; i < 200 && !this->HasFailure(); ++i) {
-            const MovingBoxRegion<TypeParam> region(drawMoving(scene, world.random));
-            world.expectLikeBruteForce(region);
-        }
-    }
 }
 
 }  // namespace

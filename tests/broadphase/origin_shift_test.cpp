@@ -220,33 +220,6 @@ TYPED_TEST(OriginShift, AtAnyMomentLeavesThePairsOfBruteForce) {
     }
 }
 
-TYPED_TEST(OriginShift, IsSeenByEveryQueryAtOnce) {
-    for (const double cellSize : {0.0, 1.5}) {
-        for (const BoxScene<TypeParam>& scene : allBoxScenes<TypeParam>()) {
-            SCOPED_TRACE(testing::Message() << scene.name << ", cell size " << cellSize);
-            GridWorld<TypeParam> world({.cellSize = cellSize, .updatesBeforeRest = 1});
-            Script<TypeParam> script(scene, 0x5eed2004);
-            script.begin(world);
-            for (int frame = 0; frame < 8; ++frame) {
-                SCOPED_TRACE(testing::Message() << "frame " << frame);
-                script.playFrame(world);
-                if (frame % 3 != 1) {
-                    world.grid.update();
-                }
-                if (frame % 2 == 1) {
-                    script.playFrame(world);
-                }
-                const Vector3<TypeParam> by = anyShift<TypeParam>(script.random());
-                world.grid.shiftOrigin(by);
-                script.shiftOrigin(by);
-                expectQueriesLikeBruteForce(world.grid, script.proxies(), script.random(), 2);
-                ASSERT_EQ(world.grid.validate(), "");
-                ASSERT_FALSE(this->HasFailure());
-            }
-        }
-    }
-}
-
 // --- Shifts that add up --------------------------------------------------------------------------
 
 // Rays through each of the last boxes and along its edges, as far as they are finite, meet what they

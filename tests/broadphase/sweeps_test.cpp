@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Zlib
 
-// Proxies that sweep make pairs with everything that they touch on their way, in whatever mode.
+// Proxies that sweep make pairs with everything that they touch on their way, in whatever mode. Far, fast, and at
+// thin walls: demos/stability/cases.
 
+#include <broadphase/position_region.hpp>
 #include <broadphase/sweeps.hpp>
 #include <tests/support/box_scenes.hpp>
 #include <tests/support/bullet_world.hpp>
 #include <tests/support/handlers.hpp>
+#include <tests/support/motion_oracle.hpp>
 #include <tests/support/pair_world.hpp>
 #include <tests/support/script.hpp>
 #include <tests/support/threaded_for.hpp>
@@ -13,7 +16,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -99,19 +101,6 @@ TYPED_TEST(SweptPairs, EqualBruteForceInEveryScene) {
     }
 }
 
-TYPED_TEST(SweptPairs, AreTheSameInEveryMode) {
-    Random random(0x5eed0d02);
-    for (const double length : {0.1, 3.0, 40.0, 1e3, 1e6, 1e12}) {
-        const Bullets<TypeParam> bullets(4000, 300, length, random);
-        const std::vector<ProxyPair> byBox = BulletWorld<TypeParam>(bullets, Sweep::box).update();
-        for (const Sweep mode : {Sweep::line, Sweep::automatic}) {
-            const auto found = BulletWorld<TypeParam>(bullets, mode).update();
-            EXPECT_EQ(differences(found, byBox), "") << length;
-        }
-        EXPECT_GT(byBox.size(), BulletWorld<TypeParam>(bullets, Sweep::none).update().size());
-    }
-}
-
 TYPED_TEST(SweptPairs, AreTheSameOnAnyNumberOfThreads) {
     Random random(0x5eed0d03);
     for (const double length : {20.0, 1e4}) {
@@ -125,68 +114,6 @@ TYPED_TEST(SweptPairs, AreTheSameOnAnyNumberOfThreads) {
             EXPECT_GT(threadedFor.mostRanges(), 1U);
         }
     }
-}
-
-// However fast, a proxy is looked for in a few boxes, or along a ray that reads no more than lies near
-// its way.
-TYPED_TEST(SweptPairs, CostNoMoreTheFasterTheyAre) {
-    Random random(0x5eed0d05);
-    const Bullets<TypeParam> slow(20'000, 200, 30, random);
-    for (const double speed : {1.0, 1e2, 1e4, 1e8}) {
-        Bullets<TypeParam> fast = slow;
-        for (Vector3<TypeParam>& way : fast.ways) {
-            way *= static_cast<TypeParam>(speed);
-        }
-        for (const Sweep mode : {Sweep::line, Sweep::automatic}) {
-            BulletWorld<TypeParam> world(fast, mode);
-            world.update();
-            const SweepCost& cost = world.sweeps.lastCost();
-            EXPECT_EQ(cost.sweeping, 200U);
-            EXPECT_LE(cost.segments, 200U * 40);
-            EXPECT_LE(cost.boxesTested + cost.contactsTested, 200U * 20'000 / 20) << speed;
-        }
-    }
-}
-
-/// How many of a million bullets of 200 m/s at 60 Hz meet a wall, from 0.1 m down to 1 mm thick:
-/// from those that stand in it at the start of the step to those that just reach it at the end.
-template <class Scalar>
-std::size_t meetThinWalls(Sweep mode) {
-    constexpr int kLanes = 400;
-    constexpr int kFrames = 2500;
-    constexpr double kStep = 200.0 / 60;
-    Random random(0x5eed0d06);
-    Grid<Scalar> grid;
-    Sweeps<Scalar> sweeps(grid);
-    Pairs<Scalar> pairs(grid, &sweeps);
-    std::vector<ProxyId> bullets;
-    const auto thicknessOf = [](int lane) { return std::array{0.1, 0.03, 0.01, 0.001}[lane % 4]; };
-    for (int lane = 0; lane < kLanes; ++lane) {
-        const double y = 10 * lane;
-        static_cast<void>(grid.add(makeBox<Scalar>(0, y, 0, thicknessOf(lane), y + 4, 4)));
-        bullets.push_back(grid.add({}));
-    }
-    std::size_t met = 0;
-    for (int frame = 0; frame < kFrames; ++frame) {
-        for (int lane = 0; lane < kLanes; ++lane) {
-            const double front = -random.between(-thicknessOf(lane), kStep);
-            const double y = 10 * lane + random.between(0, 4);
-            const double aside = random.chance(0.5) ? random.between(-0.2, 0.2) : 0;
-            const ProxyId id = bullets[static_cast<std::size_t>(lane)];
-            grid.move(id, makeBox<Scalar>(front - 0.01, y - 0.005, 1.995, front, y + 0.005, 2.005));
-            sweeps.set(id, Vector3<double>(kStep, 0, aside).cast<Scalar>(), mode);
-        }
-        pairs.update();
-        met += pairs.count();
-    }
-    return met;
-}
-
-TYPED_TEST(SweptPairs, OfABulletAndAThinWallAreNeverMissedInAnyMode) {
-    for (const Sweep mode : kSweepModes) {
-        EXPECT_EQ(meetThinWalls<TypeParam>(mode), 1'000'000U) << static_cast<int>(mode);
-    }
-    EXPECT_LT(meetThinWalls<TypeParam>(Sweep::none), 20'000U);
 }
 
 // Without Pairs nobody tells Sweeps of an update: who comes into the place of what swept is found.
@@ -275,6 +202,56 @@ TYPED_TEST(SweptPairs, AreFoundByQueriesAlongTheirWay) {
         }
         EXPECT_GT(onTheWay, 100);
         EXPECT_GT(metOnTheWay, 100);
+    }
+}
+
+// --- Cost ----------------------------------------------------------------------------------------
+
+// A body that has fallen out of the world, and one that is larger than it.
+TYPED_TEST(SweptPairs, CostTheSameBesideAStray) {
+    Random random(0x5eed0d0c);
+    const Bullets<TypeParam> bullets(2000, 2000, 25, random);
+    BulletWorld<TypeParam> alone(bullets, Sweep::automatic);
+    alone.update();
+    const SweepCost usual = alone.sweeps.lastCost();
+    Bullets<TypeParam> withStray = bullets;
+    withStray.boxes.push_back(boxAround<TypeParam>({0, -1e6, 0}, {0.5, 0.5, 0.5}));
+    withStray.ways.push_back(Vector3<TypeParam>(0, -100, 0));
+    Bullets<TypeParam> withGiant = bullets;
+    withGiant.boxes.push_back(boxAround<TypeParam>({0, -2e4, 0}, {1e4, 1e4, 1e4}));
+    withGiant.ways.push_back(Vector3<TypeParam>(0, 0, 1e4));
+    for (const Bullets<TypeParam>& some : {withStray, withGiant}) {
+        BulletWorld<TypeParam> world(some, Sweep::automatic);
+        world.update();
+        const SweepCost& cost = world.sweeps.lastCost();
+        EXPECT_LE(cost.contactsTested, usual.contactsTested * 5 / 4);
+        EXPECT_LE(cost.boxesTested, usual.boxesTested * 5 / 4);
+    }
+}
+
+// For three that fly far, a tree over everything is not worth while.
+TYPED_TEST(SweptPairs, TakeRaysOnlyWhereThereAreManyForTheTree) {
+    Random random(0x5eed0d0d);
+    for (const std::uint32_t sweeping : {3U, 300U}) {
+        Bullets<TypeParam> bullets(20'000, sweeping, 1, random);
+        bullets.ways.assign(sweeping, {4000, 4000, 4000});
+        bullets.boxes.push_back(boxAround<TypeParam>({1e4, 1e4, 1e4}, {0.5, 0.5, 0.5}));
+        BulletWorld<TypeParam> world(bullets, Sweep::line);
+        world.update();
+        EXPECT_EQ(world.sweeps.lastCost().rays, sweeping == 3 ? 0U : 300U);
+    }
+}
+
+TYPED_TEST(SweptPairs, AreFoundWhereTheyStandByWhateverAsks) {
+    Bullets<TypeParam> bullets;
+    bullets.boxes = {makeBox<TypeParam>(0, 0, 0, 1, 1, 1)};
+    bullets.ways = {{100, 0, 0}};
+    for (const Sweep mode : kSweepModes) {
+        const BulletWorld<TypeParam> world(bullets, mode);
+        std::vector<ProxyId> found;
+        CollectAll collector(found);
+        world.sweeps.visit(PositionRegion<TypeParam>({0.5, 0.5, 0.5}, 2), collector);
+        EXPECT_EQ(found.size(), 1U);
     }
 }
 

@@ -13,7 +13,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <utility>
 #include <vector>
 
@@ -35,22 +34,6 @@ protected:
         return drawBoxes<Scalar>(random_, count, cubesIn<Scalar>(low, high, half));
     }
 
-    /// How many entries share a bucket with an entry of another row.
-    [[nodiscard]] std::size_t sharedBuckets() const {
-        std::size_t shared = 0;
-        for (const Level<Scalar>& level : filled_.table.levels()) {
-            std::map<std::uint32_t, std::pair<std::int32_t, std::int32_t>> rowOfBucket;
-            for (std::uint32_t i = level.firstEntry; level.hasCells() && i < level.lastEntry; ++i) {
-                const Aabb<Scalar> box = filled_.table.box(i);
-                const std::int32_t x = level.cell(box.min()[0], 0);
-                const std::int32_t y = level.cell(box.min()[1], 1);
-                const std::int32_t z = level.cell(box.min()[2], 2);
-                const std::uint32_t bucket = level.bucket(x, Row{y, z});
-                shared += rowOfBucket.try_emplace(bucket, y, z).first->second != std::pair(y, z);
-            }
-        }
-        return shared;
-    }
     /// How many are filed in the cells that are dense (0), or hashed (1).
     [[nodiscard]] std::uint32_t countIn(std::size_t level) const {
         return filled_.table.levels()[level].count();
@@ -74,64 +57,6 @@ TYPED_TEST(TableTest, FindsEveryPairOnceInEveryScene) {
             this->filled_.expectEveryPairOnce();
             ASSERT_FALSE(this->HasFailure());
         }
-    }
-}
-
-// Lattices whose strides are powers of two, so that rows fall onto each other wherever their
-// numbers were used without mixing; and so sparse that rows have to be hashed.
-TYPED_TEST(TableTest, FindsEveryPairOnceThoughRowsShareBuckets) {
-    std::size_t shared = 0;
-    for (const int stride : {64, 256, 1024, 65536, 1 << 20}) {
-        SCOPED_TRACE(testing::Message() << "stride " << stride);
-        std::vector<Aabb<TypeParam>> boxes;
-        for (int i = 0; i < 343; ++i) {
-            // Two that touch at each place.
-            const Vector3<double> at = Vector3<double>(i % 7, i / 7 % 7, i / 49) * stride;
-            const Vector3<double> beside(1, i % 2, -(i % 3 % 2));
-            boxes.push_back(boxAround<TypeParam>(at, {0.5, 0.5, 0.5}));
-            boxes.push_back(boxAround<TypeParam>(at + beside, {0.5, 0.5, 0.5}));
-        }
-        this->filled_.build(std::move(boxes), fixedLevels(1, 4));
-        EXPECT_FALSE(this->filled_.table.levels()[1].isDense());
-        EXPECT_EQ(this->countIn(1), this->filled_.table.size()) << "all are hashed";
-        shared += this->sharedBuckets();
-        EXPECT_GE(this->filled_.expectEveryPairOnce(), 343U);
-    }
-    EXPECT_GT(shared, 100U) << "the lattices do not do what they are for";
-}
-
-TYPED_TEST(TableTest, FindsEveryPairOnceThoughARowIsLongerThanTheTable) {
-    std::vector<Aabb<TypeParam>> boxes;
-    for (int i = 0; i < 200; ++i) {
-        // Far apart along x by multiples of every table size that could be chosen.
-        for (const double x : {1024.0 * i, 1024.0 * i + 1}) {
-            boxes.push_back(boxAround<TypeParam>({x, 0.5, 0.5}, {0.6, 0.5, 0.5}));
-        }
-    }
-    // One on a coarser level whose neighbourhood on the finer one spans them all.
-    boxes.push_back(boxAround<TypeParam>({1e5, 0, 0}, {1e5, 1, 1}));
-    this->filled_.build(std::move(boxes), fixedLevels(1, 4));
-    this->filled_.expectEveryPairOnce();
-}
-
-TYPED_TEST(TableTest, FindsBoxesOnBordersOfCellsFromBothSides) {
-    using Limits = std::numeric_limits<TypeParam>;
-    // Corners at k * cell as rounded: half of such numbers fall into another cell than k.
-    for (const double cellSize : {0.1, 0.3, 0.7, 1.1, 3.3, 10.1}) {
-        SCOPED_TRACE(testing::Message() << "cell size " << cellSize);
-        std::vector<Aabb<TypeParam>> boxes;
-        const auto add = [&boxes](TypeParam low, TypeParam high) {
-            boxes.emplace_back(Vector3<TypeParam>(low, 0, 0), Vector3<TypeParam>(high, 1, 1));
-        };
-        for (int k = -200; k < 200; ++k) {
-            const auto low = static_cast<TypeParam>(k) * static_cast<TypeParam>(cellSize);
-            const auto below = std::nextafter(low, -Limits::infinity());
-            add(low, static_cast<TypeParam>(k + 1) * static_cast<TypeParam>(cellSize));
-            add(low, low);
-            add(below, below);
-        }
-        this->filled_.build(std::move(boxes), fixedLevels(cellSize, 4));
-        this->filled_.expectEveryPairOnce();
     }
 }
 
@@ -170,12 +95,6 @@ TYPED_TEST(TableTest, FindsEveryPairOnceInPlanesAndLines) {
             EXPECT_GT(this->filled_.expectEveryPairOnce(), 50U);
         }
     }
-}
-
-TYPED_TEST(TableTest, ErasedEntriesAreFoundByNothing) {
-    this->filled_.build(this->draw(300, -7, 7, 0.75));
-    this->filled_.eraseEach(3);
-    EXPECT_GT(this->filled_.expectEveryPairOnce(), 10U);
 }
 
 // --- Crowds --------------------------------------------------------------------------------------
@@ -224,36 +143,7 @@ TYPED_TEST(TableTest, CrowdsInHashedCellsAreFoundWhole) {
     this->filled_.expectEveryPairOnce();
 }
 
-// Boxes that end where others begin, to the last bit, and one that is longer than the others.
-TYPED_TEST(TableTest, CrowdsTouchToTheLastBit) {
-    for (const double away : {0.0, 1e3, 1e6}) {
-        std::vector<Aabb<TypeParam>> boxes;
-        const auto edge = static_cast<TypeParam>(away == 1e6 ? 0.125 : 0.1);
-        const auto first = static_cast<TypeParam>(away);
-        boxes.push_back({Vector3<TypeParam>(first, -1, 0), Vector3<TypeParam>(first + 5, 2, 0)});
-        TypeParam x = first;
-        for (int i = 0; i < 900; ++i) {
-            const TypeParam next = x + edge;
-            const auto y = static_cast<TypeParam>(this->random_.unit());
-            boxes.push_back({Vector3<TypeParam>(x, y, 0), Vector3<TypeParam>(next, y, 0)});
-            x = i % 3 == 0 ? std::nextafter(next, std::numeric_limits<TypeParam>::infinity())
-                           : next;
-        }
-        this->filled_.build(std::move(boxes), fixedLevels(1000, 4));
-        this->filled_.expectEveryPairOnce();
-    }
-}
-
 // --- Cost and cell sizes -------------------------------------------------------------------------
-
-TYPED_TEST(TableTest, DependsOnlyOnTheBoxesNotOnWhatItHeldBefore) {
-    for (const int count : {500, 0, 1, 400, 31, 2000, 33}) {
-        const BoxScene<TypeParam> scene =
-            test::spreadScene<TypeParam>("", count > 100 ? 1 : 250, count > 100 ? 5 : 1250);
-        this->filled_.build(drawBoxes<TypeParam>(this->random_, count, scene.draw));
-        this->filled_.expectEveryPairOnce();
-    }
-}
 
 TYPED_TEST(TableTest, KeepsToTheCostOfAFewTestsABox) {
     constexpr std::size_t kCount = 3000;

@@ -4,7 +4,6 @@
 // tests/integration/bullet/player.hpp's Truth.
 
 #include <tests/fuzz/bullet_life_world.hpp>
-#include <tests/fuzz/subjects.hpp>
 #include <tests/integration/bullet/queries.hpp>
 
 #include <algorithm>
@@ -39,13 +38,7 @@ public:
     }
 
     void play(const Operation& operation) {
-        Arguments arguments(operation);
-        const std::uint32_t kind = operation.kind % (life_.kKinds + kOwn.size());
-        if (kind < life_.kKinds || life_.proxies().empty()) {
-            life_.change(kind, arguments);
-        } else {
-            (this->*kOwn[kind - life_.kKinds])(arguments);
-        }
+        life_.play(operation, *this, kOwn);
         EXPECT_TRUE(world_.journal.errors().empty()) << world_.journal.errors()[0];
         EXPECT_TRUE(world_.ours() == nullptr || world_.ours()->validate().empty())
             << world_.ours()->validate();
@@ -81,14 +74,11 @@ private:
 
     void regroup(Arguments& arguments) {
         const ProxyId id = life_.proxies()[life_.any(arguments)].id;
-        btBroadphaseProxy* const proxy = world_.proxyOf(id);
         const int group = 1 << arguments.below(6);
         const int mask = arguments.flag() ? btBroadphaseProxy::AllFilter : arguments.byte() % 64;
         story_.tell("group ", group, " and mask ", mask, " for ", id.index);
-        proxy->m_collisionFilterGroup = group;
-        proxy->m_collisionFilterMask = mask;
-        askFilterAgain(world_.broadphase(), proxy);
-        world_.truth.play({{Action::regroup, world_.numberOf(id), {}, group, mask}});
+        writeTo(id, group, mask);
+        askFilterAgain(world_.broadphase(), world_.proxyOf(id));
     }
 
     void writeTo(ProxyId id, int group, int mask) {

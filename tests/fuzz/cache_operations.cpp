@@ -4,7 +4,6 @@
 
 #include <tests/fuzz/life.hpp>
 #include <tests/fuzz/palette.hpp>
-#include <tests/fuzz/subjects.hpp>
 
 #include <integration/bullet/pair_cache.hpp>
 

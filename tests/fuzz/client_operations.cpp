@@ -12,7 +12,6 @@
 #include <integration/picking/pick.hpp>
 #include <integration/terrain/terrain.hpp>
 #include <tests/fuzz/grid_world.hpp>
-#include <tests/fuzz/subjects.hpp>
 #include <tests/support/ai_oracles.hpp>
 #include <tests/support/cameras.hpp>
 #include <tests/support/picking_oracle.hpp>
@@ -36,14 +35,8 @@ public:
     }
 
     void play(const Operation& operation) {
-        Arguments arguments(operation);
-        const std::uint32_t kind = operation.kind % (life_.kKinds + kAsking.size());
-        if (kind < life_.kKinds || life_.proxies().empty()) {
-            life_.change(kind, arguments);
-            EXPECT_EQ(world_.grid.validate(), "");
-        } else {
-            (this->*kAsking[kind - life_.kKinds])(arguments);
-        }
+        life_.play(operation, *this, kAsking);
+        EXPECT_EQ(world_.grid.validate(), "");
     }
 
 private:
@@ -311,9 +304,7 @@ private:
 }  // namespace
 
 Verdict playClients(std::span<const Operation> operations, bool tellsStory) {
-    return operations.empty() || operations[0].kind % 2 == 0
-               ? playLife<ClientPlay<float>>(operations, tellsStory)
-               : playLife<ClientPlay<double>>(operations, tellsStory);
+    return playInEither<ClientPlay>(operations, tellsStory);
 }
 
 }  // namespace hashphase::test

@@ -5,8 +5,6 @@
 
 #include <tests/fuzz/life.hpp>
 #include <tests/fuzz/palette.hpp>
-#include <tests/fuzz/subjects.hpp>
-#include <tests/fuzz/text_line.hpp>
 
 #include <demos/scenes/bullet_world_file.hpp>
 #include <demos/scenes/effects_file.hpp>
@@ -17,10 +15,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <optional>
+#include <regex>
 #include <span>
 #include <sstream>
 #include <string>
@@ -78,6 +79,51 @@ std::string sceneOfEffects(std::uint32_t count) {
         file.effects.declare(kAllEffects[i]);
     }
     return demos::effectsFileText(file);
+}
+
+/// What one line of text holds by a slow look: a box, nothing, or a fault; undecided where numbers
+/// are so small or so many digits long that readers may differ.
+struct TextLine {
+    bool isBox = false;
+    bool isFaulty = false;
+    bool isUndecided = false;
+    std::array<float, 6> numbers{};
+};
+
+bool looksLikeNumber(const std::string& word) {
+    static const std::regex number(R"(-?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?)");
+    return std::regex_match(word, number);
+}
+
+TextLine readTextLine(const std::string& text) {
+    TextLine line;
+    if (!text.empty() && text[0] == '#') {
+        return line;
+    }
+    std::string blanks = text;
+    for (char& letter : blanks) {
+        letter = letter == '\t' || letter == '\r' ? ' ' : letter;
+    }
+    std::size_t count = 0;
+    for (std::size_t at = blanks.find_first_not_of(' '); at != std::string::npos;) {
+        const std::size_t end = std::min(blanks.find(' ', at), blanks.size());
+        const std::string word = blanks.substr(at, end - at);
+        at = blanks.find_first_not_of(' ', end);
+        if (word.find('\0') != std::string::npos || !looksLikeNumber(word) || count == 6) {
+            line.isFaulty = true;
+            return line;
+        }
+        const float number = std::strtof(word.c_str(), nullptr);
+        line.isUndecided = line.isUndecided || std::abs(number) < 2e-38F || word.size() > 60;
+        line.isFaulty = line.isFaulty || !(std::abs(number) <= 1e30F);
+        line.numbers[count++] = number;
+    }
+    line.isBox = count > 0;
+    for (std::size_t axis = 0; axis < 3 && count == 6; ++axis) {
+        line.isFaulty = line.isFaulty || line.numbers[axis + 3] < line.numbers[axis];
+    }
+    line.isFaulty = line.isFaulty || (count > 0 && count < 6);
+    return line;
 }
 
 void expectBox(const Aabb<float>& box, std::span<const float> low, std::span<const float> high) {

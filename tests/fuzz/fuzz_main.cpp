@@ -3,7 +3,7 @@
 // What a fuzzer does with bytes: plays them on the subject that it is compiled for. A fault is shrunk, written to
 // stderr as C++, and ends the program.
 
-#include <tests/fuzz/subjects.hpp>
+#include <tests/fuzz/operation.hpp>
 
 #include <cstddef>
 #include <cstdint>

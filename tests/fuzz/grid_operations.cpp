@@ -9,7 +9,6 @@
 #include <broadphase/radius_search.hpp>
 #include <integration/ai/nearest.hpp>
 #include <tests/fuzz/grid_world.hpp>
-#include <tests/fuzz/subjects.hpp>
 #include <tests/support/neighbour_oracle.hpp>
 #include <tests/support/position_oracles.hpp>
 #include <tests/support/radius_oracle.hpp>
@@ -27,13 +26,7 @@ public:
           isNeverUpdated_(first.arguments[7] % 4 == 3) {}
 
     void play(const Operation& operation) {
-        Arguments arguments(operation);
-        const std::uint32_t kind = operation.kind % (life_.kKinds + kAsking.size());
-        if (kind < life_.kKinds || life_.proxies().empty()) {
-            life_.change(kind, arguments);
-        } else {
-            (this->*kAsking[kind - life_.kKinds])(arguments);
-        }
+        life_.play(operation, *this, kAsking);
         expectHolds<Scalar>(world_.grid, life_.proxies(), life_.dead());
         const auto everything = Vector3<Scalar>::Constant(std::numeric_limits<Scalar>::infinity());
         expectFinds(BoxRegion<Scalar>{{-everything, everything}});
@@ -293,9 +286,7 @@ private:
 }  // namespace
 
 Verdict playGrid(std::span<const Operation> operations, bool tellsStory) {
-    return operations.empty() || operations[0].kind % 2 == 0
-               ? playLife<GridModel<float>>(operations, tellsStory)
-               : playLife<GridModel<double>>(operations, tellsStory);
+    return playInEither<GridModel>(operations, tellsStory);
 }
 
 }  // namespace hashphase::test

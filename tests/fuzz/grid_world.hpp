@@ -42,6 +42,19 @@ public:
         return arguments.below(static_cast<std::uint32_t>(proxies_.size()));
     }
 
+    /// An operation that changes boxes, or one of those that the server has.
+    template <class Server, std::size_t count>
+    void play(const Operation& operation, Server& server,
+              const std::array<void (Server::*)(Arguments&), count>& own) {
+        Arguments arguments(operation);
+        const std::uint32_t kind = operation.kind % (kKinds + count);
+        if (kind < kKinds || proxies_.empty()) {
+            change(kind, arguments);
+        } else {
+            (server.*own[kind - kKinds])(arguments);
+        }
+    }
+
     /// Kinds 0 to kKinds - 1.
     void change(std::uint32_t kind, Arguments& arguments) {
         if (kind < 2 || proxies_.empty()) {

@@ -114,4 +114,12 @@ Verdict playLife(std::span<const Operation> operations, bool tellsStory) {
     return verdict;
 }
 
+/// In the precision that the first operation's kind chooses.
+template <template <class> class World>
+Verdict playInEither(std::span<const Operation> operations, bool tellsStory) {
+    return operations.empty() || operations[0].kind % 2 == 0
+               ? playLife<World<float>>(operations, tellsStory)
+               : playLife<World<double>>(operations, tellsStory);
+}
+
 }  // namespace hashphase::test

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <sstream>
+#include <utility>
 
 namespace hashphase::test {
 
@@ -19,15 +20,6 @@ Operations operationsOf(std::span<const std::uint8_t> bytes) {
         operations.push_back(operation);
     }
     return operations;
-}
-
-std::vector<std::uint8_t> bytesOf(std::span<const Operation> operations) {
-    std::vector<std::uint8_t> bytes;
-    for (const Operation& operation : operations) {
-        bytes.push_back(operation.kind);
-        bytes.insert(bytes.end(), operation.arguments.begin(), operation.arguments.end());
-    }
-    return bytes;
 }
 
 std::string asSource(const Subject& subject, std::span<const Operation> operations) {
@@ -53,58 +45,38 @@ std::string asSource(const Subject& subject, std::span<const Operation> operatio
     return text.str();
 }
 
-namespace {
-
-bool isFaulty(const Subject& subject, const Operations& operations) {
-    return !subject.play(operations, false).fault.empty();
-}
-
-// Leaves out runs of operations, long ones first, the first operation excepted.
-bool leaveOutOperations(const Subject& subject, Operations& operations) {
-    bool isShorter = false;
-    for (std::size_t run = operations.size(); run > 0; run /= 2) {
-        for (std::size_t end = operations.size(); end > run; end -= std::min(run, end)) {
-            Operations fewer = operations;
-            const auto last = fewer.begin() + static_cast<std::ptrdiff_t>(end);
-            fewer.erase(last - static_cast<std::ptrdiff_t>(run), last);
-            if (isFaulty(subject, fewer)) {
-                operations = fewer;
-                isShorter = true;
-            }
-        }
-    }
-    return isShorter;
-}
-
-bool lessenArguments(const Subject& subject, Operations& operations) {
-    bool isLess = false;
-    for (std::size_t i = 0; i < operations.size(); ++i) {
-        for (std::size_t k = 0; k < Operation::kArguments; ++k) {
-            const std::uint8_t present = operations[i].arguments[k];
-            for (const int lesser : {0, present % 8, present / 2, present - 1}) {
-                Operations attempt = operations;
-                attempt[i].arguments[k] = static_cast<std::uint8_t>(std::max(lesser, 0));
-                if (lesser >= 0 && lesser < operations[i].arguments[k] &&
-                    isFaulty(subject, attempt)) {
-                    operations = attempt;
-                    isLess = true;
-                }
-            }
-        }
-    }
-    return isLess;
-}
-
-}  // namespace
-
 Operations shrunk(const Subject& subject, Operations operations) {
     operations.resize(std::min(operations.size(), subject.play(operations, false).length));
+    bool isLess = false;
+    const auto attempt = [&](Operations fewer) {
+        if (!subject.play(fewer, false).fault.empty()) {
+            operations = std::move(fewer);
+            isLess = true;
+        }
+    };
     constexpr int kMostRounds = 4;
-    for (int round = 0; round < kMostRounds; ++round) {
-        const bool isShorter = leaveOutOperations(subject, operations);
-        const bool isLess = lessenArguments(subject, operations);
-        if (!isShorter && !isLess) {
-            break;
+    for (int round = 0; round < kMostRounds && (round == 0 || isLess); ++round) {
+        isLess = false;
+        // Leaves out runs of operations, long ones first, the first operation excepted.
+        for (std::size_t run = operations.size(); run > 0; run /= 2) {
+            for (std::size_t end = operations.size(); end > run; end -= std::min(run, end)) {
+                Operations fewer = operations;
+                const auto last = fewer.begin() + static_cast<std::ptrdiff_t>(end);
+                fewer.erase(last - static_cast<std::ptrdiff_t>(run), last);
+                attempt(std::move(fewer));
+            }
+        }
+        for (std::size_t i = 0; i < operations.size(); ++i) {
+            for (std::size_t k = 0; k < Operation::kArguments; ++k) {
+                const std::uint8_t present = operations[i].arguments[k];
+                for (const int lesser : {0, present % 8, present / 2, present - 1}) {
+                    if (lesser >= 0 && lesser < operations[i].arguments[k]) {
+                        Operations less = operations;
+                        less[i].arguments[k] = static_cast<std::uint8_t>(lesser);
+                        attempt(std::move(less));
+                    }
+                }
+            }
         }
     }
     return operations;

@@ -30,7 +30,6 @@ inline constexpr std::size_t kMostOperations = 256;
 
 /// Sixteen bytes an operation; the last one may be shorter.
 [[nodiscard]] Operations operationsOf(std::span<const std::uint8_t> bytes);
-[[nodiscard]] std::vector<std::uint8_t> bytesOf(std::span<const Operation> operations);
 
 /// How a life went.
 struct Verdict {
@@ -45,6 +44,35 @@ struct Subject {
     const char* name;
     Verdict (*play)(std::span<const Operation> operations, bool tellsStory);
 };
+
+// The subjects. The first bit of the first operation's kind chooses the precision, but for Bullet's, which are
+// compiled for either.
+using Play = Verdict(std::span<const Operation> operations, bool tellsStory);
+
+/// The grid: changes, updates, and every query but those of pairs.
+Play playGrid;
+inline constexpr Subject kGrid{"grid", &playGrid};
+
+/// Pairs and sweeps over a grid, with a filter that changes its mind.
+Play playPairs;
+inline constexpr Subject kPairs{"pairs", &playPairs};
+
+/// Picking, culling, zones, radar, sight and terrain over one grid.
+Play playClients;
+inline constexpr Subject kClients{"clients", &playClients};
+
+/// SpatialHashBroadphase with its queries and batches, over several pair caches; and PairCache
+/// under btDbvtBroadphase.
+Play playBroadphase;
+inline constexpr Subject kBroadphase{"broadphase", &playBroadphase};
+
+/// PairCache by itself.
+Play playCache;
+inline constexpr Subject kCache{"cache", &playCache};
+
+/// The readers of recordings, of boxes as text and of the outer shape of .bullet files.
+Play playFiles;
+inline constexpr Subject kFiles{"files", &playFiles};
 
 /// The operations as C++, one a line, with what each of them does beside it: what is between the
 /// braces may stand in a test.

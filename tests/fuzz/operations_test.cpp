@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
 #include <tests/fuzz/property.hpp>
-#include <tests/fuzz/subjects.hpp>
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 // Pairs and sweeps, by tests/support/pair_world.hpp.
 
 #include <tests/fuzz/grid_world.hpp>
-#include <tests/fuzz/subjects.hpp>
+#include <tests/support/motion_oracle.hpp>
 #include <tests/support/pair_world.hpp>
 
 namespace hashphase::test {
@@ -23,13 +23,7 @@ public:
     }
 
     void play(const Operation& operation) {
-        Arguments arguments(operation);
-        const std::uint32_t kind = operation.kind % (life_.kKinds + kOwn.size());
-        if (kind < life_.kKinds || life_.proxies().empty()) {
-            life_.change(kind, arguments);
-        } else {
-            (this->*kOwn[kind - life_.kKinds])(arguments);
-        }
+        life_.play(operation, *this, kOwn);
         EXPECT_EQ(world_.grid.validate(), "");
         EXPECT_EQ(world_.sweeps.validate(), "");
         EXPECT_EQ(world_.pairs.count(), world_.set().size());
@@ -204,9 +198,7 @@ private:
 }  // namespace
 
 Verdict playPairs(std::span<const Operation> operations, bool tellsStory) {
-    return operations.empty() || operations[0].kind % 2 == 0
-               ? playLife<PairPlay<float>>(operations, tellsStory)
-               : playLife<PairPlay<double>>(operations, tellsStory);
+    return playInEither<PairPlay>(operations, tellsStory);
 }
 
 }  // namespace hashphase::test

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Zlib
 
+// Who is within a distance of whom: from position to position (RadiusSearch) and from box to box (Neighbours).
+// What random operations ask of both, radii that are none among them: tests/fuzz.
+
+#include <broadphase/neighbours.hpp>
 #include <broadphase/radius_search.hpp>
 #include <tests/support/handlers.hpp>
+#include <tests/support/neighbour_oracle.hpp>
 #include <tests/support/population.hpp>
 #include <tests/support/radius_oracle.hpp>
 #include <tests/support/script.hpp>
@@ -10,17 +15,23 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <span>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace hashphase::test {
 namespace {
 
+template <class Found>
+concept CanBeAskedInPassing = requires(Found found, const Grid<float>& grid) {
+    std::move(found).find(grid, 1.0F);
+};
+static_assert(!CanBeAskedInPassing<Neighbours<float>>, "pairs would outlive what holds them");
+
 template <class Scalar>
-class RadiusSearchTest : public testing::Test {
+class WhoIsNear : public testing::Test {
 protected:
     static constexpr std::uint32_t kGroups = 5;
 
@@ -102,13 +113,14 @@ protected:
 
     Population<Scalar> world_;
     RadiusSearch<Scalar> search_;
+    Neighbours<Scalar> neighbours_;
     CaughtMessages aboutNan_;
 };
 
 using Scalars = testing::Types<float, double>;
-TYPED_TEST_SUITE(RadiusSearchTest, Scalars);
+TYPED_TEST_SUITE(WhoIsNear, Scalars);
 
-TYPED_TEST(RadiusSearchTest, FindsThoseOfBruteForceAtEveryMomentOfAFrameInEveryScene) {
+TYPED_TEST(WhoIsNear, IsWhomBruteForceFindsAtEveryMomentOfAFrameInEveryScene) {
     for (const BoxScene<TypeParam>& scene : allBoxScenes<TypeParam>()) {
         GridWorld<TypeParam> world;
         Script<TypeParam> script(scene, 0x5eed0e01);
@@ -121,6 +133,15 @@ TYPED_TEST(RadiusSearchTest, FindsThoseOfBruteForceAtEveryMomentOfAFrameInEveryS
             for (const TypeParam radius : {distance, distance / 8}) {
                 found += this->expectLikeBruteForce(world.grid, proxies, radius);
             }
+            const std::size_t any =
+                script.random().below(static_cast<std::uint32_t>(proxies.size()));
+            const TypeParam size = proxies[any].box.sizes().maxCoeff();
+            for (const TypeParam within :
+                 {TypeParam(0), size * TypeParam(0.3), size * TypeParam(4)}) {
+                const auto pairs = this->neighbours_.find(world.grid, within);
+                expectNeighboursLikeBruteForce(pairs, proxies, within);
+                EXPECT_EQ(this->neighbours_.lastCost().hits, pairs.size());
+            }
             if (frame % 3 != 1) {
                 world.grid.update();
             }
@@ -131,7 +152,9 @@ TYPED_TEST(RadiusSearchTest, FindsThoseOfBruteForceAtEveryMomentOfAFrameInEveryS
     }
 }
 
-TYPED_TEST(RadiusSearchTest, FindsThoseOfBruteForceForAnyNumberOfAgents) {
+// --- From position to position -------------------------------------------------------------------
+
+TYPED_TEST(WhoIsNear, FindsThoseOfBruteForceForAnyNumberOfAgents) {
     for (const std::size_t count : {0, 1, 2, 3, 15, 16, 17, 63, 64, 65, 66, 130, 1200}) {
         SCOPED_TRACE(count);
         this->addPoints(count - this->world_.proxies.size(), 0, 20);
@@ -141,7 +164,7 @@ TYPED_TEST(RadiusSearchTest, FindsThoseOfBruteForceForAnyNumberOfAgents) {
     }
 }
 
-TYPED_TEST(RadiusSearchTest, FindsThoseOfBruteForceInPlanesAndLines) {
+TYPED_TEST(WhoIsNear, FindsThoseOfBruteForceInPlanesAndLines) {
     for (const std::uint32_t flatAxes : {1U, 2U, 4U, 3U, 5U, 6U, 7U}) {
         SCOPED_TRACE(flatAxes);
         Population<TypeParam> world;
@@ -160,7 +183,7 @@ TYPED_TEST(RadiusSearchTest, FindsThoseOfBruteForceInPlanesAndLines) {
 }
 
 // Cells are about as large as the radius, and every agent is on a border or next to it.
-TYPED_TEST(RadiusSearchTest, FindsWhoIsJustNearEnoughWhereverCellsEnd) {
+TYPED_TEST(WhoIsNear, FindsWhoIsJustNearEnoughWhereverCellsEnd) {
     Random random(0x5eed0e09);
     std::size_t found = 0;
     for (int row = 0; row < 60; ++row) {
@@ -177,7 +200,7 @@ TYPED_TEST(RadiusSearchTest, FindsWhoIsJustNearEnoughWhereverCellsEnd) {
     EXPECT_GT(found, 60U * 60);
 }
 
-TYPED_TEST(RadiusSearchTest, MeasuresAStraightClosedBallInSpace) {
+TYPED_TEST(WhoIsNear, MeasuresAStraightClosedBallInSpace) {
     this->addPoint(0, 0, 0);
     this->addPoint(2, 3, 6);  // 7 away
     EXPECT_EQ(this->expectLikeBruteForce(6.999), 0U);
@@ -185,49 +208,7 @@ TYPED_TEST(RadiusSearchTest, MeasuresAStraightClosedBallInSpace) {
     EXPECT_NE(this->search_.id(0), this->search_.id(1));
 }
 
-TYPED_TEST(RadiusSearchTest, FindsWithinNothingThoseAtTheSamePlace) {
-    constexpr double kTiny = 1e-30;
-    this->addPoint(5, 5, 5);
-    this->addPoint(5, 5, 5);
-    this->addPoint(0, 0, 0);
-    this->addPoint(kTiny, 0, 0);  // whose squared distance would vanish
-    EXPECT_EQ(this->expectLikeBruteForce(0), 2U);
-    EXPECT_EQ(this->expectLikeBruteForce(2 * kTiny), 4U);
-    for (const double radius : {-1.0, -std::numeric_limits<double>::infinity(),
-                                std::numeric_limits<double>::quiet_NaN()}) {
-        EXPECT_EQ(this->expectLikeBruteForce(radius), 0U);
-        EXPECT_EQ(this->search_.size(), 4U);
-    }
-}
-
-TYPED_TEST(RadiusSearchTest, FindsEverybodyWithinAHugeRadius) {
-    using Limits = std::numeric_limits<TypeParam>;
-    this->addPoints(300, -1e6, 1e6);
-    const auto most = static_cast<double>(Limits::max());
-    const auto infinity = static_cast<double>(Limits::infinity());
-    for (const double radius : {1e7, most / 2, infinity}) {
-        EXPECT_EQ(this->expectLikeBruteForce(radius), 300U * 299);
-    }
-    this->addPoint(most, most, -most);
-    this->addPoint(-most, -most, most);  // farther apart than any number
-    EXPECT_EQ(this->expectLikeBruteForce(infinity), 302U * 301);
-    EXPECT_EQ(this->expectLikeBruteForce(1e7), 300U * 299);
-}
-
-TYPED_TEST(RadiusSearchTest, LeavesOutWhoHasNoFiniteCentre) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    this->world_.add(makeBox<TypeParam>(0, 0, 0, infinity, 1, 1));
-    this->world_.add(
-        makeBox<TypeParam>(-infinity, -infinity, -infinity, infinity, infinity, infinity));
-    this->world_.add(makeBox<TypeParam>(std::numeric_limits<double>::quiet_NaN(), 0, 0, 1, 1, 1));
-    this->world_.add(makeBox<TypeParam>(-1e18, -1e18, -1e18, 1e18, 1e18, 1e18));
-    this->addPoint(1, 1, 1);
-    EXPECT_EQ(this->expectLikeBruteForce(10), 2U);
-    EXPECT_EQ(this->search_.leftOutCount(), 3U);
-    EXPECT_EQ(this->search_.size(), 2U);
-}
-
-TYPED_TEST(RadiusSearchTest, TakesWhomTheFilterAccepts) {
+TYPED_TEST(WhoIsNear, TakesWhomTheFilterAccepts) {
     this->addPoints(600, 0, 20);
     this->world_.keepOnly([](std::size_t i) { return i < 500; });
     const auto isAgent = [this](ProxyId id) {
@@ -244,7 +225,7 @@ TYPED_TEST(RadiusSearchTest, TakesWhomTheFilterAccepts) {
     EXPECT_EQ(this->count().size(), 0U);
 }
 
-TYPED_TEST(RadiusSearchTest, CountsAsManyGroupsAsThereMayBe) {
+TYPED_TEST(WhoIsNear, CountsAsManyGroupsAsThereMayBe) {
     constexpr std::uint32_t kMost = RadiusSearch<TypeParam>::kMostGroups;
     for (std::uint32_t i = 0; i < 100; ++i) {
         this->addPoint(0, 0, 0);
@@ -262,7 +243,7 @@ TYPED_TEST(RadiusSearchTest, CountsAsManyGroupsAsThereMayBe) {
     EXPECT_EQ(this->search_.countGroups(0, groupOf, {}).hits, 0U);
 }
 
-TYPED_TEST(RadiusSearchTest, IsTheSameOnAnyNumberOfThreads) {
+TYPED_TEST(WhoIsNear, IsTheSameOnAnyNumberOfThreads) {
     using Corner = Vector3<double>;
     this->world_.addMany(9000, cubesIn<TypeParam>(Corner(0, 0, 0), Corner(60, 60, 15), 0));
     this->search_.take(this->world_.grid, 3);
@@ -281,7 +262,7 @@ TYPED_TEST(RadiusSearchTest, IsTheSameOnAnyNumberOfThreads) {
 }
 
 // Rows of few cells, which a few at a time would read as a whole.
-TYPED_TEST(RadiusSearchTest, ListsNeighboursInOneOrderWhereverPartsBegin) {
+TYPED_TEST(WhoIsNear, ListsNeighboursInOneOrderWhereverPartsBegin) {
     for (const double width : {3.5, 4.5, 6.5, 9.5}) {
         SCOPED_TRACE(width);
         Population<TypeParam> world;
@@ -305,7 +286,7 @@ TYPED_TEST(RadiusSearchTest, ListsNeighboursInOneOrderWhereverPartsBegin) {
 }
 
 // Cells are for where most are, whatever the others do and however small the radius is.
-TYPED_TEST(RadiusSearchTest, CostsNoMoreForStraysAndSmallRadii) {
+TYPED_TEST(WhoIsNear, CostsNoMoreForStraysAndSmallRadii) {
     Random random(0x5eed0e08);
     constexpr std::uint32_t kCount = 4000;
     for (std::uint32_t i = 0; i < kCount; ++i) {
@@ -321,6 +302,48 @@ TYPED_TEST(RadiusSearchTest, CostsNoMoreForStraysAndSmallRadii) {
         EXPECT_LT(cost.rowsVisited, 20U * kCount) << radius;
         EXPECT_LT(this->search_.memoryBytes(), 400U * kCount) << radius;
     }
+}
+
+// --- From box to box -----------------------------------------------------------------------------
+
+// Even those at infinity.
+TYPED_TEST(WhoIsNear, FromBoxToBoxAreAllWithinInfinity) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    for (const double x : {0.0, 4.0, -kInfinity, kInfinity}) {
+        this->world_.add(makeBox<TypeParam>(x, 0, 0, x, 1, 1));
+    }
+    const auto infinity = static_cast<TypeParam>(kInfinity);
+    EXPECT_EQ(this->neighbours_.find(this->world_.grid, infinity).size(), 6U);
+    EXPECT_EQ(this->neighbours_.find(this->world_.grid, 100).size(), 1U);
+}
+
+// Cells that fit one distance are far too small for another.
+TYPED_TEST(WhoIsNear, FromBoxToBoxCostsNoMoreAfterAnotherDistance) {
+    constexpr std::uint32_t kCount = 3000;
+    this->world_.addMany(kCount, cubesIn<TypeParam>(0, 60, 0.25));
+    this->world_.update();
+    for (const double distance : {0.1, 2.0, 0.1, 4.0, 0.5}) {
+        static_cast<void>(
+            this->neighbours_.find(this->world_.grid, static_cast<TypeParam>(distance)));
+        EXPECT_LT(this->neighbours_.lastCost().boxesTested, 200U * kCount) << distance;
+    }
+}
+
+TYPED_TEST(WhoIsNear, FromBoxToBoxIsTheSameOnAnyNumberOfThreads) {
+    const Grid<TypeParam>& grid = this->world_.grid;
+    this->world_.addMany(9000, cubesIn<TypeParam>(0, 60, 0.5));
+    this->world_.update();
+    const auto alone = this->neighbours_.find(grid, 2);
+    const std::vector<ProxyPair> expected(alone.begin(), alone.end());
+    EXPECT_GT(expected.size(), 5000U);
+    for (const std::size_t threads : {2, 5}) {
+        ThreadedFor threadedFor(threads, threads);
+        ASSERT_TRUE(std::ranges::equal(this->neighbours_.find(grid, 2, threadedFor), expected));
+        EXPECT_GT(threadedFor.mostRanges(), 1U);
+    }
+    const std::size_t bytes = this->neighbours_.memoryBytes();
+    static_cast<void>(this->neighbours_.find(grid, 2));
+    EXPECT_EQ(this->neighbours_.memoryBytes(), bytes);
 }
 
 }  // namespace

@@ -3,7 +3,9 @@
 // Who is within a distance, from position to position, and who is in the cells around: what the regions say. In
 // a grid they are asked in grid_query_test.cpp.
 
+#include <broadphase/aabb.hpp>
 #include <broadphase/cells_region.hpp>
+#include <broadphase/grid.hpp>
 #include <broadphase/position_region.hpp>
 #include <tests/support/box_scenes.hpp>
 
@@ -11,6 +13,7 @@
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 namespace hashphase::test {
@@ -122,6 +125,39 @@ TYPED_TEST(PositionQuery, OfCellsTakesTheFirstAndTheLastOneWholly) {
     EXPECT_TRUE(hasNan(boundsOf(0, -1, 1)));
     EXPECT_TRUE(hasNan(boundsOf(static_cast<double>(this->kNan), 1, 1)));
     EXPECT_EQ(boundsOf(0, static_cast<double>(this->kInfinity), 1).max()[0], this->kInfinity);
+}
+
+// --- Boxes ---------------------------------------------------------------------------------------
+
+template <class Scalar>
+class BoxOf : public testing::Test {};
+
+TYPED_TEST_SUITE(BoxOf, Scalars);
+
+TYPED_TEST(BoxOf, NumbersHasThemAsItsCorners) {
+    const auto box = boxBetween<TypeParam>({-1, 2, 0}, {4, 2.5F, 1});
+    static_assert(std::is_same_v<decltype(box), const Aabb<TypeParam>>);
+    EXPECT_EQ(box.min(), Vector3<TypeParam>(-1, 2, 0));
+    EXPECT_EQ(box.max(), Vector3<TypeParam>(4, TypeParam(2.5), 1));
+    Grid<TypeParam> grid;
+    const ProxyId id = grid.add(boxBetween<TypeParam>({3, 0, 0}, {-3, 0, 0}));
+    EXPECT_EQ(grid.box(id).min().x(), 3) << "an inverted box stays as it is";
+}
+
+TYPED_TEST(BoxOf, ACentreReachesAsFarToEitherSide) {
+    const Vector3<TypeParam> center(10, -20, 30);
+    const Aabb<TypeParam> box = hashphase::boxAround(center, {1, 2, TypeParam(0.5)});
+    EXPECT_EQ(box.min(), Vector3<TypeParam>(9, -22, TypeParam(29.5)));
+    EXPECT_EQ(box.max(), Vector3<TypeParam>(11, -18, TypeParam(30.5)));
+    const Vector3<TypeParam> half(2, 2, 2);
+    EXPECT_EQ(hashphase::boxAround(center, half / 2).min(), Vector3<TypeParam>(9, -21, 29));
+}
+
+TYPED_TEST(BoxOf, ABallIsTheCubeAroundIt) {
+    const Vector3<TypeParam> center(1, 2, 3);
+    const Aabb<TypeParam> box = hashphase::boxAround(center, 0.5);
+    EXPECT_EQ(box.min(), Vector3<TypeParam>(TypeParam(0.5), TypeParam(1.5), TypeParam(2.5)));
+    EXPECT_EQ(box.max(), Vector3<TypeParam>(TypeParam(1.5), TypeParam(2.5), TypeParam(3.5)));
 }
 
 }  // namespace
