@@ -32,7 +32,8 @@ template <class Scalar>
         };
         gaps[static_cast<std::size_t>(axis)] = std::max({0.0L, gap(a, b), gap(b, a)});
     }
-    return std::hypot(gaps[0], gaps[1], gaps[2]);
+    // Not std::hypot(), which is NaN for infinity.
+    return std::sqrt(gaps[0] * gaps[0] + gaps[1] * gaps[1] + gaps[2] * gaps[2]);
 }
 
 /// The pairs found are those of the definition, each once. Boxes with NaN are near nothing.
@@ -56,7 +57,8 @@ void expectNeighboursLikeBruteForce(std::span<const ProxyPair> pairs,
             if (apart == 0 ? reach >= 0 : apart + slack + least <= reach) {
                 surely.push_back(makePair(a.id, b.id));
             }
-            if (reach >= 0 && apart - slack - least <= reach) {
+            // The first by itself for boxes infinitely far apart.
+            if (reach >= 0 && (apart <= reach || apart - slack - least <= reach)) {
                 perhaps.push_back(makePair(a.id, b.id));
             }
         }
